@@ -1,0 +1,7 @@
+//! The host simulation: the dual-stage device in f64, its encoders, the scenarios that drive
+//! it, and the scores and reports that say what a hand would feel.
+//!
+//! Estimators come from `estimator-core` and see only what a controller board would see: counts,
+//! the applied current, edge time stamps. Truth goes to the scores alone.
+
+pub mod trace;

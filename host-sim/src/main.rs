@@ -1,0 +1,2 @@
+//! Command line of the host simulation.
+fn main() {}
