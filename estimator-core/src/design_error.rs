@@ -1,0 +1,88 @@
+//! Why a set of parameters was refused.
+
+use core::fmt;
+
+/// Why a set of parameters was refused, at run time by `Err` or at compile time by [`preset!`].
+///
+/// [`preset!`]: crate::preset
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum DesignError {
+    /// The control rate is not positive and finite.
+    Rate,
+    /// The cut-off or bandwidth is not above zero and at most half the control rate.
+    Cutoff,
+    /// The window is empty or longer than the ring that holds it.
+    Window,
+    /// The noise bound is above 2^14 counts.
+    NoiseBound,
+    /// A device constant is out of its range.
+    Device,
+    /// The process noise is not positive and finite.
+    ProcessNoise,
+    /// The Riccati recursion has no limit in reach: the process noise is too small or too large
+    /// for the rate and the encoder.
+    NotConverged,
+    /// The closed loop of model and gain is not stable.
+    NotStable,
+}
+
+impl DesignError {
+    /// What is wrong, and with what.
+    #[must_use]
+    pub const fn message(self) -> &'static str {
+        match self {
+            Self::Rate => "control rate must be positive and finite (Hz)",
+            Self::Cutoff => "cut-off must be above 0 and at most half the control rate (Hz)",
+            Self::Window => "window must be 1 to N intervals, N at most 128",
+            Self::NoiseBound => "noise bound must be at most 16384 counts",
+            Self::Device => {
+                "device constants must be finite: counts per turn, inertia and torque constant \
+                 above 0, damping at least 0"
+            }
+            Self::ProcessNoise => "process noise must be positive and finite",
+            Self::NotConverged => {
+                "steady gain does not converge: process noise out of reach for this rate and encoder"
+            }
+            Self::NotStable => "closed loop of model and steady gain is not stable",
+        }
+    }
+}
+
+impl fmt::Display for DesignError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.message())
+    }
+}
+
+impl core::error::Error for DesignError {}
+
+/// Evaluates a design at compile time; a [`DesignError`] stops the build with its message.
+///
+/// ```
+/// use estimator_core::{Hertz, Model, NoInput, SteadyKalman, SteadyKalmanTriple, preset};
+/// const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(4096, Hertz(1000.0), 1000.0));
+/// const PRESET: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
+/// assert!(PRESET.gain()[0] < 1.0);
+/// ```
+///
+/// The same with hardly any process noise, whose recursion has no limit in reach, does not build:
+///
+/// ```compile_fail
+/// use estimator_core::{Hertz, Model, NoInput, SteadyKalman, SteadyKalmanTriple, preset};
+/// const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(4096, Hertz(1000.0), 1e-60));
+/// const PRESET: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
+/// assert!(PRESET.gain()[0] < 1.0);
+/// ```
+#[macro_export]
+macro_rules! preset {
+    ($design:expr) => {
+        const {
+            match $design {
+                Ok(designed) => designed,
+                Err(error) => panic!("{}", $crate::DesignError::message(error)),
+            }
+        }
+    };
+}

@@ -1,0 +1,46 @@
+//! The device description that presets are built from.
+
+use crate::design_error::DesignError;
+
+/// The large motor and its encoder, as the motor model sees them. SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Device {
+    /// Counts per revolution: four times the encoder's lines.
+    pub counts_per_rev: u32,
+    /// Inertia J that the motor turns, kg·m².
+    pub inertia: f64,
+    /// Damping b of the coupler, N·m·s/rad.
+    pub damping: f64,
+    /// Torque constant Kt, N·m/A.
+    pub torque_constant: f64,
+}
+
+impl Device {
+    /// Maxon DCX35L GB KL 36 V with 1024 lines on the paper's coupler.
+    ///
+    /// `damping` is the paper's Table I; inertia and torque constant are working values from
+    /// the catalogue, assumed good to 15 %.
+    pub const DCX35L: Self = Self {
+        counts_per_rev: 4 * 1024,
+        inertia: 115e-7,
+        damping: 0.96e-3,
+        torque_constant: 46.8e-3,
+    };
+
+    /// The device itself, if every constant is in its range.
+    ///
+    /// # Errors
+    /// [`DesignError::Device`] unless all are finite, damping is at least zero and the rest
+    /// above zero.
+    pub const fn checked(self) -> Result<Self, DesignError> {
+        let positive = self.counts_per_rev > 0 && self.inertia > 0.0 && self.torque_constant > 0.0;
+        let finite = self.inertia.is_finite()
+            && self.torque_constant.is_finite()
+            && self.damping.is_finite();
+        if positive && finite && self.damping >= 0.0 {
+            Ok(self)
+        } else {
+            Err(DesignError::Device)
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! First-order adaptive windowing (FOAW), exact in integers.
+
+mod cone;
+mod fit;
+mod ring;
+
+use core::marker::PhantomData;
+
+use crate::design_error::DesignError;
+use crate::estimator::VelocityEstimator;
+use crate::sample::{Sample, Signals};
+use crate::units::{Count, CountsPerTick};
+
+use cone::Cone;
+pub use fit::{BestFit, EndFit, Fit};
+use ring::Ring;
+
+/// Steps of this many counts a tick or more are outside the range in which products fit.
+const LONGEST_STEP: u32 = 1 << 15;
+
+/// First-order adaptive windowing: the slope over the longest window that a straight line
+/// explains (Janabi-Sharifi, Hayward, Chen 2000; eqs. 6 to 8).
+///
+/// With `z_j = y_k - y_{k-j}`, window i has the slope b_i of its fit `F`: [`EndFit`],
+/// `z_i / i`, or [`BestFit`], least squares. It is accepted if the line of that slope through the
+/// newest sample passes within the noise bound d of every sample, `|z_j - j b_i| <= d` for all
+/// `j` in `1..=i`, inclusive. Windows grow from `i = 1`, which is always accepted, and the last
+/// one accepted before the first failure, or before n, gives the velocity.
+///
+/// Window i passes if its slope lies in the cone of slopes that pass every sample,
+/// `[max (z_j - d) / j, min (z_j + d) / j]`. The cone is narrowed sample by sample and compared by
+/// cross multiplication, so the result is that of the O(n²) definition, without rounding, in one
+/// pass and with one division at the end.
+///
+/// `d = 1` count bounds the quantisation error of an ideal disc. At rest the window is full and
+/// the velocity zero after n ticks. N is the largest window, 1 to 128 intervals; n may be less at
+/// run time. Steps of 2^15 counts a tick or more restart the window.
+///
+/// The ring is this module's own: `N` counts and an index, walked backwards from the newest
+/// without a bounds check. `heapless` has nothing that walks so, and the crate needs no
+/// dependency.
+///
+/// ```
+/// use estimator_core::{BestFit, Count, Foaw, Sample, VelocityEstimator, preset};
+/// const FOAW: Foaw<8, BestFit> = preset!(Foaw::new(8, 1));
+/// let mut state = FOAW.start(&Sample::new(Count(0)));
+/// let mut v = 0.0;
+/// for tick in 1..=20 {
+///     v = FOAW.update(&mut state, &Sample::new(Count(tick / 4))).0; // a quarter count a tick
+/// }
+/// assert_eq!((v, state.window()), (0.233_333_33, 8));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Foaw<const N: usize, F> {
+    window: u8,
+    bound: i32,
+    fit: PhantomData<F>,
+}
+
+impl<const N: usize, F: Fit> Foaw<N, F> {
+    /// FOAW over at most `window` intervals, n, with a noise bound d of `bound` counts.
+    ///
+    /// # Errors
+    /// [`DesignError::Window`] unless `1 <= window <= N`, [`DesignError::NoiseBound`] if `bound`
+    /// is above 2^14. `N` outside 1 to 128 does not compile.
+    pub const fn new(window: usize, bound: u16) -> Result<Self, DesignError> {
+        const { assert!(1 <= N && N <= 128, "window of 1 to 128 intervals") };
+        if window == 0 || window > N {
+            return Err(DesignError::Window);
+        }
+        if bound > 1 << 14 {
+            return Err(DesignError::NoiseBound);
+        }
+        Ok(Self {
+            window: window as u8,
+            bound: bound as i32,
+            fit: PhantomData,
+        })
+    }
+}
+
+/// State of a [`Foaw`]: the newest counts and the window length last used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FoawState<const N: usize> {
+    past: Ring<N>,
+    window: u8,
+}
+
+impl<const N: usize> FoawState<N> {
+    /// Window length of the last update in intervals; 0 before the first.
+    #[must_use]
+    pub const fn window(&self) -> usize {
+        self.window as usize
+    }
+}
+
+impl<const N: usize, F: Fit> VelocityEstimator for Foaw<N, F> {
+    type State = FoawState<N>;
+    type Output = CountsPerTick;
+    const NEEDS: Signals = Signals::COUNT;
+
+    fn start(&self, first: &Sample) -> FoawState<N> {
+        FoawState {
+            past: Ring::new(first.large),
+            window: 0,
+        }
+    }
+
+    fn update(&self, state: &mut FoawState<N>, sample: &Sample) -> CountsPerTick {
+        let newest = sample.large;
+        let step = newest - state.past.newest();
+        if step.0.unsigned_abs() >= LONGEST_STEP {
+            *state = self.start(sample);
+            state.window = 1;
+            return CountsPerTick(step.to_f32());
+        }
+        let (velocity, window) = self.longest_fit(step.0, newest, &state.past);
+        state.past.push(newest);
+        state.window = window;
+        CountsPerTick(velocity)
+    }
+}
+
+impl<const N: usize, F: Fit> Foaw<N, F> {
+    /// Velocity and length of the longest accepted window that ends at `newest`, `first` counts
+    /// from its predecessor.
+    fn longest_fit(&self, first: i32, newest: Count, past: &Ring<N>) -> (f32, u8) {
+        let mut fit = F::new(first);
+        let mut cone = Cone::new(first, self.bound);
+        let mut slope = fit.slope(1);
+        let mut window = 1;
+        let older = past.newest_first().skip(1);
+        for (interval, count) in (2..=i32::from(self.window)).zip(older) {
+            let displacement = (newest - count).0;
+            cone.narrow(displacement, interval, self.bound);
+            fit.include(displacement, interval);
+            let candidate = fit.slope(interval);
+            if !cone.contains(candidate) {
+                break;
+            }
+            slope = candidate;
+            window = interval as u8;
+        }
+        (slope.to_f32(), window)
+    }
+}

@@ -1,0 +1,86 @@
+//! Critically damped tracking loop.
+
+use crate::const_math::exp;
+use crate::design_error::DesignError;
+use crate::estimator::VelocityEstimator;
+use crate::sample::{Sample, Signals};
+use crate::units::{Count, CountsPerTick, Hertz};
+
+/// Critically damped tracking loop, the "PLL" of most motor boards, in its exact discrete form:
+/// ```text
+/// e = y_k - (θ + v)     θ = θ + v + (1 - p²) e     v = v + (1 - p)² e     p = exp(-2 π f / rate)
+/// ```
+/// Both poles of the error lie at p, so the loop settles without overshoot at the bandwidth f,
+/// Hz, whatever the rate. Follows a ramp without error; θ is kept as a residual to the newest
+/// count. Valid for `0 < f <= rate / 2`. The gains are those of the fading-memory filter of
+/// first degree (Morrison 1969).
+///
+/// ```
+/// use estimator_core::{Count, Hertz, Pll, Sample, VelocityEstimator, preset};
+/// const LOOP: Pll = preset!(Pll::new(Hertz(50.0), Hertz(1000.0)));
+/// let mut state = LOOP.start(&Sample::new(Count(0)));
+/// let mut v = 0.0;
+/// for tick in 1..200 {
+///     v = LOOP.update(&mut state, &Sample::new(Count(7 * tick))).0;
+/// }
+/// assert!((v - 7.0).abs() < 1e-5);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pll {
+    /// What the position gain leaves over of the error: p².
+    leftover: f32,
+    /// Velocity gain, (1 - p)².
+    gain: f32,
+}
+
+impl Pll {
+    /// A loop of `bandwidth`, updated at `rate`.
+    ///
+    /// # Errors
+    /// [`DesignError::Rate`] unless the rate is positive and finite, [`DesignError::Cutoff`]
+    /// unless the bandwidth is in `(0, rate / 2]`.
+    pub const fn new(bandwidth: Hertz, rate: Hertz) -> Result<Self, DesignError> {
+        if !(rate.0 > 0.0 && rate.0.is_finite()) {
+            return Err(DesignError::Rate);
+        }
+        if !(bandwidth.0 > 0.0 && bandwidth.0 <= rate.0 / 2.0) {
+            return Err(DesignError::Cutoff);
+        }
+        let pole = exp(-2.0 * core::f64::consts::PI * bandwidth.0 / rate.0);
+        Ok(Self {
+            leftover: (pole * pole) as f32,
+            gain: ((1.0 - pole) * (1.0 - pole)) as f32,
+        })
+    }
+}
+
+/// State of a [`Pll`]: position relative to the newest count, and velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PllState {
+    anchor: Count,
+    residual: f32,
+    velocity: f32,
+}
+
+impl VelocityEstimator for Pll {
+    type State = PllState;
+    type Output = CountsPerTick;
+    const NEEDS: Signals = Signals::COUNT;
+
+    fn start(&self, first: &Sample) -> PllState {
+        PllState {
+            anchor: first.large,
+            residual: 0.0,
+            velocity: 0.0,
+        }
+    }
+
+    fn update(&self, state: &mut PllState, sample: &Sample) -> CountsPerTick {
+        let step = (sample.large - state.anchor).to_f32();
+        let error = step - (state.residual + state.velocity);
+        state.anchor = sample.large;
+        state.residual = -self.leftover * error;
+        state.velocity += self.gain * error;
+        CountsPerTick(state.velocity)
+    }
+}

@@ -1,0 +1,263 @@
+//! Steady Kalman gain of `x_k = A x_{k-1} + w`, `y_k = [1 0 ..] x_k + n`, at compile time.
+
+use crate::design_error::DesignError;
+
+type Matrix<const S: usize> = [[f64; S]; S];
+
+/// A filter that needs more than 2^20 ticks to settle is refused.
+const DOUBLINGS: usize = 20;
+
+/// See [`Model::steady_gain`](crate::Model::steady_gain).
+pub(crate) const fn steady_gain<const S: usize>(
+    a: &Matrix<S>,
+    q: &Matrix<S>,
+    r: f64,
+) -> Result<[f32; S], DesignError> {
+    let Some(covariance) = predicted_covariance(a, q, r) else {
+        return Err(DesignError::NotConverged);
+    };
+    let exact = gain(&covariance, r);
+    let further = gain(&next_covariance(a, q, r, &covariance), r);
+    let mut rounded = [0.0; S];
+    let mut i = 0;
+    while i < S {
+        if !((further[i] - exact[i]).abs() <= 1e-9 * exact[i].abs()) {
+            return Err(DesignError::NotConverged);
+        }
+        rounded[i] = exact[i] as f32;
+        i += 1;
+    }
+    if shrinks(closed_loop(a, &rounded)) {
+        Ok(rounded)
+    } else {
+        Err(DesignError::NotStable)
+    }
+}
+
+/// Limit of the predicted covariance, by the structure-preserving doubling algorithm (Chu, Fan,
+/// Lin 2005): after k doublings `h` is the covariance after 2^k ticks from certainty, and `e` the
+/// transition of the estimation error over them.
+const fn predicted_covariance<const S: usize>(
+    a: &Matrix<S>,
+    q: &Matrix<S>,
+    r: f64,
+) -> Option<Matrix<S>> {
+    let mut e = transposed(a);
+    let mut g = [[0.0; S]; S];
+    g[0][0] = 1.0 / r;
+    let mut h = *q;
+    let mut doubling = 0;
+    while doubling < DOUBLINGS {
+        let Some(inverse) = inverted(sum(&identity(), &product(&g, &h))) else {
+            return None;
+        };
+        let we = product(&inverse, &e);
+        let g_next = sum(
+            &g,
+            &product(&product(&e, &product(&inverse, &g)), &transposed(&e)),
+        );
+        let h_next = sum(&h, &product(&product(&transposed(&e), &h), &we));
+        e = product(&e, &we);
+        if settled(&h, &h_next) {
+            return Some(h_next);
+        }
+        g = g_next;
+        h = h_next;
+        doubling += 1;
+    }
+    None
+}
+
+/// `K = P Hᵀ / (H P Hᵀ + r)`.
+const fn gain<const S: usize>(covariance: &Matrix<S>, r: f64) -> [f64; S] {
+    let mut k = [0.0; S];
+    let mut i = 0;
+    while i < S {
+        k[i] = covariance[i][0] / (covariance[0][0] + r);
+        i += 1;
+    }
+    k
+}
+
+/// One tick of the plain recursion: update, then predict.
+const fn next_covariance<const S: usize>(
+    a: &Matrix<S>,
+    q: &Matrix<S>,
+    r: f64,
+    covariance: &Matrix<S>,
+) -> Matrix<S> {
+    let k = gain(covariance, r);
+    let mut updated = *covariance;
+    let mut i = 0;
+    while i < S {
+        let mut j = 0;
+        while j < S {
+            updated[i][j] -= k[i] * covariance[0][j];
+            j += 1;
+        }
+        i += 1;
+    }
+    sum(&product(&product(a, &updated), &transposed(a)), q)
+}
+
+/// `(I - K H) A`: how the estimation error goes from one tick to the next.
+const fn closed_loop<const S: usize>(a: &Matrix<S>, k: &[f32; S]) -> Matrix<S> {
+    let mut m = *a;
+    let mut i = 0;
+    while i < S {
+        let mut j = 0;
+        while j < S {
+            m[i][j] -= k[i] as f64 * a[0][j];
+            j += 1;
+        }
+        i += 1;
+    }
+    m
+}
+
+/// Whether some power `m^(2^k)` has a norm below 1/2, which proves a spectral radius below 1.
+const fn shrinks<const S: usize>(mut m: Matrix<S>) -> bool {
+    let mut squaring = 0;
+    while squaring <= DOUBLINGS {
+        if norm(&m) < 0.5 {
+            return true;
+        }
+        m = product(&m, &m);
+        squaring += 1;
+    }
+    false
+}
+
+/// Largest sum of magnitudes in a row; a NaN anywhere makes every comparison with it false.
+const fn norm<const S: usize>(m: &Matrix<S>) -> f64 {
+    let mut largest = 0.0;
+    let mut i = 0;
+    while i < S {
+        let mut row = 0.0;
+        let mut j = 0;
+        while j < S {
+            row += m[i][j].abs();
+            j += 1;
+        }
+        if !(row <= largest) {
+            largest = row;
+        }
+        i += 1;
+    }
+    largest
+}
+
+/// Whether no element changed by more than 1e-12 of the geometric mean of its diagonal elements,
+/// so that states of different magnitude count alike.
+const fn settled<const S: usize>(old: &Matrix<S>, new: &Matrix<S>) -> bool {
+    let mut i = 0;
+    while i < S {
+        let mut j = 0;
+        while j < S {
+            let change = new[i][j] - old[i][j];
+            if !(change * change <= 1e-24 * new[i][i] * new[j][j]) {
+                return false;
+            }
+            j += 1;
+        }
+        i += 1;
+    }
+    true
+}
+
+const fn identity<const S: usize>() -> Matrix<S> {
+    let mut m = [[0.0; S]; S];
+    let mut i = 0;
+    while i < S {
+        m[i][i] = 1.0;
+        i += 1;
+    }
+    m
+}
+
+const fn transposed<const S: usize>(m: &Matrix<S>) -> Matrix<S> {
+    let mut t = [[0.0; S]; S];
+    let mut i = 0;
+    while i < S {
+        let mut j = 0;
+        while j < S {
+            t[j][i] = m[i][j];
+            j += 1;
+        }
+        i += 1;
+    }
+    t
+}
+
+const fn sum<const S: usize>(x: &Matrix<S>, y: &Matrix<S>) -> Matrix<S> {
+    let mut z = *x;
+    let mut i = 0;
+    while i < S {
+        let mut j = 0;
+        while j < S {
+            z[i][j] += y[i][j];
+            j += 1;
+        }
+        i += 1;
+    }
+    z
+}
+
+const fn product<const S: usize>(x: &Matrix<S>, y: &Matrix<S>) -> Matrix<S> {
+    let mut z = [[0.0; S]; S];
+    let mut i = 0;
+    while i < S {
+        let mut j = 0;
+        while j < S {
+            let mut k = 0;
+            while k < S {
+                z[i][j] += x[i][k] * y[k][j];
+                k += 1;
+            }
+            j += 1;
+        }
+        i += 1;
+    }
+    z
+}
+
+/// Gauss-Jordan with partial pivoting; `None` where a pivot vanishes or is not finite.
+const fn inverted<const S: usize>(mut m: Matrix<S>) -> Option<Matrix<S>> {
+    let mut inverse = identity();
+    let mut column = 0;
+    while column < S {
+        let mut pivot = column;
+        let mut row = column + 1;
+        while row < S {
+            if m[row][column].abs() > m[pivot][column].abs() {
+                pivot = row;
+            }
+            row += 1;
+        }
+        (m[column], m[pivot]) = (m[pivot], m[column]);
+        (inverse[column], inverse[pivot]) = (inverse[pivot], inverse[column]);
+        let scale = 1.0 / m[column][column];
+        if !scale.is_finite() {
+            return None;
+        }
+        let mut j = 0;
+        while j < S {
+            m[column][j] *= scale;
+            inverse[column][j] *= scale;
+            j += 1;
+        }
+        let mut row = 0;
+        while row < S {
+            let factor = if row == column { 0.0 } else { m[row][column] };
+            let mut j = 0;
+            while j < S {
+                m[row][j] -= factor * m[column][j];
+                inverse[row][j] -= factor * inverse[column][j];
+                j += 1;
+            }
+            row += 1;
+        }
+        column += 1;
+    }
+    Some(inverse)
+}

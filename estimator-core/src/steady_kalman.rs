@@ -1,0 +1,109 @@
+//! Kalman filter with its preset steady gain.
+
+use crate::design_error::DesignError;
+use crate::estimator::VelocityEstimator;
+use crate::kalman::transitioned;
+use crate::model::{CurrentInput, Input, Model, NoInput};
+use crate::sample::{Sample, Signals};
+use crate::units::{Count, CountsPerTick};
+
+/// [`KalmanTriple`](crate::KalmanTriple) with its steady gain.
+pub type SteadyKalmanTriple = SteadyKalman<3, NoInput>;
+
+/// [`KalmanMotor`](crate::KalmanMotor) with its steady gain.
+pub type SteadyKalmanMotor = SteadyKalman<2, CurrentInput<2>>;
+
+/// Kalman filter over a [`Model`] with the gain that the full recursion settles to:
+/// `x = A x + B i`, then `x = x + K (y - x_0)`.
+///
+/// x and K are S × 1; K is [`Model::steady_gain`], so there is no covariance at run time and
+/// nothing that could lose definiteness. The position is a residual to the newest count.
+///
+/// ```
+/// use estimator_core::*;
+/// const FILTER: SteadyKalmanTriple =
+///     preset!(SteadyKalman::new(&preset!(Model::triple_integrator(4096, Hertz(1000.0), 1e4))));
+/// let mut state = FILTER.start(&Sample::new(Count(0)));
+/// let mut v = 0.0;
+/// for tick in 1..400 {
+///     v = FILTER.update(&mut state, &Sample::new(Count(7 * tick))).0;
+/// }
+/// assert!((v - 7.0).abs() < 1e-5);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SteadyKalman<const S: usize, U> {
+    a: [[f32; S]; S],
+    input: U,
+    k: [f32; S],
+}
+
+impl<const S: usize, U: Copy> SteadyKalman<S, U> {
+    /// The filter of `model` with its steady gain.
+    ///
+    /// # Errors
+    /// As [`Model::steady_gain`].
+    pub const fn new(model: &Model<S, U>) -> Result<Self, DesignError> {
+        const { assert!(S >= 2, "position and velocity at least") };
+        let k = match model.steady_gain() {
+            Ok(k) => k,
+            Err(error) => return Err(error),
+        };
+        let mut a = [[0.0; S]; S];
+        let mut i = 0;
+        while i < S {
+            let mut j = 0;
+            while j < S {
+                a[i][j] = model.a[i][j] as f32;
+                j += 1;
+            }
+            i += 1;
+        }
+        Ok(Self {
+            a,
+            input: model.input,
+            k,
+        })
+    }
+
+    /// The gain K: counts, counts per tick, .. per count of innovation.
+    #[must_use]
+    pub const fn gain(&self) -> &[f32; S] {
+        &self.k
+    }
+}
+
+/// State of a [`SteadyKalman`]: x relative to the newest count.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SteadyKalmanState<const S: usize> {
+    anchor: Count,
+    x: [f32; S],
+}
+
+impl<const S: usize, U: Input<S>> VelocityEstimator for SteadyKalman<S, U> {
+    type State = SteadyKalmanState<S>;
+    type Output = CountsPerTick;
+    const NEEDS: Signals = U::NEEDS;
+
+    fn start(&self, first: &Sample) -> SteadyKalmanState<S> {
+        SteadyKalmanState {
+            anchor: first.large,
+            x: [0.0; S],
+        }
+    }
+
+    fn update(&self, state: &mut SteadyKalmanState<S>, sample: &Sample) -> CountsPerTick {
+        let mut x = transitioned(&self.a, &state.x);
+        self.input.drive(&mut x, sample);
+        let innovation = (sample.large - state.anchor).to_f32() - x[0];
+        for (x, k) in x.iter_mut().zip(&self.k).skip(1) {
+            *x += k * innovation;
+        }
+        // Relative to the new anchor, the corrected position is what the gain left over.
+        x[0] = (self.k[0] - 1.0) * innovation;
+        *state = SteadyKalmanState {
+            anchor: sample.large,
+            x,
+        };
+        CountsPerTick(x[1])
+    }
+}

@@ -1,0 +1,160 @@
+//! The quantities that cross the crate's edge, one type each.
+
+use core::ops::{Add, Sub};
+
+/// Position of an encoder as its counter shows it, modulo 2^32.
+///
+/// Only differences mean anything: `Count - Count` is a displacement, right as long as the true
+/// one is within ±2^31 counts.
+///
+/// ```
+/// use estimator_core::{Count, Counts};
+/// assert_eq!(Count(2) - Count(u32::MAX), Counts(3));
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Count(pub u32);
+
+impl Count {
+    /// The count that a 16-bit counter reading `raw` stands for, given the previous count.
+    ///
+    /// Right as long as the encoder moved by less than 2^15 counts since `self` was read.
+    ///
+    /// ```
+    /// use estimator_core::Count;
+    /// assert_eq!(Count(0x0001_FFFF).extended(0x0002), Count(0x0002_0002));
+    /// assert_eq!(Count(0x0002_0002).extended(0xFFFF), Count(0x0001_FFFF));
+    /// ```
+    #[must_use]
+    pub const fn extended(self, raw: u16) -> Self {
+        // The low halves differ by the displacement modulo 2^16; sign-extend it.
+        let step = raw.wrapping_sub(self.0 as u16) as i16;
+        Self(self.0.wrapping_add(step as u32))
+    }
+}
+
+impl Sub for Count {
+    type Output = Counts;
+
+    fn sub(self, earlier: Self) -> Counts {
+        Counts(self.0.wrapping_sub(earlier.0) as i32)
+    }
+}
+
+impl Add<Counts> for Count {
+    type Output = Self;
+
+    fn add(self, displacement: Counts) -> Self {
+        Self(self.0.wrapping_add_signed(displacement.0))
+    }
+}
+
+/// Displacement in encoder counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Counts(pub i32);
+
+impl Counts {
+    /// The displacement as a float, exact up to ±2^24 counts.
+    #[must_use]
+    pub const fn to_f32(self) -> f32 {
+        self.0 as f32
+    }
+}
+
+/// Velocity in counts per control period.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct CountsPerTick(pub f32);
+
+impl CountsPerTick {
+    /// The velocity in rad/s.
+    #[must_use]
+    pub const fn rad_per_s(self, scale: &Scale) -> f32 {
+        self.0 * scale.rad_per_s_per_count_per_tick
+    }
+}
+
+/// Electric current, A: always finite, within ±[`Amps::MAX`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Amps(f32);
+
+impl Amps {
+    /// The largest magnitude, far above what any haptic device carries.
+    pub const MAX: f32 = 1000.0;
+
+    /// No current.
+    pub const ZERO: Self = Self(0.0);
+
+    /// A current of `amps`; NaN and infinities become zero, the rest saturates at ±[`Amps::MAX`].
+    ///
+    /// This is the one place where a current is made safe, so no estimator has to.
+    ///
+    /// ```
+    /// use estimator_core::Amps;
+    /// assert_eq!(Amps::new(0.25).get(), 0.25);
+    /// assert_eq!(Amps::new(f32::NAN), Amps::ZERO);
+    /// assert_eq!(Amps::new(f32::NEG_INFINITY), Amps::ZERO);
+    /// assert_eq!(Amps::new(-1e30).get(), -1000.0);
+    /// ```
+    #[must_use]
+    pub const fn new(amps: f32) -> Self {
+        if amps.is_finite() {
+            Self(amps.clamp(-Self::MAX, Self::MAX))
+        } else {
+            Self::ZERO
+        }
+    }
+
+    /// The current in A.
+    #[must_use]
+    pub const fn get(self) -> f32 {
+        self.0
+    }
+}
+
+/// Duration in ticks of the clock that stamps encoder edges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ClockTicks(pub u32);
+
+/// Frequency in Hz. A control rate is one of these; its period is never given in ticks.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct Hertz(pub f64);
+
+impl Hertz {
+    /// One period, s.
+    #[must_use]
+    pub const fn period_s(self) -> f64 {
+        1.0 / self.0
+    }
+}
+
+/// The factor between counts per tick and rad/s, for one encoder at one control rate.
+///
+/// `rad_per_s_per_count_per_tick = 2 π rate / counts_per_rev`: what one count is worth to a
+/// finite difference (eq. 5, with its factor 4 in `counts_per_rev`).
+///
+/// ```
+/// use estimator_core::{CountsPerTick, Hertz, Scale};
+/// // 1024 lines at 1 kHz: one count is 1.53 rad/s.
+/// let scale = Scale::new(4 * 1024, Hertz(1000.0));
+/// assert_eq!(CountsPerTick(1.0).rad_per_s(&scale), 1.533_980_8);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// rad/s per count per tick.
+    pub rad_per_s_per_count_per_tick: f32,
+}
+
+impl Scale {
+    /// The factor for an encoder of `counts_per_rev` (four times its lines) at a control rate.
+    #[must_use]
+    pub const fn new(counts_per_rev: u32, rate: Hertz) -> Self {
+        Self {
+            rad_per_s_per_count_per_tick: (2.0 * core::f64::consts::PI * rate.0
+                / counts_per_rev as f64) as f32,
+        }
+    }
+}
