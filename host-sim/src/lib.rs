@@ -4,5 +4,6 @@
 //! Estimators come from `estimator-core` and see only what a controller board would see: counts,
 //! the applied current, edge time stamps. Truth goes to the scores alone.
 
+pub mod score;
 pub mod spectrum;
 pub mod trace;

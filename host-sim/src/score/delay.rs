@@ -1,0 +1,164 @@
+//! By how much an estimate lags.
+
+/// Peak-to-peak motion below which a truth does not move enough to have a delay, rad/s.
+const MOVES_RAD_S: f64 = 1e-3;
+
+/// Samples that the estimate lags behind the truth (negative: leads), below one sample by
+/// parabolic interpolation of the mean square error.
+///
+/// The error is taken over the estimates `margin..len - margin` at every shift, so that shifts
+/// compare the same samples. The minimum is searched downhill from zero in strides that double,
+/// then between the last three; `None` where the truth does not move, the trace is shorter than
+/// three margins or the best shift is not below the margin.
+pub(super) fn samples(truth: &[f64], estimate: &[f32], margin: usize) -> Option<f64> {
+    if margin < 2 || truth.len() < 3 * margin {
+        return None;
+    }
+    let scored = margin..truth.len() - margin;
+    let (low, high) = truth[scored.clone()]
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &w| {
+            (low.min(w), high.max(w))
+        });
+    if high - low < MOVES_RAD_S {
+        return None;
+    }
+    let estimate = &estimate[scored.clone()];
+    let cost = |shift: isize| {
+        let start = margin.wrapping_add_signed(-shift);
+        mean_square_error(estimate, &truth[start..start + estimate.len()])
+    };
+    let limit = margin as isize;
+
+    let at_zero = cost(0);
+    let (ahead, behind) = (cost(1), cost(-1));
+    let direction = if ahead < at_zero && ahead <= behind {
+        1
+    } else if behind < at_zero {
+        -1
+    } else {
+        return Some(vertex(behind, at_zero, ahead));
+    };
+    // Distances travelled in that direction; best[1] lies between two that are not better.
+    let side = |distance: isize| cost(direction * distance);
+    let mut best = [
+        (0, at_zero),
+        (1, ahead.min(behind)),
+        (2, side(2.min(limit))),
+    ];
+    while best[2].1 < best[1].1 {
+        let next = (2 * best[2].0).min(limit);
+        if next == best[2].0 {
+            // At the limit and still going down: the minimum is just before it, or beyond.
+            let inner = (limit - 1, side(limit - 1));
+            if inner.1 >= best[2].1 {
+                return None;
+            }
+            best = [best[1], inner, best[2]];
+            break;
+        }
+        best = [best[1], best[2], (next, side(next))];
+    }
+    while best[2].0 - best[0].0 > 2 {
+        let [left, middle, right] = best;
+        let right_is_wider = right.0 - middle.0 > middle.0 - left.0;
+        let probe = if right_is_wider {
+            middle.0.midpoint(right.0)
+        } else {
+            left.0.midpoint(middle.0)
+        };
+        let probed = (probe, side(probe));
+        best = match (right_is_wider, probed.1 < middle.1) {
+            (true, true) => [middle, probed, right],
+            (true, false) => [left, middle, probed],
+            (false, true) => [left, probed, middle],
+            (false, false) => [probed, middle, right],
+        };
+    }
+    let distance = best[1].0 as f64 + vertex(best[0].1, best[1].1, best[2].1);
+    Some(direction as f64 * distance)
+}
+
+/// Where the parabola through (-1, left), (0, middle), (1, right) is lowest.
+fn vertex(left: f64, middle: f64, right: f64) -> f64 {
+    let curvature = left - 2.0 * middle + right;
+    if curvature > 0.0 {
+        0.5 * (left - right) / curvature
+    } else {
+        0.0
+    }
+}
+
+/// Mean square difference, in lanes that the compiler can run side by side.
+fn mean_square_error(estimate: &[f32], truth: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let (estimates, estimate_rest) = estimate.as_chunks::<LANES>();
+    let (truths, truth_rest) = truth.as_chunks::<LANES>();
+    let mut sums = [0.0; LANES];
+    for (estimates, truths) in estimates.iter().zip(truths) {
+        for lane in 0..LANES {
+            let error = f64::from(estimates[lane]) - truths[lane];
+            sums[lane] += error * error;
+        }
+    }
+    let rest = estimate_rest.iter().zip(truth_rest);
+    let rest: f64 = rest.map(|(&e, &w)| (f64::from(e) - w).powi(2)).sum();
+    (sums.iter().sum::<f64>() + rest) / estimate.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn wave(at: f64) -> f64 {
+        3.0 * (TAU * at / 400.0).sin() + 2.0 * (TAU * at / 950.0).cos()
+    }
+
+    fn lagging(by: f64, n: usize) -> (Vec<f64>, Vec<f32>) {
+        (0..n)
+            .map(|i| (wave(i as f64), wave(i as f64 - by) as f32))
+            .unzip()
+    }
+
+    #[test]
+    fn a_ramp_late_by_one_and_a_half_samples_says_so() {
+        let (truth, late): (Vec<f64>, Vec<f32>) = (0..1003)
+            .map(|i| (0.5 * f64::from(i), (0.5 * (f64::from(i) - 1.5)) as f32))
+            .unzip();
+        let found = samples(&truth, &late, 100).unwrap();
+        assert!((found - 1.5).abs() < 1e-4, "{found}");
+    }
+
+    #[test]
+    fn any_delay_or_lead_below_the_margin_is_found() {
+        for by in [0.0, 0.3, 1.0, 2.5, 3.0, 7.25, 20.0, 61.4, 97.0] {
+            for by in [by, -by] {
+                let (truth, estimate) = lagging(by, 4000);
+                let found = samples(&truth, &estimate, 100).unwrap();
+                assert!((found - by).abs() < 2e-3, "{by} samples: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn noise_on_the_estimate_does_not_move_it_far() {
+        let (truth, mut estimate) = lagging(4.0, 4000);
+        for (i, value) in estimate.iter_mut().enumerate() {
+            *value += if (i * 7919) % 13 > 6 { 1.0 } else { -1.0 };
+        }
+        let found = samples(&truth, &estimate, 100).unwrap();
+        assert!((found - 4.0).abs() < 0.3, "{found}");
+    }
+
+    #[test]
+    fn no_motion_no_room_or_no_minimum_is_none() {
+        let (truth, estimate) = lagging(1.0, 4000);
+        let still = vec![2.0; 4000];
+        assert_eq!(samples(&still, &estimate, 100), None);
+        assert_eq!(samples(&truth[..299], &estimate[..299], 100), None);
+        assert!(samples(&truth[..300], &estimate[..300], 100).is_some());
+        let (truth, estimate) = lagging(130.0, 4000);
+        assert_eq!(samples(&truth, &estimate, 100), None);
+    }
+}

@@ -1,0 +1,280 @@
+use super::*;
+use std::f64::consts::{SQRT_2, TAU};
+
+const RATE_HZ: f64 = 1000.0;
+
+fn interval() -> Interval {
+    Interval::new(0.05, 0.010, 0.070, 0.96e-3)
+}
+
+fn signal(n: usize, of_time: impl Fn(f64) -> f64) -> Vec<f64> {
+    (0..n).map(|i| of_time(i as f64 / RATE_HZ)).collect()
+}
+
+fn estimate(n: usize, of_time: impl Fn(f64) -> f64) -> Vec<f32> {
+    signal(n, of_time).into_iter().map(|e| e as f32).collect()
+}
+
+fn score(truth: &[f64], estimate: &[f32]) -> Score {
+    Truth::new(truth, RATE_HZ, interval(), Wanted::ALL)
+        .unwrap()
+        .score(estimate)
+}
+
+fn near(found: Option<f64>, expected: f64, within: f64) {
+    let found = found.expect("a score");
+    assert!(
+        (found - expected).abs() <= within,
+        "{found}, not {expected}"
+    );
+}
+
+#[test]
+fn a_constant_offset_outside_the_interval_is_the_distance_to_its_edge() {
+    // tolerance(10) = 0.5 + 0.36458; 1.5 above it is 0.63542 outside.
+    let s = score(&vec![10.0; 2000], &vec![11.5; 2000]);
+    near(s.distance_rad_s, 0.635_416_7, 1e-6);
+    near(s.outside, 1.0, 0.0);
+    near(s.rms_rad_s, 1.5, 1e-9);
+    near(s.max_rad_s, 1.5, 1e-9);
+    near(s.force_mn, 1.5 * 27.428_57, 1e-4);
+    assert_eq!(s.delay_ms, None, "the truth does not move");
+    assert_eq!(s.distance_transient_rad_s, None, "no transient");
+}
+
+#[test]
+fn the_same_offset_inside_costs_no_distance_but_an_error() {
+    let s = score(&vec![-10.0; 2000], &vec![-10.8; 2000]);
+    near(s.distance_rad_s, 0.0, 0.0);
+    near(s.outside, 0.0, 0.0);
+    near(s.rms_rad_s, 0.8, 1e-6);
+}
+
+#[test]
+fn outside_is_a_share_of_samples_and_the_start_is_skipped() {
+    let mut guess = vec![0.0; 1100];
+    guess[..100].fill(50.0);
+    guess[1000..].fill(-0.364_583_3 - 0.2);
+    let s = score(&vec![0.0; 1100], &guess);
+    near(s.outside, 0.1, 1e-12);
+    near(s.distance_rad_s, 0.02, 1e-6);
+    near(s.max_rad_s, 0.564_583_3, 1e-6);
+}
+
+#[test]
+fn a_late_ramp_has_its_delay_in_ms() {
+    let truth = signal(2000, |t| 8.0 * t);
+    near(
+        score(&truth, &estimate(2000, |t| 8.0 * (t - 0.0015))).delay_ms,
+        1.5,
+        1e-3,
+    );
+    near(
+        score(&truth, &estimate(2000, |t| 8.0 * (t + 0.0015))).delay_ms,
+        -1.5,
+        1e-3,
+    );
+}
+
+#[test]
+fn noise_is_the_rms_of_what_lies_in_the_tactile_band() {
+    let truth = signal(4000, |t| 5.0 * t);
+    for (hz, share) in [
+        (200.0, 1.0),
+        (55.0, 0.97),
+        (480.0, 1.0),
+        (20.0, 0.0),
+        (40.0, 0.0),
+    ] {
+        let s = score(
+            &truth,
+            &estimate(4000, |t| 5.0 * t + 0.7 * (TAU * hz * t).sin()),
+        );
+        near(s.noise_rad_s, share * 0.7 / SQRT_2, 0.03 * 0.7);
+        near(s.rms_rad_s, 0.7 / SQRT_2, 1e-3);
+    }
+}
+
+#[test]
+fn an_offset_or_a_slow_drift_is_no_noise() {
+    let s = score(&vec![0.0; 4000], &estimate(4000, |t| 4.0 + 3.0 * t));
+    near(s.noise_rad_s, 0.0, 0.01);
+}
+
+#[test]
+fn chatter_counts_what_a_saw_moves_beyond_the_truth() {
+    // Truth climbs 0.01 a sample; the estimate repeats +1, -1 around it.
+    let truth = signal(1100, |t| 10.0 * t);
+    let saw = estimate(1100, |t| 10.0 * t + ((t * RATE_HZ).round() % 2.0));
+    let s = score(&truth, &saw);
+    // 1000 samples have 999 steps: half of +1.01, half of 0.99; the truth's are 0.01.
+    near(s.chatter_rad_s, 999.0 * (1.0 - 0.01) / 1000.0, 2e-3);
+    near(
+        score(&truth, &estimate(1100, |t| 5.0 * t)).chatter_rad_s,
+        0.0,
+        0.0,
+    );
+}
+
+#[test]
+fn transient_distance_averages_over_the_transient_alone() {
+    let truth = signal(1000, |t| if t < 0.4995 { 0.0 } else { 2.0 });
+    let t = Truth::new(&truth, RATE_HZ, interval(), Wanted::ALL).unwrap();
+    assert_eq!(t.transients(), std::slice::from_ref(&(498..522)));
+    // 12 of the 24 transient samples are off by 2, whose tolerance is 0.46458.
+    let late = estimate(1000, |t| if t < 0.5115 { 0.0 } else { 2.0 });
+    let s = t.score(&late);
+    near(s.distance_transient_rad_s, 0.5 * (2.0 - 0.464_583_3), 1e-6);
+    near(s.distance_rad_s, 12.0 / 900.0 * (2.0 - 0.464_583_3), 1e-6);
+}
+
+#[test]
+fn one_bad_sample_makes_the_score_infinite_and_is_counted() {
+    let truth = signal(1000, |t| if t < 0.4995 { 0.0 } else { 2.0 });
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let mut guess = estimate(1000, |t| if t < 0.4995 { 0.0 } else { 2.0 });
+        guess[50] = bad;
+        assert_eq!(score(&truth, &guess).non_finite, 0, "skipped");
+        guess[700] = bad;
+        let s = score(&truth, &guess);
+        assert_eq!(s.non_finite, 1);
+        for infinite in [
+            s.rms_rad_s,
+            s.max_rad_s,
+            s.distance_rad_s,
+            s.distance_transient_rad_s,
+        ] {
+            assert_eq!(infinite, Some(f64::INFINITY));
+        }
+        assert_eq!(s.force_mn, Some(f64::INFINITY));
+        near(s.outside, 1.0 / 900.0, 1e-12);
+        assert_eq!(
+            (s.delay_ms, s.noise_rad_s, s.chatter_rad_s),
+            (None, None, None)
+        );
+    }
+}
+
+#[test]
+fn only_what_is_wanted_is_there_and_it_is_the_same() {
+    let truth = signal(2000, |t| {
+        4.0 * (TAU * 3.0 * t).sin() + if t < 1.0 { 0.0 } else { 3.0 }
+    });
+    let guess: Vec<f32> = truth.iter().map(|&w| (1.1 * w).round() as f32).collect();
+    let all = serde_json::to_value(score(&truth, &guess)).unwrap();
+    let choices = [
+        (
+            "rms_rad_s",
+            Wanted {
+                rms: true,
+                ..Wanted::NONE
+            },
+        ),
+        (
+            "max_rad_s",
+            Wanted {
+                max: true,
+                ..Wanted::NONE
+            },
+        ),
+        (
+            "distance_rad_s",
+            Wanted {
+                distance: true,
+                ..Wanted::NONE
+            },
+        ),
+        (
+            "distance_transient_rad_s",
+            Wanted {
+                distance_transient: true,
+                ..Wanted::NONE
+            },
+        ),
+        (
+            "outside",
+            Wanted {
+                outside: true,
+                ..Wanted::NONE
+            },
+        ),
+        (
+            "delay_ms",
+            Wanted {
+                delay: true,
+                ..Wanted::NONE
+            },
+        ),
+        (
+            "noise_rad_s",
+            Wanted {
+                noise: true,
+                ..Wanted::NONE
+            },
+        ),
+        (
+            "chatter_rad_s",
+            Wanted {
+                chatter: true,
+                ..Wanted::NONE
+            },
+        ),
+        (
+            "force_mn",
+            Wanted {
+                force: true,
+                ..Wanted::NONE
+            },
+        ),
+    ];
+    for (name, wanted) in choices {
+        let one = Truth::new(&truth, RATE_HZ, interval(), wanted)
+            .unwrap()
+            .score(&guess);
+        let one = serde_json::to_value(one).unwrap();
+        for (other, value) in one.as_object().unwrap() {
+            if other == name {
+                assert!(value.is_number() && *value == all[name], "{name}: {value}");
+            } else if other != "non_finite" {
+                assert!(value.is_null(), "{other} where {name} is wanted");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_trace_that_is_all_start_has_no_score() {
+    assert_eq!(score(&[0.0; 100], &[9.0; 100]), Score::default());
+    assert!(score(&[0.0; 101], &[9.0; 101]).rms_rad_s.is_some());
+}
+
+#[test]
+fn a_truth_that_is_not_finite_or_has_no_rate_is_refused() {
+    let refuse = |omega: &[f64], rate| Truth::new(omega, rate, interval(), Wanted::ALL).err();
+    assert!(
+        refuse(&[0.0, f64::NAN], 1000.0)
+            .unwrap()
+            .contains("sample 1 is NaN")
+    );
+    assert!(refuse(&[0.0], 0.0).unwrap().contains("0 Hz"));
+    assert!(refuse(&[0.0], f64::NAN).is_some());
+}
+
+/// Ten estimates of ten seconds take about 20 ms optimised: the bound is for a search or a
+/// transform that became quadratic, not for a slow machine.
+#[test]
+fn a_long_trace_is_scored_fast() {
+    let rate = 11_600.0;
+    let truth: Vec<f64> = (0..116_000)
+        .map(|i| 5.0 * (TAU * 2.0 * f64::from(i) / rate).sin())
+        .collect();
+    let mut late = vec![0.0_f32; 20];
+    late.extend(truth.iter().map(|&w| ((w * 10.0).round() / 10.0) as f32));
+    late.truncate(truth.len());
+    let begin = std::time::Instant::now();
+    let prepared = Truth::new(&truth, rate, interval(), Wanted::ALL).unwrap();
+    for _ in 0..10 {
+        near(prepared.score(&late).delay_ms, 20.0 / 11.6, 0.01);
+    }
+    assert!(begin.elapsed().as_secs_f64() < 5.0, "{:?}", begin.elapsed());
+}
