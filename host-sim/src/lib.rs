@@ -4,6 +4,11 @@
 //! Estimators come from `estimator-core` and see only what a controller board would see: counts,
 //! the applied current, edge time stamps. Truth goes to the scores alone.
 
+pub mod estimators;
+pub mod failure;
+pub mod output;
+pub mod parameters;
+pub mod recording;
 pub mod score;
 pub mod spectrum;
 pub mod trace;

@@ -1,0 +1,147 @@
+//! Every estimator by name, with its parameters.
+
+mod build;
+mod run;
+
+use estimator_core::{Device, Hertz, Signals};
+
+pub use run::{EDGE_CLOCK_HZ, Runner, available};
+
+use crate::failure::Failure;
+
+/// One parameter of an estimator.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    /// Its name after the dot of `NAME.PARAM`.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What it does.
+    pub meaning: &'static str,
+    /// Its smallest value.
+    pub lowest: f64,
+    /// Its largest value.
+    pub highest: f64,
+    /// Whether only whole numbers make sense.
+    pub whole: bool,
+    /// How `tune` looks for it.
+    pub search: Search,
+}
+
+/// How `tune` looks for a parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Search {
+    /// Evenly on a logarithmic scale between these bounds.
+    Log(f64, f64),
+    /// Every whole number between these bounds.
+    Each(u32, u32),
+    /// Not at all: it keeps this value.
+    Fixed(f64),
+}
+
+/// One kind of estimator.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// What it is, in a line.
+    pub summary: &'static str,
+    /// Which columns it reads besides the large counts.
+    pub needs: Signals,
+    /// Its parameters.
+    pub parameters: &'static [Parameter],
+    build: build::Build,
+}
+
+/// What every estimator is built for.
+#[derive(Clone, Copy, Debug)]
+pub struct Setup {
+    /// Control rate.
+    pub rate: Hertz,
+    /// The large motor as the estimators believe it to be.
+    pub device: Device,
+}
+
+/// Values of a kind's parameters, in the order of [`Kind::parameters`].
+pub type Values = Vec<f64>;
+
+impl Kind {
+    /// All kinds, in the order in which they are shown.
+    #[must_use]
+    pub fn all() -> &'static [Self] {
+        build::KINDS
+    }
+
+    /// The kind called `name`.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that lists the names there are.
+    pub fn named(name: &str) -> Result<&'static Self, Failure> {
+        Self::all()
+            .iter()
+            .find(|kind| kind.name == name)
+            .ok_or_else(|| {
+                let names: Vec<_> = Self::all().iter().map(|kind| kind.name).collect();
+                Failure::Input(format!(
+                    "no estimator '{name}'; there are {}",
+                    names.join(", ")
+                ))
+            })
+    }
+
+    /// Index of the parameter called `name`.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that lists the parameters there are.
+    pub fn parameter(&self, name: &str) -> Result<usize, Failure> {
+        let found = self.parameters.iter().position(|p| p.name == name);
+        found.ok_or_else(|| {
+            let names: Vec<_> = self.parameters.iter().map(|p| p.name).collect();
+            let there = if names.is_empty() {
+                "it has none".to_owned()
+            } else {
+                format!("it has {}", names.join(", "))
+            };
+            Failure::Input(format!("{} has no parameter '{name}'; {there}", self.name))
+        })
+    }
+
+    /// The estimator with these parameter values.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that names the parameter or the reason of a refused design.
+    pub fn build(&self, setup: &Setup, values: &Values) -> Result<Runner, Failure> {
+        for (parameter, &value) in self.parameters.iter().zip(values) {
+            parameter.check(self.name, value)?;
+        }
+        (self.build)(setup, values).map_err(|error| {
+            Failure::Input(format!("{} at {} Hz: {error}", self.name, setup.rate.0))
+        })
+    }
+}
+
+impl Parameter {
+    /// Whether `value` is in the parameter's range.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that names the parameter and its range.
+    pub fn check(&self, kind: &str, value: f64) -> Result<(), Failure> {
+        let whole = !self.whole || value.fract() == 0.0;
+        if (self.lowest..=self.highest).contains(&value) && whole {
+            return Ok(());
+        }
+        let number = if self.whole {
+            "a whole number"
+        } else {
+            "a number"
+        };
+        Err(Failure::Input(format!(
+            "{kind}.{} = {value}: must be {number} from {} to {}{}{}",
+            self.name,
+            self.lowest,
+            self.highest,
+            if self.unit.is_empty() { "" } else { " " },
+            self.unit,
+        )))
+    }
+}
