@@ -4,10 +4,12 @@
 //! Estimators come from `estimator-core` and see only what a controller board would see: counts,
 //! the applied current, edge time stamps. Truth goes to the scores alone.
 
+pub mod device;
 pub mod estimators;
 pub mod failure;
 pub mod output;
 pub mod parameters;
+pub mod plant;
 pub mod recording;
 pub mod score;
 pub mod spectrum;
