@@ -11,6 +11,7 @@ pub mod output;
 pub mod parameters;
 pub mod plant;
 pub mod recording;
+pub mod scenario;
 pub mod score;
 pub mod spectrum;
 pub mod trace;

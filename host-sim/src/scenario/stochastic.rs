@@ -1,0 +1,43 @@
+//! Scenario `stochastic`: a linear plant under known noise, for which an optimal filter exists.
+//!
+//! Handle clamped, no friction, no ripple, so that the large motor obeys, with `b`, `J`, `Kt` and
+//! `tau = 1 / (2 pi bandwidth)` of the device,
+//! ```text
+//! J dw = (Kt i - b w) dt + dW        E[dW^2] = TORQUE_INTENSITY_NM2_S dt
+//! tau di/dt = u - i                  u held over each tick, N(0, CURRENT_STD_A^2), white
+//! ```
+//! `u` is the trace's column `current`, known to the estimator; `W` is known to nobody, drawn as
+//! one constant torque of variance `TORQUE_INTENSITY_NM2_S / h` each plant step `h`. The count is
+//! the floor of the angle: to a filter, the middle of the count plus an error of variance 1/12
+//! count^2, near white as long as the motor moves a count or more a tick.
+
+use super::{Drive, Scenario, Seen};
+use rand_distr::{Distribution, StandardNormal};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// Standard deviation of the commanded current, one draw a tick, A.
+pub const CURRENT_STD_A: f64 = 0.3;
+
+/// Two-sided spectral density of the white torque on the large shaft, N^2.m^2.s (N^2.m^2/Hz).
+pub const TORQUE_INTENSITY_NM2_S: f64 = 1e-9;
+
+pub(super) struct Stochastic {
+    random: Xoshiro256PlusPlus,
+}
+
+impl Stochastic {
+    pub(super) const fn new(random: Xoshiro256PlusPlus) -> Self {
+        Self { random }
+    }
+}
+
+impl Scenario for Stochastic {
+    fn torque_intensity(&self) -> f64 {
+        TORQUE_INTENSITY_NM2_S
+    }
+
+    fn tick(&mut self, _: u64, _: Seen) -> Drive {
+        let draw: f64 = StandardNormal.sample(&mut self.random);
+        Drive::clamped(CURRENT_STD_A * draw, 0.0)
+    }
+}

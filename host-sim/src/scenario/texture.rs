@@ -1,0 +1,80 @@
+//! Scenario `texture`: a vibration over slow motion of the hand.
+
+use super::{
+    Drive, Scenario, Seen, draw,
+    hand::{Intent, TUNING},
+    servo::{Servo, low_pass_share},
+};
+use crate::device::Device;
+use crate::plant::Pose;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use std::f64::consts::TAU;
+
+/// Amplitude, N.m.
+const TORQUE: f64 = 6e-3;
+const LOWEST_HZ: f64 = 50.0;
+const HIGHEST_HZ: f64 = 300.0;
+/// Above this the small motor carries most of the torque, Hz.
+const CROSSOVER_HZ: f64 = 100.0;
+
+/// Torque whose frequency swings between 50 and 300 Hz, in logarithm, once every 2 to 4 s.
+pub(super) struct Texture {
+    intent: Intent,
+    servo: Servo,
+    period: f64,
+    damping: f64,
+    share: f64,
+    sweep_rad_per_s: f64,
+    sweep_phase: f64,
+    turns: f64,
+    torque: f64,
+    slip: f64,
+}
+
+impl Texture {
+    pub(super) fn new(device: &Device, period_s: f64, mut random: Xoshiro256PlusPlus) -> Self {
+        let intent = Intent::about(draw(&mut random, -0.5, 0.5), period_s)
+            .sine(&mut random, (0.2, 0.5), (0.2, 0.4))
+            .tremor(&mut random);
+        Self {
+            intent,
+            servo: Servo::new(device, period_s, TUNING),
+            period: period_s,
+            damping: device.coupler.damping_nms_per_rad,
+            share: low_pass_share(CROSSOVER_HZ, period_s),
+            sweep_rad_per_s: TAU / draw(&mut random, 2.0, 4.0),
+            sweep_phase: draw(&mut random, 0.0, TAU),
+            turns: draw(&mut random, 0.0, 1.0),
+            torque: 0.0,
+            slip: 0.0,
+        }
+    }
+
+    /// Torque at the end of tick `k`.
+    fn next_torque(&mut self, k: u64) -> f64 {
+        let middle = (k as f64 + 0.5) * self.period;
+        let along = 0.5 + 0.5 * (self.sweep_rad_per_s * middle + self.sweep_phase).sin();
+        let hz = LOWEST_HZ * (HIGHEST_HZ / LOWEST_HZ).powf(along);
+        self.turns = (self.turns + hz * self.period).fract();
+        TORQUE * (TAU * self.turns).sin()
+    }
+}
+
+impl Scenario for Texture {
+    fn start(&self) -> Pose {
+        self.intent.start()
+    }
+
+    fn tick(&mut self, k: u64, seen: Seen) -> Drive {
+        let next_torque = self.next_torque(k);
+        let torque = 0.5 * (self.torque + next_torque);
+        let next_slip = self.slip + self.share * (next_torque / self.damping - self.slip);
+        let currents = self.servo.update(seen, self.slip, next_slip, torque);
+        self.torque = next_torque;
+        self.slip = next_slip;
+        Drive {
+            grip: self.intent.grip(k),
+            ..Drive::clamped(currents.large_a, currents.small_a)
+        }
+    }
+}
