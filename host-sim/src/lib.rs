@@ -5,6 +5,7 @@
 //! the applied current, edge time stamps. Truth goes to the scores alone.
 
 pub mod device;
+pub mod encoder;
 pub mod estimators;
 pub mod failure;
 pub mod output;
