@@ -14,5 +14,6 @@ pub mod plant;
 pub mod recording;
 pub mod scenario;
 pub mod score;
+pub mod simulate;
 pub mod spectrum;
 pub mod trace;
