@@ -2,7 +2,7 @@
 //!
 //! A scenario is deterministic in its name, the seed and the rate. Amplitudes, frequencies,
 //! phases, order and start angle come from name and seed alone, so that the same seed intends
-//! the same motion at every rate. Those that need a wanted slip are closed by [`servo`], a plain
+//! the same motion at every rate. Those that need a wanted slip are closed by a plain
 //! evaluation loop on the reference encoder and the small encoder, as in the paper: no estimator
 //! under test takes part.
 

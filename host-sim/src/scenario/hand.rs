@@ -16,6 +16,10 @@ pub(super) const TUNING: Tuning = Tuning {
     coulomb_at_rad_s: 0.3,
 };
 
+/// Amplitude of each of tremor's two sines, rad: 0.1 to 0.2 mm at the rim. The small motor's
+/// friction swallows 1.6 mrad of a hand's motion.
+const TREMOR_RAD: (f64, f64) = (2.5e-3, 5e-3);
+
 /// A tremor is slow: with [`TUNING`], friction would hold the large motor at rest, rad/s.
 const HOLD_COULOMB_AT: f64 = 0.05;
 
@@ -45,23 +49,34 @@ impl Intent {
 
     /// Adds a sine of drawn frequency (Hz), amplitude (rad) and phase.
     pub(super) fn sine(
-        mut self,
+        self,
         random: &mut Xoshiro256PlusPlus,
         hz: (f64, f64),
         amplitude: (f64, f64),
     ) -> Self {
+        self.sine_from(random, hz, amplitude, (0.0, TAU))
+    }
+
+    /// The same with a phase (rad) within bounds.
+    pub(super) fn sine_from(
+        mut self,
+        random: &mut Xoshiro256PlusPlus,
+        hz: (f64, f64),
+        amplitude: (f64, f64),
+        phase: (f64, f64),
+    ) -> Self {
         self.sines.push(Sine {
             amplitude: draw(random, amplitude.0, amplitude.1),
             rad_per_s: TAU * draw(random, hz.0, hz.1),
-            phase: draw(random, 0.0, TAU),
+            phase: draw(random, phase.0, phase.1),
         });
         self
     }
 
-    /// Adds physiological tremor: 8 to 12 Hz, about a tenth of a millimetre at the rim.
+    /// Adds physiological tremor of 8 to 12 Hz.
     pub(super) fn tremor(self, random: &mut Xoshiro256PlusPlus) -> Self {
-        self.sine(random, (8.0, 10.0), (0.8e-3, 2e-3))
-            .sine(random, (10.0, 12.0), (0.8e-3, 2e-3))
+        self.sine(random, (8.0, 10.0), TREMOR_RAD)
+            .sine(random, (10.0, 12.0), TREMOR_RAD)
     }
 
     fn at(&self, t: f64) -> Pose {

@@ -29,9 +29,10 @@ pub(super) struct Wall {
 
 impl Wall {
     pub(super) fn new(device: &Device, period_s: f64, mut random: Xoshiro256PlusPlus) -> Self {
-        // The hand swings about a point before the wall and intends to go well into it.
+        // The hand starts back from the wall, swings about a point before it and intends to go
+        // well into it.
         let intent = Intent::about(draw(&mut random, 0.05, 0.10), period_s)
-            .sine(&mut random, (0.4, 1.2), (0.12, 0.18))
+            .sine_from(&mut random, (0.4, 1.2), (0.12, 0.18), (-2.2, -0.9))
             .tremor(&mut random);
         Self {
             intent,
