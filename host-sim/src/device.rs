@@ -268,7 +268,7 @@ impl Device {
 
 /// A motor's section in a file: each key optional, because the two motors' defaults differ.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a section with a motor's keys")]
 struct MotorSection {
     inertia_kg_m2: Option<f64>,
     torque_constant_nm_per_a: Option<f64>,

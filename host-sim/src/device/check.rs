@@ -169,7 +169,12 @@ pub(super) fn validate(device: &Device) -> Result<(), String> {
 
 /// The parser's error in one line, with the line's number and its key.
 pub(super) fn one_line(text: &str, error: &toml::de::Error) -> String {
-    let what = error.message().trim().replace('\n', ", ");
+    let what = error
+        .message()
+        .trim()
+        .replace('\n', ", ")
+        .replace("expected f64", "expected a number")
+        .replace("expected u32", "expected a whole number from 0");
     let Some(span) = error.span() else {
         return what;
     };
@@ -230,7 +235,9 @@ mod tests {
             error.starts_with("line 2, stiffness_nm_per_rad: "),
             "{error}"
         );
-        assert!(error.contains("f64"), "{error}");
+        assert!(error.ends_with("expected a number"), "{error}");
+        let error = refused("[large]\ncoulomb_nm = 0,004");
+        assert!(error.starts_with("line 2, coulomb_nm: "), "{error}");
         let error = refused("[large]\ncounts_per_rev = -4");
         assert!(error.starts_with("line 2, counts_per_rev: "), "{error}");
     }
