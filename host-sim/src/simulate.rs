@@ -3,7 +3,7 @@
 use crate::device::{Device, Disc};
 use crate::encoder::{DiscErrors, EdgeObserver, Encoder};
 use crate::plant::{LONGEST_STEP_S, Plant, Pose, steps_per_tick};
-use crate::scenario::{ScenarioName, Seen, build, draw};
+use crate::scenario::{Drive, Scenario, ScenarioName, Seen, build, draw};
 use crate::trace::{Columns, EdgeStamp, Trace};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::{
@@ -147,7 +147,7 @@ struct Run {
     step: f64,
     damping: f64,
     plant: Plant,
-    scenario: Box<dyn crate::scenario::Scenario>,
+    scenario: Box<dyn Scenario>,
     large: Encoder,
     small: Option<Encoder>,
     reference: Option<Encoder>,
@@ -217,16 +217,13 @@ impl Run {
             let t = k as f64 * self.period;
             counts.push(self.large.count());
             omega.push(self.plant.large().omega);
-            let small = self.small.as_ref().map_or(0, Encoder::count);
             if let Some(column) = &mut counts_small {
-                column.push(small);
+                column.push(self.seen().small);
             }
             if let Some(column) = &mut edges {
                 column.push(stamps.read(t));
             }
-            let reference = self.reference.as_ref().map_or(0, Encoder::count);
-            let seen = Seen { reference, small };
-            self.tick(k as u64, seen, t, &mut stamps);
+            self.tick(k as u64, self.seen(), t, &mut stamps);
             current.push(self.plant.commands().0);
         }
         Trace {
@@ -239,8 +236,17 @@ impl Run {
         }
     }
 
-    /// From one tick to the next.
-    fn tick<S: Stamps>(&mut self, k: u64, seen: Seen, t: f64, stamps: &mut S) {
+    /// What the scenario's loop reads now.
+    fn seen(&self) -> Seen {
+        let count = |encoder: &Option<Encoder>| encoder.as_ref().map_or(0, Encoder::count);
+        Seen {
+            reference: count(&self.reference),
+            small: count(&self.small),
+        }
+    }
+
+    /// From one tick, at `t`, to the next; returns what the scenario decided.
+    fn tick<S: Stamps>(&mut self, k: u64, seen: Seen, t: f64, stamps: &mut S) -> Drive {
         let drive = self.scenario.tick(k, seen);
         self.plant.command(drive.large_a, drive.small_a);
         self.plant.set_damping(self.damping * drive.damping_part);
@@ -265,6 +271,7 @@ impl Run {
                 small.follow(handle, handle_to, self.step, &mut ());
             }
         }
+        drive
     }
 }
 
@@ -276,3 +283,6 @@ fn linear(device: &Device) -> Device {
     device.disc = Disc::default();
     device
 }
+
+#[cfg(test)]
+mod tests;
