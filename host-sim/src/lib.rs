@@ -12,6 +12,7 @@ pub mod output;
 pub mod parameters;
 pub mod plant;
 pub mod recording;
+pub mod report;
 pub mod scenario;
 pub mod score;
 pub mod simulate;

@@ -1,0 +1,256 @@
+//! Axes: where a value lies in a frame, and the frame's grid and labels.
+
+use super::canvas::{Anchor, Canvas, LABEL};
+use super::curve;
+use super::palette::{GRID, INK, MUTED};
+use super::text::number;
+use plotters::style::RGBColor;
+
+/// One axis, from its low to its high end.
+#[derive(Clone, Copy)]
+pub(super) struct Axis {
+    pub(super) low: f64,
+    pub(super) high: f64,
+    log: bool,
+}
+
+impl Axis {
+    /// Even divisions; `high` is moved away from `low` if they are equal.
+    pub(super) fn linear([low, high]: [f64; 2]) -> Self {
+        let high = if high > low { high } else { low + 1.0 };
+        Self {
+            low,
+            high,
+            log: false,
+        }
+    }
+
+    /// Whole decades around positive values.
+    pub(super) fn log([low, high]: [f64; 2]) -> Self {
+        let low = 10_f64.powf(low.log10().floor());
+        let high = 10_f64.powf(high.log10().ceil());
+        let high = if high > low { high } else { 10.0 * low };
+        Self {
+            low,
+            high,
+            log: true,
+        }
+    }
+
+    /// A log axis that ends exactly where it is told.
+    pub(super) fn log_exact([low, high]: [f64; 2]) -> Self {
+        Self {
+            low,
+            high,
+            log: true,
+        }
+    }
+
+    /// 0 at the low end, 1 at the high one; on a log axis what is not positive is far below.
+    pub(super) fn part(&self, value: f64) -> f64 {
+        if self.log {
+            let span = (self.high / self.low).ln();
+            (value.max(f64::MIN_POSITIVE) / self.low).ln() / span
+        } else {
+            (value - self.low) / (self.high - self.low)
+        }
+    }
+
+    /// About `wanted` round values within the axis; on a log axis the decades.
+    pub(super) fn ticks(&self, wanted: usize) -> Vec<f64> {
+        if self.log {
+            let first = (self.low.log10() - 1e-9).ceil() as i32;
+            let last = (self.high.log10() + 1e-9).floor() as i32;
+            return (first..=last)
+                .map(|exponent| 10_f64.powi(exponent))
+                .collect();
+        }
+        let rough = (self.high - self.low) / wanted as f64;
+        let decade = 10_f64.powf(rough.log10().floor());
+        let step = [1.0, 2.0, 5.0, 10.0]
+            .map(|m| m * decade)
+            .into_iter()
+            .find(|step| *step >= 0.999 * rough)
+            .unwrap_or(10.0 * decade);
+        let first = (self.low / step - 1e-9).ceil() as i64;
+        let last = (self.high / step + 1e-9).floor() as i64;
+        (first..=last).map(|i| i as f64 * step).collect()
+    }
+
+    fn label(&self, value: f64) -> String {
+        if self.log {
+            return number_of_decade(value);
+        }
+        // Ticks are round: print no more digits than they have.
+        let text = format!("{value:.4}");
+        let text = text.trim_end_matches('0').trim_end_matches('.');
+        match text.strip_prefix('-') {
+            Some("0") => "0".into(),
+            Some(size) => format!("\u{2212}{size}"),
+            None => text.into(),
+        }
+    }
+}
+
+fn number_of_decade(value: f64) -> String {
+    if (0.000_99..1.0).contains(&value) {
+        format!("{value}")
+    } else if (1.0..99_999.0).contains(&value) {
+        format!("{value:.0}")
+    } else {
+        number(value)
+    }
+}
+
+/// A frame with two axes.
+pub(super) struct Plot {
+    pub(super) left: f64,
+    pub(super) top: f64,
+    pub(super) right: f64,
+    pub(super) bottom: f64,
+    pub(super) x: Axis,
+    pub(super) y: Axis,
+}
+
+impl Plot {
+    /// Place of a value, px.
+    pub(super) fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        (
+            self.left + self.x.part(x) * (self.right - self.left),
+            self.bottom - self.y.part(y) * (self.bottom - self.top),
+        )
+    }
+
+    /// Grid lines; labels below and to the left.
+    pub(super) fn grid(
+        &self,
+        canvas: &Canvas,
+        x_ticks: usize,
+        y_ticks: usize,
+    ) -> Result<(), String> {
+        for x in self.x.ticks(x_ticks) {
+            let (px, _) = self.at((x, self.y.low));
+            canvas.line(&[(px, self.top), (px, self.bottom)], GRID, 1.0)?;
+            let label = self.x.label(x);
+            canvas.text(
+                &label,
+                (px, self.bottom + 10.0),
+                Anchor::Centre,
+                LABEL,
+                MUTED,
+            )?;
+        }
+        for y in self.y.ticks(y_ticks) {
+            let (_, py) = self.at((self.x.low, y));
+            canvas.line(&[(self.left, py), (self.right, py)], GRID, 1.0)?;
+            let label = self.y.label(y);
+            canvas.text(&label, (self.left - 6.0, py), Anchor::Right, LABEL, MUTED)?;
+        }
+        Ok(())
+    }
+
+    /// The left and lower edge, over what was drawn inside.
+    pub(super) fn edges(&self, canvas: &Canvas) -> Result<(), String> {
+        let edge = [
+            (self.left, self.top),
+            (self.left, self.bottom),
+            (self.right, self.bottom),
+        ];
+        canvas.line(&edge, MUTED, 1.0)
+    }
+
+    /// What the x axis measures, below its labels.
+    pub(super) fn x_title(&self, canvas: &Canvas, title: &str) -> Result<(), String> {
+        let middle = 0.5 * (self.left + self.right);
+        canvas.text(
+            title,
+            (middle, self.bottom + 27.0),
+            Anchor::Centre,
+            LABEL,
+            INK,
+        )
+    }
+
+    /// A curve (x rising), reduced to what can be seen and cut at the frame.
+    pub(super) fn curve(
+        &self,
+        canvas: &Canvas,
+        points: impl Iterator<Item = (f64, f64)>,
+        colour: RGBColor,
+        width: f64,
+    ) -> Result<(), String> {
+        let columns = (self.right - self.left) as usize;
+        let places = points.map(|point| self.at(point));
+        let places = curve::reduce(places, [self.left, self.right], columns);
+        for piece in curve::clip(&places, [self.top, self.bottom]) {
+            canvas.line(&piece, colour, width)?;
+        }
+        Ok(())
+    }
+
+    /// The area between two curves, cut at the frame.
+    pub(super) fn band(
+        &self,
+        canvas: &Canvas,
+        points: impl Iterator<Item = (f64, f64, f64)> + Clone,
+        colour: RGBColor,
+    ) -> Result<(), String> {
+        let columns = 0.5 * (self.right - self.left);
+        let ends = [self.left, self.right];
+        let inside = |(x, y): (f64, f64)| (x, y.clamp(self.top, self.bottom));
+        let lows = points.clone().map(|(x, low, _)| inside(self.at((x, low))));
+        let highs = points.map(|(x, _, high)| inside(self.at((x, high))));
+        let mut outline = curve::reduce(lows, ends, columns as usize);
+        let back = curve::reduce(highs, ends, columns as usize);
+        outline.extend(back.into_iter().rev());
+        canvas.polygon(&outline, colour)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_inside() {
+        assert_eq!(Axis::linear([-0.3, 10.2]).ticks(5), [0.0, 5.0, 10.0]);
+        assert_eq!(
+            Axis::linear([-40.0, 60.0]).ticks(5),
+            [-40.0, -20.0, 0.0, 20.0, 40.0, 60.0]
+        );
+        let decades = Axis::log([0.003, 20.0]).ticks(0);
+        assert_eq!(decades.len(), 6);
+        assert!((decades[0] - 1e-3).abs() < 1e-12 && decades[5] == 100.0);
+        assert_eq!(Axis::log_exact([4.0, 500.0]).ticks(0), [10.0, 100.0]);
+    }
+
+    #[test]
+    fn labels_show_what_a_tick_is() {
+        let axis = Axis::linear([-1.0, 1.0]);
+        assert_eq!(axis.label(-0.25), "\u{2212}0.25");
+        assert_eq!(axis.label(-0.0), "0");
+        assert_eq!(axis.label(0.30000000000000004), "0.3");
+        let log = Axis::log([1e-4, 1e4]);
+        let labels: Vec<_> = log.ticks(0).into_iter().map(|t| log.label(t)).collect();
+        assert_eq!(labels[0], "1e-4");
+        assert_eq!(labels[2..5], ["0.01", "0.1", "1"]);
+        assert_eq!(labels[8], "10000");
+    }
+
+    #[test]
+    fn the_ends_of_the_axes_are_the_edges_of_the_frame() {
+        let plot = Plot {
+            left: 50.0,
+            top: 10.0,
+            right: 250.0,
+            bottom: 110.0,
+            x: Axis::log([1.0, 100.0]),
+            y: Axis::linear([-1.0, 3.0]),
+        };
+        let near = |a: (f64, f64), b: (f64, f64)| (a.0 - b.0).abs() + (a.1 - b.1).abs() < 1e-9;
+        assert!(near(plot.at((1.0, -1.0)), (50.0, 110.0)));
+        assert!(near(plot.at((10.0, 1.0)), (150.0, 60.0)));
+        assert!(near(plot.at((100.0, 3.0)), (250.0, 10.0)));
+        assert!(plot.at((0.0, 0.0)).0.is_finite());
+    }
+}

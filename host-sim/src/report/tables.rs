@@ -1,0 +1,144 @@
+//! The paper's tables: the device's constants, and what one count is worth.
+
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+
+use super::DeviceFacts;
+use super::text::{escape, number, rate};
+
+/// Lines a revolution and rates of the paper's Table II, Hz.
+const LINES: [u32; 2] = [1024, 5000];
+const RATES_HZ: [f64; 2] = [1000.0, 11_600.0];
+
+/// Velocity that one count more within one tick stands for, rad/s; `edges_per_line` is 4 where
+/// every edge of both channels counts.
+pub(super) fn velocity_step(lines: u32, edges_per_line: u32, rate_hz: f64) -> f64 {
+    TAU * rate_hz / f64::from(lines * edges_per_line)
+}
+
+/// Table I.
+pub(super) fn constants(device: &DeviceFacts) -> String {
+    let interval = device.interval();
+    let mut rows = vec![
+        (
+            "coupler damping b".into(),
+            format!("{} mN\u{b7}m\u{b7}s/rad", round(1e3 * device.damping)),
+        ),
+        (
+            "handle diameter D".into(),
+            format!("{} mm", round(1e3 * device.diameter_m)),
+        ),
+        (
+            "smallest force a fingertip notices, F<sub>shd</sub>".into(),
+            format!("{} mN", round(1e3 * device.threshold_n)),
+        ),
+        (
+            "Weber fraction k".into(),
+            format!("{}\u{a0}%", round(100.0 * device.weber)),
+        ),
+        (
+            "encoder of the large motor".into(),
+            format!("{} counts a revolution", device.counts_per_rev),
+        ),
+        (
+            "haptic interval at rest, F<sub>shd</sub> D / 2b".into(),
+            format!("\u{b1}{} rad/s", number(interval.floor_rad_s)),
+        ),
+        (
+            "force at the fingertip for an error of 1 rad/s, 2b / D".into(),
+            format!("{} mN", number(interval.force_mn_per_rad_s)),
+        ),
+    ];
+    let more = device.more.iter();
+    rows.extend(more.map(|(what, value)| (escape(what), escape(value))));
+    let mut html = format!(
+        "<table class=\"facts\"><caption>Table I: {}</caption><tbody>\n",
+        escape(&device.name)
+    );
+    for (what, value) in rows {
+        let _ = writeln!(
+            html,
+            "<tr><th scope=\"row\">{what}</th><td>{value}</td></tr>"
+        );
+    }
+    html + "</tbody></table>\n"
+}
+
+/// Table II in both readings.
+pub(super) fn count_worth(device: &DeviceFacts) -> String {
+    let force = device.interval().force_mn_per_rad_s;
+    let mut html = String::from(
+        "<table class=\"facts\"><caption>Table II: what one count is worth to a finite \
+         difference</caption>\n<thead><tr><th rowspan=\"2\">encoder</th>\
+         <th rowspan=\"2\">sample rate</th>\
+         <th colspan=\"2\">4 counts a line: 2\u{3c0} / 4NT</th>\
+         <th colspan=\"2\">1 count a line: 2\u{3c0} / NT</th></tr>\n\
+         <tr><th>rad/s</th><th>mN</th><th>rad/s</th><th>mN</th></tr></thead><tbody>\n",
+    );
+    for lines in LINES {
+        for rate_hz in RATES_HZ {
+            let _ = write!(
+                html,
+                "<tr><th scope=\"row\">{lines} lines</th><td>{}</td>",
+                rate(rate_hz)
+            );
+            for edges in [4, 1] {
+                let step = velocity_step(lines, edges, rate_hz);
+                let cells = [step, step * force].map(number);
+                let _ = write!(html, "<td>{}</td><td>{}</td>", cells[0], cells[1]);
+            }
+            html += "</tr>\n";
+        }
+    }
+    html + "</tbody></table>\n"
+}
+
+/// Without the noise of a decimal factor: 0.96, not 0.9600000000000001.
+fn round(value: f64) -> f64 {
+    format!("{value:.6e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_count_of_the_cheap_encoder_is_worth_42_mn() {
+        let step = velocity_step(1024, 4, 1000.0);
+        assert!((step - 1.53).abs() < 0.005, "{step}");
+        let force = step * DeviceFacts::default().interval().force_mn_per_rad_s;
+        assert!((force - 42.0).abs() < 0.1, "{force}");
+    }
+
+    #[test]
+    fn table_two_has_both_readings_of_every_row() {
+        let html = count_worth(&DeviceFacts::default());
+        for row in [
+            "1024 lines</th><td>1 kHz</td><td>1.53</td><td>42.1</td><td>6.14</td><td>168</td>",
+            "1024 lines</th><td>11.6 kHz</td><td>17.8</td><td>488</td><td>71.2</td><td>1952</td>",
+            "5000 lines</th><td>1 kHz</td><td>0.314</td><td>8.62</td><td>1.26</td><td>34.5</td>",
+            "5000 lines</th><td>11.6 kHz</td><td>3.64</td><td>100</td><td>14.6</td><td>400</td>",
+        ] {
+            assert!(html.contains(row), "{row} in {html}");
+        }
+    }
+
+    #[test]
+    fn table_one_is_the_paper_s_and_escapes_what_is_added() {
+        let html = constants(&DeviceFacts {
+            more: vec![("J <large>".into(), "115 g\u{b7}cm\u{b2}".into())],
+            ..DeviceFacts::default()
+        });
+        for value in [
+            "0.96 mN",
+            "70 mm",
+            "10 mN",
+            "5\u{a0}%",
+            "\u{b1}0.365",
+            "27.4 mN",
+        ] {
+            assert!(html.contains(value), "{value} in {html}");
+        }
+        assert!(html.contains("J &lt;large&gt;"));
+    }
+}
