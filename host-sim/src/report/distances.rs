@@ -2,7 +2,7 @@
 
 use super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure, legend_height, text_width};
 use super::grid::Group;
-use super::palette::{GRID, INK, Palette};
+use super::palette::{GRID, INK, MUTED, Palette};
 use super::plot::{Axis, Plot};
 use super::text::{number, plant};
 
@@ -54,7 +54,7 @@ pub(super) fn bars(
     let head = 34.0 + legend_height(&keys, left);
     let top = head + 24.0;
     let bottom = top + row_height * scenarios.len() as f64;
-    let gap = 24.0;
+    let gap = 44.0;
     let width = (WIDTH - left - 24.0 - (groups.len() - 1) as f64 * gap) / groups.len() as f64;
     figure(bottom + 40.0, title, |canvas| {
         canvas.text(title, (left, 16.0), Anchor::Left, TITLE, INK)?;
@@ -101,14 +101,26 @@ fn panel(
         canvas.line(&[(plot.left, top), (plot.right, top)], GRID, 1.0)?;
         let Some(scenario) = group.scenarios.iter().find(|s| s.name == *name) else {
             let at = (plot.left + 8.0, top + 0.5 * row_height);
-            canvas.text("not run", at, Anchor::Left, LABEL, INK)?;
+            canvas.text("not run", at, Anchor::Left, LABEL, MUTED)?;
             continue;
         };
+        let mut distances = scenario
+            .rows
+            .iter()
+            .filter_map(|row| row.score.distance_rad_s);
+        if distances.all(|distance| distance == 0.0) {
+            let at = (plot.left + 8.0, top + 0.5 * row_height);
+            canvas.text("all 0", at, Anchor::Left, LABEL, MUTED)?;
+            continue;
+        }
         for (j, estimator) in palette.names().enumerate() {
             let row = scenario.rows.iter().find(|row| row.estimator == estimator);
             let Some(distance) = row.and_then(|row| row.score.distance_rad_s) else {
                 continue;
             };
+            if distance == 0.0 {
+                continue;
+            }
             let y = top + 0.5 * BETWEEN + j as f64 * BAR;
             let end = plot.x.part(distance).clamp(0.0, 1.0);
             let right = (plot.left + end * (plot.right - plot.left)).max(plot.left + 2.0);

@@ -23,7 +23,7 @@ const COLUMNS: [Column; 11] = [
         show: number,
     },
     Column {
-        head: "in transients",
+        head: "transient",
         unit: "% of fd",
         of: |r| r.percent.distance_transient_pct,
         show: number,
@@ -36,7 +36,7 @@ const COLUMNS: [Column; 11] = [
     },
     Column {
         head: "outside",
-        unit: "of samples",
+        unit: "samples",
         of: |r| r.score.outside,
         show: share,
     },
@@ -65,8 +65,8 @@ const COLUMNS: [Column; 11] = [
         show: number,
     },
     Column {
-        head: "noise 50\u{2013}500 Hz",
-        unit: "rad/s",
+        head: "noise",
+        unit: "50\u{2013}500 Hz, rad/s",
         of: |r| r.score.noise_rad_s,
         show: number,
     },

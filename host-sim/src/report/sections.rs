@@ -1,10 +1,11 @@
 //! What the page shows, in order: each section a heading, its figures and what to look for.
 
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 use super::grid::{Group, groups};
 use super::palette::Palette;
-use super::text::{plant, rate};
+use super::text::{number, plant, rate};
 use super::{
     CaseReport, ReportInput, Traces, distances, problem, score_tables, spectra, tables, velocity,
     windows,
@@ -19,13 +20,9 @@ pub(super) struct Section {
     pub(super) body: String,
 }
 
-const PROBLEM: &str = "The large motor's encoder moves in whole counts. At this rate one count \
-    more or less within one tick is worth several times what a fingertip can feel, so the finite \
-    difference (grey) jumps in and out of the haptic interval (green) although the motion is \
-    smooth. Each jump is torque on the handle.";
-const STEP: &str = "One step of the large motor's current, the handle held. Look for the colour \
-    staying inside the green: leaving it to the right or below the rise is delay, leaving it \
-    up and down afterwards is noise. \u{201c}Off scale\u{201d} says how many of the panel's \
+const STEP: &str = "One step of the large motor\u{2019}s current, the handle held. A good colour \
+    stays inside the green: trailing behind the step is delay, jumping out of the green where \
+    the truth is smooth is noise. \u{201c}Off scale\u{201d} says how many of the panel\u{2019}s \
     samples lie beyond its axis.";
 const STEADY: &str = "Constant speed: whatever moves here is noise, and whatever sits beside the \
     black line is bias. A good estimate is a flat line inside the green.";
@@ -140,9 +137,26 @@ fn the_problem(report: &ReportInput, palette: &Palette) -> Result<String, String
         );
         let interval = report.device.interval();
         let svg = problem::figure_one(&title, traces, window, at, &interval, palette)?;
-        return Ok(framed(&svg) + &words(PROBLEM));
+        return Ok(framed(&svg) + &words(&count_in_words(report, case.rate_hz)));
     }
     Ok(String::new())
+}
+
+/// What one count is to a finite difference, and to a fingertip.
+fn count_in_words(report: &ReportInput, rate_hz: f64) -> String {
+    let device = &report.device;
+    let interval = device.interval();
+    let step = TAU * rate_hz / f64::from(device.counts_per_rev.max(1));
+    format!(
+        "The large motor\u{2019}s encoder moves in whole counts. At {} one count more or less \
+         within a tick is {} rad/s to a finite difference, or {} mN at the fingertip, which \
+         notices {} mN. So the estimate (grey) jumps while the motion (black) is smooth; what \
+         leaves the haptic interval (green) is torque on the handle that should not be there.",
+        rate(rate_hz),
+        number(step),
+        number(step * interval.force_mn_per_rad_s),
+        number(1e3 * device.threshold_n),
+    )
 }
 
 /// Samples to show, and the one at which time is 0.

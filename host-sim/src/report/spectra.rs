@@ -57,7 +57,7 @@ pub(super) fn spectra(
         )])
         .collect();
     let top = 34.0 + legend_height(&keys, LEFT) + 26.0;
-    let gap = 40.0;
+    let gap = 56.0;
     let width = (WIDTH - LEFT - 16.0 - (panels.len() - 1) as f64 * gap) / panels.len() as f64;
     figure(top + 300.0 + 40.0, title, |canvas| {
         canvas.text(title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;

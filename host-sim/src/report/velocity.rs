@@ -16,6 +16,8 @@ const GAP: f64 = 38.0;
 const PANEL: f64 = 128.0;
 const PANEL_TITLE: f64 = 24.0;
 const BELOW: f64 = 22.0;
+/// Share of samples off scale from which the truth is drawn over the estimate, not under it.
+const HIDES_TRUTH: f64 = 0.05;
 
 /// Small multiples of `window`: the same axes in each panel, all estimators that are there.
 ///
@@ -63,14 +65,16 @@ pub(super) fn panels(
                 (time, f64::from(estimate[at]))
             });
             plot.curve(canvas, points, palette.colour(name), 1.6)?;
+            let off = off_scale(&estimate[window.clone()], axis_y);
+            if off > HIDES_TRUTH {
+                let points = window.clone().map(|at| {
+                    let time = 1e3 * (traces.time(at) - origin_s);
+                    (time, traces.truth[at])
+                });
+                plot.curve(canvas, points, TRUTH, 1.6)?;
+            }
             plot.edges(canvas)?;
-            heading(
-                canvas,
-                &plot,
-                name,
-                palette,
-                off_scale(&estimate[window.clone()], axis_y),
-            )?;
+            heading(canvas, &plot, name, palette, off)?;
             let is_lowest = i + columns >= drawn;
             if is_lowest {
                 plot.x_title(canvas, "time, ms")?;

@@ -32,17 +32,20 @@ pub(super) fn around_step(traces: &Traces, before_s: f64, after_s: f64) -> Optio
     best.0.map(|at| at - before..at + after + 1)
 }
 
-/// The window of `span_s` in which a moving truth changes least for its speed.
+/// The window of `span_s` in which a moving truth changes least for its speed, and has done so
+/// for twice as long before, so that estimators have settled.
 ///
 /// Moving is half of its largest speed or more; `None` if there is no such window.
 pub(super) fn steady(traces: &Traces, span_s: f64) -> Option<Range<usize>> {
     let span = (span_s * traces.rate_hz).round() as usize;
+    let settle = 2 * span;
     let truth = &traces.truth;
     let fastest = truth.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
     let mut best: Option<(f64, Range<usize>)> = None;
     let mut from = start(traces);
-    while span > 1 && from + span < truth.len() {
-        let window = &truth[from..=from + span];
+    while span > 1 && from + settle + span < truth.len() {
+        let end = from + settle + span + 1;
+        let window = &truth[from..end];
         let low = window.iter().copied().fold(f64::INFINITY, f64::min);
         let high = window.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let slowest = low.max(-high);
@@ -53,7 +56,7 @@ pub(super) fn steady(traces: &Traces, span_s: f64) -> Option<Range<usize>> {
                 .as_ref()
                 .is_none_or(|(least, _)| unsteady < 0.9 * least)
         {
-            best = Some((unsteady, from..from + span + 1));
+            best = Some((unsteady, from + settle..end));
         }
         from += span.div_ceil(4);
     }
@@ -94,9 +97,10 @@ mod tests {
     fn steady_is_where_speed_is_high_and_constant() {
         let profile = |t: f64| if t < 1.0 { -20.0 * t } else { -18.0 };
         let found = steady(&traces(2000, 0.0, profile), 0.1).unwrap();
-        assert!(found.start >= 1000 && found.len() == 101, "{found:?}");
+        assert!(found.start >= 1200 && found.len() == 101, "{found:?}");
         assert_eq!(steady(&traces(2000, 0.0, |_| 0.0), 0.1), None);
-        assert_eq!(steady(&traces(150, 0.0, |_| 4.0), 0.1), None);
+        assert_eq!(steady(&traces(400, 0.0, |_| 4.0), 0.1), None);
+        assert_eq!(steady(&traces(401, 0.0, |_| 4.0), 0.1), Some(300..401));
     }
 
     #[test]
