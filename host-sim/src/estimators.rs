@@ -89,6 +89,14 @@ impl Kind {
             })
     }
 
+    /// Whether `tune` has anything to look for.
+    #[must_use]
+    pub fn is_tunable(&self) -> bool {
+        self.parameters
+            .iter()
+            .any(|p| !matches!(p.search, Search::Fixed(_)))
+    }
+
     /// Index of the parameter called `name`.
     ///
     /// # Errors

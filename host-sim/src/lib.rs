@@ -4,6 +4,9 @@
 //! Estimators come from `estimator-core` and see only what a controller board would see: counts,
 //! the applied current, edge time stamps. Truth goes to the scores alone.
 
+pub mod cli;
+pub mod compare;
+pub mod contest;
 pub mod device;
 pub mod encoder;
 pub mod estimators;
@@ -12,9 +15,13 @@ pub mod output;
 pub mod parameters;
 pub mod plant;
 pub mod recording;
+pub mod replay;
 pub mod report;
+pub mod rows;
 pub mod scenario;
 pub mod score;
 pub mod simulate;
 pub mod spectrum;
+pub mod table;
 pub mod trace;
+pub mod tune;

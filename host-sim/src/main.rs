@@ -1,2 +1,13 @@
 //! Command line of the host simulation.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match host_sim::cli::run(std::env::args_os()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            ExitCode::from(failure.status())
+        }
+    }
+}

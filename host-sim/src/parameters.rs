@@ -11,14 +11,14 @@ use crate::failure::Failure;
 /// Whether the plant has Coulomb friction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Plant {
+pub enum PlantKind {
     /// As the device says.
     Friction,
     /// The same device without Coulomb friction: the plant of the paper's model.
     Frictionless,
 }
 
-impl Plant {
+impl PlantKind {
     /// The name in tables and files.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -44,8 +44,8 @@ pub struct Presets {
 pub struct Preset {
     /// Control rate, Hz.
     pub rate_hz: f64,
-    /// Plant.
-    pub plant: Plant,
+    /// PlantKind.
+    pub plant: PlantKind,
     /// Values by estimator and parameter.
     pub estimators: BTreeMap<String, BTreeMap<String, f64>>,
 }
@@ -67,6 +67,14 @@ impl Presets {
         let text = std::fs::read_to_string(path)
             .map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
         Self::parse(&text, &name)
+    }
+
+    /// The file's text.
+    ///
+    /// # Errors
+    /// [`Failure::Input`]; none is known to happen.
+    pub fn to_toml(&self) -> Result<String, Failure> {
+        toml::to_string(self).map_err(|error| Failure::Input(error.to_string()))
     }
 
     fn parse(text: &str, name: &str) -> Result<Self, Failure> {
@@ -100,7 +108,12 @@ impl Presets {
     }
 
     /// The values tuned for `kind` at the nearest rate (by ratio) on that plant.
-    fn nearest(&self, kind: &Kind, rate_hz: f64, plant: Plant) -> Option<&BTreeMap<String, f64>> {
+    fn nearest(
+        &self,
+        kind: &Kind,
+        rate_hz: f64,
+        plant: PlantKind,
+    ) -> Option<&BTreeMap<String, f64>> {
         let far = |preset: &Preset| (preset.rate_hz / rate_hz).ln().abs();
         self.preset
             .iter()
@@ -169,7 +182,7 @@ impl Parameters {
     ///
     /// A tuned frequency above half the rate is lowered to it; a value set by name is not.
     #[must_use]
-    pub fn values(&self, kind: &Kind, setup: &Setup, plant: Plant) -> Values {
+    pub fn values(&self, kind: &Kind, setup: &Setup, plant: PlantKind) -> Values {
         let mut values: Values = kind.parameters.iter().map(|p| p.search.middle()).collect();
         for layer in &self.layers {
             let Some(tuned) = layer.nearest(kind, setup.rate.0, plant) else {
@@ -225,7 +238,7 @@ mod tests {
         let parameters = Parameters::default();
         for kind in Kind::all() {
             for rate in [100.0, 500.0, 1e3, 2e3, 1e4, 11.6e3, 2e4, 1e5] {
-                for plant in [Plant::Friction, Plant::Frictionless] {
+                for plant in [PlantKind::Friction, PlantKind::Frictionless] {
                     let values = parameters.values(kind, &setup(rate), plant);
                     assert!(
                         kind.build(&setup(rate), &values).is_ok(),
@@ -245,17 +258,20 @@ mod tests {
         parameters.layer(Presets::parse(file, "f").unwrap());
         let pll = Kind::named("pll").unwrap();
         assert_eq!(
-            parameters.values(pll, &setup(3000.0), Plant::Friction),
+            parameters.values(pll, &setup(3000.0), PlantKind::Friction),
             [10.0]
         );
         assert_eq!(
-            parameters.values(pll, &setup(3300.0), Plant::Friction),
+            parameters.values(pll, &setup(3300.0), PlantKind::Friction),
             [20.0]
         );
-        assert_eq!(parameters.values(pll, &setup(15.0), Plant::Friction), [7.5]);
+        assert_eq!(
+            parameters.values(pll, &setup(15.0), PlantKind::Friction),
+            [7.5]
+        );
         parameters.set("pll.bandwidth_hz=33").unwrap();
         assert_eq!(
-            parameters.values(pll, &setup(3000.0), Plant::Friction),
+            parameters.values(pll, &setup(3000.0), PlantKind::Friction),
             [33.0]
         );
     }

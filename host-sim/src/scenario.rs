@@ -88,7 +88,9 @@ impl ScenarioName {
     #[must_use]
     pub const fn description(self) -> &'static str {
         match self {
-            Self::Step => "open-loop current steps of 0.15 to 0.9 A each 0.25 s, handle clamped",
+            Self::Step => {
+                "current on at 0.15 to 0.9 A and off each 0.25 s, open loop, handle clamped"
+            }
             Self::Permanent => "constant slip of 2 to 20 rad/s, 1 s each, handle clamped",
             Self::Track => "slip chirp of 0.5 to 20 Hz and triangular reversals, handle clamped",
             Self::FreeAir => "hand moves at 0.3 to 4 Hz and trembles, zero torque wanted",

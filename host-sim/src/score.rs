@@ -110,6 +110,33 @@ impl Wanted {
         chatter: false,
         force: false,
     };
+
+    /// Wants the score called `name`, as in [`Score`] and the JSON; one in % is its own kind.
+    ///
+    /// # Errors
+    /// If there is no score of that name; the message lists them.
+    pub fn add(&mut self, name: &str) -> Result<(), String> {
+        let flag = match name {
+            "rms_rad_s" | "rms_pct" => &mut self.rms,
+            "max_rad_s" => &mut self.max,
+            "distance_rad_s" | "distance_pct" => &mut self.distance,
+            "distance_transient_rad_s" | "distance_transient_pct" => &mut self.distance_transient,
+            "outside" => &mut self.outside,
+            "delay_ms" => &mut self.delay,
+            "noise_rad_s" => &mut self.noise,
+            "chatter_rad_s" => &mut self.chatter,
+            "force_mn" => &mut self.force,
+            _ => {
+                return Err(format!(
+                    "no score '{name}'; there are rms_rad_s, max_rad_s, distance_rad_s, \
+                     distance_transient_rad_s, outside, delay_ms, noise_rad_s, chatter_rad_s, \
+                     force_mn"
+                ));
+            }
+        };
+        *flag = true;
+        Ok(())
+    }
 }
 
 impl Default for Wanted {

@@ -24,7 +24,7 @@ const MOST_TICKS: f64 = 1e8;
 /// Ticks of a run.
 ///
 /// # Errors
-/// One line that names a rate or a length out of range, and the range.
+/// One line that names a rate or a duration out of range, and the range.
 pub fn ticks(rate_hz: f64, seconds: f64) -> Result<usize, String> {
     if !(RATES_HZ.0..=RATES_HZ.1).contains(&rate_hz) {
         return Err(format!(
@@ -35,8 +35,9 @@ pub fn ticks(rate_hz: f64, seconds: f64) -> Result<usize, String> {
     let ticks = (rate_hz * seconds).round();
     if !(2.0..=MOST_TICKS).contains(&ticks) {
         return Err(format!(
-            "length {seconds} s: must be from 2 to {MOST_TICKS:e} ticks of {} s",
-            1.0 / rate_hz
+            "duration {seconds} s: must be from {} to {} s at {rate_hz} Hz",
+            2.0 / rate_hz,
+            MOST_TICKS / rate_hz
         ));
     }
     Ok(ticks as usize)
@@ -69,7 +70,7 @@ pub fn plant_steps(rate_hz: f64, seconds: f64) -> Result<u64, String> {
 /// ```
 ///
 /// # Errors
-/// One line on an impossible device, or a rate or a length out of range.
+/// One line on an impossible device, or a rate or a duration out of range.
 pub fn simulate(
     device: &Device,
     scenario: ScenarioName,

@@ -1,4 +1,4 @@
-//! Scenario `step`: open-loop current steps, the paper's figure 6.
+//! Scenario `step`: open-loop current steps from rest and back, the paper's figure 6.
 
 use super::{Drive, Scenario, Seen, draw, draw_sign};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -29,7 +29,10 @@ impl Scenario for Step {
         let due = (k as f64 * self.period / HOLD_S + 1e-9) as u64 + 1;
         while self.steps < due {
             self.steps += 1;
-            self.current = draw_sign(&mut self.random) * draw(&mut self.random, 0.15, 0.9);
+            self.current = match self.steps % 2 {
+                0 => 0.0,
+                _ => draw_sign(&mut self.random) * draw(&mut self.random, 0.15, 0.9),
+            };
         }
         Drive::clamped(self.current, 0.0)
     }

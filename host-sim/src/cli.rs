@@ -1,0 +1,70 @@
+//! The command line.
+
+mod arguments;
+mod compare;
+mod list;
+mod replay;
+mod tune;
+
+use std::ffi::OsString;
+
+use clap::Parser as _;
+use clap::error::ErrorKind;
+
+use crate::failure::Failure;
+use arguments::{Arguments, Command};
+
+/// Runs the command line `arguments`, the program's name first; no arguments are `compare`.
+///
+/// # Errors
+/// A [`Failure`] with its exit status.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let command_line = command_line(&arguments);
+    let parsed = match Arguments::try_parse_from(&arguments) {
+        Ok(parsed) => parsed,
+        Err(error) => return explain(&error),
+    };
+    match parsed.command {
+        None => compare::run(&arguments::Compare::default(), &command_line),
+        Some(Command::Compare(options)) => compare::run(&options, &command_line),
+        Some(Command::Replay(options)) => replay::run(&options),
+        Some(Command::Tune(options)) => tune::run(&options, &command_line),
+        Some(Command::Estimators) => list::estimators(),
+        Some(Command::Scenarios) => list::scenarios(),
+        Some(Command::Device(options)) => list::device(&options),
+    }
+}
+
+/// Help and version go out; anything else becomes one line.
+fn explain(error: &clap::Error) -> Result<(), Failure> {
+    if let ErrorKind::DisplayHelp | ErrorKind::DisplayVersion = error.kind() {
+        return crate::output::print_bytes(error.render().to_string().as_bytes());
+    }
+    let text = error.render().to_string();
+    let said: Vec<_> = text
+        .lines()
+        .map(str::trim)
+        .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"))
+        .filter(|line| !line.is_empty())
+        .collect();
+    let said = said.join(" ");
+    let said = said.strip_prefix("error: ").unwrap_or(&said);
+    Err(Failure::Input(format!("{said}; see host-sim --help")))
+}
+
+/// The command as somebody would type it again.
+fn command_line(arguments: &[OsString]) -> String {
+    let quoted = arguments.iter().skip(1).map(|argument| {
+        let argument = argument.to_string_lossy();
+        let plain = |c: char| c.is_alphanumeric() || "-_./=,:+".contains(c);
+        match !argument.is_empty() && argument.chars().all(plain) {
+            true => argument.into_owned(),
+            false => format!("'{}'", argument.replace('\'', r"'\''")),
+        }
+    });
+    std::iter::once("host-sim".to_owned())
+        .chain(quoted)
+        .collect::<Vec<_>>()
+        .join(" ")
+}

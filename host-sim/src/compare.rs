@@ -1,0 +1,155 @@
+//! The main job: scenarios × rates × plants, every estimator on each, scored.
+
+use estimator_core::Hertz;
+use rayon::prelude::*;
+
+use crate::contest::{Contest, Estimate, Heading, Row};
+use crate::device::Device;
+use crate::estimators::{Kind, Setup};
+use crate::failure::Failure;
+use crate::parameters::{Parameters, PlantKind};
+use crate::scenario::ScenarioName;
+use crate::score::{Interval, Wanted};
+use crate::simulate::simulate;
+use crate::trace::{Columns, Trace};
+
+/// One run of the plant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// Scenario.
+    pub scenario: ScenarioName,
+    /// Control rate, Hz.
+    pub rate_hz: f64,
+    /// With or without Coulomb friction.
+    pub plant: PlantKind,
+    /// Seed.
+    pub seed: u64,
+    /// Duration, s.
+    pub seconds: f64,
+    /// Whether the signals are kept for figures.
+    pub keep: bool,
+}
+
+/// What all cases have in common.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// The device.
+    pub device: Device,
+    /// Estimators, in the order of the tables.
+    pub estimators: Vec<&'static Kind>,
+    /// Their parameters.
+    pub parameters: Parameters,
+    /// Which scores to compute.
+    pub wanted: Wanted,
+}
+
+/// One case, scored.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// What was run.
+    pub case: Case,
+    /// One row an estimator.
+    pub rows: Vec<Row>,
+    /// The signals, where [`Case::keep`] asked for them.
+    pub signals: Option<(Trace, Vec<Estimate>)>,
+}
+
+/// The device as estimators see it: the large motor's nameplate.
+#[must_use]
+pub fn setup(device: &Device, rate_hz: f64) -> Setup {
+    Setup {
+        rate: Hertz(rate_hz),
+        device: estimator_core::Device {
+            counts_per_rev: device.large.counts_per_rev,
+            inertia: device.large.inertia_kg_m2,
+            damping: device.coupler.damping_nms_per_rad,
+            torque_constant: device.large.torque_constant_nm_per_a,
+        },
+    }
+}
+
+/// The haptic interval of a device.
+#[must_use]
+pub fn interval(device: &Device) -> Interval {
+    Interval::new(
+        device.interval.weber,
+        device.interval.threshold_n,
+        device.handle.diameter_m,
+        device.coupler.damping_nms_per_rad,
+    )
+}
+
+/// Runs all cases in parallel; `done` is called as each ends. The outcomes come in the order of
+/// the cases, whatever the order they ended in.
+///
+/// # Errors
+/// [`Failure::Input`] of the first case, in order, that could not be run.
+pub fn compare(
+    cases: &[Case],
+    settings: &Settings,
+    done: impl Fn() + Sync,
+) -> Result<Vec<Outcome>, Failure> {
+    cases
+        .par_iter()
+        .map(|case| {
+            let outcome = run(case, settings);
+            done();
+            outcome
+        })
+        .collect()
+}
+
+fn run(case: &Case, settings: &Settings) -> Result<Outcome, Failure> {
+    let Settings {
+        device,
+        estimators,
+        parameters,
+        wanted,
+    } = settings;
+    let contest = Contest::new(
+        estimators,
+        parameters,
+        &setup(device, case.rate_hz),
+        case.plant,
+    )?;
+    let trace = trace(case, device, estimators)?;
+    let estimates = contest.estimates(&trace);
+    let heading = Heading {
+        scenario: case.scenario.as_str().to_owned(),
+        rate_hz: case.rate_hz,
+        plant: case.plant,
+        seed: case.seed,
+    };
+    Ok(Outcome {
+        case: case.clone(),
+        rows: contest.rows(&heading, &trace, &estimates, interval(device), *wanted)?,
+        signals: case.keep.then_some((trace, estimates)),
+    })
+}
+
+/// Simulates a case, with no column but those that the estimators read.
+///
+/// # Errors
+/// [`Failure::Input`] where rate or duration are out of range.
+pub fn trace(case: &Case, device: &Device, estimators: &[&Kind]) -> Result<Trace, Failure> {
+    let columns = Columns {
+        counts_small: estimators.iter().any(|kind| kind.needs.small),
+        edges: estimators.iter().any(|kind| kind.needs.edge),
+    };
+    let frictionless;
+    let device = match case.plant {
+        PlantKind::Friction => device,
+        PlantKind::Frictionless => {
+            frictionless = device.frictionless();
+            &frictionless
+        }
+    };
+    Ok(simulate(
+        device,
+        case.scenario,
+        case.rate_hz,
+        case.seed,
+        case.seconds,
+        columns,
+    )?)
+}

@@ -1,0 +1,178 @@
+//! Estimators over one trace, and how each did.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::estimators::{Kind, Runner, Setup, available};
+use crate::failure::Failure;
+use crate::parameters::{Parameters, PlantKind};
+use crate::score::{Interval, Percent, Score, Truth, Wanted, percent_of};
+use crate::trace::Trace;
+
+/// The scores of one estimator on one trace: an object of the JSON output, a row of the CSV.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// Scenario, or the recording's file name.
+    pub scenario: String,
+    /// Control rate, Hz.
+    pub rate_hz: f64,
+    /// Plant; a real motor has friction.
+    pub plant: PlantKind,
+    /// Seed; 0 for a recording.
+    pub seed: u64,
+    /// Estimator.
+    pub estimator: &'static str,
+    /// Scores.
+    #[serde(flatten)]
+    pub score: Score,
+    /// The same in % of finite difference on the same samples.
+    #[serde(flatten)]
+    pub percent: Percent,
+    /// Mean distance of finite difference on the same samples, rad/s: what the % are of.
+    pub difference_distance_rad_s: Option<f64>,
+    /// Parameters it ran with.
+    pub parameters: BTreeMap<&'static str, f64>,
+}
+
+/// What the rows of one trace have in common.
+#[derive(Clone, Debug)]
+pub struct Heading {
+    /// See [`Row::scenario`].
+    pub scenario: String,
+    /// See [`Row::rate_hz`].
+    pub rate_hz: f64,
+    /// See [`Row::plant`].
+    pub plant: PlantKind,
+    /// See [`Row::seed`].
+    pub seed: u64,
+}
+
+/// An estimator ready to run.
+pub struct Contestant {
+    /// What it is.
+    pub kind: &'static Kind,
+    /// Values of its parameters.
+    pub values: Vec<f64>,
+    run: Runner,
+}
+
+/// An estimator's velocities over a trace, rad/s.
+#[derive(Clone, Debug)]
+pub struct Estimate {
+    /// Estimator.
+    pub estimator: &'static str,
+    /// One velocity a tick.
+    pub velocity: Vec<f32>,
+}
+
+impl Contestant {
+    fn new(
+        kind: &'static Kind,
+        parameters: &Parameters,
+        setup: &Setup,
+        plant: PlantKind,
+    ) -> Result<Self, Failure> {
+        let values = parameters.values(kind, setup, plant);
+        let run = kind.build(setup, &values)?;
+        Ok(Self { kind, values, run })
+    }
+
+    /// The estimate over `trace`, or `None` if the trace lacks a signal that it needs.
+    #[must_use]
+    pub fn estimate(&self, trace: &Trace) -> Option<Estimate> {
+        self.kind.needs.within(available(trace)).then(|| Estimate {
+            estimator: self.kind.name,
+            velocity: (self.run)(trace),
+        })
+    }
+
+    fn named_values(&self) -> BTreeMap<&'static str, f64> {
+        let names = self.kind.parameters.iter().map(|p| p.name);
+        names.zip(self.values.iter().copied()).collect()
+    }
+}
+
+/// Estimators built for one rate and plant, and the finite difference they are measured by.
+pub struct Contest {
+    contestants: Vec<Contestant>,
+    difference: Contestant,
+}
+
+impl Contest {
+    /// Builds the estimators `kinds` with `parameters`.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that names the estimator and the parameter.
+    pub fn new(
+        kinds: &[&'static Kind],
+        parameters: &Parameters,
+        setup: &Setup,
+        plant: PlantKind,
+    ) -> Result<Self, Failure> {
+        let new = |kind| Contestant::new(kind, parameters, setup, plant);
+        Ok(Self {
+            contestants: kinds
+                .iter()
+                .map(|&kind| new(kind))
+                .collect::<Result<_, _>>()?,
+            difference: new(Kind::named("finite-difference")?)?,
+        })
+    }
+
+    /// The estimators.
+    #[must_use]
+    pub fn contestants(&self) -> &[Contestant] {
+        &self.contestants
+    }
+
+    /// The estimates of all that can run on `trace`.
+    #[must_use]
+    pub fn estimates(&self, trace: &Trace) -> Vec<Estimate> {
+        self.contestants
+            .iter()
+            .filter_map(|c| c.estimate(trace))
+            .collect()
+    }
+
+    /// Scores `estimates` of `trace` against its truth; none if the trace has no truth.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] where the truth is not finite.
+    pub fn rows(
+        &self,
+        heading: &Heading,
+        trace: &Trace,
+        estimates: &[Estimate],
+        interval: Interval,
+        wanted: Wanted,
+    ) -> Result<Vec<Row>, Failure> {
+        let Some(omega) = &trace.true_omega else {
+            return Ok(Vec::new());
+        };
+        let truth = Truth::new(omega, trace.rate_hz, interval, wanted)
+            .map_err(|error| Failure::Input(format!("{}: {error}", heading.scenario)))?;
+        let scores: Vec<_> = estimates.iter().map(|e| truth.score(&e.velocity)).collect();
+        let reference = estimates
+            .iter()
+            .position(|e| e.estimator == self.difference.kind.name)
+            .map_or_else(|| truth.score(&(self.difference.run)(trace)), |i| scores[i]);
+        let row = |(estimate, &score): (&Estimate, &Score)| Row {
+            scenario: heading.scenario.clone(),
+            rate_hz: heading.rate_hz,
+            plant: heading.plant,
+            seed: heading.seed,
+            estimator: estimate.estimator,
+            score,
+            percent: percent_of(&score, &reference),
+            difference_distance_rad_s: reference.distance_rad_s,
+            parameters: self
+                .contestants
+                .iter()
+                .find(|c| c.kind.name == estimate.estimator)
+                .map(Contestant::named_values)
+                .unwrap_or_default(),
+        };
+        Ok(estimates.iter().zip(&scores).map(row).collect())
+    }
+}

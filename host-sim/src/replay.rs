@@ -1,0 +1,120 @@
+//! Recordings through the estimators.
+
+use std::path::Path;
+
+use crate::compare::{interval, setup};
+use crate::contest::{Contest, Estimate, Heading, Row};
+use crate::device::Device;
+use crate::estimators::{Kind, available};
+use crate::failure::Failure;
+use crate::parameters::{Parameters, PlantKind};
+use crate::recording::Recording;
+use crate::score::Wanted;
+
+/// What came of a recording.
+#[derive(Clone, Debug)]
+pub struct Replay {
+    /// One an estimator, in the order asked for.
+    pub estimates: Vec<Estimate>,
+    /// The scores, where the recording has `true_omega`.
+    pub rows: Vec<Row>,
+    /// Estimators left out, and the column each lacks.
+    pub left_out: Vec<(&'static str, &'static str)>,
+}
+
+/// Runs `kinds` over a recording called `name`.
+///
+/// # Errors
+/// [`Failure::Input`] where an estimator cannot be built.
+pub fn replay(
+    recording: &Recording,
+    name: &str,
+    kinds: &[&'static Kind],
+    device: &Device,
+    parameters: &Parameters,
+) -> Result<Replay, Failure> {
+    let trace = &recording.trace;
+    let (able, unable): (Vec<_>, Vec<_>) = kinds
+        .iter()
+        .partition(|kind| kind.needs.within(available(trace)));
+    let setup = setup(device, trace.rate_hz);
+    let contest = Contest::new(&able, parameters, &setup, PlantKind::Friction)?;
+    let estimates = contest.estimates(trace);
+    let heading = Heading {
+        scenario: name.to_owned(),
+        rate_hz: trace.rate_hz,
+        plant: PlantKind::Friction,
+        seed: 0,
+    };
+    let rows = contest.rows(&heading, trace, &estimates, interval(device), Wanted::ALL)?;
+    let lacking = |kind: &&'static Kind| {
+        let has = available(trace);
+        let column = match kind.needs {
+            needs if needs.current && !has.current => "current",
+            needs if needs.small && !has.small => "counts_small",
+            _ => "edge_tick",
+        };
+        (kind.name, column)
+    };
+    Ok(Replay {
+        estimates,
+        rows,
+        left_out: unable.iter().map(lacking).collect(),
+    })
+}
+
+/// The name a recording goes by: its file's.
+#[must_use]
+pub fn name(path: &Path) -> String {
+    path.file_name()
+        .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}
+
+/// `t` and one column an estimator, rad/s, as CSV.
+#[must_use]
+pub fn csv(t: &[f64], estimates: &[Estimate]) -> Vec<u8> {
+    use std::io::Write as _;
+    let mut text = Vec::with_capacity((t.len() + 1) * (estimates.len() + 1) * 12);
+    text.extend_from_slice(b"t");
+    for estimate in estimates {
+        text.push(b',');
+        text.extend_from_slice(estimate.estimator.as_bytes());
+    }
+    text.push(b'\n');
+    for (k, t) in t.iter().enumerate() {
+        // Writing to a vector cannot fail.
+        let _ = write!(text, "{t}");
+        for estimate in estimates {
+            let _ = write!(text, ",{}", estimate.velocity[k]);
+        }
+        text.push(b'\n');
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_lacks_a_column_is_left_out_by_name() {
+        let text = "t,counts_large,true_omega\n0,0,0\n0.001,1,1.5\n0.002,2,1.5\n";
+        let recording = Recording::parse(text.as_bytes(), "r").unwrap();
+        let kinds: Vec<_> = Kind::all().iter().collect();
+        let device = Device::default();
+        let replay = replay(&recording, "r", &kinds, &device, &Parameters::default()).unwrap();
+        assert!(replay.left_out.contains(&("kalman-motor", "current")));
+        assert!(replay.estimates.iter().any(|e| e.estimator == "pll"));
+        assert!(
+            !replay
+                .estimates
+                .iter()
+                .any(|e| e.estimator == "kalman-motor")
+        );
+        let csv = String::from_utf8(csv(&recording.t, &replay.estimates[..1])).unwrap();
+        assert_eq!(
+            csv,
+            "t,finite-difference\n0,0\n0.001,1.5339808\n0.002,1.5339808\n"
+        );
+    }
+}

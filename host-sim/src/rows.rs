@@ -1,0 +1,62 @@
+//! Scores as JSON and CSV.
+
+use crate::contest::Row;
+use crate::failure::Failure;
+
+/// Columns of the CSV: the JSON's fields but the parameters.
+const COLUMNS: [&str; 18] = [
+    "scenario",
+    "rate_hz",
+    "plant",
+    "seed",
+    "estimator",
+    "rms_rad_s",
+    "max_rad_s",
+    "distance_rad_s",
+    "distance_transient_rad_s",
+    "distance_pct",
+    "distance_transient_pct",
+    "rms_pct",
+    "outside",
+    "delay_ms",
+    "noise_rad_s",
+    "chatter_rad_s",
+    "force_mn",
+    "non_finite",
+];
+
+/// An array of objects, one a line; what is not defined is `null`.
+///
+/// # Errors
+/// [`Failure::Input`]; none is known to happen.
+pub fn json(rows: &[Row]) -> Result<Vec<u8>, Failure> {
+    let mut text = b"[".to_vec();
+    for (i, row) in rows.iter().enumerate() {
+        text.extend_from_slice(if i == 0 { b"\n" } else { b",\n" });
+        serde_json::to_writer(&mut text, row).map_err(|e| Failure::Input(e.to_string()))?;
+    }
+    text.extend_from_slice(b"\n]\n");
+    Ok(text)
+}
+
+/// The same as CSV; what is not defined is empty.
+///
+/// # Errors
+/// [`Failure::Input`]; none is known to happen.
+pub fn csv(rows: &[Row]) -> Result<Vec<u8>, Failure> {
+    let failed = |error: csv::Error| Failure::Input(error.to_string());
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(COLUMNS).map_err(failed)?;
+    for row in rows {
+        let object = serde_json::to_value(row).map_err(|e| Failure::Input(e.to_string()))?;
+        let cells = COLUMNS.iter().map(|&column| match &object[column] {
+            serde_json::Value::Null => String::new(),
+            serde_json::Value::String(text) => text.clone(),
+            number => number.to_string(),
+        });
+        writer.write_record(cells).map_err(failed)?;
+    }
+    writer
+        .into_inner()
+        .map_err(|e| Failure::Input(e.to_string()))
+}

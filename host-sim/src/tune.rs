@@ -1,0 +1,244 @@
+//! Search of the estimators' parameters on seeds that nothing is scored on.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use crate::compare::{Case, interval, setup, trace};
+use crate::device::Device;
+use crate::estimators::{Kind, Parameter, Search, Setup, Values};
+use crate::failure::Failure;
+use crate::parameters::{PlantKind, Preset};
+use crate::scenario::ScenarioName;
+use crate::score::{Truth, Wanted};
+use crate::trace::Trace;
+
+/// First seed that tuning may use; seeds below it are for scoring.
+pub const FIRST_SEED: u64 = 1 << 32;
+
+/// Weight of the RMS error beside the mean distance: it decides between parameters that never
+/// leave the interval.
+const RMS_WEIGHT: f64 = 0.01;
+
+/// Points of a search's first grid.
+const GRID: usize = 25;
+
+/// Rounds of refinement between the neighbours of the best point.
+const REFINEMENTS: usize = 3;
+
+/// What to tune on.
+#[derive(Clone, Debug)]
+pub struct Ground {
+    /// The device.
+    pub device: Device,
+    /// Scenarios, pooled.
+    pub scenarios: Vec<ScenarioName>,
+    /// How many tuning seeds.
+    pub seeds: u64,
+    /// Duration of each run, s.
+    pub seconds: f64,
+}
+
+/// Tunes `kinds`, all of them tunable, at one rate on one plant.
+///
+/// Minimises the mean distance outside the haptic interval plus a hundredth of the RMS error,
+/// averaged over scenarios and seeds: a grid over all parameters at once, then finer grids around
+/// the best. `done` is called as each estimator ends.
+///
+/// # Errors
+/// [`Failure::Input`] where a case cannot be simulated or an estimator needs what the
+/// simulation does not have.
+pub fn tune(
+    ground: &Ground,
+    kinds: &[&'static Kind],
+    rate_hz: f64,
+    plant: PlantKind,
+    done: impl Fn() + Sync,
+) -> Result<Preset, Failure> {
+    let cases: Vec<_> = ground
+        .scenarios
+        .iter()
+        .flat_map(|&scenario| (0..ground.seeds).map(move |i| (scenario, FIRST_SEED + i)))
+        .map(|(scenario, seed)| Case {
+            scenario,
+            rate_hz,
+            plant,
+            seed,
+            seconds: ground.seconds,
+            keep: false,
+        })
+        .collect();
+    let traces = cases
+        .par_iter()
+        .map(|case| trace(case, &ground.device, kinds))
+        .collect::<Result<Vec<_>, _>>()?;
+    let wanted = Wanted {
+        rms: true,
+        distance: true,
+        ..Wanted::NONE
+    };
+    let interval = interval(&ground.device);
+    let tracks = traces
+        .iter()
+        .map(|trace| {
+            let omega = trace.true_omega.as_deref().unwrap_or_default();
+            Ok((trace, Truth::new(omega, rate_hz, interval, wanted)?))
+        })
+        .collect::<Result<Vec<_>, String>>()?;
+
+    let setup = setup(&ground.device, rate_hz);
+    let tune = |&kind: &&'static Kind| {
+        let best = best_values(kind, &setup, &tracks);
+        done();
+        let names = kind.parameters.iter().map(|p| p.name.to_owned());
+        (
+            kind.name.to_owned(),
+            names.zip(best).collect::<BTreeMap<_, _>>(),
+        )
+    };
+    Ok(Preset {
+        rate_hz,
+        plant,
+        estimators: kinds.iter().map(tune).collect(),
+    })
+}
+
+fn best_values(kind: &Kind, setup: &Setup, tracks: &[(&Trace, Truth)]) -> Values {
+    let mut axes: Vec<_> = kind
+        .parameters
+        .iter()
+        .map(|p| first_grid(p, setup))
+        .collect();
+    let mut best = evaluate(kind, setup, tracks, &axes);
+    for _ in 0..REFINEMENTS {
+        for ((axis, parameter), value) in axes.iter_mut().zip(kind.parameters).zip(&best) {
+            *axis = finer(parameter, axis, *value);
+        }
+        best = evaluate(kind, setup, tracks, &axes);
+    }
+    best
+}
+
+/// The best point of the grid spanned by `axes`.
+fn evaluate(kind: &Kind, setup: &Setup, tracks: &[(&Trace, Truth)], axes: &[Vec<f64>]) -> Values {
+    let mut points = vec![Vec::new()];
+    for axis in axes {
+        points = points
+            .iter()
+            .flat_map(|point: &Values| {
+                axis.iter()
+                    .map(|&value| point.iter().copied().chain([value]).collect())
+            })
+            .collect();
+    }
+    points
+        .into_par_iter()
+        .map(|point| (cost(kind, setup, tracks, &point), point))
+        // Equal costs go to the earlier point, so that the result does not depend on threads.
+        .min_by(|(a, p), (b, q)| a.total_cmp(b).then_with(|| compare_points(p, q)))
+        .map(|(_, point)| point)
+        .unwrap_or_default()
+}
+
+fn compare_points(p: &Values, q: &Values) -> std::cmp::Ordering {
+    let differing = p.iter().zip(q).map(|(a, b)| a.total_cmp(b));
+    differing
+        .into_iter()
+        .find(|o| o.is_ne())
+        .unwrap_or(std::cmp::Ordering::Equal)
+}
+
+/// Infinite for parameters that the design refuses.
+fn cost(kind: &Kind, setup: &Setup, tracks: &[(&Trace, Truth)], values: &Values) -> f64 {
+    let Ok(run) = kind.build(setup, values) else {
+        return f64::INFINITY;
+    };
+    let of_track = |(trace, truth): &(&Trace, Truth)| {
+        let score = truth.score(&run(trace));
+        score.distance_rad_s.unwrap_or(f64::INFINITY)
+            + RMS_WEIGHT * score.rms_rad_s.unwrap_or(f64::INFINITY)
+    };
+    tracks.iter().map(of_track).sum::<f64>() / tracks.len() as f64
+}
+
+fn first_grid(parameter: &Parameter, setup: &Setup) -> Vec<f64> {
+    match parameter.search {
+        Search::Fixed(value) => vec![value],
+        Search::Log(low, high) => {
+            let high = if parameter.unit == "Hz" {
+                high.min(setup.rate.0 / 2.0)
+            } else {
+                high
+            };
+            logarithmic(low, high, GRID)
+        }
+        Search::Each(low, high) if high - low < GRID as u32 => {
+            (low..=high).map(f64::from).collect()
+        }
+        Search::Each(low, high) => whole(logarithmic(f64::from(low), f64::from(high), GRID)),
+    }
+}
+
+/// A grid between the neighbours of `best` on `axis`.
+fn finer(parameter: &Parameter, axis: &[f64], best: f64) -> Vec<f64> {
+    let at = axis
+        .iter()
+        .position(|&value| value == best)
+        .unwrap_or_default();
+    let low = axis[at.saturating_sub(1)];
+    let high = axis[(at + 1).min(axis.len() - 1)];
+    match parameter.search {
+        Search::Fixed(_) => vec![best],
+        Search::Log(..) => {
+            // Three digits are what a tuned value can mean.
+            logarithmic(low, high, 9)
+                .into_iter()
+                .map(three_digits)
+                .collect()
+        }
+        Search::Each(..) if high - low <= 8.0 => {
+            (low as u32..=high as u32).map(f64::from).collect()
+        }
+        Search::Each(..) => {
+            let mut values = logarithmic(low, high, 9);
+            values.push(best);
+            whole(values)
+        }
+    }
+}
+
+fn logarithmic(low: f64, high: f64, points: usize) -> Vec<f64> {
+    let step = (high / low).ln() / (points - 1) as f64;
+    (0..points).map(|i| low * (step * i as f64).exp()).collect()
+}
+
+fn whole(mut values: Vec<f64>) -> Vec<f64> {
+    for value in &mut values {
+        *value = value.round();
+    }
+    values.sort_unstable_by(f64::total_cmp);
+    values.dedup();
+    values
+}
+
+fn three_digits(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grids_keep_their_ends_and_their_best() {
+        let grid = logarithmic(1.0, 100.0, 5);
+        assert!((grid[2] - 10.0).abs() < 1e-9 && (grid[4] - 100.0).abs() < 1e-9);
+        assert_eq!(whole(vec![1.2, 0.9, 3.0]), [1.0, 3.0]);
+        assert_eq!(three_digits(123.456), 123.0);
+        let window = Kind::named("foaw-end-fit").unwrap().parameters[0];
+        assert_eq!(
+            finer(&window, &[1.0, 5.0, 9.0], 5.0),
+            (1..=9).map(f64::from).collect::<Vec<_>>()
+        );
+    }
+}
