@@ -132,8 +132,9 @@ fn the_problem(report: &ReportInput, palette: &Palette) -> Result<String, String
             continue;
         };
         let title = format!(
-            "Figure 1. Finite difference at {}, scenario {scenario}",
-            rate(case.rate_hz)
+            "Figure 1. Finite difference at {}, scenario {scenario}, plant {}",
+            rate(case.rate_hz),
+            plant(case.friction)
         );
         let interval = report.device.interval();
         let svg = problem::figure_one(&title, traces, window, at, &interval, palette)?;
@@ -149,8 +150,8 @@ fn count_in_words(report: &ReportInput, rate_hz: f64) -> String {
     let step = TAU * rate_hz / f64::from(device.counts_per_rev.max(1));
     format!(
         "The large motor\u{2019}s encoder moves in whole counts. At {} one count more or less \
-         within a tick is {} rad/s to a finite difference, or {} mN at the fingertip, which \
-         notices {} mN. So the estimate (grey) jumps while the motion (black) is smooth; what \
+         within a tick is {}\u{a0}rad/s to a finite difference, or {}\u{a0}mN at the fingertip, which \
+         notices {}\u{a0}mN. So the estimate (grey) jumps while the motion (black) is smooth; what \
          leaves the haptic interval (green) is torque on the handle that should not be there.",
         rate(rate_hz),
         number(step),

@@ -30,7 +30,7 @@ fn a_full_report_has_every_figure_and_no_broken_number() {
         "frequency, Hz",
         "class=\"verdict\"",
         "host-sim compare --seed 1",
-        "is 1.53 rad/s to a finite difference, or 42.1 mN at the fingertip",
+        "is 1.53\u{a0}rad/s to a finite difference, or 42.1\u{a0}mN at the fingertip",
     ] {
         assert!(page.contains(text), "{text}");
     }

@@ -13,7 +13,7 @@ const COLUMNS: usize = 3;
 /// Sizes, px.
 const LEFT: f64 = 62.0;
 const GAP: f64 = 38.0;
-const PANEL: f64 = 128.0;
+const PANEL: f64 = 150.0;
 const PANEL_TITLE: f64 = 24.0;
 const BELOW: f64 = 22.0;
 /// Share of samples off scale from which the truth is drawn over the estimate, not under it.

@@ -10,8 +10,8 @@ fn start(traces: &Traces) -> usize {
     skip.max(0.0) as usize
 }
 
-/// From `before_s` before to `after_s` after the moment of the largest acceleration, where the
-/// acceleration is a central difference over 4 ms.
+/// From `before_s` before to `after_s` after the moment at which the largest rise or fall within
+/// 4 ms begins.
 ///
 /// Of several equal ones the first; `None` if the trace is shorter or never moves.
 pub(super) fn around_step(traces: &Traces, before_s: f64, after_s: f64) -> Option<Range<usize>> {
@@ -19,7 +19,7 @@ pub(super) fn around_step(traces: &Traces, before_s: f64, after_s: f64) -> Optio
     let before = (before_s * traces.rate_hz).round() as usize;
     let after = (after_s * traces.rate_hz).round() as usize;
     let truth = &traces.truth;
-    let first = start(traces) + before.max(half);
+    let first = start(traces) + before + half;
     let last = truth.len().checked_sub(after.max(half) + 1)?;
     let mut best = (None, 0.0);
     for at in first..=last {
@@ -29,7 +29,9 @@ pub(super) fn around_step(traces: &Traces, before_s: f64, after_s: f64) -> Optio
             best = (Some(at), rise);
         }
     }
-    best.0.map(|at| at - before..at + after + 1)
+    // A velocity that begins to move rises most in the 4 ms that begin there.
+    let onset = best.0? - half;
+    Some(onset - before..onset + after + 1)
 }
 
 /// The window of `span_s` in which a moving truth changes least for its speed, and has done so
@@ -84,13 +86,22 @@ mod tests {
             _ if t < 0.7995 => 52.0,
             _ => 45.0,
         };
-        // The central difference sees the step at 0.8 s from 0.798 s on.
+        // The first 4 ms to hold all of the step at 0.8 s begin at 0.796 s.
         assert_eq!(
             around_step(&traces(1000, 0.0, steps), 0.06, 0.06),
-            Some(738..859)
+            Some(736..857)
         );
         assert_eq!(around_step(&traces(100, 0.0, steps), 0.06, 0.06), None);
         assert_eq!(around_step(&traces(1000, 0.0, |_| 3.0), 0.06, 0.06), None);
+    }
+
+    #[test]
+    fn a_motor_s_step_begins_where_it_begins_to_move() {
+        let rise = |t: f64| 20.0 * (1.0 - (-(t - 0.5).max(0.0) / 0.012).exp());
+        assert_eq!(
+            around_step(&traces(1000, 0.0, rise), 0.06, 0.06),
+            Some(440..561)
+        );
     }
 
     #[test]
