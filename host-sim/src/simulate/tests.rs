@@ -62,7 +62,7 @@ fn an_encoder_nobody_reads_is_not_simulated() {
 }
 
 #[test]
-fn rates_and_lengths_out_of_range_are_named() {
+fn rates_and_durations_out_of_range_are_named() {
     let run = |rate_hz, seconds| {
         let device = Device::default();
         simulate(&device, ScenarioName::Step, rate_hz, 1, seconds, ALL).unwrap_err()
@@ -70,9 +70,9 @@ fn rates_and_lengths_out_of_range_are_named() {
     assert_eq!(run(99.0, 1.0), "rate 99 Hz: must be from 100 to 100000 Hz");
     assert!(run(f64::NAN, 1.0).starts_with("rate NaN Hz: "));
     assert!(run(100_001.0, 1.0).starts_with("rate 100001 Hz: "));
-    assert!(run(1000.0, f64::NAN).starts_with("length NaN s: "));
-    assert!(run(1000.0, -1.0).starts_with("length -1 s: "));
-    assert!(run(1000.0, 1e9).starts_with("length 1000000000 s: "));
+    assert!(run(1000.0, f64::NAN).starts_with("duration NaN s: "));
+    assert!(run(1000.0, -1.0).starts_with("duration -1 s: "));
+    assert!(run(1000.0, 1e9).starts_with("duration 1000000000 s: "));
     assert_eq!(plant_steps(11_600.0, 1.0), Ok(11_600 * 9));
 }
 
