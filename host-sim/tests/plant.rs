@@ -134,6 +134,36 @@ fn friction_stops_a_free_shaft_where_the_closed_form_does_and_for_good() {
     assert_eq!(plant.large().angle, angle);
 }
 
+#[test]
+fn a_shaft_driven_through_rest_turns_inside_the_step() {
+    let mut device = Device::default();
+    device.large.coulomb_ripple = 0.0;
+    device.large.torque_ripple = 0.0;
+    let (b, j, c) = (
+        device.coupler.damping_nms_per_rad,
+        device.large.inertia_kg_m2,
+        device.large.coulomb_nm,
+    );
+    let mut plant = Plant::new(&device, STEP_S);
+    plant.command(-0.5, 0.0);
+    run(&mut plant, &Grip::Clamped, 500, STEP_S);
+    let torque = device.large.torque_constant_nm_per_a * 0.5;
+    for k in 0..50 {
+        // Many starts, so that rest falls anywhere in a step.
+        let start = 5.0 + f64::from(k) * 1e-3;
+        plant.place(spinning(start), Pose::default());
+        run(&mut plant, &Grip::Clamped, 1000, STEP_S);
+        // J dw/dt = -torque - b w - c until rest, then -torque - b w + c.
+        let before = (torque + c) / b;
+        let rest_s = j / b * (start / before).ln_1p();
+        let after = (torque - c) / b;
+        let left = (-b / j * (0.01 - rest_s)).exp();
+        let expected = -after * (1.0 - left);
+        let omega = plant.large().omega;
+        assert!((omega - expected).abs() < 2e-5, "{omega} {expected}");
+    }
+}
+
 /// Final poses of a run of both shafts under a moving hand and alternating currents.
 fn moving_run(device: &Device, step_s: f64, shrink: u32) -> [f64; 4] {
     let mut plant = Plant::new(device, step_s);

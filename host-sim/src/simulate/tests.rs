@@ -84,12 +84,17 @@ fn counts_and_edges_belong_to_the_true_motion() {
             let (omega, counts) = (omega(&trace), &trace.counts_large);
             let rad = TAU / 4096.0;
             let mut travelled = 0.0;
+            let bound = if name == ScenarioName::Stochastic {
+                10.0
+            } else {
+                4.0
+            };
             for k in 1..trace.len() {
                 travelled += 0.5 * (omega[k] + omega[k - 1]) / rate;
                 let moved = f64::from(counts[k].wrapping_sub(counts[0]) as i32);
-                // A count either way, and the trapezoid's own error.
+                // A count either way, and the trapezoid's own error, which white torque lets grow.
                 let miss = moved - travelled / rad;
-                assert!(miss.abs() < 4.0, "{name} at {rate} Hz, tick {k}: {miss}");
+                assert!(miss.abs() < bound, "{name} at {rate} Hz, tick {k}: {miss}");
             }
             let mut last: Option<(f64, u32)> = None;
             for (k, edge) in trace.edges.as_ref().unwrap().iter().enumerate() {
