@@ -192,7 +192,7 @@ impl Ripple {
 #[inline]
 fn series((sin, cos): (f64, f64), x: f64) -> f64 {
     let h = 0.5 * x * x;
-    sin * (1.0 - h * (1.0 - h / 6.0)) + cos * x * (1.0 - h * (1.0 / 3.0 - h / 30.0))
+    sin * (1.0 - h * (1.0 - h * (1.0 / 6.0))) + cos * x * (1.0 - h * (1.0 / 3.0 - h * (1.0 / 30.0)))
 }
 
 #[cfg(test)]

@@ -29,6 +29,7 @@ pub(super) struct Intent {
     period: f64,
     centre: f64,
     sines: Vec<Sine>,
+    reached: Option<(u64, Pose)>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +45,7 @@ impl Intent {
             period: period_s,
             centre,
             sines: Vec::new(),
+            reached: None,
         }
     }
 
@@ -98,9 +100,16 @@ impl Intent {
     }
 
     /// The hand during tick `k`.
-    pub(super) fn grip(&self, k: u64) -> Grip {
-        let (from, to) = (k as f64 * self.period, (k + 1) as f64 * self.period);
-        Grip::Hand(HandMotion::between(self.at(from), self.at(to), self.period))
+    pub(super) fn grip(&mut self, k: u64) -> Grip {
+        let at = |k: u64| self.at(k as f64 * self.period);
+        // One tick's end is the next one's beginning.
+        let from = match self.reached {
+            Some((tick, pose)) if tick == k => pose,
+            _ => at(k),
+        };
+        let to = at(k + 1);
+        self.reached = Some((k + 1, to));
+        Grip::Hand(HandMotion::between(from, to, self.period))
     }
 }
 
