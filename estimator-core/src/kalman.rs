@@ -50,6 +50,7 @@ impl<const S: usize, U: Copy> Kalman<S, U> {
     ///
     /// # Errors
     /// As [`Model::steady_gain`]: a filter that does not settle is refused.
+    /// [`DesignError::ProcessNoise`] if Q leaves the range of f32.
     pub const fn new(model: &Model<S, U>) -> Result<Self, DesignError> {
         const { assert!(S >= 2, "position and velocity at least") };
         if let Err(error) = model.steady_gain() {
@@ -70,6 +71,9 @@ impl<const S: usize, U: Copy> Kalman<S, U> {
                 filter.a[i][j] = model.a[i][j] as f32;
                 filter.q[i][j] = model.q[i][j] as f32;
                 j += 1;
+            }
+            if !(filter.q[i][i] >= LEAST_NOISE && filter.q[i][i] <= MOST_NOISE) {
+                return Err(DesignError::ProcessNoise);
             }
             i += 1;
         }
@@ -98,6 +102,10 @@ impl<const S: usize, U: Copy> Kalman<S, U> {
         next
     }
 }
+
+/// Variances of process noise that leave room in f32 for products with one another and with r.
+const LEAST_NOISE: f32 = 1e-30;
+const MOST_NOISE: f32 = 1e15;
 
 /// State of a [`Kalman`]: x relative to the newest count, and P.
 #[derive(Clone, Copy, Debug, PartialEq)]

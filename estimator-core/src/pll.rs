@@ -10,8 +10,8 @@ use crate::units::{Count, CountsPerTick, Hertz};
 /// ```text
 /// e = y_k - (θ + v)     θ = θ + v + (1 - p²) e     v = v + (1 - p)² e     p = exp(-2 π f / rate)
 /// ```
-/// Both poles of the error lie at p, so the loop settles without overshoot at the bandwidth f,
-/// Hz, whatever the rate. Follows a ramp without error; θ is kept as a residual to the newest
+/// Both poles of the error lie at p, so the loop settles without overshoot at the pole frequency
+/// f, Hz, whatever the rate; its velocity is 3 dB down at 0.64 f. Follows a ramp without error; θ is kept as a residual to the newest
 /// count. Valid for `0 < f <= rate / 2`. The gains are those of the fading-memory filter of
 /// first degree (Morrison 1969).
 ///

@@ -34,8 +34,8 @@ pub(crate) const fn steady_gain<const S: usize>(
     }
 }
 
-/// Limit of the predicted covariance, by the structure-preserving doubling algorithm (Chu, Fan,
-/// Lin 2005): after k doublings `h` is the covariance after 2^k ticks from certainty, and `e` the
+/// Limit of the predicted covariance, by the doubling algorithm (Anderson 1978) in its
+/// structure-preserving form: after k doublings `h` is the covariance after 2^k ticks from certainty, and `e` the
 /// transition of the estimation error over them.
 const fn predicted_covariance<const S: usize>(
     a: &Matrix<S>,
@@ -128,7 +128,7 @@ const fn shrinks<const S: usize>(mut m: Matrix<S>) -> bool {
     false
 }
 
-/// Largest sum of magnitudes in a row; a NaN anywhere makes every comparison with it false.
+/// Largest sum of magnitudes in a row, or NaN if there is one anywhere.
 const fn norm<const S: usize>(m: &Matrix<S>) -> f64 {
     let mut largest = 0.0;
     let mut i = 0;
@@ -139,7 +139,10 @@ const fn norm<const S: usize>(m: &Matrix<S>) -> f64 {
             row += m[i][j].abs();
             j += 1;
         }
-        if !(row <= largest) {
+        if row.is_nan() {
+            return row;
+        }
+        if row > largest {
             largest = row;
         }
         i += 1;
@@ -260,4 +263,24 @@ const fn inverted<const S: usize>(mut m: Matrix<S>) -> Option<Matrix<S>> {
         column += 1;
     }
     Some(inverse)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{norm, shrinks};
+
+    #[test]
+    fn a_nan_is_never_stable() {
+        let m = [[f64::NAN, 0.0], [0.0, 0.1]];
+        assert!(norm(&m).is_nan());
+        assert!(!shrinks(m) && !shrinks([[0.1, 0.0], [0.0, f64::NAN]]));
+    }
+
+    #[test]
+    fn only_a_spectral_radius_below_one_shrinks() {
+        // A large norm with small eigenvalues grows first and shrinks then.
+        assert!(shrinks([[0.9, 100.0], [0.0, 0.9]]));
+        assert!(!shrinks([[1.0, 0.0], [0.0, 0.5]]));
+        assert!(!shrinks([[0.0, 1.1], [-1.1, 0.0]]));
+    }
 }

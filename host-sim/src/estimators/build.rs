@@ -25,7 +25,7 @@ const CUTOFF: Parameter = Parameter {
 
 const BANDWIDTH: Parameter = Parameter {
     name: "bandwidth_hz",
-    meaning: "bandwidth of the loop, at most half the rate",
+    meaning: "frequency of the loop's two poles, at most half the rate",
     ..CUTOFF
 };
 
