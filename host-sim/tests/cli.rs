@@ -201,7 +201,17 @@ fn a_recording_of_a_real_motor_replays() {
     let recording = format!("{DATA}/back-and-forth.csv");
     let device = format!("{DATA}/hall-90.toml");
     let arguments = [
-        "replay", &recording, "--device", &device, "--out", "v.csv", "--json", "v.json",
+        "replay",
+        &recording,
+        "--device",
+        &device,
+        "--out",
+        "v.csv",
+        "--json",
+        "v.json",
+        // 90 counts a revolution want a longer window than the presets' 4096.
+        "--set",
+        "foaw-best-fit.n=64",
     ];
     let output = folder.run(&arguments);
     assert_eq!(output.status.code(), Some(0));
