@@ -1,5 +1,7 @@
 //! The main job: scenarios × rates × plants, every estimator on each, scored.
 
+use std::time::{Duration, Instant};
+
 use estimator_core::Hertz;
 use rayon::prelude::*;
 
@@ -10,7 +12,7 @@ use crate::failure::Failure;
 use crate::parameters::{Parameters, PlantKind};
 use crate::scenario::ScenarioName;
 use crate::score::{Interval, Wanted};
-use crate::simulate::simulate;
+use crate::simulate::{plant_steps, simulate};
 use crate::trace::{Columns, Trace};
 
 /// One run of the plant.
@@ -52,6 +54,32 @@ pub struct Outcome {
     pub rows: Vec<Row>,
     /// The signals, where [`Case::keep`] asked for them.
     pub signals: Option<(Trace, Vec<Estimate>)>,
+    /// Where the time went.
+    pub cost: Cost,
+}
+
+/// Where the time of a case went, on its one thread.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cost {
+    /// Steps of the plant.
+    pub plant_steps: u64,
+    /// Simulation of plant, encoders and scenario.
+    pub simulation: Duration,
+    /// All estimators.
+    pub estimation: Duration,
+    /// All scores.
+    pub scoring: Duration,
+}
+
+impl std::iter::Sum for Cost {
+    fn sum<I: Iterator<Item = Self>>(costs: I) -> Self {
+        costs.fold(Self::default(), |a, b| Self {
+            plant_steps: a.plant_steps + b.plant_steps,
+            simulation: a.simulation + b.simulation,
+            estimation: a.estimation + b.estimation,
+            scoring: a.scoring + b.scoring,
+        })
+    }
 }
 
 /// The device as estimators see it: the large motor's nameplate.
@@ -112,17 +140,27 @@ fn run(case: &Case, settings: &Settings) -> Result<Outcome, Failure> {
         &setup(device, case.rate_hz),
         case.plant,
     )?;
+    let begin = Instant::now();
     let trace = trace(case, device, estimators)?;
+    let simulated = Instant::now();
     let estimates = contest.estimates(&trace);
+    let estimated = Instant::now();
     let heading = Heading {
         scenario: case.scenario.as_str().to_owned(),
         rate_hz: case.rate_hz,
         plant: case.plant,
         seed: case.seed,
     };
+    let rows = contest.rows(&heading, &trace, &estimates, interval(device), *wanted)?;
     Ok(Outcome {
         case: case.clone(),
-        rows: contest.rows(&heading, &trace, &estimates, interval(device), *wanted)?,
+        rows,
+        cost: Cost {
+            plant_steps: plant_steps(case.rate_hz, case.seconds)?,
+            simulation: simulated - begin,
+            estimation: estimated - simulated,
+            scoring: estimated.elapsed(),
+        },
         signals: case.keep.then_some((trace, estimates)),
     })
 }

@@ -151,5 +151,12 @@ pub fn html(report: &ReportInput) -> Result<String, String> {
     page::page(report)
 }
 
+/// The figures of a page made by [`html`], in order, each an SVG document.
+pub fn figures(page: &str) -> impl Iterator<Item = &str> {
+    page.split("<figure>")
+        .skip(1)
+        .filter_map(|rest| rest.split("</figure>").next())
+}
+
 #[cfg(test)]
 mod tests;

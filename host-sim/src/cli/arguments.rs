@@ -63,8 +63,8 @@ pub(super) struct Compare {
     /// Score to compute, named as in the JSON; repeatable [default: all]
     #[arg(long = "score", value_name = "NAME")]
     pub(super) scores: Vec<String>,
-    /// Folder for the report: index.html, scores.csv, scores.json [default: target/report; with
-    /// --json - none]
+    /// Folder for the report: index.html, its figures as SVG, scores.csv, scores.json [default:
+    /// target/report; with --json - none]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
     /// Write no report: no plot is drawn, and the plant without friction is not run beside
@@ -73,6 +73,9 @@ pub(super) struct Compare {
     /// Write the scores as JSON to FILE, or with - to standard output and nothing else there
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
+    /// Say on standard error where the time went
+    #[arg(long)]
+    pub(super) timing: bool,
 }
 
 #[derive(Debug, Args)]
@@ -160,6 +163,7 @@ impl Default for Compare {
             out: None,
             no_report: false,
             json: None,
+            timing: false,
         }
     }
 }

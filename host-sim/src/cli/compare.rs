@@ -4,7 +4,7 @@ use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::compare::{Case, Outcome, Settings, compare};
+use crate::compare::{Case, Cost, Outcome, Settings, compare};
 use crate::contest::Row;
 use crate::device::Device;
 use crate::failure::Failure;
@@ -45,6 +45,12 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
     let outcomes = compare(&cases, &settings, || bar.inc(1))?;
     bar.finish_and_clear();
 
+    if options.timing {
+        eprintln!(
+            "{}",
+            timing(outcomes.iter().map(|outcome| outcome.cost).sum())
+        );
+    }
     let asked_rows: Vec<Row> = outcomes[..asked]
         .iter()
         .flat_map(|o| o.rows.clone())
@@ -128,6 +134,19 @@ fn wanted(names: &[String]) -> Result<Wanted, Failure> {
     Ok(wanted)
 }
 
+/// Where the time went, in a line.
+fn timing(cost: Cost) -> String {
+    let seconds = cost.simulation.as_secs_f64();
+    format!(
+        "{} plant steps in {seconds:.2} s ({:.1} million/s a thread), estimators {:.2} s, scores \
+         {:.2} s, summed over threads",
+        cost.plant_steps,
+        1e-6 * cost.plant_steps as f64 / seconds,
+        cost.estimation.as_secs_f64(),
+        cost.scoring.as_secs_f64(),
+    )
+}
+
 /// A progress bar on standard error, if that is a terminal.
 pub(super) fn progress(length: usize, doing: &'static str) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta}");
@@ -152,6 +171,10 @@ fn write_report(
     })?;
     write_whole(&folder.join("scores.json"), &rows::json(&rows)?)?;
     write_whole(&folder.join("scores.csv"), &rows::csv(&rows)?)?;
+    for (i, figure) in report::figures(&page).enumerate() {
+        let name = format!("figures/{:02}.svg", i + 1);
+        write_whole(&folder.join(name), figure.as_bytes())?;
+    }
     write_whole(&folder.join("index.html"), page.as_bytes())
 }
 
