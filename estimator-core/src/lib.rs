@@ -73,3 +73,8 @@ pub use pll::{Pll, PllState};
 pub use sample::{Edge, Sample, Signals};
 pub use steady_kalman::{SteadyKalman, SteadyKalmanMotor, SteadyKalmanState, SteadyKalmanTriple};
 pub use units::{Amps, ClockTicks, Count, Counts, CountsPerTick, Hertz, Scale};
+
+/// The README's example, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;

@@ -1,0 +1,112 @@
+//! The figures in README.md and docs/benchmarks.md are what the program prints.
+
+use host_sim::compare::{Case, Outcome, Settings, compare};
+use host_sim::contest::Row;
+use host_sim::device::Device;
+use host_sim::estimators::Kind;
+use host_sim::parameters::{Parameters, PlantKind};
+use host_sim::scenario::ScenarioName;
+use host_sim::score::Wanted;
+use host_sim::table::pooled_pct;
+
+const README: &str = include_str!("../../README.md");
+const BENCHMARKS: &str = include_str!("../../docs/benchmarks.md");
+
+/// The cells of the rows of the table whose heading row contains `heading`.
+fn table<'a>(text: &'a str, heading: &str) -> Vec<Vec<&'a str>> {
+    let rows: Vec<_> = text
+        .lines()
+        .skip_while(|line| !(line.starts_with('|') && line.contains(heading)))
+        .skip(2)
+        .take_while(|line| line.starts_with('|'))
+        .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
+        .collect();
+    assert!(!rows.is_empty(), "no table headed {heading}");
+    rows
+}
+
+/// Whether a figure with so many digits, or one moved by a tenth, would be written for `value`.
+fn is_written_for(cell: &str, value: f64) -> bool {
+    let written: f64 = cell
+        .parse()
+        .unwrap_or_else(|_| panic!("'{cell}' is no number"));
+    (written - value).abs() <= 0.1 * value.abs() + 0.005 && (written == 0.0) == (value < 0.005)
+}
+
+fn run(scenarios: &[ScenarioName], rate_hz: f64, plant: PlantKind) -> Vec<Outcome> {
+    let case = |&scenario: &ScenarioName| Case {
+        scenario,
+        rate_hz,
+        plant,
+        seed: 1,
+        seconds: scenario.default_seconds(),
+        keep: false,
+    };
+    let settings = Settings {
+        device: Device::default(),
+        estimators: Kind::all().iter().collect(),
+        parameters: Parameters::default(),
+        wanted: Wanted::ALL,
+    };
+    let cases: Vec<_> = scenarios.iter().map(case).collect();
+    compare(&cases, &settings, || ()).unwrap()
+}
+
+fn of<'a>(outcomes: &'a [Outcome], estimator: &'a str) -> impl Iterator<Item = &'a Row> {
+    let rows = outcomes.iter().flat_map(|outcome| &outcome.rows);
+    rows.filter(move |row| row.estimator == estimator)
+}
+
+#[test]
+fn distances_of_the_papers_experiment() {
+    use ScenarioName::{Permanent, Step, Track};
+    let experiment = |rate, plant| run(&[Step, Permanent, Track], rate, plant);
+    let columns = [
+        experiment(1e3, PlantKind::Friction),
+        experiment(11.6e3, PlantKind::Friction),
+        experiment(1e3, PlantKind::Frictionless),
+        experiment(11.6e3, PlantKind::Frictionless),
+    ];
+    let check = |name: &str, cells: &[(usize, &str)]| {
+        for &(column, cell) in cells {
+            let value = pooled_pct(of(&columns[column], name)).unwrap();
+            assert!(
+                is_written_for(cell, value),
+                "{name}: {cell} is written, {value} is so"
+            );
+        }
+    };
+    for row in table(README, "| knows |") {
+        let cells: Vec<_> = row[2..].iter().copied().enumerate().collect();
+        // "kalman-triple, -steady" stands for both.
+        let (name, steady) = row[0]
+            .split_once(", ")
+            .map_or((row[0], None), |(n, s)| (n, Some(s)));
+        check(name, &cells);
+        if let Some(suffix) = steady {
+            check(&format!("{name}{suffix}"), &cells);
+        }
+    }
+    for row in table(BENCHMARKS, "| independent | 11.6 kHz |") {
+        check(row[0], &[(0, row[1]), (1, row[3]), (2, row[5])]);
+    }
+}
+
+#[test]
+fn errors_of_finite_difference() {
+    for row in table(BENCHMARKS, "| finite difference |") {
+        let outcomes = run(&[row[0].parse().unwrap()], 1e3, PlantKind::Friction);
+        let rms = of(&outcomes, "finite-difference")
+            .next()
+            .unwrap()
+            .score
+            .rms_rad_s
+            .unwrap();
+        assert!(
+            is_written_for(row[1], rms),
+            "{}: {} is written, {rms} is so",
+            row[0],
+            row[1]
+        );
+    }
+}
