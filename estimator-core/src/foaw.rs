@@ -29,8 +29,8 @@ const LONGEST_STEP: u32 = 1 << 15;
 ///
 /// Window i passes if its slope lies in the cone of slopes that pass every sample,
 /// `[max (z_j - d) / j, min (z_j + d) / j]`. The cone is narrowed sample by sample and compared by
-/// cross multiplication, so the result is that of the O(n²) definition, without rounding, in one
-/// pass and with one division at the end.
+/// cross multiplication, so the window is that of the O(n²) definition, without rounding, in one
+/// pass. The velocity is rounded once, at the end.
 ///
 /// `d = 1` count bounds the quantisation error of an ideal disc, so at constant speed the end-fit
 /// window is always full; the best-fit line may miss a sample by more and wants `d = 2` for that

@@ -9,8 +9,18 @@ pub struct Slope {
 }
 
 impl Slope {
+    /// The closest f32, or one as good as that: an exact slope stays exact.
     pub(super) fn to_f32(self) -> f32 {
-        self.rise as f32 / self.run as f32
+        let run = self.run as f32;
+        let quotient = self.rise as f32 / run;
+        if self.rise.unsigned_abs() <= 1 << 24 {
+            return quotient;
+        }
+        // The dividend was rounded, too. Divide again what is beyond the whole counts: that fits
+        // f32, as `|rest| <= 2 run`.
+        let whole = quotient as i32;
+        let rest = self.rise - i64::from(whole) * i64::from(self.run);
+        whole as f32 + rest as i32 as f32 / run
     }
 }
 
