@@ -19,7 +19,7 @@ pub enum DesignError {
     NoiseBound,
     /// A device constant is out of its range.
     Device,
-    /// The process noise is not positive and finite.
+    /// The process noise is not positive and finite, or too large for a covariance in f32.
     ProcessNoise,
     /// The Riccati recursion has no limit in reach: the process noise is too small or too large
     /// for the rate and the encoder.
@@ -41,7 +41,10 @@ impl DesignError {
                 "device constants must be finite: counts per turn, inertia and torque constant \
                  above 0, damping at least 0"
             }
-            Self::ProcessNoise => "process noise must be positive and finite",
+            Self::ProcessNoise => {
+                "process noise must be positive and finite, and with a covariance at run time at \
+                 most 2^18 counts^2 a tick"
+            }
             Self::NotConverged => {
                 "steady gain does not converge: process noise out of reach for this rate and encoder"
             }

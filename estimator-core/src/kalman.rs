@@ -12,6 +12,11 @@ pub type KalmanTriple = Kalman<3, NoInput>;
 /// The paper's realistic filter (eqs. 14 and 16).
 pub type KalmanMotor = Kalman<2, CurrentInput<2>>;
 
+/// Largest variance of the process noise in one tick, (512 counts a tick)² for the velocity.
+///
+/// Above it the update cancels more digits than an f32 has, and P loses its definiteness.
+const LARGEST_PROCESS_NOISE: f64 = 262_144.0;
+
 /// Kalman filter over a [`Model`], with its covariance at run time:
 /// ```text
 /// predict   x = A x + B i          P = A P Aᵀ + Q
@@ -50,7 +55,7 @@ impl<const S: usize, U: Copy> Kalman<S, U> {
     ///
     /// # Errors
     /// As [`Model::steady_gain`]: a filter that does not settle is refused.
-    /// [`DesignError::ProcessNoise`] if Q leaves the range of f32.
+    /// [`DesignError::ProcessNoise`] if a variance of Q is above 2^18.
     pub const fn new(model: &Model<S, U>) -> Result<Self, DesignError> {
         const { assert!(S >= 2, "position and velocity at least") };
         if let Err(error) = model.steady_gain() {
@@ -65,15 +70,15 @@ impl<const S: usize, U: Copy> Kalman<S, U> {
         };
         let mut i = 0;
         while i < S {
+            if !(model.q[i][i] <= LARGEST_PROCESS_NOISE) {
+                return Err(DesignError::ProcessNoise);
+            }
             filter.prior[i] = model.prior[i] as f32;
             let mut j = 0;
             while j < S {
                 filter.a[i][j] = model.a[i][j] as f32;
                 filter.q[i][j] = model.q[i][j] as f32;
                 j += 1;
-            }
-            if !(filter.q[i][i] >= LEAST_NOISE && filter.q[i][i] <= MOST_NOISE) {
-                return Err(DesignError::ProcessNoise);
             }
             i += 1;
         }
@@ -102,10 +107,6 @@ impl<const S: usize, U: Copy> Kalman<S, U> {
         next
     }
 }
-
-/// Variances of process noise that leave room in f32 for products with one another and with r.
-const LEAST_NOISE: f32 = 1e-30;
-const MOST_NOISE: f32 = 1e15;
 
 /// State of a [`Kalman`]: x relative to the newest count, and P.
 #[derive(Clone, Copy, Debug, PartialEq)]
