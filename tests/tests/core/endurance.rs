@@ -1,0 +1,298 @@
+//! Long runs and bad input: nothing drifts, nothing is lost, nothing stops being a number.
+
+use std::sync::LazyLock;
+
+use estimator_core::{
+    Amps, Count, Counts, CountsPerTick, Device, EndFit, FiniteDifference, Foaw, Hertz, Kalman,
+    KalmanState, LowPass, Model, Pll, Sample, SteadyKalman, VelocityEstimator,
+};
+
+use crate::every::{CURRENT_NOISE, Case, JERK, RATES, Ramp, everywhere};
+use crate::motion::{Draws, medley};
+use crate::reference::Matrix;
+
+static EVERY: LazyLock<Vec<Case>> = LazyLock::new(everywhere);
+
+/// Asserts that P is finite, symmetric to the bit and positive definite.
+#[track_caller]
+fn assert_covariance<const S: usize>(state: &KalmanState<S>, what: &str) {
+    let p = state.covariance();
+    for i in 0..S {
+        for j in 0..S {
+            assert!(p[i][j].is_finite(), "{what}: {p:?}");
+            assert_eq!(p[i][j].to_bits(), p[j][i].to_bits(), "{what}: {p:?}");
+        }
+    }
+    let exact = Matrix::<S>::from_fn(|i, j| f64::from(p[i][j]));
+    assert!(exact.cholesky().is_some(), "{what}: {p:?}");
+}
+
+/// Rest, top speed both ways, and anything at all, in turns.
+fn abuse(tick: usize, draws: &mut Draws, count: Count) -> Sample {
+    let step = match tick / 1000 % 4 {
+        0 => 0,
+        1 => 32_767,
+        2 => draws.within(40_000) as i32,
+        _ => -32_767,
+    };
+    let amps = Amps::new((draws.unit() * 6.0) as f32);
+    Sample::new(count + Counts(step)).with_current(amps)
+}
+
+#[test]
+fn covariance_stays_symmetric_and_positive() {
+    for rate in RATES {
+        for scale in [0.01, 1.0, 100.0] {
+            let what = format!("{rate} Hz, noise times {scale}");
+            let triple = Model::triple_integrator(4096, Hertz(rate), JERK * scale).unwrap();
+            let triple = Kalman::new(&triple).unwrap();
+            let motor = Model::motor(&Device::DCX35L, Hertz(rate), CURRENT_NOISE * scale).unwrap();
+            let motor = Kalman::new(&motor).unwrap();
+            let mut sample = Sample::new(Count(0));
+            let mut triple_state = triple.start(&sample);
+            let mut motor_state = motor.start(&sample);
+            assert_covariance(&triple_state, &what);
+            assert_covariance(&motor_state, &what);
+            let mut draws = Draws(rate as u64);
+            for tick in 0..100_000 {
+                sample = abuse(tick, &mut draws, sample.large);
+                let fast = triple.update(&mut triple_state, &sample).0;
+                let slow = motor.update(&mut motor_state, &sample).0;
+                assert!(fast.is_finite() && slow.is_finite());
+                assert_covariance(&triple_state, &what);
+                assert_covariance(&motor_state, &what);
+            }
+        }
+    }
+}
+
+/// Every filter that is not refused works, however strange its parameters.
+#[test]
+fn accepted_designs_stay_finite_and_positive() {
+    let mut tried = 0;
+    for rate in [100.0, 1e3, 1e4, 1e5] {
+        for counts_per_rev in [64, 4096, 4_000_000] {
+            for exponent in -12..=24 {
+                let noise = 10f64.powi(exponent);
+                let what = format!("{counts_per_rev} counts, {rate} Hz, noise {noise:e}");
+                let triple = Model::triple_integrator(counts_per_rev, Hertz(rate), noise);
+                if let Ok(filter) = triple.and_then(|model| Kalman::new(&model)) {
+                    assert_survives(&filter, &what);
+                    tried += 1;
+                }
+                let device = Device {
+                    counts_per_rev,
+                    ..Device::DCX35L
+                };
+                let motor = Model::motor(&device, Hertz(rate), noise);
+                if let Ok(filter) = motor.and_then(|model| Kalman::new(&model)) {
+                    assert_survives(&filter, &what);
+                    tried += 1;
+                }
+            }
+        }
+    }
+    assert!(tried > 200, "{tried} accepted");
+}
+
+fn assert_survives<const S: usize, U: estimator_core::Input<S>>(filter: &Kalman<S, U>, what: &str) {
+    let mut state = filter.start(&Sample::new(Count(0)));
+    let mut draws = Draws(1);
+    let mut count = Count(0);
+    for _ in 0..3000 {
+        count = count + Counts(draws.within(100) as i32);
+        let output = filter.update(&mut state, &Sample::new(count));
+        assert!(output.0.is_finite(), "{what}");
+        assert_covariance(&state, what);
+    }
+}
+
+#[test]
+fn bad_currents_leave_everything_finite_for_ever() {
+    let bad = [
+        f32::NAN,
+        -f32::NAN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::MAX,
+        f32::MIN,
+        1e30,
+        f32::MIN_POSITIVE / 8.0,
+        -0.0,
+    ];
+    let motion = medley().samples(77);
+    for case in EVERY.iter() {
+        let mut draws = Draws(8);
+        let mut run = case.make();
+        run.start(&motion[0].with_current(Amps::new(f32::NAN)));
+        for sample in &motion[1..] {
+            let amps = Amps::new(bad[draws.bits() as usize % bad.len()]);
+            let output = run.update(&sample.with_current(amps));
+            assert!(output.is_finite(), "{}", case.name);
+        }
+        // Afterwards, at rest, all of it is forgotten.
+        let rest = motion[motion.len() - 1].with_current(Amps::ZERO);
+        let outputs: Vec<f32> = (0..3 * case.memory + 3)
+            .map(|_| run.update(&rest))
+            .collect();
+        assert!(
+            outputs.iter().all(|output| output.is_finite()),
+            "{}",
+            case.name
+        );
+        assert!(outputs[outputs.len() - 1].abs() < 1e-5, "{}", case.name);
+    }
+    let mut draws = Draws(9);
+    let motor = Model::motor(&Device::DCX35L, Hertz(1000.0), CURRENT_NOISE).unwrap();
+    let motor = Kalman::new(&motor).unwrap();
+    let mut state = motor.start(&motion[0]);
+    for sample in &motion {
+        let amps = Amps::new(bad[draws.bits() as usize % bad.len()]);
+        assert!(amps.get().abs() <= Amps::MAX);
+        motor.update(&mut state, &sample.with_current(amps));
+        assert_covariance(&state, "bad currents");
+    }
+}
+
+#[test]
+fn huge_jumps_leave_everything_finite() {
+    let jumps = [
+        i32::MIN,
+        i32::MAX,
+        -i32::MAX,
+        1 << 15,
+        -(1 << 15),
+        (1 << 15) - 1,
+        1 << 30,
+    ];
+    for case in EVERY.iter() {
+        let mut draws = Draws(4);
+        let mut count = Count(3);
+        let mut run = case.make();
+        run.start(&Sample::new(count));
+        for tick in 0..3000 {
+            let step = match tick % 3 {
+                0 => jumps[draws.bits() as usize % jumps.len()],
+                1 => draws.bits() as i32,
+                _ => draws.within(3) as i32,
+            };
+            count = count + Counts(step);
+            let output = f64::from(run.update(&Sample::new(count)));
+            let bound = 2f64.powi(31) * case.per_count * 1.001;
+            assert!(output.abs() <= bound, "{}: {output}", case.name);
+        }
+        let mut last = f32::NAN;
+        for _ in 0..3 * case.memory + 3 {
+            last = run.update(&Sample::new(count));
+        }
+        assert!(last.abs() < 1e-3, "{}: {last} at rest", case.name);
+    }
+}
+
+/// An estimator that went a billion counts behaves as one that starts there.
+#[test]
+fn nothing_is_lost_beyond_a_billion_counts() {
+    let motion = medley();
+    for case in EVERY.iter() {
+        // There at high speed, then rest until the journey is forgotten.
+        let mut run = case.make();
+        let mut count = Count(0);
+        run.start(&Sample::new(count));
+        for _ in 0..50_000 {
+            count = count + Counts(20_000);
+            run.update(&Sample::new(count));
+        }
+        for _ in 0..3 * case.memory + 3 {
+            run.update(&Sample::new(count));
+        }
+        assert_eq!(count, Count(1_000_000_000));
+        let arrived: Vec<f32> = {
+            let samples = motion.samples(count.0);
+            samples[1..]
+                .iter()
+                .map(|sample| run.update(sample))
+                .collect()
+        };
+        // The other one gets the time to settle, too: its covariance starts wide.
+        let mut fresh = case.make();
+        fresh.start(&Sample::new(Count(7)));
+        for _ in 0..case.memory + 3 {
+            fresh.update(&Sample::new(Count(7)));
+        }
+        let started = motion.samples(7)[1..]
+            .iter()
+            .map(|sample| fresh.update(sample))
+            .collect::<Vec<f32>>();
+        for (there, here) in arrived.iter().zip(&started) {
+            // The filters meet the motion with residuals that differ in their last places.
+            let rounding = 1e-6 * motion.fastest() as f32;
+            let tolerance = if case.ramp == Ramp::Exact {
+                0.0
+            } else {
+                rounding
+            };
+            assert!(
+                (there - here).abs() <= tolerance,
+                "{}: {there} against {here}",
+                case.name
+            );
+        }
+    }
+}
+
+/// Over 2e7 ticks and 7e9 counts the error of the last million ticks is that of the first.
+#[test]
+fn long_ramps_do_not_drift() {
+    let rate = Hertz(10_000.0);
+    let triple = Model::triple_integrator(4096, rate, JERK).unwrap();
+    let window = Foaw::<15, EndFit>::new(15, 1).unwrap();
+    let kalman = Kalman::new(&triple).unwrap();
+    let steady = SteadyKalman::new(&triple).unwrap();
+    let pll = Pll::new(Hertz(60.0), rate).unwrap();
+    let low_pass = LowPass::new(FiniteDifference, Hertz(60.0), rate).unwrap();
+    std::thread::scope(|scope| {
+        scope.spawn(|| assert_no_drift(&kalman, 4_000_000));
+        scope.spawn(|| assert_no_drift(&steady, 20_000_000));
+        scope.spawn(|| assert_no_drift(&pll, 20_000_000));
+        scope.spawn(|| assert_no_drift(&low_pass, 20_000_000));
+        scope.spawn(|| assert_no_drift(&window, 2_000_000));
+    });
+}
+
+fn assert_no_drift<E: VelocityEstimator<Output = CountsPerTick>>(estimator: &E, ticks: u64) {
+    // 353 and 0.618 034 counts a tick, exactly, in units of 2^-32 counts.
+    const STEP: u64 = (353 << 32) + 2_654_435_769;
+    let truth = STEP as f64 / 4_294_967_296.0;
+    let mut position = 0u64;
+    let mut count = Count(0);
+    let mut state = estimator.start(&Sample::new(count));
+    let span = ticks / 10;
+    let (mut first, mut last) = (0.0f64, 0.0f64);
+    let mut travelled = 0.0;
+    for tick in 0..ticks {
+        position = position.wrapping_add(STEP);
+        let shown = Count((position >> 32) as u32);
+        let counted = f64::from((shown - count).0);
+        count = shown;
+        let output = f64::from(estimator.update(&mut state, &Sample::new(count)).0);
+        let error = (output - truth).abs();
+        if tick >= span {
+            // What was counted and what was estimated stay together.
+            travelled += output - counted;
+        }
+        if (span..2 * span).contains(&tick) {
+            first = first.max(error);
+        } else if tick >= ticks - span {
+            last = last.max(error);
+        }
+    }
+    let name = std::any::type_name::<E>();
+    assert!(first < 1.0, "{name}: off by {first}");
+    assert!(last <= first * 1.01 + 1e-4, "{name}: {last} after {first}");
+    // A few roundings of the velocity per tick, 2^-24 of it each; none of them grows.
+    let drift = travelled.abs() / (ticks - span) as f64;
+    assert!(
+        drift < 4e-7 * truth,
+        "{name}: drifts by {drift} counts a tick"
+    );
+}

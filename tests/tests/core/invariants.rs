@@ -1,0 +1,325 @@
+//! What must be true of any velocity estimator, tried on all of them at once.
+
+use std::sync::LazyLock;
+
+use estimator_core::{
+    Amps, ClockTicks, Count, Edge, Kalman, Model, Sample, Signals, Skip, VelocityEstimator,
+};
+use proptest::prelude::*;
+
+use crate::every::{self, Case, JERK, RATES, Ramp, at, everywhere};
+use crate::motion::{Draws, Motion, Stretch, any_motion, medley};
+use crate::reference;
+
+static EVERY: LazyLock<Vec<Case>> = LazyLock::new(everywhere);
+
+/// Rounding of an f32 result, with room for the few operations that lead to it.
+const ROUNDING: f64 = 1e-6;
+
+fn bits(outputs: &[f32]) -> Vec<u32> {
+    outputs.iter().map(|output| output.to_bits()).collect()
+}
+
+/// The first tick at which two runs differ in a bit.
+fn first_difference(one: &[f32], other: &[f32]) -> Option<usize> {
+    assert_eq!(one.len(), other.len());
+    (0..one.len()).find(|&tick| one[tick].to_bits() != other[tick].to_bits())
+}
+
+#[track_caller]
+fn assert_identical(case: &Case, one: &[f32], other: &[f32], what: &str) {
+    if let Some(tick) = first_difference(one, other) {
+        panic!(
+            "{}: {what}: {} against {} at tick {tick}",
+            case.name, one[tick], other[tick]
+        );
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(48) })]
+
+    #[test]
+    fn shift_by_any_count_changes_nothing(motion in any_motion(), shift: u32) {
+        for case in EVERY.iter() {
+            let (here, there) = (case.run(&motion.samples(0)), case.run(&motion.samples(shift)));
+            assert_identical(case, &here, &there, "shifted");
+        }
+    }
+
+    #[test]
+    fn mirrored_motion_gives_mirrored_velocity(motion in any_motion(), start: u32) {
+        for case in EVERY.iter() {
+            let forth = case.run(&motion.samples(start));
+            // Adding zero turns the negative zero into the positive one.
+            let forth: Vec<f32> = forth.iter().map(|v| 0.0 - v).collect();
+            let back = case.run(&motion.mirrored().samples(start));
+            let back: Vec<f32> = back.iter().map(|v| v + 0.0).collect();
+            assert_identical(case, &forth, &back, "mirrored");
+        }
+    }
+
+    #[test]
+    fn sixteen_bit_counter_gives_the_same(motion in any_motion(), start: u32) {
+        let wide = motion.samples(start);
+        let mut count = wide[0].large;
+        let narrow: Vec<Sample> = wide.iter().map(|sample| {
+            count = count.extended(sample.large.0 as u16);
+            Sample { large: count, ..*sample }
+        }).collect();
+        for case in EVERY.iter() {
+            assert_identical(case, &case.run(&wide), &case.run(&narrow), "16 bits");
+        }
+    }
+
+    #[test]
+    fn restart_is_a_fresh_start(before in any_motion(), motion in any_motion(), start: u32) {
+        for case in EVERY.iter() {
+            let samples = motion.samples(start);
+            let mut used = case.make();
+            let past = before.samples(!start);
+            used.start(&past[0]);
+            for sample in &past[1..] {
+                used.update(sample);
+            }
+            used.start(&samples[0]);
+            let again: Vec<f32> = samples[1..].iter().map(|sample| used.update(sample)).collect();
+            assert_identical(case, &case.run(&samples), &again, "restarted");
+        }
+    }
+
+    #[test]
+    fn bounded_input_gives_bounded_output(motion in any_motion(), start: u32) {
+        let fastest = motion.fastest() as f64;
+        for case in EVERY.iter() {
+            // Currents are within 1 A. A late current is one of them all the same.
+            let bound = fastest * case.per_count + case.per_amp;
+            for output in case.run(&motion.samples(start)) {
+                prop_assert!(
+                    f64::from(output.abs()) <= bound * (1.0 + ROUNDING),
+                    "{}: {output} beyond {bound}", case.name
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn signals_not_needed_are_not_read(motion in any_motion(), start: u32, seed: u64) {
+        let mut draws = Draws(seed);
+        let bare = motion.samples(start);
+        let dressed: Vec<Sample> = bare.iter().map(|sample| {
+            let edge = Edge { boundary: Count(draws.bits() as u32), age: ClockTicks(draws.bits() as u32) };
+            sample.with_small(Count(draws.bits() as u32)).with_edge(edge)
+        }).collect();
+        for case in EVERY.iter() {
+            prop_assert!(case.needs.within(Signals::COUNT_AND_CURRENT), "{}", case.name);
+            assert_identical(case, &case.run(&bare), &case.run(&dressed), "other signals");
+            let other: Vec<Sample> = bare.iter()
+                .map(|sample| sample.with_current(Amps::new(5.0 * draws.unit() as f32)))
+                .collect();
+            let same = bits(&case.run(&bare)) == bits(&case.run(&other));
+            // Some stretch may be too short for a current to show.
+            prop_assert!(same || case.needs.current, "{} reads the current", case.name);
+            prop_assert!(!same || !case.needs.current || bare.len() < 4, "{} ignores it", case.name);
+        }
+    }
+}
+
+#[test]
+fn wrap_at_any_moment_leaves_no_trace() {
+    let motion = medley();
+    for case in EVERY.iter() {
+        let far_from_any_wrap = case.run(&motion.samples(1 << 30));
+        for moment in (1..motion.counts.len()).step_by(7) {
+            // The counter passes its end, or the sign of its word, at this very sample.
+            for boundary in [0u32, 1 << 31] {
+                let start = boundary.wrapping_sub(motion.counts[moment] as u32);
+                let wrapped = case.run(&motion.samples(start));
+                assert_identical(case, &far_from_any_wrap, &wrapped, "wrapped");
+            }
+        }
+    }
+}
+
+#[test]
+fn start_at_rest_anywhere_is_silent() {
+    let mut draws = Draws(5);
+    let counts = [0, 1, 0x7FFF_FFFF, 0x8000_0000, u32::MAX, 1_000_000_000];
+    let counts = counts
+        .into_iter()
+        .chain((0..100).map(|_| draws.bits() as u32));
+    for count in counts {
+        let rest = vec![Sample::new(Count(count)); 300];
+        for case in EVERY.iter() {
+            assert!(
+                case.run(&rest).iter().all(|output| *output == 0.0),
+                "{}: jumps at {count}",
+                case.name
+            );
+        }
+    }
+}
+
+#[test]
+fn first_step_is_seen_from_the_first_sample() {
+    for case in EVERY.iter() {
+        for start in [0u32, 12_345_678, 1 << 31, u32::MAX] {
+            let samples = [
+                Sample::new(Count(start)),
+                Sample::new(Count(start) + estimator_core::Counts(3)),
+            ];
+            let output = f64::from(case.run(&samples)[0]);
+            assert!(
+                output >= 0.0 && output <= 3.0 * case.per_count * (1.0 + ROUNDING),
+                "{}: {output} after 3 counts from {start}",
+                case.name
+            );
+        }
+    }
+}
+
+/// A ramp of `velocity` with the current that a motor needs to hold it.
+fn held_ramp(case: &Case, velocity: f64, ticks: usize) -> Vec<Sample> {
+    let amps = Amps::new((velocity * case.holding_amps) as f32);
+    let count = |tick: usize| Count((velocity * tick as f64).floor() as i64 as u32);
+    (0..ticks)
+        .map(|tick| Sample::new(count(tick)).with_current(amps))
+        .collect()
+}
+
+#[test]
+fn ramp_is_followed() {
+    for case in EVERY.iter() {
+        for velocity in [
+            1, -1, 7, 46, -47, 211, 6001, 6002, -9973, 20_011, 32_767, -32_767,
+        ] {
+            let samples = held_ramp(case, f64::from(velocity), case.memory + 300);
+            if f64::from(samples[0].current.get()).abs() >= f64::from(Amps::MAX) {
+                continue;
+            }
+            let outputs = case.run(&samples);
+            for output in &outputs[case.memory..] {
+                match case.ramp {
+                    Ramp::Exact => assert_eq!(*output, velocity as f32, "{}", case.name),
+                    Ramp::Rounded => {
+                        // A filter of time constant τ stalls where its step, error / τ, rounds
+                        // to nothing: at τ half units in the last place.
+                        let stall = case.memory as f64 * f64::from(f32::EPSILON);
+                        let error = (f64::from(*output) / f64::from(velocity) - 1.0).abs();
+                        assert!(
+                            error <= 2e-6 + stall,
+                            "{}: {output} for {velocity}",
+                            case.name
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn velocity_returns_to_zero_at_rest() {
+    for case in EVERY.iter() {
+        let mut samples = held_ramp(case, 211.0, 400);
+        let rest = samples[399].with_current(Amps::ZERO);
+        samples.resize(400 + 2 * case.memory + 4, rest);
+        let outputs = case.run(&samples);
+        // Within its memory all but a millionth of the velocity is gone, within twice that all
+        // but a millionth of a count; without a low-pass there is nothing at all.
+        for (ticks, bound) in [(case.memory + 1, 211e-6), (2 * case.memory + 2, 1e-6)] {
+            let bound = if case.ramp == Ramp::Exact { 0.0 } else { bound };
+            for output in &outputs[399 + ticks..] {
+                assert!(
+                    f64::from(output.abs()) <= bound * case.per_count,
+                    "{}: {output} {ticks} ticks after the stop",
+                    case.name
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn slow_motion_is_not_hidden() {
+    for case in EVERY.iter() {
+        for direction in [1.0, -1.0] {
+            let slow = direction / 50.0;
+            let periods = 50 * (case.memory / 50 + 2);
+            let samples = held_ramp(case, slow, periods + 2000 + 1);
+            let outputs = case.run(&samples);
+            let mean = outputs[periods..]
+                .iter()
+                .copied()
+                .map(f64::from)
+                .sum::<f64>()
+                / 2000.0;
+            // A linear filter and the end-fit take every count in full. A best-fit weighs its
+            // window's middle more, and where an edge lies decides how long its windows are.
+            let tolerance = if case.name.contains("best-fit") {
+                0.15
+            } else {
+                1e-3
+            };
+            assert!(
+                (mean / slow - 1.0).abs() < tolerance,
+                "{}: mean {mean} for {slow}",
+                case.name
+            );
+        }
+    }
+}
+
+/// The bound of a Kalman filter is reached by the worst input: it is no larger than it must be.
+#[test]
+fn bound_is_tight() {
+    for rate in RATES {
+        let model = reference::triple(4096, rate, JERK);
+        let filter = Kalman::new(
+            &Model::triple_integrator(4096, estimator_core::Hertz(rate), JERK).unwrap(),
+        )
+        .unwrap();
+        let cases = at(rate);
+        let case = cases
+            .iter()
+            .find(|case| case.name.starts_with("Kalman triple"))
+            .unwrap();
+        let steps = every::worst_steps(&model, &model.gains(case.memory), 1000);
+        let mut count = Count(0);
+        let mut state = filter.start(&Sample::new(count));
+        let mut output = 0.0;
+        for step in steps {
+            count = count + estimator_core::Counts(step as i32);
+            output = filter.update(&mut state, &Sample::new(count)).0;
+        }
+        let bound = 1000.0 * case.per_count;
+        let reached = f64::from(output);
+        assert!(
+            reached <= bound * 1.0001 && reached >= bound * 0.5,
+            "{reached} of {bound}"
+        );
+    }
+}
+
+#[test]
+fn skip_keeps_nothing_and_yields_nothing() {
+    fn state_size<E: VelocityEstimator>(_: &E) -> usize {
+        size_of::<E::State>()
+    }
+    for sample in medley().samples(9) {
+        Skip.start(&sample);
+        Skip.update(&mut (), &sample);
+    }
+    assert_eq!((state_size(&Skip), size_of::<Skip>()), (0, 0));
+    assert_eq!(Skip::NEEDS, Signals::COUNT);
+}
+
+/// The medley is what it claims, so that the tests above try what they say.
+#[test]
+fn medley_covers_rest_creep_and_speed() {
+    let motion = medley();
+    assert!(motion.fastest() >= 2900 && motion.fastest() < 1 << 15);
+    assert!(motion.counts.windows(50).any(|w| w[0] == w[49]));
+    let slow = Motion::of(&[(Stretch::Creep(50, true), 500)], 0);
+    assert_eq!(slow.counts.last(), Some(&10));
+}

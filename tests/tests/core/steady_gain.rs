@@ -1,0 +1,163 @@
+//! Preset gains against the plain recursion, run until it stops changing.
+
+use estimator_core::{
+    Count, DesignError, Device, Hertz, Input, Kalman, Model, Sample, VelocityEstimator,
+};
+
+use crate::every::{CURRENT_NOISE, JERK, RATES};
+use crate::reference::{self, Reference};
+
+/// Both accept with the same gain, or both refuse; returns whether they accepted.
+///
+/// The core promises to refuse what takes more than 2^20 ticks. What stands still only in the
+/// last doubling before that may go either way: the core looks for the change of 1e-12, which the
+/// rounding of a million plain steps hides.
+fn agree<const S: usize, U: Copy>(ours: &Model<S, U>, model: &Reference<S>, what: &str) -> bool {
+    match (ours.steady_gain(), model.settled()) {
+        (Ok(ours), Some((limit, _))) => {
+            for (ours, limit) in ours.iter().zip(&limit) {
+                let error = (f64::from(*ours) / limit - 1.0).abs();
+                assert!(error < 1e-6, "{what}: {ours} against {limit}");
+            }
+            let rounded = reference::Vector::from_fn(|i, _| f64::from(ours[i]));
+            let radius = model.spectral_radius(&rounded);
+            assert!(radius < 1.0, "{what}: spectral radius {radius}");
+            true
+        }
+        (Err(error), None | Some((_, 20))) => {
+            assert_eq!(error, DesignError::NotConverged, "{what}");
+            false
+        }
+        (ours, limit) => panic!("{what}: {ours:?} against {limit:?}"),
+    }
+}
+
+const HERTZ: [f64; 7] = [100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5];
+const LINES: [u32; 5] = [16, 256, 1024, 5000, 1_000_000];
+
+#[test]
+fn triple_integrator_settles_where_the_recursion_does() {
+    let (mut accepted, mut refused) = (0, 0);
+    for rate in HERTZ {
+        for lines in LINES {
+            for exponent in [-9, -6, -3, -1, 1, 3, 5, 7, 10, 15] {
+                let noise = 2.7 * 10f64.powi(exponent);
+                let ours = Model::triple_integrator(4 * lines, Hertz(rate), noise).unwrap();
+                let model = reference::triple(4 * lines, rate, noise);
+                let what = format!("{lines} lines, {rate} Hz, {noise:e}");
+                if agree(&ours, &model, &what) {
+                    accepted += 1;
+                } else {
+                    refused += 1;
+                }
+            }
+        }
+    }
+    assert!(accepted > 100 && refused > 20, "{accepted} and {refused}");
+}
+
+#[test]
+fn motor_settles_where_the_recursion_does() {
+    let (mut accepted, mut refused) = (0, 0);
+    for rate in HERTZ {
+        for lines in LINES {
+            for exponent in [-9, -7, -5, -3, -2, -1, 0, 2] {
+                let noise = 2.7 * 10f64.powi(exponent);
+                let device = Device {
+                    counts_per_rev: 4 * lines,
+                    ..Device::DCX35L
+                };
+                let ours = Model::motor(&device, Hertz(rate), noise).unwrap();
+                let model = reference::motor_reduced(&device, rate, noise);
+                let what = format!("{lines} lines, {rate} Hz, {noise:e} A");
+                if agree(&ours, &model, &what) {
+                    accepted += 1;
+                } else {
+                    refused += 1;
+                }
+            }
+        }
+    }
+    assert!(accepted > 100 && refused > 20, "{accepted} and {refused}");
+}
+
+#[test]
+fn run_time_covariance_settles_to_the_preset_gain() {
+    for rate in RATES {
+        for scale in [1e-2, 1.0, 1e2] {
+            let triple = Model::triple_integrator(4096, Hertz(rate), JERK * scale).unwrap();
+            settles(
+                &triple,
+                &format!("triple at {rate} Hz, noise times {scale}"),
+            );
+            let motor = Model::motor(&Device::DCX35L, Hertz(rate), CURRENT_NOISE * scale).unwrap();
+            settles(&motor, &format!("motor at {rate} Hz, noise times {scale}"));
+        }
+    }
+}
+
+fn settles<const S: usize, U: Input<S>>(model: &Model<S, U>, what: &str) {
+    let filter = Kalman::new(model).unwrap();
+    let sample = Sample::new(Count(0));
+    let mut state = filter.start(&sample);
+    for _ in 0..100_000 {
+        filter.update(&mut state, &sample);
+    }
+    // After an update P H^T / r is the gain.
+    let preset = model.steady_gain().unwrap();
+    for (row, preset) in state.covariance().iter().zip(preset) {
+        let gain = f64::from(row[0]) / reference::R;
+        // The recursion stalls where its change rounds to nothing: the square root of the number
+        // of ticks it remembers, or so, times the rounding.
+        let error = (gain / f64::from(preset) - 1.0).abs();
+        assert!(error < 1e-3, "{what}: {gain} against {preset}");
+    }
+}
+
+#[test]
+fn refusals_have_names() {
+    let rate = Hertz(1000.0);
+    let motor = |device: Device, rate: f64, noise: f64| Model::motor(&device, Hertz(rate), noise);
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let triple = Model::triple_integrator(4096, Hertz(bad), JERK);
+        assert_eq!(triple.err(), Some(DesignError::Rate));
+        assert_eq!(
+            motor(Device::DCX35L, bad, 0.1).err(),
+            Some(DesignError::Rate)
+        );
+        let triple = Model::triple_integrator(4096, rate, bad);
+        assert_eq!(triple.err(), Some(DesignError::ProcessNoise), "{bad}");
+        assert_eq!(
+            motor(Device::DCX35L, 1e3, bad).err(),
+            Some(DesignError::ProcessNoise)
+        );
+        let inertia = Device {
+            inertia: bad,
+            ..Device::DCX35L
+        };
+        assert_eq!(motor(inertia, 1e3, 0.1).err(), Some(DesignError::Device));
+        let torque_constant = Device {
+            torque_constant: bad,
+            ..Device::DCX35L
+        };
+        assert_eq!(
+            motor(torque_constant, 1e3, 0.1).err(),
+            Some(DesignError::Device)
+        );
+        let damping = Device {
+            damping: bad,
+            ..Device::DCX35L
+        };
+        let refused = motor(damping, 1e3, 0.1).err();
+        assert_eq!(refused.is_some(), bad != 0.0, "damping {bad}");
+    }
+    let none = Device {
+        counts_per_rev: 0,
+        ..Device::DCX35L
+    };
+    assert_eq!(motor(none, 1e3, 0.1).err(), Some(DesignError::Device));
+    assert_eq!(
+        Model::triple_integrator(0, rate, JERK).err(),
+        Some(DesignError::Device)
+    );
+}
