@@ -11,7 +11,7 @@ use core::fmt;
 pub enum DesignError {
     /// The control rate is not positive and finite.
     Rate,
-    /// The cut-off or bandwidth is not above zero and at most half the control rate.
+    /// The cut-off or bandwidth is not a millionth to half of the control rate.
     Cutoff,
     /// The window is empty or longer than the ring that holds it.
     Window,
@@ -34,7 +34,7 @@ impl DesignError {
     pub const fn message(self) -> &'static str {
         match self {
             Self::Rate => "control rate must be positive and finite (Hz)",
-            Self::Cutoff => "cut-off must be above 0 and at most half the control rate (Hz)",
+            Self::Cutoff => "cut-off must be 1e-6 to 1/2 of the control rate (Hz)",
             Self::Window => "window must be 1 to N intervals, N at most 128",
             Self::NoiseBound => "noise bound must be at most 16384 counts",
             Self::Device => {

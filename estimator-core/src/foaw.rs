@@ -34,7 +34,7 @@ const LONGEST_STEP: u32 = 1 << 15;
 ///
 /// `d = 1` count bounds the quantisation error of an ideal disc, so at constant speed the end-fit
 /// window is always full; the best-fit line may miss a sample by more and wants `d = 2` for that
-/// from n = 9 on. At rest the window is full and
+/// from n = 9 on, and with d = 1 a long best-fit window reads creep low, by up to 15 % at n = 128. At rest the window is full and
 /// the velocity zero after n ticks. N is the largest window, 1 to 128 intervals; n may be less at
 /// run time. Steps of 2^15 counts a tick or more restart the window.
 ///

@@ -24,7 +24,7 @@
 //! use estimator_core::{Count, EndFit, Foaw, Hertz, Sample, Scale, VelocityEstimator, preset};
 //!
 //! const FOAW: Foaw<15, EndFit> = preset!(Foaw::new(15, 1)); // checked at compile time
-//! const SCALE: Scale = Scale::new(4096, Hertz(1000.0));
+//! const SCALE: Scale = preset!(Scale::new(4096, Hertz(1000.0)));
 //!
 //! let mut state = FOAW.start(&Sample::new(Count(0)));
 //! let mut omega = 0.0;

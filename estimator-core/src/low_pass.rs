@@ -11,7 +11,7 @@ use crate::units::{CountsPerTick, Hertz};
 ///
 /// Filters the velocity, never the position, so it does not see the counter wrap. Its pole is
 /// the continuous filter's; the delay at low frequency is `(1 - α) / α` periods.
-/// Valid for `0 < cut-off <= rate / 2`.
+/// Valid for a cut-off from 1e-6 to 1/2 of the rate.
 ///
 /// ```
 /// use estimator_core::{Count, FiniteDifference, Hertz, LowPass, Sample, VelocityEstimator, preset};
@@ -32,12 +32,12 @@ impl<E: Copy> LowPass<E> {
     ///
     /// # Errors
     /// [`DesignError::Rate`] unless the rate is positive and finite, [`DesignError::Cutoff`]
-    /// unless the cut-off is in `(0, rate / 2]`.
+    /// unless the cut-off is 1e-6 to 1/2 of the rate.
     pub const fn new(inner: E, cutoff: Hertz, rate: Hertz) -> Result<Self, DesignError> {
-        if !(rate.0 > 0.0 && rate.0.is_finite()) {
+        if !rate.is_positive() {
             return Err(DesignError::Rate);
         }
-        if !(cutoff.0 > 0.0 && cutoff.0 <= rate.0 / 2.0) {
+        if !cutoff.is_cutoff_at(rate) {
             return Err(DesignError::Cutoff);
         }
         let alpha = 1.0 - exp(-2.0 * core::f64::consts::PI * cutoff.0 / rate.0);

@@ -78,7 +78,7 @@ impl Model<3, NoInput> {
         rate: Hertz,
         jerk_density: f64,
     ) -> Result<Self, DesignError> {
-        if !(rate.0 > 0.0 && rate.0.is_finite()) {
+        if !rate.is_positive() {
             return Err(DesignError::Rate);
         }
         if counts_per_rev == 0 {
@@ -127,7 +127,7 @@ impl Model<2, CurrentInput<2>> {
         rate: Hertz,
         current_noise: f64,
     ) -> Result<Self, DesignError> {
-        if !(rate.0 > 0.0 && rate.0.is_finite()) {
+        if !rate.is_positive() {
             return Err(DesignError::Rate);
         }
         let device = match device.checked() {

@@ -12,7 +12,7 @@ use crate::units::{Count, CountsPerTick, Hertz};
 /// ```
 /// Both poles of the error lie at p, so the loop settles without overshoot at the pole frequency
 /// f, Hz, whatever the rate; its velocity is 3 dB down at 0.64 f. Follows a ramp without error; θ is kept as a residual to the newest
-/// count. Valid for `0 < f <= rate / 2`. The gains are those of the fading-memory filter of
+/// count. Valid for f from 1e-6 to 1/2 of the rate. The gains are those of the fading-memory filter of
 /// first degree (Morrison 1969).
 ///
 /// ```
@@ -38,12 +38,12 @@ impl Pll {
     ///
     /// # Errors
     /// [`DesignError::Rate`] unless the rate is positive and finite, [`DesignError::Cutoff`]
-    /// unless the bandwidth is in `(0, rate / 2]`.
+    /// unless the bandwidth is 1e-6 to 1/2 of the rate.
     pub const fn new(bandwidth: Hertz, rate: Hertz) -> Result<Self, DesignError> {
-        if !(rate.0 > 0.0 && rate.0.is_finite()) {
+        if !rate.is_positive() {
             return Err(DesignError::Rate);
         }
-        if !(bandwidth.0 > 0.0 && bandwidth.0 <= rate.0 / 2.0) {
+        if !bandwidth.is_cutoff_at(rate) {
             return Err(DesignError::Cutoff);
         }
         let pole = exp(-2.0 * core::f64::consts::PI * bandwidth.0 / rate.0);

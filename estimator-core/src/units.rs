@@ -2,6 +2,8 @@
 
 use core::ops::{Add, Sub};
 
+use crate::design_error::DesignError;
+
 /// Position of an encoder as its counter shows it, modulo 2^32.
 ///
 /// Only differences mean anything: `Count - Count` is a displacement, right as long as the true
@@ -124,6 +126,17 @@ pub struct ClockTicks(pub u32);
 pub struct Hertz(pub f64);
 
 impl Hertz {
+    /// Whether a period of it is a time: positive and finite.
+    pub(crate) const fn is_positive(self) -> bool {
+        self.0 > 0.0 && self.0.is_finite()
+    }
+
+    /// Whether it can be a cut-off at a control rate: a millionth to half of it. Below, gains
+    /// round to nothing in f32.
+    pub(crate) const fn is_cutoff_at(self, rate: Self) -> bool {
+        self.0 >= 1e-6 * rate.0 && self.0 <= rate.0 / 2.0
+    }
+
     /// One period, s.
     #[must_use]
     pub const fn period_s(self) -> f64 {
@@ -139,7 +152,7 @@ impl Hertz {
 /// ```
 /// use estimator_core::{CountsPerTick, Hertz, Scale};
 /// // 1024 lines at 1 kHz: one count is 1.53 rad/s.
-/// let scale = Scale::new(4 * 1024, Hertz(1000.0));
+/// let scale = Scale::new(4 * 1024, Hertz(1000.0)).unwrap();
 /// assert_eq!(CountsPerTick(1.0).rad_per_s(&scale), 1.533_980_8);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,11 +163,20 @@ pub struct Scale {
 
 impl Scale {
     /// The factor for an encoder of `counts_per_rev` (four times its lines) at a control rate.
-    #[must_use]
-    pub const fn new(counts_per_rev: u32, rate: Hertz) -> Self {
-        Self {
-            rad_per_s_per_count_per_tick: (2.0 * core::f64::consts::PI * rate.0
-                / counts_per_rev as f64) as f32,
+    ///
+    /// # Errors
+    /// [`DesignError::Rate`] unless the rate is positive and finite, [`DesignError::Device`]
+    /// without counts.
+    pub const fn new(counts_per_rev: u32, rate: Hertz) -> Result<Self, DesignError> {
+        if !rate.is_positive() {
+            return Err(DesignError::Rate);
         }
+        if counts_per_rev == 0 {
+            return Err(DesignError::Device);
+        }
+        let factor = 2.0 * core::f64::consts::PI * rate.0 / counts_per_rev as f64;
+        Ok(Self {
+            rad_per_s_per_count_per_tick: factor as f32,
+        })
     }
 }

@@ -364,7 +364,7 @@ fn bad_words_are_refused_with_what_to_do() {
                 "--rate",
                 "1000",
             ],
-            "half the control rate",
+            "1/2 of the control rate",
         ),
         (
             &["compare", "--device", "none.toml"],

@@ -85,7 +85,7 @@ pub(super) const KINDS: &[Kind] = &[
         summary: "displacement over the last period (eq. 4)",
         needs: Signals::COUNT,
         parameters: &[],
-        build: |setup, _| Ok(runner(FiniteDifference, scale(setup))),
+        build: |setup, _| Ok(runner(FiniteDifference, scale(setup)?)),
     },
     Kind {
         name: "low-pass",
@@ -94,7 +94,7 @@ pub(super) const KINDS: &[Kind] = &[
         parameters: &[CUTOFF],
         build: |setup, values| {
             let filter = LowPass::new(FiniteDifference, Hertz(values[0]), setup.rate)?;
-            Ok(runner(filter, scale(setup)))
+            Ok(runner(filter, scale(setup)?))
         },
     },
     Kind {
@@ -116,7 +116,7 @@ pub(super) const KINDS: &[Kind] = &[
         summary: "Kalman filter on a triple integrator, full covariance (eqs. 9 to 12)",
         needs: Signals::COUNT,
         parameters: &[JERK],
-        build: |setup, values| Ok(runner(Kalman::new(&triple(setup, values)?)?, scale(setup))),
+        build: |setup, values| Ok(runner(Kalman::new(&triple(setup, values)?)?, scale(setup)?)),
     },
     Kind {
         name: "kalman-triple-steady",
@@ -126,7 +126,7 @@ pub(super) const KINDS: &[Kind] = &[
         build: |setup, values| {
             Ok(runner(
                 SteadyKalman::new(&triple(setup, values)?)?,
-                scale(setup),
+                scale(setup)?,
             ))
         },
     },
@@ -138,8 +138,8 @@ pub(super) const KINDS: &[Kind] = &[
         build: |setup, values| {
             let filter = Kalman::new(&Model::motor(&setup.device, setup.rate, values[0])?)?;
             Ok(match values[1] != 0.0 {
-                true => runner(LateCurrent(filter), scale(setup)),
-                false => runner(filter, scale(setup)),
+                true => runner(LateCurrent(filter), scale(setup)?),
+                false => runner(filter, scale(setup)?),
             })
         },
     },
@@ -151,8 +151,8 @@ pub(super) const KINDS: &[Kind] = &[
         build: |setup, values| {
             let filter = SteadyKalman::new(&Model::motor(&setup.device, setup.rate, values[0])?)?;
             Ok(match values[1] != 0.0 {
-                true => runner(LateCurrent(filter), scale(setup)),
-                false => runner(filter, scale(setup)),
+                true => runner(LateCurrent(filter), scale(setup)?),
+                false => runner(filter, scale(setup)?),
             })
         },
     },
@@ -164,7 +164,7 @@ pub(super) const KINDS: &[Kind] = &[
         build: |setup, values| {
             Ok(runner(
                 Pll::new(Hertz(values[0]), setup.rate)?,
-                scale(setup),
+                scale(setup)?,
             ))
         },
     },
@@ -175,7 +175,7 @@ fn foaw<F: Fit + Send + Sync + 'static>(
     values: &Values,
 ) -> Result<Runner, DesignError> {
     let foaw = Foaw::<RING, F>::new(values[0] as usize, values[1] as u16)?;
-    Ok(runner(foaw, scale(setup)))
+    Ok(runner(foaw, scale(setup)?))
 }
 
 fn triple(
@@ -185,6 +185,6 @@ fn triple(
     Model::triple_integrator(setup.device.counts_per_rev, setup.rate, values[0])
 }
 
-fn scale(setup: &Setup) -> Scale {
+fn scale(setup: &Setup) -> Result<Scale, DesignError> {
     Scale::new(setup.device.counts_per_rev, setup.rate)
 }

@@ -182,7 +182,7 @@ fn motor_follows_the_textbook_of_three_states() {
             assert!(difference < DEVIATION, "{rate} Hz, {noise} A: {difference}");
 
             // In rad/s, too.
-            let scale = Scale::new(4096, Hertz(rate));
+            let scale = Scale::new(4096, Hertz(rate)).unwrap();
             let last = CountsPerTick(outputs[outputs.len() - 1] as f32).rad_per_s(&scale);
             let omega = expected[expected.len() - 1] * std::f64::consts::TAU * rate / 4096.0;
             let bound = DEVIATION * std::f64::consts::TAU * rate / 4096.0;

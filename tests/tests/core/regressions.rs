@@ -255,7 +255,7 @@ fn covariance_stays_symmetric() {
 #[test]
 fn rate_is_in_hertz_and_its_period_in_seconds() {
     // 1 count a tick of 1 ms with 4096 counts a turn: 1000 / 4096 turns a second.
-    let velocity = CountsPerTick(1.0).rad_per_s(&Scale::new(4096, Hertz(1000.0)));
+    let velocity = CountsPerTick(1.0).rad_per_s(&Scale::new(4096, Hertz(1000.0)).unwrap());
     let turns = f64::from(velocity) / std::f64::consts::TAU;
     assert!((turns - 1000.0 / 4096.0).abs() < 1e-7);
     assert_eq!(Hertz(1000.0).period_s(), 1e-3);
