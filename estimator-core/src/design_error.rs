@@ -61,7 +61,7 @@ impl fmt::Display for DesignError {
 
 impl core::error::Error for DesignError {}
 
-/// Evaluates a design at compile time; a [`DesignError`] stops the build with its message.
+/// Evaluates a design at compile time; an error stops the build with its `message()`.
 ///
 /// ```
 /// use estimator_core::{Hertz, Model, NoInput, SteadyKalman, SteadyKalmanTriple, preset};
@@ -84,7 +84,7 @@ macro_rules! preset {
         const {
             match $design {
                 Ok(designed) => designed,
-                Err(error) => panic!("{}", $crate::DesignError::message(error)),
+                Err(error) => panic!("{}", error.message()),
             }
         }
     };

@@ -7,8 +7,9 @@ use crate::sample::{Sample, Signals};
 /// The state begins with a sample, so an estimator can neither difference against memory that was
 /// never written nor jump at the first tick; to reset, start again.
 pub trait VelocityEstimator {
-    /// What is carried from tick to tick.
-    type State: Clone;
+    /// What is carried from tick to tick. A tick that leaves it equal, bit for bit but for signs
+    /// of zero, changes nothing to come.
+    type State: Clone + PartialEq;
     /// What a tick yields: [`CountsPerTick`](crate::CountsPerTick), or `()` where no velocity is
     /// wanted.
     type Output: Copy;

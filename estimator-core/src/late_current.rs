@@ -25,7 +25,7 @@ use crate::units::Amps;
 pub struct LateCurrent<E>(pub E);
 
 /// State of a [`LateCurrent`]: the current withheld and the inner state.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LateCurrentState<S> {
     withheld: Amps,
     inner: S,

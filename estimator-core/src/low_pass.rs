@@ -49,7 +49,7 @@ impl<E: Copy> LowPass<E> {
 }
 
 /// State of a [`LowPass`]: the filtered velocity and the inner state.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LowPassState<S> {
     velocity: f32,
     inner: S,

@@ -3,7 +3,7 @@
 use crate::units::Count;
 
 /// The newest 1 to N counts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Ring<const N: usize> {
     counts: [Count; N],
     /// Where the newest count is; below N.
@@ -11,6 +11,15 @@ pub(super) struct Ring<const N: usize> {
     /// How many counts are held, 1 to N.
     held: u8,
 }
+
+/// Rings that hold the same counts in the same order are equal, wherever they begin.
+impl<const N: usize> PartialEq for Ring<N> {
+    fn eq(&self, other: &Self) -> bool {
+        self.newest_first().eq(other.newest_first())
+    }
+}
+
+impl<const N: usize> Eq for Ring<N> {}
 
 impl<const N: usize> Ring<N> {
     /// A ring that holds one count.

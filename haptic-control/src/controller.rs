@@ -1,0 +1,182 @@
+//! A controller of one scene: what that scene does not need is not there.
+
+use estimator_core::{Count, CountsPerTick, Sample, Scale, VelocityEstimator};
+
+use crate::need::Need;
+use crate::rig::{AngleScale, Rig};
+use crate::scene::Scene;
+use crate::stage::{ContinuousStage, ContinuousState, TransientStage, TransientState};
+use crate::tick::{Action, Continuous, Estimated, HandleNeed, Parts, Transient, tick};
+use crate::units::{RadPerS, Radians};
+
+type Of<N, T> = <N as Need>::Of<T>;
+
+/// The controller of one scene `S`, with the estimators `L` of the large motor and `H` of the
+/// handle: counts in, currents out, one pure step a tick.
+///
+/// Parameters here, state apart. A part that `S` does not need is `()`: no memory, no code.
+///
+/// ```
+/// use estimator_core::*;
+/// use haptic_control::*;
+/// const RATE: Hertz = Hertz(10e3);
+/// const RIG: Rig = preset!(Rig::new(&DualStage::DEFAULT, RATE, LoopPoles::DEFAULT));
+/// const LOOP: Pll = preset!(Pll::new(Hertz(100.0), RATE));
+/// const WALL: Wall = preset!(Wall::new(Radians(0.1), 0.30, 0.0));
+///
+/// let wall = Controller::new(WALL, LOOP, LOOP, &RIG);
+/// let mut state = wall.start(&Sample::default());
+/// // 1000 counts are 0.314 rad, 0.214 into the wall: it pushes back with 64 mN.m.
+/// let inside = Sample::default().with_small(Count(1000));
+/// let action = wall.step(&mut state, &inside);
+/// assert!((action.torque.0 + 0.0642).abs() < 1e-4 && action.currents.small.get() < 0.0);
+///
+/// // Nothing is left of a scene that needs nothing.
+/// let off = Controller::new(Off, LOOP, LOOP, &RIG);
+/// assert!(size_of_val(&off.start(&inside)) <= size_of::<Count>() + size_of::<(Sample, Action, bool)>());
+/// ```
+pub struct Controller<S: Scene, L, H> {
+    scene: S,
+    continuous: Of<S::Continuous, (L, Scale, ContinuousStage)>,
+    handle: Of<HandleNeed<S>, (H, Scale)>,
+    transient: Of<S::Transient, TransientStage>,
+    angle: AngleScale,
+}
+
+/// State of a [`Controller`].
+pub struct ControllerState<S: Scene, L: VelocityEstimator, H: VelocityEstimator> {
+    parts: PartStates<S, L, H>,
+    origin: Count,
+    last: (Sample, Action),
+    settled: bool,
+}
+
+/// What the step carries, apart from its short path.
+struct PartStates<S: Scene, L: VelocityEstimator, H: VelocityEstimator> {
+    scene: S::State,
+    continuous: Of<S::Continuous, (L::State, ContinuousState)>,
+    handle: Of<HandleNeed<S>, H::State>,
+    transient: Of<S::Transient, TransientState>,
+}
+
+impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> Clone for PartStates<S, L, H> {
+    fn clone(&self) -> Self {
+        Self {
+            scene: self.scene.clone(),
+            continuous: S::Continuous::copy(&self.continuous),
+            handle: HandleNeed::<S>::copy(&self.handle),
+            transient: S::Transient::copy(&self.transient),
+        }
+    }
+}
+
+impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> PartialEq for PartStates<S, L, H> {
+    fn eq(&self, other: &Self) -> bool {
+        self.scene == other.scene
+            && S::Continuous::same(&self.continuous, &other.continuous)
+            && HandleNeed::<S>::same(&self.handle, &other.handle)
+            && S::Transient::same(&self.transient, &other.transient)
+    }
+}
+
+impl<S, L, H> Controller<S, L, H>
+where
+    S: Scene,
+    L: VelocityEstimator<Output = CountsPerTick>,
+    H: VelocityEstimator<Output = CountsPerTick>,
+{
+    /// A controller for `scene` on `rig`, with these estimators where the scene needs them.
+    pub fn new(scene: S, large: L, handle: H, rig: &Rig) -> Self {
+        Self {
+            scene,
+            continuous: S::Continuous::make(|| (large, rig.large, rig.continuous)),
+            handle: HandleNeed::<S>::make(|| (handle, rig.handle)),
+            transient: S::Transient::make(|| rig.transient),
+            angle: rig.angle,
+        }
+    }
+
+    /// State at rest at the first sample; angles count from there.
+    pub fn start(&self, first: &Sample) -> ControllerState<S, L, H> {
+        let handle_sample = Sample::new(first.small);
+        ControllerState {
+            parts: PartStates {
+                scene: self.scene.start(Radians(0.0)),
+                continuous: S::Continuous::map(
+                    S::Continuous::as_ref(&self.continuous),
+                    |(large, _, stage)| (large.start(first), stage.start(RadPerS(0.0))),
+                ),
+                handle: HandleNeed::<S>::map(
+                    HandleNeed::<S>::as_ref(&self.handle),
+                    |(handle, _)| handle.start(&handle_sample),
+                ),
+                transient: S::Transient::make(TransientState::default),
+            },
+            origin: first.small,
+            last: (*first, Action::default()),
+            settled: false,
+        }
+    }
+
+    /// One tick.
+    ///
+    /// Where nothing can come of it, because the sample is that of the tick before and neither
+    /// state nor action changed then, the action is repeated: the same bits for a comparison.
+    pub fn step(&self, state: &mut ControllerState<S, L, H>, sample: &Sample) -> Action {
+        let repeated = *sample == state.last.0;
+        if repeated && state.settled {
+            return state.last.1;
+        }
+        let before = repeated.then(|| (state.parts.clone(), state.last.1));
+        let angle = self.angle.of(sample.small - state.origin);
+        let action = self.full_step(&mut state.parts, angle, sample);
+        state.settled = before.is_some_and(|before| before.0 == state.parts && before.1 == action);
+        state.last = (*sample, action);
+        action
+    }
+
+    fn full_step(
+        &self,
+        states: &mut PartStates<S, L, H>,
+        angle: Radians,
+        sample: &Sample,
+    ) -> Action {
+        let parts = Parts {
+            continuous: S::Continuous::zip(
+                S::Continuous::as_ref(&self.continuous),
+                S::Continuous::as_mut(&mut states.continuous),
+                |(estimator, scale, stage), (estimated, state)| Continuous {
+                    large: Estimated {
+                        estimator,
+                        state: estimated,
+                        scale: *scale,
+                    },
+                    stage,
+                    state,
+                },
+            ),
+            handle: HandleNeed::<S>::zip(
+                HandleNeed::<S>::as_ref(&self.handle),
+                HandleNeed::<S>::as_mut(&mut states.handle),
+                |(estimator, scale), state| Estimated {
+                    estimator,
+                    state,
+                    scale: *scale,
+                },
+            ),
+            transient: S::Transient::zip(
+                S::Transient::as_ref(&self.transient),
+                S::Transient::as_mut(&mut states.transient),
+                |stage, state| Transient { stage, state },
+            ),
+        };
+        tick(
+            &self.scene,
+            &mut states.scene,
+            parts,
+            angle,
+            sample,
+            |torque| torque,
+        )
+    }
+}

@@ -1,0 +1,47 @@
+//! Why a controller was refused.
+
+use core::fmt;
+
+/// Why a controller was refused, at run time by `Err` or at compile time by
+/// [`preset!`](estimator_core::preset).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum DesignError {
+    /// The control rate is not in 100 Hz to 100 kHz.
+    Rate,
+    /// A device constant is out of its range.
+    Device,
+    /// A bandwidth is not above zero and at most a tenth of the control rate.
+    Bandwidth,
+    /// The pole placement has no solution.
+    Singular,
+    /// The loop is stable with too small a margin, or not at all.
+    Margins,
+    /// A parameter of a scene is out of its range.
+    Scene,
+}
+
+impl DesignError {
+    /// What is wrong, and with what.
+    #[must_use]
+    pub const fn message(self) -> &'static str {
+        match self {
+            Self::Rate => "control rate must be 100 Hz to 100 kHz",
+            Self::Device => {
+                "device constants must be finite and above 0, friction at least 0 (SI units)"
+            }
+            Self::Bandwidth => "bandwidth must be above 0 and at most a tenth of the control rate",
+            Self::Singular => "pole placement has no solution for this device and rate",
+            Self::Margins => "velocity loop misses its margins: lower the regulation bandwidth",
+            Self::Scene => "scene parameter out of its range",
+        }
+    }
+}
+
+impl fmt::Display for DesignError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.message())
+    }
+}
+
+impl core::error::Error for DesignError {}

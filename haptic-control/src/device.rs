@@ -1,0 +1,89 @@
+//! The device description that controllers are designed from.
+
+use estimator_core::Hertz;
+
+use crate::design_error::DesignError;
+
+/// A motor with its encoder and amplifier. SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motor {
+    /// Inertia J of everything on the shaft, kg·m².
+    pub inertia: f64,
+    /// Torque constant Kt, N·m/A.
+    pub torque_constant: f64,
+    /// Coulomb friction Tc, N·m.
+    pub coulomb: f64,
+    /// Counts per revolution: four times the encoder's lines.
+    pub counts_per_rev: u32,
+    /// Largest current, A.
+    pub current_limit: f64,
+}
+
+/// Both stages and what couples them. SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DualStage {
+    /// Large motor, the continuous stage.
+    pub large: Motor,
+    /// Small motor on the handle, the transient stage.
+    pub small: Motor,
+    /// Damping b of the coupler, N·m·s/rad.
+    pub damping: f64,
+    /// Bandwidth of both current amplifiers, first order.
+    pub amplifier: Hertz,
+}
+
+impl DualStage {
+    /// The paper's device: DCX35L with 1024 lines, DCX22S with 5000, b = 0.96 mN·m·s/rad.
+    ///
+    /// Damping and lines are the paper's; inertias, torque constants, friction and amplifiers
+    /// are working values, assumed good to 15 %.
+    pub const DEFAULT: Self = Self {
+        large: Motor {
+            inertia: 115e-7,
+            torque_constant: 46.8e-3,
+            coulomb: 4.0e-3,
+            counts_per_rev: 4 * 1024,
+            current_limit: 6.0,
+        },
+        small: Motor {
+            inertia: 50e-7,
+            torque_constant: 27.5e-3,
+            coulomb: 0.8e-3,
+            counts_per_rev: 4 * 5000,
+            current_limit: 1.5,
+        },
+        damping: 0.96e-3,
+        amplifier: Hertz(2000.0),
+    };
+
+    /// The device itself, if every constant is in its range.
+    ///
+    /// # Errors
+    /// [`DesignError::Device`].
+    pub const fn checked(self) -> Result<Self, DesignError> {
+        if self.large.is_possible()
+            && self.small.is_possible()
+            && is_positive(self.damping)
+            && is_positive(self.amplifier.0)
+        {
+            Ok(self)
+        } else {
+            Err(DesignError::Device)
+        }
+    }
+}
+
+impl Motor {
+    const fn is_possible(&self) -> bool {
+        is_positive(self.inertia)
+            && is_positive(self.torque_constant)
+            && is_positive(self.current_limit)
+            && self.coulomb >= 0.0
+            && self.coulomb.is_finite()
+            && self.counts_per_rev > 0
+    }
+}
+
+const fn is_positive(x: f64) -> bool {
+    x > 0.0 && x.is_finite()
+}

@@ -1,0 +1,44 @@
+//! Dual-stage haptic control as one pure step: counts in, currents out, `no_std`.
+//!
+//! A [`Scene`] says what torque the handle should feel and, in its types, what it needs to know
+//! that; a [`Controller`] holds that scene and nothing that it does not need. The large motor
+//! renders torque through the coupler, by a velocity loop designed at compile time ([`RstDesign`]);
+//! the small motor adds what the large one is too slow for. [`Monitor`] says when to stop.
+//!
+//! f32 `+ - * /` and integers only, no panics: the same bits on every machine.
+#![no_std]
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "a NaN has to fail these comparisons"
+)]
+
+mod controller;
+mod design_error;
+mod device;
+mod limits;
+mod margins;
+mod monitor;
+mod need;
+mod numeric;
+mod rig;
+mod rst;
+mod rst_design;
+mod scene;
+mod stage;
+mod tick;
+mod units;
+
+pub use controller::{Controller, ControllerState};
+pub use design_error::DesignError;
+pub use device::{DualStage, Motor};
+pub use limits::{CurrentLimits, Currents};
+pub use margins::Margins;
+pub use monitor::{Cause, Monitor, MonitorState};
+pub use need::{Need, Wanted};
+pub use rig::{AngleScale, Rig};
+pub use rst::{Rst, RstState};
+pub use rst_design::{LEAST_MODULUS, LoopPoles, RstDesign};
+pub use scene::{Detents, FreeAir, Handle, Hold, Off, Scene, SpringDamper, Texture, Viscous, Wall};
+pub use stage::{ContinuousStage, ContinuousState, TransientStage, TransientState};
+pub use tick::Action;
+pub use units::{NewtonMetres, RadPerS, Radians};

@@ -1,0 +1,99 @@
+//! What stops the device: a pure check of each tick that the firmware's safety state calls too.
+
+use estimator_core::{Count, Counts, Sample};
+
+/// Why the device was stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Cause {
+    /// The handle moved faster than allowed.
+    HandleOverspeed,
+    /// The large motor moved faster than allowed.
+    LargeOverspeed,
+    /// A counter jumped further than any motion could.
+    Jump,
+    /// The large motor's current was high for long and its encoder did not move.
+    NotMoving,
+}
+
+/// Largest displacements and times, in counts and ticks.
+///
+/// Speeds are displacements over `window` ticks, exact in integers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Monitor {
+    /// Ticks over which speed is measured, at least 1.
+    pub window: u32,
+    /// Largest displacement of the handle in a window.
+    pub handle: u32,
+    /// Largest displacement of the large motor in a window.
+    pub large: u32,
+    /// Largest displacement of either in one tick.
+    pub jump: u32,
+    /// Longest time at a current above `stall_milliamps` without a count, ticks.
+    pub stall: u32,
+    /// Magnitude of the large motor's current from which it has to move, mA.
+    pub stall_milliamps: u32,
+}
+
+/// State of a [`Monitor`]: it latches the first cause.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MonitorState {
+    last: [Count; 2],
+    window_start: [Count; 2],
+    ticks: u32,
+    still: u32,
+    cause: Option<Cause>,
+}
+
+impl Monitor {
+    /// State at the first sample, with nothing to complain of.
+    #[must_use]
+    pub const fn start(&self, first: &Sample) -> MonitorState {
+        MonitorState {
+            last: [first.large, first.small],
+            window_start: [first.large, first.small],
+            ticks: 0,
+            still: 0,
+            cause: None,
+        }
+    }
+
+    /// One tick; whatever was found first stays found.
+    pub fn check(&self, state: &mut MonitorState, sample: &Sample) -> Option<Cause> {
+        let now = [sample.large, sample.small];
+        let [large, small] = [0, 1].map(|i| distance(now[i] - state.last[i]));
+        state.last = now;
+        let milliamps = (sample.current.get() * 1000.0) as i32;
+        let driven = milliamps.unsigned_abs() > self.stall_milliamps;
+        state.still = if driven && large == 0 {
+            state.still.saturating_add(1)
+        } else {
+            0
+        };
+        state.ticks += 1;
+        let mut found = None;
+        if state.still > self.stall {
+            found = Some(Cause::NotMoving);
+        }
+        if state.ticks >= self.window {
+            state.ticks = 0;
+            let [large, handle] = [0, 1].map(|i| distance(now[i] - state.window_start[i]));
+            state.window_start = now;
+            if large > self.large {
+                found = Some(Cause::LargeOverspeed);
+            }
+            if handle > self.handle {
+                found = Some(Cause::HandleOverspeed);
+            }
+        }
+        if large > self.jump || small > self.jump {
+            found = Some(Cause::Jump);
+        }
+        state.cause = state.cause.or(found);
+        state.cause
+    }
+}
+
+fn distance(displacement: Counts) -> u32 {
+    displacement.0.unsigned_abs()
+}

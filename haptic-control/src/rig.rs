@@ -1,0 +1,85 @@
+//! A device made ready: everything but the scene and the estimators.
+
+use core::f64::consts::PI;
+
+use estimator_core::{Counts, Hertz, Scale};
+
+use crate::design_error::DesignError;
+use crate::device::DualStage;
+use crate::rst_design::{LoopPoles, RstDesign};
+use crate::stage::{ContinuousStage, TransientStage};
+use crate::units::Radians;
+
+/// Both stages and the scales of both encoders, for one device at one control rate.
+///
+/// ```
+/// use estimator_core::{Hertz, preset};
+/// use haptic_control::{DualStage, LoopPoles, Rig};
+/// const RIG: Rig = preset!(Rig::new(&DualStage::DEFAULT, Hertz(10e3), LoopPoles::DEFAULT));
+/// assert!(RIG.large.rad_per_s_per_count_per_tick > RIG.handle.rad_per_s_per_count_per_tick);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rig {
+    /// The large motor and its loop.
+    pub continuous: ContinuousStage,
+    /// The small motor.
+    pub transient: TransientStage,
+    /// Scale of the large encoder.
+    pub large: Scale,
+    /// Scale of the small encoder's velocity.
+    pub handle: Scale,
+    /// Scale of the small encoder's position.
+    pub angle: AngleScale,
+}
+
+/// The factor between counts and radians of one encoder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AngleScale {
+    rad_per_count: f32,
+}
+
+impl AngleScale {
+    /// The angle of a displacement, exact to an f32's last digit up to 2^24 counts.
+    #[must_use]
+    pub fn of(&self, displacement: Counts) -> Radians {
+        Radians(displacement.to_f32() * self.rad_per_count)
+    }
+}
+
+/// Fastest change of the large motor's current, A/s: full scale in 5 ms.
+const LARGE_SLEW: f64 = 1200.0;
+/// Fastest change of the small motor's current, A/s: 300 Hz at 0.3 A passes.
+const SMALL_SLEW: f64 = 600.0;
+
+impl Rig {
+    /// Designs the loop of `device` at `rate`.
+    ///
+    /// # Errors
+    /// As [`RstDesign::new`].
+    pub const fn new(
+        device: &DualStage,
+        rate: Hertz,
+        poles: LoopPoles,
+    ) -> Result<Self, DesignError> {
+        let design = match RstDesign::new(device, rate, poles) {
+            Ok(design) => design,
+            Err(error) => return Err(error),
+        };
+        let (Ok(large), Ok(handle)) = (
+            Scale::new(device.large.counts_per_rev, rate),
+            Scale::new(device.small.counts_per_rev, rate),
+        ) else {
+            return Err(DesignError::Device);
+        };
+        let t = rate.period_s();
+        Ok(Self {
+            continuous: ContinuousStage::new(device, &design, (LARGE_SLEW * t) as f32),
+            transient: TransientStage::new(device, (SMALL_SLEW * t) as f32),
+            large,
+            handle,
+            angle: AngleScale {
+                rad_per_count: (2.0 * PI / device.small.counts_per_rev as f64) as f32,
+            },
+        })
+    }
+}

@@ -1,0 +1,37 @@
+use super::{Handle, Scene};
+use crate::design_error::DesignError;
+use crate::need::Wanted;
+use crate::units::{NewtonMetres, RadPerS, Radians};
+
+/// Viscous field: `torque = -B ω`, B in N·m·s/rad, at least zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viscous {
+    damping: f32,
+}
+
+impl Viscous {
+    /// A field of `damping`.
+    ///
+    /// # Errors
+    /// [`DesignError::Scene`] unless it is finite and at least zero.
+    pub const fn new(damping: f32) -> Result<Self, DesignError> {
+        if super::is_gain(damping) {
+            Ok(Self { damping })
+        } else {
+            Err(DesignError::Scene)
+        }
+    }
+}
+
+impl Scene for Viscous {
+    type Velocity = Wanted;
+    type Continuous = Wanted;
+    type Transient = Wanted;
+    type State = ();
+
+    fn start(&self, _: Radians) {}
+
+    fn torque(&self, (): &mut (), handle: &Handle<RadPerS>) -> NewtonMetres {
+        NewtonMetres(-self.damping * handle.velocity.0)
+    }
+}

@@ -1,0 +1,129 @@
+//! The two stages that make torque on the handle.
+
+use estimator_core::Amps;
+
+use crate::device::DualStage;
+use crate::limits::{CurrentLimits, within};
+use crate::rst::{Rst, RstState};
+use crate::rst_design::RstDesign;
+use crate::units::{NewtonMetres, RadPerS};
+
+/// The continuous stage: the large motor behind the coupler (fig. 3 of the paper).
+///
+/// Torque on the handle is `b (ω_L - ω_S)`, so a wanted torque is a wanted velocity
+/// `ω_L = ω_S + torque / b`, which an [`Rst`] compensator follows. Fed forward: Coulomb friction
+/// in the direction of the wanted velocity, and the coupler's pull on the large motor, `-b ω_S`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContinuousStage {
+    rst: Rst,
+    limits: CurrentLimits,
+    rad_per_s_per_nm: f32,
+    /// Fed forward for the handle's velocity, A per rad/s.
+    damping: f32,
+    /// Fed forward for friction, A.
+    friction: f32,
+    /// Velocity over which the friction is faded in, 1 / (rad/s).
+    per_fade: f32,
+}
+
+/// State of a [`ContinuousStage`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContinuousState {
+    rst: RstState,
+    current: f32,
+}
+
+/// Velocity below which the direction of motion is not trusted to feed friction forward, rad/s.
+const FADE: f64 = 0.5;
+
+impl ContinuousStage {
+    /// The stage of a device, with its designed loop; a tick may change the current by `slew` A.
+    #[must_use]
+    pub const fn new(device: &DualStage, design: &RstDesign, slew: f32) -> Self {
+        Self {
+            rst: Rst::new(design),
+            limits: CurrentLimits {
+                largest: device.large.current_limit as f32,
+                slew,
+            },
+            rad_per_s_per_nm: (1.0 / device.damping) as f32,
+            damping: (-device.damping / device.large.torque_constant) as f32,
+            friction: (device.large.coulomb / device.large.torque_constant) as f32,
+            per_fade: (1.0 / FADE) as f32,
+        }
+    }
+
+    /// State with no current, the large motor at a velocity.
+    #[must_use]
+    pub const fn start(&self, large: RadPerS) -> ContinuousState {
+        ContinuousState {
+            rst: self.rst.start(large),
+            current: 0.0,
+        }
+    }
+
+    /// One tick: the large motor's current for a wanted torque.
+    #[must_use]
+    pub fn update(
+        &self,
+        state: &mut ContinuousState,
+        torque: NewtonMetres,
+        large: RadPerS,
+        handle: RadPerS,
+    ) -> Amps {
+        let wanted = RadPerS(handle.0 + torque.0 * self.rad_per_s_per_nm);
+        let looped = self.rst.update(&mut state.rst, wanted, large);
+        let direction = within(state.rst.filtered().0 * self.per_fade, -1.0, 1.0);
+        let forward = self.friction * direction + self.damping * handle.0;
+        state.current = self.limits.applied(looped + forward, state.current);
+        state.rst.apply(state.current - forward);
+        Amps::new(state.current)
+    }
+}
+
+/// The transient stage: the small motor on the handle.
+///
+/// With a continuous stage it gets the torque that the coupler does not deliver, at once:
+/// `Kt i = torque - b (ω_L - ω_S)`. Alone it gets the whole torque.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TransientStage {
+    limits: CurrentLimits,
+    amps_per_nm: f32,
+    nm_per_rad_per_s: f32,
+}
+
+/// State of a [`TransientStage`]: the current of the last tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TransientState {
+    current: f32,
+}
+
+impl TransientStage {
+    /// The stage of a device; a tick may change the current by `slew` A.
+    #[must_use]
+    pub const fn new(device: &DualStage, slew: f32) -> Self {
+        Self {
+            limits: CurrentLimits {
+                largest: device.small.current_limit as f32,
+                slew,
+            },
+            amps_per_nm: (1.0 / device.small.torque_constant) as f32,
+            nm_per_rad_per_s: device.damping as f32,
+        }
+    }
+
+    /// Torque that a slip velocity puts on the handle.
+    #[must_use]
+    pub fn coupled(&self, slip: RadPerS) -> NewtonMetres {
+        NewtonMetres(self.nm_per_rad_per_s * slip.0)
+    }
+
+    /// One tick: the small motor's current for the torque that is missing.
+    #[must_use]
+    pub fn update(&self, state: &mut TransientState, missing: NewtonMetres) -> Amps {
+        state.current = self
+            .limits
+            .applied(missing.0 * self.amps_per_nm, state.current);
+        Amps::new(state.current)
+    }
+}

@@ -1,0 +1,16 @@
+//! Quantities of the handle and its motors, one type each.
+
+/// Angle, rad.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Radians(pub f32);
+
+/// Angular velocity, rad/s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct RadPerS(pub f32);
+
+/// Torque, N·m.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct NewtonMetres(pub f32);
