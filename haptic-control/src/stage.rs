@@ -84,12 +84,15 @@ impl ContinuousStage {
 /// The transient stage: the small motor on the handle.
 ///
 /// With a continuous stage it gets the torque that the coupler does not deliver, at once:
-/// `Kt i = torque - b (ω_L - ω_S)`. Alone it gets the whole torque.
+/// `Kt i = torque - b (ω_L - ω_S)`. Alone it gets the whole torque. Its own Coulomb friction is fed
+/// forward in the direction of the handle's velocity, where that is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransientStage {
     limits: CurrentLimits,
     amps_per_nm: f32,
     nm_per_rad_per_s: f32,
+    friction: NewtonMetres,
+    per_fade: f32,
 }
 
 /// State of a [`TransientStage`]: the current of the last tick.
@@ -109,6 +112,8 @@ impl TransientStage {
             },
             amps_per_nm: (1.0 / device.small.torque_constant) as f32,
             nm_per_rad_per_s: device.damping as f32,
+            friction: NewtonMetres(device.small.coulomb as f32),
+            per_fade: (1.0 / FADE) as f32,
         }
     }
 
@@ -120,10 +125,15 @@ impl TransientStage {
 
     /// One tick: the small motor's current for the torque that is missing.
     #[must_use]
-    pub fn update(&self, state: &mut TransientState, missing: NewtonMetres) -> Amps {
-        state.current = self
-            .limits
-            .applied(missing.0 * self.amps_per_nm, state.current);
+    pub fn update(
+        &self,
+        state: &mut TransientState,
+        missing: NewtonMetres,
+        handle: RadPerS,
+    ) -> Amps {
+        let friction = self.friction.0 * within(handle.0 * self.per_fade, -1.0, 1.0);
+        let wanted = (missing.0 + friction) * self.amps_per_nm;
+        state.current = self.limits.applied(wanted, state.current);
         Amps::new(state.current)
     }
 }

@@ -102,7 +102,7 @@ where
     );
     S::Transient::map(parts.transient, |part| {
         let missing = NewtonMetres(torque.0 - part.stage.coupled(slip).0);
-        action.currents.small = part.stage.update(part.state, missing);
+        action.currents.small = part.stage.update(part.state, missing, handle);
     });
     action
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::estimators::{Kind, Runner, Setup, available};
+use crate::estimators::{Estimator, Kind, Setup, available};
 use crate::failure::Failure;
 use crate::parameters::{Parameters, PlantKind};
 use crate::score::{Interval, Percent, Score, Truth, Wanted, percent_of};
@@ -54,7 +54,7 @@ pub struct Contestant {
     pub kind: &'static Kind,
     /// Values of its parameters.
     pub values: Vec<f64>,
-    run: Runner,
+    estimator: Estimator,
 }
 
 /// An estimator's velocities over a trace, rad/s.
@@ -74,8 +74,12 @@ impl Contestant {
         plant: PlantKind,
     ) -> Result<Self, Failure> {
         let values = parameters.values(kind, setup, plant);
-        let run = kind.build(setup, &values)?;
-        Ok(Self { kind, values, run })
+        let estimator = kind.build(setup, &values)?;
+        Ok(Self {
+            kind,
+            values,
+            estimator,
+        })
     }
 
     /// The estimate over `trace`, or `None` if the trace lacks a signal that it needs.
@@ -83,7 +87,7 @@ impl Contestant {
     pub fn estimate(&self, trace: &Trace) -> Option<Estimate> {
         self.kind.needs.within(available(trace)).then(|| Estimate {
             estimator: self.kind.name,
-            velocity: (self.run)(trace),
+            velocity: self.estimator.run(trace),
         })
     }
 
@@ -156,7 +160,10 @@ impl Contest {
         let reference = estimates
             .iter()
             .position(|e| e.estimator == self.difference.kind.name)
-            .map_or_else(|| truth.score(&(self.difference.run)(trace)), |i| scores[i]);
+            .map_or_else(
+                || truth.score(&self.difference.estimator.run(trace)),
+                |i| scores[i],
+            );
         let row = |(estimate, &score): (&Estimate, &Score)| Row {
             scenario: heading.scenario.clone(),
             rate_hz: heading.rate_hz,

@@ -5,7 +5,7 @@ mod run;
 
 use estimator_core::{Device, Hertz, Signals};
 
-pub use run::{EDGE_CLOCK_HZ, Runner, available};
+pub use run::{EDGE_CLOCK_HZ, Estimator, State, available};
 
 use crate::failure::Failure;
 
@@ -118,7 +118,7 @@ impl Kind {
     ///
     /// # Errors
     /// [`Failure::Input`] that names the parameter or the reason of a refused design.
-    pub fn build(&self, setup: &Setup, values: &Values) -> Result<Runner, Failure> {
+    pub fn build(&self, setup: &Setup, values: &Values) -> Result<Estimator, Failure> {
         for (parameter, &value) in self.parameters.iter().zip(values) {
             parameter.check(self.name, value)?;
         }

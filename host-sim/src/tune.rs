@@ -150,11 +150,11 @@ fn compare_points(p: &Values, q: &Values) -> std::cmp::Ordering {
 
 /// Infinite for parameters that the design refuses.
 fn cost(kind: &Kind, setup: &Setup, tracks: &[(&Trace, Truth)], values: &Values) -> f64 {
-    let Ok(run) = kind.build(setup, values) else {
+    let Ok(estimator) = kind.build(setup, values) else {
         return f64::INFINITY;
     };
     let of_track = |(trace, truth): &(&Trace, Truth)| {
-        let score = truth.score(&run(trace));
+        let score = truth.score(&estimator.run(trace));
         score.distance_rad_s.unwrap_or(f64::INFINITY)
             + RMS_WEIGHT * score.rms_rad_s.unwrap_or(f64::INFINITY)
     };

@@ -5,10 +5,10 @@ use estimator_core::{
     Model, Pll, Scale, Signals, SteadyKalman,
 };
 
-use super::run::{Runner, runner};
+use super::run::{Estimator, erased};
 use super::{Kind, Parameter, Search, Setup, Values};
 
-pub(super) type Build = fn(&Setup, &Values) -> Result<Runner, DesignError>;
+pub(super) type Build = fn(&Setup, &Values) -> Result<Estimator, DesignError>;
 
 /// Largest window on offer; firmware takes a ring of the size it needs.
 const RING: usize = 128;
@@ -85,7 +85,7 @@ pub(super) const KINDS: &[Kind] = &[
         summary: "displacement over the last period (eq. 4)",
         needs: Signals::COUNT,
         parameters: &[],
-        build: |setup, _| Ok(runner(FiniteDifference, scale(setup)?)),
+        build: |setup, _| Ok(erased(FiniteDifference, scale(setup)?)),
     },
     Kind {
         name: "low-pass",
@@ -94,7 +94,7 @@ pub(super) const KINDS: &[Kind] = &[
         parameters: &[CUTOFF],
         build: |setup, values| {
             let filter = LowPass::new(FiniteDifference, Hertz(values[0]), setup.rate)?;
-            Ok(runner(filter, scale(setup)?))
+            Ok(erased(filter, scale(setup)?))
         },
     },
     Kind {
@@ -116,7 +116,7 @@ pub(super) const KINDS: &[Kind] = &[
         summary: "Kalman filter on a triple integrator, full covariance (eqs. 9 to 12)",
         needs: Signals::COUNT,
         parameters: &[JERK],
-        build: |setup, values| Ok(runner(Kalman::new(&triple(setup, values)?)?, scale(setup)?)),
+        build: |setup, values| Ok(erased(Kalman::new(&triple(setup, values)?)?, scale(setup)?)),
     },
     Kind {
         name: "kalman-triple-steady",
@@ -124,7 +124,7 @@ pub(super) const KINDS: &[Kind] = &[
         needs: Signals::COUNT,
         parameters: &[JERK],
         build: |setup, values| {
-            Ok(runner(
+            Ok(erased(
                 SteadyKalman::new(&triple(setup, values)?)?,
                 scale(setup)?,
             ))
@@ -138,8 +138,8 @@ pub(super) const KINDS: &[Kind] = &[
         build: |setup, values| {
             let filter = Kalman::new(&Model::motor(&setup.device, setup.rate, values[0])?)?;
             Ok(match values[1] != 0.0 {
-                true => runner(LateCurrent(filter), scale(setup)?),
-                false => runner(filter, scale(setup)?),
+                true => erased(LateCurrent(filter), scale(setup)?),
+                false => erased(filter, scale(setup)?),
             })
         },
     },
@@ -151,8 +151,8 @@ pub(super) const KINDS: &[Kind] = &[
         build: |setup, values| {
             let filter = SteadyKalman::new(&Model::motor(&setup.device, setup.rate, values[0])?)?;
             Ok(match values[1] != 0.0 {
-                true => runner(LateCurrent(filter), scale(setup)?),
-                false => runner(filter, scale(setup)?),
+                true => erased(LateCurrent(filter), scale(setup)?),
+                false => erased(filter, scale(setup)?),
             })
         },
     },
@@ -162,7 +162,7 @@ pub(super) const KINDS: &[Kind] = &[
         needs: Signals::COUNT,
         parameters: &[BANDWIDTH],
         build: |setup, values| {
-            Ok(runner(
+            Ok(erased(
                 Pll::new(Hertz(values[0]), setup.rate)?,
                 scale(setup)?,
             ))
@@ -173,9 +173,9 @@ pub(super) const KINDS: &[Kind] = &[
 fn foaw<F: Fit + Send + Sync + 'static>(
     setup: &Setup,
     values: &Values,
-) -> Result<Runner, DesignError> {
+) -> Result<Estimator, DesignError> {
     let foaw = Foaw::<RING, F>::new(values[0] as usize, values[1] as u16)?;
-    Ok(runner(foaw, scale(setup)?))
+    Ok(erased(foaw, scale(setup)?))
 }
 
 fn triple(

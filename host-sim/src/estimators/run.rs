@@ -1,5 +1,8 @@
 //! One estimator over one trace.
 
+use std::any::Any;
+use std::sync::Arc;
+
 use estimator_core::{
     Amps, ClockTicks, Count, CountsPerTick, Edge, Sample, Scale, Signals, VelocityEstimator,
 };
@@ -9,10 +12,113 @@ use crate::trace::{EdgeStamp, Trace};
 /// Rate of the clock that stamps encoder edges, Hz: a timer at half the board's 168 MHz.
 pub const EDGE_CLOCK_HZ: f64 = 84e6;
 
-/// An estimator with its parameters: trace in, velocity at each tick out, rad/s.
-///
-/// The first tick only starts the estimator and reads zero.
-pub type Runner = Box<dyn Fn(&Trace) -> Vec<f32> + Send + Sync>;
+/// An estimator with its parameters, whatever its type.
+#[derive(Clone)]
+pub struct Estimator(Arc<dyn Erased>);
+
+impl Estimator {
+    /// Velocity at each tick of a trace, rad/s. The first tick only starts the estimator and
+    /// reads zero.
+    #[must_use]
+    pub fn run(&self, trace: &Trace) -> Vec<f32> {
+        self.0.run(trace)
+    }
+}
+
+/// A tick at a time: the type that a control loop takes.
+impl VelocityEstimator for Estimator {
+    type State = State;
+    type Output = CountsPerTick;
+    const NEEDS: Signals = Signals {
+        current: true,
+        small: true,
+        edge: true,
+    };
+
+    fn start(&self, first: &Sample) -> State {
+        self.0.start(first)
+    }
+
+    fn update(&self, state: &mut State, sample: &Sample) -> CountsPerTick {
+        self.0.update(state, sample)
+    }
+}
+
+/// State of an [`Estimator`].
+pub struct State(Box<dyn ErasedState>);
+
+impl Clone for State {
+    fn clone(&self) -> Self {
+        self.0.copy()
+    }
+}
+
+impl PartialEq for State {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.same(other.0.as_any())
+    }
+}
+
+trait ErasedState: Any + Send {
+    fn copy(&self) -> State;
+    fn same(&self, other: &dyn Any) -> bool;
+    fn as_any(&self) -> &dyn Any;
+    fn as_any_mut(&mut self) -> &mut dyn Any;
+}
+
+impl<S: Clone + PartialEq + Send + 'static> ErasedState for S {
+    fn copy(&self) -> State {
+        State(Box::new(self.clone()))
+    }
+
+    fn same(&self, other: &dyn Any) -> bool {
+        other.downcast_ref() == Some(self)
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn as_any_mut(&mut self) -> &mut dyn Any {
+        self
+    }
+}
+
+trait Erased: Send + Sync {
+    fn run(&self, trace: &Trace) -> Vec<f32>;
+    fn start(&self, first: &Sample) -> State;
+    fn update(&self, state: &mut State, sample: &Sample) -> CountsPerTick;
+}
+
+/// An estimator with what its counts are worth.
+struct Scaled<E> {
+    estimator: E,
+    scale: Scale,
+}
+
+impl<E> Erased for Scaled<E>
+where
+    E: VelocityEstimator<Output = CountsPerTick, State: Send + 'static> + Send + Sync,
+{
+    fn run(&self, trace: &Trace) -> Vec<f32> {
+        run(&self.estimator, trace, &self.scale)
+    }
+
+    fn start(&self, first: &Sample) -> State {
+        State(Box::new(self.estimator.start(first)))
+    }
+
+    fn update(&self, state: &mut State, sample: &Sample) -> CountsPerTick {
+        match (*state.0).as_any_mut().downcast_mut() {
+            Some(state) => self.estimator.update(state, sample),
+            // The state of another estimator: begin anew, as at a first sample.
+            None => {
+                *state = self.start(sample);
+                CountsPerTick(0.0)
+            }
+        }
+    }
+}
 
 /// Which signals a trace offers.
 #[must_use]
@@ -24,12 +130,12 @@ pub fn available(trace: &Trace) -> Signals {
     }
 }
 
-/// Makes a [`Runner`] of an estimator; one dynamic call a trace, none a tick.
-pub(super) fn runner<E>(estimator: E, scale: Scale) -> Runner
+/// Forgets an estimator's type; a trace still runs with one dynamic call, not one a tick.
+pub(super) fn erased<E>(estimator: E, scale: Scale) -> Estimator
 where
-    E: VelocityEstimator<Output = CountsPerTick> + Send + Sync + 'static,
+    E: VelocityEstimator<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
 {
-    Box::new(move |trace| run(&estimator, trace, &scale))
+    Estimator(Arc::new(Scaled { estimator, scale }))
 }
 
 fn run<E>(estimator: &E, trace: &Trace, scale: &Scale) -> Vec<f32>
