@@ -3,18 +3,32 @@
 use crate::rst_design::RstDesign;
 use crate::units::RadPerS;
 
-/// RST compensator (section II-B of the paper): `u = (T ω_f - R ω - s1 u₁ - s2 u₂)`, with
-/// `ω_f` the wanted velocity behind two first-order lags.
+/// RST compensator (section II-B of the paper), `S u = T ω_f - R ω` with `T = P / B(1)`.
 ///
-/// The past currents u₁, u₂ are those applied after every limit, so the integral action in S
-/// stops where the current does (anti-windup). Current in A, velocities in rad/s; design and
-/// derivation in [`RstDesign`].
+/// Since `P = A S + B R`, this is the plant's inverse fed forward plus a regulator of what is
+/// left of the error, and in that form it runs:
+/// ```text
+/// u = A ω_f / B(1) + c          S c = R (B ω_f / B(1) - ω)
+/// ```
+/// As printed, T is a small difference of large coefficients (at 10 kHz its sum is 10⁻⁶ of them),
+/// which f32 does not hold; in this form everything small is a difference of signals. `A` is
+/// applied as `1 - e^(-T/τm) z⁻¹ = (1 - z⁻¹) + (1 - e^(-T/τm)) z⁻¹`, and S keeps its integrator
+/// exact as `c₁ - s1 (c₁ - c₂)`.
+///
+/// The past outputs c₁, c₂ are what remained after every limit, so the integral action stops
+/// where the current does (anti-windup). Current in A, velocities in rad/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rst {
     r: [f32; 3],
-    /// S without its leading 1.
-    s: [f32; 2],
-    t: [f32; 5],
+    s1: f32,
+    /// B / B(1): shares of one and two ticks of delay.
+    share: [f32; 2],
+    /// 1 - e^(-T/τm).
+    mechanical_gain: f32,
+    /// e^(-T/τa).
+    electrical_pole: f32,
+    /// 1 / B(1), A per rad/s.
+    amps_per_rad_per_s: f32,
     /// 1 - m, the gain of each half of the tracking filter.
     tracking_gain: f32,
 }
@@ -22,61 +36,68 @@ pub struct Rst {
 /// State of an [`Rst`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RstState {
+    /// First half of the tracking filter.
     lag: f32,
-    wanted: [f32; 5],
-    measured: [f32; 2],
-    applied: [f32; 2],
+    /// ω_f at this tick and the one before.
+    wanted: [f32; 2],
+    /// (1 - e^(-T/τm) z⁻¹) ω_f.
+    mechanical: f32,
+    /// Errors one and two ticks ago.
+    errors: [f32; 2],
+    /// c one and two ticks ago, after all limits.
+    regulated: [f32; 2],
+    /// A ω_f / B(1) of this tick.
+    forward: f32,
 }
 
 impl Rst {
     /// The compensator of a design.
     #[must_use]
     pub const fn new(design: &RstDesign) -> Self {
+        let at_one = design.b[1] + design.b[2];
         Self {
             r: [design.r[0] as f32, design.r[1] as f32, design.r[2] as f32],
-            s: [design.s[1] as f32, design.s[2] as f32],
-            t: [
-                design.t[0] as f32,
-                design.t[1] as f32,
-                design.t[2] as f32,
-                design.t[3] as f32,
-                design.t[4] as f32,
-            ],
+            s1: -design.s[2] as f32,
+            share: [(design.b[1] / at_one) as f32, (design.b[2] / at_one) as f32],
+            mechanical_gain: (1.0 - design.mechanical_pole) as f32,
+            electrical_pole: design.electrical_pole as f32,
+            amps_per_rad_per_s: (1.0 / at_one) as f32,
             tracking_gain: (1.0 - design.tracking_pole) as f32,
         }
     }
 
-    /// State at rest at a velocity: wanted and measured are the same, no current flows.
+    /// State at rest at a velocity: it is wanted and measured, and no current flows.
     #[must_use]
     pub const fn start(&self, at: RadPerS) -> RstState {
         RstState {
             lag: at.0,
-            wanted: [at.0; 5],
-            measured: [at.0; 2],
-            applied: [0.0; 2],
+            wanted: [at.0; 2],
+            mechanical: self.mechanical_gain * at.0,
+            errors: [0.0; 2],
+            regulated: [0.0; 2],
+            forward: 0.0,
         }
     }
 
     /// One tick: the current wanted, A. Tell [`RstState::apply`] what became of it.
     #[must_use]
     pub fn update(&self, state: &mut RstState, wanted: RadPerS, measured: RadPerS) -> f32 {
+        let [w1, w2] = state.wanted;
+        let error = self.share[0] * w1 + self.share[1] * w2 - measured.0;
+
         state.lag += self.tracking_gain * (wanted.0 - state.lag);
-        let [w1, w2, w3, w4, _] = state.wanted;
-        let w0 = w1 + self.tracking_gain * (state.lag - w1);
-        state.wanted = [w0, w1, w2, w3, w4];
-        let [y1, y2] = state.measured;
-        state.measured = [measured.0, y1];
-        let mut current = 0.0;
-        for (t, w) in self.t.iter().zip(&state.wanted) {
-            current += t * w;
-        }
-        for (r, y) in self.r.iter().zip(&[measured.0, y1, y2]) {
-            current -= r * y;
-        }
-        for (s, u) in self.s.iter().zip(&state.applied) {
-            current -= s * u;
-        }
-        current
+        let step = self.tracking_gain * (state.lag - w1);
+        state.wanted = [w1 + step, w1];
+        let mechanical = step + self.mechanical_gain * w1;
+        let forward = mechanical - self.electrical_pole * state.mechanical;
+        state.forward = self.amps_per_rad_per_s * forward;
+        state.mechanical = mechanical;
+
+        let [e1, e2] = state.errors;
+        state.errors = [error, e1];
+        let [c1, c2] = state.regulated;
+        let change = self.r[0] * error + self.r[1] * e1 + self.r[2] * e2;
+        state.forward + c1 - self.s1 * (c1 - c2) + change
     }
 }
 
@@ -87,8 +108,8 @@ impl RstState {
         RadPerS(self.wanted[0])
     }
 
-    /// Takes the current that was applied after all limits, A, less what was fed forward.
+    /// Takes what was applied of the current wanted, after all limits, A.
     pub fn apply(&mut self, current: f32) {
-        self.applied = [current, self.applied[0]];
+        self.regulated = [current - self.forward, self.regulated[0]];
     }
 }

@@ -51,6 +51,10 @@ pub struct RstDesign {
     pub t: [f64; 5],
     /// Closed loop P.
     pub p: [f64; 5],
+    /// Pole e^(-T/τm) of the motor on its coupler.
+    pub mechanical_pole: f64,
+    /// Pole e^(-T/τa) of the amplifier.
+    pub electrical_pole: f64,
     /// Pole m of each half of the tracking filter.
     pub tracking_pole: f64,
     /// Margins, the estimator's delay included.
@@ -142,6 +146,8 @@ impl RstDesign {
                 p[4] / at_one,
             ],
             p,
+            mechanical_pole: pm,
+            electrical_pole: pa,
             tracking_pole: exp(-tau * poles.tracking.0 * t),
             margins,
         })

@@ -5,6 +5,7 @@
 //! the applied current, edge time stamps. Truth goes to the scores alone.
 
 pub mod cli;
+pub mod closed_loop;
 pub mod compare;
 pub mod contest;
 pub mod device;

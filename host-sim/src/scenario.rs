@@ -17,6 +17,7 @@ mod texture;
 mod track;
 mod wall;
 
+pub(crate) use hand::Intent;
 pub use stochastic::{CURRENT_STD_A, TORQUE_INTENSITY_NM2_S};
 
 use crate::device::Device;

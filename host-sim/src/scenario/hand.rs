@@ -25,7 +25,7 @@ const HOLD_COULOMB_AT: f64 = 0.05;
 
 /// What a hand intends: a few sines about a centre.
 #[derive(Clone, Debug)]
-pub(super) struct Intent {
+pub(crate) struct Intent {
     period: f64,
     centre: f64,
     sines: Vec<Sine>,
@@ -40,7 +40,7 @@ struct Sine {
 }
 
 impl Intent {
-    pub(super) const fn about(centre: f64, period_s: f64) -> Self {
+    pub(crate) const fn about(centre: f64, period_s: f64) -> Self {
         Self {
             period: period_s,
             centre,
@@ -50,7 +50,7 @@ impl Intent {
     }
 
     /// Adds a sine of drawn frequency (Hz), amplitude (rad) and phase.
-    pub(super) fn sine(
+    pub(crate) fn sine(
         self,
         random: &mut Xoshiro256PlusPlus,
         hz: (f64, f64),
@@ -60,7 +60,7 @@ impl Intent {
     }
 
     /// The same with a phase (rad) within bounds.
-    pub(super) fn sine_from(
+    pub(crate) fn sine_from(
         mut self,
         random: &mut Xoshiro256PlusPlus,
         hz: (f64, f64),
@@ -76,7 +76,7 @@ impl Intent {
     }
 
     /// Adds physiological tremor of 8 to 12 Hz.
-    pub(super) fn tremor(self, random: &mut Xoshiro256PlusPlus) -> Self {
+    pub(crate) fn tremor(self, random: &mut Xoshiro256PlusPlus) -> Self {
         self.sine(random, (8.0, 10.0), TREMOR_RAD)
             .sine(random, (10.0, 12.0), TREMOR_RAD)
     }
@@ -95,12 +95,12 @@ impl Intent {
         })
     }
 
-    pub(super) fn start(&self) -> Pose {
+    pub(crate) fn start(&self) -> Pose {
         self.at(0.0)
     }
 
     /// The hand during tick `k`.
-    pub(super) fn grip(&mut self, k: u64) -> Grip {
+    pub(crate) fn grip(&mut self, k: u64) -> Grip {
         let at = |k: u64| self.at(k as f64 * self.period);
         // One tick's end is the next one's beginning.
         let from = match self.reached {

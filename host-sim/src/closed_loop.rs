@@ -1,0 +1,271 @@
+//! The controller of `haptic-control` in closed loop with the plant: what the hand feels.
+
+mod scene;
+
+use std::f64::consts::TAU;
+
+use estimator_core::{Amps, Count, Hertz, Sample};
+use haptic_control::{
+    Action, Cause, Controller, DualStage, LoopPoles, Monitor, Motor, Rig, RstDesign, Scene,
+};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
+
+use crate::device::Device;
+use crate::encoder::{DiscErrors, Encoder};
+use crate::estimators::{Estimator, Kind, Setup};
+use crate::parameters::{Parameters, PlantKind};
+use crate::plant::{Plant, Pose, steps_per_tick};
+use crate::scenario::draw;
+
+pub use scene::{Hand, SceneName, Visit};
+
+/// Which encoder of the large motor closes the loop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Eye {
+    /// The device's own, through the estimator under test.
+    Large,
+    /// The reference encoder, as the paper closed its loop.
+    Reference,
+}
+
+/// One closed-loop run.
+#[derive(Clone)]
+pub struct Loop {
+    /// The device as it is.
+    pub device: Device,
+    /// The device as the controller believes it to be.
+    pub believed: DualStage,
+    /// Scene with its parameters.
+    pub scene: SceneName,
+    /// Who holds the handle.
+    pub hand: Hand,
+    /// Control rate, Hz.
+    pub rate_hz: f64,
+    /// Seed of the hand's motion, the encoders' phases and the disc.
+    pub seed: u64,
+    /// Velocity of the large motor.
+    pub large: Estimator,
+    /// Velocity of the handle.
+    pub handle: Estimator,
+    /// Which encoder `large` looks at.
+    pub eye: Eye,
+    /// Poles of the velocity loop.
+    pub poles: LoopPoles,
+    /// Ticks by which the currents act late, beside the amplifier's lag.
+    pub late_ticks: usize,
+}
+
+/// What is known at a tick, truth included.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    /// Time, s.
+    pub t: f64,
+    /// Large motor.
+    pub large: Pose,
+    /// Handle.
+    pub handle: Pose,
+    /// Acceleration of the handle over the last tick, rad/s².
+    pub handle_acceleration: f64,
+    /// Torque felt on the handle, N.m.
+    pub felt: f64,
+    /// What the controller did.
+    pub action: Action,
+    /// Why the monitor stopped the device, if it has.
+    pub stopped: Option<Cause>,
+}
+
+/// The controller's description of a device file's device.
+#[must_use]
+pub fn believed(device: &Device) -> DualStage {
+    let motor = |motor: &crate::device::Motor| Motor {
+        inertia: motor.inertia_kg_m2,
+        torque_constant: motor.torque_constant_nm_per_a,
+        coulomb: motor.coulomb_nm,
+        counts_per_rev: motor.counts_per_rev,
+        current_limit: motor.current_limit_a,
+    };
+    DualStage {
+        large: motor(&device.large),
+        small: motor(&device.small),
+        damping: device.coupler.damping_nms_per_rad,
+        amplifier: Hertz(device.amplifier.bandwidth_hz),
+    }
+}
+
+/// Speeds that no scene needs: the handle 30 rad/s, the large motor 150 rad/s, over 5 ms.
+#[must_use]
+pub fn monitor(device: &DualStage, rate_hz: f64) -> Monitor {
+    let window = (0.005 * rate_hz).ceil().max(1.0);
+    let counts = |motor: &Motor, rad_per_s: f64| {
+        (rad_per_s / TAU * f64::from(motor.counts_per_rev) * window / rate_hz).ceil() as u32
+    };
+    Monitor {
+        window: window as u32,
+        handle: counts(&device.small, 30.0),
+        large: counts(&device.large, 150.0),
+        jump: 1 << 14,
+        stall: (0.25 * rate_hz) as u32,
+        stall_milliamps: 1000,
+    }
+}
+
+impl Loop {
+    /// Runs for `ticks`, showing each moment to `observe`.
+    ///
+    /// # Errors
+    /// One line on an impossible device or a loop that cannot be designed.
+    pub fn run(&self, ticks: usize, observe: impl FnMut(&Moment)) -> Result<(), String> {
+        self.device.validate()?;
+        let rate = Hertz(self.rate_hz);
+        let designed = RstDesign::new(&self.believed, rate, self.poles)
+            .and_then(|_| Rig::new(&self.believed, rate, self.poles));
+        let mut rig = designed.map_err(|error| format!("control at {} Hz: {error}", rate.0))?;
+        if self.eye == Eye::Reference {
+            rig.large = estimator_core::Scale::new(self.device.reference.counts_per_rev, rate)
+                .map_err(|error| format!("reference encoder: {error}"))?;
+        }
+        let visit = Running {
+            run: self,
+            rig: &rig,
+            ticks,
+            observe,
+        };
+        self.scene.visit(self.rate_hz, visit)
+    }
+}
+
+/// A run about to begin, for whichever type of scene.
+struct Running<'a, F> {
+    run: &'a Loop,
+    rig: &'a Rig,
+    ticks: usize,
+    observe: F,
+}
+
+impl<F: FnMut(&Moment)> Visit for Running<'_, F> {
+    fn visit<S: Scene>(mut self, scene: S) {
+        let Loop {
+            device,
+            believed,
+            rate_hz,
+            large,
+            handle,
+            ..
+        } = self.run;
+        let period = 1.0 / rate_hz;
+        let steps = steps_per_tick(period);
+        let step = period / f64::from(steps);
+        let mut bench = Bench::new(self.run, step);
+        let controller = Controller::new(scene, large.clone(), handle.clone(), self.rig);
+        let mut watched = *believed;
+        if self.run.eye == Eye::Reference {
+            watched.large.counts_per_rev = device.reference.counts_per_rev;
+        }
+        let monitor = monitor(&watched, *rate_hz);
+        let mut sample = bench.sample(Amps::ZERO);
+        let mut state = controller.start(&sample);
+        let mut watch = monitor.start(&sample);
+        let mut pending = vec![(0.0, 0.0); self.run.late_ticks];
+        let mut last_omega = bench.plant.small().omega;
+        let mut hand = self.run.hand.motion(period, self.run.seed);
+        for k in 0..self.ticks {
+            let action = controller.step(&mut state, &sample);
+            let stopped = monitor.check(&mut watch, &sample);
+            let wanted = match stopped {
+                None => action.currents,
+                Some(_) => haptic_control::Currents::default(),
+            };
+            pending.push((f64::from(wanted.large.get()), f64::from(wanted.small.get())));
+            let (large_a, small_a) = pending.remove(0);
+            bench.plant.command(large_a, small_a);
+            let grip = hand.grip(k as u64);
+            let omega = bench.plant.small().omega;
+            (self.observe)(&Moment {
+                t: k as f64 * period,
+                large: bench.plant.large(),
+                handle: bench.plant.small(),
+                handle_acceleration: (omega - last_omega) * rate_hz,
+                felt: bench.plant.handle_torque(&grip, 0.0),
+                action,
+                stopped,
+            });
+            last_omega = omega;
+            for j in 0..steps {
+                bench.step(&grip, f64::from(j) * step, step);
+            }
+            sample = bench.sample(wanted.large);
+        }
+    }
+}
+
+/// Plant and encoders.
+struct Bench {
+    plant: Plant,
+    large: Encoder,
+    small: Encoder,
+}
+
+impl Bench {
+    fn new(run: &Loop, step: f64) -> Self {
+        let device = &run.device;
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(run.seed.rotate_left(17) ^ 0xC105_ED00);
+        let mut plant = Plant::new(device, step);
+        let start = Pose {
+            angle: draw(&mut random, 0.0, TAU),
+            omega: 0.0,
+        };
+        plant.place(start, run.hand.start(1.0 / run.rate_hz, run.seed));
+        let mut encoder = |counts_per_rev: u32, angle: f64, disc: DiscErrors| {
+            let first = random.next_u64() as u32;
+            let phase = draw(&mut random, 0.0, 1.0);
+            Encoder::new(counts_per_rev, first, phase, angle, disc)
+        };
+        let disc = DiscErrors::new(&device.disc, device.large.counts_per_rev, run.seed);
+        let large = match run.eye {
+            Eye::Large => encoder(device.large.counts_per_rev, start.angle, disc),
+            Eye::Reference => encoder(
+                device.reference.counts_per_rev,
+                start.angle,
+                DiscErrors::none(),
+            ),
+        };
+        let angle = plant.small().angle;
+        let small = encoder(device.small.counts_per_rev, angle, DiscErrors::none());
+        Self {
+            plant,
+            large,
+            small,
+        }
+    }
+
+    fn step(&mut self, grip: &crate::plant::Grip, since: f64, step: f64) {
+        let (large, small) = (self.plant.large(), self.plant.small());
+        self.plant.step(grip, since, 0.0);
+        self.large.follow(large, self.plant.large(), step, &mut ());
+        self.small.follow(small, self.plant.small(), step, &mut ());
+    }
+
+    fn sample(&self, current: Amps) -> Sample {
+        Sample::new(Count(self.large.count()))
+            .with_small(Count(self.small.count()))
+            .with_current(current)
+    }
+}
+
+/// The estimator called `kind` on the encoder that it looks at, with its tuned parameters.
+///
+/// # Errors
+/// As [`Kind::build`].
+pub fn estimator(
+    kind: &Kind,
+    device: &Device,
+    counts_per_rev: u32,
+    rate_hz: f64,
+    parameters: &Parameters,
+) -> Result<Estimator, crate::failure::Failure> {
+    let mut setup: Setup = crate::compare::setup(device, rate_hz);
+    setup.device.counts_per_rev = counts_per_rev;
+    let values = parameters.values(kind, &setup, PlantKind::Friction);
+    kind.build(&setup, &values)
+}
