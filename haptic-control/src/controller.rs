@@ -59,6 +59,14 @@ struct PartStates<S: Scene, L: VelocityEstimator, H: VelocityEstimator> {
     transient: Of<S::Transient, TransientState>,
 }
 
+impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> ControllerState<S, L, H> {
+    /// Whether the same sample once more will take the short path.
+    #[must_use]
+    pub fn is_settled(&self) -> bool {
+        self.settled
+    }
+}
+
 impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> Clone for PartStates<S, L, H> {
     fn clone(&self) -> Self {
         Self {
@@ -170,13 +178,6 @@ where
                 |stage, state| Transient { stage, state },
             ),
         };
-        tick(
-            &self.scene,
-            &mut states.scene,
-            parts,
-            angle,
-            sample,
-            |torque| torque,
-        )
+        tick(&self.scene, &mut states.scene, parts, angle, sample)
     }
 }

@@ -25,6 +25,7 @@ mod rst;
 mod rst_design;
 mod scene;
 mod stage;
+mod switchboard;
 mod tick;
 mod units;
 
@@ -40,5 +41,6 @@ pub use rst::{Rst, RstState};
 pub use rst_design::{LEAST_MODULUS, LoopPoles, RstDesign};
 pub use scene::{Detents, FreeAir, Handle, Hold, Off, Scene, SpringDamper, Texture, Viscous, Wall};
 pub use stage::{ContinuousStage, ContinuousState, TransientStage, TransientState};
+pub use switchboard::{AnyScene, Switchboard, SwitchboardState};
 pub use tick::Action;
 pub use units::{NewtonMetres, RadPerS, Radians};

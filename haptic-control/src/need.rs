@@ -5,6 +5,8 @@ use estimator_core::Skip;
 
 /// Whether a part is there: [`Wanted`] or [`Skip`].
 pub trait Need: Copy + 'static {
+    /// Whether the part is there.
+    const WANTED: bool;
     /// `T` where the part is wanted, `()` where it is not.
     type Of<T>;
     /// Wanted if either is.
@@ -24,7 +26,7 @@ pub trait Need: Copy + 'static {
     fn as_ref<T>(part: &Self::Of<T>) -> Self::Of<&T>;
     /// Borrows the part where it is kept, to change it.
     fn as_mut<T>(part: &mut Self::Of<T>) -> Self::Of<&mut T>;
-    /// Borrows a part that others keep for everybody.
+    /// Borrows a part that others keep for everybody, to change it.
     fn lend<T>(part: &mut T) -> Self::Of<&mut T>;
     /// The value, or `absent` where the part is not there.
     fn or<T>(part: Self::Of<T>, absent: T) -> T;
@@ -37,6 +39,7 @@ pub trait Need: Copy + 'static {
 pub struct Wanted;
 
 impl Need for Wanted {
+    const WANTED: bool = true;
     type Of<T> = T;
     type Or<Other: Need> = Self;
 
@@ -82,6 +85,7 @@ impl Need for Wanted {
 }
 
 impl Need for Skip {
+    const WANTED: bool = false;
     type Of<T> = ();
     type Or<Other: Need> = Other;
 

@@ -13,7 +13,8 @@ use crate::units::RadPerS;
 /// As printed, T is a small difference of large coefficients (at 10 kHz its sum is 10⁻⁶ of them),
 /// which f32 does not hold; in this form everything small is a difference of signals. `A` is
 /// applied as `1 - e^(-T/τm) z⁻¹ = (1 - z⁻¹) + (1 - e^(-T/τm)) z⁻¹`, and S keeps its integrator
-/// exact as `c₁ - s1 (c₁ - c₂)`.
+/// exact as `c₁ - s1 (c₁ - c₂)`, with what a sum rounds away carried to the next: at 11.6 kHz the
+/// integrator moves by 10⁻⁶ A per rad/s and tick, less than the last digit of an ampere.
 ///
 /// The past outputs c₁, c₂ are what remained after every limit, so the integral action stops
 /// where the current does (anti-windup). Current in A, velocities in rad/s.
@@ -46,6 +47,8 @@ pub struct RstState {
     errors: [f32; 2],
     /// c one and two ticks ago, after all limits.
     regulated: [f32; 2],
+    /// What the last sum for c rounded away.
+    carry: f32,
     /// A ω_f / B(1) of this tick.
     forward: f32,
 }
@@ -75,11 +78,12 @@ impl Rst {
             mechanical: self.mechanical_gain * at.0,
             errors: [0.0; 2],
             regulated: [0.0; 2],
+            carry: 0.0,
             forward: 0.0,
         }
     }
 
-    /// One tick: the current wanted, A. Tell [`RstState::apply`] what became of it.
+    /// One tick: the current wanted, A. Tell [`RstState::limited`] if less was applied.
     #[must_use]
     pub fn update(&self, state: &mut RstState, wanted: RadPerS, measured: RadPerS) -> f32 {
         let [w1, w2] = state.wanted;
@@ -96,8 +100,12 @@ impl Rst {
         let [e1, e2] = state.errors;
         state.errors = [error, e1];
         let [c1, c2] = state.regulated;
-        let change = self.r[0] * error + self.r[1] * e1 + self.r[2] * e2;
-        state.forward + c1 - self.s1 * (c1 - c2) + change
+        let change = self.r[0] * error + self.r[1] * e1 + self.r[2] * e2 - self.s1 * (c1 - c2);
+        let change = change + state.carry;
+        let regulated = c1 + change;
+        state.carry = change - (regulated - c1);
+        state.regulated = [regulated, c1];
+        state.forward + regulated
     }
 }
 
@@ -108,8 +116,9 @@ impl RstState {
         RadPerS(self.wanted[0])
     }
 
-    /// Takes what was applied of the current wanted, after all limits, A.
-    pub fn apply(&mut self, current: f32) {
-        self.regulated = [current - self.forward, self.regulated[0]];
+    /// Takes what was applied instead of the current wanted, after all limits, A.
+    pub fn limited(&mut self, current: f32) {
+        self.regulated[0] = current - self.forward;
+        self.carry = 0.0;
     }
 }

@@ -53,6 +53,11 @@ impl ContinuousStage {
         }
     }
 
+    /// Largest current, A.
+    pub(crate) const fn largest_current(&self) -> f32 {
+        self.limits.largest
+    }
+
     /// State with no current, the large motor at a velocity.
     #[must_use]
     pub const fn start(&self, large: RadPerS) -> ContinuousState {
@@ -75,8 +80,11 @@ impl ContinuousStage {
         let looped = self.rst.update(&mut state.rst, wanted, large);
         let direction = within(state.rst.filtered().0 * self.per_fade, -1.0, 1.0);
         let forward = self.friction * direction + self.damping * handle.0;
-        state.current = self.limits.applied(looped + forward, state.current);
-        state.rst.apply(state.current - forward);
+        let wanted = looped + forward;
+        state.current = self.limits.applied(wanted, state.current);
+        if state.current != wanted {
+            state.rst.limited(state.current - forward);
+        }
         Amps::new(state.current)
     }
 }
@@ -115,6 +123,11 @@ impl TransientStage {
             friction: NewtonMetres(device.small.coulomb as f32),
             per_fade: (1.0 / FADE) as f32,
         }
+    }
+
+    /// Largest current, A.
+    pub(crate) const fn largest_current(&self) -> f32 {
+        self.limits.largest
     }
 
     /// Torque that a slip velocity puts on the handle.

@@ -62,14 +62,13 @@ pub struct Action {
     pub handle: RadPerS,
 }
 
-/// One tick of `scene`. `adjust` has the last word on the torque.
+/// One tick of `scene`.
 pub(crate) fn tick<S, L, H>(
     scene: &S,
     scene_state: &mut S::State,
     parts: Parts<'_, S, L, H>,
     angle: Radians,
     sample: &Sample,
-    adjust: impl FnOnce(NewtonMetres) -> NewtonMetres,
 ) -> Action
 where
     S: Scene,
@@ -84,7 +83,7 @@ where
         angle,
         velocity: S::Velocity::narrow::<S::Continuous, _>(&velocity),
     };
-    let torque = adjust(scene.torque(scene_state, &seen));
+    let torque = scene.torque(scene_state, &seen);
     let handle = HandleNeed::<S>::or(velocity, RadPerS(0.0));
     let mut action = Action {
         torque,
