@@ -1,0 +1,120 @@
+//! The monitor: what it stops, and that it stops nothing else.
+
+use estimator_core::{Amps, Count, Sample};
+use haptic_control::{Cause, CurrentLimits, Monitor};
+
+const MONITOR: Monitor = Monitor {
+    window: 50,
+    handle: 400,
+    large: 500,
+    jump: 1000,
+    stall: 2000,
+    stall_milliamps: 500,
+};
+
+/// The first cause over `ticks` of a motion, and the tick.
+fn first(ticks: u32, motion: impl Fn(u32) -> Sample) -> Option<(u32, Cause)> {
+    let mut state = MONITOR.start(&motion(0));
+    (1..ticks).find_map(|k| {
+        MONITOR
+            .check(&mut state, &motion(k))
+            .map(|cause| (k, cause))
+    })
+}
+
+fn sample(large: u32, small: u32, amps: f32) -> Sample {
+    Sample::new(Count(large))
+        .with_small(Count(small))
+        .with_current(Amps::new(amps))
+}
+
+#[test]
+fn ordinary_motion_over_the_wrap_is_left_alone() {
+    let start = u32::MAX - 20_000;
+    // Both at their limits, in both directions, with current.
+    let there = |k: u32| sample(start.wrapping_add(10 * k), start.wrapping_add(8 * k), 3.0);
+    let back = |k: u32| sample(start.wrapping_sub(10 * k), start.wrapping_sub(8 * k), -3.0);
+    assert_eq!(first(10_000, there), None);
+    assert_eq!(first(10_000, back), None);
+}
+
+#[test]
+fn each_cause_is_found_within_its_time() {
+    let runaway = first(1000, |k| {
+        sample(0, if k < 200 { 0 } else { 9 * (k - 200) }, 0.0)
+    });
+    assert!(
+        matches!(runaway, Some((201..=300, Cause::HandleOverspeed))),
+        "{runaway:?}"
+    );
+    let runaway = first(1000, |k| sample(0_u32.wrapping_sub(11 * k), 0, 0.0));
+    assert!(
+        matches!(runaway, Some((1..=50, Cause::LargeOverspeed))),
+        "{runaway:?}"
+    );
+    let jump = first(1000, |k| sample(if k < 77 { 5 } else { 1006 }, 0, 0.0));
+    assert_eq!(jump, Some((77, Cause::Jump)));
+    let jump = first(1000, |k| {
+        sample(0, if k < 77 { 5 } else { 5_u32.wrapping_sub(1001) }, 0.0)
+    });
+    assert_eq!(jump, Some((77, Cause::Jump)));
+    let stall = first(5000, |_| sample(3, 0, -0.51));
+    assert_eq!(stall, Some((2001, Cause::NotMoving)));
+}
+
+#[test]
+fn a_count_or_a_rest_from_current_clears_the_stall() {
+    assert_eq!(first(20_000, |k| sample(k / 1900, 0, 2.0)), None);
+    assert_eq!(
+        first(20_000, |k| sample(
+            0,
+            0,
+            if k % 2000 == 0 { 0.0 } else { 2.0 }
+        )),
+        None
+    );
+    assert_eq!(first(20_000, |_| sample(0, 0, 0.5)), None);
+}
+
+#[test]
+fn the_first_cause_is_latched() {
+    let mut state = MONITOR.start(&sample(0, 0, 0.0));
+    assert_eq!(
+        MONITOR.check(&mut state, &sample(2000, 0, 0.0)),
+        Some(Cause::Jump)
+    );
+    for k in 0..100 {
+        let runaway = sample(2000, 900 * k, 0.0);
+        assert_eq!(MONITOR.check(&mut state, &runaway), Some(Cause::Jump));
+    }
+}
+
+#[test]
+fn limits_hold_for_every_input() {
+    let limits = CurrentLimits {
+        largest: 1.5,
+        slew: 0.06,
+    };
+    let mut before = 0.0_f32;
+    let wild = [
+        1e30,
+        f32::NAN,
+        -1e30,
+        0.0,
+        f32::INFINITY,
+        1.0,
+        f32::NEG_INFINITY,
+        -0.3,
+        f32::MIN,
+    ];
+    for k in 0..100_000 {
+        let wanted = wild[(k * 7 + k / 13) % wild.len()];
+        let now = limits.applied(wanted, before);
+        assert!(now.abs() <= 1.5);
+        assert!((now - before).abs() <= 0.060_001 || now == 0.0 && !wanted.is_finite());
+        before = now;
+    }
+    // The bound is reached, not only kept.
+    let risen = (0..100).fold(0.0, |current, _| limits.applied(9.0, current));
+    assert_eq!(risen, 1.5);
+}
