@@ -1,7 +1,13 @@
-//! The few functions that `core` lacks at compile time, in f64.
+//! The few functions that `core` lacks at compile time, in f64, for designs.
 
 /// `exp(x)` for |x| <= 700, to 1e-15 relative near zero and 5e-13 at the ends.
-pub(crate) const fn exp(x: f64) -> f64 {
+///
+/// ```
+/// const DECAY: f64 = estimator_core::const_math::exp(-0.5);
+/// assert!((DECAY - (-0.5_f64).exp()).abs() < 1e-15);
+/// ```
+#[must_use]
+pub const fn exp(x: f64) -> f64 {
     if x < 0.0 {
         return 1.0 / exp(-x);
     }

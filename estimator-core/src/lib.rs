@@ -44,7 +44,7 @@
     reason = "a NaN has to fail these comparisons"
 )]
 
-mod const_math;
+pub mod const_math;
 mod design_error;
 mod device;
 mod estimator;

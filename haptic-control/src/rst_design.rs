@@ -13,8 +13,9 @@
 use crate::design_error::DesignError;
 use crate::device::DualStage;
 use crate::margins::{Margins, margins};
-use crate::numeric::{exp, multiply, solve};
+use crate::numeric::{multiply, solve};
 use estimator_core::Hertz;
+use estimator_core::const_math::exp;
 
 /// Poles and least margins of the velocity loop.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,6 +3,7 @@
 mod detents;
 mod free_air;
 mod hold;
+mod impedance;
 mod off;
 mod spring_damper;
 mod texture;

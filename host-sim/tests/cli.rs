@@ -354,6 +354,7 @@ fn bad_words_are_refused_with_what_to_do() {
         (&["compare", "--rate", "nan"], "rate"),
         (&["compare", "--rate", "fast"], "--rate"),
         (&["compare", "--seconds", "-1"], "duration -1 s"),
+        (&["compare", "--seconds", "0.1"], "scores begin after 0.1 s"),
         (&["compare", "--score", "beauty"], "rms_rad_s"),
         (&["compare", "--set", "foaw-end-fit.n=129"], "from 1 to 128"),
         (

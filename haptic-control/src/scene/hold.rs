@@ -1,27 +1,24 @@
+use super::impedance::Impedance;
 use super::{Handle, Scene};
 use crate::design_error::DesignError;
 use crate::need::Wanted;
 use crate::units::{NewtonMetres, RadPerS, Radians};
 
 /// Holds the handle where it was when the scene began: `torque = -K (θ - θ_start) - B ω`.
-///
-/// K in N·m/rad, B in N·m·s/rad, both at least zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
-    stiffness: f32,
-    damping: f32,
+    impedance: Impedance,
 }
 
 impl Hold {
-    /// A hold of that stiffness and damping.
+    /// A hold of stiffness K, N·m/rad, and damping B, N·m·s/rad.
     ///
     /// # Errors
     /// [`DesignError::Scene`] unless both are finite and at least zero.
     pub const fn new(stiffness: f32, damping: f32) -> Result<Self, DesignError> {
-        if super::is_gain(stiffness) && super::is_gain(damping) {
-            Ok(Self { stiffness, damping })
-        } else {
-            Err(DesignError::Scene)
+        match Impedance::new(stiffness, damping) {
+            Ok(impedance) => Ok(Self { impedance }),
+            Err(error) => Err(error),
         }
     }
 }
@@ -38,7 +35,6 @@ impl Scene for Hold {
     }
 
     fn torque(&self, start: &mut Radians, handle: &Handle<RadPerS>) -> NewtonMetres {
-        let spring = self.stiffness * (handle.angle.0 - start.0);
-        NewtonMetres(-spring - self.damping * handle.velocity.0)
+        self.impedance.torque(*start, handle.angle, handle.velocity)
     }
 }

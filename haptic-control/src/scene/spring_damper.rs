@@ -1,32 +1,26 @@
+use super::impedance::Impedance;
 use super::{Handle, Scene};
 use crate::design_error::DesignError;
 use crate::need::Wanted;
 use crate::units::{NewtonMetres, RadPerS, Radians};
 
 /// Spring and damper to an angle: `torque = -K (θ - θ_0) - B ω`.
-///
-/// K in N·m/rad, B in N·m·s/rad, both at least zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringDamper {
     centre: Radians,
-    stiffness: f32,
-    damping: f32,
+    impedance: Impedance,
 }
 
 impl SpringDamper {
-    /// A spring whose torque is zero at `centre`.
+    /// A spring whose torque is zero at `centre`: stiffness K, N·m/rad, and damping B,
+    /// N·m·s/rad.
     ///
     /// # Errors
     /// [`DesignError::Scene`] unless all are finite, K and B at least zero.
     pub const fn new(centre: Radians, stiffness: f32, damping: f32) -> Result<Self, DesignError> {
-        if centre.0.is_finite() && super::is_gain(stiffness) && super::is_gain(damping) {
-            Ok(Self {
-                centre,
-                stiffness,
-                damping,
-            })
-        } else {
-            Err(DesignError::Scene)
+        match Impedance::new(stiffness, damping) {
+            Ok(impedance) if centre.0.is_finite() => Ok(Self { centre, impedance }),
+            _ => Err(DesignError::Scene),
         }
     }
 }
@@ -40,7 +34,7 @@ impl Scene for SpringDamper {
     fn start(&self, _: Radians) {}
 
     fn torque(&self, (): &mut (), handle: &Handle<RadPerS>) -> NewtonMetres {
-        let spring = self.stiffness * (handle.angle.0 - self.centre.0);
-        NewtonMetres(-spring - self.damping * handle.velocity.0)
+        self.impedance
+            .torque(self.centre, handle.angle, handle.velocity)
     }
 }

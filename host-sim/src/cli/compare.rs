@@ -12,7 +12,7 @@ use crate::output::{print_bytes, write_whole};
 use crate::parameters::PlantKind;
 use crate::report::{self, CaseReport, DeviceFacts, ReportInput, Traces};
 use crate::scenario::ScenarioName;
-use crate::score::Wanted;
+use crate::score::{SKIP_S, Wanted};
 use crate::{rows, simulate, table};
 
 use super::arguments::{Compare, is_stdout, kinds, rates, scenarios};
@@ -107,6 +107,11 @@ fn cases(options: &Compare, with_report: bool) -> Result<(Vec<Case>, usize), Fai
             for &scenario in &scenarios {
                 let seconds = options.seconds.unwrap_or(scenario.default_seconds());
                 simulate::ticks(rate_hz, seconds)?;
+                if seconds <= SKIP_S {
+                    return Err(Failure::Input(format!(
+                        "duration {seconds} s: scores begin after {SKIP_S} s; use --seconds with more"
+                    )));
+                }
                 cases.push(Case {
                     scenario,
                     rate_hz,
