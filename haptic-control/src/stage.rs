@@ -33,8 +33,16 @@ pub struct ContinuousState {
     current: f32,
 }
 
-/// Velocity below which the direction of motion is not trusted to feed friction forward, rad/s.
+/// Velocity below which the direction of the large motor's wanted motion is not trusted to feed
+/// friction forward, rad/s.
 const FADE: f64 = 0.5;
+
+/// The same for the handle, whose velocity is measured finer.
+const HANDLE_FADE: f64 = 0.12;
+
+/// Part of the small motor's friction that is fed forward. With all of it, a torque constant 20 %
+/// above the believed one would drive a handle that nobody holds.
+const FRICTION_PART: f64 = 0.8;
 
 impl ContinuousStage {
     /// The stage of a device, with its designed loop; a tick may change the current by `slew` A.
@@ -92,8 +100,8 @@ impl ContinuousStage {
 /// The transient stage: the small motor on the handle.
 ///
 /// With a continuous stage it gets the torque that the coupler does not deliver, at once:
-/// `Kt i = torque - b (ω_L - ω_S)`. Alone it gets the whole torque. Its own Coulomb friction is fed
-/// forward in the direction of the handle's velocity, where that is known.
+/// `Kt i = torque - b (ω_L - ω_S)`. Alone it gets the whole torque. Four fifths of its own Coulomb
+/// friction are fed forward in the direction of the handle's velocity, where that is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransientStage {
     limits: CurrentLimits,
@@ -120,8 +128,8 @@ impl TransientStage {
             },
             amps_per_nm: (1.0 / device.small.torque_constant) as f32,
             nm_per_rad_per_s: device.damping as f32,
-            friction: NewtonMetres(device.small.coulomb as f32),
-            per_fade: (1.0 / FADE) as f32,
+            friction: NewtonMetres((FRICTION_PART * device.small.coulomb) as f32),
+            per_fade: (1.0 / HANDLE_FADE) as f32,
         }
     }
 
