@@ -22,6 +22,7 @@ mod codegen;
 mod endurance;
 mod every;
 mod foaw_definition;
+mod image;
 mod invariants;
 mod kalman_reference;
 mod motion;
