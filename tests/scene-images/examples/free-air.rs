@@ -1,0 +1,6 @@
+//! Free air, alone.
+#![no_std]
+
+use haptic_control::FreeAir;
+
+scene_images::image!(FreeAir = FreeAir);
