@@ -24,7 +24,10 @@ fn is_allowed(symbol: &str) -> bool {
 /// A function or data: every one has a section of its own, so that a section's relocations are
 /// its own.
 struct Section {
+    names: Vec<String>,
     data: Vec<u8>,
+    /// Also of data that is cleared at the start, which has no bytes here.
+    size: u64,
     refers_to: BTreeSet<Reference>,
 }
 
@@ -46,6 +49,7 @@ pub(crate) struct Image {
 
 /// What is reached from some functions.
 pub(crate) struct Reached<'a> {
+    image: &'a Image,
     sections: BTreeSet<usize>,
     /// Symbols that the image does not define.
     undefined: BTreeSet<&'a str>,
@@ -75,7 +79,9 @@ impl Image {
         for section in file.sections().filter(|section| is_loaded(section.kind())) {
             numbers.insert(section.index().0, self.sections.len());
             self.sections.push(Section {
+                names: Vec::new(),
                 data: section.data().unwrap_or_default().to_vec(),
+                size: section.size(),
                 refers_to: BTreeSet::new(),
             });
         }
@@ -83,6 +89,7 @@ impl Image {
         for symbol in file.symbols().filter(ObjectSymbol::is_global) {
             if let Some(number) = number(&symbol) {
                 let name = symbol.name().expect("a name");
+                self.sections[number].names.push(name.to_owned());
                 // A weak symbol may be there again.
                 self.defined.entry(name.to_owned()).or_insert(number);
             }
@@ -132,6 +139,7 @@ impl Image {
     /// Everything that is reached from these functions, directly or not.
     pub(crate) fn reached(&self, functions: &[&str]) -> Reached<'_> {
         let mut reached = Reached {
+            image: self,
             sections: BTreeSet::new(),
             undefined: BTreeSet::new(),
         };
@@ -155,11 +163,28 @@ impl Image {
 }
 
 impl<'a> Reached<'a> {
+    fn sections(&self) -> impl Iterator<Item = &'a Section> {
+        self.sections
+            .iter()
+            .map(|&number| &self.image.sections[number])
+    }
+
+    /// Bytes of code and data.
+    pub(crate) fn size(&self) -> u64 {
+        self.sections().map(|section| section.size).sum()
+    }
+
     /// What the image does not define and is not allowed.
     pub(crate) fn foreign(&self) -> BTreeSet<&'a str> {
         let mut foreign = self.undefined.clone();
         foreign.retain(|symbol| !is_allowed(symbol));
         foreign
+    }
+
+    /// The symbols among what is reached.
+    pub(crate) fn symbols(&self) -> impl Iterator<Item = &'a str> {
+        self.sections()
+            .flat_map(|section| section.names.iter().map(String::as_str))
     }
 }
 

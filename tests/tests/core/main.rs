@@ -9,6 +9,7 @@
 //! | `kalman_reference` | the textbook filter in f64, absolute positions, the current as a state |
 //! | `steady_gain` | the plain recursion run until it stops changing |
 //! | `codegen` | what the compiler makes of it for the board |
+//! | `scene_images` | what one scene of `haptic-control` costs on the board |
 //! | `regressions` | each defect known from public code, one test by name |
 //!
 //! What must not compile is in the package `refusals`.
@@ -28,4 +29,5 @@ mod kalman_reference;
 mod motion;
 mod reference;
 mod regressions;
+mod scene_images;
 mod steady_gain;
