@@ -33,7 +33,7 @@ type Of<N, T> = <N as Need>::Of<T>;
 ///
 /// // Nothing is left of a scene that needs nothing.
 /// let off = Controller::new(Off, LOOP, LOOP, &RIG);
-/// assert!(size_of_val(&off.start(&inside)) <= size_of::<Count>() + size_of::<(Sample, Action, bool)>());
+/// assert_eq!(size_of_val(&off.start(&inside)), size_of::<Count>());
 /// ```
 pub struct Controller<S: Scene, L, H> {
     scene: S,
@@ -45,45 +45,32 @@ pub struct Controller<S: Scene, L, H> {
 
 /// State of a [`Controller`].
 pub struct ControllerState<S: Scene, L: VelocityEstimator, H: VelocityEstimator> {
-    parts: PartStates<S, L, H>,
-    origin: Count,
-    last: (Sample, Action),
-    settled: bool,
-}
-
-/// What the step carries, apart from its short path.
-struct PartStates<S: Scene, L: VelocityEstimator, H: VelocityEstimator> {
     scene: S::State,
     continuous: Of<S::Continuous, (L::State, ContinuousState)>,
     handle: Of<HandleNeed<S>, H::State>,
     transient: Of<S::Transient, TransientState>,
+    origin: Count,
 }
 
-impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> ControllerState<S, L, H> {
-    /// Whether the same sample once more will take the short path.
-    #[must_use]
-    pub fn is_settled(&self) -> bool {
-        self.settled
-    }
-}
-
-impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> Clone for PartStates<S, L, H> {
+impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> Clone for ControllerState<S, L, H> {
     fn clone(&self) -> Self {
         Self {
             scene: self.scene.clone(),
             continuous: S::Continuous::copy(&self.continuous),
             handle: HandleNeed::<S>::copy(&self.handle),
             transient: S::Transient::copy(&self.transient),
+            origin: self.origin,
         }
     }
 }
 
-impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> PartialEq for PartStates<S, L, H> {
+impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> PartialEq for ControllerState<S, L, H> {
     fn eq(&self, other: &Self) -> bool {
         self.scene == other.scene
             && S::Continuous::same(&self.continuous, &other.continuous)
             && HandleNeed::<S>::same(&self.handle, &other.handle)
             && S::Transient::same(&self.transient, &other.transient)
+            && self.origin == other.origin
     }
 }
 
@@ -108,51 +95,26 @@ where
     pub fn start(&self, first: &Sample) -> ControllerState<S, L, H> {
         let handle_sample = Sample::new(first.small);
         ControllerState {
-            parts: PartStates {
-                scene: self.scene.start(Radians(0.0)),
-                continuous: S::Continuous::map(
-                    S::Continuous::as_ref(&self.continuous),
-                    |(large, _, stage)| (large.start(first), stage.start(RadPerS(0.0))),
-                ),
-                handle: HandleNeed::<S>::map(
-                    HandleNeed::<S>::as_ref(&self.handle),
-                    |(handle, _)| handle.start(&handle_sample),
-                ),
-                transient: S::Transient::make(TransientState::default),
-            },
+            scene: self.scene.start(Radians(0.0)),
+            continuous: S::Continuous::map(
+                S::Continuous::as_ref(&self.continuous),
+                |(large, _, stage)| (large.start(first), stage.start(RadPerS(0.0))),
+            ),
+            handle: HandleNeed::<S>::map(HandleNeed::<S>::as_ref(&self.handle), |(handle, _)| {
+                handle.start(&handle_sample)
+            }),
+            transient: S::Transient::make(TransientState::default),
             origin: first.small,
-            last: (*first, Action::default()),
-            settled: false,
         }
     }
 
     /// One tick.
-    ///
-    /// Where nothing can come of it, because the sample is that of the tick before and neither
-    /// state nor action changed then, the action is repeated: the same bits for a comparison.
     pub fn step(&self, state: &mut ControllerState<S, L, H>, sample: &Sample) -> Action {
-        let repeated = *sample == state.last.0;
-        if repeated && state.settled {
-            return state.last.1;
-        }
-        let before = repeated.then(|| (state.parts.clone(), state.last.1));
         let angle = self.angle.of(sample.small - state.origin);
-        let action = self.full_step(&mut state.parts, angle, sample);
-        state.settled = before.is_some_and(|before| before.0 == state.parts && before.1 == action);
-        state.last = (*sample, action);
-        action
-    }
-
-    fn full_step(
-        &self,
-        states: &mut PartStates<S, L, H>,
-        angle: Radians,
-        sample: &Sample,
-    ) -> Action {
         let parts = Parts {
             continuous: S::Continuous::zip(
                 S::Continuous::as_ref(&self.continuous),
-                S::Continuous::as_mut(&mut states.continuous),
+                S::Continuous::as_mut(&mut state.continuous),
                 |(estimator, scale, stage), (estimated, state)| Continuous {
                     large: Estimated {
                         estimator,
@@ -165,7 +127,7 @@ where
             ),
             handle: HandleNeed::<S>::zip(
                 HandleNeed::<S>::as_ref(&self.handle),
-                HandleNeed::<S>::as_mut(&mut states.handle),
+                HandleNeed::<S>::as_mut(&mut state.handle),
                 |(estimator, scale), state| Estimated {
                     estimator,
                     state,
@@ -174,10 +136,10 @@ where
             ),
             transient: S::Transient::zip(
                 S::Transient::as_ref(&self.transient),
-                S::Transient::as_mut(&mut states.transient),
+                S::Transient::as_mut(&mut state.transient),
                 |stage, state| Transient { stage, state },
             ),
         };
-        tick(&self.scene, &mut states.scene, parts, angle, sample)
+        tick(&self.scene, &mut state.scene, parts, angle, sample)
     }
 }

@@ -15,6 +15,7 @@
 mod controller;
 mod design_error;
 mod device;
+mod gated;
 mod limits;
 mod margins;
 mod monitor;
@@ -32,6 +33,7 @@ mod units;
 pub use controller::{Controller, ControllerState};
 pub use design_error::DesignError;
 pub use device::{DualStage, Motor};
+pub use gated::{Gated, GatedState};
 pub use limits::{CurrentLimits, Currents};
 pub use margins::Margins;
 pub use monitor::{Cause, Monitor, MonitorState};

@@ -5,8 +5,8 @@ use estimator_core::{
     SteadyKalmanTriple, VelocityEstimator, preset,
 };
 use haptic_control::{
-    AnyScene, Controller, DesignError, Detents, DualStage, FreeAir, Hold, LoopPoles, Off, Radians,
-    Rig, Scene, SpringDamper, Switchboard, Texture, Viscous, Wall,
+    AnyScene, Controller, DesignError, Detents, DualStage, FreeAir, Gated, Hold, LoopPoles, Off,
+    Radians, Rig, Scene, SpringDamper, Switchboard, Texture, Viscous, Wall,
 };
 
 const RATE: Hertz = Hertz(10e3);
@@ -148,13 +148,13 @@ fn parameters_out_of_range_are_refused() {
     assert_eq!(Texture::new(1e-3, Hertz(300.0), Hertz(500.0)).err(), scene);
 }
 
-/// Runs a scene in a controller of its own and in the switchboard, which has no short path.
+/// Runs a scene in a gated controller and in the switchboard, which has no short path.
 fn same_with_and_without_short_path(
     scene: impl Scene,
     any: AnyScene,
     large: impl VelocityEstimator<Output = estimator_core::CountsPerTick> + Copy,
 ) -> bool {
-    let alone = Controller::new(scene, large, HANDLE, &RIG);
+    let alone = Gated(Controller::new(scene, large, HANDLE, &RIG));
     let board = Switchboard::new(large, HANDLE, RIG, RATE);
     let first = motion(0);
     let (mut one, mut other) = (alone.start(&first), board.start(&first));
@@ -200,7 +200,12 @@ fn the_short_path_gives_the_same_bits() {
 #[test]
 fn a_loop_at_rest_settles_in_the_end() {
     // Everything in it decays: once it is below the smallest number, nothing changes any more.
-    let controller = Controller::new(VISCOUS, FiniteDifference, FiniteDifference, &RIG);
+    let controller = Gated(Controller::new(
+        VISCOUS,
+        FiniteDifference,
+        FiniteDifference,
+        &RIG,
+    ));
     let sample = Sample::default();
     let mut state = controller.start(&sample);
     for _ in 0..10 {

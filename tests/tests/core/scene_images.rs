@@ -259,8 +259,8 @@ fn a_scene_that_needs_less_costs_less() {
 #[test]
 fn off_costs_next_to_nothing_and_a_position_little() {
     let off = Cost::of("off");
-    assert!(off.text.iter().all(|&bytes| bytes <= 512), "{off:?}");
-    assert!(off.controller <= 8 && off.state <= 64, "{off:?}");
+    assert!(off.text.iter().all(|&bytes| bytes <= 128), "{off:?}");
+    assert!(off.controller <= 8 && off.state <= 8, "{off:?}");
 
     let wall = Cost::of("wall");
     let total = |cost: &Cost| [cost.text[0], cost.text[1], cost.controller + cost.state];
