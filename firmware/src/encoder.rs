@@ -1,0 +1,51 @@
+//! Quadrature encoders on hardware timers.
+
+use estimator_core::Count;
+use stm32f4xx_hal::pac;
+
+/// A 16-bit timer that counts both edges of both phases.
+pub(crate) trait Counter {
+    /// The counter as it stands.
+    fn raw(&self) -> u16;
+    /// Filters both inputs: a level counts when 8 samples at the timer's clock agree (95 ns).
+    fn filter(&self);
+}
+
+macro_rules! counter {
+    ($($timer:ty),+) => {$(
+        impl Counter for $timer {
+            fn raw(&self) -> u16 {
+                self.cnt().read().cnt().bits() as u16
+            }
+
+            fn filter(&self) {
+                self.ccmr1_input()
+                    .modify(|_, w| w.ic1f().fck_int_n8().ic2f().fck_int_n8());
+            }
+        }
+    )+};
+}
+
+counter!(pac::TIM3, pac::TIM4);
+
+/// An encoder: its counter widened to 32 bits, right as long as it is read before it moved by
+/// 2^15 counts.
+pub(crate) struct Encoder<T> {
+    timer: T,
+    count: Count,
+}
+
+impl<T: Counter> Encoder<T> {
+    /// The encoder on a timer that already counts.
+    pub(crate) fn new(timer: T) -> Self {
+        timer.filter();
+        let count = Count(u32::from(timer.raw()));
+        Self { timer, count }
+    }
+
+    /// The count now.
+    pub(crate) fn read(&mut self) -> Count {
+        self.count = self.count.extended(self.timer.raw());
+        self.count
+    }
+}
