@@ -50,7 +50,7 @@ impl Sender {
 
     /// Makes a frame of every `DECIMATION`th record; one that finds no place is counted.
     pub(crate) fn offer(&mut self, record: Record) {
-        if record.tick % DECIMATION != 0 {
+        if !record.tick.is_multiple_of(DECIMATION) {
             return;
         }
         let Self { seq, drops, .. } = *self;
