@@ -1,0 +1,77 @@
+//! The one place where a current becomes a DAC code.
+
+use estimator_core::Amps;
+
+/// A 12-bit DAC code; mid-scale is no current, 2047 steps are full scale.
+///
+/// ```
+/// use drivers::DacCode;
+/// use estimator_core::Amps;
+/// let full_scale = Amps::new(6.0);
+/// assert_eq!(DacCode::new(Amps::new(-6.0), full_scale).get(), 1);
+/// assert_eq!(DacCode::new(Amps::new(1.0), full_scale).get(), 2048 + 341);
+/// assert_eq!(DacCode::new(Amps::new(f32::NAN), full_scale), DacCode::ZERO);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DacCode(u16);
+
+impl DacCode {
+    /// No current.
+    pub const ZERO: Self = Self(2048);
+
+    /// `2048 + round(current / full_scale * 2047)`, saturated to 1 to 4095. Signed first, so that
+    /// nothing but a number moves it off mid-scale: without a full scale it stays there too.
+    #[must_use]
+    pub const fn new(current: Amps, full_scale: Amps) -> Self {
+        let scaled = current.get() / full_scale.get() * 2047.0;
+        let rounded = if scaled < 0.0 {
+            scaled - 0.5
+        } else {
+            scaled + 0.5
+        };
+        if !rounded.is_finite() {
+            return Self::ZERO;
+        }
+        // A cast truncates towards zero.
+        let signed = rounded.clamp(-2047.0, 2047.0) as i16;
+        Self(2048_u16.wrapping_add_signed(signed))
+    }
+
+    /// The code as the DAC takes it.
+    #[must_use]
+    pub const fn get(self) -> u16 {
+        self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::DacCode;
+    use estimator_core::Amps;
+
+    #[test]
+    fn codes_are_odd_about_mid_scale_monotonic_and_within_half_a_step() {
+        let full = 1.5;
+        let mut last = 0;
+        for k in -3000..=3000_i16 {
+            let amps = f32::from(k) / 3000.0 * full;
+            let code = DacCode::new(Amps::new(amps), Amps::new(full)).get();
+            let mirrored = DacCode::new(Amps::new(-amps), Amps::new(full)).get();
+            assert_eq!(code + mirrored, 4096);
+            assert!(code >= last);
+            last = code;
+            let back = (f32::from(code) - 2048.0) / 2047.0 * full;
+            assert!((back - amps).abs() <= full / 2047.0 * 0.5001);
+        }
+    }
+
+    #[test]
+    fn what_is_no_current_is_mid_scale_and_what_is_too_much_saturates() {
+        let full = Amps::new(6.0);
+        assert_eq!(DacCode::new(Amps::new(f32::INFINITY), full), DacCode::ZERO);
+        assert_eq!(DacCode::new(Amps::new(1.0), Amps::ZERO), DacCode::ZERO);
+        assert_eq!(DacCode::new(Amps::ZERO, Amps::ZERO), DacCode::ZERO);
+        assert_eq!(DacCode::new(Amps::new(1e30), full).get(), 4095);
+        assert_eq!(DacCode::new(Amps::new(-1e30), full).get(), 1);
+    }
+}

@@ -1,0 +1,12 @@
+//! Drivers of the controller board, over embedded-hal 1.0 traits where it has them.
+#![no_std]
+
+mod amplifier;
+mod command;
+mod dac_code;
+mod pwm;
+
+pub use amplifier::{Amplifier, CurrentOutput};
+pub use command::{Parser, encode};
+pub use dac_code::DacCode;
+pub use pwm::PwmCurrent;
