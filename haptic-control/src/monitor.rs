@@ -1,6 +1,10 @@
 //! What stops the device: a pure check of each tick that the firmware's safety state calls too.
 
-use estimator_core::{Count, Counts, Sample};
+use core::f64::consts::PI;
+
+use estimator_core::{Count, Counts, Hertz, Sample};
+
+use crate::device::DualStage;
 
 /// Why the device was stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +50,30 @@ pub struct MonitorState {
 }
 
 impl Monitor {
+    /// Limits that no scene of `device` reaches at a control rate: the handle 30 rad/s and the
+    /// large motor 150 rad/s, over 5 ms; 250 ms at more than 1 A without a count.
+    ///
+    /// ```
+    /// use estimator_core::Hertz;
+    /// use haptic_control::{DualStage, Monitor};
+    /// const MONITOR: Monitor = Monitor::new(&DualStage::DEFAULT, Hertz(10e3));
+    /// assert_eq!((MONITOR.window, MONITOR.handle, MONITOR.large), (50, 478, 489));
+    /// ```
+    #[must_use]
+    pub const fn new(device: &DualStage, rate: Hertz) -> Self {
+        let rounded = (0.005 * rate.0 + 0.5) as u32;
+        let window = if rounded == 0 { 1 } else { rounded };
+        let turns_per_rad_per_s = window as f64 / rate.0 / (2.0 * PI);
+        Self {
+            window,
+            handle: (30.0 * turns_per_rad_per_s * device.small.counts_per_rev as f64) as u32 + 1,
+            large: (150.0 * turns_per_rad_per_s * device.large.counts_per_rev as f64) as u32 + 1,
+            jump: 1 << 14,
+            stall: (0.25 * rate.0) as u32,
+            stall_milliamps: 1000,
+        }
+    }
+
     /// State at the first sample, with nothing to complain of.
     #[must_use]
     pub const fn start(&self, first: &Sample) -> MonitorState {

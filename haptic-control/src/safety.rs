@@ -5,7 +5,7 @@ use crate::monitor::Cause;
 /// Where the device is.
 ///
 /// ```text
-/// boot -> armed <-> running          arm; select a scene, or off again
+/// boot -> armed <-> running          arm; select a scene (before or after), or off again
 ///  ^        |          |
 ///  +- disarm+----------+-> safe      any stop cause; latched until arm or disarm
 /// ```
@@ -175,6 +175,8 @@ pub struct SafetyState {
     silent: u32,
     /// Ticks missed, times 16, less one for each tick that came.
     debt: u32,
+    /// The scene to put on when armed, chosen in boot.
+    chosen: u8,
 }
 
 impl SafetyState {
@@ -206,6 +208,7 @@ impl Safety {
             stop: reset,
             silent: 0,
             debt: 0,
+            chosen: 0,
         }
     }
 
@@ -224,22 +227,13 @@ impl Safety {
         };
         let mut order = Order::default();
         match (state.mode, request) {
-            (Mode::Boot | Mode::Safe, Some(Request::Arm)) => {
-                // What the monitor latched ends here; what is wrong still refuses.
-                state.debt = 0;
-                let now = Findings {
-                    monitor: None,
-                    missed: 0,
-                    ..*findings
-                };
-                (state.mode, state.stop) = match self.wrong(state, &now) {
-                    Stop::None => (Mode::Armed, Stop::None),
-                    wrong => (Mode::Safe, wrong),
-                };
-                order.restart = true;
-            }
+            (Mode::Boot | Mode::Safe, Some(Request::Arm)) => order = self.arm(state, findings),
             (Mode::Boot | Mode::Safe, Some(Request::Disarm)) => {
                 (state.mode, state.stop) = (Mode::Boot, Stop::None);
+                state.chosen = 0;
+            }
+            (Mode::Boot, Some(Request::Select(scene))) if scene < self.scenes => {
+                state.chosen = scene;
             }
             (Mode::Boot | Mode::Safe, _) => {}
             (Mode::Armed | Mode::Running, request) => {
@@ -254,6 +248,28 @@ impl Safety {
         }
         order.enable = matches!(state.mode, Mode::Armed | Mode::Running);
         order
+    }
+
+    fn arm(&self, state: &mut SafetyState, findings: &Findings) -> Order {
+        // What the monitor latched and what was missed ends here; what is wrong still refuses.
+        state.debt = 0;
+        let now = Findings {
+            monitor: None,
+            missed: 0,
+            ..*findings
+        };
+        let scene = core::mem::take(&mut state.chosen);
+        state.stop = self.wrong(state, &now);
+        state.mode = match (state.stop, scene) {
+            (Stop::None, 0) => Mode::Armed,
+            (Stop::None, _) => Mode::Running,
+            _ => Mode::Safe,
+        };
+        Order {
+            enable: false,
+            restart: true,
+            select: (state.mode == Mode::Running).then_some(scene),
+        }
     }
 
     fn serve(&self, state: &mut SafetyState, request: Option<Request>) -> Order {

@@ -118,6 +118,22 @@ fn a_reset_with_a_cause_boots_safe() {
 }
 
 #[test]
+fn a_scene_chosen_in_boot_comes_on_with_arm_and_is_forgotten_by_a_stop() {
+    let mut state = SAFETY.start(Stop::None);
+    assert!(!tick(&mut state, WELL, Some(Request::Select(3))).enable);
+    let order = tick(&mut state, WELL, Some(Request::Arm));
+    assert_eq!(
+        (order.enable, order.restart, order.select),
+        (true, true, Some(3))
+    );
+    assert_eq!(state.mode(), Mode::Running);
+    tick(&mut state, wrongs()[0].0, None);
+    let order = tick(&mut state, WELL, Some(Request::Arm));
+    assert_eq!((order.enable, order.select), (true, None));
+    assert_eq!(state.mode(), Mode::Armed);
+}
+
+#[test]
 fn silence_puts_the_scene_off_and_a_scene_puts_it_on_again() {
     let mut state = running();
     for _ in 0..100 {
