@@ -1,34 +1,40 @@
-//! NUCLEO-F429ZI: the only file that names a pin.
+//! NUCLEO-F429ZI: the only file that names a pin, but for the emergency's two enables.
 
-use cortex_m::peripheral::DWT;
-use estimator_core::{Amps, Sample};
-use haptic_control::Currents;
+use drivers::{Amplifier, CurrentOutput, DacCode};
+use estimator_core::{Amps, Count, Sample};
+use haptic_control::{Currents, Stop};
 use stm32f4xx_hal::dac::{C1, C2, DacOut, DacPin};
 use stm32f4xx_hal::gpio::{Input, Output, Pin};
-use stm32f4xx_hal::pac::{self, TIM3, TIM4, TIM5};
+use stm32f4xx_hal::pac::{self, TIM2, TIM3, TIM4};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::qei::Qei;
 use stm32f4xx_hal::rcc::Config;
-use stm32f4xx_hal::timer::{CounterHz, Event, Flag};
+use stm32f4xx_hal::timer::Event;
+use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
-use crate::dac_code::DacCode;
 use crate::encoder::Encoder;
+use crate::reset;
+use crate::scene::REFERENCE;
+use crate::tick::Tick;
 
 /// Core clock, Hz.
 pub(crate) const CORE_HZ: u32 = 168_000_000;
 /// Control ticks a second, 1000 to 20 000.
 pub(crate) const RATE_HZ: u32 = 10_000;
-const _: () = assert!(RATE_HZ >= 1000 && RATE_HZ <= 20_000);
+const _: () = assert!(RATE_HZ >= 1000 && RATE_HZ <= 20_000 && CORE_HZ.is_multiple_of(RATE_HZ));
 
 /// Current of the large amplifier at the DAC's ends.
 const LARGE_FULL_SCALE: Amps = Amps::new(6.0);
 /// Current of the small amplifier at the DAC's ends.
 const SMALL_FULL_SCALE: Amps = Amps::new(1.5);
+/// Longest time without a control tick, ms, by an oscillator good to 50 %.
+const WATCHDOG_MS: u32 = 50;
 
-/// Both encoders.
+/// The encoders.
 pub(crate) struct Encoders {
     large: Encoder<TIM4>,
     small: Encoder<TIM3>,
+    reference: Option<Encoder<TIM2>>,
 }
 
 impl Encoders {
@@ -38,103 +44,137 @@ impl Encoders {
             .with_small(self.small.read())
             .with_current(current)
     }
+
+    /// The reference encoder on the large motor, where there is one.
+    pub(crate) fn reference(&mut self) -> Option<Count> {
+        self.reference.as_mut().map(Encoder::read)
+    }
+}
+
+/// A channel of the DAC as a current command.
+struct DacCurrent<C> {
+    channel: C,
+    full_scale: Amps,
+}
+
+impl<C: DacOut<u16>> CurrentOutput for DacCurrent<C> {
+    fn command(&mut self, current: Amps) {
+        self.channel
+            .set_value(DacCode::new(current, self.full_scale).get());
+    }
 }
 
 /// Both amplifiers.
 pub(crate) struct Amplifiers {
-    dac: (C1, C2),
-    enable: (Pin<'E', 4, Output>, Pin<'E', 5, Output>),
-    fault: (Pin<'E', 2, Input>, Pin<'E', 6, Input>),
+    large: Amplifier<DacCurrent<C1>, Pin<'E', 4, Output>, Pin<'E', 2, Input>>,
+    small: Amplifier<DacCurrent<C2>, Pin<'E', 5, Output>, Pin<'E', 6, Input>>,
 }
 
 impl Amplifiers {
-    /// Commands both currents.
-    pub(crate) fn set(&mut self, currents: Currents) {
-        self.dac
-            .0
-            .set_value(DacCode::new(currents.large, LARGE_FULL_SCALE).get());
-        self.dac
-            .1
-            .set_value(DacCode::new(currents.small, SMALL_FULL_SCALE).get());
-    }
-
-    /// Enables or disables both.
-    pub(crate) fn enable(&mut self, on: bool) {
-        self.enable.0.set_state(on.into());
-        self.enable.1.set_state(on.into());
+    /// Commands both currents, or disables both.
+    pub(crate) fn apply(&mut self, currents: Option<Currents>) {
+        if let Some(currents) = currents {
+            self.large.drive(currents.large);
+            self.small.drive(currents.small);
+        } else {
+            self.large.disable();
+            self.small.disable();
+        }
     }
 
     /// Whether one of them reports a fault.
-    pub(crate) fn is_faulty(&self) -> bool {
-        self.fault.0.is_low() || self.fault.1.is_low()
+    pub(crate) fn is_faulty(&mut self) -> bool {
+        self.large.is_faulty() || self.small.is_faulty()
     }
 }
 
-/// The control tick's timer.
-pub(crate) struct Tick(CounterHz<TIM5>);
-
-impl Tick {
-    /// Takes the interrupt.
-    pub(crate) fn acknowledge(&mut self) {
-        self.0.clear_flags(Flag::Update);
-    }
-}
-
-/// Everything the application works with.
+/// Everything that the application works with.
 pub(crate) struct Board {
     pub(crate) encoders: Encoders,
     pub(crate) amplifiers: Amplifiers,
     pub(crate) tick: Tick,
+    pub(crate) watchdog: IndependentWatchdog,
+    /// Why the chip was reset.
+    pub(crate) reset: Stop,
+    /// The crystal does not run: the clock is the internal one, good to 1 %.
+    pub(crate) clock_failure: bool,
 }
 
 impl Board {
-    /// Takes the chip: outputs off first, then clocks, then the rest; the tick runs.
+    /// Takes the chip: amplifiers off, then the watchdog, then clocks, then the rest. The tick
+    /// runs when this returns.
     pub(crate) fn new(core: &mut cortex_m::Peripherals, chip: pac::Peripherals) -> Self {
+        bare::outputs_safe();
         let mut rcc = chip.RCC.constrain();
         let e = chip.GPIOE.split(&mut rcc);
-        let enable = (e.pe4.into_push_pull_output(), e.pe5.into_push_pull_output());
-        let fault = (e.pe2.into_pull_up_input(), e.pe6.into_pull_up_input());
+        let large_enable = e.pe4.into_push_pull_output();
+        let small_enable = e.pe5.into_push_pull_output();
 
-        let mut rcc = rcc.freeze(
-            Config::hse(8.MHz())
-                .bypass_hse_oscillator()
-                .sysclk(CORE_HZ.Hz()),
-        );
+        // A halted core would hold its last current, so a halt does not stop the watchdog.
+        let mut watchdog = IndependentWatchdog::new(chip.IWDG);
+        watchdog.start(WATCHDOG_MS.millis());
+        // A probe reads RTT, and the cycle counter counts, while the core sleeps.
+        chip.DBGMCU.cr().modify(|_, w| w.dbg_sleep().set_bit());
+
+        let reset = reset::cause(&rcc);
+        let crystal = reset::crystal_runs(&rcc);
+        let clock = if crystal {
+            Config::hse(8.MHz()).bypass_hse_oscillator()
+        } else {
+            Config::hsi()
+        };
+        let mut rcc = rcc.freeze(clock.sysclk(CORE_HZ.Hz()));
+        if crystal {
+            rcc.cr().modify(|_, w| w.csson().set_bit());
+        }
 
         let a = chip.GPIOA.split(&mut rcc);
-        let mut dac = chip
-            .DAC
-            .constrain((a.pa4.into_analog(), a.pa5.into_analog()), &mut rcc);
-        dac.0.set_value(DacCode::ZERO.get());
-        dac.1.set_value(DacCode::ZERO.get());
-        dac.0.enable();
-        dac.1.enable();
-
+        let b = chip.GPIOB.split(&mut rcc);
         let c = chip.GPIOC.split(&mut rcc);
         let d = chip.GPIOD.split(&mut rcc);
-        let (large, _) = Qei::new(chip.TIM4, (d.pd12, d.pd13), &mut rcc).release();
-        let (small, _) = Qei::new(chip.TIM3, (c.pc6, c.pc7), &mut rcc).release();
+        let pins = (a.pa4.into_analog(), a.pa5.into_analog());
+        let (mut large_dac, mut small_dac) = chip.DAC.constrain(pins, &mut rcc);
+        large_dac.set_value(DacCode::ZERO.get());
+        small_dac.set_value(DacCode::ZERO.get());
+        large_dac.enable();
+        small_dac.enable();
+        let large = DacCurrent {
+            channel: large_dac,
+            full_scale: LARGE_FULL_SCALE,
+        };
+        let small = DacCurrent {
+            channel: small_dac,
+            full_scale: SMALL_FULL_SCALE,
+        };
+
+        let reference = REFERENCE.then(|| {
+            // Both pins are the debug port's after a reset.
+            let pins = (a.pa15.into_input(), b.pb3.into_input());
+            Encoder::new(Qei::new(chip.TIM2, pins, &mut rcc).release().0)
+        });
+        let encoders = Encoders {
+            large: Encoder::new(Qei::new(chip.TIM4, (d.pd12, d.pd13), &mut rcc).release().0),
+            small: Encoder::new(Qei::new(chip.TIM3, (c.pc6, c.pc7), &mut rcc).release().0),
+            reference,
+        };
+        let amplifiers = Amplifiers {
+            large: Amplifier::new(large, large_enable, e.pe2.into_pull_up_input()),
+            small: Amplifier::new(small, small_enable, e.pe6.into_pull_up_input()),
+        };
 
         core.DCB.enable_trace();
         core.DWT.enable_cycle_counter();
-
-        let mut tick = chip.TIM5.counter_hz(&mut rcc);
-        tick.listen(Event::Update);
-        if tick.start(RATE_HZ.Hz()).is_err() {
-            defmt::panic!("control rate out of the timer's range");
-        }
+        let mut timer = chip.TIM5.counter_hz(&mut rcc);
+        timer.listen(Event::Update);
+        let started = timer.start(RATE_HZ.Hz());
+        defmt::assert!(started.is_ok(), "control rate out of the timer's range");
         Self {
-            encoders: Encoders {
-                large: Encoder::new(large),
-                small: Encoder::new(small),
-            },
-            amplifiers: Amplifiers { dac, enable, fault },
-            tick: Tick(tick),
+            encoders,
+            amplifiers,
+            tick: Tick::new(timer),
+            watchdog,
+            reset,
+            clock_failure: !crystal,
         }
     }
-}
-
-/// Core clock cycles, modulo 2^32.
-pub(crate) fn cycles() -> u32 {
-    DWT::cycle_count()
 }

@@ -3,7 +3,7 @@
 use estimator_core::Count;
 use stm32f4xx_hal::pac;
 
-/// A 16-bit timer that counts both edges of both phases.
+/// A timer in quadrature mode, of which the low 16 bits are enough.
 pub(crate) trait Counter {
     /// The counter as it stands.
     fn raw(&self) -> u16;
@@ -26,10 +26,10 @@ macro_rules! counter {
     )+};
 }
 
-counter!(pac::TIM3, pac::TIM4);
+counter!(pac::TIM2, pac::TIM3, pac::TIM4);
 
-/// An encoder: its counter widened to 32 bits, right as long as it is read before it moved by
-/// 2^15 counts.
+/// An encoder: its counter widened to 32 bits, right as long as it is read before it has moved
+/// by 2^15 counts.
 pub(crate) struct Encoder<T> {
     timer: T,
     count: Count,

@@ -1,27 +1,28 @@
-//! The controller board's firmware.
+//! The controller board's firmware: an RTIC application.
 #![no_std]
 #![no_main]
 
 mod board;
-mod dac_code;
+mod commands;
+mod control;
 mod encoder;
+mod reset;
 mod scene;
 mod telemetry;
-
-use defmt_rtt as _;
-use panic_probe as _;
+mod tick;
 
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
-    use estimator_core::Sample;
-    use haptic_control::{Action, Currents};
+    use estimator_core::Amps;
+    use haptic_control::Request;
     use heapless::spsc::Consumer;
+    use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
-    use crate::board::{self, Amplifiers, Board, CORE_HZ, Encoders, RATE_HZ, Tick};
-    use crate::scene::Core;
-    use crate::telemetry::{self, Frame, Frames, Record, Sender};
-
-    const PERIOD: u32 = CORE_HZ / RATE_HZ;
+    use crate::board::{Amplifiers, Board, Encoders, RATE_HZ};
+    use crate::commands::{Commands, Requests};
+    use crate::control::{Control, Inputs};
+    use crate::telemetry::{self, Frame, Frames, Sender};
+    use crate::tick::Tick;
 
     #[shared]
     struct Shared {}
@@ -31,72 +32,72 @@ mod app {
         tick: Tick,
         encoders: Encoders,
         amplifiers: Amplifiers,
-        core: Core,
+        control: Control,
+        requests: Consumer<'static, Request>,
         sender: Sender,
         frames: Consumer<'static, Frame>,
+        commands: Commands,
+        watchdog: IndependentWatchdog,
     }
 
-    #[init(local = [queue: Frames = Frames::new()])]
+    #[init(local = [log_queue: Frames = Frames::new(), request_queue: Requests = Requests::new()])]
     fn init(mut cx: init::Context) -> (Shared, Local, init::Monotonics) {
         let mut board = Board::new(&mut cx.core, cx.device);
-        let (producer, frames) = cx.local.queue.split();
-        let first = board.encoders.sample(Default::default());
-        defmt::info!("boot rate={=u32}", RATE_HZ);
+        let (to_log, frames) = cx.local.log_queue.split();
+        let (to_control, requests) = cx.local.request_queue.split();
+        let first = board.encoders.sample(Amps::ZERO);
+        defmt::info!("boot rate={=u32} cause={=u8}", RATE_HZ, board.reset as u8);
         let local = Local {
+            control: Control::new(&first, board.reset, board.clock_failure),
             tick: board.tick,
             encoders: board.encoders,
             amplifiers: board.amplifiers,
-            core: Core::start(&first),
-            sender: Sender::new(producer),
+            requests,
+            sender: Sender::new(to_log),
             frames,
+            commands: Commands::new(to_control),
+            watchdog: board.watchdog,
         };
         (Shared {}, local, init::Monotonics())
     }
 
-    /// The control task: its deadline is the next tick, 100 us.
+    /// The control task: reads, steps, writes, enqueues. Its deadline is the next tick, 100 us.
     #[task(
         binds = TIM5,
         priority = 15,
-        local = [
-            tick, encoders, amplifiers, core, sender,
-            ticks: u32 = 0, last: u32 = 0, overruns: u32 = 0, cycles: u32 = 0,
-            applied: Option<Currents> = None,
-        ]
+        local = [tick, encoders, amplifiers, control, requests, sender]
     )]
     fn control(cx: control::Context) {
-        let local = cx.local;
-        let entered = board::cycles();
-        local.tick.acknowledge();
-        let applied = local.applied.unwrap_or_default();
-        let sample: Sample = local.encoders.sample(applied.large);
-        if *local.ticks > 0 && entered.wrapping_sub(*local.last) > PERIOD + PERIOD / 2 {
-            *local.overruns = local.overruns.wrapping_add(1);
-        }
-        *local.last = entered;
-        if *local.ticks == RATE_HZ / 10 {
-            local.amplifiers.enable(!local.amplifiers.is_faulty());
-            local.core.select(1, &sample);
-        }
-        let action: Action = local.core.step(&sample);
-        local.amplifiers.set(action.currents);
-        *local.applied = Some(action.currents);
-        local.sender.offer(Record {
-            tick: *local.ticks,
-            sample,
-            action,
-            state: if *local.ticks < RATE_HZ / 10 { 0 } else { 2 },
-            cause: 0,
-            overruns: *local.overruns,
-            cycles: *local.cycles,
-        });
-        *local.ticks = local.ticks.wrapping_add(1);
-        *local.cycles = board::cycles().wrapping_sub(entered);
+        let control::LocalResources {
+            tick,
+            encoders,
+            amplifiers,
+            control,
+            requests,
+            sender,
+        } = cx.local;
+        let missed = tick.enter();
+        let sample = encoders.sample(control.applied().large);
+        let inputs = Inputs {
+            amplifier_fault: amplifiers.is_faulty(),
+            missed,
+            request: requests.dequeue(),
+        };
+        let (currents, record) = control.step(&sample, &inputs);
+        amplifiers.apply(currents);
+        sender.offer(record, tick.cycles(), encoders.reference());
+        tick.leave();
     }
 
-    #[idle(local = [frames])]
+    /// Everything that may wait. The watchdog is fed when the control task has sent something.
+    #[idle(local = [frames, commands, watchdog])]
     fn idle(cx: idle::Context) -> ! {
         loop {
-            telemetry::drain(cx.local.frames);
+            cx.local.commands.receive();
+            if telemetry::log(cx.local.frames) {
+                cx.local.watchdog.feed();
+                cx.local.commands.report();
+            }
             cortex_m::asm::wfi();
         }
     }

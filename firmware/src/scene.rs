@@ -1,56 +1,102 @@
-//! What the image holds: its estimators and scenes. The only file with `cfg`.
+//! What the image holds: estimators, scenes, evaluation parts. The only file with `cfg`.
 
-use estimator_core::{
-    EndFit, Foaw, Hertz, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple, preset,
-};
+use estimator_core::{Hertz, Model, NoInput, SteadyKalman, SteadyKalmanTriple, preset};
 use haptic_control::{
-    Action, AnyScene, Detents, DualStage, FreeAir, Hold, LoopPoles, Off, Radians, Rig,
-    SpringDamper, Switchboard, SwitchboardState, Texture, Viscous, Wall,
+    Detents, DualStage, FreeAir, Hold, LoopPoles, Off, Radians, Rig, SpringDamper, Texture,
+    Viscous, Wall,
 };
 
 use crate::board::RATE_HZ;
 
-const RATE: Hertz = Hertz(RATE_HZ as f64);
-const RIG: Rig = preset!(Rig::new(&DualStage::DEFAULT, RATE, LoopPoles::DEFAULT));
+pub(crate) const DEVICE: DualStage = DualStage::DEFAULT;
+pub(crate) const RATE: Hertz = Hertz(RATE_HZ as f64);
+pub(crate) const RIG: Rig = preset!(Rig::new(&DEVICE, RATE, LoopPoles::DEFAULT));
 
-type Large = Foaw<32, EndFit>;
-type Handle = SteadyKalmanTriple;
-const LARGE: Large = preset!(Foaw::new(32, 1));
-const HANDLE_MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(20_000, RATE, 4e3));
-const HANDLE: Handle = preset!(SteadyKalman::new(&HANDLE_MODEL));
+/// Whether to arm without being told.
+pub(crate) const AUTO_ARM: bool = cfg!(feature = "auto-arm");
+/// Whether to read the reference encoder.
+pub(crate) const REFERENCE: bool = cfg!(feature = "reference");
+/// Longest silence of the command channel while running, ticks.
+pub(crate) const SILENCE: Option<u32> = if AUTO_ARM { None } else { Some(RATE_HZ / 2) };
 
-/// The scenes by their number on the command channel.
-pub(crate) const SCENES: [AnyScene; 8] = [
-    AnyScene::Off(Off),
-    AnyScene::FreeAir(FreeAir),
-    AnyScene::Wall(preset!(Wall::new(Radians(0.1), 0.30, 0.0))),
-    AnyScene::SpringDamper(preset!(SpringDamper::new(Radians(0.0), 0.10, 0.5e-3))),
-    AnyScene::Viscous(preset!(Viscous::new(2e-3))),
-    AnyScene::Detents(preset!(Detents::new(8e-3, 24))),
-    AnyScene::Texture(preset!(Texture::new(6e-3, Hertz(150.0), RATE))),
-    AnyScene::Hold(preset!(Hold::new(0.2, 1e-3))),
-];
+#[cfg(not(feature = "large-kalman"))]
+mod large {
+    use estimator_core::{EndFit, Foaw, preset};
+    pub(crate) type Large = Foaw<32, EndFit>;
+    pub(crate) const LARGE: Large = preset!(Foaw::new(32, 1));
+}
 
-static BOARD: Switchboard<Large, Handle> = Switchboard::new(LARGE, HANDLE, RIG, RATE);
+#[cfg(feature = "large-kalman")]
+mod large {
+    use estimator_core::{Model, NoInput, SteadyKalman, SteadyKalmanTriple, preset};
+    pub(crate) type Large = SteadyKalmanTriple;
+    const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(
+        super::DEVICE.large.counts_per_rev,
+        super::RATE,
+        1e4
+    ));
+    pub(crate) const LARGE: Large = preset!(SteadyKalman::new(&MODEL));
+}
 
-/// The control core of this image.
-pub(crate) struct Core(SwitchboardState<Large, Handle>);
+pub(crate) use large::{LARGE, Large};
 
-impl Core {
-    /// At rest at the first sample, with no scene.
-    pub(crate) fn start(first: &Sample) -> Self {
-        Self(BOARD.start(first))
-    }
+/// The handle's estimator.
+pub(crate) type Handle = SteadyKalmanTriple;
+const HANDLE_MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(
+    DEVICE.small.counts_per_rev,
+    RATE,
+    4e3
+));
+pub(crate) const HANDLE: Handle = preset!(SteadyKalman::new(&HANDLE_MODEL));
 
-    /// Swaps the scene before the next tick.
-    pub(crate) fn select(&mut self, scene: usize, sample: &Sample) {
-        if let Some(scene) = SCENES.get(scene) {
-            BOARD.select(&mut self.0, *scene, sample);
-        }
-    }
+/// Scenes by number: off, free-air, wall, spring-damper, viscous, detents, texture, hold.
+pub(crate) const SCENES: u8 = 8;
 
-    /// One tick.
-    pub(crate) fn step(&mut self, sample: &Sample) -> Action {
-        BOARD.step(&mut self.0, sample)
-    }
+/// Scenes with their parameters, those of the host simulation.
+mod preset {
+    #![allow(dead_code, reason = "an image of one scene uses one")]
+    use super::*;
+
+    pub(crate) const OFF: Off = Off;
+    pub(crate) const FREE_AIR: FreeAir = FreeAir;
+    pub(crate) const WALL: Wall = preset!(Wall::new(Radians(0.1), 0.30, 0.0));
+    pub(crate) const SPRING: SpringDamper = preset!(SpringDamper::new(Radians(0.0), 0.10, 0.5e-3));
+    pub(crate) const VISCOUS: Viscous = preset!(Viscous::new(2e-3));
+    pub(crate) const DETENTS: Detents = preset!(Detents::new(8e-3, 24));
+    pub(crate) const TEXTURE: Texture = preset!(Texture::new(6e-3, Hertz(150.0), RATE));
+    pub(crate) const HOLD: Hold = preset!(Hold::new(0.20, 1e-3));
+}
+
+macro_rules! image {
+    ($($feature:literal, $number:literal, $scene:ident, $preset:ident;)+) => {
+        $(
+            #[cfg(feature = $feature)]
+            use {$scene as TheScene, preset::$preset as THE_SCENE};
+            #[cfg(feature = $feature)]
+            pub(crate) const FIRST: u8 = $number;
+        )+
+        #[cfg(any($(feature = $feature),+))]
+        mod one;
+        #[cfg(any($(feature = $feature),+))]
+        pub(crate) use one::Core;
+
+        #[cfg(not(any($(feature = $feature),+)))]
+        mod all;
+        #[cfg(not(any($(feature = $feature),+)))]
+        pub(crate) use all::Core;
+        /// What arming by itself puts on: the one scene, or free-air.
+        #[cfg(not(any($(feature = $feature),+)))]
+        pub(crate) const FIRST: u8 = 1;
+    };
+}
+
+image! {
+    "scene-off", 0, Off, OFF;
+    "scene-free-air", 1, FreeAir, FREE_AIR;
+    "scene-wall", 2, Wall, WALL;
+    "scene-spring-damper", 3, SpringDamper, SPRING;
+    "scene-viscous", 4, Viscous, VISCOUS;
+    "scene-detents", 5, Detents, DETENTS;
+    "scene-texture", 6, Texture, TEXTURE;
+    "scene-hold", 7, Hold, HOLD;
 }

@@ -1,24 +1,18 @@
-//! Telemetry frames.
+//! Telemetry frames: made by the control task, logged by the lowest priority.
 
-use estimator_core::Sample;
+use estimator_core::{Count, Sample};
 use haptic_control::Action;
 use heapless::spsc::{Consumer, Producer, Queue};
 
-/// Control ticks for one frame: 1 kHz.
-pub(crate) const DECIMATION: u32 = crate::board::RATE_HZ / 1000;
-/// Frames that wait at most.
-pub(crate) const DEPTH: usize = 32;
+/// Frames a second.
+const FRAMES_HZ: u32 = 1000;
+/// Control ticks for one frame.
+const DECIMATION: u32 = crate::board::RATE_HZ / FRAMES_HZ;
+/// Frames that wait, and that one look logs at most.
+const DEPTH: usize = 32;
 
 /// Frames between the control task and the log.
 pub(crate) type Frames = Queue<Frame, DEPTH>;
-
-/// One record of the control task.
-#[derive(Clone, Copy)]
-pub(crate) struct Frame {
-    seq: u32,
-    drops: u32,
-    record: Record,
-}
 
 /// What a tick came to.
 #[derive(Clone, Copy)]
@@ -29,10 +23,19 @@ pub(crate) struct Record {
     pub(crate) state: u8,
     pub(crate) cause: u8,
     pub(crate) overruns: u32,
-    pub(crate) cycles: u32,
 }
 
-/// Where the control task puts its frames.
+/// A record on its way out.
+#[derive(Clone, Copy)]
+pub(crate) struct Frame {
+    seq: u32,
+    drops: u32,
+    record: Record,
+    cycles: u32,
+    reference: Option<Count>,
+}
+
+/// Where the control task puts its records.
 pub(crate) struct Sender {
     queue: Producer<'static, Frame>,
     seq: u32,
@@ -40,6 +43,7 @@ pub(crate) struct Sender {
 }
 
 impl Sender {
+    /// A sender that has made no frame.
     pub(crate) fn new(queue: Producer<'static, Frame>) -> Self {
         Self {
             queue,
@@ -49,49 +53,52 @@ impl Sender {
     }
 
     /// Makes a frame of every `DECIMATION`th record; one that finds no place is counted.
-    pub(crate) fn offer(&mut self, record: Record) {
+    pub(crate) fn offer(&mut self, record: Record, cycles: u32, reference: Option<Count>) {
         if !record.tick.is_multiple_of(DECIMATION) {
             return;
         }
-        let Self { seq, drops, .. } = *self;
-        self.seq = seq.wrapping_add(1);
-        if self.queue.enqueue(Frame { seq, drops, record }).is_err() {
-            self.drops = drops.wrapping_add(1);
+        let frame = Frame {
+            seq: self.seq,
+            drops: self.drops,
+            record,
+            cycles,
+            reference,
+        };
+        self.seq = self.seq.wrapping_add(1);
+        if self.queue.enqueue(frame).is_err() {
+            self.drops = self.drops.wrapping_add(1);
         }
     }
 }
 
-/// Logs every frame that waits, at most `DEPTH`.
-pub(crate) fn drain(frames: &mut Consumer<'static, Frame>) {
+/// Logs the frames that wait; whether there were any.
+pub(crate) fn log(frames: &mut Consumer<'static, Frame>) -> bool {
+    let mut any = false;
     for _ in 0..DEPTH {
-        let Some(Frame { seq, drops, record }) = frames.dequeue() else {
-            return;
+        let Some(frame) = frames.dequeue() else {
+            break;
         };
-        let Record {
-            tick,
-            sample,
-            action,
-            state,
-            cause,
-            overruns,
-            cycles,
-        } = record;
+        frame.log();
+        any = true;
+    }
+    any
+}
+
+impl Frame {
+    #[rustfmt::skip]
+    fn log(&self) {
+        let Record { tick, sample, action, state, cause, overruns } = self.record;
+        // Lost on the way to the queue, or between the queue and the probe.
+        let drops = self.drops.wrapping_add(bare::lost());
         defmt::info!(
             "frame seq={=u32} tick={=u32} large={=u32} small={=u32} wl={=f32} ws={=f32} torque={=f32} il={=f32} is={=f32} state={=u8} cause={=u8} overruns={=u32} drops={=u32} cycles={=u32}",
-            seq,
-            tick,
-            sample.large.0,
-            sample.small.0,
-            action.large.0,
-            action.handle.0,
-            action.torque.0,
-            action.currents.large.get(),
-            action.currents.small.get(),
-            state,
-            cause,
-            overruns,
-            drops,
-            cycles
+            self.seq, tick, sample.large.0, sample.small.0,
+            action.large.0, action.handle.0, action.torque.0,
+            action.currents.large.get(), action.currents.small.get(),
+            state, cause, overruns, drops, self.cycles
         );
+        if let Some(Count(count)) = self.reference {
+            defmt::info!("reference seq={=u32} count={=u32}", self.seq, count);
+        }
     }
 }

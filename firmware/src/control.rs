@@ -1,0 +1,108 @@
+//! What the control task does between its inputs and its outputs: no I/O.
+
+use estimator_core::Sample;
+use haptic_control::{
+    Action, Currents, Findings, Mode, Monitor, MonitorState, Request, Safety, SafetyState, Stop,
+};
+
+use crate::board::RATE_HZ;
+use crate::scene::{AUTO_ARM, Core, DEVICE, FIRST, RATE, SCENES, SILENCE};
+use crate::telemetry::Record;
+
+const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
+const SAFETY: Safety = Safety {
+    silence: SILENCE,
+    missed: 4,
+    scenes: SCENES,
+};
+
+/// What a tick knows, beside its sample.
+pub(crate) struct Inputs {
+    pub(crate) amplifier_fault: bool,
+    /// Control ticks missed since the last one.
+    pub(crate) missed: u32,
+    pub(crate) request: Option<Request>,
+}
+
+/// The control core under its monitor and safety state.
+pub(crate) struct Control {
+    core: Core,
+    monitor: MonitorState,
+    safety: SafetyState,
+    clock_failure: bool,
+    applied: Currents,
+    tick: u32,
+    overruns: u32,
+}
+
+impl Control {
+    /// At rest at the first sample, after a reset for this cause.
+    pub(crate) fn new(first: &Sample, reset: Stop, clock_failure: bool) -> Self {
+        Self {
+            core: Core::start(first),
+            monitor: MONITOR.start(first),
+            safety: SAFETY.start(reset),
+            clock_failure,
+            applied: Currents::default(),
+            tick: 0,
+            overruns: 0,
+        }
+    }
+
+    /// Currents commanded over the period that ends now.
+    pub(crate) fn applied(&self) -> Currents {
+        self.applied
+    }
+
+    /// One tick: the currents to apply, `None` with the amplifiers disabled, and its record.
+    pub(crate) fn step(&mut self, sample: &Sample, inputs: &Inputs) -> (Option<Currents>, Record) {
+        self.overruns = self.overruns.wrapping_add(inputs.missed);
+        let mut action = self.core.step(sample);
+        let findings = Findings {
+            monitor: MONITOR.check(&mut self.monitor, sample),
+            amplifier_fault: inputs.amplifier_fault,
+            clock_failure: self.clock_failure,
+            finite: is_finite(&action),
+            missed: inputs.missed,
+        };
+        let request = inputs.request.or_else(|| self.by_itself());
+        let order = SAFETY.tick(&mut self.safety, &findings, request);
+        if order.restart {
+            self.core = Core::start(sample);
+            self.monitor = MONITOR.start(sample);
+        }
+        if let Some(scene) = order.select {
+            self.core.select(scene, sample);
+        }
+        if order.restart || !order.enable {
+            action.currents = Currents::default();
+        }
+        self.applied = action.currents;
+        let record = Record {
+            tick: self.tick,
+            sample: *sample,
+            action,
+            state: self.safety.mode() as u8,
+            cause: self.safety.stop() as u8,
+            overruns: self.overruns,
+        };
+        self.tick = self.tick.wrapping_add(1);
+        (order.enable.then_some(action.currents), record)
+    }
+
+    /// What an image that arms by itself asks for; out of safe it does not.
+    fn by_itself(&self) -> Option<Request> {
+        const ARM: u32 = RATE_HZ / 10;
+        const SELECT: u32 = ARM - 1;
+        match (self.tick, self.safety.mode()) {
+            (SELECT, Mode::Boot) if AUTO_ARM => Some(Request::Select(FIRST)),
+            (ARM, Mode::Boot) if AUTO_ARM => Some(Request::Arm),
+            _ => None,
+        }
+    }
+}
+
+/// Currents cannot be anything else.
+fn is_finite(action: &Action) -> bool {
+    action.torque.0.is_finite() && action.large.0.is_finite() && action.handle.0.is_finite()
+}
