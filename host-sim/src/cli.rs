@@ -5,6 +5,7 @@ mod compare;
 mod list;
 mod replay;
 mod tune;
+mod zwidth;
 
 use std::ffi::OsString;
 
@@ -30,6 +31,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Some(Command::Compare(options)) => compare::run(&options, &command_line),
         Some(Command::Replay(options)) => replay::run(&options),
         Some(Command::Tune(options)) => tune::run(&options, &command_line),
+        Some(Command::Zwidth(options)) => zwidth::run(&options, &command_line),
         Some(Command::Estimators) => list::estimators(),
         Some(Command::Scenarios) => list::scenarios(),
         Some(Command::Device(options)) => list::device(&options),

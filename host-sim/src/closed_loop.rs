@@ -1,5 +1,6 @@
 //! The controller of `haptic-control` in closed loop with the plant: what the hand feels.
 
+mod press;
 mod scene;
 
 use std::f64::consts::TAU;
@@ -18,6 +19,7 @@ use crate::parameters::{Parameters, PlantKind};
 use crate::plant::{Plant, Pose, steps_per_tick};
 use crate::scenario::draw;
 
+pub use press::Press;
 pub use scene::{Hand, SceneName, Visit};
 
 /// Which encoder of the large motor closes the loop.

@@ -26,3 +26,4 @@ pub mod spectrum;
 pub mod table;
 pub mod trace;
 pub mod tune;
+pub mod zwidth;

@@ -23,6 +23,9 @@ mod text;
 mod velocity;
 mod verdict;
 mod windows;
+mod zwidth;
+
+pub use zwidth::zwidth;
 
 /// Everything that the page shows.
 #[derive(Clone, Debug, Default)]

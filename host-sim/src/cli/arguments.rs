@@ -28,6 +28,8 @@ pub(super) enum Command {
     Replay(Replay),
     /// Search the estimators' parameters on tuning seeds and write them to a file
     Tune(Tune),
+    /// Find the stiffest wall and the strongest damping that stay passive and free of limit cycles
+    Zwidth(Zwidth),
     /// List the estimators and their parameters
     Estimators,
     /// List the scenarios
@@ -129,6 +131,37 @@ pub(super) struct Tune {
     /// File to write; compare and replay take it as --presets
     #[arg(long, value_name = "FILE.toml", default_value = "target/presets.toml")]
     pub(super) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Zwidth {
+    /// Estimator of the large motor's velocity; repeatable [default: all but the steady ones]
+    #[arg(long = "estimator", value_name = "NAME")]
+    pub(super) estimators: Vec<String>,
+    /// Estimator of the handle's velocity [default: the large motor's, or kalman-triple where that
+    /// one reads the current]
+    #[arg(long, value_name = "NAME")]
+    pub(super) handle: Option<String>,
+    /// Control rate, Hz; repeatable [default: 1000, 10000 and 11600]
+    #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
+    pub(super) rates: Vec<f64>,
+    /// Lines of the large encoder; repeatable [default: 256, 1024 and 5000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(super) lines: Vec<u32>,
+    /// Seed of the encoders' phases and the disc
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(super) seed: u64,
+    #[command(flatten)]
+    pub(super) device: DeviceFile,
+    #[command(flatten)]
+    pub(super) parameters: ParameterOptions,
+    /// Folder for index.html, its figures as SVG, zwidth.csv, zwidth.json [default: target/zwidth;
+    /// with --json - none]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Write the bounds as JSON to FILE, or with - to standard output and nothing else there
+    #[arg(long, value_name = "FILE")]
+    pub(super) json: Option<PathBuf>,
 }
 
 #[derive(Clone, Debug, Default, Args)]

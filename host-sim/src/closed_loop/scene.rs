@@ -10,6 +10,7 @@ use haptic_control::{
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
 
+use super::press::Press;
 use crate::plant::{Grip, Pose};
 use crate::scenario::{Intent, draw};
 
@@ -122,11 +123,14 @@ pub enum Hand {
     Still,
     /// Nobody: the handle starts with this velocity, rad/s.
     Gone(f64),
+    /// Presses and lets go, without tremor.
+    Pressing(Press),
 }
 
 /// A hand's motion, tick by tick.
 pub(super) enum Motion {
     Intent(Box<Intent>),
+    Pressing(Press, f64),
     Gone,
 }
 
@@ -134,6 +138,7 @@ impl Motion {
     pub(super) fn grip(&mut self, k: u64) -> Grip {
         match self {
             Self::Intent(intent) => intent.grip(k),
+            Self::Pressing(press, period_s) => press.grip(k, *period_s),
             Self::Gone => Grip::Free,
         }
     }
@@ -153,7 +158,7 @@ impl Hand {
                 .sine_from(random, (0.4, 1.2), (0.12, 0.18), (-2.2, -0.9))
                 .tremor(random),
             Self::Still => about(random, -0.02, 0.02).tremor(random),
-            Self::Gone(_) => return None,
+            Self::Gone(_) | Self::Pressing(_) => return None,
         })
     }
 
@@ -167,9 +172,10 @@ impl Hand {
     }
 
     pub(super) fn motion(self, period_s: f64, seed: u64) -> Motion {
-        match self.intent(period_s, seed) {
-            Some(intent) => Motion::Intent(Box::new(intent)),
-            None => Motion::Gone,
+        match (self.intent(period_s, seed), self) {
+            (Some(intent), _) => Motion::Intent(Box::new(intent)),
+            (None, Self::Pressing(press)) => Motion::Pressing(press, period_s),
+            (None, _) => Motion::Gone,
         }
     }
 }

@@ -40,22 +40,26 @@ pub(super) struct Palette {
 
 impl Palette {
     pub(super) fn new(report: &ReportInput) -> Self {
-        let mut colours: Vec<(String, RGBColor)> = Vec::new();
-        let mut others = OTHERS.iter().cycle();
         let names = report.cases.iter().flat_map(|case| {
             let drawn = case.traces.iter().flat_map(|t| &t.estimates);
             let rows = case.rows.iter().map(|row| &row.estimator);
             rows.chain(drawn.map(|(name, _)| name))
         });
+        Self::of(names.map(String::as_str))
+    }
+
+    pub(super) fn of<'a>(names: impl Iterator<Item = &'a str>) -> Self {
+        let mut colours: Vec<(String, RGBColor)> = Vec::new();
+        let mut others = OTHERS.iter().cycle();
         for name in names {
             if colours.iter().any(|(known, _)| known == name) {
                 continue;
             }
             let colour = NAMED
                 .iter()
-                .find(|(known, _)| known == name)
+                .find(|(known, _)| *known == name)
                 .map_or_else(|| others.next().copied(), |(_, colour)| Some(*colour));
-            colours.push((name.clone(), colour.unwrap_or(INK)));
+            colours.push((name.to_owned(), colour.unwrap_or(INK)));
         }
         Self { colours }
     }
