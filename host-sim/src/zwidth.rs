@@ -16,8 +16,9 @@ use crate::failure::Failure;
 use crate::parameters::Parameters;
 use probe::{Finding, Probe};
 
-/// Smallest and largest stiffness that is tried, N.m/rad.
-pub const STIFFNESS: (f64, f64) = (0.01, 81.92);
+/// Smallest and largest stiffness that is tried, N.m/rad. A softer wall presses a fingertip with
+/// less than 0.1 N; there a coarse encoder shows its counts one by one, whatever the wall is.
+pub const STIFFNESS: (f64, f64) = (0.04, 81.92);
 /// Smallest and largest damping that is tried, N.m.s/rad.
 pub const DAMPING: (f64, f64) = (1e-5, 0.08192);
 /// Dampings of the walls, as parts of the largest one.
@@ -71,7 +72,8 @@ impl Boundary {
     /// The stiffest wall and its damping, N.m/rad and N.m.s/rad.
     #[must_use]
     pub fn stiffest(&self) -> Option<(f64, Bound)> {
-        let walls = self.walls.iter().copied();
+        // Of equals, the one with the least damping.
+        let walls = self.walls.iter().rev().copied();
         walls.max_by(|a, b| a.1.value.total_cmp(&b.1.value))
     }
 }

@@ -1,0 +1,211 @@
+//! Z-width as somebody asks for it, and whether its bounds are bounds.
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use host_sim::device::Device;
+use host_sim::estimators::Kind;
+use host_sim::parameters::Parameters;
+use host_sim::zwidth::{Boundary, Case, Settings, boundaries, probe};
+
+fn case(name: &str, rate_hz: f64, lines: u32) -> Case {
+    let kind = Kind::named(name).unwrap();
+    Case {
+        large: kind,
+        handle: kind,
+        rate_hz,
+        lines,
+    }
+}
+
+fn settings(seed: u64) -> Settings {
+    Settings {
+        device: Device::default(),
+        parameters: Parameters::default(),
+        seed,
+    }
+}
+
+fn found(cases: &[Case]) -> Vec<Boundary> {
+    boundaries(cases, &settings(1), || ()).unwrap()
+}
+
+#[test]
+fn a_slow_rate_and_a_coarse_encoder_narrow_the_z_width() {
+    let [fine, slow, coarse] = [
+        case("pll", 10e3, 1024),
+        case("pll", 1e3, 1024),
+        case("pll", 1e3, 256),
+    ];
+    let plain: Vec<f64> = found(&[fine, slow, coarse])
+        .iter()
+        .map(|boundary| boundary.walls[0].1.value)
+        .collect();
+    // Twice as stiff at ten times the rate; a count of the coarse encoder is felt in any wall.
+    assert!(plain[0] > 2.0 * plain[1], "{plain:?}");
+    assert!(plain[1] > 0.15 && plain[2] < 0.5 * plain[1], "{plain:?}");
+}
+
+#[test]
+fn damping_makes_stiffer_walls_possible_until_it_is_too_much() {
+    let boundary = &found(&[case("foaw-best-fit", 10e3, 1024)])[0];
+    let plain = boundary.walls[0].1.value;
+    let (damping, best) = boundary.stiffest().unwrap();
+    assert!(damping > 0.0 && best.value > 3.0 * plain, "{boundary:?}");
+    assert!(boundary.viscous.value > damping, "{boundary:?}");
+}
+
+/// Bisection takes for granted that everything below a bound is good and nothing beyond it. Close
+/// to the bound that is not quite so: chance decides what the encoders' phases make of it. Far
+/// beyond and far below it is.
+#[test]
+fn beyond_a_bound_nothing_is_good_and_below_it_everything_is() {
+    let (mut tried, mut strange) = (0, Vec::new());
+    for (name, rate_hz) in [("kalman-triple", 1e3), ("pll", 10e3)] {
+        let case = case(name, rate_hz, 1024);
+        let boundary = &found(&[case])[0];
+        let probe = probe(&case, &settings(1)).unwrap();
+        for &(damping, wall) in &boundary.walls {
+            assert!(wall.value > 0.0, "{boundary:?}");
+            for part in [0.3, 0.5, 0.7, 0.9, 1.1, 1.3, 1.7, 2.5, 4.0, 8.0] {
+                let is_good = probe.fault(part * wall.value, damping).unwrap().is_none();
+                tried += 1;
+                if is_good != (part < 1.0) {
+                    assert!((0.6..2.0).contains(&part), "{name}: {part} of {wall:?}");
+                    strange.push((name, part, damping, wall.value));
+                }
+            }
+        }
+    }
+    assert!(strange.len() * 10 <= tried, "of {tried}: {strange:?}");
+}
+
+/// A folder of its own for each test, gone afterwards.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("limpid-zw-{test}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn run(&self, arguments: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_host-sim"))
+            .arg("zwidth")
+            .args(arguments)
+            .current_dir(&self.0)
+            .output()
+            .unwrap()
+    }
+
+    fn is_empty(&self) -> bool {
+        std::fs::read_dir(&self.0).unwrap().next().is_none()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+const SHORT: [&str; 6] = [
+    "--estimator",
+    "kalman-motor",
+    "--rate",
+    "1000",
+    "--lines",
+    "1024",
+];
+
+#[test]
+fn json_alone_on_standard_output_and_the_same_bytes_again() {
+    let folder = Folder::new("json");
+    let mut arguments = SHORT.to_vec();
+    arguments.extend(["--json", "-"]);
+    let output = folder.run(&arguments);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(folder.is_empty(), "no page unless it is asked for");
+    let rows: Vec<serde_json::Value> = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(rows.len(), 6);
+    for row in &rows {
+        assert_eq!(row["estimator"], "kalman-motor");
+        // It reads the large motor's current: on the handle another one stands in.
+        assert_eq!(row["handle_estimator"], "kalman-triple");
+        assert_eq!(
+            (&row["rate_hz"], &row["lines"]),
+            (&1000.0.into(), &1024.into())
+        );
+        assert_eq!((&row["seed"], &row["at_cap"]), (&1.into(), &false.into()));
+        for field in ["stiffness_nm_per_rad", "damping_nms_per_rad"] {
+            assert!(row[field].as_f64().is_some_and(|x| x >= 0.0), "{row}");
+        }
+        let fault = row["fault"].as_str().unwrap();
+        assert!(
+            ["limit cycle", "energy", "stopped"].contains(&fault),
+            "{row}"
+        );
+        assert!(["hand", "light grip", "throw"].contains(&row["touch"].as_str().unwrap()));
+    }
+    let bounds: Vec<_> = rows
+        .iter()
+        .map(|row| row["bound"].as_str().unwrap())
+        .collect();
+    assert_eq!(bounds[..5], ["stiffness"; 5]);
+    assert_eq!(
+        (bounds[5], &rows[5]["stiffness_nm_per_rad"]),
+        ("damping", &0.0.into())
+    );
+    assert_eq!(folder.run(&arguments).stdout, output.stdout);
+}
+
+#[test]
+fn the_page_its_figures_and_the_table() {
+    let folder = Folder::new("page");
+    let mut arguments = SHORT.to_vec();
+    arguments.extend(["--out", "z"]);
+    let output = folder.run(&arguments);
+    assert_eq!(output.status.code(), Some(0));
+    let table = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        table.contains("1000 Hz, large encoder of 1024 lines"),
+        "{table}"
+    );
+    assert!(table.contains("  kalman-motor "), "{table}");
+    let read = |name| std::fs::read_to_string(folder.0.join("z").join(name)).unwrap();
+    assert!(read("index.html").contains(read("figures/01.svg").as_str()));
+    let csv = read("zwidth.csv");
+    assert!(
+        csv.starts_with("estimator,handle_estimator,rate_hz,lines,"),
+        "{csv}"
+    );
+    assert_eq!(csv.lines().count(), 7);
+    assert!(read("zwidth.json").starts_with('['));
+}
+
+#[test]
+fn what_cannot_be_is_refused_in_one_line_and_nothing_is_written() {
+    let folder = Folder::new("bad");
+    for (arguments, said) in [
+        (&["--estimator", "kalmann"][..], "no estimator 'kalmann'"),
+        (&["--handle", "pl"], "no estimator 'pl'"),
+        (&["--rate", "50"], "rate 50 Hz: must be from"),
+        (&["--rate", "100", "--lines", "1024"], "control at 100 Hz"),
+        (&["--lines", "3"], "large.counts_per_rev = 12: must be from"),
+        (&["--lines", "many"], "--lines"),
+        (&["--set", "pll.bandwidth=1"], "no parameter 'bandwidth'"),
+        (&["--device", "none.toml"], "none.toml: cannot read"),
+        (&["--seconds", "1"], "--seconds"),
+    ] {
+        let output = folder.run(arguments);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {errors}");
+        assert_eq!(errors.lines().count(), 1, "{arguments:?}: {errors}");
+        assert!(errors.contains(said), "{arguments:?}: {errors}");
+        assert!(
+            output.stdout.is_empty() && folder.is_empty(),
+            "{arguments:?}"
+        );
+    }
+}
