@@ -37,8 +37,9 @@ pub(super) fn run(options: &Zwidth, command_line: &str) -> Result<(), Failure> {
     if let Some(folder) = folder {
         let device = options.device.name();
         let page = report::zwidth(&rows, &text, &device, command_line)?;
+        let csv = rows::csv(&rows)?;
         write_whole(&folder.join("zwidth.json"), &json)?;
-        write_whole(&folder.join("zwidth.csv"), &rows::csv(&rows)?)?;
+        write_whole(&folder.join("zwidth.csv"), &csv)?;
         for (i, figure) in report::figures(&page).enumerate() {
             let name = format!("figures/{:02}.svg", i + 1);
             write_whole(&folder.join(name), figure.as_bytes())?;

@@ -5,8 +5,8 @@
 //!
 //! - **Limit cycle**: while the hand rests, the felt torque oscillates with an amplitude
 //!   (`√2` RMS about its mean) above that torque in the second half of the rest, and with at least
-//!   half the amplitude of the first: what dies out is no limit cycle. In the stable range the
-//!   encoders make at most a third of it, so that nothing has to be allowed for quantisation.
+//!   half the amplitude of the first: what dies out is no limit cycle. With 1024 lines the encoders
+//!   make less than half of it in a stable wall, so that nothing is allowed for quantisation.
 //! - **Energy**: in contact, the device gives the handle and the hand
 //!   `E = ∫ felt ω dt + Δ(J_S ω² / 2)`, summed over all contacts so far. Whenever the handle has
 //!   left the scene, and at the end, a passive device has given nothing: E is not above zero. Here

@@ -23,7 +23,7 @@ pub fn table(cases: &[Case], boundaries: &[Boundary]) -> String {
         );
         let _ = writeln!(
             text,
-            "  {:<22}{:>9}  {:<24}{:>9}{:>9}{:>9}  beyond",
+            "  {:<22}{:>9}  {:<24}{:>9}{:>9}{:>11}  beyond",
             "estimator", "K, B = 0", "beyond", "best K", "at B", "B, K = 0",
         );
         for (case, boundary) in block {
@@ -31,7 +31,7 @@ pub fn table(cases: &[Case], boundaries: &[Boundary]) -> String {
             let (damping, best) = boundary.stiffest().unwrap_or((0.0, plain));
             let _ = writeln!(
                 text,
-                "  {:<22}{:>9}  {:<24}{:>9}{:>9}{:>9}  {}",
+                "  {:<22}{:>9}  {:<24}{:>9}{:>9}{:>11}  {}",
                 case.large.name,
                 shown(plain, 1.0),
                 beyond(plain),
