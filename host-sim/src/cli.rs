@@ -2,6 +2,7 @@
 
 mod arguments;
 mod compare;
+mod felt;
 mod list;
 mod replay;
 mod tune;
@@ -28,6 +29,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     };
     match parsed.command {
         None => compare::run(&arguments::Compare::default(), &command_line),
+        Some(Command::Compare(options)) if options.closed_loop => {
+            felt::run(&options, &command_line)
+        }
         Some(Command::Compare(options)) => compare::run(&options, &command_line),
         Some(Command::Replay(options)) => replay::run(&options),
         Some(Command::Tune(options)) => tune::run(&options, &command_line),

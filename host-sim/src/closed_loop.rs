@@ -71,6 +71,10 @@ pub struct Moment {
     pub handle_acceleration: f64,
     /// Torque felt on the handle, N.m.
     pub felt: f64,
+    /// What the controller saw.
+    pub sample: Sample,
+    /// Count of the device's own large encoder, whichever encoder closes the loop.
+    pub own_count: Count,
     /// What the controller did.
     pub action: Action,
     /// Why the monitor stopped the device, if it has.
@@ -189,6 +193,8 @@ impl<F: FnMut(&Moment)> Visit for Running<'_, F> {
                 handle: bench.plant.small(),
                 handle_acceleration: (omega - last_omega) * rate_hz,
                 felt: bench.plant.handle_torque(&grip, 0.0),
+                sample,
+                own_count: Count(bench.own.as_ref().unwrap_or(&bench.large).count()),
                 action,
                 stopped,
             });
@@ -204,7 +210,10 @@ impl<F: FnMut(&Moment)> Visit for Running<'_, F> {
 /// Plant and encoders.
 struct Bench {
     plant: Plant,
+    /// The encoder that closes the loop.
     large: Encoder,
+    /// The device's own, where that is another.
+    own: Option<Encoder>,
     small: Encoder,
 }
 
@@ -224,19 +233,22 @@ impl Bench {
             Encoder::new(counts_per_rev, first, phase, angle, disc)
         };
         let disc = DiscErrors::new(&device.disc, device.large.counts_per_rev, run.seed);
-        let large = match run.eye {
-            Eye::Large => encoder(device.large.counts_per_rev, start.angle, disc),
-            Eye::Reference => encoder(
-                device.reference.counts_per_rev,
-                start.angle,
-                DiscErrors::none(),
-            ),
-        };
+        // The reference encoder is drawn last, so that it changes none of the others.
+        let own = encoder(device.large.counts_per_rev, start.angle, disc);
         let angle = plant.small().angle;
         let small = encoder(device.small.counts_per_rev, angle, DiscErrors::none());
+        let (large, own) = match run.eye {
+            Eye::Large => (own, None),
+            Eye::Reference => {
+                let counts_per_rev = device.reference.counts_per_rev;
+                let reference = encoder(counts_per_rev, start.angle, DiscErrors::none());
+                (reference, Some(own))
+            }
+        };
         Self {
             plant,
             large,
+            own,
             small,
         }
     }
@@ -245,6 +257,9 @@ impl Bench {
         let (large, small) = (self.plant.large(), self.plant.small());
         self.plant.step(grip, since, 0.0);
         self.large.follow(large, self.plant.large(), step, &mut ());
+        if let Some(own) = &mut self.own {
+            own.follow(large, self.plant.large(), step, &mut ());
+        }
         self.small.follow(small, self.plant.small(), step, &mut ());
     }
 

@@ -91,6 +91,12 @@ impl Contestant {
         })
     }
 
+    /// The estimator itself.
+    #[must_use]
+    pub fn estimator(&self) -> &Estimator {
+        &self.estimator
+    }
+
     fn named_values(&self) -> BTreeMap<&'static str, f64> {
         let names = self.kind.parameters.iter().map(|p| p.name);
         names.zip(self.values.iter().copied()).collect()

@@ -12,6 +12,7 @@ pub mod device;
 pub mod encoder;
 pub mod estimators;
 pub mod failure;
+pub mod felt;
 pub mod output;
 pub mod parameters;
 pub mod plant;

@@ -1,10 +1,11 @@
 //! Scores as JSON and CSV.
 
-use crate::contest::Row;
+use serde::Serialize;
+
 use crate::failure::Failure;
 
 /// Columns of the CSV: the JSON's fields but the parameters.
-const COLUMNS: [&str; 18] = [
+pub const COLUMNS: &[&str] = &[
     "scenario",
     "rate_hz",
     "plant",
@@ -29,7 +30,7 @@ const COLUMNS: [&str; 18] = [
 ///
 /// # Errors
 /// [`Failure::Input`]; none is known to happen.
-pub fn json(rows: &[Row]) -> Result<Vec<u8>, Failure> {
+pub fn json<T: Serialize>(rows: &[T]) -> Result<Vec<u8>, Failure> {
     let mut text = b"[".to_vec();
     for (i, row) in rows.iter().enumerate() {
         text.extend_from_slice(if i == 0 { b"\n" } else { b",\n" });
@@ -39,17 +40,17 @@ pub fn json(rows: &[Row]) -> Result<Vec<u8>, Failure> {
     Ok(text)
 }
 
-/// The same as CSV; what is not defined is empty.
+/// These fields of the same objects as CSV; what is not defined is empty.
 ///
 /// # Errors
 /// [`Failure::Input`]; none is known to happen.
-pub fn csv(rows: &[Row]) -> Result<Vec<u8>, Failure> {
+pub fn csv<T: Serialize>(rows: &[T], columns: &[&str]) -> Result<Vec<u8>, Failure> {
     let failed = |error: csv::Error| Failure::Input(error.to_string());
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(COLUMNS).map_err(failed)?;
+    writer.write_record(columns).map_err(failed)?;
     for row in rows {
         let object = serde_json::to_value(row).map_err(|e| Failure::Input(e.to_string()))?;
-        let cells = COLUMNS.iter().map(|&column| match &object[column] {
+        let cells = columns.iter().map(|&column| match &object[column] {
             serde_json::Value::Null => String::new(),
             serde_json::Value::String(text) => text.clone(),
             number => number.to_string(),

@@ -125,7 +125,7 @@ fn same_case(a: &Row, b: &Row) -> bool {
 }
 
 /// Three digits, or a dash where there is no number.
-fn number(value: Option<f64>) -> String {
+pub(crate) fn number(value: Option<f64>) -> String {
     match value {
         None => "-".to_owned(),
         Some(0.0) => "0".to_owned(),

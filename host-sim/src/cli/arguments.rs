@@ -40,9 +40,17 @@ pub(super) enum Command {
 
 #[derive(Debug, Args)]
 pub(super) struct Compare {
-    /// Scenario to run; repeatable [default: all but heating; see host-sim scenarios]
-    #[arg(long = "scenario", value_name = "NAME")]
+    /// Close the loop: each estimator in turn, then the reference encoder, drives the motors in
+    /// the scenes; scored is the force that the hand feels and should not
+    #[arg(long)]
+    pub(super) closed_loop: bool,
+    /// Scenario to run, or scene with --closed-loop; repeatable [default: all but heating, or all
+    /// scenes; see host-sim scenarios]
+    #[arg(long = "scenario", visible_alias = "scene", value_name = "NAME")]
     pub(super) scenarios: Vec<String>,
+    /// Estimator of the handle's velocity, with --closed-loop [default: kalman-triple-steady]
+    #[arg(long, value_name = "NAME", requires = "closed_loop")]
+    pub(super) handle_estimator: Option<String>,
     /// Control rate, 100 to 100000 Hz; repeatable [default: 1000 and 11600]
     #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
     pub(super) rates: Vec<f64>,
@@ -184,7 +192,9 @@ pub(super) struct ParameterOptions {
 impl Default for Compare {
     fn default() -> Self {
         Self {
+            closed_loop: false,
             scenarios: Vec::new(),
+            handle_estimator: None,
             rates: Vec::new(),
             estimators: Vec::new(),
             seed: 1,

@@ -35,11 +35,7 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
         wanted: wanted(&options.scores)?,
     };
     let json_on_stdout = options.json.as_deref().is_some_and(is_stdout);
-    let report = match &options.out {
-        Some(folder) => Some(folder.as_path()),
-        None if json_on_stdout || options.no_report => None,
-        None => Some(Path::new(REPORT)),
-    };
+    let report = report_folder(options);
     let (cases, asked) = cases(options, report.is_some())?;
     let bar = progress(cases.len(), "simulating");
     let outcomes = compare(&cases, &settings, || bar.inc(1))?;
@@ -88,6 +84,16 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
     print_bytes(text.as_bytes())
 }
 
+/// Where the report goes, if there is one.
+pub(super) fn report_folder(options: &Compare) -> Option<&Path> {
+    let json_on_stdout = options.json.as_deref().is_some_and(is_stdout);
+    match &options.out {
+        Some(folder) => Some(folder),
+        None if json_on_stdout || options.no_report => None,
+        None => Some(Path::new(REPORT)),
+    }
+}
+
 /// The cases to run, and how many of them were asked for: the rest, at the end, is the other
 /// plant for the report.
 fn cases(options: &Compare, with_report: bool) -> Result<(Vec<Case>, usize), Failure> {
@@ -128,7 +134,7 @@ fn cases(options: &Compare, with_report: bool) -> Result<(Vec<Case>, usize), Fai
 }
 
 /// The scores by their JSON names; all where there is no name.
-fn wanted(names: &[String]) -> Result<Wanted, Failure> {
+pub(super) fn wanted(names: &[String]) -> Result<Wanted, Failure> {
     if names.is_empty() {
         return Ok(Wanted::ALL);
     }
@@ -140,7 +146,7 @@ fn wanted(names: &[String]) -> Result<Wanted, Failure> {
 }
 
 /// Where the time went, in a line.
-fn timing(cost: Cost) -> String {
+pub(super) fn timing(cost: Cost) -> String {
     let seconds = cost.simulation.as_secs_f64();
     format!(
         "{} plant steps in {seconds:.2} s ({:.1} million/s a thread), estimators {:.2} s, scores \
@@ -175,7 +181,10 @@ fn write_report(
         cases: outcomes.iter().map(case_report).collect(),
     })?;
     write_whole(&folder.join("scores.json"), &rows::json(&rows)?)?;
-    write_whole(&folder.join("scores.csv"), &rows::csv(&rows)?)?;
+    write_whole(
+        &folder.join("scores.csv"),
+        &rows::csv(&rows, rows::COLUMNS)?,
+    )?;
     for (i, figure) in report::figures(&page).enumerate() {
         let name = format!("figures/{:02}.svg", i + 1);
         write_whole(&folder.join(name), figure.as_bytes())?;

@@ -69,6 +69,13 @@ impl SceneName {
         }
     }
 
+    /// Whether the large motor renders it, so that somebody's estimate of its velocity closes the
+    /// loop.
+    #[must_use]
+    pub const fn asks_for_velocity(self) -> bool {
+        !matches!(self, Self::Off | Self::Detents(..) | Self::Texture(..))
+    }
+
     /// Shows the scene, as its type, to a visitor.
     pub(super) fn visit(self, rate_hz: f64, visit: impl Visit) -> Result<(), String> {
         let refused = |error: haptic_control::DesignError| format!("scene {self}: {error}");
