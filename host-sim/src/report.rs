@@ -10,6 +10,7 @@ mod curve;
 #[cfg(test)]
 mod demo;
 mod distances;
+mod felt;
 mod grid;
 mod page;
 mod palette;
@@ -27,6 +28,8 @@ mod zwidth;
 
 pub use zwidth::zwidth;
 
+pub use felt::ClosedLoop;
+
 /// Everything that the page shows.
 #[derive(Clone, Debug, Default)]
 pub struct ReportInput {
@@ -39,6 +42,8 @@ pub struct ReportInput {
     /// One entry for each scenario, rate, plant and seed that was run; their order is the
     /// tables' order.
     pub cases: Vec<CaseReport>,
+    /// The loop closed on each estimator, where that was run.
+    pub closed_loop: ClosedLoop,
 }
 
 /// The constants of the device that its scores depend on.

@@ -16,6 +16,7 @@ use crate::score::{SKIP_S, Wanted};
 use crate::{rows, simulate, table};
 
 use super::arguments::{Compare, is_stdout, kinds, rates, scenarios};
+use super::felt;
 
 /// Where the report goes unless told otherwise.
 const REPORT: &str = "target/report";
@@ -60,13 +61,21 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
         }
     }
     if let Some(folder) = report {
-        write_report(
-            folder,
-            &outcomes,
-            &settings.device,
-            &options.device.name(),
-            command_line,
+        let (closed, remark) = felt::beside(options);
+        let input = ReportInput {
+            command: command_line.to_owned(),
+            device: facts(&settings.device, &options.device.name()),
+            notes: remark.into_iter().collect(),
+            cases: outcomes.iter().map(case_report).collect(),
+            ..ReportInput::default()
+        };
+        let rows: Vec<Row> = outcomes.iter().flat_map(|o| o.rows.clone()).collect();
+        write_whole(&folder.join("scores.json"), &rows::json(&rows)?)?;
+        write_whole(
+            &folder.join("scores.csv"),
+            &rows::csv(&rows, rows::COLUMNS)?,
         )?;
+        felt::write(folder, input, closed)?;
     }
     if json_on_stdout {
         return Ok(());
@@ -166,25 +175,9 @@ pub(super) fn progress(length: usize, doing: &'static str) -> ProgressBar {
         .with_message(doing)
 }
 
-fn write_report(
-    folder: &Path,
-    outcomes: &[Outcome],
-    device: &Device,
-    device_name: &str,
-    command_line: &str,
-) -> Result<(), Failure> {
-    let rows: Vec<Row> = outcomes.iter().flat_map(|o| o.rows.clone()).collect();
-    let page = report::html(&ReportInput {
-        command: command_line.to_owned(),
-        device: facts(device, device_name),
-        notes: Vec::new(),
-        cases: outcomes.iter().map(case_report).collect(),
-    })?;
-    write_whole(&folder.join("scores.json"), &rows::json(&rows)?)?;
-    write_whole(
-        &folder.join("scores.csv"),
-        &rows::csv(&rows, rows::COLUMNS)?,
-    )?;
+/// Writes the page and its figures.
+pub(super) fn write_page(folder: &Path, input: &ReportInput) -> Result<(), Failure> {
+    let page = report::html(input)?;
     for (i, figure) in report::figures(&page).enumerate() {
         let name = format!("figures/{:02}.svg", i + 1);
         write_whole(&folder.join(name), figure.as_bytes())?;
@@ -192,7 +185,8 @@ fn write_report(
     write_whole(&folder.join("index.html"), page.as_bytes())
 }
 
-fn facts(device: &Device, name: &str) -> DeviceFacts {
+/// What the report says of the device.
+pub(super) fn facts(device: &Device, name: &str) -> DeviceFacts {
     DeviceFacts {
         name: name.to_owned(),
         damping: device.coupler.damping_nms_per_rad,

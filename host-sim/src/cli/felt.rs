@@ -1,18 +1,23 @@
 //! `host-sim compare --closed-loop`.
 
-use crate::closed_loop::SceneName;
+use std::path::Path;
+
+use haptic_control::LoopPoles;
+
+use crate::closed_loop::{SceneName, believed};
 use crate::compare::Cost;
 use crate::estimators::Kind;
 use crate::failure::Failure;
 use crate::felt::compare::USUAL;
-use crate::felt::{self, Case, FeltRow, Settings, compare};
+use crate::felt::{self, Case, Design, FeltRow, Outcome, Settings, compare};
 use crate::output::{print_bytes, write_whole};
 use crate::parameters::PlantKind;
+use crate::report::{ClosedLoop, ReportInput};
 use crate::scenario::ScenarioName;
 use crate::{rows, simulate};
 
 use super::arguments::{Compare, is_stdout, kinds, rates};
-use super::compare::{progress, report_folder, timing, wanted};
+use super::compare::{facts, progress, report_folder, timing, wanted, write_page};
 
 /// Length of a run unless told otherwise, s.
 const SECONDS: f64 = 10.0;
@@ -46,11 +51,86 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
         Some(path) => write_whole(path, &rows::json(&scores)?)?,
         None => {}
     }
-    let _ = (folder, command_line);
+    let mut text = felt::table::details(&outcomes);
+    if let Some(folder) = folder {
+        let input = ReportInput {
+            command: command_line.to_owned(),
+            device: facts(&settings.device, &options.device.name()),
+            ..ReportInput::default()
+        };
+        write(folder, input, closed_loop(outcomes, &settings)?)?;
+        let page = folder.join("index.html");
+        text.push_str(&format!("Report: {}\n", page.display()));
+    }
     if options.json.as_deref().is_some_and(is_stdout) {
         return Ok(());
     }
-    print_bytes(felt::table::details(&outcomes).as_bytes())
+    print_bytes(text.as_bytes())
+}
+
+/// The closed loop for the report of a comparison of everything: nothing if scenarios were
+/// named, and a remark where no loop can be closed, which is no reason not to compare.
+pub(super) fn beside(options: &Compare) -> (ClosedLoop, Option<String>) {
+    if !options.scenarios.is_empty() {
+        return (ClosedLoop::default(), None);
+    }
+    let run = || {
+        let settings = settings(options)?;
+        let cases = cases(options, &SceneName::ALL, SECONDS, true)?;
+        closed_loop(compare(&cases, &settings, || ())?, &settings)
+    };
+    match run() {
+        Ok(closed) => (closed, None),
+        Err(error) => (
+            ClosedLoop::default(),
+            Some(format!("The loop was not closed: {error}.")),
+        ),
+    }
+}
+
+/// What the report shows of these outcomes: sweeps and designs of their rates beside them.
+fn closed_loop(outcomes: Vec<Outcome>, settings: &Settings) -> Result<ClosedLoop, Failure> {
+    let mut rates: Vec<(f64, PlantKind)> = Vec::new();
+    for Outcome { case, .. } in &outcomes {
+        if !rates.contains(&(case.rate_hz, case.plant)) {
+            rates.push((case.rate_hz, case.plant));
+        }
+    }
+    let each = || rates.iter().copied();
+    Ok(ClosedLoop {
+        outcomes,
+        swept: each()
+            .map(|(rate_hz, plant)| felt::sweep(settings, rate_hz, plant))
+            .collect::<Result<_, _>>()?,
+        designs: each()
+            .map(|(rate_hz, plant)| design(settings, rate_hz, plant))
+            .collect::<Result<_, _>>()?,
+        handle_inertia: settings.device.small.inertia_kg_m2,
+    })
+}
+
+fn design(settings: &Settings, rate_hz: f64, plant: PlantKind) -> Result<Design, Failure> {
+    let believed = believed(&felt::compare::device(settings, plant));
+    Design::new(&believed, rate_hz, LoopPoles::DEFAULT)
+}
+
+/// Writes the page, with the closed loop's scores beside it if there are any.
+pub(super) fn write(
+    folder: &Path,
+    mut input: ReportInput,
+    closed: ClosedLoop,
+) -> Result<(), Failure> {
+    if !closed.outcomes.is_empty() {
+        let rows: Vec<FeltRow> = (closed.outcomes.iter())
+            .flat_map(|o| o.rows.clone())
+            .collect();
+        let json = rows::json(&rows)?;
+        write_whole(&folder.join("closed-loop.json"), &json)?;
+        let csv = rows::csv(&rows, felt::COLUMNS)?;
+        write_whole(&folder.join("closed-loop.csv"), &csv)?;
+    }
+    input.closed_loop = closed;
+    write_page(folder, &input)
 }
 
 /// What all runs have in common.

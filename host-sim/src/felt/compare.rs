@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::run::{By, Prepared};
-use super::{FeltRow, Parasitic};
+use super::{FeltRow, Fingertip, Parasitic};
 use crate::closed_loop::{Hand, SceneName};
 use crate::compare::Cost;
 use crate::device::Device;
@@ -53,6 +53,8 @@ pub struct Settings {
 pub struct Outcome {
     /// What was run.
     pub case: Case,
+    /// What torque is worth at the device's fingertip.
+    pub fingertip: Fingertip,
     /// One for each estimator in the loop and one for the reference, in this order; one alone,
     /// called "any", where the scene does not ask for the large motor's velocity.
     pub runs: Vec<Run>,
@@ -99,6 +101,15 @@ pub fn hand(scene: SceneName) -> Hand {
     }
 }
 
+/// The plant's device, with or without its friction.
+#[must_use]
+pub fn device(settings: &Settings, plant: PlantKind) -> Device {
+    match plant {
+        PlantKind::Friction => settings.device.clone(),
+        PlantKind::Frictionless => settings.device.frictionless(),
+    }
+}
+
 /// Runs all cases in parallel; `done` is called as each ends. The outcomes come in the order of
 /// the cases.
 ///
@@ -128,6 +139,7 @@ pub fn compare(
         let rest = ran.split_off(prepared.closers().len());
         let mut outcome = Outcome {
             case: prepared.case.clone(),
+            fingertip: Fingertip::new(&settings.device),
             runs: Vec::new(),
             rows: Vec::new(),
             cost: Cost::default(),

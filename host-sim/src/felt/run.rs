@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use haptic_control::{Cause, DualStage, LoopPoles};
 
-use super::compare::{Case, Run, Settings, Signals, USUAL, hand};
+use super::compare::{Case, Run, Settings, Signals, USUAL, device, hand};
 use super::{FeltRow, Fingertip, Parasitic, REFERENCE};
 use crate::closed_loop::{self, Eye, Loop, Moment};
 use crate::compare::{Cost, interval, setup};
@@ -36,14 +36,6 @@ pub(super) struct Prepared<'a> {
     handle: Estimator,
     reference: Estimator,
     ticks: usize,
-}
-
-/// The plant's device, with or without its friction.
-pub(super) fn device(settings: &Settings, plant: PlantKind) -> Device {
-    match plant {
-        PlantKind::Friction => settings.device.clone(),
-        PlantKind::Frictionless => settings.device.frictionless(),
-    }
 }
 
 /// The estimator `kind` with its parameters, on an encoder with so many counts.

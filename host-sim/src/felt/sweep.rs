@@ -14,8 +14,8 @@ use rayon::prelude::*;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
-use super::compare::Settings;
-use super::run::{device, estimator};
+use super::compare::{Settings, device};
+use super::run::estimator;
 use super::{Fingertip, REFERENCE};
 use crate::closed_loop::believed;
 use crate::device::Device;

@@ -110,5 +110,6 @@ pub(super) fn report(extra: &[&str]) -> ReportInput {
         device,
         notes: vec!["Made-up signals: this page shows what a report looks like.".into()],
         cases,
+        ..ReportInput::default()
     }
 }

@@ -5,6 +5,7 @@ use super::palette::Palette;
 use super::sections::sections;
 use super::text::{escape, plant, rate};
 use super::verdict::verdict;
+use crate::parameters::PlantKind;
 
 /// The whole document.
 pub(super) fn page(report: &ReportInput) -> Result<String, String> {
@@ -46,15 +47,22 @@ pub(super) fn page(report: &ReportInput) -> Result<String, String> {
 
 /// What was run.
 fn run(report: &ReportInput) -> String {
-    let mut rates: Vec<f64> = report.cases.iter().map(|case| case.rate_hz).collect();
+    let closed = || report.closed_loop.outcomes.iter().map(|o| &o.case);
+    let compared = report.cases.iter().map(|case| case.rate_hz);
+    let mut rates: Vec<f64> = compared.chain(closed().map(|case| case.rate_hz)).collect();
     rates.sort_by(f64::total_cmp);
     rates.dedup();
-    let mut seeds: Vec<u64> = report.cases.iter().map(|case| case.seed).collect();
+    let compared = report.cases.iter().map(|case| case.seed);
+    let mut seeds: Vec<u64> = compared.chain(closed().map(|case| case.seed)).collect();
     seeds.sort_unstable();
     seeds.dedup();
     let plants: Vec<&str> = [false, true]
         .into_iter()
-        .filter(|&friction| report.cases.iter().any(|case| case.friction == friction))
+        .filter(|&friction| {
+            let closed_with = |case: &crate::felt::Case| case.plant == PlantKind::Friction;
+            report.cases.iter().any(|case| case.friction == friction)
+                || closed().any(|case| closed_with(case) == friction)
+        })
         .map(plant)
         .collect();
     let list = |items: Vec<String>| items.join(", ");

@@ -13,7 +13,7 @@ pub(super) const MUTED: RGBColor = RGBColor(0x77, 0x77, 0x77);
 pub(super) const GRID: RGBColor = RGBColor(0xe6, 0xe6, 0xe6);
 
 /// Okabe and Ito's colours, told apart with any colour vision.
-const NAMED: [(&str, RGBColor); 7] = [
+const NAMED: [(&str, RGBColor); 8] = [
     ("finite-difference", RGBColor(0x8c, 0x8c, 0x8c)),
     ("low-pass", RGBColor(0xe6, 0x9f, 0x00)),
     ("foaw-end-fit", RGBColor(0x56, 0xb4, 0xe9)),
@@ -21,6 +21,7 @@ const NAMED: [(&str, RGBColor); 7] = [
     ("kalman-triple", RGBColor(0x00, 0x9e, 0x73)),
     ("kalman-motor", RGBColor(0xd5, 0x5e, 0x00)),
     ("pll", RGBColor(0xcc, 0x79, 0xa7)),
+    ("reference", RGBColor(0x7a, 0x52, 0x30)),
 ];
 
 /// For the others, by first appearance: Tol's muted scheme, darker than the above.
@@ -36,6 +37,8 @@ const OTHERS: [RGBColor; 6] = [
 /// Names in order of appearance, and their colours.
 pub(super) struct Palette {
     colours: Vec<(String, RGBColor)>,
+    /// How many of them are in the open-loop comparison.
+    compared: usize,
 }
 
 impl Palette {
@@ -43,25 +46,33 @@ impl Palette {
         let names = report.cases.iter().flat_map(|case| {
             let drawn = case.traces.iter().flat_map(|t| &t.estimates);
             let rows = case.rows.iter().map(|row| &row.estimator);
-            rows.chain(drawn.map(|(name, _)| name))
+            rows.chain(drawn.map(|(name, _)| name)).map(String::as_str)
         });
-        Self::of(names.map(String::as_str))
+        let closed = report.closed_loop.closers().into_iter();
+        Self::named(names.map(|name| (name, true)).chain(closed.map(|name| (name, false))))
     }
 
     pub(super) fn of<'a>(names: impl Iterator<Item = &'a str>) -> Self {
+        Self::named(names.map(|name| (name, true)))
+    }
+
+    /// Names by order of appearance, and whether each is in the open-loop comparison.
+    fn named<'a>(names: impl Iterator<Item = (&'a str, bool)>) -> Self {
         let mut colours: Vec<(String, RGBColor)> = Vec::new();
+        let mut compared = 0;
         let mut others = OTHERS.iter().cycle();
-        for name in names {
+        for (name, is_compared) in names {
             if colours.iter().any(|(known, _)| known == name) {
                 continue;
             }
+            compared += usize::from(is_compared);
             let colour = NAMED
                 .iter()
                 .find(|(known, _)| *known == name)
                 .map_or_else(|| others.next().copied(), |(_, colour)| Some(*colour));
             colours.push((name.to_owned(), colour.unwrap_or(INK)));
         }
-        Self { colours }
+        Self { colours, compared }
     }
 
     pub(super) fn colour(&self, estimator: &str) -> RGBColor {
@@ -71,9 +82,11 @@ impl Palette {
             .map_or(INK, |(_, colour)| *colour)
     }
 
-    /// Every estimator of the report, in order of first appearance.
+    /// Every estimator of the open-loop comparison, in order of first appearance.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
-        self.colours.iter().map(|(name, _)| name.as_str())
+        self.colours[..self.compared]
+            .iter()
+            .map(|(name, _)| name.as_str())
     }
 }
 
@@ -105,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn thirteen_estimators_have_thirteen_colours() {
+    fn fourteen_estimators_have_fourteen_colours() {
         let names: Vec<&str> = NAMED.iter().map(|(name, _)| *name).collect();
         let all = [names.as_slice(), &["a", "b", "c", "d", "e", "f"]].concat();
         let palette = Palette::new(&report(&all));
@@ -116,6 +129,6 @@ mod tests {
             .collect();
         colours.sort_unstable();
         colours.dedup();
-        assert_eq!(colours.len(), 13);
+        assert_eq!(colours.len(), 14);
     }
 }

@@ -46,6 +46,11 @@ impl Axis {
         }
     }
 
+    /// Whether it is logarithmic.
+    pub(super) fn is_log(&self) -> bool {
+        self.log
+    }
+
     /// 0 at the low end, 1 at the high one; on a log axis what is not positive is far below.
     pub(super) fn part(&self, value: f64) -> f64 {
         if self.log {

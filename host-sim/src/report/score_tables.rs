@@ -185,7 +185,7 @@ fn block(scenario: &Scenario, shown: &[&Column], palette: &Palette) -> String {
     html + "</tbody>\n"
 }
 
-fn cell(text: &str, sort_by: f64, best: bool) -> String {
+pub(super) fn cell(text: &str, sort_by: f64, best: bool) -> String {
     let best = if best { " class=\"best\"" } else { "" };
     // An infinity sorts last in JavaScript as well.
     let sort_by = if sort_by.is_finite() {
@@ -196,7 +196,7 @@ fn cell(text: &str, sort_by: f64, best: bool) -> String {
     format!("<td{best} data-v=\"{sort_by}\">{text}</td>")
 }
 
-fn label(estimator: &str, palette: &Palette) -> String {
+pub(super) fn label(estimator: &str, palette: &Palette) -> String {
     let colour = palette.colour(estimator);
     let (r, g, b) = (colour.0, colour.1, colour.2);
     format!(

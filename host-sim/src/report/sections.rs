@@ -7,8 +7,8 @@ use super::grid::{Group, groups};
 use super::palette::Palette;
 use super::text::{number, plant, rate};
 use super::{
-    CaseReport, ReportInput, Traces, distances, problem, score_tables, spectra, tables, velocity,
-    windows,
+    CaseReport, ReportInput, Traces, distances, felt, problem, score_tables, spectra, tables,
+    velocity, windows,
 };
 
 /// One part of the page; without a body it is left out.
@@ -69,28 +69,31 @@ pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Se
         ),
         section("spectra", "Error spectra", errors(report, palette)?),
         section("scores", "Scores", scores(&groups, palette)),
-        section(
-            "device",
-            "Device",
-            format!(
-                "<div class=\"side\">{}{}</div>{}",
-                tables::constants(&report.device),
-                tables::count_worth(&report.device),
-                words(DEVICE)
-            ),
-        ),
     ];
+    let device = [section(
+        "device",
+        "Device",
+        format!(
+            "<div class=\"side\">{}{}</div>{}",
+            tables::constants(&report.device),
+            tables::count_worth(&report.device),
+            words(DEVICE)
+        ),
+    )];
+    let felt = felt::sections(report, palette)?;
     Ok(all
         .into_iter()
+        .chain(felt)
+        .chain(device)
         .filter(|section| !section.body.is_empty())
         .collect())
 }
 
-fn words(text: &str) -> String {
+pub(super) fn words(text: &str) -> String {
     format!("<p class=\"look\">{text}</p>\n")
 }
 
-fn framed(svg: &str) -> String {
+pub(super) fn framed(svg: &str) -> String {
     format!("<figure>{svg}</figure>\n")
 }
 

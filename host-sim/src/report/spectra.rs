@@ -134,7 +134,7 @@ fn curves(traces: &Traces) -> Vec<Curve> {
 }
 
 /// Amplitude density over frequency without 0 Hz, powers averaged within each log step.
-fn average(bin_hz: f64, power_per_hz: &[f64]) -> Vec<(f64, f64)> {
+pub(super) fn average(bin_hz: f64, power_per_hz: &[f64]) -> Vec<(f64, f64)> {
     let step = |bin: usize| ((bin as f64).log10() * POINTS_PER_DECADE).floor() as i64;
     let bins: Vec<usize> = (1..power_per_hz.len()).collect();
     bins.chunk_by(|&a, &b| step(a) == step(b))
