@@ -10,7 +10,7 @@ use crate::failure::Failure;
 
 /// Points of the response a decade, and how far below half the rate it begins, decades.
 const PER_DECADE: f64 = 80.0;
-const DECADES: f64 = 4.0;
+const DECADES: f64 = 5.0;
 
 /// The velocity loop of one rate.
 #[derive(Clone, Debug)]

@@ -141,8 +141,9 @@ impl<'a> Bench<'a> {
             .collect();
         numbers.dedup();
         let fingertip = Fingertip::new(device);
-        // Each as strong as a fingertip just notices; Schroeder's phases keep the sum low.
-        let amplitude = fingertip.threshold_mn / fingertip.mn_per_nm;
+        // Together as strong, RMS, as a fingertip just notices; Schroeder's phases keep peaks low.
+        let together = fingertip.threshold_mn / fingertip.mn_per_nm;
+        let amplitude = together * (2.0 / numbers.len() as f64).sqrt();
         let phase = |i: usize| -std::f64::consts::PI * (i * i) as f64 / numbers.len() as f64;
         Self {
             device,

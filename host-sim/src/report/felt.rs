@@ -49,11 +49,13 @@ const SPECTRUM: &str = "Where in frequency the parasitic force lies, hand moving
     what no finger feels but the motors still suffer.";
 const RENDERED: &str = "Force wanted by the scene (black), give or take what a fingertip notices \
     (green), and force felt (coloured), in the part of the run in which most happens. For each \
-    rate finite difference, the estimator with the least parasitic force in this scene, and the \
-    reference encoder. Delay shows as a shift, friction as steps at each reversal, a bad velocity \
-    as a coloured band.";
-const TORQUE: &str = "Forty sines at once, each as strong as a fingertip just notices, on a constant \
-    torque, into a clamped handle. Gain and phase of the torque felt against the torque wanted; \
+    rate finite difference, the other estimator with the least parasitic force in this scene, and \
+    the reference encoder; the number is that force, RMS over the run. Delay shows as a shift, friction as steps at each reversal, a bad velocity \
+    as a coloured band. Where a count is worth more than the slew limit lets through within a \
+    tick, as for finite difference at high rates, its spikes are clipped on one side and their \
+    mean is lost with them: an offset, not a band.";
+const TORQUE: &str = "Many sines at once, together (RMS) as strong as a fingertip just notices, on a \
+    constant torque, into a clamped handle. Gain and phase of the torque felt against the torque wanted; \
     the large motor brings the low frequencies, the small motor what is missing, so their sum is \
     flat until the amplifiers, the tick and half a tick of holding end it. Where the velocity is \
     late or noisy the sum is uneven and coherence, the part of the power that repeats, falls.";
@@ -121,12 +123,12 @@ fn find<'a>(outcome: &'a Outcome, controlled_by: &str) -> Option<&'a Run> {
         .find(|run| run.controlled_by == controlled_by)
 }
 
-/// The estimator of an outcome with the least parasitic force.
-fn best(outcome: &Outcome) -> Option<&Run> {
+/// The estimator of an outcome with the least parasitic force, among those that count.
+fn best(outcome: &Outcome, counts: impl Fn(&str) -> bool) -> Option<&Run> {
     let runs = outcome
         .runs
         .iter()
-        .filter(|run| run.controlled_by != REFERENCE);
+        .filter(|run| run.controlled_by != REFERENCE && counts(run.controlled_by));
     let rms = |run: &Run| run.parasitic.parasitic_mn_rms.unwrap_or(f64::INFINITY);
     runs.min_by(|a, b| rms(a).total_cmp(&rms(b)))
 }
@@ -197,7 +199,7 @@ fn in_words(closed: &ClosedLoop) -> Option<String> {
     let clauses: Vec<String> = (closed.of(scene).into_iter())
         .filter_map(|outcome| {
             let says = |run: &Run| run.parasitic.parasitic_mn_rms.map(number);
-            let best = best(outcome)?;
+            let best = best(outcome, |_| true)?;
             let mut text = format!(
                 "at {} {}\u{a0}mN with {}, below the threshold {} of the time",
                 rate(outcome.case.rate_hz),

@@ -13,6 +13,8 @@ use crate::score::SKIP_S;
 /// Bins across each axis, and the least share of the ticks that a bin needs to be drawn.
 const BINS: usize = 32;
 const LEAST_SHARE: f64 = 0.002;
+/// Where the force axis begins, mN.
+const LOWEST_MN: f64 = 1.0;
 /// Half of the span over which acceleration is taken, s: that of the transient score.
 const HALF_SPAN_S: f64 = 0.002;
 
@@ -93,14 +95,20 @@ pub(super) fn figures(
             all.push(Panel {
                 heading: rate(rate_hz),
                 x: Axis::linear([-widest, widest]),
-                y: Axis::log_exact([1.0, 200.0]),
+                y: Axis::log_exact([LOWEST_MN, 10.0 * LOWEST_MN]),
                 ticks: [7, 0],
                 x_title,
                 y_title: "parasitic force, rms, mN",
-                green: Green::Up([1.0, threshold_mn]),
+                green: Green::Up([LOWEST_MN, threshold_mn]),
                 curves,
             });
         }
+    }
+    let values = all.iter().flat_map(|panel| &panel.curves);
+    let values = values.flat_map(|curve| &curve.points).map(|(_, y)| *y);
+    let highest = values.fold(10.0 * LOWEST_MN, f64::max);
+    for panel in &mut all {
+        panel.y = Axis::log_exact([LOWEST_MN, 1.3 * highest]);
     }
     let has_off = outcomes.iter().any(|outcome| off(outcome).is_some());
     let keys: Vec<Key> = (names.iter())

@@ -102,10 +102,10 @@ fn figure(
     panels(&title, &keys, columns, 150.0, &all).map(Some)
 }
 
-/// Finite difference, the best, the reference: those that are there and have signals.
+/// Finite difference, the best of the others, the reference: those that are there and have signals.
 fn chosen(outcome: &Outcome) -> Vec<&Run> {
     let difference = find(outcome, "finite-difference");
-    let best = best(outcome);
+    let best = best(outcome, |name| name != "finite-difference");
     let mut runs: Vec<&Run> = Vec::new();
     for run in [difference, best, find(outcome, REFERENCE)]
         .into_iter()
@@ -162,7 +162,7 @@ fn panel<'a>(
         .parasitic_mn_rms
         .map_or_else(String::new, number);
     Panel {
-        heading: format!("{}, {}: {rms} mN rms", run.controlled_by, rate(rate_hz)),
+        heading: format!("{}, {}: {rms}\u{a0}mN", run.controlled_by, rate(rate_hz)),
         x: Axis::linear([0.0, time(window.end - 1)]),
         y: Axis::linear([0.0, 1.0]),
         ticks: [4, 5],

@@ -59,12 +59,11 @@ pub(super) fn figure(closed: &ClosedLoop, palette: &Palette) -> Result<Option<St
     for panel in &mut all {
         panel.y = Axis::log([1e-4 * highest, highest]);
     }
+    let has_off = !closed.of("off").is_empty();
     let keys: Vec<Key> = (names.iter())
         .map(|name| Key::Line(palette.colour(name), name))
-        .chain([
-            Key::Line(TRUTH, "motors off"),
-            Key::Band("felt as roughness, 50 to 500 Hz"),
-        ])
+        .chain(has_off.then_some(Key::Line(TRUTH, "motors off")))
+        .chain([Key::Band("felt as roughness, 50 to 500 Hz")])
         .collect();
     let plant = plant(first.case.plant == PlantKind::Friction);
     let title = format!("Spectrum of the parasitic force in free air, plant {plant}");

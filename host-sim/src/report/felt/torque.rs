@@ -13,18 +13,24 @@ use crate::felt::{Response, Swept, bandwidth_hz};
 use crate::parameters::PlantKind;
 use crate::score::TACTILE_BAND_HZ;
 
-/// What a row of panels shows.
-type Shown = (&'static str, fn(&Response) -> f64, [f64; 2], usize);
+/// What a row of panels shows: its axis covers this range, and in steps of the last number as
+/// much more below as there is.
+type Shown = (&'static str, fn(&Response) -> f64, [f64; 2], f64);
 
 const SHOWN: [Shown; 3] = [
     (
         "gain, dB",
-        |r| 20.0 * r.gain.max(1e-9).log10(),
-        [-9.0, 6.0],
-        6,
+        |r| 20.0 * r.gain.max(0.1).log10(),
+        [-6.0, 6.0],
+        3.0,
     ),
-    ("phase, degrees", |r| r.phase_deg, [-360.0, 45.0], 5),
-    ("coherence", |r| r.coherence, [0.0, 1.02], 5),
+    (
+        "phase, degrees",
+        |r| r.phase_deg.max(-720.0),
+        [-90.0, 30.0],
+        30.0,
+    ),
+    ("coherence", |r| r.coherence, [0.8, 1.0], 0.1),
 ];
 
 /// Lowest and highest rate.
@@ -45,7 +51,10 @@ pub(super) fn figures(closed: &ClosedLoop, palette: &Palette) -> Result<Option<S
         return Ok(None);
     };
     let mut all = Vec::new();
-    for (y_title, of, range, ticks) in SHOWN {
+    for (y_title, of, [low, high], step) in SHOWN {
+        let responses = swept.iter().flat_map(|s| &s.runs).flat_map(|(_, r)| r);
+        let lowest = responses.map(of).fold(low, f64::min);
+        let low = (lowest / step - 1e-9).floor() * step;
         for swept in &swept {
             let mut curves = Vec::new();
             let mut ends = [f64::INFINITY, 0.0_f64];
@@ -65,8 +74,8 @@ pub(super) fn figures(closed: &ClosedLoop, palette: &Palette) -> Result<Option<S
             all.push(Panel {
                 heading: rate(swept.rate_hz),
                 x: Axis::log_exact(ends),
-                y: Axis::linear(range),
-                ticks: [0, ticks],
+                y: Axis::linear([low, high]),
+                ticks: [0, 4],
                 x_title: "frequency, Hz",
                 y_title,
                 green: Green::Across(TACTILE_BAND_HZ),
