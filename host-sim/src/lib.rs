@@ -19,6 +19,7 @@ pub mod plant;
 pub mod recording;
 pub mod replay;
 pub mod report;
+pub mod robust;
 pub mod rows;
 pub mod scenario;
 pub mod score;

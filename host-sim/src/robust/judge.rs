@@ -1,0 +1,282 @@
+//! What a run came to, and whether that is safe.
+
+use serde::{Deserialize, Serialize};
+
+use super::high_pass::HighPass;
+use crate::closed_loop::SceneName;
+
+/// Largest speed of the handle that is allowed, rad/s: 2.1 m/s at the fingertip of the default
+/// handle, whose energy is then 9 mJ, that of a small coin dropped from 15 cm. It is twice what
+/// the monitor allows over its window of 5 ms, because a stop comes up to two windows late.
+pub const HANDLE_RAD_S: f64 = 60.0;
+/// Largest torque that a hand may feel, N.m: 4.3 N at the fingertip, which a hand holds against. A
+/// scene's spring asks a stiff hand for 0.13 N.m at most; the device is good for 0.2 N.m (1.5 A in
+/// the small motor, and 150 rad/s of slip, where the monitor stops), so that it can be passed.
+pub const FELT_NM: f64 = 0.150;
+/// Largest residual oscillation beyond what a scene itself excites, N.m RMS: 29 mN at the
+/// fingertip, three times what it can feel; reversals of friction under a hand leave half of it.
+pub const OSCILLATION_NM: f64 = 1e-3;
+/// Below this a torque is the hand's motion and tremor rather than the loop's, Hz.
+pub const OSCILLATION_HZ: f64 = 20.0;
+/// What a vibration may come to on a motor whose torque constant is 20 % too high.
+const STRONGEST: f64 = 1.2;
+
+/// Largest residual oscillation of a scene, N.m RMS.
+///
+/// A texture is a vibration, and detents are one under a hand that drags the handle over them.
+#[must_use]
+pub fn oscillation_limit_nm(scene: SceneName) -> f64 {
+    let own = match scene {
+        SceneName::Texture(amplitude, _) | SceneName::Detents(amplitude, _) => f64::from(amplitude),
+        _ => 0.0,
+    };
+    OSCILLATION_NM + STRONGEST * own / std::f64::consts::SQRT_2
+}
+
+/// One instant of a run.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Instant {
+    /// Velocity of the handle, rad/s.
+    pub handle_rad_s: f64,
+    /// Velocity of the large motor, rad/s.
+    pub large_rad_s: f64,
+    /// Torque that the hand feels, N.m.
+    pub felt_nm: f64,
+    /// Torque that the device puts on the handle, N.m.
+    pub rendered_nm: f64,
+    /// Torque that the scene asks for, N.m.
+    pub wanted_nm: f64,
+    /// Whether the monitor has stopped the device.
+    pub stopped: bool,
+}
+
+/// Largest magnitudes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Peaks {
+    /// Velocity of the handle, rad/s.
+    pub handle_rad_s: f64,
+    /// Velocity of the large motor, rad/s.
+    pub large_rad_s: f64,
+    /// Torque that the hand feels, N.m.
+    pub felt_nm: f64,
+    /// Torque on the handle that the scene did not ask for, N.m.
+    pub parasitic_nm: f64,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// Never stopped, within every limit.
+    Stable,
+    /// Stopped by the monitor before it passed a limit, and it passed none afterwards.
+    Stopped,
+    /// It passed a limit.
+    Violated,
+}
+
+/// Which limit was passed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reason {
+    /// The handle passed [`HANDLE_RAD_S`] while the device was running.
+    Speed,
+    /// The hand felt more than [`FELT_NM`] while the device was running.
+    Torque,
+    /// The handle passed [`HANDLE_RAD_S`] after the monitor's stop.
+    SpeedAfterStop,
+    /// The hand felt more than [`FELT_NM`] after the monitor's stop.
+    TorqueAfterStop,
+    /// It kept oscillating, see [`oscillation_limit_nm`].
+    Oscillation,
+    /// Something was not a number.
+    NotFinite,
+}
+
+/// A run as far as it has come.
+#[derive(Clone, Debug)]
+pub struct Judge {
+    /// While the device ran.
+    pub before: Peaks,
+    /// Once it was stopped.
+    pub after: Peaks,
+    /// Instant of the stop, ticks.
+    pub stopped: Option<usize>,
+    limit_nm: f64,
+    not_finite: bool,
+    ticks: usize,
+    settled: usize,
+    high_pass: HighPass,
+    squares: f64,
+}
+
+impl Judge {
+    /// A judge of a run of `scene` for `ticks` at `rate_hz`: oscillation is what is left in the
+    /// last quarter.
+    #[must_use]
+    pub fn new(scene: SceneName, rate_hz: f64, ticks: usize) -> Self {
+        Self {
+            limit_nm: oscillation_limit_nm(scene),
+            before: Peaks::default(),
+            after: Peaks::default(),
+            stopped: None,
+            not_finite: false,
+            ticks: 0,
+            settled: ticks - ticks / 4,
+            high_pass: HighPass::new(OSCILLATION_HZ, rate_hz),
+            squares: 0.0,
+        }
+    }
+
+    /// The next tick.
+    pub fn see(&mut self, now: &Instant) {
+        let stopped = self.stopped.is_some() || now.stopped;
+        if stopped && self.stopped.is_none() {
+            self.stopped = Some(self.ticks);
+        }
+        let peaks = if stopped {
+            &mut self.after
+        } else {
+            &mut self.before
+        };
+        for (peak, value) in [
+            (&mut peaks.handle_rad_s, now.handle_rad_s),
+            (&mut peaks.large_rad_s, now.large_rad_s),
+            (&mut peaks.felt_nm, now.felt_nm),
+            (&mut peaks.parasitic_nm, now.rendered_nm - now.wanted_nm),
+        ] {
+            *peak = peak.max(value.abs());
+            self.not_finite |= !value.is_finite();
+        }
+        let residual = self.high_pass.update(now.rendered_nm);
+        if self.ticks >= self.settled {
+            self.squares += residual * residual;
+        }
+        self.ticks += 1;
+    }
+
+    /// Residual oscillation, N.m RMS; of a run that was stopped there is none.
+    #[must_use]
+    pub fn oscillation_nm(&self) -> Option<f64> {
+        let over = self.ticks.saturating_sub(self.settled);
+        (self.stopped.is_none() && over > 0).then(|| (self.squares / over as f64).sqrt())
+    }
+
+    /// Whether that is safe, and why not.
+    #[must_use]
+    pub fn verdict(&self) -> (Verdict, Option<Reason>) {
+        let reason = if self.not_finite {
+            Reason::NotFinite
+        } else if self.before.handle_rad_s > HANDLE_RAD_S {
+            Reason::Speed
+        } else if self.before.felt_nm > FELT_NM {
+            Reason::Torque
+        } else if self.after.handle_rad_s > HANDLE_RAD_S {
+            Reason::SpeedAfterStop
+        } else if self.after.felt_nm > FELT_NM {
+            Reason::TorqueAfterStop
+        } else if self.oscillation_nm().is_some_and(|rms| rms > self.limit_nm) {
+            Reason::Oscillation
+        } else if self.stopped.is_some() {
+            return (Verdict::Stopped, None);
+        } else {
+            return (Verdict::Stable, None);
+        };
+        (Verdict::Violated, Some(reason))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    const RATE: f64 = 1000.0;
+
+    fn judged(ticks: usize, at: impl Fn(usize, f64) -> Instant) -> Judge {
+        let mut judge = Judge::new(SceneName::FreeAir, RATE, ticks);
+        for k in 0..ticks {
+            judge.see(&at(k, k as f64 / RATE));
+        }
+        judge
+    }
+
+    fn sine(amplitude: f64, hz: f64, t: f64) -> f64 {
+        amplitude * (TAU * hz * t).sin()
+    }
+
+    #[test]
+    fn quiet_motion_is_stable_whatever_the_hand_does() {
+        let judge = judged(2000, |_, t| Instant {
+            handle_rad_s: sine(20.0, 1.0, t),
+            felt_nm: sine(0.1, 4.0, t),
+            rendered_nm: sine(0.02, 2.0, t),
+            ..Instant::default()
+        });
+        assert_eq!(judge.verdict(), (Verdict::Stable, None));
+        assert!(judge.oscillation_nm().unwrap() < 0.2e-3);
+        assert!((judge.before.handle_rad_s - 20.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn an_oscillation_that_stays_violates_and_one_that_decays_does_not() {
+        let stays = |amplitude: f64| {
+            judged(2000, move |_, t| Instant {
+                rendered_nm: sine(amplitude, 80.0, t),
+                ..Instant::default()
+            })
+        };
+        let rms = stays(0.0012).oscillation_nm().unwrap();
+        assert!((rms - 0.0012 / 2_f64.sqrt()).abs() < 1e-5, "{rms}");
+        assert_eq!(stays(0.0012).verdict().0, Verdict::Stable);
+        assert_eq!(
+            stays(0.0016).verdict(),
+            (Verdict::Violated, Some(Reason::Oscillation))
+        );
+        let decays = judged(2000, |_, t| Instant {
+            rendered_nm: sine(0.1 * (-10.0 * t).exp(), 80.0, t),
+            ..Instant::default()
+        });
+        assert_eq!(decays.verdict(), (Verdict::Stable, None));
+    }
+
+    #[test]
+    fn a_stop_counts_only_before_and_after_a_limit() {
+        let runs_away = |stop: usize, coast: f64| {
+            judged(100, move |k, _| Instant {
+                handle_rad_s: if k < stop { k as f64 } else { coast },
+                stopped: k == stop,
+                ..Instant::default()
+            })
+        };
+        let in_time = runs_away(31, 40.0);
+        assert_eq!(in_time.verdict(), (Verdict::Stopped, None));
+        assert_eq!(in_time.stopped, Some(31));
+        assert_eq!(in_time.oscillation_nm(), None);
+        assert_eq!(in_time.before.handle_rad_s, 30.0);
+        assert_eq!(in_time.after.handle_rad_s, 40.0);
+        let late = (Verdict::Violated, Some(Reason::Speed));
+        assert_eq!(runs_away(62, 0.0).verdict(), late);
+        assert_eq!(runs_away(100, 0.0).verdict(), late);
+        let coasts = (Verdict::Violated, Some(Reason::SpeedAfterStop));
+        assert_eq!(runs_away(31, -61.0).verdict(), coasts);
+    }
+
+    #[test]
+    fn torque_and_what_is_not_a_number_violate() {
+        let felt = |nm: f64, stopped| {
+            judged(10, move |_, _| Instant {
+                felt_nm: nm,
+                stopped,
+                ..Instant::default()
+            })
+            .verdict()
+            .1
+        };
+        assert_eq!(felt(0.149, false), None);
+        assert_eq!(felt(-0.151, false), Some(Reason::Torque));
+        assert_eq!(felt(0.151, true), Some(Reason::TorqueAfterStop));
+        assert_eq!(felt(f64::NAN, false), Some(Reason::NotFinite));
+    }
+}

@@ -1,0 +1,210 @@
+//! One run as a row of a table.
+
+use haptic_control::Cause;
+use serde::{Deserialize, Serialize};
+
+use super::judge::{Judge, Reason, Verdict};
+use super::variation::Variation;
+use super::{Job, Settings};
+use crate::failure::Failure;
+
+/// One run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Scene.
+    pub scene: String,
+    /// Index of the drawn device, or the corner's name.
+    pub device: String,
+    /// Whether it was safe.
+    pub verdict: Verdict,
+    /// Which limit was passed.
+    pub reason: Option<Reason>,
+    /// Why the monitor stopped it.
+    pub stop: Option<String>,
+    /// When, s.
+    pub stop_s: Option<f64>,
+    /// Largest speed of the handle while the device ran, rad/s.
+    pub handle_rad_s: f64,
+    /// Largest speed of the large motor, rad/s.
+    pub large_rad_s: f64,
+    /// Largest torque felt, N.m.
+    pub felt_nm: f64,
+    /// Largest force felt at the fingertip, N.
+    pub felt_n: f64,
+    /// Largest parasitic force at the fingertip, N.
+    pub parasitic_n: f64,
+    /// Residual oscillation, N.m RMS; none of a run that was stopped.
+    pub oscillation_nm: Option<f64>,
+    /// Largest speed of the handle after the stop, rad/s.
+    pub after_handle_rad_s: Option<f64>,
+    /// Largest torque felt after the stop, N.m.
+    pub after_felt_nm: Option<f64>,
+    /// How the device differs from what the controller believes.
+    #[serde(flatten)]
+    pub variation: Variation,
+}
+
+/// Columns of the CSV: every field of a row.
+const COLUMNS: [&str; 28] = [
+    "scene",
+    "device",
+    "verdict",
+    "reason",
+    "stop",
+    "stop_s",
+    "handle_rad_s",
+    "large_rad_s",
+    "felt_nm",
+    "felt_n",
+    "parasitic_n",
+    "oscillation_nm",
+    "after_handle_rad_s",
+    "after_felt_nm",
+    "damping",
+    "large_inertia",
+    "small_inertia",
+    "large_constant",
+    "small_constant",
+    "large_friction",
+    "small_friction",
+    "amplifier",
+    "late_ticks",
+    "hand",
+    "gone_rad_s",
+    "disc_phase",
+    "disc_line",
+    "disc_random",
+];
+
+impl Row {
+    pub(super) fn new(
+        settings: &Settings,
+        (scene, subject): Job,
+        variation: Variation,
+        judge: &Judge,
+        cause: Option<Cause>,
+    ) -> Self {
+        let (verdict, reason) = judge.verdict();
+        let radius = settings.device.handle.diameter_m / 2.0;
+        let stopped = judge.stopped.is_some();
+        Self {
+            scene: scene.to_string(),
+            device: subject.to_string(),
+            verdict,
+            reason,
+            stop: cause.map(|cause| name(cause).to_owned()),
+            stop_s: judge.stopped.map(|tick| tick as f64 / settings.rate_hz),
+            handle_rad_s: digits(judge.before.handle_rad_s),
+            large_rad_s: digits(judge.before.large_rad_s),
+            felt_nm: digits(judge.before.felt_nm),
+            felt_n: digits(judge.before.felt_nm / radius),
+            parasitic_n: digits(judge.before.parasitic_nm / radius),
+            oscillation_nm: judge.oscillation_nm().map(digits),
+            after_handle_rad_s: stopped.then(|| digits(judge.after.handle_rad_s)),
+            after_felt_nm: stopped.then(|| digits(judge.after.felt_nm)),
+            variation,
+        }
+    }
+}
+
+const fn name(cause: Cause) -> &'static str {
+    match cause {
+        Cause::HandleOverspeed => "handle-overspeed",
+        Cause::LargeOverspeed => "large-overspeed",
+        Cause::Jump => "jump",
+        Cause::NotMoving => "not-moving",
+    }
+}
+
+/// Six significant digits; what is not a number is the largest one.
+fn digits(value: f64) -> f64 {
+    if !value.is_finite() {
+        return f64::MAX;
+    }
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+/// An array of objects, one a line.
+///
+/// # Errors
+/// [`Failure::Input`]; none is known to happen.
+pub fn json(rows: &[Row]) -> Result<Vec<u8>, Failure> {
+    let mut text = b"[".to_vec();
+    for (i, row) in rows.iter().enumerate() {
+        text.extend_from_slice(if i == 0 { b"\n" } else { b",\n" });
+        serde_json::to_writer(&mut text, row).map_err(|e| Failure::Input(e.to_string()))?;
+    }
+    text.extend_from_slice(b"\n]\n");
+    Ok(text)
+}
+
+/// The same as CSV; what is not defined is empty.
+///
+/// # Errors
+/// [`Failure::Input`]; none is known to happen.
+pub fn csv(rows: &[Row]) -> Result<Vec<u8>, Failure> {
+    let failed = |error: csv::Error| Failure::Input(error.to_string());
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(COLUMNS).map_err(failed)?;
+    for row in rows {
+        let object = serde_json::to_value(row).map_err(|e| Failure::Input(e.to_string()))?;
+        let cells = COLUMNS.iter().map(|&column| match &object[column] {
+            serde_json::Value::Null => String::new(),
+            serde_json::Value::String(text) => text.clone(),
+            number => number.to_string(),
+        });
+        writer.write_record(cells).map_err(failed)?;
+    }
+    writer
+        .into_inner()
+        .map_err(|e| Failure::Input(e.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closed_loop::SceneName;
+    use crate::robust::variation::Subject;
+
+    fn row() -> Row {
+        let (variation, _) = Subject::Drawn(3).variation(7, SceneName::FreeAir);
+        Row {
+            scene: "free-air".into(),
+            device: "3".into(),
+            verdict: Verdict::Violated,
+            reason: Some(Reason::SpeedAfterStop),
+            stop: Some("jump".into()),
+            stop_s: Some(0.1),
+            handle_rad_s: digits(1.0 / 3.0),
+            large_rad_s: digits(f64::NAN),
+            felt_nm: 0.0,
+            felt_n: 0.0,
+            parasitic_n: 1e-9,
+            oscillation_nm: None,
+            after_handle_rad_s: Some(1.5),
+            after_felt_nm: None,
+            variation,
+        }
+    }
+
+    #[test]
+    fn a_row_reads_back_to_the_last_bit() {
+        for i in 0..200 {
+            let (variation, _) = Subject::Drawn(i).variation(1, SceneName::Off);
+            let row = Row { variation, ..row() };
+            let text = serde_json::to_string(&row).unwrap();
+            assert_eq!(serde_json::from_str::<Row>(&text).unwrap(), row, "{text}");
+        }
+        assert_eq!(row().handle_rad_s, 0.333_333);
+    }
+
+    #[test]
+    fn the_columns_are_the_fields() {
+        let object = serde_json::to_value(row()).unwrap();
+        let mut fields: Vec<_> = object.as_object().unwrap().keys().cloned().collect();
+        let mut columns = COLUMNS.map(str::to_owned).to_vec();
+        fields.sort();
+        columns.sort();
+        assert_eq!(fields, columns);
+    }
+}

@@ -1,0 +1,199 @@
+//! What all rows of a scene came to.
+
+use std::fmt::Write as _;
+
+use super::judge::{FELT_NM, HANDLE_RAD_S, Verdict, oscillation_limit_nm};
+use super::row::Row;
+use super::{Settings, corners};
+
+use crate::closed_loop::SceneName;
+
+/// A distribution.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spread {
+    /// Half are below.
+    pub median: f64,
+    /// 95 % are not above.
+    pub high: f64,
+    /// None is above.
+    pub largest: f64,
+    /// 5 % are below.
+    pub low: f64,
+}
+
+/// One scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneSummary {
+    /// Its name.
+    pub scene: String,
+    /// Largest residual oscillation that is allowed, N.m RMS.
+    pub oscillation_limit_nm: f64,
+    /// How many were stable, stopped in time, violated.
+    pub counts: [usize; 3],
+    /// Largest speed of the handle, before and after a stop, rad/s.
+    pub handle_rad_s: Spread,
+    /// Largest speed of the large motor, rad/s.
+    pub large_rad_s: Spread,
+    /// Largest torque felt, before and after a stop, N.m.
+    pub felt_nm: Spread,
+    /// Largest parasitic force at the fingertip, N.
+    pub parasitic_n: Spread,
+    /// Residual oscillation of those that were not stopped, N.m RMS; `None` if all were.
+    pub oscillation_nm: Option<Spread>,
+}
+
+impl Spread {
+    /// The distribution of some values, by nearest rank; `None` of none.
+    #[must_use]
+    pub fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
+        let mut values: Vec<f64> = values.collect();
+        values.sort_by(f64::total_cmp);
+        let n = values.len();
+        let rank = |part: f64| values[((part * n as f64).ceil() as usize).clamp(1, n) - 1];
+        (n > 0).then(|| Self {
+            low: rank(0.05),
+            median: rank(0.5),
+            high: rank(0.95),
+            largest: rank(1.0),
+        })
+    }
+}
+
+/// The scenes in the order of their rows.
+///
+/// # Errors
+/// One line that names a scene that there is not.
+pub fn summaries(rows: &[Row]) -> Result<Vec<SceneSummary>, String> {
+    let scenes = rows.chunk_by(|a, b| a.scene == b.scene);
+    scenes.map(summary).collect()
+}
+
+fn summary(rows: &[Row]) -> Result<SceneSummary, String> {
+    let scene: SceneName = rows[0].scene.parse()?;
+    let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
+    let spread = |of: fn(&Row) -> f64| Spread::of(rows.iter().map(of)).unwrap_or_default();
+    Ok(SceneSummary {
+        scene: scene.to_string(),
+        oscillation_limit_nm: oscillation_limit_nm(scene),
+        counts: [Verdict::Stable, Verdict::Stopped, Verdict::Violated].map(count),
+        handle_rad_s: spread(|row| row.handle_rad_s.max(row.after_handle_rad_s.unwrap_or(0.0))),
+        large_rad_s: spread(|row| row.large_rad_s),
+        felt_nm: spread(|row| row.felt_nm.max(row.after_felt_nm.unwrap_or(0.0))),
+        parasitic_n: spread(|row| row.parasitic_n),
+        oscillation_nm: Spread::of(rows.iter().filter_map(|row| row.oscillation_nm)),
+    })
+}
+
+/// What was run, in a line.
+#[must_use]
+pub fn heading(settings: &Settings) -> String {
+    format!(
+        "{} Hz, {}, {} s, seed {}: {} corners and {} drawn devices a scene",
+        settings.rate_hz,
+        settings.estimator,
+        settings.seconds,
+        settings.seed,
+        corners::corners().len(),
+        settings.devices,
+    )
+}
+
+/// Counts and distributions, median, 95 % and largest, a line a scene, limits below.
+#[must_use]
+pub fn table(settings: &Settings, scenes: &[SceneSummary]) -> String {
+    let mut text = heading(settings) + "\n";
+    let _ = writeln!(
+        text,
+        "  {:<14}{:>7}{:>8}{:>9}   {:<20}{:<20}{:<20}oscillation mN.m",
+        "scene", "stable", "stopped", "violated", "handle rad/s", "felt mN.m", "parasitic N",
+    );
+    for scene in scenes {
+        let [stable, stopped, violated] = scene.counts;
+        let cells = [
+            (Some(scene.handle_rad_s), 1.0, None),
+            (Some(scene.felt_nm), 1e3, None),
+            (Some(scene.parasitic_n), 1.0, None),
+            (scene.oscillation_nm, 1e3, Some(scene.oscillation_limit_nm)),
+        ];
+        let _ = write!(
+            text,
+            "  {:<14}{stable:>7}{stopped:>8}{violated:>9}   ",
+            scene.scene
+        );
+        for (spread, factor, limit) in cells {
+            let cell = spread.map_or("-".to_owned(), |spread| {
+                let number = |value: f64| three_digits(factor * value);
+                let limit = limit.map_or(String::new(), |nm| format!(" of {}", number(nm)));
+                format!(
+                    "{} {} {}{limit}",
+                    number(spread.median),
+                    number(spread.high),
+                    number(spread.largest)
+                )
+            });
+            let _ = write!(text, "{cell:<20}");
+        }
+        text.truncate(text.trim_end().len());
+        text.push('\n');
+    }
+    let _ = writeln!(
+        text,
+        "Median, 95 %, largest. Limits: handle {HANDLE_RAD_S} rad/s, felt {} mN.m, oscillation as \
+         shown.",
+        1e3 * FELT_NM
+    );
+    text
+}
+
+fn three_digits(value: f64) -> String {
+    match value.abs() {
+        size if size >= 1e6 => format!("{value:.0e}"),
+        size if size >= 99.95 => format!("{value:.0}"),
+        size if size >= 9.995 => format!("{value:.1}"),
+        _ => format!("{value:.2}"),
+    }
+}
+
+/// The first violation and how to see it alone, or `None`.
+#[must_use]
+pub fn complaint(settings: &Settings, rows: &[Row]) -> Option<String> {
+    let violated = || rows.iter().filter(|row| row.verdict == Verdict::Violated);
+    let row = violated().next()?;
+    let reason = row.reason.map_or_else(String::new, |reason| {
+        let name = serde_json::to_value(reason).unwrap_or_default();
+        name.as_str().unwrap_or_default().to_owned()
+    });
+    Some(format!(
+        "{} of {} runs violated; the first is scene {}, device {}, seed {}: {reason}; alone with \
+         host-sim robust --scene {} --rate {} --estimator {} --seconds {} --seed {} --only {} and \
+         the same --device, --set, --presets",
+        violated().count(),
+        rows.len(),
+        row.scene,
+        row.device,
+        settings.seed,
+        row.scene,
+        settings.rate_hz,
+        settings.estimator,
+        settings.seconds,
+        settings.seed,
+        row.device,
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranks_are_of_values_that_are_there() {
+        let spread = Spread::of((1..=100).rev().map(f64::from)).unwrap();
+        assert_eq!(
+            (spread.low, spread.median, spread.high, spread.largest),
+            (5.0, 50.0, 95.0, 100.0)
+        );
+        let one = Spread::of(std::iter::once(3.0)).unwrap();
+        assert_eq!((one.low, one.largest), (3.0, 3.0));
+        assert_eq!(Spread::of(std::iter::empty()), None);
+    }
+}
