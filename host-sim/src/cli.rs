@@ -5,6 +5,7 @@ mod compare;
 mod felt;
 mod list;
 mod replay;
+mod robust;
 mod tune;
 mod zwidth;
 
@@ -36,6 +37,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Some(Command::Replay(options)) => replay::run(&options),
         Some(Command::Tune(options)) => tune::run(&options, &command_line),
         Some(Command::Zwidth(options)) => zwidth::run(&options, &command_line),
+        Some(Command::Robust(options)) => robust::run(&options),
+        Some(Command::Merge(options)) => robust::merge(&options),
         Some(Command::Estimators) => list::estimators(),
         Some(Command::Scenarios) => list::scenarios(),
         Some(Command::Device(options)) => list::device(&options),

@@ -16,6 +16,7 @@ mod page;
 mod palette;
 mod plot;
 mod problem;
+mod robust;
 mod score_tables;
 mod sections;
 mod spectra;
@@ -29,6 +30,8 @@ mod zwidth;
 pub use zwidth::zwidth;
 
 pub use felt::ClosedLoop;
+
+pub use robust::robust;
 
 /// Everything that the page shows.
 #[derive(Clone, Debug, Default)]

@@ -8,6 +8,8 @@ use crate::device::Device;
 use crate::estimators::Kind;
 use crate::failure::Failure;
 use crate::parameters::{Parameters, Presets};
+use crate::robust::shard::Part;
+use crate::robust::variation::Subject;
 use crate::scenario::ScenarioName;
 
 /// Velocity estimation for a dual-stage haptic device, simulated and scored.
@@ -30,6 +32,10 @@ pub(super) enum Command {
     Tune(Tune),
     /// Find the stiffest wall and the strongest damping that stay passive and free of limit cycles
     Zwidth(Zwidth),
+    /// Close the loop on devices that differ from what the controller believes, and judge each run
+    Robust(Robust),
+    /// Join the shards of a robust run
+    Merge(Merge),
     /// List the estimators and their parameters
     Estimators,
     /// List the scenarios
@@ -139,6 +145,68 @@ pub(super) struct Tune {
     /// File to write; compare and replay take it as --presets
     #[arg(long, value_name = "FILE.toml", default_value = "target/presets.toml")]
     pub(super) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Robust {
+    /// Scene to run; repeatable [default: all]
+    #[arg(long = "scene", value_name = "NAME")]
+    pub(super) scenes: Vec<String>,
+    /// Control rate, Hz
+    #[arg(
+        long,
+        value_name = "HZ",
+        default_value_t = 10e3,
+        allow_negative_numbers = true
+    )]
+    pub(super) rate: f64,
+    /// Estimator of both velocities
+    #[arg(long, value_name = "NAME", default_value = "kalman-triple-steady")]
+    pub(super) estimator: String,
+    /// How many devices are drawn for each scene, beside the corners
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(0..=10_000_000))]
+    pub(super) devices: u64,
+    /// Seed of everything random
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(super) seed: u64,
+    /// Duration of each run, s
+    #[arg(
+        long,
+        value_name = "S",
+        default_value_t = 2.0,
+        allow_negative_numbers = true
+    )]
+    pub(super) seconds: f64,
+    #[command(flatten)]
+    pub(super) device: DeviceFile,
+    #[command(flatten)]
+    pub(super) parameters: ParameterOptions,
+    /// Run one device of each scene alone: its index, or a corner's name
+    #[arg(long, value_name = "INDEX", conflicts_with = "shard")]
+    pub(super) only: Option<Subject>,
+    /// Run part K of N, and write a file for host-sim merge instead of the report
+    #[arg(long, value_name = "K/N", conflicts_with = "json")]
+    pub(super) shard: Option<Part>,
+    /// Folder for index.html, summary.svg, robust.csv, robust.json, or for the shard's file
+    /// [default: target/robust; with --json - or --only none]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Write the rows as JSON to FILE, or with - to standard output and nothing else there
+    #[arg(long, value_name = "FILE")]
+    pub(super) json: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Merge {
+    /// Files that host-sim robust --shard wrote, all of one run, in any order
+    #[arg(value_name = "SHARD", required = true)]
+    pub(super) shards: Vec<PathBuf>,
+    /// Folder for what the run would have written in one piece [default: target/robust]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Write the rows as JSON to FILE, or with - to standard output and nothing else there
+    #[arg(long, value_name = "FILE")]
+    pub(super) json: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -49,7 +49,11 @@ impl Palette {
             rows.chain(drawn.map(|(name, _)| name)).map(String::as_str)
         });
         let closed = report.closed_loop.closers().into_iter();
-        Self::named(names.map(|name| (name, true)).chain(closed.map(|name| (name, false))))
+        Self::named(
+            names
+                .map(|name| (name, true))
+                .chain(closed.map(|name| (name, false))),
+        )
     }
 
     pub(super) fn of<'a>(names: impl Iterator<Item = &'a str>) -> Self {

@@ -1,0 +1,176 @@
+//! The page of `robust`: how far devices came from the limits, scene by scene.
+
+use plotters::style::RGBColor;
+
+use super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure};
+use super::palette::{GRID, INK, MUTED};
+use super::text::{escape, number};
+use crate::robust::judge::{FELT_NM, HANDLE_RAD_S};
+use crate::robust::summary::{SceneSummary, Spread};
+
+/// Okabe and Ito's green, orange and red for stable, stopped and violated.
+const VERDICTS: [(RGBColor, &str); 3] = [
+    (RGBColor(0x00, 0x9e, 0x73), "stable"),
+    (RGBColor(0xe6, 0x9f, 0x00), "stopped in time"),
+    (RGBColor(0xb0, 0x00, 0x20), "violated"),
+];
+const SPREAD: RGBColor = RGBColor(0x56, 0xb4, 0xe9);
+const LIMIT: RGBColor = VERDICTS[2].0;
+
+/// Sizes, px.
+const LEFT: f64 = 110.0;
+const TOP: f64 = 84.0;
+const ROW: f64 = 30.0;
+const GAP: f64 = 26.0;
+
+/// One panel of distributions.
+struct Panel<'a> {
+    title: &'a str,
+    of: fn(&SceneSummary) -> Option<Spread>,
+    limit: fn(&SceneSummary) -> Option<f64>,
+    factor: f64,
+    axis: [f64; 2],
+}
+
+const PANELS: [Panel; 4] = [
+    Panel {
+        title: "largest handle speed, rad/s",
+        of: |scene| Some(scene.handle_rad_s),
+        limit: |_| Some(HANDLE_RAD_S),
+        factor: 1.0,
+        axis: [0.1, 100.0],
+    },
+    Panel {
+        title: "largest torque felt, mN.m",
+        of: |scene| Some(scene.felt_nm),
+        limit: |_| Some(FELT_NM),
+        factor: 1e3,
+        axis: [1.0, 1000.0],
+    },
+    Panel {
+        title: "largest parasitic force, N",
+        of: |scene| Some(scene.parasitic_n),
+        limit: |_| None,
+        factor: 1.0,
+        axis: [0.01, 10.0],
+    },
+    Panel {
+        title: "residual oscillation, mN.m",
+        of: |scene| scene.oscillation_nm,
+        limit: |scene| Some(scene.oscillation_limit_nm),
+        factor: 1e3,
+        axis: [0.01, 100.0],
+    },
+];
+
+/// The page: the figure, then the `table` as it was printed.
+///
+/// # Errors
+/// If the figure cannot be drawn.
+pub fn robust(heading: &str, scenes: &[SceneSummary], table: &str) -> Result<String, String> {
+    let svg = chart(scenes)?;
+    let style = include_str!("page.css");
+    Ok(format!(
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>Robustness of the loop</title>\n<style>\n{style}</style></head>\n<body>\n\
+         <header><h1>Robustness of the loop</h1>\n<p>{}. The controller believes the nominal \
+         device; each run has another one. Bars reach from 5 % to 95 % of the devices, the line \
+         in them is the median, the dot the largest; red lines are limits.</p></header>\n\
+         <main>\n<figure>{svg}</figure>\n<pre class=\"scroll\">{}</pre>\n</main></body></html>\n",
+        escape(heading),
+        escape(table),
+    ))
+}
+
+fn chart(scenes: &[SceneSummary]) -> Result<String, String> {
+    let title = "Devices that differ from the one believed in";
+    let bottom = TOP + ROW * scenes.len() as f64;
+    let share = (WIDTH - LEFT - 12.0 + GAP) / (PANELS.len() + 1) as f64;
+    figure(bottom + 34.0, title, |canvas| {
+        canvas.text(title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
+        let keys = VERDICTS.map(|(colour, name)| Key::Line(colour, name));
+        canvas.legend(&keys, (LEFT, 38.0))?;
+        for (i, scene) in scenes.iter().enumerate() {
+            let at = (LEFT - 10.0, TOP + ROW * (i as f64 + 0.5));
+            canvas.text(&scene.scene, at, Anchor::Right, LABEL, INK)?;
+        }
+        verdicts(canvas, scenes, [LEFT, LEFT + share - GAP])?;
+        for (i, panel) in PANELS.iter().enumerate() {
+            let left = LEFT + share * (i + 1) as f64;
+            panel.draw(canvas, scenes, [left, left + share - GAP])?;
+        }
+        Ok(())
+    })
+}
+
+fn middle(i: usize) -> f64 {
+    TOP + ROW * (i as f64 + 0.5)
+}
+
+/// Shares of the verdicts as bars, with the counts of what was not stable.
+fn verdicts(
+    canvas: &Canvas,
+    scenes: &[SceneSummary],
+    [left, right]: [f64; 2],
+) -> Result<(), String> {
+    canvas.text("verdicts", (left, TOP - 18.0), Anchor::Left, LABEL, INK)?;
+    for (i, scene) in scenes.iter().enumerate() {
+        let whole = scene.counts.iter().sum::<usize>().max(1) as f64;
+        let mut x = left;
+        let y = middle(i) - 4.0;
+        for (count, (colour, _)) in scene.counts.iter().zip(VERDICTS) {
+            // One in thousands is still to be seen.
+            let width = (right - left) * *count as f64 / whole;
+            let end = (x + width.max(f64::from(u8::from(*count > 0)))).min(right);
+            canvas.rectangle([(x, y - 5.0), (end, y + 5.0)], colour)?;
+            x = end;
+        }
+        let [stable, stopped, violated] = scene.counts;
+        let counts = format!("{stable} / {stopped} / {violated}");
+        canvas.text(&counts, (left, y + 12.0), Anchor::Left, 9.5, MUTED)?;
+    }
+    Ok(())
+}
+
+impl Panel<'_> {
+    fn draw(
+        &self,
+        canvas: &Canvas,
+        scenes: &[SceneSummary],
+        [left, right]: [f64; 2],
+    ) -> Result<(), String> {
+        let [low, high] = self.axis;
+        let place = |value: f64| {
+            let part = (self.factor * value / low).max(1.0).ln() / (high / low).ln();
+            left + part.min(1.0) * (right - left)
+        };
+        canvas.text(self.title, (left, TOP - 18.0), Anchor::Left, LABEL, INK)?;
+        let bottom = middle(scenes.len()) - 0.5 * ROW;
+        let mut tick = low;
+        while tick <= high * 1.001 {
+            let x = place(tick / self.factor);
+            canvas.line(&[(x, TOP), (x, bottom)], GRID, 1.0)?;
+            let text = number(tick);
+            canvas.text(&text, (x, bottom + 12.0), Anchor::Centre, 9.5, MUTED)?;
+            tick *= 10.0;
+        }
+        for (i, scene) in scenes.iter().enumerate() {
+            let y = middle(i);
+            if let Some(limit) = (self.limit)(scene) {
+                let x = place(limit);
+                canvas.line(&[(x, y - 0.5 * ROW), (x, y + 0.5 * ROW)], LIMIT, 1.5)?;
+            }
+            let Some(spread) = (self.of)(scene) else {
+                continue;
+            };
+            let [from, median, to, far] =
+                [spread.low, spread.median, spread.high, spread.largest].map(place);
+            canvas.line(&[(to, y), (far, y)], SPREAD, 1.0)?;
+            canvas.rectangle([(from, y - 5.0), (to.max(from + 1.0), y + 5.0)], SPREAD)?;
+            canvas.line(&[(median, y - 5.0), (median, y + 5.0)], INK, 1.5)?;
+            canvas.rectangle([(far - 2.0, y - 2.0), (far + 2.0, y + 2.0)], INK)?;
+        }
+        Ok(())
+    }
+}
