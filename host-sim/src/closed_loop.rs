@@ -1,26 +1,24 @@
 //! The controller of `haptic-control` in closed loop with the plant: what the hand feels.
 
+mod bench;
 mod press;
 mod scene;
 
 use std::f64::consts::TAU;
 
-use estimator_core::{Amps, Count, Hertz, Sample};
+use estimator_core::{Amps, Hertz};
 use haptic_control::{
     Action, Cause, Controller, DualStage, LoopPoles, Monitor, Motor, Rig, RstDesign, Scene,
 };
-use rand_xoshiro::Xoshiro256PlusPlus;
-use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 use crate::device::Device;
-use crate::encoder::{DiscErrors, Encoder};
 use crate::estimators::{Estimator, Kind, Setup};
 use crate::parameters::{Parameters, PlantKind};
-use crate::plant::{Plant, Pose, steps_per_tick};
-use crate::scenario::draw;
+use crate::plant::{Pose, steps_per_tick};
 
+pub use bench::Bench;
 pub use press::Press;
-pub use scene::{Hand, SceneName, Visit};
+pub use scene::{Hand, Motion, SceneName, Visit};
 
 /// Which encoder of the large motor closes the loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -162,7 +160,8 @@ impl<F: FnMut(&Moment)> Visit for Running<'_, F> {
         let period = 1.0 / rate_hz;
         let steps = steps_per_tick(period);
         let step = period / f64::from(steps);
-        let mut bench = Bench::new(self.run, step);
+        let run = self.run;
+        let mut bench = Bench::new(device, run.hand, run.eye, *rate_hz, run.seed, step);
         let controller = Controller::new(scene, large.clone(), handle.clone(), self.rig);
         let mut watched = *believed;
         if self.run.eye == Eye::Reference {
@@ -200,73 +199,10 @@ impl<F: FnMut(&Moment)> Visit for Running<'_, F> {
             });
             last_omega = omega;
             for j in 0..steps {
-                bench.step(&grip, f64::from(j) * step, step);
+                bench.step(&grip, f64::from(j) * step, step, &mut (), &mut ());
             }
             sample = bench.sample(wanted.large);
         }
-    }
-}
-
-/// Plant and encoders.
-struct Bench {
-    plant: Plant,
-    /// The encoder that closes the loop.
-    large: Encoder,
-    /// The device's own, where that is another.
-    own: Option<Encoder>,
-    small: Encoder,
-}
-
-impl Bench {
-    fn new(run: &Loop, step: f64) -> Self {
-        let device = &run.device;
-        let mut random = Xoshiro256PlusPlus::seed_from_u64(run.seed.rotate_left(17) ^ 0xC105_ED00);
-        let mut plant = Plant::new(device, step);
-        let start = Pose {
-            angle: draw(&mut random, 0.0, TAU),
-            omega: 0.0,
-        };
-        plant.place(start, run.hand.start(1.0 / run.rate_hz, run.seed));
-        let mut encoder = |counts_per_rev: u32, angle: f64, disc: DiscErrors| {
-            let first = random.next_u64() as u32;
-            let phase = draw(&mut random, 0.0, 1.0);
-            Encoder::new(counts_per_rev, first, phase, angle, disc)
-        };
-        let disc = DiscErrors::new(&device.disc, device.large.counts_per_rev, run.seed);
-        // The reference encoder is drawn last, so that it changes none of the others.
-        let own = encoder(device.large.counts_per_rev, start.angle, disc);
-        let angle = plant.small().angle;
-        let small = encoder(device.small.counts_per_rev, angle, DiscErrors::none());
-        let (large, own) = match run.eye {
-            Eye::Large => (own, None),
-            Eye::Reference => {
-                let counts_per_rev = device.reference.counts_per_rev;
-                let reference = encoder(counts_per_rev, start.angle, DiscErrors::none());
-                (reference, Some(own))
-            }
-        };
-        Self {
-            plant,
-            large,
-            own,
-            small,
-        }
-    }
-
-    fn step(&mut self, grip: &crate::plant::Grip, since: f64, step: f64) {
-        let (large, small) = (self.plant.large(), self.plant.small());
-        self.plant.step(grip, since, 0.0);
-        self.large.follow(large, self.plant.large(), step, &mut ());
-        if let Some(own) = &mut self.own {
-            own.follow(large, self.plant.large(), step, &mut ());
-        }
-        self.small.follow(small, self.plant.small(), step, &mut ());
-    }
-
-    fn sample(&self, current: Amps) -> Sample {
-        Sample::new(Count(self.large.count()))
-            .with_small(Count(self.small.count()))
-            .with_current(current)
     }
 }
 

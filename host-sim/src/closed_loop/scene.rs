@@ -135,18 +135,21 @@ pub enum Hand {
 }
 
 /// A hand's motion, tick by tick.
-pub(super) enum Motion {
+pub struct Motion(Mover);
+
+enum Mover {
     Intent(Box<Intent>),
     Pressing(Press, f64),
     Gone,
 }
 
 impl Motion {
-    pub(super) fn grip(&mut self, k: u64) -> Grip {
-        match self {
-            Self::Intent(intent) => intent.grip(k),
-            Self::Pressing(press, period_s) => press.grip(k, *period_s),
-            Self::Gone => Grip::Free,
+    /// What holds the handle during tick `k`.
+    pub fn grip(&mut self, k: u64) -> Grip {
+        match &mut self.0 {
+            Mover::Intent(intent) => intent.grip(k),
+            Mover::Pressing(press, period_s) => press.grip(k, *period_s),
+            Mover::Gone => Grip::Free,
         }
     }
 }
@@ -170,7 +173,8 @@ impl Hand {
     }
 
     /// Where the handle is at first.
-    pub(super) fn start(self, period_s: f64, seed: u64) -> Pose {
+    #[must_use]
+    pub fn start(self, period_s: f64, seed: u64) -> Pose {
         match (self.intent(period_s, seed), self) {
             (Some(intent), _) => intent.start(),
             (None, Self::Gone(omega)) => Pose { angle: 0.0, omega },
@@ -178,11 +182,13 @@ impl Hand {
         }
     }
 
-    pub(super) fn motion(self, period_s: f64, seed: u64) -> Motion {
-        match (self.intent(period_s, seed), self) {
-            (Some(intent), _) => Motion::Intent(Box::new(intent)),
-            (None, Self::Pressing(press)) => Motion::Pressing(press, period_s),
-            (None, _) => Motion::Gone,
-        }
+    /// The motion for ticks of `period_s`, drawn from `seed`.
+    #[must_use]
+    pub fn motion(self, period_s: f64, seed: u64) -> Motion {
+        Motion(match (self.intent(period_s, seed), self) {
+            (Some(intent), _) => Mover::Intent(Box::new(intent)),
+            (None, Self::Pressing(press)) => Mover::Pressing(press, period_s),
+            (None, _) => Mover::Gone,
+        })
     }
 }
