@@ -1,0 +1,125 @@
+//! The controller board: an STM32F42x with a DAC, its crystal, its supply.
+
+use std::num::{NonZeroU32, NonZeroU64};
+
+use rigless::device::{ErasedDevice, ResetCause};
+use rigless::machine::{Board, Target, armv7m};
+use rigless::mcu::{Mcu, Operate};
+use rigless::snapshot::Store;
+use rigless::soc::stm32f427::Stm32f427;
+use rigless::soc::{Bus, Error};
+use rigless::time::VirtualNanos;
+
+use crate::dac::Dac;
+
+const NAME: &str = "limpid";
+
+/// Core clock, Hz.
+pub const CORE_HZ: u64 = 168_000_000;
+
+/// The emulated part with a model in the DAC's slot, which it otherwise lacks.
+#[derive(Debug)]
+pub struct Part {
+    /// Everything but the DAC.
+    pub stm32: Stm32f427,
+    dac: Dac,
+    dac_slot: usize,
+}
+
+impl Part {
+    /// Codes on PA4 and PA5.
+    #[must_use]
+    pub fn dac_codes(&self) -> [Option<u16>; 2] {
+        Dac::codes(self.stm32.bus().slots()[self.dac_slot].registers())
+    }
+}
+
+impl Mcu for Part {
+    fn bus(&self) -> &Bus {
+        self.stm32.bus()
+    }
+
+    fn bus_mut(&mut self) -> &mut Bus {
+        self.stm32.bus_mut()
+    }
+
+    fn reset(&mut self, at: VirtualNanos, cause: ResetCause) {
+        self.stm32.reset(at, cause);
+    }
+
+    fn poll(&mut self, now: VirtualNanos) {
+        self.stm32.poll(now);
+    }
+
+    fn split(&mut self, slot: usize) -> (&mut Bus, Option<&mut dyn ErasedDevice>) {
+        if slot == self.dac_slot {
+            return (self.stm32.bus_mut(), Some(&mut self.dac));
+        }
+        self.stm32.split(slot)
+    }
+}
+
+/// The board. It has no snapshots: every run starts from reset.
+#[derive(Debug)]
+pub struct ControllerBoard {
+    /// The microcontroller.
+    pub part: Part,
+    instructions_per_second: NonZeroU64,
+}
+
+impl Store for ControllerBoard {}
+
+impl ControllerBoard {
+    /// A board whose crystal oscillates at `crystal_hz` (0: it is dead) and whose core retires
+    /// `instructions_per_second` of virtual time.
+    ///
+    /// # Errors
+    /// The emulator's, on a part that does not assemble.
+    pub fn new(crystal_hz: u64, instructions_per_second: NonZeroU64) -> Result<Self, Error> {
+        let mut stm32 = Stm32f427::new()?;
+        stm32.rcc.attach_crystals(crystal_hz, 0);
+        stm32.set_supply(3300);
+        let dac_slot = stm32.bus().slot("DAC")?;
+        Ok(Self {
+            part: Part {
+                stm32,
+                dac: Dac,
+                dac_slot,
+            },
+            instructions_per_second,
+        })
+    }
+}
+
+impl Board for ControllerBoard {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn target_names(&self) -> Vec<&'static str> {
+        vec![NAME]
+    }
+
+    fn mcu(&mut self, target: usize) -> Option<&mut dyn Mcu> {
+        (target == 0).then_some(&mut self.part)
+    }
+
+    fn targets(&mut self) -> Vec<Target<'_>> {
+        let lines = u32::from(self.part.cpu().interrupt_lines);
+        let core = armv7m::Core {
+            variant: armv7m::Variant::M4,
+            clock_hz: NonZeroU64::new(CORE_HZ).expect("not zero"),
+            interrupt_lines: NonZeroU32::new(lines).expect("a part with interrupts"),
+            priority_bits: 4,
+            refclk_divider: NonZeroU32::new(8).expect("not zero"),
+            instructions_per_second: self.instructions_per_second,
+            boot: "flash",
+        }
+        .spec_with_parts(
+            &rigless::cpu::armv7m::windows(self.part.bus()),
+            armv7m::Fpu::FpV4Sp,
+            armv7m::MpuRegions::Eight,
+        );
+        vec![Target::new(NAME, &mut self.part, core)]
+    }
+}

@@ -1,0 +1,203 @@
+//! The command line.
+
+use std::ffi::OsString;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use clap::Parser;
+use clap::error::ErrorKind;
+use host_sim::closed_loop::{Hand, SceneName};
+use host_sim::failure::Failure;
+use host_sim::output::{print_bytes, write_whole};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::command::Command;
+use crate::fault::Fault;
+use crate::image::Image;
+use crate::run::{Outcome, Setup, on_board};
+use crate::score::Range;
+
+/// Where cargo puts the image.
+const IMAGE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../target/thumbv7em-none-eabihf/release/firmware"
+);
+
+/// Before this the image boots and arms itself, s.
+const SETTLED_S: f64 = 0.4;
+
+/// Runs the flash image on an emulated board, in closed loop with the simulated device.
+#[derive(Debug, Parser)]
+#[command(name = "cargo board", version)]
+struct Arguments {
+    /// Scene that the image is told to render
+    #[arg(long, default_value = "free-air", value_parser = str::parse::<SceneName>)]
+    scene: SceneName,
+    /// Who holds the handle: moving, pushing or still
+    #[arg(long, default_value = "moving", value_parser = hand)]
+    hand: Hand,
+    /// Virtual seconds
+    #[arg(long, default_value_t = 3.0)]
+    seconds: f64,
+    /// Seed of the hand's motion and the encoders' phases
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// A fault and when it happens, as NAME@SECONDS; may be given more than once
+    #[arg(long, value_name = "NAME@S", value_parser = fault)]
+    fault: Vec<(f64, Fault)>,
+    /// ELF file to run instead of the one cargo has built
+    #[arg(long)]
+    image: Option<PathBuf>,
+    /// Writes the image's frames as a recording for `host-sim replay`
+    #[arg(long, value_name = "FILE.csv")]
+    record: Option<PathBuf>,
+}
+
+fn hand(name: &str) -> Result<Hand, String> {
+    match name {
+        "moving" => Ok(Hand::Moving),
+        "pushing" => Ok(Hand::Pushing),
+        "still" => Ok(Hand::Still),
+        _ => Err(format!(
+            "no hand '{name}'; there are moving, pushing, still"
+        )),
+    }
+}
+
+fn fault(text: &str) -> Result<(f64, Fault), String> {
+    let (name, at) = text
+        .split_once('@')
+        .ok_or("a fault needs its instant, as stuck-a@1.5")?;
+    let at: f64 = at.parse().map_err(|_| format!("'{at}' is no time in s"))?;
+    Ok((at, name.parse()?))
+}
+
+/// Runs the command line `arguments`, the program's name first.
+///
+/// # Errors
+/// A [`Failure`] with its exit status.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => return explain(&error),
+    };
+    if !(arguments.seconds > 0.0 && arguments.seconds <= 3600.0) {
+        let message = format!(
+            "--seconds {}: give more than 0, at most 3600",
+            arguments.seconds
+        );
+        return Err(Failure::Input(message));
+    }
+    let path = arguments
+        .image
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(IMAGE));
+    let image = Image::read(&path)?;
+    let setup = Setup {
+        hand: arguments.hand,
+        seed: arguments.seed,
+        seconds: arguments.seconds,
+        faults: arguments.fault.clone(),
+        commands: vec![(0.05, Command::Scene(arguments.scene)), (0.1, Command::Arm)],
+        ..Setup::default()
+    };
+    let outcome = on_board(&image, &setup, bar(setup.seconds))?;
+    print_bytes(summary(&arguments, &setup, &outcome).as_bytes())?;
+    if let Some(path) = &arguments.record {
+        write_whole(path, outcome.csv().as_bytes())?;
+    }
+    if outcome.ticks.is_empty() {
+        return Err(Failure::Check("the control task never ran".to_owned()));
+    }
+    Ok(())
+}
+
+fn explain(error: &clap::Error) -> Result<(), Failure> {
+    let text = error.render().to_string();
+    if let ErrorKind::DisplayHelp | ErrorKind::DisplayVersion = error.kind() {
+        return print_bytes(text.as_bytes());
+    }
+    let first = text.lines().next().unwrap_or_default();
+    let said = first.strip_prefix("error: ").unwrap_or(first);
+    Err(Failure::Input(format!("{said}; see cargo board --help")))
+}
+
+/// A progress bar over virtual time; it shows only on a terminal.
+fn bar(seconds: f64) -> impl FnMut(f64) + Send + 'static {
+    let bar = ProgressBar::new((seconds * 1e3) as u64);
+    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} ms of virtual time, {eta}");
+    if let Ok(style) = style {
+        bar.set_style(style);
+    }
+    move |t| {
+        bar.set_position((t * 1e3) as u64);
+        if t >= seconds {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn summary(arguments: &Arguments, setup: &Setup, outcome: &Outcome) -> String {
+    let mut out = String::new();
+    let mut line = |name: &str, text: String| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(out, "{name:<22}{text}");
+    };
+    let speed = setup.seconds / outcome.wall.as_secs_f64();
+    line(
+        "run",
+        format!(
+            "{} s of {}, seed {}, {speed:.1} virtual s a second",
+            setup.seconds, arguments.scene, setup.seed
+        ),
+    );
+    for complaint in &outcome.complaints {
+        line("WIRING", complaint.clone());
+    }
+    for said in &outcome.telemetry.log {
+        line("image", said.clone());
+    }
+    for restart in &outcome.restarts {
+        line(
+            "RESTART",
+            format!("{:.4} s, {}", restart.at_s, restart.cause),
+        );
+    }
+    let range = |range: Option<Range>, unit: &str| {
+        range.map_or("none".to_owned(), |r| {
+            format!("{} to {}, mean {:.1} {unit}", r.min, r.max, r.mean)
+        })
+    };
+    line(
+        "control tick",
+        range(outcome.instructions(), "instructions"),
+    );
+    line("control period", range(outcome.periods(), "ns"));
+    let malformed = outcome.telemetry.malformed.len();
+    let frames = &outcome.telemetry.frames;
+    line("frames", format!("{}, {malformed} malformed", frames.len()));
+    if let Some(last) = frames.last() {
+        line("state", format!("{}, cause {}", last.state, last.cause));
+        line(
+            "overruns, drops",
+            format!("{}, {}", last.overruns, last.drops),
+        );
+    }
+    for (at_ns, [large, small]) in outcome.enables.iter().skip(1) {
+        let name = |on: &bool| if *on { "on" } else { "off" };
+        let at = *at_ns as f64 * 1e-9;
+        line(
+            "amplifiers",
+            format!("{at:.5} s: large {}, small {}", name(large), name(small)),
+        );
+    }
+    let diameter = setup.device.handle.diameter_m;
+    match outcome.parasitic(SETTLED_S, diameter) {
+        Some(force) => line(
+            "parasitic force",
+            format!("{:.2} mN rms, {:.2} mN at most", force.rms_mn, force.max_mn),
+        ),
+        None => line("parasitic force", "no frame to judge by".to_owned()),
+    }
+    out
+}

@@ -1,0 +1,22 @@
+//! The flash image on an emulated STM32F427, in lockstep with the plant of `host-sim`.
+//!
+//! Quadrature edges go into the timers' pins at their instants, the DAC and the enable lines drive
+//! the amplifiers, RTT is drained and fed as a probe does, and the image runs unmodified. There is
+//! no model of cycles: a virtual second is a constant number of instructions.
+
+pub mod board;
+pub mod cli;
+pub mod command;
+pub mod dac;
+pub mod fault;
+pub mod image;
+mod lines;
+mod lockstep;
+pub mod pins;
+mod probe;
+mod quadrature;
+pub mod recording;
+mod rtt;
+pub mod run;
+pub mod score;
+pub mod telemetry;

@@ -1,0 +1,62 @@
+//! Quadrature: what an encoder's count looks like on its two lines, and when it changes.
+
+use host_sim::encoder::EdgeObserver;
+
+/// Levels of A and B at a count. Upwards A leads, as an STM32 timer counts up.
+pub(crate) fn levels(count: u32) -> [bool; 2] {
+    let phase = count & 3;
+    [phase == 1 || phase == 2, phase >= 2]
+}
+
+/// Encoders by number.
+pub(crate) const LARGE: usize = 0;
+pub(crate) const SMALL: usize = 1;
+
+/// A count about to be reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Edge {
+    pub(crate) at_ns: u64,
+    pub(crate) encoder: usize,
+    pub(crate) count: u32,
+}
+
+/// Notes the edges of one encoder in one step of the plant.
+pub(crate) struct Edges<'a> {
+    pub(crate) into: &'a mut Vec<Edge>,
+    pub(crate) encoder: usize,
+    /// Count before the next edge.
+    pub(crate) count: u32,
+    pub(crate) from_ns: u64,
+    pub(crate) step_ns: f64,
+}
+
+impl EdgeObserver for Edges<'_> {
+    fn edge(&mut self, boundary: u32, part: impl FnOnce() -> f64) {
+        // Boundary e lies between counts e - 1 and e.
+        self.count = if boundary == self.count {
+            self.count.wrapping_sub(1)
+        } else {
+            self.count.wrapping_add(1)
+        };
+        self.into.push(Edge {
+            at_ns: self.from_ns + (part() * self.step_ns) as u64,
+            encoder: self.encoder,
+            count: self.count,
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_line_changes_at_a_time_and_a_leads_upwards() {
+        for count in [0, 1, 2, 3, 7, u32::MAX] {
+            let (now, next) = (levels(count), levels(count.wrapping_add(1)));
+            let changed = usize::from(now[0] != next[0]) + usize::from(now[1] != next[1]);
+            assert_eq!(changed, 1, "{count}");
+        }
+        assert_eq!((levels(0), levels(1)), ([false, false], [true, false]));
+    }
+}

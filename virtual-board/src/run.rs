@@ -1,0 +1,212 @@
+//! One run of an image on the board, and what it leaves behind.
+
+use std::num::NonZeroU64;
+use std::time::{Duration, Instant};
+
+use host_sim::closed_loop::Hand;
+use host_sim::device::Device;
+use host_sim::plant::Pose;
+use rigless::emulator::{Start, run};
+use rigless::session::Session;
+use rigless::time::VirtualNanos;
+
+use crate::board::{CORE_HZ, ControllerBoard};
+use crate::command::Command;
+use crate::fault::Fault;
+use crate::image::Image;
+use crate::lockstep::Lockstep;
+use crate::telemetry::{Frame, Telemetry};
+
+/// Control rate of the image, Hz.
+pub const RATE_HZ: f64 = 10e3;
+
+/// Current per DAC code from mid-scale, A: large motor, small motor.
+pub const AMPS_PER_CODE: [f64; 2] = [6.0 / 2047.0, 1.5 / 2047.0];
+
+/// What the image is to meet.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// The device as it is.
+    pub device: Device,
+    /// Who holds the handle.
+    pub hand: Hand,
+    /// Seed of the hand's motion, the encoders' phases and the disc.
+    pub seed: u64,
+    /// Virtual time, s.
+    pub seconds: f64,
+    /// Faults and their instants, s.
+    pub faults: Vec<(f64, Fault)>,
+    /// Commands and their instants, s.
+    pub commands: Vec<(f64, Command)>,
+    /// Bytes to send that are no command, and their instants, s.
+    pub garbage: Vec<(f64, Vec<u8>)>,
+    /// Whether to send a keep-alive every 50 ms.
+    pub keep_alive: bool,
+    /// Frequency of the crystal, Hz; 0 is a dead one.
+    pub crystal_hz: u64,
+    /// Instructions in a second of virtual time.
+    pub instructions_per_second: NonZeroU64,
+}
+
+impl Default for Setup {
+    fn default() -> Self {
+        Self {
+            device: Device::default(),
+            hand: Hand::Moving,
+            seed: 1,
+            seconds: 1.0,
+            faults: Vec::new(),
+            commands: Vec::new(),
+            garbage: Vec::new(),
+            keep_alive: true,
+            crystal_hz: 8_000_000,
+            instructions_per_second: NonZeroU64::new(CORE_HZ).expect("not zero"),
+        }
+    }
+}
+
+/// One call of the control task, and the truth at its start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tick {
+    /// When it began, ns.
+    pub at_ns: u64,
+    /// Instructions from its first to its return.
+    pub instructions: u32,
+    /// What it read from the large and the small encoder's counter.
+    pub counts: [Option<u16>; 2],
+    /// DAC codes at its end.
+    pub codes: [Option<u16>; 2],
+    /// Amplifiers enabled at its end.
+    pub enabled: [bool; 2],
+    /// Large motor.
+    pub large: Pose,
+    /// Handle.
+    pub handle: Pose,
+    /// Torque felt on the handle, N.m.
+    pub felt: f64,
+}
+
+/// The plant at a multiple of 100 us.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Torque felt on the handle, N.m.
+    pub felt: f64,
+    /// Currents that the amplifiers are told to drive, A.
+    pub currents: [f64; 2],
+    /// Velocity of the large motor, rad/s.
+    pub large_omega: f64,
+}
+
+/// A restart of the processor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Restart {
+    /// When, s.
+    pub at_s: f64,
+    /// Why, in the emulator's words.
+    pub cause: String,
+}
+
+/// What a run leaves behind.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Every call of the control task.
+    pub ticks: Vec<Tick>,
+    /// The plant, every 100 us.
+    pub moments: Vec<Moment>,
+    /// What the image read from both counters before its first tick.
+    pub first_counts: [Option<u16>; 2],
+    /// What the firmware said.
+    pub telemetry: Telemetry,
+    /// Each change of the amplifiers' enables, with its instant in ns.
+    pub enables: Vec<(u64, [bool; 2])>,
+    /// Restarts.
+    pub restarts: Vec<Restart>,
+    /// Pins that are not what their wires need, when control began.
+    pub complaints: Vec<String>,
+    /// Calls of the control task that were not seen to return.
+    pub unclosed: u32,
+    /// Peripherals that the image touched and that have no model.
+    pub unmodelled: Vec<String>,
+    /// Time that the run took.
+    pub wall: Duration,
+    /// The firmware's number of the first of `ticks`.
+    first_tick: Option<u32>,
+}
+
+impl Outcome {
+    /// Which of `ticks` a frame tells of.
+    #[must_use]
+    pub fn tick_index(&self, frame: &Frame) -> Option<usize> {
+        let index = frame.tick.wrapping_sub(self.first_tick?) as usize;
+        (index < self.ticks.len()).then_some(index)
+    }
+
+    /// The control tick that a frame tells of.
+    #[must_use]
+    pub fn tick(&self, frame: &Frame) -> Option<&Tick> {
+        self.ticks.get(self.tick_index(frame)?)
+    }
+}
+
+/// Runs `image`; `progress` hears the virtual time in s now and then.
+///
+/// # Errors
+/// One line on an impossible device, an image that is none, or an emulator that gave up.
+pub fn on_board(
+    image: &Image,
+    setup: &Setup,
+    progress: impl FnMut(f64) + Send + 'static,
+) -> Result<Outcome, String> {
+    setup.device.validate()?;
+    let emulator = |error: &dyn std::fmt::Display| format!("emulator: {error}");
+    let board = ControllerBoard::new(setup.crystal_hz, setup.instructions_per_second)
+        .map_err(|error| emulator(&error))?;
+    let mut session =
+        Session::new(Box::new(board), 0, VirtualNanos(0)).map_err(|error| emulator(&error))?;
+    let lockstep = Lockstep::new(image, setup, Box::new(progress));
+    lockstep.watch(&mut session);
+    let since = Instant::now();
+    let images = [image.placed.clone()];
+    let finished =
+        run(session, &Start::new(&images), lockstep).map_err(|error| emulator(&error))?;
+    let wall = since.elapsed();
+    let session = finished.session;
+    let restarts = session.resets().iter().map(|reset| Restart {
+        at_s: reset.at.0 as f64 * 1e-9,
+        cause: format!("{:?}", reset.cause),
+    });
+    let restarts = restarts.collect();
+    let unmodelled = session
+        .unimplemented()
+        .values()
+        .map(|one| format!("{one:?}"));
+    let unmodelled = unmodelled.collect();
+    let Lockstep { seen, probe, .. } = finished.driver;
+    let telemetry = Telemetry::decode(&image.elf, &probe.stream)?;
+    Ok(Outcome {
+        first_tick: first_tick(&telemetry.frames, &seen.ticks),
+        telemetry,
+        ticks: seen.ticks,
+        first_counts: seen.first_counts,
+        moments: seen.moments,
+        enables: seen.enables,
+        complaints: seen.complaints,
+        unclosed: seen.unclosed,
+        restarts,
+        unmodelled,
+        wall,
+    })
+}
+
+/// Where the firmware began to count its ticks: the start that makes every frame agree with what
+/// its tick read.
+fn first_tick(frames: &[Frame], ticks: &[Tick]) -> Option<u32> {
+    (0..4).find(|first| {
+        frames.iter().all(|frame| {
+            let tick = ticks.get(frame.tick.wrapping_sub(*first) as usize);
+            tick.is_some_and(|tick| {
+                tick.counts == [Some(frame.large as u16), Some(frame.small as u16)]
+            })
+        })
+    })
+}
