@@ -18,6 +18,8 @@ pub enum Cause {
     Jump,
     /// The large motor's current was high for long and its encoder did not move.
     NotMoving,
+    /// The large motor sped up against its current: an encoder's phases are swapped, or a motor's.
+    Against,
 }
 
 /// Largest displacements and times, in counts and ticks.
@@ -33,7 +35,7 @@ pub struct Monitor {
     pub large: u32,
     /// Largest displacement of either in one tick.
     pub jump: u32,
-    /// Longest time at a current above `stall_milliamps` without a count, ticks.
+    /// Longest time at a current above `stall_milliamps` without getting anywhere, ticks.
     pub stall: u32,
     /// Magnitude of the large motor's current from which it has to move, mA.
     pub stall_milliamps: u32,
@@ -45,7 +47,13 @@ pub struct MonitorState {
     last: [Count; 2],
     window_start: [Count; 2],
     ticks: u32,
+    /// Displacement of the large motor in the window before.
+    before: Counts,
+    /// Where the large motor was when it last moved.
+    resting: Count,
     still: u32,
+    /// Ticks for which the large motor's current has been high in one direction, and that one.
+    pushed: (u32, i32),
     cause: Option<Cause>,
 }
 
@@ -81,7 +89,10 @@ impl Monitor {
             last: [first.large, first.small],
             window_start: [first.large, first.small],
             ticks: 0,
+            before: Counts(0),
+            resting: first.large,
             still: 0,
+            pushed: (0, 0),
             cause: None,
         }
     }
@@ -92,11 +103,21 @@ impl Monitor {
         let [large, small] = [0, 1].map(|i| distance(now[i] - state.last[i]));
         state.last = now;
         let milliamps = (sample.current.get() * 1000.0) as i32;
-        let driven = milliamps.unsigned_abs() > self.stall_milliamps;
-        state.still = if driven && large == 0 {
-            state.still.saturating_add(1)
+        let push = if milliamps.unsigned_abs() > self.stall_milliamps {
+            milliamps.signum()
         } else {
             0
+        };
+        // An encoder with a dead phase dithers by a count or two and gets nowhere.
+        if push == 0 || distance(sample.large - state.resting) > DITHER {
+            state.resting = sample.large;
+            state.still = 0;
+        } else {
+            state.still = state.still.saturating_add(1);
+        }
+        state.pushed = match state.pushed {
+            (ticks, direction) if direction == push => (ticks.saturating_add(1), push),
+            _ => (1, push),
         };
         state.ticks += 1;
         let mut found = None;
@@ -105,8 +126,17 @@ impl Monitor {
         }
         if state.ticks >= self.window {
             state.ticks = 0;
-            let [large, handle] = [0, 1].map(|i| distance(now[i] - state.window_start[i]));
+            let [moved, handled] = [0, 1].map(|i| now[i] - state.window_start[i]);
+            let [large, handle] = [moved, handled].map(distance);
             state.window_start = now;
+            // In the direction of the push: negative and falling is away from it, ever faster.
+            let (ticks, push) = state.pushed;
+            let along = [moved, state.before].map(|moved| moved.0.saturating_mul(push));
+            state.before = moved;
+            let faster = along[1].saturating_sub(along[0]);
+            if ticks > self.window && along[0] < 0 && faster > 2 * DITHER as i32 {
+                found = Some(Cause::Against);
+            }
             if large > self.large {
                 found = Some(Cause::LargeOverspeed);
             }
@@ -121,6 +151,9 @@ impl Monitor {
         state.cause
     }
 }
+
+/// Counts by which an encoder may move without getting anywhere.
+const DITHER: u32 = 2;
 
 fn distance(displacement: Counts) -> u32 {
     displacement.0.unsigned_abs()

@@ -58,6 +58,8 @@ pub enum Stop {
     HardFault = 12,
     /// No command came for too long. The scene went off; this one does not lead to safe.
     CommandTimeout = 13,
+    /// The large motor sped up against its current.
+    Against = 14,
 }
 
 impl Stop {
@@ -79,6 +81,7 @@ impl Stop {
             11 => Self::Panic,
             12 => Self::HardFault,
             13 => Self::CommandTimeout,
+            14 => Self::Against,
             _ => return None,
         })
     }
@@ -91,6 +94,7 @@ impl From<Cause> for Stop {
             Cause::LargeOverspeed => Self::LargeOverspeed,
             Cause::Jump => Self::Jump,
             Cause::NotMoving => Self::NotMoving,
+            Cause::Against => Self::Against,
         }
     }
 }

@@ -63,8 +63,8 @@ fn each_cause_is_found_within_its_time() {
 }
 
 #[test]
-fn a_count_or_a_rest_from_current_clears_the_stall() {
-    assert_eq!(first(20_000, |k| sample(k / 1900, 0, 2.0)), None);
+fn motion_or_a_rest_from_current_clears_the_stall() {
+    assert_eq!(first(20_000, |k| sample(k / 600, 0, 2.0)), None);
     assert_eq!(
         first(20_000, |k| sample(
             0,
@@ -117,4 +117,27 @@ fn limits_hold_for_every_input() {
     // The bound is reached, not only kept.
     let risen = (0..100).fold(0.0, |current, _| limits.applied(9.0, current));
     assert_eq!(risen, 1.5);
+}
+
+#[test]
+fn a_dithering_phase_is_a_stall() {
+    let stall = first(5000, |k| sample(7 + k % 3, 0, 2.0));
+    assert!(
+        matches!(stall, Some((2000..=2002, Cause::NotMoving))),
+        "{stall:?}"
+    );
+}
+
+#[test]
+fn speeding_up_against_the_current_is_found_and_slowing_down_is_not() {
+    // 1 A on the default device: 4000 rad/s², 0.026 counts a tick each tick.
+    let moved = |k: u32| (0.013 * f64::from(k) * f64::from(k)) as u32;
+    let away = first(1000, |k| sample(0_u32.wrapping_sub(moved(k)), 0, 1.0));
+    assert!(matches!(away, Some((51..=150, Cause::Against))), "{away:?}");
+    let away = first(1000, |k| sample(moved(k), 0, -1.0));
+    assert!(matches!(away, Some((51..=150, Cause::Against))), "{away:?}");
+    let along = first(300, |k| sample(moved(k), 0, 1.0));
+    assert_eq!(along, None);
+    let braking = first(300, |k| sample(0_u32.wrapping_sub(moved(300 - k)), 0, -1.0));
+    assert_eq!(braking, None);
 }

@@ -23,7 +23,7 @@ fn running() -> SafetyState {
     state
 }
 
-fn wrongs() -> [(Findings, Stop); 8] {
+fn wrongs() -> [(Findings, Stop); 9] {
     let of = |cause| Findings {
         monitor: Some(cause),
         ..WELL
@@ -33,6 +33,7 @@ fn wrongs() -> [(Findings, Stop); 8] {
         (of(Cause::LargeOverspeed), Stop::LargeOverspeed),
         (of(Cause::Jump), Stop::Jump),
         (of(Cause::NotMoving), Stop::NotMoving),
+        (of(Cause::Against), Stop::Against),
         (
             Findings {
                 amplifier_fault: true,
@@ -93,7 +94,7 @@ fn a_cause_comes_before_a_request_of_the_same_tick() {
 
 #[test]
 fn arming_is_refused_while_an_amplifier_or_the_clock_is_faulty() {
-    for (findings, stop) in [wrongs()[4], wrongs()[5]] {
+    for (findings, stop) in [wrongs()[5], wrongs()[6]] {
         let mut state = SAFETY.start(Stop::None);
         assert!(!tick(&mut state, findings, Some(Request::Arm)).enable);
         assert_eq!((state.mode(), state.stop()), (Mode::Safe, stop));
@@ -180,10 +181,10 @@ fn rare_missed_ticks_are_forgiven_and_frequent_ones_are_not() {
 
 #[test]
 fn codes_come_back() {
-    for code in 0..=13 {
+    for code in 0..=14 {
         assert_eq!(Stop::from_code(code).map(|stop| stop as u8), Some(code));
     }
-    assert_eq!(Stop::from_code(14), None);
+    assert_eq!(Stop::from_code(15), None);
 }
 
 /// From every mode, whatever is found and asked: enabled means armed or running, only `Arm` gets
