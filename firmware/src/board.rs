@@ -8,7 +8,7 @@ use stm32f4xx_hal::gpio::{Input, Output, Pin};
 use stm32f4xx_hal::pac::{self, TIM2, TIM3, TIM4};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::qei::Qei;
-use stm32f4xx_hal::rcc::Config;
+use stm32f4xx_hal::rcc::{Config, Rcc};
 use stm32f4xx_hal::timer::Event;
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
@@ -88,6 +88,20 @@ impl Amplifiers {
     }
 }
 
+/// The clock tree.
+pub(crate) struct Clock {
+    rcc: Rcc,
+    crystal: bool,
+}
+
+impl Clock {
+    /// Whether the crystal never ran, or stopped: then the core is on the internal oscillator.
+    /// The NMI comes first; this is for when it did not.
+    pub(crate) fn has_failed(&self) -> bool {
+        !self.crystal || !self.rcc.cfgr().read().sws().is_pll()
+    }
+}
+
 /// Everything that the application works with.
 pub(crate) struct Board {
     pub(crate) encoders: Encoders,
@@ -96,8 +110,7 @@ pub(crate) struct Board {
     pub(crate) watchdog: IndependentWatchdog,
     /// Why the chip was reset.
     pub(crate) reset: Stop,
-    /// The crystal does not run: the clock is the internal one, good to 1 %.
-    pub(crate) clock_failure: bool,
+    pub(crate) clock: Clock,
 }
 
 impl Board {
@@ -174,7 +187,7 @@ impl Board {
             tick: Tick::new(timer),
             watchdog,
             reset,
-            clock_failure: !crystal,
+            clock: Clock { rcc, crystal },
         }
     }
 }

@@ -19,6 +19,7 @@ const SAFETY: Safety = Safety {
 /// What a tick knows, beside its sample.
 pub(crate) struct Inputs {
     pub(crate) amplifier_fault: bool,
+    pub(crate) clock_failure: bool,
     /// Control ticks missed since the last one.
     pub(crate) missed: u32,
     pub(crate) request: Option<Request>,
@@ -29,7 +30,6 @@ pub(crate) struct Control {
     core: Core,
     monitor: MonitorState,
     safety: SafetyState,
-    clock_failure: bool,
     applied: Currents,
     tick: u32,
     overruns: u32,
@@ -37,12 +37,11 @@ pub(crate) struct Control {
 
 impl Control {
     /// At rest at the first sample, after a reset for this cause.
-    pub(crate) fn new(first: &Sample, reset: Stop, clock_failure: bool) -> Self {
+    pub(crate) fn new(first: &Sample, reset: Stop) -> Self {
         Self {
             core: Core::start(first),
             monitor: MONITOR.start(first),
             safety: SAFETY.start(reset),
-            clock_failure,
             applied: Currents::default(),
             tick: 0,
             overruns: 0,
@@ -61,7 +60,7 @@ impl Control {
         let findings = Findings {
             monitor: MONITOR.check(&mut self.monitor, sample),
             amplifier_fault: inputs.amplifier_fault,
-            clock_failure: self.clock_failure,
+            clock_failure: inputs.clock_failure,
             finite: is_finite(&action),
             missed: inputs.missed,
         };

@@ -18,7 +18,7 @@ mod app {
     use heapless::spsc::Consumer;
     use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
-    use crate::board::{Amplifiers, Board, Encoders, RATE_HZ};
+    use crate::board::{Amplifiers, Board, Clock, Encoders, RATE_HZ};
     use crate::commands::{Commands, Requests};
     use crate::control::{Control, Inputs};
     use crate::telemetry::{self, Frame, Frames, Sender};
@@ -29,6 +29,7 @@ mod app {
 
     #[local]
     struct Local {
+        clock: Clock,
         tick: Tick,
         encoders: Encoders,
         amplifiers: Amplifiers,
@@ -48,7 +49,8 @@ mod app {
         let first = board.encoders.sample(Amps::ZERO);
         defmt::info!("boot rate={=u32} cause={=u8}", RATE_HZ, board.reset as u8);
         let local = Local {
-            control: Control::new(&first, board.reset, board.clock_failure),
+            control: Control::new(&first, board.reset),
+            clock: board.clock,
             tick: board.tick,
             encoders: board.encoders,
             amplifiers: board.amplifiers,
@@ -65,10 +67,11 @@ mod app {
     #[task(
         binds = TIM5,
         priority = 15,
-        local = [tick, encoders, amplifiers, control, requests, sender]
+        local = [clock, tick, encoders, amplifiers, control, requests, sender]
     )]
     fn control(cx: control::Context) {
         let control::LocalResources {
+            clock,
             tick,
             encoders,
             amplifiers,
@@ -80,6 +83,7 @@ mod app {
         let sample = encoders.sample(control.applied().large);
         let inputs = Inputs {
             amplifier_fault: amplifiers.is_faulty(),
+            clock_failure: clock.has_failed(),
             missed,
             request: requests.dequeue(),
         };
