@@ -3,7 +3,7 @@
 use std::num::NonZeroU64;
 use std::time::{Duration, Instant};
 
-use host_sim::closed_loop::Hand;
+use host_sim::closed_loop::{Hand, SceneName};
 use host_sim::device::Device;
 use host_sim::plant::Pose;
 use rigless::emulator::{Start, run};
@@ -56,7 +56,10 @@ impl Default for Setup {
             seed: 1,
             seconds: 1.0,
             faults: Vec::new(),
-            commands: Vec::new(),
+            commands: vec![
+                (0.05, Command::Scene(SceneName::FreeAir)),
+                (0.1, Command::Arm),
+            ],
             garbage: Vec::new(),
             keep_alive: true,
             crystal_hz: 8_000_000,

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use virtual_board::image::Image;
 use virtual_board::run::{Outcome, Setup, on_board};
 
-/// Before this the image boots, arms itself and settles, s.
+/// Before this the image boots, is armed and settles, s.
 pub(crate) const SETTLED_S: f64 = 0.4;
 
 /// The image of this tree. It has a target directory of its own: cargo holds the usual one.

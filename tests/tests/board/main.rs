@@ -1,15 +1,39 @@
 //! The flash image, unmodified, on the virtual board in closed loop with the plant.
 
-/// What `scene.rs` of the firmware needs to know of its board.
+/// What the firmware's control needs to know of its board.
 mod board {
     pub(crate) const RATE_HZ: u32 = 10_000;
 }
-/// The very file that decides what the image holds.
-#[path = "../../../firmware/src/scene.rs"]
-mod scene;
 
-mod control;
+/// What the firmware's control says of a tick.
+mod telemetry {
+    use estimator_core::Sample;
+    use haptic_control::Action;
+
+    #[derive(Clone, Copy)]
+    pub(crate) struct Record {
+        pub(crate) tick: u32,
+        pub(crate) sample: Sample,
+        pub(crate) action: Action,
+        pub(crate) state: u8,
+        pub(crate) cause: u8,
+        #[allow(dead_code, reason = "the firmware's")]
+        pub(crate) overruns: u32,
+    }
+}
+
+/// The very files that the image's control task is made of.
+#[path = "../../../firmware/src"]
+#[allow(dead_code, unexpected_cfgs, reason = "features are the firmware's")]
+mod firmware {
+    pub(crate) mod control;
+    pub(crate) mod scene;
+}
+// The names that these files know each other by.
+use firmware::scene;
+
 mod faults;
+mod healthy;
 mod image;
 mod mirror;
 mod recording;

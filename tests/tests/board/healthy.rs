@@ -5,8 +5,8 @@ use host_sim::device::Device;
 use virtual_board::run::RATE_HZ;
 use virtual_board::score::Parasitic;
 
+use crate::firmware::scene::Core;
 use crate::image::{SETTLED_S, free_air};
-use crate::scene::Core;
 
 #[test]
 fn the_image_boots_and_closes_the_loop_at_10_khz() {
@@ -60,7 +60,7 @@ fn the_control_task_costs_what_it_used_to() {
 fn nothing_flows_before_the_amplifiers_are_enabled() {
     let run = free_air();
     let first = run.enables.iter().find(|(_, on)| on.contains(&true));
-    let (armed_ns, _) = *first.expect("it arms itself");
+    let (armed_ns, _) = *first.expect("it is armed");
     assert_eq!(run.enables[0], (0, [false; 2]));
     assert!(armed_ns > 90_000_000, "armed after {armed_ns} ns");
     for (k, moment) in run.moments.iter().enumerate() {
@@ -95,6 +95,7 @@ fn parasitic_on_the_host(seed: u64, seconds: f64) -> Parasitic {
     let mut pairs = Vec::new();
     for k in 0..(seconds * RATE_HZ) as u64 {
         if k == armed {
+            core = Core::start(&sample);
             core.select(1, &sample);
         }
         let action = core.step(&sample);
