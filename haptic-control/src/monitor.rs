@@ -22,6 +22,20 @@ pub enum Cause {
     Against,
 }
 
+impl Cause {
+    /// Name in tables and recordings.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::HandleOverspeed => "handle-overspeed",
+            Self::LargeOverspeed => "large-overspeed",
+            Self::Jump => "jump",
+            Self::NotMoving => "not-moving",
+            Self::Against => "against",
+        }
+    }
+}
+
 /// Largest displacements and times, in counts and ticks.
 ///
 /// Speeds are displacements over `window` ticks, exact in integers.

@@ -6,7 +6,7 @@ mod scene;
 
 use std::f64::consts::TAU;
 
-use estimator_core::{Amps, Hertz};
+use estimator_core::{Amps, Count, Hertz, Sample};
 use haptic_control::{
     Action, Cause, Controller, DualStage, LoopPoles, Monitor, Motor, Rig, RstDesign, Scene,
 };

@@ -248,15 +248,6 @@ impl Seen {
             signals.felt_mn.push((mn * moment.felt) as f32);
             signals.handle_rad_s.push(moment.handle.omega as f32);
         }
-        self.stopped = self.stopped.or(moment.stopped.map(cause));
-    }
-}
-
-const fn cause(cause: Cause) -> &'static str {
-    match cause {
-        Cause::HandleOverspeed => "handle-overspeed",
-        Cause::LargeOverspeed => "large-overspeed",
-        Cause::Jump => "jump",
-        Cause::NotMoving => "not-moving",
+        self.stopped = self.stopped.or(moment.stopped.map(Cause::as_str));
     }
 }

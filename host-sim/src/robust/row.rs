@@ -92,7 +92,7 @@ impl Row {
             device: subject.to_string(),
             verdict,
             reason,
-            stop: cause.map(|cause| name(cause).to_owned()),
+            stop: cause.map(|cause| cause.as_str().to_owned()),
             stop_s: judge.stopped.map(|tick| tick as f64 / settings.rate_hz),
             handle_rad_s: digits(judge.before.handle_rad_s),
             large_rad_s: digits(judge.before.large_rad_s),
@@ -104,15 +104,6 @@ impl Row {
             after_felt_nm: stopped.then(|| digits(judge.after.felt_nm)),
             variation,
         }
-    }
-}
-
-const fn name(cause: Cause) -> &'static str {
-    match cause {
-        Cause::HandleOverspeed => "handle-overspeed",
-        Cause::LargeOverspeed => "large-overspeed",
-        Cause::Jump => "jump",
-        Cause::NotMoving => "not-moving",
     }
 }
 
