@@ -63,7 +63,8 @@ mod app {
         (Shared {}, local, init::Monotonics())
     }
 
-    /// The control task: reads, steps, writes, enqueues. Its deadline is the next tick, 100 us.
+    /// The control task: reads, steps, writes, enqueues. Its deadline is the next tick, 100 us or
+    /// 16 800 cycles; on the emulated board it took at most 3461 instructions.
     #[task(
         binds = TIM5,
         priority = 15,
