@@ -24,7 +24,7 @@ fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
     let start = run.first_counts.map(|read| Count(u32::from(read.unwrap())));
     let first = Sample::new(start[0]).with_small(start[1]);
     sample(run.first_counts, Amps::ZERO);
-    let mut control = Control::new(&first, Stop::None, false);
+    let mut control = Control::new(&first, Stop::None);
     let mut before = false;
     let step = |(k, tick): (usize, &Tick)| {
         let sample = sample(tick.counts, control.applied().large);
@@ -38,6 +38,7 @@ fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
         before = armed;
         let inputs = Inputs {
             amplifier_fault: false,
+            clock_failure: false,
             missed: 0,
             request: Some(request),
         };
