@@ -118,7 +118,7 @@ impl Panel<'_> {
         plot.grid(canvas, self.ticks[0], self.ticks[1])?;
         for curve in &self.curves {
             if curve.dashed {
-                for pair in curve.points.chunks_exact(2) {
+                for pair in curve.points.as_chunks::<2>().0 {
                     plot.curve(canvas, pair.iter().copied(), curve.colour, curve.width)?;
                 }
             } else {
