@@ -4,7 +4,7 @@ use plotters::style::RGBColor;
 
 use super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure};
 use super::palette::{GRID, INK, MUTED};
-use super::text::{escape, number};
+use super::text::escape;
 use crate::robust::judge::{FELT_NM, HANDLE_RAD_S};
 use crate::robust::summary::{SceneSummary, Spread};
 
@@ -21,7 +21,7 @@ const LIMIT: RGBColor = VERDICTS[2].0;
 const LEFT: f64 = 110.0;
 const TOP: f64 = 84.0;
 const ROW: f64 = 30.0;
-const GAP: f64 = 26.0;
+const GAP: f64 = 36.0;
 
 /// One panel of distributions.
 struct Panel<'a> {
@@ -34,28 +34,28 @@ struct Panel<'a> {
 
 const PANELS: [Panel; 4] = [
     Panel {
-        title: "largest handle speed, rad/s",
+        title: "handle speed, rad/s",
         of: |scene| Some(scene.handle_rad_s),
         limit: |_| Some(HANDLE_RAD_S),
         factor: 1.0,
         axis: [0.1, 100.0],
     },
     Panel {
-        title: "largest torque felt, mN.m",
+        title: "torque felt, mN.m",
         of: |scene| Some(scene.felt_nm),
         limit: |_| Some(FELT_NM),
         factor: 1e3,
         axis: [1.0, 1000.0],
     },
     Panel {
-        title: "largest parasitic force, N",
+        title: "parasitic force, N",
         of: |scene| Some(scene.parasitic_n),
         limit: |_| None,
         factor: 1.0,
         axis: [0.01, 10.0],
     },
     Panel {
-        title: "residual oscillation, mN.m",
+        title: "oscillation, mN.m RMS",
         of: |scene| scene.oscillation_nm,
         limit: |scene| Some(scene.oscillation_limit_nm),
         factor: 1e3,
@@ -75,9 +75,10 @@ pub fn robust(heading: &str, scenes: &[SceneSummary], table: &str) -> Result<Str
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>Robustness of the loop</title>\n<style>\n{style}</style></head>\n<body>\n\
          <header><h1>Robustness of the loop</h1>\n<p>{}. The controller believes the nominal \
-         device; each run has another one. Bars reach from 5 % to 95 % of the devices, the line \
-         in them is the median, the dot the largest; red lines are limits.</p></header>\n\
-         <main>\n<figure>{svg}</figure>\n<pre class=\"scroll\">{}</pre>\n</main></body></html>\n",
+         device; each run has another one. Of each run the largest speed, torque and force, and \
+         the oscillation that stays. Bars reach from 5 % to 95 % of the devices, the line in them \
+         is the median, the dot the largest; red lines are limits.</p></header>\n\
+         <main>\n<figure>{svg}</figure>\n<pre style=\"font-size: .78rem; overflow-x: auto\">{}</pre>\n</main></body></html>\n",
         escape(heading),
         escape(table),
     ))
@@ -86,7 +87,7 @@ pub fn robust(heading: &str, scenes: &[SceneSummary], table: &str) -> Result<Str
 fn chart(scenes: &[SceneSummary]) -> Result<String, String> {
     let title = "Devices that differ from the one believed in";
     let bottom = TOP + ROW * scenes.len() as f64;
-    let share = (WIDTH - LEFT - 12.0 + GAP) / (PANELS.len() + 1) as f64;
+    let share = (WIDTH - LEFT - 20.0 + GAP) / (PANELS.len() + 1) as f64;
     figure(bottom + 34.0, title, |canvas| {
         canvas.text(title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
         let keys = VERDICTS.map(|(colour, name)| Key::Line(colour, name));
@@ -117,14 +118,20 @@ fn verdicts(
     canvas.text("verdicts", (left, TOP - 18.0), Anchor::Left, LABEL, INK)?;
     for (i, scene) in scenes.iter().enumerate() {
         let whole = scene.counts.iter().sum::<usize>().max(1) as f64;
-        let mut x = left;
         let y = middle(i) - 4.0;
-        for (count, (colour, _)) in scene.counts.iter().zip(VERDICTS) {
-            // One in thousands is still to be seen.
-            let width = (right - left) * *count as f64 / whole;
-            let end = (x + width.max(f64::from(u8::from(*count > 0)))).min(right);
-            canvas.rectangle([(x, y - 5.0), (end, y + 5.0)], colour)?;
-            x = end;
+        // From the right, each at least to be seen; what is stable takes the rest.
+        let mut x = right;
+        for (count, (colour, _)) in scene.counts.iter().zip(VERDICTS).rev() {
+            let width = ((right - left) * *count as f64 / whole).max(2.0);
+            let from = if colour == VERDICTS[0].0 {
+                left
+            } else {
+                x - width
+            };
+            if *count > 0 {
+                canvas.rectangle([(from, y - 5.0), (x, y + 5.0)], colour)?;
+                x = from;
+            }
         }
         let [stable, stopped, violated] = scene.counts;
         let counts = format!("{stable} / {stopped} / {violated}");
@@ -151,8 +158,9 @@ impl Panel<'_> {
         while tick <= high * 1.001 {
             let x = place(tick / self.factor);
             canvas.line(&[(x, TOP), (x, bottom)], GRID, 1.0)?;
-            let text = number(tick);
-            canvas.text(&text, (x, bottom + 12.0), Anchor::Centre, 9.5, MUTED)?;
+            let text = format!("{tick:.2}");
+            let text = text.trim_end_matches('0').trim_end_matches('.');
+            canvas.text(text, (x, bottom + 12.0), Anchor::Centre, 9.5, MUTED)?;
             tick *= 10.0;
         }
         for (i, scene) in scenes.iter().enumerate() {
