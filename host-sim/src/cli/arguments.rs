@@ -50,8 +50,9 @@ pub(super) struct Compare {
     /// the scenes; scored is the force that the hand feels and should not
     #[arg(long)]
     pub(super) closed_loop: bool,
-    /// Scenario to run, or scene with --closed-loop; repeatable [default: all but heating, or all
-    /// scenes; see host-sim scenarios]
+    /// Scenario to run; repeatable [default: all but heating; see host-sim scenarios]. With
+    /// --closed-loop a scene [default: all: off, free-air, wall, spring-damper, viscous, detents,
+    /// texture, hold]
     #[arg(long = "scenario", visible_alias = "scene", value_name = "NAME")]
     pub(super) scenarios: Vec<String>,
     /// Estimator of the handle's velocity, with --closed-loop [default: kalman-triple-steady]

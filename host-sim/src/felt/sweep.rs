@@ -27,11 +27,12 @@ use crate::plant::{Grip, Plant, steps_per_tick};
 
 /// Length of a period, s; the lowest frequency is its inverse.
 pub const PERIOD_S: f64 = 0.5;
-/// Periods that are averaged, after two to settle in.
+/// Periods that are averaged, after four to settle in.
 pub const PERIODS: usize = 8;
-const SETTLE: usize = 2;
-/// Constant force under the sines, mN.
-const BIAS_MN: f64 = 350.0;
+const SETTLE: usize = 4;
+/// How fast the constant torque turns the large motor, turns/s: what repeats once a turn falls
+/// between the sines and averages out over the periods.
+const TURNS_PER_S: f64 = 1.5;
 /// Sines a decade, and the highest as part of the rate and in Hz.
 const PER_DECADE: f64 = 13.0;
 const HIGHEST: (f64, f64) = (0.45, 3000.0);
@@ -152,7 +153,7 @@ impl<'a> Bench<'a> {
             lines: (numbers.iter().enumerate())
                 .map(|(i, &number)| (number, Complex::from_polar(amplitude, phase(i))))
                 .collect(),
-            bias: BIAS_MN / fingertip.mn_per_nm,
+            bias: device.coupler.damping_nms_per_rad * TAU * TURNS_PER_S,
         }
     }
 

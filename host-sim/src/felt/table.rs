@@ -16,6 +16,7 @@ pub fn details(outcomes: &[Outcome]) -> String {
             text,
             "{scene} at {rate_hz} Hz, plant with {plant}, loop closed"
         );
+        let threshold = format!("{} mN, %", outcome.fingertip.threshold_mn);
         let line = |cells: [&str; 6]| {
             let [by, rms, p99, tactile, below, velocity] = cells;
             format!("  {by:<22}{rms:>10}{p99:>10}{tactile:>10}{below:>10}{velocity:>10}")
@@ -33,7 +34,7 @@ pub fn details(outcomes: &[Outcome]) -> String {
                 "rms, mN",
                 "mN",
                 "rms, mN",
-                "10 mN, %",
+                &threshold,
                 "rms rad/s"
             ])
         );

@@ -32,18 +32,19 @@ pub struct ClosedLoop {
 
 const FELT: &str = "From here on the loop is closed: the controller moves both motors, with each \
     estimator in turn as its only knowledge of the large motor\u{2019}s velocity. \u{201c}reference\u{201d} \
-    closes it on the reference encoder, as the paper did: the best that any estimator could hope \
-    for. Parasitic force is the torque felt minus the torque that the scene wanted, at the \
+    closes it on the reference encoder, as the paper did: what a finer encoder would bring. \
+    Parasitic force is the torque felt minus the torque that the scene wanted, at the \
     fingertip. It includes the inertia and the friction of the handle itself, which no estimator \
     takes away. \u{201c}any\u{201d}: the scene does not ask for the large motor\u{2019}s velocity.";
 const BARS: &str = "Share of time in which the parasitic force is smaller than a fingertip notices; \
     longer is better.";
 const SPEED: &str = "A transparent device feels of nothing. How much it feels of instead, against \
     how fast the handle moves (above) and how fast its velocity changes (below). In the green a \
-    fingertip notices nothing. Near zero velocity friction turns round, and the feed-forward \
-    knows of it only once it happens. The black line is the device with both motors off; the \
-    dashed one is the inertia of the handle alone, the floor for every estimator. Filters with a \
-    preset steady gain lie on those with full covariance and are not drawn.";
+    fingertip notices nothing. The peak at rest is the handle\u{2019}s friction turning round: its \
+    feed-forward fades out where the direction of motion is in doubt. The black line is the device \
+    with both motors off; the dashed one is what the inertia of the handle takes, which nobody \
+    compensates. Filters with a preset steady gain lie on those with full covariance and are not \
+    drawn.";
 const SPECTRUM: &str = "Where in frequency the parasitic force lies, hand moving in free air. In \
     the green band it is felt as roughness; left of it lie friction and inertia, right of it \
     what no finger feels but the motors still suffer.";
@@ -58,7 +59,8 @@ const TORQUE: &str = "Many sines at once, together (RMS) as strong as a fingerti
     constant torque, into a clamped handle. Gain and phase of the torque felt against the torque wanted; \
     the large motor brings the low frequencies, the small motor what is missing, so their sum is \
     flat until the amplifiers, the tick and half a tick of holding end it. Where the velocity is \
-    late or noisy the sum is uneven and coherence, the part of the power that repeats, falls.";
+    late or noisy the sum is uneven and coherence, the part of the power that repeats, falls. A \
+    point of low coherence is itself uncertain.";
 const MARGINS: &str = "The velocity loop as it was designed, an estimator late by the delay below \
     included: the further its curve passes from \u{2212}1 the better. Modulus margin is that distance \
     (the circle), gain margin the factor that the gain may grow, phase and delay margin what may \
