@@ -1,7 +1,7 @@
 //! What the hand feels: the device in closed loop, scored by the force that should not be there.
 //!
 //! Every estimator closes the loop on its own ([`compare`](mod@compare)); a torque of many sines
-//! into a clamped handle says how fast torque is rendered ([`sweep`]); the designed velocity loop
+//! into a clamped handle says how fast torque is rendered ([`sweep()`]); the designed velocity loop
 //! has its margins ([`design`]). Velocities are scored as everywhere else ([`score`](crate::score)).
 
 pub mod compare;
