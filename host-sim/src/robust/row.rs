@@ -40,7 +40,6 @@ pub struct Row {
     /// Largest torque felt after the stop, N.m.
     pub after_felt_nm: Option<f64>,
     /// How the device differs from what the controller believes.
-    #[serde(flatten)]
     pub variation: Variation,
 }
 
@@ -139,7 +138,8 @@ pub fn csv(rows: &[Row]) -> Result<Vec<u8>, Failure> {
     writer.write_record(COLUMNS).map_err(failed)?;
     for row in rows {
         let object = serde_json::to_value(row).map_err(|e| Failure::Input(e.to_string()))?;
-        let cells = COLUMNS.iter().map(|&column| match &object[column] {
+        let cell = |&column: &&str| object.get(column).unwrap_or(&object["variation"][column]);
+        let cells = COLUMNS.iter().map(|column| match cell(column) {
             serde_json::Value::Null => String::new(),
             serde_json::Value::String(text) => text.clone(),
             number => number.to_string(),
@@ -192,7 +192,12 @@ mod tests {
     #[test]
     fn the_columns_are_the_fields() {
         let object = serde_json::to_value(row()).unwrap();
-        let mut fields: Vec<_> = object.as_object().unwrap().keys().cloned().collect();
+        let keys = |object: &serde_json::Value| -> Vec<String> {
+            object.as_object().unwrap().keys().cloned().collect()
+        };
+        let mut fields = keys(&object);
+        fields.retain(|field| field != "variation");
+        fields.extend(keys(&object["variation"]));
         let mut columns = COLUMNS.map(str::to_owned).to_vec();
         fields.sort();
         columns.sort();
