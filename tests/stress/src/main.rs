@@ -1,0 +1,116 @@
+//! `cargo stress`: every estimator over a long and hostile course, beside its f64 twin.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+
+use stress::contestants::{Contestant, at};
+use stress::{sensitivity, table, trial};
+
+/// Run every estimator over a long, hostile course, in f32 beside its generated f64 twin.
+///
+/// Rest, top speed, ties of the quantiser, creep with 64 ticks between edges, an edge at every
+/// tick, any 32 bits, currents that are no numbers, over wraps of both counter widths. Compared at
+/// every tick: f32 with f64, the 16-bit counter with the 32-bit one, the covariance with what it
+/// has to be; now and then the window with its definition in exact fractions; after every stretch
+/// the time until the output is at rest. Then parameters at the ends of their ranges. Exit status 1 if anything did not hold.
+#[derive(Debug, Parser)]
+#[command(name = "stress", bin_name = "cargo stress", version)]
+struct Arguments {
+    /// Ticks per estimator and rate; 1e9 takes about an hour on two cores
+    #[arg(long, value_name = "N", default_value = "1e9", value_parser = ticks)]
+    ticks: u64,
+    /// Control rate, Hz; may be given again
+    #[arg(long = "rate", value_name = "HZ", default_values_t = [1000.0, 10_000.0], value_parser = rate)]
+    rates: Vec<f64>,
+    /// Only estimators whose name begins so
+    #[arg(long, value_name = "NAME")]
+    estimator: Option<String>,
+    /// Seed of the course
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Write the findings as JSON too
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Print a markdown table
+    #[arg(long)]
+    markdown: bool,
+}
+
+/// A whole number of ticks, `1e9` allowed.
+fn ticks(text: &str) -> Result<u64, String> {
+    let number: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if number.fract() == 0.0 && (1.0..=1e15).contains(&number) {
+        Ok(number as u64)
+    } else {
+        Err("must be a whole number from 1 to 1e15".to_owned())
+    }
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(rate) if (100.0..=100_000.0).contains(&rate) => Ok(rate),
+        _ => Err("must be 100 to 100000 Hz".to_owned()),
+    }
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match run(&arguments) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(message) => {
+            eprintln!("error: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Whether everything held.
+fn run(arguments: &Arguments) -> Result<bool, String> {
+    let contestants = contestants(arguments)?;
+    let bar = ProgressBar::new(arguments.ticks.saturating_mul(contestants.len() as u64));
+    bar.set_style(
+        ProgressStyle::with_template("{bar:40} {percent}% of the ticks, {eta} left")
+            .map_err(|error| error.to_string())?,
+    );
+    let all: Vec<_> = contestants
+        .par_iter()
+        .map(|contestant| {
+            trial::run(contestant, arguments.seed, arguments.ticks, |n| bar.inc(n))
+        })
+        .collect();
+    bar.finish_and_clear();
+    let extremes = sensitivity::all();
+    if arguments.markdown {
+        print!("{}", table::markdown(&all));
+    } else {
+        print!("{}", table::text(&all));
+    }
+    print!("{}", table::sensitivity(&extremes));
+    if let Some(path) = &arguments.json {
+        let json = serde_json::to_vec_pretty(&all).map_err(|error| error.to_string())?;
+        fs::write(path, json)
+            .map_err(|error| format!("{}: cannot write: {error}", path.display()))?;
+    }
+    Ok(all.iter().all(trial::Findings::passed) && extremes.iter().all(|one| one.broken.is_empty()))
+}
+
+fn contestants(arguments: &Arguments) -> Result<Vec<Contestant>, String> {
+    let mut all: Vec<Contestant> = arguments.rates.iter().flat_map(|rate| at(*rate)).collect();
+    if let Some(wanted) = &arguments.estimator {
+        let names: Vec<String> = at(arguments.rates[0]).into_iter().map(|c| c.name).collect();
+        all.retain(|contestant| contestant.name.starts_with(wanted));
+        if all.is_empty() {
+            return Err(format!(
+                "--estimator {wanted}: no such estimator; there are {}",
+                names.join(", ")
+            ));
+        }
+    }
+    Ok(all)
+}

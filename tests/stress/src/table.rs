@@ -1,0 +1,89 @@
+//! The findings for a reader.
+
+use std::fmt::Write as _;
+
+use crate::sensitivity::Outcome;
+use crate::trial::Findings;
+
+/// One line an estimator, for a terminal.
+#[must_use]
+pub fn text(all: &[Findings]) -> String {
+    let mut text = format!(
+        "{:<24}{:>8}{:>9}{:>8}{:>12}{:>12}{:>11}{:>10}{:>10}{:>8}\n{:<24}{:>8}{:>9}{:>8}{:>12}{:>12}{:>11}{:>10}{:>10}{:>8}\n",
+        "", "rate", "ticks", "wraps", "deviation", "at start", "relative", "recovery", "windows", "",
+        "estimator", "Hz", "", "of 2^32", "rad/s", "rad/s", "of fastest", "ticks", "compared", "faults"
+    );
+    for found in all {
+        let _ = writeln!(
+            text,
+            "{:<24}{:>8}{:>9.1e}{:>8}{:>12.1e}{:>12.1e}{:>11.1e}{:>10}{:>10.1e}{:>8}  {}",
+            found.estimator,
+            found.rate_hz,
+            found.ticks as f64,
+            found.wraps,
+            found.deviation_rad_s,
+            found.start_deviation_rad_s,
+            found.relative_deviation,
+            found.recovery_ticks,
+            found.windows_compared as f64,
+            found.fault_count,
+            if found.passed() { "ok" } else { "FAILED" },
+        );
+        for fault in &found.faults {
+            let _ = writeln!(text, "    {fault}");
+        }
+    }
+    text
+}
+
+/// The same as a markdown table.
+#[must_use]
+pub fn markdown(all: &[Findings]) -> String {
+    let mut text = String::from(
+        "| estimator | rate, Hz | wraps of 2^32 | f32 against f64, rad/s | soon after a start | of the fastest velocity \
+         | at rest after, ticks | windows compared | faults |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+    );
+    for found in all {
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {:.1e} | {:.1e} | {:.1e} | {} | {} | {} |",
+            found.estimator,
+            found.rate_hz,
+            found.wraps,
+            found.deviation_rad_s,
+            found.start_deviation_rad_s,
+            found.relative_deviation,
+            found.recovery_ticks,
+            found.windows_compared,
+            found.fault_count,
+        );
+    }
+    text
+}
+
+/// What came of the parameters at the ends of their ranges.
+#[must_use]
+pub fn sensitivity(all: &[Outcome]) -> String {
+    let mut text = String::from(
+        "\n| estimator | designs | refused, by error | f32 against f64, of the fastest velocity | broken |\n\
+         |---|---:|---|---:|---:|\n",
+    );
+    for outcome in all {
+        let refused: Vec<String> = outcome
+            .refused
+            .iter()
+            .map(|(error, count)| format!("{error} {count}"))
+            .collect();
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {:.1e} | {} |",
+            outcome.estimator,
+            outcome.tried,
+            refused.join(", "),
+            outcome.relative_deviation,
+            outcome.broken.len(),
+        );
+    }
+    text
+}

@@ -1,0 +1,289 @@
+//! One estimator over one course.
+
+use serde::Serialize;
+
+use crate::contestants::{Contestant, Pair};
+use crate::course::{Course, Draws, Shown, Stretch, TOP_STEP};
+use crate::definition::Definition;
+
+/// Fastest slip of the paper's constant-velocity experiment. Up to it a deviation is counted in
+/// rad/s, beyond it in parts of the velocity.
+const HAPTIC_RAD_S: f64 = 20.0;
+
+/// Below this an output at rest is at rest, rad/s.
+const AT_REST_RAD_S: f64 = 1e-5;
+
+/// What rounding may add while a filter that started in motion settles, rad/s: a thirtieth of
+/// the haptic tolerance at rest.
+const START_BOUND_RAD_S: f64 = 1e-2;
+
+/// Starts tried, and ticks of each.
+const STARTS: u64 = 200;
+const START_TICKS: u32 = 300;
+
+/// A window is tried against its definition once in so many ticks.
+const DEFINITION_EVERY: u64 = 61;
+
+/// More faults than this are counted and not told.
+const FAULTS_TOLD: usize = 5;
+
+/// What was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Findings {
+    /// Name and parameters.
+    pub estimator: String,
+    /// Control rate, Hz.
+    pub rate_hz: f64,
+    /// Ticks run.
+    pub ticks: u64,
+    /// Wraps of the 32-bit count.
+    pub wraps: u64,
+    /// Largest |f32 - f64| while no velocity since the last rest was above 20 rad/s, rad/s.
+    pub deviation_rad_s: f64,
+    /// Bound of it.
+    pub deviation_bound_rad_s: f64,
+    /// Largest |f32 - f64| within the first ticks after a start in motion, rad/s, at up to
+    /// 20 rad/s: a covariance comes down from its prior, and cancels digits as it does.
+    pub start_deviation_rad_s: f64,
+    /// Largest |f32 - f64| over the largest velocity since the last rest, from a count a tick on.
+    pub relative_deviation: f64,
+    /// Longest rest until the output stayed at rest, ticks.
+    pub recovery_ticks: u32,
+    /// How long the twin took at most; the bound of it with a tenth and two ticks more.
+    pub twin_recovery_ticks: u32,
+    /// Windows that were compared with their definition.
+    pub windows_compared: u64,
+    /// What went wrong.
+    pub faults: Vec<String>,
+    /// How often.
+    pub fault_count: u64,
+}
+
+impl Findings {
+    /// Whether everything held.
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        self.fault_count == 0
+            && self.deviation_rad_s <= self.deviation_bound_rad_s
+            && self.start_deviation_rad_s <= START_BOUND_RAD_S
+            && self.recovery_ticks <= self.recovery_bound()
+    }
+
+    /// Longest recovery allowed, ticks.
+    #[must_use]
+    pub const fn recovery_bound(&self) -> u32 {
+        self.twin_recovery_ticks + self.twin_recovery_ticks / 10 + 2
+    }
+
+    fn fault(&mut self, said: impl FnOnce() -> String) {
+        self.fault_count += 1;
+        if self.faults.len() < FAULTS_TOLD {
+            self.faults.push(said());
+        }
+    }
+}
+
+/// Runs `contestant` for `ticks` ticks; `progress` hears of every 2^20.
+pub fn run(contestant: &Contestant, seed: u64, ticks: u64, progress: impl Fn(u64)) -> Findings {
+    let mut trial = Trial::new(contestant, seed);
+    let mut told = 0;
+    // What follows is a filter that has settled; starts have a figure of their own.
+    trial.recover();
+    while trial.found.ticks < ticks {
+        trial.stretch();
+        trial.recover();
+        if trial.found.ticks - told >= 1 << 20 {
+            progress(trial.found.ticks - told);
+            told = trial.found.ticks;
+        }
+    }
+    progress(trial.found.ticks - told);
+    trial.found
+}
+
+/// The largest deviation soon after starts in motion, rad/s.
+fn start_deviation(contestant: &Contestant, seed: u64) -> f64 {
+    let rad_per_count = rad_per_count(contestant);
+    let mut draws = Draws::new(!seed);
+    let mut worst = 0.0f64;
+    for _ in 0..STARTS {
+        let velocity = HAPTIC_RAD_S / rad_per_count * draws.unit();
+        let mut pair = contestant.pair();
+        let mut course = Course::new(draws.bits(), contestant.rate_hz);
+        pair.start(&course.shown());
+        course.slope(velocity, START_TICKS);
+        while !course.is_over() {
+            let (narrow, wide) = pair.update(&course.step());
+            worst = worst.max((f64::from(narrow) - wide).abs() * rad_per_count);
+        }
+    }
+    worst
+}
+
+/// rad/s of a count per tick.
+fn rad_per_count(contestant: &Contestant) -> f64 {
+    std::f64::consts::TAU * contestant.rate_hz / 4096.0
+}
+
+struct Trial<'a> {
+    contestant: &'a Contestant,
+    pair: Box<dyn Pair>,
+    course: Course,
+    found: Findings,
+    rad_per_count: f64,
+    /// Largest velocity, counted or estimated, since the last rest, counts per tick.
+    fastest: f64,
+    /// The count, extended from its lower 16 bits tick by tick.
+    extended: estimator_core::Count,
+    /// Latest counts, newest first, for the definition.
+    history: Vec<u32>,
+}
+
+impl<'a> Trial<'a> {
+    fn new(contestant: &'a Contestant, seed: u64) -> Self {
+        let course = Course::new(seed, contestant.rate_hz);
+        let first = course.shown();
+        let mut pair = contestant.pair();
+        pair.start(&first);
+        Self {
+            contestant,
+            pair,
+            found: Findings {
+                estimator: contestant.name.clone(),
+                rate_hz: contestant.rate_hz,
+                ticks: 0,
+                wraps: 0,
+                deviation_rad_s: 0.0,
+                deviation_bound_rad_s: contestant.deviation_bound_rad_s,
+                start_deviation_rad_s: start_deviation(contestant, seed),
+                relative_deviation: 0.0,
+                recovery_ticks: 0,
+                twin_recovery_ticks: 0,
+                windows_compared: 0,
+                faults: Vec::new(),
+                fault_count: 0,
+            },
+            rad_per_count: rad_per_count(contestant),
+            fastest: 0.0,
+            extended: estimator_core::Count(first.large),
+            history: vec![first.large],
+            course,
+        }
+    }
+
+    /// One stretch of motion.
+    fn stretch(&mut self) {
+        let hostile = self.course.move_on() == Stretch::Noise;
+        while !self.course.is_over() {
+            self.tick(hostile);
+        }
+    }
+
+    /// Rest, until both precisions have come to it.
+    fn recover(&mut self) {
+        self.course.rest();
+        let (mut narrow_last, mut wide_last) = (0, 0);
+        let mut tick = 0u32;
+        let limit = 2_000_000;
+        // Quiet for as long again as it took, and a window's length: it stays at rest.
+        while tick < 2 * narrow_last.max(wide_last) + 130 && tick < limit {
+            tick += 1;
+            let (narrow, wide) = self.tick(false);
+            let at_rest = |velocity: f64| velocity.abs() * self.rad_per_count < AT_REST_RAD_S;
+            if !at_rest(f64::from(narrow)) {
+                narrow_last = tick;
+            }
+            if !at_rest(wide) {
+                wide_last = tick;
+            }
+        }
+        if tick == limit {
+            self.found.fault(|| format!("not at rest after {limit} ticks"));
+        }
+        self.found.recovery_ticks = self.found.recovery_ticks.max(narrow_last);
+        self.found.twin_recovery_ticks = self.found.twin_recovery_ticks.max(wide_last);
+        self.fastest = 0.0;
+    }
+
+    fn tick(&mut self, hostile: bool) -> (f32, f64) {
+        let before = self.course.shown().large;
+        let shown = self.course.step();
+        let outputs = self.pair.update(&shown);
+        self.found.ticks += 1;
+        let step = shown.large.wrapping_sub(before) as i32;
+        self.found.wraps += u64::from(before.checked_add_signed(step).is_none());
+        self.compare(f64::from(step), outputs);
+        if let Some(fault) = self.pair.fault() {
+            let tick = self.found.ticks;
+            self.found.fault(|| format!("tick {tick}: {fault}"));
+        }
+        self.follow(&shown, outputs.0, hostile);
+        outputs
+    }
+
+    fn compare(&mut self, step: f64, (narrow, wide): (f32, f64)) {
+        let tick = self.found.ticks;
+        if !narrow.is_finite() {
+            self.found.fault(|| format!("tick {tick}: {narrow}"));
+            return;
+        }
+        self.fastest = self.fastest.max(step.abs()).max(wide.abs());
+        let deviation = (f64::from(narrow) - wide).abs();
+        if self.fastest * self.rad_per_count <= HAPTIC_RAD_S {
+            let deviation = deviation * self.rad_per_count;
+            self.found.deviation_rad_s = self.found.deviation_rad_s.max(deviation);
+        }
+        if self.fastest >= 1.0 {
+            let relative = deviation / self.fastest;
+            self.found.relative_deviation = self.found.relative_deviation.max(relative);
+        }
+    }
+
+    /// Integers: the 16-bit counter, and the window by its definition.
+    fn follow(&mut self, shown: &Shown, output: f32, hostile: bool) {
+        let tick = self.found.ticks;
+        if hostile {
+            self.extended = estimator_core::Count(shown.large);
+        } else {
+            self.extended = self.extended.extended(shown.large as u16);
+            if self.extended.0 != shown.large {
+                let extended = self.extended.0;
+                self.found
+                    .fault(|| format!("tick {tick}: {extended} from 16 bits, not {}", shown.large));
+            }
+        }
+        let Some(definition) = self.contestant.definition else {
+            return;
+        };
+        let step = shown.large.wrapping_sub(self.history[0]) as i32;
+        if step.unsigned_abs() > TOP_STEP.unsigned_abs() {
+            // Out of range: the window starts again here.
+            self.history = vec![shown.large];
+        } else {
+            self.history.insert(0, shown.large);
+            self.history.truncate(definition.n + 1);
+            if tick % DEFINITION_EVERY == 0 {
+                self.define(&definition, output);
+            }
+        }
+    }
+
+    fn define(&mut self, definition: &Definition, output: f32) {
+        let newest = self.history[0];
+        let z: Vec<i32> = self.history[1..]
+            .iter()
+            .map(|count| newest.wrapping_sub(*count) as i32)
+            .collect();
+        let (slope, window) = definition.slope(&z);
+        let (exact, used) = (slope.rounded(), self.pair.window());
+        self.found.windows_compared += 1;
+        // The fraction goes through f64 on its way to f32: the last place may differ.
+        let near = exact.next_down() <= output && output <= exact.next_up();
+        if !near || used != Some(window) {
+            let tick = self.found.ticks;
+            self.found.fault(|| {
+                format!("tick {tick}: {output} over {used:?}, by definition {exact} over {window}")
+            });
+        }
+    }
+}
