@@ -52,7 +52,9 @@ fn without_crate_attributes(text: &str) -> String {
     let mut rest = text;
     let mut kept = String::with_capacity(text.len());
     while let Some(start) = rest.find("#![") {
-        let end = rest[start..].find(")]").map_or(rest.len(), |end| start + end + 2);
+        let end = rest[start..]
+            .find(")]")
+            .map_or(rest.len(), |end| start + end + 2);
         kept.push_str(&rest[..start]);
         rest = &rest[end..];
     }
@@ -73,7 +75,11 @@ fn widened(line: &str) -> String {
         let after = part.chars().next();
         let word = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
         let is_type = !word(before) && !word(after);
-        twin.push_str(if is_type || (number && !word(after)) { "f64" } else { "f32" });
+        twin.push_str(if is_type || (number && !word(after)) {
+            "f64"
+        } else {
+            "f32"
+        });
         twin.push_str(part);
     }
     twin

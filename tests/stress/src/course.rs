@@ -141,7 +141,11 @@ impl Course {
     #[must_use]
     pub fn new(seed: u64, rate_hz: f64) -> Self {
         let mut draws = Draws::new(seed);
-        let wrap: u32 = if draws.bits() % 2 == 0 { 0 } else { 1 << 16 };
+        let wrap: u32 = if draws.bits().is_multiple_of(2) {
+            0
+        } else {
+            1 << 16
+        };
         let large = wrap.wrapping_add_signed(draws.within(100));
         Self {
             stretch: Stretch::Rest,
@@ -223,8 +227,15 @@ impl Course {
                 .map(|(boundary, age)| (boundary, age.saturating_add(self.period)))
         } else {
             // The boundary crossed last lies below the count on the way up, above it downwards.
-            let boundary = if step > 0 { large } else { large.wrapping_add(1) };
-            Some((boundary, (self.draws.bits() % u64::from(self.period)) as u32))
+            let boundary = if step > 0 {
+                large
+            } else {
+                large.wrapping_add(1)
+            };
+            Some((
+                boundary,
+                (self.draws.bits() % u64::from(self.period)) as u32,
+            ))
         };
         self.shown = Shown {
             large,

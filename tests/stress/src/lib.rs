@@ -4,7 +4,8 @@
 //! | module | what |
 //! |---|---|
 //! | [`course`] | what the encoders show: rest, top speed, ties, creep, jumps, wraps |
-//! | [`contestants`] | every estimator, from the core and from the twin |
+//! | [`pair`] | an estimator of the core beside its twin |
+//! | [`contestants`] | all of them |
 //! | [`trial`] | one estimator over one course, and what was found |
 //! | [`sensitivity`] | parameters at the ends of their ranges |
 //! | [`definition`] | FOAW by its O(n²) definition, in exact fractions |
@@ -13,6 +14,7 @@
 pub mod contestants;
 pub mod course;
 pub mod definition;
+pub mod pair;
 pub mod sensitivity;
 pub mod table;
 pub mod trial;

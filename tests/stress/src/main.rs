@@ -80,9 +80,7 @@ fn run(arguments: &Arguments) -> Result<bool, String> {
     );
     let all: Vec<_> = contestants
         .par_iter()
-        .map(|contestant| {
-            trial::run(contestant, arguments.seed, arguments.ticks, |n| bar.inc(n))
-        })
+        .map(|contestant| trial::run(contestant, arguments.seed, arguments.ticks, |n| bar.inc(n)))
         .collect();
     bar.finish_and_clear();
     let extremes = sensitivity::all();

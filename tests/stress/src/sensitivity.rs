@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::contestants::{self, Refusable};
 use crate::course::Course;
+use crate::pair::Pair;
 
 /// Control rates, Hz: periods of 10 µs to 10 ms.
 const RATES: [f64; 4] = [1e2, 1e3, 1e4, 1e5];
@@ -66,7 +67,7 @@ impl Outcome {
 }
 
 /// The largest relative deviation from the twin, unless something breaks.
-fn survives(pair: &mut dyn contestants::Pair, rate: f64) -> Result<f64, String> {
+fn survives(pair: &mut dyn Pair, rate: f64) -> Result<f64, String> {
     let mut course = Course::new(5, rate);
     pair.start(&course.shown());
     let (mut fastest, mut deviation) = (1.0f64, 0.0f64);

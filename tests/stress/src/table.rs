@@ -10,8 +10,26 @@ use crate::trial::Findings;
 pub fn text(all: &[Findings]) -> String {
     let mut text = format!(
         "{:<24}{:>8}{:>9}{:>8}{:>12}{:>12}{:>11}{:>10}{:>10}{:>8}\n{:<24}{:>8}{:>9}{:>8}{:>12}{:>12}{:>11}{:>10}{:>10}{:>8}\n",
-        "", "rate", "ticks", "wraps", "deviation", "at start", "relative", "recovery", "windows", "",
-        "estimator", "Hz", "", "of 2^32", "rad/s", "rad/s", "of fastest", "ticks", "compared", "faults"
+        "",
+        "rate",
+        "ticks",
+        "wraps",
+        "deviation",
+        "at start",
+        "relative",
+        "recovery",
+        "windows",
+        "",
+        "estimator",
+        "Hz",
+        "",
+        "of 2^32",
+        "rad/s",
+        "rad/s",
+        "of fastest",
+        "ticks",
+        "compared",
+        "faults"
     );
     for found in all {
         let _ = writeln!(

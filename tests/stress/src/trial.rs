@@ -2,9 +2,10 @@
 
 use serde::Serialize;
 
-use crate::contestants::{Contestant, Pair};
+use crate::contestants::Contestant;
 use crate::course::{Course, Draws, Shown, Stretch, TOP_STEP};
 use crate::definition::Definition;
+use crate::pair::Pair;
 
 /// Fastest slip of the paper's constant-velocity experiment. Up to it a deviation is counted in
 /// rad/s, beyond it in parts of the velocity.
@@ -198,7 +199,8 @@ impl<'a> Trial<'a> {
             }
         }
         if tick == limit {
-            self.found.fault(|| format!("not at rest after {limit} ticks"));
+            self.found
+                .fault(|| format!("not at rest after {limit} ticks"));
         }
         self.found.recovery_ticks = self.found.recovery_ticks.max(narrow_last);
         self.found.twin_recovery_ticks = self.found.twin_recovery_ticks.max(wide_last);
@@ -262,7 +264,7 @@ impl<'a> Trial<'a> {
         } else {
             self.history.insert(0, shown.large);
             self.history.truncate(definition.n + 1);
-            if tick % DEFINITION_EVERY == 0 {
+            if tick.is_multiple_of(DEFINITION_EVERY) {
                 self.define(&definition, output);
             }
         }

@@ -33,7 +33,10 @@ fn extreme_parameters_are_stable_or_refused_by_name() {
         let name = &outcome.estimator;
         assert!(outcome.broken.is_empty(), "{name}: {:#?}", outcome.broken);
         let refused: u32 = outcome.refused.values().sum();
-        assert!(refused > 0 && refused < outcome.tried, "{name}: {outcome:?}");
+        assert!(
+            refused > 0 && refused < outcome.tried,
+            "{name}: {outcome:?}"
+        );
         // With a current that is all noise the motor filter's pole goes to -1, and the rounding of
         // its gain shows: stable is all it has to be there.
         if !name.starts_with("kalman-motor") {
@@ -46,7 +49,14 @@ fn extreme_parameters_are_stable_or_refused_by_name() {
 #[test]
 fn the_twin_computes_in_f64() {
     let found = run(&at(1000.0), 13);
-    for one in found.iter().filter(|one| one.estimator != "finite-difference") {
-        assert!(one.deviation_rad_s > 0.0, "{}: no rounding at all", one.estimator);
+    for one in found
+        .iter()
+        .filter(|one| one.estimator != "finite-difference")
+    {
+        assert!(
+            one.deviation_rad_s > 0.0,
+            "{}: no rounding at all",
+            one.estimator
+        );
     }
 }

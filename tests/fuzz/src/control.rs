@@ -1,0 +1,112 @@
+//! Any inputs into a control task: scenes, monitor and safety state as the firmware has them.
+
+use estimator_core::{
+    Count, EndFit, Foaw, Hertz, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple, preset,
+};
+use haptic_control::{
+    AnyScene, Currents, Detents, DualStage, Findings, FreeAir, Hold, LoopPoles, Mode, Monitor, Off,
+    Radians, Request, Rig, Safety, SpringDamper, Stop, Switchboard, Texture, Viscous, Wall,
+};
+
+use crate::bytes::Bytes;
+
+const RATE: Hertz = Hertz(10_000.0);
+const DEVICE: DualStage = DualStage::DEFAULT;
+const RIG: Rig = preset!(Rig::new(&DEVICE, RATE, LoopPoles::DEFAULT));
+const LARGE: Foaw<15, EndFit> = preset!(Foaw::new(15, 1));
+const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(
+    DEVICE.small.counts_per_rev,
+    RATE,
+    4e3
+));
+const HANDLE: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
+const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
+const SCENES: [AnyScene; 8] = [
+    AnyScene::Off(Off),
+    AnyScene::FreeAir(FreeAir),
+    AnyScene::Wall(preset!(Wall::new(Radians(0.1), 0.30, 0.0))),
+    AnyScene::SpringDamper(preset!(SpringDamper::new(Radians(0.0), 0.10, 0.5e-3))),
+    AnyScene::Viscous(preset!(Viscous::new(2e-3))),
+    AnyScene::Detents(preset!(Detents::new(8e-3, 24))),
+    AnyScene::Texture(preset!(Texture::new(6e-3, Hertz(150.0), RATE))),
+    AnyScene::Hold(preset!(Hold::new(0.20, 1e-3))),
+];
+const SAFETY: Safety = Safety {
+    silence: Some(50),
+    missed: 4,
+    scenes: SCENES.len() as u8,
+};
+
+/// Runs the task on the inputs in `data`.
+///
+/// # Panics
+/// If a current is beyond the amplifier, the amplifiers stay on after a finding, or a stop is
+/// left without being armed again.
+pub fn run(data: &[u8]) {
+    let board = Switchboard::new(LARGE, HANDLE, RIG, RATE);
+    let mut sample = Sample::new(Count(0x8000_0000));
+    let mut scene = board.start(&sample);
+    let mut monitor = MONITOR.start(&sample);
+    let mut safety = SAFETY.start(Stop::None);
+    let mut bytes = Bytes(data);
+    while let (Some(next), Some(inputs)) = (bytes.sample(&sample), bytes.byte()) {
+        sample = next;
+        let request = match inputs & 15 {
+            1 => Some(Request::Arm),
+            2 => Some(Request::Disarm),
+            3 => Some(Request::Select(inputs >> 4)),
+            4 => Some(Request::KeepAlive),
+            _ => None,
+        };
+        let findings = Findings {
+            monitor: MONITOR.check(&mut monitor, &sample),
+            amplifier_fault: inputs == 0xFF,
+            clock_failure: inputs == 0xFE,
+            finite: true,
+            missed: u32::from(inputs == 0xFD),
+        };
+        let action = board.step(&mut scene, &sample);
+        check(&action.currents);
+        assert!(action.torque.0.is_finite(), "{action:?}");
+        assert!(
+            action.large.0.is_finite() && action.handle.0.is_finite(),
+            "{action:?}"
+        );
+
+        let before = safety.mode();
+        let order = SAFETY.tick(&mut safety, &findings, request);
+        let wrong =
+            findings.monitor.is_some() || findings.amplifier_fault || findings.clock_failure;
+        // What is wrong while enabled stops it in this very tick.
+        if wrong && matches!(before, Mode::Armed | Mode::Running) {
+            assert!(!order.enable && safety.mode() == Mode::Safe, "{findings:?}");
+        }
+        if before == Mode::Safe && request != Some(Request::Arm) {
+            assert!(!order.enable, "left safe by {request:?}");
+        }
+        if order.restart {
+            scene = board.start(&sample);
+            monitor = MONITOR.start(&sample);
+        }
+        if let Some(number) = order.select {
+            board.select(&mut scene, SCENES[usize::from(number)], &sample);
+        }
+        sample.current = if order.enable {
+            action.currents.large
+        } else {
+            Currents::default().large
+        };
+    }
+}
+
+fn check(currents: &Currents) {
+    let (large, small) = (currents.large.get(), currents.small.get());
+    assert!(
+        f64::from(large.abs()) <= DEVICE.large.current_limit,
+        "{large} A"
+    );
+    assert!(
+        f64::from(small.abs()) <= DEVICE.small.current_limit,
+        "{small} A"
+    );
+}

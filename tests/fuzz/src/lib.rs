@@ -1,0 +1,19 @@
+//! What must hold for any bytes at all.
+//!
+//! Each function here is the body of one fuzz target (`tests/fuzz/targets`) and of one bounded
+//! run in the tests. A panic is a finding. No loop is longer than its bytes.
+//!
+//! | body | bytes become | what must hold |
+//! |---|---|---|
+//! | [`samples`] | counts, currents, edges, restarts | every output finite, every covariance sound |
+//! | [`designs`] | rates, encoders, noises | refused by name, or finite ever after |
+//! | [`commands`] | the command channel | every byte is in a frame, counted, or still held |
+//! | [`control`] | a whole control task's inputs | currents within limits, safe once stopped |
+//! | [`texts`] | recordings, devices, presets | read whole, or refused in one line |
+
+mod bytes;
+pub mod commands;
+pub mod control;
+pub mod designs;
+pub mod samples;
+pub mod texts;

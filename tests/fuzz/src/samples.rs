@@ -1,0 +1,44 @@
+//! Any samples into every estimator.
+
+use estimator_core::{Count, Sample};
+use stress::contestants::{Contestant, at};
+use stress::course::Shown;
+
+use crate::bytes::Bytes;
+
+/// Every estimator, made once.
+#[must_use]
+pub fn contestants() -> Vec<Contestant> {
+    at(1000.0).into_iter().chain(at(10_000.0)).collect()
+}
+
+/// Feeds the samples in `data` to every estimator.
+///
+/// # Panics
+/// If an output is no finite number or a covariance none any more.
+pub fn run(contestants: &[Contestant], data: &[u8]) {
+    for contestant in contestants {
+        let mut bytes = Bytes(data);
+        let mut pair = contestant.pair();
+        let mut sample = Sample::new(Count(u32::MAX - 3));
+        pair.start(&shown(&sample));
+        while let Some(next) = bytes.sample(&sample) {
+            sample = next;
+            if sample.large.0.is_multiple_of(251) {
+                pair.start(&shown(&sample));
+            }
+            let (output, _) = pair.update(&shown(&sample));
+            assert!(output.is_finite(), "{}: {output}", contestant.name);
+            assert_eq!(pair.fault(), None, "{}", contestant.name);
+        }
+    }
+}
+
+fn shown(sample: &Sample) -> Shown {
+    Shown {
+        large: sample.large.0,
+        small: sample.small.0,
+        amps: sample.current.get(),
+        edge: sample.edge.map(|edge| (edge.boundary.0, edge.age.0)),
+    }
+}

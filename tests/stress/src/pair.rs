@@ -1,0 +1,138 @@
+//! One estimator in both precisions.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "matrix code reads as its equations, with indices"
+)]
+
+use estimator_core as core;
+use estimator_twin as twin;
+
+use crate::course::Shown;
+
+/// An estimator in both precisions, with its states.
+pub trait Pair {
+    /// Both at rest at the first sample.
+    fn start(&mut self, first: &Shown);
+
+    /// One tick of both: velocities in counts per tick.
+    fn update(&mut self, shown: &Shown) -> (f32, f64);
+
+    /// What is wrong with the f32 state, if anything is.
+    fn fault(&self) -> Option<&'static str>;
+
+    /// Length of the window last used, where there is one.
+    fn window(&self) -> Option<usize>;
+}
+
+/// What may be asked of a state.
+pub(crate) trait State {
+    fn fault(&self) -> Option<&'static str> {
+        None
+    }
+
+    fn window(&self) -> Option<usize> {
+        None
+    }
+}
+
+impl State for core::Count {}
+impl State for core::PllState {}
+impl<const S: usize> State for core::SteadyKalmanState<S> {}
+impl<S> State for core::LateCurrentState<S> {}
+impl<S> State for core::LowPassState<S> {}
+
+impl<const N: usize> State for core::FoawState<N> {
+    fn window(&self) -> Option<usize> {
+        Some(self.window())
+    }
+}
+
+impl<const S: usize> State for core::KalmanState<S> {
+    fn fault(&self) -> Option<&'static str> {
+        let p = self.covariance();
+        for i in 0..S {
+            for j in 0..i {
+                if p[i][j].to_bits() != p[j][i].to_bits() {
+                    return Some("covariance not symmetric");
+                }
+            }
+        }
+        (!is_positive_definite(p)).then_some("covariance not positive definite")
+    }
+}
+
+/// Whether Cholesky's factorisation, in f64, meets positive pivots only.
+fn is_positive_definite<const S: usize>(p: &[[f32; S]; S]) -> bool {
+    let mut m = p.map(|row| row.map(f64::from));
+    for k in 0..S {
+        // A NaN is not positive.
+        if !(m[k][k] > 0.0 && m[k][k].is_finite()) {
+            return false;
+        }
+        for i in k + 1..S {
+            let factor = m[i][k] / m[k][k];
+            for j in k..S {
+                m[i][j] -= factor * m[k][j];
+            }
+        }
+    }
+    true
+}
+
+/// An estimator and its twin, not started.
+pub(crate) struct Both<C: core::VelocityEstimator, T: twin::VelocityEstimator> {
+    pub(crate) core: C,
+    pub(crate) twin: T,
+    pub(crate) states: Option<(C::State, T::State)>,
+}
+
+impl<C, T> Pair for Both<C, T>
+where
+    C: core::VelocityEstimator<Output = core::CountsPerTick, State: State>,
+    T: twin::VelocityEstimator<Output = twin::CountsPerTick>,
+{
+    fn start(&mut self, first: &Shown) {
+        self.states = Some((
+            self.core.start(&core_sample(first)),
+            self.twin.start(&twin_sample(first)),
+        ));
+    }
+
+    fn update(&mut self, shown: &Shown) -> (f32, f64) {
+        let (core, twin) = self.states.as_mut().expect("started");
+        let narrow = self.core.update(core, &core_sample(shown)).0;
+        (narrow, self.twin.update(twin, &twin_sample(shown)).0)
+    }
+
+    fn fault(&self) -> Option<&'static str> {
+        self.states.as_ref().and_then(|(core, _)| core.fault())
+    }
+
+    fn window(&self) -> Option<usize> {
+        self.states.as_ref().and_then(|(core, _)| core.window())
+    }
+}
+
+fn core_sample(shown: &Shown) -> core::Sample {
+    core::Sample {
+        large: core::Count(shown.large),
+        small: core::Count(shown.small),
+        current: core::Amps::new(shown.amps),
+        edge: shown.edge.map(|(boundary, age)| core::Edge {
+            boundary: core::Count(boundary),
+            age: core::ClockTicks(age),
+        }),
+    }
+}
+
+fn twin_sample(shown: &Shown) -> twin::Sample {
+    twin::Sample {
+        large: twin::Count(shown.large),
+        small: twin::Count(shown.small),
+        current: twin::Amps::new(f64::from(shown.amps)),
+        edge: shown.edge.map(|(boundary, age)| twin::Edge {
+            boundary: twin::Count(boundary),
+            age: twin::ClockTicks(age),
+        }),
+    }
+}

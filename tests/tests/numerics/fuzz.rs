@@ -1,0 +1,134 @@
+//! Every fuzz body on bytes that proptest makes up.
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+use fuzz_bodies::{commands, control, designs, samples, texts};
+use stress::contestants::Contestant;
+
+fn any_bytes(most: usize) -> impl Strategy<Value = Vec<u8>> {
+    vec(any::<u8>(), 0..most)
+}
+
+/// Frames that are right, cut, or hit by a stray byte.
+fn command_bytes() -> impl Strategy<Value = Vec<u8>> {
+    let piece = prop_oneof![
+        Just(drivers::encode(haptic_control::Request::Arm).to_vec()),
+        Just(drivers::encode(haptic_control::Request::Select(9)).to_vec()),
+        (1usize..11).prop_map(|most| {
+            drivers::encode(haptic_control::Request::KeepAlive)[..most].to_vec()
+        }),
+        vec(prop_oneof![Just(0xA5u8), any::<u8>()], 0..30),
+    ];
+    vec(piece, 0..40).prop_map(|pieces| pieces.concat())
+}
+
+/// Text that looks like a recording.
+fn csv_text() -> impl Strategy<Value = Vec<u8>> {
+    let field = prop_oneof![
+        Just("0".to_owned()),
+        Just(String::new()),
+        Just("nan".to_owned()),
+        Just("1e400".to_owned()),
+        any::<i64>().prop_map(|n| n.to_string()),
+        any::<f64>().prop_map(|x| x.to_string()),
+        (0u32..5000).prop_map(|n| format!("{}", f64::from(n) * 1e-3)),
+        "[\"a,\r ]{0,3}",
+    ];
+    let header = proptest::sample::subsequence(
+        vec![
+            "t",
+            "counts_large",
+            "counts_small",
+            "current",
+            "edge_tick",
+            "edge_bound",
+            "x",
+        ],
+        0..=7,
+    );
+    (header, vec(vec(field, 0..8), 0..20)).prop_map(|(header, rows)| {
+        let mut text = header.join(",");
+        for row in rows {
+            text.push('\n');
+            text.push_str(&row.join(","));
+        }
+        text.into_bytes()
+    })
+}
+
+/// The default device's file with lines lost, moved, and values exchanged.
+fn toml_text() -> impl Strategy<Value = Vec<u8>> {
+    let whole = toml::to_string(&host_sim::device::Device::default()).expect("serialises");
+    let lines: Vec<String> = whole.lines().map(str::to_owned).collect();
+    let count = lines.len();
+    let value = prop_oneof![
+        any::<f64>().prop_map(|x| format!("{x:?}")),
+        (-20.0..20.0f64).prop_map(|x| format!("{:e}", 10f64.powf(x))),
+        any::<i64>().prop_map(|n| n.to_string()),
+        "[ -~]{0,6}",
+    ];
+    let change = (0..count, 0..count, 0..6u8, value);
+    vec(change, 0..4).prop_map(move |changes| {
+        let mut lines = lines.clone();
+        for (at, other, kind, value) in changes {
+            match kind {
+                0 => lines[at].clear(),
+                1 => lines.swap(at, other),
+                _ => {
+                    if let Some(equals) = lines[at].find('=') {
+                        lines[at].replace_range(equals.., &format!("= {value}"));
+                    }
+                }
+            }
+        }
+        lines.join("\n").into_bytes()
+    })
+}
+
+thread_local! {
+    static CONTESTANTS: Vec<Contestant> = samples::contestants();
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(200) })]
+
+    #[test]
+    fn any_samples_leave_every_estimator_sound(data in any_bytes(4000)) {
+        CONTESTANTS.with(|all| samples::run(all, &data));
+    }
+
+    #[test]
+    fn any_bits_are_refused_or_a_design(data in any_bytes(400)) {
+        designs::run(&data);
+    }
+
+    #[test]
+    fn any_parameters_are_refused_or_a_design(
+        kind: u8,
+        rate in -1.0..6.0f64,
+        counts in 0.0..9.6f64,
+        parameter in -20.0..20.0f64,
+    ) {
+        designs::try_one(kind, 10f64.powf(rate), 10f64.powf(counts) as u32, 10f64.powf(parameter));
+    }
+
+    #[test]
+    fn any_inputs_leave_the_outputs_safe(data in any_bytes(8000)) {
+        control::run(&data);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
+
+    #[test]
+    fn any_bytes_are_accounted_for(data in prop_oneof![any_bytes(200), command_bytes()]) {
+        commands::run(&data);
+    }
+
+    #[test]
+    fn any_file_is_read_or_refused(data in prop_oneof![any_bytes(300), csv_text(), toml_text()]) {
+        texts::run(&data);
+    }
+}

@@ -1,0 +1,4 @@
+//! Numerics that cannot break: short runs of the stress courses and of the fuzz bodies.
+
+mod fuzz;
+mod stress;
