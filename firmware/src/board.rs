@@ -5,16 +5,17 @@ use estimator_core::{Amps, Count, Sample};
 use haptic_control::{Currents, Stop};
 use stm32f4xx_hal::dac::{C1, C2, DacOut, DacPin};
 use stm32f4xx_hal::gpio::{Input, Output, Pin};
-use stm32f4xx_hal::pac::{self, TIM2, TIM3, TIM4};
+use stm32f4xx_hal::pac::{self, TIM1, TIM3, TIM4};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::qei::Qei;
 use stm32f4xx_hal::rcc::{Config, Rcc};
 use stm32f4xx_hal::timer::Event;
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
+use crate::edge::Stamps as _;
 use crate::encoder::Encoder;
 use crate::reset;
-use crate::scene::REFERENCE;
+use crate::scene::{REFERENCE, Stamps};
 use crate::tick::Tick;
 
 /// Core clock, Hz.
@@ -34,15 +35,20 @@ const WATCHDOG_MS: u32 = 50;
 pub(crate) struct Encoders {
     large: Encoder<TIM4>,
     small: Encoder<TIM3>,
-    reference: Option<Encoder<TIM2>>,
+    stamps: Stamps,
+    reference: Option<Encoder<TIM1>>,
 }
 
 impl Encoders {
     /// What they show now, with the current of the large motor over the period just ended.
     pub(crate) fn sample(&mut self, current: Amps) -> Sample {
-        Sample::new(self.large.read())
-            .with_small(self.small.read())
-            .with_current(current)
+        let (large, edge) = self.stamps.read(&mut self.large);
+        Sample {
+            large,
+            small: self.small.read(),
+            current,
+            edge,
+        }
     }
 
     /// The reference encoder on the large motor, where there is one.
@@ -160,12 +166,10 @@ impl Board {
             full_scale: SMALL_FULL_SCALE,
         };
 
-        let reference = REFERENCE.then(|| {
-            // Both pins are the debug port's after a reset.
-            let pins = (a.pa15.into_input(), b.pb3.into_input());
-            Encoder::new(Qei::new(chip.TIM2, pins, &mut rcc).release().0)
-        });
+        let reference = REFERENCE
+            .then(|| Encoder::new(Qei::new(chip.TIM1, (e.pe9, e.pe11), &mut rcc).release().0));
         let encoders = Encoders {
+            stamps: Stamps::new(chip.TIM2, (a.pa15, b.pb3), &mut rcc),
             large: Encoder::new(Qei::new(chip.TIM4, (d.pd12, d.pd13), &mut rcc).release().0),
             small: Encoder::new(Qei::new(chip.TIM3, (c.pc6, c.pc7), &mut rcc).release().0),
             reference,

@@ -26,13 +26,14 @@ macro_rules! counter {
     )+};
 }
 
-counter!(pac::TIM2, pac::TIM3, pac::TIM4);
+counter!(pac::TIM1, pac::TIM3, pac::TIM4);
 
 /// An encoder: its counter widened to 32 bits, right as long as it is read before it has moved
 /// by 2^15 counts.
 pub(crate) struct Encoder<T> {
-    timer: T,
-    count: Count,
+    pub(crate) timer: T,
+    /// The count as read last.
+    pub(crate) count: Count,
 }
 
 impl<T: Counter> Encoder<T> {
@@ -45,7 +46,12 @@ impl<T: Counter> Encoder<T> {
 
     /// The count now.
     pub(crate) fn read(&mut self) -> Count {
-        self.count = self.count.extended(self.timer.raw());
+        self.take(self.timer.raw())
+    }
+
+    /// The count that `raw` stands for, read from the timer just now.
+    pub(crate) fn take(&mut self, raw: u16) -> Count {
+        self.count = self.count.extended(raw);
         self.count
     }
 }

@@ -5,6 +5,8 @@
 mod board;
 mod commands;
 mod control;
+#[allow(dead_code, reason = "an image without the wires captures nothing")]
+mod edge;
 mod encoder;
 mod reset;
 mod scene;

@@ -16,8 +16,16 @@ pub(crate) const RIG: Rig = preset!(Rig::new(&DEVICE, RATE, LoopPoles::DEFAULT))
 pub(crate) const AUTO_ARM: bool = cfg!(feature = "auto-arm");
 /// Whether to read the reference encoder.
 pub(crate) const REFERENCE: bool = cfg!(feature = "reference");
+/// Whether edges are stamped.
+pub(crate) const EDGES: bool = cfg!(feature = "edge-capture");
 /// Longest silence of the command channel while running, ticks.
 pub(crate) const SILENCE: Option<u32> = if AUTO_ARM { None } else { Some(RATE_HZ / 2) };
+
+/// What stamps the large encoder's edges.
+#[cfg(feature = "edge-capture")]
+pub(crate) use crate::edge::Capture as Stamps;
+#[cfg(not(feature = "edge-capture"))]
+pub(crate) use estimator_core::Skip as Stamps;
 
 #[cfg(not(feature = "large-kalman"))]
 mod large {

@@ -4,6 +4,8 @@ use estimator_core::{Count, Sample};
 use haptic_control::Action;
 use heapless::spsc::{Consumer, Producer, Queue};
 
+use crate::scene::EDGES;
+
 /// Frames a second.
 const FRAMES_HZ: u32 = 1000;
 /// Control ticks for one frame.
@@ -97,6 +99,9 @@ impl Frame {
             action.currents.large.get(), action.currents.small.get(),
             state, cause, overruns, drops, self.cycles
         );
+        if EDGES && let Some(edge) = sample.edge {
+            defmt::info!("edge seq={=u32} bound={=u32} age={=u32}", self.seq, edge.boundary.0, edge.age.0);
+        }
         if let Some(Count(count)) = self.reference {
             defmt::info!("reference seq={=u32} count={=u32}", self.seq, count);
         }

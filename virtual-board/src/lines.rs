@@ -5,11 +5,18 @@ use rigless::soc::stm32f427::peripherals::tim::Channel;
 use rigless::time::VirtualNanos;
 
 use crate::board::Part;
-use crate::pins;
+use crate::pins::{self, Wire};
 use crate::quadrature::{LARGE, SMALL, levels};
 
-/// Numbers of TIM4 (large) and TIM3 (small) in the emulator's list TIM2, TIM3, TIM4, TIM5.
-const TIMERS: [usize; 2] = [2, 1];
+/// A timer that two lines go to: its number in the emulator's list TIM2, TIM3, TIM4, TIM5, its
+/// pins, and the encoder that is on them.
+struct Port(usize, &'static [Wire; 2], usize);
+
+const PORTS: [Port; 3] = [
+    Port(2, &pins::LARGE, LARGE),
+    Port(1, &pins::SMALL, SMALL),
+    Port(0, &pins::CAPTURE, LARGE),
+];
 
 /// The lines of both encoders as they are driven.
 #[derive(Debug, Default)]
@@ -21,8 +28,8 @@ pub(crate) struct Lines {
     /// Whether the large encoder's lines have changed places.
     pub(crate) swapped: bool,
     /// Levels on the pins; `None` before the first since a restart.
-    driven: [[Option<bool>; 2]; 2],
-    wired: [bool; 2],
+    driven: [[Option<bool>; 2]; PORTS.len()],
+    wired: [bool; PORTS.len()],
 }
 
 impl Lines {
@@ -41,22 +48,39 @@ impl Lines {
     /// The processor has restarted: its timers know no levels.
     pub(crate) fn restart(&mut self) {
         self.driven = Default::default();
-        self.wired = [false; 2];
+        self.wired = Default::default();
     }
 
     /// Looks whether the pins are the timers', and drives them if so.
     pub(crate) fn look(&mut self, part: &mut Part, at: VirtualNanos) {
-        for (encoder, wires) in [(LARGE, &pins::LARGE), (SMALL, &pins::SMALL)] {
-            self.wired[encoder] = pins::wired(part, wires);
-            self.drive(part, at, encoder);
+        for (n, Port(_, wires, encoder)) in PORTS.iter().enumerate() {
+            self.wired[n] = pins::wired(part, *wires);
+            self.drive(part, at, *encoder);
         }
     }
 
     /// Puts the levels of the encoder's count on its pins.
     pub(crate) fn drive(&mut self, part: &mut Part, at: VirtualNanos, encoder: usize) {
-        if !self.wired[encoder] {
-            return;
+        let wanted = self.wanted(encoder);
+        for (n, &Port(timer, _, on_it)) in PORTS.iter().enumerate() {
+            if !self.wired[n] || on_it != encoder {
+                continue;
+            }
+            for (line, level) in wanted.into_iter().enumerate() {
+                if self.driven[n][line].replace(level) == Some(level) {
+                    continue;
+                }
+                let channel = Channel::new(line as u8 + 1).expect("channels 1 and 2");
+                part.stm32
+                    .drive_timer(at, timer, |timer, registers, context| {
+                        timer.drive_input(channel, Level::from(level), registers, context);
+                    });
+            }
         }
+    }
+
+    /// Levels that the encoder's lines should have, with what has happened to them.
+    fn wanted(&self, encoder: usize) -> [bool; 2] {
         let mut wanted = levels(self.counts[encoder]);
         if encoder == LARGE {
             if self.swapped {
@@ -66,20 +90,6 @@ impl Lines {
                 *level = stuck.unwrap_or(*level);
             }
         }
-        for (line, (level, driven)) in wanted
-            .into_iter()
-            .zip(&mut self.driven[encoder])
-            .enumerate()
-        {
-            if *driven == Some(level) {
-                continue;
-            }
-            *driven = Some(level);
-            let channel = Channel::new(line as u8 + 1).expect("channels 1 and 2");
-            part.stm32
-                .drive_timer(at, TIMERS[encoder], |timer, registers, context| {
-                    timer.drive_input(channel, Level::from(level), registers, context);
-                });
-        }
+        wanted
     }
 }

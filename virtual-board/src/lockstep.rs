@@ -17,7 +17,7 @@ use crate::image::Image;
 use crate::lines::Lines;
 use crate::pins;
 use crate::probe::{Probe, schedule};
-use crate::quadrature::{Edge, Edges, LARGE, SMALL};
+use crate::quadrature::{Edge, Edges, Generator, LARGE, SMALL};
 use crate::run::{AMPS_PER_CODE, Moment, RATE_HZ, Setup, Tick};
 
 const STEP_NS: u64 = 10_000;
@@ -51,6 +51,7 @@ pub(crate) struct Lockstep {
     edges: VecDeque<Edge>,
     /// Edges of the step being computed.
     fresh: Vec<Edge>,
+    generator: Option<Generator>,
     /// Steps of the plant so far.
     steps: u64,
     end_ns: u64,
@@ -77,12 +78,16 @@ impl Lockstep {
         );
         Self {
             seen: Seen::default(),
-            lines: Lines::at([bench.large.count(), bench.small.count()]),
+            lines: Lines::at([
+                setup.generator_hz.map_or(bench.large.count(), |_| 0),
+                bench.small.count(),
+            ]),
             bench,
             motion: setup.hand.motion(1.0 / RATE_HZ, setup.seed),
             grip: Grip::Free,
             edges: VecDeque::new(),
             fresh: Vec::new(),
+            generator: setup.generator_hz.map(Generator::new),
             steps: 0,
             end_ns: (setup.seconds * 1e9) as u64,
             currents: [0.0; 2],
@@ -163,6 +168,10 @@ impl Lockstep {
             &mut observer(&mut of_large, LARGE, large),
             &mut observer(&mut of_small, SMALL, small),
         );
+        if let Some(generator) = &mut self.generator {
+            of_large.clear();
+            generator.run(from_ns + STEP_NS, &mut of_large);
+        }
         of_large.append(&mut of_small);
         of_large.sort_by_key(|edge| edge.at_ns);
         self.edges.extend(of_large.drain(..));

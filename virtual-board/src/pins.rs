@@ -30,6 +30,12 @@ pub const LARGE: [Wire; 2] = [
     ('D', 13, Mode::Function(2), "large encoder B, TIM4_CH2"),
 ];
 
+/// The large motor's encoder once more, for the instants of its edges.
+pub const CAPTURE: [Wire; 2] = [
+    ('A', 15, Mode::Function(1), "large encoder A, TIM2_CH1"),
+    ('B', 3, Mode::Function(1), "large encoder B, TIM2_CH2"),
+];
+
 /// The handle's encoder.
 pub const SMALL: [Wire; 2] = [
     ('C', 6, Mode::Function(2), "small encoder A, TIM3_CH1"),

@@ -46,6 +46,41 @@ impl EdgeObserver for Edges<'_> {
     }
 }
 
+/// A signal generator in place of the large encoder: edges at a constant rate from time zero,
+/// downwards if it is negative.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Generator {
+    hz: f64,
+    made: u32,
+}
+
+impl Generator {
+    pub(crate) fn new(hz: f64) -> Self {
+        Self { hz, made: 0 }
+    }
+
+    /// The edges up to an instant.
+    pub(crate) fn run(&mut self, until_ns: u64, into: &mut Vec<Edge>) {
+        loop {
+            let at_ns = (f64::from(self.made + 1) / self.hz.abs() * 1e9) as u64;
+            if at_ns >= until_ns {
+                return;
+            }
+            self.made += 1;
+            let count = if self.hz < 0.0 {
+                self.made.wrapping_neg()
+            } else {
+                self.made
+            };
+            into.push(Edge {
+                at_ns,
+                encoder: LARGE,
+                count,
+            });
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -42,6 +42,8 @@ pub struct Setup {
     pub garbage: Vec<(f64, Vec<u8>)>,
     /// Whether to send a keep-alive every 50 ms.
     pub keep_alive: bool,
+    /// Edges a second of a signal generator in place of the large encoder, downwards if negative.
+    pub generator_hz: Option<f64>,
     /// Frequency of the crystal, Hz; 0 is a dead one.
     pub crystal_hz: u64,
     /// Instructions in a second of virtual time.
@@ -62,6 +64,7 @@ impl Default for Setup {
             ],
             garbage: Vec::new(),
             keep_alive: true,
+            generator_hz: None,
             crystal_hz: 8_000_000,
             instructions_per_second: NonZeroU64::new(CORE_HZ).expect("not zero"),
         }

@@ -10,23 +10,27 @@ use virtual_board::run::{Outcome, Setup, on_board};
 /// Before this the image boots, is armed and settles, s.
 pub(crate) const SETTLED_S: f64 = 0.4;
 
-/// The image of this tree. It has a target directory of its own: cargo holds the usual one.
+/// The image of this tree with these features. Each has a target directory of its own: cargo
+/// holds the usual one, and two images may be built at once.
+pub(crate) fn build(features: &str) -> Image {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
+    let target = root.join("target/firmware-image").join(features);
+    let triple = "thumbv7em-none-eabihf";
+    let status = Command::new(env!("CARGO"))
+        .current_dir(&root)
+        .args(["build", "--release", "--package", "firmware"])
+        .args(["--features", features, "--target", triple, "--target-dir"])
+        .arg(&target)
+        .status()
+        .expect("cargo starts");
+    assert!(status.success(), "the firmware does not build");
+    Image::read(&target.join(triple).join("release/firmware")).unwrap()
+}
+
+/// The image of this tree.
 pub(crate) fn image() -> &'static Image {
     static IMAGE: OnceLock<Image> = OnceLock::new();
-    IMAGE.get_or_init(|| {
-        let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
-        let target = root.join("target/firmware-image");
-        let triple = "thumbv7em-none-eabihf";
-        let status = Command::new(env!("CARGO"))
-            .current_dir(&root)
-            .args(["build", "--release", "--package", "firmware"])
-            .args(["--target", triple, "--target-dir"])
-            .arg(&target)
-            .status()
-            .expect("cargo starts");
-        assert!(status.success(), "the firmware does not build");
-        Image::read(&target.join(triple).join("release/firmware")).unwrap()
-    })
+    IMAGE.get_or_init(|| build(""))
 }
 
 /// Runs the image.

@@ -24,7 +24,12 @@ mod telemetry {
 
 /// The very files that the image's control task is made of.
 #[path = "../../../firmware/src"]
-#[allow(dead_code, unexpected_cfgs, reason = "features are the firmware's")]
+#[allow(
+    dead_code,
+    unexpected_cfgs,
+    unused_imports,
+    reason = "features are the firmware's"
+)]
 mod firmware {
     pub(crate) mod control;
     pub(crate) mod scene;
@@ -32,6 +37,7 @@ mod firmware {
 // The names that these files know each other by.
 use firmware::scene;
 
+mod edges;
 mod faults;
 mod healthy;
 mod image;

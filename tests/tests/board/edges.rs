@@ -1,0 +1,130 @@
+//! Time stamps of the large encoder's edges, captured by the image and known to the board.
+
+use std::sync::OnceLock;
+
+use virtual_board::image::Image;
+use virtual_board::run::{Outcome, Setup, on_board};
+
+use crate::image::build;
+
+/// Clock that stamps edges, Hz.
+const CLOCK_HZ: f64 = 84e6;
+
+/// Until then the pins are being set up, which the timers see as edges, s.
+const SET_UP_S: f64 = 5e-3;
+
+/// A stamp that the image reported: when the tick began, boundary, age in s.
+struct Stamp {
+    tick_s: f64,
+    boundary: i32,
+    age_s: f64,
+}
+
+fn image() -> &'static Image {
+    static IMAGE: OnceLock<Image> = OnceLock::new();
+    IMAGE.get_or_init(|| build("edge-capture"))
+}
+
+/// A run with a signal generator of this many edges a second on the large encoder's lines.
+fn generated(hz: f64, seconds: f64) -> (Outcome, Vec<Stamp>) {
+    let setup = Setup {
+        seconds,
+        generator_hz: Some(hz),
+        commands: Vec::new(),
+        ..Setup::default()
+    };
+    let run = on_board(image(), &setup, |_| ()).unwrap();
+    let stamps = run
+        .telemetry
+        .log
+        .iter()
+        .filter(|line| line.starts_with("edge "))
+        .map(|line| stamp(&run, line))
+        .filter(|stamp| stamp.tick_s > SET_UP_S)
+        .collect();
+    (run, stamps)
+}
+
+fn stamp(run: &Outcome, line: &str) -> Stamp {
+    let field = |name: &str| -> u32 {
+        line.split_whitespace()
+            .find_map(|word| word.strip_prefix(name))
+            .and_then(|value| value.parse().ok())
+            .unwrap_or_else(|| panic!("no {name} in '{line}'"))
+    };
+    let seq = field("seq=");
+    let frame = run.telemetry.frames.iter().find(|frame| frame.seq == seq);
+    let tick = run.tick(frame.expect("its frame")).expect("its tick");
+    Stamp {
+        tick_s: tick.at_ns as f64 * 1e-9,
+        boundary: field("bound=") as i32,
+        age_s: f64::from(field("age=")) / CLOCK_HZ,
+    }
+}
+
+/// Edges made before the image counted: in the middle of what its frames say.
+fn lost(run: &Outcome, hz: f64) -> i32 {
+    let mut lost: Vec<i32> = run
+        .telemetry
+        .frames
+        .iter()
+        .map(|frame| {
+            let tick = run.tick(frame).expect("its tick");
+            let made = (tick.at_ns as f64 * 1e-9 * hz.abs()) as i32;
+            made - (frame.large as i32).abs()
+        })
+        .collect();
+    lost.sort_unstable();
+    lost[lost.len() / 2]
+}
+
+/// Edges at every phase to the tick, up to one a microsecond: each stamp is that of its boundary.
+#[test]
+fn every_stamp_is_its_edges_instant() {
+    for (hz, seconds) in [
+        (1_000_300.0, 0.2),
+        (-1_000_300.0, 0.2),
+        (123_457.0, 0.4),
+        (-3_001.0, 0.6),
+    ] {
+        let (run, stamps) = generated(hz, seconds);
+        // Edges before the image had set up its pins are lost to it.
+        let lost = lost(&run, hz);
+        let frames = run.telemetry.frames.len();
+        assert!(
+            stamps.len() * 10 > frames * 9,
+            "{hz}: {} of {frames}",
+            stamps.len()
+        );
+        let late: Vec<f64> = stamps
+            .iter()
+            .map(|stamp| {
+                // Boundary e lies below count e: the n-th edge upwards crosses e = n, downwards
+                // e = 1 - n.
+                let edge = if hz > 0.0 {
+                    stamp.boundary
+                } else {
+                    1 - stamp.boundary
+                };
+                let at_s = f64::from(edge + lost) / hz.abs();
+                stamp.age_s - (stamp.tick_s - at_s)
+            })
+            .collect();
+        let (least, most) = late
+            .iter()
+            .fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
+        // The clock is read some instructions after the tick's first, and later by a reading where
+        // an edge came between counter and capture.
+        assert!(least > 0.0 && most < 2e-6, "{hz}: {least:e} to {most:e} s");
+        assert!(most - least < 0.25e-6, "{hz}: {least:e} to {most:e} s");
+    }
+}
+
+/// Where no edge comes, the last one grows old, and before the first there is none.
+#[test]
+fn an_edge_grows_old() {
+    let (_, stamps) = generated(4.0, 0.9);
+    assert!(stamps.iter().all(|stamp| stamp.tick_s > 0.25));
+    let oldest = stamps.iter().map(|stamp| stamp.age_s).fold(0.0, f64::max);
+    assert!((oldest - 0.25).abs() < 2e-3, "{oldest}");
+}
