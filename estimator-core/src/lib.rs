@@ -18,6 +18,7 @@
 //! | Kalman, full covariance | [`Kalman`] | x, P | counts; current with [`Model::motor`] |
 //! | Kalman, preset steady gain | [`SteadyKalman`] | x | the same |
 //! | critically damped tracking loop | [`Pll`] | 2 floats | counts |
+//! | two, exchanged while they run | [`Handover`] | as the one in charge | as both |
 //! | none | [`Skip`] | none | nothing |
 //!
 //! ```
@@ -50,6 +51,7 @@ mod device;
 mod estimator;
 mod finite_difference;
 mod foaw;
+mod handover;
 mod kalman;
 mod late_current;
 mod low_pass;
@@ -65,6 +67,7 @@ pub use device::Device;
 pub use estimator::{Skip, VelocityEstimator};
 pub use finite_difference::FiniteDifference;
 pub use foaw::{BestFit, EndFit, Fit, Foaw, FoawState};
+pub use handover::{Handover, HandoverState, Side};
 pub use kalman::{Kalman, KalmanMotor, KalmanState, KalmanTriple};
 pub use late_current::{LateCurrent, LateCurrentState};
 pub use low_pass::{LowPass, LowPassState};

@@ -89,6 +89,16 @@ impl Signals {
         ..Self::COUNT
     };
 
+    /// What either needs.
+    #[must_use]
+    pub const fn or(self, other: Self) -> Self {
+        Self {
+            current: self.current | other.current,
+            small: self.small | other.small,
+            edge: self.edge | other.edge,
+        }
+    }
+
     /// Whether everything in `self` is in `available`.
     #[must_use]
     pub const fn within(self, available: Self) -> bool {

@@ -23,6 +23,7 @@ mod codegen;
 mod endurance;
 mod every;
 mod foaw_definition;
+mod handover;
 mod image;
 mod invariants;
 mod kalman_reference;

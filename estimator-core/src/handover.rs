@@ -1,0 +1,176 @@
+//! Two estimators of which one runs, exchanged without a step.
+
+use crate::design_error::DesignError;
+use crate::estimator::VelocityEstimator;
+use crate::sample::{Sample, Signals};
+use crate::units::CountsPerTick;
+
+/// Two estimators, one of them in charge; the other can take over while it runs.
+///
+/// One that takes over starts at rest, so it first runs unheard for `settle` ticks and is then
+/// faded in over `fade`:
+/// ```text
+/// e = ticks since it started     s = clamp((e - settle) / fade, 0, 1)
+/// v = v_old + s (v_new - v_old)
+/// ```
+/// A tick's step is at most those of the two, and `|v_new - v_old| / fade`. Changing one's mind on
+/// the way turns the fade round where it is. Both run only while one takes over; after that the
+/// other is dropped, state and time.
+///
+/// ```
+/// use estimator_core::*;
+/// const BOTH: Handover<FiniteDifference, Foaw<8, EndFit>> =
+///     preset!(Handover::new(FiniteDifference, preset!(Foaw::new(8, 1)), 8, 10));
+/// let mut state = BOTH.start(&Sample::new(Count(0)));
+/// state.select(Side::Second);
+/// let mut v = 0.0;
+/// for tick in 1..=40 {
+///     v = BOTH.update(&mut state, &Sample::new(Count(tick / 2))).0; // half a count a tick
+/// }
+/// assert_eq!(v, 0.5); // finite difference would say 0 or 1
+/// assert_eq!(state.in_charge(), Some(Side::Second));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Handover<A, B> {
+    first: A,
+    second: B,
+    settle: u16,
+    fade: u16,
+}
+
+/// Which of the two estimators of a [`Handover`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Side {
+    /// The first, in charge at the start.
+    #[default]
+    First,
+    /// The second.
+    Second,
+}
+
+impl<A, B> Handover<A, B> {
+    /// `first`, that `second` may relieve, after `settle` ticks unheard and `fade` of fading.
+    ///
+    /// # Errors
+    /// [`DesignError::Window`] unless `fade` is 1 to 2^15 and `settle` at most 2^15 ticks.
+    pub const fn new(first: A, second: B, settle: u16, fade: u16) -> Result<Self, DesignError>
+    where
+        A: Copy,
+        B: Copy,
+    {
+        const LONGEST: u16 = 1 << 15;
+        if fade == 0 || fade > LONGEST || settle > LONGEST {
+            return Err(DesignError::Window);
+        }
+        Ok(Self {
+            first,
+            second,
+            settle,
+            fade,
+        })
+    }
+}
+
+/// State of a [`Handover`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct HandoverState<A, B> {
+    running: Running<A, B>,
+    wanted: Side,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Running<A, B> {
+    First(A),
+    Second(B),
+    /// Both, for so many ticks, on the way to one.
+    Both(A, B, Side, u16),
+}
+
+impl<A, B> HandoverState<A, B> {
+    /// Puts this side in charge, from the next tick on.
+    pub const fn select(&mut self, side: Side) {
+        self.wanted = side;
+    }
+
+    /// Who is in charge; `None` while one takes over.
+    #[must_use]
+    pub const fn in_charge(&self) -> Option<Side> {
+        match self.running {
+            Running::First(_) => Some(Side::First),
+            Running::Second(_) => Some(Side::Second),
+            Running::Both(..) => None,
+        }
+    }
+}
+
+impl<A, B> VelocityEstimator for Handover<A, B>
+where
+    A: VelocityEstimator<Output = CountsPerTick>,
+    B: VelocityEstimator<Output = CountsPerTick>,
+{
+    type State = HandoverState<A::State, B::State>;
+    type Output = CountsPerTick;
+    const NEEDS: Signals = A::NEEDS.or(B::NEEDS);
+
+    fn start(&self, first: &Sample) -> Self::State {
+        HandoverState {
+            running: Running::First(self.first.start(first)),
+            wanted: Side::First,
+        }
+    }
+
+    fn update(&self, state: &mut Self::State, sample: &Sample) -> CountsPerTick {
+        let wanted = state.wanted;
+        match &mut state.running {
+            Running::First(a) => {
+                let v = self.first.update(a, sample);
+                if wanted == Side::Second {
+                    let (a, b) = (a.clone(), self.second.start(sample));
+                    state.running = Running::Both(a, b, wanted, 0);
+                }
+                v
+            }
+            Running::Second(b) => {
+                let v = self.second.update(b, sample);
+                if wanted == Side::First {
+                    let (a, b) = (self.first.start(sample), b.clone());
+                    state.running = Running::Both(a, b, wanted, 0);
+                }
+                v
+            }
+            Running::Both(a, b, to, ticks) => {
+                if *to != wanted {
+                    *to = wanted;
+                    *ticks = self.turned(*ticks);
+                }
+                *ticks += 1;
+                let (va, vb) = (
+                    self.first.update(a, sample).0,
+                    self.second.update(b, sample).0,
+                );
+                let faded = ticks.saturating_sub(self.settle).min(self.fade);
+                let share = f32::from(faded) / f32::from(self.fade);
+                let (old, new) = match to {
+                    Side::First => (vb, va),
+                    Side::Second => (va, vb),
+                };
+                let v = old + share * (new - old);
+                if *ticks >= self.settle + self.fade {
+                    state.running = match to {
+                        Side::First => Running::First(a.clone()),
+                        Side::Second => Running::Second(b.clone()),
+                    };
+                }
+                CountsPerTick(v)
+            }
+        }
+    }
+}
+
+impl<A, B> Handover<A, B> {
+    /// The tick of the way back at which the fade is as far as at this one of the way there.
+    fn turned(&self, ticks: u16) -> u16 {
+        let faded = ticks.saturating_sub(self.settle);
+        self.settle + self.fade - faded
+    }
+}

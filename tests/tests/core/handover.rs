@@ -1,0 +1,155 @@
+//! Estimators exchanged while they run: no step, nothing left behind.
+
+use estimator_core::{
+    Count, EndFit, FiniteDifference, Foaw, Handover, Hertz, Model, Sample, Side, SteadyKalman,
+    SteadyKalmanTriple, VelocityEstimator,
+};
+use proptest::prelude::*;
+
+use crate::motion::any_motion;
+
+const SETTLE: u16 = 60;
+const FADE: u16 = 40;
+
+type Both = Handover<Foaw<15, EndFit>, SteadyKalmanTriple>;
+
+fn filter() -> SteadyKalmanTriple {
+    let model = Model::triple_integrator(4096, Hertz(1000.0), 2e4).unwrap();
+    SteadyKalman::new(&model).unwrap()
+}
+
+fn both() -> Both {
+    Handover::new(Foaw::new(15, 1).unwrap(), filter(), SETTLE, FADE).unwrap()
+}
+
+/// Velocity of an estimator at each sample but the first.
+fn run<E>(estimator: &E, samples: &[Sample], mut each: impl FnMut(usize, &mut E::State)) -> Vec<f32>
+where
+    E: VelocityEstimator<Output = estimator_core::CountsPerTick>,
+{
+    let mut state = estimator.start(&samples[0]);
+    samples[1..]
+        .iter()
+        .enumerate()
+        .map(|(k, sample)| {
+            each(k, &mut state);
+            estimator.update(&mut state, sample).0
+        })
+        .collect()
+}
+
+#[test]
+fn a_constant_velocity_shows_nothing_of_the_change() {
+    let samples: Vec<Sample> = (0..1000).map(|k| Sample::new(Count(7 * k))).collect();
+    let estimator = both();
+    let mut in_charge = Vec::new();
+    let velocities = run(&estimator, &samples, |k, state| {
+        match k {
+            300 => state.select(Side::Second),
+            600 => state.select(Side::First),
+            _ => {}
+        }
+        in_charge.push(state.in_charge());
+    });
+    assert!(velocities[100..].iter().all(|v| (v - 7.0).abs() < 1e-3));
+    assert_eq!(in_charge[300], Some(Side::First));
+    assert_eq!(in_charge[310], None);
+    assert_eq!(in_charge[500], Some(Side::Second));
+    assert_eq!(in_charge[900], Some(Side::First));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
+
+    /// Whenever and however often somebody changes his mind: from tick to tick the output moves
+    /// by no more than the two estimators do and the fade allows.
+    #[test]
+    fn no_step_is_larger_than_the_two_and_the_fade(
+        motion in any_motion(),
+        changes in proptest::collection::vec((0usize..600, any::<bool>()), 0..8),
+    ) {
+        let samples = motion.samples(u32::MAX - 20);
+        let (estimator, window, filter) = (both(), Foaw::<15, EndFit>::new(15, 1).unwrap(), filter());
+        let mut state = estimator.start(&samples[0]);
+        // The two on their own, started whenever the one under test starts them.
+        let (mut a, mut b) = (window.start(&samples[0]), filter.start(&samples[0]));
+        let mut last: Option<[f32; 3]> = None;
+        let mut heard = Vec::new();
+        for (k, sample) in samples[1..].iter().enumerate() {
+            for (at, second) in &changes {
+                if *at == k {
+                    state.select(if *second { Side::Second } else { Side::First });
+                }
+            }
+            let before = state.in_charge();
+            let v = estimator.update(&mut state, sample).0;
+            let now = [v, window.update(&mut a, sample).0, filter.update(&mut b, sample).0];
+            match (before, state.in_charge()) {
+                (Some(Side::First), None) => b = filter.start(sample),
+                (Some(Side::Second), None) => a = window.start(sample),
+                _ => {}
+            }
+            if let Some(last) = last {
+                let moved = [0, 1, 2].map(|n: usize| (now[n] - last[n]).abs());
+                let apart = (now[1] - now[2]).abs().max((last[1] - last[2]).abs());
+                let allowed = match before {
+                    Some(Side::First) => moved[1],
+                    Some(Side::Second) => moved[2],
+                    None => moved[1].max(moved[2]) + apart / f32::from(FADE),
+                };
+                prop_assert!(moved[0] <= allowed * 1.0001 + 1e-4, "{k}: {moved:?} {apart}");
+            }
+            last = Some(now);
+            heard.push(v);
+        }
+        // With no change asked for it is the first, bit for bit.
+        if changes.iter().all(|(_, second)| !second) {
+            let alone = run(&Foaw::<15, EndFit>::new(15, 1).unwrap(), &samples, |_, _| ());
+            prop_assert!(heard.iter().zip(&alone).all(|(a, b)| a.to_bits() == b.to_bits()));
+        }
+    }
+}
+
+/// With estimators whose difference is known, the fade is a straight line, turned where it is.
+#[test]
+fn the_fade_is_a_line_that_turns_where_it_is() {
+    // At half a count a tick finite difference says 0 and 1 in turn; its window of two says 1/2.
+    let estimator = Handover::new(
+        FiniteDifference,
+        Foaw::<2, EndFit>::new(2, 1).unwrap(),
+        4,
+        10,
+    )
+    .unwrap();
+    let samples: Vec<Sample> = (0..80).map(|k| Sample::new(Count(k / 2))).collect();
+    let heard = run(&estimator, &samples, |k, state| match k {
+        10 => state.select(Side::Second),
+        21 => state.select(Side::First),
+        _ => {}
+    });
+    // The share of the window, seen in the deviation from 1/2: 1/2 at first, none when faded.
+    let share = |k: usize| 1.0 - 2.0 * (heard[k] - 0.5).abs();
+    for (k, wanted) in [
+        (9, 0.0),
+        (14, 0.0),
+        (15, 0.1),
+        (18, 0.4),
+        (20, 0.6),
+        (21, 0.5),
+        (26, 0.0),
+        (40, 0.0),
+    ] {
+        assert!(
+            (share(k) - wanted).abs() < 1e-6,
+            "{k}: {} not {wanted}",
+            share(k)
+        );
+    }
+}
+
+#[test]
+fn impossible_fades_are_refused() {
+    for (settle, fade) in [(0, 0), (0, u16::MAX), (u16::MAX, 1)] {
+        assert!(Handover::new(FiniteDifference, FiniteDifference, settle, fade).is_err());
+    }
+}
