@@ -4,6 +4,8 @@ mod arguments;
 mod compare;
 mod felt;
 mod list;
+mod plot;
+mod record;
 mod replay;
 mod robust;
 mod tune;
@@ -35,6 +37,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         }
         Some(Command::Compare(options)) => compare::run(&options, &command_line),
         Some(Command::Replay(options)) => replay::run(&options),
+        Some(Command::Record(options)) => record::run(&options),
+        Some(Command::Plot(options)) => plot::run(&options),
         Some(Command::Tune(options)) => tune::run(&options, &command_line),
         Some(Command::Zwidth(options)) => zwidth::run(&options, &command_line),
         Some(Command::Robust(options)) => robust::run(&options),

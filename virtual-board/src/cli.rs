@@ -51,6 +51,9 @@ struct Arguments {
     /// Writes the image's frames as a recording for `host-sim replay`
     #[arg(long, value_name = "FILE.csv")]
     record: Option<PathBuf>,
+    /// Writes the bytes that the probe took from RTT channel 0, for `host-sim record --image`
+    #[arg(long, value_name = "FILE")]
+    rtt: Option<PathBuf>,
 }
 
 fn hand(name: &str) -> Result<Hand, String> {
@@ -104,7 +107,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     let outcome = on_board(&image, &setup, bar(setup.seconds))?;
     print_bytes(summary(&arguments, &setup, &outcome).as_bytes())?;
     if let Some(path) = &arguments.record {
-        write_whole(path, outcome.csv().as_bytes())?;
+        write_whole(path, outcome.csv()?.as_bytes())?;
+    }
+    if let Some(path) = &arguments.rtt {
+        write_whole(path, &outcome.rtt)?;
     }
     if outcome.ticks.is_empty() {
         return Err(Failure::Check("the control task never ran".to_owned()));

@@ -19,4 +19,3 @@ pub mod recording;
 mod rtt;
 pub mod run;
 pub mod score;
-pub mod telemetry;

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use host_sim::closed_loop::{Hand, SceneName};
 use host_sim::device::Device;
 use host_sim::plant::Pose;
+use host_sim::telemetry::{Frame, Telemetry};
 use rigless::emulator::{Start, run};
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
@@ -15,7 +16,6 @@ use crate::command::Command;
 use crate::fault::Fault;
 use crate::image::Image;
 use crate::lockstep::Lockstep;
-use crate::telemetry::{Frame, Telemetry};
 
 /// Control rate of the image, Hz.
 pub const RATE_HZ: f64 = 10e3;
@@ -121,6 +121,8 @@ pub struct Outcome {
     pub moments: Vec<Moment>,
     /// What the image read from both counters before its first tick.
     pub first_counts: [Option<u16>; 2],
+    /// What the probe took from up channel 0.
+    pub rtt: Vec<u8>,
     /// What the firmware said.
     pub telemetry: Telemetry,
     /// Each change of the amplifiers' enables, with its instant in ns.
@@ -191,6 +193,7 @@ pub fn on_board(
     let telemetry = Telemetry::decode(&image.elf, &probe.stream)?;
     Ok(Outcome {
         first_tick: first_tick(&telemetry.frames, &seen.ticks),
+        rtt: probe.stream,
         telemetry,
         ticks: seen.ticks,
         first_counts: seen.first_counts,

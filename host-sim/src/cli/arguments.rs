@@ -28,6 +28,10 @@ pub(super) enum Command {
     Compare(Compare),
     /// Run a recording through the estimators
     Replay(Replay),
+    /// Turn the firmware's telemetry into a recording
+    Record(Record),
+    /// Draw a recording
+    Plot(Plot),
     /// Search the estimators' parameters on tuning seeds and write them to a file
     Tune(Tune),
     /// Find the stiffest wall and the strongest damping that stay passive and free of limit cycles
@@ -114,6 +118,49 @@ pub(super) struct Replay {
     /// Write the scores against true_omega as JSON to FILE, or with - to standard output
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Record {
+    /// The log that cargo firmware prints, or with --image raw bytes of RTT channel 0; - is
+    /// standard input
+    #[arg(value_name = "STREAM", default_value = "-")]
+    pub(super) stream: PathBuf,
+    /// The image that sent the bytes
+    #[arg(long, value_name = "ELF")]
+    pub(super) image: Option<PathBuf>,
+    /// Control rate, Hz, of a stream that begins after the boot line
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    pub(super) rate: Option<f64>,
+    /// Which start of the firmware to record, from 1 [default: the one with most frames]
+    #[arg(long, value_name = "N")]
+    pub(super) run: Option<usize>,
+    /// Write the recording to FILE [default: standard output]
+    #[arg(long, value_name = "FILE.csv")]
+    pub(super) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Plot {
+    /// Recording: CSV as for host-sim replay
+    #[arg(value_name = "RECORDING.csv")]
+    pub(super) recording: PathBuf,
+    /// Estimator to draw; repeatable [default: foaw-end-fit and kalman-triple-steady]
+    #[arg(long = "estimator", value_name = "NAME")]
+    pub(super) estimators: Vec<String>,
+    /// From this time on, s [default: the start]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(super) from: Option<f64>,
+    /// Up to this time, s [default: the end]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(super) to: Option<f64>,
+    #[command(flatten)]
+    pub(super) device: DeviceFile,
+    #[command(flatten)]
+    pub(super) parameters: ParameterOptions,
+    /// Write the picture to FILE [default: the recording's name with .svg]
+    #[arg(long, value_name = "FILE.svg")]
+    pub(super) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -7,7 +7,7 @@ use crate::image::free_air;
 #[test]
 fn frames_of_the_image_are_a_recording_that_replay_reads() {
     let run = free_air();
-    let recording = Recording::parse(run.csv().as_bytes(), "board").unwrap();
+    let recording = Recording::parse(run.csv().unwrap().as_bytes(), "board").unwrap();
     let trace = &recording.trace;
     assert_eq!(recording.uneven_steps, 0);
     assert!((trace.rate_hz - 1000.0).abs() < 1e-6);

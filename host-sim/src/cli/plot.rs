@@ -1,0 +1,6 @@
+//! `host-sim plot`.
+use super::arguments::Plot;
+use crate::failure::Failure;
+pub(super) fn run(_: &Plot) -> Result<(), Failure> {
+    Ok(())
+}

@@ -1,0 +1,73 @@
+//! `host-sim record`.
+
+use std::io::Read as _;
+use std::path::Path;
+
+use crate::failure::Failure;
+use crate::output::{print_bytes, write_whole};
+use crate::record::{choose, csv, report};
+use crate::telemetry::Telemetry;
+
+use super::arguments::{Record, is_stdout};
+
+pub(super) fn run(options: &Record) -> Result<(), Failure> {
+    let name = match is_stdout(&options.stream) {
+        true => "standard input".to_owned(),
+        false => options.stream.display().to_string(),
+    };
+    let failure = |said: &str| Failure::Input(format!("{name}: {said}"));
+    let bytes = read(&options.stream).map_err(|error| failure(&format!("cannot read: {error}")))?;
+    let telemetry = match &options.image {
+        None => Telemetry::text(&bytes),
+        Some(path) => {
+            let elf = std::fs::read(path).map_err(|error| {
+                let path = path.display();
+                Failure::Input(format!("{path}: cannot read: {error}; give the ELF file"))
+            })?;
+            Telemetry::decode(&elf, &bytes)
+                .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?
+        }
+    };
+    if telemetry.frames.is_empty() {
+        let hint = match options.image {
+            None => "it is read as the log that cargo firmware prints; raw RTT bytes need --image",
+            Some(_) => "it is read as raw RTT bytes of --image; a log needs no --image",
+        };
+        return Err(failure(&format!("no telemetry frame in it; {hint}")));
+    }
+    let runs = telemetry.runs();
+    let run = choose(&runs, options.run).map_err(|error| failure(&error.to_string()))?;
+    let rate_hz = match (options.rate, run.rate_hz) {
+        (Some(given), Some(said)) if given != said => {
+            let said = format!("its boot line says rate={said}; leave out --rate {given}");
+            return Err(failure(&said));
+        }
+        (Some(rate), _) | (None, Some(rate)) => rate,
+        (None, None) => {
+            let said = "it begins after the boot line, so say the control rate as --rate 10000";
+            return Err(failure(said));
+        }
+    };
+    if !(1.0..=1e6).contains(&rate_hz) {
+        return Err(failure(&format!(
+            "a control rate of {rate_hz} Hz; give 1 to 1e6"
+        )));
+    }
+    for line in report(&telemetry, &runs, run) {
+        eprintln!("{name}: {line}");
+    }
+    let text = csv(run, rate_hz, |_| None);
+    match options.out.as_deref() {
+        Some(out) if !is_stdout(out) => write_whole(out, text.as_bytes()),
+        _ => print_bytes(text.as_bytes()),
+    }
+}
+
+fn read(path: &Path) -> std::io::Result<Vec<u8>> {
+    if !is_stdout(path) {
+        return std::fs::read(path);
+    }
+    let mut bytes = Vec::new();
+    std::io::stdin().lock().read_to_end(&mut bytes)?;
+    Ok(bytes)
+}

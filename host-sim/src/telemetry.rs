@@ -1,0 +1,56 @@
+//! What the firmware says, from a board or from the emulated one: frames, boots, the rest.
+
+mod frame;
+mod rtt;
+mod run;
+mod text;
+
+pub use frame::Frame;
+pub use run::{Gaps, Run};
+
+/// A decoded stream.
+#[derive(Clone, Debug, Default)]
+pub struct Telemetry {
+    /// Frames in order.
+    pub frames: Vec<Frame>,
+    /// Starts of the firmware.
+    pub boots: Vec<Boot>,
+    /// Everything else that the firmware said, boot lines among it.
+    pub log: Vec<String>,
+    /// Pieces that could not be decoded, and frames that could not be read.
+    pub malformed: Vec<String>,
+}
+
+/// A start of the firmware, as its boot line tells it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Boot {
+    /// How many frames came before it.
+    pub after: usize,
+    /// Control rate, Hz.
+    pub rate_hz: f64,
+}
+
+impl Telemetry {
+    /// Takes one message of the firmware.
+    fn line(&mut self, line: &str) {
+        if line.starts_with(frame::START) {
+            match line.parse() {
+                Ok(frame) => self.frames.push(frame),
+                Err(error) => self.malformed.push(error),
+            }
+            return;
+        }
+        if let Some(rate_hz) = boot_rate(line) {
+            let after = self.frames.len();
+            self.boots.push(Boot { after, rate_hz });
+        }
+        self.log.push(line.to_owned());
+    }
+}
+
+/// Control rate of a line `boot rate=10000 ..`, Hz.
+fn boot_rate(line: &str) -> Option<f64> {
+    let word = line.strip_prefix("boot rate=")?.split_whitespace().next()?;
+    let rate: u32 = word.parse().ok()?;
+    (rate > 0).then(|| f64::from(rate))
+}

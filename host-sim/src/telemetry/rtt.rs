@@ -1,0 +1,38 @@
+//! Raw bytes of RTT, decoded with the image that sent them.
+
+use defmt_decoder::{DecodeError, Table};
+
+use super::Telemetry;
+
+impl Telemetry {
+    /// Decodes what came out of up channel 0 of the image `elf`.
+    ///
+    /// # Errors
+    /// One line on an image without defmt, or with another version's.
+    pub fn decode(elf: &[u8], bytes: &[u8]) -> Result<Self, String> {
+        let table = Table::parse(elf)
+            .map_err(|error| format!("defmt: {error}"))?
+            .ok_or("the image has no defmt table")?;
+        let mut decoder = table.new_stream_decoder();
+        let mut telemetry = Self::default();
+        // In pieces: the decoder shifts its buffer for each frame.
+        for piece in bytes.chunks(256) {
+            decoder.received(piece);
+            loop {
+                match decoder.decode() {
+                    Ok(frame) => telemetry.line(&frame.display_message().to_string()),
+                    Err(DecodeError::UnexpectedEof) => break,
+                    Err(DecodeError::Malformed) => {
+                        telemetry
+                            .malformed
+                            .push("a frame that defmt cannot decode".to_owned());
+                        if !table.encoding().can_recover() {
+                            return Ok(telemetry);
+                        }
+                    }
+                }
+            }
+        }
+        Ok(telemetry)
+    }
+}

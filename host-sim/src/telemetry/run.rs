@@ -1,0 +1,195 @@
+//! Frames of one start of the firmware, in time.
+
+use super::{Frame, Telemetry};
+
+/// What the firmware said between two resets.
+#[derive(Clone, Debug)]
+pub struct Run<'a> {
+    /// Control rate by its boot line, Hz; `None` where the stream begins after that.
+    pub rate_hz: Option<f64>,
+    /// Frames, with their ticks from the first.
+    pub frames: Vec<(u64, &'a Frame)>,
+    /// What is missing.
+    pub gaps: Gaps,
+}
+
+/// What a run lacks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Gaps {
+    /// Places at which frames are missing.
+    pub places: u64,
+    /// Frames missing there, by the sequence numbers.
+    pub frames: u64,
+    /// Frames that were there and fit nowhere: their numbers are wrong.
+    pub strays: u64,
+}
+
+impl Telemetry {
+    /// The runs, in order.
+    ///
+    /// A run ends at a boot line, or where sequence and tick begin again. A frame whose numbers fit
+    /// neither the one before nor the one after it is a stray of damaged bytes, and left out.
+    #[must_use]
+    pub fn runs(&self) -> Vec<Run<'_>> {
+        let decimation = self.decimation();
+        let mut runs: Vec<Run> = Vec::new();
+        let mut boots = self.boots.iter().peekable();
+        for (at, frame) in self.frames.iter().enumerate() {
+            let mut booted = None;
+            while let Some(boot) = boots.next_if(|boot| boot.after <= at) {
+                booted = Some(boot.rate_hz);
+            }
+            if let (None, Some(run)) = (booted, runs.last_mut()) {
+                if run.take(frame, decimation) {
+                    continue;
+                }
+                let boots_next = boots.peek().is_some_and(|boot| boot.after <= at + 1);
+                let next = self.frames.get(at + 1).filter(|_| !boots_next);
+                let last = run.frames.last().map_or(frame, |(_, last)| last);
+                let begins =
+                    |next| !follows(last, next, decimation) && follows(frame, next, decimation);
+                if !next.is_some_and(begins) {
+                    run.gaps.strays += 1;
+                    continue;
+                }
+            }
+            // Without a boot line the image is still the same.
+            let rate_hz = booted.or_else(|| runs.last().and_then(|run| run.rate_hz));
+            runs.push(Run {
+                rate_hz,
+                frames: vec![(0, frame)],
+                gaps: Gaps::default(),
+            });
+        }
+        runs
+    }
+
+    /// Control ticks from frame to frame: what most neighbours are apart.
+    fn decimation(&self) -> u32 {
+        let neighbours = self.frames.windows(2).filter_map(|pair| {
+            let [ticks, frames] = steps(&pair[0], &pair[1])?;
+            (frames == 1).then_some(ticks)
+        });
+        let mut apart: Vec<u32> = neighbours.collect();
+        apart.sort_unstable();
+        let longest = apart.chunk_by(u32::eq).max_by_key(|same| same.len());
+        longest.map_or(1, |same| same[0])
+    }
+}
+
+impl<'a> Run<'a> {
+    /// Takes the next frame, if it is of this run.
+    fn take(&mut self, frame: &'a Frame, decimation: u32) -> bool {
+        let Some((tick, last)) = self.frames.last().copied() else {
+            return false;
+        };
+        if !follows(last, frame, decimation) {
+            return false;
+        }
+        let Some([ticks, frames]) = steps(last, frame) else {
+            return false;
+        };
+        self.gaps.places += u64::from(frames > 1);
+        self.gaps.frames += u64::from(frames - 1);
+        self.frames.push((tick + u64::from(ticks), frame));
+        true
+    }
+}
+
+/// Ticks and frames from `a` to `b`, which came later; both numbers wrap.
+fn steps(a: &Frame, b: &Frame) -> Option<[u32; 2]> {
+    let by = [b.tick.wrapping_sub(a.tick), b.seq.wrapping_sub(a.seq)];
+    let forward = by.iter().all(|by| (1..=i32::MAX as u32).contains(by));
+    forward.then_some(by)
+}
+
+/// Whether `b` can come after `a`: as many periods as frames, of which the wrap of the tick cuts
+/// one short.
+fn follows(a: &Frame, b: &Frame, decimation: u32) -> bool {
+    steps(a, b).is_some_and(|by| {
+        let [ticks, frames, decimation] = [by[0], by[1], decimation].map(u64::from);
+        let longest = frames * decimation;
+        ticks == longest || (b.tick < a.tick && ticks < longest && ticks + decimation > longest)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::telemetry::Boot;
+
+    fn frames(numbers: &[[u32; 2]]) -> Telemetry {
+        let frame = |[seq, tick]: &[u32; 2]| Frame {
+            seq: *seq,
+            tick: *tick,
+            ..Frame::default()
+        };
+        Telemetry {
+            frames: numbers.iter().map(frame).collect(),
+            ..Telemetry::default()
+        }
+    }
+
+    fn ticks(run: &Run) -> Vec<u64> {
+        run.frames.iter().map(|(tick, _)| *tick).collect()
+    }
+
+    #[test]
+    fn gaps_are_counted_and_keep_their_time() {
+        let telemetry = frames(&[[7, 70], [8, 80], [11, 110], [12, 120], [14, 140]]);
+        let runs = telemetry.runs();
+        assert_eq!(runs.len(), 1);
+        assert_eq!(ticks(&runs[0]), [0, 10, 40, 50, 70]);
+        let gaps = Gaps {
+            places: 2,
+            frames: 3,
+            strays: 0,
+        };
+        assert_eq!(runs[0].gaps, gaps);
+    }
+
+    #[test]
+    fn numbers_wrap() {
+        let max = u32::MAX;
+        let telemetry = frames(&[
+            [max - 1, max - 15],
+            [max, max - 5],
+            [0, 0],
+            [1, 10],
+            [2, 20],
+        ]);
+        let runs = telemetry.runs();
+        assert_eq!(runs.len(), 1);
+        assert_eq!(ticks(&runs[0]), [0, 10, 16, 26, 36]);
+    }
+
+    #[test]
+    fn a_reset_begins_a_run_with_and_without_its_boot_line() {
+        let mut telemetry = frames(&[[5, 50], [6, 60], [0, 0], [1, 10], [0, 0], [1, 10], [2, 20]]);
+        telemetry.boots = vec![Boot {
+            after: 4,
+            rate_hz: 1e4,
+        }];
+        let runs = telemetry.runs();
+        let lengths: Vec<_> = runs.iter().map(|run| run.frames.len()).collect();
+        assert_eq!(lengths, [2, 2, 3]);
+        assert_eq!([0, 1, 2].map(|n| runs[n].rate_hz), [None, None, Some(1e4)]);
+    }
+
+    #[test]
+    fn a_damaged_frame_is_a_stray_and_no_reset() {
+        for wrong in [
+            [9, 4_000_000_000],
+            [3, 20],
+            [3, 31],
+            [2_000_000_000, 30],
+            [0, 0],
+        ] {
+            let telemetry = frames(&[[0, 0], [1, 10], [2, 20], wrong, [4, 40], [5, 50]]);
+            let runs = telemetry.runs();
+            assert_eq!(runs.len(), 1, "{wrong:?}");
+            assert_eq!(ticks(&runs[0]), [0, 10, 20, 40, 50]);
+            assert_eq!((runs[0].gaps.strays, runs[0].gaps.frames), (1, 1));
+        }
+    }
+}
