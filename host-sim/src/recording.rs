@@ -1,10 +1,14 @@
 //! Recordings of a motor: CSV in.
 
+mod board;
+
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
 use csv::ByteRecord;
+
+pub use board::BoardColumns;
 
 use crate::estimators::EDGE_CLOCK_HZ;
 use crate::failure::Failure;

@@ -16,6 +16,7 @@ mod page;
 mod palette;
 mod plot;
 mod problem;
+mod recording;
 mod robust;
 mod score_tables;
 mod sections;
@@ -32,6 +33,8 @@ pub use zwidth::zwidth;
 pub use felt::ClosedLoop;
 
 pub use robust::robust;
+
+pub use recording::{RecordingView, recording};
 
 /// Everything that the page shows.
 #[derive(Clone, Debug, Default)]

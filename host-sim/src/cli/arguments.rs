@@ -145,7 +145,8 @@ pub(super) struct Plot {
     /// Recording: CSV as for host-sim replay
     #[arg(value_name = "RECORDING.csv")]
     pub(super) recording: PathBuf,
-    /// Estimator to draw; repeatable [default: foaw-end-fit and kalman-triple-steady]
+    /// Estimator to draw; repeatable [default: finite-difference and
+    /// kalman-triple-steady]
     #[arg(long = "estimator", value_name = "NAME")]
     pub(super) estimators: Vec<String>,
     /// From this time on, s [default: the start]

@@ -1,6 +1,68 @@
 //! `host-sim plot`.
-use super::arguments::Plot;
+
+use crate::compare::interval;
 use crate::failure::Failure;
-pub(super) fn run(_: &Plot) -> Result<(), Failure> {
-    Ok(())
+use crate::output::{print_bytes, write_whole};
+use crate::recording::{BoardColumns, Recording};
+use crate::replay;
+use crate::report::{self, RecordingView};
+
+use super::arguments::{Plot, is_stdout, kinds};
+use super::replay::warn_uneven;
+
+/// What is drawn unless told otherwise: few enough to tell apart.
+const ESTIMATORS: [&str; 2] = ["finite-difference", "kalman-triple-steady"];
+
+pub(super) fn run(options: &Plot) -> Result<(), Failure> {
+    let kinds = match options.estimators.as_slice() {
+        [] => kinds(&ESTIMATORS.map(str::to_owned))?,
+        names => kinds(names)?,
+    };
+    let device = options.device.load()?;
+    let parameters = options.parameters.load()?;
+    let name = replay::name(&options.recording);
+    let path = options.recording.display().to_string();
+    let bytes = std::fs::read(&options.recording)
+        .map_err(|error| Failure::Input(format!("{path}: cannot read: {error}")))?;
+    let recording = Recording::parse(bytes.as_slice(), &path)?;
+    let board = BoardColumns::parse(bytes.as_slice(), &path)?;
+    warn_uneven(&name, &recording);
+
+    let [first, .., last] = recording.t[..] else {
+        unreachable!("a recording has two rows at least");
+    };
+    let window = [options.from.unwrap_or(first), options.to.unwrap_or(last)];
+    let shown = recording
+        .t
+        .iter()
+        .filter(|t| (window[0]..=window[1]).contains(*t));
+    if shown.count() < 2 {
+        let [from, to] = window;
+        return Err(Failure::Input(format!(
+            "{path}: fewer than two rows from {from} to {to} s; it has {first} to {last} s, \
+             choose --from and --to there"
+        )));
+    }
+    let replayed = replay::replay(&recording, &name, &kinds, &device, &parameters)?;
+    for (estimator, column) in &replayed.left_out {
+        eprintln!("{name}: {estimator} left out: no column {column}");
+    }
+    let svg = report::recording(&RecordingView {
+        name: &name,
+        recording: &recording,
+        board: &board,
+        estimates: &replayed.estimates,
+        counts_per_rev: [device.large.counts_per_rev, device.small.counts_per_rev],
+        interval: interval(&device),
+        window,
+    })?;
+    match &options.out {
+        Some(out) if is_stdout(out) => print_bytes(svg.as_bytes()),
+        Some(out) => write_whole(out, svg.as_bytes()),
+        None => {
+            let out = options.recording.with_extension("svg");
+            write_whole(&out, svg.as_bytes())?;
+            print_bytes(format!("{}\n", out.display()).as_bytes())
+        }
+    }
 }

@@ -29,15 +29,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     for (estimator, column) in &replayed.left_out {
         eprintln!("{name}: {estimator} left out: no column {column}");
     }
-    if recording.uneven_steps > 0 {
-        eprintln!(
-            "{name}: {} of {} steps of t differ by more than 10 % from 1/{} s; estimators take \
-             every step for one tick",
-            recording.uneven_steps,
-            recording.t.len() - 1,
-            recording.trace.rate_hz,
-        );
-    }
+    warn_uneven(&name, &recording);
     let csv = replay::csv(&recording.t, &replayed.estimates);
     match (options.out.as_deref(), options.json.as_deref()) {
         (Some(out), Some(json)) if is_stdout(out) && is_stdout(json) => {
@@ -58,5 +50,18 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     match &options.out {
         Some(out) if !is_stdout(out) => print_bytes(table::details(rows).as_bytes()),
         _ => Ok(()),
+    }
+}
+
+/// Says where estimators cannot know how long a tick was.
+pub(super) fn warn_uneven(name: &str, recording: &Recording) {
+    if recording.uneven_steps > 0 {
+        eprintln!(
+            "{name}: {} of {} steps of t differ by more than 10 % from 1/{} s; estimators take \
+             every step for one tick",
+            recording.uneven_steps,
+            recording.t.len() - 1,
+            recording.trace.rate_hz,
+        );
     }
 }

@@ -1,0 +1,407 @@
+//! A recording as one picture: position, velocity, what the velocity is off by, currents, torque,
+//! over one time axis.
+
+use plotters::style::RGBColor;
+
+use super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure, legend_height};
+use super::palette::{BAND, BAND_EDGE, INK, MUTED, Palette, TRUTH};
+use super::plot::{Axis, Plot};
+use crate::contest::Estimate;
+use crate::recording::{BoardColumns, Recording};
+use crate::score::Interval;
+
+/// Sizes, px.
+const LEFT: f64 = 70.0;
+const RIGHT: f64 = 14.0;
+const TOP: f64 = 52.0;
+const PANEL: f64 = 132.0;
+const GAP: f64 = 22.0;
+/// A step of `t` this many times the period is a gap, over which nothing is drawn.
+const GAP_STEPS: f64 = 1.5;
+/// Changes of state that have a label each.
+const LABELS: usize = 12;
+
+const LARGE: RGBColor = RGBColor(0x00, 0x72, 0xb2);
+const SMALL: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
+const BOARD: RGBColor = RGBColor(0xb0, 0x00, 0x20);
+
+/// What a picture shows.
+#[derive(Clone, Copy, Debug)]
+pub struct RecordingView<'a> {
+    /// What it goes by.
+    pub name: &'a str,
+    /// The recording.
+    pub recording: &'a Recording,
+    /// What the board made of it.
+    pub board: &'a BoardColumns,
+    /// Estimates of the large motor's velocity.
+    pub estimates: &'a [Estimate],
+    /// Counts a revolution, large and small.
+    pub counts_per_rev: [u32; 2],
+    /// What a fingertip cannot tell from the truth.
+    pub interval: Interval,
+    /// Time shown, s.
+    pub window: [f64; 2],
+}
+
+/// One curve of a panel, a value a row.
+struct Curve {
+    name: String,
+    colour: RGBColor,
+    values: Vec<f64>,
+    width: f64,
+    /// Whether the axis has to show all of it.
+    sizes: bool,
+}
+
+struct Panel {
+    unit: &'static str,
+    curves: Vec<Curve>,
+    /// Half the height of the interval at each row.
+    band: Option<Vec<f64>>,
+}
+
+/// The picture as SVG.
+///
+/// # Errors
+/// If it cannot be drawn.
+pub fn recording(view: &RecordingView) -> Result<String, String> {
+    let panels = panels(view);
+    let heads: Vec<f64> = panels.iter().map(|panel| head(&keys(panel))).collect();
+    let height: f64 = TOP + heads.iter().map(|head| head + PANEL + GAP).sum::<f64>() + 20.0;
+    figure(height, view.name, |canvas| {
+        canvas.text(view.name, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
+        let mut top = TOP;
+        for (i, (panel, head)) in panels.iter().zip(&heads).enumerate() {
+            canvas.legend(&keys(panel), (LEFT, top + 8.0))?;
+            let plot = Plot {
+                left: LEFT,
+                top: top + head,
+                right: WIDTH - RIGHT,
+                bottom: top + head + PANEL,
+                x: Axis::linear(view.window),
+                y: Axis::linear(range(panel, view)),
+            };
+            panel.draw(canvas, &plot, view)?;
+            states(canvas, &plot, view, i == 0)?;
+            top = plot.bottom + GAP;
+            if i + 1 == panels.len() {
+                plot.x_title(canvas, "time, s")?;
+            }
+        }
+        Ok(())
+    })
+}
+
+fn keys(panel: &Panel) -> Vec<Key<'_>> {
+    let lines = panel.curves.iter();
+    let mut keys: Vec<_> = lines.map(|c| Key::Line(c.colour, &c.name)).collect();
+    if panel.band.is_some() {
+        keys.push(Key::Band("what a fingertip cannot tell"));
+    }
+    keys
+}
+
+fn head(keys: &[Key]) -> f64 {
+    legend_height(keys, LEFT) + 2.0
+}
+
+fn panels(view: &RecordingView) -> Vec<Panel> {
+    let trace = &view.recording.trace;
+    let mut panels = Vec::new();
+    let mut add = |unit, curves: Vec<Curve>, band| {
+        if !curves.is_empty() {
+            panels.push(Panel { unit, curves, band });
+        }
+    };
+    let mut angles = vec![angle(
+        "large motor",
+        LARGE,
+        &trace.counts_large,
+        view.counts_per_rev[0],
+    )];
+    if let Some(small) = &trace.counts_small {
+        angles.push(angle("handle", SMALL, small, view.counts_per_rev[1]));
+    }
+    add("angle, rad", angles, None);
+
+    let velocities = velocities(view);
+    let errors = trace.true_omega.as_ref().map(|truth| {
+        let error = |curve: &Curve| Curve {
+            name: format!("{} less the truth", curve.name),
+            values: curve.values.iter().zip(truth).map(|(e, w)| e - w).collect(),
+            ..*curve
+        };
+        let band = truth.iter().map(|w| view.interval.tolerance(*w)).collect();
+        (velocities.iter().map(error).collect(), band)
+    });
+    let truth = trace.true_omega.iter();
+    let truth = truth.map(|truth| Curve::new("truth", TRUTH, truth).wide());
+    add(
+        "velocity, rad/s",
+        velocities.into_iter().chain(truth).collect(),
+        None,
+    );
+    if let Some((errors, band)) = errors {
+        add("error, rad/s", errors, Some(band));
+    }
+
+    let board = view.board;
+    let currents = [
+        ("large motor", LARGE, &trace.current),
+        ("small motor", SMALL, &board.current_small),
+    ];
+    let currents = currents.into_iter();
+    let there = currents.filter_map(|(n, c, v)| Some(Curve::new(n, c, v.as_ref()?)));
+    add("current, A", there.collect(), None);
+    let torque = board.torque.iter().map(|torque| {
+        let torque: Vec<_> = torque.iter().map(|torque| 1e3 * torque).collect();
+        Curve::new("wanted on the handle", INK, &torque)
+    });
+    add("torque, mN.m", torque.collect(), None);
+    panels
+}
+
+/// Estimates, then the board's own, of which only those that are there.
+fn velocities(view: &RecordingView) -> Vec<Curve> {
+    let palette = Palette::of(view.estimates.iter().map(|estimate| estimate.estimator));
+    let mut curves: Vec<_> = view
+        .estimates
+        .iter()
+        .map(|estimate| {
+            let values: Vec<_> = estimate.velocity.iter().map(|w| f64::from(*w)).collect();
+            let colour = palette.colour(estimate.estimator);
+            let mut curve = Curve::new(estimate.estimator, colour, &values);
+            // Its quantisation would hide what the others differ by.
+            curve.sizes = estimate.estimator != "finite-difference";
+            curve
+        })
+        .collect();
+    if let Some(own) = &view.board.velocity_large {
+        curves.push(Curve::new("the board's own", BOARD, own));
+    }
+    if curves.iter().all(|curve| !curve.sizes) {
+        curves.iter_mut().for_each(|curve| curve.sizes = true);
+    }
+    curves
+}
+
+fn angle(name: &str, colour: RGBColor, counts: &[u32], per_rev: u32) -> Curve {
+    let mut moved = 0_i64;
+    let mut last = counts[0];
+    let angles = counts.iter().map(|&count| {
+        moved += i64::from(count.wrapping_sub(last) as i32);
+        last = count;
+        moved as f64 / f64::from(per_rev) * std::f64::consts::TAU
+    });
+    Curve::new(name, colour, &angles.collect::<Vec<_>>())
+}
+
+/// From the lowest to the highest value in the window, and a little more.
+fn range(panel: &Panel, view: &RecordingView) -> [f64; 2] {
+    let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
+    let mut see = |y: f64| ends = [ends[0].min(y), ends[1].max(y)];
+    for rows in segments(view) {
+        let values = panel.curves.iter().filter(|curve| curve.sizes);
+        values
+            .flat_map(|curve| &curve.values[rows.clone()])
+            .for_each(|y| see(*y));
+        for half in panel.band.iter().flat_map(|band| &band[rows.clone()]) {
+            see(1.5 * half);
+            see(-1.5 * half);
+        }
+    }
+    let pad = (0.06 * (ends[1] - ends[0])).max(1e-3);
+    [ends[0] - pad, ends[1] + pad]
+}
+
+/// Rows in the window, apart at gaps.
+fn segments(view: &RecordingView) -> Vec<std::ops::Range<usize>> {
+    let t = &view.recording.t;
+    let first = t.partition_point(|t| *t < view.window[0]);
+    let last = t.partition_point(|t| *t <= view.window[1]);
+    let gap = GAP_STEPS / view.recording.trace.rate_hz;
+    let mut from = first;
+    let mut segments = Vec::new();
+    for at in first + 1..=last {
+        if at == last || t[at] - t[at - 1] > gap {
+            segments.push(from..at);
+            from = at;
+        }
+    }
+    segments
+}
+
+impl Curve {
+    fn new(name: &str, colour: RGBColor, values: &[f64]) -> Self {
+        Self {
+            name: name.to_owned(),
+            colour,
+            values: values.to_vec(),
+            width: 1.3,
+            sizes: true,
+        }
+    }
+
+    fn wide(self) -> Self {
+        Self { width: 1.8, ..self }
+    }
+}
+
+impl Panel {
+    fn draw(&self, canvas: &Canvas, plot: &Plot, view: &RecordingView) -> Result<(), String> {
+        let t = &view.recording.t;
+        let segments = segments(view);
+        if let Some(band) = &self.band {
+            for rows in &segments {
+                let edges = rows.clone().map(|row| (t[row], -band[row], band[row]));
+                plot.band(canvas, edges.clone(), BAND)?;
+                plot.curve(
+                    canvas,
+                    edges.clone().map(|(t, low, _)| (t, low)),
+                    BAND_EDGE,
+                    0.75,
+                )?;
+                plot.curve(canvas, edges.map(|(t, _, high)| (t, high)), BAND_EDGE, 0.75)?;
+            }
+        }
+        plot.grid(canvas, 9, 4)?;
+        for curve in &self.curves {
+            for rows in &segments {
+                let points = rows.clone().map(|row| (t[row], curve.values[row]));
+                plot.curve(canvas, points, curve.colour, curve.width)?;
+            }
+        }
+        plot.edges(canvas)?;
+        let middle = 0.5 * (plot.top + plot.bottom);
+        canvas.text(self.unit, (14.0, middle), Anchor::Upwards, LABEL, INK)
+    }
+}
+
+/// A line where the safety machine changes its state, and over the first panel what it becomes.
+fn states(
+    canvas: &Canvas,
+    plot: &Plot,
+    view: &RecordingView,
+    labelled: bool,
+) -> Result<(), String> {
+    let changes = changes(view);
+    // Many changes are a band of ink: the lines without words say as much.
+    let labelled = labelled && changes.len() <= LABELS;
+    let mut free = plot.left;
+    for (t, what) in changes {
+        let (x, _) = plot.at((t, plot.y.low));
+        canvas.line(&[(x, plot.top), (x, plot.bottom)], MUTED, 1.0)?;
+        if labelled && x >= free {
+            canvas.text(&what, (x, TOP - 12.0), Anchor::Left, LABEL, MUTED)?;
+            free = x + super::canvas::text_width(&what, LABEL) + 6.0;
+        }
+    }
+    Ok(())
+}
+
+/// Instants in the window at which state or cause are others than before, and what they are.
+fn changes(view: &RecordingView) -> Vec<(f64, String)> {
+    let (t, board) = (&view.recording.t, view.board);
+    let Some(state) = &board.state else {
+        return Vec::new();
+    };
+    let told = |row: usize| {
+        (
+            state[row],
+            board.cause.as_ref().map_or(0.0, |cause| cause[row]),
+        )
+    };
+    let inside = |row: &usize| (view.window[0]..=view.window[1]).contains(&t[*row]);
+    (1..t.len())
+        .filter(|&row| told(row) != told(row - 1))
+        .filter(inside)
+        .map(|row| (t[row], words(told(row))))
+        .collect()
+}
+
+fn words((state, cause): (f64, f64)) -> String {
+    let names = ["boot", "armed", "running", "safe"];
+    let known = names.iter().enumerate().find(|(n, _)| *n as f64 == state);
+    let state = known.map_or_else(|| format!("state {state}"), |(_, name)| (*name).to_owned());
+    match cause {
+        0.0 => state,
+        _ => format!("{state}, cause {cause}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn view<'a>(recording: &'a Recording, board: &'a BoardColumns) -> RecordingView<'a> {
+        RecordingView {
+            name: "r.csv",
+            recording,
+            board,
+            estimates: &[],
+            counts_per_rev: [4096, 20_000],
+            interval: Interval::new(0.05, 0.010, 0.070, 0.96e-3),
+            window: [0.0, 0.006],
+        }
+    }
+
+    const TEXT: &str = "t,counts_large,state,cause\n0,4294967295,1,0\n0.001,0,1,0\n0.002,1,2,0\n\
+        0.005,5,2,0\n0.006,6,3,5\n";
+
+    #[test]
+    fn curves_stop_at_gaps_and_counts_run_over_their_wrap() {
+        let recording = Recording::parse(TEXT.as_bytes(), "r").unwrap();
+        let board = BoardColumns::parse(TEXT.as_bytes(), "r").unwrap();
+        let view = view(&recording, &board);
+        assert_eq!(segments(&view), [0..3, 3..5]);
+        let angle = angle("", INK, &recording.trace.counts_large, 4096);
+        let count = std::f64::consts::TAU / 4096.0;
+        assert!((angle.values[4] - 7.0 * count).abs() < 1e-12);
+        assert_eq!(
+            changes(&view),
+            [
+                (0.002, "running".to_owned()),
+                (0.006, "safe, cause 5".to_owned())
+            ]
+        );
+    }
+
+    #[test]
+    fn what_is_not_there_has_no_panel() {
+        let text = "t,counts_large\n0,0\n0.001,1\n";
+        let recording = Recording::parse(text.as_bytes(), "r").unwrap();
+        let board = BoardColumns::default();
+        let view = view(&recording, &board);
+        let units: Vec<_> = panels(&view).iter().map(|panel| panel.unit).collect();
+        assert_eq!(units, ["angle, rad"]);
+        assert!(
+            super::recording(&view)
+                .unwrap()
+                .contains("<title>r.csv</title>")
+        );
+        let text = "t,counts_large,true_omega,current\n0,0,1,0\n0.001,1,1,0\n";
+        let recording = Recording::parse(text.as_bytes(), "r").unwrap();
+        let estimate = [Estimate {
+            estimator: "pll",
+            velocity: vec![0.5, 1.5],
+        }];
+        let view = RecordingView {
+            recording: &recording,
+            estimates: &estimate,
+            ..view
+        };
+        let panels = panels(&view);
+        let units: Vec<_> = panels.iter().map(|panel| panel.unit).collect();
+        assert_eq!(
+            units,
+            [
+                "angle, rad",
+                "velocity, rad/s",
+                "error, rad/s",
+                "current, A"
+            ]
+        );
+        assert_eq!(panels[2].curves[0].values, [-0.5, 0.5]);
+    }
+}
