@@ -29,23 +29,56 @@ const fn crc8(bytes: &[u8]) -> u8 {
     crc
 }
 
-/// The frame of a request: 0xA5, kind, eight bytes of payload, CRC over kind and payload.
+/// What a frame asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// Something of the safety machine.
+    Request(Request),
+    /// A torque set-point, N·m, for the scene that takes one.
+    Torque(f32),
+    /// A parameter of a scene, both by their numbers.
+    Tune {
+        /// Scene.
+        scene: u8,
+        /// Parameter.
+        parameter: u8,
+        /// Value, in the parameter's unit.
+        value: f32,
+    },
+}
+
+/// The frame of a command: 0xA5, kind, eight bytes of payload, CRC over kind and payload. Numbers
+/// are little endian.
 ///
 /// ```
-/// use drivers::encode;
+/// use drivers::{Command, encode};
 /// use haptic_control::Request;
-/// assert_eq!(encode(Request::Select(2)), [0xA5, 3, 2, 0, 0, 0, 0, 0, 0, 0, 0xAD]);
+/// let select = encode(Command::Request(Request::Select(2)));
+/// assert_eq!(select, [0xA5, 3, 2, 0, 0, 0, 0, 0, 0, 0, 0xAD]);
+/// assert_eq!(encode(Command::Torque(0.5))[..6], [0xA5, 4, 0, 0, 0, 0x3F]);
 /// ```
 #[must_use]
-pub const fn encode(request: Request) -> [u8; FRAME] {
-    let (kind, first) = match request {
-        Request::Arm => (1, 0),
-        Request::Disarm => (2, 0),
-        Request::Select(scene) => (3, scene),
-        Request::KeepAlive => (5, 0),
+pub const fn encode(command: Command) -> [u8; FRAME] {
+    let body = match command {
+        Command::Request(Request::Arm) => [1, 0, 0, 0, 0, 0, 0, 0, 0],
+        Command::Request(Request::Disarm) => [2, 0, 0, 0, 0, 0, 0, 0, 0],
+        Command::Request(Request::Select(scene)) => [3, scene, 0, 0, 0, 0, 0, 0, 0],
+        Command::Torque(value) => {
+            let [a, b, c, d] = value.to_le_bytes();
+            [4, a, b, c, d, 0, 0, 0, 0]
+        }
+        Command::Request(Request::KeepAlive) => [5, 0, 0, 0, 0, 0, 0, 0, 0],
+        Command::Tune {
+            scene,
+            parameter,
+            value,
+        } => {
+            let [a, b, c, d] = value.to_le_bytes();
+            [6, scene, parameter, a, b, c, d, 0, 0]
+        }
     };
-    let crc = crc8(&[kind, first, 0, 0, 0, 0, 0, 0, 0]);
-    [START, kind, first, 0, 0, 0, 0, 0, 0, 0, crc]
+    let [kind, a, b, c, d, e, f, g, h] = body;
+    [START, kind, a, b, c, d, e, f, g, h, crc8(&body)]
 }
 
 /// Finds frames in a stream of bytes, in constant memory and time per byte.
@@ -66,18 +99,19 @@ impl Parser {
         self.garbage
     }
 
-    /// Takes a byte; the request, if it completes one.
-    pub fn take(&mut self, byte: u8) -> Option<Request> {
+    /// Takes a byte; the command, if it completes one.
+    pub fn take(&mut self, byte: u8) -> Option<Command> {
         self.window[self.filled] = byte;
         self.filled += 1;
         // What is held begins with a start byte, or is this byte alone.
         if self.filled == FRAME && crc8(&self.window[1..=BODY]) == byte {
             self.filled = 0;
-            let request = decode(self.window[1], self.window[2]);
-            if request.is_none() {
+            let [_, kind, payload @ .., _] = self.window;
+            let command = decode(kind, payload);
+            if command.is_none() {
                 self.garbage = self.garbage.wrapping_add(FRAME as u32);
             }
-            return request;
+            return command;
         }
         self.skip_to_start();
         None
@@ -95,12 +129,19 @@ impl Parser {
     }
 }
 
-fn decode(kind: u8, first: u8) -> Option<Request> {
+fn decode(kind: u8, payload: [u8; BODY - 1]) -> Option<Command> {
+    let [a, b, c, d, e, f, ..] = payload;
     match kind {
-        1 => Some(Request::Arm),
-        2 => Some(Request::Disarm),
-        3 => Some(Request::Select(first)),
-        5 => Some(Request::KeepAlive),
+        1 => Some(Command::Request(Request::Arm)),
+        2 => Some(Command::Request(Request::Disarm)),
+        3 => Some(Command::Request(Request::Select(a))),
+        4 => Some(Command::Torque(f32::from_le_bytes([a, b, c, d]))),
+        5 => Some(Command::Request(Request::KeepAlive)),
+        6 => Some(Command::Tune {
+            scene: a,
+            parameter: b,
+            value: f32::from_le_bytes([c, d, e, f]),
+        }),
         _ => None,
     }
 }

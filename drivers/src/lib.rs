@@ -7,6 +7,6 @@ mod dac_code;
 mod pwm;
 
 pub use amplifier::{Amplifier, CurrentOutput};
-pub use command::{Parser, encode};
+pub use command::{Command, Parser, encode};
 pub use dac_code::DacCode;
 pub use pwm::PwmCurrent;

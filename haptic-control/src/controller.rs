@@ -108,6 +108,12 @@ where
         }
     }
 
+    /// Changes the scene's parameters before the next tick; the slew limit bounds what the currents
+    /// change by.
+    pub fn retune(&mut self, scene: S) {
+        self.scene = scene;
+    }
+
     /// One tick.
     pub fn step(&self, state: &mut ControllerState<S, L, H>, sample: &Sample) -> Action {
         let angle = self.angle.of(sample.small - state.origin);

@@ -30,6 +30,7 @@ mod stage;
 mod stop;
 mod switchboard;
 mod tick;
+mod tuning;
 mod units;
 
 pub use controller::{Controller, ControllerState};
@@ -44,9 +45,12 @@ pub use rig::{AngleScale, Rig};
 pub use rst::{Rst, RstState};
 pub use rst_design::{LEAST_MODULUS, LoopPoles, RstDesign};
 pub use safety::{Findings, Mode, Order, Request, Safety, SafetyState};
-pub use scene::{Detents, FreeAir, Handle, Hold, Off, Scene, SpringDamper, Texture, Viscous, Wall};
+pub use scene::{
+    Detents, FreeAir, Handle, Hold, Off, Scene, SpringDamper, Texture, Torque, Viscous, Wall,
+};
 pub use stage::{ContinuousStage, ContinuousState, TransientStage, TransientState};
 pub use stop::Stop;
 pub use switchboard::{AnyScene, Switchboard, SwitchboardState};
 pub use tick::Action;
+pub use tuning::{Bounds, Refusal, Tunable};
 pub use units::{NewtonMetres, RadPerS, Radians};

@@ -7,6 +7,7 @@ mod impedance;
 mod off;
 mod spring_damper;
 mod texture;
+mod torque;
 mod viscous;
 mod wall;
 
@@ -16,6 +17,7 @@ pub use hold::Hold;
 pub use off::Off;
 pub use spring_damper::SpringDamper;
 pub use texture::Texture;
+pub use torque::Torque;
 pub use viscous::Viscous;
 pub use wall::Wall;
 

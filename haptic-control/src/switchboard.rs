@@ -5,7 +5,9 @@ use estimator_core::{Amps, Count, CountsPerTick, Hertz, Sample, VelocityEstimato
 use crate::limits::{Currents, within};
 use crate::need::Need;
 use crate::rig::Rig;
-use crate::scene::{Detents, FreeAir, Hold, Off, Scene, SpringDamper, Texture, Viscous, Wall};
+use crate::scene::{
+    Detents, FreeAir, Hold, Off, Scene, SpringDamper, Texture, Torque, Viscous, Wall,
+};
 use crate::stage::{ContinuousState, TransientState};
 use crate::tick::{Action, Continuous, Estimated, HandleNeed, Parts, Transient, tick};
 use crate::units::{RadPerS, Radians};
@@ -29,6 +31,8 @@ pub enum AnyScene {
     Texture(Texture),
     /// See [`Hold`].
     Hold(Hold),
+    /// See [`Torque`].
+    Torque(Torque),
 }
 
 /// State of whichever scene is on.
@@ -128,6 +132,15 @@ where
         state.swapped = true;
     }
 
+    /// Changes the parameters of the scene that is on, before the next tick: what it carries from
+    /// tick to tick goes on. Another scene than the one that is on is not taken.
+    pub fn retune(&self, state: &mut SwitchboardState<L, H>, scene: AnyScene) {
+        if core::mem::discriminant(&state.scene) == core::mem::discriminant(&scene) {
+            state.scene = scene;
+            state.swapped = true;
+        }
+    }
+
     /// One tick.
     pub fn step(&self, state: &mut SwitchboardState<L, H>, sample: &Sample) -> Action {
         let SwitchboardState {
@@ -144,6 +157,7 @@ where
             (AnyScene::SpringDamper(scene), _) => self.run(scene, &mut (), shared, angle, sample),
             (AnyScene::Viscous(scene), _) => self.run(scene, &mut (), shared, angle, sample),
             (AnyScene::Detents(scene), _) => self.run(scene, &mut (), shared, angle, sample),
+            (AnyScene::Torque(scene), _) => self.run(scene, &mut (), shared, angle, sample),
             (AnyScene::Texture(scene), SceneState::Phase(phase)) => {
                 self.run(scene, phase, shared, angle, sample)
             }

@@ -31,6 +31,12 @@ impl Detents {
             Err(DesignError::Scene)
         }
     }
+
+    /// Amplitude, and detents a turn to the nearest whole number.
+    pub(crate) const fn parameters(&self) -> (f32, f32) {
+        let per_rev = self.half_periods_per_rad * core::f32::consts::PI + 0.5;
+        (self.amplitude, per_rev as u16 as f32)
+    }
 }
 
 impl Scene for Detents {

@@ -21,6 +21,11 @@ impl Hold {
             Err(error) => Err(error),
         }
     }
+
+    /// Stiffness and damping.
+    pub(crate) const fn parameters(&self) -> [f32; 2] {
+        self.impedance.parameters()
+    }
 }
 
 impl Scene for Hold {

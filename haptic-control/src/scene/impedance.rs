@@ -19,6 +19,11 @@ impl Impedance {
         }
     }
 
+    /// Stiffness and damping.
+    pub(super) const fn parameters(&self) -> [f32; 2] {
+        [self.stiffness, self.damping]
+    }
+
     /// The torque at an angle, with the spring's rest at `rest`.
     pub(super) fn torque(&self, rest: Radians, angle: Radians, velocity: RadPerS) -> NewtonMetres {
         let spring = self.stiffness * (angle.0 - rest.0);

@@ -23,6 +23,11 @@ impl SpringDamper {
             _ => Err(DesignError::Scene),
         }
     }
+
+    /// Centre, and stiffness and damping.
+    pub(crate) const fn parameters(&self) -> (Radians, [f32; 2]) {
+        (self.centre, self.impedance.parameters())
+    }
 }
 
 impl Scene for SpringDamper {

@@ -33,6 +33,16 @@ impl Texture {
             Err(DesignError::Scene)
         }
     }
+
+    /// Amplitude.
+    pub(crate) const fn amplitude(&self) -> f32 {
+        self.amplitude
+    }
+
+    /// The same vibration with another amplitude.
+    pub(crate) const fn with_amplitude(self, amplitude: f32) -> Self {
+        Self { amplitude, ..self }
+    }
 }
 
 impl Scene for Texture {

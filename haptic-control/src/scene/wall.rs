@@ -25,6 +25,11 @@ impl Wall {
             _ => Err(DesignError::Scene),
         }
     }
+
+    /// Position, and stiffness and damping.
+    pub(crate) const fn parameters(&self) -> (Radians, [f32; 2]) {
+        (self.position, self.impedance.parameters())
+    }
 }
 
 impl Scene for Wall {

@@ -1,0 +1,39 @@
+use estimator_core::Skip;
+
+use super::{Handle, Scene};
+use crate::design_error::DesignError;
+use crate::need::Wanted;
+use crate::units::{NewtonMetres, Radians};
+
+/// A torque that somebody else decides on, N·m: whatever the handle does, this is felt.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Torque {
+    torque: f32,
+}
+
+impl Torque {
+    /// A torque set-point.
+    ///
+    /// # Errors
+    /// [`DesignError::Scene`] unless it is finite.
+    pub const fn new(torque: f32) -> Result<Self, DesignError> {
+        if torque.is_finite() {
+            Ok(Self { torque })
+        } else {
+            Err(DesignError::Scene)
+        }
+    }
+}
+
+impl Scene for Torque {
+    type Velocity = Skip;
+    type Continuous = Wanted;
+    type Transient = Wanted;
+    type State = ();
+
+    fn start(&self, _: Radians) {}
+
+    fn torque(&self, (): &mut (), _: &Handle<()>) -> NewtonMetres {
+        NewtonMetres(self.torque)
+    }
+}

@@ -1,0 +1,132 @@
+//! Parameters set while scenes run: within bounds or not at all.
+
+use estimator_core::{Count, Hertz, Pll, Sample, preset};
+use haptic_control::{
+    AnyScene, Bounds, Detents, DualStage, FreeAir, Hold, LoopPoles, Off, Radians, Refusal, Rig,
+    SpringDamper, Switchboard, Texture, Torque, Viscous, Wall,
+};
+
+const RATE: Hertz = Hertz(10e3);
+const BOUNDS: Bounds = Bounds {
+    stiffness: 0.5,
+    damping: 3e-3,
+    angle: 6.0,
+    torque: 40e-3,
+    rate: RATE,
+};
+
+const SCENES: [AnyScene; 9] = [
+    AnyScene::Off(Off),
+    AnyScene::FreeAir(FreeAir),
+    AnyScene::Wall(preset!(Wall::new(Radians(0.1), 0.30, 0.0))),
+    AnyScene::SpringDamper(preset!(SpringDamper::new(Radians(0.0), 0.10, 0.5e-3))),
+    AnyScene::Viscous(preset!(Viscous::new(2e-3))),
+    AnyScene::Detents(preset!(Detents::new(8e-3, 24))),
+    AnyScene::Texture(preset!(Texture::new(6e-3, Hertz(150.0), RATE))),
+    AnyScene::Hold(preset!(Hold::new(0.20, 1e-3))),
+    AnyScene::Torque(preset!(Torque::new(0.0))),
+];
+
+#[test]
+fn a_parameter_set_is_that_parameter_and_no_other() {
+    let wall = |position, stiffness, damping| {
+        AnyScene::Wall(Wall::new(Radians(position), stiffness, damping).unwrap())
+    };
+    for (parameter, value, wanted) in [
+        (0, -1.5, wall(-1.5, 0.30, 0.0)),
+        (1, 0.5, wall(0.1, 0.5, 0.0)),
+        (2, 3e-3, wall(0.1, 0.30, 3e-3)),
+    ] {
+        assert_eq!(SCENES[2].tuned(parameter, value, &BOUNDS), Ok(wanted));
+    }
+    let detents = |amplitude, per_rev| AnyScene::Detents(Detents::new(amplitude, per_rev).unwrap());
+    assert_eq!(SCENES[5].tuned(0, 2e-3, &BOUNDS), Ok(detents(2e-3, 24)));
+    assert_eq!(SCENES[5].tuned(1, 60.0, &BOUNDS), Ok(detents(8e-3, 60)));
+    let texture = |a, f| AnyScene::Texture(Texture::new(a, Hertz(f), RATE).unwrap());
+    assert_eq!(SCENES[6].tuned(0, 1e-3, &BOUNDS), Ok(texture(1e-3, 150.0)));
+    assert_eq!(SCENES[6].tuned(1, 200.0, &BOUNDS), Ok(texture(6e-3, 200.0)));
+}
+
+#[test]
+fn what_the_device_cannot_render_is_refused() {
+    let gain = [-1e-9, 1e9];
+    for (scene, parameter, just_above) in [
+        (2, 0, 6.001),
+        (2, 1, 0.501),
+        (2, 2, 3.001e-3),
+        (3, 0, 6.001),
+        (3, 1, 0.501),
+        (3, 2, 3.001e-3),
+        (4, 0, 3.001e-3),
+        // 24 a turn of 0.5 N.m/rad.
+        (5, 0, 0.0209),
+        (5, 1, 63.0),
+        (5, 1, 24.5),
+        (6, 0, 0.0401),
+        (6, 1, 301.0),
+        (7, 0, 0.501),
+        (7, 1, 3.001e-3),
+        (8, 0, 0.0401),
+    ] {
+        let signed = matches!((scene, parameter), (2 | 3, 0) | (8, 0));
+        let low = if signed { -just_above } else { gain[0] };
+        for value in [just_above, low, gain[1]] {
+            let tuned = SCENES[scene].tuned(parameter, value, &BOUNDS);
+            assert_eq!(
+                tuned,
+                Err(Refusal::OutOfBounds),
+                "{scene} {parameter} {value}"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_parameter_refuses_what_is_no_number_and_others_are_unknown() {
+    let mut parameters = 0;
+    for scene in SCENES {
+        for parameter in 0..=u8::MAX {
+            let known = usize::from(parameter) < scene.parameters().len();
+            parameters += usize::from(known);
+            let wanted = match known {
+                true => Refusal::NotFinite,
+                false => Refusal::Unknown,
+            };
+            for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+                assert_eq!(scene.tuned(parameter, value, &BOUNDS), Err(wanted));
+            }
+        }
+    }
+    assert_eq!(parameters, 14);
+}
+
+#[test]
+fn tuning_and_torque_set_points_do_not_jump() {
+    const RIG: Rig = preset!(Rig::new(&DualStage::DEFAULT, RATE, LoopPoles::DEFAULT));
+    const PLL: Pll = preset!(Pll::new(Hertz(100.0), RATE));
+    let board = Switchboard::new(PLL, PLL, RIG, RATE);
+    // 1000 counts are 0.31 rad, 0.21 rad into the wall.
+    let inside = Sample::new(Count(0)).with_small(Count(1000));
+    for (scene, parameter, value) in [(2, 1, 0.1), (3, 1, 0.0), (7, 1, 0.0), (8, 0, 0.03)] {
+        let mut state = board.start(&Sample::default());
+        board.select(&mut state, SCENES[scene], &inside);
+        let mut before = board.step(&mut state, &inside);
+        for _ in 0..3000 {
+            before = board.step(&mut state, &inside);
+        }
+        let tuned = SCENES[scene].tuned(parameter, value, &BOUNDS).unwrap();
+        board.retune(&mut state, tuned);
+        // Not taken: another scene than the one that is on.
+        board.retune(&mut state, SCENES[4]);
+        let first = board.step(&mut state, &inside);
+        let jump = first.currents.small.get() - before.currents.small.get();
+        assert!(jump.abs() < 1e-6, "{scene}: {jump} A");
+        let mut last = first;
+        for _ in 0..3000 {
+            last = board.step(&mut state, &inside);
+        }
+        // It does get there: a hold keeps where it began, and so feels nothing here.
+        let moved = (last.torque.0 - before.torque.0).abs();
+        assert_eq!(moved > 1e-3, scene != 7, "{scene}: {moved} N.m");
+    }
+}
