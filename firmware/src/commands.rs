@@ -1,29 +1,45 @@
 //! Commands from RTT down channel 0 to the control task.
 
-use drivers::Parser;
-use haptic_control::Request;
+use drivers::{Command, Parser};
+use haptic_control::Refusal;
 use heapless::spsc::{Producer, Queue};
 
-/// Requests that wait for the control task, which takes one a tick.
-pub(crate) type Requests = Queue<Request, 8>;
+use crate::control::Message;
+use crate::scene::{Settings, TORQUE_SCENE};
+
+/// Messages that wait for the control task, which takes one a tick.
+pub(crate) type Messages = Queue<Message, 8>;
 /// Bytes that one look takes at most.
 const BYTES: usize = 64;
+
+/// What was no command, or one that nobody can follow.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+struct Refused {
+    garbage: u32,
+    not_finite: u32,
+    out_of_bounds: u32,
+    unknown: u32,
+}
 
 /// The receiving end of the command channel.
 pub(crate) struct Commands {
     parser: Parser,
-    queue: Producer<'static, Request>,
-    reported: u32,
+    settings: Settings,
+    queue: Producer<'static, Message>,
+    refused: Refused,
+    reported: Refused,
     reports: u8,
 }
 
 impl Commands {
     /// A receiver that has seen nothing.
-    pub(crate) fn new(queue: Producer<'static, Request>) -> Self {
+    pub(crate) fn new(queue: Producer<'static, Message>) -> Self {
         Self {
             parser: Parser::default(),
+            settings: Settings::new(),
             queue,
-            reported: 0,
+            refused: Refused::default(),
+            reported: Refused::default(),
             reports: 0,
         }
     }
@@ -37,18 +53,63 @@ impl Commands {
             let Some(byte) = bare::receive() else {
                 break;
             };
-            if let Some(request) = self.parser.take(byte) {
-                let _ = self.queue.enqueue(request);
+            if let Some(message) = self.parser.take(byte).and_then(|it| self.follow(it)) {
+                let _ = self.queue.enqueue(message);
             }
         }
     }
 
-    /// Says at times, not for every byte of a flood, what was no command.
+    /// What the control task is to be told; scenes are built here, where there is time.
+    fn follow(&mut self, command: Command) -> Option<Message> {
+        let tuned = match command {
+            Command::Request(request) => return Some(Message::Request(request)),
+            Command::Torque(torque) => self.settings.set(TORQUE_SCENE, 0, torque),
+            Command::Tune {
+                scene,
+                parameter,
+                value,
+            } => self.settings.set(scene, parameter, value),
+        };
+        let count = match tuned {
+            Ok(tuned) => return Some(Message::Tuned(tuned)),
+            Err(Refusal::NotFinite) => &mut self.refused.not_finite,
+            Err(Refusal::OutOfBounds) => &mut self.refused.out_of_bounds,
+            Err(Refusal::Unknown) => &mut self.refused.unknown,
+        };
+        *count = count.wrapping_add(1);
+        None
+    }
+
+    /// Says at times, not for every byte of a flood, what was refused.
     pub(crate) fn report(&mut self) {
+        self.refused.garbage = self.parser.garbage();
         self.reports = self.reports.wrapping_add(1);
-        if self.reports == 0 && self.parser.garbage() != self.reported {
-            self.reported = self.parser.garbage();
-            defmt::warn!("garbage bytes={=u32}", self.reported);
+        if self.reports != 0 || self.refused == self.reported {
+            return;
         }
+        let Refused {
+            garbage,
+            not_finite,
+            out_of_bounds,
+            unknown,
+        } = self.refused;
+        if garbage != self.reported.garbage {
+            defmt::warn!("garbage bytes={=u32}", garbage);
+        }
+        if (Refused {
+            garbage: 0,
+            ..self.refused
+        }) != (Refused {
+            garbage: 0,
+            ..self.reported
+        }) {
+            defmt::warn!(
+                "refused not-finite={=u32} out-of-bounds={=u32} unknown={=u32}",
+                not_finite,
+                out_of_bounds,
+                unknown
+            );
+        }
+        self.reported = self.refused;
     }
 }

@@ -6,7 +6,7 @@ use haptic_control::{
 };
 
 use crate::board::RATE_HZ;
-use crate::scene::{AUTO_ARM, Core, DEVICE, FIRST, RATE, SCENES, SILENCE};
+use crate::scene::{AUTO_ARM, Core, DEVICE, FIRST, RATE, SCENES, SILENCE, Tuned};
 use crate::telemetry::Record;
 
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
@@ -23,6 +23,15 @@ pub(crate) struct Inputs {
     /// Control ticks missed since the last one.
     pub(crate) missed: u32,
     pub(crate) request: Option<Request>,
+}
+
+/// What commands come to.
+#[derive(Clone, Copy)]
+pub(crate) enum Message {
+    /// For the safety machine.
+    Request(Request),
+    /// For the scenes.
+    Tuned(Tuned),
 }
 
 /// The control core under its monitor and safety state.
@@ -53,6 +62,18 @@ impl Control {
         self.applied
     }
 
+    /// Takes a message before its tick; what there is to ask the safety machine. Settings too are a
+    /// sign of life.
+    pub(crate) fn hear(&mut self, message: Option<Message>) -> Option<Request> {
+        match message? {
+            Message::Request(request) => Some(request),
+            Message::Tuned(tuned) => {
+                self.core.retune(tuned);
+                Some(Request::KeepAlive)
+            }
+        }
+    }
+
     /// One tick: the currents to apply, `None` with the amplifiers disabled, and its record.
     pub(crate) fn step(&mut self, sample: &Sample, inputs: &Inputs) -> (Option<Currents>, Record) {
         self.overruns = self.overruns.wrapping_add(inputs.missed);
@@ -67,7 +88,7 @@ impl Control {
         let request = inputs.request.or_else(|| self.by_itself());
         let order = SAFETY.tick(&mut self.safety, &findings, request);
         if order.restart {
-            self.core = Core::start(sample);
+            self.core.restart(sample);
             self.monitor = MONITOR.start(sample);
         }
         if let Some(scene) = order.select {

@@ -16,13 +16,12 @@ mod tick;
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
     use estimator_core::Amps;
-    use haptic_control::Request;
     use heapless::spsc::Consumer;
     use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
     use crate::board::{Amplifiers, Board, Clock, Encoders, RATE_HZ};
-    use crate::commands::{Commands, Requests};
-    use crate::control::{Control, Inputs};
+    use crate::commands::{Commands, Messages};
+    use crate::control::{Control, Inputs, Message};
     use crate::telemetry::{self, Frame, Frames, Sender};
     use crate::tick::Tick;
 
@@ -36,18 +35,18 @@ mod app {
         encoders: Encoders,
         amplifiers: Amplifiers,
         control: Control,
-        requests: Consumer<'static, Request>,
+        messages: Consumer<'static, Message>,
         sender: Sender,
         frames: Consumer<'static, Frame>,
         commands: Commands,
         watchdog: IndependentWatchdog,
     }
 
-    #[init(local = [log_queue: Frames = Frames::new(), request_queue: Requests = Requests::new()])]
+    #[init(local = [log_queue: Frames = Frames::new(), message_queue: Messages = Messages::new()])]
     fn init(mut cx: init::Context) -> (Shared, Local, init::Monotonics) {
         let mut board = Board::new(&mut cx.core, cx.device);
         let (to_log, frames) = cx.local.log_queue.split();
-        let (to_control, requests) = cx.local.request_queue.split();
+        let (to_control, messages) = cx.local.message_queue.split();
         let first = board.encoders.sample(Amps::ZERO);
         defmt::info!("boot rate={=u32} cause={=u8}", RATE_HZ, board.reset as u8);
         let local = Local {
@@ -56,7 +55,7 @@ mod app {
             tick: board.tick,
             encoders: board.encoders,
             amplifiers: board.amplifiers,
-            requests,
+            messages,
             sender: Sender::new(to_log),
             frames,
             commands: Commands::new(to_control),
@@ -70,7 +69,7 @@ mod app {
     #[task(
         binds = TIM5,
         priority = 15,
-        local = [clock, tick, encoders, amplifiers, control, requests, sender]
+        local = [clock, tick, encoders, amplifiers, control, messages, sender]
     )]
     fn control(cx: control::Context) {
         let control::LocalResources {
@@ -79,7 +78,7 @@ mod app {
             encoders,
             amplifiers,
             control,
-            requests,
+            messages,
             sender,
         } = cx.local;
         let missed = tick.enter();
@@ -88,7 +87,7 @@ mod app {
             amplifier_fault: amplifiers.is_faulty(),
             clock_failure: clock.has_failed(),
             missed,
-            request: requests.dequeue(),
+            request: control.hear(messages.dequeue()),
         };
         let (currents, record) = control.step(&sample, &inputs);
         amplifiers.apply(currents);

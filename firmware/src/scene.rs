@@ -2,8 +2,8 @@
 
 use estimator_core::{Hertz, Model, NoInput, SteadyKalman, SteadyKalmanTriple, preset};
 use haptic_control::{
-    Detents, DualStage, FreeAir, Hold, LoopPoles, Off, Radians, Rig, SpringDamper, Texture,
-    Viscous, Wall,
+    Bounds, Detents, DualStage, FreeAir, Hold, LoopPoles, Off, Radians, Rig, SpringDamper, Texture,
+    Torque, Viscous, Wall,
 };
 
 use crate::board::RATE_HZ;
@@ -57,8 +57,21 @@ const HANDLE_MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(
 ));
 pub(crate) const HANDLE: Handle = preset!(SteadyKalman::new(&HANDLE_MODEL));
 
-/// Scenes by number: off, free-air, wall, spring-damper, viscous, detents, texture, hold.
-pub(crate) const SCENES: u8 = 8;
+/// What commands may set: stiffness and damping stay inside the passive region that
+/// `host-sim zwidth` finds for these estimators (docs/telemetry.md), torque inside what the small
+/// motor makes.
+pub(crate) const BOUNDS: Bounds = Bounds {
+    stiffness: 0.35,
+    damping: 5e-3,
+    angle: 6.3,
+    torque: (DEVICE.small.torque_constant * DEVICE.small.current_limit) as f32,
+    rate: RATE,
+};
+
+/// Scenes by number: off, free-air, wall, spring-damper, viscous, detents, texture, hold, torque.
+pub(crate) const SCENES: u8 = 9;
+/// The scene of the torque set-point.
+pub(crate) const TORQUE_SCENE: u8 = 8;
 
 /// Scenes with their parameters, those of the host simulation.
 mod preset {
@@ -73,6 +86,7 @@ mod preset {
     pub(crate) const DETENTS: Detents = preset!(Detents::new(8e-3, 24));
     pub(crate) const TEXTURE: Texture = preset!(Texture::new(6e-3, Hertz(150.0), RATE));
     pub(crate) const HOLD: Hold = preset!(Hold::new(0.20, 1e-3));
+    pub(crate) const TORQUE: Torque = preset!(Torque::new(0.0));
 }
 
 macro_rules! image {
@@ -86,12 +100,12 @@ macro_rules! image {
         #[cfg(any($(feature = $feature),+))]
         mod one;
         #[cfg(any($(feature = $feature),+))]
-        pub(crate) use one::Core;
+        pub(crate) use one::{Core, Settings, Tuned};
 
         #[cfg(not(any($(feature = $feature),+)))]
         mod all;
         #[cfg(not(any($(feature = $feature),+)))]
-        pub(crate) use all::Core;
+        pub(crate) use all::{Core, Settings, Tuned};
         /// What arming by itself puts on: the one scene, or free-air.
         #[cfg(not(any($(feature = $feature),+)))]
         pub(crate) const FIRST: u8 = 1;
@@ -107,4 +121,5 @@ image! {
     "scene-detents", 5, Detents, DETENTS;
     "scene-texture", 6, Texture, TEXTURE;
     "scene-hold", 7, Hold, HOLD;
+    "scene-torque", 8, Torque, TORQUE;
 }

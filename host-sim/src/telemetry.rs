@@ -1,6 +1,7 @@
 //! What the firmware says, from a board or from the emulated one: frames, boots, the rest.
 
 mod frame;
+#[cfg(feature = "rtt")]
 mod rtt;
 mod run;
 mod text;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use clap::error::ErrorKind;
-use host_sim::closed_loop::{Hand, SceneName};
+use host_sim::closed_loop::Hand;
 use host_sim::failure::Failure;
 use host_sim::output::{print_bytes, write_whole};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -15,6 +15,7 @@ use crate::command::Command;
 use crate::fault::Fault;
 use crate::image::Image;
 use crate::run::{Outcome, Setup, on_board};
+use crate::scene::ImageScene;
 use crate::score::Range;
 
 /// Where cargo puts the image.
@@ -31,8 +32,12 @@ const SETTLED_S: f64 = 0.4;
 #[command(name = "cargo board", version)]
 struct Arguments {
     /// Scene that the image is told to render
-    #[arg(long, default_value = "free-air", value_parser = str::parse::<SceneName>)]
-    scene: SceneName,
+    #[arg(long, default_value = "free-air", value_parser = str::parse::<ImageScene>)]
+    scene: ImageScene,
+    /// Sets a parameter of the scene, at an instant, as stiffness=0.2@1.5; torque=0.01@1 is the
+    /// set-point of the scene torque; may be given more than once
+    #[arg(long, value_name = "NAME=VALUE@S", value_parser = tune)]
+    tune: Vec<(f64, String)>,
     /// Who holds the handle: moving, pushing or still
     #[arg(long, default_value = "moving", value_parser = hand)]
     hand: Hand,
@@ -67,6 +72,14 @@ fn hand(name: &str) -> Result<Hand, String> {
     }
 }
 
+fn tune(text: &str) -> Result<(f64, String), String> {
+    let (what, at) = text
+        .rsplit_once('@')
+        .ok_or("a parameter needs its instant, as stiffness=0.2@1.5")?;
+    let at: f64 = at.parse().map_err(|_| format!("'{at}' is no time in s"))?;
+    Ok((at, what.to_owned()))
+}
+
 fn fault(text: &str) -> Result<(f64, Fault), String> {
     let (name, at) = text
         .split_once('@')
@@ -95,13 +108,18 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         .image
         .clone()
         .unwrap_or_else(|| PathBuf::from(IMAGE));
+    let scene = arguments.scene;
+    let mut commands = vec![(0.05, scene.select()), (0.1, Command::Arm)];
+    for (at, what) in &arguments.tune {
+        commands.push((*at, scene.tune(what)?));
+    }
     let image = Image::read(&path)?;
     let setup = Setup {
         hand: arguments.hand,
         seed: arguments.seed,
         seconds: arguments.seconds,
         faults: arguments.fault.clone(),
-        commands: vec![(0.05, Command::Scene(arguments.scene)), (0.1, Command::Arm)],
+        commands,
         ..Setup::default()
     };
     let outcome = on_board(&image, &setup, bar(setup.seconds))?;

@@ -2,6 +2,9 @@
 
 use host_sim::closed_loop::SceneName;
 
+/// The scene of the torque set-point, which follows those of the host simulation.
+pub const TORQUE_SCENE: u8 = SceneName::ALL.len() as u8;
+
 /// Something to tell the firmware.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
@@ -11,12 +14,26 @@ pub enum Command {
     Disarm,
     /// Change the scene.
     Scene(SceneName),
+    /// Change to the scene of the torque set-point.
+    TorqueScene,
+    /// A torque set-point, N.m.
+    Torque(f32),
     /// Somebody is still there.
     KeepAlive,
+    /// Set a parameter of a scene, both by their numbers.
+    Tune {
+        /// Scene.
+        scene: u8,
+        /// Parameter.
+        parameter: u8,
+        /// Value.
+        value: f32,
+    },
 }
 
 impl Command {
-    /// Start byte, kind, payload, checksum.
+    /// Start byte, kind, payload, checksum: written from docs/telemetry.md, not shared with the
+    /// firmware, so that each checks the other.
     #[must_use]
     pub fn encode(self) -> [u8; 11] {
         let mut bytes = [0; 11];
@@ -24,18 +41,37 @@ impl Command {
         bytes[1] = match self {
             Self::Arm => 1,
             Self::Disarm => 2,
-            Self::Scene(_) => 3,
+            Self::Scene(_) | Self::TorqueScene => 3,
+            Self::Torque(_) => 4,
             Self::KeepAlive => 5,
+            Self::Tune { .. } => 6,
         };
-        if let Self::Scene(scene) = self {
-            let index = SceneName::ALL
-                .iter()
-                .position(|known| known.as_str() == scene.as_str());
-            bytes[2] = index.map_or(u8::MAX, |index| index as u8);
+        match self {
+            Self::Scene(scene) => bytes[2] = number(scene),
+            Self::TorqueScene => bytes[2] = TORQUE_SCENE,
+            Self::Torque(torque) => bytes[2..6].copy_from_slice(&torque.to_le_bytes()),
+            Self::Tune {
+                scene,
+                parameter,
+                value,
+            } => {
+                bytes[2..4].copy_from_slice(&[scene, parameter]);
+                bytes[4..8].copy_from_slice(&value.to_le_bytes());
+            }
+            Self::Arm | Self::Disarm | Self::KeepAlive => {}
         }
         bytes[10] = crc8(&bytes[1..10]);
         bytes
     }
+}
+
+/// Number of a scene; parameters do not matter.
+#[must_use]
+pub fn number(scene: SceneName) -> u8 {
+    let index = SceneName::ALL
+        .iter()
+        .position(|known| known.as_str() == scene.as_str());
+    index.map_or(u8::MAX, |index| index as u8)
 }
 
 /// CRC-8, polynomial 0x07, start 0.
@@ -64,5 +100,18 @@ mod tests {
     fn scenes_are_numbered_as_the_firmware_numbers_them() {
         let wall = Command::Scene(SceneName::ALL[2]).encode();
         assert_eq!(wall[..3], [0xA5, 3, 2]);
+        assert_eq!(Command::TorqueScene.encode()[..3], [0xA5, 3, 8]);
+    }
+
+    #[test]
+    fn numbers_are_little_endian_where_the_table_says() {
+        let torque = Command::Torque(0.5).encode();
+        assert_eq!(torque[..10], [0xA5, 4, 0, 0, 0, 0x3F, 0, 0, 0, 0]);
+        let tune = Command::Tune {
+            scene: 2,
+            parameter: 1,
+            value: -2.0,
+        };
+        assert_eq!(tune.encode()[..10], [0xA5, 6, 2, 1, 0, 0, 0, 0xC0, 0, 0]);
     }
 }

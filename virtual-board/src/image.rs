@@ -38,6 +38,12 @@ impl Image {
         Self::parse(path, elf).map_err(|error| format!("{}: {error}", path.display()))
     }
 
+    /// The file.
+    #[must_use]
+    pub fn elf(&self) -> &[u8] {
+        &self.elf
+    }
+
     fn parse(path: &Path, elf: Vec<u8>) -> Result<Self, String> {
         let file = object::File::parse(&*elf).map_err(|error| error.to_string())?;
         let symbol = |name: &str| {

@@ -18,4 +18,5 @@ mod quadrature;
 pub mod recording;
 mod rtt;
 pub mod run;
+pub mod scene;
 pub mod score;

@@ -1,12 +1,16 @@
 //! An image of all scenes, one at a time.
 
 use estimator_core::Sample;
-use haptic_control::{Action, AnyScene, Switchboard, SwitchboardState};
+use haptic_control::{Action, AnyScene, Refusal, Switchboard, SwitchboardState};
 
-use super::preset::{DETENTS, FREE_AIR, HOLD, OFF, SPRING, TEXTURE, VISCOUS, WALL};
-use super::{HANDLE, Handle, LARGE, Large, RATE, RIG, SCENES};
+use super::preset::{
+    DETENTS, FREE_AIR, HOLD, OFF, SPRING, TEXTURE, TORQUE, VISCOUS, WALL,
+};
+use super::{BOUNDS, HANDLE, Handle, LARGE, Large, RATE, RIG, SCENES, TORQUE_SCENE};
 
-static SCENES_BY_NUMBER: [AnyScene; SCENES as usize] = [
+type Scenes = [AnyScene; SCENES as usize];
+
+const SCENES_BY_NUMBER: Scenes = [
     AnyScene::Off(OFF),
     AnyScene::FreeAir(FREE_AIR),
     AnyScene::Wall(WALL),
@@ -15,28 +19,84 @@ static SCENES_BY_NUMBER: [AnyScene; SCENES as usize] = [
     AnyScene::Detents(DETENTS),
     AnyScene::Texture(TEXTURE),
     AnyScene::Hold(HOLD),
+    AnyScene::Torque(TORQUE),
 ];
 
 static SWITCHBOARD: Switchboard<Large, Handle> = Switchboard::new(LARGE, HANDLE, RIG, RATE);
 
-/// The control core: a switchboard.
-pub(crate) struct Core(SwitchboardState<Large, Handle>);
+/// A scene built anew, on its way to the control task.
+#[derive(Clone, Copy)]
+pub(crate) struct Tuned {
+    number: u8,
+    scene: AnyScene,
+}
+
+/// What the scenes are set to, as the lowest priority knows it.
+pub(crate) struct Settings(Scenes);
+
+impl Settings {
+    /// The presets.
+    pub(crate) const fn new() -> Self {
+        Self(SCENES_BY_NUMBER)
+    }
+
+    /// Sets a parameter, within bounds.
+    pub(crate) fn set(&mut self, number: u8, parameter: u8, value: f32) -> Result<Tuned, Refusal> {
+        let Some(known) = self.0.get_mut(usize::from(number)) else {
+            return Err(Refusal::Unknown);
+        };
+        let scene = known.tuned(parameter, value, &BOUNDS)?;
+        *known = scene;
+        Ok(Tuned { number, scene })
+    }
+}
+
+/// The control core: a switchboard, and what its scenes are set to.
+pub(crate) struct Core {
+    state: SwitchboardState<Large, Handle>,
+    scenes: Scenes,
+    on: u8,
+}
 
 impl Core {
     /// At rest at the first sample, with no scene.
     pub(crate) fn start(first: &Sample) -> Self {
-        Self(SWITCHBOARD.start(first))
+        Self {
+            state: SWITCHBOARD.start(first),
+            scenes: SCENES_BY_NUMBER,
+            on: 0,
+        }
     }
 
-    /// Swaps the scene before the next tick.
-    pub(crate) fn select(&mut self, scene: u8, latest: &Sample) {
-        if let Some(scene) = SCENES_BY_NUMBER.get(usize::from(scene)) {
-            SWITCHBOARD.select(&mut self.0, *scene, latest);
+    /// At rest at this sample, with no scene; settings stay.
+    pub(crate) fn restart(&mut self, first: &Sample) {
+        self.state = SWITCHBOARD.start(first);
+        self.on = 0;
+    }
+
+    /// Swaps the scene before the next tick. Torque begins at zero, whatever was set before.
+    pub(crate) fn select(&mut self, number: u8, latest: &Sample) {
+        if let Some(scene) = self.scenes.get_mut(usize::from(number)) {
+            if number == TORQUE_SCENE {
+                *scene = AnyScene::Torque(TORQUE);
+            }
+            SWITCHBOARD.select(&mut self.state, *scene, latest);
+            self.on = number;
+        }
+    }
+
+    /// Takes settings; those of the scene that is on act from the next tick.
+    pub(crate) fn retune(&mut self, tuned: Tuned) {
+        if let Some(scene) = self.scenes.get_mut(usize::from(tuned.number)) {
+            *scene = tuned.scene;
+        }
+        if self.on == tuned.number {
+            SWITCHBOARD.retune(&mut self.state, tuned.scene);
         }
     }
 
     /// One tick.
     pub(crate) fn step(&mut self, sample: &Sample) -> Action {
-        SWITCHBOARD.step(&mut self.0, sample)
+        SWITCHBOARD.step(&mut self.state, sample)
     }
 }

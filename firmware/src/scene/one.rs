@@ -1,9 +1,34 @@
 //! An image of one scene: no code and no memory of the others.
 
 use estimator_core::Sample;
-use haptic_control::{Action, Controller, ControllerState};
+use haptic_control::{Action, Controller, ControllerState, Refusal, Tunable};
 
-use super::{FIRST, HANDLE, Handle, LARGE, Large, RIG, THE_SCENE, TheScene};
+use super::{
+    BOUNDS, FIRST, HANDLE, Handle, LARGE, Large, RIG, THE_SCENE, TORQUE_SCENE, TheScene,
+};
+
+/// The scene built anew, on its way to the control task.
+#[derive(Clone, Copy)]
+pub(crate) struct Tuned(TheScene);
+
+/// What the scene is set to, as the lowest priority knows it.
+pub(crate) struct Settings(TheScene);
+
+impl Settings {
+    /// The preset.
+    pub(crate) const fn new() -> Self {
+        Self(THE_SCENE)
+    }
+
+    /// Sets a parameter, within bounds.
+    pub(crate) fn set(&mut self, number: u8, parameter: u8, value: f32) -> Result<Tuned, Refusal> {
+        if number != FIRST {
+            return Err(Refusal::Unknown);
+        }
+        self.0 = self.0.tuned(parameter, value, &BOUNDS)?;
+        Ok(Tuned(self.0))
+    }
+}
 
 /// The control core: one controller, on or off.
 pub(crate) struct Core {
@@ -23,13 +48,27 @@ impl Core {
         }
     }
 
-    /// Puts the one scene on, from rest, or off.
+    /// At rest at this sample, off; settings stay.
+    pub(crate) fn restart(&mut self, first: &Sample) {
+        self.state = self.controller.start(first);
+        self.on = false;
+    }
+
+    /// Puts the one scene on, from rest, or off. Torque begins at zero, whatever was set before.
     pub(crate) fn select(&mut self, scene: u8, latest: &Sample) {
         let on = scene == FIRST;
+        if on && FIRST == TORQUE_SCENE {
+            self.controller.retune(THE_SCENE);
+        }
         if on && !self.on {
             self.state = self.controller.start(latest);
         }
         self.on = on;
+    }
+
+    /// Takes settings, which act from the next tick.
+    pub(crate) fn retune(&mut self, tuned: Tuned) {
+        self.controller.retune(tuned.0);
     }
 
     /// One tick.

@@ -24,7 +24,7 @@ pub(super) fn run(options: &Record) -> Result<(), Failure> {
                 let path = path.display();
                 Failure::Input(format!("{path}: cannot read: {error}; give the ELF file"))
             })?;
-            Telemetry::decode(&elf, &bytes)
+            decode(&elf, &bytes)
                 .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?
         }
     };
@@ -70,4 +70,14 @@ fn read(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     std::io::stdin().lock().read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+#[cfg(feature = "rtt")]
+fn decode(elf: &[u8], bytes: &[u8]) -> Result<Telemetry, String> {
+    Telemetry::decode(elf, bytes)
+}
+
+#[cfg(not(feature = "rtt"))]
+fn decode(_: &[u8], _: &[u8]) -> Result<Telemetry, String> {
+    Err("raw bytes need a build with the decoder: cargo record instead of cargo sim record".into())
 }

@@ -42,4 +42,5 @@ mod faults;
 mod healthy;
 mod image;
 mod mirror;
+mod record;
 mod recording;

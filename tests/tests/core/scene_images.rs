@@ -46,11 +46,12 @@ impl Needs {
 }
 
 /// Every library of the package `scene-images`, in the order of the table.
-const SCENES: [(&str, Needs); 9] = [
+const SCENES: [(&str, Needs); 10] = [
     ("off", Needs::NOTHING),
     ("detents", Needs::SMALL_MOTOR),
     ("texture", Needs::SMALL_MOTOR),
     ("free-air", Needs::BOTH_MOTORS),
+    ("torque", Needs::BOTH_MOTORS),
     ("wall", Needs::EVERYTHING),
     ("spring-damper", Needs::EVERYTHING),
     ("viscous", Needs::EVERYTHING),

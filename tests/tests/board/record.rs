@@ -1,0 +1,170 @@
+//! Telemetry off the board's RTT as a recording, and what commands set.
+
+use host_sim::compare::interval;
+use host_sim::device::Device;
+use host_sim::estimators::Kind;
+use host_sim::parameters::Parameters;
+use host_sim::record::{choose, csv};
+use host_sim::recording::{BoardColumns, Recording};
+use host_sim::replay::replay;
+use host_sim::telemetry::Telemetry;
+use virtual_board::command::Command;
+use virtual_board::run::{Outcome, Setup};
+
+use crate::image::{free_air, image, run};
+
+/// The recording made of raw bytes, as `host-sim record --image` makes it.
+fn recorded(bytes: &[u8], rate_hz: Option<f64>) -> String {
+    let telemetry = Telemetry::decode(image().elf(), bytes).unwrap();
+    let runs = telemetry.runs();
+    let run = choose(&runs, None).unwrap();
+    csv(run, run.rate_hz.or(rate_hz).unwrap(), |_| None)
+}
+
+fn parse(text: &str) -> Recording {
+    Recording::parse(text.as_bytes(), "r").unwrap()
+}
+
+#[test]
+fn the_bytes_of_the_probe_make_the_recording_that_the_run_makes() {
+    let run = free_air();
+    let direct = parse(&run.csv().unwrap());
+    let text = recorded(&run.rtt, None);
+    let recording = parse(&text);
+    assert_eq!(recording.t, direct.t);
+    assert_eq!(recording.trace.counts_large, direct.trace.counts_large);
+    assert_eq!(recording.trace.counts_small, direct.trace.counts_small);
+    assert_eq!(recording.trace.current, direct.trace.current);
+    // What the plant's encoders read at those ticks, not only what both decode from one stream.
+    for (row, frame) in run.telemetry.frames.iter().enumerate() {
+        let tick = run.tick(frame).unwrap();
+        let counts = tick.counts[0].unwrap();
+        assert_eq!(recording.trace.counts_large[row] as u16, counts);
+    }
+    let kinds: Vec<_> = Kind::all().iter().collect();
+    let (device, parameters) = (Device::default(), Parameters::default());
+    let estimates = [&recording, &direct].map(|recording| {
+        replay(recording, "r", &kinds, &device, &parameters)
+            .unwrap()
+            .estimates
+    });
+    assert!(estimates[0].len() >= 7);
+    for (a, b) in estimates[0].iter().zip(&estimates[1]) {
+        assert_eq!((a.estimator, &a.velocity), (b.estimator, &b.velocity));
+    }
+    let board = BoardColumns::parse(text.as_bytes(), "r").unwrap();
+    let own = board.velocity_large.unwrap();
+    let truth = direct.trace.true_omega.unwrap();
+    let inside = own.iter().zip(&truth);
+    let inside =
+        inside.filter(|(w, truth)| (*w - *truth).abs() < interval(&device).tolerance(**truth));
+    assert!(inside.count() * 10 > 8 * truth.len());
+}
+
+#[test]
+fn a_stream_from_the_middle_on_and_with_a_hole_loses_only_what_is_missing() {
+    let run = free_air();
+    let whole = parse(&run.csv().unwrap());
+    let (from, hole, end) = (run.rtt.len() / 3, run.rtt.len() / 2, run.rtt.len());
+    let bytes = [&run.rtt[from..hole], &run.rtt[hole + 1001..end - 5]].concat();
+    let telemetry = Telemetry::decode(image().elf(), &bytes).unwrap();
+    let runs = telemetry.runs();
+    let run = choose(&runs, None).unwrap();
+    assert_eq!((run.rate_hz, run.gaps.places), (None, 1));
+    assert!((20..40).contains(&run.gaps.frames), "{:?}", run.gaps);
+    let part = parse(&csv(run, 1e4, |_| None));
+    let first = whole.t.len() - run.frames.len() - run.gaps.frames as usize - 1;
+    for (t, counts) in part.t.iter().zip(&part.trace.counts_large) {
+        let row = first + (t * 1e3).round() as usize;
+        assert_eq!(*counts, whole.trace.counts_large[row], "{t} s");
+    }
+}
+
+/// Torque by telemetry at a time, N.m.
+fn torque_at(run: &Outcome, t: f64) -> f32 {
+    let tick = (t * 1e4) as u32;
+    let frame = run.telemetry.frames.iter().find(|frame| frame.tick >= tick);
+    frame.expect("a frame at that time").torque
+}
+
+fn refusals(run: &Outcome) -> Option<&str> {
+    let log = run.telemetry.log.iter().rev();
+    log.map(String::as_str)
+        .find(|line| line.starts_with("refused"))
+}
+
+#[test]
+fn a_torque_set_point_is_felt_bounded_and_gone_when_nobody_speaks() {
+    let torque = |at, torque| (at, Command::Torque(torque));
+    let run = run(&Setup {
+        seconds: 2.2,
+        keep_alive: false,
+        commands: vec![
+            // Set before the scene is on, it does not count.
+            torque(0.04, 0.02),
+            (0.05, Command::TorqueScene),
+            (0.1, Command::Arm),
+            torque(0.4, 0.004),
+            torque(0.7, f32::NAN),
+            torque(0.71, 0.05),
+            torque(0.72, f32::NEG_INFINITY),
+            (0.73, Command::KeepAlive),
+            torque(1.0, -0.003),
+        ],
+        ..Setup::default()
+    });
+    assert_eq!(torque_at(&run, 0.35), 0.0);
+    assert_eq!(torque_at(&run, 0.69), 0.004);
+    assert_eq!(torque_at(&run, 0.99), 0.004);
+    assert_eq!(torque_at(&run, 1.45), -0.003);
+    assert_eq!(
+        refusals(&run),
+        Some("refused not-finite=2 out-of-bounds=1 unknown=0")
+    );
+    // Half a second after the last word the scene is off, and cause 13 says why.
+    let last = run.telemetry.frames.last().unwrap();
+    assert_eq!((last.state.as_str(), last.cause.as_str()), ("1", "13"));
+    let currents = [last.il, last.is].map(f32::abs);
+    assert!(last.torque == 0.0 && currents < [1e-6; 2], "{currents:?}");
+    assert_eq!(last.overruns, 0);
+}
+
+#[test]
+fn a_wall_is_tuned_while_it_pushes_and_the_torque_does_not_jump() {
+    let tune = |at, parameter, value| {
+        let command = Command::Tune {
+            scene: 2,
+            parameter,
+            value,
+        };
+        (at, command)
+    };
+    let run = run(&Setup {
+        seconds: 2.0,
+        hand: host_sim::closed_loop::Hand::Pushing,
+        commands: vec![
+            (0.05, Command::Scene("wall".parse().unwrap())),
+            (0.1, Command::Arm),
+            tune(1.5, 1, 0.15),
+            tune(1.6, 1, 0.4),
+            tune(1.6, 9, 0.1),
+        ],
+        ..Setup::default()
+    });
+    // The wall does push: half of it goes, and no more than a part of that within 1 ms.
+    let change = torque_at(&run, 1.51) / torque_at(&run, 1.49);
+    assert!((0.3..0.7).contains(&change), "{change}");
+    let frames = &run.telemetry.frames;
+    let swap = frames.iter().find(|frame| frame.tick >= 15_000).unwrap();
+    let swap = run.tick_index(swap).unwrap();
+    let felt = |k: usize| run.ticks[k].felt;
+    let total = (felt(swap + 1500) - felt(swap - 100)).abs();
+    let steps = (swap - 100..swap + 1500).map(|k| (felt(k + 10) - felt(k)).abs());
+    let step = steps.fold(0.0, f64::max);
+    assert!(total > 3e-3 && step < 0.3 * total, "{step} of {total} N.m");
+    assert_eq!(
+        refusals(&run),
+        Some("refused not-finite=0 out-of-bounds=1 unknown=1")
+    );
+    assert_eq!(frames.last().unwrap().state, "2");
+}

@@ -1,0 +1,136 @@
+//! What the image can be told to render, by name.
+
+use std::fmt;
+use std::str::FromStr;
+
+use haptic_control::{Detents, Hold, SpringDamper, Texture, Torque, Tunable, Viscous, Wall};
+use host_sim::closed_loop::SceneName;
+
+use crate::command::{Command, number};
+
+/// A scene of the image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ImageScene {
+    /// One that the host simulation has too.
+    Host(SceneName),
+    /// The torque set-point.
+    Torque,
+}
+
+impl FromStr for ImageScene {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        match name {
+            "torque" => Ok(Self::Torque),
+            _ => name
+                .parse()
+                .map(Self::Host)
+                .map_err(|error| format!("{error}, torque")),
+        }
+    }
+}
+
+impl fmt::Display for ImageScene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Host(scene) => f.write_str(scene.as_str()),
+            Self::Torque => f.write_str("torque"),
+        }
+    }
+}
+
+impl ImageScene {
+    /// The command that puts it on.
+    #[must_use]
+    pub fn select(self) -> Command {
+        match self {
+            Self::Host(scene) => Command::Scene(scene),
+            Self::Torque => Command::TorqueScene,
+        }
+    }
+
+    /// Names of its parameters, in the order of their numbers.
+    #[must_use]
+    pub fn parameters(self) -> &'static [&'static str] {
+        match self {
+            Self::Host(SceneName::Off | SceneName::FreeAir) => &[],
+            Self::Host(SceneName::Wall(..)) => Wall::PARAMETERS,
+            Self::Host(SceneName::SpringDamper(..)) => SpringDamper::PARAMETERS,
+            Self::Host(SceneName::Viscous(..)) => Viscous::PARAMETERS,
+            Self::Host(SceneName::Detents(..)) => Detents::PARAMETERS,
+            Self::Host(SceneName::Texture(..)) => Texture::PARAMETERS,
+            Self::Host(SceneName::Hold(..)) => Hold::PARAMETERS,
+            Self::Torque => Torque::PARAMETERS,
+        }
+    }
+
+    /// The command that sets a parameter, from text as `stiffness=0.2`. Whether the value is in
+    /// bounds is for the image to say.
+    ///
+    /// # Errors
+    /// One line on another text, or a name that is none of its parameters.
+    pub fn tune(self, text: &str) -> Result<Command, String> {
+        let (name, value) = text
+            .split_once('=')
+            .ok_or_else(|| format!("--tune {text}: give it as stiffness=0.2@1.5"))?;
+        let parameters = self.parameters();
+        let parameter = parameters.iter().position(|known| *known == name);
+        let parameter = parameter.ok_or_else(|| match parameters {
+            [] => format!("--tune {text}: {self} has no parameters"),
+            _ => format!("--tune {text}: {self} has {}", parameters.join(", ")),
+        })? as u8;
+        let value = value
+            .parse()
+            .map_err(|_| format!("--tune {text}: '{value}' is no number"))?;
+        Ok(match self {
+            Self::Torque => Command::Torque(value),
+            Self::Host(scene) => Command::Tune {
+                scene: number(scene),
+                parameter,
+                value,
+            },
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::TORQUE_SCENE;
+
+    #[test]
+    fn what_is_typed_becomes_a_command_or_a_reason() {
+        let wall: ImageScene = "wall".parse().unwrap();
+        let tune = Command::Tune {
+            scene: 2,
+            parameter: 1,
+            value: 0.2,
+        };
+        assert_eq!(wall.tune("stiffness=0.2"), Ok(tune));
+        assert_eq!(
+            ImageScene::Torque.tune("torque=-0.01"),
+            Ok(Command::Torque(-0.01))
+        );
+        assert_eq!(TORQUE_SCENE, 8);
+        for (text, said) in [
+            ("stiffness", "give it as"),
+            ("softness=1", "wall has position, stiffness, damping"),
+            ("stiffness=soft", "'soft' is no number"),
+        ] {
+            assert!(wall.tune(text).unwrap_err().contains(said), "{text}");
+        }
+        assert!(
+            "tarpit"
+                .parse::<ImageScene>()
+                .unwrap_err()
+                .ends_with(", torque")
+        );
+        for scene in SceneName::ALL {
+            assert_eq!(
+                ImageScene::Host(scene).to_string().parse(),
+                Ok(ImageScene::Host(scene))
+            );
+        }
+    }
+}
