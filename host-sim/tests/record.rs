@@ -1,0 +1,179 @@
+//! `record` and `plot` as somebody types them.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+/// A folder of its own for each test, gone afterwards.
+struct Folder(PathBuf);
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+impl Folder {
+    fn new(test: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("limpid-{test}-{}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn run(&self, arguments: &[&str], input: &[u8]) -> Output {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_host-sim"))
+            .args(arguments)
+            .current_dir(&self.0)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // One that refuses its arguments does not read.
+        let _ = child.stdin.take().unwrap().write_all(input);
+        child.wait_with_output().unwrap()
+    }
+
+    /// Standard output and error of a run that ended well.
+    fn good(&self, arguments: &[&str], input: &[u8]) -> [String; 2] {
+        let output = self.run(arguments, input);
+        let texts = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {texts:?}");
+        texts
+    }
+
+    /// The one line of a run that was refused and left no file.
+    fn refused(&self, arguments: &[&str], input: &[u8]) -> String {
+        let files = || fs::read_dir(&self.0).unwrap().count();
+        let before = files();
+        let output = self.run(arguments, input);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {errors}");
+        assert_eq!(errors.lines().count(), 1, "{arguments:?}: {errors}");
+        assert!(errors.starts_with("error: ") && output.stdout.is_empty());
+        assert_eq!(files(), before, "{arguments:?}");
+        errors
+    }
+}
+
+/// A log as `cargo firmware` prints it: 1 rad/s, over the wrap of the counts, in steps of `every`.
+fn log(frames: impl Iterator<Item = u32>, boots: bool) -> String {
+    let mut log = String::from("     Finished in 2.1s\n");
+    if boots {
+        log += "0.000000 [INFO ] boot rate=10000 cause=0 (firmware src/main.rs:50)\n";
+    }
+    for k in frames {
+        let large = (652 * k / 1000).wrapping_sub(100);
+        writeln!(
+            log,
+            "0.1 [INFO ] frame seq={k} tick={} large={large} small={} wl=1.1 ws=0.9 torque=0.01 \
+             il=0.25 is=-0.125 state={} cause=0 overruns=0 drops=0 cycles=900 (firmware \
+             src/telemetry.rs:93)",
+            10 * k,
+            3183 * k / 1000,
+            1 + k / 100,
+        )
+        .unwrap();
+    }
+    log
+}
+
+#[test]
+fn a_log_is_recorded_replayed_and_drawn() {
+    let folder = Folder::new("record");
+    let log = log((0..200).filter(|k| !(50..60).contains(k)), true) + "frame seq=200 tick=2000 la";
+    let [_, said] = folder.good(&["record", "--out", "run.csv"], log.as_bytes());
+    assert!(
+        said.contains("190 frames recorded, 10 missing at 1 place"),
+        "{said}"
+    );
+    assert!(
+        said.contains("1 piece not readable, the first: half a line"),
+        "{said}"
+    );
+    fs::write(folder.0.join("run.log"), &log).unwrap();
+    let [printed, _] = folder.good(&["record", "run.log"], b"");
+    assert_eq!(
+        printed,
+        fs::read_to_string(folder.0.join("run.csv")).unwrap()
+    );
+    let [estimates, said] = folder.good(&["replay", "run.csv", "--estimator", "pll"], b"");
+    assert_eq!(estimates.lines().count(), 191);
+    assert!(said.contains("1 of 189 steps of t differ"), "{said}");
+    // A count is 1.5 rad/s from row to row, so the estimate is right on average alone.
+    let velocities = estimates.lines().skip(91);
+    let velocities = velocities.map(|line| line.rsplit(',').next().unwrap().parse::<f64>());
+    let mean = velocities.map(Result::unwrap).sum::<f64>() / 100.0;
+    assert!((mean - 1.0).abs() < 0.1, "{mean} rad/s");
+
+    let [path, _] = folder.good(&["plot", "run.csv"], b"");
+    assert_eq!(path, "run.svg\n");
+    let svg = fs::read_to_string(folder.0.join("run.svg")).unwrap();
+    assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"));
+    for word in [
+        "angle, rad",
+        "current, A",
+        "torque, mN.m",
+        "the board",
+        "running",
+    ] {
+        assert!(svg.contains(word), "{word}");
+    }
+    assert!(!svg.contains("truth"));
+}
+
+#[test]
+fn what_cannot_be_recorded_or_drawn_is_refused_in_a_line() {
+    let folder = Folder::new("record-refused");
+    let whole = log(0..3, true);
+    let middle = log(7..20, false);
+    let one = log(0..1, true);
+    let cases: [(&[&str], &str, &str); 9] = [
+        (
+            &[],
+            "",
+            "standard input: no telemetry frame in it; it is read as the log",
+        ),
+        (&[], "\u{0}\u{a5}\n", "standard input: no telemetry frame"),
+        (&["nowhere.log"], "", "nowhere.log: cannot read"),
+        (&["--image", "nowhere"], &whole, "nowhere: cannot read"),
+        (&[], &one, "only one telemetry frame"),
+        (
+            &[],
+            &middle,
+            "begins after the boot line, so say the control rate as --rate",
+        ),
+        (&["--rate", "1000"], &whole, "its boot line says rate=10000"),
+        (&["--rate", "-1"], &middle, "a control rate of -1 Hz"),
+        (&["--run", "2"], &whole, "--run 2: there are 1 runs"),
+    ];
+    for (arguments, input, said) in cases {
+        let arguments = [&["record", "--out", "run.csv"], arguments].concat();
+        let error = folder.refused(&arguments, input.as_bytes());
+        assert!(error.contains(said), "{arguments:?}: {error}");
+    }
+    let [text, _] = folder.good(&["record", "--rate", "10000"], middle.as_bytes());
+    assert_eq!(text.lines().count(), 14);
+
+    fs::write(folder.0.join("r.csv"), &text).unwrap();
+    for (arguments, said) in [
+        (&["nowhere.csv"][..], "nowhere.csv: cannot read"),
+        (
+            &["r.csv", "--from", "5"],
+            "fewer than two rows from 5 to 0.012 s",
+        ),
+        (&["r.csv", "--estimator", "x"], "no estimator 'x'"),
+        (&["r.csv", "--out", "r.csv/x.svg"], "cannot write"),
+    ] {
+        let error = folder.refused(&[&["plot"], arguments].concat(), b"");
+        assert!(error.contains(said), "{arguments:?}: {error}");
+    }
+    fs::write(folder.0.join("r.csv"), text.replace("0.01,1.1", "wet,1.1")).unwrap();
+    let error = folder.refused(&["plot", "r.csv"], b"");
+    assert!(
+        error.contains("r.csv: line 2: column torque: 'wet' is not a number"),
+        "{error}"
+    );
+}
