@@ -3,6 +3,7 @@
 mod bench;
 mod press;
 mod scene;
+mod tracking;
 
 use std::f64::consts::TAU;
 

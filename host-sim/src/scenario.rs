@@ -19,6 +19,7 @@ mod wall;
 
 pub(crate) use hand::Intent;
 pub use stochastic::{CURRENT_STD_A, TORQUE_INTENSITY_NM2_S};
+pub(crate) use track::Track;
 
 use crate::device::Device;
 use crate::plant::{Grip, Pose};

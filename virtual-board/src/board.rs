@@ -7,6 +7,7 @@ use rigless::machine::{Board, Target, armv7m};
 use rigless::mcu::{Mcu, Operate};
 use rigless::snapshot::Store;
 use rigless::soc::stm32f427::Stm32f427;
+use rigless::soc::stm32f427::generated::rcc::{Register, cr::HSERDY, csr::BORRSTF};
 use rigless::soc::{Bus, Error};
 use rigless::time::VirtualNanos;
 
@@ -22,8 +23,11 @@ pub const CORE_HZ: u64 = 168_000_000;
 pub struct Part {
     /// Everything but the DAC.
     pub stm32: Stm32f427,
+    /// The next reset is the brown-out detector's, which the emulator has not.
+    pub(crate) brown_out: bool,
     dac: Dac,
     dac_slot: usize,
+    rcc_slot: usize,
 }
 
 impl Part {
@@ -45,6 +49,11 @@ impl Mcu for Part {
 
     fn reset(&mut self, at: VirtualNanos, cause: ResetCause) {
         self.stm32.reset(at, cause);
+        if std::mem::take(&mut self.brown_out) {
+            let (_, registers) = self.stm32.clocks();
+            let flag = BORRSTF.mask();
+            registers.restore(Register::Csr, flag, flag);
+        }
     }
 
     fn poll(&mut self, now: VirtualNanos) {
@@ -52,6 +61,11 @@ impl Mcu for Part {
     }
 
     fn split(&mut self, slot: usize) -> (&mut Bus, Option<&mut dyn ErasedDevice>) {
+        if slot == self.rcc_slot && self.stm32.rcc.crystals().0 == 0 {
+            // The emulator lets an oscillator without a crystal get ready.
+            let (_, registers) = self.stm32.clocks();
+            registers.restore(Register::Cr, HSERDY.mask(), 0);
+        }
         if slot == self.dac_slot {
             return (self.stm32.bus_mut(), Some(&mut self.dac));
         }
@@ -80,11 +94,14 @@ impl ControllerBoard {
         stm32.rcc.attach_crystals(crystal_hz, 0);
         stm32.set_supply(3300);
         let dac_slot = stm32.bus().slot("DAC")?;
+        let rcc_slot = stm32.bus().slot("RCC")?;
         Ok(Self {
             part: Part {
                 stm32,
+                brown_out: false,
                 dac: Dac,
                 dac_slot,
+                rcc_slot,
             },
             instructions_per_second,
         })

@@ -38,7 +38,7 @@ struct Arguments {
     /// set-point of the scene torque; may be given more than once
     #[arg(long, value_name = "NAME=VALUE@S", value_parser = tune)]
     tune: Vec<(f64, String)>,
-    /// Who holds the handle: moving, pushing or still
+    /// Who holds the handle: moving, pushing, still, or tracking chirps and reversals
     #[arg(long, default_value = "moving", value_parser = hand)]
     hand: Hand,
     /// Virtual seconds
@@ -66,8 +66,9 @@ fn hand(name: &str) -> Result<Hand, String> {
         "moving" => Ok(Hand::Moving),
         "pushing" => Ok(Hand::Pushing),
         "still" => Ok(Hand::Still),
+        "tracking" => Ok(Hand::Tracking),
         _ => Err(format!(
-            "no hand '{name}'; there are moving, pushing, still"
+            "no hand '{name}'; there are moving, pushing, still, tracking"
         )),
     }
 }

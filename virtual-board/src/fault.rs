@@ -11,6 +11,8 @@ pub enum Fault {
     StuckBoth,
     /// Lines A and B of the large motor's encoder change places: it counts backwards.
     Swapped,
+    /// Of 64 edges of the large motor's encoder the last four do not arrive.
+    LostCounts,
     /// The large motor's amplifier reports a fault. It goes on driving, so that only the firmware
     /// can stop it.
     AmplifierFault,
@@ -18,44 +20,111 @@ pub enum Fault {
     HungCore,
     /// The control tick stops coming, while everything else runs on.
     HungControl,
+    /// The task of lowest priority loops for ever, while the control task runs on.
+    HungIdle,
     /// The next read of the large motor's counter is answered with a bus error.
     BusError,
-    /// Nobody drains the telemetry any more.
-    NobodyDrains,
+    /// The crystal never runs, from power-up on whatever the instant.
+    DeadCrystal,
     /// The crystal stops.
     CrystalFails,
+    /// Nobody drains the telemetry any more.
+    NobodyDrains,
+    /// The command channel is kept full: garbage, and a keep-alive now and then.
+    CommandFlood,
+    /// The supply sags for a moment: a reset by the brown-out detector.
+    BrownOut,
 }
+
+/// Each fault with its name on the command line and what it is.
+const NAMES: [(Fault, &str, &str); 15] = [
+    (Fault::StuckA, "stuck-a", "large encoder's line A stuck"),
+    (Fault::StuckB, "stuck-b", "large encoder's line B stuck"),
+    (
+        Fault::StuckBoth,
+        "stuck-both",
+        "both lines of the large encoder stuck",
+    ),
+    (
+        Fault::Swapped,
+        "swapped",
+        "large encoder's phases change places",
+    ),
+    (
+        Fault::LostCounts,
+        "lost-counts",
+        "4 of 64 edges of the large encoder lost",
+    ),
+    (
+        Fault::AmplifierFault,
+        "amplifier-fault",
+        "large amplifier reports a fault and drives on",
+    ),
+    (Fault::HungCore, "hung-core", "the core stops"),
+    (
+        Fault::HungControl,
+        "hung-control",
+        "the control task runs no more",
+    ),
+    (
+        Fault::HungIdle,
+        "hung-low-priority",
+        "the task of lowest priority loops for ever",
+    ),
+    (
+        Fault::BusError,
+        "bus-error",
+        "a read of the large counter fails",
+    ),
+    (
+        Fault::DeadCrystal,
+        "dead-crystal",
+        "no crystal from power-up on, whatever S",
+    ),
+    (
+        Fault::CrystalFails,
+        "crystal-fails",
+        "the crystal stops in flight",
+    ),
+    (
+        Fault::NobodyDrains,
+        "nobody-drains",
+        "nobody drains the telemetry",
+    ),
+    (
+        Fault::CommandFlood,
+        "command-flood",
+        "garbage fills the command channel",
+    ),
+    (
+        Fault::BrownOut,
+        "brown-out",
+        "the brown-out detector resets the chip",
+    ),
+];
 
 impl Fault {
     /// All of them.
-    pub const ALL: [Self; 10] = [
-        Self::StuckA,
-        Self::StuckB,
-        Self::StuckBoth,
-        Self::Swapped,
-        Self::AmplifierFault,
-        Self::HungCore,
-        Self::HungControl,
-        Self::BusError,
-        Self::NobodyDrains,
-        Self::CrystalFails,
-    ];
+    pub fn all() -> impl Iterator<Item = Self> {
+        NAMES.iter().map(|(fault, ..)| *fault)
+    }
+
+    /// Its name on the command line, and what it is in a few words.
+    fn words(self) -> (&'static str, &'static str) {
+        let found = NAMES.iter().find(|(fault, ..)| *fault == self);
+        found.map_or(("", ""), |(_, name, what)| (name, what))
+    }
 
     /// Name on the command line.
     #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::StuckA => "stuck-a",
-            Self::StuckB => "stuck-b",
-            Self::StuckBoth => "stuck-both",
-            Self::Swapped => "swapped",
-            Self::AmplifierFault => "amplifier-fault",
-            Self::HungCore => "hung-core",
-            Self::HungControl => "hung-control",
-            Self::BusError => "bus-error",
-            Self::NobodyDrains => "nobody-drains",
-            Self::CrystalFails => "crystal-fails",
-        }
+    pub fn as_str(self) -> &'static str {
+        self.words().0
+    }
+
+    /// What it is, in a few words.
+    #[must_use]
+    pub fn description(self) -> &'static str {
+        self.words().1
     }
 }
 
@@ -63,10 +132,26 @@ impl std::str::FromStr for Fault {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        let found = Self::ALL.into_iter().find(|fault| fault.as_str() == name);
-        found.ok_or_else(|| {
-            let known: Vec<_> = Self::ALL.into_iter().map(Self::as_str).collect();
-            format!("no fault '{name}'; there are {}", known.join(", "))
-        })
+        Self::all()
+            .find(|fault| fault.as_str() == name)
+            .ok_or_else(|| {
+                let known: Vec<_> = Self::all().map(Self::as_str).collect();
+                format!("no fault '{name}'; there are {}", known.join(", "))
+            })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_fault_is_found_by_its_name() {
+        for fault in Fault::all() {
+            assert!(!fault.description().is_empty(), "{fault:?}");
+            assert_eq!(fault.as_str().parse(), Ok(fault));
+        }
+        let error = "stuck-c".parse::<Fault>().unwrap_err();
+        assert!(error.starts_with("no fault 'stuck-c'; there are stuck-a, "));
     }
 }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use object::read::Symbol;
 use object::{Object, ObjectSection, ObjectSymbol};
 
 /// A built firmware image.
@@ -14,10 +15,38 @@ pub struct Image {
     pub(crate) entry: u64,
     /// Instructions that leave the control task.
     pub(crate) exits: Vec<u64>,
+    /// The instruction with which the task of lowest priority waits for an interrupt.
+    pub(crate) wait: u64,
+    /// An instruction that branches to itself.
+    pub(crate) for_ever: u64,
+    /// Memory that the stack may take: its lowest address and the one behind its highest.
+    pub(crate) stack: [u64; 2],
+    /// Code and data.
+    pub size: Size,
+}
+
+/// What an image takes, bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    /// Code, constants and vectors, without the initial values of data.
+    pub text: u64,
+    /// Data with initial values, which are in flash too.
+    pub data: u64,
+    /// Data that starts as zero or as anything.
+    pub bss: u64,
 }
 
 /// The control tick's interrupt handler.
 const CONTROL: &str = "TIM5";
+
+/// In the name of the task of lowest priority.
+const IDLE: &str = "3app4idle";
+
+/// Wait for interrupt.
+const WFI: u16 = 0xBF30;
+
+/// Branch to itself.
+const LOOP: u16 = 0xE7FE;
 
 /// How to build the image, said where it is missing.
 pub const HOW_TO_BUILD: &str =
@@ -53,18 +82,24 @@ impl Image {
         let rtt = symbol("_SEGGER_RTT")?.address();
         let control = symbol(CONTROL)?;
         let entry = control.address() & !1;
-        let section = control
-            .section_index()
-            .and_then(|index| file.section_by_index(index).ok())
-            .ok_or("the control task is in no section")?;
-        let code = section
-            .data_range(entry, control.size())
-            .map_err(|error| error.to_string())?
-            .ok_or("the control task has no code")?;
-        let exits = returns(entry, code);
+        let exits = returns(entry, code(&file, &control)?);
         if exits.is_empty() {
             return Err("the control task never returns".to_owned());
         }
+        let named = |symbol: &Symbol<'_, '_>, part: &str| {
+            symbol.name().is_ok_and(|name| name.contains(part))
+        };
+        let idle = file.symbols().find(|symbol| named(symbol, IDLE));
+        let idle = idle.ok_or("no task of lowest priority: not an image of this firmware")?;
+        let at = idle.address() & !1;
+        let wait = instructions(code(&file, &idle)?).find(|(_, first, _)| *first == WFI);
+        let wait = wait.ok_or("the task of lowest priority never waits")?.0;
+        let default = symbol("DefaultHandler_")?;
+        let for_ever = instructions(code(&file, &default)?).find(|(_, first, _)| *first == LOOP);
+        let for_ever = for_ever.ok_or("the default handler does not loop")?.0;
+        let for_ever = (default.address() & !1) + for_ever;
+        let stack = [symbol("_stack_end")?, symbol("_stack_start")?].map(|symbol| symbol.address());
+        let size = size(&file);
         let placed = rigless::image::Image::new(path, elf.clone(), None)
             .map_err(|error| error.to_string())?;
         Ok(Self {
@@ -73,37 +108,64 @@ impl Image {
             rtt,
             entry,
             exits,
+            wait: at + wait,
+            for_ever,
+            stack,
+            size,
         })
     }
 }
 
+/// Bytes of a function.
+fn code<'a>(file: &object::File<'a>, function: &Symbol<'_, '_>) -> Result<&'a [u8], String> {
+    let section = function
+        .section_index()
+        .and_then(|index| file.section_by_index(index).ok())
+        .ok_or("a task is in no section")?;
+    section
+        .data_range(function.address() & !1, function.size())
+        .map_err(|error| error.to_string())?
+        .ok_or_else(|| "a task has no code".to_owned())
+}
+
+fn size(file: &object::File<'_>) -> Size {
+    let of = |wanted: &[&str]| {
+        let sections = file.sections();
+        let sections = sections.filter(|section| section.name().is_ok_and(|n| wanted.contains(&n)));
+        sections.map(|section| section.size()).sum()
+    };
+    Size {
+        text: of(&[".vector_table", ".text", ".rodata"]),
+        data: of(&[".data"]),
+        bss: of(&[".bss", ".uninit"]),
+    }
+}
+
+/// Instructions in `code`: offset, first half and, of a wide one, second half.
+fn instructions(code: &[u8]) -> impl Iterator<Item = (u64, u16, Option<u16>)> + use<> {
+    let halves = code.as_chunks().0.iter();
+    let halves: Vec<u16> = halves.map(|pair| u16::from_le_bytes(*pair)).collect();
+    let mut k = 0;
+    std::iter::from_fn(move || {
+        let (at, first) = (k, *halves.get(k)?);
+        let second = (first >> 11 >= 0b11101).then(|| halves.get(k + 1).copied().unwrap_or(0));
+        k += 1 + usize::from(second.is_some());
+        Some((2 * at as u64, first, second))
+    })
+}
+
 /// Addresses of the instructions in `code` that return: `bx lr`, `pop {.., pc}` in both widths.
 fn returns(base: u64, code: &[u8]) -> Vec<u64> {
-    let halves: Vec<u16> = code
-        .as_chunks()
-        .0
-        .iter()
-        .map(|pair| u16::from_le_bytes(*pair))
-        .collect();
-    let mut found = Vec::new();
-    let mut k = 0;
-    while k < halves.len() {
-        let wide = halves[k] >> 11 >= 0b11101;
-        let second = halves.get(k + 1).copied().unwrap_or(0);
-        let leaves = match halves[k] {
-            0x4770 => true,
-            narrow if narrow & 0xFF00 == 0xBD00 => true,
-            0xE8BD => second & 0x8000 != 0,
-            // ldr pc, [sp], #4
-            0xF85D => second == 0xFB04,
-            _ => false,
-        };
-        if leaves {
-            found.push(base + 2 * k as u64);
-        }
-        k += if wide { 2 } else { 1 };
-    }
-    found
+    let leaves = |first: u16, second: Option<u16>| match (first, second) {
+        (0x4770, None) => true,
+        (narrow, None) => narrow & 0xFF00 == 0xBD00,
+        (0xE8BD, Some(second)) => second & 0x8000 != 0,
+        // ldr pc, [sp], #4
+        (0xF85D, Some(second)) => second == 0xFB04,
+        _ => false,
+    };
+    let leaving = instructions(code).filter(|(_, first, second)| leaves(*first, *second));
+    leaving.map(|(at, ..)| base + at).collect()
 }
 
 #[cfg(test)]

@@ -20,3 +20,4 @@ mod rtt;
 pub mod run;
 pub mod scene;
 pub mod score;
+mod stack;

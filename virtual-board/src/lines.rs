@@ -6,34 +6,46 @@ use rigless::time::VirtualNanos;
 
 use crate::board::Part;
 use crate::pins::{self, Wire};
-use crate::quadrature::{LARGE, SMALL, levels};
+use crate::quadrature::{LARGE, REFERENCE, SMALL, levels};
 
-/// A timer that two lines go to: its number in the emulator's list TIM2, TIM3, TIM4, TIM5, its
-/// pins, and the encoder that is on them.
-struct Port(usize, &'static [Wire; 2], usize);
+/// Edges of which the last ones are lost, and how many those are.
+const LOSSY: (u32, u32) = (64, 4);
 
-const PORTS: [Port; 3] = [
-    Port(2, &pins::LARGE, LARGE),
-    Port(1, &pins::SMALL, SMALL),
-    Port(0, &pins::CAPTURE, LARGE),
+/// A timer by its number in the emulator's lists: TIM2, TIM3, TIM4, TIM5, and TIM1, TIM8.
+#[derive(Clone, Copy, Debug)]
+enum Timer {
+    General(usize),
+    Advanced(usize),
+}
+
+/// A timer that two lines go to: its pins, and the encoder that is on them.
+struct Port(Timer, &'static [Wire; 2], usize);
+
+const PORTS: [Port; 4] = [
+    Port(Timer::General(2), &pins::LARGE, LARGE),
+    Port(Timer::General(1), &pins::SMALL, SMALL),
+    Port(Timer::Advanced(0), &pins::REFERENCE, REFERENCE),
+    Port(Timer::General(0), &pins::CAPTURE, LARGE),
 ];
 
-/// The lines of both encoders as they are driven.
+/// The lines of the encoders as they are driven.
 #[derive(Debug, Default)]
 pub(crate) struct Lines {
     /// Counts that the shafts have reached.
-    pub(crate) counts: [u32; 2],
+    counts: [u32; 3],
     /// Levels that the large encoder's lines are stuck at.
     pub(crate) stuck: [Option<bool>; 2],
     /// Whether the large encoder's lines have changed places.
     pub(crate) swapped: bool,
+    /// Edges of the large encoder since some of them are lost.
+    pub(crate) lossy: Option<u32>,
     /// Levels on the pins; `None` before the first since a restart.
     driven: [[Option<bool>; 2]; PORTS.len()],
     wired: [bool; PORTS.len()],
 }
 
 impl Lines {
-    pub(crate) fn at(counts: [u32; 2]) -> Self {
+    pub(crate) fn at(counts: [u32; 3]) -> Self {
         Self {
             counts,
             ..Self::default()
@@ -59,8 +71,35 @@ impl Lines {
         }
     }
 
+    /// Whether somebody reads the reference encoder.
+    pub(crate) fn reads_reference(&self) -> bool {
+        self.wired[REFERENCE]
+    }
+
+    /// The encoder has reached `count`: its lines follow, unless the edge is lost.
+    pub(crate) fn reach(
+        &mut self,
+        part: &mut Part,
+        at: VirtualNanos,
+        (encoder, count): (usize, u32),
+    ) {
+        self.counts[encoder] = count;
+        if let (LARGE, Some(edges)) = (encoder, &mut self.lossy) {
+            *edges = (*edges + 1) % LOSSY.0;
+            if *edges >= LOSSY.0 - LOSSY.1 {
+                return;
+            }
+        }
+        self.drive(part, at, encoder);
+    }
+
+    /// The reference encoder's count, kept up with while nobody reads it.
+    pub(crate) fn pass(&mut self, count: u32) {
+        self.counts[REFERENCE] = count;
+    }
+
     /// Puts the levels of the encoder's count on its pins.
-    pub(crate) fn drive(&mut self, part: &mut Part, at: VirtualNanos, encoder: usize) {
+    fn drive(&mut self, part: &mut Part, at: VirtualNanos, encoder: usize) {
         let wanted = self.wanted(encoder);
         for (n, &Port(timer, _, on_it)) in PORTS.iter().enumerate() {
             if !self.wired[n] || on_it != encoder {
@@ -71,10 +110,18 @@ impl Lines {
                     continue;
                 }
                 let channel = Channel::new(line as u8 + 1).expect("channels 1 and 2");
-                part.stm32
-                    .drive_timer(at, timer, |timer, registers, context| {
-                        timer.drive_input(channel, Level::from(level), registers, context);
-                    });
+                let level = Level::from(level);
+                match timer {
+                    Timer::General(nth) => part.stm32.drive_timer(at, nth, |timer, r, context| {
+                        timer.drive_input(channel, level, r, context);
+                    }),
+                    Timer::Advanced(nth) => {
+                        part.stm32
+                            .drive_advanced_timer(at, nth, |timer, r, context| {
+                                timer.drive_input(channel, level, r, context);
+                            });
+                    }
+                }
             }
         }
     }

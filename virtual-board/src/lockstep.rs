@@ -1,14 +1,16 @@
 //! Board and plant in lockstep: the plant runs one step of 10 us ahead of the processor, and its
 //! edges reach the pins at their instants.
 
+mod hits;
+mod inject;
+
 use std::collections::VecDeque;
 
 use host_sim::closed_loop::{Bench, Eye, Motion};
+use host_sim::encoder::{DiscErrors, Encoder};
 use host_sim::plant::Grip;
-use rigless::emulator::{AccessKind, Driver, Hit, Host, Settled, Stop, Watch};
-use rigless::mcu::Operate;
+use rigless::emulator::{AccessKind, Driver, Host, Settled, Stop, Watch};
 use rigless::session::Session;
-use rigless::soc::Width;
 use rigless::time::VirtualNanos;
 
 use crate::board::ControllerBoard;
@@ -17,8 +19,9 @@ use crate::image::Image;
 use crate::lines::Lines;
 use crate::pins;
 use crate::probe::{Probe, schedule};
-use crate::quadrature::{Edge, Edges, Generator, LARGE, SMALL};
+use crate::quadrature::{Edge, Edges, Generator, LARGE, REFERENCE, SMALL};
 use crate::run::{AMPS_PER_CODE, Moment, RATE_HZ, Setup, Tick};
+use crate::stack::Stack;
 
 const STEP_NS: u64 = 10_000;
 const STEP_S: f64 = 10e-6;
@@ -28,8 +31,6 @@ const STEPS_PER_LOOK: u64 = 100;
 
 /// Counters of TIM4 (large) and TIM3 (small).
 const COUNTERS: [u64; 2] = [0x4000_0824, 0x4000_0424];
-/// Control register of the control tick's timer, TIM5.
-const TICK_CONTROL: u64 = 0x4000_0C00;
 
 /// What a run has shown.
 #[derive(Debug, Default)]
@@ -40,11 +41,14 @@ pub(crate) struct Seen {
     pub(crate) enables: Vec<(u64, [bool; 2])>,
     pub(crate) complaints: Vec<String>,
     pub(crate) unclosed: u32,
+    /// Bytes of stack in use at most.
+    pub(crate) stack: u64,
 }
 
 pub(crate) struct Lockstep {
     pub(crate) seen: Seen,
     bench: Bench,
+    reference: Encoder,
     motion: Motion,
     grip: Grip,
     lines: Lines,
@@ -58,8 +62,15 @@ pub(crate) struct Lockstep {
     currents: [f64; 2],
     faults: VecDeque<(u64, Fault)>,
     pub(crate) probe: Probe,
+    stack: Stack,
     entry: u64,
     exits: Vec<u64>,
+    wait: u64,
+    for_ever: u64,
+    /// Whether the task of lowest priority is to hang when it wakes.
+    hang: bool,
+    /// Whether the processor waits for an interrupt, or is about to.
+    asleep: bool,
     /// The call of the control task that is running, and the instruction count at its start.
     running: Option<(Tick, u64)>,
     resets: usize,
@@ -76,13 +87,22 @@ impl Lockstep {
             setup.seed,
             STEP_S,
         );
+        let reference = Encoder::new(
+            setup.device.reference.counts_per_rev,
+            0,
+            0.3,
+            bench.plant.large().angle,
+            DiscErrors::none(),
+        );
+        let mut counts = [&bench.large, &bench.small, &reference].map(Encoder::count);
+        if setup.generator_hz.is_some() {
+            counts[LARGE] = 0;
+        }
         Self {
             seen: Seen::default(),
-            lines: Lines::at([
-                setup.generator_hz.map_or(bench.large.count(), |_| 0),
-                bench.small.count(),
-            ]),
+            lines: Lines::at(counts),
             bench,
+            reference,
             motion: setup.hand.motion(1.0 / RATE_HZ, setup.seed),
             grip: Grip::Free,
             edges: VecDeque::new(),
@@ -93,8 +113,13 @@ impl Lockstep {
             currents: [0.0; 2],
             faults: schedule(setup.faults.iter().copied()),
             probe: Probe::new(image.rtt, setup),
+            stack: Stack(image.stack),
             entry: image.entry,
             exits: image.exits.clone(),
+            wait: image.wait,
+            for_ever: image.for_ever,
+            hang: false,
+            asleep: false,
             running: None,
             resets: 0,
             progress,
@@ -103,7 +128,7 @@ impl Lockstep {
 
     /// Asks to be told about the control task.
     pub(crate) fn watch(&self, session: &mut Session<ControllerBoard>) {
-        for &address in self.exits.iter().chain([&self.entry]) {
+        for &address in self.exits.iter().chain([&self.entry, &self.wait]) {
             session.watch(Watch::Instruction(address));
         }
     }
@@ -150,33 +175,52 @@ impl Lockstep {
                 large_omega: self.bench.plant.large().omega,
             });
         }
+        self.turn();
+        self.steps += 1;
+    }
+
+    /// Turns the shafts by one step, and the encoders with them.
+    fn turn(&mut self) {
+        fn observer(
+            into: &mut Vec<Edge>,
+            (encoder, count): (usize, u32),
+            from_ns: u64,
+        ) -> Edges<'_> {
+            Edges {
+                into,
+                encoder,
+                count,
+                from_ns,
+                step_ns: STEP_NS as f64,
+            }
+        }
         let (from_ns, since) = (self.plant_ns(), self.since_tick());
-        let (mut of_large, mut of_small) = (Vec::new(), Vec::new());
-        std::mem::swap(&mut of_large, &mut self.fresh);
-        let observer = |into, encoder, count| Edges {
-            into,
-            encoder,
-            count,
-            from_ns,
-            step_ns: STEP_NS as f64,
-        };
+        let (mut fresh, mut of_small) = (std::mem::take(&mut self.fresh), Vec::new());
         let (large, small) = (self.bench.large.count(), self.bench.small.count());
+        let before = self.bench.plant.large();
         self.bench.step(
             &self.grip,
             since,
             STEP_S,
-            &mut observer(&mut of_large, LARGE, large),
-            &mut observer(&mut of_small, SMALL, small),
+            &mut observer(&mut fresh, (LARGE, large), from_ns),
+            &mut observer(&mut of_small, (SMALL, small), from_ns),
         );
         if let Some(generator) = &mut self.generator {
-            of_large.clear();
-            generator.run(from_ns + STEP_NS, &mut of_large);
+            fresh.retain(|edge| edge.encoder != LARGE);
+            generator.run(from_ns + STEP_NS, &mut fresh);
         }
-        of_large.append(&mut of_small);
-        of_large.sort_by_key(|edge| edge.at_ns);
-        self.edges.extend(of_large.drain(..));
-        self.fresh = of_large;
-        self.steps += 1;
+        fresh.append(&mut of_small);
+        let (after, count) = (self.bench.plant.large(), self.reference.count());
+        if self.lines.reads_reference() {
+            let mut edges = observer(&mut fresh, (REFERENCE, count), from_ns);
+            self.reference.follow(before, after, STEP_S, &mut edges);
+        } else {
+            self.reference.follow(before, after, STEP_S, &mut ());
+            self.lines.pass(self.reference.count());
+        }
+        fresh.sort_by_key(|edge| edge.at_ns);
+        self.edges.extend(fresh.drain(..));
+        self.fresh = fresh;
     }
 
     /// What a restart leaves on the pins: the board's pull-downs, healthy amplifiers, no lines.
@@ -189,64 +233,7 @@ impl Lockstep {
         }
         self.lines.restart();
         self.running = None;
-    }
-
-    fn fail(
-        &mut self,
-        fault: Fault,
-        session: &mut Session<ControllerBoard>,
-        at: VirtualNanos,
-        host: &mut dyn Host,
-    ) {
-        let part = &mut session.board_mut().part;
-        let now = self.lines.now();
-        match fault {
-            Fault::StuckA => self.lines.stuck[0] = Some(now[0]),
-            Fault::StuckB => self.lines.stuck[1] = Some(now[1]),
-            Fault::StuckBoth => self.lines.stuck = now.map(Some),
-            Fault::Swapped => self.lines.swapped = true,
-            Fault::AmplifierFault => pins::drive(part, at, pins::FAULTS[0], false),
-            Fault::HungCore => host.hold(true),
-            Fault::HungControl => {
-                // The timer is there: the write cannot be refused.
-                let _ = part.write(at, TICK_CONTROL, Width::W32, 0);
-            }
-            Fault::BusError => session.fail_next(COUNTERS[LARGE], COUNTERS[LARGE] + 4),
-            Fault::NobodyDrains => self.probe.drains = false,
-            Fault::CrystalFails => part.stm32.drive_clocks(at, |rcc, registers, context| {
-                rcc.fail_hse(registers, context);
-            }),
-        }
-    }
-
-    fn hit(&mut self, session: &mut Session<ControllerBoard>, hit: &Hit) {
-        if hit.address == self.entry {
-            if self.seen.ticks.is_empty() {
-                self.seen.complaints = pins::complaints(&mut session.board_mut().part);
-            }
-            self.seen.unclosed += u32::from(self.running.is_some());
-            let tick = Tick {
-                at_ns: hit.at.0,
-                instructions: 0,
-                counts: [None; 2],
-                codes: [None; 2],
-                enabled: [false; 2],
-                large: self.bench.plant.large(),
-                handle: self.bench.plant.small(),
-                felt: self
-                    .bench
-                    .plant
-                    .handle_torque(&self.grip, self.since_tick()),
-            };
-            self.running = Some((tick, hit.instruction_count));
-        } else if let Some((mut tick, start)) = self.running.take() {
-            // The return itself is still to run.
-            tick.instructions = (hit.instruction_count - start + 1) as u32;
-            let part = &mut session.board_mut().part;
-            tick.codes = part.dac_codes();
-            tick.enabled = pins::enabled(part);
-            self.seen.ticks.push(tick);
-        }
+        self.asleep = false;
     }
 }
 
@@ -271,7 +258,12 @@ impl Driver<ControllerBoard> for Lockstep {
                     }
                 }
             }
-            Settled::Hit(hit) => self.hit(session, &hit),
+            Settled::Hit(hit) => {
+                if self.hang && self.asleep && hit.address == self.entry {
+                    self.hang(host);
+                }
+                self.hit(session, &hit);
+            }
             Settled::Stop(stop) if session.resets().len() > self.resets => {
                 self.resets = session.resets().len();
                 host.hold(false);
@@ -289,14 +281,15 @@ impl Driver<ControllerBoard> for Lockstep {
     ) -> Option<VirtualNanos> {
         if self.steps == 0 {
             self.restart(session.board_mut(), stop.at);
+            self.stack.paint(host);
         }
         let now_ns = stop.at.0;
         loop {
             let board = session.board_mut();
             while let Some(edge) = self.edges.front().copied().filter(|e| e.at_ns <= now_ns) {
                 self.edges.pop_front();
-                self.lines.counts[edge.encoder] = edge.count;
-                self.lines.drive(&mut board.part, stop.at, edge.encoder);
+                let reached = (edge.encoder, edge.count);
+                self.lines.reach(&mut board.part, stop.at, reached);
             }
             if self.plant_ns() > now_ns {
                 break;
@@ -307,11 +300,12 @@ impl Driver<ControllerBoard> for Lockstep {
                 (self.progress)(now_ns as f64 * 1e-9);
             }
             if now_ns >= self.end_ns {
+                self.seen.stack = self.stack.used(host);
                 return None;
             }
             while let Some((_, fault)) = self.faults.front().copied().filter(|f| f.0 <= now_ns) {
                 self.faults.pop_front();
-                self.fail(fault, session, stop.at, host);
+                self.fail(fault, session, stop, host);
             }
             self.step(session.board_mut());
         }

@@ -42,6 +42,12 @@ pub const SMALL: [Wire; 2] = [
     ('C', 7, Mode::Function(2), "small encoder B, TIM3_CH2"),
 ];
 
+/// The reference encoder on the large motor, of an image that reads it.
+pub const REFERENCE: [Wire; 2] = [
+    ('E', 9, Mode::Function(1), "reference encoder A, TIM1_CH1"),
+    ('E', 11, Mode::Function(1), "reference encoder B, TIM1_CH2"),
+];
+
 /// Set values, enable and fault lines of the amplifiers, large motor first.
 pub const AMPLIFIERS: [Wire; 6] = [
     ('A', 4, Mode::Analog, "large set value, DAC_OUT1"),

@@ -17,6 +17,13 @@ pub(crate) struct Probe {
     pub(crate) stream: Vec<u8>,
     /// Whether anything is taken.
     pub(crate) drains: bool,
+    /// Whether the command channel is kept full.
+    pub(crate) floods: bool,
+    /// Bytes of the first in line that the channel has taken.
+    taken: usize,
+    /// What went down, when its last byte did, ns.
+    pub(crate) sent: Vec<(u64, Vec<u8>)>,
+    noise: u32,
     rtt: Rtt,
     to_send: VecDeque<(u64, Vec<u8>)>,
     next_keep_alive: Option<u64>,
@@ -36,6 +43,10 @@ impl Probe {
         Self {
             stream: Vec::new(),
             drains: true,
+            floods: false,
+            taken: 0,
+            sent: Vec::new(),
+            noise: 0x2F6E_2B1D,
             rtt: Rtt(rtt),
             to_send: schedule(commands.chain(setup.garbage.iter().cloned())),
             next_keep_alive: setup.keep_alive.then_some(KEEP_ALIVE_NS),
@@ -52,13 +63,23 @@ impl Probe {
             self.to_send.make_contiguous().sort_by_key(|(due, _)| *due);
             self.next_keep_alive = Some(next + KEEP_ALIVE_NS);
         }
-        while let Some((_, bytes)) = self.to_send.front_mut().filter(|(due, _)| *due <= now_ns) {
-            let put = self.rtt.feed(memory, bytes);
-            bytes.drain(..put);
-            if !bytes.is_empty() {
+        while let Some((_, bytes)) = self.to_send.front().filter(|(due, _)| *due <= now_ns) {
+            self.taken += self.rtt.feed(memory, &bytes[self.taken..]);
+            if self.taken < bytes.len() {
+                return;
+            }
+            self.taken = 0;
+            if let Some((_, bytes)) = self.to_send.pop_front() {
+                self.sent.push((now_ns, bytes));
+            }
+        }
+        while self.floods {
+            self.noise ^= self.noise << 13;
+            self.noise ^= self.noise >> 17;
+            self.noise ^= self.noise << 5;
+            if self.rtt.feed(memory, &self.noise.to_le_bytes()) < 4 {
                 break;
             }
-            self.to_send.pop_front();
         }
     }
 }

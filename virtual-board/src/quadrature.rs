@@ -11,6 +11,7 @@ pub(crate) fn levels(count: u32) -> [bool; 2] {
 /// Encoders by number.
 pub(crate) const LARGE: usize = 0;
 pub(crate) const SMALL: usize = 1;
+pub(crate) const REFERENCE: usize = 2;
 
 /// A count about to be reached.
 #[derive(Clone, Copy, Debug, PartialEq)]

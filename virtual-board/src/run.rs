@@ -76,6 +76,10 @@ impl Default for Setup {
 pub struct Tick {
     /// When it began, ns.
     pub at_ns: u64,
+    /// Instructions since reset when it began.
+    pub began: u64,
+    /// Whether it woke the processor; otherwise it preempted something.
+    pub asleep: bool,
     /// Instructions from its first to its return.
     pub instructions: u32,
     /// What it read from the large and the small encoder's counter.
@@ -135,6 +139,10 @@ pub struct Outcome {
     pub unclosed: u32,
     /// Peripherals that the image touched and that have no model.
     pub unmodelled: Vec<String>,
+    /// Bytes of stack in use at most, of those that a start leaves for it.
+    pub stack: u64,
+    /// What went down the command channel, and when its last byte did, ns.
+    pub sent: Vec<(u64, Vec<u8>)>,
     /// Time that the run took.
     pub wall: Duration,
     /// The firmware's number of the first of `ticks`.
@@ -167,7 +175,12 @@ pub fn on_board(
 ) -> Result<Outcome, String> {
     setup.device.validate()?;
     let emulator = |error: &dyn std::fmt::Display| format!("emulator: {error}");
-    let board = ControllerBoard::new(setup.crystal_hz, setup.instructions_per_second)
+    let dead = setup
+        .faults
+        .iter()
+        .any(|(_, fault)| *fault == Fault::DeadCrystal);
+    let crystal_hz = if dead { 0 } else { setup.crystal_hz };
+    let board = ControllerBoard::new(crystal_hz, setup.instructions_per_second)
         .map_err(|error| emulator(&error))?;
     let mut session =
         Session::new(Box::new(board), 0, VirtualNanos(0)).map_err(|error| emulator(&error))?;
@@ -201,6 +214,8 @@ pub fn on_board(
         enables: seen.enables,
         complaints: seen.complaints,
         unclosed: seen.unclosed,
+        stack: seen.stack,
+        sent: probe.sent,
         restarts,
         unmodelled,
         wall,

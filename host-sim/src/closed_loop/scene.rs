@@ -11,6 +11,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
 
 use super::press::Press;
+use super::tracking::Tracking;
 use crate::plant::{Grip, Pose};
 use crate::scenario::{Intent, draw};
 
@@ -126,6 +127,8 @@ pub enum Hand {
     Moving,
     /// Swings into the angle of the wall and back, and trembles.
     Pushing,
+    /// Moves as the slip of the open-loop scenario track does: chirps and reversals.
+    Tracking,
     /// Means to keep the handle still and trembles.
     Still,
     /// Nobody: the handle starts with this velocity, rad/s.
@@ -140,15 +143,17 @@ pub struct Motion(Mover);
 enum Mover {
     Intent(Box<Intent>),
     Pressing(Press, f64),
+    Tracking(Box<Tracking>),
     Gone,
 }
 
 impl Motion {
-    /// What holds the handle during tick `k`.
+    /// What holds the handle during tick `k`, which follows the one asked for before.
     pub fn grip(&mut self, k: u64) -> Grip {
         match &mut self.0 {
             Mover::Intent(intent) => intent.grip(k),
             Mover::Pressing(press, period_s) => press.grip(k, *period_s),
+            Mover::Tracking(tracking) => tracking.grip(k),
             Mover::Gone => Grip::Free,
         }
     }
@@ -168,7 +173,7 @@ impl Hand {
                 .sine_from(random, (0.4, 1.2), (0.12, 0.18), (-2.2, -0.9))
                 .tremor(random),
             Self::Still => about(random, -0.02, 0.02).tremor(random),
-            Self::Gone(_) | Self::Pressing(_) => return None,
+            Self::Tracking | Self::Gone(_) | Self::Pressing(_) => return None,
         })
     }
 
@@ -188,6 +193,7 @@ impl Hand {
         Motion(match (self.intent(period_s, seed), self) {
             (Some(intent), _) => Mover::Intent(Box::new(intent)),
             (None, Self::Pressing(press)) => Mover::Pressing(press, period_s),
+            (None, Self::Tracking) => Mover::Tracking(Box::new(Tracking::new(period_s, seed))),
             (None, _) => Mover::Gone,
         })
     }

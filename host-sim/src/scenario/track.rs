@@ -13,7 +13,7 @@ const FADE_S: f64 = 0.1;
 const LOWEST_HZ: f64 = 0.5;
 const HIGHEST_HZ: f64 = 20.0;
 
-pub(super) struct Track {
+pub(crate) struct Track {
     random: Xoshiro256PlusPlus,
     cycle: u64,
     draws: Draws,
@@ -62,7 +62,7 @@ fn fade(t: f64, length: f64) -> f64 {
 }
 
 impl Track {
-    pub(super) fn new(mut random: Xoshiro256PlusPlus) -> Self {
+    pub(crate) fn new(mut random: Xoshiro256PlusPlus) -> Self {
         let draws = Draws::new(&mut random);
         Self {
             random,
@@ -72,13 +72,20 @@ impl Track {
     }
 }
 
-impl Profile for Track {
-    fn slip(&mut self, t: f64) -> f64 {
+impl Track {
+    /// Velocity wanted at `t`, rad/s; called with growing `t`.
+    pub(crate) fn omega(&mut self, t: f64) -> f64 {
         while t >= (self.cycle + 1) as f64 * CYCLE_S {
             self.cycle += 1;
             self.draws = Draws::new(&mut self.random);
         }
         self.draws.slip(t - self.cycle as f64 * CYCLE_S)
+    }
+}
+
+impl Profile for Track {
+    fn slip(&mut self, t: f64) -> f64 {
+        self.omega(t)
     }
 }
 

@@ -1,0 +1,48 @@
+//! The control task's beginnings and ends.
+
+use rigless::emulator::Hit;
+use rigless::session::Session;
+
+use super::Lockstep;
+use crate::board::ControllerBoard;
+use crate::pins;
+use crate::run::Tick;
+
+impl Lockstep {
+    pub(super) fn hit(&mut self, session: &mut Session<ControllerBoard>, hit: &Hit) {
+        if hit.address == self.wait {
+            self.asleep = true;
+        } else if hit.address == self.entry {
+            self.enter(session, hit);
+        } else if let Some((mut tick, start)) = self.running.take() {
+            // The return itself is still to run.
+            tick.instructions = (hit.instruction_count - start + 1) as u32;
+            let part = &mut session.board_mut().part;
+            tick.codes = part.dac_codes();
+            tick.enabled = pins::enabled(part);
+            self.seen.ticks.push(tick);
+            self.asleep = false;
+        }
+    }
+
+    fn enter(&mut self, session: &mut Session<ControllerBoard>, hit: &Hit) {
+        if self.seen.ticks.is_empty() {
+            self.seen.complaints = pins::complaints(&mut session.board_mut().part);
+        }
+        self.seen.unclosed += u32::from(self.running.is_some());
+        let since = self.since_tick();
+        let tick = Tick {
+            at_ns: hit.at.0,
+            began: hit.instruction_count,
+            asleep: self.asleep,
+            instructions: 0,
+            counts: [None; 2],
+            codes: [None; 2],
+            enabled: [false; 2],
+            large: self.bench.plant.large(),
+            handle: self.bench.plant.small(),
+            felt: self.bench.plant.handle_torque(&self.grip, since),
+        };
+        self.running = Some((tick, hit.instruction_count));
+    }
+}
