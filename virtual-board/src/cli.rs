@@ -11,6 +11,7 @@ use host_sim::failure::Failure;
 use host_sim::output::{print_bytes, write_whole};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::budget;
 use crate::command::Command;
 use crate::fault::Fault;
 use crate::image::Image;
@@ -27,9 +28,10 @@ const IMAGE: &str = concat!(
 /// Before this the image boots and arms itself, s.
 const SETTLED_S: f64 = 0.4;
 
-/// Runs the flash image on an emulated board, in closed loop with the simulated device.
+/// Runs the flash image on an emulated board, in closed loop with the simulated device, and prints
+/// what the image said, what its control task cost and what the hand felt.
 #[derive(Debug, Parser)]
-#[command(name = "cargo board", version)]
+#[command(name = "cargo board", bin_name = "cargo board", version, after_help = after_help())]
 struct Arguments {
     /// Scene that the image is told to render
     #[arg(long, default_value = "free-air", value_parser = str::parse::<ImageScene>)]
@@ -47,7 +49,7 @@ struct Arguments {
     /// Seed of the hand's motion and the encoders' phases
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// A fault and when it happens, as NAME@SECONDS; may be given more than once
+    /// A fault, listed below, and when it happens; may be given more than once
     #[arg(long, value_name = "NAME@S", value_parser = fault)]
     fault: Vec<(f64, Fault)>,
     /// ELF file to run instead of the one cargo has built
@@ -59,6 +61,24 @@ struct Arguments {
     /// Writes the bytes that the probe took from RTT channel 0, for `host-sim record --image`
     #[arg(long, value_name = "FILE")]
     rtt: Option<PathBuf>,
+    /// Prints the instruction budget of every scene instead, each run for --seconds at most 1
+    #[arg(long, conflicts_with_all = ["scene", "hand", "fault", "record", "rtt", "tune"])]
+    budget: bool,
+}
+
+/// The faults, and examples.
+fn after_help() -> String {
+    let mut text = "Faults:\n".to_owned();
+    for fault in Fault::all() {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "  {:<19}{}", fault.as_str(), fault.description());
+    }
+    text + "\nBuild the image first:\n  \
+        cargo build --release --package firmware --target thumbv7em-none-eabihf\n\n\
+        Examples:\n  \
+        cargo board --scene wall --hand pushing --record wall.csv\n  \
+        cargo board --fault swapped@0.5 --seconds 1\n  \
+        cargo board --budget"
 }
 
 fn hand(name: &str) -> Result<Hand, String> {
@@ -85,8 +105,11 @@ fn fault(text: &str) -> Result<(f64, Fault), String> {
     let (name, at) = text
         .split_once('@')
         .ok_or("a fault needs its instant, as stuck-a@1.5")?;
-    let at: f64 = at.parse().map_err(|_| format!("'{at}' is no time in s"))?;
-    Ok((at, name.parse()?))
+    let fault = name.parse()?;
+    match at.parse::<f64>() {
+        Ok(at) if (0.0..=3600.0).contains(&at) => Ok((at, fault)),
+        _ => Err(format!("'{at}' is no time in s, 0 to 3600")),
+    }
 }
 
 /// Runs the command line `arguments`, the program's name first.
@@ -115,6 +138,20 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         commands.push((*at, scene.tune(what)?));
     }
     let image = Image::read(&path)?;
+    if arguments.budget {
+        let table = budget::table(&image, arguments.seconds.min(1.0), arguments.seed)?;
+        return print_bytes(table.as_bytes());
+    }
+    let late = arguments
+        .fault
+        .iter()
+        .find(|(at, _)| *at > arguments.seconds);
+    if let Some((at, fault)) = late {
+        let name = fault.as_str();
+        let end = arguments.seconds;
+        let message = format!("--fault {name}@{at}: the run ends at {end} s; give --seconds more");
+        return Err(Failure::Input(message));
+    }
     let setup = Setup {
         hand: arguments.hand,
         seed: arguments.seed,
@@ -193,10 +230,11 @@ fn summary(arguments: &Arguments, setup: &Setup, outcome: &Outcome) -> String {
             format!("{} to {}, mean {:.1} {unit}", r.min, r.max, r.mean)
         })
     };
-    line(
-        "control tick",
-        range(outcome.instructions(), "instructions"),
-    );
+    let cost = outcome.instructions();
+    line("control tick", range(cost, "instructions"));
+    if let Some(cost) = cost {
+        line("share of the period", budget::share(cost));
+    }
     line("control period", range(outcome.periods(), "ns"));
     let malformed = outcome.telemetry.malformed.len();
     let frames = &outcome.telemetry.frames;

@@ -5,6 +5,7 @@
 //! no model of cycles: a virtual second is a constant number of instructions.
 
 pub mod board;
+mod budget;
 pub mod cli;
 pub mod command;
 pub mod dac;

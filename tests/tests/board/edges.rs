@@ -1,11 +1,8 @@
 //! Time stamps of the large encoder's edges, captured by the image and known to the board.
 
-use std::sync::OnceLock;
+use virtual_board::run::{Outcome, Setup};
 
-use virtual_board::image::Image;
-use virtual_board::run::{Outcome, Setup, on_board};
-
-use crate::image::build;
+use crate::image::run_image;
 
 /// Clock that stamps edges, Hz.
 const CLOCK_HZ: f64 = 84e6;
@@ -20,11 +17,6 @@ struct Stamp {
     age_s: f64,
 }
 
-fn image() -> &'static Image {
-    static IMAGE: OnceLock<Image> = OnceLock::new();
-    IMAGE.get_or_init(|| build("edge-capture"))
-}
-
 /// A run with a signal generator of this many edges a second on the large encoder's lines.
 fn generated(hz: f64, seconds: f64) -> (Outcome, Vec<Stamp>) {
     let setup = Setup {
@@ -33,7 +25,7 @@ fn generated(hz: f64, seconds: f64) -> (Outcome, Vec<Stamp>) {
         commands: Vec::new(),
         ..Setup::default()
     };
-    let run = on_board(image(), &setup, |_| ()).unwrap();
+    let run = run_image("edge-capture", &setup);
     let stamps = run
         .telemetry
         .log

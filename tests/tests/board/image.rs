@@ -1,50 +1,120 @@
-//! The image, built once, and runs of it that several tests look at.
+//! The images, each built once, and runs of them that several tests look at.
 
-use std::path::PathBuf;
-use std::process::Command;
-use std::sync::OnceLock;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::process::Command as Process;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
+use host_sim::closed_loop::{Hand, SceneName};
+use virtual_board::command::Command;
 use virtual_board::image::Image;
 use virtual_board::run::{Outcome, Setup, on_board};
 
 /// Before this the image boots, is armed and settles, s.
 pub(crate) const SETTLED_S: f64 = 0.4;
 
-/// The image of this tree with these features. Each has a target directory of its own: cargo
-/// holds the usual one, and two images may be built at once.
-pub(crate) fn build(features: &str) -> Image {
-    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
-    let target = root.join("target/firmware-image").join(features);
+/// The image of this tree with these features, separated by commas. It is built in a target
+/// directory of its own: cargo holds the usual one.
+pub(crate) fn image(features: &'static str) -> &'static Image {
+    static BUILT: Mutex<Option<HashMap<&str, &Image>>> = Mutex::new(None);
+    let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
+    let built = built.get_or_insert_default();
+    built
+        .entry(features)
+        .or_insert_with(|| Box::leak(Box::new(build(features))))
+}
+
+fn build(features: &str) -> Image {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let target: PathBuf = root.join("target/firmware-image");
     let triple = "thumbv7em-none-eabihf";
-    let status = Command::new(env!("CARGO"))
+    let status = Process::new(env!("CARGO"))
         .current_dir(&root)
-        .args(["build", "--release", "--package", "firmware"])
+        .args(["build", "--quiet", "--release", "--package", "firmware"])
         .args(["--features", features, "--target", triple, "--target-dir"])
         .arg(&target)
         .status()
         .expect("cargo starts");
-    assert!(status.success(), "the firmware does not build");
+    assert!(
+        status.success(),
+        "firmware with '{features}' does not build"
+    );
     Image::read(&target.join(triple).join("release/firmware")).unwrap()
 }
 
-/// The image of this tree.
-pub(crate) fn image() -> &'static Image {
-    static IMAGE: OnceLock<Image> = OnceLock::new();
-    IMAGE.get_or_init(|| build(""))
-}
-
-/// Runs the image.
+/// Runs the image of all scenes.
 pub(crate) fn run(setup: &Setup) -> Outcome {
-    on_board(image(), setup, |_| ()).unwrap()
+    run_image("", setup)
 }
 
-/// Free air with a moving hand, 4 s.
-pub(crate) fn free_air() -> &'static Outcome {
-    static RUN: OnceLock<Outcome> = OnceLock::new();
-    RUN.get_or_init(|| {
-        run(&Setup {
-            seconds: 4.0,
-            ..Setup::default()
-        })
-    })
+/// Runs the image with these features.
+pub(crate) fn run_image(features: &'static str, setup: &Setup) -> Outcome {
+    on_board(image(features), setup, |_| ()).unwrap()
+}
+
+/// Who plays with a scene.
+pub(crate) const fn hand_for(scene: SceneName) -> Hand {
+    match scene {
+        SceneName::Wall(..) => Hand::Pushing,
+        SceneName::Hold(..) => Hand::Still,
+        _ => Hand::Moving,
+    }
+}
+
+/// A scene from the start, in this hand.
+pub(crate) fn of_scene(scene: SceneName, hand: Hand, seconds: f64) -> Setup {
+    Setup {
+        hand,
+        seconds,
+        commands: vec![(0.05, Command::Scene(scene)), (0.1, Command::Arm)],
+        ..Setup::default()
+    }
+}
+
+/// A run that is made when somebody first asks for it.
+macro_rules! shared {
+    ($($(#[$doc:meta])* $name:ident = $run:expr;)+) => {$(
+        $(#[$doc])*
+        pub(crate) fn $name() -> &'static Outcome {
+            static RUN: OnceLock<Outcome> = OnceLock::new();
+            RUN.get_or_init(|| $run)
+        }
+    )+};
+}
+
+shared! {
+    /// Free air with a moving hand, 10 s.
+    free_air = run(&of_scene(SceneName::FreeAir, Hand::Moving, 10.0));
+    /// Free air with a hand that chirps and reverses, a minute.
+    soak = run(&of_scene(SceneName::FreeAir, Hand::Tracking, 60.2));
+    /// A hand that pushes into the wall, 10 s.
+    wall = run(&of_scene(SceneName::ALL[2], Hand::Pushing, 10.0));
+    /// Every scene in turn.
+    tour = run(&touring());
+    /// Free air with a moving hand, 10 s, the Kalman filter on the large motor.
+    kalman_free_air = run_image("large-kalman", &of_scene(SceneName::FreeAir, Hand::Moving, 10.0));
+    /// Free air with a hand that chirps and reverses, 10 s, the Kalman filter on the large motor.
+    kalman_track = run_image("large-kalman", &of_scene(SceneName::FreeAir, Hand::Tracking, 10.0));
+}
+
+/// How long a tour stays in a scene, s.
+const STAY_S: f64 = 0.5;
+/// When a tour puts on its first scene, s.
+pub(crate) const FIRST_S: f64 = 0.1;
+
+/// Every scene in its order, each for [`STAY_S`], in a hand that holds still: another would be deep
+/// in the wall when it appears.
+fn touring() -> Setup {
+    let at = |k: usize| FIRST_S + k as f64 * STAY_S;
+    let scenes = SceneName::ALL.into_iter().enumerate();
+    let mut commands: Vec<_> = scenes
+        .map(|(k, scene)| (at(k), Command::Scene(scene)))
+        .collect();
+    commands.push((0.05, Command::Arm));
+    Setup {
+        hand: Hand::Still,
+        seconds: at(SceneName::ALL.len()),
+        commands,
+        ..Setup::default()
+    }
 }

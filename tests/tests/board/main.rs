@@ -37,10 +37,15 @@ mod firmware {
 // The names that these files know each other by.
 use firmware::scene;
 
+mod cost;
 mod edges;
 mod faults;
+mod golden;
 mod healthy;
 mod image;
 mod mirror;
 mod record;
 mod recording;
+mod reference;
+mod scores;
+mod size;

@@ -1,57 +1,74 @@
 //! The same control on the host, fed with what the image read: the same bits.
 
-use estimator_core::{Amps, Count, Sample};
-use haptic_control::{Currents, Request, Stop};
+use estimator_core::{Amps, Count, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple};
+use haptic_control::{Action, AnyScene, Currents, FreeAir, Request, Stop, Switchboard};
 use virtual_board::run::{Outcome, Tick};
 
 use crate::firmware::control::{Control, Inputs};
-use crate::image::free_air;
+use crate::firmware::scene::{DEVICE, HANDLE, Handle, RATE, RIG};
+use crate::image::{free_air, kalman_free_air, kalman_track, soak, tour};
 use crate::telemetry::Record;
+
+/// The counts of every tick of `run`, widened from what the counters show at first.
+struct Samples([Count; 2]);
+
+impl Samples {
+    fn new(run: &Outcome) -> (Self, Sample) {
+        let start = run.first_counts.map(|read| Count(u32::from(read.unwrap())));
+        let first = Sample::new(start[0]).with_small(start[1]);
+        (Self(start), first)
+    }
+
+    fn next(&mut self, tick: &Tick, current: Amps) -> Sample {
+        for (count, read) in self.0.iter_mut().zip(tick.counts) {
+            *count = count.extended(read.expect("each tick reads both encoders"));
+        }
+        Sample::new(self.0[0])
+            .with_small(self.0[1])
+            .with_current(current)
+    }
+}
+
+/// What was asked for and at which tick. A command is taken from the channel when the tick after
+/// its last byte has woken the processor, and obeyed at the tick after that.
+fn requests(run: &Outcome) -> Vec<(usize, Request)> {
+    let obeyed = |(at_ns, bytes): &(u64, Vec<u8>)| {
+        let request = match bytes[..3] {
+            [0xA5, 1, _] => Request::Arm,
+            [0xA5, 3, scene] => Request::Select(scene),
+            _ => return None,
+        };
+        let next = run.ticks.partition_point(|tick| tick.at_ns <= *at_ns);
+        Some((next + 1, request))
+    };
+    run.sent.iter().filter_map(obeyed).collect()
+}
 
 /// Runs the firmware's control over the counts of every tick of `run`: what it orders, what it
 /// reports.
 fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
-    let mut counts = [Count(0); 2];
-    let mut sample = |read: [Option<u16>; 2], current: Amps| {
-        for n in [0, 1] {
-            counts[n] = counts[n].extended(read[n].expect("each tick reads both encoders"));
-        }
-        Sample::new(counts[0])
-            .with_small(counts[1])
-            .with_current(current)
-    };
-    // The image widens its counters from what they show at first.
-    let start = run.first_counts.map(|read| Count(u32::from(read.unwrap())));
-    let first = Sample::new(start[0]).with_small(start[1]);
-    sample(run.first_counts, Amps::ZERO);
+    let (mut samples, first) = Samples::new(run);
     let mut control = Control::new(&first, Stop::None);
-    let mut before = false;
+    let requests = requests(run);
     let step = |(k, tick): (usize, &Tick)| {
-        let sample = sample(tick.counts, control.applied().large);
-        let armed = tick.enabled == [true; 2];
-        // The scene was chosen at some tick before arming, which makes no difference.
-        let request = match (k, armed && !before) {
-            (0, _) => Request::Select(1),
-            (_, true) => Request::Arm,
-            (_, false) => Request::KeepAlive,
-        };
-        before = armed;
+        let sample = samples.next(tick, control.applied().large);
+        let request = requests.iter().find(|(at, _)| *at == k);
         let inputs = Inputs {
             amplifier_fault: false,
             clock_failure: false,
             missed: 0,
-            request: Some(request),
+            request: Some(request.map_or(Request::KeepAlive, |(_, request)| *request)),
         };
         control.step(&sample, &inputs)
     };
     run.ticks.iter().enumerate().map(step).collect()
 }
 
-#[test]
-fn what_the_image_reports_is_what_the_host_computes_bit_for_bit() {
-    let run = free_air();
-    let host = mirrored(run);
+/// Fails unless every frame says what the host's core computed at its tick. Returns how many
+/// frames told of a moving device.
+fn same_bits(run: &Outcome, host: &[(Option<Currents>, Record)]) -> usize {
     let mut moving = 0;
+    assert_eq!(run.telemetry.malformed, [""; 0]);
     for frame in &run.telemetry.frames {
         let k = run.tick_index(frame).expect("a frame tells of a tick");
         let Record {
@@ -68,32 +85,87 @@ fn what_the_image_reports_is_what_the_host_computes_bit_for_bit() {
         );
         assert_eq!(
             (&frame.state, &frame.cause),
-            (&state.to_string(), &cause.to_string())
+            (&state.to_string(), &cause.to_string()),
+            "{frame:?}"
         );
-        let image = [frame.wl, frame.ws, frame.torque, frame.il, frame.is];
-        let currents = [action.currents.large.get(), action.currents.small.get()];
-        let wanted = [
-            action.large.0,
-            action.handle.0,
-            action.torque.0,
-            currents[0],
-            currents[1],
-        ];
-        assert_eq!(
-            image.map(f32::to_bits),
-            wanted.map(f32::to_bits),
-            "{frame:?} {wanted:?}"
-        );
+        same_action(frame, &action);
         moving += usize::from(action.large.0 != 0.0 && action.handle.0 != 0.0);
     }
-    assert!(moving > 3000, "{moving} frames of a moving device");
+    moving
+}
+
+fn same_action(frame: &host_sim::telemetry::Frame, action: &Action) {
+    let image = [frame.wl, frame.ws, frame.torque, frame.il, frame.is];
+    let currents = [action.currents.large.get(), action.currents.small.get()];
+    let wanted = [
+        action.large.0,
+        action.handle.0,
+        action.torque.0,
+        currents[0],
+        currents[1],
+    ];
+    assert_eq!(
+        image.map(f32::to_bits),
+        wanted.map(f32::to_bits),
+        "{frame:?} {wanted:?}"
+    );
+}
+
+#[test]
+fn free_air_is_what_the_host_computes_bit_for_bit() {
+    let run = free_air();
+    let moving = same_bits(run, &mirrored(run));
+    assert!(moving > 8000, "{moving} frames of a moving device");
+}
+
+/// A minute of chirps and reversals, over wraps of both counters.
+#[test]
+fn track_is_what_the_host_computes_bit_for_bit_for_a_minute_and_over_wraps() {
+    let run = soak();
+    assert!(run.ticks.len() > 601_000, "{} ticks", run.ticks.len());
+    assert_eq!((run.unclosed, run.restarts.len()), (0, 0));
+    let moving = same_bits(run, &mirrored(run));
+    assert!(moving > 55_000, "{moving} frames of a moving device");
+    for (k, frame) in run.telemetry.frames.iter().enumerate() {
+        assert_eq!(frame.seq as usize, k);
+        assert_eq!((frame.overruns, frame.drops), (0, 0), "{frame:?}");
+    }
+    let last = run.telemetry.frames.last().unwrap();
+    assert_eq!((last.state.as_str(), last.cause.as_str()), ("2", "0"));
+    for encoder in [0, 1] {
+        let counts = run.ticks.iter().map(|tick| tick.counts[encoder].unwrap());
+        let counts: Vec<_> = counts.collect();
+        let wraps = counts
+            .windows(2)
+            .filter(|pair| pair[0].abs_diff(pair[1]) > 1 << 15);
+        let wraps = wraps.count();
+        assert!(wraps > 0, "encoder {encoder} wraps {wraps} times");
+    }
+}
+
+#[test]
+fn every_change_of_scene_is_what_the_host_computes_bit_for_bit() {
+    let run = tour();
+    let host = mirrored(run);
+    same_bits(run, &host);
+    let changes = requests(run).len();
+    assert_eq!(changes, 9, "arm and eight scenes");
+    let last = run.telemetry.frames.last().unwrap();
+    assert_eq!((last.state.as_str(), last.cause.as_str()), ("2", "0"));
+    // At every tick, not at every frame alone: the codes of both converters.
+    codes_are_the_hosts(run, &host);
 }
 
 #[test]
 fn every_dac_code_is_the_hosts_current() {
     let run = free_air();
+    let moved = codes_are_the_hosts(run, &mirrored(run));
+    assert!(moved > 90_000, "{moved}");
+}
+
+fn codes_are_the_hosts(run: &Outcome, host: &[(Option<Currents>, Record)]) -> usize {
     let mut moved = 0;
-    for (tick, (order, _)) in run.ticks.iter().zip(mirrored(run)) {
+    for (tick, (order, _)) in run.ticks.iter().zip(host) {
         assert_eq!(tick.enabled, [order.is_some(); 2]);
         let currents = order.unwrap_or_default();
         let currents = [currents.large, currents.small];
@@ -105,5 +177,49 @@ fn every_dac_code_is_the_hosts_current() {
             moved += usize::from(code != 2048.0);
         }
     }
-    assert!(moved > 30_000, "{moved}");
+    moved
+}
+
+/// The switchboard of the image with the Kalman filter on the large motor: its parameters are
+/// written down here, because the firmware's own file holds one choice a build.
+fn kalman_mirrored(run: &Outcome) -> Vec<Action> {
+    const MODEL: Model<3, NoInput> = estimator_core::preset!(Model::triple_integrator(
+        DEVICE.large.counts_per_rev,
+        RATE,
+        1e4
+    ));
+    const LARGE: SteadyKalmanTriple = estimator_core::preset!(SteadyKalman::new(&MODEL));
+    const SWITCHBOARD: Switchboard<SteadyKalmanTriple, Handle> =
+        Switchboard::new(LARGE, HANDLE, RIG, RATE);
+    let (mut samples, first) = Samples::new(run);
+    let mut state = SWITCHBOARD.start(&first);
+    let requests = requests(run);
+    let mut applied = Amps::ZERO;
+    let step = |(k, tick): (usize, &Tick)| {
+        let sample = samples.next(tick, applied);
+        let mut action = SWITCHBOARD.step(&mut state, &sample);
+        if requests.contains(&(k, Request::Arm)) {
+            state = SWITCHBOARD.start(&sample);
+            SWITCHBOARD.select(&mut state, AnyScene::FreeAir(FreeAir), &sample);
+            action.currents = Currents::default();
+        }
+        applied = action.currents.large;
+        action
+    };
+    run.ticks.iter().enumerate().map(step).collect()
+}
+
+#[test]
+fn the_other_image_too_is_what_the_host_computes_bit_for_bit() {
+    for run in [kalman_free_air(), kalman_track()] {
+        let host = kalman_mirrored(run);
+        let mut moving = 0;
+        assert!(run.telemetry.frames.len() > 9980);
+        for frame in &run.telemetry.frames {
+            let action = &host[run.tick_index(frame).expect("a frame tells of a tick")];
+            same_action(frame, action);
+            moving += usize::from(action.large.0 != 0.0);
+        }
+        assert!(moving > 9500, "{moving} frames of a moving device");
+    }
 }

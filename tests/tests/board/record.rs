@@ -15,7 +15,7 @@ use crate::image::{free_air, image, run};
 
 /// The recording made of raw bytes, as `host-sim record --image` makes it.
 fn recorded(bytes: &[u8], rate_hz: Option<f64>) -> String {
-    let telemetry = Telemetry::decode(image().elf(), bytes).unwrap();
+    let telemetry = Telemetry::decode(image("").elf(), bytes).unwrap();
     let runs = telemetry.runs();
     let run = choose(&runs, None).unwrap();
     csv(run, run.rate_hz.or(rate_hz).unwrap(), |_| None)
@@ -67,7 +67,7 @@ fn a_stream_from_the_middle_on_and_with_a_hole_loses_only_what_is_missing() {
     let whole = parse(&run.csv().unwrap());
     let (from, hole, end) = (run.rtt.len() / 3, run.rtt.len() / 2, run.rtt.len());
     let bytes = [&run.rtt[from..hole], &run.rtt[hole + 1001..end - 5]].concat();
-    let telemetry = Telemetry::decode(image().elf(), &bytes).unwrap();
+    let telemetry = Telemetry::decode(image("").elf(), &bytes).unwrap();
     let runs = telemetry.runs();
     let run = choose(&runs, None).unwrap();
     assert_eq!((run.rate_hz, run.gaps.places), (None, 1));

@@ -3,7 +3,9 @@
 use proptest::collection::vec;
 use proptest::prelude::*;
 
+use drivers::{Command, encode};
 use fuzz_bodies::{commands, control, designs, samples, texts};
+use haptic_control::Request;
 use stress::contestants::Contestant;
 
 fn any_bytes(most: usize) -> impl Strategy<Value = Vec<u8>> {
@@ -13,11 +15,11 @@ fn any_bytes(most: usize) -> impl Strategy<Value = Vec<u8>> {
 /// Frames that are right, cut, or hit by a stray byte.
 fn command_bytes() -> impl Strategy<Value = Vec<u8>> {
     let piece = prop_oneof![
-        Just(drivers::encode(haptic_control::Request::Arm).to_vec()),
-        Just(drivers::encode(haptic_control::Request::Select(9)).to_vec()),
-        (1usize..11).prop_map(|most| {
-            drivers::encode(haptic_control::Request::KeepAlive)[..most].to_vec()
-        }),
+        Just(encode(Command::Request(Request::Arm)).to_vec()),
+        Just(encode(Command::Request(Request::Select(9))).to_vec()),
+        any::<f32>().prop_map(|value| encode(Command::Torque(value)).to_vec()),
+        (1usize..11)
+            .prop_map(|most| { encode(Command::Request(Request::KeepAlive))[..most].to_vec() }),
         vec(prop_oneof![Just(0xA5u8), any::<u8>()], 0..30),
     ];
     vec(piece, 0..40).prop_map(|pieces| pieces.concat())

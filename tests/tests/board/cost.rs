@@ -1,0 +1,185 @@
+//! Instructions of the control task, and when it begins.
+
+use std::sync::OnceLock;
+
+use host_sim::closed_loop::SceneName;
+use virtual_board::run::{Outcome, Tick};
+use virtual_board::score::Range;
+
+use crate::golden::Golden;
+use crate::image::{FIRST_S, SETTLED_S, free_air, hand_for, of_scene, run_image, tour};
+
+/// Instructions may move by this part of what is written.
+const SLACK: f64 = 0.05;
+
+/// Images of one scene alone: the scene, the feature, and a run of it.
+pub(crate) fn alone() -> &'static [(SceneName, &'static str, Outcome)] {
+    static RUNS: OnceLock<Vec<(SceneName, &'static str, Outcome)>> = OnceLock::new();
+    RUNS.get_or_init(|| {
+        let features = [
+            "scene-off",
+            "scene-free-air",
+            "scene-wall",
+            "scene-spring-damper",
+            "scene-viscous",
+            "scene-detents",
+            "scene-texture",
+            "scene-hold",
+        ];
+        let run =
+            |(scene, feature): (SceneName, &'static str)| (scene, feature, playing(feature, scene));
+        SceneName::ALL.into_iter().zip(features).map(run).collect()
+    })
+}
+
+/// Instructions of the control task between two instants, s.
+fn between(run: &Outcome, from_s: f64, to_s: f64) -> Range {
+    let inside = |tick: &&Tick| {
+        let t = tick.at_ns as f64 * 1e-9;
+        t >= from_s && t < to_s
+    };
+    let ticks = run.ticks.iter().filter(inside);
+    Range::of(ticks.map(|tick| u64::from(tick.instructions))).expect("ticks")
+}
+
+/// A second of a scene; it must not have been stopped.
+fn playing(features: &'static str, scene: SceneName) -> Outcome {
+    let run = run_image(features, &of_scene(scene, hand_for(scene), 1.0));
+    let last = run.telemetry.frames.last().expect("frames");
+    let state = if scene == SceneName::Off { "1" } else { "2" };
+    assert_eq!(
+        (last.state.as_str(), last.cause.as_str()),
+        (state, "0"),
+        "{scene}"
+    );
+    run
+}
+
+/// Instructions of each scene in an image of all of them.
+fn by_scene(features: &'static str) -> Vec<(SceneName, Range)> {
+    let of = |scene| {
+        let run = playing(features, scene);
+        (scene, between(&run, SETTLED_S, f64::INFINITY))
+    };
+    SceneName::ALL.into_iter().map(of).collect()
+}
+
+/// Those of the images with either estimator on the large motor.
+fn of_both() -> &'static [Vec<(SceneName, Range)>; 2] {
+    static BOTH: OnceLock<[Vec<(SceneName, Range)>; 2]> = OnceLock::new();
+    BOTH.get_or_init(|| ["", "large-kalman"].map(by_scene))
+}
+
+/// Mean, rounded, and largest.
+fn figures(range: Range) -> [u64; 2] {
+    [range.mean.round() as u64, range.max]
+}
+
+#[test]
+fn a_scene_alone_costs_the_instructions_that_the_table_says() {
+    let all = between(tour(), FIRST_S, f64::INFINITY);
+    let mut rows = vec![("all", figures(all))];
+    for (scene, _, run) in alone() {
+        let range = between(run, SETTLED_S, f64::INFINITY);
+        rows.push((scene.as_str(), figures(range)));
+    }
+    let table = Golden {
+        file: "benchmarks.md",
+        name: "scenes",
+    };
+    let begin = "<!-- scenes: written by the test scene_images -->";
+    table.check_last(begin, "<!-- end of scenes -->", &rows, SLACK);
+}
+
+#[test]
+fn every_scene_and_estimator_costs_what_the_table_says() {
+    let [foaw, kalman] = of_both();
+    let rows: Vec<Vec<String>> = foaw
+        .iter()
+        .zip(kalman)
+        .map(|((scene, foaw), (_, kalman))| {
+            let figures = [*foaw, *kalman].map(|range| [range.min, figures(range)[0], range.max]);
+            let figures = figures.as_flattened().iter().map(u64::to_string);
+            [scene.as_str().to_owned()]
+                .into_iter()
+                .chain(figures)
+                .collect()
+        })
+        .collect();
+    let table = Golden {
+        file: "benchmarks.md",
+        name: "instructions",
+    };
+    let head = [
+        "scene",
+        "FOAW, least",
+        "mean",
+        "most",
+        "Kalman, least",
+        "mean",
+        "most",
+    ];
+    table.check(&head, &rows, |_, golden| SLACK * golden);
+}
+
+/// What a scene does not need it does not pay for. Differences, because every scene pays for the
+/// task around the controller: off, the same whoever estimates; detents and texture, besides, for
+/// a table or a phase and no estimator; the others for the whole loop, a wall or a spring being
+/// little of it.
+#[test]
+fn scenes_pay_only_for_what_they_need() {
+    let [foaw, kalman] = of_both();
+    for ((scene, foaw), (_, kalman)) in foaw.iter().zip(kalman) {
+        let ratio = kalman.mean / foaw.mean;
+        if scene.asks_for_velocity() {
+            assert!(ratio < 0.5, "{scene}: {ratio}");
+        } else {
+            assert!((ratio - 1.0).abs() < 0.01, "{scene}: {ratio}");
+        }
+    }
+    for scenes in [foaw, kalman] {
+        let mean = |name: &str| {
+            let found = scenes.iter().find(|(scene, _)| scene.as_str() == name);
+            found.expect("a scene").1.mean
+        };
+        let (off, air) = (mean("off"), mean("free-air"));
+        for small in ["detents", "texture"] {
+            let more = mean(small) - off;
+            assert!(
+                (10.0..200.0).contains(&more),
+                "{small}: {more} more than off"
+            );
+        }
+        for large in ["wall", "spring-damper", "viscous", "hold"] {
+            let ratio = mean(large) / air;
+            assert!((0.9..1.15).contains(&ratio), "{large}: {ratio} of free air");
+        }
+        assert!(air - off > 350.0, "off {off}, free air {air}");
+    }
+}
+
+/// The processor sleeps until the tick, or is interrupted at something: then the task may begin
+/// later by the one instruction that cannot be interrupted, and by what masks interrupts.
+#[test]
+fn the_control_task_begins_on_the_grid() {
+    let run = free_air();
+    let ticks = &run.ticks;
+    let asleep = ticks.iter().filter(|tick| tick.asleep).count();
+    println!("{asleep} of {} ticks woke the processor", ticks.len());
+    let first = ticks.iter().find(|tick| tick.asleep).expect("one sleeps");
+    let (mut of_sleep, mut of_work) = ((0_i64, 0_i64), (0_i64, 0_i64));
+    for tick in ticks {
+        let since = tick.at_ns as i64 - first.at_ns as i64;
+        let off = (since + 50_000).rem_euclid(100_000) - 50_000;
+        let range = if tick.asleep {
+            &mut of_sleep
+        } else {
+            &mut of_work
+        };
+        *range = (range.0.min(off), range.1.max(off));
+    }
+    println!("off the grid: asleep {of_sleep:?} ns, at work {of_work:?} ns");
+    // 168 million instructions a second: one is 6 ns.
+    assert_eq!(of_sleep, (0, 0));
+    assert!(asleep > 50_000);
+}

@@ -1,0 +1,127 @@
+//! What the hand feels and how well the velocity is known: on the board as in the host simulation.
+
+use estimator_core::Amps;
+use host_sim::closed_loop::{Bench, Eye, Hand};
+use host_sim::compare::interval;
+use host_sim::device::Device;
+use host_sim::score::{Score, Truth, Wanted};
+use virtual_board::run::{Outcome, RATE_HZ};
+use virtual_board::score::Parasitic;
+
+use crate::firmware::scene::Core;
+use crate::image::{SETTLED_S, free_air, wall};
+
+/// Frames a second, at which both are scored.
+const FRAMES_HZ: f64 = 1e3;
+
+/// What a run comes to: the velocity's score, and the force that nobody wanted.
+#[derive(Debug)]
+struct Scores {
+    open: Score,
+    closed: Parasitic,
+}
+
+/// Steps of 10 us after which the board's currents act: instructions, and the lockstep's own step.
+const LATE_STEPS: u32 = 3;
+
+/// A frame: the large motor's velocity as estimated and as it is, torque felt and wanted.
+struct Row {
+    estimate: f32,
+    omega: f64,
+    felt: f64,
+    wanted: f64,
+}
+
+fn scores(rows: &[Row]) -> Scores {
+    let device = Device::default();
+    let omega: Vec<_> = rows.iter().map(|row| row.omega).collect();
+    let estimates: Vec<_> = rows.iter().map(|row| row.estimate).collect();
+    let truth = Truth::new(&omega, FRAMES_HZ, interval(&device), Wanted::ALL).unwrap();
+    let pairs = rows.iter().map(|row| (row.felt, row.wanted));
+    Scores {
+        open: truth.score(&estimates),
+        closed: Parasitic::of(pairs, device.handle.diameter_m).unwrap(),
+    }
+}
+
+fn on_board(run: &Outcome) -> Scores {
+    let rows = run.telemetry.frames.iter().filter_map(|frame| {
+        let tick = run.tick(frame)?;
+        (tick.at_ns as f64 * 1e-9 >= SETTLED_S).then(|| Row {
+            estimate: frame.wl,
+            omega: tick.large.omega,
+            felt: tick.felt,
+            wanted: frame.torque.into(),
+        })
+    });
+    scores(&rows.collect::<Vec<_>>())
+}
+
+/// The image's control core in the loop of `host-sim`: no processor, no DAC, no lateness.
+fn on_host(scene: u8, hand: Hand, seconds: f64) -> Scores {
+    let (device, step) = (Device::default(), 10e-6);
+    let mut bench = Bench::new(&device, hand, Eye::Large, RATE_HZ, 1, step);
+    let mut motion = hand.motion(1.0 / RATE_HZ, 1);
+    let mut sample = bench.sample(Amps::ZERO);
+    let mut core = Core::start(&sample);
+    let armed = (0.1 * RATE_HZ) as u64;
+    let mut rows = Vec::new();
+    for k in 0..(seconds * RATE_HZ) as u64 {
+        if k == armed {
+            core = Core::start(&sample);
+            core.select(scene, &sample);
+        }
+        let action = core.step(&sample);
+        let currents = action.currents;
+        let grip = motion.grip(k);
+        if k as f64 >= SETTLED_S * RATE_HZ && k.is_multiple_of(10) {
+            rows.push(Row {
+                estimate: action.large.0,
+                omega: bench.plant.large().omega,
+                felt: bench.plant.handle_torque(&grip, 0.0),
+                wanted: action.torque.0.into(),
+            });
+        }
+        for j in 0..10_u32 {
+            if j == LATE_STEPS {
+                let [large, small] = [currents.large, currents.small].map(Amps::get);
+                bench.plant.command(large.into(), small.into());
+            }
+            bench.step(&grip, f64::from(j) * step, step, &mut (), &mut ());
+        }
+        sample = bench.sample(currents.large);
+    }
+    scores(&rows)
+}
+
+/// A DAC code is 3 mA, and the image began to count its angles some ms later: each score has to
+/// agree within this part of it. The delay is the shift of least RMS, which is flat there: two ticks.
+fn agree(board: &Scores, host: &Scores, open: f64, closed: f64) {
+    println!("board {board:#?}\nhost {host:#?}");
+    let pair =
+        |of: fn(&Score) -> Option<f64>| [of(&board.open), of(&host.open)].map(Option::unwrap);
+    let near = |name: &str, [board, host]: [f64; 2], part: f64| {
+        let ratio = board / host;
+        assert!((ratio - 1.0).abs() < part, "{name}: {board} {host}");
+    };
+    near("velocity, rms", pair(|s| s.rms_rad_s), open);
+    near("velocity, noise", pair(|s| s.noise_rad_s), open);
+    near("velocity, force", pair(|s| s.force_mn), open);
+    let delay = pair(|s| s.delay_ms);
+    assert!((delay[0] - delay[1]).abs() < 0.2, "delay {delay:?} ms");
+    let rms = [board.closed.rms_mn, host.closed.rms_mn];
+    near("parasitic force, rms", rms, closed);
+    assert!(board.closed.samples > 9500 && board.closed.rms_mn > 1.0);
+}
+
+#[test]
+fn free_air_scores_as_in_the_host_simulation() {
+    let host = on_host(1, Hand::Moving, 10.0);
+    agree(&on_board(free_air()), &host, 0.03, 0.02);
+}
+
+#[test]
+fn the_wall_scores_as_in_the_host_simulation() {
+    let host = on_host(2, Hand::Pushing, 10.0);
+    agree(&on_board(wall()), &host, 0.03, 0.02);
+}

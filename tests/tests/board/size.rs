@@ -1,0 +1,66 @@
+//! What each image takes, and how deep its stack gets.
+
+use virtual_board::run::Outcome;
+
+use crate::cost::alone;
+use crate::golden::Golden;
+use crate::image::{free_air, image, kalman_free_air, tour};
+
+const SIZES: Golden = Golden {
+    file: "board.md",
+    name: "sizes",
+};
+
+/// Every image, and the deepest stack of its runs.
+fn images() -> Vec<(&'static str, u64)> {
+    let deepest = |runs: &[&Outcome]| runs.iter().map(|run| run.stack).max().unwrap();
+    let mut images = vec![
+        ("", deepest(&[free_air(), tour()])),
+        ("large-kalman", deepest(&[kalman_free_air()])),
+    ];
+    images.extend(
+        alone()
+            .iter()
+            .map(|(_, features, run)| (*features, run.stack)),
+    );
+    images
+}
+
+#[test]
+fn every_image_takes_what_the_table_says() {
+    let rows: Vec<Vec<String>> = images()
+        .into_iter()
+        .map(|(features, stack)| {
+            let size = image(features).size;
+            let name = if features.is_empty() {
+                "default"
+            } else {
+                features
+            };
+            let figures = [size.text, size.data, size.bss, stack];
+            let figures = figures.iter().map(u64::to_string);
+            [name.to_owned()].into_iter().chain(figures).collect()
+        })
+        .collect();
+    let head = ["image", "text", "data", "bss", "stack"];
+    SIZES.check(&head, &rows, |column, golden| match column {
+        // A tenth of the code; four words of data, sixteen of the stack.
+        1 => golden / 10.0,
+        4 => 64_f64.max(golden / 10.0),
+        _ => 16.0,
+    });
+}
+
+#[test]
+fn a_scene_alone_is_smaller_than_all_of_them() {
+    let whole = image("").size;
+    for (scene, features, run) in alone() {
+        let size = image(features).size;
+        assert!(size.text < whole.text, "{scene}: {size:?}, {whole:?}");
+        assert!(
+            run.stack > 256 && run.stack < 8192,
+            "{scene}: {}",
+            run.stack
+        );
+    }
+}
