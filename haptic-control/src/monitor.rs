@@ -36,63 +36,95 @@ impl Cause {
     }
 }
 
-/// Largest displacements and times, in counts and ticks.
+/// Slots of a window.
+const SLOTS: usize = 5;
+
+/// Largest displacements, currents and times, in counts, mA and ticks.
 ///
-/// Speeds are displacements over `window` ticks, exact in integers.
+/// Positions are marked once a slot, and each slot ends a window of five: speeds are displacements
+/// over such a sliding window, exact in integers.
+///
+/// What pushes the large motor is its current and the coupler's pull, `b ω_S / Kt_L`; b is not
+/// known well, so the push is the weaker of the current alone and the two together, over all ticks
+/// of a slot: no weaker coupler makes it less. A motor that is pushed cannot run the other way
+/// ever faster, and one that is pushed harder than its friction holds cannot stay where it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Monitor {
-    /// Ticks over which speed is measured, at least 1.
-    pub window: u32,
+    /// Ticks of a slot, at least 1.
+    pub slot: u32,
     /// Largest displacement of the handle in a window.
     pub handle: u32,
     /// Largest displacement of the large motor in a window.
     pub large: u32,
     /// Largest displacement of either in one tick.
     pub jump: u32,
-    /// Longest time at a current above `stall_milliamps` without getting anywhere, ticks.
+    /// Longest time that the large motor is pushed without getting anywhere, slots.
     pub stall: u32,
-    /// Magnitude of the large motor's current from which it has to move, mA.
-    pub stall_milliamps: u32,
+    /// Push that no friction of the large motor withstands, mA of its current.
+    pub stall_milliamps: i32,
+    /// Push whose direction is certain, mA.
+    pub push_milliamps: i32,
+    /// The coupler's pull for a count of the handle in a slot, 2^-8 mA.
+    pub pull: i32,
 }
 
 /// State of a [`Monitor`]: it latches the first cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MonitorState {
     last: [Count; 2],
-    window_start: [Count; 2],
+    /// Ticks of this slot.
     ticks: u32,
-    /// Displacement of the large motor in the window before.
-    before: Counts,
-    /// Where the large motor was when it last moved.
-    resting: Count,
-    still: u32,
-    /// Ticks for which the large motor's current has been high in one direction, and that one.
-    pushed: (u32, i32),
+    /// Smallest and largest current of this slot, mA.
+    currents: (i32, i32),
+    /// The large motor at the ends of the slots of two windows, the latest first.
+    large: [Count; 2 * SLOTS],
+    /// The handle at the ends of the slots of a window.
+    small: [Count; SLOTS],
+    /// Direction of the push, and for how many slots.
+    push: (i32, u32),
+    /// Where the large motor was when it last moved, and slots pushed since.
+    resting: (Count, u32),
     cause: Option<Cause>,
 }
 
+const NO_CURRENT: (i32, i32) = (i32::MAX, i32::MIN);
+
 impl Monitor {
     /// Limits that no scene of `device` reaches at a control rate: the handle 30 rad/s and the
-    /// large motor 150 rad/s, over 5 ms; 250 ms at more than 1 A without a count.
+    /// large motor 150 rad/s, over 5 ms; 50 ms without a count under 2.5 times the current that the
+    /// large motor's friction is worth, 0.1 A at least. (With friction half as much again, its
+    /// ripple of a tenth and a torque constant 20 % less, 2.1 times are needed to move.)
     ///
     /// ```
     /// use estimator_core::Hertz;
     /// use haptic_control::{DualStage, Monitor};
     /// const MONITOR: Monitor = Monitor::new(&DualStage::DEFAULT, Hertz(10e3));
-    /// assert_eq!((MONITOR.window, MONITOR.handle, MONITOR.large), (50, 478, 489));
+    /// assert_eq!((MONITOR.slot, MONITOR.handle, MONITOR.large), (10, 478, 489));
+    /// assert_eq!((MONITOR.stall, MONITOR.stall_milliamps), (50, 213));
     /// ```
     #[must_use]
     pub const fn new(device: &DualStage, rate: Hertz) -> Self {
-        let rounded = (0.005 * rate.0 + 0.5) as u32;
-        let window = if rounded == 0 { 1 } else { rounded };
-        let turns_per_rad_per_s = window as f64 / rate.0 / (2.0 * PI);
+        let rounded = (0.001 * rate.0 + 0.5) as u32;
+        let slot = if rounded == 0 { 1 } else { rounded };
+        let slot_s = slot as f64 / rate.0;
+        let turns_per_rad_per_s = SLOTS as f64 * slot_s / (2.0 * PI);
+        let rad_per_s_per_count = 2.0 * PI / device.small.counts_per_rev as f64 / slot_s;
+        let milliamps_per_nm = 1e3 / device.large.torque_constant;
+        let friction = 2.5 * device.large.coulomb * milliamps_per_nm;
+        let pull = device.damping * rad_per_s_per_count * milliamps_per_nm;
         Self {
-            window,
+            slot,
             handle: (30.0 * turns_per_rad_per_s * device.small.counts_per_rev as f64) as u32 + 1,
             large: (150.0 * turns_per_rad_per_s * device.large.counts_per_rev as f64) as u32 + 1,
             jump: 1 << 14,
-            stall: (0.25 * rate.0) as u32,
-            stall_milliamps: 1000,
+            stall: (0.05 / slot_s) as u32,
+            stall_milliamps: if friction > 100.0 {
+                friction as i32
+            } else {
+                100
+            },
+            push_milliamps: 80,
+            pull: (256.0 * pull) as i32,
         }
     }
 
@@ -101,12 +133,12 @@ impl Monitor {
     pub const fn start(&self, first: &Sample) -> MonitorState {
         MonitorState {
             last: [first.large, first.small],
-            window_start: [first.large, first.small],
             ticks: 0,
-            before: Counts(0),
-            resting: first.large,
-            still: 0,
-            pushed: (0, 0),
+            currents: NO_CURRENT,
+            large: [first.large; 2 * SLOTS],
+            small: [first.small; SLOTS],
+            push: (0, 0),
+            resting: (first.large, 0),
             cause: None,
         }
     }
@@ -117,46 +149,14 @@ impl Monitor {
         let [large, small] = [0, 1].map(|i| distance(now[i] - state.last[i]));
         state.last = now;
         let milliamps = (sample.current.get() * 1000.0) as i32;
-        let push = if milliamps.unsigned_abs() > self.stall_milliamps {
-            milliamps.signum()
-        } else {
-            0
-        };
-        // An encoder with a dead phase dithers by a count or two and gets nowhere.
-        if push == 0 || distance(sample.large - state.resting) > DITHER {
-            state.resting = sample.large;
-            state.still = 0;
-        } else {
-            state.still = state.still.saturating_add(1);
-        }
-        state.pushed = match state.pushed {
-            (ticks, direction) if direction == push => (ticks.saturating_add(1), push),
-            _ => (1, push),
-        };
+        let (low, high) = state.currents;
+        state.currents = (low.min(milliamps), high.max(milliamps));
         state.ticks += 1;
         let mut found = None;
-        if state.still > self.stall {
-            found = Some(Cause::NotMoving);
-        }
-        if state.ticks >= self.window {
+        if state.ticks >= self.slot {
+            found = self.slot(state, sample);
             state.ticks = 0;
-            let [moved, handled] = [0, 1].map(|i| now[i] - state.window_start[i]);
-            let [large, handle] = [moved, handled].map(distance);
-            state.window_start = now;
-            // In the direction of the push: negative and falling is away from it, ever faster.
-            let (ticks, push) = state.pushed;
-            let along = [moved, state.before].map(|moved| moved.0.saturating_mul(push));
-            state.before = moved;
-            let faster = along[1].saturating_sub(along[0]);
-            if ticks > self.window && along[0] < 0 && faster > 2 * DITHER as i32 {
-                found = Some(Cause::Against);
-            }
-            if large > self.large {
-                found = Some(Cause::LargeOverspeed);
-            }
-            if handle > self.handle {
-                found = Some(Cause::HandleOverspeed);
-            }
+            state.currents = NO_CURRENT;
         }
         if large > self.jump || small > self.jump {
             found = Some(Cause::Jump);
@@ -164,10 +164,70 @@ impl Monitor {
         state.cause = state.cause.or(found);
         state.cause
     }
+
+    /// The end of a slot.
+    fn slot(&self, state: &mut MonitorState, sample: &Sample) -> Option<Cause> {
+        let handled = sample.small - state.small[0];
+        let push = self.push(state.currents, handled);
+        let direction = if push.saturating_abs() > self.push_milliamps {
+            push.signum()
+        } else {
+            0
+        };
+        state.push = match state.push {
+            (before, slots) if before == direction => (direction, slots.saturating_add(1)),
+            _ => (direction, 1),
+        };
+        let (rest, still) = state.resting;
+        let hard = push.saturating_abs() > self.stall_milliamps;
+        // An encoder with a dead phase dithers by a count or two and gets nowhere.
+        state.resting = if hard && distance(sample.large - rest) <= DITHER {
+            (rest, still.saturating_add(1))
+        } else {
+            (sample.large, 0)
+        };
+
+        let handle = sample.small - state.small[SLOTS - 1];
+        let moved = sample.large - state.large[SLOTS - 1];
+        let before = state.large[SLOTS - 1] - state.large[2 * SLOTS - 1];
+        state.small.copy_within(..SLOTS - 1, 1);
+        state.small[0] = sample.small;
+        state.large.copy_within(..2 * SLOTS - 1, 1);
+        state.large[0] = sample.large;
+
+        // Along the push: negative and falling is away from it, ever faster.
+        let [moved_along, before_along] =
+            [moved, before].map(|way| way.0.saturating_mul(direction));
+        let faster = before_along.saturating_sub(moved_along);
+        if distance(handle) > self.handle {
+            Some(Cause::HandleOverspeed)
+        } else if distance(moved) > self.large {
+            Some(Cause::LargeOverspeed)
+        } else if state.push.1 > 2 * SLOTS as u32 && moved_along < 0 && faster > FASTER {
+            Some(Cause::Against)
+        } else if state.resting.1 > self.stall {
+            Some(Cause::NotMoving)
+        } else {
+            None
+        }
+    }
+
+    /// What pushed the large motor at least, all through a slot in which the handle was displaced,
+    /// mA; zero where it was not one way.
+    fn push(&self, (low, high): (i32, i32), handled: Counts) -> i32 {
+        let pull = handled.0.saturating_mul(self.pull) / 256;
+        let forwards = low.min(low.saturating_add(pull));
+        let backwards = high.max(high.saturating_add(pull));
+        forwards.max(0) + backwards.min(0)
+    }
 }
 
 /// Counts by which an encoder may move without getting anywhere.
 const DITHER: u32 = 2;
+
+/// Counts by which two windows may differ though the motor did not speed up: one of rounding at
+/// each of three instants, the middle one twice, and as much for the disc.
+const FASTER: i32 = 4;
 
 fn distance(displacement: Counts) -> u32 {
     displacement.0.unsigned_abs()

@@ -24,6 +24,10 @@ pub struct ContinuousStage {
     friction: f32,
     /// Velocity over which the friction is faded in, 1 / (rad/s).
     per_fade: f32,
+    /// What counts of the measured slip's torque, N·m per rad/s.
+    measured: f32,
+    /// 1 - m, the gain of each half of the tracking filter.
+    tracking_gain: f32,
 }
 
 /// State of a [`ContinuousStage`].
@@ -31,6 +35,8 @@ pub struct ContinuousStage {
 pub struct ContinuousState {
     rst: RstState,
     current: f32,
+    /// Both halves of the tracking filter, for the wanted torque alone.
+    expected: [f32; 2],
 }
 
 /// Velocity below which the direction of the large motor's wanted motion is not trusted to feed
@@ -43,6 +49,16 @@ const HANDLE_FADE: f64 = 0.12;
 /// Part of the small motor's friction that is fed forward. With all of it, a torque constant 20 %
 /// above the believed one would drive a handle that nobody holds.
 const FRICTION_PART: f64 = 0.8;
+
+/// Least damping of the coupler and largest torque constant of the small motor that the transient
+/// stage stays passive with, as factors of the believed ones.
+const LEAST_DAMPING: f64 = 0.6;
+const LARGEST_CONSTANT: f64 = 1.2;
+
+/// Part of the measured slip's torque that the small motor takes off. With more, the handle would
+/// be driven by what a strong small motor takes off beyond what a thin coupler brings.
+const MEASURED_PART: f64 = LEAST_DAMPING / LARGEST_CONSTANT;
+const EXPECTED_PART: f32 = (1.0 - MEASURED_PART) as f32;
 
 impl ContinuousStage {
     /// The stage of a device, with its designed loop; a tick may change the current by `slew` A.
@@ -58,6 +74,8 @@ impl ContinuousStage {
             damping: (-device.damping / device.large.torque_constant) as f32,
             friction: (device.large.coulomb / device.large.torque_constant) as f32,
             per_fade: (1.0 / FADE) as f32,
+            measured: (MEASURED_PART * device.damping) as f32,
+            tracking_gain: (1.0 - design.tracking_pole) as f32,
         }
     }
 
@@ -72,6 +90,7 @@ impl ContinuousStage {
         ContinuousState {
             rst: self.rst.start(large),
             current: 0.0,
+            expected: [0.0; 2],
         }
     }
 
@@ -95,18 +114,35 @@ impl ContinuousStage {
         }
         Amps::new(state.current)
     }
+
+    /// One tick, after [`Self::update`]: the torque that the coupler is taken to bring.
+    ///
+    /// Half of it is what the measured slip makes, half what the loop was asked for,
+    /// `b slip / 2 + F torque / 2` with the tracking filter F: both are the wanted torque once the
+    /// large motor has followed, and only half of a slip that nobody asked for is taken off.
+    #[must_use]
+    pub fn coupled(
+        &self,
+        state: &mut ContinuousState,
+        torque: NewtonMetres,
+        slip: RadPerS,
+    ) -> NewtonMetres {
+        let [lag, expected] = &mut state.expected;
+        *lag += self.tracking_gain * (torque.0 - *lag);
+        *expected += self.tracking_gain * (*lag - *expected);
+        NewtonMetres(EXPECTED_PART * *expected + self.measured * slip.0)
+    }
 }
 
 /// The transient stage: the small motor on the handle.
 ///
-/// With a continuous stage it gets the torque that the coupler does not deliver, at once:
-/// `Kt i = torque - b (ω_L - ω_S)`. Alone it gets the whole torque. Four fifths of its own Coulomb
+/// With a continuous stage it gets the torque that the coupler is not taken to bring, at once
+/// (see [`ContinuousStage::coupled`]). Alone it gets the whole torque. Four fifths of its own Coulomb
 /// friction are fed forward in the direction of the handle's velocity, where that is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransientStage {
     limits: CurrentLimits,
     amps_per_nm: f32,
-    nm_per_rad_per_s: f32,
     friction: NewtonMetres,
     per_fade: f32,
 }
@@ -127,7 +163,6 @@ impl TransientStage {
                 slew,
             },
             amps_per_nm: (1.0 / device.small.torque_constant) as f32,
-            nm_per_rad_per_s: device.damping as f32,
             friction: NewtonMetres((FRICTION_PART * device.small.coulomb) as f32),
             per_fade: (1.0 / HANDLE_FADE) as f32,
         }
@@ -136,12 +171,6 @@ impl TransientStage {
     /// Largest current, A.
     pub(crate) const fn largest_current(&self) -> f32 {
         self.limits.largest
-    }
-
-    /// Torque that a slip velocity puts on the handle.
-    #[must_use]
-    pub fn coupled(&self, slip: RadPerS) -> NewtonMetres {
-        NewtonMetres(self.nm_per_rad_per_s * slip.0)
     }
 
     /// One tick: the small motor's current for the torque that is missing.

@@ -90,17 +90,15 @@ where
         handle,
         ..Action::default()
     };
-    S::Continuous::map(parts.continuous, |part| {
+    let coupled = S::Continuous::map(parts.continuous, |part| {
         action.large = part.large.velocity(sample);
         action.currents.large = part.stage.update(part.state, torque, action.large, handle);
+        let slip = RadPerS(action.large.0 - handle.0);
+        part.stage.coupled(part.state, torque, slip)
     });
-    // Without a continuous stage both velocities read zero and so does what the coupler brings.
-    let slip = S::Continuous::or(
-        S::Continuous::make(|| RadPerS(action.large.0 - handle.0)),
-        RadPerS(0.0),
-    );
+    let coupled = S::Continuous::or(coupled, NewtonMetres(0.0));
     S::Transient::map(parts.transient, |part| {
-        let missing = NewtonMetres(torque.0 - part.stage.coupled(slip).0);
+        let missing = NewtonMetres(torque.0 - coupled.0);
         action.currents.small = part.stage.update(part.state, missing, handle);
     });
     action

@@ -4,12 +4,14 @@ use estimator_core::{Amps, Count, Sample};
 use haptic_control::{Cause, CurrentLimits, Monitor};
 
 const MONITOR: Monitor = Monitor {
-    window: 50,
+    slot: 10,
     handle: 400,
     large: 500,
     jump: 1000,
-    stall: 2000,
+    stall: 200,
     stall_milliamps: 500,
+    push_milliamps: 80,
+    pull: 256,
 };
 
 /// The first cause over `ticks` of a motion, and the tick.
@@ -59,7 +61,7 @@ fn each_cause_is_found_within_its_time() {
     });
     assert_eq!(jump, Some((77, Cause::Jump)));
     let stall = first(5000, |_| sample(3, 0, -0.51));
-    assert_eq!(stall, Some((2001, Cause::NotMoving)));
+    assert_eq!(stall, Some((2010, Cause::NotMoving)));
 }
 
 #[test]
@@ -123,7 +125,7 @@ fn limits_hold_for_every_input() {
 fn a_dithering_phase_is_a_stall() {
     let stall = first(5000, |k| sample(7 + k % 3, 0, 2.0));
     assert!(
-        matches!(stall, Some((2000..=2002, Cause::NotMoving))),
+        matches!(stall, Some((2000..=2010, Cause::NotMoving))),
         "{stall:?}"
     );
 }
@@ -140,4 +142,38 @@ fn speeding_up_against_the_current_is_found_and_slowing_down_is_not() {
     assert_eq!(along, None);
     let braking = first(300, |k| sample(0_u32.wrapping_sub(moved(300 - k)), 0, -1.0));
     assert_eq!(braking, None);
+}
+
+#[test]
+fn a_push_that_the_handle_holds_against_may_stand_still() {
+    // 550 mA, of which the handle's motion takes 70 off: 1 mA for a count in a slot.
+    let held = |k: u32| sample(9, 0_u32.wrapping_sub(7 * k), 0.55);
+    assert_eq!(first(20_000, held), None);
+    let held = |k: u32| sample(9, 7 * k, -0.55);
+    assert_eq!(first(20_000, held), None);
+    // The same motion the other way is no excuse: a coupler that brings nothing stalls too.
+    let stuck = first(20_000, |k| sample(9, 7 * k, 0.55));
+    assert!(
+        matches!(stuck, Some((2000..=2020, Cause::NotMoving))),
+        "{stuck:?}"
+    );
+}
+
+#[test]
+fn a_push_that_changes_its_way_is_no_proof() {
+    // It has just been driven the other way, and slows down late.
+    let moved = |k: u32| (0.013 * f64::from(k) * f64::from(k)) as u32;
+    let turned = |k: u32| sample(moved(k), 0, if k % 60 < 30 { 1.0 } else { -1.0 });
+    assert_eq!(first(190, turned), None);
+}
+
+#[test]
+fn speed_is_seen_wherever_it_begins() {
+    for begin in 200..260 {
+        let runaway = first(1000, |k| sample(0, 9 * k.saturating_sub(begin), 0.0));
+        let (tick, cause) = runaway.expect("a stop");
+        assert_eq!(cause, Cause::HandleOverspeed);
+        // 400 counts take 45 ticks, and a slot is 10.
+        assert!((45..=56).contains(&(tick - begin)), "{begin}: {tick}");
+    }
 }

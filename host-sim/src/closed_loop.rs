@@ -1,11 +1,10 @@
 //! The controller of `haptic-control` in closed loop with the plant: what the hand feels.
 
 mod bench;
+mod fault;
 mod press;
 mod scene;
 mod tracking;
-
-use std::f64::consts::TAU;
 
 use estimator_core::{Amps, Count, Hertz, Sample};
 use haptic_control::{
@@ -18,6 +17,7 @@ use crate::parameters::{Parameters, PlantKind};
 use crate::plant::{Pose, steps_per_tick};
 
 pub use bench::Bench;
+pub use fault::Fault;
 pub use press::Press;
 pub use scene::{Hand, Motion, SceneName, Visit};
 
@@ -98,29 +98,25 @@ pub fn believed(device: &Device) -> DualStage {
     }
 }
 
-/// Speeds that no scene needs: the handle 30 rad/s, the large motor 150 rad/s, over 5 ms.
-#[must_use]
-pub fn monitor(device: &DualStage, rate_hz: f64) -> Monitor {
-    let window = (0.005 * rate_hz).ceil().max(1.0);
-    let counts = |motor: &Motor, rad_per_s: f64| {
-        (rad_per_s / TAU * f64::from(motor.counts_per_rev) * window / rate_hz).ceil() as u32
-    };
-    Monitor {
-        window: window as u32,
-        handle: counts(&device.small, 30.0),
-        large: counts(&device.large, 150.0),
-        jump: 1 << 14,
-        stall: (0.25 * rate_hz) as u32,
-        stall_milliamps: 1000,
-    }
-}
-
 impl Loop {
     /// Runs for `ticks`, showing each moment to `observe`.
     ///
     /// # Errors
     /// One line on an impossible device or a loop that cannot be designed.
     pub fn run(&self, ticks: usize, observe: impl FnMut(&Moment)) -> Result<(), String> {
+        self.run_with(ticks, None, observe)
+    }
+
+    /// Runs for `ticks` with an encoder that is faulty from a tick on.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn run_with(
+        &self,
+        ticks: usize,
+        fault: Option<(usize, Fault)>,
+        observe: impl FnMut(&Moment),
+    ) -> Result<(), String> {
         self.device.validate()?;
         let rate = Hertz(self.rate_hz);
         let designed = RstDesign::new(&self.believed, rate, self.poles)
@@ -134,6 +130,7 @@ impl Loop {
             run: self,
             rig: &rig,
             ticks,
+            fault,
             observe,
         };
         self.scene.visit(self.rate_hz, visit)
@@ -145,6 +142,7 @@ struct Running<'a, F> {
     run: &'a Loop,
     rig: &'a Rig,
     ticks: usize,
+    fault: Option<(usize, Fault)>,
     observe: F,
 }
 
@@ -168,14 +166,19 @@ impl<F: FnMut(&Moment)> Visit for Running<'_, F> {
         if self.run.eye == Eye::Reference {
             watched.large.counts_per_rev = device.reference.counts_per_rev;
         }
-        let monitor = monitor(&watched, *rate_hz);
+        let monitor = Monitor::new(&watched, Hertz(*rate_hz));
         let mut sample = bench.sample(Amps::ZERO);
         let mut state = controller.start(&sample);
         let mut watch = monitor.start(&sample);
         let mut pending = vec![(0.0, 0.0); self.run.late_ticks];
         let mut last_omega = bench.plant.small().omega;
         let mut hand = self.run.hand.motion(period, self.run.seed);
+        let mut since = None;
         for k in 0..self.ticks {
+            if let Some((_, fault)) = self.fault.filter(|(from, _)| k >= *from) {
+                let since = *since.get_or_insert(sample.large);
+                sample.large = fault.counted(sample.large, since);
+            }
             let action = controller.step(&mut state, &sample);
             let stopped = monitor.check(&mut watch, &sample);
             let wanted = match stopped {

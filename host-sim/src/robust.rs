@@ -194,7 +194,7 @@ impl Experiment {
 
 #[cfg(test)]
 mod tests {
-    use super::judge::Verdict;
+    use super::judge::{Reason, Verdict};
     use super::*;
 
     pub(super) fn settings(scenes: &[&str], devices: u64) -> Settings {
@@ -253,6 +253,17 @@ mod tests {
             let row = experiment.row((scene, Subject::Corner(0))).unwrap();
             assert_ne!(row.verdict, Verdict::Stable, "{row:?}");
         }
+        // A wall that pushes 22 ms late: its limit cycle is neither fast nor strong, and the large
+        // motor's share of it just too weak for the monitor, which ends a later one.
+        experiment.late_ticks = 44;
+        let late_wall = |experiment: &Experiment| {
+            experiment
+                .row((SceneName::ALL[2], Subject::Corner(0)))
+                .unwrap()
+        };
+        assert_eq!(late_wall(&experiment).reason, Some(Reason::Oscillation));
+        experiment.late_ticks = 60;
+        assert_eq!(late_wall(&experiment).verdict, Verdict::Stopped);
     }
 
     #[test]

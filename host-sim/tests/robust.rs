@@ -58,7 +58,7 @@ impl Drop for Folder {
     }
 }
 
-const SHORT: &str = "robust --scene detents --scene wall --rate 1000 --seconds 0.2 --devices 20";
+const SHORT: &str = "robust --scene hold --scene wall --rate 1000 --seconds 0.2 --devices 20";
 
 #[test]
 fn three_shards_merge_to_the_bytes_of_one_run() {
@@ -86,7 +86,7 @@ fn three_shards_merge_to_the_bytes_of_one_run() {
     assert_eq!(rows.len(), 2 * (27 + 20));
     assert_eq!(
         (&rows[0]["scene"], &rows[0]["device"]),
-        (&"detents".into(), &"nominal".into())
+        (&"hold".into(), &"nominal".into())
     );
     let svg = String::from_utf8(folder.read("whole/summary.svg")).unwrap();
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
