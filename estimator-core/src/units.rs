@@ -77,6 +77,11 @@ impl CountsPerTick {
     }
 }
 
+/// Acceleration in counts per control period squared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct CountsPerTickSquared(pub f32);
+
 /// Electric current, A: always finite, within ±[`Amps::MAX`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
