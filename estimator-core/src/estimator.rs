@@ -1,6 +1,7 @@
 //! What every estimator is.
 
 use crate::sample::{Sample, Signals};
+use crate::units::CountsPerTickSquared;
 
 /// A velocity estimator: immutable parameters, with the state apart.
 ///
@@ -21,6 +22,12 @@ pub trait VelocityEstimator {
 
     /// One tick: take the next sample, return the velocity at its instant.
     fn update(&self, state: &mut Self::State, sample: &Sample) -> Self::Output;
+}
+
+/// An estimator whose model has an acceleration too.
+pub trait AccelerationEstimator: VelocityEstimator {
+    /// The acceleration at the instant of the latest update.
+    fn acceleration(&self, state: &Self::State) -> CountsPerTickSquared;
 }
 
 /// The estimator of whoever needs no velocity: no state, no output, no code.

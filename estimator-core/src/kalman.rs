@@ -1,10 +1,10 @@
 //! Kalman filter with its full covariance.
 
 use crate::design_error::DesignError;
-use crate::estimator::VelocityEstimator;
+use crate::estimator::{AccelerationEstimator, VelocityEstimator};
 use crate::model::{CurrentInput, Input, Model, NoInput};
 use crate::sample::{Sample, Signals};
-use crate::units::{Count, CountsPerTick};
+use crate::units::{Count, CountsPerTick, CountsPerTickSquared};
 
 /// The paper's triple-integrator filter (eqs. 9 to 12).
 pub type KalmanTriple = Kalman<3, NoInput>;
@@ -171,6 +171,20 @@ impl<const S: usize, U: Input<S>> VelocityEstimator for Kalman<S, U> {
             p,
         };
         CountsPerTick(x[1])
+    }
+}
+
+impl KalmanState<3> {
+    /// Acceleration at the latest update.
+    #[must_use]
+    pub const fn acceleration(&self) -> CountsPerTickSquared {
+        CountsPerTickSquared(self.x[2])
+    }
+}
+
+impl AccelerationEstimator for KalmanTriple {
+    fn acceleration(&self, state: &KalmanState<3>) -> CountsPerTickSquared {
+        state.acceleration()
     }
 }
 

@@ -64,7 +64,7 @@ mod units;
 
 pub use design_error::DesignError;
 pub use device::Device;
-pub use estimator::{Skip, VelocityEstimator};
+pub use estimator::{AccelerationEstimator, Skip, VelocityEstimator};
 pub use finite_difference::FiniteDifference;
 pub use foaw::{BestFit, EndFit, Fit, Foaw, FoawState};
 pub use handover::{Handover, HandoverState, Side};
@@ -75,7 +75,9 @@ pub use model::{CurrentInput, Input, Model, NoInput};
 pub use pll::{Pll, PllState};
 pub use sample::{Edge, Sample, Signals};
 pub use steady_kalman::{SteadyKalman, SteadyKalmanMotor, SteadyKalmanState, SteadyKalmanTriple};
-pub use units::{Amps, ClockTicks, Count, Counts, CountsPerTick, Hertz, Scale};
+pub use units::{
+    Amps, ClockTicks, Count, Counts, CountsPerTick, CountsPerTickSquared, Hertz, Scale,
+};
 
 /// The README's example, compiled.
 #[cfg(doctest)]

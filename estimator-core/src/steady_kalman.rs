@@ -1,11 +1,11 @@
 //! Kalman filter with its preset steady gain.
 
 use crate::design_error::DesignError;
-use crate::estimator::VelocityEstimator;
+use crate::estimator::{AccelerationEstimator, VelocityEstimator};
 use crate::kalman::transitioned;
 use crate::model::{CurrentInput, Input, Model, NoInput};
 use crate::sample::{Sample, Signals};
-use crate::units::{Count, CountsPerTick};
+use crate::units::{Count, CountsPerTick, CountsPerTickSquared};
 
 /// [`KalmanTriple`](crate::KalmanTriple) with its steady gain.
 pub type SteadyKalmanTriple = SteadyKalman<3, NoInput>;
@@ -105,5 +105,19 @@ impl<const S: usize, U: Input<S>> VelocityEstimator for SteadyKalman<S, U> {
             x,
         };
         CountsPerTick(x[1])
+    }
+}
+
+impl SteadyKalmanState<3> {
+    /// Acceleration at the latest update.
+    #[must_use]
+    pub const fn acceleration(&self) -> CountsPerTickSquared {
+        CountsPerTickSquared(self.x[2])
+    }
+}
+
+impl AccelerationEstimator for SteadyKalmanTriple {
+    fn acceleration(&self, state: &SteadyKalmanState<3>) -> CountsPerTickSquared {
+        state.acceleration()
     }
 }

@@ -2,8 +2,8 @@
 
 use estimator_core::{Hertz, Model, NoInput, SteadyKalman, SteadyKalmanTriple, preset};
 use haptic_control::{
-    Bounds, Detents, DualStage, FreeAir, Hold, LoopPoles, Off, Radians, Rig, SpringDamper, Texture,
-    Torque, Viscous, Wall,
+    Bounds, Detents, DualStage, FreeAir, Hold, Inertia, LoopPoles, Off, Radians, Rig, SpringDamper,
+    Texture, Torque, Viscous, Wall,
 };
 
 use crate::board::RATE_HZ;
@@ -65,11 +65,12 @@ pub(crate) const BOUNDS: Bounds = Bounds {
     damping: 5e-3,
     angle: 6.3,
     torque: (DEVICE.small.torque_constant * DEVICE.small.current_limit) as f32,
+    inertia: DEVICE.small.inertia as f32,
     rate: RATE,
 };
 
-/// Scenes by number: off, free-air, wall, spring-damper, viscous, detents, texture, hold, torque.
-pub(crate) const SCENES: u8 = 9;
+/// Scenes by number: off, free-air, wall, spring-damper, viscous, detents, texture, hold, torque, inertia.
+pub(crate) const SCENES: u8 = 10;
 /// The scene of the torque set-point.
 pub(crate) const TORQUE_SCENE: u8 = 8;
 
@@ -87,6 +88,7 @@ mod preset {
     pub(crate) const TEXTURE: Texture = preset!(Texture::new(6e-3, Hertz(150.0), RATE));
     pub(crate) const HOLD: Hold = preset!(Hold::new(0.20, 1e-3));
     pub(crate) const TORQUE: Torque = preset!(Torque::new(0.0));
+    pub(crate) const INERTIA: Inertia = preset!(Inertia::new(-2e-6, DEVICE.small.inertia as f32));
 }
 
 macro_rules! image {
@@ -122,4 +124,5 @@ image! {
     "scene-texture", 6, Texture, TEXTURE;
     "scene-hold", 7, Hold, HOLD;
     "scene-torque", 8, Torque, TORQUE;
+    "scene-inertia", 9, Inertia, INERTIA;
 }

@@ -2,8 +2,8 @@
 
 use estimator_core::{Count, CountsPerTick, Sample, Scale, VelocityEstimator};
 
-use crate::need::Need;
-use crate::rig::{AngleScale, Rig};
+use crate::need::{Need, Senses};
+use crate::rig::{AccelerationScale, AngleScale, Rig};
 use crate::scene::Scene;
 use crate::stage::{ContinuousStage, ContinuousState, TransientStage, TransientState};
 use crate::tick::{Action, Continuous, Estimated, HandleNeed, Parts, Transient, tick};
@@ -39,6 +39,7 @@ pub struct Controller<S: Scene, L, H> {
     scene: S,
     continuous: Of<S::Continuous, (L, Scale, ContinuousStage)>,
     handle: Of<HandleNeed<S>, (H, Scale)>,
+    acceleration: Of<S::Acceleration, AccelerationScale>,
     transient: Of<S::Transient, TransientStage>,
     angle: AngleScale,
 }
@@ -76,7 +77,7 @@ impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> PartialEq for Control
 
 impl<S, L, H> Controller<S, L, H>
 where
-    S: Scene,
+    S: Scene<Acceleration: Senses<H>>,
     L: VelocityEstimator<Output = CountsPerTick>,
     H: VelocityEstimator<Output = CountsPerTick>,
 {
@@ -86,6 +87,7 @@ where
             scene,
             continuous: S::Continuous::make(|| (large, rig.large, rig.continuous)),
             handle: HandleNeed::<S>::make(|| (handle, rig.handle)),
+            acceleration: S::Acceleration::make(|| rig.acceleration),
             transient: S::Transient::make(|| rig.transient),
             angle: rig.angle,
         }
@@ -139,6 +141,10 @@ where
                     state,
                     scale: *scale,
                 },
+            ),
+            acceleration: S::Acceleration::map(
+                S::Acceleration::as_ref(&self.acceleration),
+                |scale| *scale,
             ),
             transient: S::Transient::zip(
                 S::Transient::as_ref(&self.transient),

@@ -3,6 +3,7 @@
 use estimator_core::{CountsPerTick, Sample, VelocityEstimator};
 
 use crate::controller::{Controller, ControllerState};
+use crate::need::Senses;
 use crate::scene::Scene;
 use crate::tick::Action;
 
@@ -47,7 +48,7 @@ impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> GatedState<S, L, H> {
 
 impl<S, L, H> Gated<S, L, H>
 where
-    S: Scene,
+    S: Scene<Acceleration: Senses<H>>,
     L: VelocityEstimator<Output = CountsPerTick>,
     H: VelocityEstimator<Output = CountsPerTick>,
 {

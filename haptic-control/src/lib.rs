@@ -40,17 +40,18 @@ pub use gated::{Gated, GatedState};
 pub use limits::{CurrentLimits, Currents};
 pub use margins::Margins;
 pub use monitor::{Cause, Monitor, MonitorState};
-pub use need::{Need, Wanted};
-pub use rig::{AngleScale, Rig};
+pub use need::{Need, Senses, Wanted};
+pub use rig::{AccelerationScale, AngleScale, Rig};
 pub use rst::{Rst, RstState};
 pub use rst_design::{LEAST_MODULUS, LoopPoles, RstDesign};
 pub use safety::{Findings, Mode, Order, Request, Safety, SafetyState};
 pub use scene::{
-    Detents, FreeAir, Handle, Hold, Off, Scene, SpringDamper, Texture, Torque, Viscous, Wall,
+    Detents, FreeAir, Handle, Hold, Inertia, Off, Scene, Seen, SpringDamper, Texture, Torque,
+    Viscous, Wall,
 };
 pub use stage::{ContinuousStage, ContinuousState, TransientStage, TransientState};
 pub use stop::Stop;
 pub use switchboard::{AnyScene, Switchboard, SwitchboardState};
 pub use tick::Action;
 pub use tuning::{Bounds, Refusal, Tunable};
-pub use units::{NewtonMetres, RadPerS, Radians};
+pub use units::{NewtonMetres, RadPerS, RadPerS2, Radians};

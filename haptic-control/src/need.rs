@@ -1,7 +1,7 @@
 //! What a scene needs, in the type: a part that is not needed is `()`, so it has neither state
 //! nor code.
 
-use estimator_core::Skip;
+use estimator_core::{AccelerationEstimator, CountsPerTickSquared, Skip, VelocityEstimator};
 
 /// Whether a part is there: [`Wanted`] or [`Skip`].
 pub trait Need: Copy + 'static {
@@ -112,4 +112,20 @@ impl Need for Skip {
     }
 
     fn narrow<Other: Need, T: Copy>(_: &<Other as Need>::Of<T>) {}
+}
+
+/// A need for an acceleration, of an estimator that gives one if it is [`Wanted`].
+pub trait Senses<E: VelocityEstimator>: Need {
+    /// The acceleration at the latest update.
+    fn acceleration(estimator: &E, state: &E::State) -> Self::Of<CountsPerTickSquared>;
+}
+
+impl<E: VelocityEstimator> Senses<E> for Skip {
+    fn acceleration(_: &E, _: &E::State) {}
+}
+
+impl<E: AccelerationEstimator> Senses<E> for Wanted {
+    fn acceleration(estimator: &E, state: &E::State) -> CountsPerTickSquared {
+        estimator.acceleration(state)
+    }
 }

@@ -2,13 +2,13 @@
 
 use core::f64::consts::PI;
 
-use estimator_core::{Counts, Hertz, Scale};
+use estimator_core::{Counts, CountsPerTickSquared, Hertz, Scale};
 
 use crate::design_error::DesignError;
 use crate::device::DualStage;
 use crate::rst_design::{LoopPoles, RstDesign};
 use crate::stage::{ContinuousStage, TransientStage};
-use crate::units::Radians;
+use crate::units::{RadPerS2, Radians};
 
 /// Both stages and the scales of both encoders, for one device at one control rate.
 ///
@@ -30,6 +30,22 @@ pub struct Rig {
     pub handle: Scale,
     /// Scale of the small encoder's position.
     pub angle: AngleScale,
+    /// Scale of the small encoder's acceleration.
+    pub acceleration: AccelerationScale,
+}
+
+/// The factor between counts per tick squared and rad/s² of one encoder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AccelerationScale {
+    rad_per_s2_per_count_per_tick2: f32,
+}
+
+impl AccelerationScale {
+    /// The acceleration in rad/s².
+    #[must_use]
+    pub fn of(&self, acceleration: CountsPerTickSquared) -> RadPerS2 {
+        RadPerS2(acceleration.0 * self.rad_per_s2_per_count_per_tick2)
+    }
 }
 
 /// The factor between counts and radians of one encoder.
@@ -79,6 +95,11 @@ impl Rig {
             handle,
             angle: AngleScale {
                 rad_per_count: (2.0 * PI / device.small.counts_per_rev as f64) as f32,
+            },
+            acceleration: AccelerationScale {
+                rad_per_s2_per_count_per_tick2: (2.0 * PI * rate.0 * rate.0
+                    / device.small.counts_per_rev as f64)
+                    as f32,
             },
         })
     }

@@ -4,6 +4,7 @@ mod detents;
 mod free_air;
 mod hold;
 mod impedance;
+mod inertia;
 mod off;
 mod spring_damper;
 mod texture;
@@ -14,6 +15,7 @@ mod wall;
 pub use detents::Detents;
 pub use free_air::FreeAir;
 pub use hold::Hold;
+pub use inertia::Inertia;
 pub use off::Off;
 pub use spring_damper::SpringDamper;
 pub use texture::Texture;
@@ -22,16 +24,24 @@ pub use viscous::Viscous;
 pub use wall::Wall;
 
 use crate::need::Need;
-use crate::units::{NewtonMetres, RadPerS, Radians};
+use crate::units::{NewtonMetres, RadPerS, RadPerS2, Radians};
 
-/// What a scene may know of the handle. A velocity that it does not need is `()`.
+/// What a scene may know of the handle. What it does not need is `()`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Handle<V> {
+pub struct Handle<V, A = ()> {
     /// Angle from where the controller started.
     pub angle: Radians,
     /// Velocity.
     pub velocity: V,
+    /// Acceleration.
+    pub acceleration: A,
 }
+
+/// What a scene sees of the handle.
+pub type Seen<S> = Handle<
+    <<S as Scene>::Velocity as Need>::Of<RadPerS>,
+    <<S as Scene>::Acceleration as Need>::Of<RadPerS2>,
+>;
 
 /// A virtual environment.
 ///
@@ -40,6 +50,8 @@ pub struct Handle<V> {
 pub trait Scene {
     /// Whether it reads the handle's velocity.
     type Velocity: Need;
+    /// Whether it reads the handle's acceleration.
+    type Acceleration: Need;
     /// Whether the large motor renders its torque.
     type Continuous: Need;
     /// Whether the small motor does.
@@ -51,11 +63,9 @@ pub trait Scene {
     fn start(&self, angle: Radians) -> Self::State;
 
     /// One tick: the torque that the handle should feel.
-    fn torque(
-        &self,
-        state: &mut Self::State,
-        handle: &Handle<<Self::Velocity as Need>::Of<RadPerS>>,
-    ) -> NewtonMetres;
+    fn torque(&self, state: &mut Self::State, handle: &Seen<Self>) -> NewtonMetres
+    where
+        Self: Sized;
 }
 
 /// Whether a stiffness, damping or amplitude is finite and at least zero.

@@ -1,12 +1,14 @@
 //! A controller of all scenes, one at a time.
 
-use estimator_core::{Amps, Count, CountsPerTick, Hertz, Sample, VelocityEstimator};
+use estimator_core::{
+    AccelerationEstimator, Amps, Count, CountsPerTick, Hertz, Sample, VelocityEstimator,
+};
 
 use crate::limits::{Currents, within};
-use crate::need::Need;
+use crate::need::{Need, Senses};
 use crate::rig::Rig;
 use crate::scene::{
-    Detents, FreeAir, Hold, Off, Scene, SpringDamper, Texture, Torque, Viscous, Wall,
+    Detents, FreeAir, Hold, Inertia, Off, Scene, SpringDamper, Texture, Torque, Viscous, Wall,
 };
 use crate::stage::{ContinuousState, TransientState};
 use crate::tick::{Action, Continuous, Estimated, HandleNeed, Parts, Transient, tick};
@@ -33,6 +35,8 @@ pub enum AnyScene {
     Hold(Hold),
     /// See [`Torque`].
     Torque(Torque),
+    /// See [`Inertia`].
+    Inertia(Inertia),
 }
 
 /// State of whichever scene is on.
@@ -89,7 +93,7 @@ const FADE_S: f64 = 0.02;
 impl<L, H> Switchboard<L, H>
 where
     L: VelocityEstimator<Output = CountsPerTick>,
-    H: VelocityEstimator<Output = CountsPerTick>,
+    H: AccelerationEstimator<Output = CountsPerTick>,
 {
     /// A controller on `rig`, which was designed for `rate`.
     pub const fn new(large: L, handle: H, rig: Rig, rate: Hertz) -> Self {
@@ -158,6 +162,7 @@ where
             (AnyScene::Viscous(scene), _) => self.run(scene, &mut (), shared, angle, sample),
             (AnyScene::Detents(scene), _) => self.run(scene, &mut (), shared, angle, sample),
             (AnyScene::Torque(scene), _) => self.run(scene, &mut (), shared, angle, sample),
+            (AnyScene::Inertia(scene), _) => self.run(scene, &mut (), shared, angle, sample),
             (AnyScene::Texture(scene), SceneState::Phase(phase)) => {
                 self.run(scene, phase, shared, angle, sample)
             }
@@ -195,7 +200,7 @@ where
         state.applied
     }
 
-    fn run<S: Scene>(
+    fn run<S: Scene<Acceleration: Senses<H>>>(
         &self,
         scene: &S,
         scene_state: &mut S::State,
@@ -240,6 +245,7 @@ where
                     scale: self.rig.handle,
                 }
             }),
+            acceleration: S::Acceleration::make(|| self.rig.acceleration),
             transient: S::Transient::map(S::Transient::lend(&mut shared.transient), |state| {
                 Transient {
                     stage: &self.rig.transient,

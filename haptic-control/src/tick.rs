@@ -3,13 +3,17 @@
 use estimator_core::{CountsPerTick, Sample, Scale, VelocityEstimator};
 
 use crate::limits::Currents;
-use crate::need::Need;
+use crate::need::{Need, Senses};
+use crate::rig::AccelerationScale;
 use crate::scene::{Handle, Scene};
 use crate::stage::{ContinuousStage, ContinuousState, TransientStage, TransientState};
-use crate::units::{NewtonMetres, RadPerS, Radians};
+use crate::units::{NewtonMetres, RadPerS, RadPerS2, Radians};
 
-/// Whether the handle's velocity is estimated: for the scene, or for the slip.
-pub(crate) type HandleNeed<S> = <<S as Scene>::Velocity as Need>::Or<<S as Scene>::Continuous>;
+/// For what the large motor or the handle's acceleration is needed.
+type ForOthers<S> = <<S as Scene>::Continuous as Need>::Or<<S as Scene>::Acceleration>;
+
+/// Whether the handle's velocity is estimated: for the scene, for the slip or with acceleration.
+pub(crate) type HandleNeed<S> = <<S as Scene>::Velocity as Need>::Or<ForOthers<S>>;
 
 /// An estimator, its state and its scale.
 pub(crate) struct Estimated<'a, E: VelocityEstimator> {
@@ -19,7 +23,7 @@ pub(crate) struct Estimated<'a, E: VelocityEstimator> {
 }
 
 impl<E: VelocityEstimator<Output = CountsPerTick>> Estimated<'_, E> {
-    fn velocity(self, sample: &Sample) -> RadPerS {
+    fn velocity(&mut self, sample: &Sample) -> RadPerS {
         RadPerS(
             self.estimator
                 .update(self.state, sample)
@@ -45,6 +49,7 @@ pub(crate) struct Transient<'a> {
 pub(crate) struct Parts<'a, S: Scene, L: VelocityEstimator, H: VelocityEstimator> {
     pub(crate) continuous: <S::Continuous as Need>::Of<Continuous<'a, L>>,
     pub(crate) handle: <HandleNeed<S> as Need>::Of<Estimated<'a, H>>,
+    pub(crate) acceleration: <S::Acceleration as Need>::Of<AccelerationScale>,
     pub(crate) transient: <S::Transient as Need>::Of<Transient<'a>>,
 }
 
@@ -71,17 +76,22 @@ pub(crate) fn tick<S, L, H>(
     sample: &Sample,
 ) -> Action
 where
-    S: Scene,
+    S: Scene<Acceleration: Senses<H>>,
     L: VelocityEstimator<Output = CountsPerTick>,
     H: VelocityEstimator<Output = CountsPerTick>,
 {
-    let velocity = HandleNeed::<S>::map(parts.handle, |handle| {
+    let mut acceleration = S::Acceleration::make(RadPerS2::default);
+    let velocity = HandleNeed::<S>::map(parts.handle, |mut handle| {
         // An estimator looks at the large encoder of its sample: show it the handle's there.
-        handle.velocity(&Sample::new(sample.small))
+        let velocity = handle.velocity(&Sample::new(sample.small));
+        let sensed = S::Acceleration::acceleration(handle.estimator, handle.state);
+        acceleration = S::Acceleration::zip(sensed, parts.acceleration, |a, scale| scale.of(a));
+        velocity
     });
     let seen = Handle {
         angle,
-        velocity: S::Velocity::narrow::<S::Continuous, _>(&velocity),
+        velocity: S::Velocity::narrow::<ForOthers<S>, _>(&velocity),
+        acceleration,
     };
     let torque = scene.torque(scene_state, &seen);
     let handle = HandleNeed::<S>::or(velocity, RadPerS(0.0));
@@ -90,7 +100,7 @@ where
         handle,
         ..Action::default()
     };
-    let coupled = S::Continuous::map(parts.continuous, |part| {
+    let coupled = S::Continuous::map(parts.continuous, |mut part| {
         action.large = part.large.velocity(sample);
         action.currents.large = part.stage.update(part.state, torque, action.large, handle);
         let slip = RadPerS(action.large.0 - handle.0);

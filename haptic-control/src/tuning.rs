@@ -3,7 +3,7 @@
 use estimator_core::Hertz;
 
 use crate::scene::{
-    Detents, FreeAir, Hold, Off, Scene, SpringDamper, Texture, Torque, Viscous, Wall,
+    Detents, FreeAir, Hold, Inertia, Off, Scene, SpringDamper, Texture, Torque, Viscous, Wall,
 };
 use crate::switchboard::AnyScene;
 use crate::units::Radians;
@@ -14,7 +14,7 @@ use crate::units::Radians;
 /// use estimator_core::*;
 /// use haptic_control::*;
 /// const BOUNDS: Bounds =
-///     Bounds { stiffness: 0.6, damping: 5e-3, angle: 6.3, torque: 41e-3, rate: Hertz(10e3) };
+///     Bounds { stiffness: 0.6, damping: 5e-3, angle: 6.3, torque: 41e-3, inertia: 5e-6, rate: Hertz(10e3) };
 /// let wall = preset!(Wall::new(Radians(0.1), 0.30, 0.0));
 /// let softer = wall.tuned(1, 0.20, &BOUNDS);
 /// assert_eq!(softer, Ok(preset!(Wall::new(Radians(0.1), 0.20, 0.0))));
@@ -32,6 +32,8 @@ pub struct Bounds {
     pub angle: f32,
     /// Largest torque and amplitude, N·m.
     pub torque: f32,
+    /// The handle's own inertia, kg·m², half of which may be added or taken away.
+    pub inertia: f32,
     /// Control rate.
     pub rate: Hertz,
 }
@@ -183,6 +185,14 @@ impl Tunable for Torque {
     }
 }
 
+impl Tunable for Inertia {
+    const PARAMETERS: &'static [&'static str] = &["inertia"];
+
+    fn set(&self, _: u8, value: f32, bounds: &Bounds) -> Option<Self> {
+        Self::new(value, bounds.inertia).ok()
+    }
+}
+
 impl AnyScene {
     /// Names of its parameters, in the order of their numbers.
     #[must_use]
@@ -197,6 +207,7 @@ impl AnyScene {
             Self::Texture(_) => Texture::PARAMETERS,
             Self::Hold(_) => Hold::PARAMETERS,
             Self::Torque(_) => Torque::PARAMETERS,
+            Self::Inertia(_) => Inertia::PARAMETERS,
         }
     }
 
@@ -215,6 +226,7 @@ impl AnyScene {
             Self::Texture(scene) => Self::Texture(scene.tuned(parameter, value, bounds)?),
             Self::Hold(scene) => Self::Hold(scene.tuned(parameter, value, bounds)?),
             Self::Torque(scene) => Self::Torque(scene.tuned(parameter, value, bounds)?),
+            Self::Inertia(scene) => Self::Inertia(scene.tuned(parameter, value, bounds)?),
         })
     }
 }

@@ -14,3 +14,8 @@ pub struct RadPerS(pub f32);
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct NewtonMetres(pub f32);
+
+/// Angular acceleration, rad/s².
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct RadPerS2(pub f32);

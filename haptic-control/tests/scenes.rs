@@ -6,7 +6,7 @@ use estimator_core::{
 };
 use haptic_control::{
     AnyScene, Controller, DesignError, Detents, DualStage, FreeAir, Gated, Hold, LoopPoles, Off,
-    Radians, Rig, Scene, SpringDamper, Switchboard, Texture, Viscous, Wall,
+    Radians, Rig, Scene, Senses, SpringDamper, Switchboard, Texture, Viscous, Wall,
 };
 
 const RATE: Hertz = Hertz(10e3);
@@ -51,7 +51,7 @@ fn motion(k: u32) -> Sample {
 }
 
 /// What the handle feels at rest, `counts` from where it started.
-fn torque_at(scene: impl Scene, counts: i32) -> f32 {
+fn torque_at(scene: impl Scene<Acceleration: Senses<SteadyKalmanTriple>>, counts: i32) -> f32 {
     let controller = Controller::new(scene, LARGE, HANDLE, &RIG);
     let start = Sample::default();
     let mut state = controller.start(&start);
@@ -150,7 +150,7 @@ fn parameters_out_of_range_are_refused() {
 
 /// Runs a scene in a gated controller and in the switchboard, which has no short path.
 fn same_with_and_without_short_path(
-    scene: impl Scene,
+    scene: impl Scene<Acceleration: Senses<SteadyKalmanTriple>>,
     any: AnyScene,
     large: impl VelocityEstimator<Output = estimator_core::CountsPerTick> + Copy,
 ) -> bool {

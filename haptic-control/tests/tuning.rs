@@ -2,8 +2,8 @@
 
 use estimator_core::{Count, Hertz, Pll, Sample, preset};
 use haptic_control::{
-    AnyScene, Bounds, Detents, DualStage, FreeAir, Hold, LoopPoles, Off, Radians, Refusal, Rig,
-    SpringDamper, Switchboard, Texture, Torque, Viscous, Wall,
+    AnyScene, Bounds, Detents, DualStage, FreeAir, Hold, Inertia, LoopPoles, Off, Radians, Refusal,
+    Rig, SpringDamper, Switchboard, Texture, Torque, Viscous, Wall,
 };
 
 const RATE: Hertz = Hertz(10e3);
@@ -12,10 +12,11 @@ const BOUNDS: Bounds = Bounds {
     damping: 3e-3,
     angle: 6.0,
     torque: 40e-3,
+    inertia: 5e-6,
     rate: RATE,
 };
 
-const SCENES: [AnyScene; 9] = [
+const SCENES: [AnyScene; 10] = [
     AnyScene::Off(Off),
     AnyScene::FreeAir(FreeAir),
     AnyScene::Wall(preset!(Wall::new(Radians(0.1), 0.30, 0.0))),
@@ -25,6 +26,7 @@ const SCENES: [AnyScene; 9] = [
     AnyScene::Texture(preset!(Texture::new(6e-3, Hertz(150.0), RATE))),
     AnyScene::Hold(preset!(Hold::new(0.20, 1e-3))),
     AnyScene::Torque(preset!(Torque::new(0.0))),
+    AnyScene::Inertia(preset!(Inertia::new(-2e-6, 5e-6))),
 ];
 
 #[test]
@@ -67,8 +69,10 @@ fn what_the_device_cannot_render_is_refused() {
         (7, 0, 0.501),
         (7, 1, 3.001e-3),
         (8, 0, 0.0401),
+        // More than half of the handle's own.
+        (9, 0, 2.6e-6),
     ] {
-        let signed = matches!((scene, parameter), (2 | 3, 0) | (8, 0));
+        let signed = matches!((scene, parameter), (2 | 3 | 8 | 9, 0));
         let low = if signed { -just_above } else { gain[0] };
         for value in [just_above, low, gain[1]] {
             let tuned = SCENES[scene].tuned(parameter, value, &BOUNDS);
@@ -97,7 +101,7 @@ fn every_parameter_refuses_what_is_no_number_and_others_are_unknown() {
             }
         }
     }
-    assert_eq!(parameters, 14);
+    assert_eq!(parameters, 15);
 }
 
 #[test]

@@ -8,7 +8,7 @@ mod tracking;
 
 use estimator_core::{Amps, Count, Hertz, Sample};
 use haptic_control::{
-    Action, Cause, Controller, DualStage, LoopPoles, Monitor, Motor, Rig, RstDesign, Scene,
+    Action, Cause, Controller, DualStage, LoopPoles, Monitor, Motor, Rig, RstDesign, Scene, Senses,
 };
 
 use crate::device::Device;
@@ -126,6 +126,13 @@ impl Loop {
             rig.large = estimator_core::Scale::new(self.device.reference.counts_per_rev, rate)
                 .map_err(|error| format!("reference encoder: {error}"))?;
         }
+        if self.scene.asks_for_acceleration() && !self.handle.gives_acceleration() {
+            return Err(format!(
+                "scene {}: its estimator of the handle gives no acceleration; name one that does, \
+                 kalman-triple or kalman-triple-steady",
+                self.scene
+            ));
+        }
         let visit = Running {
             run: self,
             rig: &rig,
@@ -133,7 +140,7 @@ impl Loop {
             fault,
             observe,
         };
-        self.scene.visit(self.rate_hz, visit)
+        self.scene.visit(self.rate_hz, &self.believed, visit)
     }
 }
 
@@ -147,7 +154,7 @@ struct Running<'a, F> {
 }
 
 impl<F: FnMut(&Moment)> Visit for Running<'_, F> {
-    fn visit<S: Scene>(mut self, scene: S) {
+    fn visit<S: Scene<Acceleration: Senses<Estimator>>>(mut self, scene: S) {
         let Loop {
             device,
             believed,

@@ -89,6 +89,12 @@ impl Kind {
             })
     }
 
+    /// Whether its model has an acceleration: the triple integrators.
+    #[must_use]
+    pub fn gives_acceleration(&self) -> bool {
+        matches!(self.name, "kalman-triple" | "kalman-triple-steady")
+    }
+
     /// Whether `tune` has anything to look for.
     #[must_use]
     pub fn is_tunable(&self) -> bool {

@@ -200,6 +200,20 @@ fn bad_words_are_refused_with_one_line() {
         (&["--closed-loop", "--rate", "0"], "rate"),
         (&["--closed-loop", "--seconds", "0"], "duration 0 s"),
         (
+            &["--closed-loop", "--seconds", "0.1"],
+            "scores begin after 0.1 s",
+        ),
+        (
+            &[
+                "--closed-loop",
+                "--scene",
+                "inertia",
+                "--handle-estimator",
+                "pll",
+            ],
+            "gives no acceleration",
+        ),
+        (
             &["--closed-loop", "--handle-estimator", "kalman-motor"],
             "not the handle",
         ),

@@ -2,8 +2,8 @@
 
 use host_sim::closed_loop::SceneName;
 
-/// The scene of the torque set-point, which follows those of the host simulation.
-pub const TORQUE_SCENE: u8 = SceneName::ALL.len() as u8;
+/// Number of the scene of the torque set-point, which the host simulation does not have.
+pub const TORQUE_SCENE: u8 = 8;
 
 /// Something to tell the firmware.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,11 +67,18 @@ impl Command {
 
 /// Number of a scene; parameters do not matter.
 #[must_use]
-pub fn number(scene: SceneName) -> u8 {
-    let index = SceneName::ALL
-        .iter()
-        .position(|known| known.as_str() == scene.as_str());
-    index.map_or(u8::MAX, |index| index as u8)
+pub const fn number(scene: SceneName) -> u8 {
+    match scene {
+        SceneName::Off => 0,
+        SceneName::FreeAir => 1,
+        SceneName::Wall(..) => 2,
+        SceneName::SpringDamper(..) => 3,
+        SceneName::Viscous(..) => 4,
+        SceneName::Detents(..) => 5,
+        SceneName::Texture(..) => 6,
+        SceneName::Hold(..) => 7,
+        SceneName::Inertia(..) => 9,
+    }
 }
 
 /// CRC-8, polynomial 0x07, start 0.

@@ -3,7 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use haptic_control::{Detents, Hold, SpringDamper, Texture, Torque, Tunable, Viscous, Wall};
+use haptic_control::{
+    Detents, Hold, Inertia, SpringDamper, Texture, Torque, Tunable, Viscous, Wall,
+};
 use host_sim::closed_loop::SceneName;
 
 use crate::command::{Command, number};
@@ -61,6 +63,7 @@ impl ImageScene {
             Self::Host(SceneName::Detents(..)) => Detents::PARAMETERS,
             Self::Host(SceneName::Texture(..)) => Texture::PARAMETERS,
             Self::Host(SceneName::Hold(..)) => Hold::PARAMETERS,
+            Self::Host(SceneName::Inertia(..)) => Inertia::PARAMETERS,
             Self::Torque => Torque::PARAMETERS,
         }
     }

@@ -41,6 +41,7 @@ impl Detents {
 
 impl Scene for Detents {
     type Velocity = Skip;
+    type Acceleration = Skip;
     type Continuous = Skip;
     type Transient = Wanted;
     type State = ();

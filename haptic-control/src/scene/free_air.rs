@@ -10,6 +10,7 @@ pub struct FreeAir;
 
 impl Scene for FreeAir {
     type Velocity = Skip;
+    type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
     type State = ();

@@ -1,3 +1,5 @@
+use estimator_core::Skip;
+
 use super::impedance::Impedance;
 use super::{Handle, Scene};
 use crate::design_error::DesignError;
@@ -30,6 +32,7 @@ impl Hold {
 
 impl Scene for Hold {
     type Velocity = Wanted;
+    type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
     /// Where it began.

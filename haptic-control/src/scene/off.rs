@@ -9,6 +9,7 @@ pub struct Off;
 
 impl Scene for Off {
     type Velocity = Skip;
+    type Acceleration = Skip;
     type Continuous = Skip;
     type Transient = Skip;
     type State = ();

@@ -1,3 +1,5 @@
+use estimator_core::Skip;
+
 use super::impedance::Impedance;
 use super::{Handle, Scene};
 use crate::design_error::DesignError;
@@ -32,6 +34,7 @@ impl SpringDamper {
 
 impl Scene for SpringDamper {
     type Velocity = Wanted;
+    type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
     type State = ();

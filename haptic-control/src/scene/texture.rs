@@ -47,6 +47,7 @@ impl Texture {
 
 impl Scene for Texture {
     type Velocity = Skip;
+    type Acceleration = Skip;
     type Continuous = Skip;
     type Transient = Wanted;
     /// Phase, 2^-32 of a period.

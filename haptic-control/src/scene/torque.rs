@@ -27,6 +27,7 @@ impl Torque {
 
 impl Scene for Torque {
     type Velocity = Skip;
+    type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
     type State = ();

@@ -1,3 +1,5 @@
+use estimator_core::Skip;
+
 use super::{Handle, Scene};
 use crate::design_error::DesignError;
 use crate::need::Wanted;
@@ -25,6 +27,7 @@ impl Viscous {
 
 impl Scene for Viscous {
     type Velocity = Wanted;
+    type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
     type State = ();

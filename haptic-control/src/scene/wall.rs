@@ -1,3 +1,5 @@
+use estimator_core::Skip;
+
 use super::impedance::Impedance;
 use super::{Handle, Scene};
 use crate::design_error::DesignError;
@@ -34,6 +36,7 @@ impl Wall {
 
 impl Scene for Wall {
     type Velocity = Wanted;
+    type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
     type State = ();

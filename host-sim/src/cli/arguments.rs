@@ -56,7 +56,7 @@ pub(super) struct Compare {
     pub(super) closed_loop: bool,
     /// Scenario to run; repeatable [default: all but heating; see host-sim scenarios]. With
     /// --closed-loop a scene [default: all: off, free-air, wall, spring-damper, viscous, detents,
-    /// texture, hold]
+    /// texture, hold, inertia]
     #[arg(long = "scenario", visible_alias = "scene", value_name = "NAME")]
     pub(super) scenarios: Vec<String>,
     /// Estimator of the handle's velocity, with --closed-loop [default: kalman-triple-steady]

@@ -17,7 +17,9 @@ use crate::scenario::ScenarioName;
 use crate::{rows, simulate};
 
 use super::arguments::{Compare, is_stdout, kinds, rates};
-use super::compare::{facts, progress, report_folder, timing, wanted, write_page};
+use super::compare::{
+    facts, longer_than_skipped, progress, report_folder, timing, wanted, write_page,
+};
 
 /// Length of a run unless told otherwise, s.
 const SECONDS: f64 = 10.0;
@@ -27,7 +29,7 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
     let folder = report_folder(options);
     let cases = cases(
         options,
-        &scenes(&options.scenarios)?,
+        &scenes(&options.scenarios, settings.handle)?,
         SECONDS,
         folder.is_some(),
     )?;
@@ -76,7 +78,7 @@ pub(super) fn beside(options: &Compare) -> (ClosedLoop, Option<String>) {
     }
     let run = || {
         let settings = settings(options)?;
-        let cases = cases(options, &SceneName::ALL, SECONDS, true)?;
+        let cases = cases(options, &scenes(&[], settings.handle)?, SECONDS, true)?;
         closed_loop(compare(&cases, &settings, || ())?, &settings)
     };
     match run() {
@@ -165,10 +167,11 @@ pub(super) fn settings(options: &Compare) -> Result<Settings, Failure> {
     })
 }
 
-/// The scenes by these names, once each; all where there is no name.
-fn scenes(names: &[String]) -> Result<Vec<SceneName>, Failure> {
+/// The scenes by these names, once each; where there is no name all that
+/// can be had with this estimator of the handle.
+fn scenes(names: &[String], handle: &Kind) -> Result<Vec<SceneName>, Failure> {
     if names.is_empty() {
-        return Ok(SceneName::ALL.to_vec());
+        return Ok(SceneName::all_with(handle).collect());
     }
     let mut scenes = Vec::new();
     for name in names {
@@ -200,6 +203,7 @@ pub(super) fn cases(
     let mut cases = Vec::new();
     for rate_hz in rates(&options.rates, &[1e3, 11.6e3]) {
         simulate::ticks(rate_hz, seconds)?;
+        longer_than_skipped(seconds)?;
         cases.extend(scenes.iter().map(|&scene| Case {
             scene,
             rate_hz,

@@ -68,7 +68,7 @@ fn settings(options: &Robust) -> Result<Settings, Failure> {
         }
     }
     if scenes.is_empty() {
-        scenes.extend(SceneName::ALL);
+        scenes.extend(SceneName::all_with(kind));
     }
     Ok(Settings {
         version: env!("CARGO_PKG_VERSION").to_owned(),

@@ -5,13 +5,15 @@ use std::str::FromStr;
 
 use estimator_core::Hertz;
 use haptic_control::{
-    Detents, FreeAir, Hold, Off, Radians, Scene, SpringDamper, Texture, Viscous, Wall,
+    Detents, DualStage, FreeAir, Hold, Inertia, Off, Radians, Scene, Senses, SpringDamper, Texture,
+    Viscous, Wall,
 };
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
 
 use super::press::Press;
 use super::tracking::Tracking;
+use crate::estimators::{Estimator, Kind};
 use crate::plant::{Grip, Pose};
 use crate::scenario::{Intent, draw};
 
@@ -34,17 +36,19 @@ pub enum SceneName {
     Texture(f32, f32),
     /// A hold: stiffness N.m/rad, damping N.m.s/rad.
     Hold(f32, f32),
+    /// An inertia, as part of the handle's own; less than zero takes some of that away.
+    Inertia(f32),
 }
 
 /// Something to do with a scene of whichever type.
 pub trait Visit {
     /// Does it.
-    fn visit<S: Scene>(self, scene: S);
+    fn visit<S: Scene<Acceleration: Senses<Estimator>>>(self, scene: S);
 }
 
 impl SceneName {
     /// Every scene with its usual parameters.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Off,
         Self::FreeAir,
         Self::Wall(0.30, 0.0),
@@ -53,6 +57,7 @@ impl SceneName {
         Self::Detents(8e-3, 24),
         Self::Texture(6e-3, 150.0),
         Self::Hold(0.20, 1e-3),
+        Self::Inertia(-0.4),
     ];
 
     /// Name on the command line.
@@ -67,6 +72,7 @@ impl SceneName {
             Self::Detents(..) => "detents",
             Self::Texture(..) => "texture",
             Self::Hold(..) => "hold",
+            Self::Inertia(..) => "inertia",
         }
     }
 
@@ -77,8 +83,26 @@ impl SceneName {
         !matches!(self, Self::Off | Self::Detents(..) | Self::Texture(..))
     }
 
+    /// Whether it reads the handle's acceleration, which not every estimator gives.
+    #[must_use]
+    pub const fn asks_for_acceleration(self) -> bool {
+        matches!(self, Self::Inertia(..))
+    }
+
+    /// All scenes that can be had with an estimator of the handle.
+    pub fn all_with(handle: &Kind) -> impl Iterator<Item = Self> {
+        let gives = handle.gives_acceleration();
+        let all = Self::ALL.into_iter();
+        all.filter(move |scene| gives || !scene.asks_for_acceleration())
+    }
+
     /// Shows the scene, as its type, to a visitor.
-    pub(super) fn visit(self, rate_hz: f64, visit: impl Visit) -> Result<(), String> {
+    pub(super) fn visit(
+        self,
+        rate_hz: f64,
+        believed: &DualStage,
+        visit: impl Visit,
+    ) -> Result<(), String> {
         let refused = |error: haptic_control::DesignError| format!("scene {self}: {error}");
         let origin = Radians(0.0);
         match self {
@@ -95,6 +119,10 @@ impl SceneName {
                 visit.visit(Texture::new(a, frequency, Hertz(rate_hz)).map_err(refused)?);
             }
             Self::Hold(k, b) => visit.visit(Hold::new(k, b).map_err(refused)?),
+            Self::Inertia(part) => {
+                let own = believed.small.inertia as f32;
+                visit.visit(Inertia::new(part * own, own).map_err(refused)?);
+            }
         }
         Ok(())
     }

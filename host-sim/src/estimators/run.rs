@@ -4,7 +4,8 @@ use std::any::Any;
 use std::sync::Arc;
 
 use estimator_core::{
-    Amps, ClockTicks, Count, CountsPerTick, Edge, Sample, Scale, Signals, VelocityEstimator,
+    AccelerationEstimator, Amps, ClockTicks, Count, CountsPerTick, CountsPerTickSquared, Edge,
+    KalmanState, Sample, Scale, Signals, SteadyKalmanState, VelocityEstimator,
 };
 
 use crate::trace::{EdgeStamp, Trace};
@@ -42,6 +43,31 @@ impl VelocityEstimator for Estimator {
     fn update(&self, state: &mut State, sample: &Sample) -> CountsPerTick {
         self.0.update(state, sample)
     }
+}
+
+impl Estimator {
+    /// Whether its model has an acceleration.
+    #[must_use]
+    pub fn gives_acceleration(&self) -> bool {
+        acceleration(&self.start(&Sample::default())).is_some()
+    }
+}
+
+/// Zero where [`Estimator::gives_acceleration`] says no.
+impl AccelerationEstimator for Estimator {
+    fn acceleration(&self, state: &State) -> CountsPerTickSquared {
+        acceleration(state).unwrap_or_default()
+    }
+}
+
+fn acceleration(state: &State) -> Option<CountsPerTickSquared> {
+    let state = (*state.0).as_any();
+    let full = state.downcast_ref().map(KalmanState::<3>::acceleration);
+    full.or_else(|| {
+        state
+            .downcast_ref()
+            .map(SteadyKalmanState::<3>::acceleration)
+    })
 }
 
 /// State of an [`Estimator`].

@@ -104,6 +104,7 @@ struct Sweep(Vec<f32>);
 
 impl Scene for Sweep {
     type Velocity = Skip;
+    type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
     /// Tick.

@@ -7,8 +7,8 @@
 
 pub use estimator_core::Sample;
 use estimator_core::{
-    CountsPerTick, EndFit, Foaw, Hertz, Model, Signals, SteadyKalman, SteadyKalmanTriple,
-    VelocityEstimator, preset,
+    AccelerationEstimator, CountsPerTick, CountsPerTickSquared, EndFit, Foaw, Hertz, Model,
+    Signals, SteadyKalman, SteadyKalmanTriple, VelocityEstimator, preset,
 };
 pub use haptic_control::{Action, Controller, ControllerState};
 use haptic_control::{DualStage, LoopPoles, Rig};
@@ -87,6 +87,13 @@ impl VelocityEstimator for Large {
     #[inline]
     fn update(&self, state: &mut Self::State, sample: &Sample) -> CountsPerTick {
         large_update(&self.0, state, sample)
+    }
+}
+
+impl AccelerationEstimator for OfHandle {
+    #[inline]
+    fn acceleration(&self, state: &Self::State) -> CountsPerTickSquared {
+        self.0.acceleration(state)
     }
 }
 

@@ -25,6 +25,7 @@ pub(crate) fn alone() -> &'static [(SceneName, &'static str, Outcome)] {
             "scene-detents",
             "scene-texture",
             "scene-hold",
+            "scene-inertia",
         ];
         let run =
             |(scene, feature): (SceneName, &'static str)| (scene, feature, playing(feature, scene));

@@ -46,7 +46,7 @@ impl Needs {
 }
 
 /// Every library of the package `scene-images`, in the order of the table.
-const SCENES: [(&str, Needs); 10] = [
+const SCENES: [(&str, Needs); 11] = [
     ("off", Needs::NOTHING),
     ("detents", Needs::SMALL_MOTOR),
     ("texture", Needs::SMALL_MOTOR),
@@ -56,6 +56,7 @@ const SCENES: [(&str, Needs); 10] = [
     ("spring-damper", Needs::EVERYTHING),
     ("viscous", Needs::EVERYTHING),
     ("hold", Needs::EVERYTHING),
+    ("inertia", Needs::BOTH_MOTORS),
     ("all", Needs::EVERYTHING),
 ];
 
