@@ -399,3 +399,40 @@ fn torque_is_rendered_flat_up_to_the_amplifiers() {
         |of: &[host_sim::felt::Response]| of.iter().map(|r| r.coherence).fold(1.0, f64::min);
     assert!(least(difference) < least(responses));
 }
+
+/// The inertia that a hand feels: felt torque against the handle's acceleration, least squares.
+fn felt_inertia(scene: SceneName) -> f64 {
+    let (device, parameters, rate_hz) = (Device::default(), Parameters::default(), 10e3);
+    let kind = Kind::named("kalman-triple-steady").unwrap();
+    let on = |counts| estimator(kind, &device, counts, rate_hz, &parameters).unwrap();
+    let run = Loop {
+        believed: believed(&device),
+        scene,
+        hand: Hand::Moving,
+        rate_hz,
+        seed: 1,
+        large: on(device.large.counts_per_rev),
+        handle: on(device.small.counts_per_rev),
+        eye: Eye::Large,
+        poles: LoopPoles::DEFAULT,
+        late_ticks: 0,
+        device,
+    };
+    let (mut products, mut squares) = (0.0, 0.0);
+    run.run(30_000, |now| {
+        products -= now.felt * now.handle_acceleration;
+        squares += now.handle_acceleration * now.handle_acceleration;
+    })
+    .unwrap();
+    products / squares
+}
+
+#[test]
+fn a_virtual_inertia_is_felt_and_a_negative_one_lightens_the_handle() {
+    let own = Device::default().small.inertia_kg_m2;
+    let [lighter, plain, heavier] =
+        [-0.4, 0.0, 0.4].map(|part| felt_inertia(SceneName::Inertia(part)) / own);
+    println!("{lighter} {plain} {heavier}");
+    assert!((plain - lighter - 0.4).abs() < 0.15, "{lighter}, {plain}");
+    assert!((heavier - plain - 0.4).abs() < 0.15, "{plain}, {heavier}");
+}

@@ -16,7 +16,7 @@ pub struct Inertia {
 
 impl Inertia {
     /// Largest part of the handle's own inertia: with a torque constant 20 % high and an inertia
-    /// 30 % low the loop's gain stays below 1 at every frequency.
+    /// 30 % low the loop's gain stays below 1 at every frequency, if the estimator's does.
     pub const LARGEST_PART: f32 = 0.5;
 
     /// An inertia M, kg·m², on a handle whose own is `handle`.
