@@ -211,7 +211,9 @@ fn range(panel: &Panel, view: &RecordingView) -> [f64; 2] {
             see(-1.5 * half);
         }
     }
-    let pad = (0.06 * (ends[1] - ends[0])).max(1e-3);
+    // What does not move at all gets an axis with short labels.
+    let span = ends[1] - ends[0];
+    let pad = if span > 0.0 { 0.06 * span } else { 0.5 };
     [ends[0] - pad, ends[1] + pad]
 }
 
