@@ -76,8 +76,6 @@ impl Default for Setup {
 pub struct Tick {
     /// When it began, ns.
     pub at_ns: u64,
-    /// Instructions since reset when it began.
-    pub began: u64,
     /// Whether it woke the processor; otherwise it preempted something.
     pub asleep: bool,
     /// Instructions from its first to its return.

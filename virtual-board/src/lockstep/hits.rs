@@ -33,7 +33,6 @@ impl Lockstep {
         let since = self.since_tick();
         let tick = Tick {
             at_ns: hit.at.0,
-            began: hit.instruction_count,
             asleep: self.asleep,
             instructions: 0,
             counts: [None; 2],
