@@ -7,7 +7,7 @@ use crate::closed_loop::SceneName;
 
 /// Largest speed of the handle that is allowed, rad/s: 2.1 m/s at the fingertip of the default
 /// handle, whose energy is then 9 mJ, that of a small coin dropped from 15 cm. It is twice what
-/// the monitor allows over its window of 5 ms, because a stop comes up to two windows late.
+/// the monitor allows over its window of 5 ms, because a stop comes up to a window late.
 pub const HANDLE_RAD_S: f64 = 60.0;
 /// Largest torque that a hand may feel, N.m: 4.3 N at the fingertip, which a hand holds against. A
 /// scene's spring asks a stiff hand for 0.13 N.m at most; the device is good for 0.2 N.m (1.5 A in
