@@ -1,6 +1,8 @@
 //! Parameters set while scenes run: within bounds or not at all.
 
-use estimator_core::{Count, Hertz, Pll, Sample, preset};
+use estimator_core::{
+    Count, Hertz, Model, NoInput, Pll, Sample, SteadyKalman, SteadyKalmanTriple, preset,
+};
 use haptic_control::{
     AnyScene, Bounds, Detents, DualStage, FreeAir, Hold, Inertia, LoopPoles, Off, Radians, Refusal,
     Rig, SpringDamper, Switchboard, Texture, Torque, Viscous, Wall,
@@ -108,7 +110,9 @@ fn every_parameter_refuses_what_is_no_number_and_others_are_unknown() {
 fn tuning_and_torque_set_points_do_not_jump() {
     const RIG: Rig = preset!(Rig::new(&DualStage::DEFAULT, RATE, LoopPoles::DEFAULT));
     const PLL: Pll = preset!(Pll::new(Hertz(100.0), RATE));
-    let board = Switchboard::new(PLL, PLL, RIG, RATE);
+    const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(20_000, RATE, 4e3));
+    const HANDLE: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
+    let board = Switchboard::new(PLL, HANDLE, RIG, RATE);
     // 1000 counts are 0.31 rad, 0.21 rad into the wall.
     let inside = Sample::new(Count(0)).with_small(Count(1000));
     for (scene, parameter, value) in [(2, 1, 0.1), (3, 1, 0.0), (7, 1, 0.0), (8, 0, 0.03)] {

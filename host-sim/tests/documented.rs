@@ -10,8 +10,10 @@ use host_sim::robust::{self, summary};
 use host_sim::scenario::ScenarioName;
 use host_sim::score::Wanted;
 use host_sim::table::pooled_pct;
+use host_sim::zwidth;
 
 const README: &str = include_str!("../../README.md");
+const THEORY: &str = include_str!("../../docs/theory.md");
 const BENCHMARKS: &str = include_str!("../../docs/benchmarks.md");
 
 /// The cells of the rows of the table whose heading row contains `heading`.
@@ -164,6 +166,42 @@ fn robustness_of_the_loop() {
                 (unit * spread.median / written[0] - 1.0).abs() < 0.35,
                 "{}: {cell}, {spread:?}",
                 row[0]
+            );
+        }
+    }
+}
+
+/// Two rows of the chart at 1 kHz; the search's own step is 3 %.
+#[test]
+fn z_width_of_two_estimators() {
+    let names = ["foaw-end-fit", "kalman-triple"];
+    let cases = names.map(|name| zwidth::Case {
+        large: Kind::named(name).unwrap(),
+        handle: Kind::named(name).unwrap(),
+        rate_hz: 1e3,
+        lines: 1024,
+    });
+    let settings = zwidth::Settings {
+        device: Device::default(),
+        parameters: Parameters::default(),
+        seed: 1,
+    };
+    let found = zwidth::boundaries(&cases, &settings, || ()).unwrap();
+    let rows = table(THEORY, "| estimator | 1 kHz | | | | 11.6 kHz |");
+    for (name, boundary) in names.iter().zip(&found) {
+        let row = rows.iter().find(|row| row[0] == *name).unwrap();
+        let (damping, best) = boundary.stiffest().unwrap();
+        let plain = boundary.walls[0].1.value;
+        let values = [
+            plain,
+            best.value,
+            1e3 * damping,
+            1e3 * boundary.viscous.value,
+        ];
+        for (cell, value) in row[1..5].iter().zip(values) {
+            assert!(
+                is_written_for(cell, value),
+                "{name}: {cell} is written, {value} is so"
             );
         }
     }

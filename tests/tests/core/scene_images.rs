@@ -13,6 +13,7 @@ use crate::image::{Image, Reached, build};
 #[derive(Clone, Copy, PartialEq)]
 struct Needs {
     velocity: bool,
+    acceleration: bool,
     continuous: bool,
     transient: bool,
 }
@@ -20,6 +21,7 @@ struct Needs {
 impl Needs {
     const NOTHING: Self = Self {
         velocity: false,
+        acceleration: false,
         continuous: false,
         transient: false,
     };
@@ -31,15 +33,24 @@ impl Needs {
         continuous: true,
         ..Self::SMALL_MOTOR
     };
-    const EVERYTHING: Self = Self {
+    const VELOCITY: Self = Self {
         velocity: true,
         ..Self::BOTH_MOTORS
+    };
+    const ACCELERATION: Self = Self {
+        acceleration: true,
+        ..Self::BOTH_MOTORS
+    };
+    const EVERYTHING: Self = Self {
+        acceleration: true,
+        ..Self::VELOCITY
     };
 
     /// Whether the other needs all of this and more.
     fn are_part_of(self, other: Self) -> bool {
         self != other
             && self.velocity <= other.velocity
+            && self.acceleration <= other.acceleration
             && self.continuous <= other.continuous
             && self.transient <= other.transient
     }
@@ -52,11 +63,11 @@ const SCENES: [(&str, Needs); 11] = [
     ("texture", Needs::SMALL_MOTOR),
     ("free-air", Needs::BOTH_MOTORS),
     ("torque", Needs::BOTH_MOTORS),
-    ("wall", Needs::EVERYTHING),
-    ("spring-damper", Needs::EVERYTHING),
-    ("viscous", Needs::EVERYTHING),
-    ("hold", Needs::EVERYTHING),
-    ("inertia", Needs::BOTH_MOTORS),
+    ("wall", Needs::VELOCITY),
+    ("spring-damper", Needs::VELOCITY),
+    ("viscous", Needs::VELOCITY),
+    ("hold", Needs::VELOCITY),
+    ("inertia", Needs::ACCELERATION),
     ("all", Needs::EVERYTHING),
 ];
 
