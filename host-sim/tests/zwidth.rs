@@ -41,9 +41,9 @@ fn a_slow_rate_and_a_coarse_encoder_narrow_the_z_width() {
         .iter()
         .map(|boundary| boundary.walls[0].1.value)
         .collect();
-    // Twice as stiff at ten times the rate; a count of the coarse encoder is felt in any wall.
+    // Twice as stiff at ten times the rate; half of what a count is worth counts, in any wall.
     assert!(plain[0] > 2.0 * plain[1], "{plain:?}");
-    assert!(plain[1] > 0.15 && plain[2] < 0.5 * plain[1], "{plain:?}");
+    assert!(plain[1] > 0.15 && plain[2] < 0.8 * plain[1], "{plain:?}");
 }
 
 #[test]
