@@ -46,8 +46,8 @@ pub use rst::{Rst, RstState};
 pub use rst_design::{LEAST_MODULUS, LoopPoles, RstDesign};
 pub use safety::{Findings, Mode, Order, Request, Safety, SafetyState};
 pub use scene::{
-    Detents, FreeAir, Handle, Hold, Inertia, Off, Scene, Seen, SpringDamper, Texture, Torque,
-    Viscous, Wall,
+    Detents, Excite, ExciteState, FreeAir, Handle, Hold, Inertia, Off, Scene, Seen, SpringDamper,
+    Texture, Torque, Viscous, Wall,
 };
 pub use stage::{ContinuousStage, ContinuousState, TransientStage, TransientState};
 pub use stop::Stop;

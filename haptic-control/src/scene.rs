@@ -1,6 +1,7 @@
 //! Virtual environments: what torque the handle should feel, and what is needed to know that.
 
 mod detents;
+mod excite;
 mod free_air;
 mod hold;
 mod impedance;
@@ -13,6 +14,7 @@ mod viscous;
 mod wall;
 
 pub use detents::Detents;
+pub use excite::{Excite, ExciteState};
 pub use free_air::FreeAir;
 pub use hold::Hold;
 pub use inertia::Inertia;
@@ -23,6 +25,7 @@ pub use torque::Torque;
 pub use viscous::Viscous;
 pub use wall::Wall;
 
+use crate::limits::Currents;
 use crate::need::Need;
 use crate::units::{NewtonMetres, RadPerS, RadPerS2, Radians};
 
@@ -66,6 +69,14 @@ pub trait Scene {
     fn torque(&self, state: &mut Self::State, handle: &Seen<Self>) -> NewtonMetres
     where
         Self: Sized;
+
+    /// Currents that the scene commands itself, past both stages, after [`Scene::torque`].
+    ///
+    /// Only an excitation does: it renders nothing.
+    #[inline]
+    fn open_loop(_: &Self::State) -> Option<Currents> {
+        None
+    }
 }
 
 /// Whether a stiffness, damping or amplitude is finite and at least zero.

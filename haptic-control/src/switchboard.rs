@@ -8,7 +8,8 @@ use crate::limits::{Currents, within};
 use crate::need::{Need, Senses};
 use crate::rig::Rig;
 use crate::scene::{
-    Detents, FreeAir, Hold, Inertia, Off, Scene, SpringDamper, Texture, Torque, Viscous, Wall,
+    Detents, Excite, ExciteState, FreeAir, Hold, Inertia, Off, Scene, SpringDamper, Texture,
+    Torque, Viscous, Wall,
 };
 use crate::stage::{ContinuousState, TransientState};
 use crate::tick::{Action, Continuous, Estimated, HandleNeed, Parts, Transient, tick};
@@ -37,6 +38,8 @@ pub enum AnyScene {
     Torque(Torque),
     /// See [`Inertia`].
     Inertia(Inertia),
+    /// See [`Excite`].
+    Excite(Excite),
 }
 
 /// State of whichever scene is on.
@@ -45,6 +48,7 @@ enum SceneState {
     Nothing,
     Phase(u32),
     Start(Radians),
+    Excite(ExciteState),
 }
 
 /// The controller of all scenes: one `match` a tick, and of the parts they share only those that
@@ -130,6 +134,7 @@ where
         state.scene_state = match &scene {
             AnyScene::Texture(texture) => SceneState::Phase(texture.start(angle)),
             AnyScene::Hold(hold) => SceneState::Start(hold.start(angle)),
+            AnyScene::Excite(excite) => SceneState::Excite(excite.start(angle)),
             _ => SceneState::Nothing,
         };
         state.scene = scene;
@@ -169,10 +174,14 @@ where
             (AnyScene::Hold(scene), SceneState::Start(start)) => {
                 self.run(scene, start, shared, angle, sample)
             }
-            // A scene whose state is another's cannot come from `select`; it is off.
-            (AnyScene::Off(_) | AnyScene::Texture(_) | AnyScene::Hold(_), _) => {
-                self.run(&Off, &mut (), shared, angle, sample)
+            (AnyScene::Excite(scene), SceneState::Excite(state)) => {
+                self.run(scene, state, shared, angle, sample)
             }
+            // A scene whose state is another's cannot come from `select`; it is off.
+            (
+                AnyScene::Off(_) | AnyScene::Texture(_) | AnyScene::Hold(_) | AnyScene::Excite(_),
+                _,
+            ) => self.run(&Off, &mut (), shared, angle, sample),
         };
         action.currents = self.faded(state, action.currents);
         action

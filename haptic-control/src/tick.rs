@@ -111,5 +111,8 @@ where
         let missing = NewtonMetres(torque.0 - coupled.0);
         action.currents.small = part.stage.update(part.state, missing, handle);
     });
+    if let Some(currents) = S::open_loop(scene_state) {
+        action.currents = currents;
+    }
     action
 }

@@ -3,7 +3,8 @@
 use estimator_core::Hertz;
 
 use crate::scene::{
-    Detents, FreeAir, Hold, Inertia, Off, Scene, SpringDamper, Texture, Torque, Viscous, Wall,
+    Detents, Excite, FreeAir, Hold, Inertia, Off, Scene, SpringDamper, Texture, Torque, Viscous,
+    Wall,
 };
 use crate::switchboard::AnyScene;
 use crate::units::Radians;
@@ -185,6 +186,14 @@ impl Tunable for Torque {
     }
 }
 
+impl Tunable for Excite {
+    const PARAMETERS: &'static [&'static str] = &[];
+
+    fn set(&self, _: u8, _: f32, _: &Bounds) -> Option<Self> {
+        None
+    }
+}
+
 impl Tunable for Inertia {
     const PARAMETERS: &'static [&'static str] = &["inertia"];
 
@@ -208,6 +217,7 @@ impl AnyScene {
             Self::Hold(_) => Hold::PARAMETERS,
             Self::Torque(_) => Torque::PARAMETERS,
             Self::Inertia(_) => Inertia::PARAMETERS,
+            Self::Excite(_) => Excite::PARAMETERS,
         }
     }
 
@@ -227,6 +237,7 @@ impl AnyScene {
             Self::Hold(scene) => Self::Hold(scene.tuned(parameter, value, bounds)?),
             Self::Torque(scene) => Self::Torque(scene.tuned(parameter, value, bounds)?),
             Self::Inertia(scene) => Self::Inertia(scene.tuned(parameter, value, bounds)?),
+            Self::Excite(scene) => Self::Excite(scene.tuned(parameter, value, bounds)?),
         })
     }
 }

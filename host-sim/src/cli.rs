@@ -3,11 +3,13 @@
 mod arguments;
 mod compare;
 mod felt;
+mod identify;
 mod list;
 mod plot;
 mod record;
 mod replay;
 mod robust;
+mod simulate;
 mod tune;
 mod zwidth;
 
@@ -39,6 +41,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Some(Command::Replay(options)) => replay::run(&options),
         Some(Command::Record(options)) => record::run(&options),
         Some(Command::Plot(options)) => plot::run(&options),
+        Some(Command::Identify(options)) => identify::run(&options),
+        Some(Command::Simulate(options)) => simulate::run(&options),
         Some(Command::Tune(options)) => tune::run(&options, &command_line),
         Some(Command::Zwidth(options)) => zwidth::run(&options, &command_line),
         Some(Command::Robust(options)) => robust::run(&options),

@@ -3,6 +3,7 @@
 mod bench;
 mod fault;
 mod press;
+mod record;
 mod scene;
 mod tracking;
 
@@ -76,6 +77,8 @@ pub struct Moment {
     pub own_count: Count,
     /// What the controller did.
     pub action: Action,
+    /// Currents that the monitor let through, large then small motor, A.
+    pub commanded: (f64, f64),
     /// Why the monitor stopped the device, if it has.
     pub stopped: Option<Cause>,
 }
@@ -192,7 +195,8 @@ impl<F: FnMut(&Moment)> Visit for Running<'_, F> {
                 None => action.currents,
                 Some(_) => haptic_control::Currents::default(),
             };
-            pending.push((f64::from(wanted.large.get()), f64::from(wanted.small.get())));
+            let commanded = (f64::from(wanted.large.get()), f64::from(wanted.small.get()));
+            pending.push(commanded);
             let (large_a, small_a) = pending.remove(0);
             bench.plant.command(large_a, small_a);
             let grip = hand.grip(k as u64);
@@ -206,6 +210,7 @@ impl<F: FnMut(&Moment)> Visit for Running<'_, F> {
                 sample,
                 own_count: Count(bench.own.as_ref().unwrap_or(&bench.large).count()),
                 action,
+                commanded,
                 stopped,
             });
             last_omega = omega;

@@ -13,6 +13,7 @@ pub mod encoder;
 pub mod estimators;
 pub mod failure;
 pub mod felt;
+pub mod identify;
 pub mod output;
 pub mod parameters;
 pub mod plant;

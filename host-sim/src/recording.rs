@@ -1,6 +1,7 @@
 //! Recordings of a motor: CSV in.
 
 mod board;
+mod write;
 
 use std::fs::File;
 use std::io::{BufReader, Read};
@@ -21,16 +22,19 @@ pub struct Recording {
     pub t: Vec<f64>,
     /// The columns as a trace; its rate is that of the median step of `t`.
     pub trace: Trace,
+    /// The small motor's commanded current, applied from this tick to the next, A.
+    pub current_small: Option<Vec<f64>>,
     /// How many steps of `t` differ from the median by more than a tenth of it.
     pub uneven_steps: usize,
 }
 
 /// The columns this reads; others are ignored.
-const COLUMNS: [&str; 7] = [
+const COLUMNS: [&str; 8] = [
     "t",
     "counts_large",
     "counts_small",
     "current",
+    "current_small",
     "edge_tick",
     "edge_bound",
     "true_omega",
@@ -91,6 +95,7 @@ struct Places {
     counts_large: usize,
     counts_small: Option<usize>,
     current: Option<usize>,
+    current_small: Option<usize>,
     edge: Option<[usize; 2]>,
     true_omega: Option<usize>,
 }
@@ -114,6 +119,7 @@ impl Places {
             counts_large,
             counts_small,
             current,
+            current_small,
             edge_tick,
             edge_bound,
             true_omega,
@@ -131,6 +137,7 @@ impl Places {
             counts_large: needed(counts_large, "counts_large")?,
             counts_small,
             current,
+            current_small,
             edge: match (edge_tick, edge_bound) {
                 (Some(tick), Some(bound)) => Some([tick, bound]),
                 (None, None) => None,
@@ -211,6 +218,7 @@ struct Columns {
     counts_large: Vec<u32>,
     counts_small: Vec<u32>,
     current: Vec<f64>,
+    current_small: Vec<f64>,
     edges: Vec<Option<EdgeStamp>>,
     true_omega: Vec<f64>,
 }
@@ -225,6 +233,9 @@ impl Columns {
         }
         if let Some(place) = at.current {
             self.current.push(row.number("current", place)?);
+        }
+        if let Some(place) = at.current_small {
+            self.current_small.push(row.number("current_small", place)?);
         }
         if let Some([tick, bound]) = at.edge {
             self.edges.push(self.edge(row, tick, bound)?);
@@ -265,6 +276,7 @@ impl Columns {
         Ok(Recording {
             uneven_steps: steps.iter().filter(uneven).count(),
             t: self.t,
+            current_small: at.current_small.is_some().then_some(self.current_small),
             trace: Trace {
                 // Decimal time steps are a few digits short of the rate they mean.
                 rate_hz: rounded(1.0 / median),

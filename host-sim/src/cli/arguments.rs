@@ -32,6 +32,10 @@ pub(super) enum Command {
     Record(Record),
     /// Draw a recording
     Plot(Plot),
+    /// Fit the device to recordings of an excitation and write it as a device file
+    Identify(super::identify::Identify),
+    /// Simulate a scene or a scenario and write it as a recording
+    Simulate(super::simulate::Simulate),
     /// Search the estimators' parameters on tuning seeds and write them to a file
     Tune(Tune),
     /// Find the stiffest wall and the strongest damping that stay passive and free of limit cycles
@@ -329,15 +333,20 @@ impl Default for Compare {
 }
 
 impl DeviceFile {
+    /// The file's text, or none.
+    pub(super) fn text(&self) -> Result<String, Failure> {
+        let Some(path) = &self.device else {
+            return Ok(String::new());
+        };
+        std::fs::read_to_string(path)
+            .map_err(|error| Failure::Input(format!("{}: cannot read: {error}", path.display())))
+    }
+
     /// The device of the file, or the default one.
     pub(super) fn load(&self) -> Result<Device, Failure> {
-        let Some(path) = &self.device else {
-            return Ok(Device::default());
-        };
-        let name = path.display();
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
-        Device::from_toml_str(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))
+        let name = self.device.as_deref().unwrap_or(Path::new(""));
+        Device::from_toml_str(&self.text()?)
+            .map_err(|error| Failure::Input(format!("{}: {error}", name.display())))
     }
 
     /// What the device goes by.

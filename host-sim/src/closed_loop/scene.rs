@@ -5,8 +5,8 @@ use std::str::FromStr;
 
 use estimator_core::Hertz;
 use haptic_control::{
-    Detents, DualStage, FreeAir, Hold, Inertia, Off, Radians, Scene, Senses, SpringDamper, Texture,
-    Viscous, Wall,
+    Detents, DualStage, Excite, FreeAir, Hold, Inertia, Off, Radians, Scene, Senses, SpringDamper,
+    Texture, Viscous, Wall,
 };
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
@@ -38,6 +38,8 @@ pub enum SceneName {
     Hold(f32, f32),
     /// An inertia, as part of the handle's own; less than zero takes some of that away.
     Inertia(f32),
+    /// The excitation from which the device is identified; nothing to feel, so not in `ALL`.
+    Excite,
 }
 
 /// Something to do with a scene of whichever type.
@@ -73,6 +75,7 @@ impl SceneName {
             Self::Texture(..) => "texture",
             Self::Hold(..) => "hold",
             Self::Inertia(..) => "inertia",
+            Self::Excite => "excite",
         }
     }
 
@@ -80,7 +83,10 @@ impl SceneName {
     /// loop.
     #[must_use]
     pub const fn asks_for_velocity(self) -> bool {
-        !matches!(self, Self::Off | Self::Detents(..) | Self::Texture(..))
+        !matches!(
+            self,
+            Self::Off | Self::Detents(..) | Self::Texture(..) | Self::Excite
+        )
     }
 
     /// Whether it reads the handle's acceleration, which not every estimator gives.
@@ -123,6 +129,7 @@ impl SceneName {
                 let own = believed.small.inertia as f32;
                 visit.visit(Inertia::new(part * own, own).map_err(refused)?);
             }
+            Self::Excite => visit.visit(Excite::new(believed, Hertz(rate_hz)).map_err(refused)?),
         }
         Ok(())
     }
@@ -163,6 +170,8 @@ pub enum Hand {
     Gone(f64),
     /// Presses and lets go, without tremor.
     Pressing(Press),
+    /// Not a hand: a clamp.
+    Clamp,
 }
 
 /// A hand's motion, tick by tick.
@@ -173,6 +182,7 @@ enum Mover {
     Pressing(Press, f64),
     Tracking(Box<Tracking>),
     Gone,
+    Clamp,
 }
 
 impl Motion {
@@ -183,6 +193,7 @@ impl Motion {
             Mover::Pressing(press, period_s) => press.grip(k, *period_s),
             Mover::Tracking(tracking) => tracking.grip(k),
             Mover::Gone => Grip::Free,
+            Mover::Clamp => Grip::Clamped,
         }
     }
 }
@@ -201,7 +212,7 @@ impl Hand {
                 .sine_from(random, (0.4, 1.2), (0.12, 0.18), (-2.2, -0.9))
                 .tremor(random),
             Self::Still => about(random, -0.02, 0.02).tremor(random),
-            Self::Tracking | Self::Gone(_) | Self::Pressing(_) => return None,
+            Self::Tracking | Self::Gone(_) | Self::Pressing(_) | Self::Clamp => return None,
         })
     }
 
@@ -222,6 +233,7 @@ impl Hand {
             (Some(intent), _) => Mover::Intent(Box::new(intent)),
             (None, Self::Pressing(press)) => Mover::Pressing(press, period_s),
             (None, Self::Tracking) => Mover::Tracking(Box::new(Tracking::new(period_s, seed))),
+            (None, Self::Clamp) => Mover::Clamp,
             (None, _) => Mover::Gone,
         })
     }

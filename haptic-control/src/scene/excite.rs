@@ -1,0 +1,179 @@
+use estimator_core::{Amps, Hertz, Skip};
+
+use super::{Handle, Scene};
+use crate::design_error::DesignError;
+use crate::device::DualStage;
+use crate::limits::Currents;
+use crate::units::{NewtonMetres, Radians};
+
+mod pattern;
+
+use pattern::{LARGEST, SECTIONS, Segment};
+
+/// Excitation, to identify the device from a recording: currents by a fixed pattern, open loop.
+///
+/// First short kicks of both motors, there and back, which a handle that nobody holds survives
+/// within its bounds; then, for a handle held fast, steps between levels and slow sweeps of the
+/// large motor. Each section runs four times with alternating sign, 15 s in all, and ends at zero
+/// current, for good. Levels change at whole milliseconds, so that frames of 1 kHz know the current.
+///
+/// Bounded in current by the pattern (0.9 A large, 0.3 A small); in speed of the large motor by what
+/// that current can drive against the coupler of a held handle, checked where it is built. A handle
+/// further than 2 rad from where the scene began, or faster than 25 rad/s over a millisecond, ends it.
+///
+/// ```
+/// use estimator_core::Hertz;
+/// use haptic_control::{DualStage, Excite};
+/// assert!(Excite::new(&DualStage::DEFAULT, Hertz(10e3)).is_ok());
+/// // Half the damping: 0.9 A could reach 88 rad/s.
+/// let weak = DualStage { damping: 0.48e-3, ..DualStage::DEFAULT };
+/// assert!(Excite::new(&weak, Hertz(10e3)).is_err());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Excite {
+    rate_hz: u32,
+}
+
+/// State of an [`Excite`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExciteState {
+    /// Where the handle was at first, and a millisecond ago.
+    start: Radians,
+    before: Radians,
+    /// Thousandths of a tick, times the rate, into the millisecond.
+    part: u32,
+    section: u8,
+    pass: u8,
+    segment: u8,
+    /// Step of the segment, and milliseconds into it.
+    step: u8,
+    elapsed: u16,
+    currents: Currents,
+}
+
+/// Fastest the large motor may turn, rad/s; the pattern is judged by it at compile time.
+const LARGE_SPEED: f64 = 60.0;
+/// Farthest the handle may turn, rad.
+const HANDLE_ANGLE: f32 = 2.0;
+/// Farthest the handle may turn in a millisecond, rad.
+const HANDLE_STEP: f32 = 0.025;
+/// Times that a section runs, with alternating sign.
+const PASSES: u8 = 4;
+
+impl Excite {
+    /// The excitation of `device` by a controller that runs at `rate`.
+    ///
+    /// # Errors
+    /// [`DesignError::Scene`] unless the rate is 1 to 100 kHz, the device's current limits allow the
+    /// pattern, and the pattern's largest current cannot drive the large motor beyond 60 rad/s.
+    pub const fn new(device: &DualStage, rate: Hertz) -> Result<Self, DesignError> {
+        let [large, small] = [LARGEST[0] as f64 / 1000.0, LARGEST[1] as f64 / 1000.0];
+        let speed = device.large.torque_constant * large / device.damping;
+        let in_limits = large <= device.large.current_limit && small <= device.small.current_limit;
+        if in_limits && speed <= LARGE_SPEED && rate.0 >= 1e3 && rate.0 <= 100e3 {
+            Ok(Self {
+                rate_hz: (rate.0 + 0.5) as u32,
+            })
+        } else {
+            Err(DesignError::Scene)
+        }
+    }
+}
+
+impl ExciteState {
+    fn segment(&self) -> Option<&'static Segment> {
+        SECTIONS
+            .get(usize::from(self.section))
+            .and_then(|section| section.get(usize::from(self.segment)))
+    }
+
+    fn end(&mut self) {
+        self.section = SECTIONS.len() as u8;
+        self.currents = Currents::default();
+    }
+
+    /// A millisecond has passed.
+    fn advance(&mut self) {
+        let Some(segment) = self.segment() else {
+            return self.end();
+        };
+        self.elapsed += 1;
+        if self.elapsed < segment.hold_ms {
+            return;
+        }
+        self.elapsed = 0;
+        self.step += 1;
+        if self.step < segment.steps {
+            return;
+        }
+        self.step = 0;
+        self.segment += 1;
+        if self.segment().is_some() {
+            return;
+        }
+        self.segment = 0;
+        self.pass += 1;
+        if self.pass == PASSES {
+            self.pass = 0;
+            self.section += 1;
+        }
+    }
+
+    fn drive(&mut self) {
+        let Some(segment) = self.segment() else {
+            return self.end();
+        };
+        let sign = if self.pass % 2 == 0 { 1.0 } else { -1.0 };
+        let amps = |milliamps: f32| Amps::new(sign * milliamps / 1000.0);
+        self.currents = Currents {
+            large: amps(segment.large(self.step)),
+            small: amps(f32::from(segment.small)),
+        };
+    }
+}
+
+impl Scene for Excite {
+    type Velocity = Skip;
+    type Acceleration = Skip;
+    type Continuous = Skip;
+    type Transient = Skip;
+    type State = ExciteState;
+
+    fn start(&self, angle: Radians) -> ExciteState {
+        ExciteState {
+            start: angle,
+            before: angle,
+            part: 0,
+            section: 0,
+            pass: 0,
+            segment: 0,
+            step: 0,
+            elapsed: 0,
+            currents: Currents::default(),
+        }
+    }
+
+    fn torque(&self, state: &mut ExciteState, handle: &Handle<()>) -> NewtonMetres {
+        // The first tick is the start of the first millisecond.
+        state.drive();
+        state.part += 1000;
+        if state.part >= self.rate_hz {
+            state.part -= self.rate_hz;
+            state.advance();
+            let (angle, moved) = (
+                handle.angle.0 - state.start.0,
+                handle.angle.0 - state.before.0,
+            );
+            state.before = handle.angle;
+            let within = |x: f32, bound: f32| x < bound && x > -bound;
+            if !within(angle, HANDLE_ANGLE) || !within(moved, HANDLE_STEP) {
+                state.end();
+            }
+        }
+        NewtonMetres(0.0)
+    }
+
+    fn open_loop(state: &ExciteState) -> Option<Currents> {
+        Some(state.currents)
+    }
+}

@@ -1,0 +1,118 @@
+//! The currents of the excitation over time.
+
+/// Levels of the large motor's current from one to another, each held as long.
+#[derive(Clone, Copy)]
+pub(super) struct Segment {
+    /// First level, mA.
+    from: i16,
+    /// Level that would follow the last one, mA.
+    to: i16,
+    /// Small motor's current, mA.
+    pub(super) small: i16,
+    /// Number of levels.
+    pub(super) steps: u8,
+    /// Duration of each, ms.
+    pub(super) hold_ms: u16,
+}
+
+impl Segment {
+    const fn hold(large: i16, small: i16, hold_ms: u16) -> Self {
+        Self {
+            from: large,
+            to: large,
+            small,
+            steps: 1,
+            hold_ms,
+        }
+    }
+
+    const fn sweep(from: i16, to: i16, steps: u8, hold_ms: u16) -> Self {
+        Self {
+            from,
+            to,
+            small: 0,
+            steps,
+            hold_ms,
+        }
+    }
+
+    /// Level of the large motor's current, mA.
+    pub(super) fn large(&self, step: u8) -> f32 {
+        let (from, to) = (f32::from(self.from), f32::from(self.to));
+        from + (to - from) * f32::from(step) / f32::from(self.steps)
+    }
+}
+
+/// Largest magnitudes in the pattern, large and small motor, mA.
+pub(super) const LARGEST: [i16; 2] = {
+    let mut largest = [0; 2];
+    let mut i = 0;
+    while i < SECTIONS.len() {
+        let mut j = 0;
+        while j < SECTIONS[i].len() {
+            let segment = &SECTIONS[i][j];
+            largest[0] = larger(largest[0], larger(segment.from.abs(), segment.to.abs()));
+            largest[1] = larger(largest[1], segment.small.abs());
+            j += 1;
+        }
+        i += 1;
+    }
+    largest
+};
+
+const fn larger(a: i16, b: i16) -> i16 {
+    if a > b { a } else { b }
+}
+
+/// Kicks, there and back, so that a free handle comes back too.
+const KICKS: [Segment; 21] = [
+    Segment::hold(0, 0, 40),
+    Segment::hold(400, 0, 24),
+    Segment::hold(-400, 0, 14),
+    Segment::hold(0, 0, 60),
+    Segment::hold(-400, 0, 24),
+    Segment::hold(400, 0, 14),
+    Segment::hold(0, 0, 60),
+    Segment::hold(0, 300, 16),
+    Segment::hold(0, -300, 12),
+    Segment::hold(0, 0, 40),
+    Segment::hold(0, -300, 16),
+    Segment::hold(0, 300, 12),
+    Segment::hold(0, 0, 40),
+    Segment::hold(300, -200, 50),
+    Segment::hold(-300, 200, 30),
+    Segment::hold(0, 0, 60),
+    Segment::hold(-300, 200, 50),
+    Segment::hold(300, -200, 30),
+    Segment::hold(250, 0, 60),
+    Segment::hold(-250, 0, 40),
+    Segment::hold(0, 0, 80),
+];
+
+/// Steps between levels of one sign and of both, and slow sweeps.
+const LEVELS: [Segment; 21] = [
+    Segment::hold(0, 0, 60),
+    Segment::hold(300, 0, 160),
+    Segment::hold(900, 0, 60),
+    Segment::hold(500, 0, 40),
+    Segment::hold(800, 0, 80),
+    Segment::hold(250, 0, 120),
+    Segment::hold(600, 0, 40),
+    Segment::hold(350, 0, 60),
+    Segment::hold(900, 0, 100),
+    Segment::hold(150, 0, 100),
+    Segment::hold(-400, 0, 60),
+    Segment::hold(-900, 0, 80),
+    Segment::hold(-500, 0, 60),
+    Segment::hold(-700, 0, 40),
+    Segment::hold(-300, 0, 100),
+    Segment::hold(900, 0, 60),
+    Segment::hold(-900, 0, 60),
+    Segment::hold(900, 0, 40),
+    Segment::sweep(900, 100, 50, 16),
+    Segment::sweep(100, 900, 50, 16),
+    Segment::hold(0, 0, 100),
+];
+
+/// The sections in their order.
+pub(super) const SECTIONS: [&[Segment]; 2] = [&KICKS, &LEVELS];

@@ -1,0 +1,65 @@
+//! `host-sim identify`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::failure::Failure;
+use crate::identify::{self, Known};
+use crate::output::{print_bytes, write_whole};
+use crate::recording::Recording;
+use crate::replay;
+
+use super::arguments::{DeviceFile, is_stdout};
+
+#[derive(Debug, Args)]
+pub(super) struct Identify {
+    /// Recording of scene excite: CSV as for replay, with column current; counts_small if the handle
+    /// may have moved, and current_small too if nobody held it. Several of one device are joined
+    #[arg(value_name = "RECORDING", required = true)]
+    recordings: Vec<PathBuf>,
+    #[command(flatten)]
+    device: DeviceFile,
+    /// What is known: large.torque_constant_nm_per_a, large.inertia_kg_m2 or
+    /// coupler.damping_nms_per_rad [default: the device's torque constant]
+    #[arg(long, value_name = "KEY=VALUE")]
+    known: Option<String>,
+    /// Write the device file with what was identified in it, everything else as it was; may be the
+    /// same file
+    #[arg(long, value_name = "FILE.toml")]
+    out: Option<PathBuf>,
+    /// Write what was identified as JSON to FILE, or with - to standard output and nothing else there
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+pub(super) fn run(options: &Identify) -> Result<(), Failure> {
+    let device = options.device.load()?;
+    let known = match &options.known {
+        Some(text) => Known::parse(text)?,
+        None => Known::TorqueConstant(device.large.torque_constant_nm_per_a),
+    };
+    let mut recordings = Vec::new();
+    for path in &options.recordings {
+        recordings.push((replay::name(path), Recording::read(path)?));
+    }
+    let found = identify::identify(&recordings, &device, known)?;
+    if let Some(out) = &options.out {
+        let text = options.device.text()?;
+        let names: Vec<_> = recordings.iter().map(|(name, _)| name.as_str()).collect();
+        let given = options.known.is_some();
+        let text = identify::updated(&text, &found.quantities, known, given, &names.join(", "))
+            .map_err(|error| Failure::Input(format!("{}: {error}", out.display())))?;
+        write_whole(out, text.as_bytes())?;
+    }
+    if let Some(path) = &options.json {
+        let mut json = serde_json::to_vec_pretty(&identify::json(&found))
+            .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
+        json.push(b'\n');
+        if is_stdout(path) {
+            return print_bytes(&json);
+        }
+        write_whole(path, &json)?;
+    }
+    print_bytes(identify::text(&found).as_bytes())
+}

@@ -1,0 +1,131 @@
+//! `host-sim simulate`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use haptic_control::LoopPoles;
+
+use crate::closed_loop::{Eye, Hand, Loop, SceneName, believed, estimator};
+use crate::estimators::Kind;
+use crate::failure::Failure;
+use crate::output::{print_bytes, write_whole};
+use crate::parameters::Parameters;
+use crate::recording::Recording;
+use crate::scenario::ScenarioName;
+use crate::simulate::{simulate, ticks};
+use crate::trace::Columns;
+
+use super::arguments::{DeviceFile, is_stdout};
+
+/// Who holds the handle in a scene.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Holder {
+    /// A hand that means to keep it still and trembles.
+    Still,
+    /// A clamp.
+    Clamp,
+    /// Nobody.
+    Nobody,
+    /// A hand that moves.
+    Moving,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Simulate {
+    /// Scene, closed loop: excite, or as in compare --closed-loop [default: excite]
+    #[arg(long, value_name = "NAME", conflicts_with = "scenario")]
+    scene: Option<String>,
+    /// Scenario, open loop, instead of a scene; see host-sim scenarios
+    #[arg(long, value_name = "NAME")]
+    scenario: Option<String>,
+    /// Who holds the handle in a scene
+    #[arg(long, value_enum, default_value = "still", conflicts_with = "scenario")]
+    hand: Holder,
+    /// Control rate, Hz
+    #[arg(
+        long,
+        value_name = "HZ",
+        default_value_t = 10_000.0,
+        allow_negative_numbers = true
+    )]
+    rate: f64,
+    /// Write every N-th tick of a scene only, as telemetry does
+    #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "scenario",
+        value_parser = clap::value_parser!(u32).range(1..=1000))]
+    every: u32,
+    /// Duration, s [default: 16, a scenario 10]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    seconds: Option<f64>,
+    /// Seed of everything random
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    #[command(flatten)]
+    device: DeviceFile,
+    /// Write the recording to FILE, or with - to standard output
+    #[arg(long, value_name = "FILE.csv")]
+    out: PathBuf,
+}
+
+/// All of the excitation and a little more, s.
+const EXCITE_S: f64 = 16.0;
+
+pub(super) fn run(options: &Simulate) -> Result<(), Failure> {
+    let recording = match &options.scenario {
+        Some(name) => of_scenario(options, name.parse()?)?,
+        None => of_scene(options)?,
+    };
+    let csv = recording.to_csv();
+    match is_stdout(&options.out) {
+        true => print_bytes(&csv),
+        false => write_whole(&options.out, &csv),
+    }
+}
+
+fn of_scenario(options: &Simulate, name: ScenarioName) -> Result<Recording, Failure> {
+    let device = options.device.load()?;
+    let seconds = options.seconds.unwrap_or_else(|| name.default_seconds());
+    let columns = Columns {
+        counts_small: true,
+        edges: true,
+    };
+    let trace = simulate(&device, name, options.rate, options.seed, seconds, columns)?;
+    Ok(Recording {
+        t: (0..trace.len()).map(|k| k as f64 / options.rate).collect(),
+        trace,
+        current_small: None,
+        uneven_steps: 0,
+    })
+}
+
+fn of_scene(options: &Simulate) -> Result<Recording, Failure> {
+    let device = options.device.load()?;
+    let scene = match options.scene.as_deref() {
+        None | Some("excite") => SceneName::Excite,
+        Some(name) => name.parse()?,
+    };
+    let ticks = ticks(options.rate, options.seconds.unwrap_or(EXCITE_S))?;
+    let parameters = Parameters::default();
+    let estimator = |counts_per_rev| {
+        let kind = Kind::named("kalman-triple-steady")?;
+        estimator(kind, &device, counts_per_rev, options.rate, &parameters)
+    };
+    let run = Loop {
+        believed: believed(&device),
+        scene,
+        hand: match options.hand {
+            Holder::Still => Hand::Still,
+            Holder::Clamp => Hand::Clamp,
+            Holder::Nobody => Hand::Gone(0.0),
+            Holder::Moving => Hand::Moving,
+        },
+        rate_hz: options.rate,
+        seed: options.seed,
+        large: estimator(device.large.counts_per_rev)?,
+        handle: estimator(device.small.counts_per_rev)?,
+        eye: Eye::Large,
+        poles: LoopPoles::DEFAULT,
+        late_ticks: 0,
+        device,
+    };
+    Ok(run.record(ticks, options.every as usize)?)
+}

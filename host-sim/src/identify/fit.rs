@@ -1,0 +1,205 @@
+//! Least squares with a lag in one column, and intervals that honour correlated residuals.
+
+use super::test_function::LAG_TERMS;
+
+/// One window's equation: `response = a drive(lag) + sum of b_k others_k`.
+#[derive(Clone, Debug)]
+pub(super) struct Equation {
+    pub(super) response: f64,
+    /// The integral of the current by powers of the lag.
+    pub(super) drive: [f64; LAG_TERMS],
+    pub(super) others: Vec<f64>,
+}
+
+/// Coefficients, the same with each block of equations left out, and what is left over.
+#[derive(Clone, Debug)]
+pub(super) struct Fit {
+    /// Of the drive, then of the others.
+    pub(super) coefficients: Vec<f64>,
+    /// Lag of the drive, s; negative where the current acts before the recording says.
+    pub(super) lag_s: f64,
+    /// RMS of what the equation does not explain, in the response's unit.
+    pub(super) unexplained: f64,
+    /// RMS of the drive's part of the response.
+    pub(super) driven: f64,
+    without: Vec<(Vec<f64>, f64)>,
+}
+
+/// A value and the half-width of its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    pub value: f64,
+    pub half: f64,
+}
+
+/// Blocks that are left out one at a time.
+const BLOCKS: usize = 30;
+/// Steps of Gauss and Newton.
+const STEPS: usize = 8;
+
+impl Fit {
+    /// Fits; `None` where there are too few equations to tell how sure the fit is.
+    pub(super) fn new(equations: &[Equation]) -> Option<Self> {
+        let columns = equations.first()?.others.len() + 2;
+        if equations.len() < 2 * BLOCKS.max(columns) {
+            return None;
+        }
+        let mut lag_s = 0.0;
+        let mut drive = 0.0;
+        for _ in 0..STEPS {
+            let solution = Normal::of(equations, lag_s, drive).solve();
+            drive = solution[0];
+            lag_s += solution[1];
+        }
+        // Neighbours share their residuals, so whole blocks are left out together.
+        let blocks: Vec<Normal> = (0..BLOCKS)
+            .map(|b| {
+                let bounds = [b, b + 1].map(|b| b * equations.len() / BLOCKS);
+                Normal::of(&equations[bounds[0]..bounds[1]], lag_s, drive)
+            })
+            .collect();
+        let mut all = Normal::new(columns);
+        blocks.iter().for_each(|block| all.add(block, 1.0));
+        let split = |solution: Vec<f64>| {
+            let mut coefficients = solution;
+            let step = coefficients.remove(1);
+            (coefficients, lag_s + step)
+        };
+        let without = blocks.iter().map(|block| {
+            let mut rest = all.clone();
+            rest.add(block, -1.0);
+            split(rest.solve())
+        });
+        let without = without.collect();
+        let (coefficients, lag_s) = split(all.solve());
+        let mean_square = |f: &dyn Fn(&Equation) -> f64| {
+            let sum: f64 = equations.iter().map(|e| f(e) * f(e)).sum();
+            (sum / equations.len() as f64).sqrt()
+        };
+        let driven = |e: &Equation| coefficients[0] * lagged(&e.drive, lag_s).0;
+        let unexplained = |e: &Equation| {
+            let others = e.others.iter().zip(&coefficients[1..]);
+            e.response - driven(e) - others.map(|(x, b)| x * b).sum::<f64>()
+        };
+        Some(Self {
+            unexplained: mean_square(&unexplained),
+            driven: mean_square(&driven),
+            coefficients,
+            lag_s,
+            without,
+        })
+    }
+
+    /// Something computed from coefficients and lag, with its interval: the jackknife over blocks,
+    /// with Student's factor for as many blocks.
+    pub(super) fn estimate(&self, f: impl Fn(&[f64], f64) -> f64) -> Estimate {
+        let count = self.without.len() as f64;
+        let values = self.without.iter().map(|(c, lag)| f(c, *lag));
+        let values: Vec<f64> = values.collect();
+        let mean = values.iter().sum::<f64>() / count;
+        let squares: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
+        Estimate {
+            value: f(&self.coefficients, self.lag_s),
+            half: student(count - 1.0) * (squares * (count - 1.0) / count).sqrt(),
+        }
+    }
+}
+
+/// The drive at a lag and its derivative. A first-order lag is `1 + s + s^2 + ...` in powers of the
+/// lag times d/dt; a lead is a shift in time.
+fn lagged(terms: &[f64; LAG_TERMS], lag_s: f64) -> (f64, f64) {
+    let (mut value, mut slope, mut power, mut factorial) = (terms[0], 0.0, 1.0, 1.0);
+    for (m, term) in terms.iter().enumerate().skip(1) {
+        if lag_s < 0.0 {
+            factorial *= m as f64;
+        }
+        slope += m as f64 * power * term / factorial;
+        power *= lag_s;
+        value += power * term / factorial;
+    }
+    (value, slope)
+}
+
+/// The 97.5 % point of Student's distribution (expansion about the normal one's; 4 digits from 10
+/// degrees of freedom on).
+fn student(freedom: f64) -> f64 {
+    let z: f64 = 1.959_964;
+    let first = (z.powi(3) + z) / 4.0;
+    let second = (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / 96.0;
+    z + first / freedom + second / (freedom * freedom)
+}
+
+/// Normal equations.
+#[derive(Clone)]
+struct Normal {
+    size: usize,
+    matrix: Vec<f64>,
+    right: Vec<f64>,
+}
+
+impl Normal {
+    fn new(size: usize) -> Self {
+        Self {
+            size,
+            matrix: vec![0.0; size * size],
+            right: vec![0.0; size],
+        }
+    }
+
+    /// Linear about this lag: the second column is the lag's.
+    fn of(equations: &[Equation], lag_s: f64, drive: f64) -> Self {
+        let size = equations.first().map_or(0, |e| e.others.len() + 2);
+        let mut normal = Self::new(size);
+        let mut row = vec![0.0; size];
+        for equation in equations {
+            let (value, slope) = lagged(&equation.drive, lag_s);
+            row[0] = value;
+            // Before the drive's coefficient is known, the lag stays where it is.
+            row[1] = drive * slope;
+            row[2..].copy_from_slice(&equation.others);
+            for (i, x) in row.iter().enumerate() {
+                normal.right[i] += x * equation.response;
+                for (j, other) in row.iter().enumerate() {
+                    normal.matrix[i * size + j] += x * other;
+                }
+            }
+        }
+        normal
+    }
+
+    fn add(&mut self, other: &Self, sign: f64) {
+        let pairs = self.matrix.iter_mut().zip(&other.matrix);
+        let pairs = pairs.chain(self.right.iter_mut().zip(&other.right));
+        pairs.for_each(|(mine, theirs)| *mine += sign * theirs);
+    }
+
+    /// By Cholesky's factors of the matrix scaled to a diagonal of ones. A column that the others
+    /// explain gets a coefficient of no meaning, and leaving blocks out shows it.
+    fn solve(&self) -> Vec<f64> {
+        let n = self.size;
+        let scale: Vec<f64> = (0..n)
+            .map(|i| self.matrix[i * n + i].max(f64::MIN_POSITIVE).sqrt().recip())
+            .collect();
+        let mut factor = vec![0.0; n * n];
+        for i in 0..n {
+            for j in 0..=i {
+                let known: f64 = (0..j).map(|k| factor[i * n + k] * factor[j * n + k]).sum();
+                let rest = self.matrix[i * n + j] * scale[i] * scale[j] - known;
+                factor[i * n + j] = match i == j {
+                    true => rest.max(1e-13).sqrt(),
+                    false => rest / factor[j * n + j],
+                };
+            }
+        }
+        let mut x: Vec<f64> = self.right.iter().zip(&scale).map(|(r, s)| r * s).collect();
+        for i in 0..n {
+            let known: f64 = (0..i).map(|k| factor[i * n + k] * x[k]).sum();
+            x[i] = (x[i] - known) / factor[i * n + i];
+        }
+        for i in (0..n).rev() {
+            let known: f64 = (i + 1..n).map(|k| factor[k * n + i] * x[k]).sum();
+            x[i] = (x[i] - known) / factor[i * n + i];
+        }
+        x.iter().zip(&scale).map(|(x, s)| x * s).collect()
+    }
+}

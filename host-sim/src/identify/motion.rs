@@ -1,0 +1,75 @@
+//! What the counts of one shaft say: its angle, and which way it turns.
+
+use std::f64::consts::TAU;
+
+/// Time over which the direction of motion is judged, s.
+const DIRECTION_S: f64 = 8e-3;
+/// Displacement in that time from which the direction is sure, counts.
+const SURE_COUNTS: f64 = 1.5;
+
+/// One shaft over a recording.
+#[derive(Clone, Debug)]
+pub(super) struct Motion {
+    /// Angle from the first sample, rad.
+    pub(super) angle: Vec<f64>,
+    /// Direction: -1 or 1, or 0 where it is not sure.
+    pub(super) direction: Vec<i8>,
+}
+
+impl Motion {
+    /// From a modular counter.
+    pub(super) fn new(counts: &[u32], counts_per_rev: u32, period_s: f64) -> Self {
+        let rad_per_count = TAU / f64::from(counts_per_rev);
+        let mut place = 0_i64;
+        let mut last = counts.first().copied().unwrap_or_default();
+        let angle: Vec<f64> = counts
+            .iter()
+            .map(|&count| {
+                place += i64::from(count.wrapping_sub(last) as i32);
+                last = count;
+                place as f64 * rad_per_count
+            })
+            .collect();
+        let side = ((0.5 * DIRECTION_S / period_s).round() as usize).max(2);
+        // Slope of the least-squares line over 2 side + 1 samples, times their duration.
+        let squares: f64 = (1..=side).map(|j| 2.0 * (j * j) as f64).sum();
+        let per_sure = 2.0 * side as f64 / squares / (SURE_COUNTS * rad_per_count);
+        let direction = (0..angle.len())
+            .map(|k| {
+                if k < side || k + side >= angle.len() {
+                    return 0;
+                }
+                let slope: f64 = (1..=side)
+                    .map(|j| j as f64 * (angle[k + j] - angle[k - j]))
+                    .sum();
+                (slope * per_sure).clamp(-1.0, 1.0) as i8
+            })
+            .collect();
+        Self { angle, direction }
+    }
+
+    /// Largest angle less the smallest, rad.
+    pub(super) fn travel(&self) -> f64 {
+        let low = self.angle.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = self.angle.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        high - low
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shaft_that_wraps_turns_one_way_and_one_that_rests_neither() {
+        let counts: Vec<u32> = (0..100_u32)
+            .map(|k| (k.min(50) * 3).wrapping_sub(60))
+            .collect();
+        let motion = Motion::new(&counts, 4096, 1e-3);
+        assert!((motion.travel() - 150.0 * TAU / 4096.0).abs() < 1e-12);
+        assert_eq!(motion.direction[20], 1);
+        assert_eq!(motion.direction[80], 0);
+        let back: Vec<u32> = counts.iter().map(|count| count.wrapping_neg()).collect();
+        assert_eq!(Motion::new(&back, 4096, 1e-3).direction[20], -1);
+    }
+}

@@ -1,0 +1,272 @@
+//! From ratios to what the device file calls them.
+
+use std::f64::consts::TAU;
+use std::fmt;
+
+use super::equations::Equations;
+use super::fit::{Estimate, Fit};
+use super::{FRICTION as FRICTION_COLUMN, HAND, SLIP};
+use crate::device::Device;
+
+/// Keys of the device file.
+pub(super) const INERTIA: &str = "large.inertia_kg_m2";
+pub(super) const TORQUE_CONSTANT: &str = "large.torque_constant_nm_per_a";
+pub(super) const FRICTION: &str = "large.coulomb_nm";
+pub(super) const DAMPING: &str = "coupler.damping_nms_per_rad";
+pub(super) const BANDWIDTH: &str = "amplifier.bandwidth_hz";
+
+/// What has to be known, because counts and current tell ratios only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Known {
+    /// Torque constant of the large motor, N.m/A.
+    TorqueConstant(f64),
+    /// Inertia of the large motor, kg.m2.
+    Inertia(f64),
+    /// Damping of the coupler, N.m.s/rad.
+    Damping(f64),
+}
+
+impl Known {
+    /// From `KEY=VALUE` with a key of the device file.
+    ///
+    /// # Errors
+    /// One line that names the keys there are, or the value.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let (key, value) = text
+            .split_once('=')
+            .ok_or_else(|| format!("--known {text}: must be KEY=VALUE"))?;
+        let make = match key.trim() {
+            TORQUE_CONSTANT => Self::TorqueConstant,
+            INERTIA => Self::Inertia,
+            DAMPING => Self::Damping,
+            _ => {
+                return Err(format!(
+                    "--known {text}: no key {key}; must be {TORQUE_CONSTANT}, {INERTIA} or {DAMPING}"
+                ));
+            }
+        };
+        match value.trim().parse() {
+            Ok(value) if value > 0.0 && f64::is_finite(value) => Ok(make(value)),
+            _ => Err(format!("--known {text}: must be a number above 0")),
+        }
+    }
+
+    /// Inertia of the large motor from `[Kt/J, b/J, friction/J]`.
+    fn inertia(self, ratios: &[f64]) -> f64 {
+        match self {
+            Self::TorqueConstant(value) => value / ratios[0],
+            Self::Inertia(value) => value,
+            Self::Damping(value) => value / ratios[SLIP],
+        }
+    }
+
+    /// Its key in the device file, and its value.
+    pub(super) fn entry(self) -> (&'static str, f64) {
+        match self {
+            Self::TorqueConstant(value) => (TORQUE_CONSTANT, value),
+            Self::Inertia(value) => (INERTIA, value),
+            Self::Damping(value) => (DAMPING, value),
+        }
+    }
+}
+
+impl fmt::Display for Known {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (key, value) = self.entry();
+        write!(f, "{key} = {value}")
+    }
+}
+
+/// One identified quantity.
+#[derive(Clone, Debug)]
+pub struct Quantity {
+    /// Key of the device file.
+    pub key: &'static str,
+    /// In SI units, as in the device file.
+    pub estimate: Estimate,
+    /// What the device file says.
+    pub file: f64,
+    /// Unit to show, and how many of it are one of SI.
+    pub unit: (&'static str, f64),
+    /// Why it cannot be told, if so.
+    pub untold: Option<String>,
+}
+
+/// Largest half-width of the interval of what counts as told, as part of the value.
+const TOLD: f64 = 0.03;
+
+const GRAM_CM2: (&str, f64) = ("g.cm2", 1e7);
+const MILLI_NM: (&str, f64) = ("mN.m", 1e3);
+const MILLI_NM_PER_A: (&str, f64) = ("mN.m/A", 1e3);
+const MILLI_NMS: (&str, f64) = ("mN.m.s/rad", 1e3);
+
+impl Quantity {
+    /// `least` is a value whose `TOLD` part is close enough to nothing.
+    fn new(
+        key: &'static str,
+        unit: (&'static str, f64),
+        file: f64,
+        estimate: Estimate,
+        least: f64,
+        remedy: &str,
+    ) -> Self {
+        let width = estimate.half / estimate.value.abs().max(least);
+        Self {
+            key,
+            estimate,
+            file,
+            unit,
+            untold: (!(width <= TOLD)).then(|| match 100.0 * width {
+                percent if percent < 1000.0 => format!("+-{percent:.1} % is too vague; {remedy}"),
+                _ => format!("does not show; {remedy}"),
+            }),
+        }
+    }
+
+    /// The interval's half-width, relative where that says something.
+    pub(super) fn half_text(&self) -> String {
+        let Estimate { value, half } = self.estimate;
+        if half < 0.1 * value.abs() {
+            return format!("+-{:.1} %", 100.0 * half / value.abs());
+        }
+        format!("+-{:.4} {}", self.unit.1 * half, self.unit.0)
+    }
+
+    /// Key and half-width, for a message of one line.
+    pub(super) fn short(&self) -> String {
+        let percent = 100.0 * self.estimate.half / self.estimate.value.abs();
+        format!("{} +-{percent:.0} %", self.key)
+    }
+
+    /// How far from the device file's value, and whether by more than the interval.
+    #[must_use]
+    pub fn health(&self) -> (f64, bool) {
+        let away = self.estimate.value - self.file;
+        (
+            self.estimate.value / self.file,
+            away.abs() <= self.estimate.half,
+        )
+    }
+}
+
+/// What the large shaft's equation tells.
+pub(super) fn of_large(fit: &Fit, device: &Device, known: Known, current: f64) -> Vec<Quantity> {
+    let scaled = |k: usize| fit.estimate(|ratios, _| ratios[k] * known.inertia(ratios));
+    let torque = scaled(0).value * current;
+    let rows = [
+        (
+            TORQUE_CONSTANT,
+            MILLI_NM_PER_A,
+            device.large.torque_constant_nm_per_a,
+            scaled(0),
+            0.0,
+            "needs steps of current",
+        ),
+        (
+            INERTIA,
+            GRAM_CM2,
+            device.large.inertia_kg_m2,
+            fit.estimate(|ratios, _| known.inertia(ratios)),
+            0.0,
+            "needs steps of current",
+        ),
+        (
+            DAMPING,
+            MILLI_NMS,
+            device.coupler.damping_nms_per_rad,
+            scaled(SLIP),
+            0.0,
+            "needs slip of 10 rad/s and more, at several speeds",
+        ),
+        (
+            FRICTION,
+            MILLI_NM,
+            device.large.coulomb_nm,
+            scaled(FRICTION_COLUMN),
+            0.1 * torque,
+            "needs slow and fast motion both ways",
+        ),
+        (
+            BANDWIDTH,
+            ("Hz", 1.0),
+            device.amplifier.bandwidth_hz,
+            fit.estimate(|_, lag_s| 1.0 / (TAU * lag_s)),
+            0.0,
+            "needs steps of current and a longer recording",
+        ),
+    ];
+    rows.into_iter()
+        .filter(|row| row.0 != known.entry().0)
+        .map(|(key, unit, file, estimate, least, remedy)| {
+            Quantity::new(key, unit, file, estimate, least, remedy)
+        })
+        .collect()
+}
+
+/// What the handle's equation tells, or why it tells nothing. Its scale is the damping that the
+/// large shaft's equation found.
+pub(super) fn of_small(
+    equations: &Equations,
+    large: &Fit,
+    device: &Device,
+    known: Known,
+) -> Result<Vec<Quantity>, String> {
+    let nothing = |why: &str| Err(format!("nothing is said of the handle: {why}"));
+    if equations.windows == 0 {
+        return nothing("it needs columns counts_small and current_small, and nobody holding it");
+    }
+    let Some(fit) = Fit::new(&equations.usable) else {
+        return nothing("it hardly moves");
+    };
+    let held = |column: usize| {
+        let pull = fit.estimate(|ratios, _| ratios[column]);
+        pull.value.abs() > 2.0 * pull.half
+    };
+    if held(HAND) || held(HAND + 1) || !(fit.unexplained < super::MOST_UNEXPLAINED * fit.driven) {
+        return nothing("somebody holds it");
+    }
+    let mut without_hand = equations.usable.clone();
+    for equation in &mut without_hand {
+        equation.others.drain(HAND - 1..=HAND);
+    }
+    let Some(fit) = Fit::new(&without_hand) else {
+        return nothing("it hardly moves");
+    };
+    let damping = large.estimate(|ratios, _| ratios[SLIP] * known.inertia(ratios));
+    let scaled = |f: &dyn Fn(&[f64]) -> f64| {
+        let ratio = fit.estimate(|ratios, _| f(ratios) / ratios[SLIP]);
+        let value = ratio.value * damping.value;
+        let parts = [ratio.half * damping.value, ratio.value * damping.half];
+        Estimate {
+            value,
+            half: parts[0].hypot(parts[1]),
+        }
+    };
+    let torque_constant = scaled(&|ratios| ratios[0]);
+    Ok(vec![
+        Quantity::new(
+            "small.torque_constant_nm_per_a",
+            MILLI_NM_PER_A,
+            device.small.torque_constant_nm_per_a,
+            torque_constant,
+            0.0,
+            "needs kicks of the small motor",
+        ),
+        Quantity::new(
+            "small.inertia_kg_m2",
+            GRAM_CM2,
+            device.small.inertia_kg_m2,
+            scaled(&|_| 1.0),
+            0.0,
+            "needs kicks of either motor",
+        ),
+        Quantity::new(
+            "small.coulomb_nm",
+            MILLI_NM,
+            device.small.coulomb_nm,
+            scaled(&|ratios| ratios[FRICTION_COLUMN]),
+            0.0,
+            "needs slow motion both ways",
+        ),
+    ])
+}
