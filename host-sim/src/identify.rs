@@ -101,7 +101,7 @@ pub fn identify(
     }
     let Some(fit) = Fit::new(&large.usable) else {
         return refuse(format!(
-            "the large motor turns one way for 60 ms on end in only {} of {} windows; record all \
+            "the large motor turns one way for 40 ms on end in only {} of {} windows; record all \
              of scene excite, with the handle held",
             large.usable.len(),
             large.windows
@@ -143,7 +143,7 @@ pub fn identify(
     if quantities.iter().all(|quantity| quantity.untold.is_some()) {
         let widths: Vec<_> = quantities.iter().map(Quantity::short).collect();
         return refuse(format!(
-            "cannot tell anything within 3 % ({}); record all of scene excite, or several times",
+            "cannot tell anything within 2 % ({}); record all of scene excite, or several times",
             widths.join(", ")
         ));
     }

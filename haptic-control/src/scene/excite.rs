@@ -12,9 +12,9 @@ use pattern::{LARGEST, SECTIONS, Segment};
 
 /// Excitation, to identify the device from a recording: currents by a fixed pattern, open loop.
 ///
-/// First short kicks of both motors, there and back, which a handle that nobody holds survives
+/// First short strokes of both motors, forth and back, in which a handle that nobody holds stays
 /// within its bounds; then, for a handle held fast, steps between levels and slow sweeps of the
-/// large motor. Each section runs four times with alternating sign, 15 s in all, and ends at zero
+/// large motor. Each section runs four times with alternating sign, 16 s in all, and ends at zero
 /// current, for good. Levels change at whole milliseconds, so that frames of 1 kHz know the current.
 ///
 /// Bounded in current by the pattern (0.9 A large, 0.3 A small); in speed of the large motor by what

@@ -7,7 +7,7 @@ use super::motion::Motion;
 use super::test_function::TestFunction;
 
 /// Half of a window, s, and the fewest samples in it.
-const HALF_S: f64 = 30e-3;
+const HALF_S: f64 = 20e-3;
 const FEWEST: usize = 8;
 /// Windows begin this part of their half apart.
 const HOPS: usize = 3;
@@ -34,6 +34,9 @@ pub(super) const SLIP: usize = 1;
 pub(super) const FRICTION: usize = 2;
 pub(super) const HAND: usize = 4;
 
+/// Columns of what repeats: friction and the disc's eccentricity once a turn, torque more often.
+const RIPPLES: usize = 8;
+
 /// Windows that there are, and those of them whose equation can be used.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Equations {
@@ -58,7 +61,7 @@ impl Equations {
                 let mut others = std::mem::take(&mut window.shared);
                 for recording in 0..recordings {
                     let own = ripple && recording == index;
-                    others.extend(if own { window.ripple } else { [0.0; 4] });
+                    others.extend(if own { window.ripple } else { [0.0; RIPPLES] });
                 }
                 self.forward += usize::from(others[FRICTION - 1] < 0.0);
                 self.usable.push(Equation {
@@ -76,7 +79,7 @@ struct Window {
     response: f64,
     drive: [f64; super::test_function::LAG_TERMS],
     shared: Vec<f64>,
-    ripple: [f64; 4],
+    ripple: [f64; RIPPLES],
 }
 
 impl Shaft<'_> {
@@ -123,6 +126,11 @@ impl Shaft<'_> {
                 -sum(&phi.weight, &|j| way * angle[j].cos()),
                 sum(&phi.increments[0], &|j| current[j] * middle(j).sin()),
                 sum(&phi.increments[0], &|j| current[j] * middle(j).cos()),
+                // The disc's error is in the response and in the slip.
+                sum(&phi.second, &|j| angle[j].sin()),
+                sum(&phi.second, &|j| angle[j].cos()),
+                sum(&phi.first, &|j| angle[j].sin()),
+                sum(&phi.first, &|j| angle[j].cos()),
             ],
         })
     }

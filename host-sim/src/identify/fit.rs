@@ -33,7 +33,7 @@ pub struct Estimate {
 }
 
 /// Blocks that are left out one at a time.
-const BLOCKS: usize = 30;
+const BLOCKS: usize = 14;
 /// Steps of Gauss and Newton.
 const STEPS: usize = 8;
 

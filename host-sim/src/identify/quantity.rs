@@ -92,8 +92,9 @@ pub struct Quantity {
     pub untold: Option<String>,
 }
 
-/// Largest half-width of the interval of what counts as told, as part of the value.
-const TOLD: f64 = 0.03;
+/// Largest half-width of the 95 % interval of what counts as told, as part of the value: then 3 % are
+/// three standard deviations.
+const TOLD: f64 = 0.02;
 
 const GRAM_CM2: (&str, f64) = ("g.cm2", 1e7);
 const MILLI_NM: (&str, f64) = ("mN.m", 1e3);
