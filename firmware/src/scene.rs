@@ -2,8 +2,8 @@
 
 use estimator_core::{Hertz, Model, NoInput, SteadyKalman, SteadyKalmanTriple, preset};
 use haptic_control::{
-    Bounds, Detents, DualStage, FreeAir, Hold, Inertia, LoopPoles, Off, Radians, Rig, SpringDamper,
-    Texture, Torque, Viscous, Wall,
+    Bounds, Detents, DualStage, Excite, FreeAir, Hold, Inertia, LoopPoles, Off, Radians, Rig,
+    SpringDamper, Texture, Torque, Viscous, Wall,
 };
 
 use crate::board::RATE_HZ;
@@ -69,8 +69,9 @@ pub(crate) const BOUNDS: Bounds = Bounds {
     rate: RATE,
 };
 
-/// Scenes by number: off, free-air, wall, spring-damper, viscous, detents, texture, hold, torque, inertia.
-pub(crate) const SCENES: u8 = 10;
+/// Scenes by number: off, free-air, wall, spring-damper, viscous, detents, texture, hold, torque, inertia,
+/// excite.
+pub(crate) const SCENES: u8 = 11;
 /// The scene of the torque set-point.
 pub(crate) const TORQUE_SCENE: u8 = 8;
 
@@ -89,6 +90,7 @@ mod preset {
     pub(crate) const HOLD: Hold = preset!(Hold::new(0.20, 1e-3));
     pub(crate) const TORQUE: Torque = preset!(Torque::new(0.0));
     pub(crate) const INERTIA: Inertia = preset!(Inertia::new(-2e-6, DEVICE.small.inertia as f32));
+    pub(crate) const EXCITE: Excite = preset!(Excite::new(&DEVICE, RATE));
 }
 
 macro_rules! image {
@@ -125,4 +127,5 @@ image! {
     "scene-hold", 7, Hold, HOLD;
     "scene-torque", 8, Torque, TORQUE;
     "scene-inertia", 9, Inertia, INERTIA;
+    "scene-excite", 10, Excite, EXCITE;
 }

@@ -7,6 +7,7 @@
 mod device_file;
 mod equations;
 mod fit;
+mod handle;
 mod motion;
 mod quantity;
 mod table;
@@ -16,8 +17,7 @@ use crate::device::Device;
 use crate::failure::Failure;
 use crate::recording::Recording;
 
-use equations::{Equations, Shaft};
-use equations::{FRICTION, HAND, SLIP};
+use equations::{Equations, Shaft, TURNS};
 use fit::Fit;
 use motion::Motion;
 
@@ -54,8 +54,11 @@ pub fn identify(
     known: Known,
 ) -> Result<Identification, Failure> {
     let mut large = Equations::default();
-    let mut small = Equations::default();
+    let mut free = Vec::new();
+    let mut assumed = Vec::new();
     let (mut held, mut largest_current) = (false, 0.0_f64);
+    // The longest travel of each shaft.
+    let mut travel = [0.0_f64; 2];
     for (index, (name, recording)) in recordings.iter().enumerate() {
         let trace = &recording.trace;
         let period_s = trace.period_s();
@@ -82,16 +85,31 @@ pub fn identify(
             hand: false,
         };
         large.add(&shaft, index, recordings.len());
-        if let (Some(handle), Some(current)) = (&handle, &recording.current_small) {
-            let shaft = Shaft {
-                own: handle,
-                other: Some(&own),
-                current,
-                ripple_per_rev: device.small.ripple_per_rev,
-                hand: true,
-                ..shaft
-            };
-            small.add(&shaft, index, recordings.len());
+        travel[0] = travel[0].max(own.travel());
+        let Some(handle) = &handle else {
+            continue;
+        };
+        let silent = match &recording.current_small {
+            None => Err("has no column current_small"),
+            Some(current) => {
+                let mut small = Equations::default();
+                let shaft = Shaft {
+                    own: handle,
+                    other: Some(&own),
+                    current,
+                    ripple_per_rev: device.small.ripple_per_rev,
+                    hand: true,
+                    ..shaft
+                };
+                small.add(&shaft, index, recordings.len());
+                handle::free(small).map(|equations| {
+                    free.extend(equations);
+                    travel[1] = travel[1].max(handle.travel());
+                })
+            }
+        };
+        if let Err(why) = silent {
+            assumed.push(format!("{name}: nothing said of the handle, which {why}"));
         }
     }
     let name = &recordings[0].0;
@@ -139,6 +157,9 @@ pub fn identify(
         if quantity.key == quantity::FRICTION && 20 * both_ways < large.usable.len() {
             quantity.untold = Some("turns one way only; record both".to_owned());
         }
+        if quantity.key == quantity::FRICTION && travel[0] < TURNS {
+            quantity.untold = Some("varies over a turn, and it made fewer than three".to_owned());
+        }
     }
     if quantities.iter().all(|quantity| quantity.untold.is_some()) {
         let widths: Vec<_> = quantities.iter().map(Quantity::short).collect();
@@ -147,12 +168,9 @@ pub fn identify(
             widths.join(", ")
         ));
     }
-    let mut assumed = assumptions(known, held);
-    let handle = quantity::of_small(&small, &fit, device, known);
-    match handle {
-        Ok(handle) => quantities.extend(handle),
-        Err(why) => assumed.push(why),
-    }
+    assumed.splice(0..0, assumptions(known, held));
+    let handle = handle::quantities(&free, travel[1] > TURNS, &fit, device, known);
+    quantities.extend(handle.into_iter().flatten());
     Ok(Identification {
         quantities,
         assumed,

@@ -78,6 +78,7 @@ pub const fn number(scene: SceneName) -> u8 {
         SceneName::Texture(..) => 6,
         SceneName::Hold(..) => 7,
         SceneName::Inertia(..) => 9,
+        SceneName::Excite => 10,
     }
 }
 

@@ -56,7 +56,7 @@ impl ImageScene {
     #[must_use]
     pub fn parameters(self) -> &'static [&'static str] {
         match self {
-            Self::Host(SceneName::Off | SceneName::FreeAir) => &[],
+            Self::Host(SceneName::Off | SceneName::FreeAir | SceneName::Excite) => &[],
             Self::Host(SceneName::Wall(..)) => Wall::PARAMETERS,
             Self::Host(SceneName::SpringDamper(..)) => SpringDamper::PARAMETERS,
             Self::Host(SceneName::Viscous(..)) => Viscous::PARAMETERS,

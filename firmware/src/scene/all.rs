@@ -4,7 +4,7 @@ use estimator_core::Sample;
 use haptic_control::{Action, AnyScene, Refusal, Switchboard, SwitchboardState};
 
 use super::preset::{
-    DETENTS, FREE_AIR, HOLD, INERTIA, OFF, SPRING, TEXTURE, TORQUE, VISCOUS, WALL,
+    DETENTS, EXCITE, FREE_AIR, HOLD, INERTIA, OFF, SPRING, TEXTURE, TORQUE, VISCOUS, WALL,
 };
 use super::{BOUNDS, HANDLE, Handle, LARGE, Large, RATE, RIG, SCENES, TORQUE_SCENE};
 
@@ -21,6 +21,7 @@ const SCENES_BY_NUMBER: Scenes = [
     AnyScene::Hold(HOLD),
     AnyScene::Torque(TORQUE),
     AnyScene::Inertia(INERTIA),
+    AnyScene::Excite(EXCITE),
 ];
 
 static SWITCHBOARD: Switchboard<Large, Handle> = Switchboard::new(LARGE, HANDLE, RIG, RATE);

@@ -12,7 +12,9 @@ const FEWEST: usize = 8;
 /// Windows begin this part of their half apart.
 const HOPS: usize = 3;
 /// Travel from which what repeats once a turn can be told from what is constant, rad.
-const RIPPLE_TRAVEL: f64 = 3.0 * TAU;
+pub(super) const TURNS: f64 = 3.0 * TAU;
+/// Travel from which friction and torque are taken to vary at all, rad.
+const VARIES: f64 = 0.5;
 
 /// One shaft over one recording.
 pub(super) struct Shaft<'a> {
@@ -36,6 +38,8 @@ pub(super) const HAND: usize = 4;
 
 /// Columns of what repeats: friction and the disc's eccentricity once a turn, torque more often.
 const RIPPLES: usize = 8;
+/// The first of the disc's among them.
+const DISC: usize = 4;
 
 /// Windows that there are, and those of them whose equation can be used.
 #[derive(Clone, Debug, Default)]
@@ -54,14 +58,20 @@ impl Equations {
         let phi = TestFunction::new(half, shaft.period_s);
         let hop = (half / HOPS).max(1);
         let samples = shaft.own.angle.len();
-        let ripple = shaft.own.travel() > RIPPLE_TRAVEL;
+        // Over less than a turn a disc's error looks like motion.
+        let ripples = match shaft.own.travel() {
+            travel if travel > TURNS => RIPPLES,
+            travel if travel > VARIES => DISC,
+            _ => 0,
+        };
         for start in (0..samples.saturating_sub(2 * half)).step_by(hop) {
             self.windows += 1;
             if let Some(mut window) = shaft.window(&phi, start) {
                 let mut others = std::mem::take(&mut window.shared);
                 for recording in 0..recordings {
-                    let own = ripple && recording == index;
-                    others.extend(if own { window.ripple } else { [0.0; RIPPLES] });
+                    let own = if recording == index { ripples } else { 0 };
+                    let ripple = window.ripple.iter().enumerate();
+                    others.extend(ripple.map(|(k, x)| if k < own { *x } else { 0.0 }));
                 }
                 self.forward += usize::from(others[FRICTION - 1] < 0.0);
                 self.usable.push(Equation {

@@ -28,7 +28,9 @@ pub(super) struct Fit {
 /// A value and the half-width of its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
+    /// The value.
     pub value: f64,
+    /// Half the width of its interval.
     pub half: f64,
 }
 

@@ -39,6 +39,15 @@ impl Motion {
                 if k < side || k + side >= angle.len() {
                     return 0;
                 }
+                let around = &angle[k - side..=k + side];
+                let steps = around.windows(2).map(|pair| pair[1] - pair[0]);
+                let (back, forth) = steps.fold((false, false), |(back, forth), step| {
+                    (back | (step < 0.0), forth | (step > 0.0))
+                });
+                // A reversal there and back within the slope's samples would leave it sure.
+                if back && forth {
+                    return 0;
+                }
                 let slope: f64 = (1..=side)
                     .map(|j| j as f64 * (angle[k + j] - angle[k - j]))
                     .sum();

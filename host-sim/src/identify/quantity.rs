@@ -3,9 +3,8 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
-use super::equations::Equations;
+use super::equations::{FRICTION as FRICTION_COLUMN, SLIP};
 use super::fit::{Estimate, Fit};
-use super::{FRICTION as FRICTION_COLUMN, HAND, SLIP};
 use crate::device::Device;
 
 /// Keys of the device file.
@@ -52,7 +51,7 @@ impl Known {
     }
 
     /// Inertia of the large motor from `[Kt/J, b/J, friction/J]`.
-    fn inertia(self, ratios: &[f64]) -> f64 {
+    pub(super) fn inertia(self, ratios: &[f64]) -> f64 {
         match self {
             Self::TorqueConstant(value) => value / ratios[0],
             Self::Inertia(value) => value,
@@ -96,14 +95,14 @@ pub struct Quantity {
 /// three standard deviations.
 const TOLD: f64 = 0.02;
 
-const GRAM_CM2: (&str, f64) = ("g.cm2", 1e7);
-const MILLI_NM: (&str, f64) = ("mN.m", 1e3);
-const MILLI_NM_PER_A: (&str, f64) = ("mN.m/A", 1e3);
+pub(super) const GRAM_CM2: (&str, f64) = ("g.cm2", 1e7);
+pub(super) const MILLI_NM: (&str, f64) = ("mN.m", 1e3);
+pub(super) const MILLI_NM_PER_A: (&str, f64) = ("mN.m/A", 1e3);
 const MILLI_NMS: (&str, f64) = ("mN.m.s/rad", 1e3);
 
 impl Quantity {
     /// `least` is a value whose `TOLD` part is close enough to nothing.
-    fn new(
+    pub(super) fn new(
         key: &'static str,
         unit: (&'static str, f64),
         file: f64,
@@ -128,9 +127,9 @@ impl Quantity {
     pub(super) fn half_text(&self) -> String {
         let Estimate { value, half } = self.estimate;
         if half < 0.1 * value.abs() {
-            return format!("+-{:.1} %", 100.0 * half / value.abs());
+            return format!("+-{} %", digits(100.0 * half / value.abs()));
         }
-        format!("+-{:.4} {}", self.unit.1 * half, self.unit.0)
+        format!("+-{} {}", digits(self.unit.1 * half), self.unit.0)
     }
 
     /// Key and half-width, for a message of one line.
@@ -204,70 +203,8 @@ pub(super) fn of_large(fit: &Fit, device: &Device, known: Known, current: f64) -
         .collect()
 }
 
-/// What the handle's equation tells, or why it tells nothing. Its scale is the damping that the
-/// large shaft's equation found.
-pub(super) fn of_small(
-    equations: &Equations,
-    large: &Fit,
-    device: &Device,
-    known: Known,
-) -> Result<Vec<Quantity>, String> {
-    let nothing = |why: &str| Err(format!("nothing is said of the handle: {why}"));
-    if equations.windows == 0 {
-        return nothing("it needs columns counts_small and current_small, and nobody holding it");
-    }
-    let Some(fit) = Fit::new(&equations.usable) else {
-        return nothing("it hardly moves");
-    };
-    let held = |column: usize| {
-        let pull = fit.estimate(|ratios, _| ratios[column]);
-        pull.value.abs() > 2.0 * pull.half
-    };
-    if held(HAND) || held(HAND + 1) || !(fit.unexplained < super::MOST_UNEXPLAINED * fit.driven) {
-        return nothing("somebody holds it");
-    }
-    let mut without_hand = equations.usable.clone();
-    for equation in &mut without_hand {
-        equation.others.drain(HAND - 1..=HAND);
-    }
-    let Some(fit) = Fit::new(&without_hand) else {
-        return nothing("it hardly moves");
-    };
-    let damping = large.estimate(|ratios, _| ratios[SLIP] * known.inertia(ratios));
-    let scaled = |f: &dyn Fn(&[f64]) -> f64| {
-        let ratio = fit.estimate(|ratios, _| f(ratios) / ratios[SLIP]);
-        let value = ratio.value * damping.value;
-        let parts = [ratio.half * damping.value, ratio.value * damping.half];
-        Estimate {
-            value,
-            half: parts[0].hypot(parts[1]),
-        }
-    };
-    let torque_constant = scaled(&|ratios| ratios[0]);
-    Ok(vec![
-        Quantity::new(
-            "small.torque_constant_nm_per_a",
-            MILLI_NM_PER_A,
-            device.small.torque_constant_nm_per_a,
-            torque_constant,
-            0.0,
-            "needs kicks of the small motor",
-        ),
-        Quantity::new(
-            "small.inertia_kg_m2",
-            GRAM_CM2,
-            device.small.inertia_kg_m2,
-            scaled(&|_| 1.0),
-            0.0,
-            "needs kicks of either motor",
-        ),
-        Quantity::new(
-            "small.coulomb_nm",
-            MILLI_NM,
-            device.small.coulomb_nm,
-            scaled(&|ratios| ratios[FRICTION_COLUMN]),
-            0.0,
-            "needs slow motion both ways",
-        ),
-    ])
+/// Two significant digits.
+fn digits(x: f64) -> String {
+    let places = (1.0 - x.abs().log10().floor()).clamp(0.0, 9.0);
+    format!("{x:.0$}", places as usize)
 }

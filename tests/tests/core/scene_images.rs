@@ -16,6 +16,8 @@ struct Needs {
     acceleration: bool,
     continuous: bool,
     transient: bool,
+    /// Whether it commands the currents itself.
+    open_loop: bool,
 }
 
 impl Needs {
@@ -24,6 +26,7 @@ impl Needs {
         acceleration: false,
         continuous: false,
         transient: false,
+        open_loop: false,
     };
     const SMALL_MOTOR: Self = Self {
         transient: true,
@@ -43,7 +46,12 @@ impl Needs {
     };
     const EVERYTHING: Self = Self {
         acceleration: true,
+        open_loop: true,
         ..Self::VELOCITY
+    };
+    const OPEN_LOOP: Self = Self {
+        open_loop: true,
+        ..Self::NOTHING
     };
 
     /// Whether the other needs all of this and more.
@@ -53,12 +61,14 @@ impl Needs {
             && self.acceleration <= other.acceleration
             && self.continuous <= other.continuous
             && self.transient <= other.transient
+            && self.open_loop <= other.open_loop
     }
 }
 
 /// Every library of the package `scene-images`, in the order of the table.
-const SCENES: [(&str, Needs); 11] = [
+const SCENES: [(&str, Needs); 12] = [
     ("off", Needs::NOTHING),
+    ("excite", Needs::OPEN_LOOP),
     ("detents", Needs::SMALL_MOTOR),
     ("texture", Needs::SMALL_MOTOR),
     ("free-air", Needs::BOTH_MOTORS),
