@@ -18,7 +18,7 @@ use crate::failure::Failure;
 use crate::recording::Recording;
 
 use equations::{Equations, Shaft, TURNS};
-use fit::Fit;
+use fit::{Equation, Fit};
 use motion::Motion;
 
 pub use device_file::updated;
@@ -44,7 +44,8 @@ const MOST_UNEXPLAINED: f64 = 0.10;
 /// Slowest rate at which a row is taken for a control tick, so that the lag means something, Hz.
 const LAG_RATE_HZ: f64 = 5000.0;
 
-/// Identifies from recordings of one device, each with its name in messages.
+/// Identifies from recordings of one device, each with its name in messages. `clamped` says that the
+/// handle was, in those that do not show where it was.
 ///
 /// # Errors
 /// [`Failure::Input`] where the recordings cannot tell: what is missing, and how to record it.
@@ -52,14 +53,71 @@ pub fn identify(
     recordings: &[(String, Recording)],
     device: &Device,
     known: Known,
+    clamped: bool,
 ) -> Result<Identification, Failure> {
-    let mut large = Equations::default();
-    let mut free = Vec::new();
-    let mut assumed = Vec::new();
-    let (mut held, mut largest_current) = (false, 0.0_f64);
-    // The longest travel of each shaft.
-    let mut travel = [0.0_f64; 2];
+    let mut gathered = Gathered::default();
     for (index, (name, recording)) in recordings.iter().enumerate() {
+        if recording.trace.counts_small.is_none() && !clamped {
+            return Err(unseen(name, device));
+        }
+        gathered.add(name, recording, (index, recordings.len()), device)?;
+    }
+    let fit = gathered.fit(device).map_err(|why| {
+        let name = recordings.first().map_or("", |(name, _)| name);
+        Failure::Input(format!("{name}: {why}"))
+    })?;
+    let mut quantities = quantity::of_large(&fit, device, known, gathered.largest_current);
+    for quantity in &mut quantities {
+        if let Some(why) = gathered.hides(quantity.key) {
+            quantity.untold = Some(why);
+        }
+    }
+    if quantities.iter().all(|quantity| quantity.untold.is_some()) {
+        let widths: Vec<_> = quantities.iter().map(Quantity::short).collect();
+        return Err(Failure::Input(format!(
+            "{}: cannot tell anything within 2 % ({}); record all of scene excite, or several times",
+            recordings[0].0,
+            widths.join(", ")
+        )));
+    }
+    let turns = gathered.travel[1] > TURNS;
+    let handle = handle::quantities(&gathered.free, turns, &fit, device, known);
+    quantities.extend(handle.into_iter().flatten());
+    let mut assumed = assumptions(known, gathered.unseen);
+    assumed.append(&mut gathered.silent);
+    Ok(Identification {
+        quantities,
+        assumed,
+        windows: (gathered.large.usable.len(), gathered.large.windows),
+        unexplained: fit.unexplained / fit.driven,
+    })
+}
+
+/// The equations of all recordings, and what else they show.
+#[derive(Default)]
+struct Gathered {
+    large: Equations,
+    /// The handle's, where nobody holds it.
+    free: Vec<Equation>,
+    /// Why a recording says nothing of the handle.
+    silent: Vec<String>,
+    /// The longest travel of each shaft, rad.
+    travel: [f64; 2],
+    largest_current: f64,
+    slowest_hz: Option<f64>,
+    /// Whether there is a recording without the handle's counts.
+    unseen: bool,
+}
+
+impl Gathered {
+    /// Adds a recording, which is the first of these two numbers among the second.
+    fn add(
+        &mut self,
+        name: &str,
+        recording: &Recording,
+        place: (usize, usize),
+        device: &Device,
+    ) -> Result<(), Failure> {
         let trace = &recording.trace;
         let period_s = trace.period_s();
         let Some(current) = &trace.current else {
@@ -68,13 +126,11 @@ pub fn identify(
                  excite with the large motor's current"
             )));
         };
-        largest_current = current.iter().fold(largest_current, |m, i| m.max(i.abs()));
-        let breaks = breaks(&recording.t, period_s);
         let motion = |counts: &[u32], counts_per_rev| Motion::new(counts, counts_per_rev, period_s);
         let own = motion(&trace.counts_large, device.large.counts_per_rev);
         let handle = trace.counts_small.as_ref();
         let handle = handle.map(|counts| motion(counts, device.small.counts_per_rev));
-        held |= handle.is_none();
+        let breaks = breaks(&recording.t, period_s);
         let shaft = Shaft {
             period_s,
             own: &own,
@@ -84,12 +140,17 @@ pub fn identify(
             breaks: &breaks,
             hand: false,
         };
-        large.add(&shaft, index, recordings.len());
-        travel[0] = travel[0].max(own.travel());
+        self.large.add(&shaft, place.0, place.1);
+        self.travel[0] = self.travel[0].max(own.travel());
+        let largest = current.iter().fold(0.0_f64, |m, i| m.max(i.abs()));
+        self.largest_current = self.largest_current.max(largest);
+        let slowest = self.slowest_hz.unwrap_or(trace.rate_hz);
+        self.slowest_hz = Some(slowest.min(trace.rate_hz));
         let Some(handle) = &handle else {
-            continue;
+            self.unseen = true;
+            return Ok(());
         };
-        let silent = match &recording.current_small {
+        let free = match &recording.current_small {
             None => Err("has no column current_small"),
             Some(current) => {
                 let mut small = Equations::default();
@@ -101,82 +162,91 @@ pub fn identify(
                     hand: true,
                     ..shaft
                 };
-                small.add(&shaft, index, recordings.len());
-                handle::free(small).map(|equations| {
-                    free.extend(equations);
-                    travel[1] = travel[1].max(handle.travel());
-                })
+                small.add(&shaft, place.0, place.1);
+                handle::free(small)
             }
         };
-        if let Err(why) = silent {
-            assumed.push(format!("{name}: nothing said of the handle, which {why}"));
-        }
-    }
-    let name = &recordings[0].0;
-    let refuse = |what: String| Err(Failure::Input(format!("{name}: {what}")));
-    if largest_current == 0.0 {
-        return refuse("column current is zero throughout; record scene excite".to_owned());
-    }
-    let Some(fit) = Fit::new(&large.usable) else {
-        return refuse(format!(
-            "the large motor turns one way for 40 ms on end in only {} of {} windows; record all \
-             of scene excite, with the handle held",
-            large.usable.len(),
-            large.windows
-        ));
-    };
-    let unexplained = fit.unexplained / fit.driven;
-    if fit.coefficients[0] < 0.0 {
-        return refuse(
-            "positive current turns the large motor backward; swap its phases or its encoder's"
-                .to_owned(),
-        );
-    }
-    if !(unexplained < MOST_UNEXPLAINED) {
-        return refuse(format!(
-            "{:.0} % of the motor's torque goes where the model knows nothing; is column current \
-             in A, large.counts_per_rev = {} right, {}?",
-            100.0 * unexplained,
-            device.large.counts_per_rev,
-            match held {
-                true => "and was the handle held fast (or record counts_small)",
-                false => "and nothing touching the disc",
+        match free {
+            Ok(equations) => {
+                self.free.extend(equations);
+                self.travel[1] = self.travel[1].max(handle.travel());
             }
-        ));
+            Err(why) => {
+                let silent = format!("{name}: nothing said of the handle, which {why}");
+                self.silent.push(silent);
+            }
+        }
+        Ok(())
     }
-    let both_ways = large.forward.min(large.usable.len() - large.forward);
-    let mut quantities = quantity::of_large(&fit, device, known, largest_current);
-    let rate_hz = recordings.iter().map(|(_, r)| r.trace.rate_hz);
-    let slowest = rate_hz.fold(f64::INFINITY, f64::min);
-    for quantity in &mut quantities {
-        if quantity.key == quantity::BANDWIDTH && slowest < LAG_RATE_HZ {
-            quantity.untold = Some(format!(
-                "rows {slowest} Hz apart may be frames of a faster loop; record every control tick"
+
+    /// Fits the large shaft's equation, or says why that means nothing.
+    fn fit(&self, device: &Device) -> Result<Fit, String> {
+        if self.largest_current == 0.0 {
+            return Err("column current is zero throughout; record scene excite".to_owned());
+        }
+        let Some(fit) = Fit::new(&self.large.usable) else {
+            return Err(format!(
+                "the large motor turns one way for 40 ms on end in only {} of {} windows; record \
+                 all of scene excite, with the handle held",
+                self.large.usable.len(),
+                self.large.windows
+            ));
+        };
+        let unexplained = fit.unexplained / fit.driven;
+        if !(unexplained < MOST_UNEXPLAINED) {
+            return Err(format!(
+                "{:.0} % of the motor's torque goes where the model knows nothing; is column \
+                 current in A, large.counts_per_rev = {} right, {}?",
+                100.0 * unexplained,
+                device.large.counts_per_rev,
+                match self.unseen {
+                    true => "and was the handle clamped",
+                    false => "and did nothing else touch the shafts",
+                }
             ));
         }
-        if quantity.key == quantity::FRICTION && 20 * both_ways < large.usable.len() {
-            quantity.untold = Some("turns one way only; record both".to_owned());
+        let drive = fit.estimate(|ratios, _| ratios[0]);
+        if drive.value < -drive.half {
+            return Err(
+                "positive current turns the large motor backward; swap its phases or its \
+                 encoder's"
+                    .to_owned(),
+            );
         }
-        if quantity.key == quantity::FRICTION && travel[0] < TURNS {
-            quantity.untold = Some("varies over a turn, and it made fewer than three".to_owned());
+        Ok(fit)
+    }
+
+    /// Why this key cannot be told, however narrow its interval.
+    fn hides(&self, key: &str) -> Option<String> {
+        let usable = self.large.usable.len();
+        let rarer_way = self.large.forward.min(usable - self.large.forward);
+        match (key, self.slowest_hz) {
+            (quantity::BANDWIDTH, Some(rate_hz)) if rate_hz < LAG_RATE_HZ => Some(format!(
+                "rows {} ms apart may be frames of a faster loop; record every control tick",
+                1000.0 / rate_hz
+            )),
+            (quantity::FRICTION, _) if 20 * rarer_way < usable => {
+                Some("turns one way only; record both".to_owned())
+            }
+            (quantity::FRICTION, _) if self.travel[0] < TURNS => {
+                Some("varies over a turn, and it made fewer than three".to_owned())
+            }
+            _ => None,
         }
     }
-    if quantities.iter().all(|quantity| quantity.untold.is_some()) {
-        let widths: Vec<_> = quantities.iter().map(Quantity::short).collect();
-        return refuse(format!(
-            "cannot tell anything within 2 % ({}); record all of scene excite, or several times",
-            widths.join(", ")
-        ));
-    }
-    assumed.splice(0..0, assumptions(known, held));
-    let handle = handle::quantities(&free, travel[1] > TURNS, &fit, device, known);
-    quantities.extend(handle.into_iter().flatten());
-    Ok(Identification {
-        quantities,
-        assumed,
-        windows: (large.usable.len(), large.windows),
-        unexplained,
-    })
+}
+
+/// A hand gives way: with `b w_S = (b^2 / K) dw_L/dt` it takes `b^2 / K` off the inertia, and no
+/// column of the large motor tells that apart.
+fn unseen(name: &str, device: &Device) -> Failure {
+    let b = device.coupler.damping_nms_per_rad;
+    let part = b * b / device.hand.stiffness_nm_per_rad / device.large.inertia_kg_m2;
+    Failure::Input(format!(
+        "{name}: line 1: no column counts_small, and a hand of {} N.m/rad that gives way unseen takes \
+         {:.0} % off the inertia; record it, or clamp the handle and say --clamped",
+        device.hand.stiffness_nm_per_rad,
+        100.0 * part
+    ))
 }
 
 fn assumptions(known: Known, held: bool) -> Vec<String> {
@@ -184,7 +254,7 @@ fn assumptions(known: Known, held: bool) -> Vec<String> {
         "{known} taken as exact: counts and current tell ratios only, so its error is everybody's"
     )];
     if held {
-        assumed.push("no column counts_small: the handle taken as held fast".to_owned());
+        assumed.push("no column counts_small: the handle taken as clamped".to_owned());
     }
     assumed.push("viscous friction of the large motor's bearings counts as damping".to_owned());
     assumed

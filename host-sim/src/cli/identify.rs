@@ -14,8 +14,8 @@ use super::arguments::{DeviceFile, is_stdout};
 
 #[derive(Debug, Args)]
 pub(super) struct Identify {
-    /// Recording of scene excite: CSV as for replay, with column current; counts_small if the handle
-    /// may have moved, and current_small too if nobody held it. Several of one device are joined
+    /// Recording of scene excite: CSV as for replay, with columns current and counts_small; where
+    /// nobody held the handle, current_small shows the handle too. Several of one device are joined
     #[arg(value_name = "RECORDING", required = true)]
     recordings: Vec<PathBuf>,
     #[command(flatten)]
@@ -24,6 +24,9 @@ pub(super) struct Identify {
     /// coupler.damping_nms_per_rad [default: the device's torque constant]
     #[arg(long, value_name = "KEY=VALUE")]
     known: Option<String>,
+    /// The handle was clamped in recordings without counts_small
+    #[arg(long)]
+    clamped: bool,
     /// Write the device file with what was identified in it, everything else as it was; may be the
     /// same file
     #[arg(long, value_name = "FILE.toml")]
@@ -43,7 +46,7 @@ pub(super) fn run(options: &Identify) -> Result<(), Failure> {
     for path in &options.recordings {
         recordings.push((replay::name(path), Recording::read(path)?));
     }
-    let found = identify::identify(&recordings, &device, known)?;
+    let found = identify::identify(&recordings, &device, known, options.clamped)?;
     if let Some(out) = &options.out {
         let text = options.device.text()?;
         let names: Vec<_> = recordings.iter().map(|(name, _)| name.as_str()).collect();

@@ -20,7 +20,9 @@ pub(super) fn free(equations: Equations) -> Result<Vec<Equation>, &'static str> 
     }
     let mut usable = equations.usable;
     for equation in &mut usable {
-        equation.others.drain(HAND - 1..=HAND);
+        // The damper stays: an eccentric disc stretches the short arc of the large motor, and with it
+        // b/J from that motor's velocity. From the handle's own it is the sum of both columns.
+        equation.others.remove(HAND - 1);
     }
     Ok(usable)
 }
@@ -36,7 +38,7 @@ pub(super) fn quantities(
     let fit = Fit::new(free)?;
     let damping = large.estimate(|ratios, _| ratios[SLIP] * known.inertia(ratios));
     let scaled = |f: &dyn Fn(&[f64]) -> f64| {
-        let ratio = fit.estimate(|ratios, _| f(ratios) / ratios[SLIP]);
+        let ratio = fit.estimate(|ratios, _| f(ratios) / (ratios[SLIP] + ratios[HAND]));
         let parts = [ratio.half * damping.value, ratio.value * damping.half];
         Estimate {
             value: ratio.value * damping.value,

@@ -54,6 +54,7 @@ fn health(quantity: &Quantity) -> String {
     let (unit, scale) = quantity.unit;
     let verdict = match (inside, quantity.key) {
         (true, _) => "inside its interval",
+        _ if (part - 1.0).abs() < 0.01 => "outside its interval, but by less than 1 %",
         (false, DAMPING) => "outside its interval: coupler hot, or the file wrong",
         (false, _) => "outside its interval: the file is wrong, or what was assumed",
     };

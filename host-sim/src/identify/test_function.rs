@@ -105,7 +105,7 @@ mod tests {
     fn the_series_is_that_of_a_lagged_current() {
         let phi = TestFunction::new(30, 1e-3);
         // A step of current in the middle, and the exact response of a lag of 0.5 ms to it.
-        let lag: f64 = 0.5e-3;
+        let lag = 0.5e-3_f64;
         let series: f64 = (0..LAG_TERMS)
             .map(|m| lag.powi(m as i32) * phi.increments[m][30..].iter().sum::<f64>())
             .sum();
