@@ -193,7 +193,8 @@ impl Gathered {
             ));
         };
         let unexplained = fit.unexplained / fit.driven;
-        if !(unexplained < MOST_UNEXPLAINED) {
+        // Not a number is not explained either.
+        if unexplained.is_nan() || unexplained >= MOST_UNEXPLAINED {
             return Err(format!(
                 "{:.0} % of the motor's torque goes where the model knows nothing; is column \
                  current in A, large.counts_per_rev = {} right, {}?",

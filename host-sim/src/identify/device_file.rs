@@ -53,10 +53,9 @@ fn put(document: &mut DocumentMut, key: &str, value: f64, comment: &str) -> Resu
         }
         Item::Table(table) => {
             value.decor_mut().set_suffix(format!(" # {comment}"));
-            if let Some(decor) = table.get(name).and_then(Item::as_value).map(Value::decor) {
-                if let Some(prefix) = decor.prefix() {
-                    value.decor_mut().set_prefix(prefix.clone());
-                }
+            let before = table.get(name).and_then(Item::as_value).map(Value::decor);
+            if let Some(prefix) = before.and_then(|decor| decor.prefix()) {
+                value.decor_mut().set_prefix(prefix.clone());
             }
             match table.get_mut(name) {
                 Some(item) => *item = Item::Value(value),

@@ -116,7 +116,7 @@ impl Quantity {
             estimate,
             file,
             unit,
-            untold: (!(width <= TOLD)).then(|| match 100.0 * width {
+            untold: (width.is_nan() || width > TOLD).then(|| match 100.0 * width {
                 percent if percent < 1000.0 => format!("+-{percent:.1} % is too vague; {remedy}"),
                 _ => format!("does not show; {remedy}"),
             }),
