@@ -111,15 +111,19 @@ impl Quantity {
         remedy: &str,
     ) -> Self {
         let width = estimate.half / estimate.value.abs().max(least);
+        let vague = (width.is_nan() || width > TOLD).then(|| match 100.0 * width {
+            percent if percent < 1000.0 => format!("+-{percent:.1} % is too vague; {remedy}"),
+            _ => format!("does not show; {remedy}"),
+        });
+        // Friction may come out as a little less than none; nothing else may.
+        let negative = least == 0.0 && estimate.value <= 0.0;
         Self {
             key,
             estimate,
             file,
             unit,
-            untold: (width.is_nan() || width > TOLD).then(|| match 100.0 * width {
-                percent if percent < 1000.0 => format!("+-{percent:.1} % is too vague; {remedy}"),
-                _ => format!("does not show; {remedy}"),
-            }),
+            untold: vague
+                .or(negative.then(|| "comes out negative; is it the excitation?".to_owned())),
         }
     }
 

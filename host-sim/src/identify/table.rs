@@ -14,7 +14,7 @@ pub fn text(found: &Identification) -> String {
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
-        "{:<32}{:>10}  {:<10}95 % interval",
+        "{:<32}{:>10}  {:<12}95 % interval",
         "", "value", "unit"
     );
     for quantity in &found.quantities {
@@ -22,13 +22,13 @@ pub fn text(found: &Identification) -> String {
         let _ = match &quantity.untold {
             None => writeln!(
                 text,
-                "{:<32}{:>10.4}  {:<10}{}",
+                "{:<32}{:>10.4}  {:<12}{}",
                 quantity.key,
                 scale * quantity.estimate.value,
                 unit,
                 quantity.half_text(),
             ),
-            Some(why) => writeln!(text, "{:<32}{:>10}  {:<10}{why}", quantity.key, "-", unit),
+            Some(why) => writeln!(text, "{:<32}{:>10}  {:<12}{why}", quantity.key, "-", unit),
         };
     }
     let _ = writeln!(text);
