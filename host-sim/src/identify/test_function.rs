@@ -91,14 +91,16 @@ mod tests {
     fn derivatives_are_those_of_the_signal() {
         let phi = TestFunction::new(30, 1e-3);
         assert!((sum(&phi.weight, |_| 1.0) - 1.0).abs() < 1e-9);
+        // The ends' sixth derivative is all that is left: by Euler and Maclaurin 2e-7 in the
+        // first sum, and 1 / (30 ms) times 42 times that in the second.
         // By parts: the integral of phi' f is minus that of phi f'.
         let (f, slope, bend) = (
             |t: f64| 3.0 - 2.0 * t + 5.0 * t * t,
             |t: f64| -2.0 + 10.0 * t,
             |_: f64| 10.0,
         );
-        assert!((sum(&phi.first, f) + sum(&phi.weight, slope)).abs() < 1e-8);
-        assert!((sum(&phi.second, f) - sum(&phi.weight, bend)).abs() < 1e-5);
+        assert!((sum(&phi.first, f) + sum(&phi.weight, slope)).abs() < 1e-6);
+        assert!((sum(&phi.second, f) - sum(&phi.weight, bend)).abs() < 1e-3);
     }
 
     #[test]
