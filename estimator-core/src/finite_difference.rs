@@ -27,6 +27,7 @@ impl VelocityEstimator for FiniteDifference {
         first.large
     }
 
+    #[inline]
     fn update(&self, previous: &mut Count, sample: &Sample) -> CountsPerTick {
         let step = sample.large - *previous;
         *previous = sample.large;

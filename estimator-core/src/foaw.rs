@@ -2,18 +2,18 @@
 
 mod cone;
 mod fit;
-mod ring;
+mod runs;
 
 use core::marker::PhantomData;
 
 use crate::design_error::DesignError;
 use crate::estimator::VelocityEstimator;
 use crate::sample::{Sample, Signals};
-use crate::units::{Count, CountsPerTick};
+use crate::units::CountsPerTick;
 
-use cone::Cone;
+use fit::RunsOf;
 pub use fit::{BestFit, EndFit, Fit};
-use ring::Ring;
+use runs::Runs;
 
 /// Steps of this many counts a tick or more are outside the range in which products fit.
 const LONGEST_STEP: u32 = 1 << 15;
@@ -38,9 +38,9 @@ const LONGEST_STEP: u32 = 1 << 15;
 /// the velocity zero after n ticks. N is the largest window, 1 to 128 intervals; n may be less at
 /// run time. Steps of 2^15 counts a tick or more restart the window.
 ///
-/// The ring is this module's own: `N` counts and an index, walked backwards from the newest
-/// without a bounds check. `heapless` has nothing that walks so, and the crate needs no
-/// dependency.
+/// The samples are kept as runs of equal counts, in a ring of N runs that is stored twice, so that
+/// it reads as one slice: 8 N bytes. The end-fit looks at the ends of runs only, so that it costs
+/// as many steps as there are edges in the window; at rest neither fit looks at all.
 ///
 /// ```
 /// use estimator_core::{BestFit, Count, Foaw, Sample, VelocityEstimator, preset};
@@ -84,7 +84,7 @@ impl<const N: usize, F: Fit> Foaw<N, F> {
 /// State of a [`Foaw`]: the newest counts and the window length last used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FoawState<const N: usize> {
-    past: Ring<N>,
+    runs: Runs<N>,
     window: u8,
 }
 
@@ -103,46 +103,29 @@ impl<const N: usize, F: Fit> VelocityEstimator for Foaw<N, F> {
 
     fn start(&self, first: &Sample) -> FoawState<N> {
         FoawState {
-            past: Ring::new(first.large),
+            runs: Runs::new(first.large),
             window: 0,
         }
     }
 
+    #[inline]
     fn update(&self, state: &mut FoawState<N>, sample: &Sample) -> CountsPerTick {
-        let newest = sample.large;
-        let step = newest - state.past.newest();
-        if step.0.unsigned_abs() >= LONGEST_STEP {
+        let step = sample.large - state.runs.newest;
+        if step.0 == 0 {
+            state.runs.extend();
+            if state.runs.length > i32::from(self.window) {
+                state.window = self.window;
+                return CountsPerTick(0.0);
+            }
+        } else if step.0.unsigned_abs() < LONGEST_STEP {
+            state.runs.push(sample.large);
+        } else {
             *state = self.start(sample);
             state.window = 1;
             return CountsPerTick(step.to_f32());
         }
-        let (velocity, window) = self.longest_fit(step.0, newest, &state.past);
-        state.past.push(newest);
-        state.window = window;
-        CountsPerTick(velocity)
-    }
-}
-
-impl<const N: usize, F: Fit> Foaw<N, F> {
-    /// Velocity and length of the longest accepted window that ends at `newest`, `first` counts
-    /// from its predecessor.
-    fn longest_fit(&self, first: i32, newest: Count, past: &Ring<N>) -> (f32, u8) {
-        let mut fit = F::new(first);
-        let mut cone = Cone::new(first, self.bound);
-        let mut slope = fit.slope(1);
-        let mut window = 1;
-        let older = past.newest_first().skip(1);
-        for (interval, count) in (2..=i32::from(self.window)).zip(older) {
-            let displacement = (newest - count).0;
-            cone.narrow(displacement, interval, self.bound);
-            fit.include(displacement, interval);
-            let candidate = fit.slope(interval);
-            if !cone.contains(candidate) {
-                break;
-            }
-            slope = candidate;
-            window = interval as u8;
-        }
-        (slope.to_f32(), window)
+        let window = F::longest(&RunsOf(&state.runs), i32::from(self.window), self.bound);
+        state.window = window.intervals as u8;
+        CountsPerTick(window.slope)
     }
 }

@@ -85,23 +85,22 @@ impl<const S: usize, U: Copy> Kalman<S, U> {
         Ok(filter)
     }
 
-    /// `A P Aᵀ + Q`, symmetric; A is upper triangular.
+    /// `A P Aᵀ + Q`, its upper triangle; A is upper triangular.
+    #[inline]
     fn predicted(&self, p: &[[f32; S]; S]) -> [[f32; S]; S] {
-        let mut ap = [[0.0; S]; S];
-        for i in 0..S {
-            for j in 0..S {
-                for k in i..S {
-                    ap[i][j] += self.a[i][k] * p[k][j];
-                }
-            }
-        }
         let mut next = self.q;
         for i in 0..S {
+            let mut ap = [0.0; S];
+            for k in i..S {
+                ap[k] = self.a[i][i] * p[i][k];
+                for m in i + 1..S {
+                    ap[k] += self.a[i][m] * p[m.min(k)][m.max(k)];
+                }
+            }
             for j in i..S {
                 for k in j..S {
-                    next[i][j] += ap[i][k] * self.a[j][k];
+                    next[i][j] += ap[k] * self.a[j][k];
                 }
-                next[j][i] = next[i][j];
             }
         }
         next
@@ -113,14 +112,25 @@ impl<const S: usize, U: Copy> Kalman<S, U> {
 pub struct KalmanState<const S: usize> {
     anchor: Count,
     x: [f32; S],
+    /// Its upper triangle; the rest stays zero.
     p: [[f32; S]; S],
 }
 
 impl<const S: usize> KalmanState<S> {
     /// Covariance P of the state, in counts and ticks.
     #[must_use]
-    pub const fn covariance(&self) -> &[[f32; S]; S] {
-        &self.p
+    pub const fn covariance(&self) -> [[f32; S]; S] {
+        let mut p = self.p;
+        let mut i = 0;
+        while i < S {
+            let mut j = 0;
+            while j < i {
+                p[i][j] = p[j][i];
+                j += 1;
+            }
+            i += 1;
+        }
+        p
     }
 }
 
@@ -141,12 +151,14 @@ impl<const S: usize, U: Input<S>> VelocityEstimator for Kalman<S, U> {
         }
     }
 
+    #[inline]
     fn update(&self, state: &mut KalmanState<S>, sample: &Sample) -> CountsPerTick {
         let mut x = transitioned(&self.a, &state.x);
         self.input.drive(&mut x, sample);
         let mut p = self.predicted(&state.p);
 
         let innovation = (sample.large - state.anchor).to_f32() - x[0];
+        state.anchor = sample.large;
         let inverse = 1.0 / (p[0][0] + self.r);
         let row = p[0];
         for i in 1..S {
@@ -154,22 +166,21 @@ impl<const S: usize, U: Input<S>> VelocityEstimator for Kalman<S, U> {
             x[i] += gain * innovation;
             for j in i..S {
                 p[i][j] -= gain * row[j];
-                p[j][i] = p[i][j];
             }
         }
         let shrink = self.r * inverse;
         for i in 0..S {
             p[0][i] = row[i] * shrink;
-            p[i][0] = p[0][i];
         }
         // Relative to the new anchor, the corrected position is what the gain left over.
         x[0] = -shrink * innovation;
 
-        *state = KalmanState {
-            anchor: sample.large,
-            x,
-            p,
-        };
+        state.x = x;
+        for i in 0..S {
+            for j in i..S {
+                state.p[i][j] = p[i][j];
+            }
+        }
         CountsPerTick(x[1])
     }
 }
@@ -189,10 +200,12 @@ impl AccelerationEstimator for KalmanTriple {
 }
 
 /// `A x`; A is upper triangular.
+#[inline]
 pub(crate) fn transitioned<const S: usize>(a: &[[f32; S]; S], x: &[f32; S]) -> [f32; S] {
-    let mut next = [0.0; S];
+    let mut next = *x;
     for i in 0..S {
-        for j in i..S {
+        next[i] = a[i][i] * x[i];
+        for j in i + 1..S {
             next[i] += a[i][j] * x[j];
         }
     }

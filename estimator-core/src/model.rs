@@ -43,6 +43,7 @@ pub struct NoInput;
 impl<const S: usize> Input<S> for NoInput {
     const NEEDS: Signals = Signals::COUNT;
 
+    #[inline]
     fn drive(&self, _: &mut [f32; S], _: &Sample) {}
 }
 
@@ -53,9 +54,10 @@ pub struct CurrentInput<const S: usize>(pub [f32; S]);
 impl<const S: usize> Input<S> for CurrentInput<S> {
     const NEEDS: Signals = Signals::COUNT_AND_CURRENT;
 
+    #[inline]
     fn drive(&self, x: &mut [f32; S], sample: &Sample) {
-        for (x, b) in x.iter_mut().zip(&self.0) {
-            *x += b * sample.current.get();
+        for i in 0..S {
+            x[i] += self.0[i] * sample.current.get();
         }
     }
 }

@@ -75,6 +75,7 @@ impl VelocityEstimator for Pll {
         }
     }
 
+    #[inline]
     fn update(&self, state: &mut PllState, sample: &Sample) -> CountsPerTick {
         let step = (sample.large - state.anchor).to_f32();
         let error = step - (state.residual + state.velocity);

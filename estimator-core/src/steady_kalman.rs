@@ -91,12 +91,13 @@ impl<const S: usize, U: Input<S>> VelocityEstimator for SteadyKalman<S, U> {
         }
     }
 
+    #[inline]
     fn update(&self, state: &mut SteadyKalmanState<S>, sample: &Sample) -> CountsPerTick {
         let mut x = transitioned(&self.a, &state.x);
         self.input.drive(&mut x, sample);
         let innovation = (sample.large - state.anchor).to_f32() - x[0];
-        for (x, k) in x.iter_mut().zip(&self.k).skip(1) {
-            *x += k * innovation;
+        for i in 1..S {
+            x[i] += self.k[i] * innovation;
         }
         // Relative to the new anchor, the corrected position is what the gain left over.
         x[0] = (self.k[0] - 1.0) * innovation;

@@ -264,8 +264,8 @@ fn covariance_follows_the_textbook() {
             p = Reference::updated(&p, &Reference::gain(&p));
             motor_p = motor_model.predicted(&motor_p);
             motor_p = Reference::updated(&motor_p, &Reference::gain(&motor_p));
-            assert_near(state.covariance(), &p, tick);
-            assert_near(motor_state.covariance(), &motor_p, tick);
+            assert_near(&state.covariance(), &p, tick);
+            assert_near(&motor_state.covariance(), &motor_p, tick);
         }
     }
 }

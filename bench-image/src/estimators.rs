@@ -1,0 +1,54 @@
+//! What is measured: one line an estimator and rate; peers begin with `peer_`.
+
+use estimator_core::{
+    BestFit, Device, EndFit, FiniteDifference, Foaw, Hertz, Kalman, KalmanMotor, KalmanTriple,
+    LowPass, Model, Pll, Sample, SteadyKalman, SteadyKalmanMotor, SteadyKalmanTriple,
+    VelocityEstimator, preset,
+};
+
+use crate::peers::{IdspKalman, NalgebraKalman};
+use crate::subject::{Subject, subjects};
+
+/// For parameters that suit every rate.
+const ANY: Hertz = Hertz(0.0);
+// Parameters are those of host-sim/presets.toml for these rates and the plant with friction.
+const SLOW: Hertz = Hertz(1000.0);
+const FAST: Hertz = Hertz(10_000.0);
+
+subjects! {
+    finite_difference, "finite-difference", ANY: FiniteDifference = FiniteDifference;
+    low_pass_1k, "low-pass", SLOW: LowPass<FiniteDifference> =
+        preset!(LowPass::new(FiniteDifference, Hertz(186.0), SLOW));
+    low_pass_10k, "low-pass", FAST: LowPass<FiniteDifference> =
+        preset!(LowPass::new(FiniteDifference, Hertz(148.0), FAST));
+    foaw_end_15, "foaw-end-fit, n = 15", ANY: Foaw<15, EndFit> = preset!(Foaw::new(15, 1));
+    foaw_end_64, "foaw-end-fit, n = 64", ANY: Foaw<64, EndFit> = preset!(Foaw::new(64, 1));
+    foaw_best_15, "foaw-best-fit, n = 15", ANY: Foaw<15, BestFit> = preset!(Foaw::new(15, 1));
+    foaw_best_64, "foaw-best-fit, n = 64", ANY: Foaw<64, BestFit> = preset!(Foaw::new(64, 1));
+    kalman_triple_1k, "kalman-triple", SLOW: KalmanTriple =
+        preset!(Kalman::new(&preset!(Model::triple_integrator(4096, SLOW, 4370.0))));
+    kalman_triple_10k, "kalman-triple", FAST: KalmanTriple =
+        preset!(Kalman::new(&preset!(Model::triple_integrator(4096, FAST, 3650.0))));
+    kalman_triple_steady_1k, "kalman-triple-steady", SLOW: SteadyKalmanTriple =
+        preset!(SteadyKalman::new(&preset!(Model::triple_integrator(4096, SLOW, 4370.0))));
+    kalman_triple_steady_10k, "kalman-triple-steady", FAST: SteadyKalmanTriple =
+        preset!(SteadyKalman::new(&preset!(Model::triple_integrator(4096, FAST, 3650.0))));
+    kalman_motor_1k, "kalman-motor", SLOW: KalmanMotor =
+        preset!(Kalman::new(&preset!(Model::motor(&Device::DCX35L, SLOW, 0.106))));
+    kalman_motor_10k, "kalman-motor", FAST: KalmanMotor =
+        preset!(Kalman::new(&preset!(Model::motor(&Device::DCX35L, FAST, 0.246))));
+    kalman_motor_steady_1k, "kalman-motor-steady", SLOW: SteadyKalmanMotor =
+        preset!(SteadyKalman::new(&preset!(Model::motor(&Device::DCX35L, SLOW, 0.106))));
+    kalman_motor_steady_10k, "kalman-motor-steady", FAST: SteadyKalmanMotor =
+        preset!(SteadyKalman::new(&preset!(Model::motor(&Device::DCX35L, FAST, 0.246))));
+    pll_1k, "pll", SLOW: Pll = preset!(Pll::new(Hertz(271.0), SLOW));
+    pll_10k, "pll", FAST: Pll = preset!(Pll::new(Hertz(398.0), FAST));
+    peer_idsp_1k, "idsp: kalman", SLOW: IdspKalman =
+        IdspKalman::new(&preset!(Model::triple_integrator(4096, SLOW, 4370.0)));
+    peer_idsp_10k, "idsp: kalman", FAST: IdspKalman =
+        IdspKalman::new(&preset!(Model::triple_integrator(4096, FAST, 3650.0)));
+    peer_nalgebra_1k, "nalgebra by hand", SLOW: NalgebraKalman =
+        NalgebraKalman::new(&preset!(Model::triple_integrator(4096, SLOW, 4370.0)));
+    peer_nalgebra_10k, "nalgebra by hand", FAST: NalgebraKalman =
+        NalgebraKalman::new(&preset!(Model::triple_integrator(4096, FAST, 3650.0)));
+}

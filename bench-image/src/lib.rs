@@ -1,0 +1,13 @@
+//! Every estimator at every rate behind one call that is never inlined, so that its instructions
+//! can be counted; the same functions run on the host, so that outputs can be compared bit for bit.
+//!
+//! To add one, add a line to `estimators.rs`.
+#![no_std]
+
+mod estimators;
+pub mod mailbox;
+mod peers;
+mod subject;
+
+pub use estimators::SUBJECTS;
+pub use subject::{Run, Subject};

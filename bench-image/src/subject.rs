@@ -1,0 +1,75 @@
+//! One estimator under measurement.
+
+use estimator_core::Sample;
+
+/// An estimator with its parameters fixed at compile time, as firmware has them.
+pub struct Subject {
+    /// What the table calls it.
+    pub name: &'static str,
+    /// Module of its `update`, by which its symbol is found.
+    pub module: &'static str,
+    /// Control rate that its parameters are for, Hz; 0 for every rate.
+    pub rate_hz: u32,
+    /// Bytes of its state.
+    pub state: usize,
+    /// Bytes of its parameters.
+    pub parameters: usize,
+    /// Runs it.
+    pub run: Run,
+}
+
+impl Subject {
+    /// Whether it is somebody else's.
+    #[must_use]
+    pub fn is_peer(&self) -> bool {
+        self.module.starts_with("peer_")
+    }
+}
+
+/// Starts with the first sample and gives the velocity, counts a tick, at every one after it.
+pub type Run = fn(samples: &mut dyn Iterator<Item = Sample>, velocity: &mut dyn FnMut(f32));
+
+/// Writes the subjects down: `module, "name", rate: Type = value;`.
+macro_rules! subjects {
+    ($($module:ident, $name:literal, $rate:ident: $type:ty = $value:expr;)*) => {
+        $(
+            mod $module {
+                use super::*;
+
+                const ESTIMATOR: $type = $value;
+                type State = <$type as VelocityEstimator>::State;
+
+                #[inline(never)]
+                fn update(state: &mut State, sample: &Sample) -> f32 {
+                    ESTIMATOR.update(state, sample).0
+                }
+
+                fn run(
+                    samples: &mut dyn Iterator<Item = Sample>,
+                    velocity: &mut dyn FnMut(f32),
+                ) {
+                    // Called through a pointer: the call's interface stays as it is written.
+                    let update = core::hint::black_box(update as fn(&mut State, &Sample) -> f32);
+                    let Some(first) = samples.next() else { return };
+                    let mut state = ESTIMATOR.start(&first);
+                    for sample in samples {
+                        velocity(update(&mut state, &sample));
+                    }
+                }
+
+                pub(super) const SUBJECT: Subject = Subject {
+                    name: $name,
+                    module: stringify!($module),
+                    rate_hz: $rate.0 as u32,
+                    state: size_of::<State>(),
+                    parameters: size_of::<$type>(),
+                    run,
+                };
+            }
+        )*
+
+        /// Everything that is measured.
+        pub static SUBJECTS: &[Subject] = &[$($module::SUBJECT),*];
+    };
+}
+pub(crate) use subjects;

@@ -1,0 +1,5 @@
+//! Run time against error.
+
+pub mod board;
+pub mod image;
+mod thumb;

@@ -1,0 +1,62 @@
+//! As much of the Thumb-2 encoding as is needed to follow calls and to cost instructions.
+
+/// Whether an instruction that begins with this half is four bytes long.
+pub(crate) const fn is_wide(half: u16) -> bool {
+    half >> 11 >= 0b1_1101
+}
+
+/// Targets of direct branches and calls in `code`.
+pub(crate) fn branches(base: u64, code: &[u8]) -> impl Iterator<Item = u64> {
+    let half = |at: usize| match code.get(at..at + 2) {
+        Some(bytes) => u16::from_le_bytes([bytes[0], bytes[1]]),
+        None => 0,
+    };
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        while at < code.len() {
+            let (first, second, here) = (half(at), half(at + 2), base + at as u64);
+            at += if is_wide(first) { 4 } else { 2 };
+            if let Some(target) = wide_branch(first, second, here) {
+                return Some(target);
+            }
+        }
+        None
+    })
+}
+
+/// Target of an unconditional wide branch or call (encodings T4 of B and T1 of BL).
+fn wide_branch(first: u16, second: u16, here: u64) -> Option<u64> {
+    if first >> 11 != 0b11110 || !matches!(second >> 12 & 0b1101, 0b1001 | 0b1101) {
+        return None;
+    }
+    let bit = |word: u16, n: u32| u32::from(word >> n & 1);
+    let s = bit(first, 10);
+    let i1 = 1 ^ bit(second, 13) ^ s;
+    let i2 = 1 ^ bit(second, 11) ^ s;
+    let offset = s << 24
+        | i1 << 23
+        | i2 << 22
+        | u32::from(first & 0x3FF) << 12
+        | u32::from(second & 0x7FF) << 1;
+    let offset = i64::from((offset << 7) as i32 >> 7);
+    here.checked_add_signed(4 + offset)
+}
+
+/// Addresses after each call through a register.
+pub(crate) fn after_indirect_calls(base: u64, code: &[u8]) -> Vec<u64> {
+    let halves: Vec<u16> = code
+        .as_chunks()
+        .0
+        .iter()
+        .map(|pair| u16::from_le_bytes(*pair))
+        .collect();
+    let mut found = Vec::new();
+    let mut k = 0;
+    while k < halves.len() {
+        if halves[k] & 0xFF87 == 0x4780 {
+            found.push(base + 2 * k as u64 + 2);
+        }
+        k += if is_wide(halves[k]) { 2 } else { 1 };
+    }
+    found
+}

@@ -1,0 +1,103 @@
+//! The traces that everything runs over.
+
+use estimator_core::{Amps, Count, Sample};
+use host_sim::device::Device;
+use host_sim::recording::Recording;
+use host_sim::scenario::ScenarioName;
+use host_sim::simulate::simulate;
+use host_sim::trace::{Columns, Trace};
+
+/// Samples of each trace.
+const SAMPLES: usize = 4000;
+
+/// Simulated traces begin here, s: scenarios have settled.
+const FROM_S: f64 = 1.0;
+
+/// Not a seed that presets are tuned on.
+const SEED: u64 = 7;
+
+/// Control rates, Hz.
+pub const RATES_HZ: [u32; 2] = [1000, 10_000];
+
+/// A trace and what is true of it.
+#[derive(Clone, Debug)]
+pub struct Ground {
+    /// What it is.
+    pub name: &'static str,
+    /// Its rate, Hz.
+    pub rate_hz: u32,
+    /// What an estimator sees.
+    pub samples: Vec<Sample>,
+    /// Velocity at each sample, counts a tick; none where errors say nothing.
+    pub truth: Option<Vec<f64>>,
+    /// rad/s of one count a tick.
+    pub scale: f64,
+}
+
+/// All of them.
+///
+/// # Errors
+/// One line on a recording that cannot be read.
+pub fn all() -> Result<Vec<Ground>, String> {
+    let device = Device::default();
+    let mut grounds = Vec::new();
+    for rate_hz in RATES_HZ {
+        let rate = f64::from(rate_hz);
+        grounds.push(Ground {
+            name: "still",
+            rate_hz,
+            samples: vec![Sample::new(Count(12_345)); SAMPLES],
+            truth: None,
+            scale: scale(4096, rate),
+        });
+        for (name, scenario) in [
+            ("creep", ScenarioName::Creep),
+            ("constant", ScenarioName::Permanent),
+            ("steps", ScenarioName::Step),
+            ("chirp and reversals", ScenarioName::Track),
+            ("texture", ScenarioName::Texture),
+        ] {
+            let first = (FROM_S * rate) as usize;
+            let seconds = (first + SAMPLES) as f64 / rate;
+            let trace = simulate(&device, scenario, rate, SEED, seconds, Columns::default())?;
+            grounds.push(ground(name, rate_hz, &trace, first, 4096));
+        }
+    }
+    // Hall states of a motor: their edges are too coarse for a truth.
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/back-and-forth.csv");
+    let recording = Recording::read(path.as_ref()).map_err(|error| error.to_string())?;
+    grounds.push(ground("recording", 1000, &recording.trace, 0, 90));
+    grounds.last_mut().expect("just pushed").truth = None;
+    Ok(grounds)
+}
+
+fn scale(counts_per_rev: u32, rate_hz: f64) -> f64 {
+    std::f64::consts::TAU * rate_hz / f64::from(counts_per_rev)
+}
+
+fn ground(
+    name: &'static str,
+    rate_hz: u32,
+    trace: &Trace,
+    first: usize,
+    counts_per_rev: u32,
+) -> Ground {
+    let sample = |k: usize| {
+        // The current of the period that ends with the sample.
+        let current = match (&trace.current, k) {
+            (Some(current), 1..) => current[k - 1],
+            _ => 0.0,
+        };
+        Sample::new(Count(trace.counts_large[k])).with_current(Amps::new(current as f32))
+    };
+    let range = first..trace.len().min(first + SAMPLES);
+    let scale = scale(counts_per_rev, f64::from(rate_hz));
+    let truth = trace.true_omega.as_ref();
+    Ground {
+        name,
+        rate_hz,
+        samples: range.clone().map(sample).collect(),
+        truth: truth.map(|omega| omega[range].iter().map(|w| w / scale).collect()),
+        scale,
+    }
+}
