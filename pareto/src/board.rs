@@ -1,5 +1,6 @@
 //! The image on the emulated board, one job after the other.
 
+use std::collections::BTreeMap;
 use std::num::NonZeroU64;
 
 use bench_image::mailbox::{WORDS, encode};
@@ -12,6 +13,8 @@ use rigless::time::VirtualNanos;
 use virtual_board::board::{CORE_HZ, ControllerBoard};
 
 use crate::image::Image;
+use crate::thumb::instructions;
+use crate::{cycles, thumb};
 
 /// A trace for a subject.
 #[derive(Clone, Debug)]
@@ -20,6 +23,8 @@ pub struct Job<'a> {
     pub subject: usize,
     /// At most [`bench_image::mailbox::SAMPLES`].
     pub samples: &'a [Sample],
+    /// Whether to follow every instruction, for cycles; slow.
+    pub follow: bool,
 }
 
 /// What a job showed.
@@ -27,6 +32,8 @@ pub struct Job<'a> {
 pub struct Ran {
     /// Instructions of each update, from its first to its return.
     pub instructions: Vec<u32>,
+    /// Estimated cycles of each update, if they were followed.
+    pub cycles: Vec<u32>,
     /// Velocity of each update, counts a tick.
     pub velocities: Vec<f32>,
 }
@@ -35,38 +42,54 @@ pub struct Ran {
 struct Places {
     entry: u64,
     returns: Vec<u64>,
+    /// First halves of every instruction that an update can reach, by address.
+    instructions: BTreeMap<u64, [u16; 2]>,
 }
 
 impl Places {
     fn of(image: &Image, subject: &Subject) -> Result<Self, String> {
         let path = |name| ["bench_image", "estimators", subject.module, name];
         let runner = image.function(&path("run"))?;
+        let entry = image.function(&path("update"))?;
+        let reached = image.reached(entry).into_iter();
         Ok(Self {
-            entry: image.function(&path("update"))?,
-            returns: crate::thumb::after_indirect_calls(runner, image.code(runner)),
+            entry,
+            instructions: reached
+                .flat_map(|function| instructions(function, image.code(function)))
+                .collect(),
+            returns: thumb::after_indirect_calls(runner, image.code(runner)),
         })
     }
 
-    fn watches(&self) -> impl Iterator<Item = Watch> {
-        self.returns
-            .iter()
-            .chain([&self.entry])
-            .map(|at| Watch::Instruction(*at))
+    fn watches(&self, follow: bool) -> impl Iterator<Item = Watch> {
+        let followed = self.instructions.keys().filter(move |_| follow);
+        let places = self.returns.iter().chain([&self.entry]);
+        places.chain(followed).map(|at| Watch::Instruction(*at))
     }
+}
+
+/// A job as the board takes it.
+struct Order {
+    subject: usize,
+    follow: bool,
+    words: Vec<[u32; WORDS]>,
 }
 
 struct Bench {
     /// Jobs still to do, last first.
-    jobs: Vec<(usize, Vec<[u32; WORDS]>)>,
+    jobs: Vec<Order>,
     places: Vec<Places>,
     ready: u64,
     job: u64,
     trace: u64,
     velocities: u64,
-    /// Subject, samples and counts of the job that runs.
-    running: Option<(usize, usize, Ran)>,
+    /// The job that runs, and what it showed so far.
+    running: Option<(Order, Ran)>,
     /// Instruction count at the update's entry.
     since: Option<u64>,
+    /// Cycles of the update so far, and the instruction that comes next.
+    cycles: u32,
+    at: Option<u64>,
     done: Vec<Ran>,
     finished: bool,
     problem: Option<String>,
@@ -74,13 +97,13 @@ struct Bench {
 
 impl Bench {
     fn finish(&mut self, host: &mut dyn Host) -> Result<(), rigless::emulator::Error> {
-        let Some((subject, samples, mut ran)) = self.running.take() else {
+        let Some((order, mut ran)) = self.running.take() else {
             return Ok(());
         };
-        for watch in self.places[subject].watches() {
+        for watch in self.places[order.subject].watches(order.follow) {
             host.unwatch(watch);
         }
-        for k in 0..samples as u64 - 1 {
+        for k in 0..order.words.len() as u64 - 1 {
             let word = host.read(self.velocities + 4 * k, Width::W32)?;
             ran.velocities.push(f32::from_bits(word as u32));
         }
@@ -89,19 +112,19 @@ impl Bench {
     }
 
     fn begin(&mut self, host: &mut dyn Host) -> Result<(), rigless::emulator::Error> {
-        let Some((subject, words)) = self.jobs.pop() else {
+        let Some(order) = self.jobs.pop() else {
             self.finished = true;
             return Ok(());
         };
-        for (k, word) in words.as_flattened().iter().enumerate() {
+        for (k, word) in order.words.as_flattened().iter().enumerate() {
             host.write(self.trace + 4 * k as u64, Width::W32, u64::from(*word))?;
         }
-        host.write(self.job, Width::W32, subject as u64)?;
-        host.write(self.job + 4, Width::W32, words.len() as u64)?;
-        for watch in self.places[subject].watches() {
+        host.write(self.job, Width::W32, order.subject as u64)?;
+        host.write(self.job + 4, Width::W32, order.words.len() as u64)?;
+        for watch in self.places[order.subject].watches(order.follow) {
             host.watch(watch);
         }
-        self.running = Some((subject, words.len(), Ran::default()));
+        self.running = Some((order, Ran::default()));
         Ok(())
     }
 
@@ -110,14 +133,35 @@ impl Bench {
             self.finish(host)?;
             return self.begin(host);
         }
-        let Some((subject, _, ran)) = &mut self.running else {
+        let Some((order, ran)) = &mut self.running else {
             return Ok(());
         };
-        if hit.address == self.places[*subject].entry {
+        let places = &self.places[order.subject];
+        if hit.address == places.entry {
             self.since = Some(hit.instruction_count);
-        } else if let Some(since) = self.since.take() {
+            self.cycles = 0;
+            self.at = None;
+        }
+        let Some(since) = self.since else {
+            return Ok(());
+        };
+        if let Some(at) = self.at.replace(hit.address)
+            && let Some([first, second]) = places.instructions.get(&at)
+        {
+            let next = at + if thumb::is_wide(*first) { 4 } else { 2 };
+            self.cycles += cycles::of(*first, *second, hit.address != next);
+        }
+        if places.returns.contains(&hit.address) {
             ran.instructions
                 .push((hit.instruction_count - since) as u32);
+            if order.follow {
+                ran.cycles.push(self.cycles);
+            }
+            self.since = None;
+            // The other calls of the loop are not of interest any more.
+            for other in places.returns.iter().filter(|other| **other != hit.address) {
+                host.unwatch(Watch::Instruction(*other));
+            }
         }
         Ok(())
     }
@@ -165,7 +209,11 @@ pub fn on_board(image: &Image, jobs: &[Job<'_>]) -> Result<Vec<Ran>, String> {
         jobs: jobs
             .iter()
             .rev()
-            .map(|job| (job.subject, job.samples.iter().map(encode).collect()))
+            .map(|job| Order {
+                subject: job.subject,
+                follow: job.follow,
+                words: job.samples.iter().map(encode).collect(),
+            })
             .collect(),
         places: places?,
         ready: image.function(&["bench_image", "ready"])?,
@@ -174,6 +222,8 @@ pub fn on_board(image: &Image, jobs: &[Job<'_>]) -> Result<Vec<Ran>, String> {
         velocities: mailbox("VELOCITIES")?,
         running: None,
         since: None,
+        cycles: 0,
+        at: None,
         done: Vec::new(),
         finished: false,
         problem: None,

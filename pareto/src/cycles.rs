@@ -15,7 +15,7 @@ pub(crate) fn of(first: u16, second: u16, taken: bool) -> u32 {
             half if half & 0xF600 == 0xB400 => 1 + registers(half & 0x1FF),
             half if half & 0xF000 == 0xC000 => 1 + registers(half & 0xFF),
             // Loads and stores of 16 bits: literal, register offset, immediate, stack.
-            half if matches!(half >> 11, 0b0_1001 | 0b0_1010..=0b1_0011) => 2,
+            half if matches!(half >> 11, 0b0_1001..=0b1_0011) => 2,
             // ldm, stm, push, pop in 32 bits; then ldrd and strd
             half if half & 0xFE40 == 0xE800 => 1 + registers(second),
             half if half & 0xFE40 == 0xE840 => 3,
@@ -26,7 +26,13 @@ pub(crate) fn of(first: u16, second: u16, taken: bool) -> u32 {
                 _ => 1 + u32::from(second & 0xFF),
             },
             // Single loads and stores of 32 bits.
-            half if half & 0xFE00 == 0xF800 => if wide_load { 2 } else { 1 },
+            half if half & 0xFE00 == 0xF800 => {
+                if wide_load {
+                    2
+                } else {
+                    1
+                }
+            }
             // mla, mls; smull and the like; sdiv and udiv (2 to 12)
             half if half & 0xFF80 == 0xFB00 => 1 + u32::from(second >> 12 != 0xF),
             half if matches!(half & 0xFFF0, 0xFB90 | 0xFBB0) => 12,

@@ -5,23 +5,28 @@ pub(crate) const fn is_wide(half: u16) -> bool {
     half >> 11 >= 0b1_1101
 }
 
+/// Addresses and both halves of the instructions in `code`; literals among them are taken for
+/// instructions, too.
+pub(crate) fn instructions(base: u64, code: &[u8]) -> impl Iterator<Item = (u64, [u16; 2])> {
+    let halves: Vec<u16> = code
+        .as_chunks()
+        .0
+        .iter()
+        .map(|pair| u16::from_le_bytes(*pair))
+        .collect();
+    let mut k = 0;
+    std::iter::from_fn(move || {
+        let first = *halves.get(k)?;
+        let second = halves.get(k + 1).copied().unwrap_or(0);
+        let address = base + 2 * k as u64;
+        k += if is_wide(first) { 2 } else { 1 };
+        Some((address, [first, second]))
+    })
+}
+
 /// Targets of direct branches and calls in `code`.
 pub(crate) fn branches(base: u64, code: &[u8]) -> impl Iterator<Item = u64> {
-    let half = |at: usize| match code.get(at..at + 2) {
-        Some(bytes) => u16::from_le_bytes([bytes[0], bytes[1]]),
-        None => 0,
-    };
-    let mut at = 0;
-    std::iter::from_fn(move || {
-        while at < code.len() {
-            let (first, second, here) = (half(at), half(at + 2), base + at as u64);
-            at += if is_wide(first) { 4 } else { 2 };
-            if let Some(target) = wide_branch(first, second, here) {
-                return Some(target);
-            }
-        }
-        None
-    })
+    instructions(base, code).filter_map(|(at, [first, second])| wide_branch(first, second, at))
 }
 
 /// Target of an unconditional wide branch or call (encodings T4 of B and T1 of BL).
@@ -44,19 +49,8 @@ fn wide_branch(first: u16, second: u16, here: u64) -> Option<u64> {
 
 /// Addresses after each call through a register.
 pub(crate) fn after_indirect_calls(base: u64, code: &[u8]) -> Vec<u64> {
-    let halves: Vec<u16> = code
-        .as_chunks()
-        .0
-        .iter()
-        .map(|pair| u16::from_le_bytes(*pair))
-        .collect();
-    let mut found = Vec::new();
-    let mut k = 0;
-    while k < halves.len() {
-        if halves[k] & 0xFF87 == 0x4780 {
-            found.push(base + 2 * k as u64 + 2);
-        }
-        k += if is_wide(halves[k]) { 2 } else { 1 };
-    }
-    found
+    instructions(base, code)
+        .filter(|(_, [first, _])| first & 0xFF87 == 0x4780)
+        .map(|(at, _)| at + 2)
+        .collect()
 }

@@ -8,7 +8,7 @@ use host_sim::simulate::simulate;
 use host_sim::trace::{Columns, Trace};
 
 /// Samples of each trace.
-const SAMPLES: usize = 4000;
+const SAMPLES: usize = 2500;
 
 /// Simulated traces begin here, s: scenarios have settled.
 const FROM_S: f64 = 1.0;
@@ -64,7 +64,10 @@ pub fn all() -> Result<Vec<Ground>, String> {
         }
     }
     // Hall states of a motor: their edges are too coarse for a truth.
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/back-and-forth.csv");
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../tests/data/back-and-forth.csv"
+    );
     let recording = Recording::read(path.as_ref()).map_err(|error| error.to_string())?;
     grounds.push(ground("recording", 1000, &recording.trace, 0, 90));
     grounds.last_mut().expect("just pushed").truth = None;

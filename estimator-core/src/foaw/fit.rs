@@ -52,7 +52,8 @@ impl Sealed for EndFit {
         while let Some(ahead) = older.get(taken..most)
             && let [run, ..] = ahead
         {
-            if run.is_one_sample() {
+            // A call is worth it for some samples that all differ.
+            if run.is_one_sample() && ahead.get(3).is_some_and(|run| run.is_one_sample()) {
                 let inside = cone.follow(ahead, newest, age);
                 age += inside as i32;
                 taken += inside;
@@ -67,7 +68,11 @@ impl Sealed for EndFit {
                 break;
             }
             taken += 1;
-            let last = n.min(age + length);
+            age += 1;
+            if length == 1 {
+                continue;
+            }
+            let last = n.min(age + length - 1);
             if let Some(left_at) = cone.leaves(z, last) {
                 age = left_at;
                 break;

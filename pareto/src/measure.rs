@@ -1,0 +1,225 @@
+//! One row of figures for each estimator.
+
+use std::collections::BTreeMap;
+
+use bench_image::{SUBJECTS, Subject};
+use serde::Serialize;
+
+use crate::board::{Job, Ran, on_board};
+use crate::image::{Image, Level};
+use crate::traces::{self, Ground};
+
+/// Updates that are followed instruction by instruction, at the end of each trace.
+const FOLLOWED: usize = 40;
+
+/// Start of each trace that no error looks at, updates.
+const SKIPPED: usize = 200;
+
+/// Figures at one optimisation level.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Cost {
+    /// Instructions an update: mean of the traces' means.
+    pub mean: f64,
+    /// Most instructions of any update.
+    pub most: u32,
+    /// Mean at rest.
+    pub at_rest: f64,
+    /// Estimated cycles for one instruction, on the ends of the traces.
+    pub cycles_per_instruction: f64,
+    /// Bytes of code and literals that an update reaches.
+    pub code: usize,
+}
+
+/// Figures of one estimator.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Row {
+    /// Its name.
+    pub name: String,
+    /// Whether it is somebody else's.
+    pub peer: bool,
+    /// Costs by [`Level::ALL`].
+    pub cost: [Cost; 2],
+    /// Bytes of its state.
+    pub state: usize,
+    /// RMS error by [`traces::RATES_HZ`], the simulated moving traces pooled, rad/s.
+    pub rms_rad_s: [f64; 2],
+    /// Whether nothing costs and errs less, by rate.
+    pub front: [bool; 2],
+    /// Mean and most instructions at level 3 by trace and rate.
+    pub traces: BTreeMap<String, (f64, u32)>,
+}
+
+impl Row {
+    /// Estimated cycles of an update at level 3, mean.
+    #[must_use]
+    pub fn cycles(&self) -> f64 {
+        self.cost[0].mean * self.cost[0].cycles_per_instruction
+    }
+}
+
+/// Measures everything.
+///
+/// # Errors
+/// One line if an image does not build or run, or differs from the host in any bit.
+pub fn measure() -> Result<Vec<Row>, String> {
+    let grounds = traces::all()?;
+    let mut rows: Vec<Row> = Vec::new();
+    for (level, name) in Level::ALL.into_iter().enumerate() {
+        let image = Image::build(name)?;
+        let (counted, followed) = run(&image, &grounds)?;
+        for (index, subject) in SUBJECTS.iter().enumerate() {
+            let row = match rows.iter().position(|row| row.name == subject.name) {
+                Some(row) => row,
+                None => {
+                    rows.push(Row {
+                        name: subject.name.to_owned(),
+                        peer: subject.is_peer(),
+                        state: subject.state,
+                        ..Row::default()
+                    });
+                    rows.len() - 1
+                }
+            };
+            let of = |(job, _): &&(Job<'_>, Ran)| job.subject == index;
+            let own: Vec<_> = counted.iter().filter(of).collect();
+            let slow: Vec<_> = followed.iter().filter(of).collect();
+            let row = &mut rows[row];
+            let cost = &mut row.cost[level];
+            *cost = worst(*cost, cost_of(&image, subject, &own, &slow)?);
+            if level == 0 {
+                errors(row, &grounds, &own);
+            }
+        }
+    }
+    for rate in 0..2 {
+        for k in 0..rows.len() {
+            let better = |other: &Row| {
+                other.cost[0].mean < rows[k].cost[0].mean
+                    && other.rms_rad_s[rate] <= rows[k].rms_rad_s[rate]
+            };
+            rows[k].front[rate] = !rows.iter().any(better);
+        }
+    }
+    Ok(rows)
+}
+
+type Runs<'a> = Vec<(Job<'a>, Ran)>;
+
+/// Runs every subject over the traces of its rate: whole ones to count, ends to follow.
+fn run<'a>(image: &Image, grounds: &'a [Ground]) -> Result<(Runs<'a>, Runs<'a>), String> {
+    let mut jobs = Vec::new();
+    for (subject, Subject { rate_hz, .. }) in SUBJECTS.iter().enumerate() {
+        for ground in grounds {
+            if *rate_hz == 0 || *rate_hz == ground.rate_hz {
+                let samples = &ground.samples[..];
+                jobs.push(Job {
+                    subject,
+                    samples,
+                    follow: false,
+                });
+            }
+        }
+    }
+    // Enough to fill every window first.
+    let end = |job: &Job<'a>| Job {
+        samples: &job.samples[job.samples.len() - FOLLOWED - 130..],
+        follow: true,
+        ..*job
+    };
+    let ends: Vec<_> = jobs.iter().map(end).collect();
+    let mut ran = on_board(image, &[&jobs[..], &ends[..]].concat())?;
+    let followed: Vec<_> = ends.into_iter().zip(ran.split_off(jobs.len())).collect();
+    let counted: Vec<_> = jobs.into_iter().zip(ran).collect();
+    for (job, ran) in counted.iter().chain(&followed) {
+        let subject = &SUBJECTS[job.subject];
+        let mut board = ran.velocities.iter();
+        let mut same = true;
+        (subject.run)(&mut job.samples.iter().copied(), &mut |velocity| {
+            same &= board
+                .next()
+                .is_some_and(|v| v.to_bits() == velocity.to_bits());
+        });
+        if !same || ran.instructions.len() != job.samples.len() - 1 {
+            return Err(format!("{}: the board and the host differ", subject.module));
+        }
+    }
+    Ok((counted, followed))
+}
+
+fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let n = values.len() as f64;
+    values.sum::<f64>() / n
+}
+
+fn mean_count(counts: &[u32]) -> f64 {
+    mean(counts.iter().copied().map(f64::from))
+}
+
+fn cost_of(
+    image: &Image,
+    subject: &Subject,
+    own: &[&(Job<'_>, Ran)],
+    slow: &[&(Job<'_>, Ran)],
+) -> Result<Cost, String> {
+    let still = |(job, _): &&&(Job<'_>, Ran)| job.samples.iter().all(|s| s == &job.samples[0]);
+    let settled = |(_, ran): &(Job<'_>, Ran)| mean_count(&ran.instructions[SKIPPED..]);
+    let sum = |counts: fn(&Ran) -> &[u32]| -> f64 {
+        let ends = slow.iter().flat_map(|(_, ran)| &counts(ran)[130..]);
+        ends.copied().map(f64::from).sum()
+    };
+    let entry = image.function(&["bench_image", "estimators", subject.module, "update"])?;
+    let reached = image.reached(entry);
+    Ok(Cost {
+        mean: mean(own.iter().map(|one| settled(one))),
+        most: own
+            .iter()
+            .flat_map(|(_, ran)| ran.instructions.iter().copied())
+            .max()
+            .unwrap_or(0),
+        at_rest: own.iter().find(still).map_or(f64::NAN, |one| settled(one)),
+        cycles_per_instruction: sum(|ran| &ran.cycles) / sum(|ran| &ran.instructions),
+        code: reached.iter().map(|at| image.code(*at).len()).sum(),
+    })
+}
+
+/// The larger of each figure: presets of two rates are one row.
+fn worst(a: Cost, b: Cost) -> Cost {
+    Cost {
+        mean: a.mean.max(b.mean),
+        most: a.most.max(b.most),
+        at_rest: a.at_rest.max(b.at_rest),
+        cycles_per_instruction: a.cycles_per_instruction.max(b.cycles_per_instruction),
+        code: a.code.max(b.code),
+    }
+}
+
+fn errors(row: &mut Row, grounds: &[Ground], own: &[&(Job<'_>, Ran)]) {
+    let mut squares = [0.0; 2];
+    let mut samples = [0.0; 2];
+    for (job, ran) in own {
+        let ground = grounds
+            .iter()
+            .find(|ground| std::ptr::eq(&ground.samples[..], job.samples))
+            .expect("a job of these traces");
+        let settled = &ran.instructions[SKIPPED..];
+        row.traces.insert(
+            format!("{}, {} Hz", ground.name, ground.rate_hz),
+            (
+                mean_count(settled),
+                settled.iter().copied().max().unwrap_or(0),
+            ),
+        );
+        let Some(truth) = &ground.truth else { continue };
+        let rate = usize::from(ground.rate_hz != traces::RATES_HZ[0]);
+        // The first sample has no velocity.
+        for (estimate, truth) in ran.velocities.iter().zip(&truth[1..]).skip(SKIPPED) {
+            squares[rate] += ((f64::from(*estimate) - truth) * ground.scale).powi(2);
+            samples[rate] += 1.0;
+        }
+    }
+    for rate in 0..2 {
+        if samples[rate] > 0.0 {
+            row.rms_rad_s[rate] = (squares[rate] / samples[rate]).sqrt();
+        }
+    }
+}
