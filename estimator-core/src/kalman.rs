@@ -86,7 +86,8 @@ impl<const S: usize, U: Copy> Kalman<S, U> {
     }
 
     /// `A P Aᵀ + Q`, its upper triangle; A is upper triangular.
-    #[inline]
+    // Here and below: a preset's zeros and ones vanish only where they are seen.
+    #[inline(always)]
     fn predicted(&self, p: &[[f32; S]; S]) -> [[f32; S]; S] {
         let mut next = self.q;
         for i in 0..S {
@@ -151,7 +152,7 @@ impl<const S: usize, U: Input<S>> VelocityEstimator for Kalman<S, U> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn update(&self, state: &mut KalmanState<S>, sample: &Sample) -> CountsPerTick {
         let mut x = transitioned(&self.a, &state.x);
         self.input.drive(&mut x, sample);
@@ -200,7 +201,7 @@ impl AccelerationEstimator for KalmanTriple {
 }
 
 /// `A x`; A is upper triangular.
-#[inline]
+#[inline(always)]
 pub(crate) fn transitioned<const S: usize>(a: &[[f32; S]; S], x: &[f32; S]) -> [f32; S] {
     let mut next = *x;
     for i in 0..S {
