@@ -18,6 +18,9 @@
 //! | Kalman, full covariance | [`Kalman`] | x, P | counts; current with [`Model::motor`] |
 //! | Kalman, preset steady gain | [`SteadyKalman`] | x | the same |
 //! | critically damped tracking loop | [`Pll`] | 2 floats | counts |
+//! | M/T from edge time stamps | [`MOverT`] | 1 edge | counts, edges |
+//! | observer with friction and slip | [`Observer`] | 4 floats | counts; as built: current, small count, edges |
+//! | the same, learning its parameters | [`AdaptiveObserver`] | 23 floats | the same |
 //! | two, exchanged while they run | [`Handover`] | as the one in charge | as both |
 //! | none | [`Skip`] | none | nothing |
 //!
@@ -48,6 +51,8 @@
 pub mod const_math;
 mod design_error;
 mod device;
+mod dual_stage;
+mod edge_clock;
 mod estimator;
 mod finite_difference;
 mod foaw;
@@ -55,7 +60,9 @@ mod handover;
 mod kalman;
 mod late_current;
 mod low_pass;
+mod m_over_t;
 mod model;
+mod observer;
 mod pll;
 mod riccati;
 mod sample;
@@ -64,6 +71,7 @@ mod units;
 
 pub use design_error::DesignError;
 pub use device::Device;
+pub use dual_stage::DualStage;
 pub use estimator::{AccelerationEstimator, Skip, VelocityEstimator};
 pub use finite_difference::FiniteDifference;
 pub use foaw::{BestFit, EndFit, Fit, Foaw, FoawState};
@@ -71,7 +79,14 @@ pub use handover::{Handover, HandoverState, Side};
 pub use kalman::{Kalman, KalmanMotor, KalmanState, KalmanTriple};
 pub use late_current::{LateCurrent, LateCurrentState};
 pub use low_pass::{LowPass, LowPassState};
+pub use m_over_t::{MOverT, MOverTState};
 pub use model::{CurrentInput, Input, Model, NoInput};
+pub use observer::{
+    AdaptiveEdgeObserver, AdaptiveObserver, AmplifierCurrent, Cells, Correction, CountObserver,
+    CurrentSource, Deviations, EdgeObserver, Edges, EdgesState, Fixed, Gain, HeldHandle, Learned,
+    LearnedState, Learning, NoCurrent, Observer, ObserverState, SlipSource, SmallEncoder,
+    Uncertainty,
+};
 pub use pll::{Pll, PllState};
 pub use sample::{Edge, Sample, Signals};
 pub use steady_kalman::{SteadyKalman, SteadyKalmanMotor, SteadyKalmanState, SteadyKalmanTriple};

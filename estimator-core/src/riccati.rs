@@ -13,6 +13,18 @@ pub(crate) const fn steady_gain<const S: usize>(
     q: &Matrix<S>,
     r: f64,
 ) -> Result<[f32; S], DesignError> {
+    match steady(a, q, r) {
+        Ok((gain, _)) => Ok(gain),
+        Err(error) => Err(error),
+    }
+}
+
+/// The steady gain and the variance `H P Hᵀ + r` of its innovation.
+pub(crate) const fn steady<const S: usize>(
+    a: &Matrix<S>,
+    q: &Matrix<S>,
+    r: f64,
+) -> Result<([f32; S], f64), DesignError> {
     let Some(covariance) = predicted_covariance(a, q, r) else {
         return Err(DesignError::NotConverged);
     };
@@ -28,10 +40,19 @@ pub(crate) const fn steady_gain<const S: usize>(
         i += 1;
     }
     if shrinks(closed_loop(a, &rounded)) {
-        Ok(rounded)
+        Ok((rounded, covariance[0][0] + r))
     } else {
         Err(DesignError::NotStable)
     }
+}
+
+/// Process noise of n + 1 ticks from that of n: `A Q_n Aᵀ + Q`.
+pub(crate) const fn later_noise<const S: usize>(
+    a: &Matrix<S>,
+    q: &Matrix<S>,
+    q_n: &Matrix<S>,
+) -> Matrix<S> {
+    sum(&product(&product(a, q_n), &transposed(a)), q)
 }
 
 /// Limit of the predicted covariance, by the doubling algorithm (Anderson 1978) in its
@@ -206,7 +227,7 @@ const fn sum<const S: usize>(x: &Matrix<S>, y: &Matrix<S>) -> Matrix<S> {
     z
 }
 
-const fn product<const S: usize>(x: &Matrix<S>, y: &Matrix<S>) -> Matrix<S> {
+pub(crate) const fn product<const S: usize>(x: &Matrix<S>, y: &Matrix<S>) -> Matrix<S> {
     let mut z = [[0.0; S]; S];
     let mut i = 0;
     while i < S {

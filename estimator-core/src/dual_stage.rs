@@ -1,0 +1,60 @@
+//! The whole device description that observers are built from.
+
+use crate::design_error::DesignError;
+use crate::device::Device;
+use crate::units::Hertz;
+
+/// The large motor with what acts on it besides its current: friction, the amplifier's lag and,
+/// through the coupler, the handle. SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DualStage {
+    /// The large motor and its encoder.
+    pub large: Device,
+    /// Coulomb friction of the large motor, N·m; 0 for a motor without.
+    pub coulomb_friction: f64,
+    /// Time constant of the large motor's amplifier, s; 0 for one that follows at once.
+    pub amplifier_lag: f64,
+    /// Counts per revolution of the small motor's encoder: four times its lines.
+    pub small_counts_per_rev: u32,
+}
+
+impl DualStage {
+    /// The paper's device: [`Device::DCX35L`], and a DCX22S GB KL 36 V with 5000 lines.
+    ///
+    /// Friction and lag are assumed: a public model of the same motor, an amplifier of 2 kHz.
+    pub const DCX35L: Self = Self {
+        large: Device::DCX35L,
+        coulomb_friction: 4.0e-3,
+        amplifier_lag: 79.6e-6,
+        small_counts_per_rev: 4 * 5000,
+    };
+
+    /// The device itself, if every constant is in its range at this rate.
+    ///
+    /// # Errors
+    /// [`DesignError::Rate`]; [`DesignError::Device`] as [`Device::checked`], if friction or lag
+    /// are negative or not finite, without counts of the small encoder, or if the coupler stops
+    /// the motor within a few ticks or an ampere moves it by 10^6 counts in one.
+    pub(crate) const fn checked(self, rate: Hertz) -> Result<Self, DesignError> {
+        if !rate.is_positive() {
+            return Err(DesignError::Rate);
+        }
+        let large = match self.large.checked() {
+            Ok(large) => large,
+            Err(error) => return Err(error),
+        };
+        let square = rate.period_s() * rate.period_s();
+        let counts = large.counts_per_rev as f64;
+        let moved = counts * large.torque_constant * square / large.inertia;
+        let braked = counts * self.coulomb_friction * square / large.inertia;
+        let damped = large.damping * rate.period_s() / large.inertia;
+        let sane = moved > 0.0 && moved < 1e6 && braked < 1e6 && damped < 8.0;
+        let lag = self.amplifier_lag * rate.0;
+        let apart = self.coulomb_friction >= 0.0 && lag >= 0.0 && lag < 1e6;
+        if sane && apart && self.small_counts_per_rev > 0 {
+            Ok(self)
+        } else {
+            Err(DesignError::Device)
+        }
+    }
+}

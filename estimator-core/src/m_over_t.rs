@@ -1,0 +1,102 @@
+//! M/T method: counts over the time between edges.
+
+use crate::design_error::DesignError;
+use crate::edge_clock::EdgeClock;
+use crate::estimator::VelocityEstimator;
+use crate::sample::{Sample, Signals};
+use crate::units::{Count, CountsPerTick, Hertz};
+
+/// M/T method: boundaries passed over the time it took, between the latest edges of two ticks,
+/// ```text
+/// v = (e_k - e_j) / (t_k - t_j)        without a new edge: |v| <= 1 / (t - t_k)
+/// ```
+/// j the last tick before k that had an edge. The bound, one count over the time since the last
+/// edge, is what brings it to zero at rest. Exact at a constant velocity, whatever its fraction of
+/// a count; the delay is half the time between edges. Reference: Ohmae et al. 1982.
+///
+/// A count without a stamp of its own is taken to have come half a tick ago.
+///
+/// ```
+/// use estimator_core::*;
+/// const M_OVER_T: MOverT = preset!(MOverT::new(Hertz(1e6), Hertz(1000.0)));
+/// let edge = |boundary, age| Edge { boundary: Count(boundary), age: ClockTicks(age) };
+/// let first = Sample::new(Count(0)).with_edge(edge(0, 0));
+/// let mut state = M_OVER_T.start(&first);
+/// // Two counts in 800 of 1000 µs.
+/// let next = Sample::new(Count(2)).with_edge(edge(2, 200));
+/// assert!((M_OVER_T.update(&mut state, &next).0 - 2.5).abs() < 1e-6);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MOverT {
+    clock: EdgeClock,
+}
+
+impl MOverT {
+    /// For stamps by a clock of this frequency.
+    ///
+    /// # Errors
+    /// [`DesignError::Rate`] unless both are positive and finite and the clock is at least as
+    /// fast as the rate.
+    pub const fn new(clock: Hertz, rate: Hertz) -> Result<Self, DesignError> {
+        match EdgeClock::new(clock, rate) {
+            Ok(clock) => Ok(Self { clock }),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// State of a [`MOverT`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MOverTState {
+    anchor: Count,
+    /// The last edge, from the middle of the anchor's cell, counts.
+    edge: f32,
+    /// Time since, ticks.
+    since: f32,
+    velocity: f32,
+}
+
+impl VelocityEstimator for MOverT {
+    type State = MOverTState;
+    type Output = CountsPerTick;
+    const NEEDS: Signals = Signals {
+        edge: true,
+        ..Signals::COUNT
+    };
+
+    fn start(&self, first: &Sample) -> MOverTState {
+        let edge = self.clock.fresh(first);
+        MOverTState {
+            anchor: first.large,
+            edge: edge.map_or(0.0, |edge| edge.position),
+            since: edge.map_or(0.0, |edge| edge.age),
+            velocity: 0.0,
+        }
+    }
+
+    fn update(&self, state: &mut MOverTState, sample: &Sample) -> CountsPerTick {
+        let counts = (sample.large - state.anchor).to_f32();
+        state.anchor = sample.large;
+        state.edge -= counts;
+        state.since += 1.0;
+        let latest = match self.clock.fresh(sample) {
+            Some(edge) => Some((edge.position, edge.age)),
+            None if counts > 0.0 => Some((-0.5, 0.5)),
+            None if counts < 0.0 => Some((0.5, 0.5)),
+            None => None,
+        };
+        if let Some((edge, age)) = latest {
+            let time = state.since - age;
+            // Two stamps of one instant say nothing.
+            if time > 0.0 {
+                state.velocity = (edge - state.edge) / time;
+            }
+            state.edge = edge;
+            state.since = age;
+        } else {
+            let bound = 1.0 / state.since;
+            state.velocity = state.velocity.clamp(-bound, bound);
+        }
+        CountsPerTick(state.velocity)
+    }
+}

@@ -1,0 +1,218 @@
+//! Observer of a motor with known current, coupler and friction, with scheduled gains.
+
+mod correction;
+mod design;
+mod inputs;
+mod learning;
+mod motion;
+
+pub use correction::{Cells, Correction, Edges, EdgesState};
+pub use design::{Gain, Uncertainty};
+pub use inputs::{
+    AmplifierCurrent, CurrentSource, HeldHandle, NoCurrent, SlipSource, SmallEncoder,
+};
+pub use learning::{Deviations, Fixed, Learned, LearnedState, Learning};
+
+use crate::estimator::VelocityEstimator;
+use crate::sample::{Sample, Signals};
+use crate::units::{Count, CountsPerTick};
+use correction::Path;
+use learning::Tick;
+use motion::Motion;
+
+/// Rows of the gain table; a longer gap takes the last.
+const ROWS: usize = 64;
+
+/// [`Observer`] of counts, current and slip.
+pub type CountObserver = Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed>;
+
+/// [`CountObserver`] with edge time stamps.
+pub type EdgeObserver = Observer<AmplifierCurrent, SmallEncoder, Edges, Fixed>;
+
+/// [`CountObserver`] that learns damping, friction and torque constant.
+pub type AdaptiveObserver = Observer<AmplifierCurrent, SmallEncoder, Cells, Learned>;
+
+/// [`AdaptiveObserver`] with edge time stamps.
+pub type AdaptiveEdgeObserver = Observer<AmplifierCurrent, SmallEncoder, Edges, Learned>;
+
+/// Largest innovation that moves the velocity, counts: a count that jumps further is wrong.
+const LARGEST_INNOVATION: f32 = 65_536.0;
+
+/// Largest part of the friction believed in that an unknown torque may add or take.
+const LARGEST_FRICTION_ERROR: f32 = 0.5;
+
+/// Observer of `J dω/dt = Kt i - b (ω - ω_S) - friction + unknown torque`.
+///
+/// One tick, in counts and ticks (φ0, φ1, φ2 of `β = b T / J`; x from the middle of the newest
+/// count's cell):
+/// ```text
+/// drive      u = (Kt i_mean) s T² / J + β Δ_S + a
+/// motion     v' = φ0 v + φ1 (u - f),  x += φ1 v + φ2 (u - f),  f = sign(v) (Tc s T² / J + c)
+///            where v' would pass zero, the rotor stops and stays, or leaves again ([motion])
+/// unknown    a *= exp(-T / τ)
+/// cells      x -= counts since the last tick;  e = what x is outside ±1/2;  none: keep all
+/// correction x += e,  v += K_v[n] e,  a += (1 - ρ) K_a[n] e,  c -= ρ K_a[n] e sign(f)
+/// ```
+/// n is the number of ticks since the last correction, and K\[n\] the steady gain of the filter
+/// that is corrected once every n ticks: 64 rows from the Riccati recursion, at compile time. So
+/// there is no covariance at run time and nothing that could lose its definiteness. i_mean is the
+/// current behind the amplifier's lag, Δ_S the handle's displacement (an exact integral of its
+/// velocity), ρ the share of the unknown torque that is taken for friction. c is within half of
+/// the friction believed in.
+///
+/// What a device lacks is left out by type: [`held`](Self::held) without the small encoder,
+/// [`blind`](Self::blind) without current; [`with_edges`](Self::with_edges) adds time stamps,
+/// [`learning`](Self::learning) learns the parameters.
+///
+/// Valid for innovations up to 65536 counts; beyond, the position follows and the velocity takes
+/// 65536. A displacement beyond ±2^24 counts a tick is rounded.
+///
+/// ```
+/// use estimator_core::*;
+/// const UNSURE: Uncertainty = Uncertainty {
+///     torque_noise: 5e-6, load: 1e-4, load_time: 0.1, friction_share: 0.7, boundary_noise: 0.0625,
+/// };
+/// const OBSERVER: CountObserver =
+///     preset!(Observer::new(&DualStage::DCX35L, Hertz(1000.0), &UNSURE));
+/// let first = Sample::new(Count(0));
+/// let mut state = OBSERVER.start(&first);
+/// // 80 mA are 3.7 mN·m: below the 4 mN·m of friction, so nothing moves.
+/// assert_eq!(OBSERVER.update(&mut state, &first.with_current(Amps::new(0.08))).0, 0.0);
+/// // At 0.5 A it knows at once that it does, before the first count.
+/// assert!(OBSERVER.update(&mut state, &first.with_current(Amps::new(0.5))).0 > 0.9);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observer<C, S, M, L> {
+    motion: Motion,
+    current: C,
+    slip: S,
+    correction: M,
+    learning: L,
+    load_decay: f32,
+    friction_share: f32,
+    gains: [Gain; ROWS],
+}
+
+/// State of an [`Observer`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ObserverState<C, S, M, L> {
+    anchor: Count,
+    position: f32,
+    velocity: f32,
+    /// Unknown torque, counts a tick²: what pushes, and what rubs.
+    load: f32,
+    rub: f32,
+    current: C,
+    slip: S,
+    correction: M,
+    learning: L,
+}
+
+impl<C, S, M, L: Learning> Observer<C, S, M, L> {
+    /// What the observer has learned of its parameters.
+    #[must_use]
+    pub fn deviations<A, B, D>(&self, state: &ObserverState<A, B, D, L::State>) -> Deviations {
+        self.learning.deviations(&state.learning)
+    }
+
+    /// The gain of a correction after `ticks` ticks without one.
+    #[must_use]
+    pub fn gain(&self, ticks: usize) -> Gain {
+        self.gains[ticks.clamp(1, ROWS) - 1]
+    }
+}
+
+impl<C, S, M, L> VelocityEstimator for Observer<C, S, M, L>
+where
+    C: CurrentSource,
+    S: SlipSource,
+    M: Correction,
+    L: Learning,
+{
+    type State = ObserverState<C::State, S::State, M::State, L::State>;
+    type Output = CountsPerTick;
+    const NEEDS: Signals = C::NEEDS.or(S::NEEDS).or(M::NEEDS);
+
+    fn start(&self, first: &Sample) -> Self::State {
+        ObserverState {
+            anchor: first.large,
+            position: 0.0,
+            velocity: 0.0,
+            load: 0.0,
+            rub: 0.0,
+            current: self.current.start(first),
+            slip: self.slip.start(first),
+            correction: self.correction.start(),
+            learning: self.learning.start(),
+        }
+    }
+
+    fn update(&self, state: &mut Self::State, sample: &Sample) -> CountsPerTick {
+        let push = self.current.push(&mut state.current, sample);
+        let handle = self.slip.moved(&mut state.slip, sample);
+        let before = state.velocity;
+        let driven = self
+            .learning
+            .drive(&state.learning, &self.motion, push, handle, before);
+        let friction = self.learning.friction(&state.learning, &self.motion) + state.rub;
+        let drive = driven.mean + state.load;
+        let step = self.motion.step(before, drive, friction);
+        self.learning.follow(
+            &mut state.learning,
+            &Tick {
+                motion: &self.motion,
+                push,
+                handle,
+                before,
+                step: &step,
+                load_decay: self.load_decay,
+            },
+        );
+        state.load *= self.load_decay;
+        state.velocity = step.velocity;
+
+        let counts = (sample.large - state.anchor).to_f32();
+        state.anchor = sample.large;
+        let from = state.position - counts;
+        state.position = from + step.moved - driven.behind;
+        let path = Path {
+            from,
+            to: state.position,
+            bend: 0.5 * (step.velocity - before),
+        };
+        let found = self
+            .correction
+            .innovation(&mut state.correction, path, sample, &self.gains);
+        if let Some(mut innovation) = found {
+            let gain = &self.gains[innovation.row];
+            state.position += innovation.position * innovation.error;
+            innovation.error = innovation
+                .error
+                .clamp(-LARGEST_INNOVATION, LARGEST_INNOVATION);
+            let error = innovation.error;
+            state.position += innovation.age * gain.velocity * error;
+            state.velocity += gain.velocity * error;
+            let unknown = gain.load * error;
+            let rubbing = self.friction_share * unknown;
+            state.load += unknown - rubbing;
+            // What friction acts against: the motion, or at rest what would move the rotor.
+            let way = if step.stuck { drive } else { step.velocity };
+            let limit = LARGEST_FRICTION_ERROR * self.motion.friction;
+            let rub = if way < 0.0 {
+                state.rub + rubbing
+            } else if way > 0.0 {
+                state.rub - rubbing
+            } else {
+                state.rub
+            };
+            state.rub = rub.clamp(-limit, limit);
+            let shift = self
+                .learning
+                .learn(&mut state.learning, &innovation, gain, state.velocity);
+            state.position += shift.position;
+            state.velocity += shift.velocity;
+            state.load += shift.load;
+        }
+        CountsPerTick(state.velocity)
+    }
+}

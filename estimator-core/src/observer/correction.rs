@@ -1,0 +1,181 @@
+//! How counts, with or without time stamps, correct an observer.
+
+use super::design::Gain;
+use crate::edge_clock::EdgeClock;
+use crate::sample::{Sample, Signals};
+
+/// How far a tick leads, for the edge inside it.
+#[derive(Clone, Copy, Debug)]
+pub struct Path {
+    /// Position at the last sample and predicted at this one, from the middle of the newest cell.
+    pub(super) from: f32,
+    pub(super) to: f32,
+    /// Half the change of velocity over the tick, counts.
+    pub(super) bend: f32,
+}
+
+/// What a tick's counts say against the prediction.
+#[derive(Clone, Copy, Debug)]
+pub struct Innovation {
+    /// Where the rotor was, less where it was predicted, counts.
+    pub(super) error: f32,
+    /// The part of the tick that had passed since, 0 to 1.
+    pub(super) age: f32,
+    /// Gain of the position, 0 to 1.
+    pub(super) position: f32,
+    /// Row of the gain table.
+    pub(super) row: usize,
+    /// Ticks since the last one.
+    pub(super) gap: f32,
+}
+
+/// What is measured: [`Cells`] or [`Edges`].
+pub trait Correction: Copy {
+    /// What is carried from tick to tick.
+    type State: Clone + PartialEq;
+    /// What it reads of a sample.
+    const NEEDS: Signals;
+
+    /// The state at the first sample.
+    fn start(&self) -> Self::State;
+
+    /// The innovation of this tick, if it has one.
+    fn innovation(
+        &self,
+        state: &mut Self::State,
+        path: Path,
+        sample: &Sample,
+        gains: &[Gain],
+    ) -> Option<Innovation>;
+}
+
+/// Counts alone: nothing is known but that the rotor is inside the newest count's cell. While the
+/// prediction is too, it stands; once it has left, it is put back on the boundary.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cells;
+
+/// Distance back to the cell, 0 inside it.
+fn excess(position: f32) -> f32 {
+    if position > 0.5 {
+        0.5 - position
+    } else if position < -0.5 {
+        -0.5 - position
+    } else {
+        0.0
+    }
+}
+
+/// The table's row for a gap of this many ticks.
+fn row(gap: f32, rows: usize) -> usize {
+    // A float-to-integer cast saturates.
+    ((gap + 0.5) as usize).clamp(1, rows) - 1
+}
+
+impl Correction for Cells {
+    /// Ticks since the last correction.
+    type State = f32;
+    const NEEDS: Signals = Signals::COUNT;
+
+    fn start(&self) -> f32 {
+        0.0
+    }
+
+    fn innovation(
+        &self,
+        gap: &mut f32,
+        path: Path,
+        _: &Sample,
+        gains: &[Gain],
+    ) -> Option<Innovation> {
+        *gap += 1.0;
+        let error = excess(path.to);
+        if error == 0.0 {
+            return None;
+        }
+        let innovation = Innovation {
+            error,
+            age: 0.0,
+            position: 1.0,
+            row: row(*gap, gains.len()),
+            gap: *gap,
+        };
+        *gap = 0.0;
+        Some(innovation)
+    }
+}
+
+/// Counts with the instant of each tick's latest edge. The rotor is corrected where it was then;
+/// at a tick without an edge it is kept inside its cell, as with [`Cells`].
+///
+/// The four phases of a line are not where they should be: the offset of each is learned from its
+/// innovations, `o += μ e` (μ = 0.02, within a quarter of a count). Nothing is learned without an
+/// edge, so not at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edges {
+    pub(super) clock: EdgeClock,
+}
+
+/// State of [`Edges`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgesState {
+    /// Time since the last edge, ticks.
+    since: f32,
+    /// Where each phase's boundary really is, counts.
+    offsets: [f32; 4],
+}
+
+/// Share of an innovation that a phase's offset takes.
+const OFFSET_GAIN: f32 = 0.02;
+
+/// Largest offset, counts: four within it keep their order.
+const LARGEST_OFFSET: f32 = 0.25;
+
+impl Correction for Edges {
+    type State = EdgesState;
+    const NEEDS: Signals = Signals {
+        edge: true,
+        ..Signals::COUNT
+    };
+
+    fn start(&self) -> EdgesState {
+        EdgesState {
+            since: 0.0,
+            offsets: [0.0; 4],
+        }
+    }
+
+    fn innovation(
+        &self,
+        state: &mut EdgesState,
+        path: Path,
+        sample: &Sample,
+        gains: &[Gain],
+    ) -> Option<Innovation> {
+        state.since += 1.0;
+        let Some(edge) = self.clock.fresh(sample) else {
+            let error = excess(path.to);
+            return (error != 0.0).then(|| Innovation {
+                error,
+                age: 0.0,
+                position: 1.0,
+                row: row(state.since, gains.len()),
+                gap: 0.0,
+            });
+        };
+        let passed = 1.0 - edge.age;
+        let there = path.from + passed * (path.to - path.from - path.bend + path.bend * passed);
+        let offset = &mut state.offsets[edge.phase];
+        let error = edge.position + *offset - there;
+        *offset = (*offset - OFFSET_GAIN * error).clamp(-LARGEST_OFFSET, LARGEST_OFFSET);
+        let gap = state.since - edge.age;
+        state.since = edge.age;
+        let row = row(gap, gains.len());
+        Some(Innovation {
+            error,
+            age: edge.age,
+            position: gains[row].position,
+            row,
+            gap,
+        })
+    }
+}

@@ -1,0 +1,335 @@
+//! What an observer learns of its parameters: nothing ([`Fixed`]), or [`Learned`].
+
+use super::correction::Innovation;
+use super::design::Gain;
+use super::inputs::Push;
+use super::motion::{Motion, Step};
+use crate::design_error::DesignError;
+use crate::units::Hertz;
+
+/// Relative deviations of the parameters from what was believed: 0.1 is 10 % more.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Deviations {
+    /// Of damping per inertia, b / J.
+    pub damping: f32,
+    /// Of Coulomb friction per inertia.
+    pub friction: f32,
+    /// Of the torque constant per inertia, Kt / J.
+    pub torque_constant: f32,
+}
+
+/// Position, velocity and unknown torque, as a correction changes them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shift {
+    pub(super) position: f32,
+    pub(super) velocity: f32,
+    pub(super) load: f32,
+}
+
+/// What is learned, and how it enters the motion.
+pub trait Learning: Copy {
+    /// What is carried from tick to tick.
+    type State: Clone + PartialEq;
+
+    /// The state before anything was learned.
+    fn start(&self) -> Self::State;
+
+    /// What was learned so far.
+    fn deviations(&self, state: &Self::State) -> Deviations;
+
+    /// Acceleration by current and slip, and how far the rotor is behind its current's mean.
+    fn drive(
+        &self,
+        state: &Self::State,
+        motion: &Motion,
+        push: Push,
+        handle: f32,
+        velocity: f32,
+    ) -> Push;
+
+    /// Coulomb friction.
+    fn friction(&self, state: &Self::State, motion: &Motion) -> f32;
+
+    /// Follows a tick: how its result depends on each parameter.
+    fn follow(&self, state: &mut Self::State, tick: &Tick<'_>);
+
+    /// Learns from an innovation; what that changes in the motor's state.
+    fn learn(
+        &self,
+        state: &mut Self::State,
+        innovation: &Innovation,
+        gain: &Gain,
+        velocity: f32,
+    ) -> Shift;
+}
+
+/// One tick as [`Learning::follow`] sees it.
+pub struct Tick<'a> {
+    pub(super) motion: &'a Motion,
+    pub(super) push: Push,
+    pub(super) handle: f32,
+    pub(super) before: f32,
+    pub(super) step: &'a Step,
+    pub(super) load_decay: f32,
+}
+
+/// The parameters are what they are believed to be.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Fixed;
+
+impl Learning for Fixed {
+    type State = ();
+
+    fn start(&self) {}
+
+    fn deviations(&self, (): &()) -> Deviations {
+        Deviations::default()
+    }
+
+    fn drive(&self, (): &(), motion: &Motion, push: Push, handle: f32, _: f32) -> Push {
+        Push {
+            mean: push.mean + motion.coupling * handle,
+            behind: push.behind,
+        }
+    }
+
+    fn friction(&self, (): &(), motion: &Motion) -> f32 {
+        motion.friction
+    }
+
+    fn follow(&self, (): &mut (), _: &Tick<'_>) {}
+
+    fn learn(&self, (): &mut (), _: &Innovation, _: &Gain, _: f32) -> Shift {
+        Shift {
+            position: 0.0,
+            velocity: 0.0,
+            load: 0.0,
+        }
+    }
+}
+
+/// Damping, friction and torque constant per inertia, learned from the observer's innovations.
+///
+/// A parameter that is off shows in position x, velocity v and unknown torque a, in proportion to
+/// a sensitivity s = (s_x, s_v, s_a) that goes through the observer as they do (Friedland 1969):
+/// ```text
+/// each tick      φ = -β (mean v - v_S), -direction . friction, push     for b, Tc, Kt
+///                s_x += φ1 s_v + φ2 (φ + s_a)    s_v = φ0 s_v + φ1 (φ + s_a)    s_a *= decay
+/// stuck          s_x += φ1 s_v / 2               s_v = 0
+/// innovation e   h = s_x                         s -= K h
+///                p = U D Uᵀ                      p += k e, k = P h / (hᵀ P h + 4 S)
+/// ```
+/// S is the variance of the innovation without errors of parameters. The 3 × 3 covariance is kept
+/// as U (unit upper triangular) and D (diagonal) and updated after Bierman: every new D is an old
+/// one times a ratio of positive sums, so it cannot lose its definiteness, rounding or not. It
+/// starts at 35, 60 and 35 %, walks by a tenth of that in a second of motion, and never exceeds
+/// it. Deviations stay within ±60 % (friction: ±90 %). Nothing is learned below 0.5 rad/s, where
+/// friction hides everything else.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Learned {
+    /// Velocity below which nothing is learned, counts a tick.
+    slowest: f32,
+    /// Growth of each D a tick.
+    walk: [f32; 3],
+}
+
+/// State of [`Learned`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LearnedState {
+    parameters: [f32; 3],
+    /// Of position, velocity and unknown torque, for each parameter.
+    sensitivity: [[f32; 3]; 3],
+    /// U: elements 01, 02 and 12.
+    upper: [f32; 3],
+    diagonal: [f32; 3],
+    /// Ticks since D last grew.
+    waiting: f32,
+}
+
+impl LearnedState {
+    /// D: the variances of the parameters but for what they share.
+    #[must_use]
+    pub const fn diagonal(&self) -> &[f32; 3] {
+        &self.diagonal
+    }
+}
+
+/// Standard deviations before anything was learned.
+const PRIOR: [f32; 3] = [0.35, 0.6, 0.35];
+
+/// Largest deviations.
+const LARGEST: [f32; 3] = [0.6, 0.9, 0.6];
+
+/// Part of [`PRIOR`] that a parameter walks in a second.
+const WALK: f64 = 0.1;
+
+/// Velocity below which nothing is learned, rad/s.
+const SLOWEST: f64 = 0.5;
+
+/// How much less an innovation counts than its variance says: innovations of a dead zone and of
+/// a torque that is not quite white are not independent.
+const CAUTION: f32 = 4.0;
+
+/// Largest element of U.
+const LARGEST_SHARE: f32 = 1e3;
+
+impl Learned {
+    pub(super) const fn new(counts_per_rev: u32, rate: Hertz) -> Result<Self, DesignError> {
+        if !rate.is_positive() {
+            return Err(DesignError::Rate);
+        }
+        if counts_per_rev == 0 {
+            return Err(DesignError::Device);
+        }
+        let per_rad = counts_per_rev as f64 / (2.0 * core::f64::consts::PI);
+        let mut walk = [0.0; 3];
+        let mut i = 0;
+        while i < 3 {
+            let step = WALK * PRIOR[i] as f64;
+            walk[i] = (step * step / rate.0) as f32;
+            i += 1;
+        }
+        Ok(Self {
+            slowest: (SLOWEST * per_rad / rate.0) as f32,
+            walk,
+        })
+    }
+}
+
+impl Learning for Learned {
+    type State = LearnedState;
+
+    fn start(&self) -> LearnedState {
+        LearnedState {
+            parameters: [0.0; 3],
+            sensitivity: [[0.0; 3]; 3],
+            upper: [0.0; 3],
+            diagonal: PRIOR.map(|deviation| deviation * deviation),
+            waiting: 0.0,
+        }
+    }
+
+    fn deviations(&self, state: &LearnedState) -> Deviations {
+        let [damping, friction, torque_constant] = state.parameters;
+        Deviations {
+            damping,
+            friction,
+            torque_constant,
+        }
+    }
+
+    fn drive(
+        &self,
+        state: &LearnedState,
+        motion: &Motion,
+        push: Push,
+        handle: f32,
+        velocity: f32,
+    ) -> Push {
+        let [damping, _, torque_constant] = state.parameters;
+        let slip = handle + damping * (handle - velocity);
+        Push {
+            mean: push.mean + torque_constant * push.mean + motion.coupling * slip,
+            behind: push.behind + torque_constant * push.behind,
+        }
+    }
+
+    fn friction(&self, state: &LearnedState, motion: &Motion) -> f32 {
+        motion.friction + state.parameters[1] * motion.friction
+    }
+
+    fn follow(&self, state: &mut LearnedState, tick: &Tick<'_>) {
+        let Tick { motion, step, .. } = tick;
+        let mean = 0.5 * (tick.before + step.velocity);
+        let regressors = [
+            motion.coupling * (tick.handle - mean),
+            -step.direction * motion.friction,
+            tick.push.mean,
+        ];
+        for ([position, velocity, load], regressor) in state.sensitivity.iter_mut().zip(regressors)
+        {
+            if step.stuck {
+                *position += 0.5 * motion.phi1 * *velocity;
+                *velocity = 0.0;
+            } else {
+                let force = regressor + *load;
+                *position += motion.phi1 * *velocity + motion.phi2 * force;
+                *velocity = motion.phi0 * *velocity + motion.phi1 * force;
+            }
+            *load *= tick.load_decay;
+        }
+    }
+
+    fn learn(
+        &self,
+        state: &mut LearnedState,
+        innovation: &Innovation,
+        gain: &Gain,
+        velocity: f32,
+    ) -> Shift {
+        let mut shift = Shift {
+            position: 0.0,
+            velocity: 0.0,
+            load: 0.0,
+        };
+        // At the instant of the innovation.
+        let h = state.sensitivity.map(|s| s[0] - innovation.age * s[1]);
+        let position = innovation.position + innovation.age * gain.velocity;
+        for (s, h) in state.sensitivity.iter_mut().zip(h) {
+            s[0] -= position * h;
+            s[1] -= gain.velocity * h;
+            s[2] -= gain.load * h;
+        }
+        state.waiting += innovation.gap;
+        if innovation.gap == 0.0 || velocity.abs() < self.slowest {
+            return shift;
+        }
+        for i in 0..3 {
+            let grown = state.diagonal[i] + self.walk[i] * state.waiting;
+            state.diagonal[i] = grown.min(PRIOR[i] * PRIOR[i]);
+        }
+        state.waiting = 0.0;
+        let k = bierman(
+            &mut state.upper,
+            &mut state.diagonal,
+            h,
+            CAUTION * gain.variance,
+        );
+        for i in 0..3 {
+            let limit = LARGEST[i];
+            let learned = (state.parameters[i] + k[i] * innovation.error).clamp(-limit, limit);
+            let change = learned - state.parameters[i];
+            state.parameters[i] = learned;
+            shift.position += state.sensitivity[i][0] * change;
+            shift.velocity += state.sensitivity[i][1] * change;
+            shift.load += state.sensitivity[i][2] * change;
+        }
+        shift
+    }
+}
+
+/// Bierman's update of `P = U D Uᵀ` by a measurement `h` of variance `r` > 0; returns its gain.
+fn bierman(upper: &mut [f32; 3], diagonal: &mut [f32; 3], h: [f32; 3], r: f32) -> [f32; 3] {
+    let [u01, u02, u12] = *upper;
+    let f = [h[0], h[1] + u01 * h[0], h[2] + u02 * h[0] + u12 * h[1]];
+    let g = [diagonal[0] * f[0], diagonal[1] * f[1], diagonal[2] * f[2]];
+    let a0 = r + f[0] * g[0];
+    let a1 = a0 + f[1] * g[1];
+    let a2 = a1 + f[2] * g[2];
+    let (per_a0, per_a1, per_a2) = (1.0 / a0, 1.0 / a1, 1.0 / a2);
+    diagonal[0] *= r * per_a0;
+    diagonal[1] *= a0 * per_a1;
+    diagonal[2] *= a1 * per_a2;
+    let bound = |u: f32| u.clamp(-LARGEST_SHARE, LARGEST_SHARE);
+    let ratio = f[1] * per_a0;
+    let k0 = g[0] + g[1] * u01;
+    upper[0] = bound(u01 - ratio * g[0]);
+    let ratio = f[2] * per_a1;
+    upper[1] = bound(u02 - ratio * k0);
+    upper[2] = bound(u12 - ratio * g[1]);
+    [
+        (k0 + g[2] * u02) * per_a2,
+        (g[1] + g[2] * u12) * per_a2,
+        g[2] * per_a2,
+    ]
+}

@@ -1,0 +1,122 @@
+//! The large motor over one tick, with friction that stops it inside the tick.
+
+/// The motor without its friction, discretised exactly for a drive that is constant over the tick,
+/// `β = b T / J`:
+/// ```text
+/// φ0 = exp(-β)     φ1 = (1 - φ0) / β     φ2 = (1 - φ1) / β
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    pub(super) phi0: f32,
+    pub(super) phi1: f32,
+    pub(super) phi2: f32,
+    /// β: acceleration per count a tick of slip, counts a tick².
+    pub(super) coupling: f32,
+    /// Coulomb friction, counts a tick².
+    pub(super) friction: f32,
+}
+
+/// Where a tick leads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Step {
+    /// Displacement over the tick, counts.
+    pub(super) moved: f32,
+    /// Velocity at its end, counts a tick.
+    pub(super) velocity: f32,
+    /// Mean over the tick of the direction of motion, -1 to 1: what friction acted against.
+    pub(super) direction: f32,
+    /// Whether the rotor rests at the end of the tick.
+    pub(super) stuck: bool,
+}
+
+impl Motion {
+    /// One tick from `velocity` under `drive`, everything but damping of the motor itself and
+    /// friction; both drive and `friction` in counts a tick².
+    ///
+    /// A rotor whose velocity would pass zero stops at the part `v / (v - v')` of the tick, and
+    /// stays there unless the drive overcomes friction: then it leaves with what is left of the
+    /// tick. So a reversal costs the friction of both directions, each for its part.
+    pub(super) fn step(&self, velocity: f32, drive: f32, friction: f32) -> Step {
+        let leaving = if drive > friction {
+            1.0
+        } else if drive < -friction {
+            -1.0
+        } else {
+            0.0
+        };
+        let direction = if velocity > 0.0 {
+            1.0
+        } else if velocity < 0.0 {
+            -1.0
+        } else {
+            leaving
+        };
+        let net = drive - direction * friction;
+        let end = self.phi0 * velocity + self.phi1 * net;
+        if end * direction > 0.0 {
+            return Step {
+                moved: self.phi1 * velocity + self.phi2 * net,
+                velocity: end,
+                direction,
+                stuck: false,
+            };
+        }
+        // Zero in, zero out: a resting rotor leaves this at once.
+        let part = if velocity == end {
+            0.0
+        } else {
+            velocity / (velocity - end)
+        };
+        let left = 1.0 - part;
+        let away = left * (drive - leaving * friction);
+        let away = if leaving == 0.0 { 0.0 } else { away };
+        Step {
+            moved: 0.5 * (part * velocity + left * away),
+            velocity: away,
+            direction: direction * part + leaving * left,
+            stuck: leaving == 0.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Motion, Step};
+
+    const MOTION: Motion = Motion {
+        phi0: 1.0,
+        phi1: 1.0,
+        phi2: 0.5,
+        coupling: 0.0,
+        friction: 2.0,
+    };
+
+    fn step(velocity: f32, drive: f32) -> Step {
+        MOTION.step(velocity, drive, MOTION.friction)
+    }
+
+    #[test]
+    fn friction_slows_stops_and_lets_go() {
+        // Slows: -2 a tick.
+        let slowed = step(3.0, 0.0);
+        assert_eq!((slowed.moved, slowed.velocity), (2.0, 1.0));
+        // Stops half-way: 1 / 2 of a tick at a mean of 1 / 2.
+        let stopped = step(1.0, 0.0);
+        assert_eq!((stopped.moved, stopped.velocity), (0.25, 0.0));
+        assert!(stopped.stuck && stopped.direction == 0.5);
+        // Rests under any drive up to friction, and leaves above it.
+        assert!(step(0.0, 2.0).stuck && step(0.0, -2.0).stuck);
+        let left = step(0.0, 3.0);
+        assert_eq!((left.moved, left.velocity, left.direction), (0.5, 1.0, 1.0));
+    }
+
+    #[test]
+    fn reversal_pays_friction_of_both_directions() {
+        // From 2.5 under -3: stops after half a tick at 5 a tick², leaves at 1 a tick².
+        let turned = step(2.5, -3.0);
+        assert_eq!((turned.moved, turned.velocity), (0.625 - 0.125, -0.5));
+        assert_eq!(turned.direction, 0.0);
+        let mirrored = step(-2.5, 3.0);
+        assert_eq!((mirrored.moved, mirrored.velocity), (-0.5, 0.5));
+    }
+}
