@@ -51,13 +51,15 @@ const LARGEST_FRICTION_ERROR: f32 = 0.5;
 ///            where v' would pass zero, the rotor stops and stays, or leaves again ([motion])
 /// unknown    a *= exp(-T / τ)
 /// cells      x -= counts since the last tick;  e = what x is outside ±1/2;  none: keep all
-/// correction x += e,  v += K_v[n] e,  a += (1 - ρ) K_a[n] e,  c -= ρ K_a[n] e sign(f)
+/// correction x += e,  v += K_v[n] e,  a += (1 - ρ) K_a[n] e,  c -= ρ K_a[n] e d
 /// ```
 /// n is the number of ticks since the last correction, and K\[n\] the steady gain of the filter
 /// that is corrected once every n ticks: 64 rows from the Riccati recursion, at compile time. So
 /// there is no covariance at run time and nothing that could lose its definiteness. i_mean is the
 /// current behind the amplifier's lag, Δ_S the handle's displacement (an exact integral of its
-/// velocity), ρ the share of the unknown torque that is taken for friction. c is within half of
+/// velocity), ρ the share of the unknown torque that is taken for friction, d the mean direction of
+/// the last 8 ms (at rest, that of the drive), because an innovation is what went wrong over some
+/// time: the direction of the moment would make a fast vibration teach a wrong friction. c is within half of
 /// the friction believed in.
 ///
 /// What a device lacks is left out by type: [`held`](Self::held) without the small encoder,
@@ -89,6 +91,7 @@ pub struct Observer<C, S, M, L> {
     correction: M,
     learning: L,
     load_decay: f32,
+    way_pole: f32,
     friction_share: f32,
     gains: [Gain; ROWS],
 }
@@ -102,6 +105,8 @@ pub struct ObserverState<C, S, M, L> {
     /// Unknown torque, counts a tick²: what pushes, and what rubs.
     load: f32,
     rub: f32,
+    /// Recent mean of what friction acts against, -1 to 1.
+    way: f32,
     current: C,
     slip: S,
     correction: M,
@@ -140,6 +145,7 @@ where
             velocity: 0.0,
             load: 0.0,
             rub: 0.0,
+            way: 0.0,
             current: self.current.start(first),
             slip: self.slip.start(first),
             correction: self.correction.start(),
@@ -170,6 +176,14 @@ where
         );
         state.load *= self.load_decay;
         state.velocity = step.velocity;
+        // What friction acts against: the motion, or at rest what would move the rotor.
+        let way = match step.stuck {
+            true if drive > 0.0 => 1.0,
+            true if drive < 0.0 => -1.0,
+            true => 0.0,
+            false => step.direction,
+        };
+        state.way = way + self.way_pole * (state.way - way);
 
         let counts = (sample.large - state.anchor).to_f32();
         state.anchor = sample.large;
@@ -195,17 +209,8 @@ where
             let unknown = gain.load * error;
             let rubbing = self.friction_share * unknown;
             state.load += unknown - rubbing;
-            // What friction acts against: the motion, or at rest what would move the rotor.
-            let way = if step.stuck { drive } else { step.velocity };
             let limit = LARGEST_FRICTION_ERROR * self.motion.friction;
-            let rub = if way < 0.0 {
-                state.rub + rubbing
-            } else if way > 0.0 {
-                state.rub - rubbing
-            } else {
-                state.rub
-            };
-            state.rub = rub.clamp(-limit, limit);
+            state.rub = (state.rub - rubbing * state.way).clamp(-limit, limit);
             let shift = self
                 .learning
                 .learn(&mut state.learning, &innovation, gain, state.velocity);

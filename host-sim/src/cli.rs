@@ -9,6 +9,7 @@ mod plot;
 mod record;
 mod replay;
 mod robust;
+mod sensitivity;
 mod simulate;
 mod tune;
 mod zwidth;
@@ -44,6 +45,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Some(Command::Identify(options)) => identify::run(&options),
         Some(Command::Simulate(options)) => simulate::run(&options),
         Some(Command::Tune(options)) => tune::run(&options, &command_line),
+        Some(Command::Sensitivity(options)) => sensitivity::run(&options, &command_line),
         Some(Command::Zwidth(options)) => zwidth::run(&options, &command_line),
         Some(Command::Robust(options)) => robust::run(&options),
         Some(Command::Merge(options)) => robust::merge(&options),

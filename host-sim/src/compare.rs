@@ -93,6 +93,20 @@ pub fn setup(device: &Device, rate_hz: f64) -> Setup {
             damping: device.coupler.damping_nms_per_rad,
             torque_constant: device.large.torque_constant_nm_per_a,
         },
+        friction_nm: device.large.coulomb_nm,
+        amplifier_lag_s: 1.0 / (std::f64::consts::TAU * device.amplifier.bandwidth_hz),
+        small_counts_per_rev: device.small.counts_per_rev,
+    }
+}
+
+/// The device of a case as estimators see it: of a plant without friction, they know that.
+#[must_use]
+pub fn setup_of(case: &Case, device: &Device) -> Setup {
+    let setup = setup(device, case.rate_hz);
+    if case.plant == PlantKind::Frictionless || case.scenario.linear_plant() {
+        setup.frictionless()
+    } else {
+        setup
     }
 }
 
@@ -134,12 +148,7 @@ fn run(case: &Case, settings: &Settings) -> Result<Outcome, Failure> {
         parameters,
         wanted,
     } = settings;
-    let contest = Contest::new(
-        estimators,
-        parameters,
-        &setup(device, case.rate_hz),
-        case.plant,
-    )?;
+    let contest = Contest::new(estimators, parameters, &setup_of(case, device), case.plant)?;
     let begin = Instant::now();
     let trace = trace(case, device, estimators)?;
     let simulated = Instant::now();

@@ -1,9 +1,10 @@
 //! Every estimator by name, with its parameters.
 
 mod build;
+mod observers;
 mod run;
 
-use estimator_core::{Device, Hertz, Signals};
+use estimator_core::{Device, DualStage, Hertz, Signals};
 
 pub use run::{EDGE_CLOCK_HZ, Estimator, State, available};
 
@@ -60,6 +61,34 @@ pub struct Setup {
     pub rate: Hertz,
     /// The large motor as the estimators believe it to be.
     pub device: Device,
+    /// Its Coulomb friction, N.m.
+    pub friction_nm: f64,
+    /// Time constant of its amplifier, s.
+    pub amplifier_lag_s: f64,
+    /// Counts per revolution of the small encoder.
+    pub small_counts_per_rev: u32,
+}
+
+impl Setup {
+    /// All that the estimators believe of the device.
+    #[must_use]
+    pub fn stages(&self) -> DualStage {
+        DualStage {
+            large: self.device,
+            coulomb_friction: self.friction_nm,
+            amplifier_lag: self.amplifier_lag_s,
+            small_counts_per_rev: self.small_counts_per_rev,
+        }
+    }
+
+    /// The same without friction.
+    #[must_use]
+    pub fn frictionless(self) -> Self {
+        Self {
+            friction_nm: 0.0,
+            ..self
+        }
+    }
 }
 
 /// Values of a kind's parameters, in the order of [`Kind::parameters`].
@@ -69,7 +98,21 @@ impl Kind {
     /// All kinds, in the order in which they are shown.
     #[must_use]
     pub fn all() -> &'static [Self] {
-        build::KINDS
+        const COUNT: usize = build::KINDS.len() + observers::KINDS.len();
+        static ALL: [Kind; COUNT] = {
+            let mut all = [build::KINDS[0]; COUNT];
+            let mut i = 0;
+            while i < COUNT {
+                all[i] = if i < build::KINDS.len() {
+                    build::KINDS[i]
+                } else {
+                    observers::KINDS[i - build::KINDS.len()]
+                };
+                i += 1;
+            }
+            all
+        };
+        &ALL
     }
 
     /// The kind called `name`.

@@ -4,6 +4,7 @@
 //! Estimators come from `estimator-core` and see only what a controller board would see: counts,
 //! the applied current, edge time stamps. Truth goes to the scores alone.
 
+pub mod belief;
 pub mod cli;
 pub mod closed_loop;
 pub mod compare;
@@ -25,6 +26,7 @@ pub mod robust;
 pub mod rows;
 pub mod scenario;
 pub mod score;
+pub mod sensitivity;
 pub mod simulate;
 pub mod spectrum;
 pub mod table;

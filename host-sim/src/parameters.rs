@@ -230,6 +230,9 @@ mod tests {
         Setup {
             rate: Hertz(rate),
             device: Device::DCX35L,
+            friction_nm: 4e-3,
+            amplifier_lag_s: 80e-6,
+            small_counts_per_rev: 20_000,
         }
     }
 

@@ -20,6 +20,7 @@ mod recording;
 mod robust;
 mod score_tables;
 mod sections;
+mod sensitivity;
 mod spectra;
 mod tables;
 mod text;
@@ -27,6 +28,8 @@ mod velocity;
 mod verdict;
 mod windows;
 mod zwidth;
+
+pub use sensitivity::sensitivity;
 
 pub use zwidth::zwidth;
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
+use crate::belief::Belief;
 use crate::compare::{Case, interval, setup, trace};
 use crate::device::Device;
 use crate::estimators::{Kind, Parameter, Search, Setup, Values};
@@ -37,6 +38,8 @@ pub struct Ground {
     pub seeds: u64,
     /// Duration of each run, s.
     pub seconds: f64,
+    /// What the estimators believe wrongly, in turn, besides being right.
+    pub beliefs: Vec<Belief>,
 }
 
 /// Tunes `kinds`, all of them tunable, at one rate on one plant.
@@ -86,9 +89,14 @@ pub fn tune(
         })
         .collect::<Result<Vec<_>, String>>()?;
 
-    let setup = setup(&ground.device, rate_hz);
+    let setup = match plant {
+        PlantKind::Friction => setup(&ground.device, rate_hz),
+        PlantKind::Frictionless => setup(&ground.device, rate_hz).frictionless(),
+    };
+    let wrong = ground.beliefs.iter().map(|belief| belief.of(&setup));
+    let setups: Vec<_> = std::iter::once(setup).chain(wrong).collect();
     let tune = |&kind: &&'static Kind| {
-        let best = best_values(kind, &setup, &tracks);
+        let best = best_values(kind, &setups, &tracks);
         done();
         let names = kind.parameters.iter().map(|p| p.name.to_owned());
         (
@@ -103,24 +111,29 @@ pub fn tune(
     })
 }
 
-fn best_values(kind: &Kind, setup: &Setup, tracks: &[(&Trace, Truth)]) -> Values {
+fn best_values(kind: &Kind, setups: &[Setup], tracks: &[(&Trace, Truth)]) -> Values {
     let mut axes: Vec<_> = kind
         .parameters
         .iter()
-        .map(|p| first_grid(p, setup))
+        .map(|p| first_grid(p, &setups[0]))
         .collect();
-    let mut best = evaluate(kind, setup, tracks, &axes);
+    let mut best = evaluate(kind, setups, tracks, &axes);
     for _ in 0..REFINEMENTS {
         for ((axis, parameter), value) in axes.iter_mut().zip(kind.parameters).zip(&best) {
             *axis = finer(parameter, axis, *value);
         }
-        best = evaluate(kind, setup, tracks, &axes);
+        best = evaluate(kind, setups, tracks, &axes);
     }
     best
 }
 
 /// The best point of the grid spanned by `axes`.
-fn evaluate(kind: &Kind, setup: &Setup, tracks: &[(&Trace, Truth)], axes: &[Vec<f64>]) -> Values {
+fn evaluate(
+    kind: &Kind,
+    setups: &[Setup],
+    tracks: &[(&Trace, Truth)],
+    axes: &[Vec<f64>],
+) -> Values {
     let mut points = vec![Vec::new()];
     for axis in axes {
         points = points
@@ -133,7 +146,7 @@ fn evaluate(kind: &Kind, setup: &Setup, tracks: &[(&Trace, Truth)], axes: &[Vec<
     }
     points
         .into_par_iter()
-        .map(|point| (cost(kind, setup, tracks, &point), point))
+        .map(|point| (mean_cost(kind, setups, tracks, &point), point))
         // Equal costs go to the earlier point, so that the result does not depend on threads.
         .min_by(|(a, p), (b, q)| a.total_cmp(b).then_with(|| compare_points(p, q)))
         .map(|(_, point)| point)
@@ -146,6 +159,11 @@ fn compare_points(p: &Values, q: &Values) -> std::cmp::Ordering {
         .into_iter()
         .find(|o| o.is_ne())
         .unwrap_or(std::cmp::Ordering::Equal)
+}
+
+fn mean_cost(kind: &Kind, setups: &[Setup], tracks: &[(&Trace, Truth)], values: &Values) -> f64 {
+    let costs = setups.iter().map(|setup| cost(kind, setup, tracks, values));
+    costs.sum::<f64>() / setups.len() as f64
 }
 
 /// Infinite for parameters that the design refuses.

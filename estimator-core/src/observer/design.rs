@@ -7,6 +7,7 @@ use super::motion::Motion;
 use super::{Observer, ROWS};
 use crate::const_math::{exp, phi1, phi2};
 use crate::design_error::DesignError;
+use crate::device::Device;
 use crate::dual_stage::DualStage;
 use crate::edge_clock::EdgeClock;
 use crate::riccati;
@@ -28,6 +29,10 @@ pub struct Uncertainty {
     /// the model.
     pub boundary_noise: f64,
 }
+
+/// Time over which the direction of motion is averaged to tell friction from what pushes, s: an
+/// innovation shows what went wrong over about the time since the last few.
+const WAY_TIME: f64 = 8e-3;
 
 impl Uncertainty {
     const fn is_sane(&self) -> bool {
@@ -105,6 +110,7 @@ impl Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed> {
             correction: Cells,
             learning: Fixed,
             load_decay: decay as f32,
+            way_pole: exp(-(t / WAY_TIME).min(700.0)) as f32,
             friction_share: share as f32,
             gains,
         })
@@ -174,28 +180,55 @@ impl<M: Copy, L: Copy> Observer<AmplifierCurrent, SmallEncoder, M, L> {
             correction: self.correction,
             learning: self.learning,
             load_decay: self.load_decay,
+            way_pole: self.way_pole,
             friction_share: self.friction_share,
             gains: self.gains,
         }
     }
+}
 
-    /// The same for a device that measures no current either. What it does not know of the torque
-    /// is then all of it: friction is in the unknown torque too, which wants to be large and fast.
-    #[must_use]
-    pub const fn blind(self) -> Observer<NoCurrent, HeldHandle, M, L> {
-        Observer {
-            motion: Motion {
-                friction: 0.0,
-                ..self.motion
+impl Observer<NoCurrent, HeldHandle, Edges, Fixed> {
+    /// The observer of a device that measures no current, by edge time stamps of this clock.
+    ///
+    /// Damping and friction answer to a current: here they are in the unknown torque too, which
+    /// wants to be large. Counts alone say too little for that; for them there is
+    /// [`KalmanTriple`](crate::KalmanTriple).
+    ///
+    /// # Errors
+    /// As [`Observer::new`] and [`Observer::with_edges`].
+    pub const fn blind(
+        device: &DualStage,
+        rate: Hertz,
+        clock: Hertz,
+        uncertainty: &Uncertainty,
+    ) -> Result<Self, DesignError> {
+        let unknown = DualStage {
+            large: Device {
+                damping: 0.0,
+                ..device.large
             },
+            coulomb_friction: 0.0,
+            ..*device
+        };
+        let known = match Observer::new(&unknown, rate, uncertainty) {
+            Ok(known) => known,
+            Err(error) => return Err(error),
+        };
+        let clock = match EdgeClock::new(clock, rate) {
+            Ok(clock) => clock,
+            Err(error) => return Err(error),
+        };
+        Ok(Self {
+            motion: known.motion,
             current: NoCurrent,
             slip: HeldHandle,
-            correction: self.correction,
-            learning: self.learning,
-            load_decay: self.load_decay,
+            correction: Edges { clock },
+            learning: Fixed,
+            load_decay: known.load_decay,
+            way_pole: known.way_pole,
             friction_share: 0.0,
-            gains: self.gains,
-        }
+            gains: known.gains,
+        })
     }
 }
 
@@ -220,6 +253,7 @@ impl<C: Copy, S: Copy, L: Copy> Observer<C, S, Cells, L> {
             correction: Edges { clock },
             learning: self.learning,
             load_decay: self.load_decay,
+            way_pole: self.way_pole,
             friction_share: self.friction_share,
             gains: self.gains,
         })
@@ -249,6 +283,7 @@ impl<C: Copy, S: Copy, M: Copy> Observer<C, S, M, Fixed> {
             correction: self.correction,
             learning,
             load_decay: self.load_decay,
+            way_pole: self.way_pole,
             friction_share: self.friction_share,
             gains: self.gains,
         })

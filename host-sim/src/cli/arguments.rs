@@ -38,6 +38,8 @@ pub(super) enum Command {
     Simulate(super::simulate::Simulate),
     /// Search the estimators' parameters on tuning seeds and write them to a file
     Tune(Tune),
+    /// Run estimators that believe in wrong constants of the device, and say what it costs them
+    Sensitivity(Sensitivity),
     /// Find the stiffest wall and the strongest damping that stay passive and free of limit cycles
     Zwidth(Zwidth),
     /// Close the loop on devices that differ from what the controller believes, and judge each run
@@ -101,6 +103,36 @@ pub(super) struct Compare {
     /// Say on standard error where the time went
     #[arg(long)]
     pub(super) timing: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Sensitivity {
+    /// Scenario to run; repeatable [default: all with friction but heating]
+    #[arg(long = "scenario", value_name = "NAME")]
+    pub(super) scenarios: Vec<String>,
+    /// Control rate, 100 to 100000 Hz; repeatable [default: 1000]
+    #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
+    pub(super) rates: Vec<f64>,
+    /// Estimator to run; repeatable [default: all]
+    #[arg(long = "estimator", value_name = "NAME")]
+    pub(super) estimators: Vec<String>,
+    /// Seed of everything random; repeatable [default: 1]
+    #[arg(long = "seed", value_name = "N")]
+    pub(super) seeds: Vec<u64>,
+    /// Duration of each run, s [default: 10]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(super) seconds: Option<f64>,
+    #[command(flatten)]
+    pub(super) device: DeviceFile,
+    #[command(flatten)]
+    pub(super) parameters: ParameterOptions,
+    /// Folder for index.html, its figures as SVG, sensitivity.csv, sensitivity.json [default:
+    /// target/sensitivity; with --json - none]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Write the scores as JSON to FILE, or with - to standard output and nothing else there
+    #[arg(long, value_name = "FILE")]
+    pub(super) json: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -170,6 +202,9 @@ pub(super) struct Plot {
 
 #[derive(Debug, Args)]
 pub(super) struct Tune {
+    /// Take the mean over right and wrong beliefs in the device, as sensitivity tries them
+    #[arg(long)]
+    pub(super) doubting: bool,
     /// Scenario to tune on; repeatable [default: step, permanent, track]
     #[arg(long = "scenario", value_name = "NAME")]
     pub(super) scenarios: Vec<String>,

@@ -1,5 +1,6 @@
 //! `host-sim tune`.
 
+use crate::belief::Belief;
 use crate::failure::Failure;
 use crate::output::{print_bytes, write_whole};
 use crate::parameters::{PlantKind, Presets};
@@ -27,6 +28,10 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
         scenarios: scenarios(&options.scenarios, &[Step, Permanent, Track])?,
         seeds: options.seeds,
         seconds: options.seconds,
+        beliefs: match options.doubting {
+            true => Belief::extremes(),
+            false => Vec::new(),
+        },
     };
     let rates = rates(&options.rates, &[1e3, 10e3, 11.6e3]);
     for &rate in &rates {

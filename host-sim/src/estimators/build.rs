@@ -185,6 +185,6 @@ fn triple(
     Model::triple_integrator(setup.device.counts_per_rev, setup.rate, values[0])
 }
 
-fn scale(setup: &Setup) -> Result<Scale, DesignError> {
+pub(super) fn scale(setup: &Setup) -> Result<Scale, DesignError> {
     Scale::new(setup.device.counts_per_rev, setup.rate)
 }

@@ -1,0 +1,91 @@
+//! `host-sim sensitivity`.
+
+use std::path::Path;
+
+use crate::compare::{Case, Settings};
+use crate::failure::Failure;
+use crate::output::{print_bytes, write_whole};
+use crate::parameters::PlantKind;
+use crate::scenario::ScenarioName;
+use crate::score::Wanted;
+use crate::sensitivity::{COLUMNS, sensitivity, table::table};
+use crate::{report, rows};
+
+use super::arguments::{Sensitivity, is_stdout, kinds, rates, scenarios};
+use super::compare::progress;
+
+/// Where the page goes unless told otherwise.
+const PAGE: &str = "target/sensitivity";
+
+/// Everything that has friction.
+const SCENARIOS: [ScenarioName; 8] = {
+    use ScenarioName::{Creep, FreeAir, Hold, Permanent, Step, Texture, Track, Wall};
+    [Step, Permanent, Track, FreeAir, Wall, Texture, Creep, Hold]
+};
+
+pub(super) fn run(options: &Sensitivity, command_line: &str) -> Result<(), Failure> {
+    let settings = Settings {
+        device: options.device.load()?,
+        estimators: kinds(&options.estimators)?,
+        parameters: options.parameters.load()?,
+        wanted: Wanted::NONE,
+    };
+    let cases = cases(options)?;
+    let bar = progress(cases.len(), "running");
+    let rows = sensitivity(&cases, &settings, || bar.inc(1))?;
+    bar.finish_and_clear();
+
+    let json = rows::json(&rows)?;
+    let json_on_stdout = options.json.as_deref().is_some_and(is_stdout);
+    let folder = match &options.out {
+        Some(folder) => Some(folder.as_path()),
+        None if json_on_stdout => None,
+        None => Some(Path::new(PAGE)),
+    };
+    let mut text = table(&rows);
+    if let Some(folder) = folder {
+        let page = report::sensitivity(&rows, &text, &options.device.name(), command_line)?;
+        write_whole(&folder.join("sensitivity.json"), &json)?;
+        write_whole(&folder.join("sensitivity.csv"), &rows::csv(&rows, COLUMNS)?)?;
+        for (i, figure) in report::figures(&page).enumerate() {
+            let name = format!("figures/{:02}.svg", i + 1);
+            write_whole(&folder.join(name), figure.as_bytes())?;
+        }
+        let index = folder.join("index.html");
+        write_whole(&index, page.as_bytes())?;
+        text.push_str(&format!("\nPage: {}\n", index.display()));
+    }
+    match &options.json {
+        Some(_) if json_on_stdout => return print_bytes(&json),
+        Some(path) => write_whole(path, &json)?,
+        None => {}
+    }
+    print_bytes(text.as_bytes())
+}
+
+fn cases(options: &Sensitivity) -> Result<Vec<Case>, Failure> {
+    let scenarios = scenarios(&options.scenarios, &SCENARIOS)?;
+    let seeds = if options.seeds.is_empty() {
+        vec![1]
+    } else {
+        options.seeds.clone()
+    };
+    let mut cases = Vec::new();
+    for rate_hz in rates(&options.rates, &[1e3]) {
+        for &scenario in &scenarios {
+            let seconds = options
+                .seconds
+                .unwrap_or_else(|| scenario.default_seconds());
+            crate::simulate::ticks(rate_hz, seconds)?;
+            cases.extend(seeds.iter().map(|&seed| Case {
+                scenario,
+                rate_hz,
+                plant: PlantKind::Friction,
+                seed,
+                seconds,
+                keep: false,
+            }));
+        }
+    }
+    Ok(cases)
+}
