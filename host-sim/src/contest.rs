@@ -31,9 +31,17 @@ pub struct Row {
     pub percent: Percent,
     /// Mean distance of finite difference on the same samples, rad/s: what the % are of.
     pub difference_distance_rad_s: Option<f64>,
+    /// Damping b that the estimator learned, mean of the run's last tenth, N.m.s/rad; `null` for
+    /// one that learns none.
+    pub learned_damping_nms_per_rad: Option<f64>,
+    /// RMS error of that damping after the first [`LEARNING_S`], % of the true one.
+    pub learned_damping_pct: Option<f64>,
     /// Parameters it ran with.
     pub parameters: BTreeMap<&'static str, f64>,
 }
+
+/// Start of a run that no score of the learned damping looks at, s.
+pub const LEARNING_S: f64 = 3.0;
 
 /// What the rows of one trace have in common.
 #[derive(Clone, Debug)]
@@ -107,6 +115,7 @@ impl Contestant {
 pub struct Contest {
     contestants: Vec<Contestant>,
     difference: Contestant,
+    believed_damping: f64,
 }
 
 impl Contest {
@@ -127,6 +136,7 @@ impl Contest {
                 .map(|&kind| new(kind))
                 .collect::<Result<_, _>>()?,
             difference: new(Kind::named("finite-difference")?)?,
+            believed_damping: setup.device.damping,
         })
     }
 
@@ -170,22 +180,53 @@ impl Contest {
                 || truth.score(&self.difference.estimator.run(trace)),
                 |i| scores[i],
             );
-        let row = |(estimate, &score): (&Estimate, &Score)| Row {
-            scenario: heading.scenario.clone(),
-            rate_hz: heading.rate_hz,
-            plant: heading.plant,
-            seed: heading.seed,
-            estimator: estimate.estimator,
-            score,
-            percent: percent_of(&score, &reference),
-            difference_distance_rad_s: reference.distance_rad_s,
-            parameters: self
-                .contestants
-                .iter()
-                .find(|c| c.kind.name == estimate.estimator)
-                .map(Contestant::named_values)
-                .unwrap_or_default(),
+        let contestant = |name| self.contestants.iter().find(|c| c.kind.name == name);
+        let row = |(estimate, &score): (&Estimate, &Score)| {
+            let damping =
+                contestant(estimate.estimator).and_then(|c| self.learned_damping(c, trace));
+            Row {
+                scenario: heading.scenario.clone(),
+                rate_hz: heading.rate_hz,
+                plant: heading.plant,
+                seed: heading.seed,
+                estimator: estimate.estimator,
+                score,
+                percent: percent_of(&score, &reference),
+                difference_distance_rad_s: reference.distance_rad_s,
+                learned_damping_nms_per_rad: damping.as_deref().map(last_tenth),
+                learned_damping_pct: damping.as_deref().and_then(|b| damping_error(b, trace)),
+                parameters: contestant(estimate.estimator)
+                    .map(Contestant::named_values)
+                    .unwrap_or_default(),
+            }
         };
         Ok(estimates.iter().zip(&scores).map(row).collect())
     }
+
+    /// Damping b at each tick of `trace`, N.m.s/rad, as `contestant` learns it.
+    #[must_use]
+    pub fn learned_damping(&self, contestant: &Contestant, trace: &Trace) -> Option<Vec<f64>> {
+        let ratios = contestant.estimator.damping_ratio(trace)?;
+        let believed = self.believed_damping;
+        Some(ratios.iter().map(|&b| believed * f64::from(b)).collect())
+    }
+}
+
+fn last_tenth(values: &[f64]) -> f64 {
+    let last = &values[values.len() - values.len().div_ceil(10)..];
+    last.iter().sum::<f64>() / last.len() as f64
+}
+
+/// RMS error in % of the true damping; `None` where that is not known or the run too short.
+fn damping_error(learned: &[f64], trace: &Trace) -> Option<f64> {
+    let truth = trace.true_damping.as_ref()?;
+    let skip = (LEARNING_S * trace.rate_hz) as usize;
+    let errors: Vec<_> = learned
+        .iter()
+        .zip(truth)
+        .skip(skip)
+        .map(|(learned, truth)| (learned / truth - 1.0).powi(2))
+        .collect();
+    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+    (!errors.is_empty()).then(|| 100.0 * mean.sqrt())
 }

@@ -285,6 +285,7 @@ impl Columns {
                 current: at.current.is_some().then_some(self.current),
                 edges: at.edge.is_some().then_some(self.edges),
                 true_omega: at.true_omega.is_some().then_some(self.true_omega),
+                true_damping: None,
             },
         })
     }

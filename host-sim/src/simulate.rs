@@ -211,7 +211,8 @@ impl Run {
 
     fn record<S: Stamps>(mut self, ticks: usize, mut stamps: S) -> Trace {
         let column = || Vec::with_capacity(ticks);
-        let (mut counts, mut current, mut omega) = (Vec::with_capacity(ticks), column(), column());
+        let (mut counts, mut current) = (Vec::with_capacity(ticks), column());
+        let (mut omega, mut damping) = (column(), column());
         let mut counts_small = self.keep_small.then(|| Vec::with_capacity(ticks));
         let mut edges = S::column(ticks);
         for k in 0..ticks {
@@ -224,7 +225,8 @@ impl Run {
             if let Some(column) = &mut edges {
                 column.push(stamps.read(t));
             }
-            self.tick(k as u64, self.seen(), t, &mut stamps);
+            let drive = self.tick(k as u64, self.seen(), t, &mut stamps);
+            damping.push(self.damping * drive.damping_part);
             current.push(self.plant.commands().0);
         }
         Trace {
@@ -234,6 +236,7 @@ impl Run {
             current: Some(current),
             edges,
             true_omega: Some(omega),
+            true_damping: Some(damping),
         }
     }
 

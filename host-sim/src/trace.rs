@@ -26,6 +26,8 @@ pub struct Trace {
     pub edges: Option<Vec<Option<EdgeStamp>>>,
     /// True velocity of the large motor at each tick, rad/s: for scores only.
     pub true_omega: Option<Vec<f64>>,
+    /// True damping of the coupler from each tick to the next, N.m.s/rad: for scores only.
+    pub true_damping: Option<Vec<f64>>,
 }
 
 impl Trace {

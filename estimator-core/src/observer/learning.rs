@@ -18,6 +18,15 @@ pub struct Deviations {
     pub torque_constant: f32,
 }
 
+impl Deviations {
+    /// The coupler's damping over what was believed, if the torque constant is as believed: the
+    /// inertia, which is known worse and in both, cancels.
+    #[must_use]
+    pub fn damping_ratio(&self) -> f32 {
+        (1.0 + self.damping) / (1.0 + self.torque_constant)
+    }
+}
+
 /// Position, velocity and unknown torque, as a correction changes them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shift {

@@ -2,12 +2,11 @@
 
 use estimator_core::{
     AmplifierCurrent, Cells, Correction, CurrentSource, DesignError, Edges, Fixed, HeldHandle,
-    Hertz, Learned, Learning, MOverT, NoCurrent, Observer, Signals, SlipSource, SmallEncoder,
-    Uncertainty,
+    Hertz, Learning, MOverT, NoCurrent, Observer, Signals, SlipSource, SmallEncoder, Uncertainty,
 };
 
 use super::build::scale;
-use super::run::{EDGE_CLOCK_HZ, Estimator, erased};
+use super::run::{EDGE_CLOCK_HZ, Estimator, erased, learner};
 use super::{Kind, Parameter, Search, Setup, Values};
 
 const TORQUE_NOISE: Parameter = Parameter {
@@ -129,14 +128,14 @@ pub(super) const KINDS: &[Kind] = &[
         summary: "observer that learns damping, friction and torque constant per inertia",
         needs: CURRENT_AND_SLIP,
         parameters: PARAMETERS,
-        build: |setup, values| built(learning(counts(setup, values)?, setup)?, setup),
+        build: |setup, values| learning(counts(setup, values)?, setup),
     },
     Kind {
         name: "adaptive-edge",
         summary: "the same with edge time stamps",
         needs: CURRENT_AND_SLIP.and(EDGE),
         parameters: WITH_EDGES,
-        build: |setup, values| built(learning(edges(setup, values)?, setup)?, setup),
+        build: |setup, values| learning(edges(setup, values)?, setup),
     },
     Kind {
         name: "observer-held",
@@ -196,11 +195,14 @@ fn edges(setup: &Setup, values: &Values) -> Result<Known<Edges, Fixed>, DesignEr
     counts(setup, values)?.with_edges(Hertz(EDGE_CLOCK_HZ), setup.rate)
 }
 
-fn learning<M: Copy>(
-    observer: Known<M, Fixed>,
-    setup: &Setup,
-) -> Result<Known<M, Learned>, DesignError> {
-    observer.learning(setup.device.counts_per_rev, setup.rate)
+fn learning<M>(observer: Known<M, Fixed>, setup: &Setup) -> Result<Estimator, DesignError>
+where
+    M: Correction<State: Send> + Send + Sync + 'static,
+{
+    let observer = observer.learning(setup.device.counts_per_rev, setup.rate)?;
+    Ok(learner(observer, scale(setup)?, |observer, state| {
+        observer.deviations(state).damping_ratio()
+    }))
 }
 
 fn built<C, S, M, L>(

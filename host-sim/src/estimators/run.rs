@@ -24,6 +24,13 @@ impl Estimator {
     pub fn run(&self, trace: &Trace) -> Vec<f32> {
         self.0.run(trace)
     }
+
+    /// The coupler's damping at each tick of a trace over what is believed, as the estimator
+    /// learns it; `None` from one that does not.
+    #[must_use]
+    pub fn damping_ratio(&self, trace: &Trace) -> Option<Vec<f32>> {
+        self.0.damping_ratio(trace)
+    }
 }
 
 /// A tick at a time: the type that a control loop takes.
@@ -112,22 +119,34 @@ impl<S: Clone + PartialEq + Send + 'static> ErasedState for S {
 
 trait Erased: Send + Sync {
     fn run(&self, trace: &Trace) -> Vec<f32>;
+    fn damping_ratio(&self, trace: &Trace) -> Option<Vec<f32>>;
     fn start(&self, first: &Sample) -> State;
     fn update(&self, state: &mut State, sample: &Sample) -> CountsPerTick;
 }
 
 /// An estimator with what its counts are worth.
-struct Scaled<E> {
+struct Scaled<E: VelocityEstimator> {
     estimator: E,
     scale: Scale,
+    damping_ratio: Option<DampingRatio<E>>,
 }
+
+/// What a state says of the damping.
+pub(super) type DampingRatio<E> = fn(&E, &<E as VelocityEstimator>::State) -> f32;
 
 impl<E> Erased for Scaled<E>
 where
     E: VelocityEstimator<Output = CountsPerTick, State: Send + 'static> + Send + Sync,
 {
     fn run(&self, trace: &Trace) -> Vec<f32> {
-        run(&self.estimator, trace, &self.scale)
+        velocities(&self.estimator, trace, &self.scale)
+    }
+
+    fn damping_ratio(&self, trace: &Trace) -> Option<Vec<f32>> {
+        let damping_ratio = self.damping_ratio?;
+        Some(run(&self.estimator, trace, 1.0, |state, _| {
+            damping_ratio(&self.estimator, state)
+        }))
     }
 
     fn start(&self, first: &Sample) -> State {
@@ -161,24 +180,54 @@ pub(super) fn erased<E>(estimator: E, scale: Scale) -> Estimator
 where
     E: VelocityEstimator<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
 {
-    Estimator(Arc::new(Scaled { estimator, scale }))
+    Estimator(Arc::new(Scaled {
+        estimator,
+        scale,
+        damping_ratio: None,
+    }))
 }
 
-fn run<E>(estimator: &E, trace: &Trace, scale: &Scale) -> Vec<f32>
+/// The same for one that learns the coupler's damping.
+pub(super) fn learner<E>(estimator: E, scale: Scale, damping_ratio: DampingRatio<E>) -> Estimator
+where
+    E: VelocityEstimator<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
+{
+    Estimator(Arc::new(Scaled {
+        estimator,
+        scale,
+        damping_ratio: Some(damping_ratio),
+    }))
+}
+
+fn velocities<E>(estimator: &E, trace: &Trace, scale: &Scale) -> Vec<f32>
 where
     E: VelocityEstimator<Output = CountsPerTick>,
 {
-    let mut velocities = vec![0.0; trace.len()];
+    run(estimator, trace, 0.0, |_, velocity| {
+        velocity.rad_per_s(scale)
+    })
+}
+
+/// What `read` says after each tick; the first tick only starts the estimator and reads `first`.
+fn run<E>(
+    estimator: &E,
+    trace: &Trace,
+    first: f32,
+    read: impl Fn(&E::State, CountsPerTick) -> f32,
+) -> Vec<f32>
+where
+    E: VelocityEstimator<Output = CountsPerTick>,
+{
+    let mut values = vec![first; trace.len()];
     let mut state = match trace.is_empty() {
-        true => return velocities,
+        true => return values,
         false => estimator.start(&sample(E::NEEDS, trace, 0)),
     };
-    for (k, velocity) in velocities.iter_mut().enumerate().skip(1) {
-        *velocity = estimator
-            .update(&mut state, &sample(E::NEEDS, trace, k))
-            .rad_per_s(scale);
+    for (k, value) in values.iter_mut().enumerate().skip(1) {
+        let velocity = estimator.update(&mut state, &sample(E::NEEDS, trace, k));
+        *value = read(&state, velocity);
     }
-    velocities
+    values
 }
 
 /// What the estimator may know at tick `k`: `needs` is a constant where this is inlined, so
@@ -249,6 +298,6 @@ mod tests {
         let unit = Scale {
             rad_per_s_per_count_per_tick: 1.0,
         };
-        assert_eq!(run(&Spy, &trace, &unit), [0.0, 101.0, 1202.0]);
+        assert_eq!(velocities(&Spy, &trace, &unit), [0.0, 101.0, 1202.0]);
     }
 }

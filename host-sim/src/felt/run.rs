@@ -215,6 +215,7 @@ impl Seen {
                 current: Some(Vec::with_capacity(prepared.ticks)),
                 edges: None,
                 true_omega: Some(Vec::with_capacity(prepared.ticks)),
+                true_damping: None,
             },
             used: Vec::with_capacity(prepared.ticks),
             parasitic_mn: Vec::with_capacity(prepared.ticks),
