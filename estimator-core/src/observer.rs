@@ -113,6 +113,14 @@ pub struct ObserverState<C, S, M, L> {
     learning: L,
 }
 
+impl<C, S, M, L> ObserverState<C, S, M, L> {
+    /// What is carried of the parameters.
+    #[must_use]
+    pub const fn learning(&self) -> &L {
+        &self.learning
+    }
+}
+
 impl<C, S, M, L: Learning> Observer<C, S, M, L> {
     /// What the observer has learned of its parameters.
     #[must_use]

@@ -1,5 +1,6 @@
 //! How counts, with or without time stamps, correct an observer.
 
+use super::ROWS;
 use super::design::Gain;
 use crate::edge_clock::EdgeClock;
 use crate::sample::{Sample, Signals};
@@ -45,7 +46,7 @@ pub trait Correction: Copy {
         state: &mut Self::State,
         path: Path,
         sample: &Sample,
-        gains: &[Gain],
+        gains: &[Gain; ROWS],
     ) -> Option<Innovation>;
 }
 
@@ -66,9 +67,9 @@ fn excess(position: f32) -> f32 {
 }
 
 /// The table's row for a gap of this many ticks.
-fn row(gap: f32, rows: usize) -> usize {
+fn row(gap: f32) -> usize {
     // A float-to-integer cast saturates.
-    ((gap + 0.5) as usize).clamp(1, rows) - 1
+    ((gap - 0.5) as usize).min(ROWS - 1)
 }
 
 impl Correction for Cells {
@@ -85,7 +86,7 @@ impl Correction for Cells {
         gap: &mut f32,
         path: Path,
         _: &Sample,
-        gains: &[Gain],
+        _: &[Gain; ROWS],
     ) -> Option<Innovation> {
         *gap += 1.0;
         let error = excess(path.to);
@@ -96,7 +97,7 @@ impl Correction for Cells {
             error,
             age: 0.0,
             position: 1.0,
-            row: row(*gap, gains.len()),
+            row: row(*gap),
             gap: *gap,
         };
         *gap = 0.0;
@@ -149,7 +150,7 @@ impl Correction for Edges {
         state: &mut EdgesState,
         path: Path,
         sample: &Sample,
-        gains: &[Gain],
+        gains: &[Gain; ROWS],
     ) -> Option<Innovation> {
         state.since += 1.0;
         let Some(edge) = self.clock.fresh(sample) else {
@@ -158,7 +159,7 @@ impl Correction for Edges {
                 error,
                 age: 0.0,
                 position: 1.0,
-                row: row(state.since, gains.len()),
+                row: row(state.since),
                 gap: 0.0,
             });
         };
@@ -169,7 +170,7 @@ impl Correction for Edges {
         *offset = (*offset - OFFSET_GAIN * error).clamp(-LARGEST_OFFSET, LARGEST_OFFSET);
         let gap = state.since - edge.age;
         state.since = edge.age;
-        let row = row(gap, gains.len());
+        let row = row(gap);
         Some(Innovation {
             error,
             age: edge.age,

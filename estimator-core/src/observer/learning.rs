@@ -126,7 +126,7 @@ impl Learning for Fixed {
 ///                s_x += φ1 s_v + φ2 (φ + s_a)    s_v = φ0 s_v + φ1 (φ + s_a)    s_a *= decay
 /// stuck          s_x += φ1 s_v / 2               s_v = 0
 /// innovation e   h = s_x                         s -= K h
-///                p = U D Uᵀ                      p += k e, k = P h / (hᵀ P h + 4 S)
+///                p = U D Uᵀ                      p += k e, k = P h / (hᵀ P h + 8 S)
 /// ```
 /// S is the variance of the innovation without errors of parameters. The 3 × 3 covariance is kept
 /// as U (unit upper triangular) and D (diagonal) and updated after Bierman: every new D is an old
@@ -177,7 +177,7 @@ const SLOWEST: f64 = 0.5;
 
 /// How much less an innovation counts than its variance says: innovations of a dead zone and of
 /// a torque that is not quite white are not independent.
-const CAUTION: f32 = 4.0;
+const CAUTION: f32 = 8.0;
 
 /// Largest element of U.
 const LARGEST_SHARE: f32 = 1e3;

@@ -4,12 +4,27 @@
 #![no_std]
 
 use estimator_core::{
-    BestFit, CountsPerTick, Device, EndFit, FiniteDifference, Foaw, Hertz, Kalman, KalmanMotor,
-    KalmanTriple, LateCurrent, LowPass, Model, Pll, Sample, Skip, SteadyKalman, SteadyKalmanMotor,
-    SteadyKalmanTriple, VelocityEstimator, preset,
+    AdaptiveEdgeObserver, AdaptiveObserver, BestFit, CountObserver, CountsPerTick, Device,
+    DualStage, EdgeObserver, EndFit, FiniteDifference, Foaw, Hertz, Kalman, KalmanMotor,
+    KalmanTriple, LateCurrent, LowPass, MOverT, Model, Observer, Pll, Sample, Skip, SteadyKalman,
+    SteadyKalmanMotor, SteadyKalmanTriple, Uncertainty, VelocityEstimator, preset,
 };
 
 const RATE: Hertz = Hertz(10_000.0);
+
+const CLOCK: Hertz = Hertz(84e6);
+
+const COUNTS: CountObserver = preset!(Observer::new(
+    &DualStage::DCX35L,
+    RATE,
+    &Uncertainty {
+        torque_noise: 5e-6,
+        load: 1e-4,
+        load_time: 0.1,
+        friction_share: 0.7,
+        boundary_noise: 0.03,
+    },
+));
 
 macro_rules! probes {
     ($($start:ident, $update:ident: $type:ty = $value:expr;)*) => {
@@ -57,6 +72,13 @@ probes! {
         preset!(SteadyKalman::new(&preset!(Model::motor(&Device::DCX35L, RATE, 0.1))));
     start_late_motor, update_late_motor: LateCurrent<SteadyKalmanMotor> =
         LateCurrent(preset!(SteadyKalman::new(&preset!(Model::motor(&Device::DCX35L, RATE, 0.1)))));
+    start_m_over_t, update_m_over_t: MOverT = preset!(MOverT::new(CLOCK, RATE));
+    start_observer, update_observer: CountObserver = COUNTS;
+    start_observer_edge, update_observer_edge: EdgeObserver =
+        preset!(COUNTS.with_edges(CLOCK, RATE));
+    start_adaptive, update_adaptive: AdaptiveObserver = preset!(COUNTS.learning(4096, RATE));
+    start_adaptive_edge, update_adaptive_edge: AdaptiveEdgeObserver =
+        preset!(preset!(COUNTS.with_edges(CLOCK, RATE)).learning(4096, RATE));
     start_pll, update_pll: Pll = preset!(Pll::new(Hertz(60.0), RATE));
 }
 

@@ -49,6 +49,11 @@ fn estimators_call_nothing_on_the_board() {
         "steady_motor",
         "late_motor",
         "pll",
+        "m_over_t",
+        "observer",
+        "observer_edge",
+        "adaptive",
+        "adaptive_edge",
     ];
     let mut functions: Vec<String> = Vec::new();
     for estimator in estimators {

@@ -7,6 +7,7 @@
 //! | `endurance` | long runs: covariance, counts beyond f32, bad currents, huge jumps |
 //! | `foaw_definition` | the O(n²) definition of FOAW in exact fractions |
 //! | `kalman_reference` | the textbook filter in f64, absolute positions, the current as a state |
+//! | `observer` | the same of the observers, which read more than counts, and a motor that obeys their model |
 //! | `steady_gain` | the plain recursion run until it stops changing |
 //! | `codegen` | what the compiler makes of it for the board |
 //! | `scene_images` | what one scene of `haptic-control` costs on the board |
@@ -28,6 +29,7 @@ mod image;
 mod invariants;
 mod kalman_reference;
 mod motion;
+mod observer;
 mod reference;
 mod regressions;
 mod scene_images;
