@@ -4,6 +4,7 @@ mod arguments;
 mod compare;
 mod felt;
 mod identify;
+mod limit;
 mod list;
 mod plot;
 mod record;
@@ -46,6 +47,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Some(Command::Simulate(options)) => simulate::run(&options),
         Some(Command::Tune(options)) => tune::run(&options, &command_line),
         Some(Command::Sensitivity(options)) => sensitivity::run(&options, &command_line),
+        Some(Command::Limit(options)) => limit::run(&options),
         Some(Command::Zwidth(options)) => zwidth::run(&options, &command_line),
         Some(Command::Robust(options)) => robust::run(&options),
         Some(Command::Merge(options)) => robust::merge(&options),

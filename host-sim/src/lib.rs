@@ -15,6 +15,7 @@ pub mod estimators;
 pub mod failure;
 pub mod felt;
 pub mod identify;
+pub mod limit;
 pub mod output;
 pub mod parameters;
 pub mod plant;

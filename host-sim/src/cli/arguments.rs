@@ -40,6 +40,8 @@ pub(super) enum Command {
     Tune(Tune),
     /// Run estimators that believe in wrong constants of the device, and say what it costs them
     Sensitivity(Sensitivity),
+    /// Say how well velocity can be known at all, by a particle filter with the true model
+    Limit(Limit),
     /// Find the stiffest wall and the strongest damping that stay passive and free of limit cycles
     Zwidth(Zwidth),
     /// Close the loop on devices that differ from what the controller believes, and judge each run
@@ -130,6 +132,40 @@ pub(super) struct Sensitivity {
     /// target/sensitivity; with --json - none]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
+    /// Write the scores as JSON to FILE, or with - to standard output and nothing else there
+    #[arg(long, value_name = "FILE")]
+    pub(super) json: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Limit {
+    /// Scenario to run; repeatable [default: stochastic, step, track, free-air, texture]
+    #[arg(long = "scenario", value_name = "NAME")]
+    pub(super) scenarios: Vec<String>,
+    /// Control rate, 100 to 100000 Hz; repeatable [default: 1000]
+    #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
+    pub(super) rates: Vec<f64>,
+    /// Estimator to run beside it; repeatable [default: all]
+    #[arg(long = "estimator", value_name = "NAME")]
+    pub(super) estimators: Vec<String>,
+    /// Seed of everything random, the particles' noise too
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(super) seed: u64,
+    /// Duration of each run, s
+    #[arg(
+        long,
+        value_name = "S",
+        default_value_t = 10.0,
+        allow_negative_numbers = true
+    )]
+    pub(super) seconds: f64,
+    /// Number of particles
+    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(10..=1_000_000))]
+    pub(super) particles: u32,
+    #[command(flatten)]
+    pub(super) device: DeviceFile,
+    #[command(flatten)]
+    pub(super) parameters: ParameterOptions,
     /// Write the scores as JSON to FILE, or with - to standard output and nothing else there
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,

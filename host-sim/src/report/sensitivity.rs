@@ -159,7 +159,10 @@ mod tests {
         assert_eq!(points, [(-30.0, 40.0), (0.0, 50.0), (30.0, 60.0)]);
         let page = sensitivity(&rows, "K < B", "a & b", "host-sim sensitivity").unwrap();
         assert_eq!(super::super::figures(&page).count(), 1);
-        assert_eq!(page.matches(">error of ").count(), 4);
+        for constant in Constant::ALL {
+            let title = format!("error of {}, %", constant.as_str());
+            assert_eq!(page.matches(&title).count(), 1, "{title}");
+        }
         assert!(page.contains("K &lt; B"));
     }
 }

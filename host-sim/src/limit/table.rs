@@ -1,0 +1,76 @@
+//! The rows of `limit` as a table: estimators down, scenarios across.
+
+use std::fmt::Write as _;
+
+use super::Row;
+
+/// RMS error in % of finite difference, and in brackets over the limit with the same signals;
+/// means over the seeds. One block a rate.
+#[must_use]
+pub fn table(rows: &[Row]) -> String {
+    let mut text = String::new();
+    for rate_hz in distinct(rows.iter().map(|row| row.rate_hz)) {
+        let of = |row: &&Row| row.rate_hz == rate_hz;
+        let block: Vec<&Row> = rows.iter().filter(of).collect();
+        let scenarios = distinct(block.iter().map(|row| row.scenario));
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "{rate_hz} Hz, RMS in % of finite difference (times the limit)"
+        );
+        let _ = write!(text, "{:<22}", "");
+        for scenario in &scenarios {
+            let _ = write!(text, "{scenario:>17}");
+        }
+        text.push('\n');
+        for estimator in distinct(block.iter().map(|row| row.estimator)) {
+            let _ = write!(text, "{estimator:<22}");
+            for scenario in &scenarios {
+                let cell = |row: &&&Row| row.estimator == estimator && row.scenario == *scenario;
+                let (mut pct, mut over, mut count) = (0.0, 0.0, 0.0);
+                for row in block.iter().filter(cell) {
+                    pct += row.rms_pct;
+                    over += row.over_limit;
+                    count += 1.0;
+                }
+                let cell = match count > 0.0 {
+                    true => format!("{:.2} ({:.2})", pct / count, over / count),
+                    false => "-".to_owned(),
+                };
+                let _ = write!(text, "{cell:>17}");
+            }
+            text.push('\n');
+        }
+    }
+    text
+}
+
+fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
+    let mut found = Vec::new();
+    for value in values {
+        if !found.contains(&value) {
+            found.push(value);
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn seeds_are_averaged() {
+        let row = |seed, rms_pct| Row {
+            estimator: "pll",
+            scenario: "step",
+            rate_hz: 1000.0,
+            seed,
+            rms_rad_s: 1.0,
+            rms_pct,
+            over_limit: rms_pct / 10.0,
+        };
+        let text = table(&[row(1, 20.0), row(2, 40.0)]);
+        assert!(text.ends_with("30.00 (3.00)\n"), "{text}");
+    }
+}
