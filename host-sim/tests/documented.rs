@@ -3,12 +3,13 @@
 use host_sim::closed_loop::SceneName;
 use host_sim::compare::{Case, Outcome, Settings, compare};
 use host_sim::contest::Row;
-use host_sim::device::Device;
+use host_sim::device::{Device, Disc};
 use host_sim::estimators::Kind;
 use host_sim::parameters::{Parameters, PlantKind};
 use host_sim::robust::{self, summary};
 use host_sim::scenario::ScenarioName;
 use host_sim::score::Wanted;
+use host_sim::sensitivity::{self, sensitivity};
 use host_sim::table::pooled_pct;
 use host_sim::zwidth;
 
@@ -93,6 +94,62 @@ fn distances_of_the_papers_experiment() {
     }
     for row in table(BENCHMARKS, "| independent | 11.6 kHz |") {
         check(row[0], &[(0, row[1]), (1, row[3]), (2, row[5])]);
+    }
+}
+
+#[test]
+fn wrong_beliefs() {
+    let on = |disc| {
+        let settings = Settings {
+            device: Device {
+                disc,
+                ..Device::default()
+            },
+            estimators: Kind::all().iter().collect(),
+            parameters: Parameters::default(),
+            wanted: Wanted::NONE,
+        };
+        use ScenarioName::{Creep, FreeAir, Hold, Permanent, Step, Texture, Track, Wall};
+        let scenarios = [Step, Permanent, Track, FreeAir, Wall, Texture, Creep, Hold];
+        let of = |scenario: ScenarioName| {
+            [1, 2, 3].map(|seed| Case {
+                scenario,
+                rate_hz: 1e3,
+                plant: PlantKind::Friction,
+                seed,
+                seconds: scenario.default_seconds(),
+                keep: false,
+            })
+        };
+        let cases: Vec<_> = scenarios.into_iter().flat_map(of).collect();
+        let rows = sensitivity(&cases, &settings, || ()).unwrap();
+        sensitivity::table::table(&rows)
+    };
+    let errors = Disc {
+        phase_counts: 0.06,
+        line_counts: 0.25,
+        random_counts: 0.02,
+    };
+    let tables = [on(Disc::default()), on(errors)];
+    for row in table(BENCHMARKS, "| worst belief |") {
+        let printed = tables.iter().flat_map(|text| {
+            let is = |line: &&str| line.split_whitespace().next() == Some(row[0]);
+            let line = text.lines().find(is).expect(row[0]);
+            let cells: Vec<f64> = line
+                .split_whitespace()
+                .skip(1)
+                .map(|cell| cell.parse().unwrap())
+                .collect();
+            // Right, over all scenarios; the worst belief, before the two shares outside.
+            [cells[0], cells[cells.len() - 3]]
+        });
+        for (cell, value) in row[1..].iter().zip(printed) {
+            assert!(
+                is_written_for(cell, value),
+                "{}: {cell} is written, {value} is so",
+                row[0]
+            );
+        }
     }
 }
 
