@@ -56,6 +56,18 @@ const fn series(x: f64, first: f64, divisor: f64) -> f64 {
     sum
 }
 
+/// `value` within ±`limit`. Unlike `clamp` it has no panic for a limit below zero, and NaN stays.
+#[inline]
+pub(crate) fn limited(value: f32, limit: f32) -> f32 {
+    if value > limit {
+        limit
+    } else if value < -limit {
+        -limit
+    } else {
+        value
+    }
+}
+
 #[cfg(test)]
 mod tests {
     extern crate std;

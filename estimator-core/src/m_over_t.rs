@@ -1,5 +1,6 @@
 //! M/T method: counts over the time between edges.
 
+use crate::const_math::limited;
 use crate::design_error::DesignError;
 use crate::edge_clock::EdgeClock;
 use crate::estimator::VelocityEstimator;
@@ -94,8 +95,7 @@ impl VelocityEstimator for MOverT {
             state.edge = edge;
             state.since = age;
         } else {
-            let bound = 1.0 / state.since;
-            state.velocity = state.velocity.clamp(-bound, bound);
+            state.velocity = limited(state.velocity, 1.0 / state.since);
         }
         CountsPerTick(state.velocity)
     }

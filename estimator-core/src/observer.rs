@@ -13,6 +13,7 @@ pub use inputs::{
 };
 pub use learning::{Deviations, Fixed, Learned, LearnedState, Learning};
 
+use crate::const_math::limited;
 use crate::estimator::VelocityEstimator;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick};
@@ -208,9 +209,7 @@ where
         if let Some(mut innovation) = found {
             let gain = &self.gains[innovation.row];
             state.position += innovation.position * innovation.error;
-            innovation.error = innovation
-                .error
-                .clamp(-LARGEST_INNOVATION, LARGEST_INNOVATION);
+            innovation.error = limited(innovation.error, LARGEST_INNOVATION);
             let error = innovation.error;
             state.position += innovation.age * gain.velocity * error;
             state.velocity += gain.velocity * error;
@@ -218,7 +217,7 @@ where
             let rubbing = self.friction_share * unknown;
             state.load += unknown - rubbing;
             let limit = LARGEST_FRICTION_ERROR * self.motion.friction;
-            state.rub = (state.rub - rubbing * state.way).clamp(-limit, limit);
+            state.rub = limited(state.rub - rubbing * state.way, limit);
             let shift = self
                 .learning
                 .learn(&mut state.learning, &innovation, gain, state.velocity);

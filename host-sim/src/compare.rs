@@ -54,8 +54,37 @@ pub struct Outcome {
     pub rows: Vec<Row>,
     /// The signals, where [`Case::keep`] asked for them.
     pub signals: Option<(Trace, Vec<Estimate>)>,
+    /// Damping, true and learned, in scenario heating.
+    pub damping: Option<Damping>,
     /// Where the time went.
     pub cost: Cost,
+}
+
+/// Damping b over a run, N.m.s/rad, true and as estimators learned it, each [`Damping::STEP_S`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Damping {
+    /// The coupler's.
+    pub truth: Vec<f64>,
+    /// By estimator.
+    pub learned: Vec<(&'static str, Vec<f64>)>,
+}
+
+impl Damping {
+    /// Time from one value to the next, s.
+    pub const STEP_S: f64 = 0.1;
+
+    fn of(contest: &Contest, trace: &Trace) -> Option<Self> {
+        let every = (Self::STEP_S * trace.rate_hz).round().max(1.0) as usize;
+        let thinned = |values: &[f64]| values.iter().copied().step_by(every).collect();
+        let learned = contest.contestants().iter().filter_map(|contestant| {
+            let damping = contest.learned_damping(contestant, trace)?;
+            Some((contestant.kind.name, thinned(&damping)))
+        });
+        Some(Self {
+            truth: thinned(trace.true_damping.as_ref()?),
+            learned: learned.collect(),
+        })
+    }
 }
 
 /// Where the time of a case went, on its one thread.
@@ -161,9 +190,11 @@ fn run(case: &Case, settings: &Settings) -> Result<Outcome, Failure> {
         seed: case.seed,
     };
     let rows = contest.rows(&heading, &trace, &estimates, interval(device), *wanted)?;
+    let heats = case.scenario == ScenarioName::Heating;
     Ok(Outcome {
         case: case.clone(),
         rows,
+        damping: heats.then(|| Damping::of(&contest, &trace)).flatten(),
         cost: Cost {
             plant_steps: plant_steps(case.rate_hz, case.seconds)?,
             simulation: simulated - begin,

@@ -3,6 +3,7 @@
 //! Plain data in, text out: nothing here simulates, reads or writes a file. A figure whose data
 //! is not there is left out.
 
+use crate::compare::Damping;
 use crate::score::{Interval, Percent, Score};
 
 mod canvas;
@@ -12,6 +13,7 @@ mod demo;
 mod distances;
 mod felt;
 mod grid;
+mod heating;
 mod page;
 mod palette;
 mod plot;
@@ -112,6 +114,8 @@ pub struct CaseReport {
     pub rows: Vec<Row>,
     /// The signals, where a figure may want them. Needed by figures 1, 6, 7 and the spectrum.
     pub traces: Option<Traces>,
+    /// Damping, true and learned, where the coupler warms up.
+    pub damping: Option<Damping>,
 }
 
 /// The scores of one estimator in one case.

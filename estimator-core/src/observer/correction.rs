@@ -2,6 +2,7 @@
 
 use super::ROWS;
 use super::design::Gain;
+use crate::const_math::limited;
 use crate::edge_clock::EdgeClock;
 use crate::sample::{Sample, Signals};
 
@@ -167,7 +168,7 @@ impl Correction for Edges {
         let there = path.from + passed * (path.to - path.from - path.bend + path.bend * passed);
         let offset = &mut state.offsets[edge.phase];
         let error = edge.position + *offset - there;
-        *offset = (*offset - OFFSET_GAIN * error).clamp(-LARGEST_OFFSET, LARGEST_OFFSET);
+        *offset = limited(*offset - OFFSET_GAIN * error, LARGEST_OFFSET);
         let gap = state.since - edge.age;
         state.since = edge.age;
         let row = row(gap);

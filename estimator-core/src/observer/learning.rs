@@ -4,6 +4,7 @@ use super::correction::Innovation;
 use super::design::Gain;
 use super::inputs::Push;
 use super::motion::{Motion, Step};
+use crate::const_math::limited;
 use crate::design_error::DesignError;
 use crate::units::Hertz;
 
@@ -305,8 +306,7 @@ impl Learning for Learned {
             CAUTION * gain.variance,
         );
         for i in 0..3 {
-            let limit = LARGEST[i];
-            let learned = (state.parameters[i] + k[i] * innovation.error).clamp(-limit, limit);
+            let learned = limited(state.parameters[i] + k[i] * innovation.error, LARGEST[i]);
             let change = learned - state.parameters[i];
             state.parameters[i] = learned;
             shift.position += state.sensitivity[i][0] * change;
@@ -329,7 +329,7 @@ fn bierman(upper: &mut [f32; 3], diagonal: &mut [f32; 3], h: [f32; 3], r: f32) -
     diagonal[0] *= r * per_a0;
     diagonal[1] *= a0 * per_a1;
     diagonal[2] *= a1 * per_a2;
-    let bound = |u: f32| u.clamp(-LARGEST_SHARE, LARGEST_SHARE);
+    let bound = |u: f32| limited(u, LARGEST_SHARE);
     let ratio = f[1] * per_a0;
     let k0 = g[0] + g[1] * u01;
     upper[0] = bound(u01 - ratio * g[0]);

@@ -216,6 +216,7 @@ fn case_report(outcome: &Outcome) -> CaseReport {
         seed: outcome.case.seed,
         rows: outcome.rows.iter().map(row).collect(),
         traces,
+        damping: outcome.damping.clone(),
     }
 }
 

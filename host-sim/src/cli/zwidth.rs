@@ -63,7 +63,13 @@ fn cases(options: &Zwidth) -> Result<Vec<Case>, Failure> {
     let mut estimators = kinds(&options.estimators)?;
     if options.estimators.is_empty() {
         // A steady gain is the same filter once it has settled.
-        estimators.retain(|kind| !kind.name.ends_with("-steady"));
+        estimators.retain(|kind| !kind.name.ends_with("-steady") && !kind.needs.edge);
+    }
+    if let Some(kind) = estimators.iter().find(|kind| kind.needs.edge) {
+        return Err(Failure::Input(format!(
+            "{}: needs edge time stamps, which the closed loop does not have; take another",
+            kind.name
+        )));
     }
     let handle = options.handle.as_deref().map(Kind::named).transpose()?;
     let triple = Kind::named("kalman-triple")?;

@@ -91,6 +91,7 @@ fn case(
             truth,
             estimates,
         }),
+        damping: None,
     }
 }
 

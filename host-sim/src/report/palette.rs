@@ -13,7 +13,7 @@ pub(super) const MUTED: RGBColor = RGBColor(0x77, 0x77, 0x77);
 pub(super) const GRID: RGBColor = RGBColor(0xe6, 0xe6, 0xe6);
 
 /// Okabe and Ito's colours, told apart with any colour vision.
-const NAMED: [(&str, RGBColor); 8] = [
+const NAMED: [(&str, RGBColor); 12] = [
     ("finite-difference", RGBColor(0x8c, 0x8c, 0x8c)),
     ("low-pass", RGBColor(0xe6, 0x9f, 0x00)),
     ("foaw-end-fit", RGBColor(0x56, 0xb4, 0xe9)),
@@ -21,6 +21,10 @@ const NAMED: [(&str, RGBColor); 8] = [
     ("kalman-triple", RGBColor(0x00, 0x9e, 0x73)),
     ("kalman-motor", RGBColor(0xd5, 0x5e, 0x00)),
     ("pll", RGBColor(0xcc, 0x79, 0xa7)),
+    ("observer", RGBColor(0x5d, 0x3a, 0x9b)),
+    ("observer-edge", RGBColor(0x1a, 0x1a, 0x6e)),
+    ("adaptive", RGBColor(0xc0, 0x00, 0x3a)),
+    ("adaptive-edge", RGBColor(0x00, 0x4d, 0x40)),
     ("reference", RGBColor(0x7a, 0x52, 0x30)),
 ];
 

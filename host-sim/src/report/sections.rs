@@ -7,8 +7,8 @@ use super::grid::{Group, groups};
 use super::palette::Palette;
 use super::text::{number, plant, rate};
 use super::{
-    CaseReport, ReportInput, Traces, distances, felt, problem, score_tables, spectra, tables,
-    velocity, windows,
+    CaseReport, ReportInput, Traces, distances, felt, heating, problem, score_tables, spectra,
+    tables, velocity, windows,
 };
 
 /// One part of the page; without a body it is left out.
@@ -33,6 +33,8 @@ const DISTANCE: &str = "How far, on average over all samples after the first 0.1
 const SPECTRA: &str = "Where in frequency each estimator is wrong. To the left lie delay and \
     bias, to the right quantisation noise; what lies in the green band is felt as vibration and \
     as roughness. Lower is better.";
+const HEATING: &str = "Damping of the coupler while it loses 30 % in 60 s, black, and what the \
+    estimators that learn it take it for, from current and counts alone.";
 const SCORES: &str = "Smaller is better; the best of each scenario is bold on green. \
     \u{201c}% of fd\u{201d} is relative to finite difference on the same samples. Distance is \
     outside the haptic interval, force is the RMS error felt at the fingertip, a negative delay \
@@ -68,6 +70,11 @@ pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Se
             distance(&groups, palette)?,
         ),
         section("spectra", "Error spectra", errors(report, palette)?),
+        section(
+            "heating",
+            "A coupler that warms up",
+            warming(report, palette)?,
+        ),
         section("scores", "Scores", scores(&groups, palette)),
     ];
     let device = [section(
@@ -87,6 +94,22 @@ pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Se
         .chain(device)
         .filter(|section| !section.body.is_empty())
         .collect())
+}
+
+fn warming(report: &ReportInput, palette: &Palette) -> Result<String, String> {
+    let mut body = String::new();
+    for case in &report.cases {
+        let Some(damping) = &case.damping else {
+            continue;
+        };
+        if !damping.learned.is_empty() {
+            body += &framed(&heating::chart(case, damping, palette)?);
+        }
+    }
+    if !body.is_empty() {
+        body += &words(HEATING);
+    }
+    Ok(body)
 }
 
 pub(super) fn words(text: &str) -> String {
