@@ -207,11 +207,15 @@ where
             .correction
             .innovation(&mut state.correction, path, sample, &self.gains);
         if let Some(mut innovation) = found {
-            let gain = &self.gains[innovation.row];
+            // In range already; the remainder shows it to the compiler, which drops both.
+            let gain = &self.gains[innovation.row % ROWS];
             state.position += innovation.position * innovation.error;
             innovation.error = limited(innovation.error, LARGEST_INNOVATION);
             let error = innovation.error;
-            state.position += innovation.age * gain.velocity * error;
+            // Zero without time stamps: then the compiler drops it.
+            if innovation.age > 0.0 {
+                state.position += innovation.age * gain.velocity * error;
+            }
             state.velocity += gain.velocity * error;
             let unknown = gain.load * error;
             let rubbing = self.friction_share * unknown;
@@ -221,9 +225,11 @@ where
             let shift = self
                 .learning
                 .learn(&mut state.learning, &innovation, gain, state.velocity);
-            state.position += shift.position;
-            state.velocity += shift.velocity;
-            state.load += shift.load;
+            if let Some(shift) = shift {
+                state.position += shift.position;
+                state.velocity += shift.velocity;
+                state.load += shift.load;
+            }
         }
         CountsPerTick(state.velocity)
     }

@@ -166,7 +166,7 @@ impl Correction for Edges {
         };
         let passed = 1.0 - edge.age;
         let there = path.from + passed * (path.to - path.from - path.bend + path.bend * passed);
-        let offset = &mut state.offsets[edge.phase];
+        let offset = &mut state.offsets[edge.phase % 4];
         let error = edge.position + *offset - there;
         *offset = limited(*offset - OFFSET_GAIN * error, LARGEST_OFFSET);
         let gap = state.since - edge.age;
@@ -175,7 +175,7 @@ impl Correction for Edges {
         Some(Innovation {
             error,
             age: edge.age,
-            position: gains[row].position,
+            position: gains[row % ROWS].position,
             row,
             gap,
         })

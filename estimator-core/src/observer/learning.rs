@@ -63,14 +63,14 @@ pub trait Learning: Copy {
     /// Follows a tick: how its result depends on each parameter.
     fn follow(&self, state: &mut Self::State, tick: &Tick<'_>);
 
-    /// Learns from an innovation; what that changes in the motor's state.
+    /// Learns from an innovation; what that changes in the motor's state, if anything.
     fn learn(
         &self,
         state: &mut Self::State,
         innovation: &Innovation,
         gain: &Gain,
         velocity: f32,
-    ) -> Shift;
+    ) -> Option<Shift>;
 }
 
 /// One tick as [`Learning::follow`] sees it.
@@ -109,12 +109,8 @@ impl Learning for Fixed {
 
     fn follow(&self, (): &mut (), _: &Tick<'_>) {}
 
-    fn learn(&self, (): &mut (), _: &Innovation, _: &Gain, _: f32) -> Shift {
-        Shift {
-            position: 0.0,
-            velocity: 0.0,
-            load: 0.0,
-        }
+    fn learn(&self, (): &mut (), _: &Innovation, _: &Gain, _: f32) -> Option<Shift> {
+        None
     }
 }
 
@@ -276,12 +272,7 @@ impl Learning for Learned {
         innovation: &Innovation,
         gain: &Gain,
         velocity: f32,
-    ) -> Shift {
-        let mut shift = Shift {
-            position: 0.0,
-            velocity: 0.0,
-            load: 0.0,
-        };
+    ) -> Option<Shift> {
         // At the instant of the innovation.
         let h = state.sensitivity.map(|s| s[0] - innovation.age * s[1]);
         let position = innovation.position + innovation.age * gain.velocity;
@@ -292,7 +283,7 @@ impl Learning for Learned {
         }
         state.waiting += innovation.gap;
         if innovation.gap == 0.0 || velocity.abs() < self.slowest {
-            return shift;
+            return None;
         }
         for i in 0..3 {
             let grown = state.diagonal[i] + self.walk[i] * state.waiting;
@@ -305,6 +296,11 @@ impl Learning for Learned {
             h,
             CAUTION * gain.variance,
         );
+        let mut shift = Shift {
+            position: 0.0,
+            velocity: 0.0,
+            load: 0.0,
+        };
         for i in 0..3 {
             let learned = limited(state.parameters[i] + k[i] * innovation.error, LARGEST[i]);
             let change = learned - state.parameters[i];
@@ -313,7 +309,7 @@ impl Learning for Learned {
             shift.velocity += state.sensitivity[i][1] * change;
             shift.load += state.sensitivity[i][2] * change;
         }
-        shift
+        Some(shift)
     }
 }
 

@@ -46,8 +46,11 @@ pub fn sensitivity(
     ))
 }
 
+/// Error of the belief and of the velocity, %.
+type Curve = Vec<(f64, f64)>;
+
 /// Mean over the moving scenarios at each error of `constant`, in order of the error.
-fn curve(rows: &[&Row], name: &str, constant: Constant) -> Vec<(f64, f64)> {
+fn curve(rows: &[&Row], name: &str, constant: Constant) -> Curve {
     let mut points: Vec<(f64, f64, f64)> = Vec::new();
     for row in rows {
         let shown = row.constant.is_none() || row.constant == Some(constant.as_str());
@@ -73,7 +76,7 @@ fn chart(rows: &[&Row], palette: &Palette) -> Result<String, String> {
         .iter()
         .map(|name| Key::Line(palette.colour(name), name))
         .collect();
-    let curves: Vec<(Constant, Vec<Vec<(f64, f64)>>)> = Constant::ALL
+    let curves: Vec<(Constant, Vec<Curve>)> = Constant::ALL
         .into_iter()
         .map(|constant| {
             let of = |name: &&str| curve(rows, name, constant);
