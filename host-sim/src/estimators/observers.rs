@@ -119,7 +119,7 @@ pub(super) const KINDS: &[Kind] = &[
     Kind {
         name: "observer-edge",
         summary: "the same with edge time stamps",
-        needs: CURRENT_AND_SLIP.and(EDGE),
+        needs: CURRENT_AND_SLIP.or(EDGE),
         parameters: WITH_EDGES,
         build: |setup, values| built(edges(setup, values)?, setup),
     },
@@ -133,7 +133,7 @@ pub(super) const KINDS: &[Kind] = &[
     Kind {
         name: "adaptive-edge",
         summary: "the same with edge time stamps",
-        needs: CURRENT_AND_SLIP.and(EDGE),
+        needs: CURRENT_AND_SLIP.or(EDGE),
         parameters: WITH_EDGES,
         build: |setup, values| learning(edges(setup, values)?, setup),
     },
@@ -147,7 +147,7 @@ pub(super) const KINDS: &[Kind] = &[
     Kind {
         name: "observer-edge-held",
         summary: "observer-edge without the small encoder",
-        needs: Signals::COUNT_AND_CURRENT.and(EDGE),
+        needs: Signals::COUNT_AND_CURRENT.or(EDGE),
         parameters: WITH_EDGES,
         build: |setup, values| built(edges(setup, values)?.held(), setup),
     },

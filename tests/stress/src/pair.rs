@@ -57,7 +57,7 @@ impl<const S: usize> State for core::KalmanState<S> {
                 }
             }
         }
-        (!is_positive_definite(p)).then_some("covariance not positive definite")
+        (!is_positive_definite(&p)).then_some("covariance not positive definite")
     }
 }
 
