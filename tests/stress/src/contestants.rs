@@ -3,6 +3,7 @@
 use estimator_core as core;
 use estimator_twin as twin;
 
+use crate::course::EDGE_CLOCK_HZ;
 use crate::definition::{Definition, Line};
 use crate::pair::{Both, Pair};
 
@@ -14,8 +15,11 @@ pub struct Contestant {
     pub rate_hz: f64,
     /// What it has to give exactly, if it is a window.
     pub definition: Option<Definition>,
-    /// What rounding may add to a velocity inside the haptic range, rad/s.
+    /// What rounding may add to a velocity inside the haptic range, rad/s; infinite where it may
+    /// turn a decision.
     pub deviation_bound_rad_s: f64,
+    /// Below this an output at rest is at rest, rad/s.
+    pub at_rest_rad_s: f64,
     make: Box<dyn Fn() -> Box<dyn Pair> + Send + Sync>,
 }
 
@@ -24,6 +28,22 @@ impl Contestant {
     #[must_use]
     pub fn pair(&self) -> Box<dyn Pair> {
         (self.make)()
+    }
+
+    /// One count over the time since: at 1e-5 rad/s after two minutes and a half.
+    fn comes_to_rest_slowly(self) -> Self {
+        Self {
+            at_rest_rad_s: 0.05,
+            ..self
+        }
+    }
+
+    /// Decides, as whether a rotor sticks: rounding may turn a decision, and is not bounded.
+    fn decides(self) -> Self {
+        Self {
+            deviation_bound_rad_s: f64::INFINITY,
+            ..self
+        }
     }
 
     fn window(self, n: usize, d: i32, line: Line) -> Self {
@@ -51,6 +71,7 @@ macro_rules! both {
             rate_hz,
             definition: None,
             deviation_bound_rad_s: DEVIATION_RAD_S,
+            at_rest_rad_s: AT_REST_RAD_S,
             make: Box::new(move || {
                 Box::new(Both {
                     core,
@@ -60,6 +81,24 @@ macro_rules! both {
             }),
         }
     }};
+}
+
+/// An observer as host-sim's presets have it.
+macro_rules! observer {
+    ($c:ident, $rate:expr) => {
+        $c::Observer::new(
+            &$c::DualStage::DCX35L,
+            $c::Hertz($rate),
+            &$c::Uncertainty {
+                torque_noise: 7e-5,
+                load: 7.5e-4,
+                load_time: 0.1,
+                friction_share: 0.7,
+                boundary_noise: 0.0625,
+            },
+        )
+        .expect("valid")
+    };
 }
 
 /// The same design over the core and over its twin, which have to agree on whether to refuse it.
@@ -90,6 +129,9 @@ macro_rules! refusable {
 
 /// The project's goal for what f32 may cost, rad/s.
 pub const DEVIATION_RAD_S: f64 = 1e-5;
+
+/// Below this an output at rest is at rest, rad/s.
+const AT_REST_RAD_S: f64 = 1e-5;
 
 /// What it costs filters with slow poles at 10 kHz, where a count a tick is 15 rad/s: as many
 /// half units in the last place of it as the pole has ticks of memory.
@@ -159,6 +201,31 @@ pub fn at(rate: f64) -> Vec<Contestant> {
                 c::Model::motor(&c::Device::DCX35L, c::Hertz(rate), CURRENT_NOISE).expect("valid");
             c::LateCurrent(c::SteadyKalman::new(&model).expect("valid"))
         }),
+        both!("m-over-t", rate, |c| {
+            c::MOverT::new(c::Hertz(EDGE_CLOCK_HZ), c::Hertz(rate)).expect("valid")
+        })
+        .comes_to_rest_slowly()
+        .decides(),
+        both!("observer", rate, |c| observer!(c, rate)).decides(),
+        both!("observer-edge", rate, |c| {
+            observer!(c, rate)
+                .with_edges(c::Hertz(EDGE_CLOCK_HZ), c::Hertz(rate))
+                .expect("valid")
+        })
+        .decides(),
+        both!("adaptive", rate, |c| {
+            observer!(c, rate)
+                .learning(4096, c::Hertz(rate))
+                .expect("valid")
+        })
+        .decides(),
+        both!("adaptive-edge", rate, |c| {
+            observer!(c, rate)
+                .with_edges(c::Hertz(EDGE_CLOCK_HZ), c::Hertz(rate))
+                .and_then(|observer| observer.learning(4096, c::Hertz(rate)))
+                .expect("valid")
+        })
+        .decides(),
     ];
     if rate > 5000.0 {
         for slow in ["low-pass", "pll", "kalman-motor"] {

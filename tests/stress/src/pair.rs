@@ -37,6 +37,8 @@ pub(crate) trait State {
 
 impl State for core::Count {}
 impl State for core::PllState {}
+impl State for core::MOverTState {}
+impl<C, S, M, L> State for core::ObserverState<C, S, M, L> {}
 impl<const S: usize> State for core::SteadyKalmanState<S> {}
 impl<S> State for core::LateCurrentState<S> {}
 impl<S> State for core::LowPassState<S> {}

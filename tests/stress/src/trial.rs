@@ -11,9 +11,6 @@ use crate::pair::Pair;
 /// rad/s, beyond it in parts of the velocity.
 const HAPTIC_RAD_S: f64 = 20.0;
 
-/// Below this an output at rest is at rest, rad/s.
-const AT_REST_RAD_S: f64 = 1e-5;
-
 /// What rounding may add while a filter that started in motion settles, rad/s: a thirtieth of
 /// the haptic tolerance at rest.
 const START_BOUND_RAD_S: f64 = 1e-2;
@@ -66,7 +63,8 @@ impl Findings {
     pub fn passed(&self) -> bool {
         self.fault_count == 0
             && self.deviation_rad_s <= self.deviation_bound_rad_s
-            && self.start_deviation_rad_s <= START_BOUND_RAD_S
+            && (self.start_deviation_rad_s <= START_BOUND_RAD_S
+                || self.deviation_bound_rad_s.is_infinite())
             && self.recovery_ticks <= self.recovery_bound()
     }
 
@@ -190,7 +188,8 @@ impl<'a> Trial<'a> {
         while tick < 2 * narrow_last.max(wide_last) + 130 && tick < limit {
             tick += 1;
             let (narrow, wide) = self.tick(false);
-            let at_rest = |velocity: f64| velocity.abs() * self.rad_per_count < AT_REST_RAD_S;
+            let bound = self.contestant.at_rest_rad_s;
+            let at_rest = |velocity: f64| velocity.abs() * self.rad_per_count < bound;
             if !at_rest(f64::from(narrow)) {
                 narrow_last = tick;
             }
