@@ -54,3 +54,23 @@ pub(crate) fn after_indirect_calls(base: u64, code: &[u8]) -> Vec<u64> {
         .map(|(at, _)| at + 2)
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn code(halves: &[u16]) -> Vec<u8> {
+        halves.iter().flat_map(|half| half.to_le_bytes()).collect()
+    }
+
+    #[test]
+    fn calls_are_followed_both_ways_and_nothing_else_is_a_call() {
+        // push {r7, lr}; bl forwards by 0x2C40; bl to itself; beq.w; movw r0, #0x4780; blx r3
+        let code = code(&[
+            0xB580, 0xF002, 0xFE20, 0xF7FF, 0xFFFE, 0xF000, 0x8000, 0xF244, 0x7080, 0x4798,
+        ]);
+        let targets: Vec<u64> = branches(0x65E, &code).collect();
+        assert_eq!(targets, [0x660 + 4 + 0x2C40, 0x664]);
+        assert_eq!(after_indirect_calls(0x65E, &code), [0x65E + 20]);
+    }
+}
