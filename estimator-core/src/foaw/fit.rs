@@ -49,9 +49,7 @@ impl Sealed for EndFit {
         let mut taken = 0;
         // Every run has a sample at least, so not more than these are in the window.
         let mut most = N.min((n - age) as usize);
-        while let Some(ahead) = older.get(taken..most)
-            && let [run, ..] = ahead
-        {
+        while let Some(ahead @ [run, ..]) = older.get(taken..most) {
             // A call is worth it for some samples that all differ.
             if run.is_one_sample() && ahead.get(3).is_some_and(|run| run.is_one_sample()) {
                 let inside = cone.follow(ahead, newest, age);
@@ -174,10 +172,8 @@ impl Sums {
 /// 2^20.
 fn quotient(dividend: i64, divisor: i32) -> f32 {
     let by = divisor as f32;
-    if let Ok(short) = i32::try_from(dividend)
-        && short.unsigned_abs() <= 1 << 24
-    {
-        return short as f32 / by;
+    if dividend.unsigned_abs() <= 1 << 24 {
+        return dividend as i32 as f32 / by;
     }
     // The dividend was rounded, too. Divide again what is beyond the whole counts: that fits
     // f32, as `|rest| <= 2 divisor`.
