@@ -49,9 +49,9 @@
 )]
 
 pub mod const_math;
+mod coupled_motor;
 mod design_error;
 mod device;
-mod dual_stage;
 mod edge_clock;
 mod estimator;
 mod finite_difference;
@@ -69,9 +69,9 @@ mod sample;
 mod steady_kalman;
 mod units;
 
+pub use coupled_motor::CoupledMotor;
 pub use design_error::DesignError;
 pub use device::Device;
-pub use dual_stage::DualStage;
 pub use estimator::{AccelerationEstimator, Skip, VelocityEstimator};
 pub use finite_difference::FiniteDifference;
 pub use foaw::{BestFit, EndFit, Fit, Foaw, FoawState};

@@ -76,7 +76,7 @@ const LARGEST_FRICTION_ERROR: f32 = 0.5;
 ///     torque_noise: 5e-6, load: 1e-4, load_time: 0.1, friction_share: 0.7, boundary_noise: 0.0625,
 /// };
 /// const OBSERVER: CountObserver =
-///     preset!(Observer::new(&DualStage::DCX35L, Hertz(1000.0), &UNSURE));
+///     preset!(Observer::new(&CoupledMotor::DCX35L, Hertz(1000.0), &UNSURE));
 /// let first = Sample::new(Count(0));
 /// let mut state = OBSERVER.start(&first);
 /// // 80 mA are 3.7 mN·m: below the 4 mN·m of friction, so nothing moves.

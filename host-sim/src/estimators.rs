@@ -4,7 +4,7 @@ mod build;
 mod observers;
 mod run;
 
-use estimator_core::{Device, DualStage, Hertz, Signals};
+use estimator_core::{CoupledMotor, Device, Hertz, Signals};
 
 pub use run::{EDGE_CLOCK_HZ, Estimator, State, available};
 
@@ -72,8 +72,8 @@ pub struct Setup {
 impl Setup {
     /// All that the estimators believe of the device.
     #[must_use]
-    pub fn stages(&self) -> DualStage {
-        DualStage {
+    pub fn stages(&self) -> CoupledMotor {
+        CoupledMotor {
             large: self.device,
             coulomb_friction: self.friction_nm,
             amplifier_lag: self.amplifier_lag_s,

@@ -6,9 +6,9 @@ use super::learning::{Fixed, Learned};
 use super::motion::Motion;
 use super::{Observer, ROWS};
 use crate::const_math::{exp, phi1, phi2};
+use crate::coupled_motor::CoupledMotor;
 use crate::design_error::DesignError;
 use crate::device::Device;
-use crate::dual_stage::DualStage;
 use crate::edge_clock::EdgeClock;
 use crate::riccati;
 use crate::units::Hertz;
@@ -64,7 +64,7 @@ impl Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed> {
     /// [`DesignError::NotConverged`] and [`DesignError::NotStable`] as
     /// [`Model::steady_gain`](crate::Model::steady_gain), for any row of the table.
     pub const fn new(
-        device: &DualStage,
+        device: &CoupledMotor,
         rate: Hertz,
         uncertainty: &Uncertainty,
     ) -> Result<Self, DesignError> {
@@ -197,12 +197,12 @@ impl Observer<NoCurrent, HeldHandle, Edges, Fixed> {
     /// # Errors
     /// As [`Observer::new`] and [`Observer::with_edges`].
     pub const fn blind(
-        device: &DualStage,
+        device: &CoupledMotor,
         rate: Hertz,
         clock: Hertz,
         uncertainty: &Uncertainty,
     ) -> Result<Self, DesignError> {
-        let unknown = DualStage {
+        let unknown = CoupledMotor {
             large: Device {
                 damping: 0.0,
                 ..device.large

@@ -4,9 +4,9 @@
 #![no_std]
 
 use estimator_core::{
-    AdaptiveEdgeObserver, AdaptiveObserver, BestFit, CountObserver, CountsPerTick, Device,
-    DualStage, EdgeObserver, EndFit, FiniteDifference, Foaw, Hertz, Kalman, KalmanMotor,
-    KalmanTriple, LateCurrent, LowPass, MOverT, Model, Observer, Pll, Sample, Skip, SteadyKalman,
+    AdaptiveEdgeObserver, AdaptiveObserver, BestFit, CountObserver, CountsPerTick, CoupledMotor,
+    Device, EdgeObserver, EndFit, FiniteDifference, Foaw, Hertz, Kalman, KalmanMotor, KalmanTriple,
+    LateCurrent, LowPass, MOverT, Model, Observer, Pll, Sample, Skip, SteadyKalman,
     SteadyKalmanMotor, SteadyKalmanTriple, Uncertainty, VelocityEstimator, preset,
 };
 
@@ -15,7 +15,7 @@ const RATE: Hertz = Hertz(10_000.0);
 const CLOCK: Hertz = Hertz(84e6);
 
 const COUNTS: CountObserver = preset!(Observer::new(
-    &DualStage::DCX35L,
+    &CoupledMotor::DCX35L,
     RATE,
     &Uncertainty {
         torque_noise: 5e-6,

@@ -87,7 +87,7 @@ macro_rules! both {
 macro_rules! observer {
     ($c:ident, $rate:expr) => {
         $c::Observer::new(
-            &$c::DualStage::DCX35L,
+            &$c::CoupledMotor::DCX35L,
             $c::Hertz($rate),
             &$c::Uncertainty {
                 torque_noise: 7e-5,

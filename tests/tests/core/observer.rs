@@ -4,7 +4,7 @@
 //! and edges at random instants, and a motor that obeys its own model exactly.
 
 use estimator_core::{
-    Amps, ClockTicks, Count, CountsPerTick, DualStage, Edge, Hertz, MOverT, Observer, Sample,
+    Amps, ClockTicks, Count, CountsPerTick, CoupledMotor, Edge, Hertz, MOverT, Observer, Sample,
     Signals, Uncertainty, VelocityEstimator,
 };
 use proptest::prelude::*;
@@ -48,7 +48,7 @@ where
 /// Every type of observer, and M/T, at this rate.
 fn at(rate: f64) -> Vec<Case> {
     let hertz = Hertz(rate);
-    let device = DualStage::DCX35L;
+    let device = CoupledMotor::DCX35L;
     let counts = Observer::new(&device, hertz, &UNSURE).expect("valid");
     let edges = counts.with_edges(CLOCK, hertz).expect("valid");
     let blind = Observer::blind(&device, hertz, CLOCK, &UNSURE).expect("valid");
@@ -249,7 +249,7 @@ fn velocity_comes_back_to_zero_at_rest_without_current() {
 
 /// A motor that obeys the observer's own model, in f64 and small steps: friction, coupler, lag.
 struct Motor {
-    device: DualStage,
+    device: CoupledMotor,
     angle: f64,
     omega: f64,
     current: f64,
@@ -278,7 +278,7 @@ impl Motor {
 
 /// Samples and true velocity (counts a tick) of a motor under a swinging current of both signs,
 /// over a handle that swings too.
-fn modelled(rate: f64, seconds: f64, first: f64, device: DualStage) -> (Vec<Sample>, Vec<f64>) {
+fn modelled(rate: f64, seconds: f64, first: f64, device: CoupledMotor) -> (Vec<Sample>, Vec<f64>) {
     let per_rad = f64::from(device.large.counts_per_rev) / std::f64::consts::TAU;
     let per_small = f64::from(device.small_counts_per_rev) / std::f64::consts::TAU;
     let mut motor = Motor {
@@ -334,7 +334,7 @@ fn rms(estimates: &[f32], truth: &[f64], from: usize) -> f64 {
 #[test]
 fn motor_that_obeys_the_model_is_followed() {
     for (rate, bound) in [(1000.0, 0.02), (10_000.0, 0.002)] {
-        let (samples, truth) = modelled(rate, 4.0, 0.4, DualStage::DCX35L);
+        let (samples, truth) = modelled(rate, 4.0, 0.4, CoupledMotor::DCX35L);
         let from = (0.3 * rate) as usize;
         for case in at(rate) {
             let knows = case.needs.current && case.needs.small;
@@ -350,7 +350,7 @@ fn motor_that_obeys_the_model_is_followed() {
 #[test]
 fn what_is_off_is_learned() {
     let rate = Hertz(1000.0);
-    let believed = DualStage::DCX35L;
+    let believed = CoupledMotor::DCX35L;
     for (damping, inertia, friction) in [(0.7, 1.0, 1.0), (1.3, 1.2, 0.7), (0.8, 0.8, 1.4)] {
         let mut device = believed;
         device.large.damping *= damping;
@@ -385,7 +385,7 @@ fn what_is_off_is_learned() {
 #[test]
 fn nothing_is_learned_at_rest() {
     let rate = Hertz(1000.0);
-    let counts = Observer::new(&DualStage::DCX35L, rate, &UNSURE).expect("valid");
+    let counts = Observer::new(&CoupledMotor::DCX35L, rate, &UNSURE).expect("valid");
     let estimator = counts.learning(4096, rate).expect("valid");
     let first = Sample::new(Count(7));
     let mut state = estimator.start(&first);
@@ -440,7 +440,7 @@ fn m_over_t_is_exact_on_a_ramp() {
 #[test]
 fn learned_covariance_stays_positive() {
     let rate = Hertz(1000.0);
-    let counts = Observer::new(&DualStage::DCX35L, rate, &UNSURE).expect("valid");
+    let counts = Observer::new(&CoupledMotor::DCX35L, rate, &UNSURE).expect("valid");
     let estimator = counts.learning(4096, rate).expect("valid");
     let mut draws = Draws(11);
     let mut state = estimator.start(&Sample::default());

@@ -1,4 +1,4 @@
-//! The whole device description that observers are built from.
+//! The large motor and what acts on it, from which observers are built.
 
 use crate::design_error::DesignError;
 use crate::device::Device;
@@ -7,7 +7,7 @@ use crate::units::Hertz;
 /// The large motor with what acts on it besides its current: friction, the amplifier's lag and,
 /// through the coupler, the handle. SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DualStage {
+pub struct CoupledMotor {
     /// The large motor and its encoder.
     pub large: Device,
     /// Coulomb friction of the large motor, N·m; 0 for a motor without.
@@ -18,7 +18,7 @@ pub struct DualStage {
     pub small_counts_per_rev: u32,
 }
 
-impl DualStage {
+impl CoupledMotor {
     /// The paper's device: [`Device::DCX35L`], and a DCX22S GB KL 36 V with 5000 lines.
     ///
     /// Friction and lag are assumed: a public model of the same motor, an amplifier of 2 kHz.
