@@ -1,9 +1,10 @@
 //! What is measured: one line an estimator and rate; peers begin with `peer_`.
 
 use estimator_core::{
-    BestFit, Device, EndFit, FiniteDifference, Foaw, Hertz, Kalman, KalmanMotor, KalmanTriple,
-    LowPass, Model, Pll, Sample, SteadyKalman, SteadyKalmanMotor, SteadyKalmanTriple,
-    VelocityEstimator, preset,
+    AdaptiveEdgeObserver, AdaptiveObserver, BestFit, CountObserver, CoupledMotor, DesignError,
+    Device, EdgeObserver, EndFit, FiniteDifference, Foaw, Hertz, Kalman, KalmanMotor, KalmanTriple,
+    LowPass, MOverT, Model, Observer, Pll, Sample, SteadyKalman, SteadyKalmanMotor,
+    SteadyKalmanTriple, Uncertainty, VelocityEstimator, preset,
 };
 
 use crate::peers::{IdspKalman, NalgebraKalman};
@@ -14,6 +15,25 @@ const ANY: Hertz = Hertz(0.0);
 // Parameters are those of host-sim/presets.toml for these rates and the plant with friction.
 const SLOW: Hertz = Hertz(1000.0);
 const FAST: Hertz = Hertz(10_000.0);
+
+/// The clock that stamps edges.
+const CLOCK: Hertz = Hertz(84e6);
+
+const fn observer(
+    rate: Hertz,
+    torque_noise: f64,
+    load: f64,
+    boundary_noise: f64,
+) -> Result<CountObserver, DesignError> {
+    let unsure = Uncertainty {
+        torque_noise,
+        load,
+        load_time: 0.1,
+        friction_share: 0.7,
+        boundary_noise,
+    };
+    Observer::new(&CoupledMotor::DCX35L, rate, &unsure)
+}
 
 subjects! {
     finite_difference, "finite-difference", ANY: FiniteDifference = FiniteDifference;
@@ -41,6 +61,26 @@ subjects! {
         preset!(SteadyKalman::new(&preset!(Model::motor(&Device::DCX35L, SLOW, 0.106))));
     kalman_motor_steady_10k, "kalman-motor-steady", FAST: SteadyKalmanMotor =
         preset!(SteadyKalman::new(&preset!(Model::motor(&Device::DCX35L, FAST, 0.246))));
+    m_over_t_1k, "m-over-t", SLOW: MOverT = preset!(MOverT::new(CLOCK, SLOW));
+    m_over_t_10k, "m-over-t", FAST: MOverT = preset!(MOverT::new(CLOCK, FAST));
+    observer_1k, "observer", SLOW: CountObserver = preset!(observer(SLOW, 7.01e-5, 7.55e-4, 0.0625));
+    observer_10k, "observer", FAST: CountObserver = preset!(observer(FAST, 9.05e-5, 1e-4, 0.0625));
+    observer_edge_1k, "observer-edge", SLOW: EdgeObserver =
+        preset!(preset!(observer(SLOW, 9.21e-5, 9.85e-4, 0.03)).with_edges(CLOCK, SLOW));
+    observer_edge_10k, "observer-edge", FAST: EdgeObserver =
+        preset!(preset!(observer(FAST, 5e-4, 2.56e-4, 0.03)).with_edges(CLOCK, FAST));
+    adaptive_1k, "adaptive", SLOW: AdaptiveObserver =
+        preset!(preset!(observer(SLOW, 5.75e-6, 1.38e-4, 0.0625)).learning(4096, SLOW));
+    adaptive_10k, "adaptive", FAST: AdaptiveObserver =
+        preset!(preset!(observer(FAST, 3.57e-6, 1e-5, 0.0625)).learning(4096, FAST));
+    adaptive_edge_1k, "adaptive-edge", SLOW: AdaptiveEdgeObserver = preset!(
+        preset!(preset!(observer(SLOW, 1.55e-5, 3.01e-4, 0.03)).with_edges(CLOCK, SLOW))
+            .learning(4096, SLOW)
+    );
+    adaptive_edge_10k, "adaptive-edge", FAST: AdaptiveEdgeObserver = preset!(
+        preset!(preset!(observer(FAST, 3.68e-5, 8.9e-4, 0.03)).with_edges(CLOCK, FAST))
+            .learning(4096, FAST)
+    );
     pll_1k, "pll", SLOW: Pll = preset!(Pll::new(Hertz(271.0), SLOW));
     pll_10k, "pll", FAST: Pll = preset!(Pll::new(Hertz(398.0), FAST));
     peer_idsp_1k, "idsp: kalman", SLOW: IdspKalman =

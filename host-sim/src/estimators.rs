@@ -6,7 +6,7 @@ mod run;
 
 use estimator_core::{CoupledMotor, Device, Hertz, Signals};
 
-pub use run::{EDGE_CLOCK_HZ, Estimator, State, available};
+pub use run::{EDGE_CLOCK_HZ, Estimator, State, available, sample};
 
 use crate::failure::Failure;
 

@@ -1,7 +1,8 @@
 //! The traces that everything runs over.
 
-use estimator_core::{Amps, Count, Sample};
+use estimator_core::{Count, Sample, Signals};
 use host_sim::device::Device;
+use host_sim::estimators::sample;
 use host_sim::recording::Recording;
 use host_sim::scenario::ScenarioName;
 use host_sim::simulate::simulate;
@@ -15,6 +16,17 @@ const FROM_S: f64 = 1.0;
 
 /// Not a seed that presets are tuned on.
 const SEED: u64 = 7;
+
+/// What some estimator reads.
+const EVERYTHING: Signals = Signals {
+    current: true,
+    small: true,
+    edge: true,
+};
+const COLUMNS: Columns = Columns {
+    counts_small: true,
+    edges: true,
+};
 
 /// Control rates, Hz.
 pub const RATES_HZ: [u32; 2] = [1000, 10_000];
@@ -59,7 +71,7 @@ pub fn all() -> Result<Vec<Ground>, String> {
         ] {
             let first = (FROM_S * rate) as usize;
             let seconds = (first + SAMPLES) as f64 / rate;
-            let trace = simulate(&device, scenario, rate, SEED, seconds, Columns::default())?;
+            let trace = simulate(&device, scenario, rate, SEED, seconds, COLUMNS)?;
             grounds.push(ground(name, rate_hz, &trace, first, 4096));
         }
     }
@@ -85,21 +97,16 @@ fn ground(
     first: usize,
     counts_per_rev: u32,
 ) -> Ground {
-    let sample = |k: usize| {
-        // The current of the period that ends with the sample.
-        let current = match (&trace.current, k) {
-            (Some(current), 1..) => current[k - 1],
-            _ => 0.0,
-        };
-        Sample::new(Count(trace.counts_large[k])).with_current(Amps::new(current as f32))
-    };
     let range = first..trace.len().min(first + SAMPLES);
     let scale = scale(counts_per_rev, f64::from(rate_hz));
     let truth = trace.true_omega.as_ref();
     Ground {
         name,
         rate_hz,
-        samples: range.clone().map(sample).collect(),
+        samples: range
+            .clone()
+            .map(|k| sample(EVERYTHING, trace, k))
+            .collect(),
         truth: truth.map(|omega| omega[range].iter().map(|w| w / scale).collect()),
         scale,
     }

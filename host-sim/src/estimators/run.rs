@@ -233,7 +233,8 @@ where
 /// What the estimator may know at tick `k`: `needs` is a constant where this is inlined, so
 /// columns that the estimator does not read are not touched.
 #[inline(always)]
-fn sample(needs: Signals, trace: &Trace, k: usize) -> Sample {
+#[must_use]
+pub fn sample(needs: Signals, trace: &Trace, k: usize) -> Sample {
     let mut sample = Sample::new(Count(trace.counts_large[k]));
     if needs.current {
         // The trace's current acts from its tick on; the sample's acted until its tick.
