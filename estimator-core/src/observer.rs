@@ -1,5 +1,6 @@
 //! Observer of a motor with known current, coupler and friction, with scheduled gains.
 
+mod bierman;
 mod correction;
 mod design;
 mod inputs;

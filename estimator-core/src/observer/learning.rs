@@ -1,5 +1,6 @@
 //! What an observer learns of its parameters: nothing ([`Fixed`]), or [`Learned`].
 
+use super::bierman::bierman;
 use super::correction::Innovation;
 use super::design::Gain;
 use super::inputs::Push;
@@ -176,9 +177,6 @@ const SLOWEST: f64 = 0.5;
 /// a torque that is not quite white are not independent.
 const CAUTION: f32 = 8.0;
 
-/// Largest element of U.
-const LARGEST_SHARE: f32 = 1e3;
-
 impl Learned {
     pub(super) const fn new(counts_per_rev: u32, rate: Hertz) -> Result<Self, DesignError> {
         if !rate.is_positive() {
@@ -311,30 +309,4 @@ impl Learning for Learned {
         }
         Some(shift)
     }
-}
-
-/// Bierman's update of `P = U D Uᵀ` by a measurement `h` of variance `r` > 0; returns its gain.
-fn bierman(upper: &mut [f32; 3], diagonal: &mut [f32; 3], h: [f32; 3], r: f32) -> [f32; 3] {
-    let [u01, u02, u12] = *upper;
-    let f = [h[0], h[1] + u01 * h[0], h[2] + u02 * h[0] + u12 * h[1]];
-    let g = [diagonal[0] * f[0], diagonal[1] * f[1], diagonal[2] * f[2]];
-    let a0 = r + f[0] * g[0];
-    let a1 = a0 + f[1] * g[1];
-    let a2 = a1 + f[2] * g[2];
-    let (per_a0, per_a1, per_a2) = (1.0 / a0, 1.0 / a1, 1.0 / a2);
-    diagonal[0] *= r * per_a0;
-    diagonal[1] *= a0 * per_a1;
-    diagonal[2] *= a1 * per_a2;
-    let bound = |u: f32| limited(u, LARGEST_SHARE);
-    let ratio = f[1] * per_a0;
-    let k0 = g[0] + g[1] * u01;
-    upper[0] = bound(u01 - ratio * g[0]);
-    let ratio = f[2] * per_a1;
-    upper[1] = bound(u02 - ratio * k0);
-    upper[2] = bound(u12 - ratio * g[1]);
-    [
-        (k0 + g[2] * u02) * per_a2,
-        (g[1] + g[2] * u12) * per_a2,
-        g[2] * per_a2,
-    ]
 }
