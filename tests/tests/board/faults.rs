@@ -56,12 +56,13 @@ const fn bound(fault: Fault, watched_s: f64, end: End, force_mn: [f64; 2]) -> Bo
 /// The image feeds its watchdog from frames, so it dies at most 50 ms and a frame after the last,
 /// by an oscillator that is exact here and good to 50 % on silicon.
 const MATRIX: [Bound; 15] = [
+    // One phase alone counts to and fro, which looks like motion against the push.
+    bound(Fault::StuckA, 0.3, off(10.0, "14", 0), [60.0, 10.0]),
+    bound(Fault::StuckB, 0.3, off(10.0, "14", 0), [60.0, 10.0]),
     // The loop pushes ever harder until the monitor misses the motion.
-    bound(Fault::StuckA, 1.5, off(500.0, "4", 0), [500.0, 10.0]),
-    bound(Fault::StuckB, 1.5, off(500.0, "4", 0), [500.0, 10.0]),
-    bound(Fault::StuckBoth, 1.5, off(500.0, "4", 0), [500.0, 10.0]),
+    bound(Fault::StuckBoth, 0.5, off(200.0, "4", 0), [300.0, 10.0]),
     // The loop drives the motor the wrong way until the monitor has seen enough of it.
-    bound(Fault::Swapped, 0.3, off(90.0, "14", 0), [2600.0, 100.0]),
+    bound(Fault::Swapped, 0.3, off(6.0, "14", 0), [90.0, 10.0]),
     bound(Fault::LostCounts, 2.0, End::On, [100.0, 10.0]),
     bound(Fault::AmplifierFault, 0.2, off(0.2, "5", 0), [1.0, 0.0]),
     bound(Fault::HungCore, 0.2, off(60.0, "8", 1), [40.0, 1.0]),

@@ -2,6 +2,7 @@
 
 use estimator_core::{Amps, Count, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple};
 use haptic_control::{Action, AnyScene, Currents, FreeAir, Request, Stop, Switchboard};
+use host_sim::closed_loop::SceneName;
 use virtual_board::run::{Outcome, Tick};
 
 use crate::firmware::control::{Control, Inputs};
@@ -149,7 +150,7 @@ fn every_change_of_scene_is_what_the_host_computes_bit_for_bit() {
     let host = mirrored(run);
     same_bits(run, &host);
     let changes = requests(run).len();
-    assert_eq!(changes, 9, "arm and eight scenes");
+    assert_eq!(changes, 1 + SceneName::ALL.len(), "arm and every scene");
     let last = run.telemetry.frames.last().unwrap();
     assert_eq!((last.state.as_str(), last.cause.as_str()), ("2", "0"));
     // At every tick, not at every frame alone: the codes of both converters.
