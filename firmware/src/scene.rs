@@ -27,7 +27,7 @@ pub(crate) use crate::edge::Capture as Stamps;
 #[cfg(not(feature = "edge-capture"))]
 pub(crate) use estimator_core::Skip as Stamps;
 
-#[cfg(not(feature = "large-kalman"))]
+#[cfg(not(any(feature = "large-kalman", feature = "large-adaptive")))]
 mod large {
     use estimator_core::{EndFit, Foaw, preset};
     pub(crate) type Large = Foaw<32, EndFit>;
@@ -45,6 +45,40 @@ mod large {
     ));
     pub(crate) const LARGE: Large = preset!(SteadyKalman::new(&MODEL));
 }
+
+#[cfg(feature = "large-adaptive")]
+mod large {
+    use super::DEVICE;
+    use crate::board::RATE_HZ;
+    use estimator_core::{CountObserver, Hertz, Observer, Uncertainty, preset};
+
+    const RATE: Hertz = Hertz(RATE_HZ as f64);
+    /// As `host-sim tune` has it for these rates.
+    const UNSURE: Uncertainty = Uncertainty {
+        torque_noise: if EDGES { 3.68e-5 } else { 3.57e-6 },
+        load: if EDGES { 8.9e-4 } else { 1e-5 },
+        load_time: 0.1,
+        friction_share: 0.7,
+        boundary_noise: if EDGES { 0.03 } else { 0.0625 },
+    };
+    const EDGES: bool = cfg!(feature = "edge-capture");
+    const COUNTS: CountObserver = preset!(Observer::new(&DEVICE.coupled_motor(), RATE, &UNSURE));
+
+    #[cfg(not(feature = "edge-capture"))]
+    pub(crate) type Large = estimator_core::AdaptiveObserver;
+    #[cfg(not(feature = "edge-capture"))]
+    pub(crate) const LARGE: Large = preset!(COUNTS.learning(DEVICE.large.counts_per_rev, RATE));
+
+    #[cfg(feature = "edge-capture")]
+    pub(crate) type Large = estimator_core::AdaptiveEdgeObserver;
+    #[cfg(feature = "edge-capture")]
+    pub(crate) const LARGE: Large = preset!(
+        preset!(COUNTS.with_edges(Hertz(84e6), RATE)).learning(DEVICE.large.counts_per_rev, RATE)
+    );
+}
+
+#[cfg(all(feature = "large-kalman", feature = "large-adaptive"))]
+compile_error!("one estimator for the large motor: large-kalman or large-adaptive");
 
 pub(crate) use large::{LARGE, Large};
 

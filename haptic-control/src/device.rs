@@ -1,6 +1,8 @@
 //! The device description that controllers are designed from.
 
-use estimator_core::Hertz;
+use core::f64::consts::PI;
+
+use estimator_core::{CoupledMotor, Device, Hertz};
 
 use crate::design_error::DesignError;
 
@@ -55,6 +57,22 @@ impl DualStage {
         damping: 0.96e-3,
         amplifier: Hertz(2000.0),
     };
+
+    /// The large motor and what acts on it, for an observer.
+    #[must_use]
+    pub const fn coupled_motor(&self) -> CoupledMotor {
+        CoupledMotor {
+            large: Device {
+                counts_per_rev: self.large.counts_per_rev,
+                inertia: self.large.inertia,
+                damping: self.damping,
+                torque_constant: self.large.torque_constant,
+            },
+            coulomb_friction: self.large.coulomb,
+            amplifier_lag: 1.0 / (2.0 * PI * self.amplifier.0),
+            small_counts_per_rev: self.small.counts_per_rev,
+        }
+    }
 
     /// The device itself, if every constant is in its range.
     ///

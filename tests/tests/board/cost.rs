@@ -132,7 +132,7 @@ fn scenes_pay_only_for_what_they_need() {
     let [foaw, kalman] = of_both();
     for ((scene, foaw), (_, kalman)) in foaw.iter().zip(kalman) {
         if scene.asks_for_velocity() {
-            let (foaw, kalman) = (foaw.most, kalman.most);
+            let (foaw, kalman) = (foaw.max, kalman.max);
             assert!(kalman < foaw, "{scene}: {kalman}, {foaw}");
         } else {
             let ratio = kalman.mean / foaw.mean;

@@ -1,13 +1,19 @@
 //! The same control on the host, fed with what the image read: the same bits.
 
-use estimator_core::{Amps, Count, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple};
+use estimator_core::{
+    AdaptiveObserver, Amps, Count, CountObserver, CountsPerTick, Model, NoInput, Observer, Sample,
+    SteadyKalman, SteadyKalmanTriple, Uncertainty, VelocityEstimator, preset,
+};
 use haptic_control::{Action, AnyScene, Currents, FreeAir, Request, Stop, Switchboard};
 use host_sim::closed_loop::SceneName;
+use host_sim::telemetry::Frame;
 use virtual_board::run::{Outcome, Tick};
 
 use crate::firmware::control::{Control, Inputs};
-use crate::firmware::scene::{DEVICE, HANDLE, Handle, RATE, RIG};
-use crate::image::{free_air, kalman_free_air, kalman_track, soak, tour};
+use crate::firmware::scene::{DEVICE, HANDLE, RATE, RIG};
+use crate::image::{
+    adaptive_edge_free_air, adaptive_free_air, free_air, kalman_free_air, kalman_track, soak, tour,
+};
 use crate::telemetry::Record;
 
 /// The counts of every tick of `run`, widened from what the counters show at first.
@@ -95,7 +101,7 @@ fn same_bits(run: &Outcome, host: &[(Option<Currents>, Record)]) -> usize {
     moving
 }
 
-fn same_action(frame: &host_sim::telemetry::Frame, action: &Action) {
+fn same_action(frame: &Frame, action: &Action) {
     let image = [frame.wl, frame.ws, frame.torque, frame.il, frame.is];
     let currents = [action.currents.large.get(), action.currents.small.get()];
     let wanted = [
@@ -181,27 +187,23 @@ fn codes_are_the_hosts(run: &Outcome, host: &[(Option<Currents>, Record)]) -> us
     moved
 }
 
-/// The switchboard of the image with the Kalman filter on the large motor: its parameters are
-/// written down here, because the firmware's own file holds one choice a build.
-fn kalman_mirrored(run: &Outcome) -> Vec<Action> {
-    const MODEL: Model<3, NoInput> = estimator_core::preset!(Model::triple_integrator(
-        DEVICE.large.counts_per_rev,
-        RATE,
-        1e4
-    ));
-    const LARGE: SteadyKalmanTriple = estimator_core::preset!(SteadyKalman::new(&MODEL));
-    const SWITCHBOARD: Switchboard<SteadyKalmanTriple, Handle> =
-        Switchboard::new(LARGE, HANDLE, RIG, RATE);
+/// The switchboard of an image with another estimator on the large motor, which is written down
+/// here, because the firmware's own file holds one choice a build.
+fn mirrored_with<L>(large: L, run: &Outcome) -> Vec<Action>
+where
+    L: VelocityEstimator<Output = CountsPerTick>,
+{
+    let switchboard = Switchboard::new(large, HANDLE, RIG, RATE);
     let (mut samples, first) = Samples::new(run);
-    let mut state = SWITCHBOARD.start(&first);
+    let mut state = switchboard.start(&first);
     let requests = requests(run);
     let mut applied = Amps::ZERO;
     let step = |(k, tick): (usize, &Tick)| {
         let sample = samples.next(tick, applied);
-        let mut action = SWITCHBOARD.step(&mut state, &sample);
+        let mut action = switchboard.step(&mut state, &sample);
         if requests.contains(&(k, Request::Arm)) {
-            state = SWITCHBOARD.start(&sample);
-            SWITCHBOARD.select(&mut state, AnyScene::FreeAir(FreeAir), &sample);
+            state = switchboard.start(&sample);
+            switchboard.select(&mut state, AnyScene::FreeAir(FreeAir), &sample);
             action.currents = Currents::default();
         }
         applied = action.currents.large;
@@ -210,17 +212,70 @@ fn kalman_mirrored(run: &Outcome) -> Vec<Action> {
     run.ticks.iter().enumerate().map(step).collect()
 }
 
-#[test]
-fn the_other_image_too_is_what_the_host_computes_bit_for_bit() {
-    for run in [kalman_free_air(), kalman_track()] {
-        let host = kalman_mirrored(run);
-        let mut moving = 0;
-        assert!(run.telemetry.frames.len() > 9980);
-        for frame in &run.telemetry.frames {
-            let action = &host[run.tick_index(frame).expect("a frame tells of a tick")];
-            same_action(frame, action);
-            moving += usize::from(action.large.0 != 0.0);
-        }
-        assert!(moving > 9500, "{moving} frames of a moving device");
+/// Fails unless every frame of `run` says what the host computed.
+fn same_frames(run: &Outcome, host: &[Action]) {
+    let mut moving = 0;
+    assert!(run.telemetry.frames.len() > 9980);
+    for frame in &run.telemetry.frames {
+        let action = &host[run.tick_index(frame).expect("a frame tells of a tick")];
+        same_action(frame, action);
+        moving += usize::from(action.large.0 != 0.0);
     }
+    assert!(moving > 9500, "{moving} frames of a moving device");
+}
+
+#[test]
+fn the_kalman_image_is_what_the_host_computes_bit_for_bit() {
+    const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(
+        DEVICE.large.counts_per_rev,
+        RATE,
+        1e4
+    ));
+    const LARGE: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
+    for run in [kalman_free_air(), kalman_track()] {
+        same_frames(run, &mirrored_with(LARGE, run));
+    }
+}
+
+#[test]
+fn the_adaptive_image_is_what_the_host_computes_bit_for_bit() {
+    const UNSURE: Uncertainty = Uncertainty {
+        torque_noise: 3.57e-6,
+        load: 1e-5,
+        load_time: 0.1,
+        friction_share: 0.7,
+        boundary_noise: 0.0625,
+    };
+    const COUNTS: CountObserver = preset!(Observer::new(&DEVICE.coupled_motor(), RATE, &UNSURE));
+    const LARGE: AdaptiveObserver = preset!(COUNTS.learning(DEVICE.large.counts_per_rev, RATE));
+    let run = adaptive_free_air();
+    same_frames(run, &mirrored_with(LARGE, run));
+}
+
+/// RMS error of the reported velocity of the large motor, rad/s, after a second.
+fn velocity_error(run: &Outcome) -> f64 {
+    let frames = run.telemetry.frames.iter().skip(1000);
+    let square = |frame: &Frame| {
+        let truth = run
+            .tick(frame)
+            .expect("a frame tells of a tick")
+            .large
+            .omega;
+        (f64::from(frame.wl) - truth).powi(2)
+    };
+    let squares: Vec<f64> = frames.map(square).collect();
+    (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+}
+
+/// What it is for: on the board, in the loop, the observer errs a fraction of what FOAW does, and
+/// with stamped edges less again.
+#[test]
+fn the_observers_see_more_on_the_board_too() {
+    let errors = [free_air(), adaptive_free_air(), adaptive_edge_free_air()].map(velocity_error);
+    println!(
+        "FOAW {}, adaptive {}, with edges {} rad/s",
+        errors[0], errors[1], errors[2]
+    );
+    assert!(errors[1] < 0.5 * errors[0], "{errors:?}");
+    assert!(errors[2] < 0.8 * errors[1], "{errors:?}");
 }
