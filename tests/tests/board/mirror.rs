@@ -221,7 +221,8 @@ fn same_frames(run: &Outcome, host: &[Action]) {
         same_action(frame, action);
         moving += usize::from(action.large.0 != 0.0);
     }
-    assert!(moving > 9500, "{moving} frames of a moving device");
+    // An observer that knows friction says zero where it holds the rotor.
+    assert!(moving > 8000, "{moving} frames of a moving device");
 }
 
 #[test]
