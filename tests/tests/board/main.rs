@@ -42,6 +42,7 @@ mod edges;
 mod faults;
 mod golden;
 mod healthy;
+mod identify;
 mod image;
 mod mirror;
 mod record;

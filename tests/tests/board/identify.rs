@@ -1,0 +1,53 @@
+//! The device identified from what the image recorded of it.
+
+use host_sim::closed_loop::{Hand, SceneName};
+use host_sim::device::Device;
+use host_sim::identify::{Known, identify};
+use host_sim::recording::Recording;
+
+use virtual_board::run::Setup;
+
+use crate::image::{of_scene, run};
+
+/// A device that is not the one that the image believes in, excited by the image's own scene while
+/// a hand holds it: its constants come out of the frames.
+#[test]
+fn the_image_excites_a_device_and_its_recording_tells_what_it_is() {
+    let mut device = Device::default();
+    device.large.inertia_kg_m2 *= 1.2;
+    device.large.coulomb_nm *= 1.3;
+    device.coupler.damping_nms_per_rad *= 0.88;
+    let excited = run(&Setup {
+        device: device.clone(),
+        ..of_scene(SceneName::Excite, Hand::Still, 16.2)
+    });
+    let last = excited.telemetry.frames.last().unwrap();
+    assert_eq!((last.state.as_str(), last.cause.as_str()), ("2", "0"));
+    let text = excited.csv().unwrap();
+    let recording = Recording::parse(text.as_bytes(), "board").unwrap();
+    let known = Known::TorqueConstant(device.large.torque_constant_nm_per_a);
+    let found = identify(
+        &[("board".to_owned(), recording)],
+        &Device::default(),
+        known,
+        false,
+    )
+    .unwrap();
+    for (key, truth) in [
+        ("large.inertia_kg_m2", device.large.inertia_kg_m2),
+        ("large.coulomb_nm", device.large.coulomb_nm),
+        (
+            "coupler.damping_nms_per_rad",
+            device.coupler.damping_nms_per_rad,
+        ),
+    ] {
+        let quantity = found.quantities.iter().find(|q| q.key == key);
+        let quantity = quantity.unwrap_or_else(|| panic!("{key} among what is known"));
+        assert_eq!(quantity.untold, None, "{key}");
+        let off = quantity.estimate.value / truth - 1.0;
+        println!("{key}: {:.2} % off", 100.0 * off);
+        assert!(off.abs() < 0.03, "{key} {off}");
+        // The file that it is compared with says something else: it was not copied.
+        assert!((quantity.file / truth - 1.0).abs() > 0.1, "{key}");
+    }
+}
