@@ -105,6 +105,7 @@ impl Control {
             state: self.safety.mode() as u8,
             cause: self.safety.stop() as u8,
             overruns: self.overruns,
+            learned: self.core.learned(),
         };
         self.tick = self.tick.wrapping_add(1);
         (order.enable.then_some(action.currents), record)

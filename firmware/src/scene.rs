@@ -1,6 +1,10 @@
 //! What the image holds: estimators, scenes, evaluation parts. The only file with `cfg`.
 
-use estimator_core::{Hertz, Model, NoInput, SteadyKalman, SteadyKalmanTriple, preset};
+#[cfg(not(feature = "large-adaptive"))]
+use estimator_core::Skip;
+use estimator_core::{
+    Hertz, Model, NoInput, SteadyKalman, SteadyKalmanTriple, VelocityEstimator, preset,
+};
 use haptic_control::{
     Bounds, Detents, DualStage, Excite, FreeAir, Hold, Inertia, LoopPoles, Off, Radians, Rig,
     SpringDamper, Texture, Torque, Viscous, Wall,
@@ -81,6 +85,21 @@ mod large {
 compile_error!("one estimator for the large motor: large-kalman or large-adaptive");
 
 pub(crate) use large::{LARGE, Large};
+
+/// What is learned of the device while it runs: nothing, by estimators that do not learn.
+#[cfg(not(feature = "large-adaptive"))]
+pub(crate) type Learned = Skip;
+#[cfg(feature = "large-adaptive")]
+pub(crate) type Learned = estimator_core::Deviations;
+
+#[cfg(not(feature = "large-adaptive"))]
+fn learned(_: &<Large as VelocityEstimator>::State) -> Learned {
+    Skip
+}
+#[cfg(feature = "large-adaptive")]
+fn learned(state: &<Large as VelocityEstimator>::State) -> Learned {
+    LARGE.deviations(state)
+}
 
 /// The handle's estimator.
 pub(crate) type Handle = SteadyKalmanTriple;

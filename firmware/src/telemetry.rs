@@ -1,10 +1,10 @@
 //! Telemetry frames: made by the control task, logged by the lowest priority.
 
-use estimator_core::{Count, Sample};
+use estimator_core::{Count, Deviations, Sample, Skip};
 use haptic_control::Action;
 use heapless::spsc::{Consumer, Producer, Queue};
 
-use crate::scene::EDGES;
+use crate::scene::{EDGES, Learned};
 
 /// Frames a second.
 const FRAMES_HZ: u32 = 1000;
@@ -25,6 +25,7 @@ pub(crate) struct Record {
     pub(crate) state: u8,
     pub(crate) cause: u8,
     pub(crate) overruns: u32,
+    pub(crate) learned: Learned,
 }
 
 /// A record on its way out.
@@ -89,7 +90,7 @@ pub(crate) fn log(frames: &mut Consumer<'static, Frame>) -> bool {
 impl Frame {
     #[rustfmt::skip]
     fn log(&self) {
-        let Record { tick, sample, action, state, cause, overruns } = self.record;
+        let Record { tick, sample, action, state, cause, overruns, learned } = self.record;
         // Lost on the way to the queue, or between the queue and the probe.
         let drops = self.drops.wrapping_add(bare::lost());
         defmt::info!(
@@ -102,8 +103,34 @@ impl Frame {
         if EDGES && let Some(edge) = sample.edge {
             defmt::info!("edge seq={=u32} bound={=u32} age={=u32}", self.seq, edge.boundary.0, edge.age.0);
         }
+        if self.seq.is_multiple_of(LEARNED_EVERY) {
+            learned.log(self.seq);
+        }
         if let Some(Count(count)) = self.reference {
             defmt::info!("reference seq={=u32} count={=u32}", self.seq, count);
         }
+    }
+}
+
+/// Frames for one line of what was learned, which changes slowly.
+const LEARNED_EVERY: u32 = 128;
+
+/// What may be said beside a frame.
+trait Aside {
+    fn log(&self, seq: u32);
+}
+
+/// Nothing is learned: no code.
+impl Aside for Skip {
+    fn log(&self, _: u32) {}
+}
+
+impl Aside for Deviations {
+    #[rustfmt::skip]
+    fn log(&self, seq: u32) {
+        defmt::info!(
+            "learned seq={=u32} damping={=f32} friction={=f32} torque_constant={=f32}",
+            seq, self.damping, self.friction, self.torque_constant
+        );
     }
 }

@@ -53,6 +53,17 @@ pub struct ControllerState<S: Scene, L: VelocityEstimator, H: VelocityEstimator>
     origin: Count,
 }
 
+impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> ControllerState<S, L, H> {
+    /// State of the large motor's estimator, if the scene needs one.
+    #[must_use]
+    pub fn large(&self) -> Option<&L::State> {
+        let large = S::Continuous::map(S::Continuous::as_ref(&self.continuous), |(large, _)| {
+            Some(large)
+        });
+        S::Continuous::or(large, None)
+    }
+}
+
 impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> Clone for ControllerState<S, L, H> {
     fn clone(&self) -> Self {
         Self {

@@ -94,6 +94,14 @@ struct Shared<L: VelocityEstimator, H: VelocityEstimator> {
 /// Time constant with which a difference at a swap fades, s.
 const FADE_S: f64 = 0.02;
 
+impl<L: VelocityEstimator, H: VelocityEstimator> SwitchboardState<L, H> {
+    /// State of the large motor's estimator; it stands where it was while no scene needs it.
+    #[must_use]
+    pub const fn large(&self) -> &L::State {
+        &self.shared.large
+    }
+}
+
 impl<L, H> Switchboard<L, H>
 where
     L: VelocityEstimator<Output = CountsPerTick>,

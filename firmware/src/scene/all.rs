@@ -6,7 +6,9 @@ use haptic_control::{Action, AnyScene, Refusal, Switchboard, SwitchboardState};
 use super::preset::{
     DETENTS, EXCITE, FREE_AIR, HOLD, INERTIA, OFF, SPRING, TEXTURE, TORQUE, VISCOUS, WALL,
 };
-use super::{BOUNDS, HANDLE, Handle, LARGE, Large, RATE, RIG, SCENES, TORQUE_SCENE};
+use super::{
+    BOUNDS, HANDLE, Handle, LARGE, Large, Learned, RATE, RIG, SCENES, TORQUE_SCENE, learned,
+};
 
 type Scenes = [AnyScene; SCENES as usize];
 
@@ -100,5 +102,10 @@ impl Core {
     /// One tick.
     pub(crate) fn step(&mut self, sample: &Sample) -> Action {
         SWITCHBOARD.step(&mut self.state, sample)
+    }
+
+    /// What the large motor's estimator has learned.
+    pub(crate) fn learned(&self) -> Learned {
+        learned(self.state.large())
     }
 }

@@ -4,7 +4,8 @@ use estimator_core::Sample;
 use haptic_control::{Action, Controller, ControllerState, Refusal, Tunable};
 
 use super::{
-    BOUNDS, FIRST, HANDLE, Handle, LARGE, Large, RIG, THE_SCENE, TORQUE_SCENE, TheScene,
+    BOUNDS, FIRST, HANDLE, Handle, LARGE, Large, Learned, RIG, THE_SCENE, TORQUE_SCENE, TheScene,
+    learned,
 };
 
 /// The scene built anew, on its way to the control task.
@@ -78,5 +79,10 @@ impl Core {
         } else {
             Action::default()
         }
+    }
+
+    /// What the large motor's estimator has learned.
+    pub(crate) fn learned(&self) -> Learned {
+        self.state.large().map(learned).unwrap_or_default()
     }
 }

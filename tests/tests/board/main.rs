@@ -19,6 +19,8 @@ mod telemetry {
         pub(crate) cause: u8,
         #[allow(dead_code, reason = "the firmware's")]
         pub(crate) overruns: u32,
+        #[allow(dead_code, reason = "the firmware's")]
+        pub(crate) learned: crate::scene::Learned,
     }
 }
 
@@ -44,6 +46,7 @@ mod golden;
 mod healthy;
 mod identify;
 mod image;
+mod learned;
 mod mirror;
 mod record;
 mod recording;

@@ -1,0 +1,45 @@
+//! What the image learns of a device that it believes to be another.
+
+use host_sim::closed_loop::{Hand, SceneName};
+use host_sim::device::Device;
+use virtual_board::run::{Outcome, Setup};
+
+use crate::image::{of_scene, run, run_image};
+
+/// The numbers of the last line of what was learned.
+fn last_learned(run: &Outcome) -> Option<[f64; 3]> {
+    let mut lines = run.telemetry.log.iter().rev();
+    let line = lines.find(|line| line.starts_with("learned "))?;
+    let field = |name: &str| {
+        line.split_whitespace()
+            .find_map(|word| word.strip_prefix(name)?.parse().ok())
+            .unwrap_or_else(|| panic!("no {name} in '{line}'"))
+    };
+    Some(["damping=", "friction=", "torque_constant="].map(field))
+}
+
+/// A coupler that has warmed up: a quarter of its damping is gone, and the image says so.
+#[test]
+fn a_coupler_with_less_damping_is_told_in_telemetry() {
+    let setup = |part: f64| {
+        let mut device = Device::default();
+        device.coupler.damping_nms_per_rad *= part;
+        Setup {
+            device,
+            ..of_scene(SceneName::FreeAir, Hand::Tracking, 20.0)
+        }
+    };
+    for part in [1.0, 0.75] {
+        let run = run_image("large-adaptive", &setup(part));
+        let [damping, _, torque_constant] = last_learned(&run).expect("a line");
+        let learned = (1.0 + damping) / (1.0 + torque_constant);
+        println!("damping {part} of what is believed: learned {learned}");
+        assert!((learned - part).abs() < 0.05, "{part}: {learned}");
+    }
+    // An image that learns nothing says nothing of it.
+    let short = Setup {
+        seconds: 0.5,
+        ..setup(0.75)
+    };
+    assert_eq!(last_learned(&run(&short)), None);
+}
