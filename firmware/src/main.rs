@@ -65,7 +65,8 @@ mod app {
     }
 
     /// The control task: reads, steps, writes, enqueues. Its deadline is the next tick, 100 us or
-    /// 16 800 cycles; on the emulated board it took at most 3472 instructions.
+    /// 16 800 cycles; on the emulated board it took at most 2785 instructions
+    /// (docs/benchmarks.md).
     #[task(
         binds = TIM5,
         priority = 15,

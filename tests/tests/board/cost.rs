@@ -2,8 +2,10 @@
 
 use std::sync::OnceLock;
 
-use host_sim::closed_loop::SceneName;
-use virtual_board::run::{Outcome, Tick};
+use host_sim::closed_loop::{Hand, SceneName};
+use virtual_board::command::Command;
+use virtual_board::run::{Outcome, Setup, Tick};
+use virtual_board::scene::ImageScene;
 use virtual_board::score::Range;
 
 use crate::golden::Golden;
@@ -12,10 +14,22 @@ use crate::image::{FIRST_S, SETTLED_S, free_air, hand_for, of_scene, run_image, 
 /// Instructions may move by this part of what is written.
 const SLACK: f64 = 0.1;
 
-/// Images of one scene alone: the scene, the feature, and a run of it.
-pub(crate) fn alone() -> &'static [(SceneName, &'static str, Outcome)] {
-    static RUNS: OnceLock<Vec<(SceneName, &'static str, Outcome)>> = OnceLock::new();
+/// An image of one scene alone.
+pub(crate) struct Alone {
+    /// Name of the scene.
+    pub(crate) scene: &'static str,
+    /// The feature.
+    pub(crate) feature: &'static str,
+    /// A run of it.
+    pub(crate) run: Outcome,
+}
+
+/// Images of one scene alone.
+pub(crate) fn alone() -> &'static [Alone] {
+    static RUNS: OnceLock<Vec<Alone>> = OnceLock::new();
     RUNS.get_or_init(|| {
+        let hosts = SceneName::ALL.into_iter().chain([SceneName::Excite]);
+        let scenes = hosts.map(ImageScene::Host).chain([ImageScene::Torque]);
         let features = [
             "scene-off",
             "scene-free-air",
@@ -26,10 +40,16 @@ pub(crate) fn alone() -> &'static [(SceneName, &'static str, Outcome)] {
             "scene-texture",
             "scene-hold",
             "scene-inertia",
+            "scene-excite",
+            "scene-torque",
         ];
-        let run =
-            |(scene, feature): (SceneName, &'static str)| (scene, feature, playing(feature, scene));
-        SceneName::ALL.into_iter().zip(features).map(run).collect()
+        assert_eq!(scenes.clone().count(), features.len());
+        let run = |(scene, feature): (ImageScene, &'static str)| Alone {
+            scene: feature.trim_start_matches("scene-"),
+            feature,
+            run: playing(feature, scene),
+        };
+        scenes.zip(features).map(run).collect()
     })
 }
 
@@ -44,10 +64,21 @@ fn between(run: &Outcome, from_s: f64, to_s: f64) -> Range {
 }
 
 /// A second of a scene; it must not have been stopped.
-fn playing(features: &'static str, scene: SceneName) -> Outcome {
-    let run = run_image(features, &of_scene(scene, hand_for(scene), 1.0));
+fn playing(features: &'static str, scene: ImageScene) -> Outcome {
+    let hand = match scene {
+        ImageScene::Host(scene) => hand_for(scene),
+        ImageScene::Torque => Hand::Moving,
+    };
+    let run = run_image(
+        features,
+        &Setup {
+            commands: vec![(0.05, scene.select()), (0.1, Command::Arm)],
+            ..of_scene(SceneName::Off, hand, 1.0)
+        },
+    );
     let last = run.telemetry.frames.last().expect("frames");
-    let state = if scene == SceneName::Off { "1" } else { "2" };
+    let off = scene == ImageScene::Host(SceneName::Off);
+    let state = if off { "1" } else { "2" };
     assert_eq!(
         (last.state.as_str(), last.cause.as_str()),
         (state, "0"),
@@ -59,7 +90,7 @@ fn playing(features: &'static str, scene: SceneName) -> Outcome {
 /// Instructions of each scene in an image of all of them.
 fn by_scene(features: &'static str) -> Vec<(SceneName, Range)> {
     let of = |scene| {
-        let run = playing(features, scene);
+        let run = playing(features, ImageScene::Host(scene));
         (scene, between(&run, SETTLED_S, f64::INFINITY))
     };
     SceneName::ALL.into_iter().map(of).collect()
@@ -80,9 +111,9 @@ fn figures(range: Range) -> [u64; 2] {
 fn a_scene_alone_costs_the_instructions_that_the_table_says() {
     let all = between(tour(), FIRST_S, f64::INFINITY);
     let mut rows = vec![("all", figures(all))];
-    for (scene, _, run) in alone() {
+    for Alone { scene, run, .. } in alone() {
         let range = between(run, SETTLED_S, f64::INFINITY);
-        rows.push((scene.as_str(), figures(range)));
+        rows.push((scene, figures(range)));
     }
     let table = Golden {
         file: "benchmarks.md",

@@ -2,7 +2,7 @@
 
 use virtual_board::run::Outcome;
 
-use crate::cost::alone;
+use crate::cost::{Alone, alone};
 use crate::golden::Golden;
 use crate::image::{free_air, image, kalman_free_air, tour};
 
@@ -18,11 +18,7 @@ fn images() -> Vec<(&'static str, u64)> {
         ("", deepest(&[free_air(), tour()])),
         ("large-kalman", deepest(&[kalman_free_air()])),
     ];
-    images.extend(
-        alone()
-            .iter()
-            .map(|(_, features, run)| (*features, run.stack)),
-    );
+    images.extend(alone().iter().map(|image| (image.feature, image.run.stack)));
     images
 }
 
@@ -54,8 +50,13 @@ fn every_image_takes_what_the_table_says() {
 #[test]
 fn a_scene_alone_is_smaller_than_all_of_them() {
     let whole = image("").size;
-    for (scene, features, run) in alone() {
-        let size = image(features).size;
+    for Alone {
+        scene,
+        feature,
+        run,
+    } in alone()
+    {
+        let size = image(feature).size;
         assert!(size.text < whole.text, "{scene}: {size:?}, {whole:?}");
         assert!(
             run.stack > 256 && run.stack < 8192,
