@@ -21,9 +21,12 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     }
     let replayed = replay::replay(&recording, &name, &kinds, &device, &parameters)?;
 
-    if replayed.estimates.is_empty() {
+    if let (true, Some((estimator, column))) =
+        (replayed.estimates.is_empty(), replayed.left_out.first())
+    {
         return Err(Failure::Input(format!(
-            "{name}: none of the estimators can do with its columns; see host-sim estimators"
+            "{}: line 1: no column {column}, which {estimator} needs; see host-sim estimators",
+            options.trace.display()
         )));
     }
     for (estimator, column) in &replayed.left_out {
