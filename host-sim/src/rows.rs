@@ -1,6 +1,7 @@
 //! Scores as JSON and CSV.
 
 use serde::Serialize;
+use serde_json::Value;
 
 use crate::failure::Failure;
 
@@ -40,7 +41,8 @@ pub fn json<T: Serialize>(rows: &[T]) -> Result<Vec<u8>, Failure> {
     Ok(text)
 }
 
-/// These fields of the same objects as CSV; what is not defined is empty.
+/// These fields of the same objects, or of an object among their fields, as CSV; what is not defined
+/// is empty.
 ///
 /// # Errors
 /// [`Failure::Input`]; none is known to happen.
@@ -50,9 +52,9 @@ pub fn csv<T: Serialize>(rows: &[T], columns: &[&str]) -> Result<Vec<u8>, Failur
     writer.write_record(columns).map_err(failed)?;
     for row in rows {
         let object = serde_json::to_value(row).map_err(|e| Failure::Input(e.to_string()))?;
-        let cells = columns.iter().map(|&column| match &object[column] {
-            serde_json::Value::Null => String::new(),
-            serde_json::Value::String(text) => text.clone(),
+        let cells = columns.iter().map(|&column| match field(&object, column) {
+            Value::Null => String::new(),
+            Value::String(text) => text.clone(),
             number => number.to_string(),
         });
         writer.write_record(cells).map_err(failed)?;
@@ -60,4 +62,14 @@ pub fn csv<T: Serialize>(rows: &[T], columns: &[&str]) -> Result<Vec<u8>, Failur
     writer
         .into_inner()
         .map_err(|e| Failure::Input(e.to_string()))
+}
+
+fn field<'a>(object: &'a Value, column: &str) -> &'a Value {
+    let inner = || {
+        object
+            .as_object()?
+            .values()
+            .find_map(|value| value.get(column))
+    };
+    object.get(column).or_else(inner).unwrap_or(&Value::Null)
 }

@@ -29,9 +29,9 @@ pub(super) enum Command {
     /// Run a recording through the estimators
     Replay(Replay),
     /// Turn the firmware's telemetry into a recording
-    Record(Record),
+    Record(super::record::Record),
     /// Draw a recording
-    Plot(Plot),
+    Plot(super::plot::Plot),
     /// Fit the device to recordings of an excitation and write it as a device file
     Identify(super::identify::Identify),
     /// Simulate a scene or a scenario and write it as a recording
@@ -39,9 +39,9 @@ pub(super) enum Command {
     /// Search the estimators' parameters on tuning seeds and write them to a file
     Tune(Tune),
     /// Run estimators that believe in wrong constants of the device, and say what it costs them
-    Sensitivity(Sensitivity),
+    Sensitivity(super::sensitivity::Sensitivity),
     /// Say how well velocity can be known at all, by a particle filter with the true model
-    Limit(Limit),
+    Limit(super::limit::Limit),
     /// Find the stiffest wall and the strongest damping that stay passive and free of limit cycles
     Zwidth(Zwidth),
     /// Close the loop on devices that differ from what the controller believes, and judge each run
@@ -108,70 +108,6 @@ pub(super) struct Compare {
 }
 
 #[derive(Debug, Args)]
-pub(super) struct Sensitivity {
-    /// Scenario to run; repeatable [default: all with friction but heating]
-    #[arg(long = "scenario", value_name = "NAME")]
-    pub(super) scenarios: Vec<String>,
-    /// Control rate, 100 to 100000 Hz; repeatable [default: 1000]
-    #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
-    pub(super) rates: Vec<f64>,
-    /// Estimator to run; repeatable [default: all]
-    #[arg(long = "estimator", value_name = "NAME")]
-    pub(super) estimators: Vec<String>,
-    /// Seed of everything random; repeatable [default: 1]
-    #[arg(long = "seed", value_name = "N")]
-    pub(super) seeds: Vec<u64>,
-    /// Duration of each run, s [default: 10]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
-    pub(super) seconds: Option<f64>,
-    #[command(flatten)]
-    pub(super) device: DeviceFile,
-    #[command(flatten)]
-    pub(super) parameters: ParameterOptions,
-    /// Folder for index.html, its figures as SVG, sensitivity.csv, sensitivity.json [default:
-    /// target/sensitivity; with --json - none]
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
-    /// Write the scores as JSON to FILE, or with - to standard output and nothing else there
-    #[arg(long, value_name = "FILE")]
-    pub(super) json: Option<PathBuf>,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct Limit {
-    /// Scenario to run; repeatable [default: stochastic, step, track, free-air, texture]
-    #[arg(long = "scenario", value_name = "NAME")]
-    pub(super) scenarios: Vec<String>,
-    /// Control rate, 100 to 100000 Hz; repeatable [default: 1000]
-    #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
-    pub(super) rates: Vec<f64>,
-    /// Estimator to run beside it; repeatable [default: all]
-    #[arg(long = "estimator", value_name = "NAME")]
-    pub(super) estimators: Vec<String>,
-    /// Seed of everything random, the particles' noise too
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub(super) seed: u64,
-    /// Duration of each run, s
-    #[arg(
-        long,
-        value_name = "S",
-        default_value_t = 10.0,
-        allow_negative_numbers = true
-    )]
-    pub(super) seconds: f64,
-    /// Number of particles
-    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(10..=1_000_000))]
-    pub(super) particles: u32,
-    #[command(flatten)]
-    pub(super) device: DeviceFile,
-    #[command(flatten)]
-    pub(super) parameters: ParameterOptions,
-    /// Write the scores as JSON to FILE, or with - to standard output and nothing else there
-    #[arg(long, value_name = "FILE")]
-    pub(super) json: Option<PathBuf>,
-}
-
-#[derive(Debug, Args)]
 pub(super) struct Replay {
     /// Recording: CSV with columns t (s) and counts_large, optionally counts_small, current (A),
     /// edge_tick (84 MHz), edge_bound, true_omega (rad/s); others are ignored
@@ -190,50 +126,6 @@ pub(super) struct Replay {
     /// Write the scores against true_omega as JSON to FILE, or with - to standard output
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct Record {
-    /// The log that cargo firmware prints, or with --image raw bytes of RTT channel 0; - is
-    /// standard input
-    #[arg(value_name = "STREAM", default_value = "-")]
-    pub(super) stream: PathBuf,
-    /// The image that sent the bytes
-    #[arg(long, value_name = "ELF")]
-    pub(super) image: Option<PathBuf>,
-    /// Control rate, Hz, of a stream that begins after the boot line
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
-    pub(super) rate: Option<f64>,
-    /// Which start of the firmware to record, from 1 [default: the one with most frames]
-    #[arg(long, value_name = "N")]
-    pub(super) run: Option<usize>,
-    /// Write the recording to FILE [default: standard output]
-    #[arg(long, value_name = "FILE.csv")]
-    pub(super) out: Option<PathBuf>,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct Plot {
-    /// Recording: CSV as for host-sim replay
-    #[arg(value_name = "RECORDING.csv")]
-    pub(super) recording: PathBuf,
-    /// Estimator to draw; repeatable [default: finite-difference and
-    /// kalman-triple-steady]
-    #[arg(long = "estimator", value_name = "NAME")]
-    pub(super) estimators: Vec<String>,
-    /// From this time on, s [default: the start]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
-    pub(super) from: Option<f64>,
-    /// Up to this time, s [default: the end]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
-    pub(super) to: Option<f64>,
-    #[command(flatten)]
-    pub(super) device: DeviceFile,
-    #[command(flatten)]
-    pub(super) parameters: ParameterOptions,
-    /// Write the picture to FILE [default: the recording's name with .svg]
-    #[arg(long, value_name = "FILE.svg")]
-    pub(super) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

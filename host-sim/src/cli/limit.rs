@@ -1,5 +1,9 @@
 //! `host-sim limit`.
 
+use std::path::PathBuf;
+
+use clap::Args;
+
 use crate::compare::{Case, Settings};
 use crate::failure::Failure;
 use crate::limit::{limit, table::table};
@@ -9,8 +13,42 @@ use crate::rows;
 use crate::scenario::ScenarioName;
 use crate::score::Wanted;
 
-use super::arguments::{Limit, is_stdout, kinds, rates, scenarios};
+use super::arguments::{DeviceFile, ParameterOptions, is_stdout, kinds, rates, scenarios};
 use super::compare::progress;
+
+#[derive(Debug, Args)]
+pub(super) struct Limit {
+    /// Scenario to run; repeatable [default: stochastic, step, track, free-air, texture]
+    #[arg(long = "scenario", value_name = "NAME")]
+    pub(super) scenarios: Vec<String>,
+    /// Control rate, 100 to 100000 Hz; repeatable [default: 1000]
+    #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
+    pub(super) rates: Vec<f64>,
+    /// Estimator to run beside it; repeatable [default: all]
+    #[arg(long = "estimator", value_name = "NAME")]
+    pub(super) estimators: Vec<String>,
+    /// Seed of everything random, the particles' noise too
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(super) seed: u64,
+    /// Duration of each run, s
+    #[arg(
+        long,
+        value_name = "S",
+        default_value_t = 10.0,
+        allow_negative_numbers = true
+    )]
+    pub(super) seconds: f64,
+    /// Number of particles
+    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(10..=1_000_000))]
+    pub(super) particles: u32,
+    #[command(flatten)]
+    pub(super) device: DeviceFile,
+    #[command(flatten)]
+    pub(super) parameters: ParameterOptions,
+    /// Write the scores as JSON to FILE, or with - to standard output and nothing else there
+    #[arg(long, value_name = "FILE")]
+    pub(super) json: Option<PathBuf>,
+}
 
 pub(super) fn run(options: &Limit) -> Result<(), Failure> {
     use ScenarioName::{FreeAir, Step, Stochastic, Texture, Track};

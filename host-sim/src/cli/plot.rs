@@ -1,5 +1,9 @@
 //! `host-sim plot`.
 
+use std::path::PathBuf;
+
+use clap::Args;
+
 use crate::compare::interval;
 use crate::failure::Failure;
 use crate::output::{print_bytes, write_whole};
@@ -7,11 +11,35 @@ use crate::recording::{BoardColumns, Recording};
 use crate::replay;
 use crate::report::{self, RecordingView};
 
-use super::arguments::{Plot, is_stdout, kinds};
+use super::arguments::{DeviceFile, ParameterOptions, is_stdout, kinds};
 use super::replay::warn_uneven;
 
 /// What is drawn unless told otherwise: few enough to tell apart.
 const ESTIMATORS: [&str; 2] = ["finite-difference", "kalman-triple-steady"];
+
+#[derive(Debug, Args)]
+pub(super) struct Plot {
+    /// Recording: CSV as for host-sim replay
+    #[arg(value_name = "RECORDING.csv")]
+    pub(super) recording: PathBuf,
+    /// Estimator to draw; repeatable [default: finite-difference and
+    /// kalman-triple-steady]
+    #[arg(long = "estimator", value_name = "NAME")]
+    pub(super) estimators: Vec<String>,
+    /// From this time on, s [default: the start]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(super) from: Option<f64>,
+    /// Up to this time, s [default: the end]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(super) to: Option<f64>,
+    #[command(flatten)]
+    pub(super) device: DeviceFile,
+    #[command(flatten)]
+    pub(super) parameters: ParameterOptions,
+    /// Write the picture to FILE [default: the recording's name with .svg]
+    #[arg(long, value_name = "FILE.svg")]
+    pub(super) out: Option<PathBuf>,
+}
 
 pub(super) fn run(options: &Plot) -> Result<(), Failure> {
     let kinds = match options.estimators.as_slice() {

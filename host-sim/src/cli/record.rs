@@ -1,14 +1,36 @@
 //! `host-sim record`.
 
 use std::io::Read as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
 
 use crate::failure::Failure;
 use crate::output::{print_bytes, write_whole};
 use crate::record::{choose, csv, report};
 use crate::telemetry::Telemetry;
 
-use super::arguments::{Record, is_stdout};
+use super::arguments::is_stdout;
+
+#[derive(Debug, Args)]
+pub(super) struct Record {
+    /// The log that cargo firmware prints, or with --image raw bytes of RTT channel 0; - is
+    /// standard input
+    #[arg(value_name = "STREAM", default_value = "-")]
+    pub(super) stream: PathBuf,
+    /// The image that sent the bytes
+    #[arg(long, value_name = "ELF")]
+    pub(super) image: Option<PathBuf>,
+    /// Control rate, Hz, of a stream that begins after the boot line
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    pub(super) rate: Option<f64>,
+    /// Which start of the firmware to record, from 1 [default: the one with most frames]
+    #[arg(long, value_name = "N")]
+    pub(super) run: Option<usize>,
+    /// Write the recording to FILE [default: standard output]
+    #[arg(long, value_name = "FILE.csv")]
+    pub(super) out: Option<PathBuf>,
+}
 
 pub(super) fn run(options: &Record) -> Result<(), Failure> {
     let name = match is_stdout(&options.stream) {

@@ -6,9 +6,9 @@ use crate::closed_loop::SceneName;
 use crate::estimators::Kind;
 use crate::failure::Failure;
 use crate::output::{print_bytes, write_whole};
-use crate::report;
 use crate::robust::row::{self, Row};
 use crate::robust::{Experiment, Settings, shard, summary};
+use crate::{report, rows};
 
 use super::arguments::{Merge, Robust, is_stdout};
 use super::compare::progress;
@@ -90,12 +90,12 @@ fn finish(
     folder: Option<&Path>,
     json_file: Option<&Path>,
 ) -> Result<(), Failure> {
-    let json = row::json(rows)?;
+    let json = rows::json(rows)?;
     let scenes = summary::summaries(rows)?;
     let mut text = summary::table(settings, &scenes);
     if let Some(folder) = folder {
         let page = report::robust(&summary::heading(settings), &scenes, &text)?;
-        write_whole(&folder.join("robust.csv"), &row::csv(rows)?)?;
+        write_whole(&folder.join("robust.csv"), &rows::csv(rows, row::COLUMNS)?)?;
         write_whole(&folder.join("robust.json"), &json)?;
         for figure in report::figures(&page) {
             write_whole(&folder.join("summary.svg"), figure.as_bytes())?;

@@ -1,6 +1,8 @@
 //! `host-sim sensitivity`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
 
 use crate::compare::{Case, Settings};
 use crate::failure::Failure;
@@ -11,7 +13,7 @@ use crate::score::Wanted;
 use crate::sensitivity::{COLUMNS, sensitivity, table::table};
 use crate::{report, rows};
 
-use super::arguments::{Sensitivity, is_stdout, kinds, rates, scenarios};
+use super::arguments::{DeviceFile, ParameterOptions, is_stdout, kinds, rates, scenarios};
 use super::compare::progress;
 
 /// Where the page goes unless told otherwise.
@@ -22,6 +24,36 @@ const SCENARIOS: [ScenarioName; 8] = {
     use ScenarioName::{Creep, FreeAir, Hold, Permanent, Step, Texture, Track, Wall};
     [Step, Permanent, Track, FreeAir, Wall, Texture, Creep, Hold]
 };
+
+#[derive(Debug, Args)]
+pub(super) struct Sensitivity {
+    /// Scenario to run; repeatable [default: all with friction but heating]
+    #[arg(long = "scenario", value_name = "NAME")]
+    pub(super) scenarios: Vec<String>,
+    /// Control rate, 100 to 100000 Hz; repeatable [default: 1000]
+    #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
+    pub(super) rates: Vec<f64>,
+    /// Estimator to run; repeatable [default: all]
+    #[arg(long = "estimator", value_name = "NAME")]
+    pub(super) estimators: Vec<String>,
+    /// Seed of everything random; repeatable [default: 1]
+    #[arg(long = "seed", value_name = "N")]
+    pub(super) seeds: Vec<u64>,
+    /// Duration of each run, s [default: 10]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(super) seconds: Option<f64>,
+    #[command(flatten)]
+    pub(super) device: DeviceFile,
+    #[command(flatten)]
+    pub(super) parameters: ParameterOptions,
+    /// Folder for index.html, its figures as SVG, sensitivity.csv, sensitivity.json [default:
+    /// target/sensitivity; with --json - none]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Write the scores as JSON to FILE, or with - to standard output and nothing else there
+    #[arg(long, value_name = "FILE")]
+    pub(super) json: Option<PathBuf>,
+}
 
 pub(super) fn run(options: &Sensitivity, command_line: &str) -> Result<(), Failure> {
     let settings = Settings {

@@ -6,6 +6,7 @@ use crate::estimators::Kind;
 use crate::failure::Failure;
 use crate::output::{print_bytes, write_whole};
 use crate::report;
+use crate::rows::{csv, json};
 use crate::zwidth::{BOUNDS_A_CASE, Case, Settings, boundaries, rows, table};
 
 use super::arguments::{Zwidth, is_stdout, kinds, rates};
@@ -26,7 +27,7 @@ pub(super) fn run(options: &Zwidth, command_line: &str) -> Result<(), Failure> {
     bar.finish_and_clear();
 
     let rows = rows::rows(&cases, &boundaries, settings.seed);
-    let json = rows::json(&rows)?;
+    let json = json(&rows)?;
     let json_on_stdout = options.json.as_deref().is_some_and(is_stdout);
     let folder = match &options.out {
         Some(folder) => Some(folder.as_path()),
@@ -37,7 +38,7 @@ pub(super) fn run(options: &Zwidth, command_line: &str) -> Result<(), Failure> {
     if let Some(folder) = folder {
         let device = options.device.name();
         let page = report::zwidth(&rows, &text, &device, command_line)?;
-        let csv = rows::csv(&rows)?;
+        let csv = csv(&rows, rows::COLUMNS)?;
         write_whole(&folder.join("zwidth.json"), &json)?;
         write_whole(&folder.join("zwidth.csv"), &csv)?;
         for (i, figure) in report::figures(&page).enumerate() {

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use super::judge::{Judge, Reason, Verdict};
 use super::variation::Variation;
 use super::{Job, Settings};
-use crate::failure::Failure;
 
 /// One run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -44,7 +43,7 @@ pub struct Row {
 }
 
 /// Columns of the CSV: every field of a row.
-const COLUMNS: [&str; 28] = [
+pub const COLUMNS: &[&str] = &[
     "scene",
     "device",
     "verdict",
@@ -114,43 +113,6 @@ fn digits(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }
 
-/// An array of objects, one a line.
-///
-/// # Errors
-/// [`Failure::Input`]; none is known to happen.
-pub fn json(rows: &[Row]) -> Result<Vec<u8>, Failure> {
-    let mut text = b"[".to_vec();
-    for (i, row) in rows.iter().enumerate() {
-        text.extend_from_slice(if i == 0 { b"\n" } else { b",\n" });
-        serde_json::to_writer(&mut text, row).map_err(|e| Failure::Input(e.to_string()))?;
-    }
-    text.extend_from_slice(b"\n]\n");
-    Ok(text)
-}
-
-/// The same as CSV; what is not defined is empty.
-///
-/// # Errors
-/// [`Failure::Input`]; none is known to happen.
-pub fn csv(rows: &[Row]) -> Result<Vec<u8>, Failure> {
-    let failed = |error: csv::Error| Failure::Input(error.to_string());
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(COLUMNS).map_err(failed)?;
-    for row in rows {
-        let object = serde_json::to_value(row).map_err(|e| Failure::Input(e.to_string()))?;
-        let cell = |&column: &&str| object.get(column).unwrap_or(&object["variation"][column]);
-        let cells = COLUMNS.iter().map(|column| match cell(column) {
-            serde_json::Value::Null => String::new(),
-            serde_json::Value::String(text) => text.clone(),
-            number => number.to_string(),
-        });
-        writer.write_record(cells).map_err(failed)?;
-    }
-    writer
-        .into_inner()
-        .map_err(|e| Failure::Input(e.to_string()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -198,7 +160,7 @@ mod tests {
         let mut fields = keys(&object);
         fields.retain(|field| field != "variation");
         fields.extend(keys(&object["variation"]));
-        let mut columns = COLUMNS.map(str::to_owned).to_vec();
+        let mut columns = COLUMNS.to_vec();
         fields.sort();
         columns.sort();
         assert_eq!(fields, columns);

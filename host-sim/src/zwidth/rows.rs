@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use super::{Bound, Boundary, Case};
-use crate::failure::Failure;
 
 /// One bound of one case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,6 +30,21 @@ pub struct Row {
     /// Who finds that: `hand`, `light grip`, `throw`.
     pub touch: Option<&'static str>,
 }
+
+/// Columns of the CSV: every field of a row.
+pub const COLUMNS: &[&str] = &[
+    "estimator",
+    "handle_estimator",
+    "rate_hz",
+    "lines",
+    "seed",
+    "bound",
+    "stiffness_nm_per_rad",
+    "damping_nms_per_rad",
+    "at_cap",
+    "fault",
+    "touch",
+];
 
 /// The rows of all cases, in their order, each from the wall without damping to the damping
 /// without a wall.
@@ -60,31 +74,30 @@ pub fn rows(cases: &[Case], boundaries: &[Boundary], seed: u64) -> Vec<Row> {
     rows
 }
 
-/// An array of objects, one a line.
-///
-/// # Errors
-/// [`Failure::Input`]; none is known to happen.
-pub fn json(rows: &[Row]) -> Result<Vec<u8>, Failure> {
-    let mut text = b"[".to_vec();
-    for (i, row) in rows.iter().enumerate() {
-        text.extend_from_slice(if i == 0 { b"\n" } else { b",\n" });
-        serde_json::to_writer(&mut text, row).map_err(|e| Failure::Input(e.to_string()))?;
-    }
-    text.extend_from_slice(b"\n]\n");
-    Ok(text)
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// The same as CSV; what is not there is empty.
-///
-/// # Errors
-/// [`Failure::Input`]; none is known to happen.
-pub fn csv(rows: &[Row]) -> Result<Vec<u8>, Failure> {
-    let failed = |error: csv::Error| Failure::Input(error.to_string());
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for row in rows {
-        writer.serialize(row).map_err(failed)?;
+    #[test]
+    fn the_columns_are_the_fields() {
+        let row = Row {
+            estimator: "pll",
+            handle_estimator: "pll",
+            rate_hz: 1000.0,
+            lines: 1024,
+            seed: 1,
+            bound: "damping",
+            stiffness_nm_per_rad: 0.0,
+            damping_nms_per_rad: 1e-3,
+            at_cap: false,
+            fault: None,
+            touch: None,
+        };
+        let object = serde_json::to_value(row).unwrap();
+        let mut fields: Vec<_> = object.as_object().unwrap().keys().collect();
+        let mut columns = COLUMNS.to_vec();
+        fields.sort();
+        columns.sort_unstable();
+        assert_eq!(fields, columns);
     }
-    writer
-        .into_inner()
-        .map_err(|e| Failure::Input(e.to_string()))
 }
