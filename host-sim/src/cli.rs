@@ -6,6 +6,7 @@ mod felt;
 mod identify;
 mod limit;
 mod list;
+mod page;
 mod plot;
 mod record;
 mod replay;
@@ -35,7 +36,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Err(error) => return explain(&error),
     };
     match parsed.command {
-        None => compare::run(&arguments::Compare::default(), &command_line),
+        None => compare::run(&compare::Compare::default(), &command_line),
         Some(Command::Compare(options)) if options.closed_loop => {
             felt::run(&options, &command_line)
         }

@@ -1,22 +1,23 @@
 //! `host-sim compare`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use clap::Args;
 
 use crate::compare::{Case, Cost, Outcome, Settings, compare};
 use crate::contest::Row;
 use crate::device::Device;
 use crate::failure::Failure;
-use crate::output::{print_bytes, write_whole};
+use crate::output::write_whole;
 use crate::parameters::PlantKind;
 use crate::report::{self, CaseReport, DeviceFacts, ReportInput, Traces};
 use crate::scenario::ScenarioName;
 use crate::score::{SKIP_S, Wanted};
 use crate::{rows, simulate, table};
 
-use super::arguments::{Compare, is_stdout, kinds, rates, scenarios};
+use super::arguments::{DeviceFile, ParameterOptions, kinds, rates, scenarios};
 use super::felt;
+use super::page::{self, progress};
 
 /// Where the report goes unless told otherwise.
 const REPORT: &str = "target/report";
@@ -28,6 +29,79 @@ const DRAWN: [ScenarioName; 3] = [
     ScenarioName::Track,
 ];
 
+#[derive(Debug, Args)]
+pub(super) struct Compare {
+    /// Close the loop: each estimator in turn, then the reference encoder, drives the motors in
+    /// the scenes; scored is the force that the hand feels and should not
+    #[arg(long)]
+    pub(super) closed_loop: bool,
+    /// Scenario to run; repeatable [default: all but heating; see host-sim scenarios]. With
+    /// --closed-loop a scene [default: all: off, free-air, wall, spring-damper, viscous, detents,
+    /// texture, hold, inertia]
+    #[arg(long = "scenario", visible_alias = "scene", value_name = "NAME")]
+    pub(super) scenarios: Vec<String>,
+    /// Estimator of the handle's velocity, with --closed-loop [default: kalman-triple-steady]
+    #[arg(long, value_name = "NAME", requires = "closed_loop")]
+    pub(super) handle_estimator: Option<String>,
+    /// Control rate, 100 to 100000 Hz; repeatable [default: 1000 and 11600]
+    #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
+    pub(super) rates: Vec<f64>,
+    /// Estimator to run; repeatable [default: all; see host-sim estimators]
+    #[arg(long = "estimator", value_name = "NAME")]
+    pub(super) estimators: Vec<String>,
+    /// Seed of everything random; seeds from 2^32 on are those that tune uses
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(super) seed: u64,
+    /// Duration of each run, s [default: 10, heating 60]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(super) seconds: Option<f64>,
+    /// Take the plant without Coulomb friction
+    #[arg(long)]
+    pub(super) frictionless: bool,
+    #[command(flatten)]
+    pub(super) device: DeviceFile,
+    #[command(flatten)]
+    pub(super) parameters: ParameterOptions,
+    /// Score to compute, named as in the JSON; repeatable [default: all]
+    #[arg(long = "score", value_name = "NAME")]
+    pub(super) scores: Vec<String>,
+    /// Folder for the report: index.html, its figures as SVG, scores.csv, scores.json [default:
+    /// target/report; with --json - none]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Write no report: no plot is drawn, and the plant without friction is not run beside
+    #[arg(long, conflicts_with = "out")]
+    pub(super) no_report: bool,
+    /// Write the scores as JSON to FILE, or with - to standard output and nothing else there
+    #[arg(long, value_name = "FILE")]
+    pub(super) json: Option<PathBuf>,
+    /// Say on standard error where the time went
+    #[arg(long)]
+    pub(super) timing: bool,
+}
+
+impl Default for Compare {
+    fn default() -> Self {
+        Self {
+            closed_loop: false,
+            scenarios: Vec::new(),
+            handle_estimator: None,
+            rates: Vec::new(),
+            estimators: Vec::new(),
+            seed: 1,
+            seconds: None,
+            frictionless: false,
+            device: DeviceFile::default(),
+            parameters: ParameterOptions::default(),
+            scores: Vec::new(),
+            out: None,
+            no_report: false,
+            json: None,
+            timing: false,
+        }
+    }
+}
+
 pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> {
     let settings = Settings {
         device: options.device.load()?,
@@ -35,7 +109,6 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
         parameters: options.parameters.load()?,
         wanted: wanted(&options.scores)?,
     };
-    let json_on_stdout = options.json.as_deref().is_some_and(is_stdout);
     let report = report_folder(options);
     let (cases, asked) = cases(options, report.is_some())?;
     let bar = progress(cases.len(), "simulating");
@@ -52,14 +125,7 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
         .iter()
         .flat_map(|o| o.rows.clone())
         .collect();
-    if let Some(path) = &options.json {
-        let json = rows::json(&asked_rows)?;
-        if json_on_stdout {
-            print_bytes(&json)?;
-        } else {
-            write_whole(path, &json)?;
-        }
-    }
+    let mut index = None;
     if let Some(folder) = report {
         let (closed, remark) = felt::beside(options);
         let input = ReportInput {
@@ -75,32 +141,24 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
             &folder.join("scores.csv"),
             &rows::csv(&rows, rows::COLUMNS)?,
         )?;
-        felt::write(folder, input, closed)?;
-    }
-    if json_on_stdout {
-        return Ok(());
+        index = Some(felt::write(folder, input, closed)?);
     }
     let mut text = table::overview(&asked_rows);
     if asked <= 2 {
         text = table::details(&asked_rows);
     }
-    if let Some(folder) = report {
-        text.push_str(&format!(
-            "Report: {}\n",
-            folder.join("index.html").display()
-        ));
+    if let Some(index) = index {
+        text.push_str(&format!("Report: {}\n", index.display()));
     }
-    print_bytes(text.as_bytes())
+    page::print(options.json.as_deref(), &rows::json(&asked_rows)?, &text)
 }
 
 /// Where the report goes, if there is one.
 pub(super) fn report_folder(options: &Compare) -> Option<&Path> {
-    let json_on_stdout = options.json.as_deref().is_some_and(is_stdout);
-    match &options.out {
-        Some(folder) => Some(folder),
-        None if json_on_stdout || options.no_report => None,
-        None => Some(Path::new(REPORT)),
+    if options.no_report {
+        return None;
     }
+    page::folder(options.out.as_deref(), options.json.as_deref(), REPORT)
 }
 
 /// The cases to run, and how many of them were asked for: the rest, at the end, is the other
@@ -161,24 +219,6 @@ pub(super) fn timing(cost: Cost) -> String {
         cost.estimation.as_secs_f64(),
         cost.scoring.as_secs_f64(),
     )
-}
-
-/// A progress bar on standard error, if that is a terminal.
-pub(super) fn progress(length: usize, doing: &'static str) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta}");
-    ProgressBar::new(length as u64)
-        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
-        .with_message(doing)
-}
-
-/// Writes the page and its figures.
-pub(super) fn write_page(folder: &Path, input: &ReportInput) -> Result<(), Failure> {
-    let page = report::html(input)?;
-    for (i, figure) in report::figures(&page).enumerate() {
-        let name = format!("figures/{:02}.svg", i + 1);
-        write_whole(&folder.join(name), figure.as_bytes())?;
-    }
-    write_whole(&folder.join("index.html"), page.as_bytes())
 }
 
 /// What the report says of the device.

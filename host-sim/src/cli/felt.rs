@@ -1,6 +1,6 @@
 //! `host-sim compare --closed-loop`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use haptic_control::LoopPoles;
 
@@ -10,16 +10,15 @@ use crate::estimators::Kind;
 use crate::failure::Failure;
 use crate::felt::compare::USUAL;
 use crate::felt::{self, Case, Design, FeltRow, Outcome, Settings, compare};
-use crate::output::{print_bytes, write_whole};
+use crate::output::write_whole;
 use crate::parameters::PlantKind;
 use crate::report::{ClosedLoop, ReportInput};
 use crate::scenario::ScenarioName;
-use crate::{rows, simulate};
+use crate::{report, rows, simulate};
 
-use super::arguments::{Compare, is_stdout, kinds, rates};
-use super::compare::{
-    facts, longer_than_skipped, progress, report_folder, timing, wanted, write_page,
-};
+use super::arguments::{kinds, rates};
+use super::compare::{Compare, facts, longer_than_skipped, report_folder, timing, wanted};
+use super::page::{self, progress};
 
 /// Length of a run unless told otherwise, s.
 const SECONDS: f64 = 10.0;
@@ -48,11 +47,6 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
         eprintln!("{}", timing(cost));
     }
     let scores: Vec<FeltRow> = outcomes.iter().flat_map(|o| o.rows.clone()).collect();
-    match options.json.as_deref() {
-        Some(path) if is_stdout(path) => print_bytes(&rows::json(&scores)?)?,
-        Some(path) => write_whole(path, &rows::json(&scores)?)?,
-        None => {}
-    }
     let mut text = felt::table::details(&outcomes);
     if let Some(folder) = folder {
         let input = ReportInput {
@@ -60,14 +54,10 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
             device: facts(&settings.device, &options.device.name()),
             ..ReportInput::default()
         };
-        write(folder, input, closed_loop(outcomes, &settings)?)?;
-        let page = folder.join("index.html");
-        text.push_str(&format!("Report: {}\n", page.display()));
+        let index = write(folder, input, closed_loop(outcomes, &settings)?)?;
+        text.push_str(&format!("Report: {}\n", index.display()));
     }
-    if options.json.as_deref().is_some_and(is_stdout) {
-        return Ok(());
-    }
-    print_bytes(text.as_bytes())
+    page::print(options.json.as_deref(), &rows::json(&scores)?, &text)
 }
 
 /// The closed loop for the report of a comparison of everything: nothing if scenarios were
@@ -116,12 +106,12 @@ fn design(settings: &Settings, rate_hz: f64, plant: PlantKind) -> Result<Design,
     Design::new(&believed, rate_hz, LoopPoles::DEFAULT)
 }
 
-/// Writes the page, with the closed loop's scores beside it if there are any.
+/// Writes the page, with the closed loop's scores beside it if there are any; gives its path.
 pub(super) fn write(
     folder: &Path,
     mut input: ReportInput,
     closed: ClosedLoop,
-) -> Result<(), Failure> {
+) -> Result<PathBuf, Failure> {
     if !closed.outcomes.is_empty() {
         let rows: Vec<FeltRow> = (closed.outcomes.iter())
             .flat_map(|o| o.rows.clone())
@@ -132,7 +122,7 @@ pub(super) fn write(
         write_whole(&folder.join("closed-loop.csv"), &csv)?;
     }
     input.closed_loop = closed;
-    write_page(folder, &input)
+    page::write(folder, &report::html(&input)?)
 }
 
 /// What all runs have in common.

@@ -7,14 +7,13 @@ use clap::Args;
 use crate::compare::{Case, Settings};
 use crate::failure::Failure;
 use crate::limit::{limit, table::table};
-use crate::output::{print_bytes, write_whole};
 use crate::parameters::PlantKind;
 use crate::rows;
 use crate::scenario::ScenarioName;
 use crate::score::Wanted;
 
-use super::arguments::{DeviceFile, ParameterOptions, is_stdout, kinds, rates, scenarios};
-use super::compare::progress;
+use super::arguments::{DeviceFile, ParameterOptions, kinds, rates, scenarios};
+use super::page::{self, progress};
 
 #[derive(Debug, Args)]
 pub(super) struct Limit {
@@ -78,10 +77,5 @@ pub(super) fn run(options: &Limit) -> Result<(), Failure> {
     let rows = limit(&cases, &settings, options.particles as usize, || bar.inc(1))?;
     bar.finish_and_clear();
     let json = rows::json(&rows)?;
-    match &options.json {
-        Some(path) if is_stdout(path) => return print_bytes(&json),
-        Some(path) => write_whole(path, &json)?,
-        None => {}
-    }
-    print_bytes(table(&rows).as_bytes())
+    page::print(options.json.as_deref(), &json, &table(&rows))
 }

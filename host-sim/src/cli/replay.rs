@@ -1,11 +1,36 @@
 //! `host-sim replay`.
 
+use std::path::PathBuf;
+
+use clap::Args;
+
 use crate::failure::Failure;
 use crate::output::{print_bytes, write_whole};
 use crate::recording::Recording;
 use crate::{replay, rows, table};
 
-use super::arguments::{Replay, is_stdout, kinds};
+use super::arguments::{DeviceFile, ParameterOptions, is_stdout, kinds};
+
+#[derive(Debug, Args)]
+pub(super) struct Replay {
+    /// Recording: CSV with columns t (s) and counts_large, optionally counts_small, current (A),
+    /// edge_tick (84 MHz), edge_bound, true_omega (rad/s); others are ignored
+    #[arg(value_name = "TRACE.csv")]
+    pub(super) trace: PathBuf,
+    /// Estimator to run; repeatable [default: all that the columns suffice for]
+    #[arg(long = "estimator", value_name = "NAME")]
+    pub(super) estimators: Vec<String>,
+    #[command(flatten)]
+    pub(super) device: DeviceFile,
+    #[command(flatten)]
+    pub(super) parameters: ParameterOptions,
+    /// Write t and a column for each estimator (rad/s) to FILE [default: standard output]
+    #[arg(long, value_name = "FILE.csv")]
+    pub(super) out: Option<PathBuf>,
+    /// Write the scores against true_omega as JSON to FILE, or with - to standard output
+    #[arg(long, value_name = "FILE")]
+    pub(super) json: Option<PathBuf>,
+}
 
 pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let kinds = kinds(&options.estimators)?;

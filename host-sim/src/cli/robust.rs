@@ -2,19 +2,85 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::Args;
+
 use crate::closed_loop::SceneName;
 use crate::estimators::Kind;
 use crate::failure::Failure;
 use crate::output::{print_bytes, write_whole};
 use crate::robust::row::{self, Row};
+use crate::robust::shard::Part;
+use crate::robust::variation::Subject;
 use crate::robust::{Experiment, Settings, shard, summary};
 use crate::{report, rows};
 
-use super::arguments::{Merge, Robust, is_stdout};
-use super::compare::progress;
+use super::arguments::{DeviceFile, ParameterOptions};
+use super::page::{self, progress};
 
 /// Where the report goes unless told otherwise.
 const REPORT: &str = "target/robust";
+
+#[derive(Debug, Args)]
+pub(super) struct Robust {
+    /// Scene to run; repeatable [default: all]
+    #[arg(long = "scene", value_name = "NAME")]
+    pub(super) scenes: Vec<String>,
+    /// Control rate, Hz
+    #[arg(
+        long,
+        value_name = "HZ",
+        default_value_t = 10e3,
+        allow_negative_numbers = true
+    )]
+    pub(super) rate: f64,
+    /// Estimator of both velocities
+    #[arg(long, value_name = "NAME", default_value = "kalman-triple-steady")]
+    pub(super) estimator: String,
+    /// How many devices are drawn for each scene, beside the corners
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(0..=10_000_000))]
+    pub(super) devices: u64,
+    /// Seed of everything random
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(super) seed: u64,
+    /// Duration of each run, s
+    #[arg(
+        long,
+        value_name = "S",
+        default_value_t = 2.0,
+        allow_negative_numbers = true
+    )]
+    pub(super) seconds: f64,
+    #[command(flatten)]
+    pub(super) device: DeviceFile,
+    #[command(flatten)]
+    pub(super) parameters: ParameterOptions,
+    /// Run one device of each scene alone: its index, or a corner's name
+    #[arg(long, value_name = "INDEX", conflicts_with = "shard")]
+    pub(super) only: Option<Subject>,
+    /// Run part K of N, and write a file for host-sim merge instead of the report
+    #[arg(long, value_name = "K/N", conflicts_with = "json")]
+    pub(super) shard: Option<Part>,
+    /// Folder for index.html, summary.svg, robust.csv, robust.json, or for the shard's file
+    /// [default: target/robust; with --json - or --only none]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Write the rows as JSON to FILE, or with - to standard output and nothing else there
+    #[arg(long, value_name = "FILE")]
+    pub(super) json: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Merge {
+    /// Files that host-sim robust --shard wrote, all of one run, in any order
+    #[arg(value_name = "SHARD", required = true)]
+    pub(super) shards: Vec<PathBuf>,
+    /// Folder for what the run would have written in one piece [default: target/robust]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Write the rows as JSON to FILE, or with - to standard output and nothing else there
+    #[arg(long, value_name = "FILE")]
+    pub(super) json: Option<PathBuf>,
+}
 
 pub(super) fn run(options: &Robust) -> Result<(), Failure> {
     let settings = settings(options)?;
@@ -42,12 +108,12 @@ pub(super) fn run(options: &Robust) -> Result<(), Failure> {
         print_bytes(format!("{}\n", path.display()).as_bytes())?;
         return judged(&settings, &rows);
     }
-    let json_on_stdout = options.json.as_deref().is_some_and(is_stdout);
-    let folder = match folder {
-        None if options.only.is_some() || json_on_stdout => None,
-        folder => Some(folder.unwrap_or(Path::new(REPORT))),
+    let json_file = options.json.as_deref();
+    let folder = match options.only {
+        Some(_) => folder,
+        None => page::folder(folder, json_file, REPORT),
     };
-    finish(&settings, &rows, folder, options.json.as_deref())
+    finish(&settings, &rows, folder, json_file)
 }
 
 pub(super) fn merge(options: &Merge) -> Result<(), Failure> {
@@ -104,14 +170,7 @@ fn finish(
         write_whole(&page_path, page.as_bytes())?;
         text.push_str(&format!("Report: {}\n", page_path.display()));
     }
-    match json_file {
-        Some(path) if is_stdout(path) => print_bytes(&json)?,
-        Some(path) => {
-            write_whole(path, &json)?;
-            print_bytes(text.as_bytes())?;
-        }
-        None => print_bytes(text.as_bytes())?,
-    }
+    page::print(json_file, &json, &text)?;
     judged(settings, rows)
 }
 

@@ -1,20 +1,20 @@
 //! `host-sim sensitivity`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
 use crate::compare::{Case, Settings};
 use crate::failure::Failure;
-use crate::output::{print_bytes, write_whole};
+use crate::output::write_whole;
 use crate::parameters::PlantKind;
 use crate::scenario::ScenarioName;
 use crate::score::Wanted;
 use crate::sensitivity::{COLUMNS, sensitivity, table::table};
 use crate::{report, rows};
 
-use super::arguments::{DeviceFile, ParameterOptions, is_stdout, kinds, rates, scenarios};
-use super::compare::progress;
+use super::arguments::{DeviceFile, ParameterOptions, kinds, rates, scenarios};
+use super::page::{self, progress};
 
 /// Where the page goes unless told otherwise.
 const PAGE: &str = "target/sensitivity";
@@ -68,31 +68,16 @@ pub(super) fn run(options: &Sensitivity, command_line: &str) -> Result<(), Failu
     bar.finish_and_clear();
 
     let json = rows::json(&rows)?;
-    let json_on_stdout = options.json.as_deref().is_some_and(is_stdout);
-    let folder = match &options.out {
-        Some(folder) => Some(folder.as_path()),
-        None if json_on_stdout => None,
-        None => Some(Path::new(PAGE)),
-    };
+    let folder = page::folder(options.out.as_deref(), options.json.as_deref(), PAGE);
     let mut text = table(&rows);
     if let Some(folder) = folder {
         let page = report::sensitivity(&rows, &text, &options.device.name(), command_line)?;
         write_whole(&folder.join("sensitivity.json"), &json)?;
         write_whole(&folder.join("sensitivity.csv"), &rows::csv(&rows, COLUMNS)?)?;
-        for (i, figure) in report::figures(&page).enumerate() {
-            let name = format!("figures/{:02}.svg", i + 1);
-            write_whole(&folder.join(name), figure.as_bytes())?;
-        }
-        let index = folder.join("index.html");
-        write_whole(&index, page.as_bytes())?;
+        let index = page::write(folder, &page)?;
         text.push_str(&format!("\nPage: {}\n", index.display()));
     }
-    match &options.json {
-        Some(_) if json_on_stdout => return print_bytes(&json),
-        Some(path) => write_whole(path, &json)?,
-        None => {}
-    }
-    print_bytes(text.as_bytes())
+    page::print(options.json.as_deref(), &json, &text)
 }
 
 fn cases(options: &Sensitivity) -> Result<Vec<Case>, Failure> {

@@ -1,5 +1,9 @@
 //! `host-sim tune`.
 
+use std::path::PathBuf;
+
+use clap::Args;
+
 use crate::belief::Belief;
 use crate::failure::Failure;
 use crate::output::{print_bytes, write_whole};
@@ -8,8 +12,43 @@ use crate::scenario::ScenarioName;
 use crate::simulate;
 use crate::tune::{FIRST_SEED, Ground, tune};
 
-use super::arguments::{Tune, kinds, rates, scenarios};
-use super::compare::progress;
+use super::arguments::{DeviceFile, kinds, rates, scenarios};
+use super::page::progress;
+
+#[derive(Debug, Args)]
+pub(super) struct Tune {
+    /// Take the mean over right and wrong beliefs in the device, as sensitivity tries them
+    #[arg(long)]
+    pub(super) doubting: bool,
+    /// Scenario to tune on; repeatable [default: step, permanent, track]
+    #[arg(long = "scenario", value_name = "NAME")]
+    pub(super) scenarios: Vec<String>,
+    /// Control rate, Hz; repeatable [default: 1000, 10000 and 11600]
+    #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
+    pub(super) rates: Vec<f64>,
+    /// Estimator to tune; repeatable [default: all that have parameters]
+    #[arg(long = "estimator", value_name = "NAME")]
+    pub(super) estimators: Vec<String>,
+    /// How many tuning seeds, from 2^32 on
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub(super) seeds: u64,
+    /// Duration of each run, s
+    #[arg(
+        long,
+        value_name = "S",
+        default_value_t = 10.0,
+        allow_negative_numbers = true
+    )]
+    pub(super) seconds: f64,
+    /// Tune on the plant without Coulomb friction only [default: on both]
+    #[arg(long)]
+    pub(super) frictionless: bool,
+    #[command(flatten)]
+    pub(super) device: DeviceFile,
+    /// File to write; compare and replay take it as --presets
+    #[arg(long, value_name = "FILE.toml", default_value = "target/presets.toml")]
+    pub(super) out: PathBuf,
+}
 
 pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
     use ScenarioName::{Permanent, Step, Track};

@@ -1,19 +1,52 @@
 //! `host-sim zwidth`.
 
-use std::path::Path;
+use std::path::PathBuf;
+
+use clap::Args;
 
 use crate::estimators::Kind;
 use crate::failure::Failure;
-use crate::output::{print_bytes, write_whole};
+use crate::output::write_whole;
 use crate::report;
 use crate::rows::{csv, json};
 use crate::zwidth::{BOUNDS_A_CASE, Case, Settings, boundaries, rows, table};
 
-use super::arguments::{Zwidth, is_stdout, kinds, rates};
-use super::compare::progress;
+use super::arguments::{DeviceFile, ParameterOptions, kinds, rates};
+use super::page::{self, progress};
 
 /// Where the page goes unless told otherwise.
 const PAGE: &str = "target/zwidth";
+
+#[derive(Debug, Args)]
+pub(super) struct Zwidth {
+    /// Estimator of the large motor's velocity; repeatable [default: all but the steady ones]
+    #[arg(long = "estimator", value_name = "NAME")]
+    pub(super) estimators: Vec<String>,
+    /// Estimator of the handle's velocity [default: the large motor's, or kalman-triple where that
+    /// one reads the current]
+    #[arg(long, value_name = "NAME")]
+    pub(super) handle: Option<String>,
+    /// Control rate, Hz; repeatable [default: 1000, 10000 and 11600]
+    #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
+    pub(super) rates: Vec<f64>,
+    /// Lines of the large encoder; repeatable [default: 256, 1024 and 5000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(super) lines: Vec<u32>,
+    /// Seed of the encoders' phases and the disc
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(super) seed: u64,
+    #[command(flatten)]
+    pub(super) device: DeviceFile,
+    #[command(flatten)]
+    pub(super) parameters: ParameterOptions,
+    /// Folder for index.html, its figures as SVG, zwidth.csv, zwidth.json [default: target/zwidth;
+    /// with --json - none]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Write the bounds as JSON to FILE, or with - to standard output and nothing else there
+    #[arg(long, value_name = "FILE")]
+    pub(super) json: Option<PathBuf>,
+}
 
 pub(super) fn run(options: &Zwidth, command_line: &str) -> Result<(), Failure> {
     let settings = Settings {
@@ -28,12 +61,7 @@ pub(super) fn run(options: &Zwidth, command_line: &str) -> Result<(), Failure> {
 
     let rows = rows::rows(&cases, &boundaries, settings.seed);
     let json = json(&rows)?;
-    let json_on_stdout = options.json.as_deref().is_some_and(is_stdout);
-    let folder = match &options.out {
-        Some(folder) => Some(folder.as_path()),
-        None if json_on_stdout => None,
-        None => Some(Path::new(PAGE)),
-    };
+    let folder = page::folder(options.out.as_deref(), options.json.as_deref(), PAGE);
     let mut text = table::table(&cases, &boundaries);
     if let Some(folder) = folder {
         let device = options.device.name();
@@ -41,22 +69,10 @@ pub(super) fn run(options: &Zwidth, command_line: &str) -> Result<(), Failure> {
         let csv = csv(&rows, rows::COLUMNS)?;
         write_whole(&folder.join("zwidth.json"), &json)?;
         write_whole(&folder.join("zwidth.csv"), &csv)?;
-        for (i, figure) in report::figures(&page).enumerate() {
-            let name = format!("figures/{:02}.svg", i + 1);
-            write_whole(&folder.join(name), figure.as_bytes())?;
-        }
-        write_whole(&folder.join("index.html"), page.as_bytes())?;
-        text.push_str(&format!(
-            "\nPage: {}\n",
-            folder.join("index.html").display()
-        ));
+        let index = page::write(folder, &page)?;
+        text.push_str(&format!("\nPage: {}\n", index.display()));
     }
-    match &options.json {
-        Some(_) if json_on_stdout => return print_bytes(&json),
-        Some(path) => write_whole(path, &json)?,
-        None => {}
-    }
-    print_bytes(text.as_bytes())
+    page::print(options.json.as_deref(), &json, &text)
 }
 
 /// Rates, encoders, estimators, in this order of the table's blocks.
