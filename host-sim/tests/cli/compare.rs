@@ -1,0 +1,120 @@
+//! `host-sim compare`: scores and their contract.
+
+use std::fs;
+
+use crate::{Folder, SHORT, json};
+
+#[test]
+fn json_on_standard_output_is_the_contract() {
+    let folder = Folder::new("json");
+    let rows = json(&folder.good(&SHORT));
+    let names: Vec<_> = rows
+        .iter()
+        .map(|row| row["estimator"].as_str().unwrap())
+        .collect();
+    for name in [
+        "finite-difference",
+        "low-pass",
+        "foaw-end-fit",
+        "foaw-best-fit",
+        "kalman-triple",
+        "kalman-motor",
+        "pll",
+    ] {
+        assert!(names.contains(&name), "{name} in {names:?}");
+    }
+    for row in &rows {
+        assert_eq!(row["scenario"], "step");
+        assert_eq!(row["rate_hz"], 1000.0);
+        assert_eq!(row["plant"], "friction");
+        assert_eq!(row["seed"], 1);
+        for field in [
+            "rms_rad_s",
+            "max_rad_s",
+            "distance_rad_s",
+            "distance_transient_rad_s",
+            "distance_pct",
+            "distance_transient_pct",
+            "rms_pct",
+            "outside",
+            "delay_ms",
+            "noise_rad_s",
+            "chatter_rad_s",
+            "force_mn",
+        ] {
+            let value = row[field].as_f64();
+            assert!(
+                value.is_some_and(f64::is_finite),
+                "{field} of {}",
+                row["estimator"]
+            );
+        }
+    }
+    let difference = &rows[0];
+    assert_eq!(difference["estimator"], "finite-difference");
+    assert_eq!(difference["rms_pct"], 100.0);
+    assert!(
+        folder.files().is_empty(),
+        "no report unless it is asked for"
+    );
+}
+
+#[test]
+fn the_same_command_gives_the_same_bytes_and_another_seed_others() {
+    let folder = Folder::new("same");
+    let report = |out| {
+        let mut arguments = SHORT[..7].to_vec();
+        arguments.extend(["--out", out]);
+        folder.good(&arguments);
+        let read = |name| fs::read(folder.0.join(out).join(name)).unwrap();
+        // The page shows its own command, which names the folder.
+        let page = String::from_utf8(read("index.html"))
+            .unwrap()
+            .replace(out, "");
+        (page, read("scores.csv"), read("scores.json"))
+    };
+    assert!(report("folder-one") == report("folder-two"));
+    let one = folder.good(&SHORT);
+    assert_eq!(one, folder.good(&SHORT));
+    let mut other = SHORT.to_vec();
+    other.extend(["--seed", "2"]);
+    assert_ne!(one, folder.good(&other));
+}
+
+#[test]
+fn the_plant_without_friction_is_another_plant() {
+    let folder = Folder::new("frictionless");
+    let mut arguments = SHORT.to_vec();
+    arguments.push("--frictionless");
+    let rows = json(&folder.good(&arguments));
+    assert!(rows.iter().all(|row| row["plant"] == "frictionless"));
+    assert_ne!(
+        rows[0]["rms_rad_s"],
+        json(&folder.good(&SHORT))[0]["rms_rad_s"]
+    );
+}
+
+#[test]
+fn what_is_not_wanted_is_not_computed() {
+    let folder = Folder::new("wanted");
+    let mut arguments = SHORT.to_vec();
+    arguments.extend(["--estimator", "pll", "--score", "rms_rad_s"]);
+    let rows = json(&folder.good(&arguments));
+    assert_eq!(rows.len(), 1);
+    assert!(rows[0]["rms_pct"].is_f64() && rows[0]["delay_ms"].is_null());
+}
+
+#[test]
+fn a_set_parameter_counts() {
+    let folder = Folder::new("set");
+    let rms = |set| {
+        let mut arguments = SHORT.to_vec();
+        arguments.extend(["--estimator", "foaw-end-fit", "--set", set]);
+        json(&folder.good(&arguments))[0]["rms_pct"]
+            .as_f64()
+            .unwrap()
+    };
+    // One interval is the finite difference.
+    assert_eq!(rms("foaw-end-fit.n=1"), 100.0);
+    assert_ne!(rms("foaw-end-fit.n=15"), 100.0);
+}

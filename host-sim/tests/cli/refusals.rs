@@ -1,0 +1,70 @@
+//! Words that no command knows.
+
+use crate::Folder;
+
+#[test]
+fn bad_words_are_refused_with_what_to_do() {
+    let folder = Folder::new("words");
+    folder.write("device.toml", "[large]\ninertia = 1\n");
+    folder.write("negative.toml", "[large]\ninertia_kg_m2 = -1\n");
+    folder.write("file", "");
+    for (arguments, said) in [
+        (&["compare", "--scenario", "stp"][..], "step"),
+        (&["compare", "--estimator", "kalman"], "kalman-triple"),
+        (&["compare", "--rate", "0"], "rate"),
+        (&["compare", "--rate", "nan"], "rate"),
+        (&["compare", "--rate", "fast"], "--rate"),
+        (&["compare", "--seconds", "-1"], "duration -1 s"),
+        (&["compare", "--seconds", "0.1"], "scores begin after 0.1 s"),
+        (&["compare", "--score", "beauty"], "rms_rad_s"),
+        (&["compare", "--set", "foaw-end-fit.n=129"], "from 1 to 128"),
+        (
+            &[
+                "compare",
+                "--set",
+                "low-pass.cutoff_hz=600",
+                "--rate",
+                "1000",
+            ],
+            "1/2 of the control rate",
+        ),
+        (
+            &["compare", "--device", "none.toml"],
+            "none.toml: cannot read",
+        ),
+        (&["compare", "--device", "device.toml"], "inertia"),
+        (
+            &["compare", "--device", "negative.toml"],
+            "large.inertia_kg_m2",
+        ),
+        (
+            &["compare", "--presets", "device.toml"],
+            "device.toml: line 1",
+        ),
+        (
+            &[
+                "compare",
+                "--seconds",
+                "0.2",
+                "--rate",
+                "1000",
+                "--scenario",
+                "step",
+                "--out",
+                "file/x",
+            ],
+            "file/x",
+        ),
+        (&["compare", "--bogus"], "host-sim --help"),
+        (&["replay"], "TRACE.csv"),
+        (
+            &["tune", "--estimator", "finite-difference"],
+            "nothing to tune",
+        ),
+        (&["tune", "--seeds", "0"], "--seeds"),
+        (&["dance"], "host-sim --help"),
+    ] {
+        let line = folder.refused(arguments);
+        assert!(line.contains(said), "{arguments:?}: {line}");
+    }
+}

@@ -1,0 +1,155 @@
+//! `host-sim replay`: recordings good and bad.
+
+use std::fs;
+use std::io::Write as _;
+
+use crate::{Folder, json};
+
+const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
+
+#[test]
+fn a_recording_of_a_real_motor_replays() {
+    let folder = Folder::new("replay");
+    let recording = format!("{DATA}/back-and-forth.csv");
+    let device = format!("{DATA}/hall-90.toml");
+    let arguments = [
+        "replay",
+        &recording,
+        "--device",
+        &device,
+        "--out",
+        "v.csv",
+        "--json",
+        "v.json",
+        // 90 counts a revolution want a longer window than the presets' 4096.
+        "--set",
+        "foaw-best-fit.n=64",
+    ];
+    let output = folder.run(&arguments);
+    assert_eq!(output.status.code(), Some(0));
+    let notes = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        notes.contains("kalman-motor left out: no column current"),
+        "{notes}"
+    );
+
+    let mut reader = csv::Reader::from_path(folder.0.join("v.csv")).unwrap();
+    let header = reader.headers().unwrap().clone();
+    assert_eq!(&header[0], "t");
+    let foaw = header
+        .iter()
+        .position(|name| name == "foaw-best-fit")
+        .unwrap();
+    let rows: Vec<_> = reader.records().map(Result::unwrap).collect();
+    assert_eq!(rows.len(), 1501);
+    // Once a window is full, the estimate is near the recording's own reference.
+    let mut recorded = csv::Reader::from_path(&recording).unwrap();
+    let recorded: Vec<_> = recorded.records().map(Result::unwrap).collect();
+    for k in [100, 700, 1500] {
+        let estimate: f64 = rows[k][foaw].parse().unwrap();
+        let reference: f64 = recorded[k][4].parse().unwrap();
+        assert!(
+            (estimate - reference).abs() < 3.0,
+            "row {k}: {estimate}, {reference}"
+        );
+    }
+
+    let scores = json(&fs::read_to_string(folder.0.join("v.json")).unwrap());
+    let rms = |name: &str| {
+        let row = scores.iter().find(|row| row["estimator"] == name).unwrap();
+        assert_eq!(row["scenario"], "back-and-forth.csv");
+        row["rms_rad_s"].as_f64().unwrap()
+    };
+    // One count a tick is 69.8 rad/s here; at about a quarter of a count a tick, quantisation
+    // alone costs finite difference sqrt(f (1 - f)) of it.
+    assert!((15.0..35.0).contains(&rms("finite-difference")));
+    assert!(rms("foaw-best-fit") < 0.1 * rms("finite-difference"));
+}
+
+#[test]
+fn bad_recordings_are_refused_by_file_line_and_column() {
+    let folder = Folder::new("bad");
+    for (name, text, said) in [
+        ("empty.csv", &b""[..], "empty.csv: line 1: no column t"),
+        (
+            "missing.csv",
+            b"t,count\n0,0\n",
+            "missing.csv: line 1: no column counts_large",
+        ),
+        (
+            "text.csv",
+            b"t,counts_large\n0,0\n1e-3,x\n",
+            "text.csv: line 3: column counts_large",
+        ),
+        (
+            "nan.csv",
+            b"t,counts_large\n0,0\nnan,1\n",
+            "nan.csv: line 3: column t",
+        ),
+        (
+            "back.csv",
+            b"t,counts_large\n0,0\n2,1\n1,2\n",
+            "back.csv: line 4: column t",
+        ),
+        (
+            "binary.csv",
+            b"\x7fELF\x00\xff\xfe\n\x00\x01\x02",
+            "binary.csv: line 1: no column t",
+        ),
+        (
+            "bits.csv",
+            b"t,counts_large\n\xff\xfe,0\n",
+            "bits.csv: line 2: column t: not text",
+        ),
+        (
+            "one.csv",
+            b"t,counts_large\n0,0\n",
+            "one.csv: needs two rows",
+        ),
+    ] {
+        folder.write(name, text);
+        let line = folder.refused(&["replay", name, "--out", "o.csv", "--json", "o.json"]);
+        assert!(line.contains(said), "{line}");
+    }
+    let line = folder.refused(&["replay", "none.csv", "--out", "o.csv"]);
+    assert!(line.contains("none.csv: cannot read"), "{line}");
+    folder.write("plain.csv", "t,counts_large\n0,0\n1e-3,1\n2e-3,1\n");
+    let line = folder.refused(&["replay", "plain.csv", "--json", "o.json"]);
+    assert!(line.contains("no column true_omega"), "{line}");
+    let line = folder.refused(&[
+        "replay",
+        "plain.csv",
+        "--estimator",
+        "kalman-motor",
+        "--out",
+        "o.csv",
+    ]);
+    let said = "plain.csv: line 1: no column current, which kalman-motor needs";
+    assert!(line.contains(said), "{line}");
+}
+
+#[test]
+fn a_hundred_megabytes_are_read_to_the_line_that_is_wrong() {
+    let folder = Folder::new("large");
+    let mut text = b"t,counts_large\n".to_vec();
+    let mut row = 0_u32;
+    while text.len() < 100_000_000 {
+        writeln!(text, "{}.{:03},{row:012}", row / 1000, row % 1000).unwrap();
+        row += 1;
+    }
+    text.extend_from_slice(b"1e9,end\n");
+    folder.write("large.csv", &text);
+    let line = folder.refused(&["replay", "large.csv", "--out", "o.csv"]);
+    assert!(
+        line.contains(&format!(
+            "large.csv: line {}: column counts_large: 'end'",
+            row + 2
+        )),
+        "{line}"
+    );
+    // And as one line without an end.
+    folder.write("large.csv", vec![b'7'; 100_000_000]);
+    let line = folder.refused(&["replay", "large.csv", "--out", "o.csv"]);
+    assert!(line.contains("large.csv: line 1: no column t"), "{line}");
+    assert!(line.len() < 300, "{} bytes", line.len());
+}
