@@ -20,6 +20,14 @@ pub trait VelocityEstimator {
     /// The state at rest at the first sample.
     fn start(&self, first: &Sample) -> Self::State;
 
+    /// Begins again at rest at this sample. What was chosen from outside, as by a [`Handover`]'s
+    /// [`select`](crate::HandoverState::select), stays.
+    ///
+    /// [`Handover`]: crate::Handover
+    fn restart(&self, state: &mut Self::State, first: &Sample) {
+        *state = self.start(first);
+    }
+
     /// One tick: take the next sample, return the velocity at its instant.
     fn update(&self, state: &mut Self::State, sample: &Sample) -> Self::Output;
 }

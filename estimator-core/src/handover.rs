@@ -1,5 +1,6 @@
 //! Two estimators of which one runs, exchanged without a step.
 
+use crate::confidence::{Confidence, Variance};
 use crate::design_error::DesignError;
 use crate::estimator::VelocityEstimator;
 use crate::sample::{Sample, Signals};
@@ -52,14 +53,14 @@ impl<A, B> Handover<A, B> {
     /// `first`, that `second` may relieve, after `settle` ticks unheard and `fade` of fading.
     ///
     /// # Errors
-    /// [`DesignError::Window`] unless `fade` is 1 to 2^15 and `settle` at most 2^15 ticks.
+    /// [`DesignError::Window`] unless `fade` is 1 to 2^15 and `settle` below 2^15 ticks.
     pub const fn new(first: A, second: B, settle: u16, fade: u16) -> Result<Self, DesignError>
     where
         A: Copy,
         B: Copy,
     {
         const LONGEST: u16 = 1 << 15;
-        if fade == 0 || fade > LONGEST || settle > LONGEST {
+        if fade == 0 || fade > LONGEST || settle >= LONGEST {
             return Err(DesignError::Window);
         }
         Ok(Self {
@@ -119,6 +120,14 @@ where
         }
     }
 
+    /// At once with the side that is wanted: there is nothing to fade from.
+    fn restart(&self, state: &mut Self::State, first: &Sample) {
+        state.running = match state.wanted {
+            Side::First => Running::First(self.first.start(first)),
+            Side::Second => Running::Second(self.second.start(first)),
+        };
+    }
+
     fn update(&self, state: &mut Self::State, sample: &Sample) -> CountsPerTick {
         let wanted = state.wanted;
         match &mut state.running {
@@ -162,6 +171,23 @@ where
                     };
                 }
                 CountsPerTick(v)
+            }
+        }
+    }
+}
+
+impl<A, B> Confidence for Handover<A, B>
+where
+    A: Confidence<Output = CountsPerTick>,
+    B: Confidence<Output = CountsPerTick>,
+{
+    fn variance(&self, state: &Self::State) -> Variance {
+        match &state.running {
+            Running::First(a) => self.first.variance(a),
+            Running::Second(b) => self.second.variance(b),
+            Running::Both(a, b, ..) => {
+                let (a, b) = (self.first.variance(a), self.second.variance(b));
+                if a > b { a } else { b }
             }
         }
     }

@@ -118,6 +118,11 @@ pub struct KalmanState<const S: usize> {
 }
 
 impl<const S: usize> KalmanState<S> {
+    /// P_11.
+    pub(crate) const fn velocity_variance(&self) -> f32 {
+        self.p[1][1]
+    }
+
     /// Covariance P of the state, in counts and ticks.
     #[must_use]
     pub const fn covariance(&self) -> [[f32; S]; S] {

@@ -31,6 +31,12 @@ pub struct LateCurrentState<S> {
     inner: S,
 }
 
+impl<S> LateCurrentState<S> {
+    pub(crate) const fn inner(&self) -> &S {
+        &self.inner
+    }
+}
+
 impl<E: VelocityEstimator> VelocityEstimator for LateCurrent<E> {
     type State = LateCurrentState<E::State>;
     type Output = E::Output;

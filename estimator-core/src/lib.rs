@@ -48,6 +48,7 @@
     reason = "a NaN has to fail these comparisons"
 )]
 
+mod confidence;
 pub mod const_math;
 mod coupled_motor;
 mod design_error;
@@ -69,6 +70,7 @@ mod sample;
 mod steady_kalman;
 mod units;
 
+pub use confidence::{Confidence, Variance};
 pub use coupled_motor::CoupledMotor;
 pub use design_error::DesignError;
 pub use device::Device;

@@ -171,6 +171,11 @@ impl<const S: usize, U: Copy> Model<S, U> {
         riccati::steady_gain(&self.a, &self.q, self.r)
     }
 
+    /// The same limit with its variances.
+    pub(crate) const fn steady(&self) -> Result<riccati::Steady<S>, DesignError> {
+        riccati::steady(&self.a, &self.q, self.r)
+    }
+
     /// Transition matrix A.
     #[must_use]
     pub const fn transition(&self) -> &[[f64; S]; S] {

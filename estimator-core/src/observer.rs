@@ -137,6 +137,19 @@ impl<C, S, M, L: Learning> Observer<C, S, M, L> {
     }
 }
 
+impl<C, S, M: Correction, L: Learning> Observer<C, S, M, L> {
+    /// Variance of the velocity so long after the last correction, from the table, and by what is
+    /// not known of the parameters.
+    pub(crate) fn velocity_variance<A, B>(
+        &self,
+        state: &ObserverState<A, B, M::State, L::State>,
+    ) -> f32 {
+        // A float-to-integer cast saturates.
+        let ticks = M::since(&state.correction) as usize;
+        self.gain(ticks).velocity_variance + self.learning.velocity_variance(&state.learning)
+    }
+}
+
 impl<C, S, M, L> VelocityEstimator for Observer<C, S, M, L>
 where
     C: CurrentSource,

@@ -14,17 +14,28 @@ pub(crate) const fn steady_gain<const S: usize>(
     r: f64,
 ) -> Result<[f32; S], DesignError> {
     match steady(a, q, r) {
-        Ok((gain, _)) => Ok(gain),
+        Ok(steady) => Ok(steady.gain),
         Err(error) => Err(error),
     }
 }
 
-/// The steady gain and the variance `H P Hᵀ + r` of its innovation.
+/// What the recursion settles to.
+#[derive(Clone, Copy)]
+pub(crate) struct Steady<const S: usize> {
+    /// The gain K.
+    pub(crate) gain: [f32; S],
+    /// Variance `H P Hᵀ + r` of the innovation.
+    pub(crate) innovation: f64,
+    /// Variance P_11 of the second state, the velocity, before and after a correction.
+    pub(crate) velocity: [f64; 2],
+}
+
+/// The limit of the recursion.
 pub(crate) const fn steady<const S: usize>(
     a: &Matrix<S>,
     q: &Matrix<S>,
     r: f64,
-) -> Result<([f32; S], f64), DesignError> {
+) -> Result<Steady<S>, DesignError> {
     let Some(covariance) = predicted_covariance(a, q, r) else {
         return Err(DesignError::NotConverged);
     };
@@ -40,7 +51,17 @@ pub(crate) const fn steady<const S: usize>(
         i += 1;
     }
     if shrinks(closed_loop(a, &rounded)) {
-        Ok((rounded, covariance[0][0] + r))
+        let before = if S > 1 { covariance[1][1] } else { 0.0 };
+        let corrected = if S > 1 {
+            exact[1] * covariance[0][1]
+        } else {
+            0.0
+        };
+        Ok(Steady {
+            gain: rounded,
+            innovation: covariance[0][0] + r,
+            velocity: [before, before - corrected],
+        })
     } else {
         Err(DesignError::NotStable)
     }

@@ -35,6 +35,8 @@ pub struct SteadyKalman<const S: usize, U> {
     a: [[f32; S]; S],
     input: U,
     k: [f32; S],
+    /// P_11 of the limit, after a correction.
+    velocity_variance: f32,
 }
 
 impl<const S: usize, U: Copy> SteadyKalman<S, U> {
@@ -44,8 +46,8 @@ impl<const S: usize, U: Copy> SteadyKalman<S, U> {
     /// As [`Model::steady_gain`].
     pub const fn new(model: &Model<S, U>) -> Result<Self, DesignError> {
         const { assert!(S >= 2, "position and velocity at least") };
-        let k = match model.steady_gain() {
-            Ok(k) => k,
+        let steady = match model.steady() {
+            Ok(steady) => steady,
             Err(error) => return Err(error),
         };
         let mut a = [[0.0; S]; S];
@@ -61,8 +63,13 @@ impl<const S: usize, U: Copy> SteadyKalman<S, U> {
         Ok(Self {
             a,
             input: model.input,
-            k,
+            k: steady.gain,
+            velocity_variance: steady.velocity[1] as f32,
         })
+    }
+
+    pub(crate) const fn velocity_variance(&self) -> f32 {
+        self.velocity_variance
     }
 
     /// The gain K: counts, counts per tick, .. per count of innovation.

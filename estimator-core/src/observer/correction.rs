@@ -41,6 +41,9 @@ pub trait Correction: Copy {
     /// The state at the first sample.
     fn start(&self) -> Self::State;
 
+    /// Ticks since the last correction.
+    fn since(state: &Self::State) -> f32;
+
     /// The innovation of this tick, if it has one.
     fn innovation(
         &self,
@@ -80,6 +83,10 @@ impl Correction for Cells {
 
     fn start(&self) -> f32 {
         0.0
+    }
+
+    fn since(gap: &f32) -> f32 {
+        *gap
     }
 
     fn innovation(
@@ -144,6 +151,10 @@ impl Correction for Edges {
             since: 0.0,
             offsets: [0.0; 4],
         }
+    }
+
+    fn since(state: &EdgesState) -> f32 {
+        state.since
     }
 
     fn innovation(

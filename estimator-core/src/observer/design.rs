@@ -54,6 +54,8 @@ pub struct Gain {
     pub load: f32,
     /// Variance of the innovation, counts².
     pub variance: f32,
+    /// Variance of the velocity before the correction, (counts a tick)².
+    pub velocity_variance: f32,
 }
 
 impl Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed> {
@@ -148,19 +150,21 @@ const fn gains(
         velocity: 0.0,
         load: 0.0,
         variance: 0.0,
+        velocity_variance: 0.0,
     }; ROWS];
     let (mut a_n, mut q_n) = (a, q);
     let mut row = 0;
     while row < ROWS {
-        let (k, variance) = match riccati::steady(&a_n, &q_n, r) {
+        let steady = match riccati::steady(&a_n, &q_n, r) {
             Ok(steady) => steady,
             Err(error) => return Err(error),
         };
         table[row] = Gain {
-            position: k[0],
-            velocity: k[1],
-            load: k[2],
-            variance: variance as f32,
+            position: steady.gain[0],
+            velocity: steady.gain[1],
+            load: steady.gain[2],
+            variance: steady.innovation as f32,
+            velocity_variance: steady.velocity[0] as f32,
         };
         q_n = riccati::later_noise(&a, &q, &q_n);
         a_n = riccati::product(&a, &a_n);

@@ -48,6 +48,9 @@ pub trait Learning: Copy {
     /// What was learned so far.
     fn deviations(&self, state: &Self::State) -> Deviations;
 
+    /// Variance of the velocity that comes of what is not known of the parameters.
+    fn velocity_variance(&self, state: &Self::State) -> f32;
+
     /// Acceleration by current and slip, and how far the rotor is behind its current's mean.
     fn drive(
         &self,
@@ -95,6 +98,10 @@ impl Learning for Fixed {
 
     fn deviations(&self, (): &()) -> Deviations {
         Deviations::default()
+    }
+
+    fn velocity_variance(&self, (): &()) -> f32 {
+        0.0
     }
 
     fn drive(&self, (): &(), motion: &Motion, push: Push, handle: f32, _: f32) -> Push {
@@ -220,6 +227,15 @@ impl Learning for Learned {
             friction,
             torque_constant,
         }
+    }
+
+    /// `s_vᵀ U D Uᵀ s_v`.
+    fn velocity_variance(&self, state: &LearnedState) -> f32 {
+        let [a, b, c] = state.sensitivity.map(|s| s[1]);
+        let [u01, u02, u12] = state.upper;
+        let y = [a, u01 * a + b, u02 * a + u12 * b + c];
+        let [d0, d1, d2] = state.diagonal;
+        d0 * y[0] * y[0] + d1 * y[1] * y[1] + d2 * y[2] * y[2]
     }
 
     fn drive(
