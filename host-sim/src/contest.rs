@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::estimators::{Estimator, Kind, Setup, available};
 use crate::failure::Failure;
 use crate::parameters::{Parameters, PlantKind};
-use crate::score::{Interval, Percent, Score, Truth, Wanted, percent_of};
+use crate::score::{Interval, Percent, SKIP_S, Score, Truth, Wanted, percent_of};
 use crate::trace::Trace;
 
 /// The scores of one estimator on one trace: an object of the JSON output, a row of the CSV.
@@ -31,6 +31,10 @@ pub struct Row {
     pub percent: Percent,
     /// Mean distance of finite difference on the same samples, rad/s: what the % are of.
     pub difference_distance_rad_s: Option<f64>,
+    /// Share of samples whose error is within two of the standard deviations that the estimator
+    /// itself believes in, 0 to 1: 0.95 for one that is right about a Gaussian error; `null` for
+    /// one that believes nothing.
+    pub within_2_sigma: Option<f64>,
     /// Damping b that the estimator learned, mean of the run's last tenth, N.m.s/rad; `null` for
     /// one that learns none.
     pub learned_damping_nms_per_rad: Option<f64>,
@@ -72,6 +76,24 @@ pub struct Estimate {
     pub estimator: &'static str,
     /// One velocity a tick.
     pub velocity: Vec<f32>,
+    /// The standard deviation that the estimator believes each to have, rad/s; `None` from one that
+    /// believes nothing.
+    pub deviation: Option<Vec<f32>>,
+}
+
+impl Estimate {
+    /// Share of samples within two standard deviations of the truth `omega`, rad/s.
+    #[must_use]
+    pub fn within_2_sigma(&self, omega: &[f64], rate_hz: f64) -> Option<f64> {
+        let deviations = self.deviation.as_ref()?;
+        let skip = (SKIP_S * rate_hz).round() as usize;
+        let samples = self.velocity.iter().zip(deviations).zip(omega).skip(skip);
+        let inside = |((velocity, deviation), truth): &((&f32, &f32), &f64)| {
+            (f64::from(**velocity) - **truth).abs() <= 2.0 * f64::from(**deviation)
+        };
+        let scored = self.velocity.len().saturating_sub(skip);
+        (scored > 0).then(|| samples.filter(inside).count() as f64 / scored as f64)
+    }
 }
 
 impl Contestant {
@@ -93,9 +115,13 @@ impl Contestant {
     /// The estimate over `trace`, or `None` if the trace lacks a signal that it needs.
     #[must_use]
     pub fn estimate(&self, trace: &Trace) -> Option<Estimate> {
-        self.kind.needs.within(available(trace)).then(|| Estimate {
-            estimator: self.kind.name,
-            velocity: self.estimator.run(trace),
+        self.kind.needs.within(available(trace)).then(|| {
+            let (velocity, deviation) = self.estimator.run_confident(trace);
+            Estimate {
+                estimator: self.kind.name,
+                velocity,
+                deviation,
+            }
         })
     }
 
@@ -193,6 +219,7 @@ impl Contest {
                 score,
                 percent: percent_of(&score, &reference),
                 difference_distance_rad_s: reference.distance_rad_s,
+                within_2_sigma: estimate.within_2_sigma(omega, trace.rate_hz),
                 learned_damping_nms_per_rad: damping.as_deref().map(last_tenth),
                 learned_damping_pct: damping.as_deref().and_then(|b| damping_error(b, trace)),
                 parameters: contestant(estimate.estimator)
@@ -229,4 +256,26 @@ fn damping_error(learned: &[f64], trace: &Trace) -> Option<f64> {
         .collect();
     let mean = errors.iter().sum::<f64>() / errors.len() as f64;
     (!errors.is_empty()).then(|| 100.0 * mean.sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_within_two_deviations_are_counted_after_the_start() {
+        let estimate = Estimate {
+            estimator: "pll",
+            velocity: vec![9.0, 1.0, 1.0, 1.0, 1.0],
+            deviation: Some(vec![0.0, 0.5, 0.5, 0.4, 0.0]),
+        };
+        // At 10 Hz the first sample is the start.
+        let truth = [0.0, 2.0, 2.1, 1.5, 1.0];
+        assert_eq!(estimate.within_2_sigma(&truth, 10.0), Some(0.75));
+        let silent = Estimate {
+            deviation: None,
+            ..estimate
+        };
+        assert_eq!(silent.within_2_sigma(&truth, 10.0), None);
+    }
 }

@@ -14,6 +14,7 @@ pub mod encoder;
 pub mod estimators;
 pub mod failure;
 pub mod felt;
+pub mod health;
 pub mod identify;
 pub mod limit;
 pub mod output;

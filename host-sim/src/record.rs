@@ -2,26 +2,41 @@
 
 use std::fmt::Write as _;
 
+use crate::estimators::EDGE_CLOCK_HZ;
 use crate::failure::Failure;
-use crate::telemetry::{Frame, Run, Telemetry};
+use crate::telemetry::{Frame, LearnedLine, Run, Telemetry};
 
 /// The columns: those that [`Recording`](crate::recording::Recording) knows, then what the board
 /// made of them.
 const COLUMNS: &str = "t,counts_large,counts_small,current,current_small,torque,velocity_large,\
     velocity_small,state,cause";
 
+/// The columns of what was learned.
+const LEARNED: &str = ",learned_damping,learned_friction,learned_torque_constant";
+
 /// A run as CSV: one row a frame, `t` from its first frame, by its ticks and the control rate.
 ///
+/// `sigma_large` follows where every frame says how far off its velocity may be, `edge_tick` and
+/// `edge_bound` where the firmware stamped edges; a frame without a stamp
+/// leaves them empty. The three of `learned` stand in the rows whose frames had such a line, where any had.
 /// `true_omega` is a last column, if every frame has one.
 #[must_use]
 pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) -> String {
     let truth: Option<Vec<f64>> = run.frames.iter().map(|(_, f)| true_omega(f)).collect();
+    let edges = run.frames.iter().any(|(_, f)| f.beside.edge.is_some());
     let mut text = COLUMNS.to_owned();
-    text += if truth.is_some() {
-        ",true_omega\n"
-    } else {
-        "\n"
-    };
+    let learned = run.frames.iter().any(|(_, f)| f.beside.learned.is_some());
+    let sigma = run.frames.iter().all(|(_, f)| f.sl.is_some());
+    let more = [
+        (",sigma_large", sigma),
+        (",edge_tick,edge_bound", edges),
+        (LEARNED, learned),
+        (",true_omega", truth.is_some()),
+    ];
+    for (name, _) in more.iter().filter(|(_, there)| *there) {
+        text += name;
+    }
+    text.push('\n');
     for (k, (tick, frame)) in run.frames.iter().enumerate() {
         let t = *tick as f64 / rate_hz;
         let Frame {
@@ -41,6 +56,28 @@ pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) 
             text,
             "{t},{large},{small},{il},{is},{torque},{wl},{ws},{state},{cause}"
         );
+        if let (true, Some(sl)) = (sigma, frame.sl) {
+            let _ = write!(text, ",{sl}");
+        }
+        if edges {
+            let _ = match frame.beside.edge {
+                None => write!(text, ",,"),
+                Some(edge) => {
+                    let now = (t * EDGE_CLOCK_HZ).round() as i64;
+                    write!(text, ",{},{}", now - i64::from(edge.age), edge.boundary)
+                }
+            };
+        }
+        if learned {
+            let _ = match frame.beside.learned {
+                None => write!(text, ",,,"),
+                Some(LearnedLine {
+                    damping,
+                    friction,
+                    torque_constant,
+                }) => write!(text, ",{damping},{friction},{torque_constant}"),
+            };
+        }
         if let Some(truth) = &truth {
             let _ = write!(text, ",{}", truth[k]);
         }
@@ -150,6 +187,35 @@ mod tests {
             report(&telemetry, &runs, run),
             ["4 frames recorded, 0 missing at 0 places"]
         );
+    }
+
+    #[test]
+    fn stamps_are_columns_that_replay_reads() {
+        let log = log(0..3) + "edge seq=2 bound=1 age=21000\n";
+        let telemetry = Telemetry::text(log.as_bytes());
+        let text = csv(&telemetry.runs()[0], 1e4, |_| Some(1.0));
+        let header = format!("{COLUMNS},edge_tick,edge_bound,true_omega");
+        assert_eq!(text.lines().next(), Some(header.as_str()));
+        assert!(text.lines().nth(1).unwrap().ends_with(",2,0,,,1"), "{text}");
+        assert!(
+            text.lines().nth(3).unwrap().ends_with(",2,0,147000,1,1"),
+            "{text}"
+        );
+        let edges = Recording::parse(text.as_bytes(), "r").unwrap().trace.edges;
+        let [None, None, Some(edge)] = edges.unwrap()[..] else {
+            panic!("one edge");
+        };
+        assert!((edge.age_s - 250e-6).abs() < 1e-9 && edge.boundary == 1);
+    }
+
+    #[test]
+    fn an_edge_from_before_the_recording_has_a_negative_tick() {
+        let (first, second) = (log(0..1), log(1..2));
+        let second = second.split_once('\n').unwrap().1;
+        let log = first + "edge seq=0 bound=0 age=84\n" + second;
+        let telemetry = Telemetry::text(log.as_bytes());
+        let text = csv(&telemetry.runs()[0], 1e4, |_| None);
+        assert!(text.lines().nth(1).unwrap().ends_with(",-84,0"), "{text}");
     }
 
     #[test]

@@ -7,8 +7,9 @@ use crate::contest::{Contest, Estimate, Heading, Row};
 use crate::device::Device;
 use crate::estimators::{Kind, available};
 use crate::failure::Failure;
+use crate::health;
 use crate::parameters::{Parameters, PlantKind};
-use crate::recording::Recording;
+use crate::recording::{BoardColumns, Recording};
 use crate::score::Wanted;
 
 /// What came of a recording.
@@ -61,6 +62,32 @@ pub fn replay(
         rows,
         left_out: unable.iter().map(lacking).collect(),
     })
+}
+
+/// What there is to say of the board that made the recording: how often the truth was within two of
+/// the standard deviations that it claimed, and what it learned against `device`.
+#[must_use]
+pub fn of_the_board(recording: &Recording, board: &BoardColumns, device: &Device) -> Vec<String> {
+    let mut said = Vec::new();
+    let trace = &recording.trace;
+    if let (Some(omega), Some(velocity), Some(sigma)) =
+        (&trace.true_omega, &board.velocity_large, &board.sigma_large)
+    {
+        let own = Estimate {
+            estimator: "board",
+            velocity: velocity.iter().map(|v| *v as f32).collect(),
+            deviation: Some(sigma.iter().map(|s| *s as f32).collect()),
+        };
+        let share = own.within_2_sigma(omega, trace.rate_hz);
+        said.extend(share.map(|share| {
+            let percent = 100.0 * share;
+            format!("the board's own velocity is within two of its sigma_large in {percent:.1} %")
+        }));
+    }
+    if let Some(learned) = &board.learned {
+        said.extend(health::lines(learned, device));
+    }
+    said
 }
 
 /// The name a recording goes by: its file's.

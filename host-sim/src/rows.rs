@@ -24,6 +24,7 @@ pub const COLUMNS: &[&str] = &[
     "noise_rad_s",
     "chatter_rad_s",
     "force_mn",
+    "within_2_sigma",
     "non_finite",
 ];
 

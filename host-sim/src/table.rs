@@ -22,7 +22,7 @@ pub fn details(rows: &[Row]) -> String {
         );
         let _ = writeln!(
             text,
-            "  {:<22}{:>9}{:>9}{:>10}{:>7}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}",
+            "  {:<22}{:>9}{:>9}{:>10}{:>7}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}",
             "",
             "rms",
             "largest",
@@ -33,11 +33,12 @@ pub fn details(rows: &[Row]) -> String {
             "delay",
             "noise",
             "chatter",
-            "force"
+            "force",
+            "within"
         );
         let _ = writeln!(
             text,
-            "  {:<22}{:>9}{:>9}{:>10}{:>7}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}",
+            "  {:<22}{:>9}{:>9}{:>10}{:>7}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}",
             "estimator",
             "rad/s",
             "rad/s",
@@ -48,13 +49,14 @@ pub fn details(rows: &[Row]) -> String {
             "ms",
             "rad/s",
             "rad/s",
-            "mN"
+            "mN",
+            "2 sd, %"
         );
         for row in block {
             let score = &row.score;
             let _ = writeln!(
                 text,
-                "  {:<22}{:>9}{:>9}{:>10}{:>7}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}",
+                "  {:<22}{:>9}{:>9}{:>10}{:>7}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}",
                 row.estimator,
                 number(score.rms_rad_s),
                 number(score.max_rad_s),
@@ -66,6 +68,7 @@ pub fn details(rows: &[Row]) -> String {
                 number(score.noise_rad_s),
                 number(score.chatter_rad_s),
                 number(score.force_mn),
+                number(row.within_2_sigma.map(|share| 100.0 * share)),
             );
         }
     }

@@ -1,18 +1,20 @@
 //! What the firmware says, from a board or from the emulated one: frames, boots, the rest.
 
+mod beside;
 mod frame;
 #[cfg(feature = "rtt")]
 mod rtt;
 mod run;
 mod text;
 
-pub use frame::Frame;
+pub use beside::{Beside, EdgeLine, LearnedLine};
+pub use frame::{Frame, NOBODY};
 pub use run::{Gaps, Run};
 
 /// A decoded stream.
 #[derive(Clone, Debug, Default)]
 pub struct Telemetry {
-    /// Frames in order.
+    /// Frames in order, each with what was said beside it.
     pub frames: Vec<Frame>,
     /// Starts of the firmware.
     pub boots: Vec<Boot>,
@@ -39,6 +41,11 @@ impl Telemetry {
                 Ok(frame) => self.frames.push(frame),
                 Err(error) => self.malformed.push(error),
             }
+            return;
+        }
+        if beside::STARTS.iter().any(|start| line.starts_with(start)) {
+            let taken = self.frames.last_mut().map(|frame| frame.take(line));
+            self.malformed.extend(taken.and_then(Result::err));
             return;
         }
         if let Some(rate_hz) = boot_rate(line) {

@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::failure::Failure;
 use crate::output::{print_bytes, write_whole};
-use crate::recording::Recording;
+use crate::recording::{BoardColumns, Recording};
 use crate::{replay, rows, table};
 
 use super::arguments::{DeviceFile, ParameterOptions, is_stdout, kinds};
@@ -38,6 +38,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let parameters = options.parameters.load()?;
     let name = replay::name(&options.trace);
     let recording = Recording::read(&options.trace)?;
+    let board = board_columns(options)?;
     if options.json.is_some() && recording.trace.true_omega.is_none() {
         return Err(Failure::Input(format!(
             "{}: line 1: no column true_omega, which the scores of --json are against",
@@ -58,6 +59,9 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         eprintln!("{name}: {estimator} left out: no column {column}");
     }
     warn_uneven(&name, &recording);
+    for line in replay::of_the_board(&recording, &board, &device) {
+        eprintln!("{name}: {line}");
+    }
     let csv = replay::csv(&recording.t, &replayed.estimates);
     match (options.out.as_deref(), options.json.as_deref()) {
         (Some(out), Some(json)) if is_stdout(out) && is_stdout(json) => {
@@ -78,6 +82,18 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     match &options.out {
         Some(out) if !is_stdout(out) => print_bytes(table::details(rows).as_bytes()),
         _ => Ok(()),
+    }
+}
+
+/// What the board made of its samples; nothing where no board that says how sure it is made the
+/// recording, whose other columns may then be anything.
+fn board_columns(options: &Replay) -> Result<BoardColumns, Failure> {
+    let path = options.trace.display().to_string();
+    let text = std::fs::read(&options.trace)
+        .map_err(|error| Failure::Input(format!("{path}: cannot read: {error}")))?;
+    match BoardColumns::are_in(&text) {
+        true => BoardColumns::parse(text.as_slice(), &path),
+        false => Ok(BoardColumns::default()),
     }
 }
 

@@ -5,7 +5,7 @@ use estimator_core::{
     Model, Pll, Scale, Signals, SteadyKalman,
 };
 
-use super::run::{Estimator, erased};
+use super::run::{Estimator, confident, erased};
 use super::{Kind, Parameter, Search, Setup, Values};
 
 pub(super) type Build = fn(&Setup, &Values) -> Result<Estimator, DesignError>;
@@ -85,7 +85,7 @@ pub(super) const KINDS: &[Kind] = &[
         summary: "displacement over the last period (eq. 4)",
         needs: Signals::COUNT,
         parameters: &[],
-        build: |setup, _| Ok(erased(FiniteDifference, scale(setup)?)),
+        build: |setup, _| Ok(confident(FiniteDifference, scale(setup)?)),
     },
     Kind {
         name: "low-pass",
@@ -116,7 +116,12 @@ pub(super) const KINDS: &[Kind] = &[
         summary: "Kalman filter on a triple integrator, full covariance (eqs. 9 to 12)",
         needs: Signals::COUNT,
         parameters: &[JERK],
-        build: |setup, values| Ok(erased(Kalman::new(&triple(setup, values)?)?, scale(setup)?)),
+        build: |setup, values| {
+            Ok(confident(
+                Kalman::new(&triple(setup, values)?)?,
+                scale(setup)?,
+            ))
+        },
     },
     Kind {
         name: "kalman-triple-steady",
@@ -124,7 +129,7 @@ pub(super) const KINDS: &[Kind] = &[
         needs: Signals::COUNT,
         parameters: &[JERK],
         build: |setup, values| {
-            Ok(erased(
+            Ok(confident(
                 SteadyKalman::new(&triple(setup, values)?)?,
                 scale(setup)?,
             ))
@@ -138,8 +143,8 @@ pub(super) const KINDS: &[Kind] = &[
         build: |setup, values| {
             let filter = Kalman::new(&Model::motor(&setup.device, setup.rate, values[0])?)?;
             Ok(match values[1] != 0.0 {
-                true => erased(LateCurrent(filter), scale(setup)?),
-                false => erased(filter, scale(setup)?),
+                true => confident(LateCurrent(filter), scale(setup)?),
+                false => confident(filter, scale(setup)?),
             })
         },
     },
@@ -151,8 +156,8 @@ pub(super) const KINDS: &[Kind] = &[
         build: |setup, values| {
             let filter = SteadyKalman::new(&Model::motor(&setup.device, setup.rate, values[0])?)?;
             Ok(match values[1] != 0.0 {
-                true => erased(LateCurrent(filter), scale(setup)?),
-                false => erased(filter, scale(setup)?),
+                true => confident(LateCurrent(filter), scale(setup)?),
+                false => confident(filter, scale(setup)?),
             })
         },
     },
@@ -175,7 +180,7 @@ fn foaw<F: Fit + Send + Sync + 'static>(
     values: &Values,
 ) -> Result<Estimator, DesignError> {
     let foaw = Foaw::<RING, F>::new(values[0] as usize, values[1] as u16)?;
-    Ok(erased(foaw, scale(setup)?))
+    Ok(confident(foaw, scale(setup)?))
 }
 
 fn triple(

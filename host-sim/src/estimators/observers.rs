@@ -6,7 +6,7 @@ use estimator_core::{
 };
 
 use super::build::scale;
-use super::run::{EDGE_CLOCK_HZ, Estimator, erased, learner};
+use super::run::{EDGE_CLOCK_HZ, Estimator, confident, erased, learner};
 use super::{Kind, Parameter, Search, Setup, Values};
 
 const TORQUE_NOISE: Parameter = Parameter {
@@ -215,5 +215,5 @@ where
     M: Correction<State: Send> + Send + Sync + 'static,
     L: Learning<State: Send> + Send + Sync + 'static,
 {
-    Ok(erased(observer, scale(setup)?))
+    Ok(confident(observer, scale(setup)?))
 }

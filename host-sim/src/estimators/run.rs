@@ -4,8 +4,9 @@ use std::any::Any;
 use std::sync::Arc;
 
 use estimator_core::{
-    AccelerationEstimator, Amps, ClockTicks, Count, CountsPerTick, CountsPerTickSquared, Edge,
-    KalmanState, Sample, Scale, Signals, SteadyKalmanState, VelocityEstimator,
+    AccelerationEstimator, Amps, ClockTicks, Confidence, Count, CountsPerTick,
+    CountsPerTickSquared, Edge, KalmanState, Sample, Scale, Signals, SteadyKalmanState,
+    VelocityEstimator,
 };
 
 use crate::trace::{EdgeStamp, Trace};
@@ -23,6 +24,13 @@ impl Estimator {
     #[must_use]
     pub fn run(&self, trace: &Trace) -> Vec<f32> {
         self.0.run(trace)
+    }
+
+    /// The same, and the standard deviation that the estimator itself believes its velocity to
+    /// have, rad/s; `None` from one that believes nothing.
+    #[must_use]
+    pub fn run_confident(&self, trace: &Trace) -> (Vec<f32>, Option<Vec<f32>>) {
+        self.0.run_confident(trace)
     }
 
     /// The coupler's damping at each tick of a trace over what is believed, as the estimator
@@ -119,6 +127,7 @@ impl<S: Clone + PartialEq + Send + 'static> ErasedState for S {
 
 trait Erased: Send + Sync {
     fn run(&self, trace: &Trace) -> Vec<f32>;
+    fn run_confident(&self, trace: &Trace) -> (Vec<f32>, Option<Vec<f32>>);
     fn damping_ratio(&self, trace: &Trace) -> Option<Vec<f32>>;
     fn start(&self, first: &Sample) -> State;
     fn update(&self, state: &mut State, sample: &Sample) -> CountsPerTick;
@@ -128,8 +137,12 @@ trait Erased: Send + Sync {
 struct Scaled<E: VelocityEstimator> {
     estimator: E,
     scale: Scale,
+    deviation: Option<Deviation<E>>,
     damping_ratio: Option<DampingRatio<E>>,
 }
+
+/// What an estimator believes of its own error.
+type Deviation<E> = fn(&E, &<E as VelocityEstimator>::State) -> CountsPerTick;
 
 /// What a state says of the damping.
 pub(super) type DampingRatio<E> = fn(&E, &<E as VelocityEstimator>::State) -> f32;
@@ -140,6 +153,17 @@ where
 {
     fn run(&self, trace: &Trace) -> Vec<f32> {
         velocities(&self.estimator, trace, &self.scale)
+    }
+
+    fn run_confident(&self, trace: &Trace) -> (Vec<f32>, Option<Vec<f32>>) {
+        let Some(deviation) = self.deviation else {
+            return (self.run(trace), None);
+        };
+        let both = run(&self.estimator, trace, [0.0; 2], |state, velocity| {
+            [velocity, deviation(&self.estimator, state)].map(|v| v.rad_per_s(&self.scale))
+        });
+        let (velocity, deviation) = both.into_iter().map(<(f32, f32)>::from).unzip();
+        (velocity, Some(deviation))
     }
 
     fn damping_ratio(&self, trace: &Trace) -> Option<Vec<f32>> {
@@ -183,6 +207,20 @@ where
     Estimator(Arc::new(Scaled {
         estimator,
         scale,
+        deviation: None,
+        damping_ratio: None,
+    }))
+}
+
+/// The same for one that says how far off it may be.
+pub(super) fn confident<E>(estimator: E, scale: Scale) -> Estimator
+where
+    E: Confidence<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
+{
+    Estimator(Arc::new(Scaled {
+        estimator,
+        scale,
+        deviation: Some(|estimator, state| estimator.variance(state).deviation()),
         damping_ratio: None,
     }))
 }
@@ -190,11 +228,12 @@ where
 /// The same for one that learns the coupler's damping.
 pub(super) fn learner<E>(estimator: E, scale: Scale, damping_ratio: DampingRatio<E>) -> Estimator
 where
-    E: VelocityEstimator<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
+    E: Confidence<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
 {
     Estimator(Arc::new(Scaled {
         estimator,
         scale,
+        deviation: Some(|estimator, state| estimator.variance(state).deviation()),
         damping_ratio: Some(damping_ratio),
     }))
 }
@@ -209,14 +248,15 @@ where
 }
 
 /// What `read` says after each tick; the first tick only starts the estimator and reads `first`.
-fn run<E>(
+fn run<E, T>(
     estimator: &E,
     trace: &Trace,
-    first: f32,
-    read: impl Fn(&E::State, CountsPerTick) -> f32,
-) -> Vec<f32>
+    first: T,
+    read: impl Fn(&E::State, CountsPerTick) -> T,
+) -> Vec<T>
 where
     E: VelocityEstimator<Output = CountsPerTick>,
+    T: Clone,
 {
     let mut values = vec![first; trace.len()];
     let mut state = match trace.is_empty() {

@@ -149,6 +149,7 @@ impl<'a> Prepared<'a> {
                 By::Reference | By::Nobody => REFERENCE,
             },
             velocity: std::mem::take(&mut seen.used),
+            deviation: None,
         };
         let score = |estimates: &[Estimate]| {
             let (interval, wanted) = (interval(&self.device), self.settings.wanted);

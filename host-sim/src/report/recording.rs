@@ -387,6 +387,7 @@ mod tests {
         let estimate = [Estimate {
             estimator: "pll",
             velocity: vec![0.5, 1.5],
+            deviation: None,
         }];
         let view = RecordingView {
             recording: &recording,

@@ -1,7 +1,12 @@
 use std::str::FromStr;
 
+use super::beside::Beside;
+
 /// How the line of a frame begins.
 pub(super) const START: &str = "frame seq=";
+
+/// The number of no estimator.
+pub const NOBODY: u8 = u8::MAX;
 
 /// What the firmware says of one control tick.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,6 +23,10 @@ pub struct Frame {
     pub wl: f32,
     /// Velocity of the handle, rad/s.
     pub ws: f32,
+    /// Standard deviation of `wl` that its estimator believes in, rad/s.
+    pub sl: Option<f32>,
+    /// Number of that estimator; [`NOBODY`] while one takes over, and where the scene needs none.
+    pub estimator: Option<u8>,
     /// Torque that the handle should feel, N.m.
     pub torque: f32,
     /// Current of the large motor, A.
@@ -34,6 +43,8 @@ pub struct Frame {
     pub drops: u32,
     /// Cycles of the control task.
     pub cycles: u32,
+    /// What was said beside it.
+    pub beside: Beside,
 }
 
 impl FromStr for Frame {
@@ -49,6 +60,8 @@ impl FromStr for Frame {
             small: fields.number("small")?,
             wl: fields.number("wl")?,
             ws: fields.number("ws")?,
+            sl: fields.optional("sl")?,
+            estimator: fields.optional("estimator")?,
             torque: fields.number("torque")?,
             il: fields.number("il")?,
             is: fields.number("is")?,
@@ -57,12 +70,13 @@ impl FromStr for Frame {
             overruns: fields.number("overruns")?,
             drops: fields.number("drops")?,
             cycles: fields.number("cycles")?,
+            beside: Beside::default(),
         })
     }
 }
 
 /// Words `name=value` of a line.
-struct Fields<'a>(&'a str);
+pub(super) struct Fields<'a>(pub(super) &'a str);
 
 impl<'a> Fields<'a> {
     fn text(&self, name: &str) -> Result<&'a str, String> {
@@ -71,7 +85,15 @@ impl<'a> Fields<'a> {
         found.ok_or_else(|| format!("no {name} in '{}'", self.0))
     }
 
-    fn number<T: FromStr>(&self, name: &str) -> Result<T, String> {
+    /// What older images do not say.
+    fn optional<T: FromStr>(&self, name: &str) -> Result<Option<T>, String> {
+        match self.text(name) {
+            Ok(_) => self.number(name).map(Some),
+            Err(_) => Ok(None),
+        }
+    }
+
+    pub(super) fn number<T: FromStr>(&self, name: &str) -> Result<T, String> {
         let value = self.text(name)?;
         let number = value.parse();
         number.map_err(|_| format!("'{name}={value}' is no number in '{}'", self.0))
@@ -90,6 +112,15 @@ pub(super) mod tests {
         let frame: Frame = LINE.parse().unwrap();
         assert_eq!((frame.tick, frame.large, frame.drops), (30, 65535, 1));
         assert_eq!((frame.wl, frame.state.as_str()), (-1.5, "Running"));
+        assert_eq!((frame.sl, frame.estimator), (None, None));
+        let said = LINE.replace("torque", "sl=0.5 estimator=255 torque");
+        let said: Frame = said.parse().unwrap();
+        assert_eq!((said.sl, said.estimator), (Some(0.5), Some(NOBODY)));
+        assert!(
+            LINE.replace("torque", "sl=x torque")
+                .parse::<Frame>()
+                .is_err()
+        );
         let longer = LINE.replace(" ws", " new=1 ws") + " (firmware src/telemetry.rs:93)";
         assert_eq!(longer.parse(), Ok(frame));
     }

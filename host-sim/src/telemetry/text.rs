@@ -1,6 +1,6 @@
 //! The log as a tool prints it.
 
-use super::{Telemetry, frame};
+use super::{Telemetry, beside, frame};
 
 impl Telemetry {
     /// Reads a log: messages stand anywhere in their lines, behind time stamps and levels, with or
@@ -29,8 +29,9 @@ impl Telemetry {
 
 /// The message in a line: what a tool puts before it goes.
 fn message(line: &str) -> &str {
-    let starts = [frame::START, "boot rate="];
-    let at = starts.iter().filter_map(|start| line.rfind(start)).max();
+    let starts = [frame::START, "boot rate="].into_iter();
+    let starts = starts.chain(beside::STARTS);
+    let at = starts.filter_map(|start| line.rfind(start)).max();
     &line[at.unwrap_or(0)..]
 }
 

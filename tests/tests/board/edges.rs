@@ -1,5 +1,6 @@
 //! Time stamps of the large encoder's edges, captured by the image and known to the board.
 
+use host_sim::telemetry::Frame;
 use virtual_board::run::{Outcome, Setup};
 
 use crate::image::run_image;
@@ -28,30 +29,22 @@ fn generated(hz: f64, seconds: f64) -> (Outcome, Vec<Stamp>) {
     let run = run_image("edge-capture", &setup);
     let stamps = run
         .telemetry
-        .log
+        .frames
         .iter()
-        .filter(|line| line.starts_with("edge "))
-        .map(|line| stamp(&run, line))
+        .filter_map(|frame| stamp(&run, frame))
         .filter(|stamp| stamp.tick_s > SET_UP_S)
         .collect();
     (run, stamps)
 }
 
-fn stamp(run: &Outcome, line: &str) -> Stamp {
-    let field = |name: &str| -> u32 {
-        line.split_whitespace()
-            .find_map(|word| word.strip_prefix(name))
-            .and_then(|value| value.parse().ok())
-            .unwrap_or_else(|| panic!("no {name} in '{line}'"))
-    };
-    let seq = field("seq=");
-    let frame = run.telemetry.frames.iter().find(|frame| frame.seq == seq);
-    let tick = run.tick(frame.expect("its frame")).expect("its tick");
-    Stamp {
+fn stamp(run: &Outcome, frame: &Frame) -> Option<Stamp> {
+    let edge = frame.beside.edge?;
+    let tick = run.tick(frame).expect("its tick");
+    Some(Stamp {
         tick_s: tick.at_ns as f64 * 1e-9,
-        boundary: field("bound=") as i32,
-        age_s: f64::from(field("age=")) / CLOCK_HZ,
-    }
+        boundary: edge.boundary as i32,
+        age_s: f64::from(edge.age) / CLOCK_HZ,
+    })
 }
 
 /// Edges made before the image counted: in the middle of what its frames say.

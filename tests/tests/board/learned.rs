@@ -2,20 +2,15 @@
 
 use host_sim::closed_loop::{Hand, SceneName};
 use host_sim::device::Device;
+use host_sim::telemetry::LearnedLine;
 use virtual_board::run::{Outcome, Setup};
 
 use crate::image::{of_scene, run, run_image};
 
-/// The numbers of the last line of what was learned.
-fn last_learned(run: &Outcome) -> Option<[f64; 3]> {
-    let mut lines = run.telemetry.log.iter().rev();
-    let line = lines.find(|line| line.starts_with("learned "))?;
-    let field = |name: &str| {
-        line.split_whitespace()
-            .find_map(|word| word.strip_prefix(name)?.parse().ok())
-            .unwrap_or_else(|| panic!("no {name} in '{line}'"))
-    };
-    Some(["damping=", "friction=", "torque_constant="].map(field))
+/// The last line of what was learned.
+fn last_learned(run: &Outcome) -> Option<LearnedLine> {
+    let frames = run.telemetry.frames.iter().rev();
+    frames.filter_map(|frame| frame.beside.learned).next()
 }
 
 /// A coupler that has warmed up: a quarter of its damping is gone, and the image says so. A wall lets
@@ -32,8 +27,8 @@ fn a_coupler_with_less_damping_is_told_in_telemetry() {
     };
     for part in [1.0, 0.75] {
         let run = run_image("large-adaptive", &setup(part));
-        let [damping, _, torque_constant] = last_learned(&run).expect("a line");
-        let learned = (1.0 + damping) / (1.0 + torque_constant);
+        let line = last_learned(&run).expect("a line");
+        let learned = (1.0 + line.damping) / (1.0 + line.torque_constant);
         println!("damping {part} of what is believed: learned {learned}");
         assert!((learned - part).abs() < 0.05, "{part}: {learned}");
     }

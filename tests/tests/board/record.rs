@@ -1,5 +1,6 @@
 //! Telemetry off the board's RTT as a recording, and what commands set.
 
+use host_sim::closed_loop::{Hand, SceneName};
 use host_sim::compare::interval;
 use host_sim::device::Device;
 use host_sim::estimators::Kind;
@@ -7,11 +8,11 @@ use host_sim::parameters::Parameters;
 use host_sim::record::{choose, csv};
 use host_sim::recording::{BoardColumns, Recording};
 use host_sim::replay::replay;
-use host_sim::telemetry::Telemetry;
+use host_sim::telemetry::{Frame, Telemetry};
 use virtual_board::command::Command;
 use virtual_board::run::{Outcome, Setup};
 
-use crate::image::{free_air, image, run};
+use crate::image::{free_air, image, of_scene, run, run_image};
 
 /// The recording made of raw bytes, as `host-sim record --image` makes it.
 fn recorded(bytes: &[u8], rate_hz: Option<f64>) -> String {
@@ -59,6 +60,31 @@ fn the_bytes_of_the_probe_make_the_recording_that_the_run_makes() {
     let inside =
         inside.filter(|(w, truth)| (*w - *truth).abs() < interval(&device).tolerance(**truth));
     assert!(inside.count() * 10 > 8 * truth.len());
+}
+
+/// What `host-sim record --image` writes of an image that stamps edges, and what `replay` makes of
+/// it: the observer with stamps is by far the better of the two.
+#[test]
+fn stamps_of_the_board_are_recorded_and_replayed() {
+    const IMAGE: &str = "edge-capture";
+    let run = run_image(IMAGE, &of_scene(SceneName::FreeAir, Hand::Moving, 3.0));
+    let telemetry = Telemetry::decode(image(IMAGE).elf(), &run.rtt).unwrap();
+    let runs = telemetry.runs();
+    let chosen = choose(&runs, None).unwrap();
+    let truth = |frame: &Frame| run.tick(frame).map(|tick| tick.large.omega);
+    let recording = parse(&csv(chosen, chosen.rate_hz.unwrap(), truth));
+    let edges = recording.trace.edges.as_ref().unwrap();
+    assert!(edges.iter().flatten().count() * 10 > 9 * edges.len());
+    let kinds = ["observer", "observer-edge"].map(|name| Kind::named(name).unwrap());
+    let (device, parameters) = (Device::default(), Parameters::default());
+    let replayed = replay(&recording, "r", &kinds, &device, &parameters).unwrap();
+    assert_eq!(replayed.left_out, []);
+    let [counts, stamps] = [0, 1].map(|i| replayed.rows[i].score.rms_rad_s.unwrap());
+    println!("observer {counts} rad/s, observer-edge {stamps} rad/s");
+    assert!(
+        stamps < 0.6 * counts && stamps > 0.01 * counts,
+        "{stamps} of {counts}"
+    );
 }
 
 #[test]

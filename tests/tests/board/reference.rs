@@ -7,24 +7,16 @@ use host_sim::device::Device;
 
 use crate::image::{free_air, of_scene, run_image};
 
-/// `reference seq=.. count=..`
-fn line(text: &str) -> Option<(u32, u32)> {
-    let (seq, count) = text.strip_prefix("reference seq=")?.split_once(" count=")?;
-    Some((seq.parse().ok()?, count.parse().ok()?))
-}
-
 #[test]
 fn the_reference_encoder_is_logged_and_right() {
     let setup = of_scene(SceneName::FreeAir, Hand::Moving, 2.0);
     let run = run_image("reference", &setup);
     assert_eq!(run.complaints, [""; 0], "pins");
-    let lines: Vec<_> = run.telemetry.log.iter().filter_map(|l| line(l)).collect();
-    assert_eq!(lines.len(), run.telemetry.frames.len());
     let counts_per_rad = f64::from(Device::default().reference.counts_per_rev) / TAU;
     let mut first = None;
     let (mut worst, mut furthest) = (0.0_f64, 0.0_f64);
-    for ((seq, count), frame) in lines.into_iter().zip(&run.telemetry.frames) {
-        assert_eq!(seq, frame.seq);
+    for frame in &run.telemetry.frames {
+        let count = frame.beside.reference.expect("a line beside every frame");
         let angle = run.tick(frame).expect("a tick").large.angle;
         let (first_count, first_angle) = *first.get_or_insert((count, angle));
         let counts = f64::from(count.wrapping_sub(first_count).cast_signed());
@@ -43,8 +35,8 @@ fn an_image_without_it_says_nothing_of_it() {
     assert!(
         free_air()
             .telemetry
-            .log
+            .frames
             .iter()
-            .all(|said| line(said).is_none())
+            .all(|frame| frame.beside.reference.is_none())
     );
 }

@@ -1,0 +1,102 @@
+//! Lines that the firmware says beside a frame, each with the frame's sequence number.
+
+use super::frame::{Fields, Frame};
+
+/// What was said beside a frame; an image says of these what it has.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Beside {
+    /// `edge`: the latest edge of the large encoder.
+    pub edge: Option<EdgeLine>,
+    /// `learned`: parameters that the large motor's estimator has learned.
+    pub learned: Option<LearnedLine>,
+    /// `reference`: count of the reference encoder.
+    pub reference: Option<u32>,
+}
+
+/// An edge of the large encoder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EdgeLine {
+    /// The boundary crossed: boundary `e` lies between counts `e - 1` and `e`.
+    pub boundary: u32,
+    /// Its age when the counters were read, ticks of the clock that stamps edges.
+    pub age: u32,
+}
+
+/// Relative deviations from what the image believes of the large motor, each per inertia.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LearnedLine {
+    /// Damping of the coupler.
+    pub damping: f64,
+    /// Coulomb friction.
+    pub friction: f64,
+    /// Torque constant.
+    pub torque_constant: f64,
+}
+
+/// How such lines begin.
+pub(super) const STARTS: [&str; 3] = ["edge seq=", "learned seq=", "reference seq="];
+
+impl Frame {
+    /// Takes a line that begins as one of [`STARTS`]; one beside another frame, which was lost, is
+    /// lost with it.
+    pub(super) fn take(&mut self, line: &str) -> Result<(), String> {
+        let fields = Fields(line);
+        if fields.number::<u32>("seq")? != self.seq {
+            return Ok(());
+        }
+        let beside = &mut self.beside;
+        match line.split(' ').next() {
+            Some("edge") => {
+                beside.edge = Some(EdgeLine {
+                    boundary: fields.number("bound")?,
+                    age: fields.number("age")?,
+                });
+            }
+            Some("learned") => {
+                beside.learned = Some(LearnedLine {
+                    damping: fields.number("damping")?,
+                    friction: fields.number("friction")?,
+                    torque_constant: fields.number("torque_constant")?,
+                });
+            }
+            _ => beside.reference = Some(fields.number("count")?),
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::telemetry::Telemetry;
+    use crate::telemetry::frame::tests::LINE;
+
+    #[test]
+    fn lines_are_put_beside_their_frame() {
+        let log = format!(
+            "{LINE}\n[INFO ] edge seq=3 bound=4294967295 age=42 (firmware src/telemetry.rs:99)\n\
+             learned seq=3 damping=0.1 friction=-0.2 torque_constant=0\nreference seq=3 count=9\n\
+             {LINE}\nedge seq=4 bound=1 age=1\nedge seq=3 bound=x age=1\nedge seq=3 bound=1\n"
+        );
+        let telemetry = Telemetry::text(log.as_bytes());
+        let [first, second] = &telemetry.frames[..] else {
+            panic!("two frames");
+        };
+        let expected = Beside {
+            edge: Some(EdgeLine {
+                boundary: u32::MAX,
+                age: 42,
+            }),
+            learned: Some(LearnedLine {
+                damping: 0.1,
+                friction: -0.2,
+                torque_constant: 0.0,
+            }),
+            reference: Some(9),
+        };
+        assert_eq!(first.beside, expected);
+        assert_eq!(second.beside, Beside::default());
+        assert_eq!(telemetry.malformed.len(), 2, "{:?}", telemetry.malformed);
+        assert_eq!(telemetry.log, [""; 0]);
+    }
+}
