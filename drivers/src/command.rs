@@ -45,6 +45,8 @@ pub enum Command {
         /// Value, in the parameter's unit.
         value: f32,
     },
+    /// The large motor's estimator, by its number.
+    Estimator(u8),
 }
 
 /// The frame of a command: 0xA5, kind, eight bytes of payload, CRC over kind and payload. Numbers
@@ -76,6 +78,7 @@ pub const fn encode(command: Command) -> [u8; FRAME] {
             let [a, b, c, d] = value.to_le_bytes();
             [6, scene, parameter, a, b, c, d, 0, 0]
         }
+        Command::Estimator(number) => [7, number, 0, 0, 0, 0, 0, 0, 0],
     };
     let [kind, a, b, c, d, e, f, g, h] = body;
     [START, kind, a, b, c, d, e, f, g, h, crc8(&body)]
@@ -142,6 +145,7 @@ fn decode(kind: u8, payload: [u8; BODY - 1]) -> Option<Command> {
             parameter: b,
             value: f32::from_le_bytes([c, d, e, f]),
         }),
+        7 => Some(Command::Estimator(a)),
         _ => None,
     }
 }

@@ -3,7 +3,7 @@
 use drivers::{Command, Parser, encode};
 use haptic_control::Request;
 
-const COMMANDS: [Command; 8] = [
+const COMMANDS: [Command; 9] = [
     Command::Request(Request::Arm),
     Command::Request(Request::Disarm),
     Command::Request(Request::Select(7)),
@@ -17,6 +17,7 @@ const COMMANDS: [Command; 8] = [
         parameter: 1,
         value: 0.3,
     },
+    Command::Estimator(1),
 ];
 
 fn parse(parser: &mut Parser, bytes: &[u8]) -> Vec<Command> {

@@ -5,7 +5,7 @@ use haptic_control::Refusal;
 use heapless::spsc::{Producer, Queue};
 
 use crate::control::Message;
-use crate::scene::{Settings, TORQUE_SCENE};
+use crate::scene::{Settings, TORQUE_SCENE, choice};
 
 /// Messages that wait for the control task, which takes one a tick.
 pub(crate) type Messages = Queue<Message, 8>;
@@ -61,23 +61,32 @@ impl Commands {
 
     /// What the control task is to be told; scenes are built here, where there is time.
     fn follow(&mut self, command: Command) -> Option<Message> {
-        let tuned = match command {
+        let message = match command {
             Command::Request(request) => return Some(Message::Request(request)),
-            Command::Torque(torque) => self.settings.set(TORQUE_SCENE, 0, torque),
+            Command::Estimator(number) => choice(number)
+                .map(Message::Estimator)
+                .ok_or(Refusal::Unknown),
+            Command::Torque(torque) => self.tuned(TORQUE_SCENE, 0, torque),
             Command::Tune {
                 scene,
                 parameter,
                 value,
-            } => self.settings.set(scene, parameter, value),
+            } => self.tuned(scene, parameter, value),
         };
-        let count = match tuned {
-            Ok(tuned) => return Some(Message::Tuned(tuned)),
+        let count = match message {
+            Ok(message) => return Some(message),
             Err(Refusal::NotFinite) => &mut self.refused.not_finite,
             Err(Refusal::OutOfBounds) => &mut self.refused.out_of_bounds,
             Err(Refusal::Unknown) => &mut self.refused.unknown,
         };
         *count = count.wrapping_add(1);
         None
+    }
+
+    fn tuned(&mut self, scene: u8, parameter: u8, value: f32) -> Result<Message, Refusal> {
+        self.settings
+            .set(scene, parameter, value)
+            .map(Message::Tuned)
     }
 
     /// Says at times, not for every byte of a flood, what was refused.

@@ -6,7 +6,7 @@ use haptic_control::{
 };
 
 use crate::board::RATE_HZ;
-use crate::scene::{AUTO_ARM, Core, DEVICE, FIRST, RATE, SCENES, SILENCE, Tuned};
+use crate::scene::{AUTO_ARM, Choice, Core, DEVICE, FIRST, RATE, SCENES, SILENCE, Tuned};
 use crate::telemetry::Record;
 
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
@@ -32,6 +32,8 @@ pub(crate) enum Message {
     Request(Request),
     /// For the scenes.
     Tuned(Tuned),
+    /// For the large motor; in an image of one estimator there is no such message.
+    Estimator(Choice),
 }
 
 /// The control core under its monitor and safety state.
@@ -71,6 +73,10 @@ impl Control {
                 self.core.retune(tuned);
                 Some(Request::KeepAlive)
             }
+            Message::Estimator(choice) => {
+                self.core.choose(choice);
+                Some(Request::KeepAlive)
+            }
         }
     }
 
@@ -105,6 +111,7 @@ impl Control {
             state: self.safety.mode() as u8,
             cause: self.safety.stop() as u8,
             overruns: self.overruns,
+            estimation: self.core.estimation(),
             learned: self.core.learned(),
         };
         self.tick = self.tick.wrapping_add(1);

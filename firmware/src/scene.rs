@@ -3,7 +3,8 @@
 #[cfg(not(feature = "large-adaptive"))]
 use estimator_core::Skip;
 use estimator_core::{
-    Hertz, Model, NoInput, SteadyKalman, SteadyKalmanTriple, VelocityEstimator, preset,
+    Confidence as _, Hertz, Model, NoInput, SteadyKalman, SteadyKalmanTriple, Variance,
+    VelocityEstimator, preset,
 };
 use haptic_control::{
     Bounds, Detents, DualStage, Excite, FreeAir, Hold, Inertia, LoopPoles, Off, Radians, Rig,
@@ -31,27 +32,101 @@ pub(crate) use crate::edge::Capture as Stamps;
 #[cfg(not(feature = "edge-capture"))]
 pub(crate) use estimator_core::Skip as Stamps;
 
-#[cfg(not(any(feature = "large-kalman", feature = "large-adaptive")))]
-mod large {
-    use estimator_core::{EndFit, Foaw, preset};
-    pub(crate) type Large = Foaw<32, EndFit>;
-    pub(crate) const LARGE: Large = preset!(Foaw::new(32, 1));
-}
+/// Estimators of the large motor that images share.
+pub(crate) mod large {
+    #![allow(dead_code, reason = "an image of one estimator uses one at most")]
+    use estimator_core::{EndFit, Foaw, Model, NoInput, SteadyKalman, SteadyKalmanTriple, preset};
 
-#[cfg(feature = "large-kalman")]
-mod large {
-    use estimator_core::{Model, NoInput, SteadyKalman, SteadyKalmanTriple, preset};
-    pub(crate) type Large = SteadyKalmanTriple;
+    pub(crate) type Window = Foaw<32, EndFit>;
+    pub(crate) const WINDOW: Window = preset!(Foaw::new(32, 1));
+
+    pub(crate) type Filter = SteadyKalmanTriple;
     const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(
         super::DEVICE.large.counts_per_rev,
         super::RATE,
         1e4
     ));
-    pub(crate) const LARGE: Large = preset!(SteadyKalman::new(&MODEL));
+    pub(crate) const FILTER: Filter = preset!(SteadyKalman::new(&MODEL));
+}
+
+/// FOAW, number 0, and the Kalman filter, number 1, which commands exchange.
+#[cfg(not(any(
+    feature = "large-foaw",
+    feature = "large-kalman",
+    feature = "large-adaptive"
+)))]
+mod choice {
+    use super::large::{FILTER, Filter, WINDOW, Window};
+    use estimator_core::{Handover, HandoverState, Side, VelocityEstimator, preset};
+
+    pub(crate) type Large = Handover<Window, Filter>;
+    /// The filter has settled after 20 ms, and the fade takes 20 more: what differs between the
+    /// two comes in slower than a fingertip feels best.
+    pub(crate) const LARGE: Large = preset!(Handover::new(WINDOW, FILTER, 200, 200));
+
+    pub(crate) type Choice = Side;
+
+    /// The estimator of this number.
+    pub(crate) const fn choice(number: u8) -> Option<Choice> {
+        match number {
+            0 => Some(Side::First),
+            1 => Some(Side::Second),
+            _ => None,
+        }
+    }
+
+    type State = <Large as VelocityEstimator>::State;
+
+    pub(crate) const fn choose(state: &mut State, choice: Choice) {
+        HandoverState::select(state, choice);
+    }
+
+    /// Number of the one in charge; `None` while one takes over.
+    pub(crate) fn in_charge(state: &State) -> Option<u8> {
+        state.in_charge().map(|side| side as u8)
+    }
+}
+
+/// One estimator: there is nothing to choose, and no code for it.
+#[cfg(any(
+    feature = "large-foaw",
+    feature = "large-kalman",
+    feature = "large-adaptive"
+))]
+mod choice {
+    use estimator_core::VelocityEstimator;
+
+    pub(crate) use super::one_estimator::{LARGE, Large};
+
+    pub(crate) type Choice = core::convert::Infallible;
+
+    pub(crate) const fn choice(_: u8) -> Option<Choice> {
+        None
+    }
+
+    type State = <Large as VelocityEstimator>::State;
+
+    pub(crate) const fn choose(_: &mut State, choice: Choice) {
+        match choice {}
+    }
+
+    pub(crate) const fn in_charge(_: &State) -> Option<u8> {
+        Some(0)
+    }
+}
+
+#[cfg(feature = "large-foaw")]
+mod one_estimator {
+    pub(crate) use super::large::{WINDOW as LARGE, Window as Large};
+}
+
+#[cfg(feature = "large-kalman")]
+mod one_estimator {
+    pub(crate) use super::large::{FILTER as LARGE, Filter as Large};
 }
 
 #[cfg(feature = "large-adaptive")]
-mod large {
+mod one_estimator {
     use super::DEVICE;
     use crate::board::RATE_HZ;
     use estimator_core::{CountObserver, Hertz, Observer, Uncertainty, preset};
@@ -81,10 +156,38 @@ mod large {
     );
 }
 
-#[cfg(all(feature = "large-kalman", feature = "large-adaptive"))]
-compile_error!("one estimator for the large motor: large-kalman or large-adaptive");
+#[cfg(any(
+    all(feature = "large-foaw", feature = "large-kalman"),
+    all(feature = "large-foaw", feature = "large-adaptive"),
+    all(feature = "large-kalman", feature = "large-adaptive")
+))]
+compile_error!("one estimator for the large motor: large-foaw, large-kalman or large-adaptive");
 
-pub(crate) use large::{LARGE, Large};
+pub(crate) use choice::{Choice, LARGE, Large, choice, choose, in_charge};
+
+/// What the large motor's estimator says of itself after a tick.
+#[derive(Clone, Copy)]
+pub(crate) struct Estimation {
+    /// Variance of its velocity; 0 where the scene needs none.
+    pub(crate) variance: Variance,
+    /// Its number; `None` while one takes over, and where the scene needs none.
+    pub(crate) number: Option<u8>,
+}
+
+impl Estimation {
+    /// Of an estimator that did not run.
+    pub(crate) const NONE: Self = Self {
+        variance: Variance(0.0),
+        number: None,
+    };
+
+    fn of(state: &<Large as VelocityEstimator>::State) -> Self {
+        Self {
+            variance: LARGE.variance(state),
+            number: in_charge(state),
+        }
+    }
+}
 
 /// What is learned of the device while it runs: nothing, by estimators that do not learn.
 #[cfg(not(feature = "large-adaptive"))]

@@ -4,7 +4,7 @@ use estimator_core::{Count, Deviations, Sample, Skip};
 use haptic_control::Action;
 use heapless::spsc::{Consumer, Producer, Queue};
 
-use crate::scene::{EDGES, Learned};
+use crate::scene::{EDGES, Estimation, Learned, RIG};
 
 /// Frames a second.
 const FRAMES_HZ: u32 = 1000;
@@ -25,6 +25,7 @@ pub(crate) struct Record {
     pub(crate) state: u8,
     pub(crate) cause: u8,
     pub(crate) overruns: u32,
+    pub(crate) estimation: Estimation,
     pub(crate) learned: Learned,
 }
 
@@ -90,13 +91,14 @@ pub(crate) fn log(frames: &mut Consumer<'static, Frame>) -> bool {
 impl Frame {
     #[rustfmt::skip]
     fn log(&self) {
-        let Record { tick, sample, action, state, cause, overruns, learned } = self.record;
+        let Record { tick, sample, action, state, cause, overruns, estimation, learned } = self.record;
+        let deviation = estimation.variance.deviation().rad_per_s(&RIG.large);
         // Lost on the way to the queue, or between the queue and the probe.
         let drops = self.drops.wrapping_add(bare::lost());
         defmt::info!(
-            "frame seq={=u32} tick={=u32} large={=u32} small={=u32} wl={=f32} ws={=f32} torque={=f32} il={=f32} is={=f32} state={=u8} cause={=u8} overruns={=u32} drops={=u32} cycles={=u32}",
+            "frame seq={=u32} tick={=u32} large={=u32} small={=u32} wl={=f32} ws={=f32} sl={=f32} estimator={=u8} torque={=f32} il={=f32} is={=f32} state={=u8} cause={=u8} overruns={=u32} drops={=u32} cycles={=u32}",
             self.seq, tick, sample.large.0, sample.small.0,
-            action.large.0, action.handle.0, action.torque.0,
+            action.large.0, action.handle.0, deviation, estimation.number.unwrap_or(NOBODY), action.torque.0,
             action.currents.large.get(), action.currents.small.get(),
             state, cause, overruns, drops, self.cycles
         );
@@ -111,6 +113,9 @@ impl Frame {
         }
     }
 }
+
+/// What a frame says where no estimator is in charge.
+const NOBODY: u8 = u8::MAX;
 
 /// Frames for one line of what was learned, which changes slowly.
 const LEARNED_EVERY: u32 = 128;

@@ -62,6 +62,15 @@ impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> ControllerState<S, L,
         });
         S::Continuous::or(large, None)
     }
+
+    /// The same, to choose among estimators.
+    pub fn large_mut(&mut self) -> Option<&mut L::State> {
+        let large =
+            S::Continuous::map(S::Continuous::as_mut(&mut self.continuous), |(large, _)| {
+                Some(large)
+            });
+        S::Continuous::or(large, None)
+    }
 }
 
 impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> Clone for ControllerState<S, L, H> {
@@ -119,6 +128,25 @@ where
             transient: S::Transient::make(TransientState::default),
             origin: first.small,
         }
+    }
+
+    /// Begins again at rest at this sample, from which angles count; the choice among estimators
+    /// stays.
+    pub fn restart(&self, state: &mut ControllerState<S, L, H>, first: &Sample) {
+        let mut fresh = self.start(first);
+        S::Continuous::zip(
+            S::Continuous::zip(
+                S::Continuous::as_mut(&mut fresh.continuous),
+                S::Continuous::as_mut(&mut state.continuous),
+                |fresh, before| (&mut fresh.0, &mut before.0),
+            ),
+            S::Continuous::as_ref(&self.continuous),
+            |(fresh, before), (large, ..)| {
+                large.restart(before, first);
+                fresh.clone_from(before);
+            },
+        );
+        *state = fresh;
     }
 
     /// Changes the scene's parameters before the next tick; the slew limit bounds what the currents

@@ -100,6 +100,17 @@ impl<L: VelocityEstimator, H: VelocityEstimator> SwitchboardState<L, H> {
     pub const fn large(&self) -> &L::State {
         &self.shared.large
     }
+
+    /// The same, to choose among estimators.
+    pub const fn large_mut(&mut self) -> &mut L::State {
+        &mut self.shared.large
+    }
+
+    /// Whether the large motor's estimator ran in the latest tick.
+    #[must_use]
+    pub const fn estimates_large(&self) -> bool {
+        self.shared.live[0]
+    }
 }
 
 impl<L, H> Switchboard<L, H>
@@ -134,6 +145,14 @@ where
             added: [0.0; 2],
             applied: Currents::default(),
         }
+    }
+
+    /// Begins again at this sample, as at the first; the choice among estimators stays.
+    pub fn restart(&self, state: &mut SwitchboardState<L, H>, first: &Sample) {
+        let mut fresh = self.start(first);
+        self.large.restart(&mut state.shared.large, first);
+        fresh.shared.large.clone_from(&state.shared.large);
+        *state = fresh;
     }
 
     /// Swaps the scene before the next tick; `sample` is the latest.
@@ -231,7 +250,7 @@ where
             S::Transient::WANTED,
         ];
         if wanted[0] && !shared.live[0] {
-            shared.large = self.large.start(sample);
+            self.large.restart(&mut shared.large, sample);
             shared.continuous = self.rig.continuous.start(RadPerS(0.0));
         }
         if wanted[1] && !shared.live[1] {

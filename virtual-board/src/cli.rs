@@ -9,6 +9,7 @@ use clap::error::ErrorKind;
 use host_sim::closed_loop::Hand;
 use host_sim::failure::Failure;
 use host_sim::output::{print_bytes, write_whole};
+use host_sim::telemetry::NOBODY;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::budget;
@@ -40,6 +41,10 @@ struct Arguments {
     /// set-point of the scene torque; may be given more than once
     #[arg(long, value_name = "NAME=VALUE@S", value_parser = tune)]
     tune: Vec<(f64, String)>,
+    /// Puts an estimator in charge of the large motor, by its number, at an instant, as 1@1.5; may
+    /// be given more than once
+    #[arg(long, value_name = "NUMBER@S", value_parser = estimator)]
+    estimator: Vec<(f64, u8)>,
     /// Who holds the handle: moving, pushing, still, or tracking chirps and reversals
     #[arg(long, default_value = "moving", value_parser = hand)]
     hand: Hand,
@@ -62,7 +67,7 @@ struct Arguments {
     #[arg(long, value_name = "FILE")]
     rtt: Option<PathBuf>,
     /// Prints the instruction budget of every scene instead, each run for --seconds at most 1
-    #[arg(long, conflicts_with_all = ["scene", "hand", "fault", "record", "rtt", "tune"])]
+    #[arg(long, conflicts_with_all = ["scene", "hand", "fault", "record", "rtt", "tune", "estimator"])]
     budget: bool,
 }
 
@@ -101,6 +106,17 @@ fn tune(text: &str) -> Result<(f64, String), String> {
     Ok((at, what.to_owned()))
 }
 
+fn estimator(text: &str) -> Result<(f64, u8), String> {
+    let (number, at) = text
+        .split_once('@')
+        .ok_or("an estimator needs its instant, as 1@1.5")?;
+    let number = number
+        .parse()
+        .map_err(|_| format!("'{number}' is no number of an estimator, 0 to 255"))?;
+    let at: f64 = at.parse().map_err(|_| format!("'{at}' is no time in s"))?;
+    Ok((at, number))
+}
+
 fn fault(text: &str) -> Result<(f64, Fault), String> {
     let (name, at) = text
         .split_once('@')
@@ -137,6 +153,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     for (at, what) in &arguments.tune {
         commands.push((*at, scene.tune(what)?));
     }
+    let choices = arguments.estimator.iter();
+    commands.extend(choices.map(|(at, number)| (*at, Command::Estimator(*number))));
     let image = Image::read(&path)?;
     if arguments.budget {
         let table = budget::table(&image, arguments.seconds.min(1.0), arguments.seed)?;
@@ -241,9 +259,25 @@ fn summary(arguments: &Arguments, setup: &Setup, outcome: &Outcome) -> String {
     line("frames", format!("{}, {malformed} malformed", frames.len()));
     if let Some(last) = frames.last() {
         line("state", format!("{}, cause {}", last.state, last.cause));
+        if let (Some(estimator), Some(sl)) = (last.estimator, last.sl) {
+            let name = match estimator {
+                NOBODY => "none in charge".to_owned(),
+                number => format!("number {number}, good to {sl:.3} rad/s by itself"),
+            };
+            line("estimator", name);
+        }
         line(
             "overruns, drops",
             format!("{}, {}", last.overruns, last.drops),
+        );
+    }
+    if let Some(learned) = frames.iter().rev().find_map(|frame| frame.beside.learned) {
+        line(
+            "learned",
+            format!(
+                "damping {:+.3}, friction {:+.3}, torque constant {:+.3}",
+                learned.damping, learned.friction, learned.torque_constant
+            ),
         );
     }
     for (at_ns, [large, small]) in outcome.enables.iter().skip(1) {

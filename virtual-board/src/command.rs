@@ -29,6 +29,8 @@ pub enum Command {
         /// Value.
         value: f32,
     },
+    /// Put an estimator in charge of the large motor, by its number.
+    Estimator(u8),
 }
 
 impl Command {
@@ -45,6 +47,7 @@ impl Command {
             Self::Torque(_) => 4,
             Self::KeepAlive => 5,
             Self::Tune { .. } => 6,
+            Self::Estimator(_) => 7,
         };
         match self {
             Self::Scene(scene) => bytes[2] = number(scene),
@@ -58,6 +61,7 @@ impl Command {
                 bytes[2..4].copy_from_slice(&[scene, parameter]);
                 bytes[4..8].copy_from_slice(&value.to_le_bytes());
             }
+            Self::Estimator(number) => bytes[2] = number,
             Self::Arm | Self::Disarm | Self::KeepAlive => {}
         }
         bytes[10] = crc8(&bytes[1..10]);
@@ -121,5 +125,6 @@ mod tests {
             value: -2.0,
         };
         assert_eq!(tune.encode()[..10], [0xA5, 6, 2, 1, 0, 0, 0, 0xC0, 0, 0]);
+        assert_eq!(Command::Estimator(1).encode()[..4], [0xA5, 7, 1, 0]);
     }
 }

@@ -7,7 +7,8 @@ use super::preset::{
     DETENTS, EXCITE, FREE_AIR, HOLD, INERTIA, OFF, SPRING, TEXTURE, TORQUE, VISCOUS, WALL,
 };
 use super::{
-    BOUNDS, HANDLE, Handle, LARGE, Large, Learned, RATE, RIG, SCENES, TORQUE_SCENE, learned,
+    BOUNDS, Choice, Estimation, HANDLE, Handle, LARGE, Large, Learned, RATE, RIG, SCENES,
+    TORQUE_SCENE, choose, learned,
 };
 
 type Scenes = [AnyScene; SCENES as usize];
@@ -74,7 +75,7 @@ impl Core {
 
     /// At rest at this sample, with no scene; settings stay.
     pub(crate) fn restart(&mut self, first: &Sample) {
-        self.state = SWITCHBOARD.start(first);
+        SWITCHBOARD.restart(&mut self.state, first);
         self.on = 0;
     }
 
@@ -99,9 +100,23 @@ impl Core {
         }
     }
 
+    /// Puts this estimator in charge of the large motor.
+    pub(crate) fn choose(&mut self, choice: Choice) {
+        choose(self.state.large_mut(), choice);
+    }
+
     /// One tick.
     pub(crate) fn step(&mut self, sample: &Sample) -> Action {
         SWITCHBOARD.step(&mut self.state, sample)
+    }
+
+    /// What the large motor's estimator says of its latest velocity.
+    pub(crate) fn estimation(&self) -> Estimation {
+        if self.state.estimates_large() {
+            Estimation::of(self.state.large())
+        } else {
+            Estimation::NONE
+        }
     }
 
     /// What the large motor's estimator has learned.

@@ -4,8 +4,8 @@ use estimator_core::Sample;
 use haptic_control::{Action, Controller, ControllerState, Refusal, Tunable};
 
 use super::{
-    BOUNDS, FIRST, HANDLE, Handle, LARGE, Large, Learned, RIG, THE_SCENE, TORQUE_SCENE, TheScene,
-    learned,
+    BOUNDS, Choice, Estimation, FIRST, HANDLE, Handle, LARGE, Large, Learned, RIG, THE_SCENE,
+    TORQUE_SCENE, TheScene, choose, learned,
 };
 
 /// The scene built anew, on its way to the control task.
@@ -51,7 +51,7 @@ impl Core {
 
     /// At rest at this sample, off; settings stay.
     pub(crate) fn restart(&mut self, first: &Sample) {
-        self.state = self.controller.start(first);
+        self.controller.restart(&mut self.state, first);
         self.on = false;
     }
 
@@ -62,7 +62,7 @@ impl Core {
             self.controller.retune(THE_SCENE);
         }
         if on && !self.on {
-            self.state = self.controller.start(latest);
+            self.controller.restart(&mut self.state, latest);
         }
         self.on = on;
     }
@@ -72,12 +72,27 @@ impl Core {
         self.controller.retune(tuned.0);
     }
 
+    /// Puts this estimator in charge of the large motor.
+    pub(crate) fn choose(&mut self, choice: Choice) {
+        if let Some(state) = self.state.large_mut() {
+            choose(state, choice);
+        }
+    }
+
     /// One tick.
     pub(crate) fn step(&mut self, sample: &Sample) -> Action {
         if self.on {
             self.controller.step(&mut self.state, sample)
         } else {
             Action::default()
+        }
+    }
+
+    /// What the large motor's estimator says of its latest velocity.
+    pub(crate) fn estimation(&self) -> Estimation {
+        match self.state.large() {
+            Some(state) if self.on => Estimation::of(state),
+            _ => Estimation::NONE,
         }
     }
 

@@ -19,6 +19,7 @@ mod telemetry {
         pub(crate) cause: u8,
         #[allow(dead_code, reason = "the firmware's")]
         pub(crate) overruns: u32,
+        pub(crate) estimation: crate::scene::Estimation,
         #[allow(dead_code, reason = "the firmware's")]
         pub(crate) learned: crate::scene::Learned,
     }
@@ -39,6 +40,7 @@ mod firmware {
 // The names that these files know each other by.
 use firmware::scene;
 
+mod choice;
 mod cost;
 mod edges;
 mod faults;

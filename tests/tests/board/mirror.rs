@@ -9,8 +9,8 @@ use host_sim::closed_loop::SceneName;
 use host_sim::telemetry::Frame;
 use virtual_board::run::{Outcome, Tick};
 
-use crate::firmware::control::{Control, Inputs};
-use crate::firmware::scene::{DEVICE, HANDLE, RATE, RIG};
+use crate::firmware::control::{Control, Inputs, Message};
+use crate::firmware::scene::{DEVICE, HANDLE, RATE, RIG, choice};
 use crate::image::{
     adaptive_edge_free_air, adaptive_free_air, free_air, kalman_free_air, kalman_track, soak, tour,
 };
@@ -36,35 +36,48 @@ impl Samples {
     }
 }
 
+/// A command that the control task hears.
+#[derive(Clone, Copy, PartialEq)]
+enum Heard {
+    Request(Request),
+    Estimator(u8),
+}
+
 /// What was asked for and at which tick. A command is taken from the channel when the tick after
 /// its last byte has woken the processor, and obeyed at the tick after that.
-fn requests(run: &Outcome) -> Vec<(usize, Request)> {
+fn requests(run: &Outcome) -> Vec<(usize, Heard)> {
     let obeyed = |(at_ns, bytes): &(u64, Vec<u8>)| {
-        let request = match bytes[..3] {
-            [0xA5, 1, _] => Request::Arm,
-            [0xA5, 3, scene] => Request::Select(scene),
+        let heard = match bytes[..3] {
+            [0xA5, 1, _] => Heard::Request(Request::Arm),
+            [0xA5, 3, scene] => Heard::Request(Request::Select(scene)),
+            [0xA5, 7, number] => Heard::Estimator(number),
             _ => return None,
         };
         let next = run.ticks.partition_point(|tick| tick.at_ns <= *at_ns);
-        Some((next + 1, request))
+        Some((next + 1, heard))
     };
     run.sent.iter().filter_map(obeyed).collect()
 }
 
 /// Runs the firmware's control over the counts of every tick of `run`: what it orders, what it
 /// reports.
-fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
+pub(crate) fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
     let (mut samples, first) = Samples::new(run);
     let mut control = Control::new(&first, Stop::None);
     let requests = requests(run);
     let step = |(k, tick): (usize, &Tick)| {
         let sample = samples.next(tick, control.applied().large);
-        let request = requests.iter().find(|(at, _)| *at == k);
+        let heard = requests.iter().find(|(at, _)| *at == k);
+        let message = heard.map(|(_, heard)| match heard {
+            Heard::Request(request) => Message::Request(*request),
+            Heard::Estimator(number) => Message::Estimator(choice(*number).expect("it is there")),
+        });
+        let request = control.hear(message);
         let inputs = Inputs {
             amplifier_fault: false,
             clock_failure: false,
             missed: 0,
-            request: Some(request.map_or(Request::KeepAlive, |(_, request)| *request)),
+            request: Some(request.unwrap_or(Request::KeepAlive)),
         };
         control.step(&sample, &inputs)
     };
@@ -73,7 +86,7 @@ fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
 
 /// Fails unless every frame says what the host's core computed at its tick. Returns how many
 /// frames told of a moving device.
-fn same_bits(run: &Outcome, host: &[(Option<Currents>, Record)]) -> usize {
+pub(crate) fn same_bits(run: &Outcome, host: &[(Option<Currents>, Record)]) -> usize {
     let mut moving = 0;
     assert_eq!(run.telemetry.malformed, [""; 0]);
     for frame in &run.telemetry.frames {
@@ -201,7 +214,7 @@ where
     let step = |(k, tick): (usize, &Tick)| {
         let sample = samples.next(tick, applied);
         let mut action = switchboard.step(&mut state, &sample);
-        if requests.contains(&(k, Request::Arm)) {
+        if requests.contains(&(k, Heard::Request(Request::Arm))) {
             state = switchboard.start(&sample);
             switchboard.select(&mut state, AnyScene::FreeAir(FreeAir), &sample);
             action.currents = Currents::default();

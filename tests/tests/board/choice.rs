@@ -1,0 +1,219 @@
+//! The large motor's estimator, exchanged by command while the board runs.
+
+use std::sync::OnceLock;
+
+use estimator_core::{Confidence as _, VelocityEstimator as _};
+use host_sim::closed_loop::{Hand, SceneName};
+use host_sim::telemetry::{Frame, NOBODY};
+use virtual_board::command::Command;
+use virtual_board::run::{Outcome, Setup};
+
+use crate::firmware::scene::{RIG, large};
+use crate::image::{of_scene, run, run_image};
+use crate::mirror::{mirrored, same_bits};
+
+/// When the filter takes over and when the window does again, s.
+const CHANGES_S: [f64; 2] = [2.0, 3.5];
+/// Ticks that a change takes, and of these the fade.
+const CHANGE: usize = 400;
+const FADE: f32 = 200.0;
+
+fn changing(scene: SceneName, hand: Hand) -> Setup {
+    let mut setup = of_scene(scene, hand, 5.0);
+    let changes = CHANGES_S.into_iter().zip([1, 0]);
+    setup
+        .commands
+        .extend(changes.map(|(at, number)| (at, Command::Estimator(number))));
+    setup
+}
+
+/// Free air in a moving hand and a wall in a pushing one, changed twice.
+fn runs() -> &'static [Outcome; 2] {
+    static RUNS: OnceLock<[Outcome; 2]> = OnceLock::new();
+    RUNS.get_or_init(|| {
+        [
+            (SceneName::FreeAir, Hand::Moving),
+            (SceneName::ALL[2], Hand::Pushing),
+        ]
+        .map(|(scene, hand)| run(&changing(scene, hand)))
+    })
+}
+
+#[test]
+fn telemetry_tells_who_is_in_charge() {
+    for run in runs() {
+        let told: Vec<_> = run.telemetry.frames.iter().collect();
+        let mut told: Vec<_> = told.iter().map(|frame| frame.estimator.unwrap()).collect();
+        let taking_over = told.iter().filter(|number| **number == NOBODY).count();
+        told.dedup();
+        // Nobody before the scene is on, and while one takes over: 40 ms each.
+        assert_eq!(told, [NOBODY, 0, NOBODY, 1, NOBODY, 0]);
+        assert!(
+            (100 + 78..=105 + 82).contains(&taking_over),
+            "{taking_over}"
+        );
+        let last = run.telemetry.frames.last().unwrap();
+        assert_eq!((last.state.as_str(), last.cause.as_str()), ("2", "0"));
+        assert_eq!((last.overruns, last.drops), (0, 0));
+    }
+}
+
+/// What the image says is what the host computes, to the bit; and at every tick of a change the
+/// velocity moves by no more than the two estimators do and the fade allows.
+#[test]
+fn a_change_is_no_step_in_the_velocity() {
+    for run in runs() {
+        let host = mirrored(run);
+        same_bits(run, &host);
+        let records: Vec<_> = host.iter().map(|(_, record)| record).collect();
+        let number = |k: usize| records[k].estimation.number;
+        let mut changes = 0;
+        let (mut window, mut filter) = (
+            large::WINDOW.start(&records[0].sample),
+            large::FILTER.start(&records[0].sample),
+        );
+        let mut last = [0.0_f32; 3];
+        for k in 1..records.len() {
+            let sample = &records[k].sample;
+            let velocity = |v: estimator_core::CountsPerTick| v.rad_per_s(&RIG.large);
+            let now = [
+                records[k].action.large.0,
+                velocity(large::WINDOW.update(&mut window, sample)),
+                velocity(large::FILTER.update(&mut filter, sample)),
+            ];
+            let moved = [0, 1, 2].map(|n: usize| (now[n] - last[n]).abs());
+            let apart = (now[1] - now[2]).abs().max((last[1] - last[2]).abs());
+            let allowed = match (number(k - 1), number(k)) {
+                (None, None) | (None, Some(_)) => moved[1].max(moved[2]) + apart / FADE,
+                (Some(0), _) => moved[1],
+                _ => moved[2],
+            };
+            // Before both windows are full and the filter has settled they are not the image's.
+            if k > 10_000 {
+                assert!(
+                    moved[0] <= 1.0001 * allowed + 1e-4,
+                    "{k}: {moved:?} {apart}"
+                );
+            }
+            match (number(k - 1), number(k)) {
+                (Some(0), None) => filter = large::FILTER.start(sample),
+                (Some(1), None) => window = large::WINDOW.start(sample),
+                _ => {}
+            }
+            changes += usize::from(number(k).is_none() && number(k - 1).is_some());
+            last = now;
+        }
+        assert_eq!(changes, 2);
+    }
+}
+
+/// Largest change of the force at the fingertip within a millisecond of `range`, mN.
+fn jump_mn(run: &Outcome, range: std::ops::Range<usize>) -> f64 {
+    let diameter_m = 0.07;
+    let felt = |k: usize| run.ticks[k].felt;
+    let changes = range.map(|k| (felt(k + 10) - felt(k)).abs());
+    changes.fold(0.0, f64::max) * 2e3 / diameter_m
+}
+
+/// A fingertip feels 10 mN. A pushing hand shakes on the wall by more than that each millisecond, so
+/// what counts is what a change adds to what was there before.
+#[test]
+fn a_change_is_not_felt() {
+    for run in runs() {
+        for at in CHANGES_S {
+            let first = (at * 1e4) as usize;
+            let during = jump_mn(run, first..first + CHANGE + 200);
+            let before = jump_mn(run, first - CHANGE - 200..first - 10);
+            println!("{at} s: {during:.2} mN within 1 ms, before {before:.2} mN");
+            assert!(
+                during < before + 5.0,
+                "{at} s: {during} mN, before {before} mN"
+            );
+            assert!(
+                during > 0.2 * before,
+                "{at} s: {during} mN, before {before} mN"
+            );
+        }
+    }
+}
+
+/// What each says of itself holds: nearly all velocities are within two of its standard deviations,
+/// and these are not so large that they say nothing.
+#[test]
+fn the_confidence_in_telemetry_holds() {
+    let [air, _] = runs();
+    let frames = |number: u8| {
+        let inside = move |frame: &&Frame| frame.tick > 10_000 && frame.estimator == Some(number);
+        air.telemetry.frames.iter().filter(inside)
+    };
+    for number in [0, 1] {
+        let error = |frame: &Frame| f64::from(frame.wl) - air.tick(frame).unwrap().large.omega;
+        let sigma = |frame: &Frame| f64::from(frame.sl.unwrap());
+        let n = frames(number).count() as f64;
+        let within = frames(number).filter(|f| error(f).abs() <= 2.0 * sigma(f));
+        let within = within.count() as f64 / n;
+        let rms = |of: &dyn Fn(&Frame) -> f64| {
+            (frames(number).map(|f| of(f).powi(2)).sum::<f64>() / n).sqrt()
+        };
+        let ratio = rms(&sigma) / rms(&error);
+        println!("{number}: {within:.3} within 2 sigma, sigma {ratio:.2} of the error, {n} frames");
+        assert!(
+            n > 900.0 && within > 0.9 && ratio < 4.0,
+            "{number}: {within} {ratio}"
+        );
+    }
+    // The very numbers: a full window of 32 and the steady filter.
+    let first = |number| frames(number).next().unwrap().sl.unwrap();
+    let filter = large::FILTER.variance(&large::FILTER.start(&estimator_core::Sample::default()));
+    assert_eq!(first(1), filter.deviation().rad_per_s(&RIG.large));
+}
+
+#[test]
+fn an_estimator_that_is_not_there_is_refused() {
+    let mut setup = of_scene(SceneName::FreeAir, Hand::Moving, 1.0);
+    setup.commands.push((0.5, Command::Estimator(2)));
+    let refused = |run: &Outcome| {
+        let mut log = run.telemetry.log.iter();
+        log.any(|line| line == "refused not-finite=0 out-of-bounds=0 unknown=1")
+    };
+    let two = run(&setup);
+    assert!(refused(&two), "{:?}", two.telemetry.log);
+    // An image of one has nothing to choose.
+    setup.commands.pop();
+    setup.commands.push((0.5, Command::Estimator(0)));
+    let one = run_image("large-foaw", &setup);
+    assert!(refused(&one), "{:?}", one.telemetry.log);
+    for run in [&one, &two] {
+        assert_eq!(run.telemetry.frames.last().unwrap().estimator, Some(0));
+    }
+}
+
+/// A choice lasts: over a change of scene that needs no estimator, and over disarm.
+#[test]
+fn a_choice_lasts() {
+    let air = Command::Scene(SceneName::FreeAir);
+    let run = run(&Setup {
+        commands: vec![
+            (0.05, air),
+            (0.1, Command::Arm),
+            (0.3, Command::Estimator(1)),
+            (0.5, Command::Scene(SceneName::Off)),
+            (0.6, air),
+            (0.8, Command::Disarm),
+            (0.9, Command::Arm),
+            (0.95, air),
+        ],
+        seconds: 1.2,
+        ..Setup::default()
+    });
+    let at = |t: f64| {
+        let tick = (t * 1e4) as u32;
+        let frame = run.telemetry.frames.iter().find(|frame| frame.tick >= tick);
+        frame.unwrap().estimator
+    };
+    assert_eq!(at(0.29), Some(0));
+    assert_eq!(at(0.55), Some(NOBODY));
+    // At once: there was nothing to fade from.
+    assert_eq!(at(0.61), Some(1));
+    assert_eq!(at(1.15), Some(1));
+}
