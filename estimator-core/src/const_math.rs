@@ -59,10 +59,8 @@ const fn series(x: f64, first: f64, divisor: f64) -> f64 {
 /// `value` within ±`limit`. Unlike `clamp` it has no panic for a limit below zero, and NaN stays.
 #[inline]
 pub(crate) fn limited(value: f32, limit: f32) -> f32 {
-    if value > limit {
-        limit
-    } else if value < -limit {
-        -limit
+    if value.abs() > limit {
+        if value > 0.0 { limit } else { -limit }
     } else {
         value
     }

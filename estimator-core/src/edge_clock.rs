@@ -37,7 +37,7 @@ impl EdgeClock {
 
     /// The latest edge, if it came since the last sample and bounds the newest count; one that
     /// does not is a stamp out of step with its counter, and is no edge.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn fresh(&self, sample: &Sample) -> Option<FreshEdge> {
         let edge = sample.edge?;
         let age = edge.age.0 as f32 * self.period;

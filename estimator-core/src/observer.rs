@@ -19,7 +19,7 @@ use crate::estimator::VelocityEstimator;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick};
 use correction::Path;
-use learning::Tick;
+use learning::{Lesson, Tick};
 use motion::Motion;
 
 /// Rows of the gain table; a longer gap takes the last.
@@ -176,6 +176,7 @@ where
         }
     }
 
+    #[inline(always)]
     fn update(&self, state: &mut Self::State, sample: &Sample) -> CountsPerTick {
         let push = self.current.push(&mut state.current, sample);
         let handle = self.slip.moved(&mut state.slip, sample);
@@ -186,8 +187,8 @@ where
         let friction = self.learning.friction(&state.learning, &self.motion) + state.rub;
         let drive = driven.mean + state.load;
         let step = self.motion.step(before, drive, friction);
-        self.learning.follow(
-            &mut state.learning,
+        let dependence = self.learning.follow(
+            &state.learning,
             &Tick {
                 motion: &self.motion,
                 push,
@@ -197,54 +198,58 @@ where
                 load_decay: self.load_decay,
             },
         );
-        state.load *= self.load_decay;
-        state.velocity = step.velocity;
-        // What friction acts against: the motion, or at rest what would move the rotor.
-        let way = match step.stuck {
-            true if drive > 0.0 => 1.0,
-            true if drive < 0.0 => -1.0,
-            true => 0.0,
-            false => step.direction,
-        };
-        state.way = way + self.way_pole * (state.way - way);
+        let load = state.load * self.load_decay;
+        let way = step.against + self.way_pole * (state.way - step.against);
+        state.way = way;
 
         let counts = (sample.large - state.anchor).to_f32();
         state.anchor = sample.large;
-        let from = state.position - counts;
-        state.position = from + step.moved - driven.behind;
         let path = Path {
-            from,
-            to: state.position,
-            bend: 0.5 * (step.velocity - before),
+            from: state.position - counts,
+            lead: step.moved - driven.behind,
+            gained: step.velocity - before,
         };
+        let position = path.from + path.lead;
         let found = self
             .correction
             .innovation(&mut state.correction, path, sample, &self.gains);
-        if let Some(mut innovation) = found {
-            // In range already; the remainder shows it to the compiler, which drops both.
-            let gain = &self.gains[innovation.row % ROWS];
-            state.position += innovation.position * innovation.error;
-            innovation.error = limited(innovation.error, LARGEST_INNOVATION);
-            let error = innovation.error;
-            // Zero without time stamps: then the compiler drops it.
-            if innovation.age > 0.0 {
-                state.position += innovation.age * gain.velocity * error;
-            }
-            state.velocity += gain.velocity * error;
-            let unknown = gain.load * error;
-            let rubbing = self.friction_share * unknown;
-            state.load += unknown - rubbing;
-            let limit = LARGEST_FRICTION_ERROR * self.motion.friction;
-            state.rub = limited(state.rub - rubbing * state.way, limit);
-            let shift = self
-                .learning
-                .learn(&mut state.learning, &innovation, gain, state.velocity);
-            if let Some(shift) = shift {
-                state.position += shift.position;
-                state.velocity += shift.velocity;
-                state.load += shift.load;
-            }
+        let Some(innovation) = found else {
+            state.position = position;
+            state.velocity = step.velocity;
+            state.load = load;
+            self.learning.keep(&mut state.learning, dependence);
+            return CountsPerTick(step.velocity);
+        };
+        // In range already; the remainder shows it to the compiler, which drops both.
+        let gain = &self.gains[innovation.row % ROWS];
+        let error = limited(innovation.error, LARGEST_INNOVATION);
+        // The age is zero without time stamps: then the compiler drops it.
+        let carried = innovation.position + innovation.age * gain.velocity;
+        let mut position = position + carried * innovation.error;
+        let mut velocity = step.velocity + gain.velocity * error;
+        let unknown = gain.load * error;
+        let rubbing = self.friction_share * unknown;
+        let mut load = load + unknown - rubbing;
+        let limit = LARGEST_FRICTION_ERROR * self.motion.friction;
+        state.rub = limited(state.rub - rubbing * way, limit);
+        let lesson = Lesson {
+            innovation: &innovation,
+            gain,
+            error,
+            position: carried,
+            velocity,
+        };
+        let shift = self
+            .learning
+            .learn(&mut state.learning, dependence, &lesson);
+        if let Some(shift) = shift {
+            position += shift.position;
+            velocity += shift.velocity;
+            load += shift.load;
         }
-        CountsPerTick(state.velocity)
+        state.position = position;
+        state.velocity = velocity;
+        state.load = load;
+        CountsPerTick(velocity)
     }
 }

@@ -38,6 +38,7 @@ impl Count {
 impl Sub for Count {
     type Output = Counts;
 
+    #[inline]
     fn sub(self, earlier: Self) -> Counts {
         Counts(self.0.wrapping_sub(earlier.0) as i32)
     }

@@ -6,6 +6,7 @@ use crate::const_math::limited;
 const LARGEST_SHARE: f32 = 1e3;
 
 /// Bierman's update of `P = U D Uᵀ` by a measurement `h` of variance `r` > 0; returns its gain.
+#[inline(always)]
 pub(super) fn bierman(
     upper: &mut [f32; 3],
     diagonal: &mut [f32; 3],

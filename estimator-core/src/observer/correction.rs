@@ -9,11 +9,12 @@ use crate::sample::{Sample, Signals};
 /// How far a tick leads, for the edge inside it.
 #[derive(Clone, Copy, Debug)]
 pub struct Path {
-    /// Position at the last sample and predicted at this one, from the middle of the newest cell.
+    /// Position at the last sample, from the middle of the newest cell.
     pub(super) from: f32,
-    pub(super) to: f32,
-    /// Half the change of velocity over the tick, counts.
-    pub(super) bend: f32,
+    /// Predicted displacement since, counts.
+    pub(super) lead: f32,
+    /// Change of velocity over the tick, counts.
+    pub(super) gained: f32,
 }
 
 /// What a tick's counts say against the prediction.
@@ -60,17 +61,18 @@ pub trait Correction: Copy {
 pub struct Cells;
 
 /// Distance back to the cell, 0 inside it.
-fn excess(position: f32) -> f32 {
-    if position > 0.5 {
-        0.5 - position
-    } else if position < -0.5 {
-        -0.5 - position
+#[inline(always)]
+fn excess(position: f32) -> Option<f32> {
+    if position.abs() > 0.5 {
+        let boundary = if position > 0.0 { 0.5 } else { -0.5 };
+        Some(boundary - position)
     } else {
-        0.0
+        None
     }
 }
 
 /// The table's row for a gap of this many ticks.
+#[inline(always)]
 fn row(gap: f32) -> usize {
     // A float-to-integer cast saturates.
     ((gap - 0.5) as usize).min(ROWS - 1)
@@ -89,6 +91,7 @@ impl Correction for Cells {
         *gap
     }
 
+    #[inline(always)]
     fn innovation(
         &self,
         gap: &mut f32,
@@ -97,10 +100,7 @@ impl Correction for Cells {
         _: &[Gain; ROWS],
     ) -> Option<Innovation> {
         *gap += 1.0;
-        let error = excess(path.to);
-        if error == 0.0 {
-            return None;
-        }
+        let error = excess(path.from + path.lead)?;
         let innovation = Innovation {
             error,
             age: 0.0,
@@ -157,6 +157,7 @@ impl Correction for Edges {
         state.since
     }
 
+    #[inline(always)]
     fn innovation(
         &self,
         state: &mut EdgesState,
@@ -166,8 +167,7 @@ impl Correction for Edges {
     ) -> Option<Innovation> {
         state.since += 1.0;
         let Some(edge) = self.clock.fresh(sample) else {
-            let error = excess(path.to);
-            return (error != 0.0).then(|| Innovation {
+            return excess(path.from + path.lead).map(|error| Innovation {
                 error,
                 age: 0.0,
                 position: 1.0,
@@ -176,7 +176,7 @@ impl Correction for Edges {
             });
         };
         let passed = 1.0 - edge.age;
-        let there = path.from + passed * (path.to - path.from - path.bend + path.bend * passed);
+        let there = path.from + passed * (path.lead - 0.5 * path.gained * edge.age);
         let offset = &mut state.offsets[edge.phase % 4];
         let error = edge.position + *offset - there;
         *offset = limited(*offset - OFFSET_GAIN * error, LARGEST_OFFSET);

@@ -84,6 +84,7 @@ impl CurrentSource for AmplifierCurrent {
         first.current.get()
     }
 
+    #[inline(always)]
     fn push(&self, current: &mut f32, sample: &Sample) -> Push {
         let command = sample.current.get();
         let difference = command - *current;
@@ -105,6 +106,7 @@ impl CurrentSource for NoCurrent {
 
     fn start(&self, _: &Sample) {}
 
+    #[inline(always)]
     fn push(&self, (): &mut (), _: &Sample) -> Push {
         Push::default()
     }
@@ -128,6 +130,7 @@ impl SlipSource for SmallEncoder {
         first.small
     }
 
+    #[inline(always)]
     fn moved(&self, previous: &mut Count, sample: &Sample) -> f32 {
         let moved = sample.small - *previous;
         *previous = sample.small;
@@ -145,6 +148,7 @@ impl SlipSource for HeldHandle {
 
     fn start(&self, _: &Sample) {}
 
+    #[inline(always)]
     fn moved(&self, (): &mut (), _: &Sample) -> f32 {
         0.0
     }

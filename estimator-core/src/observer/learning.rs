@@ -41,6 +41,8 @@ pub struct Shift {
 pub trait Learning: Copy {
     /// What is carried from tick to tick.
     type State: Clone + PartialEq;
+    /// How the motor's state depends on what is learned.
+    type Dependence;
 
     /// The state before anything was learned.
     fn start(&self) -> Self::State;
@@ -65,15 +67,17 @@ pub trait Learning: Copy {
     fn friction(&self, state: &Self::State, motion: &Motion) -> f32;
 
     /// Follows a tick: how its result depends on each parameter.
-    fn follow(&self, state: &mut Self::State, tick: &Tick<'_>);
+    fn follow(&self, state: &Self::State, tick: &Tick<'_>) -> Self::Dependence;
+
+    /// Keeps what followed from a tick without an innovation.
+    fn keep(&self, state: &mut Self::State, dependence: Self::Dependence);
 
     /// Learns from an innovation; what that changes in the motor's state, if anything.
     fn learn(
         &self,
         state: &mut Self::State,
-        innovation: &Innovation,
-        gain: &Gain,
-        velocity: f32,
+        dependence: Self::Dependence,
+        lesson: &Lesson<'_>,
     ) -> Option<Shift>;
 }
 
@@ -87,12 +91,25 @@ pub struct Tick<'a> {
     pub(super) load_decay: f32,
 }
 
+/// One innovation as [`Learning::learn`] sees it.
+pub struct Lesson<'a> {
+    pub(super) innovation: &'a Innovation,
+    pub(super) gain: &'a Gain,
+    /// The innovation's error in its range, counts.
+    pub(super) error: f32,
+    /// Gain of the position at the tick's end.
+    pub(super) position: f32,
+    /// Velocity after the correction, counts a tick.
+    pub(super) velocity: f32,
+}
+
 /// The parameters are what they are believed to be.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fixed;
 
 impl Learning for Fixed {
     type State = ();
+    type Dependence = ();
 
     fn start(&self) {}
 
@@ -104,6 +121,7 @@ impl Learning for Fixed {
         0.0
     }
 
+    #[inline(always)]
     fn drive(&self, (): &(), motion: &Motion, push: Push, handle: f32, _: f32) -> Push {
         Push {
             mean: push.mean + motion.coupling * handle,
@@ -111,13 +129,19 @@ impl Learning for Fixed {
         }
     }
 
+    #[inline(always)]
     fn friction(&self, (): &(), motion: &Motion) -> f32 {
         motion.friction
     }
 
-    fn follow(&self, (): &mut (), _: &Tick<'_>) {}
+    #[inline(always)]
+    fn follow(&self, (): &(), _: &Tick<'_>) {}
 
-    fn learn(&self, (): &mut (), _: &Innovation, _: &Gain, _: f32) -> Option<Shift> {
+    #[inline(always)]
+    fn keep(&self, (): &mut (), (): ()) {}
+
+    #[inline(always)]
+    fn learn(&self, (): &mut (), (): (), _: &Lesson<'_>) -> Option<Shift> {
         None
     }
 }
@@ -145,6 +169,56 @@ pub struct Learned {
     slowest: f32,
     /// Growth of each D a tick.
     walk: [f32; 3],
+    /// Least time between two lessons, ticks.
+    spacing: f32,
+    /// [`CAUTION`].
+    caution: f32,
+}
+
+/// How the motor's state depends on one parameter.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Dependence {
+    position: f32,
+    velocity: f32,
+    load: f32,
+}
+
+impl Dependence {
+    /// After a tick over which the parameter accelerates by `regressor`.
+    #[inline(always)]
+    fn after(self, regressor: f32, tick: &Tick<'_>) -> Self {
+        let motion = tick.motion;
+        let load = self.load * tick.load_decay;
+        if tick.step.stuck {
+            return Self {
+                position: self.position + 0.5 * motion.phi1 * self.velocity,
+                velocity: 0.0,
+                load,
+            };
+        }
+        let force = regressor + self.load;
+        Self {
+            position: self.position + motion.phi1 * self.velocity + motion.phi2 * force,
+            velocity: motion.phi0 * self.velocity + motion.phi1 * force,
+            load,
+        }
+    }
+
+    /// On the position when the innovation was.
+    #[inline(always)]
+    fn then(self, innovation: &Innovation) -> f32 {
+        self.position - innovation.age * self.velocity
+    }
+
+    /// After the correction of an innovation that depends by `h`.
+    #[inline(always)]
+    fn corrected(self, lesson: &Lesson<'_>, h: f32) -> Self {
+        Self {
+            position: self.position - lesson.position * h,
+            velocity: self.velocity - lesson.gain.velocity * h,
+            load: self.load - lesson.gain.load * h,
+        }
+    }
 }
 
 /// State of [`Learned`].
@@ -152,7 +226,7 @@ pub struct Learned {
 pub struct LearnedState {
     parameters: [f32; 3],
     /// Of position, velocity and unknown torque, for each parameter.
-    sensitivity: [[f32; 3]; 3],
+    sensitivity: [Dependence; 3],
     /// U: elements 01, 02 and 12.
     upper: [f32; 3],
     diagonal: [f32; 3],
@@ -203,17 +277,21 @@ impl Learned {
         Ok(Self {
             slowest: (SLOWEST * per_rad / rate.0) as f32,
             walk,
+            spacing: 0.0,
+            caution: CAUTION,
         })
     }
 }
 
 impl Learning for Learned {
     type State = LearnedState;
+    /// Of position, velocity and unknown torque on each parameter.
+    type Dependence = [Dependence; 3];
 
     fn start(&self) -> LearnedState {
         LearnedState {
             parameters: [0.0; 3],
-            sensitivity: [[0.0; 3]; 3],
+            sensitivity: [Dependence::default(); 3],
             upper: [0.0; 3],
             diagonal: PRIOR.map(|deviation| deviation * deviation),
             waiting: 0.0,
@@ -231,13 +309,14 @@ impl Learning for Learned {
 
     /// `s_vᵀ U D Uᵀ s_v`.
     fn velocity_variance(&self, state: &LearnedState) -> f32 {
-        let [a, b, c] = state.sensitivity.map(|s| s[1]);
+        let [a, b, c] = state.sensitivity.map(|s| s.velocity);
         let [u01, u02, u12] = state.upper;
         let y = [a, u01 * a + b, u02 * a + u12 * b + c];
         let [d0, d1, d2] = state.diagonal;
         d0 * y[0] * y[0] + d1 * y[1] * y[1] + d2 * y[2] * y[2]
     }
 
+    #[inline(always)]
     fn drive(
         &self,
         state: &LearnedState,
@@ -254,11 +333,13 @@ impl Learning for Learned {
         }
     }
 
+    #[inline(always)]
     fn friction(&self, state: &LearnedState, motion: &Motion) -> f32 {
         motion.friction + state.parameters[1] * motion.friction
     }
 
-    fn follow(&self, state: &mut LearnedState, tick: &Tick<'_>) {
+    #[inline(always)]
+    fn follow(&self, state: &LearnedState, tick: &Tick<'_>) -> [Dependence; 3] {
         let Tick { motion, step, .. } = tick;
         let mean = 0.5 * (tick.before + step.velocity);
         let regressors = [
@@ -266,63 +347,72 @@ impl Learning for Learned {
             -step.direction * motion.friction,
             tick.push.mean,
         ];
-        for ([position, velocity, load], regressor) in state.sensitivity.iter_mut().zip(regressors)
-        {
-            if step.stuck {
-                *position += 0.5 * motion.phi1 * *velocity;
-                *velocity = 0.0;
-            } else {
-                let force = regressor + *load;
-                *position += motion.phi1 * *velocity + motion.phi2 * force;
-                *velocity = motion.phi0 * *velocity + motion.phi1 * force;
-            }
-            *load *= tick.load_decay;
-        }
+        let [damping, friction, torque_constant] = state.sensitivity;
+        [
+            damping.after(regressors[0], tick),
+            friction.after(regressors[1], tick),
+            torque_constant.after(regressors[2], tick),
+        ]
     }
 
+    #[inline(always)]
+    fn keep(&self, state: &mut LearnedState, dependence: [Dependence; 3]) {
+        state.sensitivity = dependence;
+    }
+
+    #[inline(always)]
     fn learn(
         &self,
         state: &mut LearnedState,
-        innovation: &Innovation,
-        gain: &Gain,
-        velocity: f32,
+        dependence: [Dependence; 3],
+        lesson: &Lesson<'_>,
     ) -> Option<Shift> {
-        // At the instant of the innovation.
-        let h = state.sensitivity.map(|s| s[0] - innovation.age * s[1]);
-        let position = innovation.position + innovation.age * gain.velocity;
-        for (s, h) in state.sensitivity.iter_mut().zip(h) {
-            s[0] -= position * h;
-            s[1] -= gain.velocity * h;
-            s[2] -= gain.load * h;
-        }
-        state.waiting += innovation.gap;
-        if innovation.gap == 0.0 || velocity.abs() < self.slowest {
+        let Lesson {
+            innovation, gain, ..
+        } = lesson;
+        let h = [
+            dependence[0].then(innovation),
+            dependence[1].then(innovation),
+            dependence[2].then(innovation),
+        ];
+        let after = [
+            dependence[0].corrected(lesson, h[0]),
+            dependence[1].corrected(lesson, h[1]),
+            dependence[2].corrected(lesson, h[2]),
+        ];
+        state.sensitivity = after;
+        let waiting = state.waiting + innovation.gap;
+        state.waiting = waiting;
+        if innovation.gap == 0.0 || waiting < self.spacing || lesson.velocity.abs() < self.slowest {
             return None;
         }
-        for i in 0..3 {
-            let grown = state.diagonal[i] + self.walk[i] * state.waiting;
-            state.diagonal[i] = grown.min(PRIOR[i] * PRIOR[i]);
-        }
         state.waiting = 0.0;
+        let grown = |i: usize| {
+            let grown = state.diagonal[i] + self.walk[i] * waiting;
+            let prior = PRIOR[i] * PRIOR[i];
+            if grown < prior { grown } else { prior }
+        };
+        let mut diagonal = [grown(0), grown(1), grown(2)];
         let k = bierman(
             &mut state.upper,
-            &mut state.diagonal,
+            &mut diagonal,
             h,
-            CAUTION * gain.variance,
+            self.caution * gain.variance,
         );
-        let mut shift = Shift {
-            position: 0.0,
-            velocity: 0.0,
-            load: 0.0,
+        state.diagonal = diagonal;
+        let mut change = |i: usize| {
+            let before = state.parameters[i];
+            state.parameters[i] = limited(before + k[i] * lesson.error, LARGEST[i]);
+            state.parameters[i] - before
         };
-        for i in 0..3 {
-            let learned = limited(state.parameters[i] + k[i] * innovation.error, LARGEST[i]);
-            let change = learned - state.parameters[i];
-            state.parameters[i] = learned;
-            shift.position += state.sensitivity[i][0] * change;
-            shift.velocity += state.sensitivity[i][1] * change;
-            shift.load += state.sensitivity[i][2] * change;
-        }
-        Some(shift)
+        let change = [change(0), change(1), change(2)];
+        let sum = |of: fn(&Dependence) -> f32| {
+            of(&after[0]) * change[0] + of(&after[1]) * change[1] + of(&after[2]) * change[2]
+        };
+        Some(Shift {
+            position: sum(|s| s.position),
+            velocity: sum(|s| s.velocity),
+            load: sum(|s| s.load),
+        })
     }
 }

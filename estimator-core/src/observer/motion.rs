@@ -25,8 +25,34 @@ pub(super) struct Step {
     pub(super) velocity: f32,
     /// Mean over the tick of the direction of motion, -1 to 1: what friction acted against.
     pub(super) direction: f32,
+    /// What friction acts against: the motion, or at rest what would move the rotor.
+    pub(super) against: f32,
     /// Whether the rotor rests at the end of the tick.
     pub(super) stuck: bool,
+}
+
+/// -1, 0 or 1.
+#[inline]
+fn sign(value: f32) -> f32 {
+    if value > 0.0 {
+        1.0
+    } else if value < 0.0 {
+        -1.0
+    } else {
+        0.0
+    }
+}
+
+/// Where a drive that overcomes friction takes a resting rotor: -1, 1, or 0 if it does not.
+#[inline]
+fn leaving(drive: f32, friction: f32) -> f32 {
+    if drive > friction {
+        1.0
+    } else if drive < -friction {
+        -1.0
+    } else {
+        0.0
+    }
 }
 
 impl Motion {
@@ -36,45 +62,61 @@ impl Motion {
     /// A rotor whose velocity would pass zero stops at the part `v / (v - v')` of the tick, and
     /// stays there unless the drive overcomes friction: then it leaves with what is left of the
     /// tick. So a reversal costs the friction of both directions, each for its part.
+    #[inline(always)]
     pub(super) fn step(&self, velocity: f32, drive: f32, friction: f32) -> Step {
-        let leaving = if drive > friction {
-            1.0
-        } else if drive < -friction {
-            -1.0
-        } else {
-            0.0
-        };
-        let direction = if velocity > 0.0 {
-            1.0
+        let (direction, net) = if velocity > 0.0 {
+            (1.0, drive - friction)
         } else if velocity < 0.0 {
-            -1.0
+            (-1.0, drive + friction)
         } else {
-            leaving
+            if !(drive.abs() > friction) {
+                return Step {
+                    moved: 0.0,
+                    velocity: 0.0,
+                    direction: 0.0,
+                    against: sign(drive),
+                    stuck: true,
+                };
+            }
+            let leaving = leaving(drive, friction);
+            (leaving, drive - leaving * friction)
         };
-        let net = drive - direction * friction;
         let end = self.phi0 * velocity + self.phi1 * net;
         if end * direction > 0.0 {
             return Step {
                 moved: self.phi1 * velocity + self.phi2 * net,
                 velocity: end,
                 direction,
+                against: direction,
                 stuck: false,
             };
         }
-        // Zero in, zero out: a resting rotor leaves this at once.
+        // From rest only by underflow, where the rotor stays as good as there.
         let part = if velocity == end {
             0.0
         } else {
             velocity / (velocity - end)
         };
+        let stopped = 0.5 * part * velocity;
+        let leaving = leaving(drive, friction);
+        if leaving == 0.0 {
+            return Step {
+                moved: stopped,
+                velocity: 0.0,
+                direction: direction * part,
+                against: sign(drive),
+                stuck: true,
+            };
+        }
         let left = 1.0 - part;
         let away = left * (drive - leaving * friction);
-        let away = if leaving == 0.0 { 0.0 } else { away };
+        let direction = direction * part + leaving * left;
         Step {
-            moved: 0.5 * (part * velocity + left * away),
+            moved: stopped + 0.5 * left * away,
             velocity: away,
-            direction: direction * part + leaving * left,
-            stuck: leaving == 0.0,
+            direction,
+            against: direction,
+            stuck: false,
         }
     }
 }
