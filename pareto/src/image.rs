@@ -130,6 +130,12 @@ impl Image {
         self.functions.get(&address).map_or(&[], Vec::as_slice)
     }
 
+    /// Mangled name of the function at `address`.
+    pub(crate) fn name(&self, address: u64) -> &str {
+        let mut named = self.names.iter().filter(|(_, at)| **at == address);
+        named.next().map_or("code without a name", |(name, _)| name)
+    }
+
     /// The function at `address` and all that it calls.
     pub(crate) fn reached(&self, address: u64) -> BTreeSet<u64> {
         let mut found = BTreeSet::new();

@@ -2,7 +2,9 @@
 //! board, instructions counted, cycles estimated, sizes read from the image.
 
 pub mod board;
+pub mod bound;
 mod cycles;
+mod flow;
 pub mod image;
 pub mod measure;
 pub mod plot;

@@ -1,5 +1,7 @@
 //! What the encoders show during a stress run.
 
+use estimator_core::{Amps, ClockTicks, Count, Edge, Sample};
+
 /// A random generator small enough to read (SplitMix64): the same draws on every machine.
 #[derive(Clone, Debug)]
 pub struct Draws(u64);
@@ -49,6 +51,22 @@ pub struct Shown {
     pub amps: f32,
     /// Latest edge: boundary and age in ticks of the edge clock.
     pub edge: Option<(u32, u32)>,
+}
+
+impl Shown {
+    /// As the core takes it.
+    #[must_use]
+    pub fn sample(&self) -> Sample {
+        Sample {
+            large: Count(self.large),
+            small: Count(self.small),
+            current: Amps::new(self.amps),
+            edge: self.edge.map(|(boundary, age)| Edge {
+                boundary: Count(boundary),
+                age: ClockTicks(age),
+            }),
+        }
+    }
 }
 
 /// A stretch of a course.

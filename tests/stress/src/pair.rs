@@ -95,14 +95,14 @@ where
 {
     fn start(&mut self, first: &Shown) {
         self.states = Some((
-            self.core.start(&core_sample(first)),
+            self.core.start(&first.sample()),
             self.twin.start(&twin_sample(first)),
         ));
     }
 
     fn update(&mut self, shown: &Shown) -> (f32, f64) {
         let (core, twin) = self.states.as_mut().expect("started");
-        let narrow = self.core.update(core, &core_sample(shown)).0;
+        let narrow = self.core.update(core, &shown.sample()).0;
         (narrow, self.twin.update(twin, &twin_sample(shown)).0)
     }
 
@@ -112,18 +112,6 @@ where
 
     fn window(&self) -> Option<usize> {
         self.states.as_ref().and_then(|(core, _)| core.window())
-    }
-}
-
-fn core_sample(shown: &Shown) -> core::Sample {
-    core::Sample {
-        large: core::Count(shown.large),
-        small: core::Count(shown.small),
-        current: core::Amps::new(shown.amps),
-        edge: shown.edge.map(|(boundary, age)| core::Edge {
-            boundary: core::Count(boundary),
-            age: core::ClockTicks(age),
-        }),
     }
 }
 

@@ -2,6 +2,8 @@
 //!
 //! `UPDATE_GOLDEN=1 cargo pareto` writes it anew.
 
+mod bound;
+
 use std::path::Path;
 
 use pareto::{measure, table};

@@ -1,0 +1,143 @@
+//! The bound of every update's instructions, from its machine code, against the most that hostile
+//! and simulated traces make of it. `UPDATE_GOLDEN=1` writes the table anew.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use bench_image::{SUBJECTS, Subject};
+use estimator_core::Sample;
+use pareto::board::{Job, on_board};
+use pareto::image::{Image, Level};
+use pareto::{bound, traces};
+use stress::course::Course;
+
+const BEGIN: &str = "<!-- bounds: written by the test of pareto -->";
+const END: &str = "<!-- end of bounds -->";
+
+/// Ticks of a hostile stretch, and stretches; the mailbox holds 4096 samples.
+const STRETCH: usize = 100;
+const STRETCHES: usize = 40;
+
+fn hostile(seed: u64, rate_hz: u32) -> Vec<Sample> {
+    let mut course = Course::new(seed, f64::from(rate_hz));
+    let mut samples = vec![course.shown().sample()];
+    for _ in 0..STRETCHES {
+        course.move_on();
+        samples.extend((0..STRETCH).map(|_| course.step().sample()));
+    }
+    samples
+}
+
+/// A name, the bound and the most seen; both rates' presets are one.
+struct Row {
+    name: &'static str,
+    bound: u32,
+    most: u32,
+}
+
+fn measure() -> Result<Vec<Row>, String> {
+    let image = Image::build(Level::Speed)?;
+    let simulated = traces::all()?;
+    let mut grounds: Vec<(u32, &[Sample])> = simulated
+        .iter()
+        .map(|ground| (ground.rate_hz, &ground.samples[..]))
+        .collect();
+    let drawn: Vec<(u32, Vec<Sample>)> = traces::RATES_HZ
+        .iter()
+        .flat_map(|rate| (1..=3).map(|seed| (*rate, hostile(seed, *rate))))
+        .collect();
+    grounds.extend(drawn.iter().map(|(rate, samples)| (*rate, &samples[..])));
+
+    let ours = || {
+        SUBJECTS
+            .iter()
+            .enumerate()
+            .filter(|(_, one)| !one.is_peer())
+    };
+    let mut jobs = Vec::new();
+    for (subject, Subject { rate_hz, .. }) in ours() {
+        let suits = |rate: &u32| *rate_hz == 0 || rate_hz == rate;
+        let suited = grounds.iter().filter(|(rate, _)| suits(rate));
+        jobs.extend(suited.map(|(_, samples)| Job {
+            subject,
+            samples,
+            follow: false,
+        }));
+    }
+    let ran = on_board(&image, &jobs)?;
+    let mut rows: Vec<Row> = Vec::new();
+    for (index, subject) in ours() {
+        let bound = bound::of(&image, subject)?;
+        let own = jobs
+            .iter()
+            .zip(&ran)
+            .filter(|(job, _)| job.subject == index);
+        let most = own.flat_map(|(_, ran)| ran.instructions.iter().copied());
+        let most = most.max().ok_or("nothing ran")?;
+        match rows.iter_mut().find(|row| row.name == subject.name) {
+            Some(row) => (row.bound, row.most) = (row.bound.max(bound), row.most.max(most)),
+            None => rows.push(Row {
+                name: subject.name,
+                bound,
+                most,
+            }),
+        }
+    }
+    Ok(rows)
+}
+
+fn docs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/benchmarks.md")
+}
+
+fn table(rows: &[Row]) -> String {
+    let mut table = String::from("| estimator | bound | most seen |\n|---|---:|---:|\n");
+    for Row { name, bound, most } in rows {
+        writeln!(table, "| {name} | {bound} | {most} |").expect("a string takes all");
+    }
+    table
+}
+
+/// Figures of the table by line.
+fn figures(table: &str) -> Vec<(String, Vec<f64>)> {
+    let rows = table.lines().filter(|line| line.starts_with('|')).skip(2);
+    rows.map(|line| {
+        let mut cells = line.trim_matches('|').split('|').map(str::trim);
+        let name = cells.next().unwrap_or_default().to_owned();
+        (name, cells.map(|cell| cell.parse().unwrap()).collect())
+    })
+    .collect()
+}
+
+#[test]
+fn no_update_takes_more_instructions_than_its_code_allows() {
+    let rows = measure().unwrap();
+    for Row { name, bound, most } in &rows {
+        assert!(most <= bound, "{name}: {most} instructions, bound {bound}");
+        // The bound takes every turn of a window for its dearest; straight code is nearly exact.
+        let slack = if name.contains("n = ") { 3.0 } else { 1.25 };
+        assert!(
+            f64::from(*bound) <= slack * f64::from(*most),
+            "{name}: bound {bound}, and never more than {most} seen"
+        );
+    }
+
+    let text = std::fs::read_to_string(docs()).unwrap();
+    let (before, rest) = text.split_once(BEGIN).unwrap();
+    let (written, after) = rest.split_once(END).unwrap();
+    let now = table(&rows);
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::write(docs(), format!("{before}{BEGIN}\n\n{now}\n{END}{after}")).unwrap();
+        return;
+    }
+    let (written, now) = (figures(written), figures(&now));
+    assert_eq!(written.len(), now.len());
+    for ((name, then), (_, now)) in written.iter().zip(&now) {
+        for (then, now) in then.iter().zip(now) {
+            assert!(
+                (then - now).abs() <= (0.1 * then).max(3.0),
+                "{name}: {then} written, {now} now; UPDATE_GOLDEN=1 writes the table anew"
+            );
+        }
+    }
+}
