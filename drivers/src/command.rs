@@ -86,8 +86,8 @@ pub const fn encode(command: Command) -> [u8; FRAME] {
 
 /// Finds frames in a stream of bytes, in constant memory and time per byte.
 ///
-/// What is no frame is counted and ignored: a start byte with a wrong CRC costs itself, and the
-/// search goes on at the byte after it.
+/// What is no frame is counted and ignored: a start byte without a command of the right CRC behind it
+/// costs itself, and the search goes on at the byte after it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Parser {
     window: [u8; FRAME],
@@ -108,13 +108,15 @@ impl Parser {
         self.filled += 1;
         // What is held begins with a start byte, or is this byte alone.
         if self.filled == FRAME && crc8(&self.window[1..=BODY]) == byte {
-            self.filled = 0;
             let [_, kind, payload @ .., _] = self.window;
-            let command = decode(kind, payload);
-            if command.is_none() {
-                self.garbage = self.garbage.wrapping_add(FRAME as u32);
+            // Bytes that mean nothing are 0: a torn frame and the start of the next one, whose CRC is
+            // right by chance, hardly ever agree.
+            let is_whole = |command: &Command| encode(*command) == self.window;
+            let command = decode(kind, payload).filter(is_whole);
+            if command.is_some() {
+                self.filled = 0;
+                return command;
             }
-            return command;
         }
         self.skip_to_start();
         None
