@@ -8,6 +8,7 @@ mod device_file;
 mod equations;
 mod fit;
 mod handle;
+mod model;
 mod motion;
 mod quantity;
 mod table;
@@ -23,6 +24,7 @@ use motion::Motion;
 
 pub use device_file::updated;
 pub use fit::Estimate;
+pub use model::{Beside, SPAN_S};
 pub use quantity::{Known, Quantity};
 pub use table::{json, text};
 
@@ -37,6 +39,8 @@ pub struct Identification {
     pub windows: (usize, usize),
     /// Torque on the large shaft that the model does not explain, as part of the motor's, RMS.
     pub unexplained: f64,
+    /// The identified motor run beside each recording.
+    pub beside: Vec<Beside>,
 }
 
 /// Part of the motor's torque that may stay unexplained.
@@ -90,6 +94,7 @@ pub fn identify(
         assumed,
         windows: (gathered.large.usable.len(), gathered.large.windows),
         unexplained: fit.unexplained / fit.driven,
+        beside: model::beside(recordings, device, &fit),
     })
 }
 

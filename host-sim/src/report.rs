@@ -14,6 +14,7 @@ mod distances;
 mod felt;
 mod grid;
 mod heating;
+mod identify;
 mod page;
 mod palette;
 mod plot;
@@ -32,6 +33,8 @@ mod windows;
 mod zwidth;
 
 pub use sensitivity::sensitivity;
+
+pub use identify::identify;
 
 pub use zwidth::zwidth;
 

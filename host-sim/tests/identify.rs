@@ -330,7 +330,17 @@ fn the_command_writes_a_device_file_with_only_what_it_knows_replaced() {
     let mine = "# mine\n[hand]\nstiffness_nm_per_rad = 0.4 # soft\n";
     std::fs::write(folder.0.join("mine.toml"), mine).unwrap();
     folder.good("simulate --device truth.toml --every 10 --out excite.csv");
-    let table = folder.good("identify excite.csv --device mine.toml --out mine.toml");
+    let command = "identify excite.csv --device mine.toml --out mine.toml --report page";
+    let table = folder.good(command);
+    let page = std::fs::read_to_string(folder.0.join("page/index.html")).unwrap();
+    assert_eq!(page.matches("<figure>").count(), 2);
+    for said in [
+        "excite.csv: velocity of the large motor",
+        "health: coupler",
+        "95 % intervals",
+    ] {
+        assert!(page.contains(said), "{said}");
+    }
     for said in [
         "health: coupler.damping_nms_per_rad: 0.833 of the file's 0.9600 mN.m.s/rad, -16.7 %, outside \
          its interval: coupler hot",

@@ -1,5 +1,6 @@
 //! `host-sim identify`.
 
+use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -8,7 +9,7 @@ use crate::failure::Failure;
 use crate::identify::{self, Known};
 use crate::output::{print_bytes, write_whole};
 use crate::recording::Recording;
-use crate::replay;
+use crate::{replay, report};
 
 use super::arguments::{DeviceFile, is_stdout};
 
@@ -31,12 +32,15 @@ pub(super) struct Identify {
     /// same file
     #[arg(long, value_name = "FILE.toml")]
     out: Option<PathBuf>,
+    /// Write a page with the model beside the measurement, residuals and intervals to DIR
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
     /// Write what was identified as JSON to FILE, or with - to standard output and nothing else there
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 
-pub(super) fn run(options: &Identify) -> Result<(), Failure> {
+pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure> {
     let device = options.device.load()?;
     let known = match &options.known {
         Some(text) => Known::parse(text)?,
@@ -54,6 +58,13 @@ pub(super) fn run(options: &Identify) -> Result<(), Failure> {
         let text = identify::updated(&text, &found.quantities, known, given, &names.join(", "))
             .map_err(|error| Failure::Input(format!("{}: {error}", out.display())))?;
         write_whole(out, text.as_bytes())?;
+    }
+    if let Some(folder) = &options.report {
+        let counts = f64::from(device.large.counts_per_rev);
+        let count_rad_s = TAU / counts / identify::SPAN_S;
+        let table = identify::text(&found);
+        let page = report::identify(&found, count_rad_s, &table, command_line)?;
+        write_whole(&folder.join("index.html"), page.as_bytes())?;
     }
     if let Some(path) = &options.json {
         let mut json = serde_json::to_vec_pretty(&identify::json(&found))

@@ -34,6 +34,7 @@ pub(super) struct Shaft<'a> {
 /// Columns that every recording shares: slip, friction, offset, and those of the hand.
 pub(super) const SLIP: usize = 1;
 pub(super) const FRICTION: usize = 2;
+pub(super) const OFFSET: usize = 3;
 pub(super) const HAND: usize = 4;
 
 /// Columns of what repeats: friction and the disc's eccentricity once a turn, torque more often.

@@ -61,7 +61,7 @@ impl Axis {
         }
     }
 
-    /// About `wanted` round values within the axis; on a log axis the decades.
+    /// About `wanted` round values within the axis, none if none are wanted; on a log axis the decades.
     pub(super) fn ticks(&self, wanted: usize) -> Vec<f64> {
         if self.log {
             let first = (self.low.log10() - 1e-9).ceil() as i32;
@@ -69,6 +69,9 @@ impl Axis {
             return (first..=last)
                 .map(|exponent| 10_f64.powi(exponent))
                 .collect();
+        }
+        if wanted == 0 {
+            return Vec::new();
         }
         let rough = (self.high - self.low) / wanted as f64;
         let decade = 10_f64.powf(rough.log10().floor());
@@ -223,6 +226,7 @@ mod tests {
             Axis::linear([-40.0, 60.0]).ticks(5),
             [-40.0, -20.0, 0.0, 20.0, 40.0, 60.0]
         );
+        assert!(Axis::linear([0.0, 3.0]).ticks(0).is_empty());
         let decades = Axis::log([0.003, 20.0]).ticks(0);
         assert_eq!(decades.len(), 6);
         assert!((decades[0] - 1e-3).abs() < 1e-12 && decades[5] == 100.0);
