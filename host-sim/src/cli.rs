@@ -1,6 +1,7 @@
 //! The command line.
 
 mod arguments;
+mod beside;
 mod compare;
 mod felt;
 mod identify;

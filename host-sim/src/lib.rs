@@ -9,11 +9,13 @@ pub mod cli;
 pub mod closed_loop;
 pub mod compare;
 pub mod contest;
+pub mod cost;
 pub mod device;
 pub mod encoder;
 pub mod estimators;
 pub mod failure;
 pub mod felt;
+
 pub mod health;
 pub mod identify;
 pub mod limit;

@@ -4,9 +4,12 @@
 //! is not there is left out.
 
 use crate::compare::Damping;
+use crate::limit;
 use crate::score::{Interval, Percent, Score};
+use crate::sensitivity as belief;
 
 mod canvas;
+mod cost;
 mod curve;
 #[cfg(test)]
 mod demo;
@@ -56,6 +59,12 @@ pub struct ReportInput {
     /// One entry for each scenario, rate, plant and seed that was run; their order is the
     /// tables' order.
     pub cases: Vec<CaseReport>,
+    /// The best that can be had, by particle filter.
+    pub limits: Vec<limit::Row>,
+    /// Errors of estimators that believe in wrong constants.
+    pub beliefs: Vec<belief::Row>,
+    /// Runs of a coupler that warms up, for their damping alone.
+    pub warming: Vec<CaseReport>,
     /// The loop closed on each estimator, where that was run.
     pub closed_loop: ClosedLoop,
 }
@@ -130,6 +139,8 @@ pub struct Row {
     pub score: Score,
     /// The same in % of finite difference.
     pub percent: Percent,
+    /// Instructions an update on the board, where they were measured.
+    pub instructions: Option<f64>,
 }
 
 /// The signals of one case.

@@ -13,9 +13,10 @@ use crate::parameters::PlantKind;
 use crate::report::{self, CaseReport, DeviceFacts, ReportInput, Traces};
 use crate::scenario::ScenarioName;
 use crate::score::{SKIP_S, Wanted};
-use crate::{rows, simulate, table};
+use crate::{cost, rows, simulate, table};
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds, rates, scenarios};
+use super::beside::{Beside, beside};
 use super::felt;
 use super::page::{self, progress};
 
@@ -128,11 +129,19 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
     let mut index = None;
     if let Some(folder) = report {
         let (closed, remark) = felt::beside(options);
+        let Beside {
+            limits,
+            beliefs,
+            warming,
+        } = beside(options, &settings, &cases)?;
         let input = ReportInput {
             command: command_line.to_owned(),
             device: facts(&settings.device, &options.device.name()),
             notes: remark.into_iter().collect(),
             cases: outcomes.iter().map(case_report).collect(),
+            limits,
+            beliefs,
+            warming,
             ..ReportInput::default()
         };
         let rows: Vec<Row> = outcomes.iter().flat_map(|o| o.rows.clone()).collect();
@@ -234,11 +243,13 @@ pub(super) fn facts(device: &Device, name: &str) -> DeviceFacts {
     }
 }
 
-fn case_report(outcome: &Outcome) -> CaseReport {
+/// An outcome as the report takes it.
+pub(super) fn case_report(outcome: &Outcome) -> CaseReport {
     let row = |row: &Row| report::Row {
         estimator: row.estimator.to_owned(),
         score: row.score,
         percent: row.percent,
+        instructions: cost::instructions(row.estimator, &row.parameters),
     };
     let traces = outcome.signals.as_ref().map(|(trace, estimates)| Traces {
         t0: 0.0,

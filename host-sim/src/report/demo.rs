@@ -75,6 +75,7 @@ fn case(
                 estimator: name.clone(),
                 score,
                 percent: percent_of(&score, &reference),
+                instructions: None,
             }
         })
         .collect();

@@ -115,6 +115,7 @@ fn mean(name: &str, rows: &[&&Row]) -> Row {
             distance_transient_pct: mean(|row| row.percent.distance_transient_pct),
             rms_pct: mean(|row| row.percent.rms_pct),
         },
+        instructions: mean(|row| row.instructions),
     }
 }
 

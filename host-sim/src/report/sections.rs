@@ -7,9 +7,10 @@ use super::grid::{Group, groups};
 use super::palette::Palette;
 use super::text::{number, plant, rate};
 use super::{
-    CaseReport, ReportInput, Traces, distances, felt, heating, problem, score_tables, spectra,
-    tables, velocity, windows,
+    CaseReport, ReportInput, Traces, cost, distances, felt, heating, problem, score_tables,
+    sensitivity, spectra, tables, velocity, windows,
 };
+use crate::sensitivity::table::rows_by_rate;
 
 /// One part of the page; without a body it is left out.
 pub(super) struct Section {
@@ -33,6 +34,14 @@ const DISTANCE: &str = "How far, on average over all samples after the first 0.1
 const SPECTRA: &str = "Where in frequency each estimator is wrong. To the left lie delay and \
     bias, to the right quantisation noise; what lies in the green band is felt as vibration and \
     as roughness. Lower is better.";
+const COST: &str = "Down and to the left is better; the grey line joins those that nothing beats in \
+    both. Instructions are the means that cargo pareto counted on the emulated board (benchmarks.md; \
+    FOAW: that of the window nearest to the one used here); estimators without a measured cost are \
+    not shown. The limit is a particle filter with the true model and the exact likelihood of a \
+    count: what lies on it cannot be improved.";
+const BELIEFS: &str = "RMS error in scenarios step and track of estimators that believe in one wrong \
+    constant of the device, against how wrong it is. Those without a model of the motor are flat; \
+    those that learn stay low. All scenarios: host-sim sensitivity.";
 const HEATING: &str = "Damping of the coupler while it loses 30 % in 60 s, black, and what the \
     estimators that learn it take it for, from current and counts alone.";
 const SCORES: &str = "Smaller is better; the best of each scenario is bold on green. \
@@ -71,6 +80,12 @@ pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Se
         ),
         section("spectra", "Error spectra", errors(report, palette)?),
         section(
+            "cost",
+            "Run time and error",
+            costs(report, &groups, palette)?,
+        ),
+        section("beliefs", "Wrong beliefs", beliefs(report, palette)?),
+        section(
             "heating",
             "A coupler that warms up",
             warming(report, palette)?,
@@ -96,9 +111,32 @@ pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Se
         .collect())
 }
 
+fn costs(report: &ReportInput, groups: &[Group], palette: &Palette) -> Result<String, String> {
+    let mut html = String::new();
+    for group in groups.iter().filter(|group| group.friction) {
+        let svg = cost::panels(group, &report.limits, palette)?;
+        html += &svg.map(|svg| framed(&svg)).unwrap_or_default();
+    }
+    if !html.is_empty() {
+        html += &words(COST);
+    }
+    Ok(html)
+}
+
+fn beliefs(report: &ReportInput, palette: &Palette) -> Result<String, String> {
+    let mut html = String::new();
+    for rows in rows_by_rate(&report.beliefs) {
+        html += &framed(&sensitivity::chart(&rows, palette)?);
+    }
+    if !html.is_empty() {
+        html += &words(BELIEFS);
+    }
+    Ok(html)
+}
+
 fn warming(report: &ReportInput, palette: &Palette) -> Result<String, String> {
     let mut body = String::new();
-    for case in &report.cases {
+    for case in report.cases.iter().chain(&report.warming) {
         let Some(damping) = &case.damping else {
             continue;
         };

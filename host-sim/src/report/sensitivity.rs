@@ -70,7 +70,8 @@ fn curve(rows: &[&Row], name: &str, constant: Constant) -> Curve {
         .collect()
 }
 
-fn chart(rows: &[&Row], palette: &Palette) -> Result<String, String> {
+/// A panel a constant, of rows at one rate.
+pub(super) fn chart(rows: &[&Row], palette: &Palette) -> Result<String, String> {
     let names = names(rows);
     let keys: Vec<Key> = names
         .iter()

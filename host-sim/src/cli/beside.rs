@@ -1,0 +1,66 @@
+//! What the report of `compare` shows beside the scores: limits, wrong beliefs, a warming coupler.
+
+use crate::compare::{Case, Settings, compare};
+use crate::failure::Failure;
+use crate::limit::{self, limit};
+use crate::parameters::PlantKind;
+use crate::report::CaseReport;
+use crate::scenario::ScenarioName;
+use crate::sensitivity::{self, sensitivity};
+
+use super::arguments::rates;
+use super::compare::{Compare, case_report};
+
+/// Particles of the limit: `host-sim limit` with its 2000 differs by less than a hundredth.
+const PARTICLES: usize = 500;
+
+/// What is run beside the cases that were asked for.
+#[derive(Default)]
+pub(super) struct Beside {
+    pub(super) limits: Vec<limit::Row>,
+    pub(super) beliefs: Vec<sensitivity::Row>,
+    pub(super) warming: Vec<CaseReport>,
+}
+
+/// Runs what belongs to a report of everything, at the lowest rate asked for: a report of chosen
+/// scenarios has none of it but the limit of those that it can be had of.
+pub(super) fn beside(
+    options: &Compare,
+    settings: &Settings,
+    cases: &[Case],
+) -> Result<Beside, Failure> {
+    let rate_hz = rates(&options.rates, &[1e3])
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
+    let of = |scenario: ScenarioName| Case {
+        scenario,
+        rate_hz,
+        plant: PlantKind::Friction,
+        seed: options.seed,
+        seconds: options.seconds.unwrap_or(scenario.default_seconds()),
+        keep: false,
+    };
+    if options.frictionless {
+        return Ok(Beside::default());
+    }
+    let linear: Vec<Case> = cases
+        .iter()
+        .filter(|case| case.scenario.linear_plant() && case.rate_hz == rate_hz)
+        .filter(|case| case.plant == PlantKind::Friction)
+        .cloned()
+        .collect();
+    let limits = limit(&linear, settings, PARTICLES, || ())?;
+    if !options.scenarios.is_empty() {
+        return Ok(Beside {
+            limits,
+            ..Beside::default()
+        });
+    }
+    let moving = [ScenarioName::Step, ScenarioName::Track].map(of);
+    let warming = compare(&[of(ScenarioName::Heating)], settings, || ())?;
+    Ok(Beside {
+        limits,
+        beliefs: sensitivity(&moving, settings, || ())?,
+        warming: warming.iter().map(case_report).collect(),
+    })
+}
