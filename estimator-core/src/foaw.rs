@@ -1,8 +1,9 @@
 //! First-order adaptive windowing (FOAW), exact in integers.
 
+mod best_fit;
 mod cone;
 mod fit;
-mod runs;
+mod recent;
 
 use core::marker::PhantomData;
 
@@ -11,12 +12,11 @@ use crate::estimator::VelocityEstimator;
 use crate::sample::{Sample, Signals};
 use crate::units::CountsPerTick;
 
-use fit::RunsOf;
 pub use fit::{BestFit, EndFit, Fit};
-use runs::Runs;
+use recent::Recent;
 
 /// Steps of this many counts a tick or more are outside the range in which products fit.
-const LONGEST_STEP: u32 = 1 << 15;
+const LONGEST_STEP: i32 = 1 << 15;
 
 /// First-order adaptive windowing: the slope over the longest window that a straight line
 /// explains (Janabi-Sharifi, Hayward, Chen 2000; eqs. 6 to 8).
@@ -38,9 +38,9 @@ const LONGEST_STEP: u32 = 1 << 15;
 /// the velocity zero after n ticks. N is the largest window, 1 to 128 intervals; n may be less at
 /// run time. Steps of 2^15 counts a tick or more restart the window.
 ///
-/// The samples are kept as runs of equal counts, in a ring of N runs that is stored twice, so that
-/// it reads as one slice: 8 N bytes. The end-fit looks at the ends of runs only, so that it costs
-/// as many steps as there are edges in the window; at rest neither fit looks at all.
+/// The samples are kept in a ring that is stored twice, so that it reads as one slice: 8 N bytes.
+/// The newest steps that are equal are one straight line and need not be looked at: at rest an
+/// update costs nothing, and every other sample of the window is looked at once.
 ///
 /// ```
 /// use estimator_core::{BestFit, Count, Foaw, Sample, VelocityEstimator, preset};
@@ -84,7 +84,7 @@ impl<const N: usize, F: Fit> Foaw<N, F> {
 /// State of a [`Foaw`]: the newest counts and the window length last used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FoawState<const N: usize> {
-    runs: Runs<N>,
+    recent: Recent<N>,
     window: u8,
 }
 
@@ -103,28 +103,29 @@ impl<const N: usize, F: Fit> VelocityEstimator for Foaw<N, F> {
 
     fn start(&self, first: &Sample) -> FoawState<N> {
         FoawState {
-            runs: Runs::new(first.large),
+            recent: Recent::new(first.large),
             window: 0,
         }
     }
 
     #[inline]
     fn update(&self, state: &mut FoawState<N>, sample: &Sample) -> CountsPerTick {
-        let step = sample.large - state.runs.newest;
-        if step.0 == 0 {
-            state.runs.extend();
-            if state.runs.length > i32::from(self.window) {
-                state.window = self.window;
-                return CountsPerTick(0.0);
-            }
-        } else if step.0.unsigned_abs() < LONGEST_STEP {
-            state.runs.push(sample.large);
-        } else {
-            *state = self.start(sample);
+        let recent = &mut state.recent;
+        let step = sample.large - recent.newest;
+        if step.0 == 0 && recent.at_rest() {
+            state.window = self.window;
+            return CountsPerTick(0.0);
+        }
+        if !(1 - LONGEST_STEP..LONGEST_STEP).contains(&step.0) {
+            recent.restart(sample.large);
             state.window = 1;
             return CountsPerTick(step.to_f32());
         }
-        let window = F::longest(&RunsOf(&state.runs), i32::from(self.window), self.bound);
+        recent.push(step);
+        let n = usize::from(self.window);
+        let older = recent.older(n);
+        let straight = recent.equal_steps().min(n);
+        let window = F::longest(older, recent.newest, straight, step.0, n as i32, self.bound);
         state.window = window.intervals as u8;
         CountsPerTick(window.slope)
     }
