@@ -82,7 +82,7 @@ impl<const N: usize, F: Fit> Confidence for Foaw<N, F> {
 
 impl<const S: usize, U: Input<S>> Confidence for Kalman<S, U> {
     fn variance(&self, state: &KalmanState<S>) -> Variance {
-        Variance(state.velocity_variance())
+        Variance(self.covariance(state)[1][1])
     }
 }
 

@@ -67,7 +67,7 @@ impl core::error::Error for DesignError {}
 /// use estimator_core::{Hertz, Model, NoInput, SteadyKalman, SteadyKalmanTriple, preset};
 /// const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(4096, Hertz(1000.0), 1000.0));
 /// const PRESET: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
-/// assert!(PRESET.gain()[0] < 1.0);
+/// assert!(MODEL.steady_gain().unwrap()[0] < 1.0);
 /// ```
 ///
 /// The same with hardly any process noise, whose recursion has no limit in reach, does not build:
@@ -76,7 +76,7 @@ impl core::error::Error for DesignError {}
 /// use estimator_core::{Hertz, Model, NoInput, SteadyKalman, SteadyKalmanTriple, preset};
 /// const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(4096, Hertz(1000.0), 1e-60));
 /// const PRESET: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
-/// assert!(PRESET.gain()[0] < 1.0);
+/// assert!(MODEL.steady_gain().unwrap()[0] < 1.0);
 /// ```
 #[macro_export]
 macro_rules! preset {

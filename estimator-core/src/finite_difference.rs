@@ -27,7 +27,7 @@ impl VelocityEstimator for FiniteDifference {
         first.large
     }
 
-    #[inline]
+    #[inline(always)]
     fn update(&self, previous: &mut Count, sample: &Sample) -> CountsPerTick {
         let step = sample.large - *previous;
         *previous = sample.large;

@@ -2,15 +2,17 @@
 
 use crate::design_error::DesignError;
 use crate::estimator::{AccelerationEstimator, VelocityEstimator};
-use crate::model::{CurrentInput, Input, Model, NoInput};
+use crate::held_motor::CurrentInput;
+use crate::model::{Input, Model};
 use crate::sample::{Sample, Signals};
+use crate::triple_integrator::NoInput;
 use crate::units::{Count, CountsPerTick, CountsPerTickSquared};
 
 /// The paper's triple-integrator filter (eqs. 9 to 12).
 pub type KalmanTriple = Kalman<3, NoInput>;
 
 /// The paper's realistic filter (eqs. 14 and 16).
-pub type KalmanMotor = Kalman<2, CurrentInput<2>>;
+pub type KalmanMotor = Kalman<2, CurrentInput>;
 
 /// Largest variance of the process noise in one tick, (512 counts a tick)² for the velocity.
 ///
@@ -23,9 +25,10 @@ const LARGEST_PROCESS_NOISE: f64 = 262_144.0;
 /// update    e = y - x_0            S = P_00 + r         K = P_·0 / S
 ///           x = x + K e            P = P - K P_0·
 /// ```
-/// x is S × 1, P is S × S and computed as a triangle, so it is symmetric by construction; its
-/// first row shrinks by the factor `r / S`, which cannot turn the variance of the position
-/// negative. The position is a residual to the newest count, so f32 suffices at any distance.
+/// x is S × 1, P is S × S. [`NoInput`] and [`CurrentInput`] write the products out. P is kept in
+/// units of r and as a triangle, so it is symmetric by construction, and its first row after the
+/// update is K itself, which cannot turn the variance of the position negative. The position is
+/// relative to the newest count, so f32 suffices at any distance.
 ///
 /// Starts wide open (velocity ±32 counts a tick) and settles to the steady gain; once it has,
 /// [`SteadyKalman`](crate::SteadyKalman) gives the same for less.
@@ -43,10 +46,11 @@ const LARGEST_PROCESS_NOISE: f64 = 262_144.0;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kalman<const S: usize, U> {
-    a: [[f32; S]; S],
     input: U,
+    /// Q / r.
     q: [[f32; S]; S],
     r: f32,
+    /// Variances of the state before the first sample, over r.
     prior: [f32; S],
 }
 
@@ -62,7 +66,6 @@ impl<const S: usize, U: Copy> Kalman<S, U> {
             return Err(error);
         }
         let mut filter = Self {
-            a: [[0.0; S]; S],
             input: model.input,
             q: [[0.0; S]; S],
             r: model.r as f32,
@@ -73,38 +76,15 @@ impl<const S: usize, U: Copy> Kalman<S, U> {
             if !(model.q[i][i] <= LARGEST_PROCESS_NOISE) {
                 return Err(DesignError::ProcessNoise);
             }
-            filter.prior[i] = model.prior[i] as f32;
+            filter.prior[i] = (model.prior[i] / model.r) as f32;
             let mut j = 0;
             while j < S {
-                filter.a[i][j] = model.a[i][j] as f32;
-                filter.q[i][j] = model.q[i][j] as f32;
+                filter.q[i][j] = (model.q[i][j] / model.r) as f32;
                 j += 1;
             }
             i += 1;
         }
         Ok(filter)
-    }
-
-    /// `A P Aᵀ + Q`, its upper triangle; A is upper triangular.
-    // Here and below: a preset's zeros and ones vanish only where they are seen.
-    #[inline(always)]
-    fn predicted(&self, p: &[[f32; S]; S]) -> [[f32; S]; S] {
-        let mut next = self.q;
-        for i in 0..S {
-            let mut ap = [0.0; S];
-            for k in i..S {
-                ap[k] = self.a[i][i] * p[i][k];
-                for m in i + 1..S {
-                    ap[k] += self.a[i][m] * p[m.min(k)][m.max(k)];
-                }
-            }
-            for j in i..S {
-                for k in j..S {
-                    next[i][j] += ap[k] * self.a[j][k];
-                }
-            }
-        }
-        next
     }
 }
 
@@ -112,31 +92,18 @@ impl<const S: usize, U: Copy> Kalman<S, U> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KalmanState<const S: usize> {
     anchor: Count,
+    /// As [`Input::tick`] has it.
     x: [f32; S],
-    /// Its upper triangle; the rest stays zero.
+    /// As [`Input::gain`] has it.
     p: [[f32; S]; S],
 }
 
-impl<const S: usize> KalmanState<S> {
-    /// P_11.
-    pub(crate) const fn velocity_variance(&self) -> f32 {
-        self.p[1][1]
-    }
-
+impl<const S: usize, U: Input<S>> Kalman<S, U> {
     /// Covariance P of the state, in counts and ticks.
     #[must_use]
-    pub const fn covariance(&self) -> [[f32; S]; S] {
-        let mut p = self.p;
-        let mut i = 0;
-        while i < S {
-            let mut j = 0;
-            while j < i {
-                p[i][j] = p[j][i];
-                j += 1;
-            }
-            i += 1;
-        }
-        p
+    pub fn covariance(&self, state: &KalmanState<S>) -> [[f32; S]; S] {
+        let p = self.input.covariance(&state.p, &self.q);
+        p.map(|row| row.map(|element| element * self.r))
     }
 }
 
@@ -146,48 +113,25 @@ impl<const S: usize, U: Input<S>> VelocityEstimator for Kalman<S, U> {
     const NEEDS: Signals = U::NEEDS;
 
     fn start(&self, first: &Sample) -> KalmanState<S> {
-        let mut p = [[0.0; S]; S];
-        for (i, row) in p.iter_mut().enumerate() {
+        let mut prior = [[0.0; S]; S];
+        for (i, row) in prior.iter_mut().enumerate() {
             row[i] = self.prior[i];
         }
         KalmanState {
             anchor: first.large,
             x: [0.0; S],
-            p,
+            p: self.input.triangle(&prior, &self.q),
         }
     }
 
+    // Here and below: a preset's zeros and ones vanish only where they are seen.
     #[inline(always)]
     fn update(&self, state: &mut KalmanState<S>, sample: &Sample) -> CountsPerTick {
-        let mut x = transitioned(&self.a, &state.x);
-        self.input.drive(&mut x, sample);
-        let mut p = self.predicted(&state.p);
-
-        let innovation = (sample.large - state.anchor).to_f32() - x[0];
+        let displacement = (sample.large - state.anchor).to_f32();
         state.anchor = sample.large;
-        let inverse = 1.0 / (p[0][0] + self.r);
-        let row = p[0];
-        for i in 1..S {
-            let gain = row[i] * inverse;
-            x[i] += gain * innovation;
-            for j in i..S {
-                p[i][j] -= gain * row[j];
-            }
-        }
-        let shrink = self.r * inverse;
-        for i in 0..S {
-            p[0][i] = row[i] * shrink;
-        }
-        // Relative to the new anchor, the corrected position is what the gain left over.
-        x[0] = -shrink * innovation;
-
-        state.x = x;
-        for i in 0..S {
-            for j in i..S {
-                state.p[i][j] = p[i][j];
-            }
-        }
-        CountsPerTick(x[1])
+        let gain = self.input.gain(&mut state.p, &self.q);
+        self.input.tick(&mut state.x, displacement, sample, &gain);
+        CountsPerTick(state.x[1])
     }
 }
 
@@ -195,7 +139,7 @@ impl KalmanState<3> {
     /// Acceleration at the latest update.
     #[must_use]
     pub const fn acceleration(&self) -> CountsPerTickSquared {
-        CountsPerTickSquared(self.x[2])
+        CountsPerTickSquared(2.0 * self.x[2])
     }
 }
 
@@ -203,17 +147,4 @@ impl AccelerationEstimator for KalmanTriple {
     fn acceleration(&self, state: &KalmanState<3>) -> CountsPerTickSquared {
         state.acceleration()
     }
-}
-
-/// `A x`; A is upper triangular.
-#[inline(always)]
-pub(crate) fn transitioned<const S: usize>(a: &[[f32; S]; S], x: &[f32; S]) -> [f32; S] {
-    let mut next = *x;
-    for i in 0..S {
-        next[i] = a[i][i] * x[i];
-        for j in i + 1..S {
-            next[i] += a[i][j] * x[j];
-        }
-    }
-    next
 }

@@ -49,6 +49,7 @@ impl<E: VelocityEstimator> VelocityEstimator for LateCurrent<E> {
         }
     }
 
+    #[inline(always)]
     fn update(&self, state: &mut Self::State, sample: &Sample) -> E::Output {
         let late = sample.with_current(state.withheld);
         state.withheld = sample.current;

@@ -58,6 +58,7 @@ mod estimator;
 mod finite_difference;
 mod foaw;
 mod handover;
+mod held_motor;
 mod kalman;
 mod late_current;
 mod low_pass;
@@ -68,6 +69,7 @@ mod pll;
 mod riccati;
 mod sample;
 mod steady_kalman;
+mod triple_integrator;
 mod units;
 
 pub use confidence::{Confidence, Variance};
@@ -78,11 +80,12 @@ pub use estimator::{AccelerationEstimator, Skip, VelocityEstimator};
 pub use finite_difference::FiniteDifference;
 pub use foaw::{BestFit, EndFit, Fit, Foaw, FoawState};
 pub use handover::{Handover, HandoverState, Side};
+pub use held_motor::CurrentInput;
 pub use kalman::{Kalman, KalmanMotor, KalmanState, KalmanTriple};
 pub use late_current::{LateCurrent, LateCurrentState};
 pub use low_pass::{LowPass, LowPassState};
 pub use m_over_t::{MOverT, MOverTState};
-pub use model::{CurrentInput, Input, Model, NoInput};
+pub use model::{Input, Model};
 pub use observer::{
     AdaptiveEdgeObserver, AdaptiveObserver, AmplifierCurrent, Cells, Correction, CountObserver,
     CurrentSource, Deviations, EdgeObserver, Edges, EdgesState, Fixed, Gain, HeldHandle, Learned,
@@ -92,6 +95,7 @@ pub use observer::{
 pub use pll::{Pll, PllState};
 pub use sample::{Edge, Sample, Signals};
 pub use steady_kalman::{SteadyKalman, SteadyKalmanMotor, SteadyKalmanState, SteadyKalmanTriple};
+pub use triple_integrator::NoInput;
 pub use units::{
     Amps, ClockTicks, Count, Counts, CountsPerTick, CountsPerTickSquared, Hertz, Scale,
 };

@@ -70,7 +70,7 @@ where
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn update(&self, state: &mut Self::State, sample: &Sample) -> CountsPerTick {
         let CountsPerTick(velocity) = self.inner.update(&mut state.inner, sample);
         state.velocity += self.alpha * (velocity - state.velocity);

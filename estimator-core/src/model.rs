@@ -1,14 +1,14 @@
 //! Linear models of the motion, built at compile time from a device description.
 
-use crate::const_math::{exp, phi1, phi2};
 use crate::design_error::DesignError;
-use crate::device::Device;
 use crate::riccati;
 use crate::sample::{Sample, Signals};
-use crate::units::Hertz;
 
 /// Variance of the quantisation error of a count: uniform over one count, 1/12 counts².
 pub(crate) const QUANTISATION_VARIANCE: f64 = 1.0 / 12.0;
+
+/// (32 counts per tick)²: a start in motion is caught within a few ticks.
+pub(crate) const PRIOR_VELOCITY: f64 = 1024.0;
 
 /// A linear model of the motion seen through one encoder, in counts and ticks:
 /// `x_k = A x_{k-1} + B i_{k-1} + w`, `y_k = H x_k + n`, `H = [1 0 ..]`, with covariances Q of w
@@ -16,7 +16,8 @@ pub(crate) const QUANTISATION_VARIANCE: f64 = 1.0 / 12.0;
 ///
 /// State `x`: position (counts), velocity (counts per tick), and with `S = 3` acceleration
 /// (counts per tick²). A is S × S and upper triangular, Q is S × S and symmetric. `U` says
-/// whether the model has an input B, S × 1: [`NoInput`] or [`CurrentInput`].
+/// what drives it: [`NoInput`](crate::NoInput), so that the acceleration is a state, or
+/// [`CurrentInput`](crate::CurrentInput) with its B, S × 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model<const S: usize, U> {
     pub(crate) a: [[f64; S]; S],
@@ -27,135 +28,30 @@ pub struct Model<const S: usize, U> {
     pub(crate) prior: [f64; S],
 }
 
-/// What drives a [`Model`]: nothing, or the current.
+/// What drives a [`Model`], and what follows from it: the filter's recurrences, written out.
+///
+/// A state is `[e, v, ..]`: e is the latest innovation and stands for the position, which lies
+/// `(1 - k0) e` behind the newest count; v the velocity; with `S = 3`, half the acceleration.
 pub trait Input<const S: usize>: Copy {
     /// What it reads of a sample.
     const NEEDS: Signals;
 
-    /// Adds `B i` to the predicted state.
-    fn drive(&self, x: &mut [f32; S], sample: &Sample);
-}
+    /// One tick of the state: predicts, then corrects by the innovation. `displacement` is that
+    /// of the count, in counts; `gain` is `[1 - k0, k1]` or `[1 - k0, k1 - k2/2, k2/2]` with the
+    /// k0 of the tick before.
+    fn tick(&self, x: &mut [f32; S], displacement: f32, sample: &Sample, gain: &[f32; S]);
 
-/// A [`Model`] that nothing drives: no B, no code.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct NoInput;
+    /// One tick of the covariance, from one corrected state to the next: the `gain` that
+    /// [`tick`](Input::tick) takes. `p` is a triangle, in the units of
+    /// [`covariance`](Input::covariance), and `q` is Q / r.
+    fn gain(&self, p: &mut [[f32; S]; S], q: &[[f32; S]; S]) -> [f32; S];
 
-impl<const S: usize> Input<S> for NoInput {
-    const NEEDS: Signals = Signals::COUNT;
+    /// P / r of position, velocity, .. as the triangle that [`gain`](Input::gain) works on: its
+    /// first row is the gain K.
+    fn triangle(&self, covariance: &[[f32; S]; S], q: &[[f32; S]; S]) -> [[f32; S]; S];
 
-    #[inline]
-    fn drive(&self, _: &mut [f32; S], _: &Sample) {}
-}
-
-/// A [`Model`] that the applied current drives: B, in counts (counts per tick) per A.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CurrentInput<const S: usize>(pub [f32; S]);
-
-impl<const S: usize> Input<S> for CurrentInput<S> {
-    const NEEDS: Signals = Signals::COUNT_AND_CURRENT;
-
-    #[inline]
-    fn drive(&self, x: &mut [f32; S], sample: &Sample) {
-        for i in 0..S {
-            x[i] += self.0[i] * sample.current.get();
-        }
-    }
-}
-
-impl Model<3, NoInput> {
-    /// Triple integrator driven by white jerk (eqs. 9 to 12).
-    ///
-    /// In counts and ticks, with `s = counts_per_rev / 2 π` and period T:
-    /// ```text
-    ///     | 1 1 1/2 |                      | 1/20 1/8 1/6 |
-    /// A = | 0 1  1  |     Q = ρ² s² T^5 .  | 1/8  1/3 1/2 |
-    ///     | 0 0  1  |                      | 1/6  1/2  1  |
-    /// ```
-    /// `jerk_density` ρ is the jerk's spectral density, rad/s³ per √Hz.
-    ///
-    /// # Errors
-    /// [`DesignError::Rate`], [`DesignError::Device`] (no counts), [`DesignError::ProcessNoise`].
-    pub const fn triple_integrator(
-        counts_per_rev: u32,
-        rate: Hertz,
-        jerk_density: f64,
-    ) -> Result<Self, DesignError> {
-        if !rate.is_positive() {
-            return Err(DesignError::Rate);
-        }
-        if counts_per_rev == 0 {
-            return Err(DesignError::Device);
-        }
-        let t = rate.period_s();
-        let q = jerk_density * counts_per_rad(counts_per_rev) * t * t;
-        let q = q * q * t;
-        if !(jerk_density > 0.0 && q > 0.0 && q.is_finite()) {
-            return Err(DesignError::ProcessNoise);
-        }
-        Ok(Self {
-            a: [[1.0, 1.0, 0.5], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]],
-            input: NoInput,
-            q: [
-                [q / 20.0, q / 8.0, q / 6.0],
-                [q / 8.0, q / 3.0, q / 2.0],
-                [q / 6.0, q / 2.0, q],
-            ],
-            r: QUANTISATION_VARIANCE,
-            prior: [QUANTISATION_VARIANCE, PRIOR_VELOCITY, PRIOR_ACCELERATION],
-        })
-    }
-}
-
-impl Model<2, CurrentInput<2>> {
-    /// Motor with known current on a held coupler (eqs. 14 and 16): `J dω/dt = Kt i - b ω`.
-    ///
-    /// Eq. 16 carries the current as a third state that the measured value replaces at every
-    /// tick; its row of A is zero, so eliminating it is exact and leaves, with `β = b T / J`,
-    /// `φ1 = (1 - e^-β) / β`, `φ2 = (β - 1 + e^-β) / β²`, `s = counts_per_rev / 2 π`:
-    /// ```text
-    /// A = | 1   φ1   |     B = s Kt T² / J . | φ2 |     Q = σ² B Bᵀ
-    ///     | 0 exp(-β)|                       | φ1 |
-    /// ```
-    /// Discretised exactly for a current held over the period, where the paper steps forward.
-    /// `current_noise` σ is the standard deviation of the current's error, A, drawn anew at
-    /// each tick. For eq. 15, literally, see [`LateCurrent`](crate::LateCurrent).
-    ///
-    /// The paper's model has no friction and a still handle: both end up in the error.
-    ///
-    /// # Errors
-    /// [`DesignError::Rate`], [`DesignError::Device`], [`DesignError::ProcessNoise`].
-    pub const fn motor(
-        device: &Device,
-        rate: Hertz,
-        current_noise: f64,
-    ) -> Result<Self, DesignError> {
-        if !rate.is_positive() {
-            return Err(DesignError::Rate);
-        }
-        let device = match device.checked() {
-            Ok(device) => device,
-            Err(error) => return Err(error),
-        };
-        let t = rate.period_s();
-        let beta = device.damping * t / device.inertia;
-        let per_amp =
-            counts_per_rad(device.counts_per_rev) * device.torque_constant * t * t / device.inertia;
-        if !(beta < 700.0 && per_amp > 0.0 && per_amp < 1e9) {
-            return Err(DesignError::Device);
-        }
-        let b = [per_amp * phi2(beta), per_amp * phi1(beta)];
-        let g = [current_noise * b[0], current_noise * b[1]];
-        if !(current_noise > 0.0 && g[0] * g[0] > 0.0 && (g[1] * g[1]).is_finite()) {
-            return Err(DesignError::ProcessNoise);
-        }
-        Ok(Self {
-            a: [[1.0, phi1(beta)], [0.0, exp(-beta)]],
-            input: CurrentInput([b[0] as f32, b[1] as f32]),
-            q: [[g[0] * g[0], g[0] * g[1]], [g[0] * g[1], g[1] * g[1]]],
-            r: QUANTISATION_VARIANCE,
-            prior: [QUANTISATION_VARIANCE, PRIOR_VELOCITY],
-        })
-    }
+    /// The inverse of [`triangle`](Input::triangle).
+    fn covariance(&self, p: &[[f32; S]; S], q: &[[f32; S]; S]) -> [[f32; S]; S];
 }
 
 impl<const S: usize, U: Copy> Model<S, U> {
@@ -207,12 +103,17 @@ impl<const S: usize, U: Copy> Model<S, U> {
     }
 }
 
-/// (32 counts per tick)²: a start in motion is caught within a few ticks.
-const PRIOR_VELOCITY: f64 = 1024.0;
-
-/// (1 count per tick²)².
-const PRIOR_ACCELERATION: f64 = 1.0;
-
-const fn counts_per_rad(counts_per_rev: u32) -> f64 {
+pub(crate) const fn counts_per_rad(counts_per_rev: u32) -> f64 {
     counts_per_rev as f64 / (2.0 * core::f64::consts::PI)
+}
+
+/// K as [`Input::tick`] takes it, after a tick with `k0_before`.
+pub(crate) const fn as_taken<const S: usize>(k0_before: f32, k: &[f32; S]) -> [f32; S] {
+    let mut gain = *k;
+    gain[0] = 1.0 - k0_before;
+    if S == 3 {
+        gain[S - 1] = k[S - 1] / 2.0;
+        gain[1] = k[1] - gain[S - 1];
+    }
+    gain
 }

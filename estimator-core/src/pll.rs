@@ -10,9 +10,12 @@ use crate::units::{Count, CountsPerTick, Hertz};
 /// ```text
 /// e = y_k - (θ + v)     θ = θ + v + (1 - p²) e     v = v + (1 - p)² e     p = exp(-2 π f / rate)
 /// ```
+/// θ then lies p² e behind the newest count, so that e stands for it, without a distance to lose
+/// digits in: `e = y_k - y_{k-1} - v + p² e`.
+///
 /// Both poles of the error lie at p, so the loop settles without overshoot at the pole frequency
-/// f, Hz, whatever the rate; its velocity is 3 dB down at 0.64 f. Follows a ramp without error; θ is kept as a residual to the newest
-/// count. Valid for f from 1e-6 to 1/2 of the rate. The gains are those of the fading-memory filter of
+/// f, Hz, whatever the rate; its velocity is 3 dB down at 0.64 f. Follows a ramp without error.
+/// Valid for f from 1e-6 to 1/2 of the rate. The gains are those of the fading-memory filter of
 /// first degree (Morrison 1969).
 ///
 /// ```
@@ -54,11 +57,11 @@ impl Pll {
     }
 }
 
-/// State of a [`Pll`]: position relative to the newest count, and velocity.
+/// State of a [`Pll`]: error, which stands for the position behind the newest count, and velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PllState {
     anchor: Count,
-    residual: f32,
+    error: f32,
     velocity: f32,
 }
 
@@ -70,18 +73,17 @@ impl VelocityEstimator for Pll {
     fn start(&self, first: &Sample) -> PllState {
         PllState {
             anchor: first.large,
-            residual: 0.0,
+            error: 0.0,
             velocity: 0.0,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn update(&self, state: &mut PllState, sample: &Sample) -> CountsPerTick {
-        let step = (sample.large - state.anchor).to_f32();
-        let error = step - (state.residual + state.velocity);
+        let displacement = (sample.large - state.anchor).to_f32();
         state.anchor = sample.large;
-        state.residual = -self.leftover * error;
-        state.velocity += self.gain * error;
+        state.error = displacement - state.velocity + self.leftover * state.error;
+        state.velocity += self.gain * state.error;
         CountsPerTick(state.velocity)
     }
 }

@@ -2,16 +2,17 @@
 
 use crate::design_error::DesignError;
 use crate::estimator::{AccelerationEstimator, VelocityEstimator};
-use crate::kalman::transitioned;
-use crate::model::{CurrentInput, Input, Model, NoInput};
+use crate::held_motor::CurrentInput;
+use crate::model::{Input, Model, as_taken};
 use crate::sample::{Sample, Signals};
+use crate::triple_integrator::NoInput;
 use crate::units::{Count, CountsPerTick, CountsPerTickSquared};
 
 /// [`KalmanTriple`](crate::KalmanTriple) with its steady gain.
 pub type SteadyKalmanTriple = SteadyKalman<3, NoInput>;
 
 /// [`KalmanMotor`](crate::KalmanMotor) with its steady gain.
-pub type SteadyKalmanMotor = SteadyKalman<2, CurrentInput<2>>;
+pub type SteadyKalmanMotor = SteadyKalman<2, CurrentInput>;
 
 /// Kalman filter over a [`Model`] with the gain that the full recursion settles to:
 /// `x = A x + B i`, then `x = x + K (y - x_0)`.
@@ -32,9 +33,9 @@ pub type SteadyKalmanMotor = SteadyKalman<2, CurrentInput<2>>;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SteadyKalman<const S: usize, U> {
-    a: [[f32; S]; S],
     input: U,
-    k: [f32; S],
+    /// K as [`Input::tick`] takes it.
+    gain: [f32; S],
     /// P_11 of the limit, after a correction.
     velocity_variance: f32,
 }
@@ -46,36 +47,18 @@ impl<const S: usize, U: Copy> SteadyKalman<S, U> {
     /// As [`Model::steady_gain`].
     pub const fn new(model: &Model<S, U>) -> Result<Self, DesignError> {
         const { assert!(S >= 2, "position and velocity at least") };
-        let steady = match model.steady() {
-            Ok(steady) => steady,
-            Err(error) => return Err(error),
-        };
-        let mut a = [[0.0; S]; S];
-        let mut i = 0;
-        while i < S {
-            let mut j = 0;
-            while j < S {
-                a[i][j] = model.a[i][j] as f32;
-                j += 1;
-            }
-            i += 1;
+        match model.steady() {
+            Ok(steady) => Ok(Self {
+                input: model.input,
+                gain: as_taken(steady.gain[0], &steady.gain),
+                velocity_variance: steady.velocity[1] as f32,
+            }),
+            Err(error) => Err(error),
         }
-        Ok(Self {
-            a,
-            input: model.input,
-            k: steady.gain,
-            velocity_variance: steady.velocity[1] as f32,
-        })
     }
 
     pub(crate) const fn velocity_variance(&self) -> f32 {
         self.velocity_variance
-    }
-
-    /// The gain K: counts, counts per tick, .. per count of innovation.
-    #[must_use]
-    pub const fn gain(&self) -> &[f32; S] {
-        &self.k
     }
 }
 
@@ -83,6 +66,7 @@ impl<const S: usize, U: Copy> SteadyKalman<S, U> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SteadyKalmanState<const S: usize> {
     anchor: Count,
+    /// As [`Input::tick`] has it.
     x: [f32; S],
 }
 
@@ -98,21 +82,13 @@ impl<const S: usize, U: Input<S>> VelocityEstimator for SteadyKalman<S, U> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn update(&self, state: &mut SteadyKalmanState<S>, sample: &Sample) -> CountsPerTick {
-        let mut x = transitioned(&self.a, &state.x);
-        self.input.drive(&mut x, sample);
-        let innovation = (sample.large - state.anchor).to_f32() - x[0];
-        for i in 1..S {
-            x[i] += self.k[i] * innovation;
-        }
-        // Relative to the new anchor, the corrected position is what the gain left over.
-        x[0] = (self.k[0] - 1.0) * innovation;
-        *state = SteadyKalmanState {
-            anchor: sample.large,
-            x,
-        };
-        CountsPerTick(x[1])
+        let displacement = (sample.large - state.anchor).to_f32();
+        state.anchor = sample.large;
+        self.input
+            .tick(&mut state.x, displacement, sample, &self.gain);
+        CountsPerTick(state.x[1])
     }
 }
 
@@ -120,7 +96,7 @@ impl SteadyKalmanState<3> {
     /// Acceleration at the latest update.
     #[must_use]
     pub const fn acceleration(&self) -> CountsPerTickSquared {
-        CountsPerTickSquared(self.x[2])
+        CountsPerTickSquared(2.0 * self.x[2])
     }
 }
 

@@ -38,7 +38,8 @@ impl Count {
 impl Sub for Count {
     type Output = Counts;
 
-    #[inline]
+    // Every update begins with it.
+    #[inline(always)]
     fn sub(self, earlier: Self) -> Counts {
         Counts(self.0.wrapping_sub(earlier.0) as i32)
     }

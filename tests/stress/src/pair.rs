@@ -24,9 +24,9 @@ pub trait Pair {
     fn window(&self) -> Option<usize>;
 }
 
-/// What may be asked of a state.
-pub(crate) trait State {
-    fn fault(&self) -> Option<&'static str> {
+/// What may be asked of a state of estimator `E`.
+pub(crate) trait State<E> {
+    fn fault(&self, _: &E) -> Option<&'static str> {
         None
     }
 
@@ -35,23 +35,23 @@ pub(crate) trait State {
     }
 }
 
-impl State for core::Count {}
-impl State for core::PllState {}
-impl State for core::MOverTState {}
-impl<C, S, M, L> State for core::ObserverState<C, S, M, L> {}
-impl<const S: usize> State for core::SteadyKalmanState<S> {}
-impl<S> State for core::LateCurrentState<S> {}
-impl<S> State for core::LowPassState<S> {}
+impl<E> State<E> for core::Count {}
+impl<E> State<E> for core::PllState {}
+impl<E> State<E> for core::MOverTState {}
+impl<E, C, S, M, L> State<E> for core::ObserverState<C, S, M, L> {}
+impl<E, const S: usize> State<E> for core::SteadyKalmanState<S> {}
+impl<E, S> State<E> for core::LateCurrentState<S> {}
+impl<E, S> State<E> for core::LowPassState<S> {}
 
-impl<const N: usize> State for core::FoawState<N> {
+impl<E, const N: usize> State<E> for core::FoawState<N> {
     fn window(&self) -> Option<usize> {
         Some(self.window())
     }
 }
 
-impl<const S: usize> State for core::KalmanState<S> {
-    fn fault(&self) -> Option<&'static str> {
-        let p = self.covariance();
+impl<const S: usize, U: core::Input<S>> State<core::Kalman<S, U>> for core::KalmanState<S> {
+    fn fault(&self, filter: &core::Kalman<S, U>) -> Option<&'static str> {
+        let p = filter.covariance(self);
         for i in 0..S {
             for j in 0..i {
                 if p[i][j].to_bits() != p[j][i].to_bits() {
@@ -90,7 +90,7 @@ pub(crate) struct Both<C: core::VelocityEstimator, T: twin::VelocityEstimator> {
 
 impl<C, T> Pair for Both<C, T>
 where
-    C: core::VelocityEstimator<Output = core::CountsPerTick, State: State>,
+    C: core::VelocityEstimator<Output = core::CountsPerTick, State: State<C>>,
     T: twin::VelocityEstimator<Output = twin::CountsPerTick>,
 {
     fn start(&mut self, first: &Shown) {
@@ -107,7 +107,9 @@ where
     }
 
     fn fault(&self) -> Option<&'static str> {
-        self.states.as_ref().and_then(|(core, _)| core.fault())
+        self.states
+            .as_ref()
+            .and_then(|(core, _)| core.fault(&self.core))
     }
 
     fn window(&self) -> Option<usize> {

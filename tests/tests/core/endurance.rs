@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use estimator_core::{
-    Amps, Count, Counts, CountsPerTick, Device, EndFit, FiniteDifference, Foaw, Hertz, Kalman,
-    KalmanState, LowPass, Model, Pll, Sample, SteadyKalman, VelocityEstimator,
+    Amps, Count, Counts, CountsPerTick, Device, EndFit, FiniteDifference, Foaw, Hertz, Input,
+    Kalman, KalmanState, LowPass, Model, Pll, Sample, SteadyKalman, VelocityEstimator,
 };
 
 use crate::every::{CURRENT_NOISE, Case, JERK, RATES, Ramp, everywhere};
@@ -15,8 +15,12 @@ static EVERY: LazyLock<Vec<Case>> = LazyLock::new(everywhere);
 
 /// Asserts that P is finite, symmetric to the bit and positive definite.
 #[track_caller]
-fn assert_covariance<const S: usize>(state: &KalmanState<S>, what: &str) {
-    let p = state.covariance();
+fn assert_covariance<const S: usize, U: Input<S>>(
+    filter: &Kalman<S, U>,
+    state: &KalmanState<S>,
+    what: &str,
+) {
+    let p = filter.covariance(state);
     for i in 0..S {
         for j in 0..S {
             assert!(p[i][j].is_finite(), "{what}: {p:?}");
@@ -51,16 +55,16 @@ fn covariance_stays_symmetric_and_positive() {
             let mut sample = Sample::new(Count(0));
             let mut triple_state = triple.start(&sample);
             let mut motor_state = motor.start(&sample);
-            assert_covariance(&triple_state, &what);
-            assert_covariance(&motor_state, &what);
+            assert_covariance(&triple, &triple_state, &what);
+            assert_covariance(&motor, &motor_state, &what);
             let mut draws = Draws(rate as u64);
             for tick in 0..100_000 {
                 sample = abuse(tick, &mut draws, sample.large);
                 let fast = triple.update(&mut triple_state, &sample).0;
                 let slow = motor.update(&mut motor_state, &sample).0;
                 assert!(fast.is_finite() && slow.is_finite());
-                assert_covariance(&triple_state, &what);
-                assert_covariance(&motor_state, &what);
+                assert_covariance(&triple, &triple_state, &what);
+                assert_covariance(&motor, &motor_state, &what);
             }
         }
     }
@@ -95,7 +99,7 @@ fn accepted_designs_stay_finite_and_positive() {
     assert!(tried > 200, "{tried} accepted");
 }
 
-fn assert_survives<const S: usize, U: estimator_core::Input<S>>(filter: &Kalman<S, U>, what: &str) {
+fn assert_survives<const S: usize, U: Input<S>>(filter: &Kalman<S, U>, what: &str) {
     let mut state = filter.start(&Sample::new(Count(0)));
     let mut draws = Draws(1);
     let mut count = Count(0);
@@ -103,7 +107,7 @@ fn assert_survives<const S: usize, U: estimator_core::Input<S>>(filter: &Kalman<
         count = count + Counts(draws.within(100) as i32);
         let output = filter.update(&mut state, &Sample::new(count));
         assert!(output.0.is_finite(), "{what}");
-        assert_covariance(&state, what);
+        assert_covariance(filter, &state, what);
     }
 }
 
@@ -150,7 +154,7 @@ fn bad_currents_leave_everything_finite_for_ever() {
         let amps = Amps::new(bad[draws.bits() as usize % bad.len()]);
         assert!(amps.get().abs() <= Amps::MAX);
         motor.update(&mut state, &sample.with_current(amps));
-        assert_covariance(&state, "bad currents");
+        assert_covariance(&motor, &state, "bad currents");
     }
 }
 

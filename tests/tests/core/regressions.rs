@@ -247,7 +247,7 @@ fn covariance_stays_symmetric() {
     let mut state = kalman.start(&at(0));
     for tick in 0..200_000u32 {
         kalman.update(&mut state, &at(tick.wrapping_mul(0x9E37_79B9) >> 20));
-        let p = state.covariance();
+        let p = kalman.covariance(&state);
         assert_eq!((p[0][1], p[0][2], p[1][2]), (p[1][0], p[2][0], p[2][1]));
     }
 }

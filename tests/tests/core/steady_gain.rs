@@ -105,7 +105,7 @@ fn settles<const S: usize, U: Input<S>>(model: &Model<S, U>, what: &str) {
     }
     // After an update P H^T / r is the gain.
     let preset = model.steady_gain().unwrap();
-    for (row, preset) in state.covariance().iter().zip(preset) {
+    for (row, preset) in filter.covariance(&state).iter().zip(preset) {
         let gain = f64::from(row[0]) / reference::R;
         // The recursion stalls where its change rounds to nothing: the square root of the number
         // of ticks it remembers, or so, times the rounding.

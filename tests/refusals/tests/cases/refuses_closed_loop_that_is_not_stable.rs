@@ -6,7 +6,7 @@ const UNDAMPED: Device = Device {
     damping: 0.0,
     ..Device::DCX35L
 };
-const MODEL: Model<2, CurrentInput<2>> = preset!(Model::motor(&UNDAMPED, Hertz(1000.0), 1e9));
+const MODEL: Model<2, CurrentInput> = preset!(Model::motor(&UNDAMPED, Hertz(1000.0), 1e9));
 const FILTER: SteadyKalmanMotor = preset!(SteadyKalman::new(&MODEL));
 
 fn main() {

@@ -4,7 +4,7 @@ const BARE: Device = Device {
     counts_per_rev: 0,
     ..Device::DCX35L
 };
-const MODEL: Model<2, CurrentInput<2>> = preset!(Model::motor(&BARE, Hertz(1000.0), 0.1));
+const MODEL: Model<2, CurrentInput> = preset!(Model::motor(&BARE, Hertz(1000.0), 0.1));
 
 fn main() {
     let _ = MODEL;
