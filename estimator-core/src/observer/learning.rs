@@ -240,6 +240,12 @@ impl LearnedState {
     pub const fn diagonal(&self) -> &[f32; 3] {
         &self.diagonal
     }
+
+    /// Elements 01, 02 and 12 of U.
+    #[must_use]
+    pub const fn upper(&self) -> &[f32; 3] {
+        &self.upper
+    }
 }
 
 /// Standard deviations before anything was learned.

@@ -1,7 +1,7 @@
 //! Any parameters into every design.
 
-use stress::contestants::{KINDS, design};
 use stress::course::Course;
+use stress::designs::{KINDS, design};
 
 use crate::bytes::Bytes;
 

@@ -21,24 +21,15 @@ pub fn run(contestants: &[Contestant], data: &[u8]) {
         let mut bytes = Bytes(data);
         let mut pair = contestant.pair();
         let mut sample = Sample::new(Count(u32::MAX - 3));
-        pair.start(&shown(&sample));
+        pair.start(&Shown::of(&sample));
         while let Some(next) = bytes.sample(&sample) {
             sample = next;
             if sample.large.0.is_multiple_of(251) {
-                pair.start(&shown(&sample));
+                pair.start(&Shown::of(&sample));
             }
-            let (output, _) = pair.update(&shown(&sample));
+            let (output, _) = pair.update(&Shown::of(&sample));
             assert!(output.is_finite(), "{}: {output}", contestant.name);
             assert_eq!(pair.fault(), None, "{}", contestant.name);
         }
-    }
-}
-
-fn shown(sample: &Sample) -> Shown {
-    Shown {
-        large: sample.large.0,
-        small: sample.small.0,
-        amps: sample.current.get(),
-        edge: sample.edge.map(|edge| (edge.boundary.0, edge.age.0)),
     }
 }

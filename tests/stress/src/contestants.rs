@@ -5,7 +5,9 @@ use estimator_twin as twin;
 
 use crate::course::EDGE_CLOCK_HZ;
 use crate::definition::{Definition, Line};
+use crate::findings::Bounds;
 use crate::pair::{Both, Pair};
+use crate::settling;
 
 /// An estimator under stress.
 pub struct Contestant {
@@ -15,9 +17,8 @@ pub struct Contestant {
     pub rate_hz: f64,
     /// What it has to give exactly, if it is a window.
     pub definition: Option<Definition>,
-    /// What rounding may add to a velocity inside the haptic range, rad/s; infinite where it may
-    /// turn a decision.
-    pub deviation_bound_rad_s: f64,
+    /// What is asked of it.
+    pub bounds: Bounds,
     /// Below this an output at rest is at rest, rad/s.
     pub at_rest_rad_s: f64,
     make: Box<dyn Fn() -> Box<dyn Pair> + Send + Sync>,
@@ -30,27 +31,45 @@ impl Contestant {
         (self.make)()
     }
 
-    /// One count over the time since: at 1e-5 rad/s after two minutes and a half.
-    fn comes_to_rest_slowly(self) -> Self {
-        Self {
-            at_rest_rad_s: 0.05,
-            ..self
-        }
+    /// rad/s of a count per tick, with 1024 lines.
+    #[must_use]
+    pub fn rad_per_count(&self) -> f64 {
+        std::f64::consts::TAU * self.rate_hz / 4096.0
     }
 
     /// Decides, as whether a rotor sticks: rounding may turn a decision, and is not bounded.
-    fn decides(self) -> Self {
-        Self {
-            deviation_bound_rad_s: f64::INFINITY,
-            ..self
-        }
+    fn decides(mut self) -> Self {
+        self.bounds.deviation_rad_s = f64::INFINITY;
+        self
     }
 
+    /// At rest after so many ticks.
+    fn settles(mut self, ticks: u32) -> Self {
+        self.bounds.settles_ticks = ticks;
+        self
+    }
+
+    /// At rest once so many poles within this radius have forgotten the fastest motion there is.
+    fn poles(self, radius: f64, order: i32) -> Self {
+        let quiet = self.at_rest_rad_s / self.rad_per_count();
+        self.settles(settling::poles(radius, order, quiet))
+    }
+
+    /// At rest once only the current count is in the window; what the definition gives.
     fn window(self, n: usize, d: i32, line: Line) -> Self {
         Self {
             definition: Some(Definition { n, d, line }),
             ..self
         }
+        .settles(n as u32 - 1)
+    }
+
+    /// At rest once one count over the time since is below 0.05 rad/s: it would take two minutes
+    /// and a half to come below 1e-5.
+    fn one_count_over_time(mut self) -> Self {
+        self.at_rest_rad_s = 0.05;
+        let ticks = self.rad_per_count() / self.at_rest_rad_s;
+        self.settles(ticks.ceil() as u32)
     }
 }
 
@@ -70,7 +89,10 @@ macro_rules! both {
             name: String::from($name),
             rate_hz,
             definition: None,
-            deviation_bound_rad_s: DEVIATION_RAD_S,
+            bounds: Bounds {
+                deviation_rad_s: DEVIATION_RAD_S,
+                settles_ticks: 0,
+            },
             at_rest_rad_s: AT_REST_RAD_S,
             make: Box::new(move || {
                 Box::new(Both {
@@ -92,39 +114,13 @@ macro_rules! observer {
             &$c::Uncertainty {
                 torque_noise: 7e-5,
                 load: 7.5e-4,
-                load_time: 0.1,
+                load_time: LOAD_TIME_S,
                 friction_share: 0.7,
                 boundary_noise: 0.0625,
             },
         )
         .expect("valid")
     };
-}
-
-/// The same design over the core and over its twin, which have to agree on whether to refuse it.
-macro_rules! refusable {
-    (|$c:ident| $make:expr) => {{
-        let core = {
-            use core as $c;
-            $make
-        };
-        let twin = {
-            use twin as $c;
-            $make
-        };
-        match (core, twin) {
-            (Ok(core), Ok(twin)) => Ok(Box::new(Both {
-                core,
-                twin,
-                states: None,
-            })),
-            (Err(core), Err(twin)) => {
-                assert_eq!(core.message(), twin.message());
-                Err(format!("{core:?}"))
-            }
-            (core, twin) => panic!("refused by one alone: {:?}, {:?}", core.err(), twin.err()),
-        }
-    }};
 }
 
 /// The project's goal for what f32 may cost, rad/s.
@@ -143,6 +139,14 @@ const JERK: f64 = 2e4;
 /// Error of the current that the motor model expects, A.
 const CURRENT_NOISE: f64 = 0.1;
 
+/// Time constant of the torque that the observers know nothing of, s.
+const LOAD_TIME_S: f64 = 0.1;
+
+/// An observer that has learned from nonsense may believe in a friction near nothing: then it rests
+/// only when what it takes for friction has been corrected, count by count. Not derived: twice
+/// what was seen.
+const LEARNED_NONSENSE_S: f64 = 6.0;
+
 /// Every estimator at one control rate.
 #[must_use]
 #[allow(
@@ -151,6 +155,17 @@ const CURRENT_NOISE: f64 = 0.1;
 )]
 pub fn at(rate: f64) -> Vec<Contestant> {
     let cutoff = if rate < 5000.0 { 240.0 } else { 120.0 };
+    let triple = {
+        let model = core::Model::triple_integrator(4096, core::Hertz(rate), JERK).expect("valid");
+        settling::radius(model.transition(), &model.steady_gain().expect("valid"))
+    };
+    let motor = {
+        let device = core::Device::DCX35L;
+        let model = core::Model::motor(&device, core::Hertz(rate), CURRENT_NOISE).expect("valid");
+        settling::radius(model.transition(), &model.steady_gain().expect("valid"))
+    };
+    let forgotten = settling::unknown_torque(&observer!(core, rate), LOAD_TIME_S, rate);
+    let learned = (LEARNED_NONSENSE_S * rate) as u32;
     let mut all = vec![
         both!("finite-difference", rate, |c| c::FiniteDifference),
         both!("low-pass", rate, |c| c::LowPass::new(
@@ -158,7 +173,8 @@ pub fn at(rate: f64) -> Vec<Contestant> {
             c::Hertz(cutoff),
             c::Hertz(rate)
         )
-        .expect("valid")),
+        .expect("valid"))
+        .poles(settling::pole(cutoff, rate), 1),
         both!("foaw-end-fit n 15", rate, |c| {
             c::Foaw::<15, c::EndFit>::new(15, 1).expect("valid")
         })
@@ -177,134 +193,73 @@ pub fn at(rate: f64) -> Vec<Contestant> {
         .window(64, 2, Line::BestFit),
         both!("pll", rate, |c| {
             c::Pll::new(c::Hertz(60.0), c::Hertz(rate)).expect("valid")
-        }),
+        })
+        .poles(settling::pole(60.0, rate), 2),
         both!("kalman-triple", rate, |c| {
             let model = c::Model::triple_integrator(4096, c::Hertz(rate), JERK).expect("valid");
             c::Kalman::new(&model).expect("valid")
-        }),
+        })
+        .poles(triple, 3),
         both!("kalman-triple-steady", rate, |c| {
             let model = c::Model::triple_integrator(4096, c::Hertz(rate), JERK).expect("valid");
             c::SteadyKalman::new(&model).expect("valid")
-        }),
+        })
+        .poles(triple, 3),
         both!("kalman-motor", rate, |c| {
             let model =
                 c::Model::motor(&c::Device::DCX35L, c::Hertz(rate), CURRENT_NOISE).expect("valid");
             c::Kalman::new(&model).expect("valid")
-        }),
+        })
+        .poles(motor, 2),
         both!("kalman-motor-steady", rate, |c| {
             let model =
                 c::Model::motor(&c::Device::DCX35L, c::Hertz(rate), CURRENT_NOISE).expect("valid");
             c::SteadyKalman::new(&model).expect("valid")
-        }),
+        })
+        .poles(motor, 2),
         both!("kalman-motor, literal", rate, |c| {
             let model =
                 c::Model::motor(&c::Device::DCX35L, c::Hertz(rate), CURRENT_NOISE).expect("valid");
             c::LateCurrent(c::SteadyKalman::new(&model).expect("valid"))
-        }),
+        })
+        .poles(motor, 2),
         both!("m-over-t", rate, |c| {
             c::MOverT::new(c::Hertz(EDGE_CLOCK_HZ), c::Hertz(rate)).expect("valid")
         })
-        .comes_to_rest_slowly()
+        .one_count_over_time()
         .decides(),
-        both!("observer", rate, |c| observer!(c, rate)).decides(),
+        both!("observer", rate, |c| observer!(c, rate))
+            .decides()
+            .settles(forgotten),
         both!("observer-edge", rate, |c| {
             observer!(c, rate)
                 .with_edges(c::Hertz(EDGE_CLOCK_HZ), c::Hertz(rate))
                 .expect("valid")
         })
-        .decides(),
+        .decides()
+        .settles(forgotten),
         both!("adaptive", rate, |c| {
             observer!(c, rate)
                 .learning(4096, c::Hertz(rate))
                 .expect("valid")
         })
-        .decides(),
+        .decides()
+        .settles(learned),
         both!("adaptive-edge", rate, |c| {
             observer!(c, rate)
                 .with_edges(c::Hertz(EDGE_CLOCK_HZ), c::Hertz(rate))
                 .and_then(|observer| observer.learning(4096, c::Hertz(rate)))
                 .expect("valid")
         })
-        .decides(),
+        .decides()
+        .settles(learned),
     ];
     if rate > 5000.0 {
         for slow in ["low-pass", "pll", "kalman-motor"] {
             for one in all.iter_mut().filter(|one| one.name.starts_with(slow)) {
-                one.deviation_bound_rad_s = SLOW_DEVIATION_RAD_S;
+                one.bounds.deviation_rad_s = SLOW_DEVIATION_RAD_S;
             }
         }
     }
     all
-}
-
-/// A pair, or the name of the error that both precisions refuse it with.
-pub type Refusable = Result<Box<dyn Pair>, String>;
-
-/// The kinds of estimators that have a parameter to choose.
-pub const KINDS: [&str; 6] = [
-    "low-pass",
-    "pll",
-    "kalman-triple",
-    "kalman-triple-steady",
-    "kalman-motor",
-    "kalman-motor-steady",
-];
-
-/// The parameter of `kind` over its range and beyond: a cut-off in Hz, or a noise over 24 decades.
-#[must_use]
-pub fn parameters(kind: &str, rate: f64) -> Vec<f64> {
-    match kind {
-        "low-pass" | "pll" => [1e-7, 1e-6, 1e-4, 1e-2, 0.1, 0.5, 0.51]
-            .iter()
-            .map(|part| part * rate)
-            .collect(),
-        _ => (-12..=12).map(|exponent| 10f64.powi(exponent)).collect(),
-    }
-}
-
-/// `kind` with these parameters.
-///
-/// # Errors
-/// The name of the design error, if core and twin agree in it.
-///
-/// # Panics
-/// If only one of them refuses, or `kind` is none of [`KINDS`].
-pub fn design(kind: &str, rate: f64, counts_per_rev: u32, parameter: f64) -> Refusable {
-    match kind {
-        "low-pass" => refusable!(|c| c::LowPass::new(
-            c::FiniteDifference,
-            c::Hertz(parameter),
-            c::Hertz(rate)
-        )),
-        "pll" => refusable!(|c| c::Pll::new(c::Hertz(parameter), c::Hertz(rate))),
-        "kalman-triple" => {
-            refusable!(
-                |c| c::Model::triple_integrator(counts_per_rev, c::Hertz(rate), parameter)
-                    .and_then(|model| c::Kalman::new(&model))
-            )
-        }
-        "kalman-triple-steady" => {
-            refusable!(
-                |c| c::Model::triple_integrator(counts_per_rev, c::Hertz(rate), parameter)
-                    .and_then(|model| c::SteadyKalman::new(&model))
-            )
-        }
-        "kalman-motor" => refusable!(|c| {
-            let device = c::Device {
-                counts_per_rev,
-                ..c::Device::DCX35L
-            };
-            c::Model::motor(&device, c::Hertz(rate), parameter)
-                .and_then(|model| c::Kalman::new(&model))
-        }),
-        "kalman-motor-steady" => refusable!(|c| {
-            let device = c::Device {
-                counts_per_rev,
-                ..c::Device::DCX35L
-            };
-            c::Model::motor(&device, c::Hertz(rate), parameter)
-                .and_then(|model| c::SteadyKalman::new(&model))
-        }),
-        _ => panic!("no estimator {kind}"),
-    }
 }

@@ -54,6 +54,17 @@ pub struct Shown {
 }
 
 impl Shown {
+    /// What this sample shows.
+    #[must_use]
+    pub fn of(sample: &Sample) -> Self {
+        Self {
+            large: sample.large.0,
+            small: sample.small.0,
+            amps: sample.current.get(),
+            edge: sample.edge.map(|edge| (edge.boundary.0, edge.age.0)),
+        }
+    }
+
     /// As the core takes it.
     #[must_use]
     pub fn sample(&self) -> Sample {

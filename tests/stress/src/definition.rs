@@ -22,13 +22,14 @@ pub struct Definition {
     pub line: Line,
 }
 
-/// A fraction; its denominator is positive.
+/// A fraction; its denominator is positive. With displacements below 2^22 over at most 128 ticks
+/// every product below stays under 2^52.
 #[derive(Clone, Copy, Debug)]
 pub struct Fraction {
     /// Numerator.
-    pub rise: i128,
+    pub rise: i64,
     /// Denominator.
-    pub run: i128,
+    pub run: i64,
 }
 
 impl Fraction {
@@ -56,15 +57,15 @@ impl Definition {
     }
 
     fn fit(&self, z: &[i32]) -> Fraction {
-        let i = z.len() as i128;
+        let i = z.len() as i64;
         match self.line {
             Line::EndFit => Fraction {
-                rise: i128::from(z[z.len() - 1]),
+                rise: i64::from(z[z.len() - 1]),
                 run: i,
             },
             Line::BestFit => {
-                let plain: i128 = z.iter().map(|&z| i128::from(z)).sum();
-                let weighted: i128 = (1..).zip(z).map(|(j, &z)| j * i128::from(z)).sum();
+                let plain: i64 = z.iter().map(|&z| i64::from(z)).sum();
+                let weighted: i64 = (1..).zip(z).map(|(j, &z)| j * i64::from(z)).sum();
                 Fraction {
                     rise: 6 * (2 * weighted - i * plain),
                     run: i * (i + 1) * (i + 2),
@@ -76,8 +77,8 @@ impl Definition {
     /// Whether `|z_j - j slope| <= d` for every j.
     fn passes(&self, slope: Fraction, z: &[i32]) -> bool {
         (1..).zip(z).all(|(j, &z)| {
-            let miss = i128::from(z) * slope.run - j * slope.rise;
-            miss.abs().cmp(&(i128::from(self.d) * slope.run)) != Ordering::Greater
+            let miss = i64::from(z) * slope.run - j * slope.rise;
+            miss.abs().cmp(&(i64::from(self.d) * slope.run)) != Ordering::Greater
         })
     }
 }

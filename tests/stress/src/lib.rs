@@ -6,15 +6,24 @@
 //! | [`course`] | what the encoders show: rest, top speed, ties, creep, jumps, wraps |
 //! | [`pair`] | an estimator of the core beside its twin |
 //! | [`contestants`] | all of them |
-//! | [`trial`] | one estimator over one course, and what was found |
+//! | [`trial`] | one estimator over one course |
+//! | [`findings`] | what was found, and what it is held against |
+//! | [`parts`] | all estimators over long courses, in parts |
+//! | [`designs`] | estimators by parameters that may be refused |
 //! | [`sensitivity`] | parameters at the ends of their ranges |
+//! | [`signals`] | what f32 costs on signals that a device can give |
 //! | [`definition`] | FOAW by its O(n²) definition, in exact fractions |
 //! | [`table`] | the findings as text, markdown and JSON |
 
 pub mod contestants;
 pub mod course;
 pub mod definition;
+pub mod designs;
+pub mod findings;
 pub mod pair;
+pub mod parts;
 pub mod sensitivity;
+mod settling;
+pub mod signals;
 pub mod table;
 pub mod trial;

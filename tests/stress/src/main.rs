@@ -9,7 +9,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use stress::contestants::{Contestant, at};
-use stress::{sensitivity, table, trial};
+use stress::findings::Findings;
+use stress::parts::Plan;
+use stress::{sensitivity, signals, table};
 
 /// Run every estimator over a long, hostile course, in f32 beside its generated f64 twin.
 ///
@@ -17,11 +19,12 @@ use stress::{sensitivity, table, trial};
 /// tick, any 32 bits, currents that are no numbers, over wraps of both counter widths. Compared at
 /// every tick: f32 with f64, the 16-bit counter with the 32-bit one, the covariance with what it
 /// has to be; now and then the window with its definition in exact fractions; after every stretch
-/// the time until the output is at rest. Then parameters at the ends of their ranges. Exit status 1 if anything did not hold.
+/// the time until the output is at rest. Then signals that a device gives, and parameters at the
+/// ends of their ranges. Exit status 1 if anything did not hold.
 #[derive(Debug, Parser)]
 #[command(name = "stress", bin_name = "cargo stress", version)]
 struct Arguments {
-    /// Ticks per estimator and rate; 1e9 takes about an hour on two cores
+    /// Ticks per estimator and rate; 1e9 takes 20 minutes on two cores that are free
     #[arg(long, value_name = "N", default_value = "1e9", value_parser = ticks)]
     ticks: u64,
     /// Control rate, Hz; may be given again
@@ -33,6 +36,9 @@ struct Arguments {
     /// Seed of the course
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// Keep finished parts in this file, and do not run again what this very program did before
+    #[arg(long, value_name = "FILE")]
+    resume: Option<PathBuf>,
     /// Write the findings as JSON too
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -78,24 +84,40 @@ fn run(arguments: &Arguments) -> Result<bool, String> {
         ProgressStyle::with_template("{bar:40} {percent}% of the ticks, {eta} left")
             .map_err(|error| error.to_string())?,
     );
-    let all: Vec<_> = contestants
-        .par_iter()
-        .map(|contestant| trial::run(contestant, arguments.seed, arguments.ticks, |n| bar.inc(n)))
-        .collect();
+    let plan = Plan {
+        seed: arguments.seed,
+        ticks: arguments.ticks,
+    };
+    let all = plan.run(&contestants, arguments.resume.as_deref(), |n| bar.inc(n))?;
     bar.finish_and_clear();
+    let device: Vec<_> = differences(&contestants, arguments);
     let extremes = sensitivity::all();
     if arguments.markdown {
         print!("{}", table::markdown(&all));
     } else {
         print!("{}", table::text(&all));
     }
+    print!("{}", table::signals(&device));
     print!("{}", table::sensitivity(&extremes));
     if let Some(path) = &arguments.json {
         let json = serde_json::to_vec_pretty(&all).map_err(|error| error.to_string())?;
         fs::write(path, json)
             .map_err(|error| format!("{}: cannot write: {error}", path.display()))?;
     }
-    Ok(all.iter().all(trial::Findings::passed) && extremes.iter().all(|one| one.broken.is_empty()))
+    Ok(all.iter().all(Findings::passed) && extremes.iter().all(|one| one.broken.is_empty()))
+}
+
+/// What f32 costs each on a device's signals.
+fn differences(contestants: &[Contestant], arguments: &Arguments) -> Vec<signals::Difference> {
+    let mut all = Vec::new();
+    for rate in &arguments.rates {
+        let scenarios = signals::at(*rate, arguments.seed);
+        let same_rate = contestants
+            .par_iter()
+            .filter(|one| one.rate_hz.to_bits() == rate.to_bits());
+        all.par_extend(same_rate.map(|one| signals::difference(one, &scenarios)));
+    }
+    all
 }
 
 fn contestants(arguments: &Arguments) -> Result<Vec<Contestant>, String> {

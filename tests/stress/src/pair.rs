@@ -38,7 +38,7 @@ pub(crate) trait State<E> {
 impl<E> State<E> for core::Count {}
 impl<E> State<E> for core::PllState {}
 impl<E> State<E> for core::MOverTState {}
-impl<E, C, S, M, L> State<E> for core::ObserverState<C, S, M, L> {}
+impl<E, C, S, M> State<E> for core::ObserverState<C, S, M, ()> {}
 impl<E, const S: usize> State<E> for core::SteadyKalmanState<S> {}
 impl<E, S> State<E> for core::LateCurrentState<S> {}
 impl<E, S> State<E> for core::LowPassState<S> {}
@@ -60,6 +60,16 @@ impl<const S: usize, U: core::Input<S>> State<core::Kalman<S, U>> for core::Kalm
             }
         }
         (!is_positive_definite(&p)).then_some("covariance not positive definite")
+    }
+}
+
+/// `U D Uᵀ` is positive definite if D is positive and U is made of numbers.
+impl<E, C, S, M> State<E> for core::ObserverState<C, S, M, core::LearnedState> {
+    fn fault(&self, _: &E) -> Option<&'static str> {
+        let learned = self.learning();
+        let positive = learned.diagonal().iter().all(|d| *d > 0.0 && *d < 1.0);
+        let finite = learned.upper().iter().all(|u| u.is_finite());
+        (!(positive && finite)).then_some("covariance of the parameters not positive definite")
     }
 }
 

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::contestants::{self, Refusable};
 use crate::course::Course;
+use crate::designs::{self, Refusable};
 use crate::pair::Pair;
 
 /// Control rates, Hz: periods of 10 µs to 10 ms.
@@ -34,15 +34,15 @@ pub struct Outcome {
 #[must_use]
 pub fn all() -> Vec<Outcome> {
     let mut all = Vec::new();
-    for kind in contestants::KINDS {
+    for kind in designs::KINDS {
         let mut outcome = Outcome {
             estimator: kind.to_owned(),
             ..Outcome::default()
         };
         for rate in RATES {
             for counts_per_rev in COUNTS_PER_REV {
-                for parameter in contestants::parameters(kind, rate) {
-                    let design = contestants::design(kind, rate, counts_per_rev, parameter);
+                for parameter in designs::parameters(kind, rate) {
+                    let design = designs::design(kind, rate, counts_per_rev, parameter);
                     let what = format!("{rate} Hz, {counts_per_rev} counts, {parameter:e}");
                     outcome.take(design, rate, &what);
                 }

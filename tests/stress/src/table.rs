@@ -2,14 +2,15 @@
 
 use std::fmt::Write as _;
 
+use crate::findings::Findings;
 use crate::sensitivity::Outcome;
-use crate::trial::Findings;
+use crate::signals::Difference;
 
 /// One line an estimator, for a terminal.
 #[must_use]
 pub fn text(all: &[Findings]) -> String {
     let mut text = format!(
-        "{:<24}{:>8}{:>9}{:>8}{:>12}{:>12}{:>11}{:>10}{:>10}{:>8}\n{:<24}{:>8}{:>9}{:>8}{:>12}{:>12}{:>11}{:>10}{:>10}{:>8}\n",
+        "{:<24}{:>8}{:>9}{:>8}{:>12}{:>12}{:>11}{:>10}{:>10}{:>10}{:>8}\n{:<24}{:>8}{:>9}{:>8}{:>12}{:>12}{:>11}{:>10}{:>10}{:>10}{:>8}\n",
         "",
         "rate",
         "ticks",
@@ -18,6 +19,7 @@ pub fn text(all: &[Findings]) -> String {
         "at start",
         "relative",
         "recovery",
+        "at most",
         "windows",
         "",
         "estimator",
@@ -28,13 +30,14 @@ pub fn text(all: &[Findings]) -> String {
         "rad/s",
         "of fastest",
         "ticks",
+        "ticks",
         "compared",
         "faults"
     );
     for found in all {
         let _ = writeln!(
             text,
-            "{:<24}{:>8}{:>9.1e}{:>8}{:>12.1e}{:>12.1e}{:>11.1e}{:>10}{:>10.1e}{:>8}  {}",
+            "{:<24}{:>8}{:>9.1e}{:>8}{:>12.1e}{:>12.1e}{:>11.1e}{:>10}{:>10}{:>10.1e}{:>8}  {}",
             found.estimator,
             found.rate_hz,
             found.ticks as f64,
@@ -43,6 +46,7 @@ pub fn text(all: &[Findings]) -> String {
             found.start_deviation_rad_s,
             found.relative_deviation,
             found.recovery_ticks,
+            found.bounds.settles_ticks,
             found.windows_compared as f64,
             found.fault_count,
             if found.passed() { "ok" } else { "FAILED" },
@@ -59,13 +63,13 @@ pub fn text(all: &[Findings]) -> String {
 pub fn markdown(all: &[Findings]) -> String {
     let mut text = String::from(
         "| estimator | rate, Hz | wraps of 2^32 | f32 against f64, rad/s | soon after a start | of the fastest velocity \
-         | at rest after, ticks | windows compared | faults |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+         | at rest after, ticks | by design | windows compared | faults |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
     for found in all {
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {:.1e} | {:.1e} | {:.1e} | {} | {} | {} |",
+            "| {} | {} | {} | {:.1e} | {:.1e} | {:.1e} | {} | {} | {} | {} |",
             found.estimator,
             found.rate_hz,
             found.wraps,
@@ -73,8 +77,31 @@ pub fn markdown(all: &[Findings]) -> String {
             found.start_deviation_rad_s,
             found.relative_deviation,
             found.recovery_ticks,
+            found.bounds.settles_ticks,
             found.windows_compared,
             found.fault_count,
+        );
+    }
+    text
+}
+
+/// What f32 costs on a device's signals.
+#[must_use]
+pub fn signals(all: &[Difference]) -> String {
+    let mut text = String::from(
+        "\n| estimator | rate, Hz | largest, rad/s | RMS, rad/s | RMS error, rad/s | f32 adds |\n\
+         |---|---:|---:|---:|---:|---:|\n",
+    );
+    for found in all {
+        let _ = writeln!(
+            text,
+            "| {} | {} | {:.1e} | {:.1e} | {:.3} | {:.1e} |",
+            found.estimator,
+            found.rate_hz,
+            found.largest_rad_s,
+            found.rms_rad_s,
+            found.error_rad_s[0],
+            found.added_error(),
         );
     }
     text

@@ -1,19 +1,14 @@
 //! One estimator over one course.
 
-use serde::Serialize;
-
 use crate::contestants::Contestant;
 use crate::course::{Course, Draws, Shown, Stretch, TOP_STEP};
 use crate::definition::Definition;
+use crate::findings::Findings;
 use crate::pair::Pair;
 
 /// Fastest slip of the paper's constant-velocity experiment. Up to it a deviation is counted in
 /// rad/s, beyond it in parts of the velocity.
 const HAPTIC_RAD_S: f64 = 20.0;
-
-/// What rounding may add while a filter that started in motion settles, rad/s: a thirtieth of
-/// the haptic tolerance at rest.
-const START_BOUND_RAD_S: f64 = 1e-2;
 
 /// Starts tried, and ticks of each.
 const STARTS: u64 = 200;
@@ -22,65 +17,8 @@ const START_TICKS: u32 = 300;
 /// A window is tried against its definition once in so many ticks.
 const DEFINITION_EVERY: u64 = 61;
 
-/// More faults than this are counted and not told.
-const FAULTS_TOLD: usize = 5;
-
-/// What was found.
-#[derive(Clone, Debug, Serialize)]
-pub struct Findings {
-    /// Name and parameters.
-    pub estimator: String,
-    /// Control rate, Hz.
-    pub rate_hz: f64,
-    /// Ticks run.
-    pub ticks: u64,
-    /// Wraps of the 32-bit count.
-    pub wraps: u64,
-    /// Largest |f32 - f64| while no velocity since the last rest was above 20 rad/s, rad/s.
-    pub deviation_rad_s: f64,
-    /// Bound of it.
-    pub deviation_bound_rad_s: f64,
-    /// Largest |f32 - f64| within the first ticks after a start in motion, rad/s, at up to
-    /// 20 rad/s: a covariance comes down from its prior, and cancels digits as it does.
-    pub start_deviation_rad_s: f64,
-    /// Largest |f32 - f64| over the largest velocity since the last rest, from a count a tick on.
-    pub relative_deviation: f64,
-    /// Longest rest until the output stayed at rest, ticks.
-    pub recovery_ticks: u32,
-    /// How long the twin took at most; the bound of it with a tenth and two ticks more.
-    pub twin_recovery_ticks: u32,
-    /// Windows that were compared with their definition.
-    pub windows_compared: u64,
-    /// What went wrong.
-    pub faults: Vec<String>,
-    /// How often.
-    pub fault_count: u64,
-}
-
-impl Findings {
-    /// Whether everything held.
-    #[must_use]
-    pub fn passed(&self) -> bool {
-        self.fault_count == 0
-            && self.deviation_rad_s <= self.deviation_bound_rad_s
-            && (self.start_deviation_rad_s <= START_BOUND_RAD_S
-                || self.deviation_bound_rad_s.is_infinite())
-            && self.recovery_ticks <= self.recovery_bound()
-    }
-
-    /// Longest recovery allowed, ticks.
-    #[must_use]
-    pub const fn recovery_bound(&self) -> u32 {
-        self.twin_recovery_ticks + self.twin_recovery_ticks / 10 + 2
-    }
-
-    fn fault(&mut self, said: impl FnOnce() -> String) {
-        self.fault_count += 1;
-        if self.faults.len() < FAULTS_TOLD {
-            self.faults.push(said());
-        }
-    }
-}
+/// Counts that are kept for it: many more than a window, so that they are seldom moved.
+const HISTORY: usize = 4096;
 
 /// Runs `contestant` for `ticks` ticks; `progress` hears of every 2^20.
 pub fn run(contestant: &Contestant, seed: u64, ticks: u64, progress: impl Fn(u64)) -> Findings {
@@ -102,7 +40,7 @@ pub fn run(contestant: &Contestant, seed: u64, ticks: u64, progress: impl Fn(u64
 
 /// The largest deviation soon after starts in motion, rad/s.
 fn start_deviation(contestant: &Contestant, seed: u64) -> f64 {
-    let rad_per_count = rad_per_count(contestant);
+    let rad_per_count = contestant.rad_per_count();
     let mut draws = Draws::new(!seed);
     let mut worst = 0.0f64;
     for _ in 0..STARTS {
@@ -119,11 +57,6 @@ fn start_deviation(contestant: &Contestant, seed: u64) -> f64 {
     worst
 }
 
-/// rad/s of a count per tick.
-fn rad_per_count(contestant: &Contestant) -> f64 {
-    std::f64::consts::TAU * contestant.rate_hz / 4096.0
-}
-
 struct Trial<'a> {
     contestant: &'a Contestant,
     pair: Box<dyn Pair>,
@@ -134,7 +67,7 @@ struct Trial<'a> {
     fastest: f64,
     /// The count, extended from its lower 16 bits tick by tick.
     extended: estimator_core::Count,
-    /// Latest counts, newest first, for the definition.
+    /// Latest counts, newest last, for the definition.
     history: Vec<u32>,
 }
 
@@ -150,19 +83,11 @@ impl<'a> Trial<'a> {
             found: Findings {
                 estimator: contestant.name.clone(),
                 rate_hz: contestant.rate_hz,
-                ticks: 0,
-                wraps: 0,
-                deviation_rad_s: 0.0,
-                deviation_bound_rad_s: contestant.deviation_bound_rad_s,
                 start_deviation_rad_s: start_deviation(contestant, seed),
-                relative_deviation: 0.0,
-                recovery_ticks: 0,
-                twin_recovery_ticks: 0,
-                windows_compared: 0,
-                faults: Vec::new(),
-                fault_count: 0,
+                bounds: contestant.bounds,
+                ..Findings::default()
             },
-            rad_per_count: rad_per_count(contestant),
+            rad_per_count: contestant.rad_per_count(),
             fastest: 0.0,
             extended: estimator_core::Count(first.large),
             history: vec![first.large],
@@ -256,24 +181,29 @@ impl<'a> Trial<'a> {
         let Some(definition) = self.contestant.definition else {
             return;
         };
-        let step = shown.large.wrapping_sub(self.history[0]) as i32;
+        let last = self.history.last().copied().unwrap_or(shown.large);
+        let step = shown.large.wrapping_sub(last) as i32;
         if step.unsigned_abs() > TOP_STEP.unsigned_abs() {
             // Out of range: the window starts again here.
-            self.history = vec![shown.large];
+            self.history.clear();
+            self.history.push(shown.large);
         } else {
-            self.history.insert(0, shown.large);
-            self.history.truncate(definition.n + 1);
+            if self.history.len() == HISTORY {
+                self.history.drain(..HISTORY - definition.n);
+            }
+            self.history.push(shown.large);
             if tick.is_multiple_of(DEFINITION_EVERY) {
-                self.define(&definition, output);
+                self.define(&definition, shown.large, output);
             }
         }
     }
 
-    fn define(&mut self, definition: &Definition, output: f32) {
-        let newest = self.history[0];
-        let z: Vec<i32> = self.history[1..]
-            .iter()
-            .map(|count| newest.wrapping_sub(*count) as i32)
+    fn define(&mut self, definition: &Definition, shown: u32, output: f32) {
+        let newest_first = self.history.iter().rev();
+        let z: Vec<i32> = newest_first
+            .skip(1)
+            .take(definition.n)
+            .map(|count| shown.wrapping_sub(*count) as i32)
             .collect();
         let (slope, window) = definition.slope(&z);
         let (exact, used) = (slope.rounded(), self.pair.window());

@@ -1,0 +1,186 @@
+//! A long run in parts: each a course of its own, so that every core works to the end and what is
+//! done can be kept.
+
+use std::collections::hash_map::DefaultHasher;
+use std::fs::{self, File, OpenOptions};
+use std::hash::{Hash, Hasher};
+use std::io::{ErrorKind, Write};
+use std::path::Path;
+use std::sync::Mutex;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::contestants::Contestant;
+use crate::findings::Findings;
+use crate::trial;
+
+/// Ticks of a part.
+const PART: u64 = 100_000_000;
+
+/// A part that is done, a line of the file of them.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Done {
+    /// Of the program that did it.
+    build: u64,
+    seed: u64,
+    ticks: u64,
+    found: Findings,
+}
+
+/// What to run.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// Seed of the first part's course; those of the others follow.
+    pub seed: u64,
+    /// Ticks for each estimator.
+    pub ticks: u64,
+}
+
+impl Plan {
+    /// Seed and ticks of each part.
+    fn parts(self) -> impl Iterator<Item = (u64, u64)> {
+        let whole = (0..self.ticks / PART).map(|_| PART);
+        let rest = Some(self.ticks % PART).filter(|rest| *rest > 0);
+        let seeds = (0..).map(move |part| self.seed.wrapping_add(part));
+        seeds.zip(whole.chain(rest))
+    }
+
+    /// Runs it on all cores; `progress` hears of ticks. With a file, each part is added to it when
+    /// done, and what this very program did before is taken from it.
+    ///
+    /// # Errors
+    /// One line if the file cannot be read, understood or written.
+    pub fn run(
+        self,
+        contestants: &[Contestant],
+        kept: Option<&Path>,
+        progress: impl Fn(u64) + Sync,
+    ) -> Result<Vec<Findings>, String> {
+        let before = kept.map_or(Ok(Vec::new()), read)?;
+        let build = build()?;
+        let file = kept.map(open).transpose()?.map(Mutex::new);
+        let jobs: Vec<_> = contestants
+            .iter()
+            .enumerate()
+            .flat_map(|(at, one)| self.parts().map(move |part| (at, one, part)))
+            .collect();
+        let one = |(at, contestant, (seed, ticks)): &(usize, &Contestant, (u64, u64))| {
+            let same = |done: &&Done| {
+                (done.build, done.seed, done.ticks) == (build, *seed, *ticks)
+                    && done.found.estimator == contestant.name
+                    && done.found.rate_hz.to_bits() == contestant.rate_hz.to_bits()
+            };
+            if let Some(done) = before.iter().find(same) {
+                progress(*ticks);
+                return Ok((*at, done.found.clone()));
+            }
+            let found = trial::run(contestant, *seed, *ticks, &progress);
+            if let (Some(path), Some(file)) = (kept, &file) {
+                let done = Done {
+                    build,
+                    seed: *seed,
+                    ticks: *ticks,
+                    found: found.clone(),
+                };
+                let mut line = serde_json::to_string(&done).map_err(|error| error.to_string())?;
+                line.push('\n');
+                let mut file = file.lock().map_err(|error| error.to_string())?;
+                let written = file.write_all(line.as_bytes());
+                written.map_err(|error| format!("{}: cannot write: {error}", path.display()))?;
+            }
+            Ok((*at, found))
+        };
+        let found: Vec<_> = jobs.par_iter().map(one).collect::<Result<_, String>>()?;
+        let mut all: Vec<Option<Findings>> = vec![None; contestants.len()];
+        for (at, part) in found {
+            match &mut all[at] {
+                Some(whole) => whole.join(part),
+                none => *none = Some(part),
+            }
+        }
+        let mut all: Vec<Findings> = all.into_iter().flatten().collect();
+        for (found, contestant) in all.iter_mut().zip(contestants) {
+            found.bounds = contestant.bounds;
+        }
+        Ok(all)
+    }
+}
+
+fn open(path: &Path) -> Result<File, String> {
+    let opened = OpenOptions::new().append(true).create(true).open(path);
+    opened.map_err(|error| format!("{}: cannot write: {error}", path.display()))
+}
+
+fn read(path: &Path) -> Result<Vec<Done>, String> {
+    let text = match fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(format!("{}: cannot read: {error}", path.display())),
+    };
+    let lines = text.lines().enumerate();
+    let parts = lines.map(|(line, text)| {
+        serde_json::from_str(text).map_err(|error| {
+            let (path, line) = (path.display(), line + 1);
+            format!("{path}: line {line}: not a part of a run ({error}); delete the line")
+        })
+    });
+    parts.collect()
+}
+
+/// Tells builds apart: parts of another estimator are not parts of this run.
+fn build() -> Result<u64, String> {
+    let program = std::env::current_exe().and_then(fs::read);
+    let program = program.map_err(|error| format!("cannot read the program itself: {error}"))?;
+    let mut hasher = DefaultHasher::new();
+    program.hash(&mut hasher);
+    Ok(hasher.finish())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contestants::at;
+
+    #[test]
+    fn parts_make_the_whole() {
+        let plan = |ticks| Plan { seed: 7, ticks };
+        assert_eq!(plan(5).parts().collect::<Vec<_>>(), [(7, 5)]);
+        let parts: Vec<_> = plan(2 * PART + 1).parts().collect();
+        assert_eq!(parts, [(7, PART), (8, PART), (9, 1)]);
+    }
+
+    #[test]
+    fn what_is_kept_is_not_run_again_and_nothing_else_is_taken_for_it() {
+        let directory = std::env::temp_dir().join(format!("stress-{}", std::process::id()));
+        fs::create_dir_all(&directory).unwrap();
+        let path = directory.join("kept.jsonl");
+        let _ = fs::remove_file(&path);
+        let contestants: Vec<_> = at(1000.0).into_iter().take(2).collect();
+        let run = |seed| {
+            let plan = Plan { seed, ticks: 1000 };
+            plan.run(&contestants, Some(&path), |_| ())
+        };
+        let lines = || fs::read_to_string(&path).unwrap().lines().count();
+        let first = run(1).unwrap();
+        assert_eq!(lines(), 2);
+        let again = run(1).unwrap();
+        assert_eq!(lines(), 2);
+        assert_eq!(format!("{first:?}"), format!("{again:?}"));
+        run(2).unwrap();
+        assert_eq!(lines(), 4);
+        // Another build's parts do not count; a broken line is named.
+        let mut other = String::new();
+        for mut done in read(&path).unwrap() {
+            done.build ^= 1;
+            other += &(serde_json::to_string(&done).unwrap() + "\n");
+        }
+        fs::write(&path, other).unwrap();
+        run(1).unwrap();
+        assert_eq!(lines(), 6);
+        fs::write(&path, "{").unwrap();
+        let said = run(1).unwrap_err();
+        assert!(said.contains("kept.jsonl: line 1: "), "{said}");
+        fs::remove_dir_all(&directory).unwrap();
+    }
+}

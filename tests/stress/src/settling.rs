@@ -1,0 +1,98 @@
+//! How long an estimator may take to come to rest after anything, from its design.
+
+use estimator_core::{CountObserver, CoupledMotor};
+
+/// A correction moves an observer by no more counts than these.
+const LARGEST_INNOVATION: f64 = 65_536.0;
+
+/// The largest velocity that a count can show, counts a tick: any 32 bits.
+const FASTEST: f64 = (1u64 << 31) as f64;
+
+/// Ticks until [`FASTEST`] has fallen below `quiet`, counts a tick, through `order` poles within
+/// `radius` of zero: the least k with `(1 + x)^(order - 1) exp(-x) FASTEST < quiet`,
+/// `x = -k ln(radius)`, which is the slowest that so many poles can be.
+pub(crate) fn poles(radius: f64, order: i32, quiet: f64) -> u32 {
+    let rate = -radius.ln();
+    let left = |ticks: u32| {
+        let x = f64::from(ticks) * rate;
+        (1.0 + x).powi(order - 1) * (-x).exp() * FASTEST
+    };
+    // It rises at first, and falls from `x = order - 2` on.
+    let mut ticks = (f64::from(order) / rate) as u32;
+    while left(ticks) >= quiet {
+        ticks += 1;
+    }
+    ticks
+}
+
+/// Radius of one pole of this frequency.
+pub(crate) fn pole(cutoff_hz: f64, rate_hz: f64) -> f64 {
+    (-std::f64::consts::TAU * cutoff_hz / rate_hz).exp()
+}
+
+/// Spectral radius of the error of a filter with transition `a` and gain `k` of the position,
+/// `(I - K H) A`: what the norm of its power grows by in a tick.
+pub(crate) fn radius<const S: usize>(a: &[[f64; S]; S], k: &[f32; S]) -> f64 {
+    let mut m = *a;
+    for (row, k) in m.iter_mut().zip(k) {
+        for (element, first) in row.iter_mut().zip(a[0]) {
+            *element -= f64::from(*k) * first;
+        }
+    }
+    // The logarithm of the norm of M^(2^i), by squaring; scaled, so that it stays in range.
+    let (mut logarithm, mut power) = (0.0, 1.0);
+    for _ in 0..30 {
+        let norm = m.iter().flatten().fold(0.0f64, |norm, x| norm.max(x.abs()));
+        logarithm += norm.ln() / power;
+        m = m.map(|row| row.map(|x| x / norm));
+        let mut square = [[0.0; S]; S];
+        for (into, row) in square.iter_mut().zip(&m) {
+            for (x, other) in row.iter().zip(&m) {
+                for (sum, y) in into.iter_mut().zip(other) {
+                    *sum += x * y;
+                }
+            }
+        }
+        m = square;
+        power *= 2.0;
+    }
+    f64::exp(logarithm)
+}
+
+/// Ticks until the unknown torque that the largest correction leaves, at its worst gain, has
+/// decayed below what always holds a rotor: half of the friction believed in, as the other half may
+/// have been taken for wrong.
+pub(crate) fn unknown_torque(observer: &CountObserver, load_time: f64, rate_hz: f64) -> u32 {
+    let CoupledMotor {
+        large,
+        coulomb_friction,
+        ..
+    } = CoupledMotor::DCX35L;
+    let per_torque = f64::from(large.counts_per_rev)
+        / (std::f64::consts::TAU * rate_hz * rate_hz * large.inertia);
+    let holds = 0.5 * per_torque * coulomb_friction;
+    let gains = (1..=64).map(|ticks| f64::from(observer.gain(ticks).load));
+    let left = gains.fold(0.0, f64::max) * LARGEST_INNOVATION;
+    (load_time * rate_hz * (left / holds).ln()).ceil() as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_pole_falls_by_its_radius() {
+        // After 31 ticks 1 of 2^31 is left, after 32 a half.
+        assert_eq!(poles(0.5, 1, 0.9), 32);
+        assert!(poles(0.5, 2, 0.9) > 32);
+    }
+
+    #[test]
+    fn the_radius_is_that_of_the_slowest_pole() {
+        // The tracking loop of theory.md 4.2: both poles at p.
+        let p = 0.7f64;
+        let k = [(1.0 - p * p) as f32, ((1.0 - p) * (1.0 - p)) as f32];
+        let found = radius(&[[1.0, 1.0], [0.0, 1.0]], &k);
+        assert!((found - p).abs() < 1e-3, "{found}");
+    }
+}

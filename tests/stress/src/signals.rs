@@ -1,0 +1,110 @@
+//! What f32 costs on signals that a device can give: every scenario of the simulated one.
+
+use host_sim::device::Device;
+use host_sim::estimators::sample;
+use host_sim::scenario::ScenarioName;
+use host_sim::simulate::simulate;
+use host_sim::trace::Columns;
+use serde::Serialize;
+
+use crate::contestants::Contestant;
+use crate::course::Shown;
+
+/// Length of each scenario, s.
+const SECONDS: f64 = 10.0;
+
+/// Start that is not looked at, s: it has a figure of its own.
+const SETTLED_S: f64 = 0.5;
+
+/// A list of what is shown, and the true velocity at each, rad/s.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    shown: Vec<Shown>,
+    truth: Vec<f64>,
+}
+
+/// All that a device shows at one rate.
+///
+/// # Panics
+/// If the default device does not simulate, at an impossible rate.
+#[must_use]
+pub fn at(rate_hz: f64, seed: u64) -> Vec<Scenario> {
+    let everything = estimator_core::Signals {
+        current: true,
+        small: true,
+        edge: true,
+    };
+    let columns = Columns {
+        counts_small: true,
+        edges: true,
+    };
+    let device = Device::default();
+    let scenarios = ScenarioName::ALL.into_iter();
+    let traces = scenarios.map(|scenario| {
+        let trace = simulate(&device, scenario, rate_hz, seed, SECONDS, columns);
+        let trace = trace.expect("the default device is possible");
+        let samples = (0..trace.len()).map(|k| sample(everything, &trace, k));
+        Scenario {
+            shown: samples.map(|sample| Shown::of(&sample)).collect(),
+            truth: trace.true_omega.expect("simulated"),
+        }
+    });
+    traces.collect()
+}
+
+/// What f32 and f64 differ by, over all of them.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Difference {
+    /// Name and parameters.
+    pub estimator: String,
+    /// Control rate, Hz.
+    pub rate_hz: f64,
+    /// Largest |f32 - f64|, rad/s.
+    pub largest_rad_s: f64,
+    /// RMS of f32 - f64, rad/s.
+    pub rms_rad_s: f64,
+    /// RMS error in f32 and in f64 against the truth, rad/s.
+    pub error_rad_s: [f64; 2],
+}
+
+impl Difference {
+    /// What f32 adds to the error, as a part of it; below zero it happens to be better.
+    #[must_use]
+    pub fn added_error(&self) -> f64 {
+        let [narrow, wide] = self.error_rad_s;
+        narrow / wide - 1.0
+    }
+}
+
+/// Runs `contestant` over all of them in both precisions.
+#[must_use]
+pub fn difference(contestant: &Contestant, scenarios: &[Scenario]) -> Difference {
+    let mut found = Difference {
+        estimator: contestant.name.clone(),
+        rate_hz: contestant.rate_hz,
+        ..Difference::default()
+    };
+    let settled = (SETTLED_S * contestant.rate_hz) as usize;
+    let mut ticks = 0.0;
+    for Scenario { shown, truth } in scenarios {
+        let mut pair = contestant.pair();
+        pair.start(&shown[0]);
+        for (tick, (shown, truth)) in shown.iter().zip(truth).enumerate().skip(1) {
+            let (narrow, wide) = pair.update(shown);
+            if tick < settled {
+                continue;
+            }
+            let both = [f64::from(narrow), wide].map(|v| v * contestant.rad_per_count());
+            let apart = (both[0] - both[1]).abs();
+            found.largest_rad_s = found.largest_rad_s.max(apart);
+            found.rms_rad_s += apart * apart;
+            for (sum, velocity) in found.error_rad_s.iter_mut().zip(both) {
+                *sum += (velocity - truth).powi(2);
+            }
+            ticks += 1.0;
+        }
+    }
+    found.rms_rad_s = (found.rms_rad_s / ticks).sqrt();
+    found.error_rad_s = found.error_rad_s.map(|sum| (sum / ticks).sqrt());
+    found
+}
