@@ -4,9 +4,10 @@
 #![no_std]
 
 use estimator_core::{
-    AdaptiveEdgeObserver, AdaptiveObserver, BestFit, CountObserver, CountsPerTick, CoupledMotor,
-    Device, EdgeObserver, EndFit, FiniteDifference, Foaw, Hertz, Kalman, KalmanMotor, KalmanTriple,
-    LateCurrent, LowPass, MOverT, Model, Observer, Pll, Sample, Skip, SteadyKalman,
+    AdaptiveEdgeObserver, AdaptiveObserver, AmplifierCurrent, BestFit, Cells, CountObserver,
+    CountsPerTick, CoupledMotor, Device, EdgeObserver, Edges, EndFit, FiniteDifference, Fixed,
+    Foaw, Handover, HeldHandle, Hertz, Kalman, KalmanMotor, KalmanTriple, LateCurrent, Learned,
+    LowPass, MOverT, Model, NoCurrent, Observer, Pll, Sample, Skip, SteadyKalman,
     SteadyKalmanMotor, SteadyKalmanTriple, Uncertainty, VelocityEstimator, preset,
 };
 
@@ -14,17 +15,15 @@ const RATE: Hertz = Hertz(10_000.0);
 
 const CLOCK: Hertz = Hertz(84e6);
 
-const COUNTS: CountObserver = preset!(Observer::new(
-    &CoupledMotor::DCX35L,
-    RATE,
-    &Uncertainty {
-        torque_noise: 5e-6,
-        load: 1e-4,
-        load_time: 0.1,
-        friction_share: 0.7,
-        boundary_noise: 0.03,
-    },
-));
+const UNSURE: Uncertainty = Uncertainty {
+    torque_noise: 5e-6,
+    load: 1e-4,
+    load_time: 0.1,
+    friction_share: 0.7,
+    boundary_noise: 0.03,
+};
+
+const COUNTS: CountObserver = preset!(Observer::new(&CoupledMotor::DCX35L, RATE, &UNSURE));
 
 macro_rules! probes {
     ($($start:ident, $update:ident: $type:ty = $value:expr;)*) => {
@@ -79,6 +78,19 @@ probes! {
     start_adaptive, update_adaptive: AdaptiveObserver = preset!(COUNTS.learning(4096, RATE));
     start_adaptive_edge, update_adaptive_edge: AdaptiveEdgeObserver =
         preset!(preset!(COUNTS.with_edges(CLOCK, RATE)).learning(4096, RATE));
+    start_observer_held, update_observer_held:
+        Observer<AmplifierCurrent, HeldHandle, Cells, Fixed> = COUNTS.held();
+    start_observer_blind, update_observer_blind: Observer<NoCurrent, HeldHandle, Edges, Fixed> =
+        preset!(Observer::blind(&CoupledMotor::DCX35L, RATE, CLOCK, &UNSURE));
+    start_adaptive_edge_held, update_adaptive_edge_held:
+        Observer<AmplifierCurrent, HeldHandle, Edges, Learned> =
+        preset!(preset!(COUNTS.with_edges(CLOCK, RATE)).learning(4096, RATE)).held();
+    start_handover, update_handover: Handover<MOverT, Foaw<15, EndFit>> = preset!(Handover::new(
+        preset!(MOverT::new(CLOCK, RATE)),
+        preset!(Foaw::new(15, 1)),
+        16,
+        100
+    ));
     start_pll, update_pll: Pll = preset!(Pll::new(Hertz(60.0), RATE));
 }
 

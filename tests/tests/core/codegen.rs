@@ -54,6 +54,10 @@ fn estimators_call_nothing_on_the_board() {
         "observer_edge",
         "adaptive",
         "adaptive_edge",
+        "observer_held",
+        "observer_blind",
+        "adaptive_edge_held",
+        "handover",
     ];
     let mut functions: Vec<String> = Vec::new();
     for estimator in estimators {
