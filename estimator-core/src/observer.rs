@@ -236,6 +236,7 @@ where
             innovation: &innovation,
             gain,
             error,
+            dense: M::DENSE,
             position: carried,
             velocity,
         };

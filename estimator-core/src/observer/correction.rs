@@ -38,6 +38,8 @@ pub trait Correction: Copy {
     type State: Clone + PartialEq;
     /// What it reads of a sample.
     const NEEDS: Signals;
+    /// Whether every tick may have an innovation, or few have.
+    const DENSE: bool;
 
     /// The state at the first sample.
     fn start(&self) -> Self::State;
@@ -82,6 +84,7 @@ impl Correction for Cells {
     /// Ticks since the last correction.
     type State = f32;
     const NEEDS: Signals = Signals::COUNT;
+    const DENSE: bool = false;
 
     fn start(&self) -> f32 {
         0.0
@@ -145,6 +148,7 @@ impl Correction for Edges {
         edge: true,
         ..Signals::COUNT
     };
+    const DENSE: bool = true;
 
     fn start(&self) -> EdgesState {
         EdgesState {

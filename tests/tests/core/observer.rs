@@ -439,26 +439,43 @@ fn m_over_t_is_exact_on_a_ramp() {
     }
 }
 
-/// The covariance of the parameters stays positive definite through irregular, absurd updates.
+/// The covariance of the parameters stays positive definite through irregular, absurd updates:
+/// counts that jump, with edges at any instant, or none.
 #[test]
 fn learned_covariance_stays_positive() {
     let rate = Hertz(1000.0);
     let counts = Observer::new(&CoupledMotor::DCX35L, rate, &UNSURE).expect("valid");
-    let estimator = counts.learning(4096, rate).expect("valid");
+    let counts = counts.learning(4096, rate).expect("valid");
+    let edges = counts.with_edges(CLOCK, rate).expect("valid");
     let mut draws = Draws(11);
-    let mut state = estimator.start(&Sample::default());
+    let (mut state, mut stamped) = (
+        counts.start(&Sample::default()),
+        edges.start(&Sample::default()),
+    );
     let mut large = 0u32;
     for tick in 0..1_000_000 {
         let jump = if tick % 977 == 0 { 1 << 20 } else { 30 };
         large = large.wrapping_add(draws.within(jump) as u32);
-        let sample = Sample::new(Count(large))
+        let mut sample = Sample::new(Count(large))
             .with_small(Count(draws.bits() as u32 >> (tick % 32)))
             .with_current(Amps::new(1000.0 * draws.unit() as f32));
-        estimator.update(&mut state, &sample);
-        let diagonal = state.learning().diagonal();
-        assert!(
-            diagonal.iter().all(|d| *d > 0.0 && *d < 1.0),
-            "{diagonal:?} at {tick}"
-        );
+        if tick % 5 != 0 {
+            sample = sample.with_edge(Edge {
+                boundary: Count(large.wrapping_add(draws.bits() as u32 & 1)),
+                age: ClockTicks((draws.bits() % 84_000) as u32),
+            });
+        }
+        counts.update(&mut state, &sample);
+        edges.update(&mut stamped, &sample);
+        for diagonal in [state.learning().diagonal(), stamped.learning().diagonal()] {
+            assert!(
+                diagonal.iter().all(|d| *d > 0.0 && *d < 1.0),
+                "{diagonal:?} at {tick}"
+            );
+        }
+    }
+    // Both have learned: D has left the prior.
+    for diagonal in [state.learning().diagonal(), stamped.learning().diagonal()] {
+        assert!(diagonal.iter().any(|d| *d < 0.05), "{diagonal:?}");
     }
 }
