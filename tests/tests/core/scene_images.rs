@@ -288,7 +288,7 @@ fn off_costs_next_to_nothing_and_a_position_little() {
 
     let wall = Cost::of("wall");
     let total = |cost: &Cost| [cost.text[0], cost.text[1], cost.controller + cost.state];
-    for (scene, times) in [("off", 6), ("detents", 3), ("texture", 3)] {
+    for (scene, times) in [("off", 6), ("detents", 2), ("texture", 2)] {
         let cost = Cost::of(scene);
         let mut pairs = total(&cost).into_iter().zip(total(&wall));
         assert!(
