@@ -1,17 +1,101 @@
-//! The instruction budget: what a control tick costs in every scene, of what a period has.
+//! The budget of the control task: what a tick costs in a scene, and the highest control rate that
+//! it leaves room for.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use host_sim::closed_loop::{Hand, SceneName};
-
 use crate::board::CORE_HZ;
-use crate::command::Command;
 use crate::image::Image;
-use crate::run::{RATE_HZ, Setup, on_board};
+use crate::run::{Outcome, RATE_HZ, Setup, Tick, on_board};
+use crate::scene::ImageScene;
 use crate::score::Range;
+
+/// Part of the core's cycles that the control task may take.
+pub const LOAD: f64 = 0.5;
 
 /// Cycles of a control period, and as many instructions if each took one.
 const PERIOD: f64 = CORE_HZ as f64 / RATE_HZ;
+
+/// Before this the image boots, is armed and settles, s.
+const SETTLED_S: f64 = 0.4;
+
+/// Ticks whose cycles are estimated: the longest by instructions, and some spread over the run, in
+/// rows as long as from one telemetry frame to the next.
+const LONGEST: usize = 2;
+const ROWS: usize = 2;
+const ROW: usize = 10;
+
+/// What the control task costs in a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Budget {
+    /// Instructions, from the first of the handler to its return.
+    pub instructions: Range,
+    /// Estimated cycles, from the interrupt to the interrupted instruction: mean.
+    pub cycles_mean: f64,
+    /// Most of the ticks that were followed, which are the longest and some others.
+    pub cycles_most: u32,
+}
+
+/// The highest control rate at which ticks of this many cycles take [`LOAD`] of the core, Hz.
+#[must_use]
+pub fn highest_rate_hz(cycles: f64) -> f64 {
+    LOAD * CORE_HZ as f64 / cycles
+}
+
+/// Ticks with both amplifiers enabled, after the first ones in a scene.
+fn settled(outcome: &Outcome) -> impl Iterator<Item = (usize, &Tick)> {
+    let late = |tick: &Tick| tick.at_ns as f64 * 1e-9 >= SETTLED_S;
+    let ticks = outcome.ticks.iter().enumerate();
+    ticks.filter(move |(_, tick)| late(tick) && tick.enabled == [true; 2])
+}
+
+/// Runs `setup` twice, the second time following the instructions of some ticks.
+///
+/// # Errors
+/// As [`on_board`]; one line if the amplifiers are never enabled long enough, or a tick cannot be
+/// followed.
+pub fn measure(image: &Image, setup: &Setup) -> Result<Budget, String> {
+    let first = on_board(image, setup, |_| ())?;
+    let ticks: Vec<_> = settled(&first).collect();
+    let counts = ticks.iter().map(|(_, tick)| u64::from(tick.instructions));
+    let instructions = Range::of(counts).ok_or_else(|| {
+        format!("the amplifiers are not enabled after {SETTLED_S} s; give --seconds more")
+    })?;
+    let every = ticks.chunks(ticks.len().div_ceil(ROWS));
+    let rows = every.flat_map(|part| &part[..ROW.min(part.len())]);
+    let spread: Vec<usize> = rows.map(|(k, _)| *k).collect();
+    let mut longest = ticks;
+    longest.sort_by_key(|(k, tick)| (std::cmp::Reverse(tick.instructions), *k));
+    let longest = longest.iter().take(LONGEST).map(|(k, _)| *k);
+    let follow: BTreeSet<usize> = longest.chain(spread.iter().copied()).collect();
+    let setup = Setup {
+        follow: follow.clone(),
+        ..setup.clone()
+    };
+    let second = on_board(image, &setup, |_| ())?;
+    let followed = |k: usize| -> Result<(f64, u32), String> {
+        let tick = second.ticks.get(k).ok_or("a run that ended early")?;
+        let same = tick.instructions == first.ticks[k].instructions;
+        let cycles = tick.cycles.filter(|_| same);
+        let cycles = cycles.ok_or_else(|| format!("tick {k} was not followed to its end"))?;
+        Ok((f64::from(tick.instructions), cycles))
+    };
+    let mut most = 0;
+    for k in follow {
+        most = most.max(followed(k)?.1);
+    }
+    let (mut of_spread, mut cycles) = (0.0, 0.0);
+    for k in spread {
+        let (own, its) = followed(k)?;
+        of_spread += own;
+        cycles += f64::from(its);
+    }
+    Ok(Budget {
+        instructions,
+        cycles_mean: instructions.mean * cycles / of_spread,
+        cycles_most: most,
+    })
+}
 
 /// Mean and largest share of a period.
 pub(crate) fn share(cost: Range) -> String {
@@ -22,39 +106,40 @@ pub(crate) fn share(cost: Range) -> String {
 /// A line a scene, each run for `seconds` by whoever plays with it.
 ///
 /// # Errors
-/// As [`on_board`].
+/// As [`measure`].
 pub(crate) fn table(image: &Image, seconds: f64, seed: u64) -> Result<String, String> {
     let mut text = format!(
-        "{:<16}{:>8}{:>8}{:>8}  share of the period\n",
-        "scene", "least", "mean", "most"
+        "{:<16}{:>23}{:>19}{:>18}\n{:<16}{:>7}{:>8}{:>8}{:>11}{:>8}{:>10}{:>8}\n",
+        "",
+        "instructions",
+        "estimated cycles",
+        "kHz at 50 % load",
+        "scene",
+        "least",
+        "mean",
+        "most",
+        "mean",
+        "most",
+        "mean",
+        "most"
     );
-    for scene in SceneName::ALL {
-        let hand = match scene {
-            SceneName::Wall(..) => Hand::Pushing,
-            SceneName::Hold(..) => Hand::Still,
-            _ => Hand::Moving,
-        };
+    for scene in ImageScene::all() {
         let setup = Setup {
-            hand,
             seed,
-            seconds,
-            commands: vec![(0.05, Command::Scene(scene)), (0.1, Command::Arm)],
-            ..Setup::default()
+            ..Setup::playing(scene, seconds)
         };
-        let outcome = on_board(image, &setup, |_| ())?;
-        let name = scene.as_str();
+        let budget = measure(image, &setup)?;
+        let Range { min, mean, max } = budget.instructions;
+        let cycles = [budget.cycles_mean, f64::from(budget.cycles_most)];
+        let [often, always] = cycles.map(|cycles| highest_rate_hz(cycles) * 1e-3);
         // Writing to a string cannot fail.
-        let _ = match outcome.instructions() {
-            Some(cost) => {
-                let Range { min, mean, max } = cost;
-                let share = share(cost);
-                writeln!(text, "{name:<16}{min:>8}{mean:>8.0}{max:>8}  {share}")
-            }
-            None => writeln!(
-                text,
-                "{name:<16}never enabled; give --seconds more than 0.1"
-            ),
-        };
+        let _ = writeln!(
+            text,
+            "{:<16}{min:>7}{mean:>8.0}{max:>8}{:>11.0}{:>8.0}{often:>10.1}{always:>8.1}",
+            scene.to_string(),
+            cycles[0],
+            cycles[1]
+        );
     }
     Ok(text)
 }

@@ -1,9 +1,15 @@
 //! The flash image: its bytes, and where in it the things are that a probe needs to know.
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Arc;
 
 use object::read::Symbol;
 use object::{Object, ObjectSection, ObjectSymbol};
+
+use crate::code::Code;
+use crate::thumb::instructions;
 
 /// A built firmware image.
 #[derive(Clone, Debug)]
@@ -15,6 +21,8 @@ pub struct Image {
     pub(crate) entry: u64,
     /// Instructions that leave the control task.
     pub(crate) exits: Vec<u64>,
+    /// Both halves of every instruction that the control task reaches, by address.
+    pub(crate) control: Arc<BTreeMap<u64, [u16; 2]>>,
     /// The instruction with which the task of lowest priority waits for an interrupt.
     pub(crate) wait: u64,
     /// An instruction that branches to itself.
@@ -53,6 +61,29 @@ pub const HOW_TO_BUILD: &str =
     "cargo build --release --package firmware --target thumbv7em-none-eabihf";
 
 impl Image {
+    /// Builds the firmware of this tree with these features, separated by commas, in a target
+    /// directory of its own, so that no other build waits for it, and reads it.
+    ///
+    /// # Errors
+    /// One line if cargo cannot build it.
+    pub fn build(features: &str) -> Result<Self, String> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let target: PathBuf = root.join("target/firmware-image");
+        let triple = "thumbv7em-none-eabihf";
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let status = Command::new(cargo)
+            .current_dir(&root)
+            .args(["build", "--quiet", "--release", "--package", "firmware"])
+            .args(["--features", features, "--target", triple, "--target-dir"])
+            .arg(&target)
+            .status()
+            .map_err(|error| format!("cargo does not start: {error}"))?;
+        if !status.success() {
+            return Err(format!("firmware with '{features}' does not build"));
+        }
+        Self::read(&target.join(triple).join("release/firmware"))
+    }
+
     /// Reads an ELF file.
     ///
     /// # Errors
@@ -92,14 +123,19 @@ impl Image {
         let idle = file.symbols().find(|symbol| named(symbol, IDLE));
         let idle = idle.ok_or("no task of lowest priority: not an image of this firmware")?;
         let at = idle.address() & !1;
-        let wait = instructions(code(&file, &idle)?).find(|(_, first, _)| *first == WFI);
+        let wait = instructions(at, code(&file, &idle)?).find(|(_, [first, _])| *first == WFI);
         let wait = wait.ok_or("the task of lowest priority never waits")?.0;
         let default = symbol("DefaultHandler_")?;
-        let for_ever = instructions(code(&file, &default)?).find(|(_, first, _)| *first == LOOP);
-        let for_ever = for_ever.ok_or("the default handler does not loop")?.0;
-        let for_ever = (default.address() & !1) + for_ever;
+        let at = default.address() & !1;
+        let for_ever = instructions(at, code(&file, &default)?);
+        let mut for_ever = for_ever.filter(|(_, [first, _])| *first == LOOP);
+        let for_ever = for_ever
+            .next()
+            .ok_or("the default handler does not loop")?
+            .0;
         let stack = [symbol("_stack_end")?, symbol("_stack_start")?].map(|symbol| symbol.address());
         let size = size(&file);
+        let all = Code::of(&file).map_err(|error| error.to_string())?;
         let placed = rigless::image::Image::new(path, elf.clone(), None)
             .map_err(|error| error.to_string())?;
         Ok(Self {
@@ -108,7 +144,8 @@ impl Image {
             rtt,
             entry,
             exits,
-            wait: at + wait,
+            control: Arc::new(all.instructions(entry)),
+            wait,
             for_ever,
             stack,
             size,
@@ -141,31 +178,16 @@ fn size(file: &object::File<'_>) -> Size {
     }
 }
 
-/// Instructions in `code`: offset, first half and, of a wide one, second half.
-fn instructions(code: &[u8]) -> impl Iterator<Item = (u64, u16, Option<u16>)> + use<> {
-    let halves = code.as_chunks().0.iter();
-    let halves: Vec<u16> = halves.map(|pair| u16::from_le_bytes(*pair)).collect();
-    let mut k = 0;
-    std::iter::from_fn(move || {
-        let (at, first) = (k, *halves.get(k)?);
-        let second = (first >> 11 >= 0b11101).then(|| halves.get(k + 1).copied().unwrap_or(0));
-        k += 1 + usize::from(second.is_some());
-        Some((2 * at as u64, first, second))
-    })
-}
-
 /// Addresses of the instructions in `code` that return: `bx lr`, `pop {.., pc}` in both widths.
 fn returns(base: u64, code: &[u8]) -> Vec<u64> {
-    let leaves = |first: u16, second: Option<u16>| match (first, second) {
-        (0x4770, None) => true,
-        (narrow, None) => narrow & 0xFF00 == 0xBD00,
-        (0xE8BD, Some(second)) => second & 0x8000 != 0,
+    let leaves = |[first, second]: [u16; 2]| match first {
+        0xE8BD => second & 0x8000 != 0,
         // ldr pc, [sp], #4
-        (0xF85D, Some(second)) => second == 0xFB04,
-        _ => false,
+        0xF85D => second == 0xFB04,
+        narrow => narrow == 0x4770 || narrow & 0xFF00 == 0xBD00,
     };
-    let leaving = instructions(code).filter(|(_, first, second)| leaves(*first, *second));
-    leaving.map(|(at, ..)| base + at).collect()
+    let leaving = instructions(base, code).filter(|(_, halves)| leaves(*halves));
+    leaving.map(|(at, _)| at).collect()
 }
 
 #[cfg(test)]

@@ -5,9 +5,11 @@
 //! no model of cycles: a virtual second is a constant number of instructions.
 
 pub mod board;
-mod budget;
+pub mod budget;
 pub mod cli;
+pub mod code;
 pub mod command;
+pub mod cycles;
 pub mod dac;
 pub mod fault;
 pub mod image;
@@ -22,3 +24,4 @@ pub mod run;
 pub mod scene;
 pub mod score;
 mod stack;
+pub mod thumb;

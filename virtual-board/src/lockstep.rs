@@ -1,6 +1,7 @@
 //! Board and plant in lockstep: the plant runs one step of 10 us ahead of the processor, and its
 //! edges reach the pins at their instants.
 
+mod follow;
 mod hits;
 mod inject;
 
@@ -22,6 +23,7 @@ use crate::probe::{Probe, schedule};
 use crate::quadrature::{Edge, Edges, Generator, LARGE, REFERENCE, SMALL};
 use crate::run::{AMPS_PER_CODE, Moment, RATE_HZ, Setup, Tick};
 use crate::stack::Stack;
+use follow::Follow;
 
 const STEP_NS: u64 = 10_000;
 const STEP_S: f64 = 10e-6;
@@ -73,6 +75,7 @@ pub(crate) struct Lockstep {
     asleep: bool,
     /// The call of the control task that is running, and the instruction count at its start.
     running: Option<(Tick, u64)>,
+    follow: Follow,
     resets: usize,
     progress: Box<dyn FnMut(f64) + Send>,
 }
@@ -121,6 +124,7 @@ impl Lockstep {
             hang: false,
             asleep: false,
             running: None,
+            follow: Follow::new(image, setup),
             resets: 0,
             progress,
         }
@@ -262,7 +266,7 @@ impl Driver<ControllerBoard> for Lockstep {
                 if self.hang && self.asleep && hit.address == self.entry {
                     self.hang(host);
                 }
-                self.hit(session, &hit);
+                self.hit(session, host, &hit);
             }
             Settled::Stop(stop) if session.resets().len() > self.resets => {
                 self.resets = session.resets().len();

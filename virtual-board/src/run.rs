@@ -1,5 +1,6 @@
 //! One run of an image on the board, and what it leaves behind.
 
+use std::collections::BTreeSet;
 use std::num::NonZeroU64;
 use std::time::{Duration, Instant};
 
@@ -16,6 +17,7 @@ use crate::command::Command;
 use crate::fault::Fault;
 use crate::image::Image;
 use crate::lockstep::Lockstep;
+use crate::scene::ImageScene;
 
 /// Control rate of the image, Hz.
 pub const RATE_HZ: f64 = 10e3;
@@ -48,6 +50,8 @@ pub struct Setup {
     pub crystal_hz: u64,
     /// Instructions in a second of virtual time.
     pub instructions_per_second: NonZeroU64,
+    /// Ticks, by their place in [`Outcome::ticks`], to follow instruction by instruction; slow.
+    pub follow: BTreeSet<usize>,
 }
 
 impl Default for Setup {
@@ -67,6 +71,20 @@ impl Default for Setup {
             generator_hz: None,
             crystal_hz: 8_000_000,
             instructions_per_second: NonZeroU64::new(CORE_HZ).expect("not zero"),
+            follow: BTreeSet::new(),
+        }
+    }
+}
+
+impl Setup {
+    /// A scene from the start, put on and armed in the first 0.1 s, by whoever plays with it.
+    #[must_use]
+    pub fn playing(scene: ImageScene, seconds: f64) -> Self {
+        Self {
+            hand: scene.hand(),
+            seconds,
+            commands: vec![(0.05, scene.select()), (0.1, Command::Arm)],
+            ..Self::default()
         }
     }
 }
@@ -80,6 +98,8 @@ pub struct Tick {
     pub asleep: bool,
     /// Instructions from its first to its return.
     pub instructions: u32,
+    /// Estimated cycles from the interrupt to its end, if the tick was followed.
+    pub cycles: Option<u32>,
     /// What it read from the large and the small encoder's counter.
     pub counts: [Option<u16>; 2],
     /// DAC codes at its end.

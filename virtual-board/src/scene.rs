@@ -6,7 +6,7 @@ use std::str::FromStr;
 use haptic_control::{
     Detents, Hold, Inertia, SpringDamper, Texture, Torque, Tunable, Viscous, Wall,
 };
-use host_sim::closed_loop::SceneName;
+use host_sim::closed_loop::{Hand, SceneName};
 
 use crate::command::{Command, number};
 
@@ -43,12 +43,28 @@ impl fmt::Display for ImageScene {
 }
 
 impl ImageScene {
+    /// All of them.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let hosts = SceneName::ALL.into_iter().chain([SceneName::Excite]);
+        hosts.map(Self::Host).chain([Self::Torque])
+    }
+
     /// The command that puts it on.
     #[must_use]
     pub fn select(self) -> Command {
         match self {
             Self::Host(scene) => Command::Scene(scene),
             Self::Torque => Command::TorqueScene,
+        }
+    }
+
+    /// Who plays with it.
+    #[must_use]
+    pub const fn hand(self) -> Hand {
+        match self {
+            Self::Host(SceneName::Wall(..)) => Hand::Pushing,
+            Self::Host(SceneName::Hold(..)) => Hand::Still,
+            _ => Hand::Moving,
         }
     }
 

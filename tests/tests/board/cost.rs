@@ -2,14 +2,13 @@
 
 use std::sync::OnceLock;
 
-use host_sim::closed_loop::{Hand, SceneName};
-use virtual_board::command::Command;
+use host_sim::closed_loop::SceneName;
 use virtual_board::run::{Outcome, Setup, Tick};
 use virtual_board::scene::ImageScene;
 use virtual_board::score::Range;
 
 use crate::golden::Golden;
-use crate::image::{FIRST_S, SETTLED_S, free_air, hand_for, of_scene, run_image, tour};
+use crate::image::{FIRST_S, SETTLED_S, free_air, run_image, tour};
 
 /// Instructions may move by this part of what is written.
 const SLACK: f64 = 0.1;
@@ -28,8 +27,7 @@ pub(crate) struct Alone {
 pub(crate) fn alone() -> &'static [Alone] {
     static RUNS: OnceLock<Vec<Alone>> = OnceLock::new();
     RUNS.get_or_init(|| {
-        let hosts = SceneName::ALL.into_iter().chain([SceneName::Excite]);
-        let scenes = hosts.map(ImageScene::Host).chain([ImageScene::Torque]);
+        let scenes = ImageScene::all();
         let features = [
             "scene-off",
             "scene-free-air",
@@ -43,7 +41,7 @@ pub(crate) fn alone() -> &'static [Alone] {
             "scene-excite",
             "scene-torque",
         ];
-        assert_eq!(scenes.clone().count(), features.len());
+        assert_eq!(ImageScene::all().count(), features.len());
         let run = |(scene, feature): (ImageScene, &'static str)| Alone {
             scene: feature.trim_start_matches("scene-"),
             feature,
@@ -65,17 +63,7 @@ fn between(run: &Outcome, from_s: f64, to_s: f64) -> Range {
 
 /// A second of a scene; it must not have been stopped.
 fn playing(features: &'static str, scene: ImageScene) -> Outcome {
-    let hand = match scene {
-        ImageScene::Host(scene) => hand_for(scene),
-        ImageScene::Torque => Hand::Moving,
-    };
-    let run = run_image(
-        features,
-        &Setup {
-            commands: vec![(0.05, scene.select()), (0.1, Command::Arm)],
-            ..of_scene(SceneName::Off, hand, 1.0)
-        },
-    );
+    let run = run_image(features, &Setup::playing(scene, 1.0));
     let last = run.telemetry.frames.last().expect("frames");
     let off = scene == ImageScene::Host(SceneName::Off);
     let state = if off { "1" } else { "2" };

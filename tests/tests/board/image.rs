@@ -1,8 +1,6 @@
 //! The images, each built once, and runs of them that several tests look at.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
-use std::process::Command as Process;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use host_sim::closed_loop::{Hand, SceneName};
@@ -21,25 +19,7 @@ pub(crate) fn image(features: &'static str) -> &'static Image {
     let built = built.get_or_insert_default();
     built
         .entry(features)
-        .or_insert_with(|| Box::leak(Box::new(build(features))))
-}
-
-fn build(features: &str) -> Image {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let target: PathBuf = root.join("target/firmware-image");
-    let triple = "thumbv7em-none-eabihf";
-    let status = Process::new(env!("CARGO"))
-        .current_dir(&root)
-        .args(["build", "--quiet", "--release", "--package", "firmware"])
-        .args(["--features", features, "--target", triple, "--target-dir"])
-        .arg(&target)
-        .status()
-        .expect("cargo starts");
-    assert!(
-        status.success(),
-        "firmware with '{features}' does not build"
-    );
-    Image::read(&target.join(triple).join("release/firmware")).unwrap()
+        .or_insert_with(|| Box::leak(Box::new(Image::build(features).unwrap())))
 }
 
 /// Runs the image of all scenes.
@@ -50,15 +30,6 @@ pub(crate) fn run(setup: &Setup) -> Outcome {
 /// Runs the image with these features.
 pub(crate) fn run_image(features: &'static str, setup: &Setup) -> Outcome {
     on_board(image(features), setup, |_| ()).unwrap()
-}
-
-/// Who plays with a scene.
-pub(crate) const fn hand_for(scene: SceneName) -> Hand {
-    match scene {
-        SceneName::Wall(..) => Hand::Pushing,
-        SceneName::Hold(..) => Hand::Still,
-        _ => Hand::Moving,
-    }
 }
 
 /// A scene from the start, in this hand.

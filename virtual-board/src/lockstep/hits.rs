@@ -1,6 +1,6 @@
 //! The control task's beginnings and ends.
 
-use rigless::emulator::Hit;
+use rigless::emulator::{Hit, Host};
 use rigless::session::Session;
 
 use super::Lockstep;
@@ -9,14 +9,26 @@ use crate::pins;
 use crate::run::Tick;
 
 impl Lockstep {
-    pub(super) fn hit(&mut self, session: &mut Session<ControllerBoard>, hit: &Hit) {
+    pub(super) fn hit(
+        &mut self,
+        session: &mut Session<ControllerBoard>,
+        host: &mut dyn Host,
+        hit: &Hit,
+    ) {
+        if hit.address == self.entry {
+            self.follow.enter(self.seen.ticks.len(), host);
+        }
+        self.follow.pass(hit.address);
         if hit.address == self.wait {
             self.asleep = true;
         } else if hit.address == self.entry {
             self.enter(session, hit);
-        } else if let Some((mut tick, start)) = self.running.take() {
+        } else if self.exits.contains(&hit.address)
+            && let Some((mut tick, start)) = self.running.take()
+        {
             // The return itself is still to run.
             tick.instructions = (hit.instruction_count - start + 1) as u32;
+            tick.cycles = self.follow.leave(tick.instructions);
             let part = &mut session.board_mut().part;
             tick.codes = part.dac_codes();
             tick.enabled = pins::enabled(part);
@@ -35,6 +47,7 @@ impl Lockstep {
             at_ns: hit.at.0,
             asleep: self.asleep,
             instructions: 0,
+            cycles: None,
             counts: [None; 2],
             codes: [None; 2],
             enabled: [false; 2],
