@@ -4,11 +4,11 @@ use estimator_core::{
     AdaptiveEdgeObserver, AdaptiveObserver, BestFit, CountObserver, CoupledMotor, DesignError,
     Device, EdgeObserver, EndFit, FiniteDifference, Foaw, Hertz, Kalman, KalmanMotor, KalmanTriple,
     LowPass, MOverT, Model, Observer, Pll, Sample, SteadyKalman, SteadyKalmanMotor,
-    SteadyKalmanTriple, Uncertainty, VelocityEstimator, preset,
+    SteadyKalmanTriple, Uncertainty, preset,
 };
 
-use crate::peers::{IdspKalman, NalgebraKalman};
-use crate::subject::{Subject, subjects};
+use crate::peers::{AdsKalman, IdspKalman, IdspLowPass, IdspPll, MiniKalman, NalgebraKalman};
+use crate::subject::{Measured, Subject, subjects};
 
 /// For parameters that suit every rate.
 const ANY: Hertz = Hertz(0.0);
@@ -91,4 +91,16 @@ subjects! {
         NalgebraKalman::new(&preset!(Model::triple_integrator(4096, SLOW, 4370.0)));
     peer_nalgebra_10k, "nalgebra by hand", FAST: NalgebraKalman =
         NalgebraKalman::new(&preset!(Model::triple_integrator(4096, FAST, 3650.0)));
+    peer_adskalman_1k, "adskalman", SLOW: AdsKalman =
+        AdsKalman::new(&preset!(Model::triple_integrator(4096, SLOW, 4370.0)));
+    peer_adskalman_10k, "adskalman", FAST: AdsKalman =
+        AdsKalman::new(&preset!(Model::triple_integrator(4096, FAST, 3650.0)));
+    peer_minikalman_1k, "minikalman", SLOW: MiniKalman =
+        MiniKalman::new(&preset!(Model::triple_integrator(4096, SLOW, 4370.0)));
+    peer_minikalman_10k, "minikalman", FAST: MiniKalman =
+        MiniKalman::new(&preset!(Model::triple_integrator(4096, FAST, 3650.0)));
+    peer_idsp_pll_1k, "idsp: pll", SLOW: IdspPll = IdspPll::new(Hertz(59.1), SLOW);
+    peer_idsp_pll_10k, "idsp: pll", FAST: IdspPll = IdspPll::new(Hertz(148.0), FAST);
+    peer_idsp_low_pass_1k, "idsp: low-pass", SLOW: IdspLowPass = IdspLowPass::new(Hertz(159.0), SLOW);
+    peer_idsp_low_pass_10k, "idsp: low-pass", FAST: IdspLowPass = IdspLowPass::new(Hertz(175.0), FAST);
 }

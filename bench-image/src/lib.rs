@@ -6,8 +6,8 @@
 
 mod estimators;
 pub mod mailbox;
-mod peers;
+pub mod peers;
 mod subject;
 
 pub use estimators::SUBJECTS;
-pub use subject::{Run, Subject};
+pub use subject::{Measured, Run, Subject};

@@ -1,6 +1,31 @@
 //! One estimator under measurement.
 
-use estimator_core::Sample;
+use estimator_core::{CountsPerTick, Sample, VelocityEstimator};
+
+/// As much of an estimator as is measured: peers' states need be nothing but theirs.
+pub trait Measured {
+    /// What is carried from tick to tick.
+    type State;
+
+    /// The state at rest at the first sample.
+    fn start(&self, first: &Sample) -> Self::State;
+
+    /// One tick: the velocity, counts a tick.
+    fn update(&self, state: &mut Self::State, sample: &Sample) -> f32;
+}
+
+impl<E: VelocityEstimator<Output = CountsPerTick>> Measured for E {
+    type State = <E as VelocityEstimator>::State;
+
+    fn start(&self, first: &Sample) -> Self::State {
+        VelocityEstimator::start(self, first)
+    }
+
+    #[inline]
+    fn update(&self, state: &mut Self::State, sample: &Sample) -> f32 {
+        VelocityEstimator::update(self, state, sample).0
+    }
+}
 
 /// An estimator with its parameters fixed at compile time, as firmware has them.
 pub struct Subject {
@@ -37,11 +62,11 @@ macro_rules! subjects {
                 use super::*;
 
                 const ESTIMATOR: $type = $value;
-                type State = <$type as VelocityEstimator>::State;
+                type State = <$type as Measured>::State;
 
                 #[inline(never)]
                 fn update(state: &mut State, sample: &Sample) -> f32 {
-                    ESTIMATOR.update(state, sample).0
+                    Measured::update(&ESTIMATOR, state, sample)
                 }
 
                 fn run(
@@ -51,7 +76,7 @@ macro_rules! subjects {
                     // Called through a pointer: the call's interface stays as it is written.
                     let update = core::hint::black_box(update as fn(&mut State, &Sample) -> f32);
                     let Some(first) = samples.next() else { return };
-                    let mut state = ESTIMATOR.start(&first);
+                    let mut state = Measured::start(&ESTIMATOR, &first);
                     for sample in samples {
                         velocity(update(&mut state, &sample));
                     }

@@ -19,7 +19,7 @@ pub const FIRST_SEED: u64 = 1 << 32;
 
 /// Weight of the RMS error beside the mean distance: it decides between parameters that never
 /// leave the interval.
-const RMS_WEIGHT: f64 = 0.01;
+pub const RMS_WEIGHT: f64 = 0.01;
 
 /// Points of a search's first grid.
 const GRID: usize = 25;

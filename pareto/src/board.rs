@@ -11,10 +11,9 @@ use rigless::session::Session;
 use rigless::soc::Width;
 use rigless::time::VirtualNanos;
 use virtual_board::board::{CORE_HZ, ControllerBoard};
+use virtual_board::{cycles, thumb};
 
 use crate::image::Image;
-use crate::thumb::instructions;
-use crate::{cycles, thumb};
 
 /// A trace for a subject.
 #[derive(Clone, Debug)]
@@ -48,16 +47,12 @@ struct Places {
 
 impl Places {
     fn of(image: &Image, subject: &Subject) -> Result<Self, String> {
-        let path = |name| ["bench_image", "estimators", subject.module, name];
-        let runner = image.function(&path("run"))?;
-        let entry = image.function(&path("update"))?;
-        let reached = image.reached(entry).into_iter();
+        let runner = image.function(&["bench_image", "estimators", subject.module, "run"])?;
+        let entry = image.update(subject)?;
         Ok(Self {
             entry,
-            instructions: reached
-                .flat_map(|function| instructions(function, image.code(function)))
-                .collect(),
-            returns: thumb::after_indirect_calls(runner, image.code(runner)),
+            instructions: image.code.instructions(entry),
+            returns: thumb::after_indirect_calls(runner, image.code.function(runner)),
         })
     }
 

@@ -28,7 +28,7 @@ fn turns(subject: &Subject) -> usize {
 /// One line on code that cannot be followed (an indirect call, recursion), or that has a loop
 /// without a known bound.
 pub fn of(image: &Image, subject: &Subject) -> Result<u32, String> {
-    let update = image.function(&["bench_image", "estimators", subject.module, "update"])?;
+    let update = image.update(subject)?;
     let turns = turns(subject);
     let mut paths = Paths {
         image,
@@ -61,7 +61,10 @@ impl Paths<'_> {
         if self.open.contains(&function) {
             return Err(format!("{name} calls itself"));
         }
-        let graph = Graph::of(flow::of(function, self.image.code(function)), function);
+        let graph = Graph::of(
+            flow::of(function, self.image.code.function(function)),
+            function,
+        );
         // The turns that are known of are those of estimators, not of routines that copy.
         let is_ours = name.contains("estimator_core") || name.contains("bench_image");
         if !graph.back.is_empty() && (self.turns == 0 || !is_ours) {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::thumb;
+use virtual_board::thumb;
 
 /// Where control goes after an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,10 +1,12 @@
 //! The bench image: built for the board, and where in it things are.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
+use bench_image::{SUBJECTS, Subject};
+use object::{Object, ObjectSymbol, SymbolKind};
+use virtual_board::code::Code;
 
 /// Optimisation level of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -33,8 +35,7 @@ impl Level {
 #[derive(Debug)]
 pub struct Image {
     pub(crate) placed: rigless::image::Image,
-    /// Functions by address: size and code.
-    functions: BTreeMap<u64, Vec<u8>>,
+    pub(crate) code: Code,
     /// Function addresses by mangled name.
     names: BTreeMap<String, u64>,
     data: BTreeMap<String, u64>,
@@ -84,34 +85,36 @@ impl Image {
         let problem = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
         let elf = std::fs::read(path).map_err(|error| problem(&error))?;
         let file = object::File::parse(&*elf).map_err(|error| problem(&error))?;
-        let (mut functions, mut names, mut data) =
-            (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
+        let (mut names, mut data) = (BTreeMap::new(), BTreeMap::new());
         for symbol in file.symbols() {
             let name = symbol.name().map_err(|error| problem(&error))?.to_owned();
-            if symbol.kind() == SymbolKind::Data {
-                data.insert(name, symbol.address());
-                continue;
-            }
-            let section = symbol
-                .section_index()
-                .and_then(|index| file.section_by_index(index).ok());
-            let (SymbolKind::Text, Some(section)) = (symbol.kind(), section) else {
-                continue;
+            match symbol.kind() {
+                SymbolKind::Data => data.insert(name, symbol.address()),
+                SymbolKind::Text => names.insert(name, symbol.address() & !1),
+                _ => None,
             };
-            let address = symbol.address() & !1;
-            let code = section.data_range(address, symbol.size());
-            if let Some(code) = code.map_err(|error| problem(&error))? {
-                functions.insert(address, code.to_vec());
-                names.insert(name, address);
-            }
         }
+        let code = Code::of(&file).map_err(|error| problem(&error))?;
         let placed =
             rigless::image::Image::new(path, elf.clone(), None).map_err(|error| problem(&error))?;
         Ok(Self {
             placed,
-            functions,
+            code,
             names,
             data,
+        })
+    }
+
+    /// Address of a subject's `update`. Where parameters are part of a state, those of two rates
+    /// are the same code, and the compiler keeps one.
+    pub(crate) fn update(&self, subject: &Subject) -> Result<u64, String> {
+        let of = |module| self.function(&["bench_image", "estimators", module, "update"]);
+        let twins = SUBJECTS.iter().filter(|other| other.name == subject.name);
+        of(subject.module).or_else(|missing| {
+            twins
+                .filter_map(|twin| of(twin.module).ok())
+                .next()
+                .ok_or(missing)
         })
     }
 
@@ -125,32 +128,10 @@ impl Image {
         find(&self.data, path)
     }
 
-    /// Code of the function at `address`.
-    pub(crate) fn code(&self, address: u64) -> &[u8] {
-        self.functions.get(&address).map_or(&[], Vec::as_slice)
-    }
-
     /// Mangled name of the function at `address`.
     pub(crate) fn name(&self, address: u64) -> &str {
         let mut named = self.names.iter().filter(|(_, at)| **at == address);
         named.next().map_or("code without a name", |(name, _)| name)
-    }
-
-    /// The function at `address` and all that it calls.
-    pub(crate) fn reached(&self, address: u64) -> BTreeSet<u64> {
-        let mut found = BTreeSet::new();
-        let mut open = vec![address];
-        while let Some(function) = open.pop() {
-            if self.functions.contains_key(&function) && found.insert(function) {
-                let code = self.code(function);
-                open.extend(
-                    crate::thumb::branches(function, code).filter(|target| {
-                        !(function..function + code.len() as u64).contains(target)
-                    }),
-                );
-            }
-        }
-        found
     }
 }
 

@@ -3,11 +3,13 @@
 
 pub mod board;
 pub mod bound;
-mod cycles;
+pub mod cli;
+pub mod control;
 mod flow;
+pub mod golden;
 pub mod image;
 pub mod measure;
+mod peer_tuning;
 pub mod plot;
 pub mod table;
-mod thumb;
 pub mod traces;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use bench_image::{SUBJECTS, Subject};
+use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::board::{Job, Ran, on_board};
@@ -45,6 +46,9 @@ pub struct Row {
     pub rms_rad_s: [f64; 2],
     /// Whether nothing costs and errs less, by rate.
     pub front: [bool; 2],
+    /// Highest control rate of the whole task with it on the large motor at half load, by the most
+    /// cycles, Hz.
+    pub highest_rate_hz: f64,
     /// Mean and most instructions at level 3 by trace and rate.
     pub traces: BTreeMap<String, (f64, u32)>,
 }
@@ -55,6 +59,12 @@ impl Row {
     pub fn cycles(&self) -> f64 {
         self.cost[0].mean * self.cost[0].cycles_per_instruction
     }
+
+    /// Estimated cycles of an update at level 3, most.
+    #[must_use]
+    pub fn cycles_most(&self) -> f64 {
+        f64::from(self.cost[0].most) * self.cost[0].cycles_per_instruction
+    }
 }
 
 /// Measures everything.
@@ -63,10 +73,11 @@ impl Row {
 /// One line if an image does not build or run, or differs from the host in any bit.
 pub fn measure() -> Result<Vec<Row>, String> {
     let grounds = traces::all()?;
+    let images: Result<Vec<_>, String> = Level::ALL.into_iter().map(Image::build).collect();
+    let images = images?;
+    let runs: Result<Vec<_>, String> = images.par_iter().map(|one| run(one, &grounds)).collect();
     let mut rows: Vec<Row> = Vec::new();
-    for (level, name) in Level::ALL.into_iter().enumerate() {
-        let image = Image::build(name)?;
-        let (counted, followed) = run(&image, &grounds)?;
+    for (level, (image, (counted, followed))) in images.iter().zip(runs?).enumerate() {
         for (index, subject) in SUBJECTS.iter().enumerate() {
             let row = match rows.iter().position(|row| row.name == subject.name) {
                 Some(row) => row,
@@ -85,7 +96,7 @@ pub fn measure() -> Result<Vec<Row>, String> {
             let slow: Vec<_> = followed.iter().filter(of).collect();
             let row = &mut rows[row];
             let cost = &mut row.cost[level];
-            *cost = worst(*cost, cost_of(&image, subject, &own, &slow)?);
+            *cost = worst(*cost, cost_of(image, subject, &own, &slow)?);
             if level == 0 {
                 errors(row, &grounds, &own);
             }
@@ -167,8 +178,7 @@ fn cost_of(
         let ends = slow.iter().flat_map(|(_, ran)| &counts(ran)[130..]);
         ends.copied().map(f64::from).sum()
     };
-    let entry = image.function(&["bench_image", "estimators", subject.module, "update"])?;
-    let reached = image.reached(entry);
+    let reached = image.code.reached(image.update(subject)?);
     Ok(Cost {
         mean: mean(own.iter().map(|one| settled(one))),
         most: own
@@ -178,7 +188,10 @@ fn cost_of(
             .unwrap_or(0),
         at_rest: own.iter().find(still).map_or(f64::NAN, |one| settled(one)),
         cycles_per_instruction: sum(|ran| &ran.cycles) / sum(|ran| &ran.instructions),
-        code: reached.iter().map(|at| image.code(*at).len()).sum(),
+        code: reached
+            .iter()
+            .map(|at| image.code.function(*at).len())
+            .sum(),
     })
 }
 

@@ -28,6 +28,9 @@ const COLUMNS: Columns = Columns {
     edges: true,
 };
 
+/// Of the large encoder.
+pub(crate) const COUNTS_PER_REV: u32 = 4096;
+
 /// Control rates, Hz.
 pub const RATES_HZ: [u32; 2] = [1000, 10_000];
 
@@ -60,7 +63,7 @@ pub fn all() -> Result<Vec<Ground>, String> {
             rate_hz,
             samples: vec![Sample::new(Count(12_345)); SAMPLES],
             truth: None,
-            scale: scale(4096, rate),
+            scale: counts_per_tick(COUNTS_PER_REV, rate),
         });
         for (name, scenario) in [
             ("creep", ScenarioName::Creep),
@@ -72,7 +75,7 @@ pub fn all() -> Result<Vec<Ground>, String> {
             let first = (FROM_S * rate) as usize;
             let seconds = (first + SAMPLES) as f64 / rate;
             let trace = simulate(&device, scenario, rate, SEED, seconds, COLUMNS)?;
-            grounds.push(ground(name, rate_hz, &trace, first, 4096));
+            grounds.push(ground(name, rate_hz, &trace, first, COUNTS_PER_REV));
         }
     }
     // Hall states of a motor: their edges are too coarse for a truth.
@@ -86,7 +89,8 @@ pub fn all() -> Result<Vec<Ground>, String> {
     Ok(grounds)
 }
 
-fn scale(counts_per_rev: u32, rate_hz: f64) -> f64 {
+/// rad/s of one count a tick.
+pub(crate) fn counts_per_tick(counts_per_rev: u32, rate_hz: f64) -> f64 {
     std::f64::consts::TAU * rate_hz / f64::from(counts_per_rev)
 }
 
@@ -98,7 +102,7 @@ fn ground(
     counts_per_rev: u32,
 ) -> Ground {
     let range = first..trace.len().min(first + SAMPLES);
-    let scale = scale(counts_per_rev, f64::from(rate_hz));
+    let scale = counts_per_tick(counts_per_rev, f64::from(rate_hz));
     let truth = trace.true_omega.as_ref();
     Ground {
         name,

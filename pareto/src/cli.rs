@@ -1,0 +1,122 @@
+//! The command line.
+
+use std::ffi::OsString;
+use std::path::Path;
+
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
+use host_sim::failure::Failure;
+use host_sim::output::{print_bytes, write_whole};
+
+use crate::golden::Golden;
+use crate::{control, measure, peer_tuning, plot, table};
+
+/// Counts on the emulated board what every estimator costs and sets it against its error, and what
+/// the control task costs in every scene: tables here, CSV, JSON and plots in target/pareto.
+///
+/// With UPDATE_GOLDEN=1 in the environment tables and plots of docs/ are written anew.
+#[derive(Debug, Parser)]
+#[command(name = "cargo pareto", bin_name = "cargo pareto", version)]
+struct Arguments {
+    #[command(subcommand)]
+    what: Option<What>,
+}
+
+#[derive(Clone, Copy, Debug, Subcommand)]
+enum What {
+    /// Tunes the peers' own parameters on tuning seeds, and prints them
+    TunePeers,
+}
+
+/// Runs the command line `arguments`, the program's name first.
+///
+/// # Errors
+/// A [`Failure`] with its exit status.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => return explain(&error),
+    };
+    match arguments.what {
+        None => everything(),
+        Some(What::TunePeers) => print_bytes(peer_tuning::report()?.as_bytes()),
+    }
+}
+
+fn explain(error: &clap::Error) -> Result<(), Failure> {
+    let text = error.render().to_string();
+    if let ErrorKind::DisplayHelp | ErrorKind::DisplayVersion = error.kind() {
+        return print_bytes(text.as_bytes());
+    }
+    let first = text.lines().next().unwrap_or_default();
+    let said = first.strip_prefix("error: ").unwrap_or(first);
+    Err(Failure::Input(format!("{said}; see cargo pareto --help")))
+}
+
+fn everything() -> Result<(), Failure> {
+    let mut rows = measure::measure().map_err(Failure::Check)?;
+    let tasks = control::measure().map_err(Failure::Check)?;
+    control::rate(&mut rows, &tasks);
+    let estimators = Report {
+        name: "pareto",
+        golden: &table::GOLDEN,
+        markdown: table::markdown(&rows),
+        csv: table::csv(&rows),
+        json: json(&rows)?,
+        plot: plot::svg(&rows)?,
+    };
+    let control = Report {
+        name: "control-rate",
+        golden: &control::table::GOLDEN,
+        markdown: control::table::markdown(&tasks),
+        csv: control::table::csv(&tasks),
+        json: json(&tasks)?,
+        plot: control::plot::svg(&tasks)?,
+    };
+    print_bytes(format!("{}\n{}", estimators.markdown, control.markdown).as_bytes())?;
+    estimators.write()?;
+    control.write()
+}
+
+fn json(rows: &impl serde::Serialize) -> Result<String, Failure> {
+    serde_json::to_string_pretty(rows).map_err(|error| Failure::Check(error.to_string()))
+}
+
+/// What a command leaves behind.
+struct Report {
+    /// Of its files.
+    name: &'static str,
+    /// Where its table stands in the docs.
+    golden: &'static Golden,
+    markdown: String,
+    csv: String,
+    json: String,
+    plot: String,
+}
+
+impl Report {
+    /// Writes files to target/pareto, and table and plot to docs/ if asked for.
+    fn write(&self) -> Result<(), Failure> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let folder = root.join("target/pareto");
+        let files = [
+            (&self.csv, "csv"),
+            (&self.json, "json"),
+            (&self.plot, "svg"),
+        ];
+        for (text, extension) in files {
+            let file = folder.join(self.name).with_extension(extension);
+            write_whole(&file, text.as_bytes())?;
+        }
+        if std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1") {
+            let docs = root.join("docs");
+            let page = docs.join("benchmarks.md");
+            let text = std::fs::read_to_string(&page)
+                .map_err(|error| Failure::Input(format!("{}: {error}", page.display())))?;
+            write_whole(&page, self.golden.placed(&text, &self.markdown)?.as_bytes())?;
+            let plot = docs.join(self.name).with_extension("svg");
+            write_whole(&plot, self.plot.as_bytes())?;
+        }
+        Ok(())
+    }
+}
