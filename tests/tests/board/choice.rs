@@ -73,11 +73,11 @@ fn a_change_is_no_step_in_the_velocity() {
             large::FILTER.start(&records[0].sample),
         );
         let mut last = [0.0_f32; 3];
-        for k in 1..records.len() {
-            let sample = &records[k].sample;
+        for (k, record) in records.iter().enumerate().skip(1) {
+            let sample = &record.sample;
             let velocity = |v: estimator_core::CountsPerTick| v.rad_per_s(&RIG.large);
             let now = [
-                records[k].action.large.0,
+                record.action.large.0,
                 velocity(large::WINDOW.update(&mut window, sample)),
                 velocity(large::FILTER.update(&mut filter, sample)),
             ];
