@@ -12,6 +12,7 @@ use crate::estimator::VelocityEstimator;
 use crate::sample::{Sample, Signals};
 use crate::units::CountsPerTick;
 
+use fit::Straight;
 pub use fit::{BestFit, EndFit, Fit};
 use recent::Recent;
 
@@ -39,8 +40,10 @@ const LONGEST_STEP: i32 = 1 << 15;
 /// run time. Steps of 2^15 counts a tick or more restart the window.
 ///
 /// The samples are kept in a ring that is stored twice, so that it reads as one slice: 8 N bytes.
-/// The newest steps that are equal are one straight line and need not be looked at: at rest an
-/// update costs nothing, and every other sample of the window is looked at once.
+/// The newest steps that are equal are one straight line, which needs no look: at rest and at whole
+/// counts a tick an update costs next to nothing. Every other sample of the window is looked at
+/// once: at most 70 + 21 n instructions on a Cortex-M4F for the end-fit and 90 + 48 n for the
+/// best-fit, 90 + 75 n where its products need 64 bits (steps above 3 · 2^31 / (n + 2)^4 - d).
 ///
 /// ```
 /// use estimator_core::{BestFit, Count, Foaw, Sample, VelocityEstimator, preset};
@@ -121,12 +124,15 @@ impl<const N: usize, F: Fit> VelocityEstimator for Foaw<N, F> {
             state.window = 1;
             return CountsPerTick(step.to_f32());
         }
-        recent.push(step);
+        recent.push(sample.large);
         let n = usize::from(self.window);
-        let older = recent.older(n);
-        let straight = recent.equal_steps().min(n);
-        let window = F::longest(older, recent.newest, straight, step.0, n as i32, self.bound);
-        state.window = window.intervals as u8;
+        let straight = Straight {
+            newest: sample.large,
+            intervals: recent.equal_steps().min(n),
+            step: step.0,
+        };
+        let window = F::longest(recent.older(n), straight, n as i32, self.bound);
+        state.window = window.intervals;
         CountsPerTick(window.slope)
     }
 }

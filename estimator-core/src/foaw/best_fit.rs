@@ -3,67 +3,69 @@
 use core::ops::{Add, BitOr, Mul, Sub};
 
 use super::cone::Cone;
-use super::fit::Window;
+use super::fit::{Straight, Window};
 use crate::units::Count;
 
-/// `W` holds the products.
+/// The longest accepted window. `W` is wide enough for products with the sums.
 #[inline(always)]
-pub(super) fn longest<W>(
-    older: &[Count],
-    newest: Count,
-    straight: usize,
-    step: i32,
-    d: i32,
-) -> Window
+pub(super) fn longest<W>(older: &[Count], straight: Straight, d: i32) -> Window
 where
-    W: Copy
-        + From<i32>
-        + Into<i64>
-        + Add<Output = W>
-        + Sub<Output = W>
-        + Mul<Output = W>
-        + BitOr<Output = W>
-        + PartialOrd,
+    W: Copy + From<i32> + Into<i64> + PartialOrd,
+    W: Add<Output = W> + Sub<Output = W> + Mul<Output = W> + BitOr<Output = W>,
 {
-    let mut age = straight;
-    // Slopes and displacements are less those of the first window from here on, which makes them
-    // small.
-    let mut cone = Cone::of(0, age as i32, d);
-    let mut line = newest.0.wrapping_sub((step * age as i32) as u32);
-    let mut sum = 0;
-    let mut rise = W::from(0);
-    let mut triangle = (age * (age + 1) / 2) as i32;
-    let mut run = triangle * (age as i32 + 2) / 3;
+    let mut cone = Cone::of(straight.rise(), straight.ticks(), d);
+    // Σ z_j, and dividend and divisor of the slope.
+    let mut sum = straight.step * triangle(straight.ticks());
+    let mut run = tetrahedron(straight.ticks());
+    let mut rise = W::from(straight.step) * W::from(run);
+    let mut age = straight.intervals;
     while let Some(count) = older.get(age) {
         let tick = age as i32 + 1;
-        line = line.wrapping_sub(step as u32);
-        let z = line.wrapping_sub(count.0) as i32;
-        if !cone.narrow(z, tick, d, d) {
+        let z = (straight.newest - *count).0;
+        if !cone.narrow(z, tick, d) {
             break;
         }
         let wider = rise - W::from(sum) + W::from(tick * z);
-        triangle += tick;
-        if !cone.contains(wider, run + triangle) {
+        sum += z;
+        run += triangle(tick);
+        if cone.excludes(wider, run) {
             break;
         }
-        run += triangle;
-        sum += z;
         rise = wider;
         age += 1;
     }
-    let rise = rise.into() + i64::from(step) * i64::from(run);
     Window {
-        intervals: age as i32,
-        slope: quotient(rise, run),
+        intervals: age as u8,
+        slope: quotient(rise.into(), tetrahedron(age as i32)),
     }
+}
+
+/// `i (i + 1) / 2`.
+const fn triangle(i: i32) -> i32 {
+    ((i * i + i) as u32 / 2) as i32
+}
+
+/// `i (i + 1) (i + 2) / 6`, what the slope of a window is divided by.
+const fn tetrahedron(i: i32) -> i32 {
+    ((triangle(i) * (i + 2)) as u32 / 3) as i32
+}
+
+/// Whether 32 bits hold the products of all windows of up to `n` intervals that begin with `step`.
+///
+/// The first sample keeps every slope in the cone within d of the step. So with m = |step| + d all
+/// that fit are below `m (j + 1)`, sums and their products below `m (n + 2)^4 / 3`.
+#[inline(always)]
+pub(super) const fn fits_i32(step: i32, n: i32, d: i32) -> bool {
+    let steepest = step.unsigned_abs() + d as u32;
+    steepest as u64 * (n as u32 + 2).pow(4) as u64 <= 3 << 31
 }
 
 /// The closest f32, or one as good as that: an exact quotient stays exact. The divisor is below
 /// 2^20.
 fn quotient(dividend: i64, divisor: i32) -> f32 {
     let by = divisor as f32;
-    if dividend.unsigned_abs() <= 1 << 24 {
-        return dividend as i32 as f32 / by;
+    if let Ok(dividend @ -0x0100_0000..=0x0100_0000) = i32::try_from(dividend) {
+        return dividend as f32 / by;
     }
     // The dividend was rounded, too. Divide again what is beyond the whole counts: that fits
     // f32, as `|rest| <= 2 divisor`.

@@ -28,20 +28,16 @@ impl Cone {
         }
     }
 
-    /// Keeps the slopes that also pass the sample `rise` counts and `run` ticks ago, unless that
-    /// sample is more than `beyond` counts outside the cone; then says no, and the cone is of no
-    /// more use.
-    ///
-    /// Products stay below 2^31 for `|rise| < 2^23`, a cone of such samples and `run <= 128`.
+    /// Keeps the slopes that also pass the sample `rise` counts and `run` ticks ago, if the slope
+    /// to that sample is in the cone; if not, says so, and the cone is of no more use.
     #[inline(always)]
-    pub(super) const fn narrow(&mut self, rise: i32, run: i32, d: i32, beyond: i32) -> bool {
+    pub(super) const fn narrow_from_inside(&mut self, rise: i32, run: i32, d: i32) -> bool {
         let Self { lowest, highest } = self;
-        // How far the sample is above where one more count is outside, times the bound's run.
-        // Without sign, one comparison finds that the bound stays, which is the common case.
-        let above = rise * lowest.run - lowest.rise * run + beyond * lowest.run;
-        let most = (d + beyond) * lowest.run;
-        if above as u32 > most as u32 {
-            if above < most {
+        // Neither outside nor narrower takes one comparison, without sign.
+        let above = rise * lowest.run - lowest.rise * run;
+        let limit = d * lowest.run;
+        if above as u32 > limit as u32 {
+            if above < limit {
                 return false;
             }
             *lowest = Bound {
@@ -49,10 +45,10 @@ impl Cone {
                 run,
             };
         }
-        let below = highest.rise * run - rise * highest.run + beyond * highest.run;
-        let most = (d + beyond) * highest.run;
-        if below as u32 > most as u32 {
-            if below < most {
+        let below = highest.rise * run - rise * highest.run;
+        let limit = d * highest.run;
+        if below as u32 > limit as u32 {
+            if below < limit {
                 return false;
             }
             *highest = Bound {
@@ -63,17 +59,43 @@ impl Cone {
         true
     }
 
-    /// Whether `rise / run` is in the cone, edges included.
+    /// Keeps the slopes that also pass the sample `rise` counts and `run` ticks ago; says whether
+    /// any is left.
     #[inline(always)]
-    pub(super) fn contains<W>(&self, rise: W, run: i32) -> bool
+    pub(super) const fn narrow(&mut self, rise: i32, run: i32, d: i32) -> bool {
+        let Self { lowest, highest } = *self;
+        let above = rise * lowest.run - lowest.rise * run;
+        let below = highest.rise * run - rise * highest.run;
+        if above > d * lowest.run {
+            if below < -d * highest.run {
+                return false;
+            }
+            self.lowest = Bound {
+                rise: rise - d,
+                run,
+            };
+        }
+        if below > d * highest.run {
+            if above < -d * lowest.run {
+                return false;
+            }
+            self.highest = Bound {
+                rise: rise + d,
+                run,
+            };
+        }
+        true
+    }
+
+    /// Whether `rise / run` is outside the cone.
+    #[inline(always)]
+    pub(super) fn excludes<W>(&self, rise: W, run: i32) -> bool
     where
         W: Copy + From<i32> + Sub<Output = W> + Mul<Output = W> + BitOr<Output = W> + PartialOrd,
     {
-        let run = W::from(run);
-        let [lowest, highest] =
-            [self.lowest, self.highest].map(|b| (W::from(b.rise), W::from(b.run)));
-        let above = rise * lowest.1 - lowest.0 * run;
-        let below = highest.0 * run - rise * highest.1;
-        (above | below) >= W::from(0)
+        let Self { lowest, highest } = self;
+        let above = rise * W::from(lowest.run) - W::from(lowest.rise) * W::from(run);
+        let below = W::from(highest.rise) * W::from(run) - rise * W::from(highest.run);
+        (above | below) < W::from(0)
     }
 }

@@ -21,68 +21,65 @@ impl Fit for BestFit {}
 
 /// The arithmetic of a fit, kept inside the crate.
 pub trait Sealed: Copy {
-    /// The longest accepted window up to `newest` of the samples `older`, newest first. The newest
-    /// `straight` steps are all `step`, so that the window of as many intervals is accepted.
+    /// The longest accepted window of at most `n` intervals with noise bound `d`. The samples before
+    /// the newest are `older`, newest first, at most n of them.
     #[doc(hidden)]
-    fn longest(
-        older: &[Count],
-        newest: Count,
-        straight: usize,
-        step: i32,
-        n: i32,
-        d: i32,
-    ) -> Window;
+    fn longest(older: &[Count], straight: Straight, n: i32, d: i32) -> Window;
+}
+
+/// The newest steps that are equal: a line through all their samples, so a window that is accepted.
+#[derive(Clone, Copy, Debug)]
+pub struct Straight {
+    pub(super) newest: Count,
+    pub(super) intervals: usize,
+    pub(super) step: i32,
+}
+
+impl Straight {
+    pub(super) const fn ticks(&self) -> i32 {
+        self.intervals as i32
+    }
+
+    pub(super) const fn rise(&self) -> i32 {
+        self.step * self.ticks()
+    }
 }
 
 /// A window and its slope.
 #[derive(Clone, Copy, Debug)]
 pub struct Window {
-    pub(super) intervals: i32,
+    pub(super) intervals: u8,
     pub(super) slope: f32,
 }
 
 impl Sealed for EndFit {
     #[inline(always)]
-    fn longest(
-        older: &[Count],
-        newest: Count,
-        straight: usize,
-        step: i32,
-        _: i32,
-        d: i32,
-    ) -> Window {
-        let mut cone = Cone::of(step * straight as i32, straight as i32, d);
-        let mut age = straight;
+    fn longest(older: &[Count], straight: Straight, _: i32, d: i32) -> Window {
+        let newest = straight.newest;
+        let mut cone = Cone::of(straight.rise(), straight.ticks(), d);
+        let mut age = straight.intervals;
         while let Some(count) = older.get(age) {
-            if !cone.narrow((newest - *count).0, age as i32 + 1, d, 0) {
+            if !cone.narrow_from_inside((newest - *count).0, age as i32 + 1, d) {
                 break;
             }
             age += 1;
         }
         // Always inside.
         let oldest = older.get(age.wrapping_sub(1)).copied().unwrap_or(newest);
-        let rise = (newest - oldest).0;
         Window {
-            intervals: age as i32,
-            slope: rise as f32 / age as f32,
+            intervals: age as u8,
+            slope: (newest - oldest).to_f32() / age as f32,
         }
     }
 }
 
 impl Sealed for BestFit {
     #[inline(always)]
-    fn longest(
-        older: &[Count],
-        newest: Count,
-        straight: usize,
-        step: i32,
-        n: i32,
-        d: i32,
-    ) -> Window {
-        if (d as u32).checked_mul(((n + 2) as u32).pow(4)).is_some() {
-            best_fit::longest::<i32>(older, newest, straight, step, d)
+    fn longest(older: &[Count], straight: Straight, n: i32, d: i32) -> Window {
+        if best_fit::fits_i32(straight.step, n, d) {
+            best_fit::longest::<i32>(older, straight, d)
         } else {
-            best_fit::longest::<i64>(older, newest, straight, step, d)
+            best_fit::longest::<i64>(older, straight, d)
         }
     }
 }

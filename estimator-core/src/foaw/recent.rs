@@ -57,30 +57,29 @@ impl<const N: usize> Recent<N> {
         self.equal as usize
     }
 
-    /// The sample that is `step` further.
+    /// One more sample.
     #[inline(always)]
-    pub(super) fn push(&mut self, step: Counts) {
+    pub(super) fn push(&mut self, count: Count) {
+        let step = count - self.newest;
         let equal = if step == self.step { self.equal } else { 0 };
         self.equal = (equal + 1).min(N as u32);
         self.step = step;
         self.known = (self.known + 1).min(N as u32);
-        // Modulo N.
+        // One less, modulo N.
         let head = (self.head as usize).wrapping_sub(1).min(N - 1);
-        for copy in &mut self.older {
-            copy[head] = self.newest;
-        }
+        let [once, twice] = &mut self.older;
+        once[head] = self.newest;
+        twice[head] = self.newest;
         self.head = head as u32;
-        self.newest = self.newest + step;
+        self.newest = count;
     }
 
     /// The samples before the newest, newest first, at most `most` of them.
     #[inline(always)]
     pub(super) fn older(&self, most: usize) -> &[Count] {
-        // Always inside.
-        let older = self.older.as_flattened();
         let head = self.head as usize;
-        older
-            .get(head..head + most.min(self.known as usize))
-            .unwrap_or(&[])
+        let end = head + most.min(self.known as usize);
+        // Always inside.
+        self.older.as_flattened().get(head..end).unwrap_or(&[])
     }
 }
