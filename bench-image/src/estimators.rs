@@ -4,7 +4,7 @@ use estimator_core::{
     AdaptiveEdgeObserver, AdaptiveObserver, BestFit, CountObserver, CoupledMotor, DesignError,
     Device, EdgeObserver, EndFit, FiniteDifference, Foaw, Hertz, Kalman, KalmanMotor, KalmanTriple,
     LowPass, MOverT, Model, Observer, Pll, Sample, SteadyKalman, SteadyKalmanMotor,
-    SteadyKalmanTriple, Uncertainty, preset,
+    SteadyKalmanTriple, TableKalman, TableKalmanTriple, Uncertainty, preset,
 };
 
 use crate::peers::{AdsKalman, IdspKalman, IdspLowPass, IdspPll, MiniKalman, NalgebraKalman};
@@ -53,6 +53,10 @@ subjects! {
         preset!(SteadyKalman::new(&preset!(Model::triple_integrator(4096, SLOW, 4370.0))));
     kalman_triple_steady_10k, "kalman-triple-steady", FAST: SteadyKalmanTriple =
         preset!(SteadyKalman::new(&preset!(Model::triple_integrator(4096, FAST, 3650.0))));
+    kalman_triple_table_1k, "kalman-triple-table", SLOW: TableKalmanTriple<24> =
+        preset!(TableKalman::new(&preset!(Model::triple_integrator(4096, SLOW, 4370.0))));
+    kalman_triple_table_10k, "kalman-triple-table", FAST: TableKalmanTriple<168> =
+        preset!(TableKalman::new(&preset!(Model::triple_integrator(4096, FAST, 3650.0))));
     kalman_motor_1k, "kalman-motor", SLOW: KalmanMotor =
         preset!(Kalman::new(&preset!(Model::motor(&Device::DCX35L, SLOW, 0.106))));
     kalman_motor_10k, "kalman-motor", FAST: KalmanMotor =

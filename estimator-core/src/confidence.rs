@@ -8,6 +8,7 @@ use crate::late_current::{LateCurrent, LateCurrentState};
 use crate::model::Input;
 use crate::observer::{Correction, CurrentSource, Learning, Observer, ObserverState, SlipSource};
 use crate::steady_kalman::{SteadyKalman, SteadyKalmanState};
+use crate::table_kalman::{TableKalman, TableKalmanState};
 use crate::units::{Count, CountsPerTick};
 
 /// An estimator that says how far off its latest velocity may be.
@@ -17,6 +18,7 @@ use crate::units::{Count, CountsPerTick};
 /// | finite difference | 1: one count a tick |
 /// | FOAW | 1 / n²: one count over the window of n intervals |
 /// | Kalman | P_11 of the covariance it runs with |
+/// | Kalman, table | P_11 after as many ticks, computed at compile time |
 /// | Kalman, steady | P_11 of the limit, computed at compile time |
 /// | observer | that of the filter corrected every n ticks before its correction, n ticks after the last |
 /// | handover | the larger of the two while both run |
@@ -83,6 +85,12 @@ impl<const N: usize, F: Fit> Confidence for Foaw<N, F> {
 impl<const S: usize, U: Input<S>> Confidence for Kalman<S, U> {
     fn variance(&self, state: &KalmanState<S>) -> Variance {
         Variance(self.covariance(state)[1][1])
+    }
+}
+
+impl<const S: usize, const N: usize, U: Input<S>> Confidence for TableKalman<S, N, U> {
+    fn variance(&self, state: &TableKalmanState<S>) -> Variance {
+        Variance(self.velocity_variance(state))
     }
 }
 

@@ -26,6 +26,8 @@ pub enum DesignError {
     NotConverged,
     /// The closed loop of model and gain is not stable.
     NotStable,
+    /// The gain has not settled where the table of gains ends.
+    Table,
 }
 
 impl DesignError {
@@ -49,6 +51,7 @@ impl DesignError {
                 "steady gain does not converge: process noise out of reach for this rate and encoder"
             }
             Self::NotStable => "closed loop of model and steady gain is not stable",
+            Self::Table => "gain does not settle within the table: more ticks or process noise",
         }
     }
 }

@@ -16,6 +16,7 @@
 //! | first-order low-pass over another | [`LowPass`] | 1 float | as the other |
 //! | FOAW, end-fit or best-fit (eqs. 5 to 8) | [`Foaw`] | a ring of counts | counts |
 //! | Kalman, full covariance | [`Kalman`] | x, P | counts; current with [`Model::motor`] |
+//! | Kalman, preset gain table | [`TableKalman`] | x, 1 index | the same |
 //! | Kalman, preset steady gain | [`SteadyKalman`] | x | the same |
 //! | critically damped tracking loop | [`Pll`] | 2 floats | counts |
 //! | M/T from edge time stamps | [`MOverT`] | 1 edge | counts, edges |
@@ -69,6 +70,7 @@ mod pll;
 mod riccati;
 mod sample;
 mod steady_kalman;
+mod table_kalman;
 mod triple_integrator;
 mod units;
 
@@ -95,6 +97,7 @@ pub use observer::{
 pub use pll::{Pll, PllState};
 pub use sample::{Edge, Sample, Signals};
 pub use steady_kalman::{SteadyKalman, SteadyKalmanMotor, SteadyKalmanState, SteadyKalmanTriple};
+pub use table_kalman::{TableKalman, TableKalmanMotor, TableKalmanState, TableKalmanTriple};
 pub use triple_integrator::NoInput;
 pub use units::{
     Amps, ClockTicks, Count, Counts, CountsPerTick, CountsPerTickSquared, Hertz, Scale,

@@ -107,13 +107,25 @@ pub(crate) const fn counts_per_rad(counts_per_rev: u32) -> f64 {
     counts_per_rev as f64 / (2.0 * core::f64::consts::PI)
 }
 
+/// A gain as it was rounded, in f64.
+pub(crate) const fn widened<const S: usize>(gain: &[f32; S]) -> [f64; S] {
+    let mut wide = [0.0; S];
+    let mut i = 0;
+    while i < S {
+        wide[i] = gain[i] as f64;
+        i += 1;
+    }
+    wide
+}
+
 /// K as [`Input::tick`] takes it, after a tick with `k0_before`.
-pub(crate) const fn as_taken<const S: usize>(k0_before: f32, k: &[f32; S]) -> [f32; S] {
-    let mut gain = *k;
-    gain[0] = 1.0 - k0_before;
+pub(crate) const fn as_taken<const S: usize>(k0_before: f64, k: &[f64; S]) -> [f32; S] {
+    let mut gain = [0.0; S];
+    gain[0] = (1.0 - k0_before) as f32;
+    gain[1] = k[1] as f32;
     if S == 3 {
-        gain[S - 1] = k[S - 1] / 2.0;
-        gain[1] = k[1] - gain[S - 1];
+        gain[1] = (k[1] - k[S - 1] / 2.0) as f32;
+        gain[S - 1] = (k[S - 1] / 2.0) as f32;
     }
     gain
 }

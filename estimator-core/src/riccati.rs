@@ -67,6 +67,36 @@ pub(crate) const fn steady<const S: usize>(
     }
 }
 
+/// The gains of the first N ticks after a start with uncorrelated variances `prior`, and the
+/// variance P_11 of the velocity before each, from the correction before.
+pub(crate) const fn first_gains<const S: usize, const N: usize>(
+    a: &Matrix<S>,
+    q: &Matrix<S>,
+    r: f64,
+    prior: &[f64; S],
+) -> ([[f64; S]; N], [f64; N]) {
+    let mut covariance = [[0.0; S]; S];
+    let mut i = 0;
+    while i < S {
+        covariance[i][i] = prior[i];
+        i += 1;
+    }
+    covariance = later_noise(a, q, &covariance);
+    let mut gains = [[0.0; S]; N];
+    let mut velocity = [0.0; N];
+    let mut corrected = prior[1];
+    let mut tick = 0;
+    while tick < N {
+        let k = gain(&covariance, r);
+        gains[tick] = k;
+        velocity[tick] = corrected;
+        corrected = covariance[1][1] - k[1] * covariance[0][1];
+        covariance = next_covariance(a, q, r, &covariance);
+        tick += 1;
+    }
+    (gains, velocity)
+}
+
 /// Process noise of n + 1 ticks from that of n: `A Q_n Aᵀ + Q`.
 pub(crate) const fn later_noise<const S: usize>(
     a: &Matrix<S>,

@@ -3,7 +3,7 @@
 use crate::design_error::DesignError;
 use crate::estimator::{AccelerationEstimator, VelocityEstimator};
 use crate::held_motor::CurrentInput;
-use crate::model::{Input, Model, as_taken};
+use crate::model::{Input, Model, as_taken, widened};
 use crate::sample::{Sample, Signals};
 use crate::triple_integrator::NoInput;
 use crate::units::{Count, CountsPerTick, CountsPerTickSquared};
@@ -47,14 +47,16 @@ impl<const S: usize, U: Copy> SteadyKalman<S, U> {
     /// As [`Model::steady_gain`].
     pub const fn new(model: &Model<S, U>) -> Result<Self, DesignError> {
         const { assert!(S >= 2, "position and velocity at least") };
-        match model.steady() {
-            Ok(steady) => Ok(Self {
-                input: model.input,
-                gain: as_taken(steady.gain[0], &steady.gain),
-                velocity_variance: steady.velocity[1] as f32,
-            }),
-            Err(error) => Err(error),
-        }
+        let steady = match model.steady() {
+            Ok(steady) => steady,
+            Err(error) => return Err(error),
+        };
+        let k = widened(&steady.gain);
+        Ok(Self {
+            input: model.input,
+            gain: as_taken(k[0], &k),
+            velocity_variance: steady.velocity[1] as f32,
+        })
     }
 
     pub(crate) const fn velocity_variance(&self) -> f32 {

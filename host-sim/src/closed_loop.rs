@@ -132,7 +132,7 @@ impl Loop {
         if self.scene.asks_for_acceleration() && !self.handle.gives_acceleration() {
             return Err(format!(
                 "scene {}: its estimator of the handle gives no acceleration; name one that does, \
-                 kalman-triple or kalman-triple-steady",
+                 kalman-triple, kalman-triple-table or kalman-triple-steady",
                 self.scene
             ));
         }

@@ -135,7 +135,10 @@ impl Kind {
     /// Whether its model has an acceleration: the triple integrators.
     #[must_use]
     pub fn gives_acceleration(&self) -> bool {
-        matches!(self.name, "kalman-triple" | "kalman-triple-steady")
+        matches!(
+            self.name,
+            "kalman-triple" | "kalman-triple-table" | "kalman-triple-steady"
+        )
     }
 
     /// Whether `tune` has anything to look for.

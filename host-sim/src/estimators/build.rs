@@ -2,7 +2,7 @@
 
 use estimator_core::{
     BestFit, DesignError, EndFit, FiniteDifference, Fit, Foaw, Hertz, Kalman, LateCurrent, LowPass,
-    Model, Pll, Scale, Signals, SteadyKalman,
+    Model, Pll, Scale, Signals, SteadyKalman, TableKalmanTriple,
 };
 
 use super::run::{Estimator, confident, erased};
@@ -12,6 +12,10 @@ pub(super) type Build = fn(&Setup, &Values) -> Result<Estimator, DesignError>;
 
 /// Largest window on offer; firmware takes a ring of the size it needs.
 const RING: usize = 128;
+
+/// Length of the gain table on offer, enough for its presets at 100 kHz; firmware takes as much as
+/// it needs.
+const TABLE: usize = 4096;
 
 const CUTOFF: Parameter = Parameter {
     name: "cutoff_hz",
@@ -124,8 +128,18 @@ pub(super) const KINDS: &[Kind] = &[
         },
     },
     Kind {
+        name: "kalman-triple-table",
+        summary: "the same with a preset table of gains, from the start until they are steady",
+        needs: Signals::COUNT,
+        parameters: &[JERK],
+        build: |setup, values| {
+            let filter = TableKalmanTriple::<TABLE>::new(&triple(setup, values)?)?;
+            Ok(confident(filter, scale(setup)?))
+        },
+    },
+    Kind {
         name: "kalman-triple-steady",
-        summary: "the same with its preset steady gain",
+        summary: "the same with its preset steady gain alone",
         needs: Signals::COUNT,
         parameters: &[JERK],
         build: |setup, values| {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use estimator_core::{
     AccelerationEstimator, Amps, ClockTicks, Confidence, Count, CountsPerTick,
     CountsPerTickSquared, Edge, KalmanState, Sample, Scale, Signals, SteadyKalmanState,
-    VelocityEstimator,
+    TableKalmanState, VelocityEstimator,
 };
 
 use crate::trace::{EdgeStamp, Trace};
@@ -78,11 +78,17 @@ impl AccelerationEstimator for Estimator {
 fn acceleration(state: &State) -> Option<CountsPerTickSquared> {
     let state = (*state.0).as_any();
     let full = state.downcast_ref().map(KalmanState::<3>::acceleration);
-    full.or_else(|| {
+    let table = || {
+        state
+            .downcast_ref()
+            .map(TableKalmanState::<3>::acceleration)
+    };
+    let steady = || {
         state
             .downcast_ref()
             .map(SteadyKalmanState::<3>::acceleration)
-    })
+    };
+    full.or_else(table).or_else(steady)
 }
 
 /// State of an [`Estimator`].

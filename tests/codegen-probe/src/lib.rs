@@ -8,7 +8,8 @@ use estimator_core::{
     CountsPerTick, CoupledMotor, Device, EdgeObserver, Edges, EndFit, FiniteDifference, Fixed,
     Foaw, Handover, HeldHandle, Hertz, Kalman, KalmanMotor, KalmanTriple, LateCurrent, Learned,
     LowPass, MOverT, Model, NoCurrent, Observer, Pll, Sample, Skip, SteadyKalman,
-    SteadyKalmanMotor, SteadyKalmanTriple, Uncertainty, VelocityEstimator, preset,
+    SteadyKalmanMotor, SteadyKalmanTriple, TableKalman, TableKalmanMotor, TableKalmanTriple,
+    Uncertainty, VelocityEstimator, preset,
 };
 
 const RATE: Hertz = Hertz(10_000.0);
@@ -65,6 +66,10 @@ probes! {
         preset!(Kalman::new(&preset!(Model::triple_integrator(4096, RATE, 2e4))));
     start_motor, update_motor: KalmanMotor =
         preset!(Kalman::new(&preset!(Model::motor(&Device::DCX35L, RATE, 0.1))));
+    start_table_triple, update_table_triple: TableKalmanTriple<128> =
+        preset!(TableKalman::new(&preset!(Model::triple_integrator(4096, RATE, 2e4))));
+    start_table_motor, update_table_motor: TableKalmanMotor<1024> =
+        preset!(TableKalman::new(&preset!(Model::motor(&Device::DCX35L, RATE, 0.1))));
     start_steady_triple, update_steady_triple: SteadyKalmanTriple =
         preset!(SteadyKalman::new(&preset!(Model::triple_integrator(4096, RATE, 2e4))));
     start_steady_motor, update_steady_motor: SteadyKalmanMotor =

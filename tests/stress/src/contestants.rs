@@ -147,6 +147,9 @@ const LOAD_TIME_S: f64 = 0.1;
 /// what was seen.
 const LEARNED_NONSENSE_S: f64 = 6.0;
 
+/// Length of the gain tables, ticks.
+pub(crate) const TABLE: usize = 1024;
+
 /// Every estimator at one control rate.
 #[must_use]
 #[allow(
@@ -200,6 +203,11 @@ pub fn at(rate: f64) -> Vec<Contestant> {
             c::Kalman::new(&model).expect("valid")
         })
         .poles(triple, 3),
+        both!("kalman-triple-table", rate, |c| {
+            let model = c::Model::triple_integrator(4096, c::Hertz(rate), JERK).expect("valid");
+            c::TableKalmanTriple::<TABLE>::new(&model).expect("valid")
+        })
+        .poles(triple, 3),
         both!("kalman-triple-steady", rate, |c| {
             let model = c::Model::triple_integrator(4096, c::Hertz(rate), JERK).expect("valid");
             c::SteadyKalman::new(&model).expect("valid")
@@ -209,6 +217,12 @@ pub fn at(rate: f64) -> Vec<Contestant> {
             let model =
                 c::Model::motor(&c::Device::DCX35L, c::Hertz(rate), CURRENT_NOISE).expect("valid");
             c::Kalman::new(&model).expect("valid")
+        })
+        .poles(motor, 2),
+        both!("kalman-motor-table", rate, |c| {
+            let model =
+                c::Model::motor(&c::Device::DCX35L, c::Hertz(rate), CURRENT_NOISE).expect("valid");
+            c::TableKalmanMotor::<TABLE>::new(&model).expect("valid")
         })
         .poles(motor, 2),
         both!("kalman-motor-steady", rate, |c| {

@@ -3,6 +3,7 @@
 use estimator_core as core;
 use estimator_twin as twin;
 
+use crate::contestants::TABLE;
 use crate::course::EDGE_CLOCK_HZ;
 use crate::pair::{Both, Pair};
 
@@ -59,14 +60,16 @@ macro_rules! observer {
 pub type Refusable = Result<Box<dyn Pair>, String>;
 
 /// The kinds of estimators that have a parameter to choose.
-pub const KINDS: [&str; 13] = [
+pub const KINDS: [&str; 15] = [
     "foaw-end-fit",
     "foaw-best-fit",
     "low-pass",
     "pll",
     "kalman-triple",
+    "kalman-triple-table",
     "kalman-triple-steady",
     "kalman-motor",
+    "kalman-motor-table",
     "kalman-motor-steady",
     "m-over-t",
     "observer",
@@ -121,6 +124,12 @@ pub fn design(kind: &str, rate: f64, counts_per_rev: u32, parameter: f64) -> Ref
                     .and_then(|model| c::Kalman::new(&model))
             )
         }
+        "kalman-triple-table" => {
+            refusable!(
+                |c| c::Model::triple_integrator(counts_per_rev, c::Hertz(rate), parameter)
+                    .and_then(|model| c::TableKalmanTriple::<TABLE>::new(&model))
+            )
+        }
         "kalman-triple-steady" => {
             refusable!(
                 |c| c::Model::triple_integrator(counts_per_rev, c::Hertz(rate), parameter)
@@ -134,6 +143,14 @@ pub fn design(kind: &str, rate: f64, counts_per_rev: u32, parameter: f64) -> Ref
             };
             c::Model::motor(&device, c::Hertz(rate), parameter)
                 .and_then(|model| c::Kalman::new(&model))
+        }),
+        "kalman-motor-table" => refusable!(|c| {
+            let device = c::Device {
+                counts_per_rev,
+                ..c::Device::DCX35L
+            };
+            c::Model::motor(&device, c::Hertz(rate), parameter)
+                .and_then(|model| c::TableKalmanMotor::<TABLE>::new(&model))
         }),
         "kalman-motor-steady" => refusable!(|c| {
             let device = c::Device {

@@ -40,6 +40,7 @@ impl<E> State<E> for core::PllState {}
 impl<E> State<E> for core::MOverTState {}
 impl<E, C, S, M> State<E> for core::ObserverState<C, S, M, ()> {}
 impl<E, const S: usize> State<E> for core::SteadyKalmanState<S> {}
+impl<E, const S: usize> State<E> for core::TableKalmanState<S> {}
 impl<E, S> State<E> for core::LateCurrentState<S> {}
 impl<E, S> State<E> for core::LowPassState<S> {}
 

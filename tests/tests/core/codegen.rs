@@ -45,6 +45,8 @@ fn estimators_call_nothing_on_the_board() {
         "foaw_128_best",
         "triple",
         "motor",
+        "table_triple",
+        "table_motor",
         "steady_triple",
         "steady_motor",
         "late_motor",

@@ -2,7 +2,8 @@
 
 use estimator_core::{
     BestFit, CountsPerTick, Device, EndFit, FiniteDifference, Fit, Foaw, Hertz, Kalman,
-    LateCurrent, LowPass, Model, Pll, Sample, Signals, SteadyKalman, VelocityEstimator,
+    LateCurrent, LowPass, Model, Pll, Sample, Signals, SteadyKalman, TableKalmanMotor,
+    TableKalmanTriple, VelocityEstimator,
 };
 
 use crate::reference::{self, Reference, Vector};
@@ -219,6 +220,13 @@ pub(crate) fn at(rate: f64) -> Vec<Case> {
             false,
         ),
         kalman(
+            "Kalman triple with a table",
+            rate,
+            TableKalmanTriple::<512>::new(&triple_model).expect("valid"),
+            &triple,
+            false,
+        ),
+        kalman(
             "steady Kalman triple",
             rate,
             SteadyKalman::new(&triple_model).expect("valid"),
@@ -226,6 +234,13 @@ pub(crate) fn at(rate: f64) -> Vec<Case> {
             true,
         ),
         kalman("Kalman motor", rate, full, &motor, false),
+        kalman(
+            "Kalman motor with a table",
+            rate,
+            TableKalmanMotor::<512>::new(&motor_model).expect("valid"),
+            &motor,
+            false,
+        ),
         kalman("steady Kalman motor", rate, steady, &motor, true),
         kalman(
             "Kalman motor, current late",
