@@ -124,6 +124,64 @@ fn a_log_is_recorded_replayed_and_drawn() {
     assert!(!svg.contains("truth"));
 }
 
+/// Stamps and what the board learned go from the log to the recording, and replay tells of both.
+#[test]
+fn lines_beside_frames_are_columns_and_health() {
+    let folder = Folder::new("record-beside");
+    let mut text = String::new();
+    for (k, line) in log(0..200, true).lines().enumerate() {
+        text += line;
+        text += "\n";
+        if let (true, Some(seq)) = (line.contains("frame seq="), k.checked_sub(2)) {
+            let bound = (652 * seq / 1000).wrapping_sub(100);
+            writeln!(text, "0.1 [INFO ] edge seq={seq} bound={bound} age=4200").unwrap();
+        }
+    }
+    text += "learned seq=199 damping=-0.25 friction=0 torque_constant=0\n";
+    let text = text.replace("torque=0.01", "sl=0.5 estimator=0 torque=0.01");
+    folder.good(&["record", "--out", "run.csv"], text.as_bytes());
+    let csv = fs::read_to_string(folder.0.join("run.csv")).unwrap();
+    let head = "sigma_large,edge_tick,edge_bound,learned_damping,learned_friction,\
+        learned_torque_constant";
+    assert!(csv.lines().next().unwrap().ends_with(head), "{csv}");
+    assert!(
+        csv.lines()
+            .last()
+            .unwrap()
+            .ends_with(",0.5,16711800,29,-0.25,0,0"),
+        "{csv}"
+    );
+    let [_, said] = folder.good(&["replay", "run.csv", "--estimator", "observer-edge"], b"");
+    assert_eq!(said.matches("run.csv: health: ").count(), 4, "{said}");
+    let damping =
+        "health: damping b, N.m.s/rad: learned 7.2000e-4, identified 9.6000e-4, -25.0 %: no";
+    assert!(said.contains(damping), "{said}");
+    // A device identified to be that is in health.
+    let device = "[coupler]\ndamping_nms_per_rad = 0.72e-3\n";
+    fs::write(folder.0.join("found.toml"), device).unwrap();
+    let found = [
+        "replay",
+        "run.csv",
+        "--estimator",
+        "pll",
+        "--device",
+        "found.toml",
+    ];
+    let [_, said] = folder.good(&found, b"");
+    assert!(
+        said.contains("+0.0 %") && !said.contains("no longer"),
+        "{said}"
+    );
+    // Somebody else's columns of the same names are nobody's business.
+    let foreign = csv
+        .replace("sigma_large", "x")
+        .replace("learned_", "y_")
+        .replace(",2,0,", ",run,none,");
+    fs::write(folder.0.join("foreign.csv"), foreign).unwrap();
+    let [_, said] = folder.good(&["replay", "foreign.csv", "--estimator", "pll"], b"");
+    assert!(!said.contains("health"), "{said}");
+}
+
 #[test]
 fn what_cannot_be_recorded_or_drawn_is_refused_in_a_line() {
     let folder = Folder::new("record-refused");
