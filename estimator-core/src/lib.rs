@@ -92,7 +92,7 @@ pub use observer::{
     AdaptiveEdgeObserver, AdaptiveObserver, AmplifierCurrent, Cells, Correction, CountObserver,
     CurrentSource, Deviations, EdgeObserver, Edges, EdgesState, Fixed, Gain, HeldHandle, Learned,
     LearnedState, Learning, NoCurrent, Observer, ObserverState, SlipSource, SmallEncoder,
-    Uncertainty,
+    SoftCells, SoftObserver, Uncertainty,
 };
 pub use pll::{Pll, PllState};
 pub use sample::{Edge, Sample, Signals};

@@ -6,6 +6,7 @@ mod design;
 mod inputs;
 mod learning;
 mod motion;
+mod soft_cells;
 
 pub use correction::{Cells, Correction, Edges, EdgesState};
 pub use design::{Gain, Uncertainty};
@@ -13,6 +14,7 @@ pub use inputs::{
     AmplifierCurrent, CurrentSource, HeldHandle, NoCurrent, SlipSource, SmallEncoder,
 };
 pub use learning::{Deviations, Fixed, Learned, LearnedState, Learning};
+pub use soft_cells::SoftCells;
 
 use crate::const_math::limited;
 use crate::estimator::VelocityEstimator;
@@ -30,6 +32,9 @@ pub type CountObserver = Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed>;
 
 /// [`CountObserver`] with edge time stamps.
 pub type EdgeObserver = Observer<AmplifierCurrent, SmallEncoder, Edges, Fixed>;
+
+/// [`CountObserver`] that hears counts inside their cell too.
+pub type SoftObserver = Observer<AmplifierCurrent, SmallEncoder, SoftCells, Fixed>;
 
 /// [`CountObserver`] that learns damping, friction and torque constant.
 pub type AdaptiveObserver = Observer<AmplifierCurrent, SmallEncoder, Cells, Learned>;
@@ -66,7 +71,8 @@ const LARGEST_FRICTION_ERROR: f32 = 0.5;
 ///
 /// What a device lacks is left out by type: [`held`](Self::held) without the small encoder,
 /// [`blind`](Self::blind) without current; [`with_edges`](Self::with_edges) adds time stamps,
-/// [`learning`](Self::learning) learns the parameters.
+/// [`soft`](Self::soft) hears counts inside their cell too, [`learning`](Self::learning) learns the
+/// parameters.
 ///
 /// Valid for innovations up to 65536 counts; beyond, the position follows and the velocity takes
 /// 65536. A displacement beyond ±2^24 counts a tick is rounded.
@@ -208,6 +214,7 @@ where
             from: state.position - counts,
             lead: step.moved - driven.behind,
             gained: step.velocity - before,
+            rests: step.stuck,
         };
         let position = path.from + path.lead;
         let found = self

@@ -15,6 +15,8 @@ pub struct Path {
     pub(super) lead: f32,
     /// Change of velocity over the tick, counts.
     pub(super) gained: f32,
+    /// Whether the rotor rests.
+    pub(super) rests: bool,
 }
 
 /// What a tick's counts say against the prediction.
@@ -75,7 +77,7 @@ fn excess(position: f32) -> Option<f32> {
 
 /// The table's row for a gap of this many ticks.
 #[inline(always)]
-fn row(gap: f32) -> usize {
+pub(super) fn row(gap: f32) -> usize {
     // A float-to-integer cast saturates.
     ((gap - 0.5) as usize).min(ROWS - 1)
 }

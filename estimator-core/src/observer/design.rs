@@ -4,6 +4,7 @@ use super::correction::{Cells, Edges};
 use super::inputs::{AmplifierCurrent, HeldHandle, NoCurrent, SmallEncoder};
 use super::learning::{Fixed, Learned};
 use super::motion::Motion;
+use super::soft_cells::SoftCells;
 use super::{Observer, ROWS};
 use crate::const_math::{exp, phi1, phi2};
 use crate::coupled_motor::CoupledMotor;
@@ -255,6 +256,36 @@ impl<C: Copy, S: Copy, L: Copy> Observer<C, S, Cells, L> {
             current: self.current,
             slip: self.slip,
             correction: Edges { clock },
+            learning: self.learning,
+            load_decay: self.load_decay,
+            way_pole: self.way_pole,
+            friction_share: self.friction_share,
+            gains: self.gains,
+        })
+    }
+}
+
+impl<C: Copy, S: Copy, L: Copy> Observer<C, S, Cells, L> {
+    /// The same with soft ends of the dead zone, at the rate it was made for: see [`SoftCells`].
+    /// `growth`: how fast the position gets uncertain, counts a second.
+    ///
+    /// # Errors
+    /// [`DesignError::Rate`]; [`DesignError::ProcessNoise`] unless `growth` is above zero and
+    /// finite.
+    pub const fn soft(
+        self,
+        growth: f64,
+        rate: Hertz,
+    ) -> Result<Observer<C, S, SoftCells, L>, DesignError> {
+        let correction = match SoftCells::new(growth, rate) {
+            Ok(correction) => correction,
+            Err(error) => return Err(error),
+        };
+        Ok(Observer {
+            motion: self.motion,
+            current: self.current,
+            slip: self.slip,
+            correction,
             learning: self.learning,
             load_decay: self.load_decay,
             way_pole: self.way_pole,
