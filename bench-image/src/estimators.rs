@@ -3,7 +3,7 @@
 use estimator_core::{
     AdaptiveEdgeObserver, AdaptiveObserver, BestFit, CountObserver, CoupledMotor, DesignError,
     Device, EdgeObserver, EndFit, FiniteDifference, Foaw, Hertz, Kalman, KalmanMotor, KalmanTriple,
-    LowPass, MOverT, Model, Observer, Pll, Sample, SteadyKalman, SteadyKalmanMotor,
+    LowPass, MOverT, Model, Observer, Pll, Sample, SoftObserver, SteadyKalman, SteadyKalmanMotor,
     SteadyKalmanTriple, TableKalman, TableKalmanTriple, Uncertainty, preset,
 };
 
@@ -68,21 +68,25 @@ subjects! {
     m_over_t_1k, "m-over-t", SLOW: MOverT = preset!(MOverT::new(CLOCK, SLOW));
     m_over_t_10k, "m-over-t", FAST: MOverT = preset!(MOverT::new(CLOCK, FAST));
     observer_1k, "observer", SLOW: CountObserver = preset!(observer(SLOW, 7.01e-5, 7.55e-4, 0.0625));
-    observer_10k, "observer", FAST: CountObserver = preset!(observer(FAST, 9.05e-5, 1e-4, 0.0625));
+    observer_10k, "observer", FAST: CountObserver = preset!(observer(FAST, 7.01e-5, 7.55e-4, 0.0625));
     observer_edge_1k, "observer-edge", SLOW: EdgeObserver =
         preset!(preset!(observer(SLOW, 9.21e-5, 9.85e-4, 0.03)).with_edges(CLOCK, SLOW));
     observer_edge_10k, "observer-edge", FAST: EdgeObserver =
-        preset!(preset!(observer(FAST, 5e-4, 2.56e-4, 0.03)).with_edges(CLOCK, FAST));
+        preset!(preset!(observer(FAST, 9.21e-5, 9.85e-4, 0.03)).with_edges(CLOCK, FAST));
+    observer_soft_1k, "observer-soft", SLOW: SoftObserver =
+        preset!(preset!(observer(SLOW, 6e-5, 1e-3, 0.0625)).soft(150.0, SLOW));
+    observer_soft_10k, "observer-soft", FAST: SoftObserver =
+        preset!(preset!(observer(FAST, 6e-5, 1e-3, 0.0625)).soft(150.0, FAST));
     adaptive_1k, "adaptive", SLOW: AdaptiveObserver =
         preset!(preset!(observer(SLOW, 5.75e-6, 1.38e-4, 0.0625)).learning(4096, SLOW));
     adaptive_10k, "adaptive", FAST: AdaptiveObserver =
-        preset!(preset!(observer(FAST, 3.57e-6, 1e-5, 0.0625)).learning(4096, FAST));
+        preset!(preset!(observer(FAST, 5.75e-6, 1.38e-4, 0.0625)).learning(4096, FAST));
     adaptive_edge_1k, "adaptive-edge", SLOW: AdaptiveEdgeObserver = preset!(
         preset!(preset!(observer(SLOW, 1.55e-5, 3.01e-4, 0.03)).with_edges(CLOCK, SLOW))
             .learning(4096, SLOW)
     );
     adaptive_edge_10k, "adaptive-edge", FAST: AdaptiveEdgeObserver = preset!(
-        preset!(preset!(observer(FAST, 3.68e-5, 8.9e-4, 0.03)).with_edges(CLOCK, FAST))
+        preset!(preset!(observer(FAST, 4e-5, 3e-4, 0.03)).with_edges(CLOCK, FAST))
             .learning(4096, FAST)
     );
     pll_1k, "pll", SLOW: Pll = preset!(Pll::new(Hertz(271.0), SLOW));

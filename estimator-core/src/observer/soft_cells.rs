@@ -75,6 +75,10 @@ impl Correction for SoftCells {
         0.0
     }
 
+    fn since(gap: &f32) -> f32 {
+        *gap
+    }
+
     #[inline(always)]
     fn innovation(
         &self,

@@ -2,7 +2,8 @@
 
 use estimator_core::{
     AmplifierCurrent, Cells, Correction, CurrentSource, DesignError, Edges, Fixed, HeldHandle,
-    Hertz, Learning, MOverT, NoCurrent, Observer, Signals, SlipSource, SmallEncoder, Uncertainty,
+    Hertz, Learning, MOverT, NoCurrent, Observer, Signals, SlipSource, SmallEncoder, SoftCells,
+    Uncertainty,
 };
 
 use super::build::scale;
@@ -73,6 +74,25 @@ const PARAMETERS: &[Parameter] = &[
     BOUNDARY_NOISE,
 ];
 
+const GROWTH: Parameter = Parameter {
+    name: "growth",
+    unit: "counts/s",
+    meaning: "how fast a position inside its cell gets uncertain",
+    lowest: 1e-3,
+    highest: 1e6,
+    whole: false,
+    search: Search::Fixed(150.0),
+};
+
+const SOFT: &[Parameter] = &[
+    TORQUE_NOISE,
+    LOAD,
+    LOAD_TIME,
+    FRICTION_SHARE,
+    BOUNDARY_NOISE,
+    GROWTH,
+];
+
 const WITH_EDGES: &[Parameter] = &[TORQUE_NOISE, LOAD, LOAD_TIME, FRICTION_SHARE, DISC_NOISE];
 
 /// Without a current there is no friction to believe in.
@@ -138,6 +158,20 @@ pub(super) const KINDS: &[Kind] = &[
         build: |setup, values| learning(edges(setup, values)?, setup),
     },
     Kind {
+        name: "observer-soft",
+        summary: "observer that hears counts inside their cell too",
+        needs: CURRENT_AND_SLIP,
+        parameters: SOFT,
+        build: |setup, values| built(soft(setup, values)?, setup),
+    },
+    Kind {
+        name: "adaptive-soft",
+        summary: "the same, learning as adaptive",
+        needs: CURRENT_AND_SLIP,
+        parameters: SOFT,
+        build: |setup, values| learning(soft(setup, values)?, setup),
+    },
+    Kind {
         name: "observer-held",
         summary: "observer without the small encoder",
         needs: Signals::COUNT_AND_CURRENT,
@@ -193,6 +227,10 @@ fn blind(
 
 fn edges(setup: &Setup, values: &Values) -> Result<Known<Edges, Fixed>, DesignError> {
     counts(setup, values)?.with_edges(Hertz(EDGE_CLOCK_HZ), setup.rate)
+}
+
+fn soft(setup: &Setup, values: &Values) -> Result<Known<SoftCells, Fixed>, DesignError> {
+    counts(setup, values)?.soft(values[5], setup.rate)
 }
 
 fn learning<M>(observer: Known<M, Fixed>, setup: &Setup) -> Result<Estimator, DesignError>

@@ -7,7 +7,7 @@ use estimator_core::{
     AdaptiveEdgeObserver, AdaptiveObserver, AmplifierCurrent, BestFit, Cells, CountObserver,
     CountsPerTick, CoupledMotor, Device, EdgeObserver, Edges, EndFit, FiniteDifference, Fixed,
     Foaw, Handover, HeldHandle, Hertz, Kalman, KalmanMotor, KalmanTriple, LateCurrent, Learned,
-    LowPass, MOverT, Model, NoCurrent, Observer, Pll, Sample, Skip, SteadyKalman,
+    LowPass, MOverT, Model, NoCurrent, Observer, Pll, Sample, Skip, SoftObserver, SteadyKalman,
     SteadyKalmanMotor, SteadyKalmanTriple, TableKalman, TableKalmanMotor, TableKalmanTriple,
     Uncertainty, VelocityEstimator, preset,
 };
@@ -80,6 +80,7 @@ probes! {
     start_observer, update_observer: CountObserver = COUNTS;
     start_observer_edge, update_observer_edge: EdgeObserver =
         preset!(COUNTS.with_edges(CLOCK, RATE));
+    start_observer_soft, update_observer_soft: SoftObserver = preset!(COUNTS.soft(150.0, RATE));
     start_adaptive, update_adaptive: AdaptiveObserver = preset!(COUNTS.learning(4096, RATE));
     start_adaptive_edge, update_adaptive_edge: AdaptiveEdgeObserver =
         preset!(preset!(COUNTS.with_edges(CLOCK, RATE)).learning(4096, RATE));

@@ -252,6 +252,13 @@ pub fn at(rate: f64) -> Vec<Contestant> {
         })
         .decides()
         .settles(forgotten),
+        both!("observer-soft", rate, |c| {
+            observer!(c, rate)
+                .soft(150.0, c::Hertz(rate))
+                .expect("valid")
+        })
+        .decides()
+        .settles(forgotten),
         both!("adaptive", rate, |c| {
             observer!(c, rate)
                 .learning(4096, c::Hertz(rate))

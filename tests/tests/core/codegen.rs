@@ -54,6 +54,7 @@ fn estimators_call_nothing_on_the_board() {
         "m_over_t",
         "observer",
         "observer_edge",
+        "observer_soft",
         "adaptive",
         "adaptive_edge",
         "observer_held",

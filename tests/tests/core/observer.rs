@@ -56,6 +56,11 @@ fn at(rate: f64) -> Vec<Case> {
         case("M/T", rate, MOverT::new(CLOCK, hertz).expect("valid")),
         case("observer", rate, counts),
         case("observer, held", rate, counts.held()),
+        case(
+            "observer, soft",
+            rate,
+            counts.soft(150.0, Hertz(rate)).expect("valid"),
+        ),
         case("observer, edges", rate, edges),
         case("observer, edges, held", rate, edges.held()),
         case("observer, edges, blind", rate, blind),
@@ -340,6 +345,8 @@ fn motor_that_obeys_the_model_is_followed() {
             let knows = case.needs.current && case.needs.small;
             if knows {
                 let error = rms(&(case.run)(&samples), &truth, from);
+                // Soft ends hear counts that a right model has no need of.
+                let bound = bound * if case.name.contains("soft") { 1.5 } else { 1.0 };
                 assert!(error < bound, "{}: {error}", case.name);
             }
         }
