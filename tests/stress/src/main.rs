@@ -1,7 +1,7 @@
 //! `cargo stress`: every estimator over a long and hostile course, beside its f64 twin.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -20,7 +20,8 @@ use stress::{sensitivity, signals, table};
 /// every tick: f32 with f64, the 16-bit counter with the 32-bit one, the covariance with what it
 /// has to be; now and then the window with its definition in exact fractions; after every stretch
 /// the time until the output is at rest. Then signals that a device gives, and parameters at the
-/// ends of their ranges. Exit status 1 if anything did not hold.
+/// ends of their ranges. With `UPDATE_GOLDEN=1` the tables go into docs/benchmarks.md. Exit status
+/// 1 if anything did not hold.
 #[derive(Debug, Parser)]
 #[command(name = "stress", bin_name = "cargo stress", version)]
 struct Arguments {
@@ -28,7 +29,7 @@ struct Arguments {
     #[arg(long, value_name = "N", default_value = "1e9", value_parser = ticks)]
     ticks: u64,
     /// Control rate, Hz; may be given again
-    #[arg(long = "rate", value_name = "HZ", default_values_t = [1000.0, 10_000.0], value_parser = rate)]
+    #[arg(long = "rate", value_name = "HZ", default_values_t = RATES_HZ, value_parser = rate)]
     rates: Vec<f64>,
     /// Only estimators whose name begins so
     #[arg(long, value_name = "NAME")]
@@ -46,6 +47,9 @@ struct Arguments {
     #[arg(long)]
     markdown: bool,
 }
+
+/// Rates of the documented tables, Hz.
+const RATES_HZ: [f64; 2] = [1000.0, 10_000.0];
 
 /// A whole number of ticks, `1e9` allowed.
 fn ticks(text: &str) -> Result<u64, String> {
@@ -78,6 +82,10 @@ fn main() -> ExitCode {
 
 /// Whether everything held.
 fn run(arguments: &Arguments) -> Result<bool, String> {
+    let golden = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
+    if golden && (arguments.estimator.is_some() || arguments.rates != RATES_HZ) {
+        return Err("UPDATE_GOLDEN=1 writes all estimators at 1 and 10 kHz: leave out --estimator and --rate".to_owned());
+    }
     let contestants = contestants(arguments)?;
     let bar = ProgressBar::new(arguments.ticks.saturating_mul(contestants.len() as u64));
     bar.set_style(
@@ -92,19 +100,38 @@ fn run(arguments: &Arguments) -> Result<bool, String> {
     bar.finish_and_clear();
     let device: Vec<_> = differences(&contestants, arguments);
     let extremes = sensitivity::all();
-    if arguments.markdown {
-        print!("{}", table::markdown(&all));
+    let found = if arguments.markdown {
+        table::markdown(&all)
     } else {
-        print!("{}", table::text(&all));
+        table::text(&all)
+    };
+    let (signals, ends) = (table::signals(&device), table::sensitivity(&extremes));
+    print!("{found}\n{signals}\n{ends}");
+    if golden {
+        let tables = [
+            ("stress", table::markdown(&all)),
+            ("signals", signals),
+            ("ends", ends),
+        ];
+        write_docs(&tables)?;
     }
-    print!("{}", table::signals(&device));
-    print!("{}", table::sensitivity(&extremes));
     if let Some(path) = &arguments.json {
         let json = serde_json::to_vec_pretty(&all).map_err(|error| error.to_string())?;
         fs::write(path, json)
             .map_err(|error| format!("{}: cannot write: {error}", path.display()))?;
     }
     Ok(all.iter().all(Findings::passed) && extremes.iter().all(|one| one.broken.is_empty()))
+}
+
+/// Puts the tables into docs/benchmarks.md.
+fn write_docs(tables: &[(&str, String)]) -> Result<(), String> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/benchmarks.md");
+    let problem = |error: &dyn std::fmt::Display| format!("docs/benchmarks.md: {error}");
+    let mut text = fs::read_to_string(&path).map_err(|error| problem(&error))?;
+    for (name, table) in tables {
+        text = table::placed(&text, name, table).map_err(|error| problem(&error))?;
+    }
+    fs::write(&path, text).map_err(|error| problem(&error))
 }
 
 /// What f32 costs each on a device's signals.

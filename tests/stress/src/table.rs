@@ -62,16 +62,17 @@ pub fn text(all: &[Findings]) -> String {
 #[must_use]
 pub fn markdown(all: &[Findings]) -> String {
     let mut text = String::from(
-        "| estimator | rate, Hz | wraps of 2^32 | f32 against f64, rad/s | soon after a start | of the fastest velocity \
+        "| estimator | rate, Hz | ticks | wraps of 2^32 | f32 against f64, rad/s | soon after a start | of the fastest velocity \
          | at rest after, ticks | by design | windows compared | faults |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
     for found in all {
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {:.1e} | {:.1e} | {:.1e} | {} | {} | {} | {} |",
+            "| {} | {} | {:.1e} | {} | {:.1e} | {:.1e} | {:.1e} | {} | {} | {} | {} |",
             found.estimator,
             found.rate_hz,
+            found.ticks as f64,
             found.wraps,
             found.deviation_rad_s,
             found.start_deviation_rad_s,
@@ -89,7 +90,7 @@ pub fn markdown(all: &[Findings]) -> String {
 #[must_use]
 pub fn signals(all: &[Difference]) -> String {
     let mut text = String::from(
-        "\n| estimator | rate, Hz | largest, rad/s | RMS, rad/s | RMS error, rad/s | f32 adds |\n\
+        "| estimator | rate, Hz | largest, rad/s | RMS, rad/s | RMS error, rad/s | f32 adds |\n\
          |---|---:|---:|---:|---:|---:|\n",
     );
     for found in all {
@@ -111,7 +112,7 @@ pub fn signals(all: &[Difference]) -> String {
 #[must_use]
 pub fn sensitivity(all: &[Outcome]) -> String {
     let mut text = String::from(
-        "\n| estimator | designs | refused, by error | f32 against f64, of the fastest velocity | broken |\n\
+        "| estimator | designs | refused, by error | f32 against f64, of the fastest velocity | broken |\n\
          |---|---:|---|---:|---:|\n",
     );
     for outcome in all {
@@ -131,4 +132,20 @@ pub fn sensitivity(all: &[Outcome]) -> String {
         );
     }
     text
+}
+
+/// `text` with `table` between the markers of this name.
+///
+/// # Errors
+/// One line if the markers are not there.
+pub fn placed(text: &str, name: &str, table: &str) -> Result<String, String> {
+    let begin = format!("<!-- {name}: written by cargo stress -->");
+    let end = format!("<!-- end of {name} -->");
+    let (before, rest) = text
+        .split_once(&begin)
+        .ok_or_else(|| format!("no \"{begin}\""))?;
+    let (_, after) = rest
+        .split_once(&end)
+        .ok_or_else(|| format!("no \"{end}\""))?;
+    Ok(format!("{before}{begin}\n\n{table}\n{end}{after}"))
 }

@@ -28,6 +28,42 @@ fn every_estimator_holds_over_a_hostile_course() {
     }
 }
 
+/// The table in the docs has every estimator, none failed, and no figure of a run as short as this
+/// is far beyond what it says of a longer one.
+#[test]
+fn the_documented_figures_are_those_of_these_estimators() {
+    let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/benchmarks.md");
+    let docs = std::fs::read_to_string(docs).expect("docs/benchmarks.md");
+    let (_, rest) = docs.split_once("<!-- stress: ").expect("a table");
+    let (table, _) = rest.split_once("<!-- end of stress").expect("its end");
+    let rows = table.lines().filter(|line| line.starts_with('|')).skip(2);
+    let mut rows = rows.map(|line| -> Vec<&str> {
+        let cells = line.trim_matches('|').split('|');
+        cells.map(str::trim).collect()
+    });
+    for rate in [1000.0, 10_000.0] {
+        for (contestant, found) in at(rate).iter().zip(run(&at(rate), 16)) {
+            let row = rows.next().expect("a row for every estimator and rate");
+            let figure = |cell: usize| -> f64 { row[cell].parse().expect("a figure") };
+            let name = &contestant.name;
+            assert_eq!((row[0], figure(1)), (&**name, rate));
+            assert_eq!(figure(10), 0.0, "{name}: faults");
+            assert!(figure(2) >= found.ticks as f64, "{name}: too few ticks");
+            assert_eq!(figure(8), f64::from(contestant.bounds.settles_ticks));
+            let recovery = f64::from(found.recovery_ticks);
+            assert!(
+                recovery <= 1.1 * figure(7) + 2.0,
+                "{name}: {recovery} ticks"
+            );
+            if contestant.bounds.deviation_rad_s.is_finite() {
+                let deviation = found.deviation_rad_s;
+                assert!(deviation <= 2.0 * figure(4), "{name}: {deviation} rad/s");
+            }
+        }
+    }
+    assert_eq!(rows.next(), None, "a row too many");
+}
+
 #[test]
 fn extreme_parameters_are_stable_or_refused_by_name() {
     for outcome in sensitivity::all() {
