@@ -34,6 +34,7 @@ impl Level {
 /// A built image.
 #[derive(Debug)]
 pub struct Image {
+    pub(crate) level: Level,
     pub(crate) placed: rigless::image::Image,
     pub(crate) code: Code,
     /// Function addresses by mangled name.
@@ -78,10 +79,10 @@ impl Image {
         if !status.success() {
             return Err("the bench image does not build".to_owned());
         }
-        Self::read(&target.join(TRIPLE).join("release/bench-image"))
+        Self::read(level, &target.join(TRIPLE).join("release/bench-image"))
     }
 
-    fn read(path: &PathBuf) -> Result<Self, String> {
+    fn read(level: Level, path: &PathBuf) -> Result<Self, String> {
         let problem = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
         let elf = std::fs::read(path).map_err(|error| problem(&error))?;
         let file = object::File::parse(&*elf).map_err(|error| problem(&error))?;
@@ -98,6 +99,7 @@ impl Image {
         let placed =
             rigless::image::Image::new(path, elf.clone(), None).map_err(|error| problem(&error))?;
         Ok(Self {
+            level,
             placed,
             code,
             names,

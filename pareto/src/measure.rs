@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use bench_image::{SUBJECTS, Subject};
+use estimator_core::Sample;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::board::{Job, Ran, on_board};
 use crate::image::{Image, Level};
-use crate::traces::{self, Ground};
+use crate::traces::{self, Ground, RATES_HZ};
 
 /// Updates that are followed instruction by instruction, at the end of each trace.
 const FOLLOWED: usize = 40;
@@ -75,7 +76,9 @@ pub fn measure() -> Result<Vec<Row>, String> {
     let grounds = traces::all()?;
     let images: Result<Vec<_>, String> = Level::ALL.into_iter().map(Image::build).collect();
     let images = images?;
-    let runs: Result<Vec<_>, String> = images.par_iter().map(|one| run(one, &grounds)).collect();
+    let hostile = RATES_HZ.map(|rate_hz| (rate_hz, traces::hostile(rate_hz)));
+    let run = |image| run(image, &grounds, &hostile);
+    let runs: Result<Vec<_>, String> = images.par_iter().map(run).collect();
     let mut rows: Vec<Row> = Vec::new();
     for (level, (image, (counted, followed))) in images.iter().zip(runs?).enumerate() {
         for (index, subject) in SUBJECTS.iter().enumerate() {
@@ -116,21 +119,31 @@ pub fn measure() -> Result<Vec<Row>, String> {
 
 type Runs<'a> = Vec<(Job<'a>, Ran)>;
 
-/// Runs every subject over the traces of its rate: whole ones to count, ends to follow.
-fn run<'a>(image: &Image, grounds: &'a [Ground]) -> Result<(Runs<'a>, Runs<'a>), String> {
-    let mut jobs = Vec::new();
-    for (subject, Subject { rate_hz, .. }) in SUBJECTS.iter().enumerate() {
-        for ground in grounds {
-            if *rate_hz == 0 || *rate_hz == ground.rate_hz {
-                let samples = &ground.samples[..];
-                jobs.push(Job {
-                    subject,
-                    samples,
-                    follow: false,
-                });
-            }
-        }
-    }
+/// Runs every subject over the traces of its rate: whole ones to count, ends to follow; hostile ones
+/// only to compare.
+fn run<'a>(
+    image: &Image,
+    grounds: &'a [Ground],
+    hostile: &'a [(u32, Vec<Sample>)],
+) -> Result<(Runs<'a>, Runs<'a>), String> {
+    let jobs_of = |traces: &[(u32, &'a [Sample])]| -> Vec<Job<'a>> {
+        let subjects = SUBJECTS.iter().enumerate();
+        let pairs = subjects.flat_map(|pair| traces.iter().map(move |trace| (pair, *trace)));
+        pairs
+            .filter(|((_, subject), (rate_hz, _))| [0, *rate_hz].contains(&subject.rate_hz))
+            .map(|((subject, _), (_, samples))| Job {
+                subject,
+                samples,
+                follow: false,
+            })
+            .collect()
+    };
+    let counted = grounds.iter().map(|one| (one.rate_hz, &one.samples[..]));
+    let jobs = jobs_of(&counted.collect::<Vec<_>>());
+    let compared = hostile
+        .iter()
+        .map(|(rate_hz, samples)| (*rate_hz, &samples[..]));
+    let compared = jobs_of(&compared.collect::<Vec<_>>());
     // Enough to fill every window first.
     let end = |job: &Job<'a>| Job {
         samples: &job.samples[job.samples.len() - FOLLOWED - 130..],
@@ -138,10 +151,12 @@ fn run<'a>(image: &Image, grounds: &'a [Ground]) -> Result<(Runs<'a>, Runs<'a>),
         ..*job
     };
     let ends: Vec<_> = jobs.iter().map(end).collect();
-    let mut ran = on_board(image, &[&jobs[..], &ends[..]].concat())?;
+    let mut ran = on_board(image, &[&jobs[..], &ends[..], &compared[..]].concat())?;
+    let rest = ran.split_off(jobs.len() + ends.len());
+    let compared: Vec<_> = compared.into_iter().zip(rest).collect();
     let followed: Vec<_> = ends.into_iter().zip(ran.split_off(jobs.len())).collect();
     let counted: Vec<_> = jobs.into_iter().zip(ran).collect();
-    for (job, ran) in counted.iter().chain(&followed) {
+    for (job, ran) in counted.iter().chain(&followed).chain(&compared) {
         let subject = &SUBJECTS[job.subject];
         let mut board = ran.velocities.iter();
         let mut same = true;
@@ -151,7 +166,11 @@ fn run<'a>(image: &Image, grounds: &'a [Ground]) -> Result<(Runs<'a>, Runs<'a>),
                 .is_some_and(|v| v.to_bits() == velocity.to_bits());
         });
         if !same || ran.instructions.len() != job.samples.len() - 1 {
-            return Err(format!("{}: the board and the host differ", subject.module));
+            let level = image.level.name();
+            return Err(format!(
+                "{} at opt-level {level}: the board and the host differ",
+                subject.module
+            ));
         }
     }
     Ok((counted, followed))
@@ -223,7 +242,7 @@ fn errors(row: &mut Row, grounds: &[Ground], own: &[&(Job<'_>, Ran)]) {
             ),
         );
         let Some(truth) = &ground.truth else { continue };
-        let rate = usize::from(ground.rate_hz != traces::RATES_HZ[0]);
+        let rate = usize::from(ground.rate_hz != RATES_HZ[0]);
         // The first sample has no velocity.
         for (estimate, truth) in ran.velocities.iter().zip(&truth[1..]).skip(SKIPPED) {
             squares[rate] += ((f64::from(*estimate) - truth) * ground.scale).powi(2);

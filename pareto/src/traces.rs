@@ -1,15 +1,19 @@
 //! The traces that everything runs over.
 
-use estimator_core::{Count, Sample, Signals};
+use estimator_core::{Amps, ClockTicks, Count, Edge, Sample, Signals};
 use host_sim::device::Device;
 use host_sim::estimators::sample;
 use host_sim::recording::Recording;
 use host_sim::scenario::ScenarioName;
 use host_sim::simulate::simulate;
 use host_sim::trace::{Columns, Trace};
+use stress::course::Course;
 
 /// Samples of each trace.
 const SAMPLES: usize = 2500;
+
+/// Ticks between two stretches of a hostile course.
+const STRETCH: usize = 128;
 
 /// Simulated traces begin here, s: scenarios have settled.
 const FROM_S: f64 = 1.0;
@@ -87,6 +91,30 @@ pub fn all() -> Result<Vec<Ground>, String> {
     grounds.push(ground("recording", 1000, &recording.trace, 0, 90));
     grounds.last_mut().expect("just pushed").truth = None;
     Ok(grounds)
+}
+
+/// What nobody counts but every bit has to hold in: rest, top speed, ties of the quantiser, wraps of
+/// the counter, any 32 bits, currents that are no numbers.
+pub(crate) fn hostile(rate_hz: u32) -> Vec<Sample> {
+    let mut course = Course::new(SEED, f64::from(rate_hz));
+    let mut samples = Vec::with_capacity(bench_image::mailbox::SAMPLES);
+    for k in 0..samples.capacity() {
+        if k % STRETCH == 0 {
+            course.move_on();
+        }
+        let shown = course.step();
+        let stamp = |(boundary, age)| Edge {
+            boundary: Count(boundary),
+            age: ClockTicks(age),
+        };
+        samples.push(Sample {
+            large: Count(shown.large),
+            small: Count(shown.small),
+            current: Amps::new(shown.amps),
+            edge: shown.edge.map(stamp),
+        });
+    }
+    samples
 }
 
 /// rad/s of one count a tick.

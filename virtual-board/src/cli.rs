@@ -66,7 +66,8 @@ struct Arguments {
     /// Writes the bytes that the probe took from RTT channel 0, for `host-sim record --image`
     #[arg(long, value_name = "FILE")]
     rtt: Option<PathBuf>,
-    /// Prints the instruction budget of every scene instead, each run for --seconds at most 1
+    /// Prints the budget of every scene instead, each run for --seconds at most 1: instructions,
+    /// estimated cycles, the control rate that leaves half of the core
     #[arg(long, conflicts_with_all = ["scene", "hand", "fault", "record", "rtt", "tune", "estimator"])]
     budget: bool,
 }
