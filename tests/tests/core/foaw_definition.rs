@@ -121,6 +121,7 @@ fn positions(kind: usize, ticks: usize, draws: &mut Draws) -> Vec<i64> {
     let slow = draws.unit() * 3.0;
     let (amplitude, period) = (draws.unit() * 3000.0, 30.0 + 400.0 * draws.unit().abs());
     let interval = 2 + draws.bits() % 60;
+    let draw = draws.unit().abs();
     let step = draws.within(40);
     for tick in 1..=ticks {
         let t = tick as f64;
@@ -140,6 +141,8 @@ fn positions(kind: usize, ticks: usize, draws: &mut Draws) -> Vec<i64> {
             7 => (tick as u64 / interval) as i64,
             // Reversal at the fastest allowed.
             8 => last + if tick / 20 % 2 == 0 { 32_767 } else { -32_767 },
+            // Speeds of every size, for products on both sides of 32 bits.
+            9 => (speed.signum() * 2f64.powf(14.9 * draw) * t).floor() as i64 + draws.within(1),
             // Fast with noise.
             _ => (speed * 0.9 * t).floor() as i64 + draws.within(3),
         });
@@ -147,7 +150,7 @@ fn positions(kind: usize, ticks: usize, draws: &mut Draws) -> Vec<i64> {
     y
 }
 
-const KINDS: usize = 10;
+const KINDS: usize = 11;
 
 /// All kinds of motion at this window and band, both fits.
 fn all_kinds<const N: usize>(n: usize, bands: &[u16], ticks: usize, seed: u64) -> Tally {
