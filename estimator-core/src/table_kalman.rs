@@ -24,9 +24,9 @@ const SETTLED: f64 = 1e-6;
 ///
 /// The covariance does not look at the measurements (eqs. 10 to 12), so its gains are known
 /// beforehand. Gives what [`Kalman`](crate::Kalman) gives, without its roundings: the recursion
-/// runs in f64, at compile time. The table takes 4 (S + 1) N bytes of flash. N is at least the number of
-/// ticks until the gain has come within 1e-6 of its limit: for the triple integrator with 4096
-/// counts 37 at 1 kHz and 1000 rad/s³/√Hz, 167 at 10 kHz and 3650 rad/s³/√Hz.
+/// runs in f64, at compile time. N is at least the number of ticks until the gain has come within
+/// 1e-6 of its limit: for the triple integrator with 4096 counts 37 at 1 kHz and 1000 rad/s³/√Hz,
+/// 167 at 10 kHz and 3650 rad/s³/√Hz. The table takes 4 (S + 1) N bytes of flash.
 ///
 /// ```
 /// use estimator_core::*;
