@@ -14,12 +14,11 @@ use crate::image::Image;
 
 /// How many turns all loops of an update can take together.
 ///
-/// Only windows have loops, and every turn of any of them takes at least one of the n samples in
-/// the window, but one: the return from the inner loop to the outer. The others are straight code.
+/// Only windows have loops, and every turn takes one of the n samples that a window can hold. The
+/// others are straight code.
 fn turns(subject: &Subject) -> usize {
     let n = subject.name.split_once("n = ");
-    n.and_then(|(_, n)| n.parse::<usize>().ok())
-        .map_or(0, |n| n + 1)
+    n.and_then(|(_, n)| n.parse().ok()).unwrap_or(0)
 }
 
 /// The most instructions of an update, from its first to its return.
