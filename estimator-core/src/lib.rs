@@ -7,6 +7,7 @@
 //!   so there is no state that was never initialised and no jump at the first tick.
 //! * Positions are integers modulo 2^32 ([`Count`]); floats see differences only.
 //! * Inside, everything is in counts and ticks. Physical units enter once, through [`Scale`].
+//! * An estimator may say how far off its velocity may be: [`Confidence`].
 //! * Parameters come from `const fn` that return a [`DesignError`]; [`preset!`] turns that into a
 //!   build error.
 //!

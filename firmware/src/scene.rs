@@ -60,9 +60,10 @@ mod choice {
     use estimator_core::{Handover, HandoverState, Side, VelocityEstimator, preset};
 
     pub(crate) type Large = Handover<Window, Filter>;
-    /// The filter has settled after 20 ms, and the fade takes 20 more: what differs between the
-    /// two comes in slower than a fingertip feels best.
-    pub(crate) const LARGE: Large = preset!(Handover::new(WINDOW, FILTER, 200, 200));
+    /// 20 ms: the filter has settled by then, and what the two differ by comes in slower than a
+    /// fingertip feels best.
+    const TICKS: u16 = (super::RATE.0 / 50.0) as u16;
+    pub(crate) const LARGE: Large = preset!(Handover::new(WINDOW, FILTER, TICKS, TICKS));
 
     pub(crate) type Choice = Side;
 

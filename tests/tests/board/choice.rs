@@ -6,7 +6,7 @@ use estimator_core::{Confidence as _, VelocityEstimator as _};
 use host_sim::closed_loop::{Hand, SceneName};
 use host_sim::telemetry::{Frame, NOBODY};
 use virtual_board::command::Command;
-use virtual_board::run::{Outcome, Setup};
+use virtual_board::run::{Outcome, Setup, Tick};
 
 use crate::firmware::scene::{RIG, large};
 use crate::image::{of_scene, run, run_image};
@@ -55,6 +55,22 @@ fn telemetry_tells_who_is_in_charge() {
         let last = run.telemetry.frames.last().unwrap();
         assert_eq!((last.state.as_str(), last.cause.as_str()), ("2", "0"));
         assert_eq!((last.overruns, last.drops), (0, 0));
+        // While both run the task takes longer; less than a quarter of its period, at
+        // one cycle an instruction.
+        let change = |tick: &&Tick| {
+            CHANGES_S.iter().any(|at| {
+                let since = tick.at_ns as f64 * 1e-9 - at;
+                (0.0..0.05).contains(&since)
+            })
+        };
+        let during = run
+            .ticks
+            .iter()
+            .filter(change)
+            .map(|tick| tick.instructions);
+        let most = during.max().unwrap();
+        println!("at most {most} instructions during a change");
+        assert!(most > 1300 && most < 4200, "{most} instructions");
     }
 }
 

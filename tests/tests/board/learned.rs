@@ -2,6 +2,8 @@
 
 use host_sim::closed_loop::{Hand, SceneName};
 use host_sim::device::Device;
+use host_sim::health;
+use host_sim::recording::BoardColumns;
 use host_sim::telemetry::LearnedLine;
 use virtual_board::run::{Outcome, Setup};
 
@@ -31,6 +33,19 @@ fn a_coupler_with_less_damping_is_told_in_telemetry() {
         let learned = (1.0 + line.damping) / (1.0 + line.torque_constant);
         println!("damping {part} of what is believed: learned {learned}");
         assert!((learned - part).abs() < 0.05, "{part}: {learned}");
+        // Against the device that it was built for, the recording tells that the coupler is not
+        // what it was; against the device as it is, that it is.
+        let board = BoardColumns::parse(run.csv().unwrap().as_bytes(), "r").unwrap();
+        let health = |device: &Device| health::lines(&board.learned.expect("columns"), device);
+        let damping = |device: &Device| health(device).swap_remove(0);
+        assert_eq!(
+            damping(&Device::default()).contains("no longer"),
+            part != 1.0
+        );
+        assert!(
+            !damping(&setup(part).device).contains("no longer"),
+            "{part}"
+        );
     }
     // An image that learns nothing says nothing of it.
     let short = Setup {

@@ -47,6 +47,19 @@ fn every_image_takes_what_the_table_says() {
     });
 }
 
+/// What an image of one estimator cannot choose it does not pay for: neither the other's code nor a
+/// second state. The Kalman filter's code is there for the handle anyway.
+#[test]
+fn an_estimator_alone_is_smaller_than_two() {
+    let both = image("").size;
+    for (alone, saved) in [("large-foaw", 64), ("large-kalman", 400)] {
+        let size = image(alone).size;
+        println!("{alone} {size:?}, both {both:?}");
+        assert!(size.text + saved < both.text, "{alone}: {size:?}, {both:?}");
+        assert!(size.bss < both.bss, "{alone}: {size:?}, {both:?}");
+    }
+}
+
 #[test]
 fn a_scene_alone_is_smaller_than_all_of_them() {
     let whole = image("").size;

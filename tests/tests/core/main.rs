@@ -21,6 +21,7 @@
 )]
 
 mod codegen;
+mod confidence;
 mod endurance;
 mod every;
 mod foaw_definition;

@@ -1,0 +1,94 @@
+//! What estimators believe of their error: by theory, and together.
+
+use estimator_core::{
+    Amps, Confidence, Count, CountObserver, CoupledMotor, EndFit, FiniteDifference, Foaw, Handover,
+    Hertz, Kalman, Model, Observer, Sample, Side, SteadyKalman, Uncertainty, VelocityEstimator,
+};
+
+const RATE: Hertz = Hertz(1000.0);
+
+/// The full filter's variance falls to the limit that the steady one was given at compile time.
+#[test]
+fn the_full_filter_settles_to_the_steady_ones_variance() {
+    for jerk in [1e2, 1e4, 1e5] {
+        let model = Model::triple_integrator(4096, RATE, jerk).unwrap();
+        let (full, steady) = (
+            Kalman::new(&model).unwrap(),
+            SteadyKalman::new(&model).unwrap(),
+        );
+        let first = Sample::new(Count(0));
+        let limit = steady.variance(&steady.start(&first)).0;
+        let mut state = full.start(&first);
+        assert!(full.variance(&state).0 > 10.0 * limit, "{jerk}: {limit}");
+        for k in 1..2000 {
+            full.update(&mut state, &Sample::new(Count(3 * k)));
+        }
+        let settled = full.variance(&state).0;
+        assert!(
+            (settled / limit - 1.0).abs() < 1e-3,
+            "{jerk}: {settled} {limit}"
+        );
+    }
+}
+
+/// Nothing is heard of a motor between two counts, and the observer is ever less sure.
+#[test]
+fn an_observer_is_less_sure_the_longer_it_heard_nothing() {
+    let unsure = Uncertainty {
+        torque_noise: 5e-6,
+        load: 1e-4,
+        load_time: 0.1,
+        friction_share: 0.7,
+        boundary_noise: 0.0625,
+    };
+    let observer: CountObserver = Observer::new(&CoupledMotor::DCX35L, RATE, &unsure).unwrap();
+    let at = |count| Sample::new(Count(count)).with_current(Amps::new(0.3));
+    let mut state = observer.start(&at(0));
+    for k in 0..200 {
+        observer.update(&mut state, &at(5 * k));
+    }
+    let sure = observer.variance(&state);
+    let mut last = sure;
+    for _ in 0..40 {
+        observer.update(&mut state, &Sample::new(Count(5 * 199)));
+        let now = observer.variance(&state);
+        // A correction, where the prediction left the cell, makes it sure again.
+        assert!(now >= last || now <= sure);
+        last = now;
+    }
+    // Where it rests, nothing corrects it.
+    assert!(last.0 > 4.0 * sure.0, "{} {}", last.0, sure.0);
+}
+
+#[test]
+fn while_one_takes_over_the_less_sure_of_the_two_is_believed() {
+    let window = Foaw::<8, EndFit>::new(8, 1).unwrap();
+    let both = Handover::new(window, FiniteDifference, 4, 4).unwrap();
+    let mut state = both.start(&Sample::new(Count(0)));
+    let mut said = Vec::new();
+    for k in 1..40 {
+        if k == 20 {
+            state.select(Side::Second);
+        }
+        both.update(&mut state, &Sample::new(Count(k)));
+        said.push((state.in_charge(), both.variance(&state).0));
+    }
+    assert_eq!(said[18], (Some(Side::First), 1.0 / 64.0));
+    assert_eq!(said[20], (None, 1.0));
+    assert_eq!(said[38], (Some(Side::Second), 1.0));
+}
+
+/// A choice stays when everything else begins again.
+#[test]
+fn restart_keeps_the_choice() {
+    let window = Foaw::<8, EndFit>::new(8, 1).unwrap();
+    let both = Handover::new(window, FiniteDifference, 4, 4).unwrap();
+    let mut state = both.start(&Sample::new(Count(0)));
+    both.restart(&mut state, &Sample::new(Count(90)));
+    assert_eq!(state, both.start(&Sample::new(Count(90))));
+    state.select(Side::Second);
+    both.restart(&mut state, &Sample::new(Count(100)));
+    assert_eq!(state.in_charge(), Some(Side::Second));
+    // At rest at that sample: no jump from zero.
+    assert_eq!(both.update(&mut state, &Sample::new(Count(103))).0, 3.0);
+}
