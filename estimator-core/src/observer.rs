@@ -2,8 +2,10 @@
 
 mod bierman;
 mod correction;
+mod dependence;
 mod design;
 mod inputs;
+mod learned;
 mod learning;
 mod motion;
 mod soft_cells;
@@ -13,7 +15,8 @@ pub use design::{Gain, Uncertainty};
 pub use inputs::{
     AmplifierCurrent, CurrentSource, HeldHandle, NoCurrent, SlipSource, SmallEncoder,
 };
-pub use learning::{Deviations, Fixed, Learned, LearnedState, Learning};
+pub use learned::{Learned, LearnedState};
+pub use learning::{Deviations, Fixed, Learning};
 pub use soft_cells::SoftCells;
 
 use crate::const_math::limited;
@@ -21,7 +24,7 @@ use crate::estimator::VelocityEstimator;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick};
 use correction::Path;
-use learning::{Lesson, Tick};
+use dependence::{Lesson, Tick};
 use motion::Motion;
 
 /// Rows of the gain table; a longer gap takes the last.

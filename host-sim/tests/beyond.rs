@@ -108,6 +108,30 @@ fn right_beliefs_leave_a_tenth_and_wrong_ones_are_learned() {
         };
         assert_within(name, mean(&rows, slow, |row| row.rms_pct), [0.1, 10.0]);
     }
+    // Soft ends: less error in motion.
+    let soft = self::settings(
+        Device::default(),
+        &["observer", "observer-soft", "adaptive", "adaptive-soft"],
+    );
+    let soft = sensitivity(&cases(&EIGHT, 1e3, &[21, 22]), &soft, || ()).unwrap();
+    let moving = |name: &str| {
+        let is = |row: &Row| {
+            row.estimator == name && row.constant.is_none() && MOVING.contains(&row.scenario)
+        };
+        mean(&soft, is, |row| row.rms_pct)
+    };
+    assert_within(
+        "observer-soft over observer",
+        moving("observer-soft") / moving("observer"),
+        [0.4, 0.8],
+    );
+    assert_within(
+        "adaptive-soft over adaptive",
+        moving("adaptive-soft") / moving("adaptive"),
+        [0.7, 1.0],
+    );
+    let outside = |row: &Row| row.estimator == "adaptive-soft" && MOVING.contains(&row.scenario);
+    assert!(mean(&soft, outside, |row| row.outside) <= 0.001);
     // Outside the haptic interval, right and wrong: a few samples of the first second.
     for (name, bound) in [("adaptive", 0.002), ("adaptive-edge", 0.001)] {
         let moving = |row: &Row| row.estimator == name && MOVING.contains(&row.scenario);

@@ -2,7 +2,8 @@
 
 use super::correction::{Cells, Edges};
 use super::inputs::{AmplifierCurrent, HeldHandle, NoCurrent, SmallEncoder};
-use super::learning::{Fixed, Learned};
+use super::learned::Learned;
+use super::learning::Fixed;
 use super::motion::Motion;
 use super::soft_cells::SoftCells;
 use super::{Observer, ROWS};
@@ -174,21 +175,34 @@ const fn gains(
     Ok(table)
 }
 
-impl<M: Copy, L: Copy> Observer<AmplifierCurrent, SmallEncoder, M, L> {
-    /// The same for a device without the small encoder: its handle is taken to stand still.
-    #[must_use]
-    pub const fn held(self) -> Observer<AmplifierCurrent, HeldHandle, M, L> {
+impl<C: Copy, S: Copy, M: Copy, L: Copy> Observer<C, S, M, L> {
+    /// The same motor and gains with these parts.
+    const fn with_parts<D: Copy, T: Copy, N: Copy, K: Copy>(
+        self,
+        current: D,
+        slip: T,
+        correction: N,
+        learning: K,
+    ) -> Observer<D, T, N, K> {
         Observer {
             motion: self.motion,
-            current: self.current,
-            slip: HeldHandle,
-            correction: self.correction,
-            learning: self.learning,
+            current,
+            slip,
+            correction,
+            learning,
             load_decay: self.load_decay,
             way_pole: self.way_pole,
             friction_share: self.friction_share,
             gains: self.gains,
         }
+    }
+}
+
+impl<M: Copy, L: Copy> Observer<AmplifierCurrent, SmallEncoder, M, L> {
+    /// The same for a device without the small encoder: its handle is taken to stand still.
+    #[must_use]
+    pub const fn held(self) -> Observer<AmplifierCurrent, HeldHandle, M, L> {
+        self.with_parts(self.current, HeldHandle, self.correction, self.learning)
     }
 }
 
@@ -251,17 +265,7 @@ impl<C: Copy, S: Copy, L: Copy> Observer<C, S, Cells, L> {
             Ok(clock) => clock,
             Err(error) => return Err(error),
         };
-        Ok(Observer {
-            motion: self.motion,
-            current: self.current,
-            slip: self.slip,
-            correction: Edges { clock },
-            learning: self.learning,
-            load_decay: self.load_decay,
-            way_pole: self.way_pole,
-            friction_share: self.friction_share,
-            gains: self.gains,
-        })
+        Ok(self.with_parts(self.current, self.slip, Edges { clock }, self.learning))
     }
 }
 
@@ -281,17 +285,7 @@ impl<C: Copy, S: Copy, L: Copy> Observer<C, S, Cells, L> {
             Ok(correction) => correction,
             Err(error) => return Err(error),
         };
-        Ok(Observer {
-            motion: self.motion,
-            current: self.current,
-            slip: self.slip,
-            correction,
-            learning: self.learning,
-            load_decay: self.load_decay,
-            way_pole: self.way_pole,
-            friction_share: self.friction_share,
-            gains: self.gains,
-        })
+        Ok(self.with_parts(self.current, self.slip, correction, self.learning))
     }
 }
 
@@ -311,16 +305,6 @@ impl<C: Copy, S: Copy, M: Copy> Observer<C, S, M, Fixed> {
             Ok(learning) => learning,
             Err(error) => return Err(error),
         };
-        Ok(Observer {
-            motion: self.motion,
-            current: self.current,
-            slip: self.slip,
-            correction: self.correction,
-            learning,
-            load_decay: self.load_decay,
-            way_pole: self.way_pole,
-            friction_share: self.friction_share,
-            gains: self.gains,
-        })
+        Ok(self.with_parts(self.current, self.slip, self.correction, learning))
     }
 }
