@@ -266,6 +266,14 @@ pub fn at(rate: f64) -> Vec<Contestant> {
         })
         .decides()
         .settles(learned),
+        both!("adaptive-soft", rate, |c| {
+            observer!(c, rate)
+                .soft(150.0, c::Hertz(rate))
+                .and_then(|observer| observer.learning(4096, c::Hertz(rate)))
+                .expect("valid")
+        })
+        .decides()
+        .settles(learned),
         both!("adaptive-edge", rate, |c| {
             observer!(c, rate)
                 .with_edges(c::Hertz(EDGE_CLOCK_HZ), c::Hertz(rate))

@@ -60,7 +60,7 @@ macro_rules! observer {
 pub type Refusable = Result<Box<dyn Pair>, String>;
 
 /// The kinds of estimators that have a parameter to choose.
-pub const KINDS: [&str; 15] = [
+pub const KINDS: [&str; 16] = [
     "foaw-end-fit",
     "foaw-best-fit",
     "low-pass",
@@ -74,6 +74,7 @@ pub const KINDS: [&str; 15] = [
     "m-over-t",
     "observer",
     "observer-edge",
+    "observer-soft",
     "adaptive",
     "adaptive-edge",
 ];
@@ -165,6 +166,11 @@ pub fn design(kind: &str, rate: f64, counts_per_rev: u32, parameter: f64) -> Ref
         "observer-edge" => refusable!(|c| {
             observer!(c, rate, counts_per_rev, parameter)
                 .and_then(|known| known.with_edges(c::Hertz(EDGE_CLOCK_HZ), c::Hertz(rate)))
+        }),
+        // The growth of what is not known of the position is the parameter.
+        "observer-soft" => refusable!(|c| {
+            observer!(c, rate, counts_per_rev, 1e-4)
+                .and_then(|known| known.soft(parameter, c::Hertz(rate)))
         }),
         "adaptive" => refusable!(|c| {
             observer!(c, rate, counts_per_rev, parameter)
