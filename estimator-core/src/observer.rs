@@ -105,6 +105,8 @@ pub struct Observer<C, S, M, L> {
     way_pole: f32,
     friction_share: f32,
     gains: [Gain; ROWS],
+    /// Of the velocity before each, (counts a tick)².
+    velocity_variances: [f32; ROWS],
 }
 
 /// State of an [`Observer`].
@@ -155,7 +157,8 @@ impl<C, S, M: Correction, L: Learning> Observer<C, S, M, L> {
     ) -> f32 {
         // A float-to-integer cast saturates.
         let ticks = M::since(&state.correction) as usize;
-        self.gain(ticks).velocity_variance + self.learning.velocity_variance(&state.learning)
+        let known = self.velocity_variances[ticks.clamp(1, ROWS) - 1];
+        known + self.learning.velocity_variance(&state.learning)
     }
 }
 

@@ -56,8 +56,14 @@ pub struct Gain {
     pub load: f32,
     /// Variance of the innovation, counts².
     pub variance: f32,
-    /// Variance of the velocity before the correction, (counts a tick)².
-    pub velocity_variance: f32,
+}
+
+/// What belongs to each gap between corrections.
+pub(super) struct Table {
+    gains: [Gain; ROWS],
+    /// Variance of the velocity before the correction, (counts a tick)²; beside the gains, whose
+    /// rows are a power of two long.
+    velocity_variances: [f32; ROWS],
 }
 
 impl Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed> {
@@ -85,8 +91,8 @@ impl Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed> {
         let per_torque = device.large.counts_per_rev as f64 / (2.0 * core::f64::consts::PI) * t * t
             / device.large.inertia;
         let decay = exp(-(t / uncertainty.load_time).min(700.0));
-        let gains = match gains(beta, decay, per_torque, t, uncertainty) {
-            Ok(gains) => gains,
+        let table = match table(beta, decay, per_torque, t, uncertainty) {
+            Ok(table) => table,
             Err(error) => return Err(error),
         };
         let friction = per_torque * device.coulomb_friction;
@@ -116,19 +122,20 @@ impl Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed> {
             load_decay: decay as f32,
             way_pole: exp(-(t / WAY_TIME).min(700.0)) as f32,
             friction_share: share as f32,
-            gains,
+            gains: table.gains,
+            velocity_variances: table.velocity_variances,
         })
     }
 }
 
 /// Row n - 1: the steady gain of the filter that is corrected once every n ticks.
-const fn gains(
+const fn table(
     beta: f64,
     decay: f64,
     per_torque: f64,
     t: f64,
     uncertainty: &Uncertainty,
-) -> Result<[Gain; ROWS], DesignError> {
+) -> Result<Table, DesignError> {
     let a = [
         [1.0, phi1(beta), phi2(beta)],
         [0.0, exp(-beta), phi1(beta)],
@@ -147,13 +154,16 @@ const fn gains(
         return Err(DesignError::ProcessNoise);
     }
     let r = uncertainty.boundary_noise * uncertainty.boundary_noise;
-    let mut table = [Gain {
+    let none = Gain {
         position: 0.0,
         velocity: 0.0,
         load: 0.0,
         variance: 0.0,
-        velocity_variance: 0.0,
-    }; ROWS];
+    };
+    let mut table = Table {
+        gains: [none; ROWS],
+        velocity_variances: [0.0; ROWS],
+    };
     let (mut a_n, mut q_n) = (a, q);
     let mut row = 0;
     while row < ROWS {
@@ -161,13 +171,13 @@ const fn gains(
             Ok(steady) => steady,
             Err(error) => return Err(error),
         };
-        table[row] = Gain {
+        table.gains[row] = Gain {
             position: steady.gain[0],
             velocity: steady.gain[1],
             load: steady.gain[2],
             variance: steady.innovation as f32,
-            velocity_variance: steady.velocity[0] as f32,
         };
+        table.velocity_variances[row] = steady.velocity[0] as f32;
         q_n = riccati::later_noise(&a, &q, &q_n);
         a_n = riccati::product(&a, &a_n);
         row += 1;
@@ -194,6 +204,7 @@ impl<C: Copy, S: Copy, M: Copy, L: Copy> Observer<C, S, M, L> {
             way_pole: self.way_pole,
             friction_share: self.friction_share,
             gains: self.gains,
+            velocity_variances: self.velocity_variances,
         }
     }
 }
@@ -247,6 +258,7 @@ impl Observer<NoCurrent, HeldHandle, Edges, Fixed> {
             way_pole: known.way_pole,
             friction_share: 0.0,
             gains: known.gains,
+            velocity_variances: known.velocity_variances,
         })
     }
 }
