@@ -21,7 +21,8 @@ impl<E: VelocityEstimator<Output = CountsPerTick>> Measured for E {
         VelocityEstimator::start(self, first)
     }
 
-    #[inline]
+    // As firmware has it, where the parameters are constants: that is what is measured.
+    #[inline(always)]
     fn update(&self, state: &mut Self::State, sample: &Sample) -> f32 {
         VelocityEstimator::update(self, state, sample).0
     }

@@ -2,7 +2,7 @@
 //!
 //! The bound is the longest path through the control-flow graph of the compiled `update` and all
 //! that it calls, whatever the data. A *turn* is an edge back to where a loop begins; all turns of
-//! one update together are bounded by [`turns`], so that a bound exists, and a loop of which
+//! one update together are bounded by `turns`, so that a bound exists, and a loop of which
 //! nothing is known there is an error.
 
 use std::collections::BTreeMap;

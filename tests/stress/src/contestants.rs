@@ -129,7 +129,7 @@ pub const DEVIATION_RAD_S: f64 = 1e-5;
 /// Below this an output at rest is at rest, rad/s.
 const AT_REST_RAD_S: f64 = 1e-5;
 
-/// What it costs filters with slow poles at 10 kHz, where a count a tick is 15 rad/s: as many
+/// What it costs the loop with the slowest poles at 10 kHz, where a count a tick is 15 rad/s: as many
 /// half units in the last place of it as the pole has ticks of memory.
 const SLOW_DEVIATION_RAD_S: f64 = 2e-5;
 
@@ -284,10 +284,8 @@ pub fn at(rate: f64) -> Vec<Contestant> {
         .settles(learned),
     ];
     if rate > 5000.0 {
-        for slow in ["low-pass", "pll", "kalman-motor"] {
-            for one in all.iter_mut().filter(|one| one.name.starts_with(slow)) {
-                one.bounds.deviation_rad_s = SLOW_DEVIATION_RAD_S;
-            }
+        for slow in all.iter_mut().filter(|one| one.name == "pll") {
+            slow.bounds.deviation_rad_s = SLOW_DEVIATION_RAD_S;
         }
     }
     all

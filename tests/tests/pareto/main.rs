@@ -78,6 +78,24 @@ fn claims_of_estimators(rows: &[Row]) {
     for row in rows.iter().filter(|row| row.name.starts_with("foaw")) {
         assert!(row.cost[0].at_rest <= 30.0, "{}: at rest", row.name);
     }
+    // Goals of run time that are reached: the mean at 3, and little more at "s".
+    for (name, goal) in [
+        ("foaw-end-fit, n = 15", 210.0),
+        ("foaw-end-fit, n = 64", 600.0),
+        ("foaw-best-fit, n = 15", 450.0),
+        ("foaw-best-fit, n = 64", 1600.0),
+        ("kalman-triple", 60.0),
+        ("kalman-triple-table", 30.0),
+        ("observer", 90.0),
+        ("adaptive-edge", 300.0),
+    ] {
+        let mean = row(name).cost[0].mean;
+        assert!(mean <= goal, "{name}: {mean} instructions, goal {goal}");
+    }
+    for row in rows.iter().filter(|row| !row.peer) {
+        let [fast, small] = [0, 1].map(|level| row.cost[level].mean);
+        assert!(small <= 1.1 * fast, "{}: {small} at s, {fast}", row.name);
+    }
 }
 
 fn claims_of_tasks(tasks: &[Task], rows: &[Row]) {
