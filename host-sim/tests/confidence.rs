@@ -52,7 +52,7 @@ const BOUNDS: [(&str, f64, [f64; 2]); 8] = [
     ("observer", 0.99, [4.0, 35.0]),
     ("observer-edge", 0.999, [25.0, 130.0]),
     ("adaptive", 0.80, [0.8, 5.0]),
-    ("adaptive-edge", 0.99, [3.0, 16.0]),
+    ("adaptive-edge", 0.99, [3.0, 27.0]),
 ];
 
 #[test]
