@@ -1,21 +1,19 @@
-//! The figures in README.md and docs/benchmarks.md are what the program prints.
+//! The figures in README.md and docs are what the program prints.
 
-use host_sim::closed_loop::SceneName;
+mod in_the_loop;
+
 use host_sim::compare::{Case, Outcome, Settings, compare};
 use host_sim::contest::Row;
 use host_sim::device::{Device, Disc};
 use host_sim::estimators::Kind;
 use host_sim::parameters::{Parameters, PlantKind};
-use host_sim::robust::{self, summary};
 use host_sim::scenario::ScenarioName;
 use host_sim::score::Wanted;
 use host_sim::sensitivity::{self, sensitivity};
 use host_sim::table::pooled_pct;
-use host_sim::zwidth;
 
-const README: &str = include_str!("../../README.md");
-const THEORY: &str = include_str!("../../docs/theory.md");
-const BENCHMARKS: &str = include_str!("../../docs/benchmarks.md");
+const README: &str = include_str!("../../../README.md");
+const BENCHMARKS: &str = include_str!("../../../docs/benchmarks.md");
 
 /// The cells of the rows of the table whose heading row contains `heading`.
 fn table<'a>(text: &'a str, heading: &str) -> Vec<Vec<&'a str>> {
@@ -168,97 +166,5 @@ fn errors_of_finite_difference() {
             row[0],
             row[1]
         );
-    }
-}
-
-/// The corners and the first drawn devices of the documented run, which it contains.
-#[test]
-fn robustness_of_the_loop() {
-    let rows = table(BENCHMARKS, "| stable | stopped | violated |");
-    assert_eq!(rows.len(), SceneName::ALL.len());
-    let part = |rate_hz, devices| {
-        let device = Device::default();
-        let kind = Kind::named("kalman-triple-steady").unwrap();
-        let settings = robust::Settings {
-            version: String::new(),
-            scenes: rows.iter().map(|row| row[0].to_owned()).collect(),
-            rate_hz,
-            estimator: kind.name.to_owned(),
-            values: robust::Settings::values(kind, &device, rate_hz, &Parameters::default()),
-            devices,
-            seed: 1,
-            seconds: 2.0,
-            device,
-        };
-        let jobs = settings.jobs().unwrap();
-        let rows = robust::Experiment::new(&settings)
-            .unwrap()
-            .rows(&jobs, || ());
-        summary::summaries(&rows.unwrap()).unwrap()
-    };
-    for scene in part(1e3, 0) {
-        assert_eq!(scene.counts[2], 0, "{}, 1 kHz", scene.scene);
-    }
-    for (row, scene) in rows.iter().zip(part(10e3, 20)) {
-        assert_eq!(row[0], scene.scene);
-        let counts: Vec<usize> = row[1..4].iter().map(|cell| cell.parse().unwrap()).collect();
-        assert_eq!(counts.iter().sum::<usize>(), 1027);
-        for (part, whole) in scene.counts.iter().zip(&counts) {
-            assert!(part <= whole, "{}: {:?}, {counts:?}", row[0], scene.counts);
-        }
-        for (cell, spread, unit) in [
-            (row[4], scene.handle_rad_s, 1.0),
-            (row[5], scene.felt_nm, 1e3),
-            (row[6], scene.oscillation_nm.unwrap(), 1e3),
-        ] {
-            let written: Vec<f64> = cell.split(' ').map(|cell| cell.parse().unwrap()).collect();
-            assert!(
-                unit * spread.largest <= 1.01 * written[2],
-                "{}: {cell}, {spread:?}",
-                row[0]
-            );
-            // A median of 47 against that of 1027, which holds them.
-            assert!(
-                (unit * spread.median / written[0] - 1.0).abs() < 0.35,
-                "{}: {cell}, {spread:?}",
-                row[0]
-            );
-        }
-    }
-}
-
-/// Two rows of the chart at 1 kHz; the search's own step is 3 %.
-#[test]
-fn z_width_of_two_estimators() {
-    let names = ["foaw-end-fit", "kalman-triple"];
-    let cases = names.map(|name| zwidth::Case {
-        large: Kind::named(name).unwrap(),
-        handle: Kind::named(name).unwrap(),
-        rate_hz: 1e3,
-        lines: 1024,
-    });
-    let settings = zwidth::Settings {
-        device: Device::default(),
-        parameters: Parameters::default(),
-        seed: 1,
-    };
-    let found = zwidth::boundaries(&cases, &settings, || ()).unwrap();
-    let rows = table(THEORY, "| estimator | 1 kHz | | | | 11.6 kHz |");
-    for (name, boundary) in names.iter().zip(&found) {
-        let row = rows.iter().find(|row| row[0] == *name).unwrap();
-        let (damping, best) = boundary.stiffest().unwrap();
-        let plain = boundary.walls[0].1.value;
-        let values = [
-            plain,
-            best.value,
-            1e3 * damping,
-            1e3 * boundary.viscous.value,
-        ];
-        for (cell, value) in row[1..5].iter().zip(values) {
-            assert!(
-                is_written_for(cell, value),
-                "{name}: {cell} is written, {value} is so"
-            );
-        }
     }
 }
