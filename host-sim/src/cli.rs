@@ -34,7 +34,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     let command_line = command_line(&arguments);
     let parsed = match Arguments::try_parse_from(&arguments) {
         Ok(parsed) => parsed,
-        Err(error) => return explain(&error),
+        Err(error) => return explain(&error, "host-sim"),
     };
     match parsed.command {
         None => compare::run(&compare::Compare::default(), &command_line),
@@ -59,8 +59,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     }
 }
 
-/// Help and version go out; anything else becomes one line.
-fn explain(error: &clap::Error) -> Result<(), Failure> {
+/// Help and version go out; anything else becomes one line that names `program` for help.
+///
+/// # Errors
+/// [`Failure::Input`] with that line.
+pub fn explain(error: &clap::Error, program: &str) -> Result<(), Failure> {
     if let ErrorKind::DisplayHelp | ErrorKind::DisplayVersion = error.kind() {
         return crate::output::print_bytes(error.render().to_string().as_bytes());
     }
@@ -73,7 +76,7 @@ fn explain(error: &clap::Error) -> Result<(), Failure> {
         .collect();
     let said = said.join(" ");
     let said = said.strip_prefix("error: ").unwrap_or(&said);
-    Err(Failure::Input(format!("{said}; see host-sim --help")))
+    Err(Failure::Input(format!("{said}; see {program} --help")))
 }
 
 /// The command as somebody would type it again.

@@ -3,7 +3,6 @@
 use std::ffi::OsString;
 use std::path::Path;
 
-use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 use host_sim::failure::Failure;
 use host_sim::output::{print_bytes, write_whole};
@@ -35,22 +34,12 @@ enum What {
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
-        Err(error) => return explain(&error),
+        Err(error) => return host_sim::cli::explain(&error, "cargo pareto"),
     };
     match arguments.what {
         None => everything(),
         Some(What::TunePeers) => print_bytes(peer_tuning::report()?.as_bytes()),
     }
-}
-
-fn explain(error: &clap::Error) -> Result<(), Failure> {
-    let text = error.render().to_string();
-    if let ErrorKind::DisplayHelp | ErrorKind::DisplayVersion = error.kind() {
-        return print_bytes(text.as_bytes());
-    }
-    let first = text.lines().next().unwrap_or_default();
-    let said = first.strip_prefix("error: ").unwrap_or(first);
-    Err(Failure::Input(format!("{said}; see cargo pareto --help")))
 }
 
 fn everything() -> Result<(), Failure> {

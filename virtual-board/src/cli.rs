@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::Parser;
-use clap::error::ErrorKind;
 use host_sim::closed_loop::Hand;
 use host_sim::failure::Failure;
 use host_sim::output::{print_bytes, write_whole};
@@ -136,7 +135,7 @@ fn fault(text: &str) -> Result<(f64, Fault), String> {
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
-        Err(error) => return explain(&error),
+        Err(error) => return host_sim::cli::explain(&error, "cargo board"),
     };
     if !(arguments.seconds > 0.0 && arguments.seconds <= 3600.0) {
         let message = format!(
@@ -191,16 +190,6 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         return Err(Failure::Check("the control task never ran".to_owned()));
     }
     Ok(())
-}
-
-fn explain(error: &clap::Error) -> Result<(), Failure> {
-    let text = error.render().to_string();
-    if let ErrorKind::DisplayHelp | ErrorKind::DisplayVersion = error.kind() {
-        return print_bytes(text.as_bytes());
-    }
-    let first = text.lines().next().unwrap_or_default();
-    let said = first.strip_prefix("error: ").unwrap_or(first);
-    Err(Failure::Input(format!("{said}; see cargo board --help")))
 }
 
 /// A progress bar over virtual time; it shows only on a terminal.

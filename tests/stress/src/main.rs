@@ -5,11 +5,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
+use host_sim::cli::explain;
+use host_sim::failure::Failure;
+use host_sim::output::{print_bytes, write_whole};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use stress::contestants::{Contestant, at};
-use stress::findings::Findings;
 use stress::parts::Plan;
 use stress::{sensitivity, signals, table};
 
@@ -69,34 +71,35 @@ fn rate(text: &str) -> Result<f64, String> {
 }
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
-    match run(&arguments) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(message) => {
-            eprintln!("error: {message}");
-            ExitCode::from(2)
+    let done = match Arguments::try_parse() {
+        Ok(arguments) => run(&arguments),
+        Err(error) => explain(&error, "cargo stress"),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            ExitCode::from(failure.status())
         }
     }
 }
 
-/// Whether everything held.
-fn run(arguments: &Arguments) -> Result<bool, String> {
+fn run(arguments: &Arguments) -> Result<(), Failure> {
     let golden = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
     if golden && (arguments.estimator.is_some() || arguments.rates != RATES_HZ) {
-        return Err("UPDATE_GOLDEN=1 writes all estimators at 1 and 10 kHz: leave out --estimator and --rate".to_owned());
+        return Err(Failure::Input("UPDATE_GOLDEN=1 writes all estimators at 1 and 10 kHz: leave out --estimator and --rate".to_owned()));
     }
     let contestants = contestants(arguments)?;
     let bar = ProgressBar::new(arguments.ticks.saturating_mul(contestants.len() as u64));
-    bar.set_style(
-        ProgressStyle::with_template("{bar:40} {percent}% of the ticks, {eta} left")
-            .map_err(|error| error.to_string())?,
-    );
+    let style = ProgressStyle::with_template("{bar:40} {percent}% of the ticks, {eta} left");
+    bar.set_style(style.map_err(|error| Failure::Input(error.to_string()))?);
     let plan = Plan {
         seed: arguments.seed,
         ticks: arguments.ticks,
     };
-    let all = plan.run(&contestants, arguments.resume.as_deref(), |n| bar.inc(n))?;
+    let all = plan
+        .run(&contestants, arguments.resume.as_deref(), |n| bar.inc(n))
+        .map_err(Failure::Input)?;
     bar.finish_and_clear();
     let device: Vec<_> = differences(&contestants, arguments);
     let extremes = sensitivity::all();
@@ -106,7 +109,7 @@ fn run(arguments: &Arguments) -> Result<bool, String> {
         table::text(&all)
     };
     let (signals, ends) = (table::signals(&device), table::sensitivity(&extremes));
-    print!("{found}\n{signals}\n{ends}");
+    print_bytes(format!("{found}\n{signals}\n{ends}").as_bytes())?;
     if golden {
         let tables = [
             ("stress", table::markdown(&all)),
@@ -116,22 +119,29 @@ fn run(arguments: &Arguments) -> Result<bool, String> {
         write_docs(&tables)?;
     }
     if let Some(path) = &arguments.json {
-        let json = serde_json::to_vec_pretty(&all).map_err(|error| error.to_string())?;
-        fs::write(path, json)
-            .map_err(|error| format!("{}: cannot write: {error}", path.display()))?;
+        let json = serde_json::to_vec_pretty(&all);
+        let json = json.map_err(|error| Failure::Input(error.to_string()))?;
+        write_whole(path, &json)?;
     }
-    Ok(all.iter().all(Findings::passed) && extremes.iter().all(|one| one.broken.is_empty()))
+    let failed = all.iter().filter(|one| !one.passed()).count()
+        + extremes.iter().filter(|one| !one.broken.is_empty()).count();
+    if failed > 0 {
+        return Err(Failure::Check(format!("{failed} rows above did not hold")));
+    }
+    Ok(())
 }
 
 /// Puts the tables into docs/benchmarks.md.
-fn write_docs(tables: &[(&str, String)]) -> Result<(), String> {
+fn write_docs(tables: &[(&str, String)]) -> Result<(), Failure> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/benchmarks.md");
-    let problem = |error: &dyn std::fmt::Display| format!("docs/benchmarks.md: {error}");
+    let problem = |error: &dyn std::fmt::Display| {
+        Failure::Input(format!("docs/benchmarks.md: {error}; restore it"))
+    };
     let mut text = fs::read_to_string(&path).map_err(|error| problem(&error))?;
     for (name, table) in tables {
         text = table::placed(&text, name, table).map_err(|error| problem(&error))?;
     }
-    fs::write(&path, text).map_err(|error| problem(&error))
+    write_whole(&path, text.as_bytes())
 }
 
 /// What f32 costs each on a device's signals.
@@ -147,16 +157,16 @@ fn differences(contestants: &[Contestant], arguments: &Arguments) -> Vec<signals
     all
 }
 
-fn contestants(arguments: &Arguments) -> Result<Vec<Contestant>, String> {
+fn contestants(arguments: &Arguments) -> Result<Vec<Contestant>, Failure> {
     let mut all: Vec<Contestant> = arguments.rates.iter().flat_map(|rate| at(*rate)).collect();
     if let Some(wanted) = &arguments.estimator {
         let names: Vec<String> = at(arguments.rates[0]).into_iter().map(|c| c.name).collect();
         all.retain(|contestant| contestant.name.starts_with(wanted));
         if all.is_empty() {
-            return Err(format!(
+            return Err(Failure::Input(format!(
                 "--estimator {wanted}: no such estimator; there are {}",
                 names.join(", ")
-            ));
+            )));
         }
     }
     Ok(all)
