@@ -1,10 +1,16 @@
 //! A recording as one picture: position, velocity, what the velocity is off by, currents, torque,
 //! over one time axis.
 
+mod changes;
+mod panel;
+
 use plotters::style::RGBColor;
 
-use super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure, legend_height};
-use super::palette::{BAND, BAND_EDGE, INK, MUTED, Palette, TRUTH};
+use changes::states;
+use panel::{Curve, Panel, range};
+
+use super::canvas::{Anchor, Key, TITLE, WIDTH, figure, legend_height};
+use super::palette::{INK, Palette, TRUTH};
 use super::plot::{Axis, Plot};
 use crate::contest::Estimate;
 use crate::recording::{BoardColumns, Recording};
@@ -16,11 +22,6 @@ const RIGHT: f64 = 14.0;
 const TOP: f64 = 52.0;
 const PANEL: f64 = 132.0;
 const GAP: f64 = 22.0;
-/// A step of `t` this many times the period is a gap, over which nothing is drawn.
-const GAP_STEPS: f64 = 1.5;
-/// Changes of state that have a label each.
-const LABELS: usize = 12;
-
 const LARGE: RGBColor = RGBColor(0x00, 0x72, 0xb2);
 const SMALL: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
 const BOARD: RGBColor = RGBColor(0xb0, 0x00, 0x20);
@@ -42,23 +43,6 @@ pub struct RecordingView<'a> {
     pub interval: Interval,
     /// Time shown, s.
     pub window: [f64; 2],
-}
-
-/// One curve of a panel, a value a row.
-struct Curve {
-    name: String,
-    colour: RGBColor,
-    values: Vec<f64>,
-    width: f64,
-    /// Whether the axis has to show all of it.
-    sizes: bool,
-}
-
-struct Panel {
-    unit: &'static str,
-    curves: Vec<Curve>,
-    /// Half the height of the interval at each row.
-    band: Option<Vec<f64>>,
 }
 
 /// The picture as SVG.
@@ -197,141 +181,6 @@ fn angle(name: &str, colour: RGBColor, counts: &[u32], per_rev: u32) -> Curve {
     Curve::new(name, colour, &angles.collect::<Vec<_>>())
 }
 
-/// From the lowest to the highest value in the window, and a little more.
-fn range(panel: &Panel, view: &RecordingView) -> [f64; 2] {
-    let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
-    let mut see = |y: f64| ends = [ends[0].min(y), ends[1].max(y)];
-    for rows in segments(view) {
-        let values = panel.curves.iter().filter(|curve| curve.sizes);
-        values
-            .flat_map(|curve| &curve.values[rows.clone()])
-            .for_each(|y| see(*y));
-        for half in panel.band.iter().flat_map(|band| &band[rows.clone()]) {
-            see(1.5 * half);
-            see(-1.5 * half);
-        }
-    }
-    // What does not move at all gets an axis with short labels.
-    let span = ends[1] - ends[0];
-    let pad = if span > 0.0 { 0.06 * span } else { 0.5 };
-    [ends[0] - pad, ends[1] + pad]
-}
-
-/// Rows in the window, apart at gaps.
-fn segments(view: &RecordingView) -> Vec<std::ops::Range<usize>> {
-    let t = &view.recording.t;
-    let first = t.partition_point(|t| *t < view.window[0]);
-    let last = t.partition_point(|t| *t <= view.window[1]);
-    let gap = GAP_STEPS / view.recording.trace.rate_hz;
-    let mut from = first;
-    let mut segments = Vec::new();
-    for at in first + 1..=last {
-        if at == last || t[at] - t[at - 1] > gap {
-            segments.push(from..at);
-            from = at;
-        }
-    }
-    segments
-}
-
-impl Curve {
-    fn new(name: &str, colour: RGBColor, values: &[f64]) -> Self {
-        Self {
-            name: name.to_owned(),
-            colour,
-            values: values.to_vec(),
-            width: 1.3,
-            sizes: true,
-        }
-    }
-
-    fn wide(self) -> Self {
-        Self { width: 1.8, ..self }
-    }
-}
-
-impl Panel {
-    fn draw(&self, canvas: &Canvas, plot: &Plot, view: &RecordingView) -> Result<(), String> {
-        let t = &view.recording.t;
-        let segments = segments(view);
-        if let Some(band) = &self.band {
-            for rows in &segments {
-                let edges = rows.clone().map(|row| (t[row], -band[row], band[row]));
-                plot.band(canvas, edges.clone(), BAND)?;
-                plot.curve(
-                    canvas,
-                    edges.clone().map(|(t, low, _)| (t, low)),
-                    BAND_EDGE,
-                    0.75,
-                )?;
-                plot.curve(canvas, edges.map(|(t, _, high)| (t, high)), BAND_EDGE, 0.75)?;
-            }
-        }
-        plot.grid(canvas, 9, 4)?;
-        for curve in &self.curves {
-            for rows in &segments {
-                let points = rows.clone().map(|row| (t[row], curve.values[row]));
-                plot.curve(canvas, points, curve.colour, curve.width)?;
-            }
-        }
-        plot.edges(canvas)?;
-        let middle = 0.5 * (plot.top + plot.bottom);
-        canvas.text(self.unit, (14.0, middle), Anchor::Upwards, LABEL, INK)
-    }
-}
-
-/// A line where the safety machine changes its state, and over the first panel what it becomes.
-fn states(
-    canvas: &Canvas,
-    plot: &Plot,
-    view: &RecordingView,
-    labelled: bool,
-) -> Result<(), String> {
-    let changes = changes(view);
-    // Many changes are a band of ink: the lines without words say as much.
-    let labelled = labelled && changes.len() <= LABELS;
-    let mut free = plot.left;
-    for (t, what) in changes {
-        let (x, _) = plot.at((t, plot.y.low));
-        canvas.line(&[(x, plot.top), (x, plot.bottom)], MUTED, 1.0)?;
-        if labelled && x >= free {
-            canvas.text(&what, (x, TOP - 12.0), Anchor::Left, LABEL, MUTED)?;
-            free = x + super::canvas::text_width(&what, LABEL) + 6.0;
-        }
-    }
-    Ok(())
-}
-
-/// Instants in the window at which state or cause are others than before, and what they are.
-fn changes(view: &RecordingView) -> Vec<(f64, String)> {
-    let (t, board) = (&view.recording.t, view.board);
-    let Some(state) = &board.state else {
-        return Vec::new();
-    };
-    let told = |row: usize| {
-        (
-            state[row],
-            board.cause.as_ref().map_or(0.0, |cause| cause[row]),
-        )
-    };
-    let inside = |row: &usize| (view.window[0]..=view.window[1]).contains(&t[*row]);
-    (1..t.len())
-        .filter(|&row| told(row) != told(row - 1))
-        .filter(inside)
-        .map(|row| (t[row], words(told(row))))
-        .collect()
-}
-
-fn words((state, cause): (f64, f64)) -> String {
-    let names = ["boot", "armed", "running", "safe"];
-    let known = names.iter().enumerate().find(|(n, _)| *n as f64 == state);
-    let state = known.map_or_else(|| format!("state {state}"), |(_, name)| (*name).to_owned());
-    match cause {
-        0.0 => state,
-        _ => format!("{state}, cause {cause}"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -356,12 +205,12 @@ mod tests {
         let recording = Recording::parse(TEXT.as_bytes(), "r").unwrap();
         let board = BoardColumns::parse(TEXT.as_bytes(), "r").unwrap();
         let view = view(&recording, &board);
-        assert_eq!(segments(&view), [0..3, 3..5]);
+        assert_eq!(panel::segments(&view), [0..3, 3..5]);
         let angle = angle("", INK, &recording.trace.counts_large, 4096);
         let count = std::f64::consts::TAU / 4096.0;
         assert!((angle.values[4] - 7.0 * count).abs() < 1e-12);
         assert_eq!(
-            changes(&view),
+            changes::changes(&view),
             [
                 (0.002, "running".to_owned()),
                 (0.006, "safe, cause 5".to_owned())

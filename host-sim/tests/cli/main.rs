@@ -2,6 +2,7 @@
 
 mod closed_loop;
 mod compare;
+mod identify;
 mod refusals;
 mod replay;
 mod tune;
