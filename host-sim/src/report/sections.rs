@@ -196,7 +196,7 @@ fn the_problem(report: &ReportInput, palette: &Palette) -> Result<String, String
             continue;
         };
         let title = format!(
-            "Figure 1. Finite difference at {}, scenario {scenario}, plant {}",
+            "Finite difference at {}, scenario {scenario}, plant {} (the paper's figure 1)",
             rate(case.rate_hz),
             plant(case.friction)
         );
@@ -272,11 +272,11 @@ fn time(report: &ReportInput, palette: &Palette, shown: &OverTime) -> Result<Str
             continue;
         }
         let title = format!(
-            "Figure {}. {} at {}, plant {}",
-            shown.number,
+            "{} at {}, plant {} (the paper's figure {})",
             shown.what,
             rate(case.rate_hz),
-            plant(case.friction)
+            plant(case.friction),
+            shown.number
         );
         let origin_s = traces.time(origin);
         let interval = report.device.interval();
@@ -294,7 +294,7 @@ fn distance(groups: &[Group], palette: &Palette) -> Result<String, String> {
     let mut html = String::new();
     for of_rate in groups.chunk_by(|a, b| a.rate_hz == b.rate_hz) {
         let title = format!(
-            "Figure 8. Mean distance outside the haptic interval at {}",
+            "Mean distance outside the haptic interval at {} (the paper's figure 8)",
             rate(of_rate[0].rate_hz)
         );
         let of_rate: Vec<&Group> = of_rate.iter().collect();
