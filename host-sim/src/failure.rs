@@ -1,6 +1,9 @@
 //! Why a command ends early, and with which exit status.
 
 use std::fmt;
+use std::process::ExitCode;
+
+use crate::output::note;
 
 /// What ends a command early; the message is one line that says what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,6 +21,18 @@ impl Failure {
         match self {
             Self::Check(_) => 1,
             Self::Input(_) => 2,
+        }
+    }
+}
+
+/// The end of a program: what failed goes to standard error in one line.
+#[must_use]
+pub fn ended(done: Result<(), Failure>) -> ExitCode {
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            note(format_args!("error: {failure}"));
+            ExitCode::from(failure.status())
         }
     }
 }

@@ -2,12 +2,8 @@
 
 use std::process::ExitCode;
 
+use host_sim::failure::ended;
+
 fn main() -> ExitCode {
-    match host_sim::cli::run(std::env::args_os()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            eprintln!("error: {failure}");
-            ExitCode::from(failure.status())
-        }
-    }
+    ended(host_sim::cli::run(std::env::args_os()))
 }

@@ -8,7 +8,7 @@ use crate::compare::{Case, Cost, Outcome, Settings, compare};
 use crate::contest::Row;
 use crate::device::Device;
 use crate::failure::Failure;
-use crate::output::write_whole;
+use crate::output::{note, write_whole};
 use crate::parameters::PlantKind;
 use crate::report::{self, CaseReport, DeviceFacts, ReportInput, Traces};
 use crate::scenario::ScenarioName;
@@ -117,10 +117,8 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
     bar.finish_and_clear();
 
     if options.timing {
-        eprintln!(
-            "{}",
-            timing(outcomes.iter().map(|outcome| outcome.cost).sum())
-        );
+        let cost = outcomes.iter().map(|outcome| outcome.cost).sum();
+        note(timing(cost));
     }
     let asked_rows: Vec<Row> = outcomes[..asked]
         .iter()

@@ -10,7 +10,7 @@ use crate::estimators::Kind;
 use crate::failure::Failure;
 use crate::felt::compare::USUAL;
 use crate::felt::{self, Case, Design, FeltRow, Outcome, Settings, compare};
-use crate::output::write_whole;
+use crate::output::{note, write_whole};
 use crate::parameters::PlantKind;
 use crate::report::{ClosedLoop, ReportInput};
 use crate::scenario::ScenarioName;
@@ -44,7 +44,7 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
 
     if options.timing {
         let cost: Cost = outcomes.iter().map(|outcome| outcome.cost).sum();
-        eprintln!("{}", timing(cost));
+        note(timing(cost));
     }
     let scores: Vec<FeltRow> = outcomes.iter().flat_map(|o| o.rows.clone()).collect();
     let mut text = felt::table::details(&outcomes);

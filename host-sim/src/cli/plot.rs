@@ -12,7 +12,7 @@ use crate::replay;
 use crate::report::{self, RecordingView};
 
 use super::arguments::{DeviceFile, ParameterOptions, is_stdout, kinds};
-use super::replay::warn_uneven;
+use super::replay::{note_left_out, warn_uneven};
 
 /// What is drawn unless told otherwise: few enough to tell apart.
 const ESTIMATORS: [&str; 2] = ["finite-difference", "kalman-triple-steady"];
@@ -72,9 +72,7 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
         )));
     }
     let replayed = replay::replay(&recording, &name, &kinds, &device, &parameters)?;
-    for (estimator, column) in &replayed.left_out {
-        eprintln!("{name}: {estimator} left out: no column {column}");
-    }
+    note_left_out(&name, &replayed);
     let svg = report::recording(&RecordingView {
         name: &name,
         recording: &recording,

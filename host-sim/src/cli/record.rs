@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::failure::Failure;
-use crate::output::{print_bytes, write_whole};
+use crate::output::{note, print_bytes, write_whole};
 use crate::record::{choose, csv, report};
 use crate::telemetry::Telemetry;
 
@@ -76,7 +76,7 @@ pub(super) fn run(options: &Record) -> Result<(), Failure> {
         )));
     }
     for line in report(&telemetry, &runs, run) {
-        eprintln!("{name}: {line}");
+        note(format_args!("{name}: {line}"));
     }
     let text = csv(run, rate_hz, |_| None);
     match options.out.as_deref() {

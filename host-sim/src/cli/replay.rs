@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::failure::Failure;
-use crate::output::{print_bytes, write_whole};
+use crate::output::{note, print_bytes, write_whole};
 use crate::recording::{BoardColumns, Recording};
 use crate::{replay, rows, table};
 
@@ -55,12 +55,10 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
             options.trace.display()
         )));
     }
-    for (estimator, column) in &replayed.left_out {
-        eprintln!("{name}: {estimator} left out: no column {column}");
-    }
+    note_left_out(&name, &replayed);
     warn_uneven(&name, &recording);
     for line in replay::of_the_board(&recording, &board, &device) {
-        eprintln!("{name}: {line}");
+        note(format_args!("{name}: {line}"));
     }
     let csv = replay::csv(&recording.t, &replayed.estimates);
     match (options.out.as_deref(), options.json.as_deref()) {
@@ -97,15 +95,37 @@ fn board_columns(options: &Replay) -> Result<BoardColumns, Failure> {
     }
 }
 
+/// Says who was left out, in a line for each column that is not there.
+pub(super) fn note_left_out(name: &str, replayed: &replay::Replay) {
+    let mut columns: Vec<&str> = replayed
+        .left_out
+        .iter()
+        .map(|(_, column)| *column)
+        .collect();
+    columns.sort_unstable();
+    columns.dedup();
+    for column in columns {
+        let those = replayed
+            .left_out
+            .iter()
+            .filter(|(_, lacks)| *lacks == column);
+        let names: Vec<&str> = those.map(|(estimator, _)| *estimator).collect();
+        let names = names.join(", ");
+        note(format_args!(
+            "{name}: no column {column}; left out: {names}"
+        ));
+    }
+}
+
 /// Says where estimators cannot know how long a tick was.
 pub(super) fn warn_uneven(name: &str, recording: &Recording) {
     if recording.uneven_steps > 0 {
-        eprintln!(
+        note(format_args!(
             "{name}: {} of {} steps of t differ by more than 10 % from 1/{} s; estimators take \
              every step for one tick",
             recording.uneven_steps,
             recording.t.len() - 1,
             recording.trace.rate_hz,
-        );
+        ));
     }
 }

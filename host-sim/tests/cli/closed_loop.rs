@@ -256,7 +256,7 @@ fn the_report_has_the_figures_and_no_broken_number() {
 fn a_whole_comparison_closes_the_loop_beside_and_a_named_scenario_does_not() {
     let folder = Folder::new("loop-beside");
     let page = page_of(&folder, &TWO);
-    assert!(page.contains("Figure 8.") && page.contains(FIGURES[1]));
+    assert!(page.contains("figure 8)") && page.contains(FIGURES[1]));
     let mut named = TWO.to_vec();
     named.extend(["--scenario", "step"]);
     assert!(!page_of(&folder, &named).contains(FIGURES[0]));
@@ -266,5 +266,5 @@ fn a_whole_comparison_closes_the_loop_beside_and_a_named_scenario_does_not() {
         &["--rate", "200", "--seconds", "1", "--estimator", "pll"],
     );
     assert!(slow.contains("The loop was not closed: control at 200 Hz"));
-    assert!(slow.contains("Figure 8.") && !slow.contains(FIGURES[0]));
+    assert!(slow.contains("figure 8)") && !slow.contains(FIGURES[0]));
 }

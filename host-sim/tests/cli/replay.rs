@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::io::Write as _;
+use std::process::{Command, Stdio};
 
 use crate::{Folder, json};
 
@@ -29,7 +30,7 @@ fn a_recording_of_a_real_motor_replays() {
     assert_eq!(output.status.code(), Some(0));
     let notes = String::from_utf8(output.stderr).unwrap();
     assert!(
-        notes.contains("kalman-motor left out: no column current"),
+        notes.contains("no column current; left out: kalman-motor,"),
         "{notes}"
     );
 
@@ -152,4 +153,18 @@ fn a_hundred_megabytes_are_read_to_the_line_that_is_wrong() {
     let line = folder.refused(&["replay", "large.csv", "--out", "o.csv"]);
     assert!(line.contains("large.csv: line 1: no column t"), "{line}");
     assert!(line.len() < 300, "{} bytes", line.len());
+}
+
+#[test]
+fn notes_that_nobody_reads_stop_nothing() {
+    let folder = Folder::new("notes");
+    folder.write("r.csv", "t,counts_large\n0,1\n0.001,2\n");
+    let mut replay = Command::new(env!("CARGO_BIN_EXE_host-sim"));
+    replay.args(["replay", "r.csv", "--out", "v.csv"]);
+    replay.current_dir(&folder.0);
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let status = replay.stdout(Stdio::null()).stderr(writer).status();
+    assert_eq!(status.unwrap().code(), Some(0));
+    assert!(folder.files().contains("v.csv"));
 }

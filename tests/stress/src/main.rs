@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use host_sim::cli::explain;
-use host_sim::failure::Failure;
+use host_sim::failure::{Failure, ended};
 use host_sim::output::{print_bytes, write_whole};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
@@ -71,17 +71,10 @@ fn rate(text: &str) -> Result<f64, String> {
 }
 
 fn main() -> ExitCode {
-    let done = match Arguments::try_parse() {
+    ended(match Arguments::try_parse() {
         Ok(arguments) => run(&arguments),
         Err(error) => explain(&error, "cargo stress"),
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            eprintln!("error: {failure}");
-            ExitCode::from(failure.status())
-        }
-    }
+    })
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
