@@ -95,7 +95,12 @@ impl Image {
                 path.display()
             )
         })?;
-        Self::parse(path, elf).map_err(|error| format!("{}: {error}", path.display()))
+        Self::parse(path, elf).map_err(|error| {
+            format!(
+                "{}: no image of this firmware: {error}; build it with `{HOW_TO_BUILD}`",
+                path.display()
+            )
+        })
     }
 
     /// The file.
@@ -108,7 +113,7 @@ impl Image {
         let file = object::File::parse(&*elf).map_err(|error| error.to_string())?;
         let symbol = |name: &str| {
             let found = file.symbols().find(|symbol| symbol.name() == Ok(name));
-            found.ok_or_else(|| format!("no symbol {name}: not an image of this firmware"))
+            found.ok_or_else(|| format!("no symbol {name}"))
         };
         let rtt = symbol("_SEGGER_RTT")?.address();
         let control = symbol(CONTROL)?;
@@ -121,7 +126,7 @@ impl Image {
             symbol.name().is_ok_and(|name| name.contains(part))
         };
         let idle = file.symbols().find(|symbol| named(symbol, IDLE));
-        let idle = idle.ok_or("no task of lowest priority: not an image of this firmware")?;
+        let idle = idle.ok_or("no task of lowest priority")?;
         let at = idle.address() & !1;
         let wait = instructions(at, code(&file, &idle)?).find(|(_, [first, _])| *first == WFI);
         let wait = wait.ok_or("the task of lowest priority never waits")?.0;
@@ -193,6 +198,18 @@ fn returns(base: u64, code: &[u8]) -> Vec<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_of_another_kind_is_refused_with_what_to_do() {
+        let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
+        let Err(said) = Image::read(path) else {
+            panic!("taken for an image");
+        };
+        assert!(
+            said.contains("Cargo.toml: no image") && said.ends_with(&format!("`{HOW_TO_BUILD}`")),
+            "{said}"
+        );
+    }
 
     #[test]
     fn returns_are_found_and_not_inside_wide_instructions() {
