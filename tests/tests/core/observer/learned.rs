@@ -1,0 +1,104 @@
+//! What the observers learn, and what they must not.
+
+use estimator_core::{
+    Amps, ClockTicks, Count, CoupledMotor, Edge, Hertz, Observer, Sample, VelocityEstimator,
+};
+
+use super::modelled::{modelled, rms};
+use super::{CLOCK, UNSURE, at};
+use crate::motion::Draws;
+
+/// A device whose damping, friction and torque constant are each off is learned: b, from Kt.
+#[test]
+fn what_is_off_is_learned() {
+    let rate = Hertz(1000.0);
+    let believed = CoupledMotor::DCX35L;
+    for (damping, inertia, friction) in [(0.7, 1.0, 1.0), (1.3, 1.2, 0.7), (0.8, 0.8, 1.4)] {
+        let mut device = believed;
+        device.large.damping *= damping;
+        device.large.inertia *= inertia;
+        device.coulomb_friction *= friction;
+        let (samples, truth) = modelled(rate.0, 12.0, 0.3, device);
+        let counts = Observer::new(&believed, rate, &UNSURE).expect("valid");
+        let edges = counts.with_edges(CLOCK, rate).expect("valid");
+        let fixed = at(rate.0);
+        let fixed = fixed
+            .iter()
+            .find(|case| case.name.starts_with("observer, edges at"));
+        let fixed = rms(&(fixed.expect("there").run)(&samples), &truth, 6000);
+
+        let estimator = edges.learning(4096, rate).expect("valid");
+        let mut state = estimator.start(&samples[0]);
+        let mut velocities = Vec::new();
+        for sample in &samples[1..] {
+            velocities.push(estimator.update(&mut state, sample).0);
+        }
+        let learned = f64::from(estimator.deviations(&state).damping_ratio());
+        assert!(
+            (learned / damping - 1.0).abs() < 0.05,
+            "{learned} for {damping}"
+        );
+        let error = rms(&velocities, &truth, 6000);
+        assert!(error < 0.5 * fixed, "{error} of {fixed}");
+    }
+}
+
+/// In creep friction hides the rest: a current just above it, and fewer counts than it should
+/// give, teach nothing.
+#[test]
+fn nothing_is_learned_in_creep() {
+    let rate = Hertz(1000.0);
+    let counts = Observer::new(&CoupledMotor::DCX35L, rate, &UNSURE).expect("valid");
+    let estimator = counts.learning(4096, rate).expect("valid");
+    let mut state = estimator.start(&Sample::new(Count(7)));
+    let fresh = estimator.deviations(&state);
+    let mut fastest = 0.0f32;
+    for tick in 0..10_000u32 {
+        // 4.2 of 4.0 mN.m: 0.22 rad/s, 0.14 counts a tick.
+        let sample = Sample::new(Count(7 + tick / 20)).with_current(Amps::new(0.09));
+        fastest = fastest.max(estimator.update(&mut state, &sample).0);
+    }
+    assert!(fastest > 0.02, "{fastest}");
+    assert_eq!(estimator.deviations(&state), fresh);
+}
+
+/// The covariance of the parameters stays positive definite through irregular, absurd updates:
+/// counts that jump, with edges at any instant, or none.
+#[test]
+fn learned_covariance_stays_positive() {
+    let rate = Hertz(1000.0);
+    let counts = Observer::new(&CoupledMotor::DCX35L, rate, &UNSURE).expect("valid");
+    let counts = counts.learning(4096, rate).expect("valid");
+    let edges = counts.with_edges(CLOCK, rate).expect("valid");
+    let mut draws = Draws(11);
+    let (mut state, mut stamped) = (
+        counts.start(&Sample::default()),
+        edges.start(&Sample::default()),
+    );
+    let mut large = 0u32;
+    for tick in 0..1_000_000 {
+        let jump = if tick % 977 == 0 { 1 << 20 } else { 30 };
+        large = large.wrapping_add(draws.within(jump) as u32);
+        let mut sample = Sample::new(Count(large))
+            .with_small(Count(draws.bits() as u32 >> (tick % 32)))
+            .with_current(Amps::new(1000.0 * draws.unit() as f32));
+        if tick % 5 != 0 {
+            sample = sample.with_edge(Edge {
+                boundary: Count(large.wrapping_add(draws.bits() as u32 & 1)),
+                age: ClockTicks((draws.bits() % 84_000) as u32),
+            });
+        }
+        counts.update(&mut state, &sample);
+        edges.update(&mut stamped, &sample);
+        for diagonal in [state.learning().diagonal(), stamped.learning().diagonal()] {
+            assert!(
+                diagonal.iter().all(|d| *d > 0.0 && *d < 1.0),
+                "{diagonal:?} at {tick}"
+            );
+        }
+    }
+    // Both have learned: D has left the prior.
+    for diagonal in [state.learning().diagonal(), stamped.learning().diagonal()] {
+        assert!(diagonal.iter().any(|d| *d < 0.05), "{diagonal:?}");
+    }
+}
