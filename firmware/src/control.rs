@@ -41,8 +41,10 @@ pub(crate) struct Control {
     core: Core,
     monitor: MonitorState,
     safety: SafetyState,
-    applied: Currents,
-    tick: u32,
+    /// What the latest tick came to.
+    action: Action,
+    /// Ticks so far, modulo 2^32.
+    ticks: u32,
     overruns: u32,
 }
 
@@ -53,15 +55,15 @@ impl Control {
             core: Core::start(first),
             monitor: MONITOR.start(first),
             safety: SAFETY.start(reset),
-            applied: Currents::default(),
-            tick: 0,
+            action: Action::default(),
+            ticks: 0,
             overruns: 0,
         }
     }
 
     /// Currents commanded over the period that ends now.
     pub(crate) fn applied(&self) -> Currents {
-        self.applied
+        self.action.currents
     }
 
     /// Takes a message before its tick; what there is to ask the safety machine. Settings too are a
@@ -80,8 +82,8 @@ impl Control {
         }
     }
 
-    /// One tick: the currents to apply, `None` with the amplifiers disabled, and its record.
-    pub(crate) fn step(&mut self, sample: &Sample, inputs: &Inputs) -> (Option<Currents>, Record) {
+    /// One tick: the currents to apply, `None` with the amplifiers disabled.
+    pub(crate) fn step(&mut self, sample: &Sample, inputs: &Inputs) -> Option<Currents> {
         self.overruns = self.overruns.wrapping_add(inputs.missed);
         let mut action = self.core.step(sample);
         let findings = Findings {
@@ -103,26 +105,31 @@ impl Control {
         if order.restart || !order.enable {
             action.currents = Currents::default();
         }
-        self.applied = action.currents;
-        let record = Record {
-            tick: self.tick,
+        self.action = action;
+        self.ticks = self.ticks.wrapping_add(1);
+        order.enable.then_some(action.currents)
+    }
+
+    /// What the latest tick, with this sample, came to. Most ticks are never told of, so it is not
+    /// made by [`Self::step`].
+    pub(crate) fn record(&self, sample: &Sample) -> Record {
+        Record {
+            tick: self.ticks.wrapping_sub(1),
             sample: *sample,
-            action,
+            action: self.action,
             state: self.safety.mode() as u8,
             cause: self.safety.stop() as u8,
             overruns: self.overruns,
             estimation: self.core.estimation(),
             learned: self.core.learned(),
-        };
-        self.tick = self.tick.wrapping_add(1);
-        (order.enable.then_some(action.currents), record)
+        }
     }
 
     /// What an image that arms by itself asks for; out of safe it does not.
     fn by_itself(&self) -> Option<Request> {
         const ARM: u32 = RATE_HZ / 10;
         const SELECT: u32 = ARM - 1;
-        match (self.tick, self.safety.mode()) {
+        match (self.ticks, self.safety.mode()) {
             (SELECT, Mode::Boot) if AUTO_ARM => Some(Request::Select(FIRST)),
             (ARM, Mode::Boot) if AUTO_ARM => Some(Request::Arm),
             _ => None,

@@ -90,9 +90,10 @@ mod app {
             missed,
             request: control.hear(messages.dequeue()),
         };
-        let (currents, record) = control.step(&sample, &inputs);
-        amplifiers.apply(currents);
-        sender.offer(record, tick.cycles(), encoders.reference());
+        amplifiers.apply(control.step(&sample, &inputs));
+        if sender.is_due() {
+            sender.send(control.record(&sample), tick.cycles(), encoders.reference());
+        }
         tick.leave();
     }
 

@@ -42,6 +42,8 @@ pub(crate) struct Frame {
 /// Where the control task puts its records.
 pub(crate) struct Sender {
     queue: Producer<'static, Frame>,
+    /// Ticks until the next frame.
+    wait: u32,
     seq: u32,
     drops: u32,
 }
@@ -51,16 +53,21 @@ impl Sender {
     pub(crate) fn new(queue: Producer<'static, Frame>) -> Self {
         Self {
             queue,
+            wait: 0,
             seq: 0,
             drops: 0,
         }
     }
 
-    /// Makes a frame of every `DECIMATION`th record; one that finds no place is counted.
-    pub(crate) fn offer(&mut self, record: Record, cycles: u32, reference: Option<Count>) {
-        if !record.tick.is_multiple_of(DECIMATION) {
-            return;
-        }
+    /// Whether this tick is told of, as every `DECIMATION`th is. To be asked once a tick.
+    pub(crate) fn is_due(&mut self) -> bool {
+        let due = self.wait == 0;
+        self.wait = if due { DECIMATION } else { self.wait } - 1;
+        due
+    }
+
+    /// Sends a record; one that finds no place is counted.
+    pub(crate) fn send(&mut self, record: Record, cycles: u32, reference: Option<Count>) {
         let frame = Frame {
             seq: self.seq,
             drops: self.drops,

@@ -79,7 +79,8 @@ pub(crate) fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
             missed: 0,
             request: Some(request.unwrap_or(Request::KeepAlive)),
         };
-        control.step(&sample, &inputs)
+        let currents = control.step(&sample, &inputs);
+        (currents, control.record(&sample))
     };
     run.ticks.iter().enumerate().map(step).collect()
 }
