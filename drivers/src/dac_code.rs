@@ -24,17 +24,17 @@ impl DacCode {
     #[must_use]
     pub const fn new(current: Amps, full_scale: Amps) -> Self {
         let scaled = current.get() / full_scale.get() * 2047.0;
-        let rounded = if scaled < 0.0 {
-            scaled - 0.5
-        } else {
-            scaled + 0.5
-        };
+        let rounded = scaled + 0.5_f32.copysign(scaled);
         if !rounded.is_finite() {
             return Self::ZERO;
         }
-        // A cast truncates towards zero.
-        let signed = rounded.clamp(-2047.0, 2047.0) as i16;
-        Self(2048_u16.wrapping_add_signed(signed))
+        // A cast truncates towards zero, and saturates.
+        let steps = match rounded as i32 {
+            ..-2047 => -2047,
+            2048.. => 2047,
+            steps => steps,
+        };
+        Self((2048 + steps) as u16)
     }
 
     /// The code as the DAC takes it.

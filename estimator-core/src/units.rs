@@ -108,9 +108,20 @@ impl Amps {
     /// assert_eq!(Amps::new(-1e30).get(), -1000.0);
     /// ```
     #[must_use]
+    #[inline]
     pub const fn new(amps: f32) -> Self {
+        if amps.abs() <= Self::MAX {
+            Self(amps)
+        } else {
+            Self::made_safe(amps)
+        }
+    }
+
+    /// What none of a device's currents is.
+    #[cold]
+    const fn made_safe(amps: f32) -> Self {
         if amps.is_finite() {
-            Self(amps.clamp(-Self::MAX, Self::MAX))
+            Self(Self::MAX.copysign(amps))
         } else {
             Self::ZERO
         }
