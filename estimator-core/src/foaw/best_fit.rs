@@ -41,11 +41,13 @@ where
 }
 
 /// `i (i + 1) / 2`.
+#[inline(always)]
 const fn triangle(i: i32) -> i32 {
     ((i * i + i) as u32 / 2) as i32
 }
 
 /// `i (i + 1) (i + 2) / 6`, what the slope of a window is divided by.
+#[inline(always)]
 const fn tetrahedron(i: i32) -> i32 {
     ((triangle(i) * (i + 2)) as u32 / 3) as i32
 }
@@ -62,6 +64,7 @@ pub(super) const fn fits_i32(step: i32, n: i32, d: i32) -> bool {
 
 /// The closest f32, or one as good as that: an exact quotient stays exact. The divisor is below
 /// 2^20.
+#[inline(always)]
 fn quotient(dividend: i64, divisor: i32) -> f32 {
     let by = divisor as f32;
     if let Ok(dividend @ -0x0100_0000..=0x0100_0000) = i32::try_from(dividend) {

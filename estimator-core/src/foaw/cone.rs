@@ -63,23 +63,24 @@ impl Cone {
     /// any is left.
     #[inline(always)]
     pub(super) const fn narrow(&mut self, rise: i32, run: i32, d: i32) -> bool {
-        let Self { lowest, highest } = *self;
+        let Self { lowest, highest } = self;
         let above = rise * lowest.run - lowest.rise * run;
         let below = highest.rise * run - rise * highest.run;
         if above > d * lowest.run {
             if below < -d * highest.run {
                 return false;
             }
-            self.lowest = Bound {
+            *lowest = Bound {
                 rise: rise - d,
                 run,
             };
         }
         if below > d * highest.run {
+            // Never after the lowest has just moved, as then `above` is positive.
             if above < -d * lowest.run {
                 return false;
             }
-            self.highest = Bound {
+            *highest = Bound {
                 rise: rise + d,
                 run,
             };

@@ -36,10 +36,12 @@ pub struct Straight {
 }
 
 impl Straight {
+    #[inline(always)]
     pub(super) const fn ticks(&self) -> i32 {
         self.intervals as i32
     }
 
+    #[inline(always)]
     pub(super) const fn rise(&self) -> i32 {
         self.step * self.ticks()
     }
@@ -57,18 +59,24 @@ impl Sealed for EndFit {
     fn longest(older: &[Count], straight: Straight, _: i32, d: i32) -> Window {
         let newest = straight.newest;
         let mut cone = Cone::of(straight.rise(), straight.ticks(), d);
-        let mut age = straight.intervals;
-        while let Some(count) = older.get(age) {
-            if !cone.narrow_from_inside((newest - *count).0, age as i32 + 1, d) {
-                break;
-            }
-            age += 1;
+        // Samples looked at, of which only the last may be refused: one counter does for the loop.
+        let mut seen = straight.intervals;
+        let mut accepted = true;
+        while accepted && seen < older.len() {
+            // Always inside.
+            let Some(count) = older.get(seen) else { break };
+            seen += 1;
+            accepted = cone.narrow_from_inside((newest - *count).0, seen as i32, d);
         }
+        let intervals = seen - usize::from(!accepted);
         // Always inside.
-        let oldest = older.get(age.wrapping_sub(1)).copied().unwrap_or(newest);
+        let oldest = older
+            .get(intervals.wrapping_sub(1))
+            .copied()
+            .unwrap_or(newest);
         Window {
-            intervals: age as u8,
-            slope: (newest - oldest).to_f32() / age as f32,
+            intervals: intervals as u8,
+            slope: (newest - oldest).to_f32() / intervals as f32,
         }
     }
 }
