@@ -92,6 +92,14 @@ fn claims_of_estimators(rows: &[Row]) {
         let mean = row(name).cost[0].mean;
         assert!(mean <= goal, "{name}: {mean} instructions, goal {goal}");
     }
+    // And the longest window at 3.
+    for (name, goal) in [
+        ("foaw-end-fit, n = 64", 1160),
+        ("foaw-best-fit, n = 64", 2500),
+    ] {
+        let most = row(name).cost[0].most;
+        assert!(most <= goal, "{name}: {most} instructions, goal {goal}");
+    }
     for row in rows.iter().filter(|row| !row.peer) {
         let [fast, small] = [0, 1].map(|level| row.cost[level].mean);
         assert!(small <= 1.1 * fast, "{}: {small} at s, {fast}", row.name);
