@@ -234,7 +234,11 @@ where
             return CountsPerTick(step.velocity);
         };
         // In range already; the remainder shows it to the compiler, which drops both.
-        let gain = &self.gains[innovation.row % ROWS];
+        let steady = &self.gains[innovation.row % ROWS];
+        let starting =
+            self.learning
+                .starting(&mut state.learning, &innovation, steady, step.velocity);
+        let gain = starting.as_ref().unwrap_or(steady);
         let error = limited(innovation.error, LARGEST_INNOVATION);
         // The age is zero without time stamps: then the compiler drops it.
         let carried = innovation.position + innovation.age * gain.velocity;
@@ -250,6 +254,7 @@ where
             gain,
             error,
             dense: M::DENSE,
+            starting: starting.is_some(),
             position: carried,
             velocity,
         };

@@ -23,6 +23,8 @@ pub struct Lesson<'a> {
     pub(super) error: f32,
     /// Whether every tick may have an innovation.
     pub(super) dense: bool,
+    /// Whether its gain is that of a start in motion.
+    pub(super) starting: bool,
     /// Gain of the position at the tick's end.
     pub(super) position: f32,
     /// Velocity after the correction, counts a tick.

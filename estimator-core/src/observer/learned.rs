@@ -1,7 +1,9 @@
 //! Damping, friction and torque constant, learned while the motor runs.
 
 use super::bierman::bierman;
+use super::correction::Innovation;
 use super::dependence::{Dependence, Lesson, Tick};
+use super::design::Gain;
 use super::inputs::Push;
 use super::learning::{Deviations, Learning, Shift};
 use super::motion::Motion;
@@ -29,6 +31,14 @@ use crate::units::Hertz;
 /// starts at 35, 60 and 35 %, walks by a tenth of that in a second of motion, and never exceeds
 /// it. Deviations stay within ±60 % (friction: ±90 %). Nothing is learned below 0.5 rad/s, where
 /// friction hides everything else.
+///
+/// Who starts in motion believes to be at rest. Learned from, that would be a parameter's error; and
+/// the gains of one that learns are small. It shows in an innovation beyond what the first cell and
+/// parameters at the ends of their range explain, `|e| > 1/2 + 0.6 |v| n`, at an age below 1 / K_v.
+/// From there, and for as long, the velocity is the mean since, carried on by what drives it:
+/// ```text
+/// K_v = 1 / max(1, age)      K_a = 0      p, U and D stay
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Learned {
     /// Velocity below which nothing is learned, counts a tick.
@@ -50,6 +60,20 @@ pub struct LearnedState {
     diagonal: [f32; 3],
     /// Ticks since D last grew.
     waiting: f32,
+    start: Start,
+    /// Ticks from the start to the last correction; of one in motion, from where that showed.
+    age: f32,
+}
+
+/// How it started.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Start {
+    /// At rest, as far as is known.
+    AtRest,
+    /// In motion.
+    InMotion,
+    /// Long ago.
+    Over,
 }
 
 impl LearnedState {
@@ -71,6 +95,9 @@ const PRIOR: [f32; 3] = [0.35, 0.6, 0.35];
 
 /// Largest deviations.
 const LARGEST: [f32; 3] = [0.6, 0.9, 0.6];
+
+/// How far the first cell's middle may be from where the rotor starts, counts.
+const CELL: f32 = 0.5;
 
 /// Part of [`PRIOR`] that a parameter walks in a second.
 const WALK: f64 = 0.1;
@@ -125,6 +152,8 @@ impl Learning for Learned {
             upper: [0.0; 3],
             diagonal: PRIOR.map(|deviation| deviation * deviation),
             waiting: 0.0,
+            start: Start::AtRest,
+            age: 0.0,
         }
     }
 
@@ -166,6 +195,39 @@ impl Learning for Learned {
     #[inline(always)]
     fn friction(&self, state: &LearnedState, motion: &Motion) -> f32 {
         motion.friction + state.parameters[1] * motion.friction
+    }
+
+    #[inline(always)]
+    fn starting(
+        &self,
+        state: &mut LearnedState,
+        innovation: &Innovation,
+        steady: &Gain,
+        velocity: f32,
+    ) -> Option<Gain> {
+        let gap = innovation.gap;
+        if state.start == Start::Over || gap == 0.0 {
+            return None;
+        }
+        state.age += gap;
+        if state.age * steady.velocity >= 1.0 {
+            state.start = Start::Over;
+            return None;
+        }
+        if state.start == Start::AtRest {
+            let explained = CELL + LARGEST[0] * velocity.abs() * gap;
+            if innovation.error.abs() <= explained {
+                return None;
+            }
+            state.start = Start::InMotion;
+            state.age = gap;
+        }
+        let age = state.age;
+        Some(Gain {
+            velocity: if age > 1.0 { 1.0 / age } else { 1.0 },
+            load: 0.0,
+            ..*steady
+        })
     }
 
     #[inline(always)]
@@ -214,7 +276,8 @@ impl Learning for Learned {
         let waiting = state.waiting + innovation.gap;
         state.waiting = waiting;
         let early = lesson.dense && waiting < self.spacing;
-        if innovation.gap == 0.0 || early || lesson.velocity.abs() < self.slowest {
+        let slow = lesson.velocity.abs() < self.slowest;
+        if lesson.starting || innovation.gap == 0.0 || early || slow {
             return None;
         }
         state.waiting = 0.0;

@@ -1,7 +1,9 @@
 //! What an observer learns of its parameters: nothing ([`Fixed`]), or
 //! [`Learned`](super::Learned).
 
+use super::correction::Innovation;
 use super::dependence::{Lesson, Tick};
+use super::design::Gain;
 use super::inputs::Push;
 use super::motion::Motion;
 
@@ -62,6 +64,16 @@ pub trait Learning: Copy {
     /// Coulomb friction.
     fn friction(&self, state: &Self::State, motion: &Motion) -> f32;
 
+    /// The gain of an innovation that shows that the observer started in motion; `velocity` is the
+    /// predicted one.
+    fn starting(
+        &self,
+        state: &mut Self::State,
+        innovation: &Innovation,
+        steady: &Gain,
+        velocity: f32,
+    ) -> Option<Gain>;
+
     /// Follows a tick: how its result depends on each parameter.
     fn follow(&self, state: &Self::State, tick: &Tick<'_>) -> Self::Dependence;
 
@@ -106,6 +118,11 @@ impl Learning for Fixed {
     #[inline(always)]
     fn friction(&self, (): &(), motion: &Motion) -> f32 {
         motion.friction
+    }
+
+    #[inline(always)]
+    fn starting(&self, (): &mut (), _: &Innovation, _: &Gain, _: f32) -> Option<Gain> {
+        None
     }
 
     #[inline(always)]

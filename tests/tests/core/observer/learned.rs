@@ -1,7 +1,8 @@
 //! What the observers learn, and what they must not.
 
 use estimator_core::{
-    Amps, ClockTicks, Count, CoupledMotor, Edge, Hertz, Observer, Sample, VelocityEstimator,
+    Amps, ClockTicks, Count, CoupledMotor, Edge, Hertz, Observer, Sample, Uncertainty,
+    VelocityEstimator,
 };
 
 use super::modelled::{modelled, rms};
@@ -40,6 +41,42 @@ fn what_is_off_is_learned() {
         );
         let error = rms(&velocities, &truth, 6000);
         assert!(error < 0.5 * fixed, "{error} of {fixed}");
+    }
+}
+
+/// Who starts in motion has the velocity to find, not parameters: those believed in are right.
+#[test]
+fn a_start_in_motion_teaches_nothing() {
+    let rate = Hertz(10_000.0);
+    // Small gains, as one that learns is tuned to.
+    let sure = Uncertainty {
+        torque_noise: 5.75e-6,
+        load: 1.38e-4,
+        boundary_noise: 0.0625,
+        ..UNSURE
+    };
+    let (samples, truth) = modelled(rate.0, 4.0, 0.4, CoupledMotor::DCX35L);
+    let counts = Observer::new(&CoupledMotor::DCX35L, rate, &sure).expect("valid");
+    let estimator = counts.learning(4096, rate).expect("valid");
+    // 0.3 counts a tick are 4.6 rad/s.
+    let fast = (0..samples.len() - 2500).filter(|k| truth[*k].abs() > 0.3);
+    let starts: Vec<usize> = fast.step_by(500).collect();
+    assert!(starts.len() > 20, "{starts:?}");
+    for start in starts {
+        let samples = &samples[start..start + 2500];
+        let mut state = estimator.start(&samples[0]);
+        let mut velocities = Vec::new();
+        for sample in &samples[1..] {
+            velocities.push(estimator.update(&mut state, sample).0);
+        }
+        let error = rms(&velocities, &truth[start..start + 2500], 200);
+        assert!(error < 0.003, "{error} from tick {start}");
+        let learned = estimator.deviations(&state);
+        let learned = [learned.damping, learned.friction, learned.torque_constant];
+        assert!(
+            learned.iter().all(|deviation| deviation.abs() < 0.05),
+            "{learned:?} from tick {start}"
+        );
     }
 }
 
