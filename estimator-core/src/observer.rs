@@ -233,12 +233,10 @@ where
             self.learning.keep(&mut state.learning, dependence);
             return CountsPerTick(step.velocity);
         };
-        // In range already; the remainder shows it to the compiler, which drops both.
-        let steady = &self.gains[innovation.row % ROWS];
-        let starting =
-            self.learning
-                .starting(&mut state.learning, &innovation, steady, step.velocity);
-        let gain = starting.as_ref().unwrap_or(steady);
+        let starting = self
+            .learning
+            .starting(&mut state.learning, &innovation, step.velocity);
+        let gain = starting.as_ref().unwrap_or(innovation.gain);
         let error = limited(innovation.error, LARGEST_INNOVATION);
         // The age is zero without time stamps: then the compiler drops it.
         let carried = innovation.position + innovation.age * gain.velocity;

@@ -21,15 +21,15 @@ pub struct Path {
 
 /// What a tick's counts say against the prediction.
 #[derive(Clone, Copy, Debug)]
-pub struct Innovation {
+pub struct Innovation<'a> {
     /// Where the rotor was, less where it was predicted, counts.
     pub(super) error: f32,
     /// The part of the tick that had passed since, 0 to 1.
     pub(super) age: f32,
     /// Gain of the position, 0 to 1.
     pub(super) position: f32,
-    /// Row of the gain table.
-    pub(super) row: usize,
+    /// The other gains, those of the table's row for the gap.
+    pub(super) gain: &'a Gain,
     /// Ticks since the last one.
     pub(super) gap: f32,
 }
@@ -50,13 +50,13 @@ pub trait Correction: Copy {
     fn since(state: &Self::State) -> f32;
 
     /// The innovation of this tick, if it has one.
-    fn innovation(
+    fn innovation<'a>(
         &self,
         state: &mut Self::State,
         path: Path,
         sample: &Sample,
-        gains: &[Gain; ROWS],
-    ) -> Option<Innovation>;
+        gains: &'a [Gain; ROWS],
+    ) -> Option<Innovation<'a>>;
 }
 
 /// Counts alone: nothing is known but that the rotor is inside the newest count's cell. While the
@@ -77,9 +77,9 @@ fn excess(position: f32) -> Option<f32> {
 
 /// The table's row for a gap of this many ticks.
 #[inline(always)]
-pub(super) fn row(gap: f32) -> usize {
+pub(super) fn row(gains: &[Gain; ROWS], gap: f32) -> &Gain {
     // A float-to-integer cast saturates.
-    ((gap - 0.5) as usize).min(ROWS - 1)
+    &gains[((gap - 0.5) as usize).min(ROWS - 1)]
 }
 
 impl Correction for Cells {
@@ -97,20 +97,20 @@ impl Correction for Cells {
     }
 
     #[inline(always)]
-    fn innovation(
+    fn innovation<'a>(
         &self,
         gap: &mut f32,
         path: Path,
         _: &Sample,
-        _: &[Gain; ROWS],
-    ) -> Option<Innovation> {
+        gains: &'a [Gain; ROWS],
+    ) -> Option<Innovation<'a>> {
         *gap += 1.0;
         let error = excess(path.from + path.lead)?;
         let innovation = Innovation {
             error,
             age: 0.0,
             position: 1.0,
-            row: row(*gap),
+            gain: row(gains, *gap),
             gap: *gap,
         };
         *gap = 0.0;
@@ -164,36 +164,37 @@ impl Correction for Edges {
     }
 
     #[inline(always)]
-    fn innovation(
+    fn innovation<'a>(
         &self,
         state: &mut EdgesState,
         path: Path,
         sample: &Sample,
-        gains: &[Gain; ROWS],
-    ) -> Option<Innovation> {
-        state.since += 1.0;
+        gains: &'a [Gain; ROWS],
+    ) -> Option<Innovation<'a>> {
+        let since = state.since + 1.0;
         let Some(edge) = self.clock.fresh(sample) else {
+            state.since = since;
             return excess(path.from + path.lead).map(|error| Innovation {
                 error,
                 age: 0.0,
                 position: 1.0,
-                row: row(state.since),
+                gain: row(gains, since),
                 gap: 0.0,
             });
         };
+        state.since = edge.age;
         let passed = 1.0 - edge.age;
         let there = path.from + passed * (path.lead - 0.5 * path.gained * edge.age);
         let offset = &mut state.offsets[edge.phase % 4];
         let error = edge.position + *offset - there;
         *offset = limited(*offset - OFFSET_GAIN * error, LARGEST_OFFSET);
-        let gap = state.since - edge.age;
-        state.since = edge.age;
-        let row = row(gap);
+        let gap = since - edge.age;
+        let gain = row(gains, gap);
         Some(Innovation {
             error,
             age: edge.age,
-            position: gains[row % ROWS].position,
-            row,
+            position: gain.position,
+            gain,
             gap,
         })
     }

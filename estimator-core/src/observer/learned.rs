@@ -201,8 +201,7 @@ impl Learning for Learned {
     fn starting(
         &self,
         state: &mut LearnedState,
-        innovation: &Innovation,
-        steady: &Gain,
+        innovation: &Innovation<'_>,
         velocity: f32,
     ) -> Option<Gain> {
         let gap = innovation.gap;
@@ -210,7 +209,7 @@ impl Learning for Learned {
             return None;
         }
         state.age += gap;
-        if state.age * steady.velocity >= 1.0 {
+        if state.age * innovation.gain.velocity >= 1.0 {
             state.start = Start::Over;
             return None;
         }
@@ -226,7 +225,7 @@ impl Learning for Learned {
         Some(Gain {
             velocity: if age > 1.0 { 1.0 / age } else { 1.0 },
             load: 0.0,
-            ..*steady
+            ..*innovation.gain
         })
     }
 

@@ -69,8 +69,7 @@ pub trait Learning: Copy {
     fn starting(
         &self,
         state: &mut Self::State,
-        innovation: &Innovation,
-        steady: &Gain,
+        innovation: &Innovation<'_>,
         velocity: f32,
     ) -> Option<Gain>;
 
@@ -121,7 +120,7 @@ impl Learning for Fixed {
     }
 
     #[inline(always)]
-    fn starting(&self, (): &mut (), _: &Innovation, _: &Gain, _: f32) -> Option<Gain> {
+    fn starting(&self, (): &mut (), _: &Innovation<'_>, _: f32) -> Option<Gain> {
         None
     }
 

@@ -80,13 +80,13 @@ impl Correction for SoftCells {
     }
 
     #[inline(always)]
-    fn innovation(
+    fn innovation<'a>(
         &self,
         gap: &mut f32,
         path: Path,
         _: &Sample,
-        _: &[Gain; ROWS],
-    ) -> Option<Innovation> {
+        gains: &'a [Gain; ROWS],
+    ) -> Option<Innovation<'a>> {
         let since = *gap + 1.0;
         *gap = since;
         let position = path.from + path.lead;
@@ -101,7 +101,7 @@ impl Correction for SoftCells {
             error: self.share * error,
             age: 0.0,
             position: 1.0,
-            row: row(since),
+            gain: row(gains, since),
             gap: 0.0,
         };
         if outside {
