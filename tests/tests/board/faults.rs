@@ -73,8 +73,10 @@ const MATRIX: [Bound; 15] = [
     bound(Fault::DeadCrystal, -0.3, off(0.0, "10", 0), [0.0, 0.0]),
     // The emulator raises no NMI: the control task finds the lost crystal, on a clock of 16 MHz.
     bound(Fault::CrystalFails, 0.2, off(1.5, "10", 0), [5.0, 0.0]),
-    bound(Fault::NobodyDrains, 1.0, End::On, [0.0, 0.0]),
-    bound(Fault::CommandFlood, 1.0, End::On, [0.0, 0.0]),
+    // Control is not touched; but an interrupt that comes an instruction later may take a current
+    // over to the next step of the plant, and a count with it. Half of what a fingertip notices.
+    bound(Fault::NobodyDrains, 1.0, End::On, [5.0, 0.0]),
+    bound(Fault::CommandFlood, 1.0, End::On, [5.0, 0.0]),
     bound(Fault::BrownOut, 0.2, off(0.05, "9", 1), [1.0, 0.0]),
 ];
 
