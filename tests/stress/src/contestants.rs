@@ -129,8 +129,9 @@ pub const DEVIATION_RAD_S: f64 = 1e-5;
 /// Below this an output at rest is at rest, rad/s.
 const AT_REST_RAD_S: f64 = 1e-5;
 
-/// What it costs the loop with the slowest poles at 10 kHz, where a count a tick is 15 rad/s: as many
-/// half units in the last place of it as the pole has ticks of memory.
+/// What it costs those with the slowest poles at 10 kHz, where a count a tick is 15 rad/s: as many
+/// half units in the last place of it as the pole has ticks of memory. The loop always passes
+/// [`DEVIATION_RAD_S`], the full covariance in one of ten courses of 1e8 ticks.
 const SLOW_DEVIATION_RAD_S: f64 = 2e-5;
 
 /// Spectral density of the jerk that the triple integrator expects, rad/s³ per √Hz.
@@ -284,7 +285,8 @@ pub fn at(rate: f64) -> Vec<Contestant> {
         .settles(learned),
     ];
     if rate > 5000.0 {
-        for slow in all.iter_mut().filter(|one| one.name == "pll") {
+        let slowest = |one: &&mut Contestant| matches!(&*one.name, "pll" | "kalman-triple");
+        for slow in all.iter_mut().filter(slowest) {
             slow.bounds.deviation_rad_s = SLOW_DEVIATION_RAD_S;
         }
     }
