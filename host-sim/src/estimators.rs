@@ -1,12 +1,14 @@
 //! Every estimator by name, with its parameters.
 
 mod build;
+mod erased;
 mod observers;
 mod run;
 
 use estimator_core::{CoupledMotor, Device, Hertz, Signals};
 
-pub use run::{EDGE_CLOCK_HZ, Estimator, State, available, sample};
+pub use erased::{Estimator, State};
+pub use run::{EDGE_CLOCK_HZ, available, sample};
 
 use crate::failure::Failure;
 

@@ -5,7 +5,7 @@ use estimator_core::{
     Model, Pll, Scale, Signals, SteadyKalman, TableKalmanTriple,
 };
 
-use super::run::{Estimator, confident, erased};
+use super::erased::{Estimator, confident, erased};
 use super::{Kind, Parameter, Search, Setup, Values};
 
 pub(super) type Build = fn(&Setup, &Values) -> Result<Estimator, DesignError>;

@@ -7,7 +7,8 @@ use estimator_core::{
 };
 
 use super::build::scale;
-use super::run::{EDGE_CLOCK_HZ, Estimator, confident, erased, learner};
+use super::erased::{Estimator, confident, erased, learner};
+use super::run::EDGE_CLOCK_HZ;
 use super::{Kind, Parameter, Search, Setup, Values};
 
 const TORQUE_NOISE: Parameter = Parameter {
