@@ -43,7 +43,7 @@ const LONGEST_STEP: i32 = 1 << 15;
 /// The newest steps that are equal are one straight line, which needs no look: at rest and at whole
 /// counts a tick an update costs next to nothing. Every other sample of the window is looked at
 /// once. With n and d = 1 known at compile time an update takes at most 85 + 20 n instructions of a
-/// Cortex-M4F for the end-fit and 145 + 43 n for the best-fit, 190 + 68 n where its products need
+/// Cortex-M4F for the end-fit and 146 + 44 n for the best-fit, 187 + 68 n where its products need
 /// 64 bits, with steps above 3 · 2^31 / (n + 2)^4 - d.
 ///
 /// ```

@@ -65,8 +65,8 @@ mod app {
     }
 
     /// The control task: reads, steps, writes, enqueues. Its deadline is the next tick, 100 us or
-    /// 16 800 cycles; on the emulated board it took at most 1800 instructions
-    /// (docs/benchmarks.md), and 3226 while one estimator takes over from another.
+    /// 16 800 cycles; on the emulated board it takes an eighth of these as instructions at most
+    /// (docs/benchmarks.md), and a quarter while one estimator takes over from another.
     #[task(
         binds = TIM5,
         priority = 15,

@@ -1,5 +1,6 @@
 //! `host-sim replay`.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -97,20 +98,12 @@ fn board_columns(options: &Replay) -> Result<BoardColumns, Failure> {
 
 /// Says who was left out, in a line for each column that is not there.
 pub(super) fn note_left_out(name: &str, replayed: &replay::Replay) {
-    let mut columns: Vec<&str> = replayed
-        .left_out
-        .iter()
-        .map(|(_, column)| *column)
-        .collect();
-    columns.sort_unstable();
-    columns.dedup();
-    for column in columns {
-        let those = replayed
-            .left_out
-            .iter()
-            .filter(|(_, lacks)| *lacks == column);
-        let names: Vec<&str> = those.map(|(estimator, _)| *estimator).collect();
-        let names = names.join(", ");
+    let mut columns: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for (estimator, column) in &replayed.left_out {
+        columns.entry(column).or_default().push(estimator);
+    }
+    for (column, estimators) in columns {
+        let names = estimators.join(", ");
         note(format_args!(
             "{name}: no column {column}; left out: {names}"
         ));

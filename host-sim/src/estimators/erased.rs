@@ -197,12 +197,7 @@ pub(super) fn erased<E>(estimator: E, scale: Scale) -> Estimator
 where
     E: VelocityEstimator<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
 {
-    Estimator(Arc::new(Scaled {
-        estimator,
-        scale,
-        deviation: None,
-        damping_ratio: None,
-    }))
+    saying(estimator, scale, None, None)
 }
 
 /// The same for one that says how far off it may be.
@@ -210,12 +205,7 @@ pub(super) fn confident<E>(estimator: E, scale: Scale) -> Estimator
 where
     E: Confidence<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
 {
-    Estimator(Arc::new(Scaled {
-        estimator,
-        scale,
-        deviation: Some(|estimator, state| estimator.variance(state).deviation()),
-        damping_ratio: None,
-    }))
+    saying(estimator, scale, Some(deviation), None)
 }
 
 /// The same for one that learns the coupler's damping.
@@ -223,10 +213,29 @@ pub(super) fn learner<E>(estimator: E, scale: Scale, damping_ratio: DampingRatio
 where
     E: Confidence<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
 {
+    saying(estimator, scale, Some(deviation), Some(damping_ratio))
+}
+
+fn deviation<E: Confidence<Output = CountsPerTick>>(
+    estimator: &E,
+    state: &E::State,
+) -> CountsPerTick {
+    estimator.variance(state).deviation()
+}
+
+fn saying<E>(
+    estimator: E,
+    scale: Scale,
+    deviation: Option<Deviation<E>>,
+    damping_ratio: Option<DampingRatio<E>>,
+) -> Estimator
+where
+    E: VelocityEstimator<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
+{
     Estimator(Arc::new(Scaled {
         estimator,
         scale,
-        deviation: Some(|estimator, state| estimator.variance(state).deviation()),
-        damping_ratio: Some(damping_ratio),
+        deviation,
+        damping_ratio,
     }))
 }

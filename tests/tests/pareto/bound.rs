@@ -116,6 +116,29 @@ fn table(rows: &[Row]) -> String {
     table
 }
 
+/// What docs/theory.md says of windows of n intervals, `a + b n`, holds at either level and is not
+/// much more than the larger.
+fn as_told_of_windows(rows: &[Row]) {
+    let theory = docs().with_file_name("theory.md");
+    let theory = std::fs::read_to_string(theory).unwrap();
+    for (name, n, [a, b]) in [
+        ("foaw-end-fit, n = 15", 15, [85, 20]),
+        ("foaw-end-fit, n = 64", 64, [85, 20]),
+        // Up to 17 intervals 32 bits hold every product.
+        ("foaw-best-fit, n = 15", 15, [146, 44]),
+        ("foaw-best-fit, n = 64", 64, [187, 68]),
+    ] {
+        assert!(theory.contains(&format!("{a} + {b} n")), "{a} + {b} n");
+        let row = rows.iter().find(|row| row.name == name).unwrap();
+        let bound = row.found.map(|found| found.bound).into_iter().max();
+        let (bound, told) = (bound.unwrap(), a + b * n);
+        assert!(
+            bound <= told && bound + 10 >= told,
+            "{name}: {bound} instructions, told {told}"
+        );
+    }
+}
+
 /// Figures of the table by line.
 fn figures(table: &str) -> Vec<(String, Vec<f64>)> {
     let rows = table.lines().filter(|line| line.starts_with('|')).skip(2);
@@ -142,6 +165,8 @@ fn no_update_takes_more_instructions_than_its_code_allows() {
             "{name}: bound {bound}, and never more than {most} seen"
         );
     }
+
+    as_told_of_windows(&rows);
 
     let text = std::fs::read_to_string(docs()).unwrap();
     let (before, rest) = text.split_once(BEGIN).unwrap();

@@ -111,6 +111,30 @@ fn claims_of_tasks(tasks: &[Task], rows: &[Row]) {
     for task in tasks {
         let [.., most] = task.highest_rates_hz();
         assert!(most > 10e3, "{} with {}", task.scene, task.estimator);
+        // As firmware/src/main.rs has it: an eighth of the period.
+        assert!(task.instructions.1 <= 16_800 / 8, "{}", task.scene);
+    }
+    // The guide by the rate.
+    let lowest = |is: &dyn Fn(&Task) -> bool| {
+        let of = tasks.iter().filter(|task| is(task));
+        let rates = of.map(|task| task.highest_rates_hz()[3]);
+        rates.fold(f64::INFINITY, f64::min)
+    };
+    for name in ["foaw-end-fit, n = 32", "adaptive", "adaptive-edge"] {
+        let rate = lowest(&|task| task.estimator == name);
+        assert!((28e3..34e3).contains(&rate), "{name}: {rate} Hz");
+    }
+    let without = lowest(&|task| ["detents", "texture"].contains(&&*task.scene));
+    assert!(without > 51e3, "{without} Hz without a velocity");
+    for row in rows.iter().filter(|row| !row.peer) {
+        let range = match &*row.name {
+            "foaw-best-fit, n = 64" => 10e3..20e3,
+            "foaw-end-fit, n = 64" => 20e3..28e3,
+            "foaw-best-fit, n = 15" | "adaptive" | "adaptive-edge" => 28e3..34e3,
+            _ => 34e3..43.5e3,
+        };
+        let rate = row.highest_rate_hz;
+        assert!(range.contains(&rate), "{}: {rate} Hz", row.name);
     }
     // The rate by exchange of an update is near that of the image, where there is one.
     for name in ["adaptive", "adaptive-edge"] {
