@@ -45,12 +45,18 @@ const SETTLED: f64 = 1e-6;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableKalman<const S: usize, const N: usize, U> {
     input: U,
-    /// Gains of the first ticks, as [`Input::tick`] takes them.
-    table: [[f32; S]; N],
-    /// The gain after them.
-    steady: [f32; S],
-    /// P_11 before each of the first ticks, and after them.
-    velocity_variances: [f32; N],
+    /// The first ticks.
+    table: [Row<S>; N],
+    /// Those after them.
+    steady: Row<S>,
+}
+
+/// One tick of a [`TableKalman`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Row<const S: usize> {
+    /// As [`Input::tick`] takes it.
+    gain: [f32; S],
+    /// P_11 before the tick.
     velocity_variance: f32,
 }
 
@@ -69,19 +75,19 @@ impl<const S: usize, const N: usize, U: Copy> TableKalman<S, N, U> {
         let steady = widened(&limit.gain);
         let (gains, variances): (_, [_; N]) =
             riccati::first_gains(&model.a, &model.q, model.r, &model.prior);
-        let mut filter = Self {
-            input: model.input,
-            table: [[0.0; S]; N],
-            steady: as_taken(steady[0], &steady),
-            velocity_variances: [0.0; N],
+        let settled = Row {
+            gain: as_taken(steady[0], &steady),
             velocity_variance: limit.velocity[1] as f32,
         };
+        let mut table = [settled; N];
         // Nothing is left of an innovation before the first.
         let mut last = [1.0; S];
         let mut tick = 0;
         while tick < N {
-            filter.table[tick] = as_taken(last[0], &gains[tick]);
-            filter.velocity_variances[tick] = variances[tick] as f32;
+            table[tick] = Row {
+                gain: as_taken(last[0], &gains[tick]),
+                velocity_variance: variances[tick] as f32,
+            };
             last = gains[tick];
             tick += 1;
         }
@@ -92,13 +98,17 @@ impl<const S: usize, const N: usize, U: Copy> TableKalman<S, N, U> {
             }
             i += 1;
         }
-        Ok(filter)
+        Ok(Self {
+            input: model.input,
+            table,
+            steady: settled,
+        })
     }
 
     /// P_11 of the state.
     pub(crate) fn velocity_variance(&self, state: &TableKalmanState<S>) -> f32 {
-        let settling = self.velocity_variances.get(state.tick).copied();
-        settling.unwrap_or(self.velocity_variance)
+        let row = self.table.get(state.tick).unwrap_or(&self.steady);
+        row.velocity_variance
     }
 }
 
@@ -106,10 +116,11 @@ impl<const S: usize, const N: usize, U: Copy> TableKalman<S, N, U> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableKalmanState<const S: usize> {
     anchor: Count,
+    /// Ticks since the start, as long as there are gains for them. Beside the anchor, as the two are
+    /// then read by one instruction and written by one.
+    tick: usize,
     /// As [`Input::tick`] has it.
     x: [f32; S],
-    /// Ticks since the start, as long as there are gains for them.
-    tick: usize,
 }
 
 impl<const S: usize, const N: usize, U: Input<S>> VelocityEstimator for TableKalman<S, N, U> {
@@ -120,24 +131,31 @@ impl<const S: usize, const N: usize, U: Input<S>> VelocityEstimator for TableKal
     fn start(&self, first: &Sample) -> TableKalmanState<S> {
         TableKalmanState {
             anchor: first.large,
-            x: [0.0; S],
             tick: 0,
+            x: [0.0; S],
         }
     }
 
     #[inline(always)]
     fn update(&self, state: &mut TableKalmanState<S>, sample: &Sample) -> CountsPerTick {
         let displacement = (sample.large - state.anchor).to_f32();
-        state.anchor = sample.large;
-        // By value: the steady gain is then part of the code, and not looked up.
-        let gain = match self.table.get(state.tick) {
-            Some(gain) => {
-                state.tick += 1;
-                *gain
-            }
-            None => self.steady,
+        let mut step = |row: &Row<S>| {
+            self.input
+                .tick(&mut state.x, displacement, sample, &row.gain);
         };
-        self.input.tick(&mut state.x, displacement, sample, &gain);
+        // The step in either arm: the steady gain is then part of the code, and not looked up.
+        let tick = match self.table.get(state.tick) {
+            Some(row) => {
+                step(row);
+                state.tick + 1
+            }
+            None => {
+                step(&self.steady);
+                state.tick
+            }
+        };
+        state.anchor = sample.large;
+        state.tick = tick;
         CountsPerTick(state.x[1])
     }
 }
