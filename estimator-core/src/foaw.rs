@@ -42,8 +42,8 @@ const LONGEST_STEP: i32 = 1 << 15;
 /// The samples are kept in a ring that is stored twice, so that it reads as one slice: 8 N bytes.
 /// The newest steps that are equal are one straight line, which needs no look: at rest and at whole
 /// counts a tick an update costs next to nothing. Every other sample of the window is looked at
-/// once. With n and d = 1 known at compile time an update takes at most 85 + 20 n instructions of a
-/// Cortex-M4F for the end-fit and 146 + 44 n for the best-fit, 187 + 68 n where its products need
+/// once. With n and d = 1 known at compile time an update takes at most 76 + 19 n instructions of a
+/// Cortex-M4F for the end-fit and 136 + 38 n for the best-fit, 183 + 67 n where its products need
 /// 64 bits, with steps above 3 · 2^31 / (n + 2)^4 - d.
 ///
 /// ```

@@ -48,6 +48,7 @@ impl Sub for Count {
 impl Add<Counts> for Count {
     type Output = Self;
 
+    #[inline(always)]
     fn add(self, displacement: Counts) -> Self {
         Self(self.0.wrapping_add_signed(displacement.0))
     }

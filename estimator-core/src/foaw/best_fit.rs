@@ -14,29 +14,35 @@ where
     W: Add<Output = W> + Sub<Output = W> + Mul<Output = W> + BitOr<Output = W>,
 {
     let mut cone = Cone::of(straight.rise(), straight.ticks(), d);
-    // Σ z_j, and dividend and divisor of the slope.
-    let mut sum = straight.step * triangle(straight.ticks());
-    let mut run = tetrahedron(straight.ticks());
+    // Samples looked at, of which only the last may be refused.
+    let mut tick = straight.ticks();
+    // Σ z_j, dividend and divisor of the slope, and how much the divisor grew.
+    let mut sum = straight.step * triangle(tick);
+    let mut run = tetrahedron(tick);
+    let mut growth = triangle(tick);
     let mut rise = W::from(straight.step) * W::from(run);
-    let mut age = straight.intervals;
-    while let Some(count) = older.get(age) {
-        let tick = age as i32 + 1;
+    let accepted = loop {
+        let Some(count) = older.get(tick as usize) else {
+            break true;
+        };
+        tick += 1;
         let z = (straight.newest - *count).0;
         if !cone.narrow(z, tick, d) {
-            break;
+            break false;
         }
         let wider = rise - W::from(sum) + W::from(tick * z);
         sum += z;
-        run += triangle(tick);
+        growth += tick;
+        run += growth;
         if cone.excludes(wider, run) {
-            break;
+            break false;
         }
         rise = wider;
-        age += 1;
-    }
+    };
+    let intervals = tick as u8 - u8::from(!accepted);
     Window {
-        intervals: age as u8,
-        slope: quotient(rise.into(), tetrahedron(age as i32)),
+        intervals,
+        slope: quotient(rise.into(), tetrahedron(i32::from(intervals))),
     }
 }
 

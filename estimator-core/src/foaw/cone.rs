@@ -55,6 +55,8 @@ impl Cone {
                 rise: rise + d,
                 run,
             };
+        } else {
+            unlikely();
         }
         true
     }
@@ -68,6 +70,7 @@ impl Cone {
         let below = highest.rise * run - rise * highest.run;
         if above > d * lowest.run {
             if below < -d * highest.run {
+                unlikely();
                 return false;
             }
             *lowest = Bound {
@@ -78,12 +81,15 @@ impl Cone {
         if below > d * highest.run {
             // Never after the lowest has just moved, as then `above` is positive.
             if above < -d * lowest.run {
+                unlikely();
                 return false;
             }
             *highest = Bound {
                 rise: rise + d,
                 run,
             };
+        } else {
+            unlikely();
         }
         true
     }
@@ -100,3 +106,8 @@ impl Cone {
         (above | below) < W::from(0)
     }
 }
+
+/// Says that the branch it stands in is not one of the longest update, in which every sample moves
+/// a bound and none is refused: its turns are then laid out without jumps.
+#[cold]
+const fn unlikely() {}

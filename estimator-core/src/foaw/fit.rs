@@ -68,15 +68,15 @@ impl Sealed for EndFit {
             seen += 1;
             accepted = cone.narrow_from_inside((newest - *count).0, seen as i32, d);
         }
-        let intervals = seen - usize::from(!accepted);
+        let intervals = seen as u8 - u8::from(!accepted);
         // Always inside.
         let oldest = older
-            .get(intervals.wrapping_sub(1))
+            .get(usize::from(intervals).wrapping_sub(1))
             .copied()
             .unwrap_or(newest);
         Window {
-            intervals: intervals as u8,
-            slope: (newest - oldest).to_f32() / intervals as f32,
+            intervals,
+            slope: (newest - oldest).to_f32() / f32::from(intervals),
         }
     }
 }

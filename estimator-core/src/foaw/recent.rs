@@ -2,20 +2,18 @@
 
 use crate::units::{Count, Counts};
 
-/// The newest sample and up to N before it.
+/// The newest N + 1 samples.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Recent<const N: usize> {
     pub(super) newest: Count,
     /// The newest step, and how many of the newest are equal to it, at most N; 0 before the first.
     step: Counts,
     equal: u32,
-    /// The samples before the newest, newest first from `head` on; twice, so that they are in one
-    /// piece.
-    older: [[Count; N]; 2],
     /// Below N.
     head: u32,
-    /// How many of the older samples there are, at most N.
-    known: u32,
+    /// The samples before the newest, newest first from `head` on; twice, so that they are in one
+    /// piece. Before the first sample comes one that is [out of reach](Self::OUT_OF_REACH).
+    older: [[Count; N]; 2],
 }
 
 /// Equal if they hold the same samples, wherever these begin.
@@ -28,23 +26,28 @@ impl<const N: usize> PartialEq for Recent<N> {
 impl<const N: usize> Eq for Recent<N> {}
 
 impl<const N: usize> Recent<N> {
+    /// From the first sample to one that no window takes in, so that none reaches beyond the first.
+    ///
+    /// Slopes of a window are below 2^15 + 2^14 in size and differ by 2^15 at most, so no line of it
+    /// is within 2^14 of a sample that is 2^16 N away from another; products with N still fit i32.
+    const OUT_OF_REACH: Counts = Counts((N as i32) << 16);
+
     /// One sample.
-    pub(super) const fn new(first: Count) -> Self {
+    pub(super) fn new(first: Count) -> Self {
         Self {
             newest: first,
             step: Counts(0),
             equal: 0,
-            older: [[first; N]; 2],
             head: 0,
-            known: 0,
+            older: [[first + Self::OUT_OF_REACH; N]; 2],
         }
     }
 
     /// Forgets all but the sample `first`.
-    pub(super) const fn restart(&mut self, first: Count) {
+    pub(super) fn restart(&mut self, first: Count) {
+        self.keep(first + Self::OUT_OF_REACH);
         self.newest = first;
         self.equal = 0;
-        self.known = 0;
     }
 
     /// Whether N + 1 samples read the same.
@@ -62,24 +65,29 @@ impl<const N: usize> Recent<N> {
     pub(super) fn push(&mut self, count: Count) {
         let step = count - self.newest;
         let equal = if step == self.step { self.equal } else { 0 };
-        self.equal = (equal + 1).min(N as u32);
+        self.equal = equal.min(N as u32 - 1) + 1;
         self.step = step;
-        self.known = (self.known + 1).min(N as u32);
+        self.keep(self.newest);
+        self.newest = count;
+    }
+
+    /// Puts a sample before all older ones.
+    #[inline(always)]
+    fn keep(&mut self, count: Count) {
         // One less, modulo N.
         let head = (self.head as usize).wrapping_sub(1).min(N - 1);
         let [once, twice] = &mut self.older;
-        once[head] = self.newest;
-        twice[head] = self.newest;
+        once[head] = count;
+        twice[head] = count;
         self.head = head as u32;
-        self.newest = count;
     }
 
     /// The samples before the newest, newest first, at most `most` of them.
     #[inline(always)]
     pub(super) fn older(&self, most: usize) -> &[Count] {
         let head = self.head as usize;
-        let end = head + most.min(self.known as usize);
         // Always inside.
-        self.older.as_flattened().get(head..end).unwrap_or(&[])
+        let older = self.older.as_flattened().get(head..head + most.min(N));
+        older.unwrap_or(&[])
     }
 }

@@ -94,7 +94,9 @@ fn claims_of_estimators(rows: &[Row]) {
     }
     // And the longest update at 3: of a window, and while a table of gains lasts.
     for (name, goal) in [
+        ("foaw-end-fit, n = 15", 280),
         ("foaw-end-fit, n = 64", 1160),
+        ("foaw-best-fit, n = 15", 550),
         ("foaw-best-fit, n = 64", 2500),
         ("kalman-triple-table", 30),
     ] {
