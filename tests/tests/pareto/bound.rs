@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use bench_image::{SUBJECTS, Subject};
-use estimator_core::Sample;
+use estimator_core::{Counts, Sample};
 use pareto::board::{Job, on_board};
 use pareto::image::{Image, Level};
 use pareto::{bound, traces};
@@ -26,6 +26,19 @@ fn hostile(seed: u64, rate_hz: u32) -> Vec<Sample> {
         samples.extend((0..STRETCH).map(|_| course.step().sample()));
     }
     samples
+}
+
+/// Counts a tick that a window's motion is made faster by, so that best-fit needs 64 bits for its
+/// products. Cone and window move with the slope and stay what they are.
+const FASTER: i32 = 1000;
+
+fn faster(samples: &[Sample]) -> Vec<Sample> {
+    let ticks = samples.iter().zip(0..);
+    let moved = ticks.map(|(sample, tick)| Sample {
+        large: sample.large + Counts(FASTER * tick),
+        ..*sample
+    });
+    moved.collect()
 }
 
 /// The bound and the most seen, at one level; both rates' presets are one.
@@ -54,6 +67,10 @@ fn measure() -> Result<Vec<Row>, String> {
         .flat_map(|rate| (1..=3).map(|seed| (*rate, hostile(seed, *rate))))
         .collect();
     grounds.extend(drawn.iter().map(|(rate, samples)| (*rate, &samples[..])));
+    let fast: Vec<Vec<Sample>> = simulated
+        .iter()
+        .map(|ground| faster(&ground.samples))
+        .collect();
 
     let ours = || {
         SUBJECTS
@@ -62,10 +79,16 @@ fn measure() -> Result<Vec<Row>, String> {
             .filter(|(_, one)| !one.is_peer())
     };
     let mut jobs = Vec::new();
-    for (subject, Subject { rate_hz, .. }) in ours() {
+    for (subject, Subject { rate_hz, name, .. }) in ours() {
         let suits = |rate: &u32| *rate_hz == 0 || rate_hz == rate;
         let suited = grounds.iter().filter(|(rate, _)| suits(rate));
-        jobs.extend(suited.map(|(_, samples)| Job {
+        let suited = suited.map(|(_, samples)| *samples);
+        let is_window = name.contains("n = ");
+        let fast = fast
+            .iter()
+            .filter(|_| is_window)
+            .map(|samples| &samples[..]);
+        jobs.extend(suited.chain(fast).map(|samples| Job {
             subject,
             samples,
             follow: false,
@@ -158,8 +181,8 @@ fn no_update_takes_more_instructions_than_its_code_allows() {
         .flat_map(|row| row.found.map(|found| (row.name, found)));
     for (name, Found { bound, most }) in all {
         assert!(most <= bound, "{name}: {most} instructions, bound {bound}");
-        // The bound takes every turn of a window for its dearest: products of 64 bits in best-fit.
-        let slack = if name.contains("n = ") { 2.0 } else { 1.25 };
+        // The bound takes every turn of a window for its dearest: one that moves both bounds.
+        let slack = if name.contains("n = ") { 1.35 } else { 1.25 };
         assert!(
             f64::from(bound) <= slack * f64::from(most),
             "{name}: bound {bound}, and never more than {most} seen"
