@@ -89,11 +89,25 @@ struct Tally {
     longest: usize,
 }
 
-/// Runs the core and the definition side by side over these positions.
+/// Runs the core and the definition side by side over these positions, which a start begins.
 fn compare<const N: usize, D: Definition>(positions: &[i64], n: usize, d: u16, tally: &mut Tally) {
+    compare_after::<N, D>(None, positions, n, d, tally);
+}
+
+/// The same, with a step of this size to the first position, which restarts, if there is one.
+fn compare_after<const N: usize, D: Definition>(
+    restart: Option<i64>,
+    positions: &[i64],
+    n: usize,
+    d: u16,
+    tally: &mut Tally,
+) {
     let foaw = Foaw::<N, D>::new(n, d).expect("valid");
     let at = |position: i64| Sample::new(Count((position as u32).wrapping_add(0xFFFF_FF00)));
-    let mut state: FoawState<N> = foaw.start(&at(positions[0]));
+    let mut state: FoawState<N> = foaw.start(&at(positions[0] - restart.unwrap_or(0)));
+    if restart.is_some() {
+        foaw.update(&mut state, &at(positions[0]));
+    }
     let mut newest_first = Vec::with_capacity(n + 1);
     for k in 1..positions.len() {
         let velocity = foaw.update(&mut state, &at(positions[k])).0;
@@ -190,6 +204,32 @@ fn windows_and_velocities_are_those_of_the_definition() {
         (short.join().unwrap(), long.join().unwrap())
     });
     assert!(short + long >= 1_000_000, "{short} + {long} updates");
+}
+
+/// Whatever the slopes, at the ends of what is allowed.
+#[test]
+fn no_window_reaches_beyond_the_first_sample() {
+    fn at_the_ends<const N: usize>(tally: &mut Tally) {
+        let mut draws = Draws(N as u64);
+        for kind in 0..KINDS {
+            for d in [0, 1, 1 << 14] {
+                let y = positions(kind, N + 3, &mut draws);
+                for restart in [None, Some(1 << 15), Some(-1 << 30)] {
+                    compare_after::<N, EndFit>(restart, &y, N, d, tally);
+                    compare_after::<N, BestFit>(restart, &y, N, d, tally);
+                }
+            }
+        }
+    }
+    let mut tally = Tally {
+        updates: 0,
+        longest: 0,
+    };
+    at_the_ends::<1>(&mut tally);
+    at_the_ends::<2>(&mut tally);
+    at_the_ends::<3>(&mut tally);
+    at_the_ends::<128>(&mut tally);
+    assert_eq!(tally.longest, 128);
 }
 
 /// The definition above, on windows small enough to check by hand.
