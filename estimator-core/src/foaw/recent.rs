@@ -28,8 +28,8 @@ impl<const N: usize> Eq for Recent<N> {}
 impl<const N: usize> Recent<N> {
     /// From the first sample to one that no window takes in, so that none reaches beyond the first.
     ///
-    /// Slopes of a window are below 2^15 + 2^14 in size and differ by 2^15 at most, so no line of it
-    /// is within 2^14 of a sample that is 2^16 N away from another; products with N still fit i32.
+    /// Lines of a window rise by less than 2^15 + 2^14 counts a tick, so over N ticks by 2^14 N less
+    /// than this; products of it with N fit i32.
     const OUT_OF_REACH: Counts = Counts((N as i32) << 16);
 
     /// One sample.
