@@ -1,10 +1,11 @@
 //! What is measured: one line an estimator and rate; peers begin with `peer_`.
 
 use estimator_core::{
-    AdaptiveEdgeObserver, AdaptiveObserver, BestFit, CountObserver, CoupledMotor, DesignError,
-    Device, EdgeObserver, EndFit, FiniteDifference, Foaw, Hertz, Kalman, KalmanMotor, KalmanTriple,
-    LowPass, MOverT, Model, Observer, Pll, Sample, SoftObserver, SteadyKalman, SteadyKalmanMotor,
-    SteadyKalmanTriple, TableKalman, TableKalmanTriple, Uncertainty, preset,
+    AdaptiveEdgeObserver, AdaptiveObserver, AdaptiveSoftObserver, BestFit, CountObserver,
+    CoupledMotor, DesignError, Device, EdgeObserver, EndFit, FiniteDifference, Foaw, Hertz, Kalman,
+    KalmanMotor, KalmanTriple, LowPass, MOverT, Model, Observer, Pll, Sample, SoftObserver,
+    SteadyKalman, SteadyKalmanMotor, SteadyKalmanTriple, TableKalman, TableKalmanTriple,
+    Uncertainty, preset,
 };
 
 use crate::peers::{AdsKalman, IdspKalman, IdspLowPass, IdspPll, MiniKalman, NalgebraKalman};
@@ -19,20 +20,29 @@ const FAST: Hertz = Hertz(10_000.0);
 /// The clock that stamps edges.
 const CLOCK: Hertz = Hertz(84e6);
 
+const fn unsure(torque_noise: f64, load: f64, boundary_noise: f64) -> Uncertainty {
+    Uncertainty {
+        torque_noise,
+        load,
+        load_time: 0.1,
+        friction_share: 0.7,
+        boundary_noise,
+    }
+}
+
 const fn observer(
     rate: Hertz,
     torque_noise: f64,
     load: f64,
     boundary_noise: f64,
 ) -> Result<CountObserver, DesignError> {
-    let unsure = Uncertainty {
-        torque_noise,
-        load,
-        load_time: 0.1,
-        friction_share: 0.7,
-        boundary_noise,
-    };
+    let unsure = unsure(torque_noise, load, boundary_noise);
     Observer::new(&CoupledMotor::DCX35L, rate, &unsure)
+}
+
+const fn soft(rate: Hertz, torque_noise: f64, load: f64) -> Result<SoftObserver, DesignError> {
+    let unsure = unsure(torque_noise, load, 0.0625);
+    Observer::soft(&CoupledMotor::DCX35L, rate, &unsure)
 }
 
 subjects! {
@@ -74,13 +84,17 @@ subjects! {
     observer_edge_10k, "observer-edge", FAST: EdgeObserver =
         preset!(preset!(observer(FAST, 9.21e-5, 9.85e-4, 0.03)).with_edges(CLOCK, FAST));
     observer_soft_1k, "observer-soft", SLOW: SoftObserver =
-        preset!(preset!(observer(SLOW, 6e-5, 1e-3, 0.0625)).soft(150.0, SLOW));
+        preset!(soft(SLOW, 8e-6, 3e-4));
     observer_soft_10k, "observer-soft", FAST: SoftObserver =
-        preset!(preset!(observer(FAST, 6e-5, 1e-3, 0.0625)).soft(150.0, FAST));
+        preset!(soft(FAST, 8e-6, 3e-4));
     adaptive_1k, "adaptive", SLOW: AdaptiveObserver =
         preset!(preset!(observer(SLOW, 5.75e-6, 1.38e-4, 0.0625)).learning(4096, SLOW));
     adaptive_10k, "adaptive", FAST: AdaptiveObserver =
         preset!(preset!(observer(FAST, 5.75e-6, 1.38e-4, 0.0625)).learning(4096, FAST));
+    adaptive_soft_1k, "adaptive-soft", SLOW: AdaptiveSoftObserver =
+        preset!(preset!(soft(SLOW, 7.27e-6, 2.06e-4)).learning(4096, SLOW));
+    adaptive_soft_10k, "adaptive-soft", FAST: AdaptiveSoftObserver =
+        preset!(preset!(soft(FAST, 7.27e-6, 2.06e-4)).learning(4096, FAST));
     adaptive_edge_1k, "adaptive-edge", SLOW: AdaptiveEdgeObserver = preset!(
         preset!(preset!(observer(SLOW, 1.55e-5, 3.01e-4, 0.03)).with_edges(CLOCK, SLOW))
             .learning(4096, SLOW)

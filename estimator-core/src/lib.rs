@@ -90,10 +90,10 @@ pub use low_pass::{LowPass, LowPassState};
 pub use m_over_t::{MOverT, MOverTState};
 pub use model::{Input, Model};
 pub use observer::{
-    AdaptiveEdgeObserver, AdaptiveObserver, AmplifierCurrent, Cells, Correction, CountObserver,
-    CurrentSource, Deviations, EdgeObserver, Edges, EdgesState, Fixed, Gain, HeldHandle, Learned,
-    LearnedState, Learning, NoCurrent, Observer, ObserverState, SlipSource, SmallEncoder,
-    SoftCells, SoftObserver, Uncertainty,
+    AdaptiveEdgeObserver, AdaptiveObserver, AdaptiveSoftObserver, AmplifierCurrent, Bell, Cells,
+    Correction, CountObserver, CurrentSource, Deviations, EdgeObserver, Edges, EdgesState, Fixed,
+    Gain, HeldHandle, Learned, LearnedState, Learning, NoCurrent, Observer, ObserverState,
+    SlipSource, SmallEncoder, SoftCells, SoftCellsState, SoftObserver, Uncertainty,
 };
 pub use pll::{Pll, PllState};
 pub use sample::{Edge, Sample, Signals};

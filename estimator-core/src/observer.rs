@@ -1,5 +1,6 @@
 //! Observer of a motor with known current, coupler and friction, with scheduled gains.
 
+mod bell;
 mod bierman;
 mod correction;
 mod dependence;
@@ -9,7 +10,9 @@ mod learned;
 mod learning;
 mod motion;
 mod soft_cells;
+mod table;
 
+pub use bell::Bell;
 pub use correction::{Cells, Correction, Edges, EdgesState};
 pub use design::{Gain, Uncertainty};
 pub use inputs::{
@@ -17,7 +20,9 @@ pub use inputs::{
 };
 pub use learned::{Learned, LearnedState};
 pub use learning::{Deviations, Fixed, Learning};
-pub use soft_cells::SoftCells;
+pub use soft_cells::{SoftCells, SoftCellsState};
+
+use core::borrow::Borrow;
 
 use crate::const_math::limited;
 use crate::estimator::VelocityEstimator;
@@ -26,9 +31,6 @@ use crate::units::{Count, CountsPerTick};
 use correction::Path;
 use dependence::{Lesson, Tick};
 use motion::Motion;
-
-/// Rows of the gain table; a longer gap takes the last.
-const ROWS: usize = 64;
 
 /// [`Observer`] of counts, current and slip.
 pub type CountObserver = Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed>;
@@ -41,6 +43,9 @@ pub type SoftObserver = Observer<AmplifierCurrent, SmallEncoder, SoftCells, Fixe
 
 /// [`CountObserver`] that learns damping, friction and torque constant.
 pub type AdaptiveObserver = Observer<AmplifierCurrent, SmallEncoder, Cells, Learned>;
+
+/// [`AdaptiveObserver`] that hears counts inside their cell too.
+pub type AdaptiveSoftObserver = Observer<AmplifierCurrent, SmallEncoder, SoftCells, Learned>;
 
 /// [`AdaptiveObserver`] with edge time stamps.
 pub type AdaptiveEdgeObserver = Observer<AmplifierCurrent, SmallEncoder, Edges, Learned>;
@@ -104,9 +109,6 @@ pub struct Observer<C, S, M, L> {
     load_decay: f32,
     way_pole: f32,
     friction_share: f32,
-    gains: [Gain; ROWS],
-    /// Of the velocity before each, (counts a tick)².
-    velocity_variances: [f32; ROWS],
 }
 
 /// State of an [`Observer`].
@@ -127,6 +129,12 @@ pub struct ObserverState<C, S, M, L> {
 }
 
 impl<C, S, M, L> ObserverState<C, S, M, L> {
+    /// What is carried of the corrections.
+    #[must_use]
+    pub const fn correction(&self) -> &M {
+        &self.correction
+    }
+
     /// What is carried of the parameters.
     #[must_use]
     pub const fn learning(&self) -> &L {
@@ -140,24 +148,15 @@ impl<C, S, M, L: Learning> Observer<C, S, M, L> {
     pub fn deviations<A, B, D>(&self, state: &ObserverState<A, B, D, L::State>) -> Deviations {
         self.learning.deviations(&state.learning)
     }
-
-    /// The gain of a correction after `ticks` ticks without one.
-    #[must_use]
-    pub fn gain(&self, ticks: usize) -> Gain {
-        self.gains[ticks.clamp(1, ROWS) - 1]
-    }
 }
 
 impl<C, S, M: Correction, L: Learning> Observer<C, S, M, L> {
-    /// Variance of the velocity so long after the last correction, from the table, and by what is
-    /// not known of the parameters.
+    /// Variance of the velocity, by what is not known of the parameters too.
     pub(crate) fn velocity_variance<A, B>(
         &self,
         state: &ObserverState<A, B, M::State, L::State>,
     ) -> f32 {
-        // A float-to-integer cast saturates.
-        let ticks = M::since(&state.correction) as usize;
-        let known = self.velocity_variances[ticks.clamp(1, ROWS) - 1];
+        let known = self.correction.velocity_variance(&state.correction);
         known + self.learning.velocity_variance(&state.learning)
     }
 }
@@ -225,18 +224,19 @@ where
         let position = path.from + path.lead;
         let found = self
             .correction
-            .innovation(&mut state.correction, path, sample, &self.gains);
-        let Some(innovation) = found else {
+            .innovation(&mut state.correction, path, sample);
+        let Some((innovation, gain)) = found else {
             state.position = position;
             state.velocity = step.velocity;
             state.load = load;
             self.learning.keep(&mut state.learning, dependence);
             return CountsPerTick(step.velocity);
         };
-        let starting = self
-            .learning
-            .starting(&mut state.learning, &innovation, step.velocity);
-        let gain = starting.as_ref().unwrap_or(innovation.gain);
+        let gain = gain.borrow();
+        let starting =
+            self.learning
+                .starting(&mut state.learning, &innovation, gain, step.velocity);
+        let gain = starting.as_ref().unwrap_or(gain);
         let error = limited(innovation.error, LARGEST_INNOVATION);
         // The age is zero without time stamps: then the compiler drops it.
         let carried = innovation.position + innovation.age * gain.velocity;

@@ -2,7 +2,7 @@
 
 use crate::design_error::DesignError;
 
-type Matrix<const S: usize> = [[f64; S]; S];
+pub(crate) type Matrix<const S: usize> = [[f64; S]; S];
 
 /// A filter that needs more than 2^20 ticks to settle is refused.
 const DOUBLINGS: usize = 20;

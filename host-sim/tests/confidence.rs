@@ -44,14 +44,16 @@ fn calibration(
 /// Estimator, least share, least and most that the deviations are of the errors: in scenarios in which
 /// the motor moves, at 1 and 10 kHz. docs/telemetry.md shows the
 /// figures.
-const BOUNDS: [(&str, f64, [f64; 2]); 8] = [
+const BOUNDS: [(&str, f64, [f64; 2]); 10] = [
     ("finite-difference", 0.999, [2.0, 4.5]),
     ("foaw-end-fit", 0.98, [1.5, 3.0]),
     ("kalman-triple", 0.92, [0.9, 1.7]),
     ("kalman-motor", 0.92, [0.75, 1.6]),
     ("observer", 0.99, [4.0, 35.0]),
     ("observer-edge", 0.999, [25.0, 130.0]),
+    ("observer-soft", 0.80, [0.5, 3.5]),
     ("adaptive", 0.80, [0.8, 5.0]),
+    ("adaptive-soft", 0.96, [1.2, 10.0]),
     ("adaptive-edge", 0.99, [3.0, 27.0]),
 ];
 

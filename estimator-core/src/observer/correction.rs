@@ -1,7 +1,9 @@
 //! How counts, with or without time stamps, correct an observer.
 
-use super::ROWS;
+use core::borrow::Borrow;
+
 use super::design::Gain;
+use super::table::Table;
 use crate::const_math::limited;
 use crate::edge_clock::EdgeClock;
 use crate::sample::{Sample, Signals};
@@ -21,23 +23,25 @@ pub struct Path {
 
 /// What a tick's counts say against the prediction.
 #[derive(Clone, Copy, Debug)]
-pub struct Innovation<'a> {
+pub struct Innovation {
     /// Where the rotor was, less where it was predicted, counts.
     pub(super) error: f32,
     /// The part of the tick that had passed since, 0 to 1.
     pub(super) age: f32,
     /// Gain of the position, 0 to 1.
     pub(super) position: f32,
-    /// The other gains, those of the table's row for the gap.
-    pub(super) gain: &'a Gain,
     /// Ticks since the last one.
     pub(super) gap: f32,
 }
 
-/// What is measured: [`Cells`] or [`Edges`].
+/// What is measured: [`Cells`], [`SoftCells`](super::SoftCells) or [`Edges`].
 pub trait Correction: Copy {
     /// What is carried from tick to tick.
     type State: Clone + PartialEq;
+    /// A gain of its own, or one of a table's.
+    type Gain<'a>: Borrow<Gain>
+    where
+        Self: 'a;
     /// What it reads of a sample.
     const NEEDS: Signals;
     /// Whether every tick may have an innovation, or few have.
@@ -46,23 +50,24 @@ pub trait Correction: Copy {
     /// The state at the first sample.
     fn start(&self) -> Self::State;
 
-    /// Ticks since the last correction.
-    fn since(state: &Self::State) -> f32;
+    /// Variance of the velocity, (counts a tick)², the parameters being right.
+    fn velocity_variance(&self, state: &Self::State) -> f32;
 
-    /// The innovation of this tick, if it has one.
+    /// The innovation of this tick and its gain, if it has one.
     fn innovation<'a>(
-        &self,
+        &'a self,
         state: &mut Self::State,
         path: Path,
         sample: &Sample,
-        gains: &'a [Gain; ROWS],
-    ) -> Option<Innovation<'a>>;
+    ) -> Option<(Innovation, Self::Gain<'a>)>;
 }
 
 /// Counts alone: nothing is known but that the rotor is inside the newest count's cell. While the
 /// prediction is too, it stands; once it has left, it is put back on the boundary.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Cells;
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cells {
+    pub(super) table: Table,
+}
 
 /// Distance back to the cell, 0 inside it.
 #[inline(always)]
@@ -75,16 +80,10 @@ fn excess(position: f32) -> Option<f32> {
     }
 }
 
-/// The table's row for a gap of this many ticks.
-#[inline(always)]
-pub(super) fn row(gains: &[Gain; ROWS], gap: f32) -> &Gain {
-    // A float-to-integer cast saturates.
-    &gains[((gap - 0.5) as usize).min(ROWS - 1)]
-}
-
 impl Correction for Cells {
     /// Ticks since the last correction.
     type State = f32;
+    type Gain<'a> = &'a Gain;
     const NEEDS: Signals = Signals::COUNT;
     const DENSE: bool = false;
 
@@ -92,29 +91,27 @@ impl Correction for Cells {
         0.0
     }
 
-    fn since(gap: &f32) -> f32 {
-        *gap
+    fn velocity_variance(&self, gap: &f32) -> f32 {
+        self.table.velocity_variance(*gap)
     }
 
     #[inline(always)]
     fn innovation<'a>(
-        &self,
+        &'a self,
         gap: &mut f32,
         path: Path,
         _: &Sample,
-        gains: &'a [Gain; ROWS],
-    ) -> Option<Innovation<'a>> {
+    ) -> Option<(Innovation, &'a Gain)> {
         *gap += 1.0;
         let error = excess(path.from + path.lead)?;
         let innovation = Innovation {
             error,
             age: 0.0,
             position: 1.0,
-            gain: row(gains, *gap),
             gap: *gap,
         };
         *gap = 0.0;
-        Some(innovation)
+        Some((innovation, self.table.gain(innovation.gap)))
     }
 }
 
@@ -127,6 +124,7 @@ impl Correction for Cells {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edges {
     pub(super) clock: EdgeClock,
+    pub(super) table: Table,
 }
 
 /// State of [`Edges`].
@@ -146,6 +144,7 @@ const LARGEST_OFFSET: f32 = 0.25;
 
 impl Correction for Edges {
     type State = EdgesState;
+    type Gain<'a> = &'a Gain;
     const NEEDS: Signals = Signals {
         edge: true,
         ..Signals::COUNT
@@ -159,28 +158,28 @@ impl Correction for Edges {
         }
     }
 
-    fn since(state: &EdgesState) -> f32 {
-        state.since
+    fn velocity_variance(&self, state: &EdgesState) -> f32 {
+        self.table.velocity_variance(state.since)
     }
 
     #[inline(always)]
     fn innovation<'a>(
-        &self,
+        &'a self,
         state: &mut EdgesState,
         path: Path,
         sample: &Sample,
-        gains: &'a [Gain; ROWS],
-    ) -> Option<Innovation<'a>> {
+    ) -> Option<(Innovation, &'a Gain)> {
         let since = state.since + 1.0;
         let Some(edge) = self.clock.fresh(sample) else {
             state.since = since;
-            return excess(path.from + path.lead).map(|error| Innovation {
+            let error = excess(path.from + path.lead)?;
+            let innovation = Innovation {
                 error,
                 age: 0.0,
                 position: 1.0,
-                gain: row(gains, since),
                 gap: 0.0,
-            });
+            };
+            return Some((innovation, self.table.gain(since)));
         };
         state.since = edge.age;
         let passed = 1.0 - edge.age;
@@ -189,13 +188,13 @@ impl Correction for Edges {
         let error = edge.position + *offset - there;
         *offset = limited(*offset - OFFSET_GAIN * error, LARGEST_OFFSET);
         let gap = since - edge.age;
-        let gain = row(gains, gap);
-        Some(Innovation {
+        let gain = self.table.gain(gap);
+        let innovation = Innovation {
             error,
             age: edge.age,
             position: gain.position,
-            gain,
             gap,
-        })
+        };
+        Some((innovation, gain))
     }
 }

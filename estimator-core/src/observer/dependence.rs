@@ -17,7 +17,7 @@ pub struct Tick<'a> {
 
 /// One innovation as [`Learning::learn`](super::Learning::learn) sees it.
 pub struct Lesson<'a> {
-    pub(super) innovation: &'a Innovation<'a>,
+    pub(super) innovation: &'a Innovation,
     pub(super) gain: &'a Gain,
     /// The innovation's error in its range, counts.
     pub(super) error: f32,
@@ -62,7 +62,7 @@ impl Dependence {
 
     /// On the position when the innovation was.
     #[inline(always)]
-    pub(super) fn then(self, innovation: &Innovation<'_>) -> f32 {
+    pub(super) fn then(self, innovation: &Innovation) -> f32 {
         self.position - innovation.age * self.velocity
     }
 

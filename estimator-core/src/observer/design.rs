@@ -1,18 +1,18 @@
 //! Gains of an observer, computed at compile time.
 
+use super::Observer;
 use super::correction::{Cells, Edges};
 use super::inputs::{AmplifierCurrent, HeldHandle, NoCurrent, SmallEncoder};
 use super::learned::Learned;
 use super::learning::Fixed;
 use super::motion::Motion;
 use super::soft_cells::SoftCells;
-use super::{Observer, ROWS};
+use super::table::Table;
 use crate::const_math::{exp, phi1, phi2};
 use crate::coupled_motor::CoupledMotor;
 use crate::design_error::DesignError;
 use crate::device::Device;
 use crate::edge_clock::EdgeClock;
-use crate::riccati;
 use crate::units::Hertz;
 
 /// What an observer is unsure of. SI units.
@@ -58,22 +58,49 @@ pub struct Gain {
     pub variance: f32,
 }
 
-/// What belongs to each gap between corrections.
-pub(super) struct Table {
-    gains: [Gain; ROWS],
-    /// Variance of the velocity before the correction, (counts a tick)²; beside the gains, whose
-    /// rows are a power of two long.
-    velocity_variances: [f32; ROWS],
+/// An [`Uncertainty`] in counts and ticks.
+#[derive(Clone, Copy)]
+pub(super) struct Noise {
+    /// Variance of the velocity by a tick's white torque, (counts a tick)².
+    pub(super) white: f64,
+    /// The same of the unknown torque, (counts a tick²)².
+    pub(super) load: f64,
+    /// What is left of the unknown torque after a tick.
+    pub(super) decay: f64,
+    /// Standard deviation of a boundary's position, counts.
+    pub(super) boundary: f64,
 }
 
-impl Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed> {
-    /// The observer of a device that has everything but time stamps: current and both encoders.
-    ///
-    /// # Errors
-    /// [`DesignError::Rate`], [`DesignError::Device`], [`DesignError::ProcessNoise`];
-    /// [`DesignError::NotConverged`] and [`DesignError::NotStable`] as
-    /// [`Model::steady_gain`](crate::Model::steady_gain), for any row of the table.
-    pub const fn new(
+impl Noise {
+    /// `per_torque`: counts a tick² per N·m.
+    const fn new(uncertainty: &Uncertainty, per_torque: f64, t: f64) -> Result<Self, DesignError> {
+        let decay = exp(-(t / uncertainty.load_time).min(700.0));
+        let white = per_torque * uncertainty.torque_noise;
+        let load = per_torque * uncertainty.load;
+        let noise = Self {
+            white: white * white / t,
+            load: load * load * (1.0 - decay * decay),
+            decay,
+            boundary: uncertainty.boundary_noise,
+        };
+        if noise.white > 0.0 && noise.load > 0.0 {
+            Ok(noise)
+        } else {
+            Err(DesignError::ProcessNoise)
+        }
+    }
+}
+
+/// A motor with what drives it, and what its correction is made of.
+struct Plan {
+    motor: Observer<AmplifierCurrent, SmallEncoder, (), Fixed>,
+    /// b T / J.
+    beta: f64,
+    noise: Noise,
+}
+
+impl Plan {
+    const fn new(
         device: &CoupledMotor,
         rate: Hertz,
         uncertainty: &Uncertainty,
@@ -90,9 +117,8 @@ impl Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed> {
         // Counts a tick² per N·m.
         let per_torque = device.large.counts_per_rev as f64 / (2.0 * core::f64::consts::PI) * t * t
             / device.large.inertia;
-        let decay = exp(-(t / uncertainty.load_time).min(700.0));
-        let table = match table(beta, decay, per_torque, t, uncertainty) {
-            Ok(table) => table,
+        let noise = match Noise::new(uncertainty, per_torque, t) {
+            Ok(noise) => noise,
             Err(error) => return Err(error),
         };
         let friction = per_torque * device.coulomb_friction;
@@ -102,7 +128,7 @@ impl Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed> {
             0.0
         };
         let ratio = device.large.counts_per_rev as f64 / device.small_counts_per_rev as f64;
-        Ok(Self {
+        let motor = Observer {
             motion: Motion {
                 phi0: exp(-beta) as f32,
                 phi1: phi1(beta) as f32,
@@ -117,76 +143,78 @@ impl Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed> {
             slip: SmallEncoder {
                 ratio: ratio as f32,
             },
-            correction: Cells,
+            correction: (),
             learning: Fixed,
-            load_decay: decay as f32,
+            load_decay: noise.decay as f32,
             way_pole: exp(-(t / WAY_TIME).min(700.0)) as f32,
             friction_share: share as f32,
-            gains: table.gains,
-            velocity_variances: table.velocity_variances,
-        })
+        };
+        Ok(Self { motor, beta, noise })
+    }
+
+    /// The same motor with this correction.
+    const fn corrected_by<M: Copy>(
+        self,
+        correction: M,
+    ) -> Observer<AmplifierCurrent, SmallEncoder, M, Fixed> {
+        let motor = self.motor;
+        motor.with_parts(motor.current, motor.slip, correction, motor.learning)
     }
 }
 
-/// Row n - 1: the steady gain of the filter that is corrected once every n ticks.
-const fn table(
-    beta: f64,
-    decay: f64,
-    per_torque: f64,
-    t: f64,
-    uncertainty: &Uncertainty,
-) -> Result<Table, DesignError> {
-    let a = [
-        [1.0, phi1(beta), phi2(beta)],
-        [0.0, exp(-beta), phi1(beta)],
-        [0.0, 0.0, decay],
-    ];
-    let white = per_torque * uncertainty.torque_noise;
-    let white = white * white / t;
-    let load = per_torque * uncertainty.load;
-    let load = load * load * (1.0 - decay * decay);
-    let q = [
-        [white / 3.0, white / 2.0, 0.0],
-        [white / 2.0, white, 0.0],
-        [0.0, 0.0, load],
-    ];
-    if !(white > 0.0 && load > 0.0) {
-        return Err(DesignError::ProcessNoise);
-    }
-    let r = uncertainty.boundary_noise * uncertainty.boundary_noise;
-    let none = Gain {
-        position: 0.0,
-        velocity: 0.0,
-        load: 0.0,
-        variance: 0.0,
-    };
-    let mut table = Table {
-        gains: [none; ROWS],
-        velocity_variances: [0.0; ROWS],
-    };
-    let (mut a_n, mut q_n) = (a, q);
-    let mut row = 0;
-    while row < ROWS {
-        let steady = match riccati::steady(&a_n, &q_n, r) {
-            Ok(steady) => steady,
+impl Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed> {
+    /// The observer of a device that has everything but time stamps: current and both encoders.
+    ///
+    /// # Errors
+    /// [`DesignError::Rate`], [`DesignError::Device`], [`DesignError::ProcessNoise`];
+    /// [`DesignError::NotConverged`] and [`DesignError::NotStable`] as
+    /// [`Model::steady_gain`](crate::Model::steady_gain), for any row of the table.
+    pub const fn new(
+        device: &CoupledMotor,
+        rate: Hertz,
+        uncertainty: &Uncertainty,
+    ) -> Result<Self, DesignError> {
+        let plan = match Plan::new(device, rate, uncertainty) {
+            Ok(plan) => plan,
             Err(error) => return Err(error),
         };
-        table.gains[row] = Gain {
-            position: steady.gain[0],
-            velocity: steady.gain[1],
-            load: steady.gain[2],
-            variance: steady.innovation as f32,
-        };
-        table.velocity_variances[row] = steady.velocity[0] as f32;
-        q_n = riccati::later_noise(&a, &q, &q_n);
-        a_n = riccati::product(&a, &a_n);
-        row += 1;
+        match Table::new(plan.beta, &plan.noise) {
+            Ok(table) => Ok(plan.corrected_by(Cells { table })),
+            Err(error) => Err(error),
+        }
     }
-    Ok(table)
+
+    /// The gain of a correction after `ticks` ticks without one.
+    #[must_use]
+    pub fn gain(&self, ticks: usize) -> Gain {
+        *self.correction.table.gain(ticks as f32)
+    }
+}
+
+impl Observer<AmplifierCurrent, SmallEncoder, SoftCells, Fixed> {
+    /// The same, but of counts that say something inside their cell too: see [`SoftCells`].
+    ///
+    /// # Errors
+    /// As [`Observer::new`]; [`DesignError::ProcessNoise`] too if the white torque alone spreads
+    /// the velocity by less than 1e-9 or more than 1000 counts a tick in a tick.
+    pub const fn soft(
+        device: &CoupledMotor,
+        rate: Hertz,
+        uncertainty: &Uncertainty,
+    ) -> Result<Self, DesignError> {
+        let plan = match Plan::new(device, rate, uncertainty) {
+            Ok(plan) => plan,
+            Err(error) => return Err(error),
+        };
+        match SoftCells::new(plan.beta, &plan.noise) {
+            Ok(cells) => Ok(plan.corrected_by(cells)),
+            Err(error) => Err(error),
+        }
+    }
 }
 
 impl<C: Copy, S: Copy, M: Copy, L: Copy> Observer<C, S, M, L> {
-    /// The same motor and gains with these parts.
+    /// The same motor with these parts.
     const fn with_parts<D: Copy, T: Copy, N: Copy, K: Copy>(
         self,
         current: D,
@@ -203,8 +231,6 @@ impl<C: Copy, S: Copy, M: Copy, L: Copy> Observer<C, S, M, L> {
             load_decay: self.load_decay,
             way_pole: self.way_pole,
             friction_share: self.friction_share,
-            gains: self.gains,
-            velocity_variances: self.velocity_variances,
         }
     }
 }
@@ -248,18 +274,8 @@ impl Observer<NoCurrent, HeldHandle, Edges, Fixed> {
             Ok(clock) => clock,
             Err(error) => return Err(error),
         };
-        Ok(Self {
-            motion: known.motion,
-            current: NoCurrent,
-            slip: HeldHandle,
-            correction: Edges { clock },
-            learning: Fixed,
-            load_decay: known.load_decay,
-            way_pole: known.way_pole,
-            friction_share: 0.0,
-            gains: known.gains,
-            velocity_variances: known.velocity_variances,
-        })
+        let table = known.correction.table;
+        Ok(known.with_parts(NoCurrent, HeldHandle, Edges { clock, table }, Fixed))
     }
 }
 
@@ -277,27 +293,9 @@ impl<C: Copy, S: Copy, L: Copy> Observer<C, S, Cells, L> {
             Ok(clock) => clock,
             Err(error) => return Err(error),
         };
-        Ok(self.with_parts(self.current, self.slip, Edges { clock }, self.learning))
-    }
-}
-
-impl<C: Copy, S: Copy, L: Copy> Observer<C, S, Cells, L> {
-    /// The same with soft ends of the dead zone, at the rate it was made for: see [`SoftCells`].
-    /// `growth`: how fast the position gets uncertain, counts a second.
-    ///
-    /// # Errors
-    /// [`DesignError::Rate`]; [`DesignError::ProcessNoise`] unless `growth` is above zero and
-    /// finite.
-    pub const fn soft(
-        self,
-        growth: f64,
-        rate: Hertz,
-    ) -> Result<Observer<C, S, SoftCells, L>, DesignError> {
-        let correction = match SoftCells::new(growth, rate) {
-            Ok(correction) => correction,
-            Err(error) => return Err(error),
-        };
-        Ok(self.with_parts(self.current, self.slip, correction, self.learning))
+        let table = self.correction.table;
+        let edges = Edges { clock, table };
+        Ok(self.with_parts(self.current, self.slip, edges, self.learning))
     }
 }
 

@@ -201,7 +201,8 @@ impl Learning for Learned {
     fn starting(
         &self,
         state: &mut LearnedState,
-        innovation: &Innovation<'_>,
+        innovation: &Innovation,
+        gain: &Gain,
         velocity: f32,
     ) -> Option<Gain> {
         let gap = innovation.gap;
@@ -209,7 +210,7 @@ impl Learning for Learned {
             return None;
         }
         state.age += gap;
-        if state.age * innovation.gain.velocity >= 1.0 {
+        if state.age * gain.velocity >= 1.0 {
             state.start = Start::Over;
             return None;
         }
@@ -225,7 +226,7 @@ impl Learning for Learned {
         Some(Gain {
             velocity: if age > 1.0 { 1.0 / age } else { 1.0 },
             load: 0.0,
-            ..*innovation.gain
+            ..*gain
         })
     }
 

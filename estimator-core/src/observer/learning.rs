@@ -64,12 +64,13 @@ pub trait Learning: Copy {
     /// Coulomb friction.
     fn friction(&self, state: &Self::State, motion: &Motion) -> f32;
 
-    /// The gain of an innovation that shows that the observer started in motion; `velocity` is the
-    /// predicted one.
+    /// The gain to take instead of `gain` if an innovation shows that the observer started in
+    /// motion; `velocity` is the predicted one.
     fn starting(
         &self,
         state: &mut Self::State,
-        innovation: &Innovation<'_>,
+        innovation: &Innovation,
+        gain: &Gain,
         velocity: f32,
     ) -> Option<Gain>;
 
@@ -120,7 +121,7 @@ impl Learning for Fixed {
     }
 
     #[inline(always)]
-    fn starting(&self, (): &mut (), _: &Innovation<'_>, _: f32) -> Option<Gain> {
+    fn starting(&self, (): &mut (), _: &Innovation, _: &Gain, _: f32) -> Option<Gain> {
         None
     }
 

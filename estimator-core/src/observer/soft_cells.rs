@@ -1,139 +1,172 @@
 //! Counts alone, with what they say inside their cell too.
 
-use super::ROWS;
-use super::correction::{Correction, Innovation, Path, row};
-use super::design::Gain;
+use super::bell::{Bell, HALF_WIDTH, Widening, cut};
+use super::correction::{Correction, Innovation, Path};
+use super::design::{Gain, Noise};
+use super::table::one_tick;
 use crate::design_error::DesignError;
+use crate::riccati;
 use crate::sample::{Sample, Signals};
-use crate::units::Hertz;
 
-/// Counts alone, as with [`Cells`](super::Cells), but for a prediction that is known to a width k
-/// only: the part of it beyond a boundary is impossible, and what is left has its mean further
-/// inside. The mean of a truncated bell, by two parabolas:
+/// Counts alone, as with [`Cells`](super::Cells), but for a prediction that is known as a bell
+/// around x: the part of it beyond a boundary is impossible, and what is left has its mean further
+/// inside, and is narrower. So there is a covariance at run time, of position and velocity:
+/// p, the variance of the position; g, what the velocity errs per count that the position does; and
+/// s, the variance of the velocity beyond that.
 /// ```text
-/// k = min(0.7, growth . time since x was last outside)        y+ = x - 1/2, y- = -x - 1/2
-/// q(y) = 0 below -k,  (y + k)² / 4 k,  y above k              e = q(y-) - q(y+)
+/// each tick  u = 1 + φ1 g            p' = p u² + s φ1² + w / 3
+///            g' = (p u φ0 g + s φ0 φ1 + w / 2) / p'
+///            s' = (s (p φ0² + w k) + w (p (d² / 3 + u² / 4) + w / 12)) / p'
+///            d = 3 u / 2 - φ0 g      k = φ1² - φ0 φ1 + φ0² / 3
+/// at rest    p stays, g = 0, s = w   while x is inside
+/// surprise   σ² = p + R              one step of Newton's for σ
+///            where x is outside by y > 6 σ, the velocity was wrong for the n ticks since last:
+///            q = (y / 6)² - σ²       p' = p + q   σ = y / 6
+///            g' = (p g + q / n) / p'      s' = s + p q (g - 1 / n)² / p'
+/// bell       h = 3 σ, y = |x| - 1/2: e towards the middle, r of the variance kept
+///            y < -h          inside           nothing
+///            y < h           one end cut      e = (y + h)² / 4 h      r = (h - y) / 2 h
+///            h > |x| + 1/2   both ends cut    e = |x| (1 - 1 / 2 h)   r = 1 / 2 h
+///            y > h           wholly outside   e = y                   r = 0
+/// correction x += m e,  v += g m e,  a += λ g m e,  m = 1 - R / σ²       p *= r + (1 - r) R / σ²
 /// ```
-/// A rotor that rests does not get less certain: nothing is corrected then. Above 1 kHz a
-/// correction inside the cell counts `1 ms / T` times less, for there are as many more.
+/// w is the variance that the white torque adds to the velocity in a tick, R that of a boundary's
+/// position, λ the ratio of both gains in the steady filter of counts in every tick. A parabola of
+/// half-width 3 σ stands for the shift of a Gaussian's mean by what is cut off, and its slope for
+/// what that takes of the variance, as for the Gaussian itself (Tweedie's formula; Efron 2011).
+///
+/// p and s are sums of products of numbers that are not negative over such sums, so they never get
+/// below zero, rounding or not, and p' not below w / 3. g is a mean of φ0 g / u, φ0 / φ1, 3/2
+/// and 1 / n with positive weights, and 0 at first, so it stays within 0 and 3/2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftCells {
-    /// Growth of k, counts a tick.
-    growth: f32,
-    /// Share of a correction inside the cell.
-    share: f32,
+    widening: Widening,
+    /// R, counts².
+    boundary: f32,
+    /// σ of a position that was just put on a boundary, counts.
+    sharp: f32,
+    /// λ, per tick.
+    unknown: f32,
 }
 
-/// Largest k: beyond it nothing is left of the cell.
-const WIDEST: f32 = 0.7;
+/// State of [`SoftCells`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SoftCellsState {
+    /// Ticks since the prediction was last outside its cell.
+    since: f32,
+    bell: Bell,
+    /// σ, counts.
+    deviation: f32,
+}
 
-/// Ticks of this length or longer take a correction inside the cell as it is, s.
-const WHOLE: f64 = 1e-3;
+impl SoftCellsState {
+    /// The covariance.
+    #[must_use]
+    pub const fn bell(&self) -> &Bell {
+        &self.bell
+    }
+}
+
+/// A prediction that is outside by more standard deviations than these was not only unlucky.
+const SURPRISE: f32 = 6.0;
+
+/// Range of w, (counts a tick)²: the products of two such are still numbers.
+const WHITE: [f64; 2] = [1e-18, 1e6];
 
 impl SoftCells {
-    /// `growth`: counts a second.
-    pub(super) const fn new(growth: f64, rate: Hertz) -> Result<Self, DesignError> {
-        if !rate.is_positive() {
-            return Err(DesignError::Rate);
-        }
-        if !(growth > 0.0 && growth < 1e9) {
+    pub(super) const fn new(beta: f64, noise: &Noise) -> Result<Self, DesignError> {
+        if !(noise.white >= WHITE[0] && noise.white <= WHITE[1]) {
             return Err(DesignError::ProcessNoise);
         }
+        let r = noise.boundary * noise.boundary;
+        let (a, q) = one_tick(beta, noise);
+        let steady = match riccati::steady(&a, &q, r) {
+            Ok(steady) => steady,
+            Err(error) => return Err(error),
+        };
         Ok(Self {
-            growth: (growth / rate.0) as f32,
-            share: (1.0 / (rate.0 * WHOLE)).min(1.0) as f32,
+            widening: Widening::new(beta, noise.white),
+            boundary: r as f32,
+            // R, and what is left of p, which is less.
+            sharp: (1.25 * noise.boundary) as f32,
+            unknown: steady.gain[2] / steady.gain[1],
         })
     }
 }
 
-/// How far the mean lies inside of `position`, known to ±`width`.
-#[inline(always)]
-fn inwards(position: f32, width: f32) -> Option<f32> {
-    let away = position.abs();
-    let beyond = away - 0.5;
-    let near = beyond + width;
-    if !(near > 0.0) {
-        return None;
-    }
-    let inwards = if beyond > width {
-        beyond
-    } else {
-        let far = width - 0.5 - away;
-        let far = if far > 0.0 { far * far } else { 0.0 };
-        (near * near - far) / (4.0 * width)
-    };
-    Some(if position > 0.0 { -inwards } else { inwards })
-}
-
 impl Correction for SoftCells {
-    /// Ticks since the prediction was last outside its cell.
-    type State = f32;
+    type State = SoftCellsState;
+    type Gain<'a> = Gain;
     const NEEDS: Signals = Signals::COUNT;
     const DENSE: bool = false;
 
-    fn start(&self) -> f32 {
-        0.0
+    fn start(&self) -> SoftCellsState {
+        SoftCellsState {
+            since: 0.0,
+            bell: Bell::at_rest(self.widening.white),
+            deviation: 0.3,
+        }
     }
 
-    fn since(gap: &f32) -> f32 {
-        *gap
+    fn velocity_variance(&self, state: &SoftCellsState) -> f32 {
+        state.bell.velocity_variance()
     }
 
     #[inline(always)]
-    fn innovation<'a>(
+    fn innovation(
         &self,
-        gap: &mut f32,
+        state: &mut SoftCellsState,
         path: Path,
         _: &Sample,
-        gains: &'a [Gain; ROWS],
-    ) -> Option<Innovation<'a>> {
-        let since = *gap + 1.0;
-        *gap = since;
+    ) -> Option<(Innovation, Gain)> {
+        state.since += 1.0;
         let position = path.from + path.lead;
         let outside = position.abs() > 0.5;
         if path.rests && !outside {
+            state.bell.coupling = 0.0;
+            state.bell.velocity = self.widening.white;
             return None;
         }
-        let growth = self.growth * since;
-        let width = if growth < WIDEST { growth } else { WIDEST };
-        let error = inwards(position, width)?;
-        let mut innovation = Innovation {
-            error: self.share * error,
-            age: 0.0,
-            position: 1.0,
-            gain: row(gains, since),
-            gap: 0.0,
-        };
+        self.widening.widen(&mut state.bell);
+        let mut variance = state.bell.position + self.boundary;
+        // Never below the root, wherever it comes from.
+        let mut deviation = 0.5 * (state.deviation + variance / state.deviation);
         if outside {
-            innovation.error = error;
-            innovation.gap = since;
-            *gap = 0.0;
-        }
-        Some(innovation)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{WIDEST, inwards};
-
-    #[test]
-    fn it_is_odd_continuous_and_leads_inside() {
-        for width in [0.01, 0.2, 0.5, WIDEST] {
-            let mut before = None;
-            for step in -3000..=3000 {
-                let position = step as f32 / 1000.0;
-                let error = inwards(position, width).unwrap_or(0.0);
-                let mirrored = inwards(-position, width).unwrap_or(0.0);
-                assert_eq!(error, -mirrored, "{position}");
-                assert!((position + error).abs() <= 0.5 + 1e-6, "{position} {width}");
-                assert!(error * position <= 0.0, "{position} {width}");
-                if let Some(before) = before {
-                    let jump: f32 = error - before;
-                    assert!(jump.abs() < 1.1e-3, "{position} {width}: {jump}");
-                }
-                before = Some(error);
+            let wide = (position.abs() - 0.5) * (1.0 / SURPRISE);
+            if wide * wide > variance {
+                state.bell.doubt(wide * wide - variance, state.since);
+                variance = wide * wide;
+                deviation = wide;
             }
         }
+        state.deviation = deviation;
+        let per_deviation = 1.0 / deviation;
+        let per_width = (0.5 / HALF_WIDTH) * per_deviation;
+        let (inwards, kept) = cut(position, HALF_WIDTH * deviation, per_width)?;
+        let blur = self.boundary * per_deviation * per_deviation;
+        let kept = kept + (1.0 - kept) * blur;
+        let share = 1.0 - blur;
+        state.bell.position *= kept;
+        state.deviation = if kept > blur {
+            deviation * (0.5 + 0.5 * kept)
+        } else {
+            self.sharp
+        };
+        let innovation = Innovation {
+            error: share * inwards,
+            age: 0.0,
+            position: 1.0,
+            gap: if outside { state.since } else { 0.0 },
+        };
+        if outside {
+            state.since = 0.0;
+        }
+        let gain = Gain {
+            position: share,
+            velocity: state.bell.coupling,
+            load: self.unknown * state.bell.coupling,
+            variance,
+        };
+        Some((innovation, gain))
     }
 }

@@ -75,25 +75,6 @@ const PARAMETERS: &[Parameter] = &[
     BOUNDARY_NOISE,
 ];
 
-const GROWTH: Parameter = Parameter {
-    name: "growth",
-    unit: "counts/s",
-    meaning: "how fast a position inside its cell gets uncertain",
-    lowest: 1e-3,
-    highest: 1e6,
-    whole: false,
-    search: Search::Fixed(150.0),
-};
-
-const SOFT: &[Parameter] = &[
-    TORQUE_NOISE,
-    LOAD,
-    LOAD_TIME,
-    FRICTION_SHARE,
-    BOUNDARY_NOISE,
-    GROWTH,
-];
-
 const WITH_EDGES: &[Parameter] = &[TORQUE_NOISE, LOAD, LOAD_TIME, FRICTION_SHARE, DISC_NOISE];
 
 /// Without a current there is no friction to believe in.
@@ -162,14 +143,14 @@ pub(super) const KINDS: &[Kind] = &[
         name: "observer-soft",
         summary: "observer that hears counts inside their cell too",
         needs: CURRENT_AND_SLIP,
-        parameters: SOFT,
+        parameters: PARAMETERS,
         build: |setup, values| built(soft(setup, values)?, setup),
     },
     Kind {
         name: "adaptive-soft",
         summary: "the same, learning as adaptive",
         needs: CURRENT_AND_SLIP,
-        parameters: SOFT,
+        parameters: PARAMETERS,
         build: |setup, values| learning(soft(setup, values)?, setup),
     },
     Kind {
@@ -231,7 +212,8 @@ fn edges(setup: &Setup, values: &Values) -> Result<Known<Edges, Fixed>, DesignEr
 }
 
 fn soft(setup: &Setup, values: &Values) -> Result<Known<SoftCells, Fixed>, DesignError> {
-    counts(setup, values)?.soft(values[5], setup.rate)
+    let values = [values[0], values[1], values[2], values[3], values[4]];
+    Observer::soft(&setup.stages(), setup.rate, &uncertainty(&values))
 }
 
 fn learning<M>(observer: Known<M, Fixed>, setup: &Setup) -> Result<Estimator, DesignError>

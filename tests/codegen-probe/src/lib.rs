@@ -4,12 +4,12 @@
 #![no_std]
 
 use estimator_core::{
-    AdaptiveEdgeObserver, AdaptiveObserver, AmplifierCurrent, BestFit, Cells, CountObserver,
-    CountsPerTick, CoupledMotor, Device, EdgeObserver, Edges, EndFit, FiniteDifference, Fixed,
-    Foaw, Handover, HeldHandle, Hertz, Kalman, KalmanMotor, KalmanTriple, LateCurrent, Learned,
-    LowPass, MOverT, Model, NoCurrent, Observer, Pll, Sample, Skip, SoftObserver, SteadyKalman,
-    SteadyKalmanMotor, SteadyKalmanTriple, TableKalman, TableKalmanMotor, TableKalmanTriple,
-    Uncertainty, VelocityEstimator, preset,
+    AdaptiveEdgeObserver, AdaptiveObserver, AdaptiveSoftObserver, AmplifierCurrent, BestFit, Cells,
+    CountObserver, CountsPerTick, CoupledMotor, Device, EdgeObserver, Edges, EndFit,
+    FiniteDifference, Fixed, Foaw, Handover, HeldHandle, Hertz, Kalman, KalmanMotor, KalmanTriple,
+    LateCurrent, Learned, LowPass, MOverT, Model, NoCurrent, Observer, Pll, Sample, Skip,
+    SoftObserver, SteadyKalman, SteadyKalmanMotor, SteadyKalmanTriple, TableKalman,
+    TableKalmanMotor, TableKalmanTriple, Uncertainty, VelocityEstimator, preset,
 };
 
 const RATE: Hertz = Hertz(10_000.0);
@@ -25,6 +25,8 @@ const UNSURE: Uncertainty = Uncertainty {
 };
 
 const COUNTS: CountObserver = preset!(Observer::new(&CoupledMotor::DCX35L, RATE, &UNSURE));
+
+const SOFT: SoftObserver = preset!(Observer::soft(&CoupledMotor::DCX35L, RATE, &UNSURE));
 
 macro_rules! probes {
     ($($start:ident, $update:ident: $type:ty = $value:expr;)*) => {
@@ -80,7 +82,9 @@ probes! {
     start_observer, update_observer: CountObserver = COUNTS;
     start_observer_edge, update_observer_edge: EdgeObserver =
         preset!(COUNTS.with_edges(CLOCK, RATE));
-    start_observer_soft, update_observer_soft: SoftObserver = preset!(COUNTS.soft(150.0, RATE));
+    start_observer_soft, update_observer_soft: SoftObserver = SOFT;
+    start_adaptive_soft, update_adaptive_soft: AdaptiveSoftObserver =
+        preset!(SOFT.learning(4096, RATE));
     start_adaptive, update_adaptive: AdaptiveObserver = preset!(COUNTS.learning(4096, RATE));
     start_adaptive_edge, update_adaptive_edge: AdaptiveEdgeObserver =
         preset!(preset!(COUNTS.with_edges(CLOCK, RATE)).learning(4096, RATE));

@@ -108,7 +108,10 @@ macro_rules! both {
 /// An observer as host-sim's presets have it.
 macro_rules! observer {
     ($c:ident, $rate:expr) => {
-        $c::Observer::new(
+        observer!($c, $rate, new)
+    };
+    ($c:ident, $rate:expr, $ends:ident) => {
+        $c::Observer::$ends(
             &$c::CoupledMotor::DCX35L,
             $c::Hertz($rate),
             &$c::Uncertainty {
@@ -168,7 +171,10 @@ pub fn at(rate: f64) -> Vec<Contestant> {
         let model = core::Model::motor(&device, core::Hertz(rate), CURRENT_NOISE).expect("valid");
         settling::radius(model.transition(), &model.steady_gain().expect("valid"))
     };
-    let forgotten = settling::unknown_torque(&observer!(core, rate), LOAD_TIME_S, rate);
+    let counts = observer!(core, rate);
+    let forgotten = |gain| settling::unknown_torque(gain, LOAD_TIME_S, rate);
+    let forgotten_softly = forgotten(settling::largest_soft_gain(&counts));
+    let forgotten = forgotten(settling::largest_gain(&counts));
     let learned = (LEARNED_NONSENSE_S * rate) as u32;
     let mut all = vec![
         both!("finite-difference", rate, |c| c::FiniteDifference),
@@ -253,13 +259,9 @@ pub fn at(rate: f64) -> Vec<Contestant> {
         })
         .decides()
         .settles(forgotten),
-        both!("observer-soft", rate, |c| {
-            observer!(c, rate)
-                .soft(150.0, c::Hertz(rate))
-                .expect("valid")
-        })
-        .decides()
-        .settles(forgotten),
+        both!("observer-soft", rate, |c| observer!(c, rate, soft))
+            .decides()
+            .settles(forgotten_softly),
         both!("adaptive", rate, |c| {
             observer!(c, rate)
                 .learning(4096, c::Hertz(rate))
@@ -268,9 +270,8 @@ pub fn at(rate: f64) -> Vec<Contestant> {
         .decides()
         .settles(learned),
         both!("adaptive-soft", rate, |c| {
-            observer!(c, rate)
-                .soft(150.0, c::Hertz(rate))
-                .and_then(|observer| observer.learning(4096, c::Hertz(rate)))
+            observer!(c, rate, soft)
+                .learning(4096, c::Hertz(rate))
                 .expect("valid")
         })
         .decides()

@@ -36,7 +36,10 @@ macro_rules! refusable {
 /// An observer that expects this white torque, N·m/√Hz, and ten times it as an unknown one, N·m.
 macro_rules! observer {
     ($c:ident, $rate:expr, $counts:expr, $torque_noise:expr) => {
-        $c::Observer::new(
+        observer!($c, $rate, $counts, $torque_noise, new)
+    };
+    ($c:ident, $rate:expr, $counts:expr, $torque_noise:expr, $ends:ident) => {
+        $c::Observer::$ends(
             &$c::CoupledMotor {
                 large: $c::Device {
                     counts_per_rev: $counts,
@@ -167,11 +170,7 @@ pub fn design(kind: &str, rate: f64, counts_per_rev: u32, parameter: f64) -> Ref
             observer!(c, rate, counts_per_rev, parameter)
                 .and_then(|known| known.with_edges(c::Hertz(EDGE_CLOCK_HZ), c::Hertz(rate)))
         }),
-        // The growth of what is not known of the position is the parameter.
-        "observer-soft" => refusable!(|c| {
-            observer!(c, rate, counts_per_rev, 1e-4)
-                .and_then(|known| known.soft(parameter, c::Hertz(rate)))
-        }),
+        "observer-soft" => refusable!(|c| observer!(c, rate, counts_per_rev, parameter, soft)),
         "adaptive" => refusable!(|c| {
             observer!(c, rate, counts_per_rev, parameter)
                 .and_then(|known| known.learning(counts_per_rev, c::Hertz(rate)))

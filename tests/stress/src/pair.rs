@@ -38,7 +38,6 @@ pub(crate) trait State<E> {
 impl<E> State<E> for core::Count {}
 impl<E> State<E> for core::PllState {}
 impl<E> State<E> for core::MOverTState {}
-impl<E, C, S, M> State<E> for core::ObserverState<C, S, M, ()> {}
 impl<E, const S: usize> State<E> for core::SteadyKalmanState<S> {}
 impl<E, const S: usize> State<E> for core::TableKalmanState<S> {}
 impl<E, S> State<E> for core::LateCurrentState<S> {}
@@ -64,9 +63,38 @@ impl<const S: usize, U: core::Input<S>> State<core::Kalman<S, U>> for core::Kalm
     }
 }
 
-/// `U D Uᵀ` is positive definite if D is positive and U is made of numbers.
-impl<E, C, S, M> State<E> for core::ObserverState<C, S, M, core::LearnedState> {
+/// What is carried of an observer's corrections.
+trait Corrections {
+    fn fault(&self) -> Option<&'static str> {
+        None
+    }
+}
+
+impl Corrections for f32 {}
+impl Corrections for core::EdgesState {}
+
+impl Corrections for core::SoftCellsState {
+    fn fault(&self) -> Option<&'static str> {
+        let bell = self.bell();
+        let sound = bell.diagonal().iter().all(|d| *d >= 0.0 && *d < 1e20);
+        // The core says why: rounding apart, the coupling is within 0 and 3/2.
+        let coupled = bell.coupling() >= 0.0 && bell.coupling() < 1.500_01;
+        (!(sound && coupled)).then_some("covariance of position and velocity out of its range")
+    }
+}
+
+impl<E, C, S, M: Corrections> State<E> for core::ObserverState<C, S, M, ()> {
     fn fault(&self, _: &E) -> Option<&'static str> {
+        self.correction().fault()
+    }
+}
+
+/// `U D Uᵀ` is positive definite if D is positive and U is made of numbers.
+impl<E, C, S, M: Corrections> State<E> for core::ObserverState<C, S, M, core::LearnedState> {
+    fn fault(&self, _: &E) -> Option<&'static str> {
+        if let Some(fault) = self.correction().fault() {
+            return Some(fault);
+        }
         let learned = self.learning();
         let positive = learned.diagonal().iter().all(|d| *d > 0.0 && *d < 1.0);
         let finite = learned.upper().iter().all(|u| u.is_finite());

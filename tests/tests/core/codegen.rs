@@ -55,6 +55,7 @@ fn estimators_call_nothing_on_the_board() {
         "observer",
         "observer_edge",
         "observer_soft",
+        "adaptive_soft",
         "adaptive",
         "adaptive_edge",
         "observer_held",

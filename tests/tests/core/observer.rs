@@ -62,7 +62,7 @@ fn at(rate: f64) -> Vec<Case> {
         case(
             "observer, soft",
             rate,
-            counts.soft(150.0, Hertz(rate)).expect("valid"),
+            Observer::soft(&device, hertz, &UNSURE).expect("valid"),
         ),
         case("observer, edges", rate, edges),
         case("observer, edges, held", rate, edges.held()),

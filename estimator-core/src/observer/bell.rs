@@ -1,0 +1,247 @@
+//! What is known of position and velocity, as a Gaussian, and what a count cuts off of it.
+
+use crate::const_math::{exp, phi1};
+
+/// Covariance of position and velocity, kept as [`SoftCells`](super::SoftCells) says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bell {
+    /// p, counts².
+    pub(super) position: f32,
+    /// g, per tick.
+    pub(super) coupling: f32,
+    /// s, (counts a tick)².
+    pub(super) velocity: f32,
+}
+
+/// Variance of a position of which nothing is known but its cell, counts².
+const CELL: f32 = 1.0 / 12.0;
+
+impl Bell {
+    /// Of a rotor that rests somewhere in its cell; what may set it free adds `white` in a tick.
+    pub(super) const fn at_rest(white: f32) -> Self {
+        Self {
+            position: CELL,
+            coupling: 0.0,
+            velocity: white,
+        }
+    }
+
+    /// Variances of the position, counts², and of what the velocity does not share with it,
+    /// (counts a tick)².
+    #[must_use]
+    pub const fn diagonal(&self) -> [f32; 2] {
+        [self.position, self.velocity]
+    }
+
+    /// What the velocity errs per count that the position does, per tick.
+    #[must_use]
+    pub const fn coupling(&self) -> f32 {
+        self.coupling
+    }
+
+    /// Variance of the velocity, (counts a tick)².
+    #[must_use]
+    pub fn velocity_variance(&self) -> f32 {
+        self.velocity + self.coupling * self.coupling * self.position
+    }
+
+    /// Takes the position for less certain by `q`, as the velocity was wrong for `ticks` ticks.
+    #[inline(always)]
+    pub(super) fn doubt(&mut self, q: f32, ticks: f32) {
+        let p = self.position;
+        let slope = 1.0 / ticks;
+        let apart = self.coupling - slope;
+        let per = 1.0 / (p + q);
+        self.velocity += p * q * apart * apart * per;
+        self.coupling = (p * self.coupling + q * slope) * per;
+        self.position = p + q;
+    }
+}
+
+/// How a [`Bell`] gets wider.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Widening {
+    /// φ0 and φ1.
+    left: f32,
+    moved: f32,
+    /// k.
+    mixed: f32,
+    /// w, (counts a tick)².
+    pub(super) white: f32,
+}
+
+impl Widening {
+    pub(super) const fn new(beta: f64, white: f64) -> Self {
+        let (left, moved) = (exp(-beta), phi1(beta));
+        Self {
+            left: left as f32,
+            moved: moved as f32,
+            mixed: (moved * moved - left * moved + left * left / 3.0) as f32,
+            white: white as f32,
+        }
+    }
+
+    /// One tick of motion.
+    #[inline(always)]
+    pub(super) fn widen(&self, bell: &mut Bell) {
+        let w = self.white;
+        let (p, s) = (bell.position, bell.velocity);
+        let stays = 1.0 + self.moved * bell.coupling;
+        let turns = self.left * bell.coupling;
+        let kept = p * stays;
+        let from_velocity = s * self.moved;
+        let position = kept * stays + from_velocity * self.moved + w * (1.0 / 3.0);
+        let shared = kept * turns + from_velocity * self.left + 0.5 * w;
+        let apart = 1.5 * stays - turns;
+        let of_position = p * apart * apart * (1.0 / 3.0) + 0.25 * kept * stays;
+        let of_velocity = p * self.left * self.left + w * self.mixed;
+        let velocity = s * of_velocity + w * (of_position + w * (1.0 / 12.0));
+        let per = 1.0 / position;
+        bell.position = position;
+        bell.coupling = shared * per;
+        bell.velocity = velocity * per;
+    }
+}
+
+/// Half-width of the parabola, in standard deviations of the Gaussian that it stands for.
+pub(super) const HALF_WIDTH: f32 = 3.0;
+
+/// How far inwards the mean of a bell of half-width `h` around `position` moves by what the cell's
+/// ends cut off, and which part of its variance is kept; `per_width` is 1 / 2 h.
+#[inline(always)]
+pub(super) fn cut(position: f32, h: f32, per_width: f32) -> Option<(f32, f32)> {
+    let away = position.abs();
+    let beyond = away - 0.5;
+    let near = beyond + h;
+    if !(near > 0.0) {
+        return None;
+    }
+    let (inwards, kept) = if beyond > h {
+        (beyond, 0.0)
+    } else if h > away + 0.5 {
+        (away - away * per_width, per_width)
+    } else {
+        (0.5 * near * near * per_width, (h - beyond) * per_width)
+    };
+    Some((if position > 0.0 { -inwards } else { inwards }, kept))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Bell, CELL, HALF_WIDTH, Widening, cut};
+
+    const WHITE: f64 = 3e-3;
+
+    type Matrix = [[f64; 2]; 2];
+
+    fn dense(bell: &Bell) -> Matrix {
+        let [p, g, s] = [bell.position, bell.coupling, bell.velocity].map(f64::from);
+        [[p, g * p], [g * p, s + g * g * p]]
+    }
+
+    fn near(a: &Matrix, b: &Matrix) -> bool {
+        let pairs = a.iter().flatten().zip(b.iter().flatten());
+        pairs
+            .into_iter()
+            .all(|(a, b)| (a - b).abs() <= 1e-5 * b.abs() + 1e-9)
+    }
+
+    fn bell(position: f32, coupling: f32, velocity: f32) -> Bell {
+        Bell {
+            position,
+            coupling,
+            velocity,
+        }
+    }
+
+    #[test]
+    fn a_tick_is_the_textbooks() {
+        let widening = Widening::new(0.08, WHITE);
+        let (left, moved) = ((-0.08f64).exp(), (1.0 - (-0.08f64).exp()) / 0.08);
+        for (p, g, s) in [
+            (CELL, 0.0, 3e-3),
+            (1e-3, 0.9, 0.02),
+            (2.0, 0.1, 4.0),
+            (1e-4, 1.5, 1e-5),
+        ] {
+            let mut after = bell(p, g, s);
+            let [[a, b], [_, c]] = dense(&after);
+            widening.widen(&mut after);
+            let b_after = left * (b + moved * c) + WHITE / 2.0;
+            let textbook = [
+                [
+                    a + 2.0 * moved * b + moved * moved * c + WHITE / 3.0,
+                    b_after,
+                ],
+                [b_after, left * left * c + WHITE],
+            ];
+            assert!(near(&dense(&after), &textbook), "{after:?} {textbook:?}");
+        }
+    }
+
+    #[test]
+    fn doubt_adds_a_velocity_that_was_wrong_all_the_time() {
+        let mut after = bell(0.04, 0.7, 0.01);
+        let before = dense(&after);
+        after.doubt(0.8, 4.0);
+        let added = [[0.8, 0.8 / 4.0], [0.8 / 4.0, 0.8 / 16.0]];
+        let sum = [0, 1].map(|i| [0, 1].map(|j| before[i][j] + added[i][j]));
+        assert!(near(&dense(&after), &sum), "{after:?} {sum:?}");
+    }
+
+    /// Shift of the mean of a Gaussian around `x` by what is outside the cell, and the part of its
+    /// variance that is kept, by sums.
+    fn gaussian(x: f64, sigma: f64) -> (f64, f64) {
+        let (mut sums, steps) = ([0.0; 3], 4000);
+        for step in 0..steps {
+            let y = (f64::from(step) + 0.5) / f64::from(steps) - 0.5;
+            let density = (-0.5 * ((y - x) / sigma).powi(2)).exp();
+            sums[0] += density;
+            sums[1] += density * y;
+            sums[2] += density * y * y;
+        }
+        let mean = sums[1] / sums[0];
+        (
+            mean - x,
+            (sums[2] / sums[0] - mean * mean) / (sigma * sigma),
+        )
+    }
+
+    #[test]
+    fn the_parabola_stands_for_a_gaussian() {
+        // Where most corrections are: from two deviations inside a boundary to one outside.
+        let mut off = [0.0f64; 2];
+        for sigma in [0.05, 0.1, 0.2, 0.3] {
+            for tenth in -20..=10 {
+                let x = 0.5 + 0.1 * f64::from(tenth) * sigma;
+                let h = HALF_WIDTH * sigma as f32;
+                let (shift, kept) = cut(x as f32, h, 0.5 / h).unwrap_or((0.0, 1.0));
+                let (exact, left) = gaussian(x, sigma);
+                off[0] = off[0].max((f64::from(shift) - exact).abs() / sigma);
+                off[1] = off[1].max((f64::from(kept) - left).abs());
+            }
+        }
+        assert!(off[0] < 0.2 && off[1] < 0.16, "{off:?}");
+    }
+
+    #[test]
+    fn it_is_odd_continuous_and_leads_inside() {
+        for h in [0.01, 0.2, 0.5, 0.9] {
+            let mut before = None;
+            for step in -3000..=3000 {
+                let position = step as f32 / 1000.0;
+                let (error, kept) = cut(position, h, 0.5 / h).unwrap_or((0.0, 1.0));
+                let (mirrored, same) = cut(-position, h, 0.5 / h).unwrap_or((0.0, 1.0));
+                assert_eq!((error, kept), (-mirrored, same), "{position}");
+                assert!((position + error).abs() <= 0.5 + 1e-6, "{position} {h}");
+                assert!(error * position <= 0.0, "{position} {h}");
+                assert!((0.0..=1.0).contains(&kept), "{position} {h}: {kept}");
+                if let Some(before) = before {
+                    let jump: f32 = error - before;
+                    assert!(jump.abs() < 1.1e-3, "{position} {h}: {jump}");
+                }
+                before = Some(error);
+            }
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Gains by the time between corrections, computed at compile time.
+
+use super::design::{Gain, Noise};
+use crate::const_math::{exp, phi1, phi2};
+use crate::design_error::DesignError;
+use crate::riccati::{self, Matrix};
+
+/// Rows of the table; a longer gap takes the last.
+pub(super) const ROWS: usize = 64;
+
+/// What belongs to each gap between corrections. Row n - 1 is the steady state of the filter that
+/// is corrected once every n ticks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Table {
+    gains: [Gain; ROWS],
+    /// Variance of the velocity before the correction, (counts a tick)²; beside the gains, whose
+    /// rows are a power of two long.
+    velocity_variances: [f32; ROWS],
+}
+
+/// Transition and process noise of position, velocity and unknown torque over one tick.
+pub(super) const fn one_tick(beta: f64, noise: &Noise) -> (Matrix<3>, Matrix<3>) {
+    let white = noise.white;
+    (
+        [
+            [1.0, phi1(beta), phi2(beta)],
+            [0.0, exp(-beta), phi1(beta)],
+            [0.0, 0.0, noise.decay],
+        ],
+        [
+            [white / 3.0, white / 2.0, 0.0],
+            [white / 2.0, white, 0.0],
+            [0.0, 0.0, noise.load],
+        ],
+    )
+}
+
+impl Table {
+    /// The table of a motor with this `beta` and of `noise`.
+    ///
+    /// # Errors
+    /// As [`Model::steady_gain`](crate::Model::steady_gain), for any row.
+    pub(super) const fn new(beta: f64, noise: &Noise) -> Result<Self, DesignError> {
+        let (a, q) = one_tick(beta, noise);
+        let r = noise.boundary * noise.boundary;
+        let none = Gain {
+            position: 0.0,
+            velocity: 0.0,
+            load: 0.0,
+            variance: 0.0,
+        };
+        let mut table = Self {
+            gains: [none; ROWS],
+            velocity_variances: [0.0; ROWS],
+        };
+        let (mut a_n, mut q_n) = (a, q);
+        let mut row = 0;
+        while row < ROWS {
+            let steady = match riccati::steady(&a_n, &q_n, r) {
+                Ok(steady) => steady,
+                Err(error) => return Err(error),
+            };
+            table.gains[row] = Gain {
+                position: steady.gain[0],
+                velocity: steady.gain[1],
+                load: steady.gain[2],
+                variance: steady.innovation as f32,
+            };
+            table.velocity_variances[row] = steady.velocity[0] as f32;
+            q_n = riccati::later_noise(&a, &q, &q_n);
+            a_n = riccati::product(&a, &a_n);
+            row += 1;
+        }
+        Ok(table)
+    }
+
+    /// The gain after a gap of this many ticks.
+    #[inline(always)]
+    pub(super) fn gain(&self, gap: f32) -> &Gain {
+        // A float-to-integer cast saturates.
+        &self.gains[((gap - 0.5) as usize).min(ROWS - 1)]
+    }
+
+    /// Variance of the velocity after a gap of this many ticks.
+    pub(super) fn velocity_variance(&self, gap: f32) -> f32 {
+        self.velocity_variances[(gap as usize).clamp(1, ROWS) - 1]
+    }
+}
