@@ -13,16 +13,17 @@ pub struct Bell {
     pub(super) velocity: f32,
 }
 
-/// Variance of a position of which nothing is known but its cell, counts².
+/// Variance of what is known to within ±1/2 only: a position in its cell, or a velocity below half a
+/// count a tick.
 const CELL: f32 = 1.0 / 12.0;
 
 impl Bell {
-    /// Of a rotor that rests somewhere in its cell; what may set it free adds `white` in a tick.
-    pub(super) const fn at_rest(white: f32) -> Self {
+    /// Of a rotor of which nothing is known but its count.
+    pub(super) const fn unknown() -> Self {
         Self {
             position: CELL,
             coupling: 0.0,
-            velocity: white,
+            velocity: CELL,
         }
     }
 

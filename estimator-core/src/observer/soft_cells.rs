@@ -19,6 +19,8 @@ use crate::sample::{Sample, Signals};
 ///            s' = (s (p φ0² + w k) + w (p (d² / 3 + u² / 4) + w / 12)) / p'
 ///            d = 3 u / 2 - φ0 g      k = φ1² - φ0 φ1 + φ0² / 3
 /// at rest    p stays, g = 0, s = w   while x is inside
+/// start      p = s = 1 / 12          nothing is known; λ = 0, and nothing is
+///                                learned, until s < 64 w
 /// surprise   σ² = p + R              one step of Newton's for σ
 ///            where x is outside by y > 6 σ, the velocity was wrong for the n ticks since last:
 ///            q = (y / 6)² - σ²       p' = p + q   σ = y / 6
@@ -57,6 +59,8 @@ pub struct SoftCellsState {
     bell: Bell,
     /// σ, counts.
     deviation: f32,
+    /// Whether the velocity that it started with is known.
+    started: bool,
 }
 
 impl SoftCellsState {
@@ -69,6 +73,9 @@ impl SoftCellsState {
 
 /// A prediction that is outside by more standard deviations than these was not only unlucky.
 const SURPRISE: f32 = 6.0;
+
+/// The velocity is known when s is below the noise of so many ticks.
+const STARTED: f32 = 64.0;
 
 /// Range of w, (counts a tick)²: the products of two such are still numbers.
 const WHITE: [f64; 2] = [1e-18, 1e6];
@@ -103,8 +110,9 @@ impl Correction for SoftCells {
     fn start(&self) -> SoftCellsState {
         SoftCellsState {
             since: 0.0,
-            bell: Bell::at_rest(self.widening.white),
+            bell: Bell::unknown(),
             deviation: 0.3,
+            started: false,
         }
     }
 
@@ -128,6 +136,9 @@ impl Correction for SoftCells {
             return None;
         }
         self.widening.widen(&mut state.bell);
+        if state.bell.velocity < STARTED * self.widening.white {
+            state.started = true;
+        }
         let mut variance = state.bell.position + self.boundary;
         // Never below the root, wherever it comes from.
         let mut deviation = 0.5 * (state.deviation + variance / state.deviation);
@@ -156,7 +167,11 @@ impl Correction for SoftCells {
             error: share * inwards,
             age: 0.0,
             position: 1.0,
-            gap: if outside { state.since } else { 0.0 },
+            gap: if outside && state.started {
+                state.since
+            } else {
+                0.0
+            },
         };
         if outside {
             state.since = 0.0;
@@ -164,7 +179,11 @@ impl Correction for SoftCells {
         let gain = Gain {
             position: share,
             velocity: state.bell.coupling,
-            load: self.unknown * state.bell.coupling,
+            load: if state.started {
+                self.unknown * state.bell.coupling
+            } else {
+                0.0
+            },
             variance,
         };
         Some((innovation, gain))

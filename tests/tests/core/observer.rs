@@ -53,16 +53,18 @@ fn at(rate: f64) -> Vec<Case> {
     let hertz = Hertz(rate);
     let device = CoupledMotor::DCX35L;
     let counts = Observer::new(&device, hertz, &UNSURE).expect("valid");
+    let soft = Observer::soft(&device, hertz, &UNSURE).expect("valid");
     let edges = counts.with_edges(CLOCK, hertz).expect("valid");
     let blind = Observer::blind(&device, hertz, CLOCK, &UNSURE).expect("valid");
     vec![
         case("M/T", rate, MOverT::new(CLOCK, hertz).expect("valid")),
         case("observer", rate, counts),
         case("observer, held", rate, counts.held()),
+        case("observer, soft", rate, soft),
         case(
-            "observer, soft",
+            "adaptive, soft",
             rate,
-            Observer::soft(&device, hertz, &UNSURE).expect("valid"),
+            soft.learning(4096, hertz).expect("valid"),
         ),
         case("observer, edges", rate, edges),
         case("observer, edges, held", rate, edges.held()),

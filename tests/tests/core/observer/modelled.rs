@@ -102,8 +102,6 @@ fn motor_that_obeys_the_model_is_followed() {
             let knows = case.needs.current && case.needs.small;
             if knows {
                 let error = rms(&(case.run)(&samples), &truth, from);
-                // Soft ends hear counts that a right model has no need of.
-                let bound = bound * if case.name.contains("soft") { 1.5 } else { 1.0 };
                 assert!(error < bound, "{}: {error}", case.name);
             }
         }
