@@ -22,6 +22,7 @@
 //! | critically damped tracking loop | [`Pll`] | 2 floats | counts |
 //! | M/T from edge time stamps | [`MOverT`] | 1 edge | counts, edges |
 //! | observer with friction and slip | [`Observer`] | 4 floats | counts; as built: current, small count, edges |
+//! | the same, hearing counts inside their cell | [`SoftObserver`] | 9 floats | the same |
 //! | the same, learning its parameters | [`AdaptiveObserver`] | 23 floats | the same |
 //! | two, exchanged while they run | [`Handover`] | as the one in charge | as both |
 //! | none | [`Skip`] | none | nothing |

@@ -79,8 +79,8 @@ const LARGEST_FRICTION_ERROR: f32 = 0.5;
 ///
 /// What a device lacks is left out by type: [`held`](Self::held) without the small encoder,
 /// [`blind`](Self::blind) without current; [`with_edges`](Self::with_edges) adds time stamps,
-/// [`soft`](Self::soft) hears counts inside their cell too, [`learning`](Self::learning) learns the
-/// parameters.
+/// [`soft`](Self::soft) hears counts inside their cell too, by a covariance instead of the table
+/// ([`SoftCells`]), [`learning`](Self::learning) learns the parameters.
 ///
 /// Valid for innovations up to 65536 counts; beyond, the position follows and the velocity takes
 /// 65536. A displacement beyond ±2^24 counts a tick is rounded.
