@@ -40,6 +40,12 @@ pub struct Row {
     pub over_limit: f64,
 }
 
+/// Scenarios that it is run on unless others are asked for.
+pub const SCENARIOS: [ScenarioName; 5] = {
+    use ScenarioName::{FreeAir, Step, Stochastic, Texture, Track};
+    [Stochastic, Step, Track, FreeAir, Texture]
+};
+
 /// What the model does not know in `scenario`.
 fn noise(scenario: ScenarioName) -> Noise {
     if scenario.linear_plant() {

@@ -24,7 +24,7 @@ pub(super) struct Beside {
 }
 
 /// Runs what belongs to a report of everything, at the lowest rate asked for: a report of chosen
-/// scenarios has none of it but the limit of those that it can be had of.
+/// scenarios has none of it but the limit of those that it is run on.
 pub(super) fn beside(
     options: &Compare,
     settings: &Settings,
@@ -44,13 +44,13 @@ pub(super) fn beside(
     if options.frictionless {
         return Ok(Beside::default());
     }
-    let linear: Vec<Case> = cases
+    let seen: Vec<Case> = cases
         .iter()
-        .filter(|case| case.scenario.linear_plant() && case.rate_hz == rate_hz)
+        .filter(|case| limit::SCENARIOS.contains(&case.scenario) && case.rate_hz == rate_hz)
         .filter(|case| case.plant == PlantKind::Friction)
         .cloned()
         .collect();
-    let limits = limit(&linear, settings, PARTICLES, || ())?;
+    let limits = limit(&seen, settings, PARTICLES, || ())?;
     if !options.scenarios.is_empty() {
         return Ok(Beside {
             limits,

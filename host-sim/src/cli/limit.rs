@@ -6,10 +6,9 @@ use clap::Args;
 
 use crate::compare::{Case, Settings};
 use crate::failure::Failure;
-use crate::limit::{limit, table::table};
+use crate::limit::{SCENARIOS, limit, table::table};
 use crate::parameters::PlantKind;
 use crate::rows;
-use crate::scenario::ScenarioName;
 use crate::score::Wanted;
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds, rates, scenarios};
@@ -50,17 +49,13 @@ pub(super) struct Limit {
 }
 
 pub(super) fn run(options: &Limit) -> Result<(), Failure> {
-    use ScenarioName::{FreeAir, Step, Stochastic, Texture, Track};
     let settings = Settings {
         device: options.device.load()?,
         estimators: kinds(&options.estimators)?,
         parameters: options.parameters.load()?,
         wanted: Wanted::NONE,
     };
-    let scenarios = scenarios(
-        &options.scenarios,
-        &[Stochastic, Step, Track, FreeAir, Texture],
-    )?;
+    let scenarios = scenarios(&options.scenarios, &SCENARIOS)?;
     let mut cases = Vec::new();
     for rate_hz in rates(&options.rates, &[1e3]) {
         crate::simulate::ticks(rate_hz, options.seconds)?;

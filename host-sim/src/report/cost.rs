@@ -51,7 +51,10 @@ pub(super) fn panels(
         [rms("limit"), rms("limit-edge")]
     };
     if shown.iter().any(|scenario| limit_of(scenario)[0].is_some()) {
-        keys.push(Key::Line(INK, "limit: counts above, time stamps below"));
+        keys.push(Key::Line(
+            INK,
+            "particle filter: counts above, time stamps below",
+        ));
     }
     let rows = shown.len().div_ceil(ACROSS);
     let bottom = TOP + (PANEL + BELOW) * rows as f64;
@@ -166,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn a_panel_a_scenario_and_the_limit_where_it_is_known() {
+    fn a_panel_a_scenario_and_the_particle_filter_where_it_ran() {
         let row = |name: &str, instructions, rms| Row {
             estimator: name.to_owned(),
             instructions,
@@ -210,9 +213,9 @@ mod tests {
         let palette = Palette::new(&report);
         let svg = panels(&groups[0], &limits, &palette).unwrap().unwrap();
         assert_eq!(svg.matches("instructions an update").count(), 2);
-        assert!(svg.contains("limit: counts") && !svg.contains("unmeasured"));
-        // Of the limit of another plant or rate, nothing.
+        assert!(svg.contains("particle filter: counts") && !svg.contains("unmeasured"));
+        // Of the particle filter on another plant or at another rate, nothing.
         let svg = panels(&groups[0], &[], &palette).unwrap().unwrap();
-        assert!(!svg.contains("limit: counts"));
+        assert!(!svg.contains("particle filter: counts"));
     }
 }

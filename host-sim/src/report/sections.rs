@@ -37,8 +37,9 @@ const SPECTRA: &str = "Where in frequency each estimator is wrong. To the left l
 const COST: &str = "Down and to the left is better; the grey line joins those that nothing beats in \
     both. Instructions are the means that cargo pareto counted on the emulated board (benchmarks.md; \
     FOAW: that of the window nearest to the one used here); estimators without a measured cost are \
-    not shown. The limit is a particle filter with the true model and the exact likelihood of a \
-    count: what lies on it cannot be improved.";
+    not shown. The black lines are a particle filter with the exact likelihood of a count. In \
+    stochastic it has the true model: what lies on it cannot be improved. Elsewhere it takes the \
+    ripple of friction and torque for noise, and is no bound.";
 const BELIEFS: &str = "RMS error in scenarios step and track of estimators that believe in one wrong \
     constant of the device, against how wrong it is. Those without a model of the motor are flat; \
     those that learn stay low. All scenarios: host-sim sensitivity.";
