@@ -45,7 +45,7 @@ impl DesignError {
             }
             Self::ProcessNoise => {
                 "process noise must be positive and finite, and with a covariance at run time at \
-                 most 2^18 counts^2 a tick"
+                 most 2^18 and, with soft ends, at least 1e-18 counts^2 a tick"
             }
             Self::NotConverged => {
                 "steady gain does not converge: process noise out of reach for this rate and encoder"

@@ -196,7 +196,7 @@ impl Observer<AmplifierCurrent, SmallEncoder, SoftCells, Fixed> {
     ///
     /// # Errors
     /// As [`Observer::new`]; [`DesignError::ProcessNoise`] too if the white torque alone spreads
-    /// the velocity by less than 1e-9 or more than 1000 counts a tick in a tick.
+    /// the velocity by less than 1e-9 or more than 512 counts a tick in a tick.
     pub const fn soft(
         device: &CoupledMotor,
         rate: Hertz,

@@ -77,8 +77,9 @@ const SURPRISE: f32 = 6.0;
 /// The velocity is known when s is below the noise of so many ticks.
 const STARTED: f32 = 64.0;
 
-/// Range of w, (counts a tick)²: the products of two such are still numbers.
-const WHITE: [f64; 2] = [1e-18, 1e6];
+/// Range of w, (counts a tick)²: the product of two such is still a number; 2^18 as for
+/// [`Kalman`](crate::Kalman).
+const WHITE: [f64; 2] = [1e-18, 262_144.0];
 
 impl SoftCells {
     pub(super) const fn new(beta: f64, noise: &Noise) -> Result<Self, DesignError> {
