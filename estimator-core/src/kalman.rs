@@ -135,16 +135,8 @@ impl<const S: usize, U: Input<S>> VelocityEstimator for Kalman<S, U> {
     }
 }
 
-impl KalmanState<3> {
-    /// Acceleration at the latest update.
-    #[must_use]
-    pub const fn acceleration(&self) -> CountsPerTickSquared {
-        CountsPerTickSquared(2.0 * self.x[2])
-    }
-}
-
 impl AccelerationEstimator for KalmanTriple {
     fn acceleration(&self, state: &KalmanState<3>) -> CountsPerTickSquared {
-        state.acceleration()
+        CountsPerTickSquared(2.0 * state.x[2])
     }
 }

@@ -94,16 +94,8 @@ impl<const S: usize, U: Input<S>> VelocityEstimator for SteadyKalman<S, U> {
     }
 }
 
-impl SteadyKalmanState<3> {
-    /// Acceleration at the latest update.
-    #[must_use]
-    pub const fn acceleration(&self) -> CountsPerTickSquared {
-        CountsPerTickSquared(2.0 * self.x[2])
-    }
-}
-
 impl AccelerationEstimator for SteadyKalmanTriple {
     fn acceleration(&self, state: &SteadyKalmanState<3>) -> CountsPerTickSquared {
-        state.acceleration()
+        CountsPerTickSquared(2.0 * state.x[2])
     }
 }

@@ -160,16 +160,8 @@ impl<const S: usize, const N: usize, U: Input<S>> VelocityEstimator for TableKal
     }
 }
 
-impl TableKalmanState<3> {
-    /// Acceleration at the latest update.
-    #[must_use]
-    pub const fn acceleration(&self) -> CountsPerTickSquared {
-        CountsPerTickSquared(2.0 * self.x[2])
-    }
-}
-
 impl<const N: usize> AccelerationEstimator for TableKalmanTriple<N> {
     fn acceleration(&self, state: &TableKalmanState<3>) -> CountsPerTickSquared {
-        state.acceleration()
+        CountsPerTickSquared(2.0 * state.x[2])
     }
 }

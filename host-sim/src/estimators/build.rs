@@ -5,7 +5,7 @@ use estimator_core::{
     Model, Pll, Scale, Signals, SteadyKalman, TableKalmanTriple,
 };
 
-use super::erased::{Estimator, confident, erased};
+use super::erased::{Estimator, accelerating, confident, erased};
 use super::{Kind, Parameter, Search, Setup, Values};
 
 pub(super) type Build = fn(&Setup, &Values) -> Result<Estimator, DesignError>;
@@ -121,7 +121,7 @@ pub(super) const KINDS: &[Kind] = &[
         needs: Signals::COUNT,
         parameters: &[JERK],
         build: |setup, values| {
-            Ok(confident(
+            Ok(accelerating(
                 Kalman::new(&triple(setup, values)?)?,
                 scale(setup)?,
             ))
@@ -134,7 +134,7 @@ pub(super) const KINDS: &[Kind] = &[
         parameters: &[JERK],
         build: |setup, values| {
             let filter = TableKalmanTriple::<TABLE>::new(&triple(setup, values)?)?;
-            Ok(confident(filter, scale(setup)?))
+            Ok(accelerating(filter, scale(setup)?))
         },
     },
     Kind {
@@ -143,7 +143,7 @@ pub(super) const KINDS: &[Kind] = &[
         needs: Signals::COUNT,
         parameters: &[JERK],
         build: |setup, values| {
-            Ok(confident(
+            Ok(accelerating(
                 SteadyKalman::new(&triple(setup, values)?)?,
                 scale(setup)?,
             ))

@@ -4,8 +4,8 @@ use std::any::Any;
 use std::sync::Arc;
 
 use estimator_core::{
-    AccelerationEstimator, Confidence, CountsPerTick, CountsPerTickSquared, KalmanState, Sample,
-    Scale, Signals, SteadyKalmanState, TableKalmanState, VelocityEstimator,
+    AccelerationEstimator, Confidence, CountsPerTick, CountsPerTickSquared, Sample, Scale, Signals,
+    VelocityEstimator,
 };
 
 use super::run::{run, velocities};
@@ -61,31 +61,16 @@ impl Estimator {
     /// Whether its model has an acceleration.
     #[must_use]
     pub fn gives_acceleration(&self) -> bool {
-        acceleration(&self.start(&Sample::default())).is_some()
+        let state = self.start(&Sample::default());
+        self.0.acceleration(&state).is_some()
     }
 }
 
 /// Zero where [`Estimator::gives_acceleration`] says no.
 impl AccelerationEstimator for Estimator {
     fn acceleration(&self, state: &State) -> CountsPerTickSquared {
-        acceleration(state).unwrap_or_default()
+        self.0.acceleration(state).unwrap_or_default()
     }
-}
-
-fn acceleration(state: &State) -> Option<CountsPerTickSquared> {
-    let state = (*state.0).as_any();
-    let full = state.downcast_ref().map(KalmanState::<3>::acceleration);
-    let table = || {
-        state
-            .downcast_ref()
-            .map(TableKalmanState::<3>::acceleration)
-    };
-    let steady = || {
-        state
-            .downcast_ref()
-            .map(SteadyKalmanState::<3>::acceleration)
-    };
-    full.or_else(table).or_else(steady)
 }
 
 /// State of an [`Estimator`].
@@ -134,21 +119,44 @@ trait Erased: Send + Sync {
     fn damping_ratio(&self, trace: &Trace) -> Option<Vec<f32>>;
     fn start(&self, first: &Sample) -> State;
     fn update(&self, state: &mut State, sample: &Sample) -> CountsPerTick;
+    fn acceleration(&self, state: &State) -> Option<CountsPerTickSquared>;
 }
 
 /// An estimator with what its counts are worth.
 struct Scaled<E: VelocityEstimator> {
     estimator: E,
     scale: Scale,
-    deviation: Option<Deviation<E>>,
-    damping_ratio: Option<DampingRatio<E>>,
+    says: Says<E>,
 }
 
-/// What an estimator believes of its own error.
-type Deviation<E> = fn(&E, &<E as VelocityEstimator>::State) -> CountsPerTick;
+/// What a state tells beside the velocity.
+type Tells<E, T> = fn(&E, &<E as VelocityEstimator>::State) -> T;
 
-/// What a state says of the damping.
-pub(super) type DampingRatio<E> = fn(&E, &<E as VelocityEstimator>::State) -> f32;
+/// What it says of the damping.
+pub(super) type DampingRatio<E> = Tells<E, f32>;
+
+/// All that an estimator may tell beside the velocity.
+struct Says<E: VelocityEstimator> {
+    /// What it believes of its own error.
+    deviation: Option<Tells<E, CountsPerTick>>,
+    damping_ratio: Option<DampingRatio<E>>,
+    acceleration: Option<Tells<E, CountsPerTickSquared>>,
+}
+
+impl<E: VelocityEstimator> Says<E> {
+    const NOTHING: Self = Self {
+        deviation: None,
+        damping_ratio: None,
+        acceleration: None,
+    };
+}
+
+impl<E: Confidence<Output = CountsPerTick>> Says<E> {
+    const DEVIATION: Self = Self {
+        deviation: Some(|estimator, state| estimator.variance(state).deviation()),
+        ..Self::NOTHING
+    };
+}
 
 impl<E> Erased for Scaled<E>
 where
@@ -159,7 +167,7 @@ where
     }
 
     fn run_confident(&self, trace: &Trace) -> (Vec<f32>, Option<Vec<f32>>) {
-        let Some(deviation) = self.deviation else {
+        let Some(deviation) = self.says.deviation else {
             return (self.run(trace), None);
         };
         let both = run(&self.estimator, trace, [0.0; 2], |state, velocity| {
@@ -170,7 +178,7 @@ where
     }
 
     fn damping_ratio(&self, trace: &Trace) -> Option<Vec<f32>> {
-        let damping_ratio = self.damping_ratio?;
+        let damping_ratio = self.says.damping_ratio?;
         Some(run(&self.estimator, trace, 1.0, |state, _| {
             damping_ratio(&self.estimator, state)
         }))
@@ -190,6 +198,12 @@ where
             }
         }
     }
+
+    fn acceleration(&self, state: &State) -> Option<CountsPerTickSquared> {
+        let acceleration = self.says.acceleration?;
+        let state = (*state.0).as_any().downcast_ref()?;
+        Some(acceleration(&self.estimator, state))
+    }
 }
 
 /// Forgets an estimator's type; a trace still runs with one dynamic call, not one a tick.
@@ -197,7 +211,7 @@ pub(super) fn erased<E>(estimator: E, scale: Scale) -> Estimator
 where
     E: VelocityEstimator<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
 {
-    saying(estimator, scale, None, None)
+    saying(estimator, scale, Says::NOTHING)
 }
 
 /// The same for one that says how far off it may be.
@@ -205,7 +219,7 @@ pub(super) fn confident<E>(estimator: E, scale: Scale) -> Estimator
 where
     E: Confidence<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
 {
-    saying(estimator, scale, Some(deviation), None)
+    saying(estimator, scale, Says::DEVIATION)
 }
 
 /// The same for one that learns the coupler's damping.
@@ -213,29 +227,36 @@ pub(super) fn learner<E>(estimator: E, scale: Scale, damping_ratio: DampingRatio
 where
     E: Confidence<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
 {
-    saying(estimator, scale, Some(deviation), Some(damping_ratio))
+    let says = Says {
+        damping_ratio: Some(damping_ratio),
+        ..Says::DEVIATION
+    };
+    saying(estimator, scale, says)
 }
 
-fn deviation<E: Confidence<Output = CountsPerTick>>(
-    estimator: &E,
-    state: &E::State,
-) -> CountsPerTick {
-    estimator.variance(state).deviation()
+/// The same for one whose model has an acceleration.
+pub(super) fn accelerating<E>(estimator: E, scale: Scale) -> Estimator
+where
+    E: AccelerationEstimator
+        + Confidence<Output = CountsPerTick, State: Send + 'static>
+        + Send
+        + Sync
+        + 'static,
+{
+    let says = Says {
+        acceleration: Some(E::acceleration),
+        ..Says::DEVIATION
+    };
+    saying(estimator, scale, says)
 }
 
-fn saying<E>(
-    estimator: E,
-    scale: Scale,
-    deviation: Option<Deviation<E>>,
-    damping_ratio: Option<DampingRatio<E>>,
-) -> Estimator
+fn saying<E>(estimator: E, scale: Scale, says: Says<E>) -> Estimator
 where
     E: VelocityEstimator<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
 {
     Estimator(Arc::new(Scaled {
         estimator,
         scale,
-        deviation,
-        damping_ratio,
+        says,
     }))
 }
