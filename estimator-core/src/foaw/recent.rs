@@ -16,10 +16,10 @@ pub(super) struct Recent<const N: usize> {
     older: [[Count; N]; 2],
 }
 
-/// Equal if they hold the same samples, wherever these begin.
+/// Equal if they hold the same samples since their first, wherever these begin.
 impl<const N: usize> PartialEq for Recent<N> {
     fn eq(&self, other: &Self) -> bool {
-        self.newest == other.newest && self.older(N) == other.older(N)
+        self.newest == other.newest && self.since_first().eq(other.since_first())
     }
 }
 
@@ -48,6 +48,18 @@ impl<const N: usize> Recent<N> {
         self.keep(first + Self::OUT_OF_REACH);
         self.newest = first;
         self.equal = 0;
+    }
+
+    /// The samples before the newest, back to the first: no step between two of them is as long as
+    /// the one out of reach.
+    fn since_first(&self) -> impl Iterator<Item = Count> {
+        let mut newer = self.newest;
+        let within = move |older: &Count| {
+            let step = *older - newer;
+            newer = *older;
+            step != Self::OUT_OF_REACH
+        };
+        self.older(N).iter().copied().take_while(within)
     }
 
     /// Whether N + 1 samples read the same.

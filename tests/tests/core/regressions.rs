@@ -95,6 +95,25 @@ fn step_beyond_the_range_restarts_the_window() {
     assert_eq!(velocities[4..], [4.0; 8]);
 }
 
+/// Nor does a state that was restarted differ from one that began there.
+#[test]
+fn restarted_window_equals_a_fresh_one() {
+    let foaw = foaw::<6, EndFit>(16_384);
+    let landed = 3 + (1 << 15);
+    let mut restarted = foaw.start(&at(0));
+    for count in [1, 2, 3, landed] {
+        foaw.update(&mut restarted, &at(count));
+    }
+    let mut fresh = foaw.start(&at(landed));
+    for tick in 1..12 {
+        let sample = at(landed + tick * tick);
+        foaw.update(&mut restarted, &sample);
+        assert_ne!(restarted, fresh);
+        foaw.update(&mut fresh, &sample);
+        assert_eq!(restarted, fresh, "after {tick} ticks");
+    }
+}
+
 #[test]
 fn velocity_returns_to_zero_at_rest() {
     // 10 counts a tick, then none: exactly nothing after a window of rest.
