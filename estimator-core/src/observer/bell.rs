@@ -45,18 +45,6 @@ impl Bell {
     pub fn velocity_variance(&self) -> f32 {
         self.velocity + self.coupling * self.coupling * self.position
     }
-
-    /// Takes the position for less certain by `q`, as the velocity was wrong for `ticks` ticks.
-    #[inline(always)]
-    pub(super) fn doubt(&mut self, q: f32, ticks: f32) {
-        let p = self.position;
-        let slope = 1.0 / ticks;
-        let apart = self.coupling - slope;
-        let per = 1.0 / (p + q);
-        self.velocity += p * q * apart * apart * per;
-        self.coupling = (p * self.coupling + q * slope) * per;
-        self.position = p + q;
-    }
 }
 
 /// How a [`Bell`] gets wider.
@@ -178,16 +166,6 @@ mod tests {
             ];
             assert!(near(&dense(&after), &textbook), "{after:?} {textbook:?}");
         }
-    }
-
-    #[test]
-    fn doubt_adds_a_velocity_that_was_wrong_all_the_time() {
-        let mut after = bell(0.04, 0.7, 0.01);
-        let before = dense(&after);
-        after.doubt(0.8, 4.0);
-        let added = [[0.8, 0.8 / 4.0], [0.8 / 4.0, 0.8 / 16.0]];
-        let sum = [0, 1].map(|i| [0, 1].map(|j| before[i][j] + added[i][j]));
-        assert!(near(&dense(&after), &sum), "{after:?} {sum:?}");
     }
 
     /// Shift of the mean of a Gaussian around `x` by what is outside the cell, and the part of its

@@ -21,11 +21,8 @@ use crate::sample::{Sample, Signals};
 /// at rest    p stays, g = 0, s = w   while x is inside
 /// start      p = s = 1 / 12          nothing is known; λ = 0, and nothing is
 ///                                learned, until s < 64 w
-/// surprise   σ² = p + R              one step of Newton's for σ
-///            where x is outside by y > 6 σ, the velocity was wrong for the n ticks since last:
-///            q = (y / 6)² - σ²       p' = p + q   σ = y / 6
-///            g' = (p g + q / n) / p'      s' = s + p q (g - 1 / n)² / p'
-/// bell       h = 3 σ, y = |x| - 1/2: e towards the middle, r of the variance kept
+/// bell       σ² = p + R              one step of Newton's for σ
+///            h = 3 σ, y = |x| - 1/2: e towards the middle, r of the variance kept
 ///            y < -h          inside           nothing
 ///            y < h           one end cut      e = (y + h)² / 4 h      r = (h - y) / 2 h
 ///            h > |x| + 1/2   both ends cut    e = |x| (1 - 1 / 2 h)   r = 1 / 2 h
@@ -38,8 +35,8 @@ use crate::sample::{Sample, Signals};
 /// what that takes of the variance, as for the Gaussian itself (Tweedie's formula; Efron 2011).
 ///
 /// p and s are sums of products of numbers that are not negative over such sums, so they never get
-/// below zero, rounding or not, and p' not below w / 3. g is a mean of φ0 g / u, φ0 / φ1, 3/2
-/// and 1 / n with positive weights, and 0 at first, so it stays within 0 and 3/2.
+/// below zero, rounding or not, and p' not below w / 3. g is a mean of φ0 g / u, φ0 / φ1 and 3/2
+/// with positive weights, and 0 at first, so it stays within 0 and 3/2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftCells {
     widening: Widening,
@@ -71,8 +68,8 @@ impl SoftCellsState {
     }
 }
 
-/// A prediction that is outside by more standard deviations than these was not only unlucky.
-const SURPRISE: f32 = 6.0;
+/// σ before the first tick, √(1/12) rounded up: from above, Newton's steps fall to the root.
+const UNKNOWN_DEVIATION: f32 = 0.3;
 
 /// The velocity is known when s is below the noise of so many ticks.
 const STARTED: f32 = 64.0;
@@ -112,7 +109,7 @@ impl Correction for SoftCells {
         SoftCellsState {
             since: 0.0,
             bell: Bell::unknown(),
-            deviation: 0.3,
+            deviation: UNKNOWN_DEVIATION,
             started: false,
         }
     }
@@ -140,17 +137,9 @@ impl Correction for SoftCells {
         if state.bell.velocity < STARTED * self.widening.white {
             state.started = true;
         }
-        let mut variance = state.bell.position + self.boundary;
+        let variance = state.bell.position + self.boundary;
         // Never below the root, wherever it comes from.
-        let mut deviation = 0.5 * (state.deviation + variance / state.deviation);
-        if outside {
-            let wide = (position.abs() - 0.5) * (1.0 / SURPRISE);
-            if wide * wide > variance {
-                state.bell.doubt(wide * wide - variance, state.since);
-                variance = wide * wide;
-                deviation = wide;
-            }
-        }
+        let deviation = 0.5 * (state.deviation + variance / state.deviation);
         state.deviation = deviation;
         let per_deviation = 1.0 / deviation;
         let per_width = (0.5 / HALF_WIDTH) * per_deviation;

@@ -256,3 +256,59 @@ fn velocity_comes_back_to_zero_at_rest_without_current() {
         }
     }
 }
+
+/// A knock that no current explains: counts find the new velocity, at any speed, and keep it.
+#[test]
+fn soft_ends_find_a_velocity_that_jumps() {
+    for rate in [1000.0, 10_000.0] {
+        let hertz = Hertz(rate);
+        let unsure = Uncertainty {
+            torque_noise: 8e-6,
+            load: 3e-4,
+            boundary_noise: 0.0625,
+            ..UNSURE
+        };
+        let device = CoupledMotor::DCX35L;
+        let soft = Observer::soft(&device, hertz, &unsure).expect("valid");
+        let learning = soft.learning(4096, hertz).expect("valid");
+        let friction = (device.coulomb_friction / device.large.torque_constant) as f32;
+        for step in 0..60 {
+            let turns = 0.2 * 1.08f64.powi(step);
+            let velocity = turns * 4096.0 / rate;
+            let jump = (0.2 * rate) as i32;
+            let samples = |current: f32| {
+                let at = move |tick: i32| {
+                    let moved = f64::from((tick - jump).max(0)) * velocity;
+                    let count = Count(7000 + moved as u32);
+                    let current = if tick > jump { current } else { 0.0 };
+                    Sample::new(count)
+                        .with_small(count)
+                        .with_current(Amps::new(current))
+                };
+                (0..3 * jump).map(at).collect::<Vec<_>>()
+            };
+            let lost_for = |case: Case, current: f32| {
+                let velocities = (case.run)(&samples(current));
+                let off = |v: &f32| (f64::from(*v) - velocity).abs() > 0.2 * velocity;
+                let last = velocities
+                    .iter()
+                    .rposition(off)
+                    .expect("not before the knock");
+                f64::from(last as i32 + 2 - jump) / rate
+            };
+            for (case, current) in [
+                (case("soft", rate, soft), friction),
+                (case("learning", rate, learning), friction),
+                // A second error: friction that nothing overcomes does not slow the rotor down.
+                (case("learning", rate, learning), 0.0),
+            ] {
+                let name = case.name.clone();
+                let lost = lost_for(case, current);
+                assert!(
+                    lost < 0.03,
+                    "{name}, {turns} turns/s, {current} A: {lost} s"
+                );
+            }
+        }
+    }
+}

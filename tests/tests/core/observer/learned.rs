@@ -59,7 +59,7 @@ fn a_start_in_motion_teaches_nothing() {
     started_in_motion(&counts.learning(4096, rate).expect("valid"), rate, 0.003);
     let soft = Observer::soft(&CoupledMotor::DCX35L, rate, &sure).expect("valid");
     // At a count in every tick counts say least of all.
-    started_in_motion(&soft.learning(4096, rate).expect("valid"), rate, 0.006);
+    started_in_motion(&soft.learning(4096, rate).expect("valid"), rate, 0.0045);
 }
 
 fn started_in_motion<M: Correction>(
