@@ -54,7 +54,7 @@ const BOUNDS: [(&str, f64, [f64; 2]); 10] = [
     ("observer-soft", 0.80, [0.5, 3.5]),
     ("adaptive", 0.80, [0.8, 5.0]),
     ("adaptive-soft", 0.96, [1.2, 10.0]),
-    ("adaptive-edge", 0.99, [3.0, 27.0]),
+    ("adaptive-edge", 0.99, [3.0, 32.0]),
 ];
 
 #[test]

@@ -5,8 +5,10 @@ use core::borrow::Borrow;
 use super::design::Gain;
 use super::table::Table;
 use crate::const_math::limited;
+use crate::design_error::DesignError;
 use crate::edge_clock::EdgeClock;
 use crate::sample::{Sample, Signals};
+use crate::units::Hertz;
 
 /// How far a tick leads, for the edge inside it.
 #[derive(Clone, Copy, Debug)]
@@ -116,7 +118,8 @@ impl Correction for Cells {
 }
 
 /// Counts with the instant of each tick's latest edge. The rotor is corrected where it was then;
-/// at a tick without an edge it is kept inside its cell, as with [`Cells`].
+/// at a tick without an edge it is kept inside its cell, as with [`Cells`], but for the gain: when it
+/// got to the boundary nobody knows, so the gap since the last correction counts 3 ms more.
 ///
 /// The four phases of a line are not where they should be: the offset of each is learned from its
 /// innovations, `o += μ e` (μ = 0.02, within a quarter of a count). Nothing is learned without an
@@ -125,6 +128,8 @@ impl Correction for Cells {
 pub struct Edges {
     pub(super) clock: EdgeClock,
     pub(super) table: Table,
+    /// What a gap that no edge ends counts more, ticks.
+    pub(super) unstamped: f32,
 }
 
 /// State of [`Edges`].
@@ -132,6 +137,8 @@ pub struct Edges {
 pub struct EdgesState {
     /// Time since the last edge, ticks.
     since: f32,
+    /// Time since the last correction, ticks.
+    alone: f32,
     /// Where each phase's boundary really is, counts.
     offsets: [f32; 4],
 }
@@ -141,6 +148,22 @@ const OFFSET_GAIN: f32 = 0.02;
 
 /// Largest offset, counts: four within it keep their order.
 const LARGEST_OFFSET: f32 = 0.25;
+
+/// What a gap that no edge ends counts more, s.
+const UNSTAMPED: f64 = 3e-3;
+
+impl Edges {
+    pub(super) const fn new(clock: Hertz, rate: Hertz, cells: Cells) -> Result<Self, DesignError> {
+        match EdgeClock::new(clock, rate) {
+            Ok(clock) => Ok(Self {
+                clock,
+                table: cells.table,
+                unstamped: (UNSTAMPED * rate.0) as f32,
+            }),
+            Err(error) => Err(error),
+        }
+    }
+}
 
 impl Correction for Edges {
     type State = EdgesState;
@@ -154,6 +177,7 @@ impl Correction for Edges {
     fn start(&self) -> EdgesState {
         EdgesState {
             since: 0.0,
+            alone: 0.0,
             offsets: [0.0; 4],
         }
     }
@@ -172,16 +196,20 @@ impl Correction for Edges {
         let since = state.since + 1.0;
         let Some(edge) = self.clock.fresh(sample) else {
             state.since = since;
+            state.alone += 1.0;
             let error = excess(path.from + path.lead)?;
+            let gap = state.alone + self.unstamped;
+            state.alone = 0.0;
             let innovation = Innovation {
                 error,
                 age: 0.0,
                 position: 1.0,
                 gap: 0.0,
             };
-            return Some((innovation, self.table.gain(since)));
+            return Some((innovation, self.table.gain(gap)));
         };
         state.since = edge.age;
+        state.alone = edge.age;
         let passed = 1.0 - edge.age;
         let there = path.from + passed * (path.lead - 0.5 * path.gained * edge.age);
         let offset = &mut state.offsets[edge.phase % 4];

@@ -12,7 +12,6 @@ use crate::const_math::{exp, phi1, phi2};
 use crate::coupled_motor::CoupledMotor;
 use crate::design_error::DesignError;
 use crate::device::Device;
-use crate::edge_clock::EdgeClock;
 use crate::units::Hertz;
 
 /// What an observer is unsure of. SI units.
@@ -270,12 +269,17 @@ impl Observer<NoCurrent, HeldHandle, Edges, Fixed> {
             Ok(known) => known,
             Err(error) => return Err(error),
         };
-        let clock = match EdgeClock::new(clock, rate) {
-            Ok(clock) => clock,
-            Err(error) => return Err(error),
-        };
-        let table = known.correction.table;
-        Ok(known.with_parts(NoCurrent, HeldHandle, Edges { clock, table }, Fixed))
+        match Edges::new(clock, rate, known.correction) {
+            Ok(edges) => {
+                // No friction that could be wrong holds the rotor inside its cell.
+                let edges = Edges {
+                    unstamped: 0.0,
+                    ..edges
+                };
+                Ok(known.with_parts(NoCurrent, HeldHandle, edges, Fixed))
+            }
+            Err(error) => Err(error),
+        }
     }
 }
 
@@ -289,13 +293,10 @@ impl<C: Copy, S: Copy, L: Copy> Observer<C, S, Cells, L> {
         clock: Hertz,
         rate: Hertz,
     ) -> Result<Observer<C, S, Edges, L>, DesignError> {
-        let clock = match EdgeClock::new(clock, rate) {
-            Ok(clock) => clock,
-            Err(error) => return Err(error),
-        };
-        let table = self.correction.table;
-        let edges = Edges { clock, table };
-        Ok(self.with_parts(self.current, self.slip, edges, self.learning))
+        match Edges::new(clock, rate, self.correction) {
+            Ok(edges) => Ok(self.with_parts(self.current, self.slip, edges, self.learning)),
+            Err(error) => Err(error),
+        }
     }
 }
 

@@ -5,11 +5,25 @@ use crate::const_math::{exp, phi1, phi2};
 use crate::design_error::DesignError;
 use crate::riccati::{self, Matrix};
 
-/// Rows of the table; a longer gap takes the last.
-pub(super) const ROWS: usize = 64;
+/// Gaps that have a row each.
+const EACH: usize = 64;
 
-/// What belongs to each gap between corrections. Row n - 1 is the steady state of the filter that
-/// is corrected once every n ticks.
+/// Longer ones share one by so many ticks.
+const STEP: usize = 32;
+
+/// Rows of the table: as far as 961 ticks; a longer gap takes the last.
+pub(super) const ROWS: usize = EACH + 29;
+
+/// Row of a gap of one tick and so many more: that of the longest gap that is not longer.
+#[inline(always)]
+fn row_after(more: usize) -> usize {
+    let shared = EACH - EACH / STEP + more / STEP;
+    let row = if more < EACH { more } else { shared };
+    row.min(ROWS - 1)
+}
+
+/// What belongs to each gap between corrections: a row is the steady state of the filter that is
+/// corrected once every so many ticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Table {
     gains: [Gain; ROWS],
@@ -54,7 +68,7 @@ impl Table {
             velocity_variances: [0.0; ROWS],
         };
         let (mut a_n, mut q_n) = (a, q);
-        let mut row = 0;
+        let (mut row, mut ticks) = (0, 1);
         while row < ROWS {
             let steady = match riccati::steady(&a_n, &q_n, r) {
                 Ok(steady) => steady,
@@ -67,9 +81,17 @@ impl Table {
                 variance: steady.innovation as f32,
             };
             table.velocity_variances[row] = steady.velocity[0] as f32;
-            q_n = riccati::later_noise(&a, &q, &q_n);
-            a_n = riccati::product(&a, &a_n);
             row += 1;
+            let next = if row < EACH {
+                row + 1
+            } else {
+                EACH + 1 + (row - EACH) * STEP
+            };
+            while ticks < next {
+                q_n = riccati::later_noise(&a, &q, &q_n);
+                a_n = riccati::product(&a, &a_n);
+                ticks += 1;
+            }
         }
         Ok(table)
     }
@@ -78,11 +100,20 @@ impl Table {
     #[inline(always)]
     pub(super) fn gain(&self, gap: f32) -> &Gain {
         // A float-to-integer cast saturates.
-        &self.gains[((gap - 0.5) as usize).min(ROWS - 1)]
+        let more = (gap - 0.5) as usize;
+        if more < EACH {
+            &self.gains[more]
+        } else {
+            unlikely();
+            &self.gains[row_after(more)]
+        }
     }
 
     /// Variance of the velocity after a gap of this many ticks.
     pub(super) fn velocity_variance(&self, gap: f32) -> f32 {
-        self.velocity_variances[(gap as usize).clamp(1, ROWS) - 1]
+        self.velocity_variances[row_after((gap - 1.0) as usize)]
     }
 }
+
+#[cold]
+const fn unlikely() {}
