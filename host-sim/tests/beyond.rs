@@ -155,14 +155,40 @@ fn right_beliefs_leave_a_tenth_and_wrong_ones_are_learned() {
         let outside = worst_of(rows, name, |row| row.outside);
         assert!(outside <= bound, "{name}: {outside}");
     }
-    // What the docs call the weak side of time stamps; seeds differ much.
+    // What the docs call the weak side of time stamps.
     let weak = |row: &Row| {
         row.estimator == "adaptive-edge"
             && row.scenario == "creep"
             && (row.constant, row.error) == (Some("friction"), -0.5)
     };
     let outside = mean(&rows, weak, |row| row.outside);
-    assert_within("adaptive-edge in creep, outside", outside, [0.002, 0.12]);
+    assert_within("adaptive-edge in creep, outside", outside, [0.0, 0.01]);
+    let left = mean(&rows, weak, |row| row.rms_pct);
+    assert_within("adaptive-edge in creep", left, [10.0, 60.0]);
+}
+
+/// In creep at a fast rate there are hundreds of ticks between two counts.
+#[test]
+fn creep_is_followed_at_a_fast_rate() {
+    let bounds = [
+        ("observer", [0.5, 2.5]),
+        ("adaptive", [0.1, 0.9]),
+        ("observer-edge", [0.8, 3.5]),
+        ("adaptive-edge", [0.8, 3.2]),
+    ];
+    let settings = settings(Device::default(), &bounds.map(|(name, _)| name));
+    let outcomes = compare(
+        &cases(&[ScenarioName::Creep], 1e4, &[21, 22]),
+        &settings,
+        || (),
+    );
+    let outcomes = outcomes.unwrap();
+    let rows = || outcomes.iter().flat_map(|outcome| &outcome.rows);
+    for (name, bound) in bounds {
+        let of = rows().filter(|row| row.estimator == name);
+        let rms = of.map(|row| row.percent.rms_pct.unwrap()).sum::<f64>() / 2.0;
+        assert_within(name, rms, bound);
+    }
 }
 
 /// With the plant's own noise, against the particle filter with the true model.
