@@ -69,13 +69,13 @@ const LARGEST_FRICTION_ERROR: f32 = 0.5;
 /// correction x += e,  v += K_v[n] e,  a += (1 - ρ) K_a[n] e,  c -= ρ K_a[n] e d
 /// ```
 /// n is the number of ticks since the last correction, and K\[n\] the steady gain of the filter
-/// that is corrected once every n ticks: 64 rows from the Riccati recursion, at compile time. So
-/// there is no covariance at run time and nothing that could lose its definiteness. i_mean is the
-/// current behind the amplifier's lag, Δ_S the handle's displacement (an exact integral of its
-/// velocity), ρ the share of the unknown torque that is taken for friction, d the mean direction of
-/// the last 8 ms (at rest, that of the drive), because an innovation is what went wrong over some
-/// time: the direction of the moment would make a fast vibration teach a wrong friction. c is within half of
-/// the friction believed in.
+/// that is corrected once every n ticks, from the Riccati recursion, at compile time: a row for each
+/// n to 64, then for every 32nd, to 961. So there is no covariance at run time and nothing that could
+/// lose its definiteness. i_mean is the current behind the amplifier's lag, Δ_S the handle's
+/// displacement (an exact integral of its velocity), ρ the share of the unknown torque that is taken
+/// for friction, d the mean direction of the last 8 ms (at rest, that of the drive), because an
+/// innovation is what went wrong over some time: the direction of the moment would make a fast
+/// vibration teach a wrong friction. c is within half of the friction believed in.
 ///
 /// What a device lacks is left out by type: [`held`](Self::held) without the small encoder,
 /// [`blind`](Self::blind) without current; [`with_edges`](Self::with_edges) adds time stamps,

@@ -117,3 +117,38 @@ impl Table {
 
 #[cold]
 const fn unlikely() {}
+
+#[cfg(test)]
+mod tests {
+    use super::{Noise, Table, one_tick, riccati};
+
+    #[test]
+    fn a_gap_takes_the_longest_row_that_is_not_longer() {
+        let noise = Noise {
+            white: 1e-6,
+            load: 1e-8,
+            decay: 0.99,
+            boundary: 0.0625,
+        };
+        let table = Table::new(1e-3, &noise).expect("valid");
+        let (a, q) = one_tick(1e-3, &noise);
+        for (gaps, row) in [
+            ([1.0, 0.2], 1),
+            ([64.0, 63.6], 64),
+            ([65.0, 96.4], 65),
+            ([97.0, 128.0], 97),
+            ([961.0, 1e9], 961),
+        ] {
+            let (mut a_n, mut q_n) = (a, q);
+            for _ in 1..row {
+                q_n = riccati::later_noise(&a, &q, &q_n);
+                a_n = riccati::product(&a, &a_n);
+            }
+            let steady = riccati::steady(&a_n, &q_n, 0.0625 * 0.0625).expect("settles");
+            for gap in gaps {
+                assert_eq!(table.gain(gap).velocity, steady.gain[1], "{gap}");
+            }
+            assert_eq!(table.velocity_variance(gaps[0]), steady.velocity[0] as f32);
+        }
+    }
+}
