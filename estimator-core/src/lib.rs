@@ -51,6 +51,7 @@
     reason = "a NaN has to fail these comparisons"
 )]
 
+mod branch;
 mod confidence;
 pub mod const_math;
 mod coupled_motor;

@@ -2,6 +2,8 @@
 
 use core::ops::{BitOr, Mul, Sub};
 
+use crate::branch::unlikely;
+
 /// A bound on the slope, `rise / run`.
 #[derive(Clone, Copy, Debug)]
 struct Bound {
@@ -106,8 +108,3 @@ impl Cone {
         (above | below) < W::from(0)
     }
 }
-
-/// Says that the branch it stands in is not one of the longest update, in which every sample moves
-/// a bound and none is refused: its turns are then laid out without jumps.
-#[cold]
-const fn unlikely() {}

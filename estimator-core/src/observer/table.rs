@@ -1,6 +1,7 @@
 //! Gains by the time between corrections, computed at compile time.
 
 use super::design::{Gain, Noise};
+use crate::branch::unlikely;
 use crate::const_math::{exp, phi1, phi2};
 use crate::design_error::DesignError;
 use crate::riccati::{self, Matrix};
@@ -114,9 +115,6 @@ impl Table {
         self.velocity_variances[row_after((gap - 1.0) as usize)]
     }
 }
-
-#[cold]
-const fn unlikely() {}
 
 #[cfg(test)]
 mod tests {
