@@ -22,6 +22,8 @@ pub(crate) struct Inputs {
     pub(crate) clock_failure: bool,
     /// Control ticks missed since the last one.
     pub(crate) missed: u32,
+    /// Debug settings are on that would hold the outputs in a halt.
+    pub(crate) debugger: bool,
     pub(crate) request: Option<Request>,
 }
 
@@ -92,6 +94,7 @@ impl Control {
             clock_failure: inputs.clock_failure,
             finite: is_finite(&action),
             missed: inputs.missed,
+            debugger: inputs.debugger,
         };
         let request = inputs.request.or_else(|| self.by_itself());
         let order = SAFETY.tick(&mut self.safety, &findings, request);

@@ -88,6 +88,7 @@ mod app {
             amplifier_fault: amplifiers.is_faulty(),
             clock_failure: clock.has_failed(),
             missed,
+            debugger: false,
             request: control.hear(messages.dequeue()),
         };
         amplifiers.apply(control.step(&sample, &inputs));

@@ -52,6 +52,9 @@ pub struct Findings {
     pub finite: bool,
     /// Control ticks missed since the last one.
     pub missed: u32,
+    /// Debug settings are on that would hold the outputs in a halt: a vector catch is set, or the
+    /// watchdog is frozen in a halt.
+    pub debugger: bool,
 }
 
 impl Findings {
@@ -62,6 +65,7 @@ impl Findings {
         clock_failure: false,
         finite: true,
         missed: 0,
+        debugger: false,
     };
 }
 
@@ -189,7 +193,10 @@ impl Safety {
             ..*findings
         };
         let scene = core::mem::take(&mut state.chosen);
-        state.stop = self.wrong(state, &now);
+        state.stop = match self.wrong(state, &now) {
+            Stop::None if findings.debugger => Stop::Debugger,
+            wrong => wrong,
+        };
         state.mode = match (state.stop, scene) {
             (Stop::None, 0) => Mode::Armed,
             (Stop::None, _) => Mode::Running,

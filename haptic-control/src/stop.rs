@@ -38,6 +38,9 @@ pub enum Stop {
     CommandTimeout = 13,
     /// The large motor sped up against its current.
     Against = 14,
+    /// Debug settings would hold the outputs in a halt: a vector catch is set, or the watchdog is
+    /// frozen in a halt. The device cannot be armed; an armed device is not stopped.
+    Debugger = 15,
 }
 
 impl Stop {
@@ -60,6 +63,7 @@ impl Stop {
             12 => Self::HardFault,
             13 => Self::CommandTimeout,
             14 => Self::Against,
+            15 => Self::Debugger,
             _ => return None,
         })
     }

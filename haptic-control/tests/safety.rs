@@ -13,10 +13,15 @@ fn tick(state: &mut SafetyState, findings: Findings, request: Option<Request>) -
     SAFETY.tick(state, &findings, request)
 }
 
-fn running() -> SafetyState {
+fn armed() -> SafetyState {
     let mut state = SAFETY.start(Stop::None);
     let armed = tick(&mut state, WELL, Some(Request::Arm));
     assert!(armed.enable && armed.restart && state.mode() == Mode::Armed);
+    state
+}
+
+fn running() -> SafetyState {
+    let mut state = armed();
     let on = tick(&mut state, WELL, Some(Request::Select(2)));
     assert_eq!((on.enable, on.restart, on.select), (true, false, Some(2)));
     assert_eq!(state.mode(), Mode::Running);
@@ -102,6 +107,41 @@ fn arming_is_refused_while_an_amplifier_or_the_clock_is_faulty() {
 }
 
 #[test]
+fn debug_settings_refuse_arming_and_do_not_stop_an_armed_device() {
+    let debugger = Findings {
+        debugger: true,
+        ..WELL
+    };
+    for reset in [Stop::None, Stop::Watchdog] {
+        for scene in [0, 2] {
+            let mut state = SAFETY.start(reset);
+            tick(&mut state, debugger, Some(Request::Select(scene)));
+            let order = tick(&mut state, debugger, Some(Request::Arm));
+            assert_eq!((order.enable, order.select), (false, None));
+            assert_eq!((state.mode(), state.stop()), (Mode::Safe, Stop::Debugger));
+            // Once the settings are cleared, the device can be armed.
+            assert!(tick(&mut state, WELL, Some(Request::Arm)).enable);
+            assert_eq!((state.mode(), state.stop()), (Mode::Armed, Stop::None));
+        }
+    }
+    for mut state in [armed(), running()] {
+        let before = state.mode();
+        assert!(tick(&mut state, debugger, None).enable);
+        assert_eq!((state.mode(), state.stop()), (before, Stop::None));
+    }
+    // A fault of the hardware is reported first.
+    for (findings, stop) in [wrongs()[5], wrongs()[6]] {
+        let mut state = SAFETY.start(Stop::None);
+        let both = Findings {
+            debugger: true,
+            ..findings
+        };
+        tick(&mut state, both, Some(Request::Arm));
+        assert_eq!(state.stop(), stop);
+    }
+}
+
+#[test]
 fn a_reset_with_a_cause_boots_safe() {
     for stop in [
         Stop::Watchdog,
@@ -181,25 +221,20 @@ fn rare_missed_ticks_are_forgiven_and_frequent_ones_are_not() {
 
 #[test]
 fn codes_come_back() {
-    for code in 0..=14 {
+    for code in 0..=15 {
         assert_eq!(Stop::from_code(code).map(|stop| stop as u8), Some(code));
     }
-    assert_eq!(Stop::from_code(15), None);
+    assert_eq!(Stop::from_code(16), None);
 }
 
 /// From every mode, whatever is found and asked: enabled means armed or running, only `Arm` gets
 /// there from the others, safe has a cause, and an order to select goes to what is enabled.
 #[test]
 fn only_arm_enables() {
-    let armed = {
-        let mut state = SAFETY.start(Stop::None);
-        tick(&mut state, WELL, Some(Request::Arm));
-        state
-    };
     let modes = [
         SAFETY.start(Stop::None),
         SAFETY.start(Stop::Panic),
-        armed,
+        armed(),
         running(),
     ];
     let mut found = vec![WELL];

@@ -64,6 +64,7 @@ pub fn run(data: &[u8]) {
             clock_failure: inputs == 0xFE,
             finite: true,
             missed: u32::from(inputs == 0xFD),
+            debugger: inputs == 0xFC,
         };
         let action = board.step(&mut scene, &sample);
         check(&action.currents);

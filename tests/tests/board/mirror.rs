@@ -77,6 +77,7 @@ pub(crate) fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
             amplifier_fault: false,
             clock_failure: false,
             missed: 0,
+            debugger: false,
             request: Some(request.unwrap_or(Request::KeepAlive)),
         };
         let currents = control.step(&sample, &inputs);
