@@ -3,10 +3,8 @@
 use host_sim::closed_loop::SceneName;
 use host_sim::device::Device;
 use host_sim::estimators::Kind;
-use host_sim::felt;
-use host_sim::parameters::{Parameters, PlantKind};
+use host_sim::parameters::Parameters;
 use host_sim::robust::{self, summary};
-use host_sim::score::Wanted;
 use host_sim::zwidth;
 
 use crate::{BENCHMARKS, is_written_for, table};
@@ -151,41 +149,5 @@ fn bounds_of_the_boards_parameters() {
             // The ends of the table of parameters.
             assert!(values[0] > 0.35 && values[1] > 5.0, "{large}: {values:?}");
         }
-    }
-}
-
-#[test]
-fn shares_below_what_a_fingertip_feels() {
-    let rows = table(BENCHMARKS, "| in the loop, free air |");
-    let settings = felt::Settings {
-        device: Device::default(),
-        estimators: rows
-            .iter()
-            .filter(|row| row[0] != "reference")
-            .map(|row| Kind::named(row[0]).unwrap())
-            .collect(),
-        handle: Kind::named("kalman-triple-steady").unwrap(),
-        parameters: Parameters::default(),
-        wanted: Wanted::NONE,
-    };
-    let case = felt::Case {
-        scene: SceneName::FreeAir,
-        rate_hz: 1e3,
-        plant: PlantKind::Friction,
-        seed: 1,
-        seconds: 10.0,
-        keep: false,
-    };
-    let outcomes = felt::compare(&[case], &settings, || ()).unwrap();
-    for row in rows {
-        let by = |felt: &&felt::FeltRow| felt.controlled_by == row[0];
-        let felt = outcomes[0].rows.iter().find(by).expect(row[0]);
-        let share = 100.0 * felt.parasitic.below_threshold.unwrap();
-        let written: f64 = row[1].parse().unwrap();
-        assert!(
-            (written - share).abs() < 2.0,
-            "{}: {written}, {share}",
-            row[0]
-        );
     }
 }

@@ -1,5 +1,6 @@
 //! The figures in README.md and docs are what the program prints.
 
+mod estimators;
 mod in_the_loop;
 
 use host_sim::compare::{Case, Outcome, Settings, compare};
@@ -12,7 +13,6 @@ use host_sim::score::Wanted;
 use host_sim::sensitivity::{self, sensitivity};
 use host_sim::table::pooled_pct;
 
-const README: &str = include_str!("../../../README.md");
 const BENCHMARKS: &str = include_str!("../../../docs/benchmarks.md");
 
 /// The cells of the rows of the table whose heading row contains `heading`.
@@ -68,7 +68,6 @@ fn distances_of_the_papers_experiment() {
         experiment(1e3, PlantKind::Friction),
         experiment(11.6e3, PlantKind::Friction),
         experiment(1e3, PlantKind::Frictionless),
-        experiment(11.6e3, PlantKind::Frictionless),
     ];
     let check = |name: &str, cells: &[(usize, &str)]| {
         for &(column, cell) in cells {
@@ -79,16 +78,6 @@ fn distances_of_the_papers_experiment() {
             );
         }
     };
-    for row in table(README, "| knows |") {
-        let cells: Vec<_> = row[2..].iter().copied().enumerate().collect();
-        // "kalman-triple, -table, -steady" stands for all three.
-        let mut names = row[0].split(", ");
-        let name = names.next().unwrap();
-        check(name, &cells);
-        for suffix in names {
-            check(&format!("{name}{suffix}"), &cells);
-        }
-    }
     for row in table(BENCHMARKS, "| independent | 11.6 kHz |") {
         check(row[0], &[(0, row[1]), (1, row[3]), (2, row[5])]);
     }
