@@ -143,6 +143,12 @@ impl Kind {
         )
     }
 
+    /// Whether it is an observer: it has a disturbance torque, and with it a mechanical model.
+    #[must_use]
+    pub fn is_observer(&self) -> bool {
+        self.parameters.iter().any(Parameter::is_torque)
+    }
+
     /// Whether `tune` has anything to look for.
     #[must_use]
     pub fn is_tunable(&self) -> bool {
@@ -183,6 +189,12 @@ impl Kind {
 }
 
 impl Parameter {
+    /// Whether it is a torque or a density of one.
+    #[must_use]
+    pub fn is_torque(&self) -> bool {
+        self.unit.starts_with("N.m")
+    }
+
     /// Whether `value` is in the parameter's range.
     ///
     /// # Errors

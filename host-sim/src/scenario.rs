@@ -69,6 +69,18 @@ impl ScenarioName {
         Self::Heating,
     ];
 
+    /// The scenarios whose plant has friction and whose device stays as it is.
+    pub const WITH_FRICTION: [Self; 8] = [
+        Self::Step,
+        Self::Permanent,
+        Self::Track,
+        Self::FreeAir,
+        Self::Wall,
+        Self::Texture,
+        Self::Creep,
+        Self::Hold,
+    ];
+
     /// Name on the command line and in reports.
     #[must_use]
     pub const fn as_str(self) -> &'static str {

@@ -1,6 +1,10 @@
 //! Search of the estimators' parameters on seeds that nothing is scored on.
+//!
+//! The search minimises the cost on the tuning seeds. The result and the shipped parameters are then
+//! compared on one more seed, and the shipped ones stay where they are at least as good there.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use rayon::prelude::*;
 
@@ -9,7 +13,7 @@ use crate::compare::{Case, interval, setup, trace};
 use crate::device::Device;
 use crate::estimators::{Kind, Parameter, Search, Setup, Values};
 use crate::failure::Failure;
-use crate::parameters::{PlantKind, Preset};
+use crate::parameters::{Parameters, PlantKind, Preset};
 use crate::scenario::ScenarioName;
 use crate::score::{Truth, Wanted};
 use crate::trace::Trace;
@@ -23,6 +27,9 @@ pub const RMS_WEIGHT: f64 = 0.01;
 
 /// Points of a search's first grid.
 const GRID: usize = 25;
+
+/// Inertia of the device for which the ranges of the parameters are stated, kg.m2.
+const DEFAULT_INERTIA: f64 = estimator_core::Device::DCX35L.inertia;
 
 /// Rounds of refinement between the neighbours of the best point.
 const REFINEMENTS: usize = 3;
@@ -42,11 +49,22 @@ pub struct Ground {
     pub beliefs: Vec<Belief>,
 }
 
+/// What tuning found at one rate on one plant.
+#[derive(Clone, Debug)]
+pub struct Tuned {
+    /// The parameters.
+    pub preset: Preset,
+    /// One line for each parameter at an end of its range, and for each estimator whose shipped
+    /// parameters stay.
+    pub notes: Vec<String>,
+}
+
 /// Tunes `kinds`, all of them tunable, at one rate on one plant.
 ///
 /// Minimises the mean distance outside the haptic interval plus a hundredth of the RMS error,
 /// averaged over scenarios and seeds: a grid over all parameters at once, then finer grids around
-/// the best. `done` is called as each estimator ends.
+/// the best. On the seed after the tuning seeds the result is compared with the shipped parameters;
+/// the better ones are returned. `done` is called as each estimator ends.
 ///
 /// # Errors
 /// [`Failure::Input`] where a case cannot be simulated or an estimator needs what the
@@ -57,37 +75,34 @@ pub fn tune(
     rate_hz: f64,
     plant: PlantKind,
     done: impl Fn() + Sync,
-) -> Result<Preset, Failure> {
-    let cases: Vec<_> = ground
-        .scenarios
-        .iter()
-        .flat_map(|&scenario| (0..ground.seeds).map(move |i| (scenario, FIRST_SEED + i)))
-        .map(|(scenario, seed)| Case {
-            scenario,
-            rate_hz,
-            plant,
-            seed,
-            seconds: ground.seconds,
-            keep: false,
-        })
-        .collect();
-    let traces = cases
-        .par_iter()
-        .map(|case| trace(case, &ground.device, kinds))
-        .collect::<Result<Vec<_>, _>>()?;
-    let wanted = Wanted {
-        rms: true,
-        distance: true,
-        ..Wanted::NONE
+) -> Result<Tuned, Failure> {
+    let traces = |seeds: Range<u64>| {
+        let cases: Vec<_> = ground
+            .scenarios
+            .iter()
+            .flat_map(|&scenario| seeds.clone().map(move |i| (scenario, FIRST_SEED + i)))
+            .map(|(scenario, seed)| Case {
+                scenario,
+                rate_hz,
+                plant,
+                seed,
+                seconds: ground.seconds,
+                keep: false,
+            })
+            .collect();
+        let traces = cases
+            .par_iter()
+            .map(|case| trace(case, &ground.device, kinds));
+        traces.collect::<Result<Vec<_>, _>>()
     };
-    let interval = interval(&ground.device);
-    let tracks = traces
-        .iter()
-        .map(|trace| {
-            let omega = trace.true_omega.as_deref().unwrap_or_default();
-            Ok((trace, Truth::new(omega, rate_hz, interval, wanted)?))
-        })
-        .collect::<Result<Vec<_>, String>>()?;
+    let traces = [
+        traces(0..ground.seeds)?,
+        traces(ground.seeds..ground.seeds + 1)?,
+    ];
+    let [seen, unseen] = [
+        tracks(&traces[0], rate_hz, &ground.device)?,
+        tracks(&traces[1], rate_hz, &ground.device)?,
+    ];
 
     let setup = match plant {
         PlantKind::Friction => setup(&ground.device, rate_hz),
@@ -95,23 +110,83 @@ pub fn tune(
     };
     let wrong = ground.beliefs.iter().map(|belief| belief.of(&setup));
     let setups: Vec<_> = std::iter::once(setup).chain(wrong).collect();
-    let tune = |&kind: &&'static Kind| {
-        let best = best_values(kind, &setups, &tracks);
-        done();
+    let shipped = Parameters::default();
+    let mut notes = Vec::new();
+    let mut estimators = BTreeMap::new();
+    for &kind in kinds {
+        let found = best_values(kind, &setups, &seen);
+        let before = shipped.values(kind, &setup, plant);
+        let cost = |values| mean_cost(kind, &setups, &unseen, values);
+        let best = if cost(&before) <= cost(&found) {
+            if before != found {
+                notes.push(format!(
+                    "{}: the shipped parameters stay; they are better on a seed that was not tuned on",
+                    kind.name
+                ));
+            }
+            before
+        } else {
+            notes.extend(ends_of_ranges(kind, &setup, &found));
+            found
+        };
         let names = kind.parameters.iter().map(|p| p.name.to_owned());
-        (
-            kind.name.to_owned(),
-            names.zip(best).collect::<BTreeMap<_, _>>(),
-        )
-    };
-    Ok(Preset {
-        rate_hz,
-        plant,
-        estimators: kinds.iter().map(tune).collect(),
+        estimators.insert(kind.name.to_owned(), names.zip(best).collect());
+        done();
+    }
+    Ok(Tuned {
+        preset: Preset {
+            rate_hz,
+            plant,
+            estimators,
+        },
+        notes,
     })
 }
 
-fn best_values(kind: &Kind, setups: &[Setup], tracks: &[(&Trace, Truth)]) -> Values {
+/// A recording and its truth.
+type Track<'a> = (&'a Trace, Truth<'a>);
+
+fn tracks<'a>(
+    traces: &'a [Trace],
+    rate_hz: f64,
+    device: &Device,
+) -> Result<Vec<Track<'a>>, String> {
+    let wanted = Wanted {
+        rms: true,
+        distance: true,
+        ..Wanted::NONE
+    };
+    let interval = interval(device);
+    let track = |trace: &'a Trace| {
+        let omega = trace.true_omega.as_deref().unwrap_or_default();
+        Ok((trace, Truth::new(omega, rate_hz, interval, wanted)?))
+    };
+    traces.iter().map(track).collect()
+}
+
+/// A line for each value that is an end of the range which was searched.
+fn ends_of_ranges(kind: &Kind, setup: &Setup, values: &Values) -> Vec<String> {
+    let searched = kind.parameters.iter().zip(values);
+    searched
+        .filter_map(|(parameter, &value)| {
+            let grid = first_grid(parameter, setup);
+            let (low, high) = (grid[0], grid[grid.len() - 1]);
+            let is = |end: f64| three_digits(end) == three_digits(value);
+            let at = match parameter.search {
+                Search::Fixed(_) => return None,
+                _ if is(low) => "lower",
+                _ if is(high) => "upper",
+                _ => return None,
+            };
+            Some(format!(
+                "{}.{} = {value} {} is the {at} end of the range searched; a value beyond it may be better: try --set",
+                kind.name, parameter.name, parameter.unit
+            ))
+        })
+        .collect()
+}
+
+fn best_values(kind: &Kind, setups: &[Setup], tracks: &[Track]) -> Values {
     let mut axes: Vec<_> = kind
         .parameters
         .iter()
@@ -128,12 +203,7 @@ fn best_values(kind: &Kind, setups: &[Setup], tracks: &[(&Trace, Truth)]) -> Val
 }
 
 /// The best point of the grid spanned by `axes`.
-fn evaluate(
-    kind: &Kind,
-    setups: &[Setup],
-    tracks: &[(&Trace, Truth)],
-    axes: &[Vec<f64>],
-) -> Values {
+fn evaluate(kind: &Kind, setups: &[Setup], tracks: &[Track], axes: &[Vec<f64>]) -> Values {
     let mut points = vec![Vec::new()];
     for axis in axes {
         points = points
@@ -161,17 +231,17 @@ fn compare_points(p: &Values, q: &Values) -> std::cmp::Ordering {
         .unwrap_or(std::cmp::Ordering::Equal)
 }
 
-fn mean_cost(kind: &Kind, setups: &[Setup], tracks: &[(&Trace, Truth)], values: &Values) -> f64 {
+fn mean_cost(kind: &Kind, setups: &[Setup], tracks: &[Track], values: &Values) -> f64 {
     let costs = setups.iter().map(|setup| cost(kind, setup, tracks, values));
     costs.sum::<f64>() / setups.len() as f64
 }
 
 /// Infinite for parameters that the design refuses.
-fn cost(kind: &Kind, setup: &Setup, tracks: &[(&Trace, Truth)], values: &Values) -> f64 {
+fn cost(kind: &Kind, setup: &Setup, tracks: &[Track], values: &Values) -> f64 {
     let Ok(estimator) = kind.build(setup, values) else {
         return f64::INFINITY;
     };
-    let of_track = |(trace, truth): &(&Trace, Truth)| {
+    let of_track = |(trace, truth): &Track| {
         let score = truth.score(&estimator.run(trace));
         score.distance_rad_s.unwrap_or(f64::INFINITY)
             + RMS_WEIGHT * score.rms_rad_s.unwrap_or(f64::INFINITY)
@@ -183,12 +253,16 @@ fn first_grid(parameter: &Parameter, setup: &Setup) -> Vec<f64> {
     match parameter.search {
         Search::Fixed(value) => vec![value],
         Search::Log(low, high) => {
-            let high = if parameter.unit == "Hz" {
-                high.min(setup.rate.0 / 2.0)
-            } else {
-                high
+            // A torque moves the motor by its ratio to the inertia.
+            let scale = match parameter.is_torque() {
+                true => setup.device.inertia / DEFAULT_INERTIA,
+                false => 1.0,
             };
-            logarithmic(low, high, GRID)
+            let high = match parameter.unit {
+                "Hz" => high.min(setup.rate.0 / 2.0),
+                _ => high * scale,
+            };
+            logarithmic(low * scale, high, GRID)
         }
         Search::Each(low, high) if high - low < GRID as u32 => {
             (low..=high).map(f64::from).collect()
@@ -258,5 +332,24 @@ mod tests {
             finer(&window, &[1.0, 5.0, 9.0], 5.0),
             (1..=9).map(f64::from).collect::<Vec<_>>()
         );
+    }
+
+    /// Twice the inertia needs twice the torque for the same motion.
+    #[test]
+    fn ranges_of_torques_follow_the_inertia() {
+        let kind = Kind::named("observer").unwrap();
+        let device = Device::default();
+        let mut heavy = device.clone();
+        heavy.large.inertia_kg_m2 *= 2.0;
+        for parameter in kind
+            .parameters
+            .iter()
+            .filter(|p| p.name != "boundary_noise")
+        {
+            let grid = |device| first_grid(parameter, &setup(device, 1e3));
+            let ratio = grid(&heavy)[0] / grid(&device)[0];
+            let wanted = if parameter.is_torque() { 2.0 } else { 1.0 };
+            assert!((ratio - wanted).abs() < 1e-9, "{}: {ratio}", parameter.name);
+        }
     }
 }

@@ -19,12 +19,6 @@ use super::page::{self, progress};
 /// Where the page goes unless told otherwise.
 const PAGE: &str = "target/sensitivity";
 
-/// Everything that has friction.
-const SCENARIOS: [ScenarioName; 8] = {
-    use ScenarioName::{Creep, FreeAir, Hold, Permanent, Step, Texture, Track, Wall};
-    [Step, Permanent, Track, FreeAir, Wall, Texture, Creep, Hold]
-};
-
 #[derive(Debug, Args)]
 pub(super) struct Sensitivity {
     /// Scenario to run; repeatable [default: all with friction but heating]
@@ -81,7 +75,7 @@ pub(super) fn run(options: &Sensitivity, command_line: &str) -> Result<(), Failu
 }
 
 fn cases(options: &Sensitivity) -> Result<Vec<Case>, Failure> {
-    let scenarios = scenarios(&options.scenarios, &SCENARIOS)?;
+    let scenarios = scenarios(&options.scenarios, &ScenarioName::WITH_FRICTION)?;
     let seeds = if options.seeds.is_empty() {
         vec![1]
     } else {

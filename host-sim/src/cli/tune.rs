@@ -1,13 +1,15 @@
 //! `host-sim tune`.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use clap::Args;
 
 use crate::belief::Belief;
+use crate::estimators::Kind;
 use crate::failure::Failure;
 use crate::output::{print_bytes, write_whole};
-use crate::parameters::{PlantKind, Presets};
+use crate::parameters::{PlantKind, Preset, Presets};
 use crate::scenario::ScenarioName;
 use crate::simulate;
 use crate::tune::{FIRST_SEED, Ground, tune};
@@ -15,12 +17,44 @@ use crate::tune::{FIRST_SEED, Ground, tune};
 use super::arguments::{DeviceFile, kinds, rates, scenarios};
 use super::page::progress;
 
+/// What an estimator is tuned on unless told otherwise.
+struct Recipe {
+    scenarios: &'static [ScenarioName],
+    seeds: u64,
+    seconds: f64,
+    doubting: bool,
+}
+
+impl Recipe {
+    /// The paper's experiment.
+    const PLAIN: Self = Self {
+        scenarios: &[
+            ScenarioName::Step,
+            ScenarioName::Permanent,
+            ScenarioName::Track,
+        ],
+        seeds: 3,
+        seconds: 10.0,
+        doubting: false,
+    };
+    /// Observers are never outside the interval in the paper's experiment, so that it cannot tell
+    /// good parameters from bad ones; and they have constants of the device that may be wrong.
+    const OBSERVER: Self = Self {
+        scenarios: &ScenarioName::WITH_FRICTION,
+        seeds: 1,
+        seconds: 4.0,
+        doubting: true,
+    };
+}
+
 #[derive(Debug, Args)]
 pub(super) struct Tune {
-    /// Take the mean over right and wrong beliefs in the device, as sensitivity tries them
+    /// Take the mean over right and wrong constants of the device, as sensitivity tries them
+    /// [default: for observers, unless --scenario is given]
     #[arg(long)]
     pub(super) doubting: bool,
-    /// Scenario to tune on; repeatable [default: step, permanent, track]
+    /// Scenario to tune on; repeatable [default: step, permanent, track; for observers all with
+    /// friction but heating]
     #[arg(long = "scenario", value_name = "NAME")]
     pub(super) scenarios: Vec<String>,
     /// Control rate, Hz; repeatable [default: 1000, 10000 and 11600]
@@ -29,17 +63,13 @@ pub(super) struct Tune {
     /// Estimator to tune; repeatable [default: all that have parameters]
     #[arg(long = "estimator", value_name = "NAME")]
     pub(super) estimators: Vec<String>,
-    /// How many tuning seeds, from 2^32 on
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..=1000))]
-    pub(super) seeds: u64,
-    /// Duration of each run, s
-    #[arg(
-        long,
-        value_name = "S",
-        default_value_t = 10.0,
-        allow_negative_numbers = true
-    )]
-    pub(super) seconds: f64,
+    /// How many tuning seeds, from 2^32 on; the next one decides between the result and the shipped
+    /// parameters [default: 3, for observers 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub(super) seeds: Option<u64>,
+    /// Duration of each run, s [default: 10, for observers 4]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(super) seconds: Option<f64>,
     /// Tune on the plant without Coulomb friction only [default: on both]
     #[arg(long)]
     pub(super) frictionless: bool,
@@ -50,8 +80,23 @@ pub(super) struct Tune {
     pub(super) out: PathBuf,
 }
 
+impl Tune {
+    fn ground(&self, recipe: &Recipe) -> Result<Ground, Failure> {
+        let doubting = self.doubting || recipe.doubting && self.scenarios.is_empty();
+        Ok(Ground {
+            device: self.device.load()?,
+            scenarios: scenarios(&self.scenarios, recipe.scenarios)?,
+            seeds: self.seeds.unwrap_or(recipe.seeds),
+            seconds: self.seconds.unwrap_or(recipe.seconds),
+            beliefs: match doubting {
+                true => Belief::extremes(),
+                false => Vec::new(),
+            },
+        })
+    }
+}
+
 pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
-    use ScenarioName::{Permanent, Step, Track};
     let kinds: Vec<_> = kinds(&options.estimators)?
         .into_iter()
         .filter(|kind| kind.is_tunable())
@@ -62,19 +107,18 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
                 .to_owned(),
         ));
     }
-    let ground = Ground {
-        device: options.device.load()?,
-        scenarios: scenarios(&options.scenarios, &[Step, Permanent, Track])?,
-        seeds: options.seeds,
-        seconds: options.seconds,
-        beliefs: match options.doubting {
-            true => Belief::extremes(),
-            false => Vec::new(),
-        },
-    };
+    let (observers, others): (Vec<_>, Vec<_>) =
+        kinds.iter().copied().partition(|kind| kind.is_observer());
+    let groups: Vec<_> = [(others, Recipe::PLAIN), (observers, Recipe::OBSERVER)]
+        .into_iter()
+        .filter(|(kinds, _)| !kinds.is_empty())
+        .map(|(kinds, recipe)| Ok((kinds, options.ground(&recipe)?)))
+        .collect::<Result<_, Failure>>()?;
     let rates = rates(&options.rates, &[1e3, 10e3, 11.6e3]);
-    for &rate in &rates {
-        simulate::ticks(rate, options.seconds)?;
+    for (_, ground) in &groups {
+        for &rate in &rates {
+            simulate::ticks(rate, ground.seconds)?;
+        }
     }
     let plants: &[_] = match options.frictionless {
         true => &[PlantKind::Frictionless],
@@ -82,26 +126,54 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
     };
     let bar = progress(rates.len() * plants.len() * kinds.len(), "tuning");
     let mut presets = Presets::default();
+    let mut notes = Vec::new();
     for &rate in &rates {
         for &plant in plants {
-            presets
-                .preset
-                .push(tune(&ground, &kinds, rate, plant, || bar.inc(1))?);
+            let mut preset = Preset {
+                rate_hz: rate,
+                plant,
+                estimators: BTreeMap::new(),
+            };
+            for (kinds, ground) in &groups {
+                let tuned = tune(ground, kinds, rate, plant, || bar.inc(1))?;
+                preset.estimators.extend(tuned.preset.estimators);
+                let at = format!("{rate} Hz, {}", plant.name());
+                notes.extend(tuned.notes.iter().map(|note| format!("{at}: {note}")));
+            }
+            presets.preset.push(preset);
         }
     }
     bar.finish_and_clear();
-    let names: Vec<_> = ground
+    let mut text = format!("# {command_line}\n");
+    for (kinds, ground) in &groups {
+        text += &tuned_on(kinds, ground);
+    }
+    for note in &notes {
+        eprintln!("host-sim: note: {note}");
+        text += &format!("# {note}\n");
+    }
+    text += &format!("\n{}", presets.to_toml()?);
+    write_whole(&options.out, text.as_bytes())?;
+    print_bytes(format!("{}\n", options.out.display()).as_bytes())
+}
+
+/// A comment that says on what these estimators were tuned.
+fn tuned_on(kinds: &[&Kind], ground: &Ground) -> String {
+    let names: Vec<_> = kinds.iter().map(|kind| kind.name).collect();
+    let scenarios: Vec<_> = ground
         .scenarios
         .iter()
         .map(|scenario| scenario.as_str())
         .collect();
-    let text = format!(
-        "# {command_line}\n# Tuned on {}, {} s each, seeds {FIRST_SEED} to {}.\n\n{}",
+    let constants = match ground.beliefs.is_empty() {
+        true => "right constants",
+        false => "right and wrong constants",
+    };
+    format!(
+        "# {}: tuned on {}, {} s each, {constants}, seeds {FIRST_SEED} to {}.\n",
         names.join(", "),
-        options.seconds,
-        FIRST_SEED + options.seeds - 1,
-        presets.to_toml()?,
-    );
-    write_whole(&options.out, text.as_bytes())?;
-    print_bytes(format!("{}\n", options.out.display()).as_bytes())
+        scenarios.join(", "),
+        ground.seconds,
+        FIRST_SEED + ground.seeds - 1,
+    )
 }

@@ -40,3 +40,68 @@ fn tuned_parameters_are_written_and_taken() {
     assert!(tuned < 0.7 * rms(&["--set", "pll.bandwidth_hz=10"]));
     assert_ne!(tuned, rms(&["--set", "pll.bandwidth_hz=100"]));
 }
+
+/// The search ends at half the rate, where a low-pass filter loses least on fast vibration.
+#[test]
+fn end_of_a_range_is_reported() {
+    let folder = Folder::new("tune-end");
+    let output = folder.run(&[
+        "tune",
+        "--estimator",
+        "low-pass",
+        "--rate",
+        "1000",
+        "--seconds",
+        "1",
+        "--seeds",
+        "1",
+        "--scenario",
+        "texture",
+        "--out",
+        "tuned.toml",
+    ]);
+    assert_eq!(output.status.code(), Some(0));
+    let errors = String::from_utf8(output.stderr).unwrap();
+    let note = "low-pass.cutoff_hz = 500 Hz is the upper end of the range searched";
+    assert!(errors.contains(note), "{errors}");
+    let text = fs::read_to_string(folder.0.join("tuned.toml")).unwrap();
+    assert!(text.contains(note), "{text}");
+}
+
+/// On the seed after the tuning seeds, which decides, no estimator is worse than it was before.
+#[test]
+fn tuned_parameters_are_no_worse_than_the_shipped_ones() {
+    let folder = Folder::new("tune-kept");
+    let names = [
+        "foaw-end-fit",
+        "kalman-motor-steady",
+        "pll",
+        "observer-held",
+    ];
+    let estimators: Vec<_> = names
+        .iter()
+        .flat_map(|name| ["--estimator", name])
+        .collect();
+    let common = ["--scenario", "step", "--rate", "1000", "--seconds", "1"];
+    let tune = ["tune", "--seeds", "1", "--out", "tuned.toml"];
+    folder.good(&[&tune[..], &common, &estimators].concat());
+    let costs = |more: &[&str]| -> Vec<f64> {
+        let compare = [
+            "compare",
+            "--no-report",
+            "--json",
+            "-",
+            "--seed",
+            "4294967297",
+        ];
+        let rows = json(&folder.good(&[&compare[..], &common, &estimators, more].concat()));
+        let figure = |row: &serde_json::Value, name: &str| row[name].as_f64().unwrap();
+        let cost = |row| figure(row, "distance_rad_s") + 0.01 * figure(row, "rms_rad_s");
+        rows.iter().map(cost).collect()
+    };
+    let (before, after) = (costs(&[]), costs(&["--presets", "tuned.toml"]));
+    for (name, (before, after)) in names.iter().zip(before.iter().zip(&after)) {
+        assert!(after <= before, "{name}: {before} became {after}");
+    }
+    assert_ne!(before, after, "tuning found nothing");
+}
