@@ -1,38 +1,52 @@
-//! Files that are either whole or not there.
+//! Output files: each is whole or absent, whatever ends the program.
+//!
+//! A regular file is written beside its place and renamed. A symbolic link stays, its target is
+//! replaced. A device, a pipe or a socket is opened and written in place. `-` is standard output.
 
-use std::fs;
-use std::io::Write as _;
+mod folder;
+mod partial;
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
+pub use folder::Folder;
+use partial::Partial;
 
-/// Writes `bytes` to `path`, creating its folder: to a file beside it first, then renamed, so
-/// that an interrupted run leaves no half file and an old file survives a failure.
+/// Longest chain of symbolic links that is followed, as in Linux.
+const MOST_LINKS: usize = 40;
+
+/// Whether `path` stands for standard output: `-`, or a name that the system has for it.
+#[must_use]
+pub fn is_stdout(path: &Path) -> bool {
+    let names = ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
+    names.iter().any(|name| path.as_os_str() == *name)
+}
+
+/// Writes `bytes` to `path`, creating its folder; see [`write_with`].
 ///
 /// # Errors
 /// [`Failure::Input`] that names the file.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let failed = |error: std::io::Error| {
-        Failure::Input(format!(
-            "{}: cannot write: {error}; choose another place",
-            path.display()
-        ))
-    };
-    if let Some(folder) = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-    {
-        fs::create_dir_all(folder).map_err(failed)?;
+    write_with(path, |out| out.write_all(bytes))
+}
+
+/// Writes what `content` produces to `path`, creating its folder.
+///
+/// A regular file appears complete or not at all, and an old file survives a failure or an
+/// interrupt; it keeps its permissions.
+///
+/// # Errors
+/// [`Failure::Input`] that names the file.
+pub fn write_with(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Failure> {
+    if is_stdout(path) {
+        return print_with(content);
     }
-    let partial = partial_path(path);
-    let result = fs::File::create(&partial)
-        .and_then(|mut file| file.write_all(bytes))
-        .and_then(|()| fs::rename(&partial, path));
-    if result.is_err() {
-        // Best effort: the error that matters is the first one.
-        let _ = fs::remove_file(&partial);
-    }
-    result.map_err(failed)
+    write_file(path, content).map_err(|error| cannot_write(path, &error))
 }
 
 /// Writes `bytes` to standard output; a reader that has gone away is not an error.
@@ -40,24 +54,83 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 /// # Errors
 /// [`Failure::Input`] on any other failure.
 pub fn print_bytes(bytes: &[u8]) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(bytes).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::Input(format!("standard output: {error}")))
-        }
-        _ => Ok(()),
+    print_with(|out| out.write_all(bytes))
+}
+
+/// Writes a line to standard error; a closed standard error does not end the command.
+pub fn note(line: impl std::fmt::Display) {
+    let _ = writeln!(io::stderr(), "{line}");
+}
+
+fn print_with(content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
+    let written = in_place(io::stdout().lock(), content);
+    written.map_err(|error| Failure::Input(format!("standard output: {error}")))
+}
+
+fn cannot_write(path: &Path, error: &io::Error) -> Failure {
+    let path = path.display();
+    Failure::Input(format!(
+        "{path}: cannot write: {error}; choose another place"
+    ))
+}
+
+fn write_file(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let old = fs::metadata(path).ok();
+    if old.as_ref().is_some_and(fs::Metadata::is_dir) {
+        return Err(ErrorKind::IsADirectory.into());
+    }
+    // Descriptors that this process has inherited are no files to be replaced.
+    let inherited = ["/dev/fd/", "/dev/std", "/proc/"];
+    let inherited = inherited
+        .iter()
+        .any(|start| path.to_string_lossy().starts_with(start));
+    if inherited || old.as_ref().is_some_and(|old| !old.is_file()) {
+        return in_place(OpenOptions::new().append(true).open(path)?, content);
+    }
+    let path = link_target(path)?;
+    if let Some(folder) = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+    {
+        fs::create_dir_all(folder)?;
+    }
+    let (partial, file) = Partial::file(&path)?;
+    let mut file = BufWriter::new(file);
+    content(&mut file)?;
+    let file: File = file.into_inner()?;
+    if let Some(old) = old {
+        file.set_permissions(old.permissions())?;
+    }
+    drop(file);
+    partial.rename_to(&path)
+}
+
+/// Writes through a buffer; a reader that has gone away is not an error.
+fn in_place(
+    out: impl Write,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut out = BufWriter::new(out);
+    match content(&mut out).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        result => result,
     }
 }
 
-/// Writes a line to standard error; that nobody reads it is no reason to stop.
-pub fn note(line: impl std::fmt::Display) {
-    let _ = writeln!(std::io::stderr(), "{line}");
-}
-
-fn partial_path(path: &Path) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(format!(".partial-{}", std::process::id()));
-    name.into()
+/// The file that `path` leads to through symbolic links, whether it exists or not.
+fn link_target(path: &Path) -> io::Result<PathBuf> {
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match fs::read_link(&path) {
+            // A relative target counts from the folder of its link.
+            Ok(target) => path = path.parent().unwrap_or(Path::new("")).join(target),
+            Err(_) => return Ok(path),
+        }
+    }
+    Err(io::Error::other("too many symbolic links"))
 }
 
 #[cfg(test)]
@@ -65,7 +138,7 @@ mod tests {
     use super::write_whole;
 
     #[test]
-    fn a_failed_write_leaves_nothing() {
+    fn failed_write_leaves_nothing() {
         let folder = std::env::temp_dir().join(format!("limpid-output-{}", std::process::id()));
         let file = folder.join("deep/er/file.txt");
         write_whole(&file, b"whole").unwrap();

@@ -1,5 +1,6 @@
 //! Recordings through the estimators.
 
+use std::io::{self, Write};
 use std::path::Path;
 
 use crate::compare::{interval, setup};
@@ -97,26 +98,24 @@ pub fn name(path: &Path) -> String {
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
-/// `t` and one column an estimator, rad/s, as CSV.
-#[must_use]
-pub fn csv(t: &[f64], estimates: &[Estimate]) -> Vec<u8> {
-    use std::io::Write as _;
-    let mut text = Vec::with_capacity((t.len() + 1) * (estimates.len() + 1) * 12);
-    text.extend_from_slice(b"t");
+/// Writes `t` and one column an estimator, rad/s, as CSV.
+///
+/// # Errors
+/// Those of `out`.
+pub fn csv(out: &mut dyn Write, t: &[f64], estimates: &[Estimate]) -> io::Result<()> {
+    write!(out, "t")?;
     for estimate in estimates {
-        text.push(b',');
-        text.extend_from_slice(estimate.estimator.as_bytes());
+        write!(out, ",{}", estimate.estimator)?;
     }
-    text.push(b'\n');
+    writeln!(out)?;
     for (k, t) in t.iter().enumerate() {
-        // Writing to a vector cannot fail.
-        let _ = write!(text, "{t}");
+        write!(out, "{t}")?;
         for estimate in estimates {
-            let _ = write!(text, ",{}", estimate.velocity[k]);
+            write!(out, ",{}", estimate.velocity[k])?;
         }
-        text.push(b'\n');
+        writeln!(out)?;
     }
-    text
+    Ok(())
 }
 
 #[cfg(test)]
@@ -138,7 +137,9 @@ mod tests {
                 .iter()
                 .any(|e| e.estimator == "kalman-motor")
         );
-        let csv = String::from_utf8(csv(&recording.t, &replay.estimates[..1])).unwrap();
+        let mut text = Vec::new();
+        csv(&mut text, &recording.t, &replay.estimates[..1]).unwrap();
+        let csv = String::from_utf8(text).unwrap();
         assert_eq!(
             csv,
             "t,finite-difference\n0,0\n0.001,1.5339808\n0.002,1.5339808\n"

@@ -153,8 +153,3 @@ pub(super) fn rates(given: &[f64], default: &[f64]) -> Vec<f64> {
     }
     rates
 }
-
-/// Whether `path` stands for standard output.
-pub(super) fn is_stdout(path: &Path) -> bool {
-    path.as_os_str() == "-"
-}

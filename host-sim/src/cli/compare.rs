@@ -8,7 +8,7 @@ use crate::compare::{Case, Cost, Outcome, Settings, compare};
 use crate::contest::Row;
 use crate::device::Device;
 use crate::failure::Failure;
-use crate::output::{note, write_whole};
+use crate::output::{Folder, note};
 use crate::parameters::PlantKind;
 use crate::report::{self, CaseReport, DeviceFacts, ReportInput, Traces};
 use crate::scenario::ScenarioName;
@@ -73,7 +73,7 @@ pub(super) struct Compare {
     /// Write no report: no plot is drawn, and the plant without friction is not run beside
     #[arg(long, conflicts_with = "out")]
     pub(super) no_report: bool,
-    /// Write the scores as JSON to FILE, or with - to standard output and nothing else there
+    /// Write the scores as JSON to FILE; - is standard output, with nothing else there
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
     /// Say on standard error where the time went
@@ -110,7 +110,7 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
         parameters: options.parameters.load()?,
         wanted: wanted(&options.scores)?,
     };
-    let report = report_folder(options);
+    let report = report_folder(options)?;
     let (cases, asked) = cases(options, report.is_some())?;
     let bar = progress(cases.len(), "simulating");
     let outcomes = compare(&cases, &settings, || bar.inc(1))?;
@@ -143,12 +143,10 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
             ..ReportInput::default()
         };
         let rows: Vec<Row> = outcomes.iter().flat_map(|o| o.rows.clone()).collect();
-        write_whole(&folder.join("scores.json"), &rows::json(&rows)?)?;
-        write_whole(
-            &folder.join("scores.csv"),
-            &rows::csv(&rows, rows::COLUMNS)?,
-        )?;
-        index = Some(felt::write(folder, input, closed)?);
+        let mut files = Folder::new(folder);
+        files.add("scores.json", rows::json(&rows)?);
+        files.add("scores.csv", rows::csv(&rows, rows::COLUMNS)?);
+        index = Some(felt::write(files, input, closed)?);
     }
     let mut text = table::overview(&asked_rows);
     if asked <= 2 {
@@ -161,9 +159,9 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
 }
 
 /// Where the report goes, if there is one.
-pub(super) fn report_folder(options: &Compare) -> Option<&Path> {
+pub(super) fn report_folder(options: &Compare) -> Result<Option<&Path>, Failure> {
     if options.no_report {
-        return None;
+        return Ok(None);
     }
     page::folder(options.out.as_deref(), options.json.as_deref(), REPORT)
 }

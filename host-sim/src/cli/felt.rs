@@ -1,6 +1,6 @@
 //! `host-sim compare --closed-loop`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use haptic_control::LoopPoles;
 
@@ -10,7 +10,7 @@ use crate::estimators::Kind;
 use crate::failure::Failure;
 use crate::felt::compare::USUAL;
 use crate::felt::{self, Case, Design, FeltRow, Outcome, Settings, compare};
-use crate::output::{note, write_whole};
+use crate::output::{Folder, note};
 use crate::parameters::PlantKind;
 use crate::report::{ClosedLoop, ReportInput};
 use crate::scenario::ScenarioName;
@@ -25,7 +25,7 @@ const SECONDS: f64 = 10.0;
 
 pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> {
     let settings = settings(options)?;
-    let folder = report_folder(options);
+    let folder = report_folder(options)?;
     let cases = cases(
         options,
         &scenes(&options.scenarios, settings.handle)?,
@@ -54,7 +54,11 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
             device: facts(&settings.device, &options.device.name()),
             ..ReportInput::default()
         };
-        let index = write(folder, input, closed_loop(outcomes, &settings)?)?;
+        let index = write(
+            Folder::new(folder),
+            input,
+            closed_loop(outcomes, &settings)?,
+        )?;
         text.push_str(&format!("Report: {}\n", index.display()));
     }
     page::print(options.json.as_deref(), &rows::json(&scores)?, &text)
@@ -108,7 +112,7 @@ fn design(settings: &Settings, rate_hz: f64, plant: PlantKind) -> Result<Design,
 
 /// Writes the page, with the closed loop's scores beside it if there are any; gives its path.
 pub(super) fn write(
-    folder: &Path,
+    mut folder: Folder,
     mut input: ReportInput,
     closed: ClosedLoop,
 ) -> Result<PathBuf, Failure> {
@@ -116,10 +120,8 @@ pub(super) fn write(
         let rows: Vec<FeltRow> = (closed.outcomes.iter())
             .flat_map(|o| o.rows.clone())
             .collect();
-        let json = rows::json(&rows)?;
-        write_whole(&folder.join("closed-loop.json"), &json)?;
-        let csv = rows::csv(&rows, felt::COLUMNS)?;
-        write_whole(&folder.join("closed-loop.csv"), &csv)?;
+        folder.add("closed-loop.json", rows::json(&rows)?);
+        folder.add("closed-loop.csv", rows::csv(&rows, felt::COLUMNS)?);
     }
     input.closed_loop = closed;
     page::write(folder, &report::html(&input)?)

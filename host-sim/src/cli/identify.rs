@@ -7,11 +7,12 @@ use clap::Args;
 
 use crate::failure::Failure;
 use crate::identify::{self, Known};
-use crate::output::{print_bytes, write_whole};
+use crate::output::{Folder, is_stdout, print_bytes, write_whole};
 use crate::recording::Recording;
 use crate::{replay, report};
 
-use super::arguments::{DeviceFile, is_stdout};
+use super::arguments::DeviceFile;
+use super::page;
 
 #[derive(Debug, Args)]
 pub(super) struct Identify {
@@ -29,18 +30,22 @@ pub(super) struct Identify {
     #[arg(long)]
     clamped: bool,
     /// Write the device file with what was identified in it, everything else as it was; may be the
-    /// same file
+    /// same file; - is standard output
     #[arg(long, value_name = "FILE.toml")]
     out: Option<PathBuf>,
     /// Write a page with the model beside the measurement, residuals and intervals to DIR
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
-    /// Write what was identified as JSON to FILE, or with - to standard output and nothing else there
+    /// Write what was identified as JSON to FILE; - is standard output, with nothing else there
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 
 pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure> {
+    page::one_to_stdout(&[("--out", &options.out), ("--json", &options.json)])?;
+    if let Some(folder) = &options.report {
+        Folder::check("--report", folder)?;
+    }
     let device = options.device.load()?;
     let known = match &options.known {
         Some(text) => Known::parse(text)?,
@@ -64,16 +69,22 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
         let count_rad_s = TAU / counts / identify::SPAN_S;
         let table = identify::text(&found);
         let page = report::identify(&found, count_rad_s, &table, command_line)?;
-        write_whole(&folder.join("index.html"), page.as_bytes())?;
+        let mut files = Folder::new(folder);
+        files.add("index.html", page);
+        files.write()?;
     }
     if let Some(path) = &options.json {
         let mut json = serde_json::to_vec_pretty(&identify::json(&found))
             .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
         json.push(b'\n');
-        if is_stdout(path) {
-            return print_bytes(&json);
-        }
         write_whole(path, &json)?;
+    }
+    if [&options.out, &options.json]
+        .into_iter()
+        .flatten()
+        .any(|path| is_stdout(path))
+    {
+        return Ok(());
     }
     print_bytes(identify::text(&found).as_bytes())
 }

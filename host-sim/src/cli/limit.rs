@@ -43,7 +43,7 @@ pub(super) struct Limit {
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Write the scores as JSON to FILE, or with - to standard output and nothing else there
+    /// Write the scores as JSON to FILE; - is standard output, with nothing else there
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
 }

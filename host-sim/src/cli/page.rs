@@ -5,10 +5,8 @@ use std::path::{Path, PathBuf};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::failure::Failure;
-use crate::output::{print_bytes, write_whole};
+use crate::output::{Folder, is_stdout, print_bytes, write_whole};
 use crate::report;
-
-use super::arguments::is_stdout;
 
 /// A progress bar on standard error, if that is a terminal.
 pub(super) fn progress(length: usize, doing: &'static str) -> ProgressBar {
@@ -19,25 +17,32 @@ pub(super) fn progress(length: usize, doing: &'static str) -> ProgressBar {
 }
 
 /// Folder of the page: `--out`, or `usual` unless the JSON goes to standard output.
+///
+/// # Errors
+/// [`Failure::Input`] where `--out` is standard output.
 pub(super) fn folder<'a>(
     out: Option<&'a Path>,
     json: Option<&Path>,
     usual: &'static str,
-) -> Option<&'a Path> {
+) -> Result<Option<&'a Path>, Failure> {
     match out {
-        None if json.is_some_and(is_stdout) => None,
-        out => Some(out.unwrap_or(Path::new(usual))),
+        None if json.is_some_and(is_stdout) => Ok(None),
+        out => {
+            let folder = out.unwrap_or(Path::new(usual));
+            Folder::check("--out", folder)?;
+            Ok(Some(folder))
+        }
     }
 }
 
-/// Writes the page as `index.html`, and its figures beside it.
-pub(super) fn write(folder: &Path, page: &str) -> Result<PathBuf, Failure> {
+/// Adds the page as `index.html` and its figures, and writes the folder.
+pub(super) fn write(mut folder: Folder, page: &str) -> Result<PathBuf, Failure> {
     for (i, figure) in report::figures(page).enumerate() {
-        let name = format!("figures/{:02}.svg", i + 1);
-        write_whole(&folder.join(name), figure.as_bytes())?;
+        folder.add(format!("figures/{:02}.svg", i + 1), figure);
     }
-    let index = folder.join("index.html");
-    write_whole(&index, page.as_bytes())?;
+    folder.add("index.html", page);
+    let index = folder.file("index.html");
+    folder.write()?;
     Ok(index)
 }
 
@@ -49,4 +54,24 @@ pub(super) fn print(json_file: Option<&Path>, json: &[u8], text: &str) -> Result
         None => {}
     }
     print_bytes(text.as_bytes())
+}
+
+/// Refuses two files on standard output, each an option with its path.
+///
+/// # Errors
+/// [`Failure::Input`] that names both options.
+pub(super) fn one_to_stdout(options: &[(&str, &Option<PathBuf>)]) -> Result<(), Failure> {
+    let to_stdout = |(_, path): &&(&str, &Option<PathBuf>)| path.as_deref().is_some_and(is_stdout);
+    let names: Vec<_> = options
+        .iter()
+        .filter(to_stdout)
+        .map(|(name, _)| *name)
+        .collect();
+    if names.len() < 2 {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "{} -: only one of them can go to standard output",
+        names.join(" - and ")
+    )))
 }

@@ -11,7 +11,7 @@ use crate::recording::{BoardColumns, Recording};
 use crate::replay;
 use crate::report::{self, RecordingView};
 
-use super::arguments::{DeviceFile, ParameterOptions, is_stdout, kinds};
+use super::arguments::{DeviceFile, ParameterOptions, kinds};
 use super::replay::{note_left_out, warn_uneven};
 
 /// What is drawn unless told otherwise: few enough to tell apart.
@@ -36,7 +36,7 @@ pub(super) struct Plot {
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Write the picture to FILE [default: the recording's name with .svg]
+    /// Write the picture to FILE; - is standard output [default: the recording's name with .svg]
     #[arg(long, value_name = "FILE.svg")]
     pub(super) out: Option<PathBuf>,
 }
@@ -83,7 +83,6 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
         window,
     })?;
     match &options.out {
-        Some(out) if is_stdout(out) => print_bytes(svg.as_bytes()),
         Some(out) => write_whole(out, svg.as_bytes()),
         None => {
             let out = options.recording.with_extension("svg");

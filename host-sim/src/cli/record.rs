@@ -6,11 +6,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::failure::Failure;
-use crate::output::{note, print_bytes, write_whole};
+use crate::output::{is_stdout, note, write_whole};
 use crate::record::{choose, csv, report};
 use crate::telemetry::Telemetry;
-
-use super::arguments::is_stdout;
 
 #[derive(Debug, Args)]
 pub(super) struct Record {
@@ -27,7 +25,7 @@ pub(super) struct Record {
     /// Which start of the firmware to record, from 1 [default: the one with most frames]
     #[arg(long, value_name = "N")]
     pub(super) run: Option<usize>,
-    /// Write the recording to FILE [default: standard output]
+    /// Write the recording to FILE; - is standard output [default: -]
     #[arg(long, value_name = "FILE.csv")]
     pub(super) out: Option<PathBuf>,
 }
@@ -79,10 +77,8 @@ pub(super) fn run(options: &Record) -> Result<(), Failure> {
         note(format_args!("{name}: {line}"));
     }
     let text = csv(run, rate_hz, |_| None);
-    match options.out.as_deref() {
-        Some(out) if !is_stdout(out) => write_whole(out, text.as_bytes()),
-        _ => print_bytes(text.as_bytes()),
-    }
+    let out = options.out.as_deref().unwrap_or(Path::new("-"));
+    write_whole(out, text.as_bytes())
 }
 
 fn read(path: &Path) -> std::io::Result<Vec<u8>> {

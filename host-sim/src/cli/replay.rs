@@ -1,16 +1,17 @@
 //! `host-sim replay`.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use crate::failure::Failure;
-use crate::output::{note, print_bytes, write_whole};
+use crate::output::{is_stdout, note, print_bytes, write_whole, write_with};
 use crate::recording::{BoardColumns, Recording};
 use crate::{replay, rows, table};
 
-use super::arguments::{DeviceFile, ParameterOptions, is_stdout, kinds};
+use super::arguments::{DeviceFile, ParameterOptions, kinds};
+use super::page::one_to_stdout;
 
 #[derive(Debug, Args)]
 pub(super) struct Replay {
@@ -25,15 +26,18 @@ pub(super) struct Replay {
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Write t and a column for each estimator (rad/s) to FILE [default: standard output]
+    /// Write t and a column for each estimator (rad/s) to FILE; - is standard output [default: -,
+    /// or none with --json -]
     #[arg(long, value_name = "FILE.csv")]
     pub(super) out: Option<PathBuf>,
-    /// Write the scores against true_omega as JSON to FILE, or with - to standard output
+    /// Write the scores against true_omega as JSON to FILE; - is standard output, with nothing else
+    /// there
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
 }
 
 pub(super) fn run(options: &Replay) -> Result<(), Failure> {
+    one_to_stdout(&[("--out", &options.out), ("--json", &options.json)])?;
     let kinds = kinds(&options.estimators)?;
     let device = options.device.load()?;
     let parameters = options.parameters.load()?;
@@ -61,27 +65,22 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     for line in replay::of_the_board(&recording, &board, &device) {
         note(format_args!("{name}: {line}"));
     }
-    let csv = replay::csv(&recording.t, &replayed.estimates);
-    match (options.out.as_deref(), options.json.as_deref()) {
-        (Some(out), Some(json)) if is_stdout(out) && is_stdout(json) => {
-            return Err(Failure::Input(
-                "--out - and --json -: only one of them can go to standard output".to_owned(),
-            ));
-        }
-        (Some(out), _) if !is_stdout(out) => write_whole(out, &csv)?,
-        (None, Some(json)) if is_stdout(json) => {}
-        _ => print_bytes(&csv)?,
+    let json_to_stdout = options.json.as_deref().is_some_and(is_stdout);
+    let out = match &options.out {
+        None if json_to_stdout => None,
+        out => Some(out.as_deref().unwrap_or(Path::new("-"))),
+    };
+    if let Some(out) = out {
+        write_with(out, |to| replay::csv(to, &recording.t, &replayed.estimates))?;
     }
     let rows = &replayed.rows;
-    match &options.json {
-        Some(path) if is_stdout(path) => return print_bytes(&rows::json(rows)?),
-        Some(path) => write_whole(path, &rows::json(rows)?)?,
-        None => {}
+    if let Some(path) = &options.json {
+        write_whole(path, &rows::json(rows)?)?;
     }
-    match &options.out {
-        Some(out) if !is_stdout(out) => print_bytes(table::details(rows).as_bytes()),
-        _ => Ok(()),
+    if json_to_stdout || out.is_some_and(is_stdout) {
+        return Ok(());
     }
+    print_bytes(table::details(rows).as_bytes())
 }
 
 /// What the board made of its samples; nothing where no board that says how sure it is made the

@@ -7,7 +7,7 @@ use clap::Args;
 use crate::closed_loop::SceneName;
 use crate::estimators::Kind;
 use crate::failure::Failure;
-use crate::output::{print_bytes, write_whole};
+use crate::output::{Folder, print_bytes, write_whole};
 use crate::robust::row::{self, Row};
 use crate::robust::shard::Part;
 use crate::robust::variation::Subject;
@@ -64,7 +64,7 @@ pub(super) struct Robust {
     /// [default: target/robust; with --json - or --only none]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Write the rows as JSON to FILE, or with - to standard output and nothing else there
+    /// Write the rows as JSON to FILE; - is standard output, with nothing else there
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
 }
@@ -77,13 +77,23 @@ pub(super) struct Merge {
     /// Folder for what the run would have written in one piece [default: target/robust]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Write the rows as JSON to FILE, or with - to standard output and nothing else there
+    /// Write the rows as JSON to FILE; - is standard output, with nothing else there
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
 }
 
 pub(super) fn run(options: &Robust) -> Result<(), Failure> {
     let settings = settings(options)?;
+    let out = options.out.as_deref();
+    let json_file = options.json.as_deref();
+    let folder = match (options.only, options.shard) {
+        (Some(_), _) => out,
+        (None, Some(_)) => Some(out.unwrap_or(Path::new(REPORT))),
+        (None, None) => page::folder(out, json_file, REPORT)?,
+    };
+    if let Some(folder) = folder {
+        Folder::check("--out", folder)?;
+    }
     let experiment = Experiment::new(&settings)?;
     let mut jobs = settings.jobs()?;
     if let Some(subject) = options.only {
@@ -100,25 +110,19 @@ pub(super) fn run(options: &Robust) -> Result<(), Failure> {
     let rows = experiment.rows(&jobs, || bar.inc(1))?;
     bar.finish_and_clear();
 
-    let folder = options.out.as_deref();
-    if let Some(part) = options.shard {
-        let folder = folder.unwrap_or(Path::new(REPORT));
+    if let (Some(part), Some(folder)) = (options.shard, folder) {
         let path = folder.join(part.file_name());
         write_whole(&path, &shard::write(&settings, part, &rows)?)?;
         print_bytes(format!("{}\n", path.display()).as_bytes())?;
         return judged(&settings, &rows);
     }
-    let json_file = options.json.as_deref();
-    let folder = match options.only {
-        Some(_) => folder,
-        None => page::folder(folder, json_file, REPORT),
-    };
     finish(&settings, &rows, folder, json_file)
 }
 
 pub(super) fn merge(options: &Merge) -> Result<(), Failure> {
-    let (settings, rows) = shard::merge(&options.shards)?;
     let folder = options.out.as_deref().unwrap_or(Path::new(REPORT));
+    Folder::check("--out", folder)?;
+    let (settings, rows) = shard::merge(&options.shards)?;
     finish(&settings, &rows, Some(folder), options.json.as_deref())
 }
 
@@ -161,14 +165,16 @@ fn finish(
     let mut text = summary::table(settings, &scenes);
     if let Some(folder) = folder {
         let page = report::robust(&summary::heading(settings), &scenes, &text)?;
-        write_whole(&folder.join("robust.csv"), &rows::csv(rows, row::COLUMNS)?)?;
-        write_whole(&folder.join("robust.json"), &json)?;
+        let mut files = Folder::new(folder);
+        files.add("robust.csv", rows::csv(rows, row::COLUMNS)?);
+        files.add("robust.json", json.as_slice());
         for figure in report::figures(&page) {
-            write_whole(&folder.join("summary.svg"), figure.as_bytes())?;
+            files.add("summary.svg", figure);
         }
-        let page_path: PathBuf = folder.join("index.html");
-        write_whole(&page_path, page.as_bytes())?;
-        text.push_str(&format!("Report: {}\n", page_path.display()));
+        files.add("index.html", page);
+        let index = files.file("index.html");
+        files.write()?;
+        text.push_str(&format!("Report: {}\n", index.display()));
     }
     page::print(json_file, &json, &text)?;
     judged(settings, rows)

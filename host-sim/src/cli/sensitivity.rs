@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::compare::{Case, Settings};
 use crate::failure::Failure;
-use crate::output::write_whole;
+use crate::output::Folder;
 use crate::parameters::PlantKind;
 use crate::scenario::ScenarioName;
 use crate::score::Wanted;
@@ -44,7 +44,7 @@ pub(super) struct Sensitivity {
     /// target/sensitivity; with --json - none]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Write the scores as JSON to FILE, or with - to standard output and nothing else there
+    /// Write the scores as JSON to FILE; - is standard output, with nothing else there
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
 }
@@ -57,18 +57,19 @@ pub(super) fn run(options: &Sensitivity, command_line: &str) -> Result<(), Failu
         wanted: Wanted::NONE,
     };
     let cases = cases(options)?;
+    let folder = page::folder(options.out.as_deref(), options.json.as_deref(), PAGE)?;
     let bar = progress(cases.len(), "running");
     let rows = sensitivity(&cases, &settings, || bar.inc(1))?;
     bar.finish_and_clear();
 
     let json = rows::json(&rows)?;
-    let folder = page::folder(options.out.as_deref(), options.json.as_deref(), PAGE);
     let mut text = table(&rows);
     if let Some(folder) = folder {
         let page = report::sensitivity(&rows, &text, &options.device.name(), command_line)?;
-        write_whole(&folder.join("sensitivity.json"), &json)?;
-        write_whole(&folder.join("sensitivity.csv"), &rows::csv(&rows, COLUMNS)?)?;
-        let index = page::write(folder, &page)?;
+        let mut files = Folder::new(folder);
+        files.add("sensitivity.json", json.as_slice());
+        files.add("sensitivity.csv", rows::csv(&rows, COLUMNS)?);
+        let index = page::write(files, &page)?;
         text.push_str(&format!("\nPage: {}\n", index.display()));
     }
     page::print(options.json.as_deref(), &json, &text)

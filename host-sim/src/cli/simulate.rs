@@ -8,14 +8,14 @@ use haptic_control::LoopPoles;
 use crate::closed_loop::{Eye, Hand, Loop, SceneName, believed, estimator};
 use crate::estimators::Kind;
 use crate::failure::Failure;
-use crate::output::{print_bytes, write_whole};
+use crate::output::write_whole;
 use crate::parameters::Parameters;
 use crate::recording::Recording;
 use crate::scenario::ScenarioName;
 use crate::simulate::{simulate, ticks};
 use crate::trace::Columns;
 
-use super::arguments::{DeviceFile, is_stdout};
+use super::arguments::DeviceFile;
 
 /// Who holds the handle in a scene.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -61,7 +61,7 @@ pub(super) struct Simulate {
     seed: u64,
     #[command(flatten)]
     device: DeviceFile,
-    /// Write the recording to FILE, or with - to standard output
+    /// Write the recording to FILE; - is standard output
     #[arg(long, value_name = "FILE.csv")]
     out: PathBuf,
 }
@@ -74,11 +74,7 @@ pub(super) fn run(options: &Simulate) -> Result<(), Failure> {
         Some(name) => of_scenario(options, name.parse()?)?,
         None => of_scene(options)?,
     };
-    let csv = recording.to_csv();
-    match is_stdout(&options.out) {
-        true => print_bytes(&csv),
-        false => write_whole(&options.out, &csv),
-    }
+    write_whole(&options.out, &recording.to_csv())
 }
 
 fn of_scenario(options: &Simulate, name: ScenarioName) -> Result<Recording, Failure> {

@@ -8,7 +8,7 @@ use clap::Args;
 use crate::belief::Belief;
 use crate::estimators::Kind;
 use crate::failure::Failure;
-use crate::output::{print_bytes, write_whole};
+use crate::output::{is_stdout, print_bytes, write_whole};
 use crate::parameters::{PlantKind, Preset, Presets};
 use crate::scenario::ScenarioName;
 use crate::simulate;
@@ -75,7 +75,7 @@ pub(super) struct Tune {
     pub(super) frictionless: bool,
     #[command(flatten)]
     pub(super) device: DeviceFile,
-    /// File to write; compare and replay take it as --presets
+    /// File to write, which compare and replay take as --presets; - is standard output
     #[arg(long, value_name = "FILE.toml", default_value = "target/presets.toml")]
     pub(super) out: PathBuf,
 }
@@ -154,6 +154,9 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
     }
     text += &format!("\n{}", presets.to_toml()?);
     write_whole(&options.out, text.as_bytes())?;
+    if is_stdout(&options.out) {
+        return Ok(());
+    }
     print_bytes(format!("{}\n", options.out.display()).as_bytes())
 }
 

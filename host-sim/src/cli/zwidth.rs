@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::estimators::Kind;
 use crate::failure::Failure;
-use crate::output::write_whole;
+use crate::output::Folder;
 use crate::report;
 use crate::rows::{csv, json};
 use crate::zwidth::{BOUNDS_A_CASE, Case, Settings, boundaries, rows, table};
@@ -43,7 +43,7 @@ pub(super) struct Zwidth {
     /// with --json - none]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Write the bounds as JSON to FILE, or with - to standard output and nothing else there
+    /// Write the bounds as JSON to FILE; - is standard output, with nothing else there
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
 }
@@ -55,21 +55,21 @@ pub(super) fn run(options: &Zwidth, command_line: &str) -> Result<(), Failure> {
         seed: options.seed,
     };
     let cases = cases(options)?;
+    let folder = page::folder(options.out.as_deref(), options.json.as_deref(), PAGE)?;
     let bar = progress(cases.len() * BOUNDS_A_CASE, "searching");
     let boundaries = boundaries(&cases, &settings, || bar.inc(1))?;
     bar.finish_and_clear();
 
     let rows = rows::rows(&cases, &boundaries, settings.seed);
     let json = json(&rows)?;
-    let folder = page::folder(options.out.as_deref(), options.json.as_deref(), PAGE);
     let mut text = table::table(&cases, &boundaries);
     if let Some(folder) = folder {
         let device = options.device.name();
         let page = report::zwidth(&rows, &text, &device, command_line)?;
-        let csv = csv(&rows, rows::COLUMNS)?;
-        write_whole(&folder.join("zwidth.json"), &json)?;
-        write_whole(&folder.join("zwidth.csv"), &csv)?;
-        let index = page::write(folder, &page)?;
+        let mut files = Folder::new(folder);
+        files.add("zwidth.json", json.as_slice());
+        files.add("zwidth.csv", csv(&rows, rows::COLUMNS)?);
+        let index = page::write(files, &page)?;
         text.push_str(&format!("\nPage: {}\n", index.display()));
     }
     page::print(options.json.as_deref(), &json, &text)

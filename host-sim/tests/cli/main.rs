@@ -3,6 +3,7 @@
 mod closed_loop;
 mod compare;
 mod identify;
+mod output;
 mod refusals;
 mod replay;
 mod tune;
