@@ -2,6 +2,7 @@
 
 use drivers::{Amplifier, CurrentOutput, DacCode};
 use estimator_core::{Amps, Count, Sample};
+use firmware_app::config::{RATE_HZ, REFERENCE};
 use haptic_control::{Currents, Stop};
 use stm32f4xx_hal::dac::{C1, C2, DacOut, DacPin};
 use stm32f4xx_hal::gpio::{Input, Output, Pin};
@@ -12,17 +13,14 @@ use stm32f4xx_hal::rcc::{Config, Rcc};
 use stm32f4xx_hal::timer::Event;
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
-use crate::edge::Stamps as _;
+use crate::edge::{Source, Stamps as _};
 use crate::encoder::Encoder;
 use crate::reset;
-use crate::scene::{REFERENCE, Stamps};
 use crate::tick::Tick;
 
 /// Core clock, Hz.
 pub(crate) const CORE_HZ: u32 = 168_000_000;
-/// Control ticks a second, 1000 to 20 000.
-pub(crate) const RATE_HZ: u32 = 10_000;
-const _: () = assert!(RATE_HZ >= 1000 && RATE_HZ <= 20_000 && CORE_HZ.is_multiple_of(RATE_HZ));
+const _: () = assert!(CORE_HZ.is_multiple_of(RATE_HZ));
 
 /// Current of the large amplifier at the DAC's ends.
 const LARGE_FULL_SCALE: Amps = Amps::new(6.0);
@@ -35,7 +33,7 @@ const WATCHDOG_MS: u32 = 50;
 pub(crate) struct Encoders {
     large: Encoder<TIM4>,
     small: Encoder<TIM3>,
-    stamps: Stamps,
+    stamps: Source,
     reference: Option<Encoder<TIM1>>,
 }
 
@@ -169,7 +167,7 @@ impl Board {
         let reference = REFERENCE
             .then(|| Encoder::new(Qei::new(chip.TIM1, (e.pe9, e.pe11), &mut rcc).release().0));
         let encoders = Encoders {
-            stamps: Stamps::new(chip.TIM2, (a.pa15, b.pb3), &mut rcc),
+            stamps: Source::new(chip.TIM2, (a.pa15, b.pb3), &mut rcc),
             large: Encoder::new(Qei::new(chip.TIM4, (d.pd12, d.pd13), &mut rcc).release().0),
             small: Encoder::new(Qei::new(chip.TIM3, (c.pc6, c.pc7), &mut rcc).release().0),
             reference,

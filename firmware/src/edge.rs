@@ -30,6 +30,12 @@ pub(crate) trait Stamps: Sized {
     fn read(&mut self, encoder: &mut Encoder<TIM4>) -> (Count, Option<Edge>);
 }
 
+/// The image's source of stamps.
+#[cfg(feature = "edge-capture")]
+pub(crate) type Source = Capture;
+#[cfg(not(feature = "edge-capture"))]
+pub(crate) type Source = Skip;
+
 /// A board without the wires: no code.
 impl Stamps for Skip {
     fn new(_: TIM2, _: Pins, _: &mut Rcc) -> Self {

@@ -3,26 +3,25 @@
 #![no_main]
 
 mod board;
-mod commands;
-mod control;
 #[allow(dead_code, reason = "an image without the wires captures nothing")]
 mod edge;
 mod encoder;
+mod log;
 mod reset;
-mod scene;
-mod telemetry;
 mod tick;
 
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
     use estimator_core::Amps;
+    use firmware_app::commands::{Commands, Messages};
+    use firmware_app::config::RATE_HZ;
+    use firmware_app::control::{Control, Inputs, Message};
+    use firmware_app::telemetry::{Frame, Frames, Sender};
     use heapless::spsc::Consumer;
     use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
-    use crate::board::{Amplifiers, Board, Clock, Encoders, RATE_HZ};
-    use crate::commands::{Commands, Messages};
-    use crate::control::{Control, Inputs, Message};
-    use crate::telemetry::{self, Frame, Frames, Sender};
+    use crate::board::{Amplifiers, Board, Clock, Encoders};
+    use crate::log;
     use crate::tick::Tick;
 
     #[shared]
@@ -36,9 +35,9 @@ mod app {
         amplifiers: Amplifiers,
         control: Control,
         messages: Consumer<'static, Message>,
-        sender: Sender,
+        sender: Sender<'static>,
         frames: Consumer<'static, Frame>,
-        commands: Commands,
+        commands: Commands<'static>,
         watchdog: IndependentWatchdog,
     }
 
@@ -102,10 +101,12 @@ mod app {
     #[idle(local = [frames, commands, watchdog])]
     fn idle(cx: idle::Context) -> ! {
         loop {
-            cx.local.commands.receive();
-            if telemetry::log(cx.local.frames) {
+            cx.local.commands.receive(bare::receive);
+            if log::frames(cx.local.frames) {
                 cx.local.watchdog.feed();
-                cx.local.commands.report();
+                if let Some(counts) = cx.local.commands.report() {
+                    log::rejected(counts);
+                }
             }
             cortex_m::asm::wfi();
         }

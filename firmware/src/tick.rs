@@ -1,11 +1,12 @@
 //! The control tick and its bookkeeping in core clock cycles.
 
 use cortex_m::peripheral::DWT;
+use firmware_app::config::RATE_HZ;
 use stm32f4xx_hal::pac::TIM5;
 use stm32f4xx_hal::timer::{CounterHz, Flag};
 use stm32f4xx_hal::{ClearFlags, ReadFlags};
 
-use crate::board::{CORE_HZ, RATE_HZ};
+use crate::board::CORE_HZ;
 
 /// Core clock cycles of a control period.
 const PERIOD: u32 = CORE_HZ / RATE_HZ;

@@ -3,12 +3,13 @@
 use std::sync::OnceLock;
 
 use estimator_core::{Confidence as _, VelocityEstimator as _};
+use firmware_app::large;
+use firmware_app::scene::RIG;
 use host_sim::closed_loop::{Hand, SceneName};
 use host_sim::telemetry::{Frame, NOBODY};
 use virtual_board::command::Command;
 use virtual_board::run::{Outcome, Setup, Tick};
 
-use crate::firmware::scene::{RIG, large};
 use crate::image::{of_scene, run, run_image};
 use crate::mirror::{mirrored, same_bits};
 

@@ -1,20 +1,19 @@
 //! The same control on the host, fed with what the image read: the same bits.
 
-use estimator_core::{
-    AdaptiveObserver, Amps, Count, CountObserver, CountsPerTick, Model, NoInput, Observer, Sample,
-    SteadyKalman, SteadyKalmanTriple, Uncertainty, VelocityEstimator, preset,
-};
+use estimator_core::{Amps, Count, CountsPerTick, Sample, VelocityEstimator};
+use firmware_app::config::RATE;
+use firmware_app::control::{Control, Inputs, Message};
+use firmware_app::large::{self, Large, LargeEstimator as _};
+use firmware_app::scene::{HANDLE, RIG};
+use firmware_app::telemetry::Record;
 use haptic_control::{Action, AnyScene, Currents, FreeAir, Request, Stop, Switchboard};
 use host_sim::closed_loop::SceneName;
 use host_sim::telemetry::Frame;
 use virtual_board::run::{Outcome, Tick};
 
-use crate::firmware::control::{Control, Inputs, Message};
-use crate::firmware::scene::{DEVICE, HANDLE, RATE, RIG, choice};
 use crate::image::{
     adaptive_edge_free_air, adaptive_free_air, free_air, kalman_free_air, kalman_track, soak, tour,
 };
-use crate::telemetry::Record;
 
 /// The counts of every tick of `run`, widened from what the counters show at first.
 struct Samples([Count; 2]);
@@ -70,7 +69,9 @@ pub(crate) fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
         let heard = requests.iter().find(|(at, _)| *at == k);
         let message = heard.map(|(_, heard)| match heard {
             Heard::Request(request) => Message::Request(*request),
-            Heard::Estimator(number) => Message::Estimator(choice(*number).expect("it is there")),
+            Heard::Estimator(number) => {
+                Message::Estimator(Large::choice(*number).expect("it is there"))
+            }
         });
         let request = control.hear(message);
         let inputs = Inputs {
@@ -202,8 +203,8 @@ fn codes_are_the_hosts(run: &Outcome, host: &[(Option<Currents>, Record)]) -> us
     moved
 }
 
-/// The switchboard of an image with another estimator on the large motor, which is written down
-/// here, because the firmware's own file holds one choice a build.
+/// The switchboard of an image with another estimator on the large motor: a build of
+/// `firmware_app` has one choice.
 fn mirrored_with<L>(large: L, run: &Outcome) -> Vec<Action>
 where
     L: VelocityEstimator<Output = CountsPerTick>,
@@ -242,30 +243,15 @@ fn same_frames(run: &Outcome, host: &[Action]) {
 
 #[test]
 fn the_kalman_image_is_what_the_host_computes_bit_for_bit() {
-    const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(
-        DEVICE.large.counts_per_rev,
-        RATE,
-        1e4
-    ));
-    const LARGE: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
     for run in [kalman_free_air(), kalman_track()] {
-        same_frames(run, &mirrored_with(LARGE, run));
+        same_frames(run, &mirrored_with(large::FILTER, run));
     }
 }
 
 #[test]
 fn the_adaptive_image_is_what_the_host_computes_bit_for_bit() {
-    const UNSURE: Uncertainty = Uncertainty {
-        torque_noise: 3.57e-6,
-        load: 1e-5,
-        load_time: 0.1,
-        friction_share: 0.7,
-        boundary_noise: 0.0625,
-    };
-    const COUNTS: CountObserver = preset!(Observer::new(&DEVICE.coupled_motor(), RATE, &UNSURE));
-    const LARGE: AdaptiveObserver = preset!(COUNTS.learning(DEVICE.large.counts_per_rev, RATE));
     let run = adaptive_free_air();
-    same_frames(run, &mirrored_with(LARGE, run));
+    same_frames(run, &mirrored_with(large::ADAPTIVE, run));
 }
 
 /// RMS error of the reported velocity of the large motor, rad/s, after a second.

@@ -1,6 +1,7 @@
 //! What the hand feels and how well the velocity is known: on the board as in the host simulation.
 
 use estimator_core::Amps;
+use firmware_app::scene::Core;
 use host_sim::closed_loop::{Bench, Eye, Hand};
 use host_sim::compare::interval;
 use host_sim::device::Device;
@@ -8,7 +9,6 @@ use host_sim::score::{Score, Truth, Wanted};
 use virtual_board::run::{Outcome, RATE_HZ};
 use virtual_board::score::Parasitic;
 
-use crate::firmware::scene::Core;
 use crate::image::{SETTLED_S, free_air, wall};
 
 /// Frames a second, at which both are scored.

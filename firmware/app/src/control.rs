@@ -5,8 +5,9 @@ use haptic_control::{
     Action, Currents, Findings, Mode, Monitor, MonitorState, Request, Safety, SafetyState, Stop,
 };
 
-use crate::board::RATE_HZ;
-use crate::scene::{AUTO_ARM, Choice, Core, DEVICE, FIRST, RATE, SCENES, SILENCE, Tuned};
+use crate::config::{AUTO_ARM, DEVICE, RATE, RATE_HZ, SILENCE};
+use crate::large::Choice;
+use crate::scene::{Core, FIRST, SCENES, Tuned};
 use crate::telemetry::Record;
 
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
@@ -16,20 +17,23 @@ const SAFETY: Safety = Safety {
     scenes: SCENES,
 };
 
-/// What a tick knows, beside its sample.
-pub(crate) struct Inputs {
-    pub(crate) amplifier_fault: bool,
-    pub(crate) clock_failure: bool,
+/// Inputs of a tick beside its sample.
+pub struct Inputs {
+    /// Whether an amplifier reports a fault.
+    pub amplifier_fault: bool,
+    /// Whether the core does not run on its crystal.
+    pub clock_failure: bool,
     /// Control ticks missed since the last one.
-    pub(crate) missed: u32,
+    pub missed: u32,
     /// Debug settings are on that would hold the outputs in a halt.
-    pub(crate) debugger: bool,
-    pub(crate) request: Option<Request>,
+    pub debugger: bool,
+    /// A request to the safety machine.
+    pub request: Option<Request>,
 }
 
-/// What commands come to.
+/// A command on its way to the control task.
 #[derive(Clone, Copy)]
-pub(crate) enum Message {
+pub enum Message {
     /// For the safety machine.
     Request(Request),
     /// For the scenes.
@@ -39,7 +43,7 @@ pub(crate) enum Message {
 }
 
 /// The control core under its monitor and safety state.
-pub(crate) struct Control {
+pub struct Control {
     core: Core,
     monitor: MonitorState,
     safety: SafetyState,
@@ -52,7 +56,7 @@ pub(crate) struct Control {
 
 impl Control {
     /// At rest at the first sample, after a reset for this cause.
-    pub(crate) fn new(first: &Sample, reset: Stop) -> Self {
+    pub fn new(first: &Sample, reset: Stop) -> Self {
         Self {
             core: Core::start(first),
             monitor: MONITOR.start(first),
@@ -64,13 +68,13 @@ impl Control {
     }
 
     /// Currents commanded over the period that ends now.
-    pub(crate) fn applied(&self) -> Currents {
+    pub fn applied(&self) -> Currents {
         self.action.currents
     }
 
     /// Takes a message before its tick; what there is to ask the safety machine. Settings too are a
     /// sign of life.
-    pub(crate) fn hear(&mut self, message: Option<Message>) -> Option<Request> {
+    pub fn hear(&mut self, message: Option<Message>) -> Option<Request> {
         match message? {
             Message::Request(request) => Some(request),
             Message::Tuned(tuned) => {
@@ -85,7 +89,7 @@ impl Control {
     }
 
     /// One tick: the currents to apply, `None` with the amplifiers disabled.
-    pub(crate) fn step(&mut self, sample: &Sample, inputs: &Inputs) -> Option<Currents> {
+    pub fn step(&mut self, sample: &Sample, inputs: &Inputs) -> Option<Currents> {
         self.overruns = self.overruns.wrapping_add(inputs.missed);
         let mut action = self.core.step(sample);
         let findings = Findings {
@@ -115,7 +119,7 @@ impl Control {
 
     /// What the latest tick, with this sample, came to. Most ticks are never told of, so it is not
     /// made by [`Self::step`].
-    pub(crate) fn record(&self, sample: &Sample) -> Record {
+    pub fn record(&self, sample: &Sample) -> Record {
         Record {
             tick: self.ticks.wrapping_sub(1),
             sample: *sample,

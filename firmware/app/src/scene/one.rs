@@ -3,26 +3,26 @@
 use estimator_core::Sample;
 use haptic_control::{Action, Controller, ControllerState, Refusal, Tunable};
 
-use super::{
-    BOUNDS, Choice, Estimation, FIRST, HANDLE, Handle, LARGE, Large, Learned, RIG, THE_SCENE,
-    TORQUE_SCENE, TheScene, choose, learned,
-};
+use super::{BOUNDS, Estimation, FIRST, HANDLE, Handle, RIG, THE_SCENE, TORQUE_SCENE, TheScene};
+use crate::large::{Choice, LARGE, Large, LargeEstimator as _, Learned};
 
 /// The scene built anew, on its way to the control task.
 #[derive(Clone, Copy)]
-pub(crate) struct Tuned(TheScene);
+pub struct Tuned(TheScene);
 
 /// What the scene is set to, as the lowest priority knows it.
-pub(crate) struct Settings(TheScene);
+pub struct Settings(TheScene);
 
-impl Settings {
-    /// The preset.
-    pub(crate) const fn new() -> Self {
+/// The preset.
+impl Default for Settings {
+    fn default() -> Self {
         Self(THE_SCENE)
     }
+}
 
+impl Settings {
     /// Sets a parameter, within bounds.
-    pub(crate) fn set(&mut self, number: u8, parameter: u8, value: f32) -> Result<Tuned, Refusal> {
+    pub fn set(&mut self, number: u8, parameter: u8, value: f32) -> Result<Tuned, Refusal> {
         if number != FIRST {
             return Err(Refusal::Unknown);
         }
@@ -32,7 +32,7 @@ impl Settings {
 }
 
 /// The control core: one controller, on or off.
-pub(crate) struct Core {
+pub struct Core {
     controller: Controller<TheScene, Large, Handle>,
     state: ControllerState<TheScene, Large, Handle>,
     on: bool,
@@ -40,7 +40,7 @@ pub(crate) struct Core {
 
 impl Core {
     /// At rest at the first sample, off.
-    pub(crate) fn start(first: &Sample) -> Self {
+    pub fn start(first: &Sample) -> Self {
         let controller = Controller::new(THE_SCENE, LARGE, HANDLE, &RIG);
         Self {
             state: controller.start(first),
@@ -50,13 +50,13 @@ impl Core {
     }
 
     /// At rest at this sample, off; settings stay.
-    pub(crate) fn restart(&mut self, first: &Sample) {
+    pub fn restart(&mut self, first: &Sample) {
         self.controller.restart(&mut self.state, first);
         self.on = false;
     }
 
     /// Puts the one scene on, from rest, or off. Torque begins at zero, whatever was set before.
-    pub(crate) fn select(&mut self, scene: u8, latest: &Sample) {
+    pub fn select(&mut self, scene: u8, latest: &Sample) {
         let on = scene == FIRST;
         if on && FIRST == TORQUE_SCENE {
             self.controller.retune(THE_SCENE);
@@ -68,19 +68,19 @@ impl Core {
     }
 
     /// Takes settings, which act from the next tick.
-    pub(crate) fn retune(&mut self, tuned: Tuned) {
+    pub fn retune(&mut self, tuned: Tuned) {
         self.controller.retune(tuned.0);
     }
 
     /// Puts this estimator in charge of the large motor.
-    pub(crate) fn choose(&mut self, choice: Choice) {
+    pub fn choose(&mut self, choice: Choice) {
         if let Some(state) = self.state.large_mut() {
-            choose(state, choice);
+            Large::choose(state, choice);
         }
     }
 
     /// One tick.
-    pub(crate) fn step(&mut self, sample: &Sample) -> Action {
+    pub fn step(&mut self, sample: &Sample) -> Action {
         if self.on {
             self.controller.step(&mut self.state, sample)
         } else {
@@ -89,7 +89,7 @@ impl Core {
     }
 
     /// What the large motor's estimator says of its latest velocity.
-    pub(crate) fn estimation(&self) -> Estimation {
+    pub fn estimation(&self) -> Estimation {
         match self.state.large() {
             Some(state) if self.on => Estimation::of(state),
             _ => Estimation::NONE,
@@ -97,7 +97,7 @@ impl Core {
     }
 
     /// What the large motor's estimator has learned.
-    pub(crate) fn learned(&self) -> Learned {
-        self.state.large().map(learned).unwrap_or_default()
+    pub fn learned(&self) -> Learned {
+        self.state.large().map(|state| LARGE.learned(state)).unwrap_or_default()
     }
 }

@@ -6,10 +6,9 @@ use haptic_control::{Action, AnyScene, Refusal, Switchboard, SwitchboardState};
 use super::preset::{
     DETENTS, EXCITE, FREE_AIR, HOLD, INERTIA, OFF, SPRING, TEXTURE, TORQUE, VISCOUS, WALL,
 };
-use super::{
-    BOUNDS, Choice, Estimation, HANDLE, Handle, LARGE, Large, Learned, RATE, RIG, SCENES,
-    TORQUE_SCENE, choose, learned,
-};
+use super::{BOUNDS, Estimation, HANDLE, Handle, RIG, SCENES, TORQUE_SCENE};
+use crate::config::RATE;
+use crate::large::{Choice, LARGE, Large, LargeEstimator as _, Learned};
 
 type Scenes = [AnyScene; SCENES as usize];
 
@@ -31,22 +30,24 @@ static SWITCHBOARD: Switchboard<Large, Handle> = Switchboard::new(LARGE, HANDLE,
 
 /// A scene built anew, on its way to the control task.
 #[derive(Clone, Copy)]
-pub(crate) struct Tuned {
+pub struct Tuned {
     number: u8,
     scene: AnyScene,
 }
 
 /// What the scenes are set to, as the lowest priority knows it.
-pub(crate) struct Settings(Scenes);
+pub struct Settings(Scenes);
 
-impl Settings {
-    /// The presets.
-    pub(crate) const fn new() -> Self {
+/// The presets.
+impl Default for Settings {
+    fn default() -> Self {
         Self(SCENES_BY_NUMBER)
     }
+}
 
+impl Settings {
     /// Sets a parameter, within bounds.
-    pub(crate) fn set(&mut self, number: u8, parameter: u8, value: f32) -> Result<Tuned, Refusal> {
+    pub fn set(&mut self, number: u8, parameter: u8, value: f32) -> Result<Tuned, Refusal> {
         let Some(known) = self.0.get_mut(usize::from(number)) else {
             return Err(Refusal::Unknown);
         };
@@ -57,7 +58,7 @@ impl Settings {
 }
 
 /// The control core: a switchboard, and what its scenes are set to.
-pub(crate) struct Core {
+pub struct Core {
     state: SwitchboardState<Large, Handle>,
     scenes: Scenes,
     on: u8,
@@ -65,7 +66,7 @@ pub(crate) struct Core {
 
 impl Core {
     /// At rest at the first sample, with no scene.
-    pub(crate) fn start(first: &Sample) -> Self {
+    pub fn start(first: &Sample) -> Self {
         Self {
             state: SWITCHBOARD.start(first),
             scenes: SCENES_BY_NUMBER,
@@ -74,13 +75,13 @@ impl Core {
     }
 
     /// At rest at this sample, with no scene; settings stay.
-    pub(crate) fn restart(&mut self, first: &Sample) {
+    pub fn restart(&mut self, first: &Sample) {
         SWITCHBOARD.restart(&mut self.state, first);
         self.on = 0;
     }
 
     /// Swaps the scene before the next tick. Torque begins at zero, whatever was set before.
-    pub(crate) fn select(&mut self, number: u8, latest: &Sample) {
+    pub fn select(&mut self, number: u8, latest: &Sample) {
         if let Some(scene) = self.scenes.get_mut(usize::from(number)) {
             if number == TORQUE_SCENE {
                 *scene = AnyScene::Torque(TORQUE);
@@ -91,7 +92,7 @@ impl Core {
     }
 
     /// Takes settings; those of the scene that is on act from the next tick.
-    pub(crate) fn retune(&mut self, tuned: Tuned) {
+    pub fn retune(&mut self, tuned: Tuned) {
         if let Some(scene) = self.scenes.get_mut(usize::from(tuned.number)) {
             *scene = tuned.scene;
         }
@@ -101,17 +102,17 @@ impl Core {
     }
 
     /// Puts this estimator in charge of the large motor.
-    pub(crate) fn choose(&mut self, choice: Choice) {
-        choose(self.state.large_mut(), choice);
+    pub fn choose(&mut self, choice: Choice) {
+        Large::choose(self.state.large_mut(), choice);
     }
 
     /// One tick.
-    pub(crate) fn step(&mut self, sample: &Sample) -> Action {
+    pub fn step(&mut self, sample: &Sample) -> Action {
         SWITCHBOARD.step(&mut self.state, sample)
     }
 
     /// What the large motor's estimator says of its latest velocity.
-    pub(crate) fn estimation(&self) -> Estimation {
+    pub fn estimation(&self) -> Estimation {
         if self.state.estimates_large() {
             Estimation::of(self.state.large())
         } else {
@@ -120,7 +121,7 @@ impl Core {
     }
 
     /// What the large motor's estimator has learned.
-    pub(crate) fn learned(&self) -> Learned {
-        learned(self.state.large())
+    pub fn learned(&self) -> Learned {
+        LARGE.learned(self.state.large())
     }
 }

@@ -1,0 +1,109 @@
+//! Commands: from the bytes of a channel to messages for the control task.
+
+use drivers::{Command, Parser};
+use haptic_control::Refusal;
+use heapless::spsc::{Producer, Queue};
+
+use crate::control::Message;
+use crate::large::{Large, LargeEstimator as _};
+use crate::scene::{Settings, TORQUE_SCENE};
+
+/// Messages that wait for the control task, which takes one a tick.
+pub type Messages = Queue<Message, 8>;
+/// Bytes that one look takes at most.
+const BYTES: usize = 64;
+
+/// Counts of what was rejected since the start, modulo 2^32.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rejected {
+    /// Bytes that belong to no command.
+    pub garbage: u32,
+    /// Commands whose value is not finite.
+    pub not_finite: u32,
+    /// Commands whose value is out of bounds.
+    pub out_of_bounds: u32,
+    /// Commands that name an unknown scene, parameter or estimator.
+    pub unknown: u32,
+}
+
+/// The receiving end of the command channel.
+pub struct Commands<'q> {
+    parser: Parser,
+    settings: Settings,
+    queue: Producer<'q, Message>,
+    rejected: Rejected,
+    reported: Rejected,
+    reports: u8,
+}
+
+impl<'q> Commands<'q> {
+    /// A receiver that has received nothing.
+    pub fn new(queue: Producer<'q, Message>) -> Self {
+        Self {
+            parser: Parser::default(),
+            settings: Settings::default(),
+            queue,
+            rejected: Rejected::default(),
+            reported: Rejected::default(),
+            reports: 0,
+        }
+    }
+
+    /// Takes bytes from `next` until it has none, at most 64, while the queue has room for a
+    /// message.
+    pub fn receive(&mut self, mut next: impl FnMut() -> Option<u8>) {
+        for _ in 0..BYTES {
+            if !self.queue.ready() {
+                return;
+            }
+            let Some(byte) = next() else {
+                break;
+            };
+            if let Some(message) = self.parser.take(byte).and_then(|it| self.follow(it)) {
+                let _ = self.queue.enqueue(message);
+            }
+        }
+    }
+
+    /// The message of a command. Scenes are built here, where there is time.
+    fn follow(&mut self, command: Command) -> Option<Message> {
+        let message = match command {
+            Command::Request(request) => return Some(Message::Request(request)),
+            Command::Estimator(number) => Large::choice(number)
+                .map(Message::Estimator)
+                .ok_or(Refusal::Unknown),
+            Command::Torque(torque) => self.tuned(TORQUE_SCENE, 0, torque),
+            Command::Tune {
+                scene,
+                parameter,
+                value,
+            } => self.tuned(scene, parameter, value),
+        };
+        let count = match message {
+            Ok(message) => return Some(message),
+            Err(Refusal::NotFinite) => &mut self.rejected.not_finite,
+            Err(Refusal::OutOfBounds) => &mut self.rejected.out_of_bounds,
+            Err(Refusal::Unknown) => &mut self.rejected.unknown,
+        };
+        *count = count.wrapping_add(1);
+        None
+    }
+
+    fn tuned(&mut self, scene: u8, parameter: u8, value: f32) -> Result<Message, Refusal> {
+        self.settings
+            .set(scene, parameter, value)
+            .map(Message::Tuned)
+    }
+
+    /// The counts before and now, at every 256th call and only if they differ. To be called once
+    /// a frame.
+    pub fn report(&mut self) -> Option<[Rejected; 2]> {
+        self.rejected.garbage = self.parser.garbage();
+        self.reports = self.reports.wrapping_add(1);
+        if self.reports != 0 || self.rejected == self.reported {
+            return None;
+        }
+        let before = core::mem::replace(&mut self.reported, self.rejected);
+        Some([before, self.rejected])
+    }
+}

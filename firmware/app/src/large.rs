@@ -1,0 +1,181 @@
+//! Estimators of the large motor's velocity: all that images have, and the choice of one image.
+
+use core::convert::Infallible;
+
+use estimator_core::{
+    AdaptiveEdgeObserver, AdaptiveObserver, Confidence, CountObserver, Deviations, EndFit, Foaw,
+    Handover, HandoverState, Hertz, Model, NoInput, Observer, Side, Skip, SteadyKalman,
+    SteadyKalmanTriple, Uncertainty, preset,
+};
+
+use crate::config::{DEVICE, EDGES, RATE};
+
+/// FOAW over at most 32 intervals.
+pub type Window = Foaw<32, EndFit>;
+/// The parameters of [`Window`].
+pub const WINDOW: Window = preset!(Foaw::new(32, 1));
+
+/// A steady-state Kalman filter.
+pub type Filter = SteadyKalmanTriple;
+const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(
+    DEVICE.large.counts_per_rev,
+    RATE,
+    1e4
+));
+/// The parameters of [`Filter`].
+pub const FILTER: Filter = preset!(SteadyKalman::new(&MODEL));
+
+/// [`Window`], number 0, and [`Filter`], number 1, exchanged by command.
+pub type Both = Handover<Window, Filter>;
+/// 20 ms: the filter has settled by then, and the difference of the two velocities fades in more
+/// slowly than a fingertip feels best.
+const TICKS: u16 = (RATE.0 / 50.0) as u16;
+/// The parameters of [`Both`].
+pub const BOTH: Both = preset!(Handover::new(WINDOW, FILTER, TICKS, TICKS));
+
+/// As `host-sim tune` has it for these rates.
+const UNSURE: Uncertainty = Uncertainty {
+    torque_noise: if EDGES { 3.68e-5 } else { 3.57e-6 },
+    load: if EDGES { 8.9e-4 } else { 1e-5 },
+    load_time: 0.1,
+    friction_share: 0.7,
+    boundary_noise: if EDGES { 0.03 } else { 0.0625 },
+};
+const COUNTS: CountObserver = preset!(Observer::new(&DEVICE.coupled_motor(), RATE, &UNSURE));
+
+/// An observer that learns damping, friction and torque constant from counts.
+pub type Adaptive = AdaptiveObserver;
+/// The parameters of [`Adaptive`].
+pub const ADAPTIVE: Adaptive = preset!(COUNTS.learning(DEVICE.large.counts_per_rev, RATE));
+
+/// An observer that learns damping, friction and torque constant from stamped edges.
+pub type AdaptiveEdge = AdaptiveEdgeObserver;
+/// The parameters of [`AdaptiveEdge`].
+pub const ADAPTIVE_EDGE: AdaptiveEdge = preset!(
+    preset!(COUNTS.with_edges(Hertz(84e6), RATE)).learning(DEVICE.large.counts_per_rev, RATE)
+);
+
+#[cfg(all(feature = "large-adaptive", not(feature = "edge-capture")))]
+pub use self::{ADAPTIVE as LARGE, Adaptive as Large};
+#[cfg(all(feature = "large-adaptive", feature = "edge-capture"))]
+pub use self::{ADAPTIVE_EDGE as LARGE, AdaptiveEdge as Large};
+#[cfg(not(any(
+    feature = "large-foaw",
+    feature = "large-kalman",
+    feature = "large-adaptive"
+)))]
+pub use self::{BOTH as LARGE, Both as Large};
+#[cfg(feature = "large-kalman")]
+pub use self::{FILTER as LARGE, Filter as Large};
+#[cfg(feature = "large-foaw")]
+pub use self::{WINDOW as LARGE, Window as Large};
+
+#[cfg(any(
+    all(feature = "large-foaw", feature = "large-kalman"),
+    all(feature = "large-foaw", feature = "large-adaptive"),
+    all(feature = "large-kalman", feature = "large-adaptive")
+))]
+compile_error!("one estimator for the large motor: large-foaw, large-kalman or large-adaptive");
+
+/// The choice between estimators that an image has.
+pub type Choice = <Large as LargeEstimator>::Choice;
+/// The parameter errors that an image learns.
+pub type Learned = <Large as LargeEstimator>::Learned;
+
+/// An estimator for the large motor of an image.
+pub trait LargeEstimator: Confidence {
+    /// A choice between estimators.
+    type Choice: Copy;
+    /// Learned parameter errors: [`Deviations`], or [`Skip`] for an estimator that learns nothing.
+    type Learned: Learnable;
+
+    /// The choice of this number, if there is one.
+    fn choice(number: u8) -> Option<Self::Choice>;
+
+    /// Puts the chosen estimator in charge.
+    fn choose(state: &mut Self::State, choice: Self::Choice);
+
+    /// Number of the estimator in charge; `None` while one takes over.
+    fn in_charge(state: &Self::State) -> Option<u8>;
+
+    /// What was learned so far.
+    fn learned(&self, state: &Self::State) -> Self::Learned;
+}
+
+impl LargeEstimator for Both {
+    type Choice = Side;
+    type Learned = Skip;
+
+    fn choice(number: u8) -> Option<Side> {
+        match number {
+            0 => Some(Side::First),
+            1 => Some(Side::Second),
+            _ => None,
+        }
+    }
+
+    fn choose(state: &mut Self::State, choice: Side) {
+        HandoverState::select(state, choice);
+    }
+
+    fn in_charge(state: &Self::State) -> Option<u8> {
+        state.in_charge().map(|side| side as u8)
+    }
+
+    fn learned(&self, _: &Self::State) -> Skip {
+        Skip
+    }
+}
+
+/// One estimator: there is no choice, and no code for one.
+macro_rules! alone {
+    ($($estimator:ty, $learned:ty, |$it:ident, $state:ident| $what:expr;)+) => {$(
+        impl LargeEstimator for $estimator {
+            type Choice = Infallible;
+            type Learned = $learned;
+
+            fn choice(_: u8) -> Option<Infallible> {
+                None
+            }
+
+            fn choose(_: &mut Self::State, choice: Infallible) {
+                match choice {}
+            }
+
+            fn in_charge(_: &Self::State) -> Option<u8> {
+                Some(0)
+            }
+
+            fn learned(&self, $state: &Self::State) -> $learned {
+                let $it = self;
+                $what
+            }
+        }
+    )+};
+}
+
+alone! {
+    Window, Skip, |_it, _state| Skip;
+    Filter, Skip, |_it, _state| Skip;
+    Adaptive, Deviations, |it, state| it.deviations(state);
+    AdaptiveEdge, Deviations, |it, state| it.deviations(state);
+}
+
+/// Learned parameter errors, or nothing in their place.
+pub trait Learnable: Copy + Default {
+    /// The errors, if they are learned.
+    fn deviations(&self) -> Option<Deviations>;
+}
+
+/// Nothing is learned: no code.
+impl Learnable for Skip {
+    fn deviations(&self) -> Option<Deviations> {
+        None
+    }
+}
+
+impl Learnable for Deviations {
+    fn deviations(&self) -> Option<Deviations> {
+        Some(*self)
+    }
+}

@@ -1,0 +1,10 @@
+//! The firmware without its hardware: what the control task computes, the scenes, the commands and
+//! the telemetry frames. The crate has no I/O, so the host runs the same code in tests.
+#![no_std]
+
+pub mod commands;
+pub mod config;
+pub mod control;
+pub mod large;
+pub mod scene;
+pub mod telemetry;

@@ -1,0 +1,135 @@
+//! Telemetry frames: made by the control task, logged at the lowest priority.
+
+use estimator_core::{Count, Deviations, Edge, Sample};
+use haptic_control::Action;
+use heapless::spsc::{Producer, Queue};
+
+use crate::config::{EDGES, FRAMES_HZ, RATE_HZ};
+use crate::large::{Learnable as _, Learned};
+use crate::scene::{Estimation, RIG};
+
+/// Control ticks for one frame.
+const DECIMATION: u32 = RATE_HZ / FRAMES_HZ;
+/// Frames that wait, and that one look logs at most.
+pub const DEPTH: usize = 32;
+
+/// Frames between the control task and the log.
+pub type Frames = Queue<Frame, DEPTH>;
+
+/// The state of the control after a tick.
+#[derive(Clone, Copy)]
+pub struct Record {
+    /// Number of the tick from 0, modulo 2^32.
+    pub tick: u32,
+    /// The tick's input.
+    pub sample: Sample,
+    /// The tick's output.
+    pub action: Action,
+    /// [`haptic_control::Mode`] as a number.
+    pub state: u8,
+    /// [`haptic_control::Stop`] as a number.
+    pub cause: u8,
+    /// Ticks missed or late so far, modulo 2^32.
+    pub overruns: u32,
+    /// The large motor's estimator on its latest velocity.
+    pub estimation: Estimation,
+    /// Relative parameter errors that the large motor's estimator has learned.
+    pub learned: Learned,
+}
+
+/// A record on its way to the log.
+#[derive(Clone, Copy)]
+pub struct Frame {
+    /// Number of the frame from 0, modulo 2^32. Frames that found no place count.
+    pub seq: u32,
+    /// The record.
+    pub record: Record,
+    /// Core clock cycles of the control task.
+    pub cycles: u32,
+    /// Count of the reference encoder, if there is one.
+    pub reference: Option<Count>,
+    drops: u32,
+}
+
+/// The control task's end of the queue of frames.
+pub struct Sender<'q> {
+    queue: Producer<'q, Frame>,
+    /// Ticks until the next frame.
+    wait: u32,
+    seq: u32,
+    drops: u32,
+}
+
+impl<'q> Sender<'q> {
+    /// A sender that has made no frame.
+    pub fn new(queue: Producer<'q, Frame>) -> Self {
+        Self {
+            queue,
+            wait: 0,
+            seq: 0,
+            drops: 0,
+        }
+    }
+
+    /// Whether this tick makes a frame. To be called once a tick.
+    pub fn is_due(&mut self) -> bool {
+        let due = self.wait == 0;
+        self.wait = if due { DECIMATION } else { self.wait } - 1;
+        due
+    }
+
+    /// Sends a record, or counts it as dropped if the queue is full.
+    pub fn send(&mut self, record: Record, cycles: u32, reference: Option<Count>) {
+        let frame = Frame {
+            seq: self.seq,
+            drops: self.drops,
+            record,
+            cycles,
+            reference,
+        };
+        self.seq = self.seq.wrapping_add(1);
+        if self.queue.enqueue(frame).is_err() {
+            self.drops = self.drops.wrapping_add(1);
+        }
+    }
+}
+
+/// Number of the estimator in a frame where none is in charge.
+const NOBODY: u8 = u8::MAX;
+
+/// Frames for one line of what was learned, which changes slowly.
+const LEARNED_EVERY: u32 = 128;
+
+impl Frame {
+    /// Frames lost so far: before this one in the queue, and `lost` of them after it.
+    #[must_use]
+    pub const fn drops(&self, lost: u32) -> u32 {
+        self.drops.wrapping_add(lost)
+    }
+
+    /// Standard deviation of the large motor's velocity, rad/s; 0 where the scene needs none.
+    #[must_use]
+    pub fn deviation(&self) -> f32 {
+        let variance = self.record.estimation.variance;
+        variance.deviation().rad_per_s(&RIG.large)
+    }
+
+    /// Number of the estimator in charge of the large motor; 255 for none.
+    #[must_use]
+    pub fn estimator(&self) -> u8 {
+        self.record.estimation.number.unwrap_or(NOBODY)
+    }
+
+    /// The latest stamped edge of the large encoder.
+    #[must_use]
+    pub const fn edge(&self) -> Option<Edge> {
+        if EDGES { self.record.sample.edge } else { None }
+    }
+
+    /// Learned parameter errors, in one frame of 128 and by estimators that learn.
+    #[must_use]
+    pub fn learned(&self) -> Option<Deviations> {
+        let due = self.seq.is_multiple_of(LEARNED_EVERY);
+        self.record.learned.deviations().filter(|_| due)
+    }
+}

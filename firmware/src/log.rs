@@ -1,0 +1,60 @@
+//! Lines of the log, written at the lowest priority.
+
+use estimator_core::Count;
+use firmware_app::commands::Rejected;
+use firmware_app::telemetry::{DEPTH, Frame};
+use heapless::spsc::Consumer;
+
+/// Logs the frames that wait; whether there were any.
+pub(crate) fn frames(frames: &mut Consumer<'static, Frame>) -> bool {
+    let mut any = false;
+    for _ in 0..DEPTH {
+        let Some(frame) = frames.dequeue() else {
+            break;
+        };
+        log(&frame);
+        any = true;
+    }
+    any
+}
+
+#[rustfmt::skip]
+fn log(frame: &Frame) {
+    let record = &frame.record;
+    let (sample, action) = (&record.sample, &record.action);
+    defmt::info!(
+        "frame seq={=u32} tick={=u32} large={=u32} small={=u32} wl={=f32} ws={=f32} sl={=f32} estimator={=u8} torque={=f32} il={=f32} is={=f32} state={=u8} cause={=u8} overruns={=u32} drops={=u32} cycles={=u32}",
+        frame.seq, record.tick, sample.large.0, sample.small.0,
+        action.large.0, action.handle.0, frame.deviation(), frame.estimator(), action.torque.0,
+        action.currents.large.get(), action.currents.small.get(),
+        record.state, record.cause, record.overruns, frame.drops(bare::lost()), frame.cycles
+    );
+    if let Some(edge) = frame.edge() {
+        defmt::info!("edge seq={=u32} bound={=u32} age={=u32}", frame.seq, edge.boundary.0, edge.age.0);
+    }
+    if let Some(learned) = frame.learned() {
+        defmt::info!(
+            "learned seq={=u32} damping={=f32} friction={=f32} torque_constant={=f32}",
+            frame.seq, learned.damping, learned.friction, learned.torque_constant
+        );
+    }
+    if let Some(Count(count)) = frame.reference {
+        defmt::info!("reference seq={=u32} count={=u32}", frame.seq, count);
+    }
+}
+
+/// Logs what was rejected since the last report.
+pub(crate) fn rejected([before, now]: [Rejected; 2]) {
+    if now.garbage != before.garbage {
+        defmt::warn!("garbage bytes={=u32}", now.garbage);
+    }
+    let garbage = before.garbage;
+    if (Rejected { garbage, ..now }) != before {
+        defmt::warn!(
+            "refused not-finite={=u32} out-of-bounds={=u32} unknown={=u32}",
+            now.not_finite,
+            now.out_of_bounds,
+            now.unknown
+        );
+    }
+}
