@@ -16,8 +16,13 @@ use crate::units::RadPerS;
 /// exact as `c₁ - s1 (c₁ - c₂)`, with what a sum rounds away carried to the next: at 11.6 kHz the
 /// integrator moves by 10⁻⁶ A per rad/s and tick, less than the last digit of an ampere.
 ///
-/// The past outputs c₁, c₂ are what remained after every limit, so the integral action stops
-/// where the current does (anti-windup). Current in A, velocities in rad/s.
+/// Anti-windup: with `d` the current applied less the current asked for, the regulator is
+/// `S c = R (B ω_f / B(1) - ω) + (Q - S) d`, which is `Q c = R (..) + (Q - S) (c + d)` with both
+/// poles of Q at the regulation bandwidth. So a limit that lasts draws the regulator along, and
+/// one that lasts a few ticks, as a slew limit does, leaves it nearly as it was. (With Q = 1 the
+/// regulator takes what a slew limit cuts off for its own, and S, whose second pole is close to 1
+/// at high rates, prolongs that as a ramp: a step of the wanted velocity first sends the motor the
+/// other way.) Current in A, velocities in rad/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rst {
     r: [f32; 3],
@@ -32,6 +37,8 @@ pub struct Rst {
     amps_per_rad_per_s: f32,
     /// 1 - m, the gain of each half of the tracking filter.
     tracking_gain: f32,
+    /// Q - S, for one and two ticks ago.
+    relief: [f32; 2],
 }
 
 /// State of an [`Rst`].
@@ -45,8 +52,10 @@ pub struct RstState {
     mechanical: f32,
     /// Errors one and two ticks ago.
     errors: [f32; 2],
-    /// c one and two ticks ago, after all limits.
+    /// c one and two ticks ago.
     regulated: [f32; 2],
+    /// Current applied less the current asked for, one and two ticks ago.
+    cut: [f32; 2],
     /// What the last sum for c rounded away.
     carry: f32,
     /// A ω_f / B(1) of this tick.
@@ -66,6 +75,10 @@ impl Rst {
             electrical_pole: design.electrical_pole as f32,
             amps_per_rad_per_s: (1.0 / at_one) as f32,
             tracking_gain: (1.0 - design.tracking_pole) as f32,
+            relief: [
+                (-2.0 * design.regulation_pole - design.s[1]) as f32,
+                (design.regulation_pole * design.regulation_pole - design.s[2]) as f32,
+            ],
         }
     }
 
@@ -78,6 +91,7 @@ impl Rst {
             mechanical: self.mechanical_gain * at.0,
             errors: [0.0; 2],
             regulated: [0.0; 2],
+            cut: [0.0; 2],
             carry: 0.0,
             forward: 0.0,
         }
@@ -101,7 +115,9 @@ impl Rst {
         state.errors = [error, e1];
         let [c1, c2] = state.regulated;
         let change = self.r[0] * error + self.r[1] * e1 + self.r[2] * e2 - self.s1 * (c1 - c2);
-        let change = change + state.carry;
+        let [d1, d2] = state.cut;
+        state.cut = [0.0, d1];
+        let change = change + (self.relief[0] * d1 + self.relief[1] * d2) + state.carry;
         let regulated = c1 + change;
         state.carry = change - (regulated - c1);
         state.regulated = [regulated, c1];
@@ -118,7 +134,6 @@ impl RstState {
 
     /// Takes what was applied instead of the current wanted, after all limits, A.
     pub fn limited(&mut self, current: f32) {
-        self.regulated[0] = current - self.forward;
-        self.carry = 0.0;
+        self.cut[0] = current - (self.forward + self.regulated[0]);
     }
 }

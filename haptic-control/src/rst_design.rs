@@ -56,6 +56,8 @@ pub struct RstDesign {
     pub mechanical_pole: f64,
     /// Pole e^(-T/τa) of the amplifier.
     pub electrical_pole: f64,
+    /// Pole p of regulation, three times.
+    pub regulation_pole: f64,
     /// Pole m of each half of the tracking filter.
     pub tracking_pole: f64,
     /// Margins, the estimator's delay included.
@@ -149,6 +151,7 @@ impl RstDesign {
             p,
             mechanical_pole: pm,
             electrical_pole: pa,
+            regulation_pole: pole,
             tracking_pole: exp(-tau * poles.tracking.0 * t),
             margins,
         })
