@@ -36,6 +36,9 @@ impl Cause {
     }
 }
 
+/// Speed over a window from which on the large motor is stopped, rad/s.
+pub(crate) const LARGE_OVERSPEED: f64 = 150.0;
+
 /// Slots of a window.
 const SLOTS: usize = 5;
 
@@ -90,8 +93,9 @@ pub struct MonitorState {
 const NO_CURRENT: (i32, i32) = (i32::MAX, i32::MIN);
 
 impl Monitor {
-    /// Limits that no scene of `device` reaches at a control rate: the handle 30 rad/s and the
-    /// large motor 150 rad/s, over 5 ms; 50 ms without a count under 2.5 times the current that the
+    /// Limits that no scene of `device` reaches in a hand that holds the handle, at a control rate:
+    /// the handle 30 rad/s and the large motor 150 rad/s, over 5 ms (what is wanted of the large
+    /// motor ends at 85 % of that); 50 ms without a count under 2.5 times the current that the
     /// large motor's friction is worth, 0.1 A at least. (With friction half as much again, its
     /// ripple of a tenth and a torque constant 20 % less, 2.1 times are needed to move.)
     ///
@@ -115,7 +119,9 @@ impl Monitor {
         Self {
             slot,
             handle: (30.0 * turns_per_rad_per_s * device.small.counts_per_rev as f64) as u32 + 1,
-            large: (150.0 * turns_per_rad_per_s * device.large.counts_per_rev as f64) as u32 + 1,
+            large: (LARGE_OVERSPEED * turns_per_rad_per_s * device.large.counts_per_rev as f64)
+                as u32
+                + 1,
             jump: 1 << 14,
             stall: (0.05 / slot_s) as u32,
             stall_milliamps: if friction > 100.0 {

@@ -4,6 +4,7 @@ use estimator_core::Amps;
 
 use crate::device::DualStage;
 use crate::limits::{CurrentLimits, within};
+use crate::monitor::LARGE_OVERSPEED;
 use crate::rst::{Rst, RstState};
 use crate::rst_design::RstDesign;
 use crate::units::{NewtonMetres, RadPerS};
@@ -11,13 +12,16 @@ use crate::units::{NewtonMetres, RadPerS};
 /// The continuous stage: the large motor behind the coupler (fig. 3 of the paper).
 ///
 /// Torque on the handle is `b (ω_L - ω_S)`, so a wanted torque is a wanted velocity
-/// `ω_L = ω_S + torque / b`, which an [`Rst`] compensator follows. Fed forward: Coulomb friction
+/// `ω_L = ω_S + torque / b`, which an [`Rst`] compensator follows. The wanted velocity is limited
+/// to 85 % of the speed at which [`Monitor::new`](crate::Monitor::new) stops the large motor; the
+/// transient stage gets the torque that is missing then. Fed forward: Coulomb friction
 /// in the direction of the wanted velocity, and the coupler's pull on the large motor, `-b ω_S`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContinuousStage {
     rst: Rst,
     limits: CurrentLimits,
     rad_per_s_per_nm: f32,
+    nm_per_rad_per_s: f32,
     /// Fed forward for the handle's velocity, A per rad/s.
     damping: f32,
     /// Fed forward for friction, A.
@@ -35,9 +39,15 @@ pub struct ContinuousStage {
 pub struct ContinuousState {
     rst: RstState,
     current: f32,
-    /// Both halves of the tracking filter, for the wanted torque alone.
+    /// The wanted torque, as far as the largest velocity lets the coupler bring it, N·m.
+    asked: f32,
+    /// Both halves of the tracking filter, for `asked`.
     expected: [f32; 2],
 }
+
+/// Largest velocity that is wanted of the large motor, rad/s. The rest of the monitor's limit is
+/// for overshoot where the device is not as believed.
+const LARGEST_WANTED: f32 = (0.85 * LARGE_OVERSPEED) as f32;
 
 /// Velocity below which the direction of the large motor's wanted motion is not trusted to feed
 /// friction forward, rad/s.
@@ -71,6 +81,7 @@ impl ContinuousStage {
                 slew,
             },
             rad_per_s_per_nm: (1.0 / device.damping) as f32,
+            nm_per_rad_per_s: device.damping as f32,
             damping: (-device.damping / device.large.torque_constant) as f32,
             friction: (device.large.coulomb / device.large.torque_constant) as f32,
             per_fade: (1.0 / FADE) as f32,
@@ -90,6 +101,7 @@ impl ContinuousStage {
         ContinuousState {
             rst: self.rst.start(large),
             current: 0.0,
+            asked: 0.0,
             expected: [0.0; 2],
         }
     }
@@ -103,8 +115,14 @@ impl ContinuousStage {
         large: RadPerS,
         handle: RadPerS,
     ) -> Amps {
-        let wanted = RadPerS(handle.0 + torque.0 * self.rad_per_s_per_nm);
-        let looped = self.rst.update(&mut state.rst, wanted, large);
+        let wanted = handle.0 + torque.0 * self.rad_per_s_per_nm;
+        let limited = within(wanted, -LARGEST_WANTED, LARGEST_WANTED);
+        state.asked = if limited == wanted {
+            torque.0
+        } else {
+            (limited - handle.0) * self.nm_per_rad_per_s
+        };
+        let looped = self.rst.update(&mut state.rst, RadPerS(limited), large);
         let direction = within(state.rst.filtered().0 * self.per_fade, -1.0, 1.0);
         let forward = self.friction * direction + self.damping * handle.0;
         let wanted = looped + forward;
@@ -118,17 +136,13 @@ impl ContinuousStage {
     /// One tick, after [`Self::update`]: the torque that the coupler is taken to bring.
     ///
     /// Half of it is what the measured slip makes, half what the loop was asked for,
-    /// `b slip / 2 + F torque / 2` with the tracking filter F: both are the wanted torque once the
+    /// `b slip / 2 + F torque / 2` with the tracking filter F and the torque that the limit of the
+    /// wanted velocity leaves: both are the wanted torque once the
     /// large motor has followed, and only half of a slip that nobody asked for is taken off.
     #[must_use]
-    pub fn coupled(
-        &self,
-        state: &mut ContinuousState,
-        torque: NewtonMetres,
-        slip: RadPerS,
-    ) -> NewtonMetres {
+    pub fn coupled(&self, state: &mut ContinuousState, slip: RadPerS) -> NewtonMetres {
         let [lag, expected] = &mut state.expected;
-        *lag += self.tracking_gain * (torque.0 - *lag);
+        *lag += self.tracking_gain * (state.asked - *lag);
         *expected += self.tracking_gain * (*lag - *expected);
         NewtonMetres(EXPECTED_PART * *expected + self.measured * slip.0)
     }

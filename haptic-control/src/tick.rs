@@ -104,7 +104,7 @@ where
         action.large = part.large.velocity(sample);
         action.currents.large = part.stage.update(part.state, torque, action.large, handle);
         let slip = RadPerS(action.large.0 - handle.0);
-        part.stage.coupled(part.state, torque, slip)
+        part.stage.coupled(part.state, slip)
     });
     let coupled = S::Continuous::or(coupled, NewtonMetres(0.0));
     S::Transient::map(parts.transient, |part| {

@@ -1,7 +1,7 @@
 //! What the closed loop's scores promise.
 
 use haptic_control::LoopPoles;
-use host_sim::closed_loop::{Eye, Hand, Loop, SceneName, believed, estimator};
+use host_sim::closed_loop::{Eye, Hand, Loop, Press, SceneName, believed, estimator};
 use host_sim::device::Device;
 use host_sim::estimators::Kind;
 use host_sim::felt::{Case, Fingertip, Parasitic, Settings, bandwidth_hz, compare, sweep};
@@ -78,6 +78,38 @@ fn off_has_no_current_and_only_scenes_with_a_loop_know_the_large_motor_s_velocit
         assert_eq!(driven, scene != SceneName::Off, "{scene}");
         assert_eq!(known, scene.asks_for_velocity(), "{scene}");
         assert!(!counted, "the loop sees the device's own encoder");
+    }
+}
+
+#[test]
+fn a_hard_press_does_not_stop_a_scene() {
+    let (device, parameters, rate_hz) = (Device::default(), Parameters::default(), 1000.0);
+    let kind = Kind::named("kalman-triple-steady").unwrap();
+    let on = |counts| estimator(kind, &device, counts, rate_hz, &parameters).unwrap();
+    // 0.5 N.m/rad: 10 N at 35 mm on a handle that stays where it is, and twice as far.
+    for angle in [0.7, 1.4] {
+        for scene in SceneName::ALL {
+            let run = Loop {
+                device: device.clone(),
+                believed: believed(&device),
+                scene,
+                hand: Hand::Pressing(Press {
+                    angle: 0.1 + angle,
+                    moving_s: 0.4,
+                    rest_s: 0.3,
+                }),
+                rate_hz,
+                seed: 1,
+                large: on(device.large.counts_per_rev),
+                handle: on(device.small.counts_per_rev),
+                eye: Eye::Large,
+                poles: LoopPoles::DEFAULT,
+                late_ticks: 0,
+            };
+            let mut stopped = None;
+            run.run(1300, |moment| stopped = moment.stopped).unwrap();
+            assert_eq!(stopped, None, "{scene}, {angle} rad");
+        }
     }
 }
 
