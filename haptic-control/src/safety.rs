@@ -6,15 +6,17 @@ use crate::stop::Stop;
 /// Where the device is.
 ///
 /// ```text
-/// boot -> armed <-> running          arm; select a scene (before or after), or off again
-///  ^        |          |
-///  +- disarm+----------+-> safe      any stop cause; latched until arm or disarm
+/// boot -> settling -> armed <-> running     arm; select a scene (before or after), or off again
+///  ^         |          |          |
+///  |         +----------+----------+-> safe  any stop cause; latched until arm or disarm
+///  +---------+----------+----------+         disarm; armed and a long silence
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum Mode {
-    /// Amplifiers disabled, nothing wrong.
+    /// Amplifiers disabled, nothing wrong. The cause is that of a silence which disarmed the
+    /// device, or none.
     #[default]
     Boot = 0,
     /// Amplifiers enabled, no scene.
@@ -23,6 +25,41 @@ pub enum Mode {
     Running = 2,
     /// Amplifiers disabled, because of the cause.
     Safe = 3,
+    /// Amplifiers enabled, no current commanded until they are ready.
+    Settling = 4,
+}
+
+impl Mode {
+    /// The mode with this number in telemetry.
+    #[must_use]
+    pub const fn from_code(code: u8) -> Option<Self> {
+        Some(match code {
+            0 => Self::Boot,
+            1 => Self::Armed,
+            2 => Self::Running,
+            3 => Self::Safe,
+            4 => Self::Settling,
+            _ => return None,
+        })
+    }
+
+    /// Name in plots and tables.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Boot => "boot",
+            Self::Armed => "armed",
+            Self::Running => "running",
+            Self::Safe => "safe",
+            Self::Settling => "settling",
+        }
+    }
+
+    /// Whether the amplifiers are enabled.
+    #[must_use]
+    pub const fn is_enabled(self) -> bool {
+        matches!(self, Self::Settling | Self::Armed | Self::Running)
+    }
 }
 
 /// What the world asks for.
@@ -84,7 +121,8 @@ pub struct Order {
 ///
 /// ```
 /// use haptic_control::{Findings, Mode, Request, Safety, Stop};
-/// const SAFETY: Safety = Safety { silence: Some(5000), missed: 4, scenes: 8 };
+/// const SAFETY: Safety =
+///     Safety { settle: 200, silence: Some(5000), disarm: Some(50_000), missed: 4, scenes: 8 };
 /// let mut state = SAFETY.start(Stop::None);
 /// assert!(SAFETY.tick(&mut state, &Findings::WELL, Some(Request::Arm)).enable);
 /// let fault = Findings { amplifier_fault: true, ..Findings::WELL };
@@ -93,8 +131,13 @@ pub struct Order {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Safety {
-    /// Longest silence while running; `None` waits for ever.
+    /// Time after enabling the amplifiers in which no current is commanded.
+    pub settle: u32,
+    /// Longest silence while running, after which the scene goes off; `None` waits for ever.
     pub silence: Option<u32>,
+    /// Longest silence while armed, after which the amplifiers are disabled; `None` waits for
+    /// ever.
+    pub disarm: Option<u32>,
     /// Missed ticks that stop the device: this many at once, or more than one in 16 for long.
     pub missed: u32,
     /// Scenes there are.
@@ -109,7 +152,9 @@ pub struct SafetyState {
     silent: u32,
     /// Ticks missed, times 16, less one for each tick that came.
     debt: u32,
-    /// The scene to put on when armed, chosen in boot.
+    /// Ticks left of settling.
+    settling: u32,
+    /// The scene to put on once armed, chosen before.
     chosen: u8,
 }
 
@@ -127,6 +172,13 @@ impl SafetyState {
     }
 }
 
+/// What begins again at rest, with nothing selected.
+const RESTART: Order = Order {
+    enable: false,
+    restart: true,
+    select: None,
+};
+
 /// What one missed tick weighs against ticks that came.
 const MISSED_WEIGHT: u32 = 16;
 
@@ -142,6 +194,7 @@ impl Safety {
             stop: reset,
             silent: 0,
             debt: 0,
+            settling: 0,
             chosen: 0,
         }
     }
@@ -163,24 +216,25 @@ impl Safety {
         match (state.mode, request) {
             (Mode::Boot | Mode::Safe, Some(Request::Arm)) => order = self.arm(state, findings),
             (Mode::Boot | Mode::Safe, Some(Request::Disarm)) => {
-                (state.mode, state.stop) = (Mode::Boot, Stop::None);
-                state.chosen = 0;
+                order = Self::disarm(state, Stop::None);
             }
             (Mode::Boot, Some(Request::Select(scene))) if scene < self.scenes => {
                 state.chosen = scene;
             }
             (Mode::Boot | Mode::Safe, _) => {}
-            (Mode::Armed | Mode::Running, request) => {
+            (Mode::Settling | Mode::Armed | Mode::Running, request) => {
                 let wrong = self.wrong(state, findings);
                 if wrong != Stop::None {
-                    (state.mode, state.stop) = (Mode::Safe, wrong);
+                    (state.mode, state.stop, state.chosen) = (Mode::Safe, wrong, 0);
                     order.restart = true;
+                } else if state.mode == Mode::Settling {
+                    order = self.settle(state, request);
                 } else {
                     order = self.serve(state, request);
                 }
             }
         }
-        order.enable = matches!(state.mode, Mode::Armed | Mode::Running);
+        order.enable = state.mode.is_enabled();
         order
     }
 
@@ -192,30 +246,58 @@ impl Safety {
             missed: 0,
             ..*findings
         };
-        let scene = core::mem::take(&mut state.chosen);
         state.stop = match self.wrong(state, &now) {
             Stop::None if findings.debugger => Stop::Debugger,
             wrong => wrong,
         };
-        state.mode = match (state.stop, scene) {
-            (Stop::None, 0) => Mode::Armed,
-            (Stop::None, _) => Mode::Running,
-            _ => Mode::Safe,
-        };
-        Order {
-            enable: false,
-            restart: true,
-            select: (state.mode == Mode::Running).then_some(scene),
+        if state.stop != Stop::None {
+            (state.mode, state.chosen) = (Mode::Safe, 0);
+            return RESTART;
         }
+        (state.mode, state.settling) = (Mode::Settling, self.settle);
+        if self.settle == 0 {
+            Self::settled(state)
+        } else {
+            RESTART
+        }
+    }
+
+    /// One tick of settling.
+    fn settle(&self, state: &mut SafetyState, request: Option<Request>) -> Order {
+        match request {
+            Some(Request::Disarm) => return Self::disarm(state, Stop::None),
+            Some(Request::Select(scene)) if scene < self.scenes => state.chosen = scene,
+            _ => {}
+        }
+        state.settling = state.settling.saturating_sub(1);
+        if state.settling == 0 {
+            Self::settled(state)
+        } else {
+            Order::default()
+        }
+    }
+
+    /// The end of settling: everything begins at rest here.
+    fn settled(state: &mut SafetyState) -> Order {
+        let scene = core::mem::take(&mut state.chosen);
+        let select = (scene != 0).then_some(scene);
+        state.mode = match select {
+            Some(_) => Mode::Running,
+            None => Mode::Armed,
+        };
+        Order { select, ..RESTART }
+    }
+
+    /// Amplifiers disabled, without a fault.
+    fn disarm(state: &mut SafetyState, stop: Stop) -> Order {
+        (state.mode, state.stop, state.chosen) = (Mode::Boot, stop, 0);
+        RESTART
     }
 
     fn serve(&self, state: &mut SafetyState, request: Option<Request>) -> Order {
         let mut order = Order::default();
         match request {
-            Some(Request::Disarm) => {
-                state.mode = Mode::Boot;
-                order.restart = true;
-            }
+            Some(Request::Disarm) => return Self::disarm(state, Stop::None),
             Some(Request::Select(scene)) if scene < self.scenes => {
                 state.mode = if scene == 0 {
                     Mode::Armed
@@ -230,6 +312,11 @@ impl Safety {
             {
                 (state.mode, state.stop) = (Mode::Armed, Stop::CommandTimeout);
                 order.select = Some(0);
+            }
+            _ if self.disarm.is_some_and(|longest| state.silent > longest)
+                && state.mode == Mode::Armed =>
+            {
+                return Self::disarm(state, Stop::CommandTimeout);
             }
             _ => {}
         }

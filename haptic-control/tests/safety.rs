@@ -1,9 +1,11 @@
-//! The safety state machine.
+//! The safety state machine: what each mode does with findings and requests.
 
 use haptic_control::{Cause, Findings, Mode, Order, Request, Safety, SafetyState, Stop};
 
 const SAFETY: Safety = Safety {
+    settle: 0,
     silence: Some(100),
+    disarm: Some(300),
     missed: 4,
     scenes: 8,
 };
@@ -28,24 +30,27 @@ fn running() -> SafetyState {
     state
 }
 
+/// With 3 ticks of settling, one of which is over.
+const SLOW: Safety = Safety {
+    settle: 3,
+    ..SAFETY
+};
+
+fn settling() -> SafetyState {
+    let mut state = SLOW.start(Stop::None);
+    SLOW.tick(&mut state, &WELL, Some(Request::Arm));
+    SLOW.tick(&mut state, &WELL, Some(Request::Select(2)));
+    assert_eq!(state.mode(), Mode::Settling);
+    state
+}
+
+/// What stops a device, the first to be reported first.
 fn wrongs() -> [(Findings, Stop); 9] {
     let of = |cause| Findings {
         monitor: Some(cause),
         ..WELL
     };
     [
-        (of(Cause::HandleOverspeed), Stop::HandleOverspeed),
-        (of(Cause::LargeOverspeed), Stop::LargeOverspeed),
-        (of(Cause::Jump), Stop::Jump),
-        (of(Cause::NotMoving), Stop::NotMoving),
-        (of(Cause::Against), Stop::Against),
-        (
-            Findings {
-                amplifier_fault: true,
-                ..WELL
-            },
-            Stop::AmplifierFault,
-        ),
         (
             Findings {
                 clock_failure: true,
@@ -53,6 +58,18 @@ fn wrongs() -> [(Findings, Stop); 9] {
             },
             Stop::ClockFailure,
         ),
+        (
+            Findings {
+                amplifier_fault: true,
+                ..WELL
+            },
+            Stop::AmplifierFault,
+        ),
+        (of(Cause::HandleOverspeed), Stop::HandleOverspeed),
+        (of(Cause::LargeOverspeed), Stop::LargeOverspeed),
+        (of(Cause::Jump), Stop::Jump),
+        (of(Cause::NotMoving), Stop::NotMoving),
+        (of(Cause::Against), Stop::Against),
         (
             Findings {
                 finite: false,
@@ -64,25 +81,53 @@ fn wrongs() -> [(Findings, Stop); 9] {
     ]
 }
 
+/// All that is found by either.
+fn both(a: Findings, b: Findings) -> Findings {
+    Findings {
+        monitor: a.monitor.or(b.monitor),
+        amplifier_fault: a.amplifier_fault || b.amplifier_fault,
+        clock_failure: a.clock_failure || b.clock_failure,
+        finite: a.finite && b.finite,
+        missed: a.missed.max(b.missed),
+        debugger: a.debugger || b.debugger,
+    }
+}
+
 #[test]
 fn every_cause_disables_in_its_tick_and_stays_until_rearmed() {
     for (findings, stop) in wrongs() {
-        let mut state = running();
-        let order = tick(&mut state, findings, None);
-        assert_eq!(
-            order,
-            Order {
-                enable: false,
-                restart: true,
-                select: None
+        for before in [settling(), armed(), running()] {
+            let mut state = before;
+            let order = tick(&mut state, findings, None);
+            assert_eq!(
+                order,
+                Order {
+                    enable: false,
+                    restart: true,
+                    select: None
+                }
+            );
+            for request in [None, Some(Request::Select(1)), Some(Request::KeepAlive)] {
+                assert!(!tick(&mut state, WELL, request).enable);
+                assert_eq!((state.mode(), state.stop()), (Mode::Safe, stop));
             }
-        );
-        for request in [None, Some(Request::Select(1)), Some(Request::KeepAlive)] {
-            assert!(!tick(&mut state, WELL, request).enable);
-            assert_eq!((state.mode(), state.stop()), (Mode::Safe, stop));
+            // What was selected before the stop does not come back.
+            let order = tick(&mut state, WELL, Some(Request::Arm));
+            assert!(order.enable && order.select.is_none());
+            assert_eq!((state.mode(), state.stop()), (Mode::Armed, Stop::None));
         }
-        assert!(tick(&mut state, WELL, Some(Request::Arm)).enable);
-        assert_eq!((state.mode(), state.stop()), (Mode::Armed, Stop::None));
+    }
+}
+
+#[test]
+fn of_two_causes_the_first_in_the_list_is_reported() {
+    let wrongs = wrongs();
+    for (i, (first, stop)) in wrongs.iter().enumerate() {
+        for (second, _) in &wrongs[i..] {
+            let mut state = running();
+            tick(&mut state, both(*first, *second), None);
+            assert_eq!(state.stop(), *stop, "{first:?} {second:?}");
+        }
     }
 }
 
@@ -90,19 +135,50 @@ fn every_cause_disables_in_its_tick_and_stays_until_rearmed() {
 fn a_cause_comes_before_a_request_of_the_same_tick() {
     for (findings, stop) in wrongs() {
         for request in [Request::Select(1), Request::Disarm, Request::Arm] {
-            let mut state = running();
-            assert!(!tick(&mut state, findings, Some(request)).enable);
-            assert_eq!(state.stop(), stop);
+            for before in [settling(), armed(), running()] {
+                let mut state = before;
+                assert!(!tick(&mut state, findings, Some(request)).enable);
+                assert_eq!((state.mode(), state.stop()), (Mode::Safe, stop));
+            }
         }
     }
 }
 
 #[test]
-fn arming_is_refused_while_an_amplifier_or_the_clock_is_faulty() {
-    for (findings, stop) in [wrongs()[5], wrongs()[6]] {
+fn arming_is_refused_by_what_is_wrong_now_and_not_by_what_is_over() {
+    let refused = Order {
+        enable: false,
+        restart: true,
+        select: None,
+    };
+    for (findings, stop) in wrongs() {
         let mut state = SAFETY.start(Stop::None);
-        assert!(!tick(&mut state, findings, Some(Request::Arm)).enable);
-        assert_eq!((state.mode(), state.stop()), (Mode::Safe, stop));
+        tick(&mut state, WELL, Some(Request::Select(3)));
+        let order = tick(&mut state, findings, Some(Request::Arm));
+        // The monitor latches its cause and missed ticks are counted: both begin again with arm.
+        let over = findings.monitor.is_some() || findings.missed > 0;
+        if over {
+            assert!(order.enable && order.restart, "{stop:?}");
+            assert_eq!((state.mode(), state.stop()), (Mode::Running, Stop::None));
+        } else {
+            assert_eq!(order, refused, "{stop:?}");
+            assert_eq!((state.mode(), state.stop()), (Mode::Safe, stop));
+            // The selection is gone.
+            assert_eq!(tick(&mut state, WELL, Some(Request::Arm)).select, None);
+        }
+    }
+}
+
+#[test]
+fn ticks_missed_before_arming_neither_refuse_it_nor_stop_the_device() {
+    for before in [0, 500, u32::MAX] {
+        let mut state = SAFETY.start(Stop::None);
+        let missed = |missed| Findings { missed, ..WELL };
+        tick(&mut state, missed(before), None);
+        assert!(tick(&mut state, missed(500), Some(Request::Arm)).enable);
+        for _ in 0..10 {
+            assert!(tick(&mut state, WELL, None).enable);
+        }
     }
 }
 
@@ -124,116 +200,104 @@ fn debug_settings_refuse_arming_and_do_not_stop_an_armed_device() {
             assert_eq!((state.mode(), state.stop()), (Mode::Armed, Stop::None));
         }
     }
-    for mut state in [armed(), running()] {
+    for mut state in [settling(), armed(), running()] {
         let before = state.mode();
-        assert!(tick(&mut state, debugger, None).enable);
+        assert!(SLOW.tick(&mut state, &debugger, None).enable);
         assert_eq!((state.mode(), state.stop()), (before, Stop::None));
     }
     // A fault of the hardware is reported first.
-    for (findings, stop) in [wrongs()[5], wrongs()[6]] {
+    for (findings, stop) in &wrongs()[..2] {
         let mut state = SAFETY.start(Stop::None);
-        let both = Findings {
-            debugger: true,
-            ..findings
-        };
-        tick(&mut state, both, Some(Request::Arm));
-        assert_eq!(state.stop(), stop);
+        tick(&mut state, both(*findings, debugger), Some(Request::Arm));
+        assert_eq!(state.stop(), *stop);
     }
 }
 
 #[test]
 fn a_reset_with_a_cause_boots_safe() {
-    for stop in [
-        Stop::Watchdog,
-        Stop::BrownOut,
-        Stop::ClockFailure,
-        Stop::Panic,
-        Stop::HardFault,
-    ] {
+    for stop in (1..=15).map(|code| Stop::from_code(code).unwrap()) {
         let mut state = SAFETY.start(stop);
         assert!(!tick(&mut state, WELL, None).enable);
         assert_eq!((state.mode(), state.stop()), (Mode::Safe, stop));
         tick(&mut state, WELL, Some(Request::Disarm));
         assert_eq!((state.mode(), state.stop()), (Mode::Boot, Stop::None));
     }
+    assert_eq!(SAFETY.start(Stop::None).mode(), Mode::Boot);
 }
 
 #[test]
-fn a_scene_chosen_in_boot_comes_on_with_arm_and_is_forgotten_by_a_stop() {
+fn a_scene_chosen_in_boot_comes_on_with_arm_once() {
     let mut state = SAFETY.start(Stop::None);
     assert!(!tick(&mut state, WELL, Some(Request::Select(3))).enable);
+    // There are eight scenes.
+    assert!(!tick(&mut state, WELL, Some(Request::Select(8))).enable);
     let order = tick(&mut state, WELL, Some(Request::Arm));
     assert_eq!(
         (order.enable, order.restart, order.select),
         (true, true, Some(3))
     );
     assert_eq!(state.mode(), Mode::Running);
-    tick(&mut state, wrongs()[0].0, None);
+    tick(&mut state, WELL, Some(Request::Disarm));
     let order = tick(&mut state, WELL, Some(Request::Arm));
     assert_eq!((order.enable, order.select), (true, None));
     assert_eq!(state.mode(), Mode::Armed);
 }
 
 #[test]
-fn silence_puts_the_scene_off_and_a_scene_puts_it_on_again() {
-    let mut state = running();
-    for _ in 0..100 {
-        assert_eq!(tick(&mut state, WELL, None).select, None);
-    }
-    let order = tick(&mut state, WELL, None);
-    assert_eq!((order.enable, order.select), (true, Some(0)));
-    assert_eq!(
-        (state.mode(), state.stop()),
-        (Mode::Armed, Stop::CommandTimeout)
-    );
-    tick(&mut state, WELL, Some(Request::Select(1)));
-    assert_eq!((state.mode(), state.stop()), (Mode::Running, Stop::None));
-}
-
-#[test]
-fn keep_alive_keeps_the_scene_on() {
-    let mut state = running();
-    for k in 0..1000 {
-        tick(
-            &mut state,
-            WELL,
-            (k % 100 == 0).then_some(Request::KeepAlive),
+fn disarm_forgets_the_scene_and_the_cause_and_restarts() {
+    let mut chosen = SAFETY.start(Stop::None);
+    tick(&mut chosen, WELL, Some(Request::Select(3)));
+    for before in [
+        chosen,
+        SAFETY.start(Stop::Panic),
+        settling(),
+        armed(),
+        running(),
+    ] {
+        let mut state = before;
+        let order = tick(&mut state, WELL, Some(Request::Disarm));
+        assert_eq!(
+            order,
+            Order {
+                enable: false,
+                restart: true,
+                select: None
+            }
         );
-    }
-    assert_eq!(state.mode(), Mode::Running);
-}
-
-#[test]
-fn rare_missed_ticks_are_forgiven_and_frequent_ones_are_not() {
-    for (every, mode) in [(17, Mode::Running), (8, Mode::Safe)] {
-        let mut state = running();
-        for k in 1..1000 {
-            let missed = u32::from(k % every == 0);
-            tick(
-                &mut state,
-                Findings { missed, ..WELL },
-                Some(Request::KeepAlive),
-            );
-        }
-        assert_eq!(state.mode(), mode, "one in {every}");
+        assert_eq!((state.mode(), state.stop()), (Mode::Boot, Stop::None));
+        assert_eq!(tick(&mut state, WELL, Some(Request::Arm)).select, None);
+        assert_eq!(state.mode(), Mode::Armed);
     }
 }
 
 #[test]
-fn codes_come_back() {
-    for code in 0..=15 {
-        assert_eq!(Stop::from_code(code).map(|stop| stop as u8), Some(code));
+fn selecting_puts_a_scene_on_off_or_changes_it() {
+    let mut state = armed();
+    for (scene, mode) in [
+        (7, Mode::Running),
+        (1, Mode::Running),
+        (0, Mode::Armed),
+        (0, Mode::Armed),
+    ] {
+        let order = tick(&mut state, WELL, Some(Request::Select(scene)));
+        assert_eq!(
+            (order.enable, order.restart, order.select),
+            (true, false, Some(scene))
+        );
+        assert_eq!(state.mode(), mode);
     }
-    assert_eq!(Stop::from_code(16), None);
+    let order = tick(&mut state, WELL, Some(Request::Select(8)));
+    assert_eq!((order.select, state.mode()), (None, Mode::Armed));
 }
 
-/// From every mode, whatever is found and asked: enabled means armed or running, only `Arm` gets
+/// From every mode, whatever is found and asked: enabled is what the mode says, only `Arm` gets
 /// there from the others, safe has a cause, and an order to select goes to what is enabled.
 #[test]
 fn only_arm_enables() {
     let modes = [
         SAFETY.start(Stop::None),
         SAFETY.start(Stop::Panic),
+        settling(),
         armed(),
         running(),
     ];
@@ -249,14 +313,16 @@ fn only_arm_enables() {
     for before in modes {
         for &findings in &found {
             for &request in &asked {
-                let mut state = before;
-                let order = tick(&mut state, findings, request);
-                let is_on = |mode| matches!(mode, Mode::Armed | Mode::Running);
-                assert_eq!(order.enable, is_on(state.mode()));
-                assert!(!order.enable || is_on(before.mode()) || request == Some(Request::Arm));
-                assert!(state.mode() != Mode::Safe || state.stop() != Stop::None);
-                assert!(order.select.is_none_or(|scene| scene < 8 && order.enable));
-                assert!(!is_on(before.mode()) || findings == WELL || state.mode() == Mode::Safe);
+                for safety in [SAFETY, SLOW] {
+                    let mut state = before;
+                    let order = safety.tick(&mut state, &findings, request);
+                    let is_on = before.mode().is_enabled();
+                    assert_eq!(order.enable, state.mode().is_enabled());
+                    assert!(!order.enable || is_on || request == Some(Request::Arm));
+                    assert!(state.mode() != Mode::Safe || state.stop() != Stop::None);
+                    assert!(order.select.is_none_or(|scene| scene < 8 && order.enable));
+                    assert!(!is_on || findings == WELL || state.mode() == Mode::Safe);
+                }
             }
         }
     }

@@ -12,7 +12,14 @@ use crate::telemetry::Record;
 
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
 const SAFETY: Safety = Safety {
+    // 20 ms: amplifiers take 1 to 10 ms until they follow a command.
+    settle: RATE_HZ / 50,
     silence: SILENCE,
+    // Ten times as long as a scene goes on.
+    disarm: match SILENCE {
+        Some(longest) => Some(10 * longest),
+        None => None,
+    },
     missed: 4,
     scenes: SCENES,
 };

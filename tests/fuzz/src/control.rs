@@ -32,7 +32,9 @@ const SCENES: [AnyScene; 8] = [
     AnyScene::Hold(preset!(Hold::new(0.20, 1e-3))),
 ];
 const SAFETY: Safety = Safety {
+    settle: 3,
     silence: Some(50),
+    disarm: Some(200),
     missed: 4,
     scenes: SCENES.len() as u8,
 };
@@ -79,7 +81,7 @@ pub fn run(data: &[u8]) {
         let wrong =
             findings.monitor.is_some() || findings.amplifier_fault || findings.clock_failure;
         // What is wrong while enabled stops it in this very tick.
-        if wrong && matches!(before, Mode::Armed | Mode::Running) {
+        if wrong && before.is_enabled() {
             assert!(!order.enable && safety.mode() == Mode::Safe, "{findings:?}");
         }
         if before == Mode::Safe && request != Some(Request::Arm) {

@@ -1,5 +1,7 @@
 //! Where the safety machine changes its state.
 
+use haptic_control::Mode;
+
 use super::{RecordingView, TOP};
 use crate::report::canvas::{Anchor, Canvas, LABEL, text_width};
 use crate::report::palette::MUTED;
@@ -51,9 +53,10 @@ pub(super) fn changes(view: &RecordingView) -> Vec<(f64, String)> {
 }
 
 fn words((state, cause): (f64, f64)) -> String {
-    let names = ["boot", "armed", "running", "safe"];
-    let known = names.iter().enumerate().find(|(n, _)| *n as f64 == state);
-    let state = known.map_or_else(|| format!("state {state}"), |(_, name)| (*name).to_owned());
+    let known = (0..=u8::MAX)
+        .map_while(Mode::from_code)
+        .find(|mode| f64::from(*mode as u8) == state);
+    let state = known.map_or_else(|| format!("state {state}"), |mode| mode.as_str().to_owned());
     match cause {
         0.0 => state,
         _ => format!("{state}, cause {cause}"),

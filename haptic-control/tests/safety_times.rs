@@ -1,0 +1,253 @@
+//! The times of the safety state machine: settling, silence, missed ticks; and its numbers.
+
+use haptic_control::{Findings, Mode, Order, Request, Safety, SafetyState, Stop};
+
+const SAFETY: Safety = Safety {
+    settle: 20,
+    silence: Some(100),
+    disarm: Some(300),
+    missed: 4,
+    scenes: 8,
+};
+const WELL: Findings = Findings::WELL;
+
+fn ask(state: &mut SafetyState, request: Request) -> Order {
+    SAFETY.tick(state, &WELL, Some(request))
+}
+
+fn silent(state: &mut SafetyState) -> Order {
+    SAFETY.tick(state, &WELL, None)
+}
+
+/// Armed, and settled, with the latest request at the end.
+fn armed() -> SafetyState {
+    let mut state = SAFETY.start(Stop::None);
+    ask(&mut state, Request::Arm);
+    for _ in 0..SAFETY.settle {
+        ask(&mut state, Request::KeepAlive);
+    }
+    assert_eq!(state.mode(), Mode::Armed);
+    state
+}
+
+fn running() -> SafetyState {
+    let mut state = armed();
+    ask(&mut state, Request::Select(2));
+    assert_eq!(state.mode(), Mode::Running);
+    state
+}
+
+/// A scene selected before arming, in the first and in the last tick of settling starts at the end
+/// of it, from rest; 0 is no scene.
+#[test]
+fn a_scene_starts_at_rest_at_the_end_of_settling() {
+    for at in [None, Some(1), Some(20)] {
+        for scene in [0, 5] {
+            let mut state = SAFETY.start(Stop::None);
+            if at.is_none() {
+                ask(&mut state, Request::Select(scene));
+            }
+            let order = ask(&mut state, Request::Arm);
+            let armed = Order {
+                enable: true,
+                restart: true,
+                select: None,
+            };
+            assert_eq!((order, state.mode()), (armed, Mode::Settling));
+            for k in 1..20 {
+                let request = (at == Some(k)).then_some(Request::Select(scene));
+                let order = SAFETY.tick(&mut state, &WELL, request);
+                let nothing = Order {
+                    enable: true,
+                    ..Order::default()
+                };
+                assert_eq!((order, state.mode()), (nothing, Mode::Settling), "{k}");
+            }
+            let request = (at == Some(20)).then_some(Request::Select(scene));
+            let order = SAFETY.tick(&mut state, &WELL, request);
+            let on = scene != 0;
+            let wanted = Order {
+                select: on.then_some(scene),
+                ..armed
+            };
+            assert_eq!(order, wanted);
+            let mode = if on { Mode::Running } else { Mode::Armed };
+            assert_eq!(state.mode(), mode);
+        }
+    }
+}
+
+#[test]
+fn settling_takes_no_unknown_scene_and_arm_does_not_prolong_it() {
+    let mut state = SAFETY.start(Stop::None);
+    ask(&mut state, Request::Arm);
+    for k in 1..20 {
+        let request = if k % 2 == 0 {
+            Request::Select(8)
+        } else {
+            Request::Arm
+        };
+        assert_eq!(ask(&mut state, request).select, None);
+        assert_eq!(state.mode(), Mode::Settling);
+    }
+    assert_eq!(silent(&mut state).select, None);
+    assert_eq!(state.mode(), Mode::Armed);
+}
+
+#[test]
+fn settling_is_whole_after_every_arm() {
+    let mut state = running();
+    ask(&mut state, Request::Disarm);
+    ask(&mut state, Request::Arm);
+    for _ in 1..20 {
+        silent(&mut state);
+        assert_eq!(state.mode(), Mode::Settling);
+    }
+    silent(&mut state);
+    assert_eq!(state.mode(), Mode::Armed);
+}
+
+#[test]
+fn silence_puts_the_scene_off_and_a_scene_puts_it_on_again() {
+    let mut state = running();
+    for _ in 0..100 {
+        assert_eq!(silent(&mut state).select, None);
+        assert_eq!((state.mode(), state.stop()), (Mode::Running, Stop::None));
+    }
+    let order = silent(&mut state);
+    assert_eq!(
+        (order.enable, order.restart, order.select),
+        (true, false, Some(0))
+    );
+    let off = (Mode::Armed, Stop::CommandTimeout);
+    assert_eq!((state.mode(), state.stop()), off);
+    ask(&mut state, Request::Select(1));
+    assert_eq!((state.mode(), state.stop()), (Mode::Running, Stop::None));
+}
+
+#[test]
+fn a_long_silence_disarms() {
+    let disarmed = Order {
+        enable: false,
+        restart: true,
+        select: None,
+    };
+    // The scene, where one is on, goes off on the way.
+    for before in [armed(), running()] {
+        let mut state = before;
+        for k in 1..=300 {
+            assert!(silent(&mut state).enable, "{k}");
+            assert!(state.mode().is_enabled(), "{k}");
+        }
+        assert_eq!(silent(&mut state), disarmed);
+        let boot = (Mode::Boot, Stop::CommandTimeout);
+        assert_eq!((state.mode(), state.stop()), boot);
+        // The cause stays until the next arm, which brings no scene back.
+        assert_eq!(silent(&mut state), Order::default());
+        assert_eq!((state.mode(), state.stop()), boot);
+        ask(&mut state, Request::Arm);
+        assert_eq!((state.mode(), state.stop()), (Mode::Settling, Stop::None));
+        for _ in 0..20 {
+            silent(&mut state);
+        }
+        assert_eq!(state.mode(), Mode::Armed);
+    }
+}
+
+#[test]
+fn every_request_is_a_sign_of_life() {
+    // What is not taken, too.
+    for request in [Request::KeepAlive, Request::Arm, Request::Select(8)] {
+        for (before, longest) in [(running(), 100), (armed(), 300)] {
+            let mut state = before;
+            let mode = state.mode();
+            for _ in 0..3 {
+                for _ in 0..longest {
+                    silent(&mut state);
+                }
+                ask(&mut state, request);
+            }
+            assert_eq!((state.mode(), state.stop()), (mode, Stop::None));
+        }
+    }
+}
+
+#[test]
+fn without_a_limit_silence_changes_nothing() {
+    let patient = Safety {
+        silence: None,
+        disarm: None,
+        ..SAFETY
+    };
+    for before in [armed(), running()] {
+        let mut state = before;
+        for _ in 0..100_000 {
+            assert!(patient.tick(&mut state, &WELL, None).enable);
+        }
+        assert_eq!(state.mode(), before.mode());
+    }
+    // The limits are apart: a running scene knows its own alone.
+    let disarming = Safety {
+        silence: None,
+        ..SAFETY
+    };
+    let mut state = running();
+    for _ in 0..1000 {
+        assert!(disarming.tick(&mut state, &WELL, None).enable);
+    }
+    assert_eq!(state.mode(), Mode::Running);
+}
+
+#[test]
+fn as_many_missed_ticks_at_once_as_the_limit_stop_and_one_fewer_does_not() {
+    for (missed, mode) in [(3, Mode::Running), (4, Mode::Safe), (u32::MAX, Mode::Safe)] {
+        let mut state = running();
+        SAFETY.tick(&mut state, &Findings { missed, ..WELL }, None);
+        assert_eq!(state.mode(), mode, "{missed}");
+    }
+    // A limit of none still lets pass what is no miss at all.
+    let strict = Safety {
+        missed: 0,
+        ..SAFETY
+    };
+    let mut state = running();
+    strict.tick(&mut state, &WELL, None);
+    assert_eq!(state.mode(), Mode::Running);
+    strict.tick(&mut state, &Findings { missed: 1, ..WELL }, None);
+    assert_eq!(state.stop(), Stop::TickOverrun);
+}
+
+#[test]
+fn one_missed_tick_in_16_is_forgiven_and_more_are_not() {
+    // One in 16 weighs as much as the ticks that came; one in 15 adds 1 / 16 of a tick each time.
+    for (every, stops) in [(16, false), (15, true), (8, true)] {
+        let mut state = running();
+        let mut stopped = None;
+        for k in 1..2000 {
+            let missed = u32::from(k % every == 0);
+            let findings = Findings { missed, ..WELL };
+            SAFETY.tick(&mut state, &findings, Some(Request::KeepAlive));
+            if state.mode() == Mode::Safe && stopped.is_none() {
+                stopped = Some(k);
+            }
+        }
+        assert_eq!(stopped.is_some(), stops, "one in {every}: {stopped:?}");
+    }
+}
+
+#[test]
+fn numbers_and_names_are_those_of_the_documents() {
+    for code in 0..=15 {
+        assert_eq!(Stop::from_code(code).map(|stop| stop as u8), Some(code));
+    }
+    assert_eq!(Stop::from_code(16), None);
+    for code in 0..=4 {
+        assert_eq!(Mode::from_code(code).map(|mode| mode as u8), Some(code));
+    }
+    assert_eq!(Mode::from_code(5), None);
+    let board = include_str!("../../docs/board.md");
+    let named: Vec<_> = (0..=4)
+        .map(|code| format!("{code} {}", Mode::from_code(code).unwrap().as_str()))
+        .collect();
+    assert!(board.contains(&format!("states are {}.", named.join(", "))));
+}
