@@ -6,7 +6,7 @@ use estimator_core::Amps;
 use crate::amplifier::CurrentOutput;
 
 /// A PWM channel as a current command: half duty is no current, 10 % and 90 % are full scale,
-/// as amplifiers with a PWM set value take it.
+/// as amplifiers with a PWM set value take it. With a full scale of 0 the duty is always half.
 pub struct PwmCurrent<P> {
     channel: P,
     full_scale: Amps,
@@ -24,10 +24,14 @@ impl<P: SetDutyCycle> PwmCurrent<P> {
 
 impl<P: SetDutyCycle> CurrentOutput for PwmCurrent<P> {
     fn command(&mut self, current: Amps) {
-        let share = (current.get() / self.full_scale.get()).clamp(-1.0, 1.0);
+        let share = current.get() / self.full_scale.get();
+        // Without a full scale no current can be commanded.
+        let share = if share.is_finite() {
+            share.clamp(-1.0, 1.0)
+        } else {
+            0.0
+        };
         let top = f32::from(self.channel.max_duty_cycle());
-        // NaN, from no current over no full scale, is no current.
-        let share = if share.is_nan() { 0.0 } else { share };
         let duty = (0.5 + 0.4 * share) * top + 0.5;
         // The largest duty is a u16 and 0.9 of it is less; a channel that refuses keeps its last.
         let _ = self.channel.set_duty_cycle(duty as u16);

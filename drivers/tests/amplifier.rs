@@ -1,34 +1,62 @@
 //! The amplifier's driver against mocked pins and a mocked PWM channel.
 
+use std::cell::RefCell;
+use std::convert::Infallible;
+
 use drivers::{Amplifier, CurrentOutput, PwmCurrent};
+use embedded_hal::digital::{ErrorType, OutputPin};
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as On};
 use embedded_hal_mock::eh1::pwm::{Mock as Pwm, Transaction as Duty};
 use estimator_core::Amps;
 
-/// Remembers what was commanded.
-struct Commands<'a>(&'a mut Vec<f32>);
+/// What reaches an amplifier's inputs, in order.
+#[derive(Debug, PartialEq)]
+enum Event {
+    Command(f32),
+    Enable(bool),
+}
 
-impl CurrentOutput for Commands<'_> {
+/// Outputs that write to one journal.
+struct Journal<'a>(&'a RefCell<Vec<Event>>);
+
+impl CurrentOutput for Journal<'_> {
     fn command(&mut self, current: Amps) {
-        self.0.push(current.get());
+        self.0.borrow_mut().push(Event::Command(current.get()));
+    }
+}
+
+impl ErrorType for Journal<'_> {
+    type Error = Infallible;
+}
+
+impl OutputPin for Journal<'_> {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.0.borrow_mut().push(Event::Enable(false));
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.0.borrow_mut().push(Event::Enable(true));
+        Ok(())
     }
 }
 
 #[test]
-fn it_starts_disabled_is_enabled_once_and_disabled_at_no_current() {
-    let mut enable = Pin::new(&[
-        On::set(State::Low),
-        On::set(State::High),
-        On::set(State::Low),
-    ]);
+fn the_command_comes_before_the_enable_and_the_disable_before_the_command() {
+    use Event::{Command, Enable};
+    let journal = RefCell::new(Vec::new());
     let mut fault = Pin::new(&[]);
-    let mut commands = Vec::new();
-    let mut amplifier = Amplifier::new(Commands(&mut commands), enable.clone(), fault.clone());
-    amplifier.drive(Amps::new(0.5));
-    amplifier.drive(Amps::new(-0.25));
-    amplifier.disable();
-    assert_eq!(commands, [0.0, 0.5, -0.25, 0.0]);
-    enable.done();
+    let mut amplifier = Amplifier::new(Journal(&journal), Journal(&journal), fault.clone());
+    assert_eq!(journal.take(), [Enable(false), Command(0.0)]);
+    for _ in 0..2 {
+        amplifier.drive(Amps::new(0.5));
+        assert_eq!(journal.take(), [Command(0.5), Enable(true)]);
+        // Once enabled, the pin is left alone.
+        amplifier.drive(Amps::new(-0.25));
+        assert_eq!(journal.take(), [Command(-0.25)]);
+        amplifier.disable();
+        assert_eq!(journal.take(), [Enable(false), Command(0.0)]);
+    }
     fault.done();
 }
 
@@ -39,8 +67,8 @@ fn an_enable_that_failed_is_tried_again() {
     ));
     let mut enable = Pin::new(&[On::set(State::Low), refused, On::set(State::High)]);
     let mut fault = Pin::new(&[]);
-    let mut commands = Vec::new();
-    let mut amplifier = Amplifier::new(Commands(&mut commands), enable.clone(), fault.clone());
+    let commands = RefCell::new(Vec::new());
+    let mut amplifier = Amplifier::new(Journal(&commands), enable.clone(), fault.clone());
     amplifier.drive(Amps::ZERO);
     amplifier.drive(Amps::ZERO);
     enable.done();
@@ -54,24 +82,45 @@ fn low_or_unreadable_is_a_fault() {
     ));
     let mut enable = Pin::new(&[On::set(State::Low)]);
     let mut fault = Pin::new(&[On::get(State::High), On::get(State::Low), unreadable]);
-    let mut commands = Vec::new();
-    let mut amplifier = Amplifier::new(Commands(&mut commands), enable.clone(), fault.clone());
+    let commands = RefCell::new(Vec::new());
+    let mut amplifier = Amplifier::new(Journal(&commands), enable.clone(), fault.clone());
     assert_eq!([(); 3].map(|()| amplifier.is_faulty()), [false, true, true]);
     enable.done();
     fault.done();
 }
 
-#[test]
-fn a_pwm_command_is_half_duty_at_no_current_and_saturates() {
-    let duties = [500, 900, 100, 900, 600, 500];
+/// The duties of these currents, of a channel whose largest is `top`, at a full scale.
+fn duties(top: u16, full_scale: f32, commands: &[(f32, u16)]) {
     let mut expected = Vec::new();
-    for duty in duties {
-        expected.extend([Duty::max_duty_cycle(1000), Duty::set_duty_cycle(duty)]);
+    for (_, duty) in commands {
+        expected.extend([Duty::max_duty_cycle(top), Duty::set_duty_cycle(*duty)]);
     }
     let mut channel = Pwm::new(&expected);
-    let mut output = PwmCurrent::new(channel.clone(), Amps::new(6.0));
-    for amps in [0.0, 6.0, -6.0, 600.0, 1.5, f32::NAN] {
-        output.command(Amps::new(amps));
+    let mut output = PwmCurrent::new(channel.clone(), Amps::new(full_scale));
+    for (current, _) in commands {
+        output.command(Amps::new(*current));
     }
     channel.done();
+}
+
+#[test]
+fn a_pwm_command_is_half_duty_at_no_current_and_10_and_90_percent_at_full_scale() {
+    duties(
+        1000,
+        6.0,
+        &[(0.0, 500), (6.0, 900), (-6.0, 100), (1.5, 600), (-3.0, 300)],
+    );
+    // To the nearest step of a coarse channel: 5 + 4 / 6 and 5 - 4 / 6 of 10.
+    duties(10, 6.0, &[(1.0, 6), (-1.0, 4), (0.6, 5), (-0.6, 5)]);
+    duties(50_000, 1.5, &[(0.0, 25_000), (1.5, 45_000), (-1.5, 5000)]);
+}
+
+#[test]
+fn a_pwm_command_beyond_full_scale_saturates() {
+    duties(1000, 6.0, &[(600.0, 900), (-600.0, 100), (f32::MAX, 900)]);
+}
+
+#[test]
+fn a_pwm_command_without_a_full_scale_is_half_duty() {
+    duties(1000, 0.0, &[(0.0, 500), (1.0, 500), (-1.0, 500)]);
 }
