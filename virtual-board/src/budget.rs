@@ -4,6 +4,8 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
+use host_sim::failure::Failure;
+
 use crate::board::CORE_HZ;
 use crate::image::Image;
 use crate::run::{Outcome, RATE_HZ, Setup, Tick, on_board};
@@ -52,10 +54,11 @@ fn settled(outcome: &Outcome) -> impl Iterator<Item = (usize, &Tick)> {
 /// Runs `setup` twice, the second time following the instructions of some ticks.
 ///
 /// # Errors
-/// As [`on_board`]; one line if the amplifiers are never enabled long enough, or a tick cannot be
+/// As [`on_board`] and [`Outcome::check`]; one line if the amplifiers are never enabled long enough, or a tick cannot be
 /// followed.
-pub fn measure(image: &Image, setup: &Setup) -> Result<Budget, String> {
+pub fn measure(image: &Image, setup: &Setup) -> Result<Budget, Failure> {
     let first = on_board(image, setup, |_| ())?;
+    first.check()?;
     let ticks: Vec<_> = settled(&first).collect();
     let counts = ticks.iter().map(|(_, tick)| u64::from(tick.instructions));
     let instructions = Range::of(counts).ok_or_else(|| {
@@ -107,7 +110,7 @@ pub(crate) fn share(cost: Range) -> String {
 ///
 /// # Errors
 /// As [`measure`].
-pub(crate) fn table(image: &Image, seconds: f64, seed: u64) -> Result<String, String> {
+pub(crate) fn table(image: &Image, seconds: f64, seed: u64) -> Result<String, Failure> {
     let mut text = format!(
         "{:<16}{:>23}{:>19}{:>18}\n{:<16}{:>7}{:>8}{:>8}{:>11}{:>8}{:>10}{:>8}\n",
         "",

@@ -189,7 +189,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     if outcome.ticks.is_empty() {
         return Err(Failure::Check("the control task never ran".to_owned()));
     }
-    Ok(())
+    outcome.check()
 }
 
 /// A progress bar over virtual time; it shows only on a terminal.

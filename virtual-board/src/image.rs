@@ -109,6 +109,28 @@ impl Image {
         &self.elf
     }
 
+    /// A program without telemetry and control task, which ends in a loop at this address.
+    #[cfg(test)]
+    pub(crate) fn bare(placed: rigless::image::Image, end: u64) -> Self {
+        const RAM: u64 = 0x2000_0000;
+        Self {
+            elf: Vec::new(),
+            placed,
+            rtt: RAM,
+            entry: end,
+            exits: Vec::new(),
+            control: Arc::default(),
+            wait: end,
+            for_ever: end,
+            stack: [RAM + 0x800, RAM + 0x1000],
+            size: Size {
+                text: 0,
+                data: 0,
+                bss: 0,
+            },
+        }
+    }
+
     fn parse(path: &Path, elf: Vec<u8>) -> Result<Self, String> {
         let file = object::File::parse(&*elf).map_err(|error| error.to_string())?;
         let symbol = |name: &str| {

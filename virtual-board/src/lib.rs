@@ -15,6 +15,7 @@ pub mod fault;
 pub mod image;
 mod lines;
 mod lockstep;
+mod objections;
 pub mod pins;
 mod probe;
 mod quadrature;

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use host_sim::closed_loop::{Hand, SceneName};
 use host_sim::device::Device;
+use host_sim::failure::Failure;
 use host_sim::plant::Pose;
 use host_sim::telemetry::{Frame, Telemetry};
 use rigless::emulator::{Start, run};
@@ -17,6 +18,7 @@ use crate::command::Command;
 use crate::fault::Fault;
 use crate::image::Image;
 use crate::lockstep::Lockstep;
+use crate::objections;
 use crate::scene::ImageScene;
 
 /// Control rate of the image, Hz.
@@ -155,8 +157,9 @@ pub struct Outcome {
     pub complaints: Vec<String>,
     /// Calls of the control task that were not seen to return.
     pub unclosed: u32,
-    /// Peripherals that the image touched and that have no model.
-    pub unmodelled: Vec<String>,
+    /// What the emulator holds against the run, one line each: accesses that it cannot answer as
+    /// the chip does, and what its models report of clocks and flash. None is allowed.
+    pub objections: Vec<String>,
     /// Bytes of stack in use at most, of those that a start leaves for it.
     pub stack: u64,
     /// What went down the command channel, and when its last byte did, ns.
@@ -168,6 +171,14 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// Whether the emulator answered all that the image did as the chip does.
+    ///
+    /// # Errors
+    /// [`Failure::Check`] with all of [`Self::objections`].
+    pub fn check(&self) -> Result<(), Failure> {
+        objections::verdict(&self.objections)
+    }
+
     /// Which of `ticks` a frame tells of.
     #[must_use]
     pub fn tick_index(&self, frame: &Frame) -> Option<usize> {
@@ -191,6 +202,38 @@ pub fn on_board(
     setup: &Setup,
     progress: impl FnMut(f64) + Send + 'static,
 ) -> Result<Outcome, String> {
+    let (session, lockstep, wall) = emulate(image, setup, progress)?;
+    let restarts = session.resets().iter().map(|reset| Restart {
+        at_s: reset.at.0 as f64 * 1e-9,
+        cause: format!("{:?}", reset.cause),
+    });
+    let restarts = restarts.collect();
+    let Lockstep { seen, probe, .. } = lockstep;
+    let telemetry = Telemetry::decode(&image.elf, &probe.stream)?;
+    Ok(Outcome {
+        first_tick: first_tick(&telemetry.frames, &seen.ticks),
+        rtt: probe.stream,
+        telemetry,
+        ticks: seen.ticks,
+        first_counts: seen.first_counts,
+        moments: seen.moments,
+        enables: seen.enables,
+        complaints: seen.complaints,
+        unclosed: seen.unclosed,
+        stack: seen.stack,
+        sent: probe.sent,
+        restarts,
+        objections: objections::of(&session),
+        wall,
+    })
+}
+
+/// The run itself: the board and the plant as it leaves them, and the time that it took.
+pub(crate) fn emulate(
+    image: &Image,
+    setup: &Setup,
+    progress: impl FnMut(f64) + Send + 'static,
+) -> Result<(Session<ControllerBoard>, Lockstep, Duration), String> {
     setup.device.validate()?;
     let emulator = |error: &dyn std::fmt::Display| format!("emulator: {error}");
     let dead = setup
@@ -209,35 +252,11 @@ pub fn on_board(
     let finished =
         run(session, &Start::new(&images), lockstep).map_err(|error| emulator(&error))?;
     let wall = since.elapsed();
-    let session = finished.session;
-    let restarts = session.resets().iter().map(|reset| Restart {
-        at_s: reset.at.0 as f64 * 1e-9,
-        cause: format!("{:?}", reset.cause),
-    });
-    let restarts = restarts.collect();
-    let unmodelled = session
-        .unimplemented()
-        .values()
-        .map(|one| format!("{one:?}"));
-    let unmodelled = unmodelled.collect();
-    let Lockstep { seen, probe, .. } = finished.driver;
-    let telemetry = Telemetry::decode(&image.elf, &probe.stream)?;
-    Ok(Outcome {
-        first_tick: first_tick(&telemetry.frames, &seen.ticks),
-        rtt: probe.stream,
-        telemetry,
-        ticks: seen.ticks,
-        first_counts: seen.first_counts,
-        moments: seen.moments,
-        enables: seen.enables,
-        complaints: seen.complaints,
-        unclosed: seen.unclosed,
-        stack: seen.stack,
-        sent: probe.sent,
-        restarts,
-        unmodelled,
-        wall,
-    })
+    let mut session = finished.session;
+    if let Some(error) = session.take_error() {
+        return Err(emulator(&error));
+    }
+    Ok((session, finished.driver, wall))
 }
 
 /// Where the firmware began to count its ticks: the start that makes every frame agree with what

@@ -27,9 +27,12 @@ pub(crate) fn run(setup: &Setup) -> Outcome {
     run_image("", setup)
 }
 
-/// Runs the image with these features.
+/// Runs the image with these features. Every run of the tests is made here, and none may do what
+/// the emulator does not model.
 pub(crate) fn run_image(features: &'static str, setup: &Setup) -> Outcome {
-    on_board(image(features), setup, |_| ()).unwrap()
+    let outcome = on_board(image(features), setup, |_| ()).unwrap();
+    outcome.check().unwrap();
+    outcome
 }
 
 /// A scene from the start, in this hand.
