@@ -121,9 +121,10 @@ impl Board {
     /// Takes the chip: amplifiers off, then the watchdog, then clocks, then the rest. The tick
     /// runs when this returns.
     pub(crate) fn new(core: &mut cortex_m::Peripherals, chip: pac::Peripherals) -> Self {
-        bare::outputs_safe();
         let mut rcc = chip.RCC.constrain();
         let e = chip.GPIOE.split(&mut rcc);
+        // A port without its clock takes no write.
+        bare::outputs_safe();
         let large_enable = e.pe4.into_push_pull_output();
         let small_enable = e.pe5.into_push_pull_output();
 
