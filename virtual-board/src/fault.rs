@@ -16,12 +16,25 @@ pub enum Fault {
     /// The large motor's amplifier reports a fault. It goes on driving, so that only the firmware
     /// can stop it.
     AmplifierFault,
+    /// The small motor's amplifier reports a fault, and goes on driving.
+    SmallAmplifierFault,
     /// The core stops: no task runs any more, until the watchdog resets it.
     HungCore,
+    /// A debugger halts the core for so many ms, or until a reset: timers and watchdog run on, the
+    /// outputs stay as they are, and the cycle counter stands.
+    Halt(u16),
+    /// For 10 ms every control task takes 1.2 periods: the core stands in the middle of it.
+    LongTasks,
     /// The control tick stops coming, while everything else runs on.
     HungControl,
     /// The task of lowest priority loops for ever, while the control task runs on.
     HungIdle,
+    /// The task of lowest priority loops for 40 ms.
+    StarvedIdle,
+    /// The oscillator behind the watchdog is as slow as it may be, whatever the instant.
+    SlowWatchdog,
+    /// The oscillator behind the watchdog is as fast as it may be, whatever the instant.
+    FastWatchdog,
     /// The next read of the large motor's counter is answered with a bus error.
     BusError,
     /// The crystal never runs, from power-up on whatever the instant.
@@ -30,6 +43,8 @@ pub enum Fault {
     CrystalFails,
     /// Nobody drains the telemetry any more.
     NobodyDrains,
+    /// Nobody drains the telemetry for 300 ms.
+    DrainPause,
     /// The command channel is kept full: garbage, and a keep-alive now and then.
     CommandFlood,
     /// The supply sags for a moment: a reset by the brown-out detector.
@@ -37,7 +52,7 @@ pub enum Fault {
 }
 
 /// Each fault with its name on the command line and what it is.
-const NAMES: [(Fault, &str, &str); 15] = [
+const NAMES: [(Fault, &str, &str); 26] = [
     (Fault::StuckA, "stuck-a", "large encoder's line A stuck"),
     (Fault::StuckB, "stuck-b", "large encoder's line B stuck"),
     (
@@ -60,7 +75,42 @@ const NAMES: [(Fault, &str, &str); 15] = [
         "amplifier-fault",
         "large amplifier reports a fault and drives on",
     ),
+    (
+        Fault::SmallAmplifierFault,
+        "small-amplifier-fault",
+        "small amplifier reports a fault and drives on",
+    ),
     (Fault::HungCore, "hung-core", "the core stops"),
+    (
+        Fault::Halt(1),
+        "halt-1ms",
+        "a debugger halts the core for 1 ms",
+    ),
+    (
+        Fault::Halt(5),
+        "halt-5ms",
+        "a debugger halts the core for 5 ms",
+    ),
+    (
+        Fault::Halt(20),
+        "halt-20ms",
+        "a debugger halts the core for 20 ms",
+    ),
+    (
+        Fault::Halt(100),
+        "halt-100ms",
+        "a debugger halts the core for 100 ms",
+    ),
+    (
+        Fault::Halt(500),
+        "halt-500ms",
+        "a debugger halts the core for 500 ms",
+    ),
+    (
+        Fault::LongTasks,
+        "long-tasks",
+        "the control task takes 1.2 periods, for 10 ms",
+    ),
     (
         Fault::HungControl,
         "hung-control",
@@ -70,6 +120,21 @@ const NAMES: [(Fault, &str, &str); 15] = [
         Fault::HungIdle,
         "hung-low-priority",
         "the task of lowest priority loops for ever",
+    ),
+    (
+        Fault::StarvedIdle,
+        "starved-low-priority",
+        "the task of lowest priority loops for 40 ms",
+    ),
+    (
+        Fault::SlowWatchdog,
+        "slow-watchdog",
+        "watchdog's oscillator at 17 kHz from power-up on, whatever S",
+    ),
+    (
+        Fault::FastWatchdog,
+        "fast-watchdog",
+        "watchdog's oscillator at 47 kHz from power-up on, whatever S",
     ),
     (
         Fault::BusError,
@@ -84,12 +149,17 @@ const NAMES: [(Fault, &str, &str); 15] = [
     (
         Fault::CrystalFails,
         "crystal-fails",
-        "the crystal stops in flight",
+        "the crystal stops while the device runs",
     ),
     (
         Fault::NobodyDrains,
         "nobody-drains",
         "nobody drains the telemetry",
+    ),
+    (
+        Fault::DrainPause,
+        "drain-pause",
+        "nobody drains the telemetry for 300 ms",
     ),
     (
         Fault::CommandFlood,

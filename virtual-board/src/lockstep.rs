@@ -4,6 +4,7 @@
 mod follow;
 mod hits;
 mod inject;
+mod plant;
 
 use std::collections::VecDeque;
 
@@ -20,10 +21,11 @@ use crate::image::Image;
 use crate::lines::Lines;
 use crate::pins;
 use crate::probe::{Probe, schedule};
-use crate::quadrature::{Edge, Edges, Generator, LARGE, REFERENCE, SMALL};
-use crate::run::{AMPS_PER_CODE, Moment, RATE_HZ, Setup, Tick};
+use crate::quadrature::{Edge, Generator, LARGE};
+use crate::run::{Moment, RATE_HZ, Setup, Tick};
 use crate::stack::Stack;
 use follow::Follow;
+use inject::Stalls;
 
 const STEP_NS: u64 = 10_000;
 const STEP_S: f64 = 10e-6;
@@ -69,13 +71,15 @@ pub(crate) struct Lockstep {
     exits: Vec<u64>,
     wait: u64,
     for_ever: u64,
-    /// Whether the task of lowest priority is to hang when it wakes.
-    hang: bool,
     /// Whether the processor waits for an interrupt, or is about to.
     asleep: bool,
     /// The call of the control task that is running, and the instruction count at its start.
     running: Option<(Tick, u64)>,
     follow: Follow,
+    stalls: Stalls,
+    /// Virtual time that an instruction takes, ns.
+    instruction_ns: f64,
+    dac_offset: i16,
     resets: usize,
     progress: Box<dyn FnMut(f64) + Send>,
 }
@@ -121,10 +125,12 @@ impl Lockstep {
             exits: image.exits.clone(),
             wait: image.wait,
             for_ever: image.for_ever,
-            hang: false,
             asleep: false,
             running: None,
             follow: Follow::new(image, setup),
+            stalls: Stalls::default(),
+            instruction_ns: 1e9 / setup.instructions_per_second.get() as f64,
+            dac_offset: setup.dac_offset,
             resets: 0,
             progress,
         }
@@ -147,86 +153,6 @@ impl Lockstep {
         (self.steps % STEPS_PER_TICK) as f64 * STEP_S
     }
 
-    /// One step of the plant with what the amplifiers are told now.
-    fn step(&mut self, board: &mut ControllerBoard) {
-        let enabled = pins::enabled(&mut board.part);
-        if self
-            .seen
-            .enables
-            .last()
-            .is_none_or(|(_, last)| *last != enabled)
-        {
-            self.seen.enables.push((self.plant_ns(), enabled));
-        }
-        let codes = board.part.dac_codes();
-        for n in [LARGE, SMALL] {
-            // A pin that floats reads as mid-scale.
-            let code = codes[n].map_or(0.0, |code| f64::from(code) - 2048.0);
-            self.currents[n] = if enabled[n] {
-                code * AMPS_PER_CODE[n]
-            } else {
-                0.0
-            };
-        }
-        self.bench
-            .plant
-            .command(self.currents[LARGE], self.currents[SMALL]);
-        if self.steps.is_multiple_of(STEPS_PER_TICK) {
-            self.grip = self.motion.grip(self.steps / STEPS_PER_TICK);
-            self.seen.moments.push(Moment {
-                felt: self.bench.plant.handle_torque(&self.grip, 0.0),
-                currents: self.currents,
-                large_omega: self.bench.plant.large().omega,
-            });
-        }
-        self.turn();
-        self.steps += 1;
-    }
-
-    /// Turns the shafts by one step, and the encoders with them.
-    fn turn(&mut self) {
-        fn observer(
-            into: &mut Vec<Edge>,
-            (encoder, count): (usize, u32),
-            from_ns: u64,
-        ) -> Edges<'_> {
-            Edges {
-                into,
-                encoder,
-                count,
-                from_ns,
-                step_ns: STEP_NS as f64,
-            }
-        }
-        let (from_ns, since) = (self.plant_ns(), self.since_tick());
-        let (mut fresh, mut of_small) = (std::mem::take(&mut self.fresh), Vec::new());
-        let (large, small) = (self.bench.large.count(), self.bench.small.count());
-        let before = self.bench.plant.large();
-        self.bench.step(
-            &self.grip,
-            since,
-            STEP_S,
-            &mut observer(&mut fresh, (LARGE, large), from_ns),
-            &mut observer(&mut of_small, (SMALL, small), from_ns),
-        );
-        if let Some(generator) = &mut self.generator {
-            fresh.retain(|edge| edge.encoder != LARGE);
-            generator.run(from_ns + STEP_NS, &mut fresh);
-        }
-        fresh.append(&mut of_small);
-        let (after, count) = (self.bench.plant.large(), self.reference.count());
-        if self.lines.reads_reference() {
-            let mut edges = observer(&mut fresh, (REFERENCE, count), from_ns);
-            self.reference.follow(before, after, STEP_S, &mut edges);
-        } else {
-            self.reference.follow(before, after, STEP_S, &mut ());
-            self.lines.pass(self.reference.count());
-        }
-        fresh.sort_by_key(|edge| edge.at_ns);
-        self.edges.extend(fresh.drain(..));
-        self.fresh = fresh;
-    }
-
     /// What a restart leaves on the pins: the board's pull-downs, healthy amplifiers, no lines.
     fn restart(&mut self, board: &mut ControllerBoard, at: VirtualNanos) {
         for pin in pins::ENABLES {
@@ -238,6 +164,7 @@ impl Lockstep {
         self.lines.restart();
         self.running = None;
         self.asleep = false;
+        self.stalls = Stalls::default();
     }
 }
 
@@ -252,6 +179,9 @@ impl Driver<ControllerBoard> for Lockstep {
             Settled::Access { access, value } => {
                 let counter = COUNTERS.iter().position(|at| *at == access.address);
                 if let (AccessKind::Read, Some(encoder)) = (access.kind, counter) {
+                    if encoder == LARGE {
+                        self.lengthen(access.virtual_time, host);
+                    }
                     let value = Some(value as u16);
                     match &mut self.running {
                         Some((tick, _)) => tick.counts[encoder] = value,
@@ -263,8 +193,8 @@ impl Driver<ControllerBoard> for Lockstep {
                 }
             }
             Settled::Hit(hit) => {
-                if self.hang && self.asleep && hit.address == self.entry {
-                    self.hang(host);
+                if hit.address == self.entry {
+                    self.hang(hit.at, host);
                 }
                 self.hit(session, host, &hit);
             }
@@ -288,6 +218,7 @@ impl Driver<ControllerBoard> for Lockstep {
             self.stack.paint(host);
         }
         let now_ns = stop.at.0;
+        self.release(session, stop.at, host);
         loop {
             let board = session.board_mut();
             while let Some(edge) = self.edges.front().copied().filter(|e| e.at_ns <= now_ns) {
@@ -314,6 +245,8 @@ impl Driver<ControllerBoard> for Lockstep {
             self.step(session.board_mut());
         }
         let next_edge = self.edges.front().map_or(u64::MAX, |edge| edge.at_ns);
-        Some(VirtualNanos(next_edge.min(self.plant_ns())))
+        let release = self.stalls.release.unwrap_or(u64::MAX);
+        let next = next_edge.min(self.plant_ns()).min(release);
+        Some(VirtualNanos(next))
     }
 }

@@ -15,8 +15,8 @@ const KEEP_ALIVE_NS: u64 = 50_000_000;
 pub(crate) struct Probe {
     /// What came out of up channel 0.
     pub(crate) stream: Vec<u8>,
-    /// Whether anything is taken.
-    pub(crate) drains: bool,
+    /// From when on anything is taken, ns.
+    pub(crate) drains_from: u64,
     /// Whether the command channel is kept full.
     pub(crate) floods: bool,
     /// Bytes of the first in line that the channel has taken.
@@ -42,7 +42,7 @@ impl Probe {
         let commands = commands.map(|(at, command)| (*at, command.encode().to_vec()));
         Self {
             stream: Vec::new(),
-            drains: true,
+            drains_from: 0,
             floods: false,
             taken: 0,
             sent: Vec::new(),
@@ -54,7 +54,7 @@ impl Probe {
     }
 
     pub(crate) fn look(&mut self, now_ns: u64, memory: &mut dyn Memory) {
-        if self.drains {
+        if now_ns >= self.drains_from {
             self.rtt.drain(memory, &mut self.stream);
         }
         if let Some(next) = self.next_keep_alive.filter(|next| *next <= now_ns) {

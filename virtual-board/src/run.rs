@@ -50,6 +50,8 @@ pub struct Setup {
     pub generator_hz: Option<f64>,
     /// Frequency of the crystal, Hz; 0 is a dead one.
     pub crystal_hz: u64,
+    /// What both DAC outputs are off by, codes; on silicon up to 12.
+    pub dac_offset: i16,
     /// Instructions in a second of virtual time.
     pub instructions_per_second: NonZeroU64,
     /// Ticks, by their place in [`Outcome::ticks`], to follow instruction by instruction; slow.
@@ -72,6 +74,7 @@ impl Default for Setup {
             keep_alive: true,
             generator_hz: None,
             crystal_hz: 8_000_000,
+            dac_offset: 0,
             instructions_per_second: NonZeroU64::new(CORE_HZ).expect("not zero"),
             follow: BTreeSet::new(),
         }
@@ -236,13 +239,19 @@ pub(crate) fn emulate(
 ) -> Result<(Session<ControllerBoard>, Lockstep, Duration), String> {
     setup.device.validate()?;
     let emulator = |error: &dyn std::fmt::Display| format!("emulator: {error}");
-    let dead = setup
-        .faults
-        .iter()
-        .any(|(_, fault)| *fault == Fault::DeadCrystal);
-    let crystal_hz = if dead { 0 } else { setup.crystal_hz };
-    let board = ControllerBoard::new(crystal_hz, setup.instructions_per_second)
+    let has = |fault| setup.faults.iter().any(|(_, other)| *other == fault);
+    let crystal_hz = if has(Fault::DeadCrystal) {
+        0
+    } else {
+        setup.crystal_hz
+    };
+    let mut board = ControllerBoard::new(crystal_hz, setup.instructions_per_second)
         .map_err(|error| emulator(&error))?;
+    for (fault, hz) in [(Fault::SlowWatchdog, 17_000), (Fault::FastWatchdog, 47_000)] {
+        if has(fault) {
+            board.part.stm32.rcc.calibrate_lsi(hz);
+        }
+    }
     let mut session =
         Session::new(Box::new(board), 0, VirtualNanos(0)).map_err(|error| emulator(&error))?;
     let lockstep = Lockstep::new(image, setup, Box::new(progress));

@@ -10,6 +10,7 @@ use host_sim::recording::{BoardColumns, Recording};
 use host_sim::replay::replay;
 use host_sim::telemetry::{Frame, Telemetry};
 use virtual_board::command::Command;
+use virtual_board::fault::Fault;
 use virtual_board::run::{Outcome, Setup};
 
 use crate::image::{free_air, image, of_scene, run, run_image};
@@ -193,4 +194,40 @@ fn a_wall_is_tuned_while_it_pushes_and_the_torque_does_not_jump() {
         Some("refused not-finite=0 out-of-bounds=1 unknown=1")
     );
     assert_eq!(frames.last().unwrap().state, "2");
+}
+
+/// Frames that were made and did not come, by their numbers, and what the last one says was dropped.
+fn missing(run: &Outcome) -> [u32; 2] {
+    let frames = &run.telemetry.frames;
+    let [first, .., last] = &frames[..] else {
+        panic!("no frames");
+    };
+    let made = last.seq - first.seq + 1;
+    [made - frames.len() as u32, last.drops]
+}
+
+/// The queue holds 31 frames, and 40 ms make 40. A watchdog at its nominal frequency would end that
+/// with a reset, so its oscillator is the slowest that silicon may have.
+#[test]
+fn frames_that_find_no_place_in_the_queue_are_numbered_and_counted() {
+    let run = run(&Setup {
+        faults: vec![(0.0, Fault::SlowWatchdog), (0.5, Fault::StarvedIdle)],
+        ..of_scene(SceneName::FreeAir, Hand::Moving, 1.0)
+    });
+    assert_eq!(run.restarts, []);
+    let [missing, drops] = missing(&run);
+    assert!((8..=10).contains(&missing), "{missing} are missing");
+    assert_eq!(drops, missing);
+}
+
+/// RTT holds 60 frames or so, and 300 ms make 300.
+#[test]
+fn frames_that_find_no_place_in_rtt_are_counted() {
+    let run = run(&Setup {
+        faults: vec![(0.5, Fault::DrainPause)],
+        ..of_scene(SceneName::FreeAir, Hand::Moving, 1.0)
+    });
+    let [missing, drops] = missing(&run);
+    assert!((200..290).contains(&missing), "{missing} are missing");
+    assert_eq!(drops, missing);
 }

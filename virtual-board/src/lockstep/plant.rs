@@ -1,0 +1,89 @@
+//! The plant's steps.
+
+use super::{Lockstep, STEP_NS, STEP_S, STEPS_PER_TICK};
+use crate::board::ControllerBoard;
+use crate::pins;
+use crate::quadrature::{Edge, Edges, LARGE, REFERENCE, SMALL};
+use crate::run::{AMPS_PER_CODE, Moment};
+
+impl Lockstep {
+    /// One step of the plant with what the amplifiers are told now.
+    pub(super) fn step(&mut self, board: &mut ControllerBoard) {
+        let enabled = pins::enabled(&mut board.part);
+        if self
+            .seen
+            .enables
+            .last()
+            .is_none_or(|(_, last)| *last != enabled)
+        {
+            self.seen.enables.push((self.plant_ns(), enabled));
+        }
+        let codes = board.part.dac_codes();
+        for n in [LARGE, SMALL] {
+            // A pin that floats reads as mid-scale.
+            let code = codes[n].map_or(0, |code| code as i16 - 2048 + self.dac_offset);
+            self.currents[n] = if enabled[n] {
+                f64::from(code) * AMPS_PER_CODE[n]
+            } else {
+                0.0
+            };
+        }
+        self.bench
+            .plant
+            .command(self.currents[LARGE], self.currents[SMALL]);
+        if self.steps.is_multiple_of(STEPS_PER_TICK) {
+            self.grip = self.motion.grip(self.steps / STEPS_PER_TICK);
+            self.seen.moments.push(Moment {
+                felt: self.bench.plant.handle_torque(&self.grip, 0.0),
+                currents: self.currents,
+                large_omega: self.bench.plant.large().omega,
+            });
+        }
+        self.turn();
+        self.steps += 1;
+    }
+
+    /// Turns the shafts by one step, and the encoders with them.
+    fn turn(&mut self) {
+        fn observer(
+            into: &mut Vec<Edge>,
+            (encoder, count): (usize, u32),
+            from_ns: u64,
+        ) -> Edges<'_> {
+            Edges {
+                into,
+                encoder,
+                count,
+                from_ns,
+                step_ns: STEP_NS as f64,
+            }
+        }
+        let (from_ns, since) = (self.plant_ns(), self.since_tick());
+        let (mut fresh, mut of_small) = (std::mem::take(&mut self.fresh), Vec::new());
+        let (large, small) = (self.bench.large.count(), self.bench.small.count());
+        let before = self.bench.plant.large();
+        self.bench.step(
+            &self.grip,
+            since,
+            STEP_S,
+            &mut observer(&mut fresh, (LARGE, large), from_ns),
+            &mut observer(&mut of_small, (SMALL, small), from_ns),
+        );
+        if let Some(generator) = &mut self.generator {
+            fresh.retain(|edge| edge.encoder != LARGE);
+            generator.run(from_ns + STEP_NS, &mut fresh);
+        }
+        fresh.append(&mut of_small);
+        let (after, count) = (self.bench.plant.large(), self.reference.count());
+        if self.lines.reads_reference() {
+            let mut edges = observer(&mut fresh, (REFERENCE, count), from_ns);
+            self.reference.follow(before, after, STEP_S, &mut edges);
+        } else {
+            self.reference.follow(before, after, STEP_S, &mut ());
+            self.lines.pass(self.reference.count());
+        }
+        fresh.sort_by_key(|edge| edge.at_ns);
+        self.edges.extend(fresh.drain(..));
+        self.fresh = fresh;
+    }
+}
