@@ -1,5 +1,7 @@
 //! What the hand feels and how well the velocity is known: on the board as in the host simulation.
 
+use std::f64::consts::TAU;
+
 use estimator_core::Amps;
 use firmware_app::scene::Core;
 use host_sim::closed_loop::{Bench, Eye, Hand};
@@ -44,7 +46,7 @@ fn scores(rows: &[Row]) -> Scores {
     }
 }
 
-fn on_board(run: &Outcome) -> Scores {
+fn rows(run: &Outcome) -> Vec<Row> {
     let rows = run.telemetry.frames.iter().filter_map(|frame| {
         let tick = run.tick(frame)?;
         (tick.at_ns as f64 * 1e-9 >= SETTLED_S).then(|| Row {
@@ -54,7 +56,88 @@ fn on_board(run: &Outcome) -> Scores {
             wanted: frame.torque.into(),
         })
     });
-    scores(&rows.collect::<Vec<_>>())
+    rows.collect()
+}
+
+/// The same by the definitions, written out: velocity error (rms, and its part in 50 to 500 Hz),
+/// the force that the error makes, and the parasitic force.
+fn by_definition(rows: &[Row]) -> [f64; 4] {
+    let device = Device::default();
+    let n_per_nm = 2.0 / device.handle.diameter_m;
+    let rms = |values: &mut dyn Iterator<Item = f64>| {
+        let (sum, n) = values.fold((0.0, 0.0), |(sum, n), x| (sum + x * x, n + 1.0));
+        f64::sqrt(sum / n)
+    };
+    // The first 0.1 s are left out.
+    let scored = &rows[(0.1 * FRAMES_HZ) as usize..];
+    let errors: Vec<f64> = scored
+        .iter()
+        .map(|row| f64::from(row.estimate) - row.omega)
+        .collect();
+    let velocity = rms(&mut errors.iter().copied());
+    let force = rows.iter().map(|row| row.felt - row.wanted);
+    [
+        velocity,
+        tactile(&errors),
+        1e3 * n_per_nm * device.coupler.damping_nms_per_rad * velocity,
+        rms(&mut force.map(|torque| 1e3 * n_per_nm * torque)),
+    ]
+}
+
+/// RMS of the part of a signal in 50 to 500 Hz: Welch's method, segments of 250 samples or 4 Hz,
+/// half overlapping, Hann window, each bin by a sum over the segment.
+fn tactile(signal: &[f64]) -> f64 {
+    const SEGMENT: usize = 250;
+    let window = |i: usize| 0.5 - 0.5 * (TAU * i as f64 / SEGMENT as f64).cos();
+    let window_power: f64 = (0..SEGMENT).map(|i| window(i) * window(i)).sum();
+    let segments: Vec<_> = signal.windows(SEGMENT).step_by(SEGMENT / 2).collect();
+    let mean_square = |bin: usize| {
+        let power = segments.iter().map(|segment| {
+            let turn = |i: usize| TAU * (bin * i) as f64 / SEGMENT as f64;
+            let part = |wave: fn(f64) -> f64| -> f64 {
+                let weighed = segment.iter().enumerate();
+                weighed.map(|(i, x)| window(i) * x * wave(turn(i))).sum()
+            };
+            part(f64::cos).powi(2) + part(f64::sin).powi(2)
+        });
+        let mean = power.sum::<f64>() / segments.len() as f64;
+        2.0 * mean / (window_power * SEGMENT as f64)
+    };
+    // The band begins in the middle of the bin at 52 Hz and ends in that at 500 Hz, the last.
+    let parts = (0..=SEGMENT / 2).map(|bin| {
+        let middle = 4.0 * bin as f64;
+        let low = f64::max(middle - 2.0, 50.0);
+        let high = f64::min(middle + 2.0, 500.0);
+        f64::max(high - low, 0.0) / 4.0 * mean_square(bin)
+    });
+    f64::sqrt(parts.sum())
+}
+
+/// What the telemetry of a run says of the velocity, against the plant.
+#[test]
+fn the_scores_of_a_run_are_those_of_their_definitions() {
+    for run in [free_air(), wall()] {
+        let rows = rows(run);
+        let Scores { open, closed } = scores(&rows);
+        let found = [open.rms_rad_s, open.noise_rad_s, open.force_mn].map(Option::unwrap);
+        let [rms, noise, force, parasitic] = by_definition(&rows);
+        let pairs = found.into_iter().zip([rms, noise, force]);
+        for (found, wanted) in pairs.chain([(closed.rms_mn, parasitic)]) {
+            assert!((found / wanted - 1.0).abs() < 1e-9, "{found} {wanted}");
+        }
+        // The truth is the motion of the plant: the shaft turns as far as it says.
+        let (mut turned, mut said) = (0.0, 0.0);
+        for pair in run.ticks.windows(2) {
+            let [before, after] = pair else {
+                unreachable!("pairs");
+            };
+            let mean = 0.5 * (before.large.omega + after.large.omega);
+            let seconds = (after.at_ns - before.at_ns) as f64 * 1e-9;
+            turned += mean * (after.large.angle - before.large.angle);
+            said += mean * mean * seconds;
+        }
+        assert!((turned / said - 1.0).abs() < 1e-3, "{turned} {said}");
+    }
 }
 
 /// The image's control core in the loop of `host-sim`: no processor, no DAC, no lateness.
@@ -117,11 +200,11 @@ fn agree(board: &Scores, host: &Scores, open: f64, closed: f64) {
 #[test]
 fn free_air_scores_as_in_the_host_simulation() {
     let host = on_host(1, Hand::Moving, 10.0);
-    agree(&on_board(free_air()), &host, 0.03, 0.02);
+    agree(&scores(&rows(free_air())), &host, 0.03, 0.02);
 }
 
 #[test]
 fn the_wall_scores_as_in_the_host_simulation() {
     let host = on_host(2, Hand::Pushing, 10.0);
-    agree(&on_board(wall()), &host, 0.03, 0.02);
+    agree(&scores(&rows(wall())), &host, 0.03, 0.02);
 }
