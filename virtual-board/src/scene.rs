@@ -6,7 +6,8 @@ use std::str::FromStr;
 use haptic_control::{
     Detents, Hold, Inertia, SpringDamper, Texture, Torque, Tunable, Viscous, Wall,
 };
-use host_sim::closed_loop::{Hand, SceneName};
+use host_sim::closed_loop::{Hand, Press, SceneName};
+use host_sim::device::Device;
 
 use crate::command::{Command, number};
 
@@ -66,6 +67,30 @@ impl ImageScene {
             Self::Host(SceneName::Hold(..)) => Hand::Still,
             _ => Hand::Moving,
         }
+    }
+
+    /// A finger that would press with 10 N, had the scene as much to set against it: it goes as far
+    /// into the scene as its stiffness asks for, and further by what the hand itself gives way.
+    #[must_use]
+    pub fn press(self) -> Hand {
+        let device = Device::default();
+        let torque = 10.0 * 0.5 * device.handle.diameter_m;
+        let stiffness = match self {
+            Self::Host(
+                SceneName::Wall(stiffness, _)
+                | SceneName::SpringDamper(stiffness, _)
+                | SceneName::Hold(stiffness, _),
+            ) => f64::from(stiffness),
+            // As far as into a wall, whatever is there.
+            _ => 0.30,
+        };
+        let given_way = torque / stiffness + torque / device.hand.stiffness_nm_per_rad;
+        Hand::Pressing(Press {
+            // The wall begins there.
+            angle: 0.1 + given_way,
+            moving_s: 0.8,
+            rest_s: 0.6,
+        })
     }
 
     /// Names of its parameters, in the order of their numbers.
