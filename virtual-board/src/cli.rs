@@ -8,16 +8,15 @@ use clap::Parser;
 use host_sim::closed_loop::Hand;
 use host_sim::failure::Failure;
 use host_sim::output::{print_bytes, write_whole};
-use host_sim::telemetry::NOBODY;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::budget;
 use crate::command::Command;
 use crate::fault::Fault;
-use crate::image::Image;
-use crate::run::{Outcome, Setup, on_board};
+use crate::image::{HOW_TO_BUILD, Image};
+use crate::run::{Setup, on_board};
 use crate::scene::ImageScene;
-use crate::score::Range;
+use crate::summary::summary;
 
 /// Where cargo puts the image.
 const IMAGE: &str = concat!(
@@ -25,49 +24,54 @@ const IMAGE: &str = concat!(
     "/../target/thumbv7em-none-eabihf/release/firmware"
 );
 
-/// Before this the image boots and arms itself, s.
-const SETTLED_S: f64 = 0.4;
-
-/// Runs the flash image on an emulated board, in closed loop with the simulated device, and prints
-/// what the image said, what its control task cost and what the hand felt.
+/// Runs the firmware image on an emulated board, in closed loop with the simulated device, and
+/// prints what the image logged, what its control task costs, and the force that the hand feels and
+/// the scene does not ask for. Exit status: 0; 1 if the control task never ran or if the image did
+/// what the emulator does not model; 2 if the input cannot be used.
 #[derive(Debug, Parser)]
 #[command(name = "cargo board", bin_name = "cargo board", version, after_help = after_help())]
 struct Arguments {
     /// Scene that the image is told to render
     #[arg(long, default_value = "free-air", value_parser = str::parse::<ImageScene>)]
     scene: ImageScene,
-    /// Sets a parameter of the scene, at an instant, as stiffness=0.2@1.5; torque=0.01@1 is the
-    /// set-point of the scene torque; may be given more than once
-    #[arg(long, value_name = "NAME=VALUE@S", value_parser = tune)]
+    /// Sets a parameter of the scene at S seconds, as stiffness=0.2@1.5; the set-point of the scene
+    /// torque is torque=0.01@1; may be given more than once
+    #[arg(long, value_name = "NAME=VALUE@S", value_parser = timed::<String>)]
     tune: Vec<(f64, String)>,
-    /// Puts an estimator in charge of the large motor, by its number, at an instant, as 1@1.5; may
-    /// be given more than once
-    #[arg(long, value_name = "NUMBER@S", value_parser = estimator)]
-    estimator: Vec<(f64, u8)>,
-    /// Who holds the handle: moving, pushing, still, or tracking chirps and reversals
-    #[arg(long, default_value = "moving", value_parser = hand)]
-    hand: Hand,
-    /// Virtual seconds
+    /// Gives the large motor another estimator, by its number, at S seconds, as 1@1.5; may be given
+    /// more than once
+    #[arg(long, value_name = "NUMBER@S", value_parser = timed::<Number>)]
+    estimator: Vec<(f64, Number)>,
+    /// Hand on the handle: moving; pushing, into the wall and back; still; tracking, chirps and
+    /// reversals; pressing, once with 10 N
+    #[arg(long, default_value = "moving", value_parser = holder)]
+    hand: Holder,
+    /// Virtual seconds, more than 0, at most 3600
     #[arg(long, default_value_t = 3.0)]
     seconds: f64,
     /// Seed of the hand's motion and the encoders' phases
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// A fault, listed below, and when it happens; may be given more than once
-    #[arg(long, value_name = "NAME@S", value_parser = fault)]
+    /// Codes that both DAC outputs are too high by, -100 to 100
+    #[arg(long, value_name = "CODES", default_value_t = 0, allow_negative_numbers = true,
+        value_parser = clap::value_parser!(i16).range(-100..=100))]
+    dac_offset: i16,
+    /// A fault of the list below that begins at S seconds, as stuck-a@0.5; may be given more than
+    /// once
+    #[arg(long, value_name = "NAME@S", value_parser = timed::<Fault>)]
     fault: Vec<(f64, Fault)>,
-    /// ELF file to run instead of the one cargo has built
+    /// ELF file of the image [default: the one that the command below builds]
     #[arg(long)]
     image: Option<PathBuf>,
-    /// Writes the image's frames as a recording for `host-sim replay`
+    /// Writes the image's telemetry as a recording for `cargo sim replay`
     #[arg(long, value_name = "FILE.csv")]
     record: Option<PathBuf>,
-    /// Writes the bytes that the probe took from RTT channel 0, for `host-sim record --image`
+    /// Writes the bytes that the debug probe took from RTT channel 0, for `cargo sim record --image`
     #[arg(long, value_name = "FILE")]
     rtt: Option<PathBuf>,
-    /// Prints the budget of every scene instead, each run for --seconds at most 1: instructions,
-    /// estimated cycles, the control rate that leaves half of the core
-    #[arg(long, conflicts_with_all = ["scene", "hand", "fault", "record", "rtt", "tune", "estimator"])]
+    /// Prints what a control tick costs in every scene instead, each run for --seconds, at most 1:
+    /// instructions, estimated cycles, and the control rate at which ticks take half of the core
+    #[arg(long, conflicts_with_all = ["scene", "hand", "fault", "record", "rtt", "tune", "estimator", "dac_offset"])]
     budget: bool,
 }
 
@@ -76,55 +80,61 @@ fn after_help() -> String {
     let mut text = "Faults:\n".to_owned();
     for fault in Fault::all() {
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "  {:<19}{}", fault.as_str(), fault.description());
+        let _ = writeln!(text, "  {:<23}{}", fault.as_str(), fault.description());
     }
-    text + "\nBuild the image first:\n  \
-        cargo build --release --package firmware --target thumbv7em-none-eabihf\n\n\
+    format!(
+        "{text}\nBuild the image first:\n  {HOW_TO_BUILD}\n\n\
         Examples:\n  \
         cargo board --scene wall --hand pushing --record wall.csv\n  \
         cargo board --fault swapped@0.5 --seconds 1\n  \
         cargo board --budget"
+    )
 }
 
-fn hand(name: &str) -> Result<Hand, String> {
-    match name {
-        "moving" => Ok(Hand::Moving),
-        "pushing" => Ok(Hand::Pushing),
-        "still" => Ok(Hand::Still),
-        "tracking" => Ok(Hand::Tracking),
-        _ => Err(format!(
-            "no hand '{name}'; there are moving, pushing, still, tracking"
-        )),
+/// A hand on the handle; how far a press goes depends on the scene.
+#[derive(Clone, Copy, Debug)]
+enum Holder {
+    Hand(Hand),
+    Pressing,
+}
+
+fn holder(name: &str) -> Result<Holder, String> {
+    Ok(match name {
+        "moving" => Holder::Hand(Hand::Moving),
+        "pushing" => Holder::Hand(Hand::Pushing),
+        "still" => Holder::Hand(Hand::Still),
+        "tracking" => Holder::Hand(Hand::Tracking),
+        "pressing" => Holder::Pressing,
+        _ => {
+            return Err(format!(
+                "no hand '{name}'; there are moving, pushing, still, tracking, pressing"
+            ));
+        }
+    })
+}
+
+/// Number of an estimator.
+#[derive(Clone, Copy, Debug)]
+struct Number(u8);
+
+impl std::str::FromStr for Number {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = text.parse().map(Self);
+        number.map_err(|_| format!("'{text}' is no number of an estimator, 0 to 255"))
     }
 }
 
-fn tune(text: &str) -> Result<(f64, String), String> {
+/// What is to happen, and when, s.
+fn timed<T: std::str::FromStr<Err: std::fmt::Display>>(text: &str) -> Result<(f64, T), String> {
     let (what, at) = text
         .rsplit_once('@')
-        .ok_or("a parameter needs its instant, as stiffness=0.2@1.5")?;
-    let at: f64 = at.parse().map_err(|_| format!("'{at}' is no time in s"))?;
-    Ok((at, what.to_owned()))
-}
-
-fn estimator(text: &str) -> Result<(f64, u8), String> {
-    let (number, at) = text
-        .split_once('@')
-        .ok_or("an estimator needs its instant, as 1@1.5")?;
-    let number = number
-        .parse()
-        .map_err(|_| format!("'{number}' is no number of an estimator, 0 to 255"))?;
-    let at: f64 = at.parse().map_err(|_| format!("'{at}' is no time in s"))?;
-    Ok((at, number))
-}
-
-fn fault(text: &str) -> Result<(f64, Fault), String> {
-    let (name, at) = text
-        .split_once('@')
-        .ok_or("a fault needs its instant, as stuck-a@1.5")?;
-    let fault = name.parse()?;
-    match at.parse::<f64>() {
-        Ok(at) if (0.0..=3600.0).contains(&at) => Ok((at, fault)),
-        _ => Err(format!("'{at}' is no time in s, 0 to 3600")),
+        .ok_or("the instant is missing: @ and seconds at the end, as @1.5")?;
+    let what = what.parse().map_err(|error: T::Err| error.to_string())?;
+    match at.parse() {
+        Ok(at) if (0.0..=3600.0).contains(&at) => Ok((at, what)),
+        _ => Err(format!("'{at}' is no instant in seconds, 0 to 3600")),
     }
 }
 
@@ -154,32 +164,29 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         commands.push((*at, scene.tune(what)?));
     }
     let choices = arguments.estimator.iter();
-    commands.extend(choices.map(|(at, number)| (*at, Command::Estimator(*number))));
+    commands.extend(choices.map(|(at, number)| (*at, Command::Estimator(number.0))));
+    if !arguments.budget {
+        in_time(&arguments)?;
+    }
     let image = Image::read(&path)?;
     if arguments.budget {
         let table = budget::table(&image, arguments.seconds.min(1.0), arguments.seed)?;
         return print_bytes(table.as_bytes());
     }
-    let late = arguments
-        .fault
-        .iter()
-        .find(|(at, _)| *at > arguments.seconds);
-    if let Some((at, fault)) = late {
-        let name = fault.as_str();
-        let end = arguments.seconds;
-        let message = format!("--fault {name}@{at}: the run ends at {end} s; give --seconds more");
-        return Err(Failure::Input(message));
-    }
     let setup = Setup {
-        hand: arguments.hand,
+        hand: match arguments.hand {
+            Holder::Hand(hand) => hand,
+            Holder::Pressing => scene.press(),
+        },
         seed: arguments.seed,
         seconds: arguments.seconds,
         faults: arguments.fault.clone(),
         commands,
+        dac_offset: arguments.dac_offset,
         ..Setup::default()
     };
     let outcome = on_board(&image, &setup, bar(setup.seconds))?;
-    print_bytes(summary(&arguments, &setup, &outcome).as_bytes())?;
+    print_bytes(summary(scene, &setup, &outcome).as_bytes())?;
     if let Some(path) = &arguments.record {
         write_whole(path, outcome.csv()?.as_bytes())?;
     }
@@ -190,6 +197,25 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         return Err(Failure::Check("the control task never ran".to_owned()));
     }
     outcome.check()
+}
+
+/// Refuses what would happen behind the end of the run.
+fn in_time(arguments: &Arguments) -> Result<(), Failure> {
+    let end = arguments.seconds;
+    let faults = arguments.fault.iter();
+    let faults = faults.map(|(at, fault)| ("fault", *at, fault.as_str().to_owned()));
+    let tunes = arguments.tune.iter();
+    let tunes = tunes.map(|(at, what)| ("tune", *at, what.clone()));
+    let estimators = arguments.estimator.iter();
+    let estimators = estimators.map(|(at, number)| ("estimator", *at, number.0.to_string()));
+    let late = faults
+        .chain(tunes)
+        .chain(estimators)
+        .find(|(_, at, _)| *at > end);
+    late.map_or(Ok(()), |(option, at, what)| {
+        let what = format!("--{option} {what}@{at}: the run ends at {end} s");
+        Err(Failure::Input(format!("{what}; give --seconds more")))
+    })
 }
 
 /// A progress bar over virtual time; it shows only on a terminal.
@@ -205,86 +231,4 @@ fn bar(seconds: f64) -> impl FnMut(f64) + Send + 'static {
             bar.finish_and_clear();
         }
     }
-}
-
-fn summary(arguments: &Arguments, setup: &Setup, outcome: &Outcome) -> String {
-    let mut out = String::new();
-    let mut line = |name: &str, text: String| {
-        // Writing to a string cannot fail.
-        let _ = writeln!(out, "{name:<22}{text}");
-    };
-    let speed = setup.seconds / outcome.wall.as_secs_f64();
-    line(
-        "run",
-        format!(
-            "{} s of {}, seed {}, {speed:.1} virtual s a second",
-            setup.seconds, arguments.scene, setup.seed
-        ),
-    );
-    for complaint in &outcome.complaints {
-        line("WIRING", complaint.clone());
-    }
-    for said in &outcome.telemetry.log {
-        line("image", said.clone());
-    }
-    for restart in &outcome.restarts {
-        line(
-            "RESTART",
-            format!("{:.4} s, {}", restart.at_s, restart.cause),
-        );
-    }
-    let range = |range: Option<Range>, unit: &str| {
-        range.map_or("none".to_owned(), |r| {
-            format!("{} to {}, mean {:.1} {unit}", r.min, r.max, r.mean)
-        })
-    };
-    let cost = outcome.instructions();
-    line("control tick", range(cost, "instructions"));
-    if let Some(cost) = cost {
-        line("share of the period", budget::share(cost));
-    }
-    line("control period", range(outcome.periods(), "ns"));
-    let malformed = outcome.telemetry.malformed.len();
-    let frames = &outcome.telemetry.frames;
-    line("frames", format!("{}, {malformed} malformed", frames.len()));
-    if let Some(last) = frames.last() {
-        line("state", format!("{}, cause {}", last.state, last.cause));
-        if let (Some(estimator), Some(sl)) = (last.estimator, last.sl) {
-            let name = match estimator {
-                NOBODY => "none in charge".to_owned(),
-                number => format!("number {number}, good to {sl:.3} rad/s by itself"),
-            };
-            line("estimator", name);
-        }
-        line(
-            "overruns, drops",
-            format!("{}, {}", last.overruns, last.drops),
-        );
-    }
-    if let Some(learned) = frames.iter().rev().find_map(|frame| frame.beside.learned) {
-        line(
-            "learned",
-            format!(
-                "damping {:+.3}, friction {:+.3}, torque constant {:+.3}",
-                learned.damping, learned.friction, learned.torque_constant
-            ),
-        );
-    }
-    for (at_ns, [large, small]) in outcome.enables.iter().skip(1) {
-        let name = |on: &bool| if *on { "on" } else { "off" };
-        let at = *at_ns as f64 * 1e-9;
-        line(
-            "amplifiers",
-            format!("{at:.5} s: large {}, small {}", name(large), name(small)),
-        );
-    }
-    let diameter = setup.device.handle.diameter_m;
-    match outcome.parasitic(SETTLED_S, diameter) {
-        Some(force) => line(
-            "parasitic force",
-            format!("{:.2} mN rms, {:.2} mN at most", force.rms_mn, force.max_mn),
-        ),
-        None => line("parasitic force", "no frame to judge by".to_owned()),
-    }
-    out
 }

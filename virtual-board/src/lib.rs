@@ -25,4 +25,5 @@ pub mod run;
 pub mod scene;
 pub mod score;
 mod stack;
+mod summary;
 pub mod thumb;

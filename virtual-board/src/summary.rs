@@ -1,0 +1,154 @@
+//! What `cargo board` prints of a run.
+
+use std::fmt::Write as _;
+
+use haptic_control::{Mode, Stop};
+use host_sim::telemetry::NOBODY;
+
+use crate::budget;
+use crate::run::{Outcome, Setup};
+use crate::scene::ImageScene;
+use crate::score::Range;
+
+/// Before this the image boots and arms itself, s.
+const SETTLED_S: f64 = 0.4;
+
+/// A number of telemetry, with the name that `named` has for it.
+fn numbered(number: &str, named: impl Fn(u8) -> Option<String>) -> String {
+    let name = number.parse().ok().and_then(named);
+    name.map_or_else(
+        || format!("number {number}, which has no name here"),
+        |name| format!("{name} ({number})"),
+    )
+}
+
+fn mode(number: &str) -> String {
+    numbered(number, |number| {
+        let mut modes = [Mode::Boot, Mode::Armed, Mode::Running, Mode::Safe].into_iter();
+        let mode = modes.find(|mode| *mode as u8 == number)?;
+        Some(words(&format!("{mode:?}")))
+    })
+}
+
+fn cause(number: &str) -> String {
+    numbered(number, |number| {
+        Some(words(&format!("{:?}", Stop::from_code(number)?)))
+    })
+}
+
+/// An identifier as words: "not moving" of `NotMoving`.
+fn words(identifier: &str) -> String {
+    let mut words = String::new();
+    for letter in identifier.chars() {
+        if letter.is_uppercase() && !words.is_empty() {
+            words.push(' ');
+        }
+        words.extend(letter.to_lowercase());
+    }
+    words
+}
+
+/// What a run of `scene` came to, a line each.
+pub(crate) fn summary(scene: ImageScene, setup: &Setup, outcome: &Outcome) -> String {
+    let mut out = String::new();
+    let mut line = |name: &str, text: String| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(out, "{name:<22}{text}");
+    };
+    let speed = setup.seconds / outcome.wall.as_secs_f64();
+    line(
+        "run",
+        format!(
+            "{} s of {}, seed {}, {speed:.1} virtual s a second",
+            setup.seconds, scene, setup.seed
+        ),
+    );
+    for complaint in &outcome.complaints {
+        line("WIRING", complaint.clone());
+    }
+    for objection in &outcome.objections {
+        line("NOT MODELLED", objection.clone());
+    }
+    for said in &outcome.telemetry.log {
+        line("log", said.clone());
+    }
+    for restart in &outcome.restarts {
+        line(
+            "RESTART",
+            format!("{:.4} s, {}", restart.at_s, restart.cause),
+        );
+    }
+    let range = |range: Option<Range>, unit: &str| {
+        range.map_or("none".to_owned(), |r| {
+            format!("{} to {}, mean {:.1} {unit}", r.min, r.max, r.mean)
+        })
+    };
+    if let Some(cost) = outcome.instructions() {
+        line("control tick", range(Some(cost), "instructions"));
+        line("share of the period", budget::share(cost));
+    } else {
+        let text = "none with both amplifiers enabled";
+        line("control tick", text.to_owned());
+    }
+    line("control period", range(outcome.periods(), "ns"));
+    let malformed = outcome.telemetry.malformed.len();
+    let frames = &outcome.telemetry.frames;
+    line("frames", format!("{}, {malformed} malformed", frames.len()));
+    if let Some(last) = frames.last() {
+        line("mode", mode(&last.state));
+        line("cause of the stop", cause(&last.cause));
+        if let (Some(estimator), Some(sl)) = (last.estimator, last.sl) {
+            let name = match estimator {
+                NOBODY => "none in charge".to_owned(),
+                number => {
+                    format!("number {number}, which gives its standard deviation as {sl:.3} rad/s")
+                }
+            };
+            line("estimator", name);
+        }
+        line("missed control ticks", last.overruns.to_string());
+        line("lost frames", last.drops.to_string());
+    }
+    if let Some(learned) = frames.iter().rev().find_map(|frame| frame.beside.learned) {
+        line(
+            "learned",
+            format!(
+                "deviation of damping {:+.3}, of friction {:+.3}, of the torque constant {:+.3}",
+                learned.damping, learned.friction, learned.torque_constant
+            ),
+        );
+    }
+    for (at_ns, [large, small]) in outcome.enables.iter().skip(1) {
+        let name = |on: &bool| if *on { "on" } else { "off" };
+        let at = *at_ns as f64 * 1e-9;
+        line(
+            "amplifiers",
+            format!("{at:.5} s: large {}, small {}", name(large), name(small)),
+        );
+    }
+    let diameter = setup.device.handle.diameter_m;
+    match outcome.parasitic(SETTLED_S, diameter) {
+        Some(force) => line(
+            "parasitic force",
+            format!("{:.2} mN rms, {:.2} mN at most", force.rms_mn, force.max_mn),
+        ),
+        None => line(
+            "parasitic force",
+            "unknown: no frame after the start".to_owned(),
+        ),
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_telemetry_have_names() {
+        assert_eq!(mode("3"), "safe (3)");
+        assert_eq!(cause("0"), "none (0)");
+        assert_eq!(cause("4"), "not moving (4)");
+        assert_eq!(cause("200"), "number 200, which has no name here");
+    }
+}
