@@ -7,6 +7,7 @@ use super::design::Gain;
 use super::inputs::Push;
 use super::learning::{Deviations, Learning, Shift};
 use super::motion::Motion;
+use crate::branch::unlikely;
 use crate::const_math::limited;
 use crate::design_error::DesignError;
 use crate::units::Hertz;
@@ -27,7 +28,9 @@ use crate::units::Hertz;
 /// the rate is high and say much the same: from one in 3.5 ms the parameters are learned, with
 /// c = 2. The 3 × 3 covariance is kept
 /// as U (unit upper triangular) and D (diagonal) and updated after Bierman: every new D is an old
-/// one times a ratio of positive sums, so it cannot lose its definiteness, rounding or not. It
+/// one times a ratio of positive sums, so it cannot lose its definiteness by rounding. Edges that
+/// contradict the counts can make s grow without limit: where hᵀ P h + c S is above 65536², the
+/// observer's range, nothing is learned and s begins at zero again, so D cannot underflow. P
 /// starts at 35, 60 and 35 %, walks by a tenth of that in a second of motion, and never exceeds
 /// it. Deviations stay within ±60 % (friction: ±90 %). Nothing is learned below 0.5 rad/s, where
 /// friction hides everything else.
@@ -288,7 +291,12 @@ impl Learning for Learned {
         };
         let caution = if lesson.dense { DENSE_CAUTION } else { CAUTION };
         let mut diagonal = [grown(0), grown(1), grown(2)];
-        let k = bierman(&mut state.upper, &mut diagonal, h, caution * gain.variance);
+        let r = caution * gain.variance;
+        let Some(k) = bierman(&mut state.upper, &mut diagonal, h, r) else {
+            unlikely();
+            state.sensitivity = [Dependence::default(); 3];
+            return None;
+        };
         state.diagonal = diagonal;
         let mut change = |i: usize| {
             let before = state.parameters[i];

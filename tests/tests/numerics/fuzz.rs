@@ -2,11 +2,29 @@
 
 use proptest::collection::vec;
 use proptest::prelude::*;
+use proptest::test_runner::FileFailurePersistence;
 
 use drivers::{Command, encode};
 use fuzz_bodies::{commands, control, designs, samples, texts};
 use haptic_control::Request;
 use stress::contestants::Contestant;
+use stress::designs::KINDS;
+
+/// So many cases. What fails is kept in `fuzz.regressions` beside this file, to be committed, and
+/// tried first from then on.
+fn cases(count: u32) -> ProptestConfig {
+    let kept = FileFailurePersistence::WithSource("regressions");
+    ProptestConfig {
+        failure_persistence: Some(Box::new(kept)),
+        ..ProptestConfig::with_cases(count)
+    }
+}
+
+/// The kinds of [`KINDS`] that learn their parameters, by number.
+fn kinds_that_learn() -> Vec<u8> {
+    let learns = |kind: &u8| KINDS[usize::from(*kind)].starts_with("adaptive");
+    (0..KINDS.len() as u8).filter(learns).collect()
+}
 
 fn any_bytes(most: usize) -> impl Strategy<Value = Vec<u8>> {
     vec(any::<u8>(), 0..most)
@@ -93,7 +111,7 @@ thread_local! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(200) })]
+    #![proptest_config(cases(200))]
 
     #[test]
     fn any_samples_leave_every_estimator_sound(data in any_bytes(4000)) {
@@ -115,6 +133,17 @@ proptest! {
         designs::try_one(kind, 10f64.powf(rate), 10f64.powf(counts) as u32, 10f64.powf(parameter));
     }
 
+    /// Ticks of up to eight time constants of the motor, the longest that a design may have.
+    #[test]
+    fn slow_designs_that_learn_are_refused_or_sound(
+        kind in proptest::sample::select(kinds_that_learn()),
+        rate in 8.0..40.0f64,
+        counts in 0.0..5.0f64,
+        parameter in -8.0..0.0f64,
+    ) {
+        designs::try_one(kind, rate, 10f64.powf(counts) as u32, 10f64.powf(parameter));
+    }
+
     #[test]
     fn any_inputs_leave_the_outputs_safe(data in any_bytes(8000)) {
         control::run(&data);
@@ -122,7 +151,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
+    #![proptest_config(cases(2000))]
 
     #[test]
     fn any_bytes_are_accounted_for(data in prop_oneof![any_bytes(200), command_bytes()]) {

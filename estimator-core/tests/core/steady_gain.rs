@@ -32,15 +32,15 @@ fn agree<const S: usize, U: Copy>(ours: &Model<S, U>, model: &Reference<S>, what
     }
 }
 
-const HERTZ: [f64; 7] = [100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5];
-const LINES: [u32; 5] = [16, 256, 1024, 5000, 1_000_000];
+const HERTZ: [f64; 4] = [100.0, 1e3, 1e4, 1e5];
+const LINES: [u32; 3] = [16, 1024, 1_000_000];
 
 #[test]
 fn triple_integrator_settles_where_the_recursion_does() {
     let (mut accepted, mut refused) = (0, 0);
     for rate in HERTZ {
         for lines in LINES {
-            for exponent in [-9, -6, -3, -1, 1, 3, 5, 7, 10, 15] {
+            for exponent in [-9, -6, -3, 1, 4, 7, 15] {
                 let noise = 2.7 * 10f64.powi(exponent);
                 let ours = Model::triple_integrator(4 * lines, Hertz(rate), noise).unwrap();
                 let model = reference::triple(4 * lines, rate, noise);
@@ -53,7 +53,7 @@ fn triple_integrator_settles_where_the_recursion_does() {
             }
         }
     }
-    assert!(accepted > 100 && refused > 20, "{accepted} and {refused}");
+    assert!(accepted > 30 && refused > 5, "{accepted} and {refused}");
 }
 
 #[test]
@@ -61,7 +61,7 @@ fn motor_settles_where_the_recursion_does() {
     let (mut accepted, mut refused) = (0, 0);
     for rate in HERTZ {
         for lines in LINES {
-            for exponent in [-9, -7, -5, -3, -2, -1, 0, 2] {
+            for exponent in [-9, -7, -4, -2, 0, 2] {
                 let noise = 2.7 * 10f64.powi(exponent);
                 let device = Device {
                     counts_per_rev: 4 * lines,
@@ -78,7 +78,7 @@ fn motor_settles_where_the_recursion_does() {
             }
         }
     }
-    assert!(accepted > 100 && refused > 20, "{accepted} and {refused}");
+    assert!(accepted > 30 && refused > 5, "{accepted} and {refused}");
 }
 
 #[test]

@@ -7,8 +7,8 @@ mod learned;
 mod modelled;
 
 use estimator_core::{
-    Amps, ClockTicks, Count, CountsPerTick, CoupledMotor, Edge, Hertz, MOverT, Observer, Sample,
-    Signals, Uncertainty, VelocityEstimator,
+    Amps, ClockTicks, Count, Counts, CountsPerTick, CoupledMotor, Edge, Hertz, MOverT, Observer,
+    Sample, Signals, Uncertainty, VelocityEstimator,
 };
 use proptest::prelude::*;
 
@@ -253,6 +253,54 @@ fn velocity_comes_back_to_zero_at_rest_without_current() {
                 1e-3
             };
             assert!(end < bound, "{}: {end}", case.name);
+        }
+    }
+}
+
+/// A stamp of a boundary that does not touch the count's cell, as a counter read one count late
+/// shows it, or one that is older than a tick, is none, bit for bit.
+#[test]
+fn stamp_of_another_cell_or_tick_is_none() {
+    let rate = 1000.0;
+    let motion = medley();
+    let whole = dressed(&motion, 40, rate, 1);
+    let with = |edge: &dyn Fn(&Sample) -> Option<Edge>| {
+        let change = |sample: &Sample| Sample {
+            edge: edge(sample),
+            ..*sample
+        };
+        whole.iter().map(change).collect::<Vec<_>>()
+    };
+    let none = with(&|_| None);
+    for case in at(rate).iter().filter(|case| case.needs.edge) {
+        let without = bits(&(case.run)(&none));
+        for (above, age) in [(-1, 500), (2, 500), (-1, 0), (0, 84_000), (1, 84_000)] {
+            let wrong = with(&|sample| {
+                Some(Edge {
+                    boundary: sample.large + Counts(above),
+                    age: ClockTicks(age),
+                })
+            });
+            assert_eq!(
+                bits(&(case.run)(&wrong)),
+                without,
+                "{} {above} {age}",
+                case.name
+            );
+        }
+        for (above, age) in [(0, 500), (1, 500), (0, 83_999)] {
+            let right = with(&|sample| {
+                Some(Edge {
+                    boundary: sample.large + Counts(above),
+                    age: ClockTicks(age),
+                })
+            });
+            assert_ne!(
+                bits(&(case.run)(&right)),
+                without,
+                "{} {above} {age}",
+                case.name
+            );
         }
     }
 }

@@ -214,10 +214,10 @@ fn window_at_the_edge_of_the_band_is_not_decided_by_rounding() {
     // line it is inside, one count more and it is not. With slopes that are no whole number, and
     // with large ones, a product or a quotient in f32 decides many of these wrongly.
     let mut ties = 0;
-    for d in [1u16, 2, 5] {
+    for d in [1u16, 5] {
         let foaw = foaw::<128, EndFit>(d);
-        for interval in (2..=15i64).chain([49, 82, 98, 110, 126]) {
-            for rise in (-60..60).chain(30_000 * interval..30_000 * interval + 40) {
+        for interval in (2..=15i64).chain([49, 98, 126]) {
+            for rise in (-40..40).chain(30_000 * interval..30_000 * interval + 20) {
                 // The moved sample lies where the line meets a whole count.
                 for moved in (1..interval).filter(|j| j * rise % interval == 0) {
                     for off in [i64::from(d), -i64::from(d), i64::from(d) + 1] {
@@ -239,7 +239,7 @@ fn window_at_the_edge_of_the_band_is_not_decided_by_rounding() {
             }
         }
     }
-    assert!(ties > 5000, "only {ties} windows end at a tie");
+    assert!(ties > 2000, "only {ties} windows end at a tie");
 }
 
 #[test]

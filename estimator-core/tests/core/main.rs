@@ -1,0 +1,39 @@
+//! Tests of `estimator-core`: named invariants over every estimator, and references written from
+//! the definitions alone.
+//!
+//! | module | holds the core against |
+//! |---|---|
+//! | `invariants` | what must be true of any velocity estimator |
+//! | `endurance` | long runs: covariance, counts beyond f32, bad currents, huge jumps |
+//! | `foaw_definition` | the O(n²) definition of FOAW in exact fractions |
+//! | `kalman_reference` | the textbook filter in f64, absolute positions, the current as a state |
+//! | `acceleration` | a constant acceleration |
+//! | `m_over_t` | ramps and stamps, of which the M/T method knows the result |
+//! | `observer` | invariants of the observers, which read more than counts; a motor that obeys their model; what they learn |
+//! | `confidence` | the variances that estimators claim, against errors and theory |
+//! | `handover` | two estimators that are exchanged while they run |
+//! | `steady_gain` | the plain recursion run until it stops changing |
+//! | `regressions` | each defect known from public code, one test by name |
+//!
+//! What must not compile is in the package `refusals`, what the compiler makes of it for the board in
+//! `acceptance`, and longer runs in `stress`.
+
+#![allow(
+    clippy::needless_range_loop,
+    reason = "matrix code reads as its equations, with indices"
+)]
+
+mod acceleration;
+mod confidence;
+mod endurance;
+mod every;
+mod foaw_definition;
+mod handover;
+mod invariants;
+mod kalman_reference;
+mod m_over_t;
+mod motion;
+mod observer;
+mod reference;
+mod regressions;
+mod steady_gain;
