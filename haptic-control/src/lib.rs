@@ -46,12 +46,12 @@ pub use rst::{Rst, RstState};
 pub use rst_design::{LEAST_MODULUS, LoopPoles, RstDesign};
 pub use safety::{Findings, Mode, Order, Request, Safety, SafetyState};
 pub use scene::{
-    Detents, Excite, ExciteState, FreeAir, Handle, Hold, Inertia, Off, Scene, Seen, SpringDamper,
-    Texture, Torque, Viscous, Wall,
+    AnyScene, Detents, Excite, ExciteState, FreeAir, Handle, Hold, Inertia, Off, Scene, Seen,
+    SpringDamper, Texture, Torque, Viscous, Wall,
 };
 pub use stage::{ContinuousStage, ContinuousState, TransientStage, TransientState};
 pub use stop::Stop;
-pub use switchboard::{AnyScene, Switchboard, SwitchboardState};
+pub use switchboard::{Switchboard, SwitchboardState};
 pub use tick::Action;
 pub use tuning::{Bounds, Refusal, Tunable};
 pub use units::{NewtonMetres, RadPerS, RadPerS2, Radians};

@@ -1,5 +1,6 @@
 //! Virtual environments: what torque the handle should feel, and what is needed to know that.
 
+mod catalogue;
 mod detents;
 mod excite;
 mod free_air;
@@ -13,6 +14,7 @@ mod torque;
 mod viscous;
 mod wall;
 
+pub use catalogue::AnyScene;
 pub use detents::Detents;
 pub use excite::{Excite, ExciteState};
 pub use free_air::FreeAir;

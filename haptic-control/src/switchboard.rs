@@ -7,40 +7,10 @@ use estimator_core::{
 use crate::limits::{Currents, within};
 use crate::need::{Need, Senses};
 use crate::rig::Rig;
-use crate::scene::{
-    Detents, Excite, ExciteState, FreeAir, Hold, Inertia, Off, Scene, SpringDamper, Texture,
-    Torque, Viscous, Wall,
-};
+use crate::scene::{AnyScene, ExciteState, Off, Scene};
 use crate::stage::{ContinuousState, TransientState};
 use crate::tick::{Action, Continuous, Estimated, HandleNeed, Parts, Transient, tick};
 use crate::units::{RadPerS, Radians};
-
-/// Any of the scenes, with its parameters.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum AnyScene {
-    /// See [`Off`].
-    Off(Off),
-    /// See [`FreeAir`].
-    FreeAir(FreeAir),
-    /// See [`Wall`].
-    Wall(Wall),
-    /// See [`SpringDamper`].
-    SpringDamper(SpringDamper),
-    /// See [`Viscous`].
-    Viscous(Viscous),
-    /// See [`Detents`].
-    Detents(Detents),
-    /// See [`Texture`].
-    Texture(Texture),
-    /// See [`Hold`].
-    Hold(Hold),
-    /// See [`Torque`].
-    Torque(Torque),
-    /// See [`Inertia`].
-    Inertia(Inertia),
-    /// See [`Excite`].
-    Excite(Excite),
-}
 
 /// State of whichever scene is on.
 #[derive(Clone, Copy, Debug, PartialEq)]

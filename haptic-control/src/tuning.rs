@@ -6,7 +6,6 @@ use crate::scene::{
     Detents, Excite, FreeAir, Hold, Inertia, Off, Scene, SpringDamper, Texture, Torque, Viscous,
     Wall,
 };
-use crate::switchboard::AnyScene;
 use crate::units::Radians;
 
 /// What parameters may be; a scene is built for them anew or not at all.
@@ -199,45 +198,5 @@ impl Tunable for Inertia {
 
     fn set(&self, _: u8, value: f32, bounds: &Bounds) -> Option<Self> {
         Self::new(value, bounds.inertia).ok()
-    }
-}
-
-impl AnyScene {
-    /// Names of its parameters, in the order of their numbers.
-    #[must_use]
-    pub const fn parameters(&self) -> &'static [&'static str] {
-        match self {
-            Self::Off(_) => Off::PARAMETERS,
-            Self::FreeAir(_) => FreeAir::PARAMETERS,
-            Self::Wall(_) => Wall::PARAMETERS,
-            Self::SpringDamper(_) => SpringDamper::PARAMETERS,
-            Self::Viscous(_) => Viscous::PARAMETERS,
-            Self::Detents(_) => Detents::PARAMETERS,
-            Self::Texture(_) => Texture::PARAMETERS,
-            Self::Hold(_) => Hold::PARAMETERS,
-            Self::Torque(_) => Torque::PARAMETERS,
-            Self::Inertia(_) => Inertia::PARAMETERS,
-            Self::Excite(_) => Excite::PARAMETERS,
-        }
-    }
-
-    /// As [`Tunable::tuned`].
-    ///
-    /// # Errors
-    /// [`Refusal`]: the scene stays as it was.
-    pub fn tuned(&self, parameter: u8, value: f32, bounds: &Bounds) -> Result<Self, Refusal> {
-        Ok(match self {
-            Self::Off(scene) => Self::Off(scene.tuned(parameter, value, bounds)?),
-            Self::FreeAir(scene) => Self::FreeAir(scene.tuned(parameter, value, bounds)?),
-            Self::Wall(scene) => Self::Wall(scene.tuned(parameter, value, bounds)?),
-            Self::SpringDamper(scene) => Self::SpringDamper(scene.tuned(parameter, value, bounds)?),
-            Self::Viscous(scene) => Self::Viscous(scene.tuned(parameter, value, bounds)?),
-            Self::Detents(scene) => Self::Detents(scene.tuned(parameter, value, bounds)?),
-            Self::Texture(scene) => Self::Texture(scene.tuned(parameter, value, bounds)?),
-            Self::Hold(scene) => Self::Hold(scene.tuned(parameter, value, bounds)?),
-            Self::Torque(scene) => Self::Torque(scene.tuned(parameter, value, bounds)?),
-            Self::Inertia(scene) => Self::Inertia(scene.tuned(parameter, value, bounds)?),
-            Self::Excite(scene) => Self::Excite(scene.tuned(parameter, value, bounds)?),
-        })
     }
 }

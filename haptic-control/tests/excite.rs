@@ -64,29 +64,56 @@ fn it_ends_by_itself_at_zero_and_stays_there() {
     assert!((15_000..17_000).contains(&last), "{last} ms");
 }
 
+/// Millisecond of the last current that is not zero, and one.
+fn ended(currents: &[Currents]) -> usize {
+    currents.iter().rposition(|c| !is_off(c)).unwrap() + 1
+}
+
+/// 20 000 counts a turn: 2 rad are 6366.2 counts, 25 rad/s are 79.6 counts a millisecond.
 #[test]
-fn a_handle_that_goes_too_far_or_too_fast_ends_it_within_a_millisecond() {
-    // 20 000 counts a turn: 2 rad are 6366 counts, 25 rad/s are 79.6 counts a millisecond.
-    let creep = |k: u32| (k / 2) as i32;
-    let ended = |currents: &[Currents]| currents.iter().rposition(|c| !is_off(c)).unwrap() + 1;
-    let currents = run(1e3, 17_000, creep);
-    let end = ended(&currents);
-    assert!((12_700..=12_734).contains(&end), "{end}");
-    let spin = |speed: i32| {
-        move |k: u32| {
-            if k < 2000 {
-                0
-            } else {
-                speed * (k as i32 - 2000)
-            }
-        }
-    };
-    assert!((1990..=2001).contains(&ended(&run(1e3, 17_000, spin(80)))));
-    // Just below the speed it is the angle, 80 ms later, that ends it.
-    assert!((2060..=2081).contains(&ended(&run(1e3, 17_000, spin(79)))));
-    // Backward as well, and once ended it does not begin again.
-    let back = |k: u32| if k == 1000 { -100 } else { 0 };
-    assert!(ended(&run(1e3, 17_000, back)) <= 1001);
+fn a_handle_that_goes_too_far_either_way_ends_it_within_a_millisecond() {
+    for sign in [1, -1] {
+        // Half a count a millisecond reaches 6367 at 12 734 ms. A current of zero comes before.
+        let end = ended(&run(1e3, 17_000, |k| sign * (k / 2) as i32));
+        assert!((12_700..=12_734).contains(&end), "{sign}: {end}");
+        // A handle that stays just inside does not end it, one just outside does.
+        let inside = |k: u32| sign * (k as i32).min(6366);
+        assert!(ended(&run(1e3, 17_000, inside)) > 15_000, "{sign}");
+        let outside = |k: u32| sign * (k as i32).min(6367);
+        assert!((6300..=6367).contains(&ended(&run(1e3, 17_000, outside))));
+        // Once ended it does not begin again.
+        let back = |k: u32| if k < 7000 { sign * k as i32 } else { 0 };
+        assert!(ended(&run(1e3, 17_000, back)) <= 6367, "{sign}");
+    }
+}
+
+#[test]
+fn a_handle_that_is_too_fast_either_way_ends_it_within_a_millisecond() {
+    for sign in [1, -1] {
+        let spin = |speed: i32| move |k: u32| sign * speed * k.saturating_sub(2000) as i32;
+        let end = ended(&run(1e3, 17_000, spin(80)));
+        assert!((1990..=2001).contains(&end), "{sign}: {end}");
+        // Just below the speed it is the angle, 80 ms later, that ends it.
+        let end = ended(&run(1e3, 17_000, spin(79)));
+        assert!((2060..=2081).contains(&end), "{sign}: {end}");
+        // A jolt of a millisecond that stays where it went.
+        let jolt = |counts: i32| move |k: u32| if k < 2000 { 0 } else { sign * counts };
+        assert!((1990..=2001).contains(&ended(&run(1e3, 17_000, jolt(80)))));
+        assert!(ended(&run(1e3, 17_000, jolt(79))) > 15_000, "{sign}");
+    }
+}
+
+#[test]
+fn angles_count_from_where_it_began() {
+    let rig = Rig::new(&DEVICE, Hertz(1e3), LoopPoles::DEFAULT).unwrap();
+    let excite = Excite::new(&DEVICE, Hertz(1e3)).unwrap();
+    let controller = Controller::new(excite, FiniteDifference, FiniteDifference, &rig);
+    let here = Sample::default().with_small(Count(1_000_000));
+    let mut state = controller.start(&here);
+    let currents: Vec<_> = (0..17_000)
+        .map(|_| controller.step(&mut state, &here).currents)
+        .collect();
+    assert_eq!(currents, run(1e3, 17_000, |_| 0));
 }
 
 #[test]

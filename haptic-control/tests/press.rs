@@ -6,8 +6,7 @@ use estimator_core::{
     Count, Hertz, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple, preset,
 };
 use haptic_control::{
-    AnyScene, Cause, Currents, Detents, DualStage, FreeAir, Hold, Inertia, LoopPoles, Monitor, Off,
-    Radians, Rig, SpringDamper, Switchboard, Texture, Torque, Viscous, Wall,
+    AnyScene, Cause, Currents, DualStage, LoopPoles, Monitor, Rig, Switchboard, Torque,
 };
 
 const RATE: Hertz = Hertz(10e3);
@@ -27,18 +26,16 @@ const FAST: Model<3, NoInput> = preset!(Model::triple_integrator(
 const HANDLE: SteadyKalmanTriple = preset!(SteadyKalman::new(&FAST));
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
 
-const SCENES: [AnyScene; 10] = [
-    AnyScene::Off(Off),
-    AnyScene::FreeAir(FreeAir),
-    AnyScene::Wall(preset!(Wall::new(Radians(0.1), 0.30, 0.0))),
-    AnyScene::SpringDamper(preset!(SpringDamper::new(Radians(0.0), 0.10, 0.5e-3))),
-    AnyScene::Viscous(preset!(Viscous::new(2e-3))),
-    AnyScene::Detents(preset!(Detents::new(8e-3, 24))),
-    AnyScene::Texture(preset!(Texture::new(6e-3, Hertz(150.0), RATE))),
-    AnyScene::Hold(preset!(Hold::new(0.20, 1e-3))),
-    AnyScene::Torque(preset!(Torque::new(0.04))),
-    AnyScene::Inertia(preset!(Inertia::new(-2e-6, 5e-6))),
-];
+/// All scenes; the torque that is set is all that the small motor makes.
+fn scenes() -> [AnyScene; AnyScene::NAMES.len()] {
+    let set = Torque::new((DEVICE.small.torque_constant * DEVICE.small.current_limit) as f32);
+    AnyScene::usual(&DEVICE, RATE)
+        .unwrap()
+        .map(|scene| match scene {
+            AnyScene::Torque(_) => AnyScene::Torque(set.unwrap()),
+            scene => scene,
+        })
+}
 
 /// Both shafts behind their amplifiers, with the coupler between them.
 struct Plant {
@@ -165,7 +162,7 @@ const HANDS: [Hand; 2] = [Hand { angle: 0.8 }, Hand { angle: 2.0 }];
 
 #[test]
 fn a_press_of_10_n_stops_no_scene() {
-    for scene in SCENES {
+    for scene in scenes() {
         for hand in HANDS {
             let pressed = press(DEVICE, scene, hand);
             assert_eq!(pressed.stopped, None, "{scene:?}: {pressed:?}");
@@ -181,7 +178,7 @@ fn a_press_on_a_device_that_is_not_as_believed_stops_no_scene() {
         device.large.torque_constant *= constant;
         device.damping *= damping;
         device.large.inertia *= inertia;
-        for scene in SCENES {
+        for scene in scenes() {
             for hand in HANDS {
                 let pressed = press(device, scene, hand);
                 assert_eq!(pressed.stopped, None, "{constant} {scene:?}: {pressed:?}");
@@ -201,7 +198,7 @@ fn a_spring_pushes_back_with_all_that_both_motors_bring_within_the_speed_limit()
             // Where the springs of hand and scene are in balance.
             let spring = 0.5 * stiffness / (0.5 + stiffness) * (hand.angle - start);
             let wanted = spring.min(both);
-            let pressed = press(DEVICE, SCENES[scene], hand);
+            let pressed = press(DEVICE, scenes()[scene], hand);
             // Within the friction of the handle.
             let off = (pressed.resting - wanted).abs();
             assert!(off < 0.9e-3, "{scene}: {pressed:?}, {wanted} N.m");

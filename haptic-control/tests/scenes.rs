@@ -1,12 +1,13 @@
-//! Scenes: the torque they want, the short path, and being swapped.
+//! Scenes: the torque they want, and the parameters that they take.
 
 use estimator_core::{
-    Amps, Count, EndFit, FiniteDifference, Foaw, Hertz, Model, NoInput, Pll, Sample, SteadyKalman,
-    SteadyKalmanTriple, VelocityEstimator, preset,
+    Amps, Count, EndFit, Foaw, Hertz, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple,
+    preset,
 };
 use haptic_control::{
-    AnyScene, Controller, DesignError, Detents, DualStage, FreeAir, Gated, Hold, LoopPoles, Off,
-    Radians, Rig, Scene, Senses, SpringDamper, Switchboard, Texture, Viscous, Wall,
+    Controller, DesignError, Detents, DualStage, FreeAir, Handle, Hold, Inertia, LoopPoles, Off,
+    RadPerS, RadPerS2, Radians, Rig, Scene, Seen, Senses, SpringDamper, Texture, Torque, Viscous,
+    Wall,
 };
 
 const RATE: Hertz = Hertz(10e3);
@@ -23,17 +24,6 @@ const VISCOUS: Viscous = preset!(Viscous::new(2e-3));
 const DETENTS: Detents = preset!(Detents::new(8e-3, 24));
 const TEXTURE: Texture = preset!(Texture::new(6e-3, Hertz(200.0), RATE));
 const HOLD: Hold = preset!(Hold::new(0.2, 1e-3));
-
-const ALL: [AnyScene; 8] = [
-    AnyScene::Off(OFF),
-    AnyScene::FreeAir(FREE_AIR),
-    AnyScene::Wall(WALL),
-    AnyScene::SpringDamper(SPRING),
-    AnyScene::Viscous(VISCOUS),
-    AnyScene::Detents(DETENTS),
-    AnyScene::Texture(TEXTURE),
-    AnyScene::Hold(HOLD),
-];
 
 /// A medley: still, slow, fast there and back, still again; both encoders.
 fn motion(k: u32) -> Sample {
@@ -132,159 +122,142 @@ fn texture_has_its_frequency_and_amplitude() {
     assert!((largest - 6e-3 * 0.998).abs() < 1e-5, "{largest}");
 }
 
+fn near(value: f32, wanted: f64) {
+    assert!((f64::from(value) - wanted).abs() < 1e-6, "{value} {wanted}");
+}
+
+/// The torque of a scene without a state, for a handle as it says.
+fn of<S: Scene<State = ()>>(scene: &S, handle: &Seen<S>) -> f32 {
+    scene.start(Radians(0.0));
+    scene.torque(&mut (), handle).0
+}
+
 #[test]
-fn parameters_out_of_range_are_refused() {
-    let scene = Some(DesignError::Scene);
-    assert_eq!(Wall::new(Radians(f32::NAN), 0.3, 0.0).err(), scene);
-    assert_eq!(Wall::new(Radians(0.0), -0.3, 0.0).err(), scene);
-    assert_eq!(
-        SpringDamper::new(Radians(0.0), 0.3, f32::INFINITY).err(),
-        scene
+fn torques_are_those_of_the_formulas() {
+    let (angle, velocity) = (Radians(0.3), RadPerS(-4.0));
+    let moving = Handle {
+        angle,
+        velocity,
+        acceleration: (),
+    };
+    near(of(&VISCOUS, &moving), 2e-3 * 4.0);
+    near(of(&WALL, &moving), -0.3 * 0.2 + 1e-3 * 4.0);
+    let spring = SpringDamper::new(Radians(-0.2), 0.1, 1e-3).unwrap();
+    near(of(&spring, &moving), -0.1 * 0.5 + 1e-3 * 4.0);
+    near(
+        HOLD.torque(&mut Radians(0.5), &moving).0,
+        0.2 * 0.2 + 1e-3 * 4.0,
     );
-    assert_eq!(Viscous::new(-1e-3).err(), scene);
-    assert_eq!(Hold::new(f32::NAN, 0.0).err(), scene);
-    assert_eq!(Detents::new(1e-3, 0).err(), scene);
-    assert_eq!(Texture::new(1e-3, Hertz(49.0), RATE).err(), scene);
-    assert_eq!(Texture::new(1e-3, Hertz(300.0), Hertz(500.0)).err(), scene);
-}
-
-/// Runs a scene in a gated controller and in the switchboard, which has no short path.
-fn same_with_and_without_short_path(
-    scene: impl Scene<Acceleration: Senses<SteadyKalmanTriple>>,
-    any: AnyScene,
-    large: impl VelocityEstimator<Output = estimator_core::CountsPerTick> + Copy,
-) -> bool {
-    let alone = Gated(Controller::new(scene, large, HANDLE, &RIG));
-    let board = Switchboard::new(large, HANDLE, RIG, RATE);
-    let first = motion(0);
-    let (mut one, mut other) = (alone.start(&first), board.start(&first));
-    board.select(&mut other, any, &first);
-    let mut settled = false;
-    for k in 0..20_000 {
-        let sample = motion(k);
-        let (short, full) = (
-            alone.step(&mut one, &sample),
-            board.step(&mut other, &sample),
-        );
-        let bits = |x: f32| x.to_bits();
-        assert_eq!(bits(short.torque.0), bits(full.torque.0), "tick {k}");
-        assert_eq!(bits(short.large.0), bits(full.large.0), "tick {k}");
-        assert_eq!(bits(short.handle.0), bits(full.handle.0), "tick {k}");
-        // A texture begins with a current, which the switchboard fades in.
-        if !matches!(any, AnyScene::Texture(_)) {
-            assert_eq!(short.currents, full.currents, "tick {k}");
-        }
-        settled |= one.is_settled();
+    let still = Handle {
+        angle,
+        velocity: (),
+        acceleration: (),
+    };
+    near(of(&OFF, &still), 0.0);
+    near(of(&FREE_AIR, &still), 0.0);
+    near(of(&Torque::new(-0.03).unwrap(), &still), -0.03);
+    for (inertia, acceleration) in [(2e-6, 3000.0), (-1.5e-6, 3000.0), (2.5e-6, -7000.0)] {
+        let scene = Inertia::new(inertia, 5e-6).unwrap();
+        let accelerating = Handle {
+            angle,
+            velocity: (),
+            acceleration: RadPerS2(acceleration),
+        };
+        let wanted = -f64::from(inertia) * f64::from(acceleration);
+        assert!((f64::from(of(&scene, &accelerating)) / wanted - 1.0).abs() < 1e-6);
     }
-    settled
 }
 
 #[test]
-fn the_short_path_gives_the_same_bits() {
-    assert!(same_with_and_without_short_path(OFF, ALL[0], LARGE));
-    assert!(same_with_and_without_short_path(DETENTS, ALL[5], LARGE));
-    // A phase moves on at every tick: never settled, and not to be.
-    assert!(!same_with_and_without_short_path(TEXTURE, ALL[6], LARGE));
-    for large in [
-        preset!(Pll::new(Hertz(300.0), RATE)),
-        preset!(Pll::new(Hertz(30.0), RATE)),
+fn a_wall_begins_at_its_position_and_neither_pulls_nor_damps_before() {
+    let at = |angle, velocity| {
+        let handle = Handle {
+            angle: Radians(angle),
+            velocity: RadPerS(velocity),
+            acceleration: (),
+        };
+        of(&WALL, &handle)
+    };
+    for velocity in [-100.0, 0.0, 100.0] {
+        assert_eq!((at(0.1, velocity), at(-3.0, velocity)), (0.0, 0.0));
+    }
+    near(at(0.1 + 1e-3, 5.0), -0.3e-3 - 5e-3);
+    // Left so fast that its damper would pull.
+    assert_eq!(at(0.2, -100.0), 0.0);
+}
+
+#[test]
+fn a_texture_is_its_sine_from_the_first_tick() {
+    for (frequency, rate) in [(50.0, 1e3), (150.0, 10e3), (300.0, 100e3)] {
+        let texture = Texture::new(6e-3, Hertz(frequency), Hertz(rate)).unwrap();
+        let mut phase = texture.start(Radians(0.0));
+        let handle = Handle {
+            angle: Radians(0.0),
+            velocity: (),
+            acceleration: (),
+        };
+        for k in 1..20_000 {
+            let turn = f64::from(k) * frequency / rate;
+            let wanted = 6e-3 * (std::f64::consts::TAU * turn).sin();
+            let torque = f64::from(texture.torque(&mut phase, &handle).0);
+            // The sine's bound, and the phase's rounding.
+            let error = (torque - wanted).abs();
+            assert!(error < 6e-3 * 0.0012, "{frequency} {k}: {torque} {wanted}");
+        }
+    }
+}
+
+#[test]
+fn parameters_are_refused_beyond_their_range_and_taken_at_its_ends() {
+    let scene = DesignError::Scene;
+    let gains = [f32::NAN, f32::INFINITY, -1e-9, f32::NEG_INFINITY];
+    for bad in gains {
+        assert_eq!(Wall::new(Radians(0.0), bad, 0.0), Err(scene));
+        assert_eq!(Wall::new(Radians(0.0), 0.0, bad), Err(scene));
+        assert_eq!(SpringDamper::new(Radians(0.0), bad, 0.0), Err(scene));
+        assert_eq!(SpringDamper::new(Radians(0.0), 0.0, bad), Err(scene));
+        assert_eq!(Viscous::new(bad), Err(scene));
+        assert_eq!(Hold::new(bad, 0.0), Err(scene));
+        assert_eq!(Hold::new(0.0, bad), Err(scene));
+        assert_eq!(Detents::new(bad, 24), Err(scene));
+        assert_eq!(Texture::new(bad, Hertz(100.0), RATE), Err(scene));
+    }
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        assert_eq!(Wall::new(Radians(bad), 0.3, 0.0), Err(scene));
+        assert_eq!(SpringDamper::new(Radians(bad), 0.3, 0.0), Err(scene));
+        assert_eq!(Torque::new(bad), Err(scene));
+        assert_eq!(Inertia::new(bad, 5e-6), Err(scene));
+        assert_eq!(Inertia::new(0.0, bad), Err(scene));
+    }
+    assert!(Wall::new(Radians(-1e3), 0.0, 0.0).is_ok());
+    assert!(SpringDamper::new(Radians(-1e3), 0.0, 0.0).is_ok());
+    assert!(Viscous::new(0.0).is_ok() && Hold::new(0.0, 0.0).is_ok());
+    assert!(Torque::new(-1e3).is_ok());
+
+    assert_eq!(Detents::new(1e-3, 0), Err(scene));
+    assert_eq!(Detents::new(1e-3, 1001), Err(scene));
+    assert!(Detents::new(0.0, 1).is_ok() && Detents::new(0.0, 1000).is_ok());
+
+    let texture = |frequency, rate| Texture::new(1e-3, Hertz(frequency), Hertz(rate));
+    for (frequency, rate) in [
+        (49.9, 10e3),
+        (300.1, 10e3),
+        (200.1, 400.0),
+        (f64::NAN, 10e3),
     ] {
-        same_with_and_without_short_path(FREE_AIR, ALL[1], large);
-        same_with_and_without_short_path(WALL, ALL[2], large);
+        assert_eq!(texture(frequency, rate), Err(scene), "{frequency} {rate}");
     }
-    same_with_and_without_short_path(SPRING, ALL[3], LARGE);
-    same_with_and_without_short_path(VISCOUS, ALL[4], FiniteDifference);
-    same_with_and_without_short_path(HOLD, ALL[7], LARGE);
-}
+    assert_eq!(texture(100.0, 100.1e3), Err(scene));
+    assert_eq!(texture(100.0, f64::NAN), Err(scene));
+    for (frequency, rate) in [(50.0, 10e3), (300.0, 10e3), (200.0, 400.0), (100.0, 100e3)] {
+        assert!(texture(frequency, rate).is_ok(), "{frequency} {rate}");
+    }
 
-#[test]
-fn a_loop_at_rest_settles_in_the_end() {
-    // Everything in it decays: once it is below the smallest number, nothing changes any more.
-    let controller = Gated(Controller::new(
-        VISCOUS,
-        FiniteDifference,
-        FiniteDifference,
-        &RIG,
-    ));
-    let sample = Sample::default();
-    let mut state = controller.start(&sample);
-    for _ in 0..10 {
-        controller.step(&mut state, &sample);
+    // Half of the handle's own inertia, added or taken away.
+    for sign in [1.0, -1.0] {
+        assert!(Inertia::new(sign * 2.0, 4.0).is_ok());
+        assert_eq!(Inertia::new(sign * 2.001, 4.0), Err(scene));
     }
-    assert!(state.is_settled());
-    // A count unsettles it at once.
-    controller.step(&mut state, &sample.with_small(Count(1)));
-    assert!(!state.is_settled());
-}
-
-#[test]
-fn swapping_scenes_does_not_make_the_currents_jump() {
-    let board = Switchboard::new(LARGE, HANDLE, RIG, RATE);
-    // What a tick of the scenes themselves may do: the slew limits, 1200 and 600 A/s.
-    let slew = [0.121, 0.061];
-    let mut wanted = Vec::new();
-    for from in ALL {
-        for to in ALL {
-            // In the wall, moving; the swap is at 4500.
-            let mut state = board.start(&motion(2000));
-            board.select(&mut state, from, &motion(2000));
-            let mut before = board.step(&mut state, &motion(2000)).currents;
-            for k in 2001..6000 {
-                if k == 4500 {
-                    board.select(&mut state, to, &motion(k - 1));
-                }
-                let now = board.step(&mut state, &motion(k)).currents;
-                let steps = [
-                    now.large.get() - before.large.get(),
-                    now.small.get() - before.small.get(),
-                ];
-                if k == 4500 {
-                    wanted.push(before.small.get());
-                    assert!(
-                        steps.iter().all(|s| s.abs() < 1e-6),
-                        "{from:?} {to:?}: {steps:?}"
-                    );
-                }
-                for (step, slew) in steps.iter().zip(slew) {
-                    assert!(step.abs() <= slew, "{from:?} {to:?} at {k}: {step} A");
-                }
-                before = now;
-            }
-        }
-    }
-    // What the fade hides is there: at the swap, the scenes want currents far apart.
-    let spread = wanted.iter().fold(f32::MIN, |a, i| a.max(*i))
-        - wanted.iter().fold(f32::MAX, |a, i| a.min(*i));
-    assert!(spread > 0.5, "{spread} A");
-}
-
-#[test]
-fn after_a_swap_the_scene_is_as_if_it_had_been_on_all_along() {
-    let board = Switchboard::new(LARGE, HANDLE, RIG, RATE);
-    for from in ALL {
-        let mut swapped = board.start(&motion(0));
-        let mut always = board.start(&motion(0));
-        board.select(&mut swapped, from, &motion(0));
-        board.select(&mut always, ALL[5], &motion(0));
-        for k in 0..3000 {
-            board.step(&mut swapped, &motion(k));
-            board.step(&mut always, &motion(k));
-        }
-        board.select(&mut swapped, ALL[5], &motion(2999));
-        // Ten time constants of the fade later.
-        let (mut one, mut other) = (None, None);
-        for k in 3000..5000 {
-            one = Some(board.step(&mut swapped, &motion(k)).currents);
-            other = Some(board.step(&mut always, &motion(k)).currents);
-        }
-        let (one, other) = (one.unwrap(), other.unwrap());
-        assert!(
-            (one.small.get() - other.small.get()).abs() < 2e-4,
-            "{from:?}"
-        );
-        assert!(
-            (one.large.get() - other.large.get()).abs() < 2e-4,
-            "{from:?}"
-        );
-    }
+    assert_eq!(Inertia::new(0.0, 0.0), Err(scene));
+    assert_eq!(Inertia::new(0.0, -1.0), Err(scene));
 }

@@ -4,8 +4,8 @@ use estimator_core::{
     Count, Hertz, Model, NoInput, Pll, Sample, SteadyKalman, SteadyKalmanTriple, preset,
 };
 use haptic_control::{
-    AnyScene, Bounds, Detents, DualStage, FreeAir, Hold, Inertia, LoopPoles, Off, Radians, Refusal,
-    Rig, SpringDamper, Switchboard, Texture, Torque, Viscous, Wall,
+    AnyScene, Bounds, Detents, DualStage, LoopPoles, Radians, Refusal, Rig, Switchboard, Texture,
+    Wall,
 };
 
 const RATE: Hertz = Hertz(10e3);
@@ -18,18 +18,8 @@ const BOUNDS: Bounds = Bounds {
     rate: RATE,
 };
 
-const SCENES: [AnyScene; 10] = [
-    AnyScene::Off(Off),
-    AnyScene::FreeAir(FreeAir),
-    AnyScene::Wall(preset!(Wall::new(Radians(0.1), 0.30, 0.0))),
-    AnyScene::SpringDamper(preset!(SpringDamper::new(Radians(0.0), 0.10, 0.5e-3))),
-    AnyScene::Viscous(preset!(Viscous::new(2e-3))),
-    AnyScene::Detents(preset!(Detents::new(8e-3, 24))),
-    AnyScene::Texture(preset!(Texture::new(6e-3, Hertz(150.0), RATE))),
-    AnyScene::Hold(preset!(Hold::new(0.20, 1e-3))),
-    AnyScene::Torque(preset!(Torque::new(0.0))),
-    AnyScene::Inertia(preset!(Inertia::new(-2e-6, 5e-6))),
-];
+const SCENES: [AnyScene; AnyScene::NAMES.len()] =
+    preset!(AnyScene::usual(&DualStage::DEFAULT, RATE));
 
 #[test]
 fn a_parameter_set_is_that_parameter_and_no_other() {
@@ -113,12 +103,22 @@ fn tuning_and_torque_set_points_do_not_jump() {
     const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(20_000, RATE, 4e3));
     const HANDLE: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
     let board = Switchboard::new(PLL, HANDLE, RIG, RATE);
-    // 1000 counts are 0.31 rad, 0.21 rad into the wall.
-    let inside = Sample::new(Count(0)).with_small(Count(1000));
-    for (scene, parameter, value) in [(2, 1, 0.1), (3, 1, 0.0), (7, 1, 0.0), (8, 0, 0.03)] {
+    // 1000 counts are 0.31 rad, 0.21 rad into the wall. Everything begins at 400 counts.
+    let (first, inside) = ([400, 1000].map(|at| Sample::default().with_small(Count(at)))).into();
+    const ANGLE: f32 = 0.314_159_27;
+    for (scene, parameter, value, wanted) in [
+        (2, 1, 0.1, -0.1 * (ANGLE - 0.1)),
+        (2, 0, 0.2, -0.3 * (ANGLE - 0.2)),
+        (3, 1, 0.0, 0.0),
+        (3, 0, 0.3, -0.1 * (ANGLE - 0.3)),
+        // A hold keeps where it began.
+        (7, 0, 0.1, -0.1 * 0.6 * ANGLE),
+        (7, 1, 0.0, -0.2 * 0.6 * ANGLE),
+        (8, 0, 0.03, 0.03),
+    ] {
         let mut state = board.start(&Sample::default());
-        board.select(&mut state, SCENES[scene], &inside);
-        let mut before = board.step(&mut state, &inside);
+        board.select(&mut state, SCENES[scene], &first);
+        let mut before = board.step(&mut state, &first);
         for _ in 0..3000 {
             before = board.step(&mut state, &inside);
         }
@@ -133,8 +133,7 @@ fn tuning_and_torque_set_points_do_not_jump() {
         for _ in 0..3000 {
             last = board.step(&mut state, &inside);
         }
-        // It does get there: a hold keeps where it began, and so feels nothing here.
-        let moved = (last.torque.0 - before.torque.0).abs();
-        assert_eq!(moved > 1e-3, scene != 7, "{scene}: {moved} N.m");
+        let off = (last.torque.0 - wanted).abs();
+        assert!(off < 1e-5, "{scene} {parameter}: {last:?} {wanted}");
     }
 }

@@ -25,7 +25,7 @@ impl Inertia {
     /// [`DesignError::Scene`] unless both are finite, `handle` positive and |M| at most half of it.
     pub const fn new(inertia: f32, handle: f32) -> Result<Self, DesignError> {
         let magnitude = if inertia < 0.0 { -inertia } else { inertia };
-        if super::is_gain(handle) && magnitude <= Self::LARGEST_PART * handle {
+        if handle > 0.0 && handle.is_finite() && magnitude <= Self::LARGEST_PART * handle {
             Ok(Self { inertia })
         } else {
             Err(DesignError::Scene)

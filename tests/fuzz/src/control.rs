@@ -4,8 +4,7 @@ use estimator_core::{
     Count, EndFit, Foaw, Hertz, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple, preset,
 };
 use haptic_control::{
-    AnyScene, Currents, Detents, DualStage, Findings, FreeAir, Hold, LoopPoles, Mode, Monitor, Off,
-    Radians, Request, Rig, Safety, SpringDamper, Stop, Switchboard, Texture, Viscous, Wall,
+    AnyScene, Bounds, Currents, DualStage, Findings, LoopPoles, Mode, Monitor, Refusal, Request, Rig, Safety, Stop, Switchboard, SwitchboardState,
 };
 
 use crate::bytes::Bytes;
@@ -19,18 +18,20 @@ const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(
     RATE,
     4e3
 ));
+type Board = Switchboard<Foaw<15, EndFit>, SteadyKalmanTriple>;
+type State = SwitchboardState<Foaw<15, EndFit>, SteadyKalmanTriple>;
 const HANDLE: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
-const SCENES: [AnyScene; 8] = [
-    AnyScene::Off(Off),
-    AnyScene::FreeAir(FreeAir),
-    AnyScene::Wall(preset!(Wall::new(Radians(0.1), 0.30, 0.0))),
-    AnyScene::SpringDamper(preset!(SpringDamper::new(Radians(0.0), 0.10, 0.5e-3))),
-    AnyScene::Viscous(preset!(Viscous::new(2e-3))),
-    AnyScene::Detents(preset!(Detents::new(8e-3, 24))),
-    AnyScene::Texture(preset!(Texture::new(6e-3, Hertz(150.0), RATE))),
-    AnyScene::Hold(preset!(Hold::new(0.20, 1e-3))),
-];
+const SCENES: [AnyScene; AnyScene::NAMES.len()] = preset!(AnyScene::usual(&DEVICE, RATE));
+/// More than any device renders: what is set is bounded by the currents alone.
+const BOUNDS: Bounds = Bounds {
+    stiffness: 10.0,
+    damping: 0.1,
+    angle: 100.0,
+    torque: 1.0,
+    inertia: 5e-6,
+    rate: RATE,
+};
 const SAFETY: Safety = Safety {
     settle: 3,
     silence: Some(50),
@@ -58,6 +59,10 @@ pub fn run(data: &[u8]) {
             2 => Some(Request::Disarm),
             3 => Some(Request::Select(inputs >> 4)),
             4 => Some(Request::KeepAlive),
+            5 => {
+                tune(&board, &mut scene, &mut bytes);
+                None
+            }
             _ => None,
         };
         let findings = Findings {
@@ -99,6 +104,23 @@ pub fn run(data: &[u8]) {
         } else {
             Currents::default().large
         };
+    }
+}
+
+/// Sets a parameter of a scene to any bits; another scene than the one that is on is not taken.
+fn tune(board: &Board, scene: &mut State, bytes: &mut Bytes<'_>) {
+    let mut next = || bytes.byte().unwrap_or(0);
+    let (number, parameter) = (usize::from(next()) % SCENES.len(), next());
+    let value = f32::from_le_bytes([next(), next(), next(), next()]);
+    match SCENES[number].tuned(parameter, value, &BOUNDS) {
+        Ok(tuned) => {
+            assert!(value.is_finite(), "{tuned:?}");
+            board.retune(scene, tuned);
+        }
+        Err(Refusal::Unknown) => {
+            assert!(usize::from(parameter) >= SCENES[number].parameters().len());
+        }
+        Err(_) => {}
     }
 }
 

@@ -1,0 +1,307 @@
+//! The switchboard: scenes swapped while the handle moves, and the list of scenes.
+
+use estimator_core::{
+    Amps, Count, EndFit, Foaw, Hertz, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple,
+    preset,
+};
+use haptic_control::{
+    Action, AnyScene, Currents, DualStage, Hold, LoopPoles, Rig, Switchboard, SwitchboardState,
+    Torque, Viscous,
+};
+
+const RATE: Hertz = Hertz(10e3);
+const DEVICE: DualStage = DualStage::DEFAULT;
+const RIG: Rig = preset!(Rig::new(&DEVICE, RATE, LoopPoles::DEFAULT));
+const LARGE: Foaw<15, EndFit> = preset!(Foaw::new(15, 1));
+const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(20_000, RATE, 4e3));
+const HANDLE: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
+const ALL: [AnyScene; AnyScene::NAMES.len()] = preset!(AnyScene::usual(&DEVICE, RATE));
+
+type Board = Switchboard<Foaw<15, EndFit>, SteadyKalmanTriple>;
+type State = SwitchboardState<Foaw<15, EndFit>, SteadyKalmanTriple>;
+
+fn board() -> Board {
+    Switchboard::new(LARGE, HANDLE, RIG, RATE)
+}
+
+/// Whether the scene steps its currents by itself, past the slew limits.
+fn steps(scene: &AnyScene) -> bool {
+    matches!(scene, AnyScene::Excite(_))
+}
+
+#[test]
+fn every_scene_is_at_its_number_and_has_a_name_of_its_own() {
+    for (number, scene) in ALL.iter().enumerate() {
+        assert_eq!(usize::from(scene.number()), number, "{scene:?}");
+        let name = AnyScene::NAMES[number];
+        let same = AnyScene::NAMES.iter().filter(|other| **other == name);
+        assert_eq!(same.count(), 1, "{name}");
+    }
+    // As the documents have them.
+    let telemetry = include_str!("../../docs/telemetry.md");
+    let list = AnyScene::NAMES.join(", ");
+    assert!(telemetry.contains(&format!("byte 0: {list} from 0")));
+}
+
+/// A medley: still, slow, fast there and back, still again; both encoders.
+fn motion(k: u32) -> Sample {
+    let phase = k % 8000;
+    let handle = match phase {
+        0..1000 => 0,
+        1000..3000 => (phase - 1000) / 40,
+        3000..5000 => 50 + (phase - 3000) * 2,
+        5000..7000 => 4050 - (phase - 5000) * 2,
+        _ => 50,
+    };
+    Sample::new(Count((handle / 3).wrapping_sub(7)))
+        .with_small(Count(handle.wrapping_sub(1000)))
+        .with_current(Amps::new(0.1))
+}
+
+#[test]
+fn swapping_scenes_does_not_make_the_currents_jump() {
+    let board = board();
+    // What a tick of the scenes themselves may do, the slew limits of 1200 and 600 A/s, and a 200th
+    // of what fades: at most the excitation's currents.
+    let slew = [0.12 + 0.9 / 200.0, 0.06 + 0.3 / 200.0];
+    let mut wanted = Vec::new();
+    for from in ALL {
+        for to in ALL {
+            // In the wall, moving; the swap is at 4500.
+            let mut state = board.start(&motion(2000));
+            board.select(&mut state, from, &motion(2000));
+            let mut before = board.step(&mut state, &motion(2000)).currents;
+            for k in 2001..6000 {
+                if k == 4500 {
+                    board.select(&mut state, to, &motion(k - 1));
+                }
+                let now = board.step(&mut state, &motion(k)).currents;
+                let moved = [
+                    now.large.get() - before.large.get(),
+                    now.small.get() - before.small.get(),
+                ];
+                if k == 4500 {
+                    wanted.push(before.small.get());
+                    assert!(
+                        moved.iter().all(|s| s.abs() < 1e-6),
+                        "{from:?} {to:?}: {moved:?}"
+                    );
+                }
+                let checked = !steps(if k < 4500 { &from } else { &to });
+                for (step, slew) in moved.iter().zip(slew).filter(|_| checked) {
+                    assert!(step.abs() <= slew, "{from:?} {to:?} at {k}: {step} A");
+                }
+                before = now;
+            }
+        }
+    }
+    // What the fade hides is there: at the swap, the scenes want currents far apart.
+    let spread = wanted.iter().fold(f32::MIN, |a, i| a.max(*i))
+        - wanted.iter().fold(f32::MAX, |a, i| a.min(*i));
+    assert!(spread > 0.5, "{spread} A");
+}
+
+#[test]
+fn after_a_swap_the_scene_is_as_if_it_had_been_on_all_along() {
+    let board = board();
+    for from in ALL {
+        let mut swapped = board.start(&motion(0));
+        let mut always = board.start(&motion(0));
+        board.select(&mut swapped, from, &motion(0));
+        board.select(&mut always, ALL[5], &motion(0));
+        for k in 0..3000 {
+            board.step(&mut swapped, &motion(k));
+            board.step(&mut always, &motion(k));
+        }
+        board.select(&mut swapped, ALL[5], &motion(2999));
+        // Ten time constants of the fade later.
+        let (mut one, mut other) = (None, None);
+        for k in 3000..5000 {
+            one = Some(board.step(&mut swapped, &motion(k)).currents);
+            other = Some(board.step(&mut always, &motion(k)).currents);
+        }
+        let (one, other) = (one.unwrap(), other.unwrap());
+        assert!(
+            (one.small.get() - other.small.get()).abs() < 2e-4,
+            "{from:?}"
+        );
+        assert!(
+            (one.large.get() - other.large.get()).abs() < 2e-4,
+            "{from:?}"
+        );
+    }
+}
+
+/// Counts of a handle that moved on by 100 counts a tick while it was off.
+fn far(k: u32) -> Sample {
+    Sample::new(Count(k.wrapping_mul(7))).with_small(Count(k.wrapping_mul(100)))
+}
+
+/// The first action of `scene` after `off` ticks without one, in which both encoders move.
+fn first_after_off(scene: AnyScene, before: Option<AnyScene>) -> Action {
+    let board = board();
+    let mut state = board.start(&far(0));
+    for k in 0..4000 {
+        if k == 500 {
+            board.select(&mut state, before.unwrap_or(ALL[0]), &far(k));
+        }
+        if k == 1000 {
+            board.select(&mut state, ALL[0], &far(k));
+        }
+        board.step(&mut state, &far(k));
+    }
+    board.select(&mut state, scene, &far(3999));
+    board.step(&mut state, &far(4000))
+}
+
+#[test]
+fn an_estimator_that_was_not_needed_starts_at_rest() {
+    // The same whatever ran before, and no velocity from the counts of a second.
+    for scene in [ALL[1], ALL[3], ALL[4], ALL[9]] {
+        for before in [None, Some(ALL[1]), Some(ALL[3]), Some(ALL[9])] {
+            let first = first_after_off(scene, before);
+            assert_eq!((first.large.0, first.handle.0), (0.0, 0.0), "{scene:?}");
+            // What the currents fade by is over.
+            let large = first.currents.large.get();
+            assert!(large.abs() < 1e-4, "{scene:?} {before:?}: {large} A");
+        }
+    }
+}
+
+#[test]
+fn an_estimator_that_both_scenes_need_goes_on() {
+    let board = board();
+    let (mut swapped, mut kept) = (board.start(&far(0)), board.start(&far(0)));
+    for state in [&mut swapped, &mut kept] {
+        board.select(state, ALL[4], &far(0));
+    }
+    for k in 0..1000 {
+        if k == 500 {
+            board.select(&mut swapped, ALL[3], &far(499));
+        }
+        let (one, other) = (
+            board.step(&mut swapped, &far(k)),
+            board.step(&mut kept, &far(k)),
+        );
+        assert_eq!((one.large, one.handle), (other.large, other.handle), "{k}");
+        assert!(k < 100 || one.handle.0 > 100.0);
+    }
+}
+
+#[test]
+fn a_restart_is_a_start_and_estimates_tell_whether_they_run() {
+    let board = board();
+    for scene in ALL {
+        let mut restarted = board.start(&far(0));
+        assert!(!restarted.estimates_large());
+        board.select(&mut restarted, scene, &far(0));
+        for k in 0..300 {
+            board.step(&mut restarted, &far(k));
+        }
+        let rendered = !matches!(scene.number(), 0 | 5 | 6 | 10);
+        assert_eq!(restarted.estimates_large(), rendered, "{scene:?}");
+        board.restart(&mut restarted, &far(300));
+        assert!(!restarted.estimates_large());
+        let mut fresh = board.start(&far(300));
+        // Off, and then as if nothing had been before.
+        for state in [&mut restarted, &mut fresh] {
+            assert_eq!(board.step(state, &far(300)).currents, Currents::default());
+            board.select(state, scene, &far(300));
+        }
+        for k in 301..600 {
+            let actions = [&mut restarted, &mut fresh].map(|state| board.step(state, &far(k)));
+            assert_eq!(actions[0], actions[1], "{scene:?} {k}");
+        }
+    }
+}
+
+fn at(angle: i32) -> Sample {
+    Sample::default().with_small(Count(angle as u32))
+}
+
+fn run(board: &Board, state: &mut State, sample: &Sample, ticks: u32) -> Action {
+    (0..ticks).fold(Action::default(), |_, _| board.step(state, sample))
+}
+
+#[test]
+fn a_hold_holds_where_it_was_selected() {
+    let board = board();
+    const HOLD: Hold = preset!(Hold::new(0.2, 0.0));
+    const ANGLE: f32 = 0.314_159_27;
+    for began in [1000, -3000] {
+        let mut state = board.start(&at(0));
+        board.select(&mut state, AnyScene::Hold(HOLD), &at(began));
+        let torque = run(&board, &mut state, &at(began), 5000).torque.0;
+        assert_eq!(torque, 0.0, "{began}");
+        for moved in [1000, -1000] {
+            let torque = run(&board, &mut state, &at(began + moved), 20_000).torque.0;
+            let wanted = -0.2 * ANGLE * moved.signum() as f32;
+            assert!((torque - wanted).abs() < 1e-5, "{began} {moved}: {torque}");
+        }
+        // Tuned, it holds the same place.
+        const STIFFER: Hold = preset!(Hold::new(0.3, 0.0));
+        board.retune(&mut state, AnyScene::Hold(STIFFER));
+        let torque = run(&board, &mut state, &at(began + 1000), 20_000).torque.0;
+        assert!((torque + 0.3 * ANGLE).abs() < 1e-5, "{began}: {torque}");
+    }
+}
+
+#[test]
+fn swaps_of_saturated_scenes_stay_within_the_limits() {
+    let board = board();
+    let torque = |torque| AnyScene::Torque(Torque::new(torque).unwrap());
+    let mut state = board.start(&at(0));
+    let mut largest = [0.0_f32; 2];
+    for k in 0..20_000 {
+        // A scene that starts anew wants its whole current while the one before still fades.
+        match k % 1000 {
+            0 => board.select(
+                &mut state,
+                torque(if k < 10_000 { 1.0 } else { -1.0 }),
+                &at(0),
+            ),
+            999 => board.select(&mut state, ALL[0], &at(0)),
+            _ => {}
+        }
+        let Currents { large, small } = board.step(&mut state, &at(0)).currents;
+        for (largest, now) in largest.iter_mut().zip([large, small]) {
+            *largest = largest.max(now.get().abs());
+        }
+    }
+    let limits = [DEVICE.large.current_limit, DEVICE.small.current_limit];
+    assert_eq!(largest.map(f64::from), limits);
+}
+
+#[test]
+fn what_a_swap_would_jump_by_fades_with_20_ms() {
+    // Off is no current at all: what is left is the difference.
+    let board = board();
+    let mut state = board.start(&at(0));
+    board.select(&mut state, ALL[7], &at(0));
+    let before = run(&board, &mut state, &at(500), 3000).currents;
+    assert!(before.small.get() < -0.1 && before.large.get() < -0.1);
+    board.select(&mut state, ALL[0], &at(500));
+    for k in 0..1000 {
+        let now = board.step(&mut state, &at(500)).currents;
+        // A backward difference of the exponential, half a tick late at most.
+        let part = (-f64::from(k) / 200.0).exp();
+        for (now, before) in [(now.large, before.large), (now.small, before.small)] {
+            let wanted = part * f64::from(before.get());
+            assert!((f64::from(now.get()) - wanted).abs() < 2e-3 * f64::from(before.get().abs()));
+        }
+    }
+}
+
+#[test]
+fn settings_of_another_scene_are_not_taken() {
+    let board = board();
+    let stiff = AnyScene::Viscous(Viscous::new(5e-3).unwrap());
+    let mut state = board.start(&at(0));
+    board.select(&mut state, ALL[2], &at(0));
+    let mut same = state.clone();
+    board.retune(&mut state, stiff);
+    for k in 0..2000 {
+        let actions = [&mut state, &mut same].map(|state| board.step(state, &at(k)));
+        assert_eq!(actions[0], actions[1], "{k}");
+    }
+}
