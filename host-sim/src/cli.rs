@@ -37,7 +37,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Err(error) => return explain(&error, "host-sim"),
     };
     match parsed.command {
-        None => compare::run(&compare::Compare::default(), &command_line),
+        None => compare::run(&compare::Compare::default(), "host-sim compare"),
         Some(Command::Compare(options)) if options.closed_loop => {
             felt::run(&options, &command_line)
         }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::estimators::{Estimator, Kind, Setup, available};
 use crate::failure::Failure;
 use crate::parameters::{Parameters, PlantKind};
-use crate::score::{Interval, Percent, SKIP_S, Score, Truth, Wanted, percent_of};
+use crate::score::{Interval, SKIP_S, Score, Truth, Wanted};
 use crate::trace::Trace;
 
 /// The scores of one estimator on one trace: an object of the JSON output, a row of the CSV.
@@ -26,20 +26,6 @@ pub struct Row {
     /// Scores.
     #[serde(flatten)]
     pub score: Score,
-    /// The same in % of finite difference on the same samples.
-    #[serde(flatten)]
-    pub percent: Percent,
-    /// Mean distance of finite difference on the same samples, rad/s: what the % are of.
-    pub difference_distance_rad_s: Option<f64>,
-    /// Share of samples whose error is within two of the standard deviations that the estimator
-    /// itself believes in, 0 to 1: 0.95 for one that is right about a Gaussian error; `null` for
-    /// one that believes nothing.
-    pub within_2_sigma: Option<f64>,
-    /// Damping b that the estimator learned, mean of the run's last tenth, N.m.s/rad; `null` for
-    /// one that learns none.
-    pub learned_damping_nms_per_rad: Option<f64>,
-    /// RMS error of that damping after the first [`LEARNING_S`], % of the true one.
-    pub learned_damping_pct: Option<f64>,
     /// Parameters it ran with.
     pub parameters: BTreeMap<&'static str, f64>,
 }
@@ -206,25 +192,29 @@ impl Contest {
                 || truth.score(&self.difference.estimator.run(trace)),
                 |i| scores[i],
             );
-        let contestant = |name| self.contestants.iter().find(|c| c.kind.name == name);
-        let row = |(estimate, &score): (&Estimate, &Score)| {
-            let damping =
-                contestant(estimate.estimator).and_then(|c| self.learned_damping(c, trace));
+        let row = |(estimate, score): (&Estimate, &Score)| {
+            let contestant = self
+                .contestants
+                .iter()
+                .find(|c| c.kind.name == estimate.estimator);
+            let damping = contestant
+                .filter(|_| wanted.learned)
+                .and_then(|c| self.learned_damping(c, trace));
             Row {
                 scenario: heading.scenario.clone(),
                 rate_hz: heading.rate_hz,
                 plant: heading.plant,
                 seed: heading.seed,
                 estimator: estimate.estimator,
-                score,
-                percent: percent_of(&score, &reference),
-                difference_distance_rad_s: reference.distance_rad_s,
-                within_2_sigma: estimate.within_2_sigma(omega, trace.rate_hz),
-                learned_damping_nms_per_rad: damping.as_deref().map(last_tenth),
-                learned_damping_pct: damping.as_deref().and_then(|b| damping_error(b, trace)),
-                parameters: contestant(estimate.estimator)
-                    .map(Contestant::named_values)
-                    .unwrap_or_default(),
+                score: Score {
+                    within_2_sigma: (wanted.within)
+                        .then(|| estimate.within_2_sigma(omega, trace.rate_hz))
+                        .flatten(),
+                    learned_damping_nms_per_rad: damping.as_deref().map(last_tenth),
+                    learned_damping_pct: damping.as_deref().and_then(|b| damping_error(b, trace)),
+                    ..score.relative_to(&reference)
+                },
+                parameters: contestant.map(Contestant::named_values).unwrap_or_default(),
             }
         };
         Ok(estimates.iter().zip(&scores).map(row).collect())

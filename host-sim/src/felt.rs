@@ -15,7 +15,7 @@ pub mod table;
 pub use compare::{Case, Outcome, Run, Settings, Signals, compare};
 pub use design::Design;
 pub use parasitic::{Fingertip, Parasitic};
-pub use row::{COLUMNS, FeltRow};
+pub use row::FeltRow;
 pub use sweep::{Response, Swept, bandwidth_hz, sweep};
 
 /// Who closes the loop where that is the reference encoder, as in the paper.

@@ -37,4 +37,5 @@ pub mod table;
 pub mod telemetry;
 pub mod trace;
 pub mod tune;
+pub mod version;
 pub mod zwidth;

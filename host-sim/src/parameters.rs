@@ -27,6 +27,15 @@ impl PlantKind {
             Self::Frictionless => "frictionless",
         }
     }
+
+    /// The kind after the word "plant".
+    #[must_use]
+    pub fn phrase(self) -> &'static str {
+        match self {
+            Self::Friction => "with friction",
+            Self::Frictionless => "without friction",
+        }
+    }
 }
 
 /// Tuned parameters: what `tune` writes and `--presets` reads.

@@ -5,7 +5,7 @@
 
 use crate::compare::Damping;
 use crate::limit;
-use crate::score::{Interval, Percent, Score};
+use crate::score::{Interval, Score};
 use crate::sensitivity as belief;
 
 mod canvas;
@@ -28,6 +28,7 @@ mod score_tables;
 mod sections;
 mod sensitivity;
 mod spectra;
+mod style;
 mod tables;
 mod text;
 mod velocity;
@@ -137,8 +138,6 @@ pub struct Row {
     pub estimator: String,
     /// Its scores.
     pub score: Score,
-    /// The same in % of finite difference.
-    pub percent: Percent,
     /// Instructions an update on the board, where they were measured.
     pub instructions: Option<f64>,
 }

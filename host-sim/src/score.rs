@@ -10,12 +10,12 @@
 //! Everything before the first [`SKIP_S`] seconds is ignored: estimators start from rest and
 //! their first samples say nothing about them.
 
-use serde::Serialize;
-
 mod delay;
+pub(crate) mod fields;
 mod transient;
 mod truth;
 
+pub use fields::{Better, Field, Form, Over, Score};
 pub use truth::Truth;
 
 /// Start of every trace that no score looks at, s.
@@ -82,125 +82,39 @@ pub struct Wanted {
     pub chatter: bool,
     /// [`Score::force_mn`].
     pub force: bool,
+    /// [`Score::within_2_sigma`].
+    pub within: bool,
+    /// [`Score::learned_damping_nms_per_rad`] and its error.
+    pub learned: bool,
 }
 
 impl Wanted {
     /// Every score.
-    pub const ALL: Self = Self {
-        rms: true,
-        max: true,
-        distance: true,
-        distance_transient: true,
-        outside: true,
-        delay: true,
-        noise: true,
-        chatter: true,
-        force: true,
-    };
+    pub const ALL: Self = Self::every(true);
 
     /// No score: the start for `Wanted { rms: true, ..Wanted::NONE }`.
-    pub const NONE: Self = Self {
-        rms: false,
-        max: false,
-        distance: false,
-        distance_transient: false,
-        outside: false,
-        delay: false,
-        noise: false,
-        chatter: false,
-        force: false,
-    };
+    pub const NONE: Self = Self::every(false);
 
-    /// Wants the score called `name`, as in [`Score`] and the JSON; one in % is its own kind.
-    ///
-    /// # Errors
-    /// If there is no score of that name; the message lists them.
-    pub fn add(&mut self, name: &str) -> Result<(), String> {
-        let flag = match name {
-            "rms_rad_s" | "rms_pct" => &mut self.rms,
-            "max_rad_s" => &mut self.max,
-            "distance_rad_s" | "distance_pct" => &mut self.distance,
-            "distance_transient_rad_s" | "distance_transient_pct" => &mut self.distance_transient,
-            "outside" => &mut self.outside,
-            "delay_ms" => &mut self.delay,
-            "noise_rad_s" => &mut self.noise,
-            "chatter_rad_s" => &mut self.chatter,
-            "force_mn" => &mut self.force,
-            _ => {
-                return Err(format!(
-                    "no score '{name}'; there are rms_rad_s, max_rad_s, distance_rad_s, \
-                     distance_transient_rad_s, outside, delay_ms, noise_rad_s, chatter_rad_s, \
-                     force_mn"
-                ));
-            }
-        };
-        *flag = true;
-        Ok(())
+    const fn every(wanted: bool) -> Self {
+        Self {
+            rms: wanted,
+            max: wanted,
+            distance: wanted,
+            distance_transient: wanted,
+            outside: wanted,
+            delay: wanted,
+            noise: wanted,
+            chatter: wanted,
+            force: wanted,
+            within: wanted,
+            learned: wanted,
+        }
     }
 }
 
 impl Default for Wanted {
     fn default() -> Self {
         Self::ALL
-    }
-}
-
-/// The scores of one estimate; `None` is not wanted or not defined on this trace.
-///
-/// An estimate that contains NaN or an infinity cannot be good: its errors, distances and force
-/// are infinite, the bad samples count as outside, and delay, noise and chatter are `None`.
-/// JSON has no infinity, so serde writes `null` there; `non_finite` says why.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Score {
-    /// Root mean square of the error, rad/s.
-    pub rms_rad_s: Option<f64>,
-    /// Largest error, rad/s.
-    pub max_rad_s: Option<f64>,
-    /// Mean distance outside the haptic interval, rad/s.
-    pub distance_rad_s: Option<f64>,
-    /// The same over transient samples alone, rad/s; `None` where there is no transient.
-    pub distance_transient_rad_s: Option<f64>,
-    /// Share of samples outside the interval, 0 to 1.
-    pub outside: Option<f64>,
-    /// Shift of the truth that minimises the RMS error, ms; positive where the estimate lags,
-    /// `None` where the truth does not move or no shift below [`SKIP_S`] is best.
-    pub delay_ms: Option<f64>,
-    /// RMS of the error inside [`TACTILE_BAND_HZ`], rad/s; `None` below 0.25 s of samples.
-    pub noise_rad_s: Option<f64>,
-    /// Total variation beyond the truth's, per sample, rad/s.
-    pub chatter_rad_s: Option<f64>,
-    /// The RMS error as parasitic force at the fingertip, mN.
-    pub force_mn: Option<f64>,
-    /// How many of the scored samples are NaN or infinite.
-    pub non_finite: usize,
-}
-
-/// Scores as a share of another estimator's on the same samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Percent {
-    /// Mean distance, %.
-    pub distance_pct: Option<f64>,
-    /// Mean distance in transients, %.
-    pub distance_transient_pct: Option<f64>,
-    /// RMS error, %.
-    pub rms_pct: Option<f64>,
-}
-
-/// `score` in % of `reference` (by convention finite difference on the same trace); `None` where
-/// either is missing or the reference is 0 or not finite.
-#[must_use]
-pub fn percent_of(score: &Score, reference: &Score) -> Percent {
-    let share = |of: Option<f64>, whole: Option<f64>| match (of, whole) {
-        (Some(of), Some(whole)) if whole > 0.0 && whole.is_finite() => Some(100.0 * of / whole),
-        _ => None,
-    };
-    Percent {
-        distance_pct: share(score.distance_rad_s, reference.distance_rad_s),
-        distance_transient_pct: share(
-            score.distance_transient_rad_s,
-            reference.distance_transient_rad_s,
-        ),
-        rms_pct: share(score.rms_rad_s, reference.rms_rad_s),
     }
 }
 
@@ -231,33 +145,70 @@ mod tests {
             distance_rad_s: Some(0.0),
             ..Score::default()
         };
-        let percent = percent_of(&score, &reference);
+        let percent = score.relative_to(&reference);
         assert_eq!(percent.rms_pct, Some(25.0));
         assert_eq!(percent.distance_pct, None, "the reference is 0");
         assert_eq!(percent.distance_transient_pct, None, "there is none");
     }
 
+    /// Names of the output's contract: more may follow, none may go.
+    const CONTRACT: [&str; 12] = [
+        "rms_rad_s",
+        "max_rad_s",
+        "distance_rad_s",
+        "distance_transient_rad_s",
+        "distance_pct",
+        "distance_transient_pct",
+        "rms_pct",
+        "outside",
+        "delay_ms",
+        "noise_rad_s",
+        "chatter_rad_s",
+        "force_mn",
+    ];
+
     #[test]
-    fn json_names_are_the_contract() {
+    fn fields_include_the_contract_and_are_those_of_the_json() {
         let json = serde_json::to_value(Score {
             max_rad_s: Some(f64::INFINITY),
             non_finite: 3,
             ..Score::default()
         })
         .unwrap();
-        for name in [
-            "rms_rad_s",
-            "max_rad_s",
-            "distance_rad_s",
-            "distance_transient_rad_s",
-            "outside",
-            "delay_ms",
-            "noise_rad_s",
-            "chatter_rad_s",
-            "force_mn",
-        ] {
+        let mut names: Vec<_> = Score::FIELDS.iter().map(|field| field.name).collect();
+        for name in CONTRACT {
+            assert!(names.contains(&name), "{name}");
             assert!(json[name].is_null() && json.get(name).is_some(), "{name}");
         }
         assert_eq!(json["non_finite"], 3);
+        names.push("non_finite");
+        names.sort_unstable();
+        let mut keys: Vec<_> = json.as_object().unwrap().keys().collect();
+        keys.sort_unstable();
+        assert_eq!(keys, names);
+    }
+
+    #[test]
+    fn seeds_become_their_mean_or_their_largest() {
+        let row = |value: f64| {
+            let mut row = Score::default();
+            for field in Score::FIELDS {
+                (field.set)(&mut row, Some(value));
+            }
+            row.non_finite = 2;
+            row
+        };
+        let rows = [row(1.0), Score::default(), row(5.0)];
+        let mean = Score::mean(rows.iter());
+        for field in Score::FIELDS {
+            // Rows without a value do not count.
+            let expected = match field.name {
+                "max_rad_s" => 5.0,
+                _ => 3.0,
+            };
+            assert_eq!((field.of)(&mean), Some(expected), "{}", field.name);
+        }
+        assert_eq!(mean.non_finite, 4);
+        assert_eq!(Score::mean(rows[1..2].iter()), Score::default());
     }
 }

@@ -41,19 +41,6 @@ pub struct Row {
     pub outside: f64,
 }
 
-/// Columns of the CSV.
-pub const COLUMNS: &[&str] = &[
-    "estimator",
-    "scenario",
-    "rate_hz",
-    "seed",
-    "constant",
-    "error",
-    "rms_rad_s",
-    "rms_pct",
-    "outside",
-];
-
 /// Runs all cases in parallel; `done` is called as each ends.
 ///
 /// # Errors

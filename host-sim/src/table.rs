@@ -3,122 +3,129 @@
 use std::fmt::Write as _;
 
 use crate::contest::Row;
+use crate::score::{Field, Over, Score};
 
-/// Every score of every row, one block a rate, plant and scenario.
+pub mod layout;
+
+use layout::{Column, table};
+
+/// The scores `asked` of every row, or all usual ones that a row has where none is asked for; one
+/// part a rate, plant and scenario, in lines of `width` characters.
 #[must_use]
-pub fn details(rows: &[Row]) -> String {
+pub fn details(rows: &[Row], asked: &[&Field<Score>], width: usize) -> String {
     let mut text = String::new();
-    for block in rows.chunk_by(same_case) {
+    for case in rows.chunk_by(same_case) {
         let Row {
             scenario,
             rate_hz,
             plant,
             ..
-        } = &block[0];
-        let _ = writeln!(
-            text,
-            "{scenario} at {rate_hz} Hz, plant with {}",
-            plant.name()
-        );
-        let _ = writeln!(
-            text,
-            "  {:<22}{:>9}{:>9}{:>10}{:>7}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}",
-            "",
-            "rms",
-            "largest",
-            "distance",
-            "",
-            "in",
-            "outside",
-            "delay",
-            "noise",
-            "chatter",
-            "force",
-            "within"
-        );
-        let _ = writeln!(
-            text,
-            "  {:<22}{:>9}{:>9}{:>10}{:>7}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}",
-            "estimator",
-            "rad/s",
-            "rad/s",
-            "rad/s",
-            "% FD",
-            "trans.",
-            "%",
-            "ms",
-            "rad/s",
-            "rad/s",
-            "mN",
-            "2 sd, %"
-        );
-        for row in block {
-            let score = &row.score;
+        } = &case[0];
+        let _ = writeln!(text, "{scenario} at {rate_hz} Hz, plant {}", plant.phrase());
+        let scores = || case.iter().map(|row| &row.score);
+        let columns: Vec<_> = columns(Score::FIELDS, asked, scores()).collect();
+        text += &table(&estimators(case), &columns, width);
+    }
+    text
+}
+
+/// The columns of the `fields` that are asked for, or of all usual ones that a row has.
+pub(crate) fn columns<'a, T: Default + 'a>(
+    fields: &'static [Field<T>],
+    asked: &'a [&Field<T>],
+    rows: impl Iterator<Item = &'a T> + Clone + 'a,
+) -> impl Iterator<Item = Column> + 'a {
+    let shown = {
+        let rows = rows.clone();
+        move |field: &&Field<T>| match asked {
+            [] => field.usual && rows.clone().any(|row| (field.of)(row).is_some()),
+            asked => asked.iter().any(|of| of.name == field.name),
+        }
+    };
+    fields.iter().filter(shown).map(move |field| {
+        let cells = rows.clone().map(|row| number(field.shown(row)));
+        Column::numbers(field.head, field.unit, cells)
+    })
+}
+
+/// The scores `asked`, or the mean distance outside the haptic interval in % of finite difference:
+/// estimators against scenarios, one part a rate, plant and score. The last column is over all
+/// scenarios shown: their mean or largest value; of the distance in % the mean of distances over
+/// the mean of finite difference's.
+#[must_use]
+pub fn overview(rows: &[Row], asked: &[&'static Field<Score>], width: usize) -> String {
+    let usual: Vec<_> = Score::FIELDS
+        .iter()
+        .filter(|field| field.name == DISTANCE_PCT)
+        .collect();
+    let fields = match asked {
+        [] => &usual,
+        asked => asked,
+    };
+    let mut text = String::new();
+    for block in rows.chunk_by(|a, b| a.rate_hz == b.rate_hz && a.plant == b.plant) {
+        let cases: Vec<_> = block.chunk_by(same_case).collect();
+        for field in fields {
             let _ = writeln!(
                 text,
-                "  {:<22}{:>9}{:>9}{:>10}{:>7}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}",
-                row.estimator,
-                number(score.rms_rad_s),
-                number(score.max_rad_s),
-                number(score.distance_rad_s),
-                number(row.percent.distance_pct),
-                number(row.percent.distance_transient_pct),
-                number(score.outside.map(|share| 100.0 * share)),
-                number(score.delay_ms),
-                number(score.noise_rad_s),
-                number(score.chatter_rad_s),
-                number(score.force_mn),
-                number(row.within_2_sigma.map(|share| 100.0 * share)),
+                "{} Hz, plant {}: {}\n{}",
+                block[0].rate_hz,
+                block[0].plant.phrase(),
+                field.name,
+                field.sentence()
             );
+            let mut columns: Vec<_> = cases
+                .iter()
+                .map(|case| {
+                    let cells = case.iter().map(|row| number(field.shown(&row.score)));
+                    Column::numbers(&case[0].scenario, "", cells)
+                })
+                .collect();
+            let over = (0..cases[0].len()).map(|i| {
+                let scores = cases.iter().map(|case| &case[i].score);
+                number(over_scenarios(field, scores))
+            });
+            columns.push(Column::numbers(over_name(field), "", over));
+            text += &table(&estimators(cases[0]), &columns, width);
+            text.push('\n');
         }
     }
     text
 }
 
-/// Mean distance outside the haptic interval in % of finite difference, estimators against
-/// scenarios, one block a rate and plant. The last column pools all scenarios shown: the mean
-/// of distances over the mean of finite difference's.
-#[must_use]
-pub fn overview(rows: &[Row]) -> String {
-    let mut text = String::new();
-    for block in rows.chunk_by(|a, b| a.rate_hz == b.rate_hz && a.plant == b.plant) {
-        let cases: Vec<_> = block.chunk_by(same_case).collect();
-        let _ = writeln!(
-            text,
-            "{} Hz, plant with {}: mean distance outside the haptic interval, % of finite difference",
-            block[0].rate_hz,
-            block[0].plant.name(),
-        );
-        let _ = write!(text, "  {:<22}", "estimator");
-        for case in &cases {
-            let _ = write!(text, "{:>11}", case[0].scenario);
-        }
-        let _ = writeln!(text, "{:>11}", "pooled");
-        for (i, row) in cases[0].iter().enumerate() {
-            let _ = write!(text, "  {:<22}", row.estimator);
-            for case in &cases {
-                let _ = write!(text, "{:>11}", number(case[i].percent.distance_pct));
-            }
-            let _ = writeln!(
-                text,
-                "{:>11}",
-                number(pooled_pct(cases.iter().map(|case| &case[i])))
-            );
-        }
-        text.push('\n');
+const DISTANCE_PCT: &str = "distance_pct";
+
+fn over_name(field: &Field<Score>) -> &'static str {
+    match field.over {
+        _ if field.name == DISTANCE_PCT => "pooled",
+        Over::Mean => "mean",
+        Over::Largest => "largest",
     }
-    text
+}
+
+fn over_scenarios<'a>(
+    field: &Field<Score>,
+    scores: impl Iterator<Item = &'a Score>,
+) -> Option<f64> {
+    match field.name {
+        DISTANCE_PCT => pooled_pct(scores),
+        _ => field.over(scores).map(|value| field.in_unit(value)),
+    }
+}
+
+fn estimators(rows: &[Row]) -> Column {
+    let names = rows.iter().map(|row| row.estimator.to_owned());
+    Column::text("", "estimator", names)
 }
 
 /// Distance of one estimator over several cases of equal length, % of finite difference's.
 #[must_use]
-pub fn pooled_pct<'a>(rows: impl Iterator<Item = &'a Row>) -> Option<f64> {
+pub fn pooled_pct<'a>(scores: impl Iterator<Item = &'a Score>) -> Option<f64> {
     let (mut of, mut whole) = (0.0, 0.0);
-    for row in rows {
-        let distance = row.score.distance_rad_s?;
-        of += distance;
+    for score in scores {
+        of += score.distance_rad_s?;
         // A percentage is missing where finite difference never leaves the interval: it adds 0.
-        whole += row.difference_distance_rad_s.unwrap_or(0.0);
+        whole += score.difference_distance_rad_s.unwrap_or(0.0);
     }
     (whole > 0.0).then(|| 100.0 * of / whole)
 }

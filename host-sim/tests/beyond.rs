@@ -186,7 +186,7 @@ fn creep_is_followed_at_a_fast_rate() {
     let rows = || outcomes.iter().flat_map(|outcome| &outcome.rows);
     for (name, bound) in bounds {
         let of = rows().filter(|row| row.estimator == name);
-        let rms = of.map(|row| row.percent.rms_pct.unwrap()).sum::<f64>() / 2.0;
+        let rms = of.map(|row| row.score.rms_pct.unwrap()).sum::<f64>() / 2.0;
         assert_within(name, rms, bound);
     }
 }
@@ -254,15 +254,15 @@ fn the_damping_of_a_coupler_that_warms_up_is_learned() {
     .unwrap();
     for row in &outcomes[0].rows {
         if row.estimator == "pll" {
-            assert_eq!(row.learned_damping_pct, None);
+            assert_eq!(row.score.learned_damping_pct, None);
             continue;
         }
-        let error = row.learned_damping_pct.unwrap();
+        let error = row.score.learned_damping_pct.unwrap();
         assert_within(row.estimator, error, [0.2, 2.0]);
         // 30 % less than it began with.
-        let learned = row.learned_damping_nms_per_rad.unwrap();
+        let learned = row.score.learned_damping_nms_per_rad.unwrap();
         assert_within(row.estimator, learned / 0.96e-3, [0.68, 0.76]);
-        let rms = row.percent.rms_pct.unwrap();
+        let rms = row.score.rms_pct.unwrap();
         assert_within(row.estimator, rms, [0.5, 11.0]);
     }
 }
@@ -288,7 +288,7 @@ fn fast_rates_beat_the_papers_filter() {
         let rms = |name: &str| {
             let rows = outcomes.iter().flat_map(|outcome| &outcome.rows);
             let of = rows.filter(|row| row.estimator == name);
-            of.map(|row| row.percent.rms_pct.unwrap()).sum::<f64>() / 3.0
+            of.map(|row| row.score.rms_pct.unwrap()).sum::<f64>() / 3.0
         };
         for name in &names[1..] {
             assert!(rms(name) < 0.5 * rms("kalman-motor"), "{name} at {rate_hz}");

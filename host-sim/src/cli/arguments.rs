@@ -14,7 +14,7 @@ use crate::scenario::ScenarioName;
 ///
 /// Without a command: compare, with everything at its default.
 #[derive(Debug, Parser)]
-#[command(name = "host-sim", version)]
+#[command(name = "host-sim", version = crate::version::VERSION)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub(super) command: Option<Command>,

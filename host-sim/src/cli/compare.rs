@@ -12,7 +12,8 @@ use crate::output::{Folder, note};
 use crate::parameters::PlantKind;
 use crate::report::{self, CaseReport, DeviceFacts, ReportInput, Traces};
 use crate::scenario::ScenarioName;
-use crate::score::{SKIP_S, Wanted};
+use crate::score::{Field, SKIP_S, Score, Wanted};
+use crate::table::layout::terminal_width;
 use crate::{cost, rows, simulate, table};
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds, rates, scenarios};
@@ -63,8 +64,7 @@ pub(super) struct Compare {
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Score to compute, named as in the JSON; repeatable [default: all]
-    #[arg(long = "score", value_name = "NAME")]
+    #[arg(long = "score", value_name = "NAME", help = score_help())]
     pub(super) scores: Vec<String>,
     /// Folder for the report: index.html, its figures as SVG, scores.csv, scores.json [default:
     /// target/report; with --json - none]
@@ -104,11 +104,12 @@ impl Default for Compare {
 }
 
 pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> {
+    let (wanted, asked_fields) = wanted(&options.scores)?;
     let settings = Settings {
         device: options.device.load()?,
         estimators: kinds(&options.estimators)?,
         parameters: options.parameters.load()?,
-        wanted: wanted(&options.scores)?,
+        wanted,
     };
     let report = report_folder(options)?;
     let (cases, asked) = cases(options, report.is_some())?;
@@ -145,13 +146,14 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
         let rows: Vec<Row> = outcomes.iter().flat_map(|o| o.rows.clone()).collect();
         let mut files = Folder::new(folder);
         files.add("scores.json", rows::json(&rows)?);
-        files.add("scores.csv", rows::csv(&rows, rows::COLUMNS)?);
+        files.add("scores.csv", rows::csv(&rows)?);
         index = Some(felt::write(files, input, closed)?);
     }
-    let mut text = table::overview(&asked_rows);
-    if asked <= 2 {
-        text = table::details(&asked_rows);
-    }
+    let width = terminal_width();
+    let mut text = match asked {
+        0..=2 => table::details(&asked_rows, &asked_fields, width),
+        _ => table::overview(&asked_rows, &asked_fields, width),
+    };
     if let Some(index) = index {
         text.push_str(&format!("Report: {}\n", index.display()));
     }
@@ -201,16 +203,27 @@ fn cases(options: &Compare, with_report: bool) -> Result<(Vec<Case>, usize), Fai
     Ok((cases, asked))
 }
 
-/// The scores by their JSON names; all where there is no name.
-pub(super) fn wanted(names: &[String]) -> Result<Wanted, Failure> {
+/// What to compute for the scores by their JSON names, and their columns; everything and no column
+/// where there is no name.
+pub(super) fn wanted(names: &[String]) -> Result<(Wanted, Vec<&'static Field<Score>>), Failure> {
     if names.is_empty() {
-        return Ok(Wanted::ALL);
+        return Ok((Wanted::ALL, Vec::new()));
     }
     let mut wanted = Wanted::NONE;
-    for name in names {
-        wanted.add(name)?;
-    }
-    Ok(wanted)
+    let fields: Result<_, String> = names.iter().map(|name| wanted.add(name)).collect();
+    Ok((wanted, fields?))
+}
+
+/// Help of `--score`.
+fn score_help() -> String {
+    let each: String = Score::FIELDS
+        .iter()
+        .map(|field| format!("\n{}: {}", field.name, field.sentence()))
+        .collect();
+    format!(
+        "Score to compute and show, for example --score rms_pct; repeatable [default: all]. The \
+         scores are:{each}"
+    )
 }
 
 /// Where the time went, in a line.
@@ -244,7 +257,6 @@ pub(super) fn case_report(outcome: &Outcome) -> CaseReport {
     let row = |row: &Row| report::Row {
         estimator: row.estimator.to_owned(),
         score: row.score,
-        percent: row.percent,
         instructions: cost::instructions(row.estimator, &row.parameters),
     };
     let traces = outcome.signals.as_ref().map(|(trace, estimates)| Traces {

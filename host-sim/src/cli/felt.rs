@@ -14,6 +14,7 @@ use crate::output::{Folder, note};
 use crate::parameters::PlantKind;
 use crate::report::{ClosedLoop, ReportInput};
 use crate::scenario::ScenarioName;
+use crate::table::layout::terminal_width;
 use crate::{report, rows, simulate};
 
 use super::arguments::{kinds, rates};
@@ -25,6 +26,7 @@ const SECONDS: f64 = 10.0;
 
 pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> {
     let settings = settings(options)?;
+    let (_, asked) = wanted(&options.scores)?;
     let folder = report_folder(options)?;
     let cases = cases(
         options,
@@ -47,7 +49,7 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
         note(timing(cost));
     }
     let scores: Vec<FeltRow> = outcomes.iter().flat_map(|o| o.rows.clone()).collect();
-    let mut text = felt::table::details(&outcomes);
+    let mut text = felt::table::details(&outcomes, &asked, terminal_width());
     if let Some(folder) = folder {
         let input = ReportInput {
             command: command_line.to_owned(),
@@ -121,7 +123,7 @@ pub(super) fn write(
             .flat_map(|o| o.rows.clone())
             .collect();
         folder.add("closed-loop.json", rows::json(&rows)?);
-        folder.add("closed-loop.csv", rows::csv(&rows, felt::COLUMNS)?);
+        folder.add("closed-loop.csv", rows::csv(&rows)?);
     }
     input.closed_loop = closed;
     page::write(folder, &report::html(&input)?)
@@ -155,7 +157,7 @@ pub(super) fn settings(options: &Compare) -> Result<Settings, Failure> {
         estimators,
         handle,
         parameters: options.parameters.load()?,
-        wanted: wanted(&options.scores)?,
+        wanted: wanted(&options.scores)?.0,
     })
 }
 

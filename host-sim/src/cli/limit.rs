@@ -10,6 +10,7 @@ use crate::limit::{SCENARIOS, limit, table::table};
 use crate::parameters::PlantKind;
 use crate::rows;
 use crate::score::Wanted;
+use crate::table::layout::terminal_width;
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds, rates, scenarios};
 use super::page::{self, progress};
@@ -72,5 +73,9 @@ pub(super) fn run(options: &Limit) -> Result<(), Failure> {
     let rows = limit(&cases, &settings, options.particles as usize, || bar.inc(1))?;
     bar.finish_and_clear();
     let json = rows::json(&rows)?;
-    page::print(options.json.as_deref(), &json, &table(&rows))
+    page::print(
+        options.json.as_deref(),
+        &json,
+        &table(&rows, terminal_width()),
+    )
 }

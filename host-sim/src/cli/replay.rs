@@ -8,6 +8,7 @@ use clap::Args;
 use crate::failure::Failure;
 use crate::output::{is_stdout, note, print_bytes, write_whole, write_with};
 use crate::recording::{BoardColumns, Recording};
+use crate::table::layout::terminal_width;
 use crate::{replay, rows, table};
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds};
@@ -80,7 +81,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     if json_to_stdout || out.is_some_and(is_stdout) {
         return Ok(());
     }
-    print_bytes(table::details(rows).as_bytes())
+    print_bytes(table::details(rows, &[], terminal_width()).as_bytes())
 }
 
 /// What the board made of its samples; nothing where no board that says how sure it is made the

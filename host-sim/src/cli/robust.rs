@@ -8,10 +8,11 @@ use crate::closed_loop::SceneName;
 use crate::estimators::Kind;
 use crate::failure::Failure;
 use crate::output::{Folder, print_bytes, write_whole};
-use crate::robust::row::{self, Row};
+use crate::robust::row::Row;
 use crate::robust::shard::Part;
 use crate::robust::variation::Subject;
 use crate::robust::{Experiment, Settings, shard, summary};
+use crate::table::layout::{NARROW, terminal_width};
 use crate::{report, rows};
 
 use super::arguments::{DeviceFile, ParameterOptions};
@@ -162,11 +163,16 @@ fn finish(
 ) -> Result<(), Failure> {
     let json = rows::json(rows)?;
     let scenes = summary::summaries(rows)?;
-    let mut text = summary::table(settings, &scenes);
+    let mut text = summary::table(settings, &scenes, terminal_width());
     if let Some(folder) = folder {
-        let page = report::robust(&summary::heading(settings), &scenes, &text)?;
+        let page = report::robust(
+            &summary::heading(settings),
+            &scenes,
+            &summary::table(settings, &scenes, NARROW),
+            &summary::command(settings),
+        )?;
         let mut files = Folder::new(folder);
-        files.add("robust.csv", rows::csv(rows, row::COLUMNS)?);
+        files.add("robust.csv", rows::csv(rows)?);
         files.add("robust.json", json.as_slice());
         for figure in report::figures(&page) {
             files.add("summary.svg", figure);

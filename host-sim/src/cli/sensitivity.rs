@@ -10,7 +10,8 @@ use crate::output::Folder;
 use crate::parameters::PlantKind;
 use crate::scenario::ScenarioName;
 use crate::score::Wanted;
-use crate::sensitivity::{COLUMNS, sensitivity, table::table};
+use crate::sensitivity::{sensitivity, table::table};
+use crate::table::layout::{NARROW, terminal_width};
 use crate::{report, rows};
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds, rates, scenarios};
@@ -63,12 +64,17 @@ pub(super) fn run(options: &Sensitivity, command_line: &str) -> Result<(), Failu
     bar.finish_and_clear();
 
     let json = rows::json(&rows)?;
-    let mut text = table(&rows);
+    let mut text = table(&rows, terminal_width());
     if let Some(folder) = folder {
-        let page = report::sensitivity(&rows, &text, &options.device.name(), command_line)?;
+        let page = report::sensitivity(
+            &rows,
+            &table(&rows, NARROW),
+            &options.device.name(),
+            command_line,
+        )?;
         let mut files = Folder::new(folder);
         files.add("sensitivity.json", json.as_slice());
-        files.add("sensitivity.csv", rows::csv(&rows, COLUMNS)?);
+        files.add("sensitivity.csv", rows::csv(&rows)?);
         let index = page::write(files, &page)?;
         text.push_str(&format!("\nPage: {}\n", index.display()));
     }

@@ -9,6 +9,7 @@ use crate::failure::Failure;
 use crate::output::Folder;
 use crate::report;
 use crate::rows::{csv, json};
+use crate::table::layout::{NARROW, terminal_width};
 use crate::zwidth::{BOUNDS_A_CASE, Case, Settings, boundaries, rows, table};
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds, rates};
@@ -62,13 +63,18 @@ pub(super) fn run(options: &Zwidth, command_line: &str) -> Result<(), Failure> {
 
     let rows = rows::rows(&cases, &boundaries, settings.seed);
     let json = json(&rows)?;
-    let mut text = table::table(&cases, &boundaries);
+    let mut text = table::table(&cases, &boundaries, terminal_width());
     if let Some(folder) = folder {
         let device = options.device.name();
-        let page = report::zwidth(&rows, &text, &device, command_line)?;
+        let page = report::zwidth(
+            &rows,
+            &table::table(&cases, &boundaries, NARROW),
+            &device,
+            command_line,
+        )?;
         let mut files = Folder::new(folder);
         files.add("zwidth.json", json.as_slice());
-        files.add("zwidth.csv", csv(&rows, rows::COLUMNS)?);
+        files.add("zwidth.csv", csv(&rows)?);
         let index = page::write(files, &page)?;
         text.push_str(&format!("\nPage: {}\n", index.display()));
     }

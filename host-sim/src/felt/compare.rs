@@ -10,7 +10,7 @@ use crate::device::Device;
 use crate::estimators::Kind;
 use crate::failure::Failure;
 use crate::parameters::{Parameters, PlantKind};
-use crate::score::Wanted;
+use crate::score::{Score, Wanted};
 
 /// Estimator of the large motor's velocity on the reference encoder, and of the handle's unless
 /// told otherwise.
@@ -72,8 +72,8 @@ pub struct Run {
     pub controlled_by: &'static str,
     /// What the hand felt.
     pub parasitic: Parasitic,
-    /// RMS error of the velocity that the loop used, rad/s, where it used one.
-    pub velocity_rms: Option<f64>,
+    /// Scores of the velocity that the loop used, where it used one.
+    pub velocity: Option<Score>,
     /// Why the monitor stopped the motors, if it did.
     pub stopped: Option<&'static str>,
     /// The signals, where [`Case::keep`] asked for them.

@@ -13,6 +13,7 @@
 use serde::Serialize;
 
 use crate::device::Device;
+use crate::score::fields::fields;
 use crate::score::{SKIP_S, TACTILE_BAND_HZ};
 use crate::spectrum::Welch;
 
@@ -44,18 +45,19 @@ impl Fingertip {
     }
 }
 
-/// Scores of a parasitic force, over everything after the first [`SKIP_S`] seconds; `None` where
-/// nothing is left. A force that is not finite is infinite and never below the threshold.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Parasitic {
-    /// Root mean square, mN.
-    pub parasitic_mn_rms: Option<f64>,
-    /// Magnitude that 99 % of the ticks stay at or below, mN.
-    pub parasitic_mn_p99: Option<f64>,
-    /// RMS of the part from 50 to 500 Hz, which is felt as roughness, mN; `None` below 0.25 s.
-    pub parasitic_mn_tactile: Option<f64>,
-    /// Share of time in which the magnitude is below the fingertip's threshold, 0 to 1.
-    pub below_threshold: Option<f64>,
+fields! {
+    /// Scores of a parasitic force, over everything after the first [`SKIP_S`] seconds; `None` where
+    /// nothing is left. A force that is not finite is infinite and never below the threshold.
+    pub struct Parasitic {
+        /// Root mean square, mN.
+        parasitic_mn_rms: "force", "rms, mN", Number, Mean, Smaller, true;
+        /// Magnitude that 99 % of the ticks stay at or below, mN.
+        parasitic_mn_p99: "force", "99 %, mN", Number, Mean, Smaller, true;
+        /// RMS of the part from 50 to 500 Hz, which is felt as roughness, mN; `None` below 0.25 s.
+        parasitic_mn_tactile: "50-500 Hz", "rms, mN", Number, Mean, Smaller, true;
+        /// Share of time in which the magnitude is below the fingertip's threshold, 0 to 1.
+        below_threshold: "unnoticed", "% of time", Share, Mean, Larger, true;
+    }
 }
 
 impl Parasitic {
@@ -130,6 +132,17 @@ mod tests {
         assert_eq!(percentile(&values, 0.99), 198.0);
         assert_eq!(percentile(&values, 1.0), 200.0);
         assert_eq!(percentile(&[-3.0], 0.99), 3.0);
+    }
+
+    #[test]
+    fn one_of_100_ticks_exceeds_p99() {
+        // 0.1 s that is not scored, then 1 to 100 mN in an order of no meaning.
+        let scored = (0..100).map(|k| f64::from((37 * k) % 100 + 1));
+        let force: Vec<f64> = std::iter::repeat_n(500.0, 100).chain(scored).collect();
+        let score = Parasitic::of(&force, 1e3, &FINGERTIP);
+        assert_eq!(score.parasitic_mn_p99, Some(99.0));
+        // 1 to 9 mN are below the threshold of 10 mN.
+        assert_eq!(score.below_threshold, Some(0.09));
     }
 
     #[test]

@@ -25,32 +25,3 @@ pub struct FeltRow {
     /// Why the monitor stopped the motors, if it did.
     pub stopped: Option<&'static str>,
 }
-
-/// Columns of the CSV.
-pub const COLUMNS: &[&str] = &[
-    "scenario",
-    "rate_hz",
-    "plant",
-    "seed",
-    "estimator",
-    "controlled_by",
-    "handle_estimator",
-    "parasitic_mn_rms",
-    "parasitic_mn_p99",
-    "parasitic_mn_tactile",
-    "below_threshold",
-    "stopped",
-    "rms_rad_s",
-    "max_rad_s",
-    "distance_rad_s",
-    "distance_transient_rad_s",
-    "distance_pct",
-    "distance_transient_pct",
-    "rms_pct",
-    "outside",
-    "delay_ms",
-    "noise_rad_s",
-    "chatter_rad_s",
-    "force_mn",
-    "non_finite",
-];

@@ -13,6 +13,7 @@ use crate::device::Device;
 use crate::estimators::{Estimator, Kind};
 use crate::failure::Failure;
 use crate::parameters::PlantKind;
+use crate::score::Score;
 use crate::simulate::{plant_steps, ticks};
 use crate::trace::Trace;
 
@@ -108,7 +109,7 @@ impl<'a> Prepared<'a> {
         let simulated = Instant::now();
 
         let parasitic = Parasitic::of(&seen.parasitic_mn, case.rate_hz, &seen.fingertip);
-        let (rows, velocity_rms) = self.rows(by, &mut seen, parasitic)?;
+        let (rows, velocity) = self.rows(by, &mut seen, parasitic)?;
         let run = Run {
             controlled_by: match by {
                 By::Contestant(i) => self.settings.estimators[i].name,
@@ -116,7 +117,7 @@ impl<'a> Prepared<'a> {
                 By::Nobody => "any",
             },
             parasitic,
-            velocity_rms,
+            velocity,
             stopped: seen.stopped,
             signals: seen.signals,
         };
@@ -135,7 +136,7 @@ impl<'a> Prepared<'a> {
         by: By,
         seen: &mut Seen,
         parasitic: Parasitic,
-    ) -> Result<(Vec<FeltRow>, Option<f64>), Failure> {
+    ) -> Result<(Vec<FeltRow>, Option<Score>), Failure> {
         let case = self.case;
         let heading = Heading {
             scenario: case.scene.as_str().to_owned(),
@@ -168,17 +169,17 @@ impl<'a> Prepared<'a> {
             felt(row, name)
         };
         let watched = || score(&self.contest.estimates(&seen.trace));
-        let closed = |rows: &[Row]| rows.first().and_then(|row| row.score.rms_rad_s);
+        let closed = |rows: &[Row]| rows.first().map(|row| row.score);
         Ok(match by {
             By::Contestant(_) => {
                 let rows = score(&[used])?;
-                let rms = closed(&rows);
-                (rows.into_iter().map(itself).collect(), rms)
+                let velocity = closed(&rows);
+                (rows.into_iter().map(itself).collect(), velocity)
             }
             By::Reference => {
-                let rms = closed(&score(&[used])?);
+                let velocity = closed(&score(&[used])?);
                 let rows = watched()?.into_iter().map(|row| felt(row, REFERENCE));
-                (rows.collect(), rms)
+                (rows.collect(), velocity)
             }
             By::Nobody => {
                 let rows = watched()?;

@@ -3,11 +3,12 @@
 use std::fmt::Write as _;
 
 use super::Row;
+use crate::table::layout::{self, Column};
 
 /// RMS error in % of finite difference, and in brackets over the limit with the same signals;
-/// means over the seeds. One block a rate.
+/// means over the seeds. One part a rate, in lines of `width` characters.
 #[must_use]
-pub fn table(rows: &[Row]) -> String {
+pub fn table(rows: &[Row], width: usize) -> String {
     let mut text = String::new();
     for rate_hz in distinct(rows.iter().map(|row| row.rate_hz)) {
         let of = |row: &&Row| row.rate_hz == rate_hz;
@@ -18,31 +19,34 @@ pub fn table(rows: &[Row]) -> String {
             text,
             "{rate_hz} Hz, RMS in % of finite difference (times the limit)"
         );
-        let _ = write!(text, "{:<22}", "");
-        for scenario in &scenarios {
-            let _ = write!(text, "{scenario:>17}");
-        }
-        text.push('\n');
-        for estimator in distinct(block.iter().map(|row| row.estimator)) {
-            let _ = write!(text, "{estimator:<22}");
-            for scenario in &scenarios {
-                let cell = |row: &&&Row| row.estimator == estimator && row.scenario == *scenario;
-                let (mut pct, mut over, mut count) = (0.0, 0.0, 0.0);
-                for row in block.iter().filter(cell) {
-                    pct += row.rms_pct;
-                    over += row.over_limit;
-                    count += 1.0;
-                }
-                let cell = match count > 0.0 {
-                    true => format!("{:.2} ({:.2})", pct / count, over / count),
-                    false => "-".to_owned(),
-                };
-                let _ = write!(text, "{cell:>17}");
-            }
-            text.push('\n');
-        }
+        let estimators = distinct(block.iter().map(|row| row.estimator));
+        let columns: Vec<Column> = scenarios
+            .iter()
+            .map(|scenario| {
+                let cells = estimators.iter().map(|estimator| {
+                    let of = |row: &&&Row| row.estimator == *estimator && row.scenario == *scenario;
+                    cell(block.iter().filter(of).copied())
+                });
+                Column::numbers(scenario, "", cells)
+            })
+            .collect();
+        let names = estimators.iter().map(|name| (*name).to_owned());
+        text += &layout::table(&Column::text("", "", names), &columns, width);
     }
     text
+}
+
+fn cell<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
+    let (mut pct, mut over, mut count) = (0.0, 0.0, 0.0);
+    for row in rows {
+        pct += row.rms_pct;
+        over += row.over_limit;
+        count += 1.0;
+    }
+    match count > 0.0 {
+        true => format!("{:.2} ({:.2})", pct / count, over / count),
+        false => "-".to_owned(),
+    }
 }
 
 fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
@@ -70,7 +74,7 @@ mod tests {
             rms_pct,
             over_limit: rms_pct / 10.0,
         };
-        let text = table(&[row(1, 20.0), row(2, 40.0)]);
+        let text = table(&[row(1, 20.0), row(2, 40.0)], 80);
         assert!(text.ends_with("30.00 (3.00)\n"), "{text}");
     }
 }

@@ -11,6 +11,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontTransform, IntoFont, RGBColor, TextStyle, WHITE};
 
 use super::palette::{BAND, INK};
+use super::style::Style;
 use super::text::escape;
 
 /// Width of every figure, px.
@@ -36,7 +37,7 @@ pub(super) enum Anchor {
 
 /// A chip of a legend and its text.
 pub(super) enum Key<'a> {
-    Line(RGBColor, &'a str),
+    Line(Style, &'a str),
     Band(&'a str),
 }
 
@@ -83,14 +84,18 @@ impl Canvas<'_> {
     pub(super) fn line(
         &self,
         points: &[(f64, f64)],
-        colour: RGBColor,
+        style: impl Into<Style>,
         width: f64,
     ) -> Result<(), String> {
-        let points: Vec<_> = points.iter().copied().map(fine).collect();
-        let style = colour.stroke_width((width * FINE).round() as u32);
-        self.0
-            .draw(&PathElement::new(points, style))
-            .map_err(|e| e.to_string())
+        let Style { colour, dash } = style.into();
+        let stroke = colour.stroke_width((width * FINE).round() as u32);
+        for piece in dash.pieces(points) {
+            let points: Vec<_> = piece.into_iter().map(fine).collect();
+            self.0
+                .draw(&PathElement::new(points, stroke))
+                .map_err(|e| e.to_string())?;
+        }
+        Ok(())
     }
 
     /// A filled area.
@@ -101,15 +106,20 @@ impl Canvas<'_> {
             .map_err(|e| e.to_string())
     }
 
-    /// A filled rectangle between two corners.
+    /// A rectangle between two corners, filled, or striped from left to right.
     pub(super) fn rectangle(
         &self,
-        corners: [(f64, f64); 2],
-        colour: RGBColor,
+        [(left, top), (right, bottom)]: [(f64, f64); 2],
+        style: impl Into<Style>,
     ) -> Result<(), String> {
-        self.0
-            .draw(&Rectangle::new(corners.map(fine), colour.filled()))
-            .map_err(|e| e.to_string())
+        let Style { colour, dash } = style.into();
+        for [left, right] in dash.spans(left, right) {
+            let corners = [(left, top), (right, bottom)].map(fine);
+            self.0
+                .draw(&Rectangle::new(corners, colour.filled()))
+                .map_err(|e| e.to_string())?;
+        }
+        Ok(())
     }
 
     /// A text whose middle line is at `y`.
@@ -143,8 +153,8 @@ impl Canvas<'_> {
             (key, (dx, y + LEGEND_ROW * row as f64))
         }) {
             let name = match key {
-                Key::Line(colour, name) => {
-                    self.line(&[(x, y), (x + CHIP, y)], *colour, 3.0)?;
+                Key::Line(style, name) => {
+                    self.line(&[(x, y), (x + CHIP, y)], *style, 3.0)?;
                     name
                 }
                 Key::Band(name) => {
@@ -206,7 +216,10 @@ mod tests {
     #[test]
     fn a_long_legend_breaks_before_the_edge() {
         let names: Vec<String> = (0..20).map(|i| format!("estimator-{i}")).collect();
-        let keys: Vec<Key> = names.iter().map(|name| Key::Line(INK, name)).collect();
+        let keys: Vec<Key> = names
+            .iter()
+            .map(|name| Key::Line(INK.into(), name))
+            .collect();
         for (x, _) in legend_places(&keys, 50.0) {
             assert!(x + CHIP + 6.0 + text_width("estimator-19", LABEL) <= WIDTH);
         }

@@ -38,7 +38,7 @@ pub(super) fn panels(
         .collect();
     let mut keys: Vec<Key> = there
         .iter()
-        .map(|name| Key::Line(palette.colour(name), name))
+        .map(|name| Key::Line(palette.style(name), name))
         .collect();
     let limit_of = |scenario: &Scenario| {
         let mut rows = limits.iter().filter(|row| {
@@ -52,7 +52,7 @@ pub(super) fn panels(
     };
     if shown.iter().any(|scenario| limit_of(scenario)[0].is_some()) {
         keys.push(Key::Line(
-            INK,
+            INK.into(),
             "particle filter: counts above, time stamps below",
         ));
     }
@@ -144,7 +144,7 @@ fn panel(
     for (name, cost, error) in points(scenario) {
         let (x, y) = plot.at((cost, error));
         let corners = [(x - MARK, y - MARK), (x + MARK, y + MARK)];
-        canvas.rectangle(corners, palette.colour(name))?;
+        canvas.rectangle(corners, palette.style(name))?;
     }
     plot.edges(canvas)
 }

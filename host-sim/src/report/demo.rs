@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::{CaseReport, DeviceFacts, ReportInput, Row, Traces};
-use crate::score::{Truth, Wanted, percent_of};
+use crate::score::{Truth, Wanted};
 
 const STEP_S: f64 = 0.5;
 
@@ -69,14 +69,10 @@ fn case(
     let reference = prepared.score(&estimates[0].1);
     let rows = estimates
         .iter()
-        .map(|(name, estimate)| {
-            let score = prepared.score(estimate);
-            Row {
-                estimator: name.clone(),
-                score,
-                percent: percent_of(&score, &reference),
-                instructions: None,
-            }
+        .map(|(name, estimate)| Row {
+            estimator: name.clone(),
+            score: prepared.score(estimate).relative_to(&reference),
+            instructions: None,
         })
         .collect();
     drop(prepared);

@@ -46,7 +46,7 @@ pub(super) fn bars(
     let x = Axis::log([low.clamp(FLOOR_RAD_S, 0.1), high.clamp(1.0, 1e6)]);
     let keys: Vec<Key> = names
         .iter()
-        .map(|name| Key::Line(palette.colour(name), name))
+        .map(|name| Key::Line(palette.style(name), name))
         .collect();
     let row_height = BAR * names.len() as f64 + BETWEEN;
     let widest = scenarios.iter().map(|name| text_width(name, 12.0));
@@ -125,7 +125,7 @@ fn panel(
             let end = plot.x.part(distance).clamp(0.0, 1.0);
             let right = (plot.left + end * (plot.right - plot.left)).max(plot.left + 2.0);
             let corners = [(plot.left, y + 0.75), (right, y + BAR - 0.75)];
-            canvas.rectangle(corners, palette.colour(estimator))?;
+            canvas.rectangle(corners, palette.style(estimator))?;
         }
     }
     plot.edges(canvas)?;

@@ -1,7 +1,7 @@
 //! Cases in groups: the same rate and plant, all scenarios, all estimators.
 
 use super::{CaseReport, ReportInput, Row};
-use crate::score::{Percent, Score};
+use crate::score::Score;
 
 /// What was run at one rate on one plant.
 pub(super) struct Group<'a> {
@@ -91,31 +91,12 @@ fn merge(rows: &[&Row]) -> Vec<Row> {
 }
 
 fn mean(name: &str, rows: &[&&Row]) -> Row {
-    let values = |of: fn(&Row) -> Option<f64>| rows.iter().filter_map(move |row| of(row));
-    let mean = |of: fn(&Row) -> Option<f64>| {
-        let n = values(of).count();
-        (n > 0).then(|| values(of).sum::<f64>() / n as f64)
-    };
+    let instructions: Vec<f64> = rows.iter().filter_map(|row| row.instructions).collect();
+    let n = instructions.len();
     Row {
         estimator: name.into(),
-        score: Score {
-            rms_rad_s: mean(|row| row.score.rms_rad_s),
-            max_rad_s: values(|row| row.score.max_rad_s).reduce(f64::max),
-            distance_rad_s: mean(|row| row.score.distance_rad_s),
-            distance_transient_rad_s: mean(|row| row.score.distance_transient_rad_s),
-            outside: mean(|row| row.score.outside),
-            delay_ms: mean(|row| row.score.delay_ms),
-            noise_rad_s: mean(|row| row.score.noise_rad_s),
-            chatter_rad_s: mean(|row| row.score.chatter_rad_s),
-            force_mn: mean(|row| row.score.force_mn),
-            non_finite: rows.iter().map(|row| row.score.non_finite).sum(),
-        },
-        percent: Percent {
-            distance_pct: mean(|row| row.percent.distance_pct),
-            distance_transient_pct: mean(|row| row.percent.distance_transient_pct),
-            rms_pct: mean(|row| row.percent.rms_pct),
-        },
-        instructions: mean(|row| row.instructions),
+        score: Score::mean(rows.iter().map(|row| &row.score)),
+        instructions: (n > 0).then(|| instructions.iter().sum::<f64>() / n as f64),
     }
 }
 

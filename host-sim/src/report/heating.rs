@@ -17,9 +17,9 @@ pub(super) fn chart(
     damping: &Damping,
     palette: &Palette,
 ) -> Result<String, String> {
-    let mut keys = vec![Key::Line(INK, "true")];
+    let mut keys = vec![Key::Line(INK.into(), "true")];
     let names = damping.learned.iter().map(|(name, _)| *name);
-    keys.extend(names.map(|name| Key::Line(palette.colour(name), name)));
+    keys.extend(names.map(|name| Key::Line(palette.style(name), name)));
     let highest = damping.truth.iter().copied().fold(0.0, f64::max);
     let title = format!(
         "Damping in {} at {}, plant {}",
@@ -53,7 +53,7 @@ pub(super) fn chart(
             points.into_iter()
         };
         for (name, learned) in &damping.learned {
-            plot.curve(canvas, curve(learned), palette.colour(name), 1.5)?;
+            plot.curve(canvas, curve(learned), palette.style(name), 1.5)?;
         }
         plot.curve(canvas, curve(&damping.truth), INK, 2.0)?;
         plot.edges(canvas)?;

@@ -2,9 +2,9 @@
 //! sure each constant is.
 
 use super::canvas::{Anchor, Key, LABEL, TITLE, WIDTH, figure, legend_height};
+use super::page::{Document, printed};
 use super::palette::{BAND, INK, MUTED, TRUTH};
 use super::plot::{Axis, Plot};
-use super::text::escape;
 use crate::identify::{Beside, Identification, Quantity, SPAN_S};
 use plotters::style::RGBColor;
 
@@ -35,21 +35,22 @@ pub fn identify(
         figures += &format!("<figure>{}</figure>\n", motion(beside, count_rad_s)?);
     }
     figures += &format!("<figure>{}</figure>\n", constants(&found.quantities)?);
-    let style = include_str!("page.css");
-    Ok(format!(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>Identification</title>\n<style>\n{style}</style></head>\n<body>\n\
-         <header><h1>Identification</h1>\n<p>The identified motor ran beside the measured one: it \
+    let intro = format!(
+        "<p>The identified motor ran beside the measured one: it \
          saw the current and the handle, never the motor. Both velocities are displacements over \
          {:.0} ms; the green band is one count of that. What repeats once a turn is fitted but not \
-         modelled here, so it stays in the residual.</p>\n\
-         <dl><div><dt>command</dt><dd><code>{}</code></dd></div></dl></header>\n\
-         <main>\n{figures}<pre class=\"scroll\">{}</pre>\n</main></body></html>\n",
-        1e3 * SPAN_S,
-        escape(command),
-        escape(table),
-    ))
+         modelled here, so it stays in the residual.</p>\n",
+        1e3 * SPAN_S
+    );
+    Ok(Document {
+        title: "Identification",
+        intro,
+        facts: vec![("command", command.to_owned())],
+        notes: String::new(),
+        contents: String::new(),
+        body: figures + &printed(table),
+    }
+    .html())
 }
 
 /// Velocities, and below them their difference.
@@ -63,8 +64,8 @@ fn motion(beside: &Beside, count_rad_s: f64) -> Result<String, String> {
     let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
     let rms = (residual.iter().map(|r| r * r).sum::<f64>() / residual.len().max(1) as f64).sqrt();
     let keys = [
-        Key::Line(TRUTH, "measured"),
-        Key::Line(MODEL, "model"),
+        Key::Line(TRUTH.into(), "measured"),
+        Key::Line(MODEL.into(), "model"),
         Key::Band("one count"),
     ];
     let below = TOP + PANEL + 34.0;

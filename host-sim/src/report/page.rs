@@ -6,6 +6,7 @@ use super::sections::sections;
 use super::text::{escape, plant, rate};
 use super::verdict::verdict;
 use crate::parameters::PlantKind;
+use crate::version::VERSION;
 
 /// The whole document.
 pub(super) fn page(report: &ReportInput) -> Result<String, String> {
@@ -32,21 +33,75 @@ pub(super) fn page(report: &ReportInput) -> Result<String, String> {
         .iter()
         .map(|note| format!("<p>{}</p>\n", escape(note)))
         .collect();
-    let style = include_str!("page.css");
-    let script = include_str!("page.js");
-    Ok(format!(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>Velocity estimators compared</title>\n<style>\n{style}</style></head>\n<body>\n\
-         <header><h1>Velocity estimators compared</h1>\n{verdict}{}{notes}</header>\n\
-         <nav aria-label=\"Contents\">{links}</nav>\n<main>\n{body}</main>\n\
-         <script>\n{script}</script>\n</body></html>\n",
-        run(report)
-    ))
+    Ok(Document {
+        title: "Velocity estimators compared",
+        intro: verdict,
+        facts: facts(report),
+        notes,
+        contents: links,
+        body,
+    }
+    .html())
+}
+
+/// A page that loads nothing from anywhere.
+pub(super) struct Document<'a> {
+    pub(super) title: &'a str,
+    /// HTML below the title.
+    pub(super) intro: String,
+    /// Names and values of what was run; the version is added.
+    pub(super) facts: Vec<(&'a str, String)>,
+    /// HTML below the facts.
+    pub(super) notes: String,
+    /// HTML of the links to sections; empty without.
+    pub(super) contents: String,
+    /// HTML of the page itself.
+    pub(super) body: String,
+}
+
+impl Document<'_> {
+    pub(super) fn html(&self) -> String {
+        let Self {
+            title,
+            intro,
+            notes,
+            contents,
+            body,
+            ..
+        } = self;
+        let (style, script) = (include_str!("page.css"), include_str!("page.js"));
+        let version = ("version", VERSION.to_owned());
+        let facts: String = (self.facts.iter().chain([&version]))
+            .filter(|(_, value)| !value.is_empty())
+            .map(|(what, value)| {
+                let value = match *what {
+                    "command" => format!("<code>{}</code>", escape(value)),
+                    _ => escape(value),
+                };
+                format!("<div><dt>{what}</dt><dd>{value}</dd></div>\n")
+            })
+            .collect();
+        let nav = match contents.is_empty() {
+            true => String::new(),
+            false => format!("<nav aria-label=\"Contents\">{contents}</nav>\n"),
+        };
+        format!(
+            "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <title>{title}</title>\n<style>\n{style}</style></head>\n<body>\n\
+             <header><h1>{title}</h1>\n{intro}<dl>{facts}</dl>\n{notes}</header>\n\
+             {nav}<main>\n{body}</main>\n<script>\n{script}</script>\n</body></html>\n"
+        )
+    }
+}
+
+/// A table as it is printed.
+pub(super) fn printed(table: &str) -> String {
+    format!("<pre class=\"scroll\">{}</pre>\n", escape(table))
 }
 
 /// What was run.
-fn run(report: &ReportInput) -> String {
+fn facts(report: &ReportInput) -> Vec<(&'static str, String)> {
     let closed = || report.closed_loop.outcomes.iter().map(|o| &o.case);
     let compared = report.cases.iter().map(|case| case.rate_hz);
     let mut rates: Vec<f64> = compared.chain(closed().map(|case| case.rate_hz)).collect();
@@ -66,28 +121,14 @@ fn run(report: &ReportInput) -> String {
         .map(plant)
         .collect();
     let list = |items: Vec<String>| items.join(", ");
-    let facts = [
-        (
-            "command",
-            format!("<code>{}</code>", escape(&report.command)),
-            report.command.is_empty(),
-        ),
-        ("device", escape(&report.device.name), false),
-        ("plant", plants.join(" and "), plants.is_empty()),
+    vec![
+        ("command", report.command.clone()),
+        ("device", report.device.name.clone()),
+        ("plant", plants.join(" and ")),
         (
             "sample rates",
             list(rates.iter().map(|hz| rate(*hz)).collect()),
-            rates.is_empty(),
         ),
-        (
-            "seeds",
-            list(seeds.iter().map(u64::to_string).collect()),
-            seeds.is_empty(),
-        ),
-    ];
-    let facts = facts.into_iter().filter(|(_, _, is_empty)| !is_empty);
-    let facts: String = facts
-        .map(|(what, value, _)| format!("<div><dt>{what}</dt><dd>{value}</dd></div>\n"))
-        .collect();
-    format!("<dl>{facts}</dl>\n")
+        ("seeds", list(seeds.iter().map(u64::to_string).collect())),
+    ]
 }

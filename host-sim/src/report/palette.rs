@@ -1,8 +1,9 @@
-//! One colour an estimator, the same in every figure.
+//! One colour and dash for each estimator, the same in every figure.
 
 use plotters::style::RGBColor;
 
 use super::ReportInput;
+use super::style::{Dash, Style};
 
 /// The truth, and the interval around it.
 pub(super) const TRUTH: RGBColor = RGBColor(0x11, 0x11, 0x11);
@@ -12,35 +13,51 @@ pub(super) const INK: RGBColor = RGBColor(0x33, 0x33, 0x33);
 pub(super) const MUTED: RGBColor = RGBColor(0x77, 0x77, 0x77);
 pub(super) const GRID: RGBColor = RGBColor(0xe6, 0xe6, 0xe6);
 
-/// Okabe and Ito's colours, told apart with any colour vision.
-const NAMED: [(&str, RGBColor); 12] = [
-    ("finite-difference", RGBColor(0x8c, 0x8c, 0x8c)),
-    ("low-pass", RGBColor(0xe6, 0x9f, 0x00)),
-    ("foaw-end-fit", RGBColor(0x56, 0xb4, 0xe9)),
-    ("foaw-best-fit", RGBColor(0x00, 0x72, 0xb2)),
-    ("kalman-triple", RGBColor(0x00, 0x9e, 0x73)),
-    ("kalman-motor", RGBColor(0xd5, 0x5e, 0x00)),
-    ("pll", RGBColor(0xcc, 0x79, 0xa7)),
-    ("observer", RGBColor(0x5d, 0x3a, 0x9b)),
-    ("observer-edge", RGBColor(0x1a, 0x1a, 0x6e)),
-    ("adaptive", RGBColor(0xc0, 0x00, 0x3a)),
-    ("adaptive-edge", RGBColor(0x00, 0x4d, 0x40)),
-    ("reference", RGBColor(0x7a, 0x52, 0x30)),
+// Colours of Okabe and Ito, of Tol, and darker ones. With a dash each name differs from every other
+// for normal, protanopic and deuteranopic vision.
+const GREY: RGBColor = RGBColor(0x8c, 0x8c, 0x8c);
+const ORANGE: RGBColor = RGBColor(0xe6, 0x9f, 0x00);
+const SKY: RGBColor = RGBColor(0x56, 0xb4, 0xe9);
+const BLUE: RGBColor = RGBColor(0x00, 0x72, 0xb2);
+const GREEN: RGBColor = RGBColor(0x00, 0x9e, 0x73);
+const VERMILION: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
+const PINK: RGBColor = RGBColor(0xcc, 0x79, 0xa7);
+const OLIVE: RGBColor = RGBColor(0x99, 0x99, 0x33);
+const PURPLE: RGBColor = RGBColor(0x5d, 0x3a, 0x9b);
+const NAVY: RGBColor = RGBColor(0x1a, 0x1a, 0x6e);
+const CRIMSON: RGBColor = RGBColor(0xc0, 0x00, 0x3a);
+const PINE: RGBColor = RGBColor(0x00, 0x4d, 0x40);
+const BROWN: RGBColor = RGBColor(0x7a, 0x52, 0x30);
+
+/// One style for every estimator, and for the reference encoder in its place. Relatives share a
+/// colour.
+const STYLES: [(&str, RGBColor, Dash); 21] = [
+    ("finite-difference", GREY, Dash::Solid),
+    ("low-pass", ORANGE, Dash::Solid),
+    ("foaw-end-fit", SKY, Dash::Solid),
+    ("foaw-best-fit", BLUE, Dash::Solid),
+    ("kalman-triple", GREEN, Dash::Dotted),
+    ("kalman-triple-table", GREEN, Dash::Dashed),
+    ("kalman-triple-steady", GREEN, Dash::DashDot),
+    ("kalman-motor", VERMILION, Dash::Solid),
+    ("kalman-motor-steady", VERMILION, Dash::Dotted),
+    ("pll", PINK, Dash::Dotted),
+    ("m-over-t", OLIVE, Dash::DashDot),
+    ("observer", PURPLE, Dash::Solid),
+    ("observer-edge", NAVY, Dash::Solid),
+    ("adaptive", CRIMSON, Dash::Dashed),
+    ("adaptive-edge", PINE, Dash::DashDot),
+    ("observer-soft", PURPLE, Dash::Dashed),
+    ("adaptive-soft", CRIMSON, Dash::Dotted),
+    ("observer-held", PURPLE, Dash::DashDot),
+    ("observer-edge-held", NAVY, Dash::DashDot),
+    ("observer-edge-blind", NAVY, Dash::Dashed),
+    ("reference", BROWN, Dash::Solid),
 ];
 
-/// For the others, by first appearance: Tol's muted scheme, darker than the above.
-const OTHERS: [RGBColor; 6] = [
-    RGBColor(0x33, 0x22, 0x88),
-    RGBColor(0x88, 0x22, 0x55),
-    RGBColor(0x99, 0x99, 0x33),
-    RGBColor(0x66, 0x11, 0x00),
-    RGBColor(0x44, 0xaa, 0x99),
-    RGBColor(0xaa, 0x44, 0x99),
-];
-
-/// Names in order of appearance, and their colours.
+/// Names in order of appearance.
 pub(super) struct Palette {
-    colours: Vec<(String, RGBColor)>,
+    seen: Vec<String>,
     /// How many of them are in the open-loop comparison.
     compared: usize,
 }
@@ -66,77 +83,133 @@ impl Palette {
 
     /// Names by order of appearance, and whether each is in the open-loop comparison.
     fn named<'a>(names: impl Iterator<Item = (&'a str, bool)>) -> Self {
-        let mut colours: Vec<(String, RGBColor)> = Vec::new();
+        let mut seen: Vec<String> = Vec::new();
         let mut compared = 0;
-        let mut others = OTHERS.iter().cycle();
         for (name, is_compared) in names {
-            if colours.iter().any(|(known, _)| known == name) {
-                continue;
+            if !seen.iter().any(|known| known == name) {
+                compared += usize::from(is_compared);
+                seen.push(name.to_owned());
             }
-            compared += usize::from(is_compared);
-            let colour = NAMED
-                .iter()
-                .find(|(known, _)| *known == name)
-                .map_or_else(|| others.next().copied(), |(_, colour)| Some(*colour));
-            colours.push((name.to_owned(), colour.unwrap_or(INK)));
         }
-        Self { colours, compared }
+        Self { seen, compared }
     }
 
-    pub(super) fn colour(&self, estimator: &str) -> RGBColor {
-        self.colours
+    /// Style of an estimator; ink for a name that is no estimator's.
+    pub(super) fn style(&self, estimator: &str) -> Style {
+        STYLES
             .iter()
-            .find(|(name, _)| name == estimator)
-            .map_or(INK, |(_, colour)| *colour)
+            .find(|(name, ..)| *name == estimator)
+            .map_or(INK.into(), |&(_, colour, dash)| Style { colour, dash })
     }
 
     /// Every estimator of the open-loop comparison, in order of first appearance.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
-        self.colours[..self.compared]
-            .iter()
-            .map(|(name, _)| name.as_str())
+        self.seen[..self.compared].iter().map(String::as_str)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{CaseReport, Row};
     use super::*;
+    use crate::estimators::Kind;
+    use crate::felt::REFERENCE;
 
-    fn report(names: &[&str]) -> ReportInput {
-        let rows = names.iter().map(|name| Row {
-            estimator: (*name).to_string(),
-            ..Row::default()
-        });
-        ReportInput {
-            cases: vec![CaseReport {
-                rows: rows.collect(),
-                ..CaseReport::default()
-            }],
-            ..ReportInput::default()
+    /// Least distance of two colours with the same dash, in OKLab, where 0.02 can just be seen side
+    /// by side.
+    const LEAST: f64 = 0.06;
+
+    /// Linear RGB as people with normal, protanopic and deuteranopic vision see it: Machado,
+    /// Oliveira and Fernandes (2009), severity 1.
+    const VISIONS: [[[f64; 3]; 3]; 3] = [
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        [
+            [0.152_286, 1.052_583, -0.204_868],
+            [0.114_503, 0.786_281, 0.099_216],
+            [-0.003_882, -0.048_116, 1.051_998],
+        ],
+        [
+            [0.367_322, 0.860_646, -0.227_968],
+            [0.280_085, 0.672_501, 0.047_413],
+            [-0.011_820, 0.042_940, 0.968_881],
+        ],
+    ];
+
+    fn times(matrix: &[[f64; 3]; 3], [x, y, z]: [f64; 3]) -> [f64; 3] {
+        matrix.map(|[a, b, c]| a * x + b * y + c * z)
+    }
+
+    /// Ottosson's OKLab of a linear RGB colour.
+    fn oklab(rgb: [f64; 3]) -> [f64; 3] {
+        let cones = times(
+            &[
+                [0.412_221_470_8, 0.536_332_536_3, 0.051_445_992_9],
+                [0.211_903_498_2, 0.680_699_545_1, 0.107_396_956_6],
+                [0.088_302_461_9, 0.281_718_837_6, 0.629_978_700_5],
+            ],
+            rgb.map(|part| part.clamp(0.0, 1.0)),
+        );
+        times(
+            &[
+                [0.210_454_255_3, 0.793_617_785_0, -0.004_072_046_8],
+                [1.977_998_495_1, -2.428_592_205_0, 0.450_593_709_9],
+                [0.025_904_037_1, 0.782_771_766_2, -0.808_675_766_0],
+            ],
+            cones.map(f64::cbrt),
+        )
+    }
+
+    /// The distance of two colours to whom it is smallest.
+    fn distance(a: RGBColor, b: RGBColor) -> f64 {
+        let linear = |RGBColor(r, g, b): RGBColor| {
+            [r, g, b].map(|part| {
+                let part = f64::from(part) / 255.0;
+                match part <= 0.040_45 {
+                    true => part / 12.92,
+                    false => ((part + 0.055) / 1.055).powf(2.4),
+                }
+            })
+        };
+        let (a, b) = (linear(a), linear(b));
+        VISIONS
+            .iter()
+            .map(|vision| {
+                let [a, b] = [a, b].map(|rgb| oklab(times(vision, rgb)));
+                let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
+                squares.sum::<f64>().sqrt()
+            })
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn the_distance_is_that_of_the_least_vision() {
+        let [black, white] = [RGBColor(0, 0, 0), RGBColor(255, 255, 255)];
+        assert!((distance(black, white) - 1.0).abs() < 1e-3);
+        // A red and a green of one lightness: alike only to who cannot see their hue.
+        assert!(distance(RGBColor(163, 60, 0), RGBColor(84, 100, 0)) < 0.08);
+    }
+
+    #[test]
+    fn every_estimator_has_a_style_that_no_other_can_be_taken_for() {
+        let mut names: Vec<&str> = Kind::all().iter().map(|kind| kind.name).collect();
+        names.push(REFERENCE);
+        let palette = Palette::of(names.iter().copied());
+        for (i, a) in names.iter().enumerate() {
+            let style = palette.style(a);
+            assert!(STYLES.iter().any(|(name, ..)| name == a), "{a}");
+            for b in &names[..i] {
+                let other = palette.style(b);
+                let apart = distance(style.colour, other.colour);
+                assert!(
+                    style.dash != other.dash || apart > LEAST,
+                    "{a} and {b}: {apart:.3} apart, both {:?}",
+                    style.dash
+                );
+            }
         }
     }
 
     #[test]
-    fn a_name_has_its_colour_whoever_else_is_there() {
-        let few = Palette::new(&report(&["pll", "mine"]));
-        let many = Palette::new(&report(&["low-pass", "mine", "foaw-end-fit", "pll"]));
-        assert_eq!(few.colour("pll"), many.colour("pll"));
-        assert_eq!(few.colour("mine"), many.colour("mine"));
-    }
-
-    #[test]
-    fn named_and_other_estimators_have_colours_of_their_own() {
-        let names: Vec<&str> = NAMED.iter().map(|(name, _)| *name).collect();
-        let all = [names.as_slice(), &["a", "b", "c", "d", "e", "f"]].concat();
-        let palette = Palette::new(&report(&all));
-        let mut colours: Vec<_> = all
-            .iter()
-            .map(|name| palette.colour(name))
-            .map(|RGBColor(r, g, b)| (r, g, b))
-            .collect();
-        colours.sort_unstable();
-        colours.dedup();
-        assert_eq!(colours.len(), NAMED.len() + OTHERS.len());
+    fn a_name_that_is_no_estimator_is_drawn_in_ink() {
+        assert_eq!(Palette::of(["mine"].into_iter()).style("mine"), INK.into());
     }
 }

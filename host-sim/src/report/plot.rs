@@ -3,6 +3,7 @@
 use super::canvas::{Anchor, Canvas, LABEL};
 use super::curve;
 use super::palette::{GRID, INK, MUTED};
+use super::style::Style;
 use super::text::number;
 use plotters::style::RGBColor;
 
@@ -66,10 +67,35 @@ impl Axis {
         if self.log {
             let first = (self.low.log10() - 1e-9).ceil() as i32;
             let last = (self.high.log10() + 1e-9).floor() as i32;
-            return (first..=last)
+            let decades: Vec<_> = (first..=last)
                 .map(|exponent| 10_f64.powi(exponent))
                 .collect();
+            return match decades.len() {
+                0 | 1 => self.within_a_decade(),
+                _ => decades,
+            };
         }
+        // One label alone is no scale.
+        (wanted..)
+            .map(|wanted| self.even(wanted))
+            .find(|ticks| wanted == 0 || ticks.len() > 1)
+            .unwrap_or_default()
+    }
+
+    /// The ends, and what is round between them.
+    fn within_a_decade(&self) -> Vec<f64> {
+        let decade = 10_f64.powf(self.low.log10().floor());
+        let round = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0].map(|m| m * decade);
+        let inside = |tick: &f64| (1.1 * self.low..0.91 * self.high).contains(tick);
+        let inside = round.into_iter().filter(inside);
+        std::iter::once(self.low)
+            .chain(inside)
+            .chain([self.high])
+            .collect()
+    }
+
+    /// About `wanted` round values.
+    fn even(&self, wanted: usize) -> Vec<f64> {
         if wanted == 0 {
             return Vec::new();
         }
@@ -184,14 +210,15 @@ impl Plot {
         &self,
         canvas: &Canvas,
         points: impl Iterator<Item = (f64, f64)>,
-        colour: RGBColor,
+        style: impl Into<Style>,
         width: f64,
     ) -> Result<(), String> {
+        let style = style.into();
         let columns = (self.right - self.left) as usize;
         let places = points.map(|point| self.at(point));
         let places = curve::reduce(places, [self.left, self.right], columns);
         for piece in curve::clip(&places, [self.top, self.bottom]) {
-            canvas.line(&piece, colour, width)?;
+            canvas.line(&piece, style, width)?;
         }
         Ok(())
     }
@@ -231,6 +258,23 @@ mod tests {
         assert_eq!(decades.len(), 6);
         assert!((decades[0] - 1e-3).abs() < 1e-12 && decades[5] == 100.0);
         assert_eq!(Axis::log_exact([4.0, 500.0]).ticks(0), [10.0, 100.0]);
+    }
+
+    #[test]
+    fn an_axis_has_two_labels_at_least() {
+        for low in (-40..=40).map(|i| 0.05 * f64::from(i)) {
+            for span in (1..=60).map(|i| 0.03 * f64::from(i)) {
+                let axis = Axis::linear([low, low + span]);
+                for wanted in 1..9 {
+                    let ticks = axis.ticks(wanted);
+                    assert!(ticks.len() > 1, "{low} {span} {wanted}: {ticks:?}");
+                    let inside = |t: &f64| (-1e-6..=1.0 + 1e-6).contains(&axis.part(*t));
+                    assert!(ticks.iter().all(inside) && ticks.len() < 3 * wanted + 2);
+                }
+                let log = Axis::log_exact([span, 2.5 * span]).ticks(0);
+                assert!(log.len() > 1 && log.is_sorted_by(|a, b| a < b), "{log:?}");
+            }
+        }
     }
 
     #[test]

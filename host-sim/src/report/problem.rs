@@ -21,8 +21,8 @@ pub(super) fn figure_one(
 ) -> Result<String, String> {
     let (name, estimate) = &traces.estimates[estimator];
     let keys = [
-        Key::Line(palette.colour(name), name),
-        Key::Line(TRUTH, "true velocity"),
+        Key::Line(palette.style(name), name),
+        Key::Line(TRUTH.into(), "true velocity"),
         Key::Band("haptic interval"),
     ];
     let head = 34.0 + legend_height(&keys, LEFT) + 6.0;
@@ -56,7 +56,7 @@ pub(super) fn figure_one(
         // The estimate below the truth, or it would hide it.
         velocity::truth(canvas, &plot, traces, window.clone(), origin, interval)?;
         let points = window.clone().map(|at| (time(at), f64::from(estimate[at])));
-        plot.curve(canvas, points, palette.colour(name), 1.4)?;
+        plot.curve(canvas, points, palette.style(name), 1.4)?;
         let points = window.clone().map(|at| (time(at), traces.truth[at]));
         plot.curve(canvas, points, TRUTH, 1.8)?;
         plot.edges(canvas)?;

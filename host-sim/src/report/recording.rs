@@ -79,7 +79,7 @@ pub fn recording(view: &RecordingView) -> Result<String, String> {
 
 fn keys(panel: &Panel) -> Vec<Key<'_>> {
     let lines = panel.curves.iter();
-    let mut keys: Vec<_> = lines.map(|c| Key::Line(c.colour, &c.name)).collect();
+    let mut keys: Vec<_> = lines.map(|c| Key::Line(c.style, &c.name)).collect();
     if panel.band.is_some() {
         keys.push(Key::Band("what a fingertip cannot tell"));
     }
@@ -154,7 +154,7 @@ fn velocities(view: &RecordingView) -> Vec<Curve> {
         .iter()
         .map(|estimate| {
             let values: Vec<_> = estimate.velocity.iter().map(|w| f64::from(*w)).collect();
-            let colour = palette.colour(estimate.estimator);
+            let colour = palette.style(estimate.estimator);
             let mut curve = Curve::new(estimate.estimator, colour, &values);
             // Its quantisation would hide what the others differ by.
             curve.sizes = estimate.estimator != "finite-difference";

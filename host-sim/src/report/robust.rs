@@ -3,7 +3,9 @@
 use plotters::style::RGBColor;
 
 use super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure};
+use super::page::{Document, printed};
 use super::palette::{GRID, INK, MUTED};
+use super::sections::framed;
 use super::text::escape;
 use crate::robust::judge::{FELT_NM, HANDLE_RAD_S};
 use crate::robust::summary::{SceneSummary, Spread};
@@ -67,21 +69,29 @@ const PANELS: [Panel; 4] = [
 ///
 /// # Errors
 /// If the figure cannot be drawn.
-pub fn robust(heading: &str, scenes: &[SceneSummary], table: &str) -> Result<String, String> {
+pub fn robust(
+    heading: &str,
+    scenes: &[SceneSummary],
+    table: &str,
+    command: &str,
+) -> Result<String, String> {
     let svg = chart(scenes)?;
-    let style = include_str!("page.css");
-    Ok(format!(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>Robustness of the loop</title>\n<style>\n{style}</style></head>\n<body>\n\
-         <header><h1>Robustness of the loop</h1>\n<p>{}. The controller believes the nominal \
+    let intro = format!(
+        "<p>{}. The controller believes the nominal \
          device; each run has another one. Of each run the largest speed, torque and force, and \
          the oscillation that stays. Bars reach from 5 % to 95 % of the devices, the line in them \
-         is the median, the dot the largest; red lines are limits.</p></header>\n\
-         <main>\n<figure>{svg}</figure>\n<pre style=\"font-size: .78rem; overflow-x: auto\">{}</pre>\n</main></body></html>\n",
-        escape(heading),
-        escape(table),
-    ))
+         is the median, the dot the largest; red lines are limits.</p>\n",
+        escape(heading)
+    );
+    Ok(Document {
+        title: "Robustness of the loop",
+        intro,
+        facts: vec![("command", command.to_owned())],
+        notes: String::new(),
+        contents: String::new(),
+        body: framed(&svg) + &printed(table),
+    }
+    .html())
 }
 
 fn chart(scenes: &[SceneSummary]) -> Result<String, String> {
@@ -90,7 +100,7 @@ fn chart(scenes: &[SceneSummary]) -> Result<String, String> {
     let share = (WIDTH - LEFT - 20.0 + GAP) / (PANELS.len() + 1) as f64;
     figure(bottom + 34.0, title, |canvas| {
         canvas.text(title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
-        let keys = VERDICTS.map(|(colour, name)| Key::Line(colour, name));
+        let keys = VERDICTS.map(|(colour, name)| Key::Line(colour.into(), name));
         canvas.legend(&keys, (LEFT, 38.0))?;
         for (i, scene) in scenes.iter().enumerate() {
             let at = (LEFT - 10.0, TOP + ROW * (i as f64 + 0.5));

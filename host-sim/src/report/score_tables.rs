@@ -2,87 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::Row;
 use super::grid::{Group, Scenario};
 use super::palette::Palette;
 use super::text::{escape, number, plant, rate, share};
-
-/// How one score is shown; smaller is better in all of them, by size where a sign is possible.
-struct Column {
-    head: &'static str,
-    unit: &'static str,
-    of: fn(&Row) -> Option<f64>,
-    show: fn(f64) -> String,
-}
-
-const COLUMNS: [Column; 11] = [
-    Column {
-        head: "distance",
-        unit: "% of fd",
-        of: |r| r.percent.distance_pct,
-        show: number,
-    },
-    Column {
-        head: "transient",
-        unit: "% of fd",
-        of: |r| r.percent.distance_transient_pct,
-        show: number,
-    },
-    Column {
-        head: "RMS",
-        unit: "% of fd",
-        of: |r| r.percent.rms_pct,
-        show: number,
-    },
-    Column {
-        head: "outside",
-        unit: "samples",
-        of: |r| r.score.outside,
-        show: share,
-    },
-    Column {
-        head: "distance",
-        unit: "rad/s",
-        of: |r| r.score.distance_rad_s,
-        show: number,
-    },
-    Column {
-        head: "RMS",
-        unit: "rad/s",
-        of: |r| r.score.rms_rad_s,
-        show: number,
-    },
-    Column {
-        head: "worst",
-        unit: "rad/s",
-        of: |r| r.score.max_rad_s,
-        show: number,
-    },
-    Column {
-        head: "delay",
-        unit: "ms",
-        of: |r| r.score.delay_ms,
-        show: number,
-    },
-    Column {
-        head: "noise",
-        unit: "50\u{2013}500 Hz, rad/s",
-        of: |r| r.score.noise_rad_s,
-        show: number,
-    },
-    Column {
-        head: "chatter",
-        unit: "rad/s",
-        of: |r| r.score.chatter_rad_s,
-        show: number,
-    },
-    Column {
-        head: "force",
-        unit: "mN",
-        of: |r| r.score.force_mn,
-        show: number,
-    },
-];
+use crate::score::{Better, Field, Form, Score};
 
 /// Share of samples inside the interval: estimators down, rate and plant across.
 ///
@@ -130,19 +53,13 @@ pub(super) fn scores(group: &Group, palette: &Palette) -> String {
         rate(group.rate_hz),
         plant(group.friction)
     );
-    let shown: Vec<&Column> = COLUMNS
+    let rows = || group.scenarios.iter().flat_map(|scenario| &scenario.rows);
+    let shown: Vec<&Field<Score>> = Score::FIELDS
         .iter()
-        .filter(|column| {
-            let mut rows = group.scenarios.iter().flat_map(|scenario| &scenario.rows);
-            rows.any(|row| (column.of)(row).is_some())
-        })
+        .filter(|field| rows().any(|row| (field.of)(&row.score).is_some()))
         .collect();
-    for column in &shown {
-        let _ = write!(
-            html,
-            "<th aria-sort=\"none\"><button type=\"button\">{}<small>{}</small></button></th>",
-            column.head, column.unit
-        );
+    for field in &shown {
+        html += &head(field);
     }
     html += "</tr></thead>\n";
     for scenario in &group.scenarios {
@@ -151,19 +68,52 @@ pub(super) fn scores(group: &Group, palette: &Palette) -> String {
     html + "</table></div>\n"
 }
 
-fn block(scenario: &Scenario, shown: &[&Column], palette: &Palette) -> String {
+/// The heading of a column that can be sorted by.
+pub(super) fn head<T>(field: &Field<T>) -> String {
+    format!(
+        "<th aria-sort=\"none\" title=\"{}\"><button type=\"button\">{}<small>{}</small></button></th>",
+        escape(&field.sentence()),
+        field.head,
+        field.unit
+    )
+}
+
+/// The cell of a value, marked where it is the best of `competing`: with one value alone, or all
+/// alike, there is no best.
+pub(super) fn score_cell<T>(
+    field: &Field<T>,
+    value: Option<f64>,
+    competing: impl Iterator<Item = f64> + Clone,
+    competes: bool,
+) -> String {
+    let Some(value) = value else {
+        return "<td class=\"none\">\u{2013}</td>".into();
+    };
+    let rank = |value: f64| match field.better {
+        Better::Smaller => Some(value.abs()),
+        Better::Larger => Some(-value),
+        Better::Neither => None,
+    };
+    let ranks = competing.filter_map(rank);
+    let least = ranks.clone().reduce(f64::min);
+    let differ = ranks.clone().any(|rank| Some(rank) > least);
+    let text = match field.form {
+        Form::Number => number(value),
+        Form::Share => share(value),
+    };
+    cell(
+        &text,
+        value.abs(),
+        competes && differ && rank(value) == least,
+    )
+}
+
+fn block(scenario: &Scenario, shown: &[&Field<Score>], palette: &Palette) -> String {
     let mut html = format!(
         "<tbody><tr class=\"scenario\"><th colspan=\"{}\" scope=\"rowgroup\">{}</th></tr>\n",
         shown.len() + 1,
         escape(scenario.name)
     );
-    // With one estimator alone, or all alike, there is no best.
-    let best = |column: &Column| {
-        let sizes = scenario.rows.iter().filter_map(column.of).map(f64::abs);
-        let sizes: Vec<f64> = sizes.collect();
-        let least = sizes.iter().copied().reduce(f64::min)?;
-        sizes.iter().any(|size| *size > least).then_some(least)
-    };
     for row in &scenario.rows {
         let mut name = label(&row.estimator, palette);
         if row.score.non_finite > 0 {
@@ -171,14 +121,12 @@ fn block(scenario: &Scenario, shown: &[&Column], palette: &Palette) -> String {
             let _ = write!(name, " <em class=\"bad\">{n} samples not finite</em>");
         }
         let _ = write!(html, "<tr><th scope=\"row\">{name}</th>");
-        for column in shown {
-            html += &match (column.of)(row) {
-                Some(value) => {
-                    let is_best = best(column) == Some(value.abs());
-                    cell(&(column.show)(value), value.abs(), is_best)
-                }
-                None => "<td class=\"none\">\u{2013}</td>".into(),
-            };
+        for field in shown {
+            let competing = scenario
+                .rows
+                .iter()
+                .filter_map(|row| (field.of)(&row.score));
+            html += &score_cell(field, (field.of)(&row.score), competing, true);
         }
         html += "</tr>\n";
     }
@@ -197,19 +145,17 @@ pub(super) fn cell(text: &str, sort_by: f64, best: bool) -> String {
 }
 
 pub(super) fn label(estimator: &str, palette: &Palette) -> String {
-    let colour = palette.colour(estimator);
-    let (r, g, b) = (colour.0, colour.1, colour.2);
     format!(
-        "<i style=\"background:#{r:02x}{g:02x}{b:02x}\"></i>{}",
+        "<i style=\"background:{}\"></i>{}",
+        palette.style(estimator).css(),
         escape(estimator)
     )
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{CaseReport, ReportInput, grid};
+    use super::super::{CaseReport, ReportInput, Row, grid};
     use super::*;
-    use crate::score::Score;
 
     fn table(rows: &[(&str, Score)]) -> String {
         let rows = rows.iter().map(|(name, score)| Row {

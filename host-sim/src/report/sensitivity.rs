@@ -1,9 +1,10 @@
 //! The page of `sensitivity`: what a wrong belief costs each estimator.
 
 use super::canvas::{Anchor, Key, LABEL, TITLE, WIDTH, figure, legend_height};
+use super::page::{Document, printed};
 use super::palette::{INK, Palette};
 use super::plot::{Axis, Plot};
-use super::text::{escape, rate};
+use super::text::rate;
 use crate::belief::Constant;
 use crate::sensitivity::Row;
 use crate::sensitivity::table::{MOVING, names, rows_by_rate};
@@ -29,21 +30,22 @@ pub fn sensitivity(
         let svg = chart(&at_rate, &palette)?;
         figures += &format!("<figure>{svg}</figure>\n");
     }
-    let style = include_str!("page.css");
-    Ok(format!(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>Wrong beliefs</title>\n<style>\n{style}</style></head>\n<body>\n\
-         <header><h1>Wrong beliefs</h1>\n<p>What it costs to believe in a wrong constant of the \
+    let intro = "<p>What it costs to believe in a wrong constant of the \
          device: RMS error of the velocity, mean of the scenarios in which the motor moves. \
-         Estimators without a model of the motor are flat.</p>\n\
-         <dl><div><dt>command</dt><dd><code>{}</code></dd></div>\n\
-         <div><dt>device</dt><dd>{}</dd></div></dl></header>\n\
-         <main>\n{figures}<pre class=\"scroll\">{}</pre>\n</main></body></html>\n",
-        escape(command),
-        escape(device),
-        escape(table),
-    ))
+         Estimators without a model of the motor are flat.</p>\n"
+        .to_owned();
+    Ok(Document {
+        title: "Wrong beliefs",
+        intro,
+        facts: vec![
+            ("command", command.to_owned()),
+            ("device", device.to_owned()),
+        ],
+        notes: String::new(),
+        contents: String::new(),
+        body: figures + &printed(table),
+    }
+    .html())
 }
 
 /// Error of the belief and of the velocity, %.
@@ -75,7 +77,7 @@ pub(super) fn chart(rows: &[&Row], palette: &Palette) -> Result<String, String> 
     let names = names(rows);
     let keys: Vec<Key> = names
         .iter()
-        .map(|name| Key::Line(palette.colour(name), name))
+        .map(|name| Key::Line(palette.style(name), name))
         .collect();
     let curves: Vec<(Constant, Vec<Curve>)> = Constant::ALL
         .into_iter()
@@ -124,7 +126,7 @@ pub(super) fn chart(rows: &[&Row], palette: &Palette) -> Result<String, String> 
                 )?;
             }
             for (name, points) in names.iter().zip(curves) {
-                plot.curve(canvas, points.iter().copied(), palette.colour(name), 2.0)?;
+                plot.curve(canvas, points.iter().copied(), palette.style(name), 2.0)?;
             }
             plot.edges(canvas)?;
         }

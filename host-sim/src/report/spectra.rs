@@ -51,7 +51,7 @@ pub(super) fn spectra(
                 .iter()
                 .any(|(_, curves)| curves.iter().any(|c| c.name == *name))
         })
-        .map(|name| Key::Line(palette.colour(name), name))
+        .map(|name| Key::Line(palette.style(name), name))
         .chain([Key::Band(
             "where a fingertip is most sensitive, 50 to 500 Hz",
         )])
@@ -94,7 +94,7 @@ fn panel(canvas: &Canvas, plot: &Plot, curves: &[Curve], palette: &Palette) -> R
     plot.grid(canvas, 0, 0)?;
     for curve in curves {
         let points = curve.points.iter().copied();
-        plot.curve(canvas, points, palette.colour(&curve.name), 1.5)?;
+        plot.curve(canvas, points, palette.style(&curve.name), 1.5)?;
     }
     plot.edges(canvas)?;
     // The axis begins and ends between decades: name its ends where there is room.

@@ -115,7 +115,7 @@ fn one_case_alone_is_a_page_too() {
         .cases
         .retain(|case| case.scenario == "step" && case.rate_hz > 2e3 && !case.friction);
     let page = html(&report).unwrap();
-    assert!(page.contains("Step response at 11.6 kHz, plant frictionless"));
+    assert!(page.contains("Step response at 11.6 kHz, plant without friction"));
     assert!(page.contains("in one scenario"));
 }
 

@@ -1,5 +1,7 @@
 //! Numbers and names as text.
 
+use crate::parameters::PlantKind;
+
 /// `text` with the characters that mean something to HTML and SVG replaced.
 pub(super) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
@@ -60,11 +62,11 @@ pub(super) fn share(part: f64) -> String {
 
 /// Which plant.
 pub(super) fn plant(friction: bool) -> &'static str {
-    if friction {
-        "with friction"
-    } else {
-        "frictionless"
-    }
+    let kind = match friction {
+        true => PlantKind::Friction,
+        false => PlantKind::Frictionless,
+    };
+    kind.phrase()
 }
 
 #[cfg(test)]

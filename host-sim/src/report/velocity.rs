@@ -34,7 +34,7 @@ pub(super) fn panels(
     let drawn = traces.estimates.len();
     let (columns, rows) = (COLUMNS.min(drawn.max(1)), drawn.div_ceil(COLUMNS).max(1));
     let keys = [
-        Key::Line(TRUTH, "true velocity"),
+        Key::Line(TRUTH.into(), "true velocity"),
         Key::Band("haptic interval: what a fingertip cannot tell from it"),
     ];
     let head = 34.0 + legend_height(&keys, LEFT) + 4.0;
@@ -64,7 +64,7 @@ pub(super) fn panels(
                 let time = 1e3 * (traces.time(at) - origin_s);
                 (time, f64::from(estimate[at]))
             });
-            plot.curve(canvas, points, palette.colour(name), 1.6)?;
+            plot.curve(canvas, points, palette.style(name), 1.6)?;
             let off = off_scale(&estimate[window.clone()], axis_y);
             if off > HIDES_TRUTH {
                 let points = window.clone().map(|at| {
@@ -145,7 +145,7 @@ fn heading(
     off: f64,
 ) -> Result<(), String> {
     let y = plot.top - 11.0;
-    let colour = palette.colour(name);
+    let colour = palette.style(name);
     canvas.rectangle([(plot.left, y - 4.5), (plot.left + 9.0, y + 4.5)], colour)?;
     canvas.text(name, (plot.left + 15.0, y), Anchor::Left, 12.5, INK)?;
     if off > 0.0 {

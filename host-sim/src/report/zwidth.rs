@@ -1,11 +1,11 @@
 //! The page of `zwidth`: stiffness against damping, the chart of Colgate and Brown.
 
-use plotters::style::RGBColor;
-
 use super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure, legend_height};
+use super::page::{Document, printed};
 use super::palette::{INK, Palette};
 use super::plot::{Axis, Plot};
-use super::text::{escape, rate};
+use super::style::Style;
+use super::text::rate;
 use crate::zwidth::rows::Row;
 
 const TOP: f64 = 58.0;
@@ -25,22 +25,23 @@ pub fn zwidth(rows: &[Row], table: &str, device: &str, command: &str) -> Result<
         let svg = chart(&of, lines, &palette)?;
         figures += &format!("<figure>{svg}</figure>\n");
     }
-    let style = include_str!("page.css");
-    Ok(format!(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>Z-width</title>\n<style>\n{style}</style></head>\n<body>\n\
-         <header><h1>Z-width</h1>\n<p>Below its curve, a wall of that stiffness and damping is \
+    let intro = "<p>Below its curve, a wall of that stiffness and damping is \
          passive and free of limit cycles in simulation, to a light grip, to a hand and to a \
          handle that is thrown at it. Each curve ends on the right at the strongest damping \
-         without a wall. Panels have their own scales.</p>\n\
-         <dl><div><dt>command</dt><dd><code>{}</code></dd></div>\n\
-         <div><dt>device</dt><dd>{}</dd></div></dl></header>\n\
-         <main>\n{figures}<pre class=\"scroll\">{}</pre>\n</main></body></html>\n",
-        escape(command),
-        escape(device),
-        escape(table),
-    ))
+         without a wall. Panels have their own scales.</p>\n"
+        .to_owned();
+    Ok(Document {
+        title: "Z-width",
+        intro,
+        facts: vec![
+            ("command", command.to_owned()),
+            ("device", device.to_owned()),
+        ],
+        notes: String::new(),
+        contents: String::new(),
+        body: figures + &printed(table),
+    }
+    .html())
 }
 
 /// The values, once each, in order of appearance.
@@ -59,7 +60,7 @@ fn chart(rows: &[&Row], lines: u32, palette: &Palette) -> Result<String, String>
     let names = distinct(rows.iter().map(|row| row.estimator));
     let keys: Vec<Key> = names
         .iter()
-        .map(|name| Key::Line(palette.colour(name), name))
+        .map(|name| Key::Line(palette.style(name), name))
         .collect();
     // Three panels a row.
     let columns = rates.len().min(3);
@@ -99,7 +100,7 @@ fn chart(rows: &[&Row], lines: u32, palette: &Palette) -> Result<String, String>
                 let points: Vec<_> = curve
                     .map(|row| (1e3 * row.damping_nms_per_rad, row.stiffness_nm_per_rad))
                     .collect();
-                draw(canvas, &plot, &points, palette.colour(name))?;
+                draw(canvas, &plot, &points, palette.style(name))?;
             }
             plot.edges(canvas)?;
         }
@@ -112,16 +113,11 @@ fn axis(values: impl Iterator<Item = f64>) -> Axis {
     Axis::linear([0.0, 1.06 * values.fold(0.0, f64::max)])
 }
 
-fn draw(
-    canvas: &Canvas,
-    plot: &Plot,
-    points: &[(f64, f64)],
-    colour: RGBColor,
-) -> Result<(), String> {
-    plot.curve(canvas, points.iter().copied(), colour, 2.0)?;
+fn draw(canvas: &Canvas, plot: &Plot, points: &[(f64, f64)], style: Style) -> Result<(), String> {
+    plot.curve(canvas, points.iter().copied(), style, 2.0)?;
     for &point in points {
         let (x, y) = plot.at(point);
-        canvas.rectangle([(x - 2.5, y - 2.5), (x + 2.5, y + 2.5)], colour)?;
+        canvas.rectangle([(x - 2.5, y - 2.5), (x + 2.5, y + 2.5)], style)?;
     }
     Ok(())
 }

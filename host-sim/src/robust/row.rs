@@ -42,38 +42,6 @@ pub struct Row {
     pub variation: Variation,
 }
 
-/// Columns of the CSV: every field of a row.
-pub const COLUMNS: &[&str] = &[
-    "scene",
-    "device",
-    "verdict",
-    "reason",
-    "stop",
-    "stop_s",
-    "handle_rad_s",
-    "large_rad_s",
-    "felt_nm",
-    "felt_n",
-    "parasitic_n",
-    "oscillation_nm",
-    "after_handle_rad_s",
-    "after_felt_nm",
-    "damping",
-    "large_inertia",
-    "small_inertia",
-    "large_constant",
-    "small_constant",
-    "large_friction",
-    "small_friction",
-    "amplifier",
-    "late_ticks",
-    "hand",
-    "gone_rad_s",
-    "disc_phase",
-    "disc_line",
-    "disc_random",
-];
-
 impl Row {
     pub(super) fn new(
         settings: &Settings,
@@ -149,20 +117,5 @@ mod tests {
             assert_eq!(serde_json::from_str::<Row>(&text).unwrap(), row, "{text}");
         }
         assert_eq!(row().handle_rad_s, 0.333_333);
-    }
-
-    #[test]
-    fn the_columns_are_the_fields() {
-        let object = serde_json::to_value(row()).unwrap();
-        let keys = |object: &serde_json::Value| -> Vec<String> {
-            object.as_object().unwrap().keys().cloned().collect()
-        };
-        let mut fields = keys(&object);
-        fields.retain(|field| field != "variation");
-        fields.extend(keys(&object["variation"]));
-        let mut columns = COLUMNS.to_vec();
-        fields.sort();
-        columns.sort();
-        assert_eq!(fields, columns);
     }
 }

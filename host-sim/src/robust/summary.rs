@@ -7,6 +7,7 @@ use super::row::Row;
 use super::{Settings, corners};
 
 use crate::closed_loop::SceneName;
+use crate::table::layout::{self, Column};
 
 /// A distribution.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -98,48 +99,64 @@ pub fn heading(settings: &Settings) -> String {
     )
 }
 
-/// Counts and distributions, median, 95 % and largest, a line a scene, limits below.
+/// The command that makes the same rows, but for a device file and parameters.
 #[must_use]
-pub fn table(settings: &Settings, scenes: &[SceneSummary]) -> String {
+pub fn command(settings: &Settings) -> String {
+    let scenes: String = (settings.scenes.iter())
+        .map(|scene| format!(" --scene {scene}"))
+        .collect();
+    format!(
+        "host-sim robust{scenes} --rate {} --estimator {} --devices {} --seconds {} --seed {}",
+        settings.rate_hz, settings.estimator, settings.devices, settings.seconds, settings.seed
+    )
+}
+
+/// Counts and distributions, median, 95 % and largest, a line a scene, in lines of `width`
+/// characters, limits below.
+#[must_use]
+pub fn table(settings: &Settings, scenes: &[SceneSummary], width: usize) -> String {
     let mut text = heading(settings) + "\n";
+    let count = |name, i: usize| {
+        let cells = scenes.iter().map(|scene| scene.counts[i].to_string());
+        Column::numbers("", name, cells)
+    };
+    let number = |value: f64, factor: f64| three_digits(factor * value);
+    let spread = |head, unit, factor: f64, of: &dyn Fn(&SceneSummary) -> Option<Spread>| {
+        let cells = scenes.iter().map(|scene| match of(scene) {
+            None => "-".to_owned(),
+            Some(Spread {
+                median,
+                high,
+                largest,
+                ..
+            }) => [median, high, largest]
+                .map(|value| number(value, factor))
+                .join(" "),
+        });
+        Column::text(head, unit, cells)
+    };
+    let columns = [
+        count("stable", 0),
+        count("stopped", 1),
+        count("violated", 2),
+        spread("handle", "rad/s", 1.0, &|scene| Some(scene.handle_rad_s)),
+        spread("felt", "mN.m", 1e3, &|scene| Some(scene.felt_nm)),
+        spread("parasitic", "N", 1.0, &|scene| Some(scene.parasitic_n)),
+        spread("oscillation", "mN.m", 1e3, &|scene| scene.oscillation_nm),
+        Column::numbers(
+            "limit",
+            "mN.m",
+            scenes
+                .iter()
+                .map(|scene| number(scene.oscillation_limit_nm, 1e3)),
+        ),
+    ];
+    let names = scenes.iter().map(|scene| scene.scene.clone());
+    text += &layout::table(&Column::text("", "scene", names), &columns, width);
     let _ = writeln!(
         text,
-        "  {:<14}{:>7}{:>8}{:>9}   {:<20}{:<20}{:<20}oscillation mN.m",
-        "scene", "stable", "stopped", "violated", "handle rad/s", "felt mN.m", "parasitic N",
-    );
-    for scene in scenes {
-        let [stable, stopped, violated] = scene.counts;
-        let cells = [
-            (Some(scene.handle_rad_s), 1.0, None),
-            (Some(scene.felt_nm), 1e3, None),
-            (Some(scene.parasitic_n), 1.0, None),
-            (scene.oscillation_nm, 1e3, Some(scene.oscillation_limit_nm)),
-        ];
-        let _ = write!(
-            text,
-            "  {:<14}{stable:>7}{stopped:>8}{violated:>9}   ",
-            scene.scene
-        );
-        for (spread, factor, limit) in cells {
-            let cell = spread.map_or("-".to_owned(), |spread| {
-                let number = |value: f64| three_digits(factor * value);
-                let limit = limit.map_or(String::new(), |nm| format!(" of {}", number(nm)));
-                format!(
-                    "{} {} {}{limit}",
-                    number(spread.median),
-                    number(spread.high),
-                    number(spread.largest)
-                )
-            });
-            let _ = write!(text, "{cell:<20}");
-        }
-        text.truncate(text.trim_end().len());
-        text.push('\n');
-    }
-    let _ = writeln!(
-        text,
-        "Median, 95 %, largest. Limits: handle {HANDLE_RAD_S} rad/s, felt {} mN.m, oscillation as \
-         shown.",
+        "Median, 95 %, largest. Limits: handle {HANDLE_RAD_S} rad/s, felt {} mN.m, oscillation\n\
+         as shown.",
         1e3 * FELT_NM
     );
     text
@@ -184,6 +201,51 @@ pub fn complaint(settings: &Settings, rows: &[Row]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::robust::variation::Subject;
+
+    #[test]
+    fn a_summary_takes_each_column_and_the_larger_of_before_and_after_a_stop() {
+        let (variation, _) = Subject::Drawn(3).variation(7, SceneName::FreeAir);
+        let stable = Row {
+            scene: "free-air".into(),
+            device: "0".into(),
+            verdict: Verdict::Stable,
+            reason: None,
+            stop: None,
+            stop_s: None,
+            handle_rad_s: 11.0,
+            large_rad_s: 5.0,
+            felt_nm: 0.02,
+            felt_n: 0.6,
+            parasitic_n: 0.3,
+            oscillation_nm: Some(0.0007),
+            after_handle_rad_s: None,
+            after_felt_nm: None,
+            variation,
+        };
+        let stopped = Row {
+            verdict: Verdict::Stopped,
+            handle_rad_s: 7.0,
+            large_rad_s: 6.0,
+            felt_nm: 0.03,
+            parasitic_n: 0.2,
+            oscillation_nm: None,
+            after_handle_rad_s: Some(29.0),
+            after_felt_nm: Some(0.09),
+            ..stable.clone()
+        };
+        let [scene] = &summaries(&[stable, stopped]).unwrap()[..] else {
+            panic!("one scene");
+        };
+        assert_eq!(scene.counts, [1, 1, 0]);
+        // Of two values the smaller is the median.
+        let ends = |spread: Spread| [spread.median, spread.largest];
+        assert_eq!(ends(scene.handle_rad_s), [11.0, 29.0]);
+        assert_eq!(ends(scene.large_rad_s), [5.0, 6.0]);
+        assert_eq!(ends(scene.felt_nm), [0.02, 0.09]);
+        assert_eq!(ends(scene.parasitic_n), [0.2, 0.3]);
+        assert_eq!(ends(scene.oscillation_nm.unwrap()), [0.0007, 0.0007]);
+    }
 
     #[test]
     fn ranks_are_of_values_that_are_there() {

@@ -116,7 +116,7 @@ impl<'a> Truth<'a> {
             force_mn: wanted
                 .force
                 .then_some(rms * self.interval.force_mn_per_rad_s),
-            non_finite: 0,
+            ..Score::default()
         }
     }
 

@@ -4,16 +4,17 @@ use std::fmt::Write as _;
 
 use super::Row;
 use crate::belief::Belief;
+use crate::table::layout::{self, Column};
 
 /// Scenarios in which the motor moves: at rest and in creep there is nothing to learn from.
 pub const MOVING: [&str; 6] = ["step", "permanent", "track", "free-air", "wall", "texture"];
 
-/// Mean RMS error, in % of finite difference, one row an estimator, at each rate: with what is
-/// believed being right, over all scenarios; over those that move; and over those with each
-/// constant wrong by the most that is tried. Last the share of samples of moving scenarios
-/// outside the haptic interval, right and at the worst.
+/// Mean RMS error in % of finite difference, one line an estimator, at each rate: with the believed
+/// constants right, over all scenarios and over those that move; and over those that move with each
+/// constant wrong by the most that is tried. Last the share of samples of moving scenarios outside
+/// the haptic interval, with the constants right and at the worst. Lines of `width` characters.
 #[must_use]
-pub fn table(rows: &[Row]) -> String {
+pub fn table(rows: &[Row], width: usize) -> String {
     let mut text = String::new();
     for (i, at_rate) in rows_by_rate(rows).iter().enumerate() {
         if i > 0 {
@@ -25,58 +26,84 @@ pub fn table(rows: &[Row]) -> String {
             "{} Hz, RMS in % of finite difference",
             at_rate[0].rate_hz
         );
-        let _ = write!(text, "{:<22}{:>8}{:>8}", "believed:", "right", "moving");
-        for belief in Belief::extremes() {
+        let names = names(at_rate);
+        let each: Vec<Errors> = names
+            .iter()
+            .map(|name| {
+                let of = |row: &&&Row| row.estimator == *name;
+                Errors::of(&at_rate.iter().filter(of).copied().collect::<Vec<_>>())
+            })
+            .collect();
+        let column = |head: &str, unit, of: &dyn Fn(&Errors) -> f64| {
+            Column::numbers(head, unit, each.iter().map(|errors| number(of(errors))))
+        };
+        let mut columns = vec![
+            column("right", "all, %", &|of| of.right),
+            column("right", "moving, %", &|of| of.moving),
+        ];
+        for (i, belief) in Belief::extremes().iter().enumerate() {
             let head = format!(
-                "{}{:+.0}%",
+                "{} {:+.0} %",
                 short(belief.constant.as_str()),
                 100.0 * belief.error
             );
-            let _ = write!(text, "{head:>8}");
+            columns.push(column(&head, "%", &|of| of.wrong[i]));
         }
-        let _ = writeln!(text, "{:>8}{:>9}{:>9}", "worst", "out %", "worst");
-        for name in names(at_rate) {
-            let of = |row: &&&Row| row.estimator == name;
-            let mine: Vec<&Row> = at_rate.iter().filter(of).copied().collect();
-            let _ = writeln!(text, "{}", line(name, &mine));
-        }
+        columns.push(column("worst", "%", &|of| of.worst));
+        columns.push(column("outside", "right, %", &|of| of.outside));
+        columns.push(column("outside", "worst, %", &|of| of.outside_worst));
+        let names = names.iter().map(|name| (*name).to_owned());
+        text += &layout::table(&Column::text("believed:", "", names), &columns, width);
     }
     text
 }
 
-fn line(name: &str, rows: &[&Row]) -> String {
-    let moving: Vec<&Row> = rows
-        .iter()
-        .copied()
-        .filter(|row| MOVING.contains(&row.scenario))
-        .collect();
-    let right = |rows: &[&Row]| mean(rows, |row| row.constant.is_none(), |row| row.rms_pct);
-    let mut text = format!(
-        "{name:<22}{}{}",
-        number(right(rows)),
-        number(right(&moving))
-    );
-    let mut worst = right(&moving);
-    let outside = |only: &dyn Fn(&Row) -> bool| 100.0 * mean(&moving, only, |row| row.outside);
-    let outside_right = outside(&|row| row.constant.is_none());
-    let mut outside_worst = outside_right;
-    for belief in Belief::extremes() {
-        let is =
-            |row: &Row| row.constant == Some(belief.constant.as_str()) && row.error == belief.error;
-        let value = mean(&moving, is, |row| row.rms_pct);
-        text += &number(value);
-        worst = worst.max(value);
-        outside_worst = outside_worst.max(outside(&is));
+/// The errors of one estimator, %; NaN where there is no row.
+struct Errors {
+    right: f64,
+    moving: f64,
+    /// With each of [`Belief::extremes`].
+    wrong: Vec<f64>,
+    worst: f64,
+    outside: f64,
+    outside_worst: f64,
+}
+
+impl Errors {
+    fn of(rows: &[&Row]) -> Self {
+        let moving: Vec<&Row> = rows
+            .iter()
+            .copied()
+            .filter(|row| MOVING.contains(&row.scenario))
+            .collect();
+        let right = |rows: &[&Row]| mean(rows, |row| row.constant.is_none(), |row| row.rms_pct);
+        let outside = |only: &dyn Fn(&Row) -> bool| 100.0 * mean(&moving, only, |row| row.outside);
+        let mut errors = Self {
+            right: right(rows),
+            moving: right(&moving),
+            wrong: Vec::new(),
+            worst: right(&moving),
+            outside: outside(&|row| row.constant.is_none()),
+            outside_worst: outside(&|row| row.constant.is_none()),
+        };
+        for belief in Belief::extremes() {
+            let is = |row: &Row| {
+                row.constant == Some(belief.constant.as_str()) && row.error == belief.error
+            };
+            let value = mean(&moving, is, |row| row.rms_pct);
+            errors.wrong.push(value);
+            errors.worst = errors.worst.max(value);
+            errors.outside_worst = errors.outside_worst.max(outside(&is));
+        }
+        errors
     }
-    text += &number(worst);
-    text + &format!("{outside_right:>9.3}{outside_worst:>9.3}")
 }
 
 fn number(value: f64) -> String {
     if value.is_nan() {
-        format!("{:>8}", "-")
+        "-".to_owned()
     } else {
-        format!("{value:>8.2}")
+        format!("{value:.2}")
     }
 }
 
@@ -147,11 +174,11 @@ mod tests {
             row("step", Some("friction"), 0.5, 40.0),
             row("creep", Some("friction"), 0.5, 900.0),
         ];
-        let text = table(&rows);
+        let text = table(&rows, 1000);
         let line = text.lines().last().unwrap();
         let cells: Vec<_> = line.split_whitespace().collect();
         assert_eq!(cells[..3], ["pll", "20.00", "10.00"]);
         // The worst, and the shares outside.
-        assert_eq!(cells[cells.len() - 3..], ["40.00", "50.000", "50.000"]);
+        assert_eq!(cells[cells.len() - 3..], ["40.00", "50.00", "50.00"]);
     }
 }

@@ -31,21 +31,6 @@ pub struct Row {
     pub touch: Option<&'static str>,
 }
 
-/// Columns of the CSV: every field of a row.
-pub const COLUMNS: &[&str] = &[
-    "estimator",
-    "handle_estimator",
-    "rate_hz",
-    "lines",
-    "seed",
-    "bound",
-    "stiffness_nm_per_rad",
-    "damping_nms_per_rad",
-    "at_cap",
-    "fault",
-    "touch",
-];
-
 /// The rows of all cases, in their order, each from the wall without damping to the damping
 /// without a wall.
 #[must_use]
@@ -72,32 +57,4 @@ pub fn rows(cases: &[Case], boundaries: &[Boundary], seed: u64) -> Vec<Row> {
         rows.push(row("damping", viscous, 0.0, viscous.value));
     }
     rows
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_columns_are_the_fields() {
-        let row = Row {
-            estimator: "pll",
-            handle_estimator: "pll",
-            rate_hz: 1000.0,
-            lines: 1024,
-            seed: 1,
-            bound: "damping",
-            stiffness_nm_per_rad: 0.0,
-            damping_nms_per_rad: 1e-3,
-            at_cap: false,
-            fault: None,
-            touch: None,
-        };
-        let object = serde_json::to_value(row).unwrap();
-        let mut fields: Vec<_> = object.as_object().unwrap().keys().collect();
-        let mut columns = COLUMNS.to_vec();
-        fields.sort();
-        columns.sort_unstable();
-        assert_eq!(fields, columns);
-    }
 }

@@ -3,13 +3,15 @@
 use std::fmt::Write as _;
 
 use super::{Bound, Boundary, Case};
+use crate::table::layout::{self, Column};
 
-/// One block a rate and encoder, one line an estimator.
+/// One part a rate and encoder, one line an estimator, in lines of `width` characters.
 #[must_use]
-pub fn table(cases: &[Case], boundaries: &[Boundary]) -> String {
+pub fn table(cases: &[Case], boundaries: &[Boundary], width: usize) -> String {
     let mut text = String::from(
-        "Z-width: stiffest wall and strongest damping that stay passive and free of limit cycles\n\
-         K in N.m/rad, B in mN.m.s/rad; 'beyond' says who finds what just above the bound\n",
+        "Z-width: stiffest wall (K) and strongest damping (B) that stay passive and free\n\
+         of limit cycles. 'fails' is the fault just above the bound, and the hand that\n\
+         finds it\n",
     );
     let all: Vec<_> = cases.iter().zip(boundaries).collect();
     let block =
@@ -21,26 +23,25 @@ pub fn table(cases: &[Case], boundaries: &[Boundary]) -> String {
             "\n{} Hz, large encoder of {} lines",
             case.rate_hz, case.lines
         );
-        let _ = writeln!(
-            text,
-            "  {:<22}{:>9}  {:<24}{:>9}{:>9}{:>11}  beyond",
-            "estimator", "K, B = 0", "beyond", "best K", "at B", "B, K = 0",
-        );
-        for (case, boundary) in block {
-            let plain = boundary.walls[0].1;
-            let (damping, best) = boundary.stiffest().unwrap_or((0.0, plain));
-            let _ = writeln!(
-                text,
-                "  {:<22}{:>9}  {:<24}{:>9}{:>9}{:>11}  {}",
-                case.large.name,
-                shown(plain, 1.0),
-                beyond(plain),
-                shown(best, 1.0),
-                digits(1e3 * damping),
-                shown(boundary.viscous, 1e3),
-                beyond(boundary.viscous),
-            );
-        }
+        let numbers = |head, unit, of: &dyn Fn(&Boundary) -> String| {
+            Column::numbers(head, unit, block.iter().map(|(_, boundary)| of(boundary)))
+        };
+        let fails = |head, of: &dyn Fn(&Boundary) -> Bound| {
+            let cells = block.iter().map(|(_, boundary)| beyond(of(boundary)));
+            Column::text(head, "fails", cells)
+        };
+        let plain = |boundary: &Boundary| boundary.walls[0].1;
+        let best = |boundary: &Boundary| boundary.stiffest().unwrap_or((0.0, plain(boundary)));
+        let columns = [
+            numbers("K at B = 0", "N.m/rad", &|of| shown(plain(of), 1.0)),
+            fails("", &plain),
+            numbers("best K", "N.m/rad", &|of| shown(best(of).1, 1.0)),
+            numbers("at B", "mN.m.s/rad", &|of| digits(1e3 * best(of).0)),
+            numbers("B at K = 0", "mN.m.s/rad", &|of| shown(of.viscous, 1e3)),
+            fails("", &|of| of.viscous),
+        ];
+        let names = block.iter().map(|(case, _)| case.large.name.to_owned());
+        text += &layout::table(&Column::text("", "estimator", names), &columns, width);
     }
     text
 }

@@ -234,7 +234,7 @@ fn the_report_has_the_figures_and_no_broken_number() {
     assert_sound(&page);
     let csv = fs::read_to_string(folder.0.join("page/closed-loop.csv")).unwrap();
     assert_eq!(csv.lines().count(), 1 + 4 * SceneName::ALL.len());
-    assert!(csv.starts_with("scenario,rate_hz,plant,seed,estimator,controlled_by,"));
+    assert!(csv.starts_with("scenario,rate_hz,plant,seed,estimator,rms_rad_s,"));
     // Too short for most figures, and still a page.
     let short = page_of(
         &folder,

@@ -6,6 +6,7 @@ mod identify;
 mod output;
 mod refusals;
 mod replay;
+mod tables;
 mod tune;
 
 use std::collections::BTreeSet;

@@ -71,7 +71,7 @@ fn distances_of_the_papers_experiment() {
     ];
     let check = |name: &str, cells: &[(usize, &str)]| {
         for &(column, cell) in cells {
-            let value = pooled_pct(of(&columns[column], name)).unwrap();
+            let value = pooled_pct(of(&columns[column], name).map(|row| &row.score)).unwrap();
             assert!(
                 is_written_for(cell, value),
                 "{name}: {cell} is written, {value} is so"
@@ -109,7 +109,7 @@ fn wrong_beliefs() {
         };
         let cases: Vec<_> = scenarios.into_iter().flat_map(of).collect();
         let rows = sensitivity(&cases, &settings, || ()).unwrap();
-        sensitivity::table::table(&rows)
+        sensitivity::table::table(&rows, usize::MAX)
     };
     let errors = Disc {
         phase_counts: 0.06,

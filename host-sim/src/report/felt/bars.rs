@@ -20,8 +20,8 @@ pub(super) fn below(closed: &ClosedLoop, palette: &Palette) -> Result<String, St
     let title = "Time in which the parasitic force is below the fingertip\u{2019}s threshold";
     let names = closed.closers();
     let keys: Vec<Key> = (names.iter())
-        .map(|name| Key::Line(palette.colour(name), name))
-        .chain([Key::Line(MUTED, "any")])
+        .map(|name| Key::Line(palette.style(name), name))
+        .chain([Key::Line(MUTED.into(), "any")])
         .collect();
     let mut scenes: Vec<(&str, f64)> = Vec::new();
     let mut rates: Vec<f64> = Vec::new();
@@ -114,7 +114,7 @@ fn bars(
             (plot.left, y + 0.75),
             (right.max(plot.left + 2.0), y + BAR - 0.75),
         ];
-        canvas.rectangle(corners, palette.colour(name))?;
+        canvas.rectangle(corners, palette.style(name))?;
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 use super::super::canvas::Key;
 use super::super::palette::{INK, Palette, TRUTH};
 use super::super::plot::Axis;
+use super::super::style::{Dash, Style};
 use super::super::text::{plant, rate};
 use super::charts::{Curve, Green, Panel, panels};
 use super::{ClosedLoop, find};
@@ -69,28 +70,29 @@ pub(super) fn figures(
         };
         for outcome in &outcomes {
             let rate_hz = outcome.case.rate_hz;
-            let curve = |colour, signals: &Signals| {
+            let curve = |style: Style, signals: &Signals| {
                 let x = what(signals, rate_hz);
-                Curve::new(colour, bins(&x, signals, rate_hz, widest))
+                Curve::new(style, bins(&x, signals, rate_hz, widest))
             };
             let mut curves: Vec<Curve> = Vec::new();
             for name in &names {
                 let signals = find(outcome, name).and_then(|run| run.signals.as_ref());
-                curves.extend(signals.map(|signals| curve(palette.colour(name), signals)));
+                curves.extend(signals.map(|signals| curve(palette.style(name), signals)));
             }
             curves.extend(off(outcome).map(|signals| Curve {
                 width: 2.2,
-                ..curve(TRUTH, signals)
+                ..curve(TRUTH.into(), signals)
             }));
             if is_acceleration {
                 let inertia = |i: i32| {
                     let x = widest * f64::from(i) / 40.0;
                     (x, (mn_per_rad_s2 * x.abs()).max(1e-3))
                 };
-                curves.push(Curve {
-                    dashed: true,
-                    ..Curve::new(INK, (-40..=40).map(inertia).collect())
-                });
+                let dashed = Style {
+                    dash: Dash::Dashed,
+                    ..INK.into()
+                };
+                curves.push(Curve::new(dashed, (-40..=40).map(inertia).collect()));
             }
             all.push(Panel {
                 heading: rate(rate_hz),
@@ -112,8 +114,8 @@ pub(super) fn figures(
     }
     let has_off = outcomes.iter().any(|outcome| off(outcome).is_some());
     let keys: Vec<Key> = (names.iter())
-        .map(|name| Key::Line(palette.colour(name), name))
-        .chain(has_off.then_some(Key::Line(TRUTH, "motors off")))
+        .map(|name| Key::Line(palette.style(name), name))
+        .chain(has_off.then_some(Key::Line(TRUTH.into(), "motors off")))
         .chain([Key::Band("a fingertip notices nothing")])
         .collect();
     let plant = plant(first.case.plant == PlantKind::Friction);

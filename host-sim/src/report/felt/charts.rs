@@ -1,10 +1,9 @@
 //! A figure of several panels, each with curves on its own axes.
 
-use plotters::style::RGBColor;
-
 use super::super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure, legend_height};
 use super::super::palette::{BAND, INK, MUTED};
 use super::super::plot::{Axis, Plot};
+use super::super::style::Style;
 
 /// Sizes, px.
 const LEFT: f64 = 68.0;
@@ -14,18 +13,16 @@ const BELOW: f64 = 42.0;
 
 /// A curve; its points come in order of x.
 pub(super) struct Curve {
-    pub(super) colour: RGBColor,
+    pub(super) style: Style,
     pub(super) width: f64,
-    pub(super) dashed: bool,
     pub(super) points: Vec<(f64, f64)>,
 }
 
 impl Curve {
-    pub(super) fn new(colour: RGBColor, points: Vec<(f64, f64)>) -> Self {
+    pub(super) fn new(style: impl Into<Style>, points: Vec<(f64, f64)>) -> Self {
         Self {
-            colour,
+            style: style.into(),
             width: 1.6,
-            dashed: false,
             points,
         }
     }
@@ -117,14 +114,8 @@ impl Panel<'_> {
         }
         plot.grid(canvas, self.ticks[0], self.ticks[1])?;
         for curve in &self.curves {
-            if curve.dashed {
-                for pair in curve.points.as_chunks::<2>().0 {
-                    plot.curve(canvas, pair.iter().copied(), curve.colour, curve.width)?;
-                }
-            } else {
-                let points = curve.points.iter().copied();
-                plot.curve(canvas, points, curve.colour, curve.width)?;
-            }
+            let points = curve.points.iter().copied();
+            plot.curve(canvas, points, curve.style, curve.width)?;
         }
         plot.edges(canvas)?;
         self.ends(canvas, plot)?;

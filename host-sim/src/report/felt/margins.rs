@@ -29,7 +29,7 @@ fn drawn(designs: &[Design]) -> Result<String, String> {
     let names: Vec<String> = designs.iter().map(|design| rate(design.rate_hz)).collect();
     let colours = || COLOURS.iter().copied().cycle();
     let keys: Vec<Key> = (names.iter().zip(colours()))
-        .map(|(name, colour)| Key::Line(colour, name))
+        .map(|(name, colour)| Key::Line(colour.into(), name))
         .chain([Key::Band("modulus margin around \u{2212}1")])
         .collect();
     let bottom = TOP + SIDE;

@@ -93,9 +93,9 @@ fn figure(
         }
     }
     let keys = [
-        Key::Line(TRUTH, "wanted"),
+        Key::Line(TRUTH.into(), "wanted"),
         Key::Band("what a fingertip cannot tell from it"),
-        Key::Line(MUTED, "felt, in the colour of who closes the loop"),
+        Key::Line(MUTED.into(), "felt, in the colour of who closes the loop"),
     ];
     let plant = plant(outcomes[0].case.plant == PlantKind::Friction);
     let title = format!("Force wanted and felt at the fingertip, scene {scene}, plant {plant}");
@@ -154,8 +154,8 @@ fn panel<'a>(
         .iter()
         .map(|&(t, w)| (t, w - threshold_mn, w + threshold_mn));
     let colour = match run.controlled_by {
-        "any" => MUTED,
-        name => palette.colour(name),
+        "any" => MUTED.into(),
+        name => palette.style(name),
     };
     let rms = run
         .parasitic

@@ -3,63 +3,25 @@
 use std::fmt::Write as _;
 
 use super::super::palette::Palette;
-use super::super::score_tables::{cell, label};
+use super::super::score_tables::{head, label, score_cell};
 use super::super::sections::words;
-use super::super::text::{escape, number, plant, rate, share};
+use super::super::text::{escape, plant, rate};
 use super::{ClosedLoop, has_loop};
-use crate::felt::{Outcome, Run};
+use crate::felt::table::velocity_fields;
+use crate::felt::{Outcome, Parasitic, Run};
 use crate::parameters::PlantKind;
 
 const SCORES: &str = "The best estimator of each scene is bold on green; the reference encoder \
-    does not compete. 99\u{a0}% is the force that is exceeded for 1\u{a0}% of the time. Velocity is \
-    the RMS error of the velocity that the loop used.";
+    does not compete. Force is the parasitic force at the fingertip: RMS, the force that is exceeded \
+    for 1\u{a0}% of the time, and the RMS from 50 to 500 Hz. Unnoticed is the share of time in which \
+    it is below the fingertip\u{2019}s threshold. The last column is the RMS error of the velocity \
+    that the loop used.";
 
-/// How one score is shown.
-struct Column {
-    head: &'static str,
-    unit: &'static str,
-    of: fn(&Run) -> Option<f64>,
-    show: fn(f64) -> String,
-    more_is_better: bool,
+/// The columns: parasitic forces, then the velocity that the loop used.
+fn heads() -> String {
+    let forces = Parasitic::FIELDS.iter().map(head).collect::<String>();
+    forces + &velocity_fields(&[]).map(head).collect::<String>()
 }
-
-const COLUMNS: [Column; 5] = [
-    Column {
-        head: "parasitic force",
-        unit: "rms, mN",
-        of: |run| run.parasitic.parasitic_mn_rms,
-        show: number,
-        more_is_better: false,
-    },
-    Column {
-        head: "99 %",
-        unit: "mN",
-        of: |run| run.parasitic.parasitic_mn_p99,
-        show: number,
-        more_is_better: false,
-    },
-    Column {
-        head: "50\u{2013}500 Hz",
-        unit: "rms, mN",
-        of: |run| run.parasitic.parasitic_mn_tactile,
-        show: number,
-        more_is_better: false,
-    },
-    Column {
-        head: "below threshold",
-        unit: "of time",
-        of: |run| run.parasitic.below_threshold,
-        show: share,
-        more_is_better: true,
-    },
-    Column {
-        head: "velocity",
-        unit: "rms, rad/s",
-        of: |run| run.velocity_rms,
-        show: number,
-        more_is_better: false,
-    },
-];
 
 /// One table a rate, scenes as its blocks.
 pub(super) fn tables(closed: &ClosedLoop, palette: &Palette) -> String {
@@ -80,13 +42,7 @@ fn table(outcomes: &[Outcome], palette: &Palette) -> String {
         rate(case.rate_hz),
         plant(case.plant == PlantKind::Friction)
     );
-    for column in &COLUMNS {
-        let _ = write!(
-            html,
-            "<th aria-sort=\"none\"><button type=\"button\">{}<small>{}</small></button></th>",
-            column.head, column.unit
-        );
-    }
+    html += &heads();
     html += "</tr></thead>\n";
     for outcome in outcomes {
         html += &block(outcome, palette);
@@ -97,7 +53,7 @@ fn table(outcomes: &[Outcome], palette: &Palette) -> String {
 fn block(outcome: &Outcome, palette: &Palette) -> String {
     let mut html = format!(
         "<tbody><tr class=\"scenario\"><th colspan=\"{}\" scope=\"rowgroup\">{}</th></tr>\n",
-        COLUMNS.len() + 1,
+        Parasitic::FIELDS.len() + velocity_fields(&[]).count() + 1,
         escape(outcome.case.scene.as_str())
     );
     let competes = |run: &&Run| run.controlled_by != crate::felt::REFERENCE;
@@ -111,20 +67,17 @@ fn block(outcome: &Outcome, palette: &Palette) -> String {
             let _ = write!(name, " <em class=\"bad\">stopped: {cause}</em>");
         }
         let _ = write!(html, "<tr><th scope=\"row\">{name}</th>");
-        for column in &COLUMNS {
-            let sign = if column.more_is_better { -1.0 } else { 1.0 };
-            let scores: Vec<f64> = (outcome.runs.iter().filter(competes))
-                .filter_map(|run| Some(sign * (column.of)(run)?))
-                .collect();
-            let least = scores.iter().copied().reduce(f64::min);
-            let alike = scores.iter().all(|score| Some(*score) == least);
-            html += &match (column.of)(run) {
-                Some(value) => {
-                    let is_best = !alike && competes(&run) && Some(sign * value) == least;
-                    cell(&(column.show)(value), value, is_best)
-                }
-                None => "<td class=\"none\">\u{2013}</td>".into(),
-            };
+        let runs = outcome.runs.iter().filter(competes);
+        for field in Parasitic::FIELDS {
+            let all = runs.clone().filter_map(|run| (field.of)(&run.parasitic));
+            let value = (field.of)(&run.parasitic);
+            html += &score_cell(field, value, all, competes(&run));
+        }
+        for field in velocity_fields(&[]) {
+            let of = |run: &Run| run.velocity.as_ref().and_then(field.of);
+            let value = of(run);
+            let all = runs.clone().filter_map(of);
+            html += &score_cell(field, value, all, competes(&run));
         }
         html += "</tr>\n";
     }

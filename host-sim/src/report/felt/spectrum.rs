@@ -27,7 +27,7 @@ pub(super) fn figure(closed: &ClosedLoop, palette: &Palette) -> Result<Option<St
         for name in &names {
             let signals = find(outcome, name).and_then(|run| run.signals.as_ref());
             let points = signals.and_then(|signals| density(signals, rate_hz));
-            curves.extend(points.map(|points| Curve::new(palette.colour(name), points)));
+            curves.extend(points.map(|points| Curve::new(palette.style(name), points)));
         }
         let off = closed.of("off");
         let off = off.iter().find(|o| o.case.rate_hz == rate_hz);
@@ -61,8 +61,8 @@ pub(super) fn figure(closed: &ClosedLoop, palette: &Palette) -> Result<Option<St
     }
     let has_off = !closed.of("off").is_empty();
     let keys: Vec<Key> = (names.iter())
-        .map(|name| Key::Line(palette.colour(name), name))
-        .chain(has_off.then_some(Key::Line(TRUTH, "motors off")))
+        .map(|name| Key::Line(palette.style(name), name))
+        .chain(has_off.then_some(Key::Line(TRUTH.into(), "motors off")))
         .chain([Key::Band("felt as roughness, 50 to 500 Hz")])
         .collect();
     let plant = plant(first.case.plant == PlantKind::Friction);

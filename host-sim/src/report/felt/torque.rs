@@ -66,7 +66,7 @@ pub(super) fn figures(closed: &ClosedLoop, palette: &Palette) -> Result<Option<S
                     ends = [ends[0].min(response.hz), ends[1].max(response.hz)];
                 }
                 let points = responses.iter().map(|r| (r.hz, of(r))).collect();
-                curves.push(Curve::new(palette.colour(name), points));
+                curves.push(Curve::new(palette.style(name), points));
             }
             if ends[0] >= ends[1] {
                 return Ok(None);
@@ -84,7 +84,7 @@ pub(super) fn figures(closed: &ClosedLoop, palette: &Palette) -> Result<Option<S
         }
     }
     let keys: Vec<Key> = (names.iter())
-        .map(|name| Key::Line(palette.colour(name), name))
+        .map(|name| Key::Line(palette.style(name), name))
         .chain([Key::Band("felt as roughness, 50 to 500 Hz")])
         .collect();
     let plant = plant(first.plant == PlantKind::Friction);

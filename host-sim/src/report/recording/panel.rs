@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use plotters::style::RGBColor;
-
 use super::RecordingView;
 use crate::report::canvas::{Anchor, Canvas, LABEL};
-use crate::report::palette::{BAND, BAND_EDGE, INK};
+use crate::report::palette::{BAND, BAND_EDGE, INK, MUTED};
 use crate::report::plot::Plot;
+use crate::report::style::Style;
+use crate::report::text::share;
 
 /// A step of `t` this many times the period is a gap, over which nothing is drawn.
 const GAP_STEPS: f64 = 1.5;
@@ -15,7 +15,7 @@ const GAP_STEPS: f64 = 1.5;
 /// One curve of a panel, a value a row.
 pub(super) struct Curve {
     pub(super) name: String,
-    pub(super) colour: RGBColor,
+    pub(super) style: Style,
     pub(super) values: Vec<f64>,
     pub(super) width: f64,
     /// Whether the axis has to show all of it.
@@ -30,10 +30,10 @@ pub(super) struct Panel {
 }
 
 impl Curve {
-    pub(super) fn new(name: &str, colour: RGBColor, values: &[f64]) -> Self {
+    pub(super) fn new(name: &str, style: impl Into<Style>, values: &[f64]) -> Self {
         Self {
             name: name.to_owned(),
-            colour,
+            style: style.into(),
             values: values.to_vec(),
             width: 1.3,
             sizes: true,
@@ -71,12 +71,37 @@ impl Panel {
         for curve in &self.curves {
             for rows in &segments {
                 let points = rows.clone().map(|row| (t[row], curve.values[row]));
-                plot.curve(canvas, points, curve.colour, curve.width)?;
+                plot.curve(canvas, points, curve.style, curve.width)?;
             }
         }
         plot.edges(canvas)?;
+        if let Some(note) = self.clipped(plot, &segments) {
+            let at = (plot.right - 6.0, plot.top + 9.0);
+            canvas.text(&note, at, Anchor::Right, LABEL, MUTED)?;
+        }
         let middle = 0.5 * (plot.top + plot.bottom);
         canvas.text(self.unit, (14.0, middle), Anchor::Upwards, LABEL, INK)
+    }
+
+    /// Which curves leave the frame, and for how much of the samples shown.
+    fn clipped(&self, plot: &Plot, segments: &[Range<usize>]) -> Option<String> {
+        let rows = || segments.iter().cloned().flatten();
+        let outside = |curve: &Curve| {
+            let inside = |row: &usize| (plot.y.low..=plot.y.high).contains(&curve.values[*row]);
+            rows().count() - rows().filter(inside).count()
+        };
+        let of = self
+            .curves
+            .iter()
+            .map(|curve| (&curve.name, outside(curve)));
+        let notes: Vec<_> = of
+            .filter(|(_, outside)| *outside > 0)
+            .map(|(name, outside)| {
+                let part = outside as f64 / rows().count() as f64;
+                format!("{name}: {} of samples off scale", share(part))
+            })
+            .collect();
+        (!notes.is_empty()).then(|| notes.join(", "))
     }
 }
 
