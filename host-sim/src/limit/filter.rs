@@ -244,3 +244,84 @@ fn resampled(
     }
     next
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compare::setup;
+    use crate::device::Device;
+
+    const QUIET: Noise = Noise {
+        torque_noise: 0.0,
+        load: 0.0,
+        load_time: 1.0,
+        rub: 0.0,
+    };
+
+    #[test]
+    fn a_particle_is_braked_by_known_and_unknown_friction() {
+        let setup = setup(&Device::default(), 1e3);
+        let model = Model::new(&setup, &QUIET);
+        let unknown = 0.3 * model.friction;
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
+        for way in [1.0, -1.0] {
+            let mut p = Particle {
+                v: way * 50.0,
+                rub: unknown,
+                ..Particle::default()
+            };
+            model.step(&mut p, 0.0, &mut random);
+            // dw/dt = -(b w + friction) / J over a tick of 1 ms; the unknown part lasts 10 s.
+            let beta = setup.device.damping * 1e-3 / setup.device.inertia;
+            let brake = model.friction + unknown * (-1e-4_f64).exp();
+            let end = 50.0 * (-beta).exp() - brake * (1.0 - (-beta).exp()) / beta;
+            assert!((p.v - way * end).abs() < 1e-9, "{} {end}", p.v);
+        }
+    }
+
+    #[test]
+    fn a_current_that_lags_is_followed_without_a_drift() {
+        // An amplifier of one tick, no friction, no damping: the motion has a formula.
+        let mut setup = setup(&Device::default(), 1e3).frictionless();
+        setup.amplifier_lag_s = 1e-3;
+        setup.device.damping = 0.0;
+        let per_amp =
+            f64::from(setup.device.counts_per_rev) / TAU * 1e-6 * setup.device.torque_constant
+                / setup.device.inertia;
+        let ticks = 400_u32;
+        // A triangle of 50 A, whose slope is 0.5 A a tick.
+        let command = |k: u32| 0.5 * (50.0 - (f64::from(k % 200) - 100.0).abs());
+        let left = (-1.0_f64).exp();
+        let (mut x, mut v, mut i) = (0.5, 0.0, 0.0);
+        let (mut counts, mut truth) = (vec![0_u32], vec![0.0]);
+        for k in 0..ticks - 1 {
+            // i(s) = command - missing e^-s, integrated once and twice from s = 0 to 1.
+            let missing = command(k) - i;
+            x += v + per_amp * (0.5 * command(k) - missing * left);
+            v += per_amp * (command(k) - missing * (1.0 - left));
+            i = command(k) - left * missing;
+            counts.push((x as i64) as u32);
+            truth.push(v * TAU * 1e3 / f64::from(setup.device.counts_per_rev));
+        }
+        let trace = Trace {
+            rate_hz: 1e3,
+            counts_large: counts,
+            counts_small: None,
+            current: Some((0..ticks).map(command).collect()),
+            edges: None,
+            true_omega: None,
+            true_damping: None,
+        };
+        let noise = Noise {
+            torque_noise: 6e-6,
+            ..QUIET
+        };
+        let found = velocities(&trace, &setup, &noise, false, 500, 1);
+        let squares = found.iter().zip(&truth).skip(20);
+        let squares = squares.map(|(found, truth)| (f64::from(*found) - truth).powi(2));
+        let rms = (squares.sum::<f64>() / f64::from(ticks - 20)).sqrt();
+        // The other sign of the lag is wrong by 0.16 of the slope's counts a tick.
+        let wrong = 0.16 * per_amp * 0.5 * TAU * 1e3 / f64::from(setup.device.counts_per_rev);
+        assert!(rms < 0.2 * wrong, "{rms} rad/s, of {wrong}");
+    }
+}

@@ -242,6 +242,24 @@ mod tests {
     }
 
     #[test]
+    fn oscillation_is_that_of_the_last_quarter() {
+        let burst = |from: usize, to: usize| {
+            let judge = judged(2000, move |k, t| Instant {
+                rendered_nm: match (from..to).contains(&k) {
+                    true => sine(0.01, 80.0, t),
+                    false => 0.0,
+                },
+                ..Instant::default()
+            });
+            judge.oscillation_nm().unwrap()
+        };
+        // A burst that ends 0.1 s before the last quarter, and one that fills it.
+        assert!(burst(100, 1400) < 1e-6, "{}", burst(100, 1400));
+        let rms = burst(1500, 2000);
+        assert!((rms / (0.01 / 2_f64.sqrt()) - 1.0).abs() < 0.02, "{rms}");
+    }
+
+    #[test]
     fn a_stop_counts_only_before_and_after_a_limit() {
         let runs_away = |stop: usize, coast: f64| {
             judged(100, move |k, _| Instant {

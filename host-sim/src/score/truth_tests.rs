@@ -62,6 +62,19 @@ fn outside_is_a_share_of_samples_and_the_start_is_skipped() {
 }
 
 #[test]
+fn force_is_of_the_rms_error_and_not_of_the_largest() {
+    // One of 1000 scored samples is wrong by 3 rad/s.
+    let mut guess = vec![0.0; 1100];
+    guess[600] = 3.0;
+    let s = score(&vec![0.0; 1100], &guess);
+    let rms = 3.0 / 1000_f64.sqrt();
+    near(s.rms_rad_s, rms, 1e-9);
+    near(s.max_rad_s, 3.0, 0.0);
+    // F = 2 b w / D at the fingertip.
+    near(s.force_mn, 1e3 * 2.0 * 0.96e-3 * rms / 0.070, 1e-6);
+}
+
+#[test]
 fn a_late_ramp_has_its_delay_in_ms() {
     let truth = signal(2000, |t| 8.0 * t);
     near(
@@ -78,7 +91,14 @@ fn a_late_ramp_has_its_delay_in_ms() {
 
 #[test]
 fn noise_is_the_rms_of_what_lies_in_the_tactile_band() {
-    let truth = signal(4000, |t| 5.0 * t);
+    // The truth moves inside the band: that is motion, and no noise.
+    let motion = |t: f64| 5.0 * t + 2.0 * (TAU * 120.0 * t).sin();
+    let truth = signal(4000, motion);
+    near(
+        score(&truth, &estimate(4000, motion)).noise_rad_s,
+        0.0,
+        1e-6,
+    );
     for (hz, share) in [
         (200.0, 1.0),
         (55.0, 0.97),
@@ -88,7 +108,7 @@ fn noise_is_the_rms_of_what_lies_in_the_tactile_band() {
     ] {
         let s = score(
             &truth,
-            &estimate(4000, |t| 5.0 * t + 0.7 * (TAU * hz * t).sin()),
+            &estimate(4000, |t| motion(t) + 0.7 * (TAU * hz * t).sin()),
         );
         near(s.noise_rad_s, share * 0.7 / SQRT_2, 0.03 * 0.7);
         near(s.rms_rad_s, 0.7 / SQRT_2, 1e-3);
