@@ -38,7 +38,7 @@ macro_rules! observer {
     ($c:ident, $rate:expr, $counts:expr, $torque_noise:expr) => {
         observer!($c, $rate, $counts, $torque_noise, new)
     };
-    ($c:ident, $rate:expr, $counts:expr, $torque_noise:expr, $ends:ident) => {
+    ($c:ident, $rate:expr, $counts:expr, $torque_noise:expr, $ends:ident $(, $clock:expr)?) => {
         $c::Observer::$ends(
             &$c::CoupledMotor {
                 large: $c::Device {
@@ -48,6 +48,7 @@ macro_rules! observer {
                 ..$c::CoupledMotor::DCX35L
             },
             $c::Hertz($rate),
+            $($c::Hertz($clock),)?
             &$c::Uncertainty {
                 torque_noise: $torque_noise,
                 load: 10.0 * $torque_noise,
@@ -63,7 +64,7 @@ macro_rules! observer {
 pub type Refusable = Result<Box<dyn Pair>, String>;
 
 /// The kinds of estimators that have a parameter to choose.
-pub const KINDS: [&str; 16] = [
+pub const KINDS: [&str; 20] = [
     "foaw-end-fit",
     "foaw-best-fit",
     "low-pass",
@@ -78,7 +79,11 @@ pub const KINDS: [&str; 16] = [
     "observer",
     "observer-edge",
     "observer-soft",
+    "observer-held",
+    "observer-edge-held",
+    "observer-edge-blind",
     "adaptive",
+    "adaptive-soft",
     "adaptive-edge",
 ];
 
@@ -171,6 +176,21 @@ pub fn design(kind: &str, rate: f64, counts_per_rev: u32, parameter: f64) -> Ref
                 .and_then(|known| known.with_edges(c::Hertz(EDGE_CLOCK_HZ), c::Hertz(rate)))
         }),
         "observer-soft" => refusable!(|c| observer!(c, rate, counts_per_rev, parameter, soft)),
+        "observer-held" => refusable!(|c| {
+            observer!(c, rate, counts_per_rev, parameter).map(|known| known.held())
+        }),
+        "observer-edge-held" => refusable!(|c| {
+            observer!(c, rate, counts_per_rev, parameter)
+                .and_then(|known| known.with_edges(c::Hertz(EDGE_CLOCK_HZ), c::Hertz(rate)))
+                .map(|known| known.held())
+        }),
+        "observer-edge-blind" => {
+            refusable!(|c| { observer!(c, rate, counts_per_rev, parameter, blind, EDGE_CLOCK_HZ) })
+        }
+        "adaptive-soft" => refusable!(|c| {
+            observer!(c, rate, counts_per_rev, parameter, soft)
+                .and_then(|known| known.learning(counts_per_rev, c::Hertz(rate)))
+        }),
         "adaptive" => refusable!(|c| {
             observer!(c, rate, counts_per_rev, parameter)
                 .and_then(|known| known.learning(counts_per_rev, c::Hertz(rate)))

@@ -1,4 +1,5 @@
 //! Numerics that cannot break: short runs of the stress courses and of the fuzz bodies.
 
 mod fuzz;
+mod lists;
 mod stress;
