@@ -177,7 +177,6 @@ mod tests {
                 rms_rad_s: Some(rms),
                 ..Score::default()
             },
-            ..Row::default()
         };
         let case = |scenario: &str, rows| CaseReport {
             scenario: scenario.to_owned(),

@@ -101,11 +101,12 @@ impl<T> Field<T> {
 /// Every field of `rows` made one.
 pub(crate) fn merged<'a, T: Default + 'a>(
     fields: &[Field<T>],
-    rows: impl Iterator<Item = &'a T> + Clone,
+    rows: impl Iterator<Item = &'a T>,
 ) -> T {
+    let rows: Vec<_> = rows.collect();
     let mut merged = T::default();
     for field in fields {
-        (field.set)(&mut merged, field.over(rows.clone()));
+        (field.set)(&mut merged, field.over(rows.iter().copied()));
     }
     merged
 }
@@ -229,10 +230,11 @@ impl Score {
 
     /// The mean over `rows` (largest error: the largest; samples that are not finite: their sum).
     #[must_use]
-    pub fn mean<'a>(rows: impl Iterator<Item = &'a Self> + Clone) -> Self {
+    pub fn mean<'a>(rows: impl Iterator<Item = &'a Self>) -> Self {
+        let rows: Vec<_> = rows.collect();
         Self {
-            non_finite: rows.clone().map(|row| row.non_finite).sum(),
-            ..merged(Self::FIELDS, rows)
+            non_finite: rows.iter().map(|row| row.non_finite).sum(),
+            ..merged(Self::FIELDS, rows.iter().copied())
         }
     }
 

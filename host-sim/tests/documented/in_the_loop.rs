@@ -57,8 +57,8 @@ fn robustness_of_the_loop() {
         let handle = |ran: &Row| ran.handle_rad_s.max(ran.after_handle_rad_s.unwrap_or(0.0));
         let felt = |ran: &Row| 1e3 * ran.felt_nm.max(ran.after_felt_nm.unwrap_or(0.0));
         let oscillation = |ran: &Row| 1e3 * ran.oscillation_nm.unwrap_or(0.0);
-        let columns: [(&str, &dyn Fn(&Row) -> f64); 3] =
-            [(row[4], &handle), (row[5], &felt), (row[6], &oscillation)];
+        let columns: [(&str, fn(&Row) -> f64); 3] =
+            [(row[4], handle), (row[5], felt), (row[6], oscillation)];
         for (cell, of) in columns {
             let written: Vec<f64> = cell.split(' ').map(|cell| cell.parse().unwrap()).collect();
             let above = |limit: f64| drawn.iter().filter(|ran| of(ran) > limit).count();

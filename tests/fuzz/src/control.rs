@@ -4,7 +4,8 @@ use estimator_core::{
     Count, EndFit, Foaw, Hertz, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple, preset,
 };
 use haptic_control::{
-    AnyScene, Bounds, Currents, DualStage, Findings, LoopPoles, Mode, Monitor, Refusal, Request, Rig, Safety, Stop, Switchboard, SwitchboardState,
+    AnyScene, Bounds, Currents, DualStage, Findings, LoopPoles, Mode, Monitor, Refusal, Request,
+    Rig, Safety, Stop, Switchboard, SwitchboardState,
 };
 
 use crate::bytes::Bytes;
