@@ -3,15 +3,31 @@
 use estimator_core::Hertz;
 use haptic_control::DualStage;
 
+/// Clock of the timers that make the control tick and stamp edges. The firmware compares it with
+/// the clock tree.
+pub const TIMER_HZ: u32 = 84_000_000;
+/// The clock of edge stamps.
+pub const TIMERS: Hertz = Hertz(TIMER_HZ as f64);
+
 /// Control ticks per second, 1000 to 20 000.
 pub const RATE_HZ: u32 = 10_000;
 const _: () = assert!(RATE_HZ >= 1000 && RATE_HZ <= 20_000);
+const _: () = assert!(
+    TIMER_HZ.is_multiple_of(RATE_HZ),
+    "the timer's clock must be a multiple of the control rate"
+);
 
 /// The control rate.
 pub const RATE: Hertz = Hertz(RATE_HZ as f64);
 
 /// Telemetry frames per second.
-pub const FRAMES_HZ: u32 = 1000;
+const FRAMES_HZ: u32 = 1000;
+const _: () = assert!(
+    RATE_HZ.is_multiple_of(FRAMES_HZ),
+    "the control rate must be a multiple of the frame rate"
+);
+/// Control ticks for one telemetry frame.
+pub const DECIMATION: u32 = RATE_HZ / FRAMES_HZ;
 
 /// The device that the image is designed for.
 pub const DEVICE: DualStage = DualStage::DEFAULT;

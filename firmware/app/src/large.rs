@@ -3,12 +3,12 @@
 use core::convert::Infallible;
 
 use estimator_core::{
-    AdaptiveEdgeObserver, AdaptiveObserver, Confidence, CountObserver, Deviations, EndFit, Foaw,
-    Handover, HandoverState, Hertz, Model, NoInput, Observer, Side, Skip, SteadyKalman,
-    SteadyKalmanTriple, Uncertainty, preset,
+    AdaptiveEdgeObserver, AdaptiveObserver, Confidence, CountObserver, DesignError, Deviations,
+    EndFit, Foaw, Handover, HandoverState, Model, NoInput, Observer, Side, Skip, SteadyKalman,
+    SteadyKalmanTriple, preset,
 };
 
-use crate::config::{DEVICE, EDGES, RATE};
+use crate::config::{DEVICE, RATE, TIMERS};
 
 /// FOAW over at most 32 intervals.
 pub type Window = Foaw<32, EndFit>;
@@ -33,26 +33,23 @@ const TICKS: u16 = (RATE.0 / 50.0) as u16;
 /// The parameters of [`Both`].
 pub const BOTH: Both = preset!(Handover::new(WINDOW, FILTER, TICKS, TICKS));
 
-/// As `host-sim tune` has it for these rates.
-const UNSURE: Uncertainty = Uncertainty {
-    torque_noise: if EDGES { 3.68e-5 } else { 3.57e-6 },
-    load: if EDGES { 8.9e-4 } else { 1e-5 },
-    load_time: 0.1,
-    friction_share: 0.7,
-    boundary_noise: if EDGES { 0.03 } else { 0.0625 },
-};
-const COUNTS: CountObserver = preset!(Observer::new(&DEVICE.coupled_motor(), RATE, &UNSURE));
+const fn observer(tuned_as: &str) -> Result<CountObserver, DesignError> {
+    let unsure = tuned::uncertainty(tuned_as, RATE);
+    Observer::new(&DEVICE.coupled_motor(), RATE, &unsure)
+}
 
 /// An observer that learns damping, friction and torque constant from counts.
 pub type Adaptive = AdaptiveObserver;
-/// The parameters of [`Adaptive`].
-pub const ADAPTIVE: Adaptive = preset!(COUNTS.learning(DEVICE.large.counts_per_rev, RATE));
+/// The parameters of [`Adaptive`], as tuned for the plant with friction.
+pub const ADAPTIVE: Adaptive =
+    preset!(preset!(observer("adaptive")).learning(DEVICE.large.counts_per_rev, RATE));
 
 /// An observer that learns damping, friction and torque constant from stamped edges.
 pub type AdaptiveEdge = AdaptiveEdgeObserver;
-/// The parameters of [`AdaptiveEdge`].
+/// The parameters of [`AdaptiveEdge`], as tuned for the plant with friction.
 pub const ADAPTIVE_EDGE: AdaptiveEdge = preset!(
-    preset!(COUNTS.with_edges(Hertz(84e6), RATE)).learning(DEVICE.large.counts_per_rev, RATE)
+    preset!(preset!(observer("adaptive-edge")).with_edges(TIMERS, RATE))
+        .learning(DEVICE.large.counts_per_rev, RATE)
 );
 
 #[cfg(all(feature = "large-adaptive", not(feature = "edge-capture")))]

@@ -4,12 +4,10 @@ use estimator_core::{Count, Deviations, Edge, Sample};
 use haptic_control::Action;
 use heapless::spsc::{Producer, Queue};
 
-use crate::config::{EDGES, FRAMES_HZ, RATE_HZ};
+use crate::config::{DECIMATION, EDGES};
 use crate::large::{Learnable as _, Learned};
 use crate::scene::{Estimation, RIG};
 
-/// Control ticks for one frame.
-const DECIMATION: u32 = RATE_HZ / FRAMES_HZ;
 /// Frames that wait, and that one look logs at most.
 pub const DEPTH: usize = 32;
 
