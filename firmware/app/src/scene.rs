@@ -2,13 +2,10 @@
 //! have `cfg`.
 
 use estimator_core::{
-    Confidence as _, Hertz, Model, NoInput, SteadyKalman, SteadyKalmanTriple, Variance,
-    VelocityEstimator, preset,
+    Confidence as _, Model, NoInput, SteadyKalman, SteadyKalmanTriple, Variance, VelocityEstimator,
+    preset,
 };
-use haptic_control::{
-    Bounds, Detents, Excite, FreeAir, Hold, Inertia, LoopPoles, Off, Radians, Rig, SpringDamper,
-    Texture, Torque, Viscous, Wall,
-};
+use haptic_control::{AnyScene, Bounds, LoopPoles, Rig, Torque};
 
 use crate::config::{DEVICE, RATE};
 use crate::large::{LARGE, Large, LargeEstimator as _};
@@ -62,35 +59,18 @@ pub const BOUNDS: Bounds = Bounds {
     rate: RATE,
 };
 
-/// Scenes by number: off, free-air, wall, spring-damper, viscous, detents, texture, hold, torque, inertia,
-/// excite.
-pub const SCENES: u8 = 11;
+/// How many scenes there are.
+pub const SCENES: u8 = AnyScene::NAMES.len() as u8;
 /// The scene of the torque set-point.
-pub const TORQUE_SCENE: u8 = 8;
-
-/// Scenes with their parameters, those of the host simulation.
-mod preset {
-    #![allow(dead_code, reason = "an image of one scene uses one")]
-    use super::*;
-
-    pub(super) const OFF: Off = Off;
-    pub(super) const FREE_AIR: FreeAir = FreeAir;
-    pub(super) const WALL: Wall = preset!(Wall::new(Radians(0.1), 0.30, 0.0));
-    pub(super) const SPRING: SpringDamper = preset!(SpringDamper::new(Radians(0.0), 0.10, 0.5e-3));
-    pub(super) const VISCOUS: Viscous = preset!(Viscous::new(2e-3));
-    pub(super) const DETENTS: Detents = preset!(Detents::new(8e-3, 24));
-    pub(super) const TEXTURE: Texture = preset!(Texture::new(6e-3, Hertz(150.0), RATE));
-    pub(super) const HOLD: Hold = preset!(Hold::new(0.20, 1e-3));
-    pub(super) const TORQUE: Torque = preset!(Torque::new(0.0));
-    pub(super) const INERTIA: Inertia = preset!(Inertia::new(-2e-6, DEVICE.small.inertia as f32));
-    pub(super) const EXCITE: Excite = preset!(Excite::new(&DEVICE, RATE));
-}
+pub const TORQUE_SCENE: u8 = AnyScene::Torque(preset!(Torque::usual(&DEVICE, RATE))).number();
 
 macro_rules! image {
-    ($($feature:literal, $number:literal, $scene:ident, $preset:ident;)+) => {
+    ($($number:literal, $name:literal, $feature:literal, $scene:ident;)+) => {
         $(
             #[cfg(feature = $feature)]
-            use {$scene as TheScene, preset::$preset as THE_SCENE};
+            use haptic_control::$scene as TheScene;
+            #[cfg(feature = $feature)]
+            const THE_SCENE: TheScene = preset!(TheScene::usual(&DEVICE, RATE));
             /// Number of the one scene, which arming by itself puts on.
             #[cfg(feature = $feature)]
             pub const FIRST: u8 = $number;
@@ -110,16 +90,4 @@ macro_rules! image {
     };
 }
 
-image! {
-    "scene-off", 0, Off, OFF;
-    "scene-free-air", 1, FreeAir, FREE_AIR;
-    "scene-wall", 2, Wall, WALL;
-    "scene-spring-damper", 3, SpringDamper, SPRING;
-    "scene-viscous", 4, Viscous, VISCOUS;
-    "scene-detents", 5, Detents, DETENTS;
-    "scene-texture", 6, Texture, TEXTURE;
-    "scene-hold", 7, Hold, HOLD;
-    "scene-torque", 8, Torque, TORQUE;
-    "scene-inertia", 9, Inertia, INERTIA;
-    "scene-excite", 10, Excite, EXCITE;
-}
+haptic_control::scenes!(image);

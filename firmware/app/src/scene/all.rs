@@ -1,30 +1,15 @@
 //! An image of all scenes, one at a time.
 
-use estimator_core::Sample;
+use estimator_core::{Sample, preset};
 use haptic_control::{Action, AnyScene, Refusal, Switchboard, SwitchboardState};
 
-use super::preset::{
-    DETENTS, EXCITE, FREE_AIR, HOLD, INERTIA, OFF, SPRING, TEXTURE, TORQUE, VISCOUS, WALL,
-};
 use super::{BOUNDS, Estimation, HANDLE, Handle, RIG, SCENES, TORQUE_SCENE};
-use crate::config::RATE;
+use crate::config::{DEVICE, RATE};
 use crate::large::{Choice, LARGE, Large, LargeEstimator as _, Learned};
 
 type Scenes = [AnyScene; SCENES as usize];
 
-const SCENES_BY_NUMBER: Scenes = [
-    AnyScene::Off(OFF),
-    AnyScene::FreeAir(FREE_AIR),
-    AnyScene::Wall(WALL),
-    AnyScene::SpringDamper(SPRING),
-    AnyScene::Viscous(VISCOUS),
-    AnyScene::Detents(DETENTS),
-    AnyScene::Texture(TEXTURE),
-    AnyScene::Hold(HOLD),
-    AnyScene::Torque(TORQUE),
-    AnyScene::Inertia(INERTIA),
-    AnyScene::Excite(EXCITE),
-];
+const SCENES_BY_NUMBER: Scenes = preset!(AnyScene::usual(&DEVICE, RATE));
 
 static SWITCHBOARD: Switchboard<Large, Handle> = Switchboard::new(LARGE, HANDLE, RIG, RATE);
 
@@ -84,7 +69,7 @@ impl Core {
     pub fn select(&mut self, number: u8, latest: &Sample) {
         if let Some(scene) = self.scenes.get_mut(usize::from(number)) {
             if number == TORQUE_SCENE {
-                *scene = AnyScene::Torque(TORQUE);
+                *scene = SCENES_BY_NUMBER[usize::from(TORQUE_SCENE)];
             }
             SWITCHBOARD.select(&mut self.state, *scene, latest);
             self.on = number;
