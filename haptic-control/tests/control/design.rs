@@ -163,7 +163,7 @@ fn what_cannot_work_is_refused() {
 
 #[test]
 fn the_table_in_the_docs_is_so() {
-    let docs = include_str!("../../docs/theory.md");
+    let docs = include_str!("../../../docs/theory.md");
     let rows: Vec<Vec<f64>> = docs
         .lines()
         .skip_while(|line| !line.starts_with("| rate, kHz |"))

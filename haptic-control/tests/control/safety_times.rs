@@ -245,7 +245,7 @@ fn numbers_and_names_are_those_of_the_documents() {
         assert_eq!(Mode::from_code(code).map(|mode| mode as u8), Some(code));
     }
     assert_eq!(Mode::from_code(5), None);
-    let board = include_str!("../../docs/board.md");
+    let board = include_str!("../../../docs/board.md");
     let named: Vec<_> = (0..=4)
         .map(|code| format!("{code} {}", Mode::from_code(code).unwrap().as_str()))
         .collect();

@@ -38,7 +38,7 @@ fn every_scene_is_at_its_number_and_has_a_name_of_its_own() {
         assert_eq!(same.count(), 1, "{name}");
     }
     // As the documents have them.
-    let telemetry = include_str!("../../docs/telemetry.md");
+    let telemetry = include_str!("../../../docs/telemetry.md");
     let list = AnyScene::NAMES.join(", ");
     assert!(telemetry.contains(&format!("byte 0: {list} from 0")));
 }

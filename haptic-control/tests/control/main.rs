@@ -1,0 +1,13 @@
+//! Tests of the control core, in one program because that is built sooner.
+
+mod design;
+mod excite;
+mod gated;
+mod monitor;
+mod press;
+mod safety;
+mod safety_times;
+mod scenes;
+mod switchboard;
+mod tuning;
+mod velocity_loop;
