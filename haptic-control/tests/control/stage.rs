@@ -1,0 +1,257 @@
+//! Both stages, the limits of currents, the scales and the device, by their formulas.
+
+use estimator_core::{Amps, Counts, CountsPerTickSquared, Hertz};
+use haptic_control::{
+    ContinuousStage, CurrentLimits, DesignError, DualStage, LoopPoles, NewtonMetres, RadPerS, Rig,
+    Rst, RstDesign, TransientStage, TransientState,
+};
+
+const RATE: Hertz = Hertz(1e3);
+const DEVICE: DualStage = DualStage::DEFAULT;
+/// Wide enough for everything but what is tested.
+const WIDE: f32 = 1e3;
+
+fn design() -> RstDesign {
+    RstDesign::new(&DEVICE, RATE, LoopPoles::DEFAULT).unwrap()
+}
+
+fn near(value: f32, wanted: f64, tolerance: f64) {
+    let off = (f64::from(value) - wanted).abs();
+    assert!(off <= tolerance, "{value} {wanted}");
+}
+
+/// What the continuous stage asks of its loop, and what it adds to that, with the loop beside it.
+#[test]
+fn a_wanted_torque_is_a_wanted_velocity_with_friction_and_pull_fed_forward() {
+    let mut device = DEVICE;
+    // No limit in the way.
+    device.large.current_limit = 1e3;
+    let stage = ContinuousStage::new(&device, &design(), WIDE);
+    let rst = Rst::new(&design());
+    let (mut state, mut looped) = (stage.start(RadPerS(0.0)), rst.start(RadPerS(0.0)));
+    for k in 0..2000 {
+        let phase = f64::from(k) / 150.0;
+        let handle = 8.0 * phase.sin();
+        let torque = 0.02 * (1.7 * phase).sin();
+        let large = 15.0 * (0.6 * phase).sin();
+        let current = stage.update(
+            &mut state,
+            NewtonMetres(torque as f32),
+            RadPerS(large as f32),
+            RadPerS(handle as f32),
+        );
+        let wanted = handle + torque / DEVICE.damping;
+        let asked = rst.update(&mut looped, RadPerS(wanted as f32), RadPerS(large as f32));
+        let direction = (f64::from(looped.filtered().0) / 0.5).clamp(-1.0, 1.0);
+        let forward = DEVICE.large.coulomb * direction - DEVICE.damping * handle;
+        let applied = f64::from(asked) + forward / DEVICE.large.torque_constant;
+        near(current.get(), applied, 1e-3);
+    }
+}
+
+#[test]
+fn the_wanted_velocity_ends_at_85_percent_of_the_monitors_limit() {
+    let stage = ContinuousStage::new(&DEVICE, &design(), WIDE);
+    let limit = 0.85 * 150.0;
+    for sign in [1.0, -1.0] {
+        for handle in [0.0, 20.0, -20.0] {
+            // What the handle leaves of it, just below and far above.
+            let most = (limit - sign * handle) * DEVICE.damping;
+            let settled = |torque: f64| {
+                let mut state = stage.start(RadPerS(0.0));
+                let mut coupled = NewtonMetres(0.0);
+                let mut current = Amps::ZERO;
+                for _ in 0..3000 {
+                    let (torque, large) = (NewtonMetres((sign * torque) as f32), sign * limit);
+                    let handle = RadPerS(handle as f32);
+                    current = stage.update(&mut state, torque, RadPerS(large as f32), handle);
+                    let slip = RadPerS(large as f32 - handle.0);
+                    coupled = stage.coupled(&mut state, slip);
+                }
+                (f64::from(current.get()), coupled)
+            };
+            let (_, coupled) = settled(10.0 * most);
+            near(coupled.0, sign * most, 1e-6);
+            assert_eq!(settled(10.0 * most), settled(100.0 * most));
+            assert_ne!(settled(0.99 * most), settled(most));
+        }
+    }
+}
+
+#[test]
+fn the_torque_of_the_coupler_is_half_measured_and_half_asked_for() {
+    let stage = ContinuousStage::new(&DEVICE, &design(), WIDE);
+    let mut state = stage.start(RadPerS(0.0));
+    let gain = 1.0 - (-std::f64::consts::TAU * 60.0 / RATE.0).exp();
+    let (mut lag, mut expected) = (0.0, 0.0);
+    for k in 0..200 {
+        let torque = if k < 100 { 0.03 } else { -0.01 };
+        let (large, handle) = (f64::from(k) / 10.0, 3.0);
+        let large_now = RadPerS(large as f32);
+        let asked = NewtonMetres(torque as f32);
+        let _ = stage.update(&mut state, asked, large_now, RadPerS(handle as f32));
+        let coupled = stage.coupled(&mut state, RadPerS((large - handle) as f32));
+        lag += gain * (torque - lag);
+        expected += gain * (lag - expected);
+        let wanted = 0.5 * expected + 0.5 * DEVICE.damping * (large - handle);
+        near(coupled.0, wanted, 1e-8);
+    }
+}
+
+#[test]
+fn the_small_motor_makes_the_torque_and_four_fifths_of_its_friction() {
+    let mut device = DEVICE;
+    device.small.current_limit = 1e3;
+    let stage = TransientStage::new(&device, WIDE);
+    for missing in [0.0, 0.01, -0.02] {
+        for (handle, direction) in [
+            (0.0, 0.0),
+            (0.06, 0.5),
+            (-0.06, -0.5),
+            (0.12, 1.0),
+            (0.13, 1.0),
+            (-5.0, -1.0),
+        ] {
+            let current = stage.update(
+                &mut TransientState::default(),
+                NewtonMetres(missing),
+                RadPerS(handle),
+            );
+            let torque = f64::from(missing) + 0.8 * DEVICE.small.coulomb * direction;
+            near(current.get(), torque / DEVICE.small.torque_constant, 1e-6);
+        }
+    }
+}
+
+#[test]
+fn currents_are_limited_in_size_and_slew() {
+    for (rate, slews) in [(1e3, [1.2, 0.6]), (10e3, [0.12, 0.06])] {
+        let rig = Rig::new(&DEVICE, Hertz(rate), LoopPoles::DEFAULT).unwrap();
+        for sign in [1.0, -1.0] {
+            let mut large = rig.continuous.start(RadPerS(0.0));
+            let mut small = TransientState::default();
+            let (mut rise, mut most) = ([0.0_f32; 2], [0.0_f32; 2]);
+            let mut before = [0.0; 2];
+            for _ in 0..2000 {
+                // A large motor that runs the wrong way.
+                let (push, wrong) = (NewtonMetres(sign), RadPerS(-sign * 1e4));
+                let still = RadPerS(0.0);
+                let now = [
+                    rig.continuous.update(&mut large, push, wrong, still).get(),
+                    rig.transient.update(&mut small, push, still).get(),
+                ];
+                for i in 0..2 {
+                    rise[i] = rise[i].max((now[i] - before[i]).abs());
+                    most[i] = most[i].max(sign * now[i]);
+                }
+                before = now;
+            }
+            assert_eq!(most, [6.0, 1.5]);
+            for (rise, slew) in rise.iter().zip(slews) {
+                near(*rise, slew, 1e-5);
+            }
+        }
+    }
+}
+
+#[test]
+fn limits_let_pass_what_is_within_and_stop_exactly_there() {
+    let limits = CurrentLimits {
+        largest: 2.0,
+        slew: 0.5,
+    };
+    for (wanted, before, applied) in [
+        (0.3, 0.0, 0.3),
+        (0.5, 0.0, 0.5),
+        (0.75, 0.0, 0.5),
+        (-0.75, 0.0, -0.5),
+        (1.0, 1.25, 1.0),
+        (0.0, 1.25, 0.75),
+        (9.0, 1.75, 2.0),
+        (-9.0, -1.75, -2.0),
+        (2.0, 2.0, 2.0),
+        (-2.0, -2.0, -2.0),
+        (f32::INFINITY, 1.0, 0.0),
+        (f32::NEG_INFINITY, 1.0, 0.0),
+        (f32::NAN, 1.0, 0.0),
+        // What flowed before may be beyond the limit.
+        (9.0, 5.0, 2.0),
+    ] {
+        assert_eq!(limits.applied(wanted, before), applied, "{wanted} {before}");
+    }
+}
+
+#[test]
+fn scales_are_those_of_the_encoders() {
+    for rate in [1e3, 10e3] {
+        let rig = Rig::new(&DEVICE, Hertz(rate), LoopPoles::DEFAULT).unwrap();
+        let turn = std::f64::consts::TAU;
+        near(rig.angle.of(Counts(20_000)).0, turn, 1e-6);
+        near(rig.angle.of(Counts(-5000)).0, -turn / 4.0, 1e-6);
+        near(
+            rig.large.rad_per_s_per_count_per_tick,
+            turn / 4096.0 * rate,
+            1e-5,
+        );
+        near(
+            rig.handle.rad_per_s_per_count_per_tick,
+            turn / 20_000.0 * rate,
+            1e-6,
+        );
+        let acceleration = rig.acceleration.of(CountsPerTickSquared(0.5)).0;
+        let wanted = 0.5 * turn / 20_000.0 * rate * rate;
+        near(acceleration, wanted, 1e-6 * wanted);
+    }
+}
+
+/// Every constant of the device, as a way to set it.
+const CONSTANTS: [fn(&mut DualStage, f64); 10] = [
+    |device, value| device.large.inertia = value,
+    |device, value| device.large.torque_constant = value,
+    |device, value| device.large.current_limit = value,
+    |device, value| device.small.inertia = value,
+    |device, value| device.small.torque_constant = value,
+    |device, value| device.small.current_limit = value,
+    |device, value| device.damping = value,
+    |device, value| device.amplifier = Hertz(value),
+    |device, value| device.large.coulomb = value,
+    |device, value| device.small.coulomb = value,
+];
+
+#[test]
+fn a_device_has_finite_constants_above_zero_and_friction_of_at_least_zero() {
+    assert_eq!(DEVICE.checked(), Ok(DEVICE));
+    let refused = Err(DesignError::Device);
+    for (i, set) in CONSTANTS.iter().enumerate() {
+        let with = |value| {
+            let mut device = DEVICE;
+            set(&mut device, value);
+            device.checked().map(|_| ())
+        };
+        for value in [-1e-9, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert_eq!(with(value), refused.map(|_: DualStage| ()), "{i} {value}");
+        }
+        let is_friction = i >= 8;
+        assert_eq!(with(0.0).is_ok(), is_friction, "{i}");
+        assert!(with(1e-9).is_ok(), "{i}");
+    }
+    let mut device = DEVICE;
+    device.large.counts_per_rev = 0;
+    assert_eq!(device.checked(), refused);
+    device = DEVICE;
+    device.small.counts_per_rev = 0;
+    assert_eq!(device.checked(), refused);
+}
+
+#[test]
+fn the_observer_is_told_of_the_same_device() {
+    let motor = DEVICE.coupled_motor();
+    assert_eq!(motor.large.counts_per_rev, DEVICE.large.counts_per_rev);
+    assert_eq!(motor.large.inertia, DEVICE.large.inertia);
+    assert_eq!(motor.large.damping, DEVICE.damping);
+    assert_eq!(motor.large.torque_constant, DEVICE.large.torque_constant);
+    assert_eq!(motor.coulomb_friction, DEVICE.large.coulomb);
+    assert_eq!(motor.small_counts_per_rev, DEVICE.small.counts_per_rev);
+    // A bandwidth of 2 kHz is a lag of 79.6 us.
+    assert!((motor.amplifier_lag * std::f64::consts::TAU * 2000.0 - 1.0).abs() < 1e-12);
+}
