@@ -12,6 +12,7 @@
 //! | `observer` | invariants of the observers, which read more than counts; a motor that obeys their model; what they learn |
 //! | `confidence` | the variances that estimators claim, against errors and theory |
 //! | `handover` | two estimators that are exchanged while they run |
+//! | `limits` | the range of each parameter |
 //! | `steady_gain` | the plain recursion run until it stops changing |
 //! | `regressions` | each defect known from public code, one test by name |
 //!
@@ -31,6 +32,7 @@ mod foaw_definition;
 mod handover;
 mod invariants;
 mod kalman_reference;
+mod limits;
 mod m_over_t;
 mod motion;
 mod observer;
