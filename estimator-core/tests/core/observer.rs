@@ -30,6 +30,8 @@ type Runner = Box<dyn Fn(&[Sample]) -> Vec<f32> + Send + Sync>;
 
 struct Case {
     name: String,
+    /// The estimator's type.
+    kind: &'static str,
     needs: Signals,
     run: Runner,
 }
@@ -40,6 +42,7 @@ where
 {
     Case {
         name: format!("{name} at {rate} Hz"),
+        kind: std::any::type_name::<E>(),
         needs: E::NEEDS,
         run: Box::new(move |samples| {
             let mut state = estimator.start(&samples[0]);
@@ -81,6 +84,11 @@ fn at(rate: f64) -> Vec<Case> {
             edges.learning(4096, hertz).expect("valid"),
         ),
     ]
+}
+
+/// Their types.
+pub(crate) fn kinds() -> impl Iterator<Item = &'static str> {
+    at(RATES[0]).into_iter().map(|case| case.kind)
 }
 
 fn everywhere() -> Vec<Case> {
