@@ -25,16 +25,17 @@ impl CoupledMotor {
     pub const DCX35L: Self = Self {
         large: Device::DCX35L,
         coulomb_friction: 4.0e-3,
-        amplifier_lag: 79.6e-6,
+        amplifier_lag: 1.0 / (2.0 * core::f64::consts::PI * 2000.0),
         small_counts_per_rev: 4 * 5000,
     };
 
     /// The device itself, if every constant is in its range at this rate.
     ///
     /// # Errors
-    /// [`DesignError::Rate`]; [`DesignError::Device`] as [`Device::checked`], if friction or lag
-    /// are negative or not finite, without counts of the small encoder, or if the coupler stops
-    /// the motor within a few ticks or an ampere moves it by 10^6 counts in one.
+    /// [`DesignError::Rate`]; [`DesignError::Device`] as [`Device::checked`];
+    /// [`DesignError::CoupledMotor`] if friction or lag are negative or not finite, or without
+    /// counts of the small encoder; [`DesignError::Tick`] if the coupler stops the motor within a
+    /// few ticks or an ampere or its friction moves it by 10^6 counts in one.
     pub(crate) const fn checked(self, rate: Hertz) -> Result<Self, DesignError> {
         if !rate.is_positive() {
             return Err(DesignError::Rate);
@@ -43,18 +44,20 @@ impl CoupledMotor {
             Ok(large) => large,
             Err(error) => return Err(error),
         };
+        let lag = self.amplifier_lag * rate.0;
+        let friction = self.coulomb_friction >= 0.0 && self.coulomb_friction.is_finite();
+        if !(friction && lag >= 0.0 && lag < 1e6 && self.small_counts_per_rev > 0) {
+            return Err(DesignError::CoupledMotor);
+        }
         let square = rate.period_s() * rate.period_s();
         let counts = large.counts_per_rev as f64;
         let moved = counts * large.torque_constant * square / large.inertia;
         let braked = counts * self.coulomb_friction * square / large.inertia;
         let damped = large.damping * rate.period_s() / large.inertia;
-        let sane = moved > 0.0 && moved < 1e6 && braked < 1e6 && damped < 8.0;
-        let lag = self.amplifier_lag * rate.0;
-        let apart = self.coulomb_friction >= 0.0 && lag >= 0.0 && lag < 1e6;
-        if sane && apart && self.small_counts_per_rev > 0 {
+        if moved > 0.0 && moved < 1e6 && braked < 1e6 && damped < 8.0 {
             Ok(self)
         } else {
-            Err(DesignError::Device)
+            Err(DesignError::Tick)
         }
     }
 }

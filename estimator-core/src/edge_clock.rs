@@ -27,8 +27,11 @@ impl EdgeClock {
     /// [`DesignError::Rate`] unless the clock is at least as fast as the rate and both are
     /// positive and finite.
     pub(crate) const fn new(clock: Hertz, rate: Hertz) -> Result<Self, DesignError> {
-        if !(clock.is_positive() && rate.is_positive() && clock.0 >= rate.0) {
+        if !rate.is_positive() {
             return Err(DesignError::Rate);
+        }
+        if !(clock.is_positive() && clock.0 >= rate.0) {
+            return Err(DesignError::EdgeClock);
         }
         Ok(Self {
             period: (rate.0 / clock.0) as f32,

@@ -53,7 +53,7 @@ impl<A, B> Handover<A, B> {
     /// `first`, that `second` may relieve, after `settle` ticks unheard and `fade` of fading.
     ///
     /// # Errors
-    /// [`DesignError::Window`] unless `fade` is 1 to 2^15 and `settle` below 2^15 ticks.
+    /// [`DesignError::Fade`] unless `fade` is 1 to 2^15 and `settle` below 2^15 ticks.
     pub const fn new(first: A, second: B, settle: u16, fade: u16) -> Result<Self, DesignError>
     where
         A: Copy,
@@ -61,7 +61,7 @@ impl<A, B> Handover<A, B> {
     {
         const LONGEST: u16 = 1 << 15;
         if fade == 0 || fade > LONGEST || settle >= LONGEST {
-            return Err(DesignError::Window);
+            return Err(DesignError::Fade);
         }
         Ok(Self {
             first,

@@ -24,7 +24,8 @@ impl Model<2, CurrentInput> {
     /// The paper's model has no friction and a still handle: both end up in the error.
     ///
     /// # Errors
-    /// [`DesignError::Rate`], [`DesignError::Device`], [`DesignError::ProcessNoise`].
+    /// [`DesignError::Rate`], [`DesignError::Device`], [`DesignError::Tick`],
+    /// [`DesignError::ProcessNoise`].
     pub const fn motor(
         device: &Device,
         rate: Hertz,
@@ -42,7 +43,7 @@ impl Model<2, CurrentInput> {
         let per_amp =
             counts_per_rad(device.counts_per_rev) * device.torque_constant * t * t / device.inertia;
         if !(beta < 700.0 && per_amp > 0.0 && per_amp < 1e9) {
-            return Err(DesignError::Device);
+            return Err(DesignError::Tick);
         }
         let b = [per_amp * phi2(beta), per_amp * phi1(beta)];
         let g = [current_noise * b[0], current_noise * b[1]];

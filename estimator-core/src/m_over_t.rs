@@ -36,7 +36,7 @@ impl MOverT {
     /// For stamps by a clock of this frequency.
     ///
     /// # Errors
-    /// [`DesignError::Rate`] unless both are positive and finite and the clock is at least as
+    /// [`DesignError::Rate`]; [`DesignError::EdgeClock`] unless the clock is finite and at least as
     /// fast as the rate.
     pub const fn new(clock: Hertz, rate: Hertz) -> Result<Self, DesignError> {
         match EdgeClock::new(clock, rate) {

@@ -41,20 +41,20 @@ impl DualStage {
     /// are working values, assumed good to 15 %.
     pub const DEFAULT: Self = Self {
         large: Motor {
-            inertia: 115e-7,
-            torque_constant: 46.8e-3,
-            coulomb: 4.0e-3,
-            counts_per_rev: 4 * 1024,
+            inertia: CoupledMotor::DCX35L.large.inertia,
+            torque_constant: CoupledMotor::DCX35L.large.torque_constant,
+            coulomb: CoupledMotor::DCX35L.coulomb_friction,
+            counts_per_rev: CoupledMotor::DCX35L.large.counts_per_rev,
             current_limit: 6.0,
         },
         small: Motor {
             inertia: 50e-7,
             torque_constant: 27.5e-3,
             coulomb: 0.8e-3,
-            counts_per_rev: 4 * 5000,
+            counts_per_rev: CoupledMotor::DCX35L.small_counts_per_rev,
             current_limit: 1.5,
         },
-        damping: 0.96e-3,
+        damping: CoupledMotor::DCX35L.large.damping,
         amplifier: Hertz(2000.0),
     };
 

@@ -109,7 +109,7 @@ impl Plan {
             Err(error) => return Err(error),
         };
         if !uncertainty.is_sane() {
-            return Err(DesignError::ProcessNoise);
+            return Err(DesignError::Uncertainty);
         }
         let t = rate.period_s();
         let beta = device.large.damping * t / device.large.inertia;
@@ -165,8 +165,9 @@ impl Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed> {
     /// The observer of a device that has everything but time stamps: current and both encoders.
     ///
     /// # Errors
-    /// [`DesignError::Rate`], [`DesignError::Device`], [`DesignError::ProcessNoise`];
-    /// [`DesignError::NotConverged`] and [`DesignError::NotStable`] as
+    /// [`DesignError::Rate`]; [`DesignError::Device`], [`DesignError::CoupledMotor`],
+    /// [`DesignError::Tick`]; [`DesignError::Uncertainty`], and [`DesignError::ProcessNoise`] if it
+    /// is nothing in counts and ticks; [`DesignError::NotConverged`] and [`DesignError::NotStable`] as
     /// [`Model::steady_gain`](crate::Model::steady_gain), for any row of the table.
     pub const fn new(
         device: &CoupledMotor,
@@ -287,7 +288,7 @@ impl<C: Copy, S: Copy, L: Copy> Observer<C, S, Cells, L> {
     /// The same with edge time stamps by a clock of this frequency, at the rate it was made for.
     ///
     /// # Errors
-    /// [`DesignError::Rate`] unless the clock is at least as fast as the rate.
+    /// [`DesignError::EdgeClock`] unless the clock is at least as fast as the rate.
     pub const fn with_edges(
         self,
         clock: Hertz,

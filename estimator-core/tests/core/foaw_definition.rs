@@ -149,9 +149,9 @@ fn positions(kind: usize, ticks: usize, draws: &mut Draws) -> Vec<i64> {
             3 => (amplitude * (t / period).sin()).floor() as i64,
             4 => (speed * t).floor() as i64,
             // Ties: whole steps, with a sample exactly at the band's edge now and then.
-            5 => step * tick as i64 + i64::from(draws.bits().is_multiple_of(4)) * draws.within(2),
+            5 => step * tick as i64 + i64::from(draws.bits() % 4 == 0) * draws.within(2),
             // Rest with a flicker, and creep.
-            6 => i64::from(draws.bits().is_multiple_of(16)),
+            6 => i64::from(draws.bits() % 16 == 0),
             7 => (tick as u64 / interval) as i64,
             // Reversal at the fastest allowed.
             8 => last + if tick / 20 % 2 == 0 { 32_767 } else { -32_767 },

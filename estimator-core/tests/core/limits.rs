@@ -42,7 +42,7 @@ fn uncertainty_has_a_range() {
         change(&mut unsure);
         Observer::new(&CoupledMotor::DCX35L, RATE, &unsure)
     };
-    let error = DesignError::ProcessNoise;
+    let error = DesignError::Uncertainty;
     assert_range(
         "torque noise",
         error,
@@ -79,11 +79,9 @@ fn uncertainty_has_a_range() {
         |value| design(&|unsure| unsure.boundary_noise = value),
     );
     // Noise that is nothing in counts and ticks is none.
-    assert_eq!(
-        design(&|unsure| unsure.torque_noise = 1e-200).err(),
-        Some(error)
-    );
-    assert_eq!(design(&|unsure| unsure.load = 1e-200).err(), Some(error));
+    let error = Some(DesignError::ProcessNoise);
+    assert_eq!(design(&|unsure| unsure.torque_noise = 1e-200).err(), error);
+    assert_eq!(design(&|unsure| unsure.load = 1e-200).err(), error);
 }
 
 /// White torque that alone spreads the velocity by 1e-9 to 512 counts a tick in a tick.
@@ -115,53 +113,66 @@ fn coupled_motor_has_a_range() {
         change(&mut device);
         Observer::new(&device, Hertz(rate), &UNSURE).map(|_| ())
     };
-    let error = DesignError::Device;
-    // In counts and ticks at 1 kHz, 4096 counts and 115e-7 kg.m2.
-    let (square, inertia) = (1e-6, 115e-7);
-    assert_range("friction", error, &[0.0, 2.8], &[-1e-6], |value| {
-        design(1000.0, &|device| device.coulomb_friction = value)
-    });
-    let strongest = 1e6 * inertia / square / 4096.0;
+    let friction = |value| design(1000.0, &|device| device.coulomb_friction = value);
+    let torque_constant = |value| design(1000.0, &|device| device.large.torque_constant = value);
+    let damping = |value| design(1000.0, &|device| device.large.damping = value);
+    let inertia = |value| design(1000.0, &|device| device.large.inertia = value);
+    let lag = |value| design(1000.0, &|device| device.amplifier_lag = value);
     assert_range(
         "friction",
-        error,
-        &[0.999 * strongest],
-        &[1.001 * strongest],
-        |value| design(1000.0, &|device| device.coulomb_friction = value),
-    );
-    assert_range(
-        "torque constant",
-        error,
-        &[1e-3, 0.999 * strongest],
-        &[0.0, -1e-3, 1.001 * strongest],
-        |value| design(1000.0, &|device| device.large.torque_constant = value),
-    );
-    let stiffest = 8.0 * inertia * 1000.0;
-    assert_range(
-        "damping",
-        error,
-        &[0.0, 0.999 * stiffest],
-        &[-1e-6, 1.001 * stiffest],
-        |value| design(1000.0, &|device| device.large.damping = value),
+        DesignError::CoupledMotor,
+        &[0.0, 2.8],
+        &[-1e-6],
+        friction,
     );
     assert_range(
         "lag",
-        error,
+        DesignError::CoupledMotor,
         &[0.0, 1e-9, 999.0],
         &[-1e-6, 1001.0],
-        |value| design(1000.0, &|device| device.amplifier_lag = value),
+        lag,
     );
-    assert_range("inertia", error, &[115e-7], &[0.0, -1e-6], |value| {
-        design(1000.0, &|device| device.large.inertia = value)
-    });
-    let refused = design(1000.0, &|device| device.small_counts_per_rev = 0);
-    assert_eq!(refused.err(), Some(error));
+    assert_range(
+        "torque constant",
+        DesignError::Device,
+        &[1e-3],
+        &[0.0, -1e-3],
+        torque_constant,
+    );
+    assert_range(
+        "damping",
+        DesignError::Device,
+        &[0.0, 1e-3],
+        &[-1e-6],
+        damping,
+    );
+    assert_range(
+        "inertia",
+        DesignError::Device,
+        &[115e-7],
+        &[0.0, -1e-6],
+        inertia,
+    );
+    // In counts and ticks at 1 kHz, 4096 counts and 115e-7 kg.m2.
+    let strongest = 1e6 * 115e-7 / 1e-6 / 4096.0;
+    let stiffest = 8.0 * 115e-7 * 1000.0;
+    for (what, limit, design) in [
+        ("friction", strongest, &friction as &dyn Fn(f64) -> _),
+        ("torque constant", strongest, &torque_constant),
+        ("damping", stiffest, &damping),
+    ] {
+        assert_ne!(design(0.999 * limit), Err(DesignError::Tick), "{what}");
+        assert_eq!(design(1.001 * limit), Err(DesignError::Tick), "{what}");
+    }
+    // An ampere that moves nothing.
+    assert_eq!(inertia(1e300), Err(DesignError::Tick));
+    let small = |counts| design(1000.0, &|device| device.small_counts_per_rev = counts);
     assert_eq!(
-        design(1000.0, &|device| device.small_counts_per_rev = 1),
-        Ok(())
+        (small(0), small(1)),
+        (Err(DesignError::CoupledMotor), Ok(()))
     );
     let refused = design(1000.0, &|device| device.large.counts_per_rev = 0);
-    assert_eq!(refused.err(), Some(error));
+    assert_eq!(refused, Err(DesignError::Device));
     assert_range("rate", DesignError::Rate, &[500.0], &[0.0, -1.0], |rate| {
         design(rate, &|_| ())
     });
@@ -198,24 +209,20 @@ fn motor_model_has_a_range() {
     let design = |change: &dyn Fn(&mut Device)| {
         let mut device = Device::DCX35L;
         change(&mut device);
-        Model::motor(&device, RATE, 0.1)
+        Model::motor(&device, RATE, 0.1).err()
     };
-    let error = DesignError::Device;
-    let inertia = Device::DCX35L.inertia;
-    assert_range(
-        "damping",
-        error,
-        &[699.0 * inertia * 1e3],
-        &[701.0 * inertia * 1e3],
-        |value| design(&|device| device.damping = value),
-    );
-    let strongest = 1e9 * inertia / 1e-6 / (4096.0 / std::f64::consts::TAU);
-    assert_range(
-        "torque constant",
-        error,
-        &[0.999 * strongest],
-        &[1.001 * strongest],
-        |value| design(&|device| device.torque_constant = value),
+    let stiffest = 700.0 * Device::DCX35L.inertia * 1e3;
+    let strongest = 1e9 * Device::DCX35L.inertia / 1e-6 / (4096.0 / std::f64::consts::TAU);
+    for (part, error) in [(0.999, None), (1.001, Some(DesignError::Tick))] {
+        assert_eq!(design(&|device| device.damping = part * stiffest), error);
+        assert_eq!(
+            design(&|device| device.torque_constant = part * strongest),
+            error
+        );
+    }
+    assert_eq!(
+        design(&|device| device.inertia = 1e300),
+        Some(DesignError::Tick)
     );
 }
 
@@ -301,7 +308,11 @@ fn handover_has_a_range() {
         assert!(new(settle, fade).is_ok(), "{settle} {fade}");
     }
     for (settle, fade) in [(0, 0), (0, longest + 1), (longest, 1), (u16::MAX, 1)] {
-        assert!(new(settle, fade).is_err(), "{settle} {fade}");
+        assert_eq!(
+            new(settle, fade).err(),
+            Some(DesignError::Fade),
+            "{settle} {fade}"
+        );
     }
 }
 

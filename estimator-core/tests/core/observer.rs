@@ -173,9 +173,9 @@ proptest! {
         let samples: Vec<Sample> = (0..400).map(|_| {
             let wild = |draws: &mut Draws| Count(draws.bits() as u32);
             let current = f32::from_bits(draws.bits() as u32);
-            let large = if draws.bits().is_multiple_of(4) { wild(&mut draws) } else { Count(draws.within(40) as u32) };
+            let large = if draws.bits() % 4 == 0 { wild(&mut draws) } else { Count(draws.within(40) as u32) };
             // Half of the stamps fit their count.
-            let boundary = if draws.bits().is_multiple_of(2) { wild(&mut draws) } else { Count(large.0.wrapping_add(draws.bits() as u32 & 1)) };
+            let boundary = if draws.bits() % 2 == 0 { wild(&mut draws) } else { Count(large.0.wrapping_add(draws.bits() as u32 & 1)) };
             let age = ClockTicks((draws.bits() >> (draws.bits() % 60)) as u32);
             Sample::new(large)
                 .with_small(wild(&mut draws))

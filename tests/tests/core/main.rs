@@ -1,12 +1,15 @@
-//! What the compiler makes of `estimator-core` and `haptic-control` for the board.
+//! What the compiler makes of `estimator-core` and `haptic-control` for the board, and what both have
+//! to agree in.
 //!
 //! | module | checks |
 //! |---|---|
 //! | `codegen` | functions of `estimator-core` |
+//! | `devices` | the default device, the same in every crate |
 //! | `scene_images` | what one scene of `haptic-control` costs on the board |
 //!
 //! The tests of what `estimator-core` computes are in its own package.
 
 mod codegen;
+mod devices;
 mod image;
 mod scene_images;
