@@ -13,7 +13,8 @@ use crate::image::{free_air, of_scene, run};
 
 /// When most faults happen: the device runs in free air.
 const FAULT_S: f64 = 0.5;
-/// When some happen instead: while the image starts. Its watchdog runs, its control task does not.
+/// When some happen instead: the watchdog runs, and the task of lowest priority has fed it once at
+/// most; nothing is enabled.
 const START_S: f64 = 0.5e-3;
 
 /// Watchdog period at the nominal oscillator of 32 kHz, ms: prescaler 128, reload 6.

@@ -220,7 +220,7 @@ fn frames_that_find_no_place_in_the_queue_are_numbered_and_counted() {
     assert_eq!(drops, missing);
 }
 
-/// RTT holds 60 frames or so, and 300 ms make 300.
+/// RTT holds 4096 bytes, and 300 ms make 300 frames of 40 bytes and more.
 #[test]
 fn frames_that_find_no_place_in_rtt_are_counted() {
     let run = run(&Setup {
@@ -228,6 +228,6 @@ fn frames_that_find_no_place_in_rtt_are_counted() {
         ..of_scene(SceneName::FreeAir, Hand::Moving, 1.0)
     });
     let [missing, drops] = missing(&run);
-    assert!((200..290).contains(&missing), "{missing} are missing");
+    assert!((150..300).contains(&missing), "{missing} are missing");
     assert_eq!(drops, missing);
 }
