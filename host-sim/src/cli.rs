@@ -5,6 +5,7 @@ mod beside;
 mod compare;
 mod felt;
 mod identify;
+mod input;
 mod limit;
 mod list;
 mod page;
@@ -19,8 +20,8 @@ mod zwidth;
 
 use std::ffi::OsString;
 
-use clap::Parser as _;
 use clap::error::ErrorKind;
+use clap::{CommandFactory as _, Parser as _};
 
 use crate::failure::Failure;
 use arguments::{Arguments, Command};
@@ -34,7 +35,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     let command_line = command_line(&arguments);
     let parsed = match Arguments::try_parse_from(&arguments) {
         Ok(parsed) => parsed,
-        Err(error) => return explain(&error, "host-sim"),
+        Err(error) => return explain(&error, &program(&arguments)),
     };
     match parsed.command {
         None => compare::run(&compare::Compare::default(), "host-sim compare"),
@@ -77,6 +78,16 @@ pub fn explain(error: &clap::Error, program: &str) -> Result<(), Failure> {
     let said = said.join(" ");
     let said = said.strip_prefix("error: ").unwrap_or(&said);
     Err(Failure::Input(format!("{said}; see {program} --help")))
+}
+
+/// The program with the command that `arguments` name, whose --help has what they may be.
+fn program(arguments: &[OsString]) -> String {
+    let name = arguments.get(1).map(|name| name.to_string_lossy());
+    let known = |name: &str| Arguments::command().find_subcommand(name).is_some();
+    match name.filter(|name| known(name)) {
+        Some(name) => format!("host-sim {name}"),
+        None => "host-sim".to_owned(),
+    }
 }
 
 /// The command as somebody would type it again.

@@ -130,10 +130,12 @@ impl Loop {
                 .map_err(|error| format!("reference encoder: {error}"))?;
         }
         if self.scene.asks_for_acceleration() && !self.handle.gives_acceleration() {
+            let names = Kind::all().iter().filter(|kind| kind.gives_acceleration());
+            let names: Vec<_> = names.map(|kind| kind.name).collect();
             return Err(format!(
-                "scene {}: its estimator of the handle gives no acceleration; name one that does, \
-                 kalman-triple, kalman-triple-table or kalman-triple-steady",
-                self.scene
+                "scene {}: its estimator of the handle gives no acceleration; name one that does: {}",
+                self.scene,
+                names.join(", ")
             ));
         }
         let visit = Running {

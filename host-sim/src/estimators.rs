@@ -8,9 +8,11 @@ mod run;
 use estimator_core::{CoupledMotor, Device, Hertz, Signals};
 
 pub use erased::{Estimator, State};
-pub use run::{EDGE_CLOCK_HZ, available, sample};
+pub use run::{available, sample};
 
 use crate::failure::Failure;
+use crate::parameters::{Parameters, PlantKind};
+use crate::wording::{decimal, unknown};
 
 /// One parameter of an estimator.
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +73,13 @@ pub struct Setup {
     pub small_counts_per_rev: u32,
 }
 
+/// The default device at 1 kHz.
+impl Default for Setup {
+    fn default() -> Self {
+        crate::compare::setup(&crate::device::Device::default(), 1e3)
+    }
+}
+
 impl Setup {
     /// All that the estimators believe of the device.
     #[must_use]
@@ -126,21 +135,19 @@ impl Kind {
             .iter()
             .find(|kind| kind.name == name)
             .ok_or_else(|| {
-                let names: Vec<_> = Self::all().iter().map(|kind| kind.name).collect();
-                Failure::Input(format!(
-                    "no estimator '{name}'; there are {}",
-                    names.join(", ")
-                ))
+                let names = Self::all().iter().map(|kind| kind.name);
+                Failure::Input(unknown("estimator", name, names))
             })
     }
 
-    /// Whether its model has an acceleration: the triple integrators.
+    /// Whether its model has an acceleration, as [`Estimator::gives_acceleration`] says of one with
+    /// the usual parameters: no parameter changes that.
     #[must_use]
     pub fn gives_acceleration(&self) -> bool {
-        matches!(
-            self.name,
-            "kalman-triple" | "kalman-triple-table" | "kalman-triple-steady"
-        )
+        let setup = Setup::default();
+        let values = Parameters::default().values(self, &setup, PlantKind::Friction);
+        self.build(&setup, &values)
+            .is_ok_and(|estimator| estimator.gives_acceleration())
     }
 
     /// Whether it is an observer: it has a disturbance torque, and with it a mechanical model.
@@ -164,13 +171,18 @@ impl Kind {
     pub fn parameter(&self, name: &str) -> Result<usize, Failure> {
         let found = self.parameters.iter().position(|p| p.name == name);
         found.ok_or_else(|| {
-            let names: Vec<_> = self.parameters.iter().map(|p| p.name).collect();
-            let there = if names.is_empty() {
-                "it has none".to_owned()
-            } else {
-                format!("it has {}", names.join(", "))
-            };
-            Failure::Input(format!("{} has no parameter '{name}'; {there}", self.name))
+            if self.parameters.is_empty() {
+                return Failure::Input(format!(
+                    "{} has no parameter '{name}': it has none at all",
+                    self.name
+                ));
+            }
+            let names = self.parameters.iter().map(|p| p.name);
+            Failure::Input(format!(
+                "{} has {}",
+                self.name,
+                unknown("parameter", name, names)
+            ))
         })
     }
 
@@ -210,10 +222,11 @@ impl Parameter {
             "a number"
         };
         Err(Failure::Input(format!(
-            "{kind}.{} = {value}: must be {number} from {} to {}{}{}",
+            "{kind}.{} = {}: must be {number} from {} to {}{}{}",
             self.name,
-            self.lowest,
-            self.highest,
+            decimal(value),
+            decimal(self.lowest),
+            decimal(self.highest),
             if self.unit.is_empty() { "" } else { " " },
             self.unit,
         )))

@@ -25,7 +25,7 @@ use motion::Motion;
 pub use device_file::updated;
 pub use fit::Estimate;
 pub use model::{Beside, SPAN_S};
-pub use quantity::{Known, Quantity};
+pub use quantity::{Known, Quantity, Unit};
 pub use table::{json, text};
 
 /// What came of it.
@@ -45,6 +45,10 @@ pub struct Identification {
 
 /// Part of the motor's torque that may stay unexplained.
 const MOST_UNEXPLAINED: f64 = 0.10;
+/// Length of a window, s.
+const WINDOW_S: f64 = 0.04;
+/// Uneven steps in a window, on average, from which the clock is to blame for a lack of windows.
+const UNEVEN_WINDOWS: f64 = 0.5;
 /// Slowest rate at which a row is taken for a control tick, so that the lag means something, Hz.
 const LAG_RATE_HZ: f64 = 5000.0;
 
@@ -112,6 +116,8 @@ struct Gathered {
     slowest_hz: Option<f64>,
     /// Whether there is a recording without the handle's counts.
     unseen: bool,
+    /// How uneven the first clock is that leaves few windows without uneven steps.
+    uneven: Option<String>,
 }
 
 impl Gathered {
@@ -136,6 +142,9 @@ impl Gathered {
         let handle = trace.counts_small.as_ref();
         let handle = handle.map(|counts| motion(counts, device.small.counts_per_rev));
         let breaks = breaks(&recording.t, period_s);
+        if recording.uneven_share() * WINDOW_S > UNEVEN_WINDOWS * period_s {
+            self.uneven = self.uneven.take().or_else(|| recording.unevenness());
+        }
         let shaft = Shaft {
             period_s,
             own: &own,
@@ -190,12 +199,21 @@ impl Gathered {
             return Err("column current is zero throughout; record scene excite".to_owned());
         }
         let Some(fit) = Fit::new(&self.large.usable) else {
-            return Err(format!(
-                "the large motor turns one way for 40 ms on end in only {} of {} windows; record \
-                 all of scene excite, with the handle held",
-                self.large.usable.len(),
-                self.large.windows
-            ));
+            return Err(match &self.uneven {
+                Some(uneven) => format!(
+                    "{uneven}, so that only {} of {} windows of 40 ms are free of uneven steps and turn \
+                     one way; where the rows are even and only t is not, write t as row / rate, else \
+                     record with a timer",
+                    self.large.usable.len(),
+                    self.large.windows
+                ),
+                None => format!(
+                    "the large motor turns one way for 40 ms on end in only {} of {} windows; record \
+                     all of scene excite, with the handle held",
+                    self.large.usable.len(),
+                    self.large.windows
+                ),
+            });
         };
         let unexplained = fit.unexplained / fit.driven;
         // Not a number is not explained either.
@@ -253,6 +271,16 @@ fn unseen(name: &str, device: &Device) -> Failure {
         device.hand.stiffness_nm_per_rad,
         100.0 * part
     ))
+}
+
+/// What is assumed of the encoders where no device file says what they are.
+#[must_use]
+pub fn default_counts(device: &Device) -> String {
+    format!(
+        "large.counts_per_rev = {} and small.counts_per_rev = {}, those of the default device, because \
+         no --device is given; with other encoders every value is wrong",
+        device.large.counts_per_rev, device.small.counts_per_rev
+    )
 }
 
 fn assumptions(known: Known, held: bool) -> Vec<String> {

@@ -15,7 +15,6 @@ pub mod encoder;
 pub mod estimators;
 pub mod failure;
 pub mod felt;
-
 pub mod health;
 pub mod identify;
 pub mod limit;
@@ -38,4 +37,5 @@ pub mod telemetry;
 pub mod trace;
 pub mod tune;
 pub mod version;
+pub mod wording;
 pub mod zwidth;

@@ -1,5 +1,7 @@
 //! Which parameter values an estimator runs with: tuned presets, a file, the command line.
 
+mod tuned;
+
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -45,6 +47,9 @@ pub struct Presets {
     /// One entry for each rate and plant tuned for.
     #[serde(default)]
     pub preset: Vec<Preset>,
+    /// The file that they come from, as messages name it.
+    #[serde(skip)]
+    pub source: String,
 }
 
 /// Tuned parameters at one rate on one plant.
@@ -55,6 +60,9 @@ pub struct Preset {
     pub rate_hz: f64,
     /// PlantKind.
     pub plant: PlantKind,
+    /// Counts per revolution of the large encoder; `None` in files that do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub counts_per_rev: Option<u32>,
     /// Values by estimator and parameter.
     pub estimators: BTreeMap<String, BTreeMap<String, f64>>,
 }
@@ -63,7 +71,7 @@ impl Presets {
     /// The presets shipped with the program, written by `host-sim tune`.
     #[must_use]
     pub fn shipped() -> Self {
-        Self::parse(include_str!("../presets.toml"), "presets.toml")
+        Self::parse(include_str!("../presets.toml"), "the shipped presets")
             .expect("the shipped presets are tested")
     }
 
@@ -87,12 +95,13 @@ impl Presets {
     }
 
     fn parse(text: &str, name: &str) -> Result<Self, Failure> {
-        let presets: Self = toml::from_str(text).map_err(|error| {
+        let mut presets: Self = toml::from_str(text).map_err(|error| {
             let line = error
                 .span()
                 .map_or(1, |span| 1 + text[..span.start].matches('\n').count());
             Failure::Input(format!("{name}: line {line}: {}", error.message()))
         })?;
+        presets.source = name.to_owned();
         for preset in &presets.preset {
             let wrong = |what: String| Failure::Input(format!("{name}: {what}"));
             if !(preset.rate_hz > 0.0 && preset.rate_hz.is_finite()) {
@@ -123,13 +132,17 @@ impl Presets {
         rate_hz: f64,
         plant: PlantKind,
     ) -> Option<&BTreeMap<String, f64>> {
+        let preset = self.nearest_preset(kind, rate_hz, plant)?;
+        preset.estimators.get(kind.name)
+    }
+
+    /// The preset of those values.
+    fn nearest_preset(&self, kind: &Kind, rate_hz: f64, plant: PlantKind) -> Option<&Preset> {
         let far = |preset: &Preset| (preset.rate_hz / rate_hz).ln().abs();
         self.preset
             .iter()
-            .filter(|preset| preset.plant == plant)
-            .filter_map(|preset| Some((far(preset), preset.estimators.get(kind.name)?)))
-            .min_by(|(a, _), (b, _)| a.total_cmp(b))
-            .map(|(_, values)| values)
+            .filter(|preset| preset.plant == plant && preset.estimators.contains_key(kind.name))
+            .min_by(|a, b| far(a).total_cmp(&far(b)))
     }
 }
 
@@ -298,7 +311,7 @@ mod tests {
             ("pl.bandwidth_hz=1", "no estimator 'pl'"),
             (
                 "pll.cutoff=1",
-                "pll has no parameter 'cutoff'; it has bandwidth_hz",
+                "pll has no parameter 'cutoff'; there are bandwidth_hz",
             ),
             ("foaw-end-fit.n=300", "from 1 to 128"),
             ("foaw-end-fit.n=2.5", "a whole number"),

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use crate::estimators::EDGE_CLOCK_HZ;
 use crate::failure::Failure;
 use crate::telemetry::{Frame, LearnedLine, Run, Telemetry};
+use crate::trace::EDGE_CLOCK_HZ;
 
 /// The columns: those that [`Recording`](crate::recording::Recording) knows, then what the board
 /// made of them.
@@ -186,6 +186,26 @@ mod tests {
         assert_eq!(
             report(&telemetry, &runs, run),
             ["4 frames recorded, 0 missing at 0 places"]
+        );
+    }
+
+    #[test]
+    fn overruns_before_the_first_frame_are_not_counted() {
+        let text = log(0..4).replace("overruns=0", "overruns=5");
+        let telemetry = Telemetry::text(text.as_bytes());
+        let runs = telemetry.runs();
+        assert_eq!(report(&telemetry, &runs, &runs[0]).len(), 1);
+        let (first, last) = text.split_once("frame seq=3").unwrap();
+        let text = format!(
+            "{first}frame seq=3{}",
+            last.replace("overruns=5", "overruns=7")
+        );
+        let telemetry = Telemetry::text(text.as_bytes());
+        let runs = telemetry.runs();
+        let said = report(&telemetry, &runs, &runs[0]);
+        assert!(
+            said[1].starts_with("2 control ticks missed or late"),
+            "{said:?}"
         );
     }
 

@@ -1,6 +1,9 @@
 //! Recordings of a motor: CSV in.
 
+mod absolute;
 mod board;
+mod clock;
+mod header;
 mod write;
 
 use std::fs::File;
@@ -11,20 +14,19 @@ use csv::ByteRecord;
 
 pub use board::BoardColumns;
 
-use crate::estimators::EDGE_CLOCK_HZ;
 use crate::failure::Failure;
-use crate::trace::{EdgeStamp, Trace};
+use crate::trace::{EDGE_CLOCK_HZ, EdgeStamp, Trace};
 
 /// A recording: its time column and everything else as a trace.
 #[derive(Clone, Debug)]
 pub struct Recording {
     /// Column `t`, s.
     pub t: Vec<f64>,
-    /// The columns as a trace; its rate is that of the median step of `t`.
+    /// The columns as a trace; its rate is that of the steps of `t` near their median.
     pub trace: Trace,
     /// The small motor's commanded current, applied from this tick to the next, A.
     pub current_small: Option<Vec<f64>>,
-    /// How many steps of `t` differ from the median by more than a tenth of it.
+    /// How many steps of `t` differ from the period by more than a tenth of it.
     pub uneven_steps: usize,
 }
 
@@ -104,8 +106,7 @@ impl Places {
     fn find(header: &ByteRecord, name: &str) -> Result<Self, Failure> {
         let mut places = [None; COLUMNS.len()];
         for (i, field) in header.iter().enumerate() {
-            // A byte order mark is part of the first name as the file has it.
-            let field = field.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(field);
+            let field = header::field(field);
             let Some(column) = COLUMNS.iter().position(|c| c.as_bytes() == field) else {
                 continue;
             };
@@ -125,12 +126,7 @@ impl Places {
             true_omega,
         ] = places;
         let needed = |place: Option<usize>, column: &str| {
-            place.ok_or_else(|| {
-                Failure::Input(format!(
-                    "{name}: line 1: no column {column}; the first line must name the columns, \
-                     t and counts_large among them"
-                ))
-            })
+            place.ok_or_else(|| header::lacks(column, header, name))
         };
         Ok(Self {
             t: needed(t, "t")?,
@@ -261,25 +257,13 @@ impl Columns {
     }
 
     fn into_recording(self, name: &str, at: &Places) -> Result<Recording, Failure> {
-        let mut steps: Vec<_> = self.t.windows(2).map(|t| t[1] - t[0]).collect();
-        if steps.is_empty() {
-            return Err(Failure::Input(format!("{name}: needs two rows at least")));
-        }
-        steps.sort_unstable_by(f64::total_cmp);
-        let median = steps[steps.len() / 2];
-        if median <= 0.0 {
-            return Err(Failure::Input(format!(
-                "{name}: column t: stands still in most rows; it must be in seconds"
-            )));
-        }
-        let uneven = |step: &&f64| (*step - median).abs() > 0.1 * median;
+        let (rate_hz, uneven_steps) = clock::rate(&self.t, name)?;
         Ok(Recording {
-            uneven_steps: steps.iter().filter(uneven).count(),
+            uneven_steps,
             t: self.t,
             current_small: at.current_small.is_some().then_some(self.current_small),
             trace: Trace {
-                // Decimal time steps are a few digits short of the rate they mean.
-                rate_hz: rounded(1.0 / median),
+                rate_hz,
                 counts_large: self.counts_large,
                 counts_small: at.counts_small.is_some().then_some(self.counts_small),
                 current: at.current.is_some().then_some(self.current),
@@ -289,11 +273,6 @@ impl Columns {
             },
         })
     }
-}
-
-/// `x` to seven digits.
-fn rounded(x: f64) -> f64 {
-    format!("{x:.6e}").parse().unwrap_or(x)
 }
 
 #[cfg(test)]
@@ -314,6 +293,24 @@ mod tests {
         assert_eq!(recording.trace.true_omega, Some(vec![1.5, 2.0, 3.0]));
         assert_eq!(recording.trace.current, None);
         assert_eq!(recording.uneven_steps, 0);
+    }
+
+    #[test]
+    fn counts_written_as_floats_are_read() {
+        let text =
+            "t,counts_large\n0,-3.0\n0.001,1e3\n0.002,-2.5e1\n0.003,4294967295.0\n0.004,+7\n";
+        let counts = parse(text).unwrap().trace.counts_large;
+        let expected = [-3, 1000, -25, -1, 7].map(|count: i32| count as u32);
+        assert_eq!(counts, expected);
+        for fraction in ["-3.5", "1e-3", "0.25e1"] {
+            let error = parse(&format!("t,counts_large\n0,0\n0.001,{fraction}\n")).unwrap_err();
+            let said = "r.csv: line 3: column counts_large: ";
+            assert!(error.starts_with(said), "{error}");
+            assert!(
+                error.ends_with("is not a whole number of counts"),
+                "{error}"
+            );
+        }
     }
 
     #[test]

@@ -3,15 +3,18 @@
 use std::io::{self, Write};
 use std::path::Path;
 
+use rayon::prelude::*;
+
 use crate::compare::{interval, setup};
-use crate::contest::{Contest, Estimate, Heading, Row};
+use crate::contest::{Contest, Contestant, Estimate, Heading, Row};
 use crate::device::Device;
 use crate::estimators::{Kind, available};
 use crate::failure::Failure;
 use crate::health;
 use crate::parameters::{Parameters, PlantKind};
 use crate::recording::{BoardColumns, Recording};
-use crate::score::Wanted;
+use crate::score::{Field, Score, Wanted};
+use crate::table;
 
 /// What came of a recording.
 #[derive(Clone, Debug)]
@@ -22,9 +25,11 @@ pub struct Replay {
     pub rows: Vec<Row>,
     /// Estimators left out, and the column each lacks.
     pub left_out: Vec<(&'static str, &'static str)>,
+    /// Parameters that were tuned for another encoder or rate, a line each.
+    pub far: Vec<String>,
 }
 
-/// Runs `kinds` over a recording called `name`.
+/// Runs `kinds` over a recording called `name`; `done` is called as each ends.
 ///
 /// # Errors
 /// [`Failure::Input`] where an estimator cannot be built.
@@ -34,6 +39,7 @@ pub fn replay(
     kinds: &[&'static Kind],
     device: &Device,
     parameters: &Parameters,
+    done: impl Fn() + Sync,
 ) -> Result<Replay, Failure> {
     let trace = &recording.trace;
     let (able, unable): (Vec<_>, Vec<_>) = kinds
@@ -41,7 +47,14 @@ pub fn replay(
         .partition(|kind| kind.needs.within(available(trace)));
     let setup = setup(device, trace.rate_hz);
     let contest = Contest::new(&able, parameters, &setup, PlantKind::Friction)?;
-    let estimates = contest.estimates(trace);
+    let estimate = |contestant: &Contestant| {
+        let estimate = contestant.estimate(trace);
+        done();
+        estimate
+    };
+    let estimates: Vec<_> = (contest.contestants().par_iter())
+        .filter_map(estimate)
+        .collect();
     let heading = Heading {
         scenario: name.to_owned(),
         rate_hz: trace.rate_hz,
@@ -62,7 +75,46 @@ pub fn replay(
         estimates,
         rows,
         left_out: unable.iter().map(lacking).collect(),
+        far: parameters.used_far_away(&able, &setup, PlantKind::Friction),
     })
+}
+
+/// What was replayed, with which encoder and parameters, in a line.
+#[must_use]
+pub fn header(
+    recording: &Recording,
+    device: &Device,
+    device_name: &str,
+    parameters: &Parameters,
+) -> String {
+    format!(
+        "{} rows at {} Hz, {} counts/rev ({device_name}), parameters: {}",
+        recording.t.len(),
+        recording.trace.rate_hz,
+        device.large.counts_per_rev,
+        parameters.sources()
+    )
+}
+
+/// Scores that tell what a hand feels through the coupler.
+const FELT: [&str; 6] = [
+    "distance_rad_s",
+    "distance_pct",
+    "distance_transient_rad_s",
+    "distance_transient_pct",
+    "outside",
+    "force_mn",
+];
+
+/// The usual scores in lines of `width` characters, those of the coupler only where there is one.
+#[must_use]
+pub fn table(rows: &[Row], with_coupler: bool, width: usize) -> String {
+    let shown = |field: &&Field<Score>| {
+        let known = rows.iter().any(|row| (field.of)(&row.score).is_some());
+        field.usual && known && (with_coupler || !FELT.contains(&field.name))
+    };
+    let fields: Vec<_> = Score::FIELDS.iter().filter(shown).collect();
+    table::details(rows, &fields, width)
 }
 
 /// What there is to say of the board that made the recording: how often the truth was within two of
@@ -128,7 +180,15 @@ mod tests {
         let recording = Recording::parse(text.as_bytes(), "r").unwrap();
         let kinds: Vec<_> = Kind::all().iter().collect();
         let device = Device::default();
-        let replay = replay(&recording, "r", &kinds, &device, &Parameters::default()).unwrap();
+        let replay = replay(
+            &recording,
+            "r",
+            &kinds,
+            &device,
+            &Parameters::default(),
+            || (),
+        )
+        .unwrap();
         assert!(replay.left_out.contains(&("kalman-motor", "current")));
         assert!(replay.estimates.iter().any(|e| e.estimator == "pll"));
         assert!(

@@ -171,10 +171,7 @@ impl FromStr for ScenarioName {
         let known = Self::ALL.map(Self::as_str);
         match known.iter().position(|&one| one == name) {
             Some(k) => Ok(Self::ALL[k]),
-            None => Err(format!(
-                "no scenario {name:?}: must be one of {}",
-                known.join(", ")
-            )),
+            None => Err(crate::wording::unknown("scenario", name, known)),
         }
     }
 }
@@ -287,7 +284,10 @@ mod tests {
             assert_eq!(name.to_string().parse(), Ok(name));
         }
         let error = "free_air".parse::<ScenarioName>().unwrap_err();
-        assert!(error.contains("\"free_air\"") && error.contains("step, permanent"));
+        assert!(
+            error.contains("'free_air'; did you mean free-air?")
+                && error.contains("step, permanent")
+        );
     }
 
     #[test]

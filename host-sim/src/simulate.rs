@@ -4,16 +4,14 @@ use crate::device::{Device, Disc};
 use crate::encoder::{DiscErrors, EdgeObserver, Encoder};
 use crate::plant::{LONGEST_STEP_S, Plant, Pose, steps_per_tick};
 use crate::scenario::{Drive, Scenario, ScenarioName, Seen, build, draw};
-use crate::trace::{Columns, EdgeStamp, Trace};
+use crate::trace::{Columns, EDGE_CLOCK_HZ, EdgeStamp, Trace};
+use crate::wording::decimal;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::{
     Xoshiro256PlusPlus,
     rand_core::{Rng, SeedableRng},
 };
 use std::f64::consts::TAU;
-
-/// Clock of the edge time stamps, Hz.
-pub const STAMP_HZ: f64 = 84e6;
 
 /// Lowest and highest control rate, Hz.
 pub const RATES_HZ: (f64, f64) = (100.0, 100_000.0);
@@ -28,14 +26,17 @@ const MOST_TICKS: f64 = 1e8;
 pub fn ticks(rate_hz: f64, seconds: f64) -> Result<usize, String> {
     if !(RATES_HZ.0..=RATES_HZ.1).contains(&rate_hz) {
         return Err(format!(
-            "rate {rate_hz} Hz: must be from {} to {} Hz",
-            RATES_HZ.0, RATES_HZ.1
+            "rate {} Hz: must be from {} to {} Hz",
+            decimal(rate_hz),
+            RATES_HZ.0,
+            RATES_HZ.1
         ));
     }
     let ticks = (rate_hz * seconds).round();
     if !(2.0..=MOST_TICKS).contains(&ticks) {
         return Err(format!(
-            "duration {seconds} s: must be from {} to {} s at {rate_hz} Hz",
+            "duration {} s: must be from {} to {} s at {rate_hz} Hz",
+            decimal(seconds),
             2.0 / rate_hz,
             MOST_TICKS / rate_hz
         ));
@@ -58,7 +59,7 @@ pub fn plant_steps(rate_hz: f64, seconds: f64) -> Result<u64, String> {
 /// applied at once. `current` is the large motor's command after saturation, from its tick to
 /// the next; `true_omega` the large motor's true velocity at the tick, rad/s. Counts start
 /// anywhere, by the seed. An edge's age is the difference of two readings of one clock of
-/// [`STAMP_HZ`], the edge's and the tick's, each rounded down, as a capture unit reads them.
+/// [`EDGE_CLOCK_HZ`], the edge's and the tick's, each rounded down, as a capture unit reads them.
 ///
 /// ```
 /// use host_sim::{device::Device, scenario::ScenarioName, simulate::simulate, trace::Columns};
@@ -119,7 +120,7 @@ struct LastEdge {
 
 impl EdgeObserver for LastEdge {
     fn edge(&mut self, boundary: u32, part: impl FnOnce() -> f64) {
-        let clock = ((self.t + part() * self.step) * STAMP_HZ).floor();
+        let clock = ((self.t + part() * self.step) * EDGE_CLOCK_HZ).floor();
         self.edge = Some((clock, boundary));
     }
 }
@@ -134,7 +135,7 @@ impl Stamps for LastEdge {
     }
     fn read(&self, t: f64) -> Option<EdgeStamp> {
         self.edge.map(|(clock, boundary)| EdgeStamp {
-            age_s: ((t * STAMP_HZ).floor() - clock).max(0.0) / STAMP_HZ,
+            age_s: ((t * EDGE_CLOCK_HZ).floor() - clock).max(0.0) / EDGE_CLOCK_HZ,
             boundary,
         })
     }

@@ -1,5 +1,8 @@
 //! What one run of the plant, or one recording of a real motor, leaves behind.
 
+/// Rate of the clock that stamps encoder edges, Hz: a timer at half the board's 168 MHz.
+pub const EDGE_CLOCK_HZ: f64 = 84e6;
+
 /// The latest encoder edge known at a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeStamp {

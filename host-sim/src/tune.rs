@@ -137,6 +137,7 @@ pub fn tune(
         preset: Preset {
             rate_hz,
             plant,
+            counts_per_rev: Some(ground.device.large.counts_per_rev),
             estimators,
         },
         notes,

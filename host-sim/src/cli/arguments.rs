@@ -88,6 +88,11 @@ impl DeviceFile {
             .map_err(|error| Failure::Input(format!("{}: {error}", name.display())))
     }
 
+    /// Whether there is a file.
+    pub(super) fn is_given(&self) -> bool {
+        self.device.is_some()
+    }
+
     /// What the device goes by.
     pub(super) fn name(&self) -> String {
         self.device

@@ -7,17 +7,19 @@ use clap::Args;
 
 use crate::failure::Failure;
 use crate::identify::{self, Known};
-use crate::output::{Folder, is_stdout, print_bytes, write_whole};
+use crate::output::{Folder, is_stdout, note, print_bytes, write_whole};
 use crate::recording::Recording;
-use crate::{replay, report};
+use crate::report;
 
 use super::arguments::DeviceFile;
+use super::input::{called, read, short_name};
 use super::page;
 
 #[derive(Debug, Args)]
 pub(super) struct Identify {
     /// Recording of scene excite: CSV as for replay, with columns current and counts_small; where
-    /// nobody held the handle, current_small shows the handle too. Several of one device are joined
+    /// nobody held the handle, current_small shows the handle too. Several of one device are joined;
+    /// - is standard input
     #[arg(value_name = "RECORDING", required = true)]
     recordings: Vec<PathBuf>,
     #[command(flatten)]
@@ -52,10 +54,18 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
         None => Known::TorqueConstant(device.large.torque_constant_nm_per_a),
     };
     let mut recordings = Vec::new();
+    let mut wraps = Vec::new();
     for path in &options.recordings {
-        recordings.push((replay::name(path), Recording::read(path)?));
+        let name = short_name(path);
+        let mut recording = Recording::parse(read(path)?.as_slice(), &called(path))?;
+        let notes = recording.unwrap_counts(&device);
+        wraps.extend(notes.iter().map(|line| format!("{name}: {line}")));
+        recordings.push((name, recording));
     }
-    let found = identify::identify(&recordings, &device, known, options.clamped)?;
+    let mut found = identify::identify(&recordings, &device, known, options.clamped)?;
+    if !options.device.is_given() {
+        found.assumed.insert(0, identify::default_counts(&device));
+    }
     if let Some(out) = &options.out {
         let text = options.device.text()?;
         let names: Vec<_> = recordings.iter().map(|(name, _)| name.as_str()).collect();
@@ -78,6 +88,9 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
             .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
         json.push(b'\n');
         write_whole(path, &json)?;
+    }
+    for line in wraps {
+        note(line);
     }
     if [&options.out, &options.json]
         .into_iter()

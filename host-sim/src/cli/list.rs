@@ -5,16 +5,20 @@ use std::fmt::Write as _;
 use crate::estimators::{Kind, Search};
 use crate::failure::Failure;
 use crate::output::print_bytes;
+use crate::parameters::{PlantKind, Preset, Presets};
 use crate::scenario::ScenarioName;
+use crate::wording::{decimal, wrapped};
 
 use super::arguments::DeviceFile;
 
 /// Names, parameters and needs of the estimators.
 pub(super) fn estimators() -> Result<(), Failure> {
     let mut text = String::new();
+    let presets = Presets::shipped();
     for kind in Kind::all() {
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{:<22}{}", kind.name, kind.summary);
+        let line = format!("{:<22}{}", kind.name, kind.summary);
+        let _ = writeln!(text, "{}", wrapped(&line, 22));
         for (needed, what) in [
             (kind.needs.current, "the large motor's current"),
             (kind.needs.small, "the small encoder"),
@@ -30,26 +34,45 @@ pub(super) fn estimators() -> Result<(), Failure> {
             } else {
                 format!(" {}", p.unit)
             };
-            let tuned = if matches!(p.search, Search::Fixed(_)) {
-                ""
-            } else {
-                ", tuned"
-            };
-            let _ = writeln!(
-                text,
-                "  --set {}.{}=  {} ({} to {}{unit}{tuned})",
-                kind.name, p.name, p.meaning, p.lowest, p.highest
+            let line = format!(
+                "  --set {}.{}=  {} ({} to {}{unit})",
+                kind.name,
+                p.name,
+                p.meaning,
+                decimal(p.lowest),
+                decimal(p.highest)
             );
+            let _ = writeln!(text, "{}", wrapped(&line, 8));
+            let value = match p.search {
+                Search::Fixed(value) => format!("        default {}", decimal(value)),
+                _ => format!(
+                    "        tuned to {}",
+                    tuned(&presets, kind.name, p.name).join(", ")
+                ),
+            };
+            let _ = writeln!(text, "{}", wrapped(&value, 8));
         }
     }
     print_bytes(text.as_bytes())
+}
+
+/// The values of a parameter in `presets`, each with the rate it is for, on the plant with friction.
+fn tuned(presets: &Presets, kind: &str, parameter: &str) -> Vec<String> {
+    let with_friction = |preset: &&Preset| preset.plant == PlantKind::Friction;
+    let values = presets.preset.iter().filter(with_friction);
+    let values = values.filter_map(|preset| {
+        let value = preset.estimators.get(kind)?.get(parameter)?;
+        Some(format!("{} at {} Hz", decimal(*value), preset.rate_hz))
+    });
+    values.collect()
 }
 
 /// Names and descriptions of the scenarios.
 pub(super) fn scenarios() -> Result<(), Failure> {
     let mut text = String::new();
     for scenario in ScenarioName::ALL {
-        let _ = writeln!(text, "{:<12}{}", scenario.as_str(), scenario.description());
+        let line = format!("{:<12}{}", scenario.as_str(), scenario.description());
+        let _ = writeln!(text, "{}", wrapped(&line, 12));
     }
     print_bytes(text.as_bytes())
 }

@@ -6,20 +6,21 @@ use clap::Args;
 
 use crate::compare::interval;
 use crate::failure::Failure;
-use crate::output::{print_bytes, write_whole};
+use crate::output::{is_stdout, note, print_bytes, write_whole};
 use crate::recording::{BoardColumns, Recording};
 use crate::replay;
 use crate::report::{self, RecordingView};
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds};
-use super::replay::{note_left_out, warn_uneven};
+use super::input::{self, called, is_stdin, short_name};
+use super::replay::note_about;
 
 /// What is drawn unless told otherwise: few enough to tell apart.
 const ESTIMATORS: [&str; 2] = ["finite-difference", "kalman-triple-steady"];
 
 #[derive(Debug, Args)]
 pub(super) struct Plot {
-    /// Recording: CSV as for host-sim replay
+    /// Recording: CSV as for host-sim replay; - is standard input
     #[arg(value_name = "RECORDING.csv")]
     pub(super) recording: PathBuf,
     /// Estimator to draw; repeatable [default: finite-difference and
@@ -36,7 +37,8 @@ pub(super) struct Plot {
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Write the picture to FILE; - is standard output [default: the recording's name with .svg]
+    /// Write the picture to FILE; - is standard output [default: the recording's name with
+    /// .svg, or - where the recording is standard input]
     #[arg(long, value_name = "FILE.svg")]
     pub(super) out: Option<PathBuf>,
 }
@@ -48,13 +50,12 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
     };
     let device = options.device.load()?;
     let parameters = options.parameters.load()?;
-    let name = replay::name(&options.recording);
-    let path = options.recording.display().to_string();
-    let bytes = std::fs::read(&options.recording)
-        .map_err(|error| Failure::Input(format!("{path}: cannot read: {error}")))?;
-    let recording = Recording::parse(bytes.as_slice(), &path)?;
+    let name = short_name(&options.recording);
+    let path = called(&options.recording);
+    let bytes = input::read(&options.recording)?;
+    let mut recording = Recording::parse(bytes.as_slice(), &path)?;
     let board = BoardColumns::parse(bytes.as_slice(), &path)?;
-    warn_uneven(&name, &recording);
+    let wraps = recording.unwrap_counts(&device);
 
     let [first, .., last] = recording.t[..] else {
         unreachable!("a recording has two rows at least");
@@ -71,8 +72,7 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
              choose --from and --to there"
         )));
     }
-    let replayed = replay::replay(&recording, &name, &kinds, &device, &parameters)?;
-    note_left_out(&name, &replayed);
+    let replayed = replay::replay(&recording, &name, &kinds, &device, &parameters, || ())?;
     let svg = report::recording(&RecordingView {
         name: &name,
         recording: &recording,
@@ -82,12 +82,18 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
         interval: interval(&device),
         window,
     })?;
-    match &options.out {
-        Some(out) => write_whole(out, svg.as_bytes()),
-        None => {
-            let out = options.recording.with_extension("svg");
-            write_whole(&out, svg.as_bytes())?;
-            print_bytes(format!("{}\n", out.display()).as_bytes())
-        }
+    let beside = match is_stdin(&options.recording) {
+        true => PathBuf::from("-"),
+        false => options.recording.with_extension("svg"),
+    };
+    let out = options.out.as_ref().unwrap_or(&beside);
+    write_whole(out, svg.as_bytes())?;
+    for line in wraps {
+        note(format_args!("{name}: {line}"));
     }
+    note_about(&name, &recording, &replayed);
+    if options.out.is_some() || is_stdout(out) {
+        return Ok(());
+    }
+    print_bytes(format!("{}\n", out.display()).as_bytes())
 }

@@ -1,14 +1,15 @@
 //! `host-sim record`.
 
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use crate::failure::Failure;
-use crate::output::{is_stdout, note, write_whole};
+use crate::output::{note, write_whole};
 use crate::record::{choose, csv, report};
 use crate::telemetry::Telemetry;
+
+use super::input::{called, read};
 
 #[derive(Debug, Args)]
 pub(super) struct Record {
@@ -31,12 +32,9 @@ pub(super) struct Record {
 }
 
 pub(super) fn run(options: &Record) -> Result<(), Failure> {
-    let name = match is_stdout(&options.stream) {
-        true => "standard input".to_owned(),
-        false => options.stream.display().to_string(),
-    };
+    let name = called(&options.stream);
     let failure = |said: &str| Failure::Input(format!("{name}: {said}"));
-    let bytes = read(&options.stream).map_err(|error| failure(&format!("cannot read: {error}")))?;
+    let bytes = read(&options.stream)?;
     let telemetry = match &options.image {
         None => Telemetry::text(&bytes),
         Some(path) => {
@@ -73,21 +71,13 @@ pub(super) fn run(options: &Record) -> Result<(), Failure> {
             "a control rate of {rate_hz} Hz; give 1 to 1e6"
         )));
     }
+    let text = csv(run, rate_hz, |_| None);
+    let out = options.out.as_deref().unwrap_or(Path::new("-"));
+    write_whole(out, text.as_bytes())?;
     for line in report(&telemetry, &runs, run) {
         note(format_args!("{name}: {line}"));
     }
-    let text = csv(run, rate_hz, |_| None);
-    let out = options.out.as_deref().unwrap_or(Path::new("-"));
-    write_whole(out, text.as_bytes())
-}
-
-fn read(path: &Path) -> std::io::Result<Vec<u8>> {
-    if !is_stdout(path) {
-        return std::fs::read(path);
-    }
-    let mut bytes = Vec::new();
-    std::io::stdin().lock().read_to_end(&mut bytes)?;
-    Ok(bytes)
+    Ok(())
 }
 
 #[cfg(feature = "rtt")]

@@ -9,15 +9,17 @@ use crate::failure::Failure;
 use crate::output::{is_stdout, note, print_bytes, write_whole, write_with};
 use crate::recording::{BoardColumns, Recording};
 use crate::table::layout::terminal_width;
-use crate::{replay, rows, table};
+use crate::wording::wrapped;
+use crate::{replay, rows};
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds};
-use super::page::one_to_stdout;
+use super::input::{self, called, short_name};
+use super::page::{one_to_stdout, progress};
 
 #[derive(Debug, Args)]
 pub(super) struct Replay {
     /// Recording: CSV with columns t (s) and counts_large, optionally counts_small, current (A),
-    /// edge_tick (84 MHz), edge_bound, true_omega (rad/s); others are ignored
+    /// edge_tick (84 MHz), edge_bound, true_omega (rad/s); others are ignored; - is standard input
     #[arg(value_name = "TRACE.csv")]
     pub(super) trace: PathBuf,
     /// Estimator to run; repeatable [default: all that the columns suffice for]
@@ -42,29 +44,28 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let kinds = kinds(&options.estimators)?;
     let device = options.device.load()?;
     let parameters = options.parameters.load()?;
-    let name = replay::name(&options.trace);
-    let recording = Recording::read(&options.trace)?;
-    let board = board_columns(options)?;
+    let name = short_name(&options.trace);
+    let (mut recording, board) = read(&options.trace)?;
     if options.json.is_some() && recording.trace.true_omega.is_none() {
         return Err(Failure::Input(format!(
             "{}: line 1: no column true_omega, which the scores of --json are against",
-            options.trace.display()
+            called(&options.trace)
         )));
     }
-    let replayed = replay::replay(&recording, &name, &kinds, &device, &parameters)?;
+    let wraps = recording.unwrap_counts(&device);
+    let bar = progress(kinds.len(), "estimating");
+    let replayed = replay::replay(&recording, &name, &kinds, &device, &parameters, || {
+        bar.inc(1);
+    })?;
+    bar.finish_and_clear();
 
     if let (true, Some((estimator, column))) =
         (replayed.estimates.is_empty(), replayed.left_out.first())
     {
         return Err(Failure::Input(format!(
             "{}: line 1: no column {column}, which {estimator} needs; see host-sim estimators",
-            options.trace.display()
+            called(&options.trace)
         )));
-    }
-    note_left_out(&name, &replayed);
-    warn_uneven(&name, &recording);
-    for line in replay::of_the_board(&recording, &board, &device) {
-        note(format_args!("{name}: {line}"));
     }
     let json_to_stdout = options.json.as_deref().is_some_and(is_stdout);
     let out = match &options.out {
@@ -78,26 +79,44 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     if let Some(path) = &options.json {
         write_whole(path, &rows::json(rows)?)?;
     }
+    for line in wraps {
+        note(format_args!("{name}: {line}"));
+    }
+    note_about(&name, &recording, &replayed);
+    for line in replay::of_the_board(&recording, &board, &device) {
+        note(format_args!("{name}: {line}"));
+    }
+    let device_name = match options.device.is_given() {
+        true => options.device.name(),
+        false => "the default device: no --device given".to_owned(),
+    };
+    let header = replay::header(&recording, &device, &device_name, &parameters);
+    let header = wrapped(&format!("{name}: {header}"), 2);
     if json_to_stdout || out.is_some_and(is_stdout) {
+        note(header);
         return Ok(());
     }
-    print_bytes(table::details(rows, &[], terminal_width()).as_bytes())
+    let with_coupler = recording.trace.counts_small.is_some();
+    let table = replay::table(rows, with_coupler, terminal_width());
+    print_bytes(format!("{header}\n{table}").as_bytes())
 }
 
-/// What the board made of its samples; nothing where no board that says how sure it is made the
-/// recording, whose other columns may then be anything.
-fn board_columns(options: &Replay) -> Result<BoardColumns, Failure> {
-    let path = options.trace.display().to_string();
-    let text = std::fs::read(&options.trace)
-        .map_err(|error| Failure::Input(format!("{path}: cannot read: {error}")))?;
-    match BoardColumns::are_in(&text) {
-        true => BoardColumns::parse(text.as_slice(), &path),
-        false => Ok(BoardColumns::default()),
-    }
+/// The recording and what the board made of its samples; nothing of the latter where no board that
+/// says how sure it is made the recording, whose other columns may then be anything.
+fn read(path: &Path) -> Result<(Recording, BoardColumns), Failure> {
+    let text = input::read(path)?;
+    let name = called(path);
+    let recording = Recording::parse(text.as_slice(), &name)?;
+    let board = match BoardColumns::are_in(&text) {
+        true => BoardColumns::parse(text.as_slice(), &name)?,
+        false => BoardColumns::default(),
+    };
+    Ok((recording, board))
 }
 
-/// Says who was left out, in a line for each column that is not there.
-pub(super) fn note_left_out(name: &str, replayed: &replay::Replay) {
+/// Notes on estimators that were left out, a line for each missing column, on parameters that were
+/// tuned for something else, and on an uneven clock.
+pub(super) fn note_about(name: &str, recording: &Recording, replayed: &replay::Replay) {
     let mut columns: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for (estimator, column) in &replayed.left_out {
         columns.entry(column).or_default().push(estimator);
@@ -108,16 +127,13 @@ pub(super) fn note_left_out(name: &str, replayed: &replay::Replay) {
             "{name}: no column {column}; left out: {names}"
         ));
     }
-}
-
-/// Says where estimators cannot know how long a tick was.
-pub(super) fn warn_uneven(name: &str, recording: &Recording) {
-    if recording.uneven_steps > 0 {
+    for line in &replayed.far {
+        note(format_args!("{name}: {line}"));
+    }
+    // Estimators cannot know how long a tick was.
+    if let Some(uneven) = recording.unevenness() {
         note(format_args!(
-            "{name}: {} of {} steps of t differ by more than 10 % from 1/{} s; estimators take \
-             every step for one tick",
-            recording.uneven_steps,
-            recording.t.len() - 1,
+            "{name}: {uneven}; estimators take every step for one tick of 1/{} s",
             recording.trace.rate_hz,
         ));
     }

@@ -14,6 +14,7 @@ use crate::recording::Recording;
 use crate::scenario::ScenarioName;
 use crate::simulate::{simulate, ticks};
 use crate::trace::Columns;
+use crate::wording::unknown;
 
 use super::arguments::DeviceFile;
 
@@ -93,11 +94,18 @@ fn of_scenario(options: &Simulate, name: ScenarioName) -> Result<Recording, Fail
     })
 }
 
+/// The scene called `name`: the excitation, or one that can be felt.
+fn scene(name: &str) -> Result<SceneName, String> {
+    let mut scenes = [SceneName::Excite].into_iter().chain(SceneName::ALL);
+    let found = scenes.clone().find(|scene| scene.as_str() == name);
+    found.ok_or_else(|| unknown("scene", name, scenes.by_ref().map(SceneName::as_str)))
+}
+
 fn of_scene(options: &Simulate) -> Result<Recording, Failure> {
     let device = options.device.load()?;
     let scene = match options.scene.as_deref() {
-        None | Some("excite") => SceneName::Excite,
-        Some(name) => name.parse()?,
+        None => SceneName::Excite,
+        Some(name) => scene(name)?,
     };
     let ticks = ticks(options.rate, options.seconds.unwrap_or(EXCITE_S))?;
     let parameters = Parameters::default();

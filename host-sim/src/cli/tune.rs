@@ -75,7 +75,7 @@ pub(super) struct Tune {
     pub(super) frictionless: bool,
     #[command(flatten)]
     pub(super) device: DeviceFile,
-    /// File to write, which compare and replay take as --presets; - is standard output
+    /// Write the parameters to FILE, which compare and replay take as presets; - is standard output
     #[arg(long, value_name = "FILE.toml", default_value = "target/presets.toml")]
     pub(super) out: PathBuf,
 }
@@ -132,6 +132,9 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
             let mut preset = Preset {
                 rate_hz: rate,
                 plant,
+                counts_per_rev: groups
+                    .first()
+                    .map(|(_, ground)| ground.device.large.counts_per_rev),
                 estimators: BTreeMap::new(),
             };
             for (kinds, ground) in &groups {
@@ -149,7 +152,7 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
         text += &tuned_on(kinds, ground);
     }
     for note in &notes {
-        eprintln!("host-sim: note: {note}");
+        crate::output::note(format_args!("note: {note}"));
         text += &format!("# {note}\n");
     }
     text += &format!("\n{}", presets.to_toml()?);

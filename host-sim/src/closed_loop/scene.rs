@@ -16,6 +16,7 @@ use super::tracking::Tracking;
 use crate::estimators::{Estimator, Kind};
 use crate::plant::{Grip, Pose};
 use crate::scenario::{Intent, draw};
+use crate::wording::unknown;
 
 /// A scene with its parameters. Angles count from where the handle starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -148,10 +149,7 @@ impl FromStr for SceneName {
         Self::ALL
             .into_iter()
             .find(|scene| scene.as_str() == name)
-            .ok_or_else(|| {
-                let known: Vec<_> = Self::ALL.into_iter().map(Self::as_str).collect();
-                format!("no scene '{name}'; there are {}", known.join(", "))
-            })
+            .ok_or_else(|| unknown("scene", name, Self::ALL.map(Self::as_str)))
     }
 }
 

@@ -2,18 +2,27 @@
 
 use super::{Device, Motor};
 use crate::plant::LONGEST_STEP_S;
+use crate::wording::decimal;
 
 /// Allowed range of one value.
 enum Range {
     Above0,
+    /// Above 0 and at most this; a larger value is probably in the unit of that name, of which one
+    /// is ten to this power.
+    Most(f64, &'static str, i32),
     From0,
     /// A share: from 0 to below 1.
     Share,
 }
 
 fn check(key: &str, value: f64, unit: &str, range: &Range) -> Result<(), String> {
-    let (holds, rule) = match range {
+    let (holds, rule) = match *range {
         Range::Above0 => (value > 0.0, format!("above 0 {unit}")),
+        Range::Most(most, ..) if value > most => (
+            false,
+            format!("at most {most} {unit}{}", in_usual_unit(value, range)),
+        ),
+        Range::Most(..) => (value > 0.0, format!("above 0 {unit}")),
         Range::From0 => (value >= 0.0, format!("0 {unit} or more")),
         Range::Share => (
             (0.0..1.0).contains(&value),
@@ -24,9 +33,21 @@ fn check(key: &str, value: f64, unit: &str, range: &Range) -> Result<(), String>
         return Err(format!("{key} = {value}: must be a finite number"));
     }
     if !holds {
-        return Err(format!("{key} = {value}: must be {rule}"));
+        return Err(format!("{key} = {}: must be {rule}", decimal(value)));
     }
     Ok(())
+}
+
+/// What to write for a value that is too large, if it is right in the usual unit.
+fn in_usual_unit(value: f64, range: &Range) -> String {
+    let Range::Most(most, usual, power) = *range else {
+        return String::new();
+    };
+    if value * 10.0_f64.powi(power) > most {
+        return String::new();
+    }
+    let value = decimal(value);
+    format!("; did you mean {value}e{power}, which is {value} {usual}?")
 }
 
 fn check_counts(key: &str, counts: u32) -> Result<(), String> {
@@ -40,12 +61,17 @@ fn check_counts(key: &str, counts: u32) -> Result<(), String> {
 
 fn check_motor(name: &str, motor: &Motor) -> Result<(), String> {
     for (key, value, unit, range) in [
-        ("inertia_kg_m2", motor.inertia_kg_m2, "kg.m2", Range::Above0),
+        (
+            "inertia_kg_m2",
+            motor.inertia_kg_m2,
+            "kg.m2",
+            Range::Most(0.1, "g.cm2", -7),
+        ),
         (
             "torque_constant_nm_per_a",
             motor.torque_constant_nm_per_a,
             "N.m/A",
-            Range::Above0,
+            Range::Most(10.0, "mN.m/A", -3),
         ),
         ("coulomb_nm", motor.coulomb_nm, "N.m", Range::From0),
         ("coulomb_ripple", motor.coulomb_ripple, "", Range::Share),
@@ -74,8 +100,9 @@ fn check_rates(device: &Device) -> Result<(), String> {
             return Ok(());
         }
         Err(format!(
-            "{key} = {inertia}: too small for its dampers and springs, they would settle in {:.1e} s; \
+            "{key} = {}: too small for its dampers and springs, they would settle in {:.1e} s; \
              must be {:.0e} s or more",
+            decimal(inertia),
             1.0 / rate,
             LONGEST_STEP_S / FASTEST
         ))
@@ -127,7 +154,7 @@ pub(super) fn validate(device: &Device) -> Result<(), String> {
             "handle.diameter_m",
             device.handle.diameter_m,
             "m",
-            Range::Above0,
+            Range::Most(1.0, "mm", -3),
         ),
         (
             "interval.threshold_n",
@@ -264,6 +291,25 @@ mod tests {
             (
                 "hand.stiffness_nm_per_rad = inf",
                 "hand.stiffness_nm_per_rad = inf: must be a finite number",
+            ),
+            (
+                "large.inertia_kg_m2 = 115",
+                "large.inertia_kg_m2 = 115: must be at most 0.1 kg.m2; did you mean 115e-7, which is \
+                 115 g.cm2?",
+            ),
+            (
+                "small.torque_constant_nm_per_a = 27.5",
+                "small.torque_constant_nm_per_a = 27.5: must be at most 10 N.m/A; did you mean 27.5e-3, \
+                 which is 27.5 mN.m/A?",
+            ),
+            (
+                "handle.diameter_m = 70",
+                "handle.diameter_m = 70: must be at most 1 m; did you mean 70e-3, which is 70 mm?",
+            ),
+            (
+                "large.inertia_kg_m2 = 1e-300",
+                "large.inertia_kg_m2 = 1e-300: too small for its dampers and springs, they would settle \
+                 in 1.0e-297 s; must be 1e-4 s or more",
             ),
             (
                 "small.current_limit_a = 0",

@@ -8,8 +8,8 @@ use estimator_core::{
 
 use super::build::scale;
 use super::erased::{Estimator, confident, erased, learner};
-use super::run::EDGE_CLOCK_HZ;
 use super::{Kind, Parameter, Search, Setup, Values};
+use crate::trace::EDGE_CLOCK_HZ;
 
 const TORQUE_NOISE: Parameter = Parameter {
     name: "torque_noise",

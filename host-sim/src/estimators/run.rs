@@ -4,10 +4,7 @@ use estimator_core::{
     Amps, ClockTicks, Count, CountsPerTick, Edge, Sample, Scale, Signals, VelocityEstimator,
 };
 
-use crate::trace::{EdgeStamp, Trace};
-
-/// Rate of the clock that stamps encoder edges, Hz: a timer at half the board's 168 MHz.
-pub const EDGE_CLOCK_HZ: f64 = 84e6;
+use crate::trace::{EDGE_CLOCK_HZ, EdgeStamp, Trace};
 
 /// Which signals a trace offers.
 #[must_use]

@@ -83,7 +83,7 @@ mod tests {
                 half: 0.01 * value,
             },
             file: value,
-            unit: ("", 1.0),
+            unit: super::super::quantity::MILLI_NM,
             untold: None,
         }
     }

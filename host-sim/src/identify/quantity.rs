@@ -85,8 +85,8 @@ pub struct Quantity {
     pub estimate: Estimate,
     /// What the device file says.
     pub file: f64,
-    /// Unit to show, and how many of it are one of SI.
-    pub unit: (&'static str, f64),
+    /// Unit to show.
+    pub unit: Unit,
     /// Why it cannot be told, if so.
     pub untold: Option<String>,
 }
@@ -95,16 +95,34 @@ pub struct Quantity {
 /// three standard deviations.
 const TOLD: f64 = 0.02;
 
-pub(super) const GRAM_CM2: (&str, f64) = ("g.cm2", 1e7);
-pub(super) const MILLI_NM: (&str, f64) = ("mN.m", 1e3);
-pub(super) const MILLI_NM_PER_A: (&str, f64) = ("mN.m/A", 1e3);
-const MILLI_NMS: (&str, f64) = ("mN.m.s/rad", 1e3);
+/// A unit to show beside that of the device file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// Its name.
+    pub name: &'static str,
+    /// How many of it are one of SI.
+    pub per_si: f64,
+    /// The unit of the device file, SI.
+    pub si: &'static str,
+}
+
+impl Unit {
+    const fn new(name: &'static str, per_si: f64, si: &'static str) -> Self {
+        Self { name, per_si, si }
+    }
+}
+
+pub(super) const GRAM_CM2: Unit = Unit::new("g.cm2", 1e7, "kg.m2");
+pub(super) const MILLI_NM: Unit = Unit::new("mN.m", 1e3, "N.m");
+pub(super) const MILLI_NM_PER_A: Unit = Unit::new("mN.m/A", 1e3, "N.m/A");
+const MILLI_NMS: Unit = Unit::new("mN.m.s/rad", 1e3, "N.m.s/rad");
+const HERTZ: Unit = Unit::new("Hz", 1.0, "Hz");
 
 impl Quantity {
     /// `least` is a value whose `TOLD` part is close enough to nothing.
     pub(super) fn new(
         key: &'static str,
-        unit: (&'static str, f64),
+        unit: Unit,
         file: f64,
         estimate: Estimate,
         least: f64,
@@ -133,7 +151,7 @@ impl Quantity {
         if half < 0.1 * value.abs() {
             return format!("+-{} %", digits(100.0 * half / value.abs()));
         }
-        format!("+-{} {}", digits(self.unit.1 * half), self.unit.0)
+        format!("+-{} {}", digits(self.unit.per_si * half), self.unit.name)
     }
 
     /// Key and half-width, for a message of one line.
@@ -192,7 +210,7 @@ pub(super) fn of_large(fit: &Fit, device: &Device, known: Known, current: f64) -
         ),
         (
             BANDWIDTH,
-            ("Hz", 1.0),
+            HERTZ,
             device.amplifier.bandwidth_hz,
             fit.estimate(|_, lag_s| 1.0 / (TAU * lag_s)),
             0.0,

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::Recording;
-use crate::simulate::STAMP_HZ;
+use crate::trace::EDGE_CLOCK_HZ;
 
 impl Recording {
     /// As CSV with the columns that are there, which [`Recording::read`] reads back.
@@ -36,7 +36,7 @@ impl Recording {
                 let _ = match column[k] {
                     None => write!(text, ",,"),
                     Some(edge) => {
-                        let tick = ((t - edge.age_s) * STAMP_HZ).round();
+                        let tick = ((t - edge.age_s) * EDGE_CLOCK_HZ).round();
                         write!(text, ",{tick},{}", edge.boundary)
                     }
                 };

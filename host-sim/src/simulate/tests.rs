@@ -110,7 +110,7 @@ fn counts_and_edges_belong_to_the_true_motion() {
                 );
                 let stamp = k as f64 / rate - edge.age_s;
                 if k > 0 && counts[k] != counts[k - 1] {
-                    assert!(edge.age_s <= 1.0 / rate + 1.0 / STAMP_HZ);
+                    assert!(edge.age_s <= 1.0 / rate + 1.0 / EDGE_CLOCK_HZ);
                 }
                 // Between two edges seen at neighbouring ticks, in steady motion, lies one slope.
                 if let Some((t, boundary)) = last {

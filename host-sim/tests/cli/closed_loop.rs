@@ -162,7 +162,7 @@ fn bad_words_are_refused_with_one_line() {
         ),
         (
             &["--closed-loop", "--scene", "wal"],
-            "no scene 'wal'; there are off",
+            "no scene 'wal'; did you mean wall? there are off",
         ),
         (&["--closed-loop", "--estimator", "kalman"], "kalman-triple"),
         (&["--closed-loop", "--rate", "100"], "control at 100 Hz"),

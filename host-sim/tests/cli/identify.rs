@@ -21,6 +21,23 @@ fn the_command_writes_a_device_file_with_only_what_it_knows_replaced() {
     good("simulate --device truth.toml --every 10 --out excite.csv");
     let command = "identify excite.csv --device mine.toml --out mine.toml --report page";
     let table = good(command);
+    assert!(
+        table.lines().all(|line| line.chars().count() <= 80),
+        "{table}"
+    );
+    let line = |text: &str, start: &str| {
+        let line = text.lines().find(|line| line.starts_with(start)).unwrap();
+        line.split_whitespace()
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    let inertia = line(&table, "large.inertia_kg_m2");
+    // Both units: the key's and the table's.
+    let [shown, file] = [1, 3].map(|field: usize| inertia[field].parse::<f64>().unwrap());
+    assert_eq!(inertia[2], "g.cm2");
+    assert!((file / (1e-7 * shown) - 1.0).abs() < 1e-4, "{inertia:?}");
+    let table: Vec<_> = table.split_whitespace().collect();
+    let table = table.join(" ");
     let page = fs::read_to_string(folder.0.join("page/index.html")).unwrap();
     assert_eq!(page.matches("<figure>").count(), 2);
     for said in [
@@ -34,7 +51,8 @@ fn the_command_writes_a_device_file_with_only_what_it_knows_replaced() {
         "health: coupler.damping_nms_per_rad: 0.833 of the file's 0.9600 mN.m.s/rad, -16.7 %, outside \
          its interval: coupler hot",
         "assumed: large.torque_constant_nm_per_a = 0.0468 taken as exact",
-        "amplifier.bandwidth_hz                   -  Hz          rows 1 ms apart",
+        "amplifier.bandwidth_hz - Hz",
+        "not told: amplifier.bandwidth_hz: rows 1 ms apart",
     ] {
         assert!(table.contains(said), "{said}\n{table}");
     }
@@ -54,6 +72,41 @@ fn the_command_writes_a_device_file_with_only_what_it_knows_replaced() {
     let rows = json["quantities"].as_array().unwrap();
     let row = rows.iter().find(|row| row["key"] == "large.inertia_kg_m2");
     assert_eq!(row.unwrap()["file_inside"], true);
+
+    assert_eq!(row.unwrap()["unit"], "kg.m2");
+    let assumed = |json: &serde_json::Value| json["assumed"].to_string();
+    assert!(!assumed(&json).contains("counts_per_rev"), "{json}");
+    // Without a device file its encoders are assumed, and that is said.
+    let said = "large.counts_per_rev = 4096 and small.counts_per_rev = 20000";
+    let default = good("identify excite.csv --json -");
+    assert!(
+        assumed(&serde_json::from_str(&default).unwrap()).contains(said),
+        "{default}"
+    );
+    let default = good("identify excite.csv");
+    assert!(
+        default.contains("assumed: large.counts_per_rev = 4096 and"),
+        "{default}"
+    );
+
+    // An uneven clock is what is wrong, not the motion.
+    let recorded = fs::read_to_string(folder.0.join("excite.csv")).unwrap();
+    let mut uneven = String::new();
+    for (k, line) in recorded.lines().enumerate() {
+        let Some((t, rest)) = line.split_once(',').filter(|_| k > 0) else {
+            uneven += &format!("{line}\n");
+            continue;
+        };
+        let late = if k % 4 == 0 { 120e-6 } else { 0.0 };
+        uneven += &format!("{},{rest}\n", t.parse::<f64>().unwrap() + late);
+    }
+    folder.write("uneven.csv", uneven);
+    let errors = folder.refused(&words("identify uneven.csv --device mine.toml"));
+    assert!(errors.contains("uneven.csv: t is uneven in 5"), "{errors}");
+    assert!(
+        errors.contains("by up to 120 us") && errors.contains("row / rate"),
+        "{errors}"
+    );
 
     // What is refused writes nothing and says why in a line.
     for (arguments, said) in [

@@ -4,10 +4,12 @@ mod closed_loop;
 mod compare;
 mod identify;
 mod output;
+mod recordings;
 mod refusals;
 mod replay;
 mod tables;
 mod tune;
+mod words;
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -52,7 +52,7 @@ fn link_stays_and_its_target_is_replaced() {
     let path = |name: &str| folder.0.join(name);
     fs::create_dir(path("deep")).unwrap();
     folder.write("deep/target.csv", "old");
-    fs::set_permissions(path("deep/target.csv"), PermissionsExt::from_mode(0o640)).unwrap();
+    fs::set_permissions(path("deep/target.csv"), fs::Permissions::from_mode(0o640)).unwrap();
     symlink("deep/target.csv", path("link.csv")).unwrap();
     symlink("link.csv", path("link-to-link.csv")).unwrap();
     folder.good(&replay_to("link-to-link.csv"));
@@ -197,12 +197,15 @@ fn every_file_option_says_that_a_dash_is_standard_output() {
         .lines()
         .skip_while(|line| *line != "Commands:")
         .skip(1);
-    let names = commands.map_while(|line| line.split_whitespace().next());
+    let commands = commands.take_while(|line| !line.is_empty());
+    // Further lines of a description are indented further.
+    let names = commands.filter_map(|line| line.strip_prefix("  ")?.split(' ').next());
     let mut options = 0;
-    for name in names.filter(|name| *name != "help") {
+    for name in names.filter(|name| !["", "help"].contains(name)) {
         let help = folder.good(&[name, "--help"]);
         let wrapped: Vec<_> = help.split_whitespace().collect();
         let help = wrapped.join(" ");
+        let (_, help) = help.split_once(" Options: ").unwrap();
         for start in ["--out <FILE", "--json <FILE"] {
             let Some((_, said)) = help.split_once(start) else {
                 continue;

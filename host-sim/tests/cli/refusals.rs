@@ -55,7 +55,7 @@ fn bad_words_are_refused_with_what_to_do() {
             ],
             "file/x",
         ),
-        (&["compare", "--bogus"], "host-sim --help"),
+        (&["compare", "--bogus"], "see host-sim compare --help"),
         (&["replay"], "TRACE.csv"),
         (
             &["tune", "--estimator", "finite-difference"],

@@ -34,8 +34,7 @@ impl Draws {
     }
 }
 
-/// Ticks of the clock that stamps edges, per second.
-pub const EDGE_CLOCK_HZ: f64 = 84e6;
+pub use host_sim::trace::EDGE_CLOCK_HZ;
 
 /// Largest displacement in a tick that the estimators take for motion, counts.
 pub const TOP_STEP: i32 = (1 << 15) - 1;

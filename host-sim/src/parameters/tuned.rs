@@ -1,0 +1,132 @@
+//! What parameter values were tuned for.
+
+use std::collections::BTreeMap;
+
+use super::{Override, Parameters, PlantKind, Preset, Presets};
+use crate::estimators::{Kind, Search, Setup};
+
+/// Ratio of rates, or of counts per revolution, up to which tuned values still serve.
+const FAR: f64 = 1.5;
+
+impl Parameters {
+    /// Where the values come from, the strongest first.
+    #[must_use]
+    pub fn sources(&self) -> String {
+        let set = (!self.overrides.is_empty()).then_some("--set");
+        let layers = self.layers.iter().rev().map(|layer| layer.source.as_str());
+        let sources: Vec<_> = set.into_iter().chain(layers).collect();
+        sources.join(", then ")
+    }
+
+    /// A line for each preset whose values are used at a rate or with an encoder that is far from
+    /// what they were tuned for: the estimators concerned, both cases, and the remedy.
+    #[must_use]
+    pub fn used_far_away(&self, kinds: &[&Kind], setup: &Setup, plant: PlantKind) -> Vec<String> {
+        let mut far: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+        for kind in kinds {
+            let Some((source, preset)) = self.tuned(kind, setup, plant) else {
+                continue;
+            };
+            let counts = preset.counts_per_rev.unwrap_or(setup.device.counts_per_rev);
+            let near = |a: f64, b: f64| (1.0 / FAR..=FAR).contains(&(a / b));
+            let near = near(preset.rate_hz, setup.rate.0)
+                && near(f64::from(counts), f64::from(setup.device.counts_per_rev));
+            if !near {
+                let tuned = format!("{source} for {counts} counts/rev at {} Hz", preset.rate_hz);
+                far.entry(tuned).or_default().push(kind.name);
+            }
+        }
+        let here = format!(
+            "{} counts/rev at {} Hz",
+            setup.device.counts_per_rev, setup.rate.0
+        );
+        let line = |(tuned, names): (String, Vec<&str>)| {
+            format!(
+                "parameters tuned in {tuned} are used for {here}, which is far from that: {}; tune them \
+                 with host-sim tune --rate {} --device FILE.toml and give its file as --presets, or give \
+                 values with --set",
+                names.join(", "),
+                setup.rate.0
+            )
+        };
+        far.into_iter().map(line).collect()
+    }
+
+    /// The preset that gives `kind` its values, and the name of its file; `None` where nothing is
+    /// tuned, or everything set by name.
+    fn tuned(&self, kind: &Kind, setup: &Setup, plant: PlantKind) -> Option<(&str, &Preset)> {
+        let set = |index: usize| {
+            let of = |change: &Override| change.kind == kind.name && change.index == index;
+            self.overrides.iter().any(of)
+        };
+        let mut searched = kind.parameters.iter().enumerate();
+        if searched.all(|(index, p)| matches!(p.search, Search::Fixed(_)) || set(index)) {
+            return None;
+        }
+        let preset = |layer: &'_ Presets| layer.nearest_preset(kind, setup.rate.0, plant).is_some();
+        let layer = self.layers.iter().rev().find(|layer| preset(layer))?;
+        let preset = layer.nearest_preset(kind, setup.rate.0, plant)?;
+        Some((&layer.source, preset))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn far(parameters: &Parameters, kinds: &[&str], rate_hz: f64, counts: u32) -> Vec<String> {
+        let mut setup = Setup::default();
+        setup.rate.0 = rate_hz;
+        setup.device.counts_per_rev = counts;
+        let kinds: Vec<_> = kinds
+            .iter()
+            .map(|name| Kind::named(name).unwrap())
+            .collect();
+        parameters.used_far_away(&kinds, &setup, PlantKind::Friction)
+    }
+
+    #[test]
+    fn presets_far_from_their_rate_or_encoder_are_named() {
+        let shipped = Parameters::default();
+        let kinds = ["finite-difference", "pll", "foaw-end-fit"];
+        for (rate_hz, counts) in [
+            (1000.0, 4096),
+            (1400.0, 4096),
+            (1000.0, 6000),
+            (11_600.0, 4096),
+        ] {
+            assert_eq!(far(&shipped, &kinds, rate_hz, counts), Vec::<String>::new());
+        }
+        let said = far(&shipped, &kinds, 1000.0, 90);
+        assert_eq!(said.len(), 1, "{said:?}");
+        let words = "the shipped presets for 4096 counts/rev at 1000 Hz are used for 90 counts/rev at \
+                     1000 Hz, which is far from that: pll, foaw-end-fit; tune them with host-sim tune \
+                     --rate 1000 --device FILE.toml";
+        assert!(said[0].contains(words), "{said:?}");
+        assert!(far(&shipped, &kinds, 300.0, 4096)[0].contains("at 300 Hz, which is far"));
+        assert_eq!(
+            far(&shipped, &["finite-difference"], 1000.0, 90),
+            Vec::<String>::new()
+        );
+    }
+
+    #[test]
+    fn presets_file_and_values_set_by_name_count() {
+        let file = "[[preset]]\nrate_hz = 1000\nplant = 'friction'\ncounts_per_rev = 90\n\
+                    estimators = { pll = { bandwidth_hz = 10 } }";
+        let mut parameters = Parameters::default();
+        parameters.layer(Presets::parse(file, "mine.toml").unwrap());
+        assert_eq!(far(&parameters, &["pll"], 1000.0, 90), Vec::<String>::new());
+        let said = far(&parameters, &["pll"], 1000.0, 4096);
+        assert!(
+            said[0].contains("tuned in mine.toml for 90 counts/rev"),
+            "{said:?}"
+        );
+        assert_eq!(parameters.sources(), "mine.toml, then the shipped presets");
+        parameters.set("pll.bandwidth_hz=20").unwrap();
+        assert_eq!(
+            far(&parameters, &["pll"], 1000.0, 4096),
+            Vec::<String>::new()
+        );
+    }
+}

@@ -1,0 +1,94 @@
+//! Text that people read: lines of a terminal's width, names that are nearly right, numbers.
+
+/// Columns of a terminal that is not known to be wider.
+pub const WIDTH: usize = 80;
+
+/// Similarity (Jaro and Winkler, 0 to 1) from which a name is offered in place of another.
+const SIMILAR: f64 = 0.75;
+
+/// `text` in lines of at most [`WIDTH`] columns; all but the first begin with `indent` spaces.
+/// A word that is longer than a line is not broken.
+#[must_use]
+pub fn wrapped(text: &str, indent: usize) -> String {
+    let mut lines = String::new();
+    let mut column = 0;
+    let mut words = text.split(' ');
+    // Spaces that align the first line stay as they are.
+    if let Some(first) = words.next() {
+        lines += first;
+        column = first.chars().count();
+    }
+    for word in words {
+        let length = word.chars().count();
+        if length > 0 && column + 1 + length > WIDTH {
+            lines.truncate(lines.trim_end().len());
+            lines += "\n";
+            lines += &" ".repeat(indent);
+            column = indent;
+        } else {
+            lines += " ";
+            column += 1;
+        }
+        lines += word;
+        column += length;
+    }
+    lines
+}
+
+/// What to say of a `name` that is not among the `known` ones, `what` being for example a scene.
+#[must_use]
+pub fn unknown<'a>(what: &str, name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let known: Vec<_> = known.into_iter().collect();
+    let nearest = known
+        .iter()
+        .map(|other| (strsim::jaro_winkler(name, other), *other));
+    let nearest = nearest.max_by(|(a, _), (b, _)| a.total_cmp(b));
+    let all = known.join(", ");
+    let name = name.escape_debug();
+    match nearest.filter(|(similarity, _)| *similarity >= SIMILAR) {
+        Some((_, nearest)) => {
+            format!("no {what} '{name}'; did you mean {nearest}? there are {all}")
+        }
+        None => format!("no {what} '{name}'; there are {all}"),
+    }
+}
+
+/// A number in as few digits as it needs, with an exponent where there would be many zeros.
+#[must_use]
+pub fn decimal(x: f64) -> String {
+    if x == 0.0 || (1e-4..1e10).contains(&x.abs()) {
+        return format!("{x}");
+    }
+    format!("{x:e}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_wrapped_with_an_indent() {
+        let text = format!("a  b {} c", "x".repeat(76));
+        assert_eq!(wrapped(&text, 2), format!("a  b\n  {} c", "x".repeat(76)));
+        assert_eq!(wrapped("a   b", 2), "a   b");
+        let long = "y".repeat(100);
+        assert_eq!(wrapped(&format!("a {long}"), 4), format!("a\n    {long}"));
+    }
+
+    #[test]
+    fn similar_name_is_offered_and_a_foreign_one_is_not() {
+        let known = ["wall", "free-air", "excite"];
+        let said = unknown("scene", "exite", known);
+        assert!(said.starts_with("no scene 'exite'; did you mean excite? there are wall,"));
+        assert_eq!(
+            unknown("scene", "q", known),
+            "no scene 'q'; there are wall, free-air, excite"
+        );
+    }
+
+    #[test]
+    fn numbers_have_an_exponent_where_it_is_shorter() {
+        let shown = [1e-300, 0.0, -0.5, 1e6, 1e12, f64::NAN].map(decimal);
+        assert_eq!(shown, ["1e-300", "0", "-0.5", "1000000", "1e12", "NaN"]);
+    }
+}
