@@ -38,13 +38,12 @@ const FELT: &str = "From here on the loop is closed: the controller moves both m
     takes away. \u{201c}any\u{201d}: the scene does not ask for the large motor\u{2019}s velocity.";
 const BARS: &str = "Share of time in which the parasitic force is smaller than a fingertip notices; \
     longer is better.";
-const SPEED: &str = "A transparent device feels of nothing. How much it feels of instead, against \
-    how fast the handle moves (above) and how fast its velocity changes (below). In the green a \
-    fingertip notices nothing. The peak at rest is the handle\u{2019}s friction turning round: its \
-    feed-forward fades out where the direction of motion is in doubt. The black line is the device \
-    with both motors off; the dashed one is what the inertia of the handle takes, which nobody \
-    compensates. Filters with a preset steady gain lie on those with full covariance and are not \
-    drawn.";
+const SPEED: &str = "An ideal device adds no force. Parasitic force against the velocity of the \
+    handle (top) and against its acceleration (bottom). In the green area the force is below the \
+    threshold of a fingertip. The peak at rest is the friction of the handle: its feed-forward fades \
+    out where the direction of motion is uncertain. The solid black line is the device with both motors \
+    off. The dashed black line is the inertia of the handle, which is not compensated. Kalman filters \
+    with a preset steady gain lie on those with full covariance and are not drawn.";
 const SPECTRUM: &str = "Where in frequency the parasitic force lies, hand moving in free air. In \
     the green band it is felt as roughness; left of it lie friction and inertia, right of it \
     what no finger feels but the motors still suffer.";

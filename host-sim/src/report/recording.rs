@@ -51,20 +51,26 @@ pub struct RecordingView<'a> {
 /// If it cannot be drawn.
 pub fn recording(view: &RecordingView) -> Result<String, String> {
     let panels = panels(view);
-    let heads: Vec<f64> = panels.iter().map(|panel| head(&keys(panel))).collect();
+    let ranges: Vec<_> = panels.iter().map(|panel| range(panel, view)).collect();
+    let named = |(panel, ends): (&Panel, &[f64; 2])| panel.names(view, *ends);
+    let names: Vec<Vec<String>> = panels.iter().zip(&ranges).map(named).collect();
+    let keys: Vec<Vec<Key>> = (panels.iter().zip(&names))
+        .map(|(panel, names)| keys(panel, names))
+        .collect();
+    let heads: Vec<f64> = keys.iter().map(|keys| head(keys)).collect();
     let height: f64 = TOP + heads.iter().map(|head| head + PANEL + GAP).sum::<f64>() + 20.0;
     figure(height, view.name, |canvas| {
         canvas.text(view.name, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
         let mut top = TOP;
         for (i, (panel, head)) in panels.iter().zip(&heads).enumerate() {
-            canvas.legend(&keys(panel), (LEFT, top + 8.0))?;
+            canvas.legend(&keys[i], (LEFT, top + 8.0))?;
             let plot = Plot {
                 left: LEFT,
                 top: top + head,
                 right: WIDTH - RIGHT,
                 bottom: top + head + PANEL,
                 x: Axis::linear(view.window),
-                y: Axis::linear(range(panel, view)),
+                y: Axis::linear(ranges[i]),
             };
             panel.draw(canvas, &plot, view)?;
             states(canvas, &plot, view, i == 0)?;
@@ -77,9 +83,9 @@ pub fn recording(view: &RecordingView) -> Result<String, String> {
     })
 }
 
-fn keys(panel: &Panel) -> Vec<Key<'_>> {
-    let lines = panel.curves.iter();
-    let mut keys: Vec<_> = lines.map(|c| Key::Line(c.style, &c.name)).collect();
+fn keys<'a>(panel: &Panel, names: &'a [String]) -> Vec<Key<'a>> {
+    let lines = panel.curves.iter().zip(names);
+    let mut keys: Vec<_> = lines.map(|(c, name)| Key::Line(c.style, name)).collect();
     if panel.band.is_some() {
         keys.push(Key::Band("what a fingertip cannot tell"));
     }
@@ -255,5 +261,10 @@ mod tests {
             ]
         );
         assert_eq!(panels[2].curves[0].values, [-0.5, 0.5]);
+        assert_eq!(panels[2].names(&view, [-1.0, 1.0]), ["pll less the truth"]);
+        assert_eq!(
+            panels[2].names(&view, [-1.0, 0.0]),
+            ["pll less the truth, 50\u{a0}% off scale"]
+        );
     }
 }

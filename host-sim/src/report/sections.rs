@@ -45,10 +45,12 @@ const BELIEFS: &str = "RMS error in scenarios step and track of estimators that 
     those that learn stay low. All scenarios: host-sim sensitivity.";
 const HEATING: &str = "Damping of the coupler while it loses 30 % in 60 s, black, and what the \
     estimators that learn it take it for, from current and counts alone.";
-const SCORES: &str = "Smaller is better; the best of each scenario is bold on green. \
-    \u{201c}% of fd\u{201d} is relative to finite difference on the same samples. Distance is \
-    outside the haptic interval, force is the RMS error felt at the fingertip, a negative delay \
-    leads. A column's heading sorts by it within each scenario.";
+const SCORES: &str = "The best of each scenario is bold on green: the smallest value, of the delay \
+    the smallest in size. \u{201c}% of FD\u{201d} is relative to finite difference on the same \
+    samples. Distance is outside the haptic interval, force is the RMS error felt at the fingertip, a \
+    negative delay leads. Within is the share of samples whose error is below two of the standard \
+    deviations that the estimator reports; about 95 % is right, and no value is the best. A click on \
+    a heading sorts each scenario by that column.";
 const DEVICE: &str = "The constants that the scores depend on. The paper's Table II omits the \
     four counts a line in its first two rows and has them in the others, so both readings stand \
     here; this device counts all four edges.";

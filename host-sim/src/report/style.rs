@@ -8,7 +8,7 @@ pub(super) enum Dash {
     Solid,
     Dashed,
     Dotted,
-    Alternating,
+    Mixed,
 }
 
 /// A colour and a dash.
@@ -34,7 +34,7 @@ impl Dash {
             Self::Solid => &[],
             Self::Dashed => &[7.0, 3.0],
             Self::Dotted => &[2.0, 2.5],
-            Self::Alternating => &[9.0, 2.5, 2.0, 2.5],
+            Self::Mixed => &[9.0, 2.5, 2.0, 2.5],
         }
     }
 
@@ -123,7 +123,7 @@ mod tests {
         let dashed = Dash::Dashed.pieces(&corner);
         assert!((length(&dashed) - 70.0).abs() < 1e-9, "{dashed:?}");
         // 16 px are 9 + 2 drawn; 96 px six times that, and 4 px more of the first.
-        let both = Dash::Alternating.pieces(&corner);
+        let both = Dash::Mixed.pieces(&corner);
         assert!((length(&both) - (6.0 * 11.0 + 4.0)).abs() < 1e-9);
         assert_eq!(Dash::Dashed.spans(0.0, 12.0), [[0.0, 7.0], [10.0, 12.0]]);
         assert_eq!(Dash::Dashed.spans(3.0, 3.0), [[3.0, 3.0]]);

@@ -115,7 +115,7 @@ pub fn command(settings: &Settings) -> String {
 /// characters, limits below.
 #[must_use]
 pub fn table(settings: &Settings, scenes: &[SceneSummary], width: usize) -> String {
-    let mut text = heading(settings) + "\n";
+    let mut text = heading(settings).replacen(": ", ":\n", 1) + "\n";
     let count = |name, i: usize| {
         let cells = scenes.iter().map(|scene| scene.counts[i].to_string());
         Column::numbers("", name, cells)
@@ -239,12 +239,23 @@ mod tests {
         };
         assert_eq!(scene.counts, [1, 1, 0]);
         // Of two values the smaller is the median.
-        let ends = |spread: Spread| [spread.median, spread.largest];
-        assert_eq!(ends(scene.handle_rad_s), [11.0, 29.0]);
-        assert_eq!(ends(scene.large_rad_s), [5.0, 6.0]);
-        assert_eq!(ends(scene.felt_nm), [0.02, 0.09]);
-        assert_eq!(ends(scene.parasitic_n), [0.2, 0.3]);
-        assert_eq!(ends(scene.oscillation_nm.unwrap()), [0.0007, 0.0007]);
+        let spreads = [
+            scene.handle_rad_s,
+            scene.large_rad_s,
+            scene.felt_nm,
+            scene.parasitic_n,
+            scene.oscillation_nm.unwrap(),
+        ];
+        assert_eq!(
+            spreads.map(|spread| [spread.median, spread.largest]),
+            [
+                [11.0, 29.0],
+                [5.0, 6.0],
+                [0.02, 0.09],
+                [0.2, 0.3],
+                [0.0007, 0.0007]
+            ]
+        );
     }
 
     #[test]

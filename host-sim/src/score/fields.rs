@@ -103,7 +103,7 @@ pub(crate) fn merged<'a, T: Default + 'a>(
     fields: &[Field<T>],
     rows: impl Iterator<Item = &'a T>,
 ) -> T {
-    let rows: Vec<_> = rows.collect();
+    let rows: Vec<&T> = rows.collect();
     let mut merged = T::default();
     for field in fields {
         (field.set)(&mut merged, field.over(rows.iter().copied()));

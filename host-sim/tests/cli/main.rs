@@ -9,6 +9,7 @@ mod refusals;
 mod replay;
 mod tables;
 mod tune;
+mod version;
 mod words;
 
 use std::collections::BTreeSet;

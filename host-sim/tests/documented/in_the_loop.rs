@@ -13,8 +13,8 @@ use crate::{BENCHMARKS, is_written_for, table};
 const TELEMETRY: &str = include_str!("../../../docs/telemetry.md");
 const THEORY: &str = include_str!("../../../docs/theory.md");
 
-/// A figure of a run.
-type Figure = fn(&Row) -> f64;
+/// A value of a run.
+type Value = fn(&Row) -> f64;
 
 /// The corners and the first drawn devices of the documented run, which it contains.
 #[test]
@@ -57,15 +57,10 @@ fn robustness_of_the_loop() {
             .filter(|ran| ran.scene == row[0] && ran.device.parse::<u64>().is_ok())
             .collect();
         assert_eq!(drawn.len(), 20);
-        let handle = |ran: &Row| ran.handle_rad_s.max(ran.after_handle_rad_s.unwrap_or(0.0));
-        let felt = |ran: &Row| 1e3 * ran.felt_nm.max(ran.after_felt_nm.unwrap_or(0.0));
-        let oscillation = |ran: &Row| 1e3 * ran.oscillation_nm.unwrap_or(0.0);
-        let columns = [
-            (row[4], handle as Figure),
-            (row[5], felt),
-            (row[6], oscillation),
-        ];
-        for (cell, of) in columns {
+        let handle: Value = |ran| ran.handle_rad_s.max(ran.after_handle_rad_s.unwrap_or(0.0));
+        let felt: Value = |ran| 1e3 * ran.felt_nm.max(ran.after_felt_nm.unwrap_or(0.0));
+        let oscillation: Value = |ran| 1e3 * ran.oscillation_nm.unwrap_or(0.0);
+        for (cell, of) in [(row[4], handle), (row[5], felt), (row[6], oscillation)] {
             let written: Vec<f64> = cell.split(' ').map(|cell| cell.parse().unwrap()).collect();
             let above = |limit: f64| drawn.iter().filter(|ran| of(ran) > limit).count();
             let largest = drawn.iter().map(|ran| of(ran)).fold(0.0, f64::max);

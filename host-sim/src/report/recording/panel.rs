@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::RecordingView;
 use crate::report::canvas::{Anchor, Canvas, LABEL};
-use crate::report::palette::{BAND, BAND_EDGE, INK, MUTED};
+use crate::report::palette::{BAND, BAND_EDGE, INK};
 use crate::report::plot::Plot;
 use crate::report::style::Style;
 use crate::report::text::share;
@@ -75,33 +75,26 @@ impl Panel {
             }
         }
         plot.edges(canvas)?;
-        if let Some(note) = self.clipped(plot, &segments) {
-            let at = (plot.right - 6.0, plot.top + 9.0);
-            canvas.text(&note, at, Anchor::Right, LABEL, MUTED)?;
-        }
         let middle = 0.5 * (plot.top + plot.bottom);
         canvas.text(self.unit, (14.0, middle), Anchor::Upwards, LABEL, INK)
     }
 
-    /// Which curves leave the frame, and for how much of the samples shown.
-    fn clipped(&self, plot: &Plot, segments: &[Range<usize>]) -> Option<String> {
-        let rows = || segments.iter().cloned().flatten();
-        let outside = |curve: &Curve| {
-            let inside = |row: &usize| (plot.y.low..=plot.y.high).contains(&curve.values[*row]);
-            rows().count() - rows().filter(inside).count()
+    /// Name of each curve for the legend, and how much of it lies beyond the axis from `low` to
+    /// `high`.
+    pub(super) fn names(&self, view: &RecordingView, [low, high]: [f64; 2]) -> Vec<String> {
+        let rows: Vec<usize> = segments(view).into_iter().flatten().collect();
+        let name = |curve: &Curve| {
+            let inside = |row: &&usize| (low..=high).contains(&curve.values[**row]);
+            let outside = rows.len() - rows.iter().filter(inside).count();
+            match outside {
+                0 => curve.name.clone(),
+                _ => {
+                    let part = share(outside as f64 / rows.len() as f64);
+                    format!("{}, {part} off scale", curve.name)
+                }
+            }
         };
-        let of = self
-            .curves
-            .iter()
-            .map(|curve| (&curve.name, outside(curve)));
-        let notes: Vec<_> = of
-            .filter(|(_, outside)| *outside > 0)
-            .map(|(name, outside)| {
-                let part = outside as f64 / rows().count() as f64;
-                format!("{name}: {} of samples off scale", share(part))
-            })
-            .collect();
-        (!notes.is_empty()).then(|| notes.join(", "))
+        self.curves.iter().map(name).collect()
     }
 }
 
