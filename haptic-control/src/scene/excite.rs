@@ -17,7 +17,7 @@ use pattern::{LARGEST, SECTIONS, Segment};
 /// large motor. Each section runs four times with alternating sign, 16 s in all, and ends at zero
 /// current, for good. Levels change at whole milliseconds, so that frames of 1 kHz know the current.
 ///
-/// Bounded in current by the pattern (0.9 A large, 0.3 A small); in speed of the large motor by what
+/// Bounded in current by the pattern (0.9 A large, 0.15 A small); in speed of the large motor by what
 /// that current can drive against the coupler of a held handle, checked where it is built. A handle
 /// further than 2 rad from where the scene began, or faster than 25 rad/s over a millisecond, ends it.
 ///

@@ -9,6 +9,9 @@ use haptic_control::{
 };
 
 const DEVICE: DualStage = DualStage::DEFAULT;
+/// Durations of the sections, ms.
+const STROKES_MS: usize = 972;
+const LEVELS_MS: usize = 3050;
 
 /// The currents of `ticks` at a rate, with the handle where `handle` says it is, counts.
 fn run(rate_hz: f64, ticks: u32, handle: impl Fn(u32) -> i32) -> Vec<Currents> {
@@ -62,6 +65,44 @@ fn it_ends_by_itself_at_zero_and_stays_there() {
     let currents = run(1e3, 60_000, |_| 0);
     let last = currents.iter().rposition(|c| !is_off(c)).unwrap();
     assert!((15_000..17_000).contains(&last), "{last} ms");
+}
+
+/// Two sections, strokes and levels, each four times with alternating sign.
+#[test]
+fn the_pattern_is_two_sections_of_four_passes() {
+    let currents = run(1e3, 20_000, |_| 0);
+    let at = |ms: usize| [currents[ms].large, currents[ms].small].map(Amps::get);
+    let mut begin = 0;
+    for duration in [STROKES_MS, LEVELS_MS] {
+        for k in 0..3 * duration {
+            let [now, next] = [begin + k, begin + k + duration].map(at);
+            assert_eq!(now, next.map(|amps| -amps), "{begin}: {k} ms");
+        }
+        // It is no shorter pass that repeats.
+        for shorter in 1..duration {
+            let differs = |k: usize| at(begin + k) != at(begin + k + shorter).map(|amps| -amps);
+            assert!((0..duration).any(differs), "{begin}: {shorter} ms");
+        }
+        begin += 4 * duration;
+    }
+    assert!(currents[begin..].iter().all(is_off));
+    // 0.9 A and 0.15 A at most.
+    let largest = |of: fn(&Currents) -> Amps| {
+        let sizes = currents.iter().map(|now| of(now).get().abs());
+        sizes.fold(0.0, f32::max)
+    };
+    assert_eq!(largest(|now| now.large), 0.9);
+    assert_eq!(largest(|now| now.small), 0.15);
+
+    // A pass of levels ends with two sweeps of 40 steps of 20 mA, 16 ms each, and 100 ms of rest.
+    let end = 4 * STROKES_MS + LEVELS_MS - 100;
+    for k in 0..640 {
+        let step = (k / 16) as f32;
+        let [down, up] = [end - 1280 + k, end - 640 + k].map(|ms| at(ms)[0]);
+        assert!((down - (0.9 - 0.02 * step)).abs() < 1e-6, "{k}: {down}");
+        assert!((up - (0.1 + 0.02 * step)).abs() < 1e-6, "{k}: {up}");
+    }
+    assert!(currents[end..end + 100].iter().all(is_off));
 }
 
 /// Millisecond of the last current that is not zero, and one.
@@ -139,17 +180,46 @@ fn the_switchboard_commands_the_same() {
 }
 
 #[test]
-fn a_device_that_it_could_drive_too_fast_or_that_cannot_follow_is_refused() {
-    let refused = |device: &DualStage, rate_hz| Excite::new(device, Hertz(rate_hz)).is_err();
-    assert!(!refused(&DEVICE, 10e3));
-    assert!(refused(&DEVICE, 999.0) && refused(&DEVICE, 200e3) && refused(&DEVICE, f64::NAN));
-    let mut device = DEVICE;
-    device.large.current_limit = 0.8;
-    assert!(refused(&device, 10e3));
-    device = DEVICE;
-    device.small.current_limit = 0.1;
-    assert!(refused(&device, 10e3));
-    device = DEVICE;
-    device.damping *= 0.7;
-    assert!(refused(&device, 10e3));
+fn devices_and_rates_beyond_its_limits_are_refused_and_those_at_them_are_not() {
+    let taken = |device: &DualStage, rate_hz| Excite::new(device, Hertz(rate_hz)).is_ok();
+    for (rate_hz, is_taken) in [
+        (999.9, false),
+        (1e3, true),
+        (100e3, true),
+        (100.1e3, false),
+        (f64::NAN, false),
+    ] {
+        assert_eq!(taken(&DEVICE, rate_hz), is_taken, "{rate_hz}");
+    }
+    for (amps, is_taken) in [(0.9, true), (0.899, false)] {
+        let mut device = DEVICE;
+        device.large.current_limit = amps;
+        assert_eq!(taken(&device, 10e3), is_taken, "{amps}");
+    }
+    for (amps, is_taken) in [(0.15, true), (0.149, false)] {
+        let mut device = DEVICE;
+        device.small.current_limit = amps;
+        assert_eq!(taken(&device, 10e3), is_taken, "{amps}");
+    }
+    // 0.9 A drive the large motor of a held handle to 60 rad/s.
+    for (part, is_taken) in [(1.001, true), (0.999, false)] {
+        let mut device = DEVICE;
+        device.damping = part * 0.9 * device.large.torque_constant / 60.0;
+        assert_eq!(taken(&device, 10e3), is_taken, "{part}");
+    }
+}
+
+#[test]
+fn at_rates_between_whole_kilohertz_the_pattern_takes_as_long() {
+    // 11.6 ticks a millisecond, and a rate that is rounded to whole hertz.
+    for (rate_hz, hertz) in [(11.6e3, 11_600), (11_999.6, 12_000)] {
+        let ticks = 4 * (STROKES_MS + LEVELS_MS) * hertz / 1000 + 100;
+        let last = run(rate_hz, ticks as u32, |_| 0)
+            .iter()
+            .rposition(|now| !is_off(now))
+            .unwrap();
+        // The last pass ends with 100 ms of rest.
+        let end = (4 * (STROKES_MS + LEVELS_MS) - 100) * hertz / 1000;
+        assert!(last.abs_diff(end) <= 1, "{rate_hz}: {last} {end}");
+    }
 }

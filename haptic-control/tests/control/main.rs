@@ -1,8 +1,10 @@
 //! Tests of the control core, in one program because that is built sooner.
 
+mod controller;
 mod design;
 mod excite;
 mod gated;
+mod margins;
 mod monitor;
 mod monitor_limits;
 mod press;

@@ -1,4 +1,4 @@
-//! The switchboard: scenes swapped while the handle moves, and the list of scenes.
+//! The switchboard: scenes swapped while the handle moves.
 
 use estimator_core::{
     Amps, Count, EndFit, Foaw, Hertz, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple,
@@ -27,20 +27,6 @@ fn board() -> Board {
 /// Whether the scene steps its currents by itself, past the slew limits.
 fn steps(scene: &AnyScene) -> bool {
     matches!(scene, AnyScene::Excite(_))
-}
-
-#[test]
-fn every_scene_is_at_its_number_and_has_a_name_of_its_own() {
-    for (number, scene) in ALL.iter().enumerate() {
-        assert_eq!(usize::from(scene.number()), number, "{scene:?}");
-        let name = AnyScene::NAMES[number];
-        let same = AnyScene::NAMES.iter().filter(|other| **other == name);
-        assert_eq!(same.count(), 1, "{name}");
-    }
-    // As the documents have them.
-    let telemetry = include_str!("../../../docs/telemetry.md");
-    let list = AnyScene::NAMES.join(", ");
-    assert!(telemetry.contains(&format!("byte 0: {list} from 0")));
 }
 
 /// A medley: still, slow, fast there and back, still again; both encoders.

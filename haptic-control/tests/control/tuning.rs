@@ -1,4 +1,4 @@
-//! Parameters set while scenes run: within bounds or not at all.
+//! The list of scenes, and their parameters: set while scenes run, within bounds or not at all.
 
 use estimator_core::{
     Count, Hertz, Model, NoInput, Pll, Sample, SteadyKalman, SteadyKalmanTriple, preset,
@@ -20,6 +20,20 @@ const BOUNDS: Bounds = Bounds {
 
 const SCENES: [AnyScene; AnyScene::NAMES.len()] =
     preset!(AnyScene::usual(&DualStage::DEFAULT, RATE));
+
+#[test]
+fn every_scene_is_at_its_number_and_has_a_name_of_its_own() {
+    for (number, scene) in SCENES.iter().enumerate() {
+        assert_eq!(usize::from(scene.number()), number, "{scene:?}");
+        let name = AnyScene::NAMES[number];
+        let same = AnyScene::NAMES.iter().filter(|other| **other == name);
+        assert_eq!(same.count(), 1, "{name}");
+    }
+    // As the documents have them.
+    let telemetry = include_str!("../../../docs/telemetry.md");
+    let list = AnyScene::NAMES.join(", ");
+    assert!(telemetry.contains(&format!("byte 0: {list} from 0")));
+}
 
 #[test]
 fn a_parameter_set_is_that_parameter_and_no_other() {
@@ -74,6 +88,68 @@ fn what_the_device_cannot_render_is_refused() {
                 "{scene} {parameter} {value}"
             );
         }
+    }
+}
+
+#[test]
+fn what_is_at_a_bound_is_taken() {
+    for (scene, parameter, values) in [
+        (2, 0, vec![6.0, -6.0]),
+        (2, 1, vec![0.0, 0.5]),
+        (2, 2, vec![0.0, 3e-3]),
+        (3, 0, vec![6.0, -6.0]),
+        (3, 1, vec![0.0, 0.5]),
+        (3, 2, vec![0.0, 3e-3]),
+        (4, 0, vec![0.0, 3e-3]),
+        // 24 a turn of 0.5 N.m/rad, and 0.5 N.m/rad of 8 mN.m each.
+        (5, 0, vec![0.0, 0.0208]),
+        (5, 1, vec![1.0, 62.0]),
+        (6, 0, vec![0.0, 40e-3]),
+        (6, 1, vec![50.0, 300.0]),
+        (7, 0, vec![0.0, 0.5]),
+        (7, 1, vec![0.0, 3e-3]),
+        (8, 0, vec![40e-3, -40e-3, 0.0]),
+        (9, 0, vec![2.5e-6, -2.5e-6, 0.0]),
+    ] {
+        for value in values {
+            let tuned = SCENES[scene].tuned(parameter, value, &BOUNDS);
+            let tuned = tuned.unwrap_or_else(|_| panic!("{scene} {parameter} {value}"));
+            // Once more gives the same, and so does the way over another value.
+            assert_eq!(tuned.tuned(parameter, value, &BOUNDS), Ok(tuned));
+            assert_eq!(tuned.number(), SCENES[scene].number());
+        }
+    }
+    // The amplitude of detents is a torque, too: with one detent a turn it ends there.
+    let one = SCENES[5].tuned(1, 1.0, &BOUNDS).unwrap();
+    assert!(one.tuned(0, 40e-3, &BOUNDS).is_ok());
+    assert_eq!(one.tuned(0, 41e-3, &BOUNDS), Err(Refusal::OutOfBounds));
+}
+
+#[test]
+fn parameters_have_the_names_of_the_documents() {
+    let telemetry = include_str!("../../../docs/telemetry.md");
+    let numbered = |scene: usize| {
+        let names = SCENES[scene].parameters();
+        (names.len(), names.join(" "))
+    };
+    assert_eq!(numbered(2), (3, "position stiffness damping".to_owned()));
+    assert_eq!(numbered(3), (3, "centre stiffness damping".to_owned()));
+    assert_eq!(numbered(4), (1, "damping".to_owned()));
+    assert_eq!(numbered(5), (2, "amplitude per-turn".to_owned()));
+    assert_eq!(numbered(6), (2, "amplitude frequency".to_owned()));
+    assert_eq!(numbered(7), (2, "stiffness damping".to_owned()));
+    assert_eq!(numbered(8), (1, "torque".to_owned()));
+    assert_eq!(numbered(9), (1, "inertia".to_owned()));
+    for scene in [0, 1, 10] {
+        assert_eq!(numbered(scene).0, 0);
+    }
+    for row in [
+        "| 4 viscous | 0 damping |",
+        "| 8 torque | 0 torque,",
+        "| 9 inertia | 0 inertia,",
+        "| 7 hold | 0 stiffness, 1 damping |",
+    ] {
+        assert!(telemetry.contains(row), "{row}");
     }
 }
 

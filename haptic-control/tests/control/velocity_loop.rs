@@ -2,14 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use estimator_core::Hertz;
-use haptic_control::{DualStage, LoopPoles, RadPerS, Rst, RstDesign};
+use haptic_control::{LoopPoles, RadPerS, Rst, RstDesign};
 
-const RATES: [f64; 5] = [800.0, 1e3, 10e3, 11.6e3, 20e3];
-
-fn design(rate: f64) -> RstDesign {
-    RstDesign::new(&DualStage::DEFAULT, Hertz(rate), LoopPoles::DEFAULT).unwrap()
-}
+use crate::design::{RATES, design};
 
 /// The plant in f64, with the controller as it runs, in f32.
 struct Bench {

@@ -1,0 +1,170 @@
+//! The controller of one scene: its states, copied, compared and started again.
+
+use estimator_core::{
+    Count, EndFit, FiniteDifference, Foaw, Handover, Hertz, Model, NoInput, Sample, Side,
+    SteadyKalman, SteadyKalmanTriple, VelocityEstimator, preset,
+};
+use haptic_control::{
+    Controller, ControllerState, Detents, DualStage, FreeAir, Gated, Hold, Inertia, LoopPoles, Off,
+    Radians, Rig, Scene, Senses, SpringDamper, Texture, Viscous, Wall,
+};
+
+const RATE: Hertz = Hertz(10e3);
+const DEVICE: DualStage = DualStage::DEFAULT;
+const RIG: Rig = preset!(Rig::new(&DEVICE, RATE, LoopPoles::DEFAULT));
+const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(20_000, RATE, 4e3));
+const HANDLE: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
+type Large = Foaw<15, EndFit>;
+const LARGE: Large = preset!(Foaw::new(15, 1));
+
+type Of<S> = Controller<S, Large, SteadyKalmanTriple>;
+type StateOf<S> = ControllerState<S, Large, SteadyKalmanTriple>;
+
+fn sample(k: u32) -> Sample {
+    Sample::new(Count(k / 3)).with_small(Count(k * k / 50))
+}
+
+/// Runs over ticks of a motion.
+fn run<S>(controller: &Of<S>, state: &mut StateOf<S>, ticks: std::ops::Range<u32>)
+where
+    S: Scene<Acceleration: Senses<SteadyKalmanTriple>>,
+{
+    for k in ticks {
+        controller.step(state, &sample(k));
+    }
+}
+
+fn a_restart_is_a_start_and_copies_are_equal_until_they_move_apart<S>(scene: S)
+where
+    S: Scene<Acceleration: Senses<SteadyKalmanTriple>> + Copy,
+{
+    let controller = Controller::new(scene, LARGE, HANDLE, &RIG);
+    let mut state = controller.start(&sample(0));
+    run(&controller, &mut state, 0..300);
+    let mut copy = state.clone();
+    assert!(copy == state);
+    run(&controller, &mut copy, 300..310);
+    run(&controller, &mut state, 300..310);
+    assert!(copy == state);
+
+    controller.restart(&mut state, &sample(310));
+    let mut fresh = controller.start(&sample(310));
+    assert!(state == fresh);
+    for k in 310..600 {
+        let actions = [&mut state, &mut fresh].map(|state| controller.step(state, &sample(k)));
+        assert_eq!(actions[0], actions[1], "{k}");
+    }
+}
+
+#[test]
+fn every_scene_restarts_and_copies() {
+    use a_restart_is_a_start_and_copies_are_equal_until_they_move_apart as check;
+    check(Off);
+    check(FreeAir);
+    check(Wall::new(Radians(0.1), 0.3, 1e-3).unwrap());
+    check(SpringDamper::new(Radians(0.0), 0.1, 1e-3).unwrap());
+    check(Viscous::new(2e-3).unwrap());
+    check(Detents::new(8e-3, 24).unwrap());
+    check(Texture::new(6e-3, Hertz(150.0), RATE).unwrap());
+    check(Hold::new(0.2, 1e-3).unwrap());
+    check(Inertia::new(1e-6, 5e-6).unwrap());
+}
+
+/// Which of two states' parts is looked at: a part that differs alone makes them differ.
+#[test]
+fn states_differ_where_one_part_differs() {
+    let start = |controller: &Of<Viscous>, at: u32| controller.start(&sample(at));
+    let viscous = Controller::new(Viscous::new(2e-3).unwrap(), LARGE, HANDLE, &RIG);
+    let (origin, other) = (Sample::default(), Sample::default().with_small(Count(1)));
+    // The origin, in a scene that has nothing else.
+    let off = Controller::new(Off, LARGE, HANDLE, &RIG);
+    assert!(off.start(&origin) != off.start(&other));
+    // The large motor's estimator: the same handle.
+    let large = Sample::new(Count(1));
+    assert!(viscous.start(&origin) != viscous.start(&large));
+    assert!(start(&viscous, 0) == start(&viscous, 0));
+    // The handle's estimator, in a scene without a large motor: as many ticks, another motion.
+    let mut states = [viscous.start(&origin), viscous.start(&origin)];
+    viscous.step(&mut states[0], &other);
+    viscous.step(&mut states[1], &origin);
+    assert!(states[0] != states[1]);
+    // The transient stage: the current before differs.
+    let detents = Controller::new(Detents::new(8e-3, 24).unwrap(), LARGE, HANDLE, &RIG);
+    let mut states = [detents.start(&origin), detents.start(&origin)];
+    detents.step(&mut states[0], &other);
+    detents.step(&mut states[1], &origin);
+    assert!(states[0] != states[1]);
+    // The scene's own state.
+    let texture = Texture::new(0.0, Hertz(150.0), RATE).unwrap();
+    let texture = Controller::new(texture, LARGE, HANDLE, &RIG);
+    let mut states = [texture.start(&origin), texture.start(&origin)];
+    texture.step(&mut states[0], &origin);
+    assert!(states[0] != states[1]);
+}
+
+type Both = Handover<FiniteDifference, Large>;
+const BOTH: Both = preset!(Handover::new(FiniteDifference, LARGE, 10, 10));
+
+#[test]
+fn the_large_estimator_is_there_where_the_scene_needs_it() {
+    let here = Sample::default();
+    let viscous = Controller::new(Viscous::new(2e-3).unwrap(), BOTH, HANDLE, &RIG);
+    let mut state = viscous.start(&here);
+    type State = <Both as VelocityEstimator>::State;
+    let in_charge = |state: Option<&State>| state.and_then(State::in_charge);
+    assert_eq!(in_charge(state.large()), Some(Side::First));
+    state.large_mut().unwrap().select(Side::Second);
+    for _ in 0..50 {
+        viscous.step(&mut state, &here);
+    }
+    assert_eq!(in_charge(state.large()), Some(Side::Second));
+    // The choice outlasts a restart.
+    viscous.restart(&mut state, &here);
+    assert_eq!(in_charge(state.large()), Some(Side::Second));
+
+    let detents = Controller::new(Detents::new(8e-3, 24).unwrap(), BOTH, HANDLE, &RIG);
+    let mut state = detents.start(&here);
+    assert!(state.large().is_none() && state.large_mut().is_none());
+}
+
+#[test]
+fn retuned_parameters_act_at_the_next_tick_and_the_state_goes_on() {
+    let mut controller = Controller::new(Hold::new(0.2, 0.0).unwrap(), LARGE, HANDLE, &RIG);
+    let mut state = controller.start(&Sample::default());
+    let there = Sample::default().with_small(Count(1000));
+    let before = controller.step(&mut state, &there).torque.0;
+    controller.retune(Hold::new(0.1, 0.0).unwrap());
+    let after = controller.step(&mut state, &there).torque.0;
+    assert!((after / before - 0.5).abs() < 1e-6 && before < -0.06);
+}
+
+#[test]
+fn a_gated_controller_settles_after_a_tick_that_changed_nothing() {
+    let detents = Detents::new(8e-3, 24).unwrap();
+    let gated = Gated(Controller::new(
+        detents,
+        FiniteDifference,
+        FiniteDifference,
+        &RIG,
+    ));
+    let at = |count| Sample::default().with_small(Count(count));
+    let mut state = gated.start(&at(0));
+    assert!(!state.is_settled());
+    // The current rises by the slew limit for some ticks: the sample is the same, the action is
+    // another.
+    let mut last = gated.step(&mut state, &at(100));
+    assert!(!state.is_settled());
+    let mut ticks = 0;
+    while !state.is_settled() {
+        let action = gated.step(&mut state, &at(100));
+        // Settled means that neither action nor state changed in this tick.
+        assert_eq!(state.is_settled(), action == last);
+        last = action;
+        ticks += 1;
+    }
+    assert!((3..20).contains(&ticks), "{ticks}");
+    assert_eq!(gated.step(&mut state, &at(100)), last);
+    assert!(state.is_settled());
+    assert_ne!(gated.step(&mut state, &at(200)), last);
+    assert!(!state.is_settled());
+}
