@@ -24,9 +24,7 @@ fn numbered(number: &str, named: impl Fn(u8) -> Option<String>) -> String {
 
 fn mode(number: &str) -> String {
     numbered(number, |number| {
-        let mut modes = [Mode::Boot, Mode::Armed, Mode::Running, Mode::Safe].into_iter();
-        let mode = modes.find(|mode| *mode as u8 == number)?;
-        Some(words(&format!("{mode:?}")))
+        Some(words(&format!("{:?}", Mode::from_code(number)?)))
     })
 }
 
@@ -147,6 +145,7 @@ mod tests {
     #[test]
     fn numbers_of_telemetry_have_names() {
         assert_eq!(mode("3"), "safe (3)");
+        assert_eq!(mode("4"), "settling (4)");
         assert_eq!(cause("0"), "none (0)");
         assert_eq!(cause("4"), "not moving (4)");
         assert_eq!(cause("200"), "number 200, which has no name here");
