@@ -128,7 +128,8 @@ impl Board {
         let large_enable = e.pe4.into_push_pull_output();
         let small_enable = e.pe5.into_push_pull_output();
 
-        // A halted core would hold its last current, so a halt does not stop the watchdog.
+        // A halted core holds its last current, so a halt must not stop the watchdog.
+        bare::undo_debugger();
         let mut watchdog = IndependentWatchdog::new(chip.IWDG);
         watchdog.start(WATCHDOG_MS.millis());
         // A probe reads RTT, and the cycle counter counts, while the core sleeps.

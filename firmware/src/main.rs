@@ -14,9 +14,10 @@ mod tick;
 mod app {
     use estimator_core::Amps;
     use firmware_app::commands::{Commands, Messages};
-    use firmware_app::config::RATE_HZ;
+    use firmware_app::config::{AUTO_ARM, RATE_HZ};
     use firmware_app::control::{Control, Inputs, Message};
     use firmware_app::telemetry::{Frame, Frames, Sender};
+    use haptic_control::Request;
     use heapless::spsc::Consumer;
     use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
@@ -83,12 +84,13 @@ mod app {
         } = cx.local;
         let missed = tick.enter();
         let sample = encoders.sample(control.applied().large);
+        let request = control.hear(messages.dequeue());
         let inputs = Inputs {
             amplifier_fault: amplifiers.is_faulty(),
             clock_failure: clock.has_failed(),
             missed,
-            debugger: false,
-            request: control.hear(messages.dequeue()),
+            debugger: (AUTO_ARM || request == Some(Request::Arm)) && bare::debugger_interferes(),
+            request,
         };
         amplifiers.apply(control.step(&sample, &inputs));
         if sender.is_due() {
@@ -104,6 +106,7 @@ mod app {
             cx.local.commands.receive(bare::receive);
             if log::frames(cx.local.frames) {
                 cx.local.watchdog.feed();
+                bare::undo_debugger();
                 if let Some(counts) = cx.local.commands.report() {
                     log::rejected(counts);
                 }
