@@ -1,0 +1,65 @@
+//! The instants at which control ticks are due, and what each tick made of them.
+
+/// The grid of control ticks, `PERIOD` counts apart, by a counter of 32 bits that wraps.
+///
+/// ```
+/// use haptic_control::Grid;
+/// let mut grid = Grid::<100>::new(0);
+/// assert_eq!((grid.due(), grid.begin(103)), (100, 0));
+/// // The tick of 200 begins at 452: the ticks of 300 and 400 are missed.
+/// assert_eq!((grid.begin(452), grid.due()), (2, 500));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Grid<const PERIOD: u32> {
+    /// The count at which the next tick is due.
+    due: u32,
+    /// Whether the latest tick ended after the next one was due.
+    overran: bool,
+    longest: u32,
+}
+
+impl<const PERIOD: u32> Grid<PERIOD> {
+    /// A grid whose first tick is due a period after `now`.
+    #[must_use]
+    pub const fn new(now: u32) -> Self {
+        const { assert!(PERIOD > 0) };
+        Self {
+            due: now.wrapping_add(PERIOD),
+            overran: false,
+            longest: 0,
+        }
+    }
+
+    /// The count at which the next tick is due.
+    #[must_use]
+    pub const fn due(&self) -> u32 {
+        self.due
+    }
+
+    /// A tick begins at the count `now`, not before it is due: the ticks missed since the last one,
+    /// or 1 if the last one overran.
+    #[inline]
+    pub fn begin(&mut self, now: u32) -> u32 {
+        let late = now.wrapping_sub(self.due);
+        // A division only where it is needed: nearly every tick begins in its own period.
+        let missed = if late < PERIOD { 0 } else { late / PERIOD };
+        self.due = self
+            .due
+            .wrapping_add(PERIOD.wrapping_mul(missed.wrapping_add(1)));
+        missed.max(u32::from(self.overran))
+    }
+
+    /// The tick that has begun ends at the count `now`.
+    #[inline]
+    pub fn end(&mut self, now: u32) {
+        let spent = now.wrapping_sub(self.due).wrapping_add(PERIOD);
+        self.overran = spent >= PERIOD;
+        self.longest = self.longest.max(spent);
+    }
+
+    /// The longest tick that has ended since this was last asked for, in counts from the instant
+    /// at which it was due.
+    pub fn take_longest(&mut self) -> u32 {
+        core::mem::take(&mut self.longest)
+    }
+}
