@@ -41,6 +41,8 @@ pub enum Stop {
     /// Debug settings would hold the outputs in a halt: a vector catch is set, or the watchdog is
     /// frozen in a halt. The device cannot be armed; an armed device is not stopped.
     Debugger = 15,
+    /// An interrupt or exception that nothing handles, in the session before this reset.
+    Exception = 16,
 }
 
 impl Stop {
@@ -64,6 +66,7 @@ impl Stop {
             13 => Self::CommandTimeout,
             14 => Self::Against,
             15 => Self::Debugger,
+            16 => Self::Exception,
             _ => return None,
         })
     }

@@ -50,6 +50,9 @@ const CONTROL: &str = "TIM5";
 /// In the name of the task of lowest priority.
 const IDLE: &str = "3app4idle";
 
+/// In the name of the function that an emergency ends in.
+const EMERGENCY: &str = "9emergency4stop";
+
 /// Wait for interrupt.
 const WFI: u16 = 0xBF30;
 
@@ -152,14 +155,12 @@ impl Image {
         let at = idle.address() & !1;
         let wait = instructions(at, code(&file, &idle)?).find(|(_, [first, _])| *first == WFI);
         let wait = wait.ok_or("the task of lowest priority never waits")?.0;
-        let default = symbol("DefaultHandler_")?;
-        let at = default.address() & !1;
-        let for_ever = instructions(at, code(&file, &default)?);
-        let mut for_ever = for_ever.filter(|(_, [first, _])| *first == LOOP);
-        let for_ever = for_ever
-            .next()
-            .ok_or("the default handler does not loop")?
-            .0;
+        let emergency = file.symbols().find(|symbol| named(symbol, EMERGENCY));
+        let emergency = emergency.ok_or("no end of an emergency")?;
+        let at = emergency.address() & !1;
+        let mut for_ever = instructions(at, code(&file, &emergency)?);
+        let for_ever = for_ever.find(|(_, [first, _])| *first == LOOP);
+        let for_ever = for_ever.ok_or("an emergency ends")?.0;
         let stack = [symbol("_stack_end")?, symbol("_stack_start")?].map(|symbol| symbol.address());
         let size = size(&file);
         let all = Code::of(&file).map_err(|error| error.to_string())?;

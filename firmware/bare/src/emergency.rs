@@ -1,13 +1,14 @@
-//! What happens when nothing else can be trusted: outputs first, then a word for after the reset.
+//! What happens when nothing else can be trusted: outputs first, then a word for after the reset,
+//! then the log.
 
 use core::panic::PanicInfo;
 
-use cortex_m::asm;
+use cortex_m::peripheral::SCB;
 use cortex_m_rt::{ExceptionFrame, exception};
 use haptic_control::Stop;
 use stm32f4xx_hal::pac;
 
-use crate::last_words;
+use crate::{last_words, rtt};
 
 /// PE4 and PE5, the amplifiers' enables, as GPIOE_BSRR resets them.
 const ENABLES_LOW: u32 = 1 << (16 + 4) | 1 << (16 + 5);
@@ -25,29 +26,56 @@ pub fn outputs_safe() {
     }
 }
 
-/// Leaves the cause and waits for the watchdog, which has been running since before the clocks:
-/// meanwhile a probe can drain the log.
-fn stop(cause: Stop) -> ! {
+/// Disables the outputs, leaves the cause, says `message` and waits for the watchdog, which runs
+/// from before the clocks. A message that finds no place in the log's buffer is said again while a
+/// probe makes place.
+fn stop(cause: Stop, message: impl Fn()) -> ! {
+    cortex_m::interrupt::disable();
+    outputs_safe();
     last_words::leave(cause);
+    rtt::take_over();
     loop {
-        asm::nop();
+        let lost = rtt::lost();
+        message();
+        if rtt::lost() == lost {
+            break;
+        }
     }
+    #[allow(clippy::empty_loop, reason = "nothing is left to do")]
+    loop {}
 }
 
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
-    cortex_m::interrupt::disable();
-    outputs_safe();
-    defmt::error!("{}", defmt::Display2Format(info));
-    stop(Stop::Panic)
+    stop(Stop::Panic, || {
+        defmt::error!("{}", defmt::Display2Format(info));
+    })
 }
 
 // SAFETY: the signature is that of the vector; nothing of the program is touched but the outputs.
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    outputs_safe();
-    defmt::error!("hard fault at {=u32:#x}", frame.pc());
-    stop(Stop::HardFault)
+    stop(Stop::HardFault, || {
+        // SAFETY: reads without side effects.
+        let (cfsr, hfsr, mmfar, bfar) = unsafe {
+            let scb = &*SCB::PTR;
+            (
+                scb.cfsr.read(),
+                scb.hfsr.read(),
+                scb.mmfar.read(),
+                scb.bfar.read(),
+            )
+        };
+        defmt::error!(
+            "hard fault at {=u32:#x} lr={=u32:#x} cfsr={=u32:#x} hfsr={=u32:#x} mmfar={=u32:#x} bfar={=u32:#x}",
+            frame.pc(),
+            frame.lr(),
+            cfsr,
+            hfsr,
+            mmfar,
+            bfar
+        );
+    })
 }
 
 // SAFETY: as above. The only source is the clock security system: the crystal stopped, and the
@@ -59,6 +87,14 @@ unsafe fn NonMaskableInt() {
     unsafe {
         (*pac::RCC::ptr()).cir().modify(|_, w| w.cssc().clear());
     }
-    defmt::error!("clock failure");
-    stop(Stop::ClockFailure)
+    stop(Stop::ClockFailure, || defmt::error!("clock failure"))
+}
+
+// SAFETY: as above. Nothing enables another interrupt or exception, so whatever comes here is an
+// error of the chip or of the program.
+#[exception]
+unsafe fn DefaultHandler(interrupt: i16) {
+    stop(Stop::Exception, || {
+        defmt::error!("exception {=i16}", interrupt);
+    })
 }

@@ -89,6 +89,16 @@ pub fn lost() -> u32 {
     LOST.load(Ordering::Relaxed)
 }
 
+/// Frees the stage, whoever owns it, for a caller after which nobody else runs. A frame that is
+/// being written is dropped: its bytes were not published.
+pub(crate) fn take_over() {
+    if OWNER.swap(NOBODY, Ordering::Relaxed) != NOBODY {
+        LOST.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the owner does not run again, and nobody else has the cell.
+        unsafe { (*STAGE.0.get()).encoder = defmt::Encoder::new() };
+    }
+}
+
 static LOST: AtomicU32 = AtomicU32::new(0);
 /// The exception number of whoever writes a frame.
 static OWNER: AtomicU32 = AtomicU32::new(NOBODY);
@@ -99,7 +109,8 @@ static STAGE: Stage = Stage(UnsafeCell::new(Staged {
 
 struct Stage(UnsafeCell<Staged>);
 
-// SAFETY: only the owner touches the cell, see `with_stage`.
+// SAFETY: only the owner touches the cell, see `with_stage`; `take_over` is for those for whom all
+// others never run again.
 unsafe impl Sync for Stage {}
 
 struct Staged {

@@ -215,7 +215,7 @@ fn debug_settings_refuse_arming_and_do_not_stop_an_armed_device() {
 
 #[test]
 fn a_reset_with_a_cause_boots_safe() {
-    for stop in (1..=15).map(|code| Stop::from_code(code).unwrap()) {
+    for stop in (1..=16).map(|code| Stop::from_code(code).unwrap()) {
         let mut state = SAFETY.start(stop);
         assert!(!tick(&mut state, WELL, None).enable);
         assert_eq!((state.mode(), state.stop()), (Mode::Safe, stop));

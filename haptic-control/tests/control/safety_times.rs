@@ -237,10 +237,10 @@ fn one_missed_tick_in_16_is_forgiven_and_more_are_not() {
 
 #[test]
 fn numbers_and_names_are_those_of_the_documents() {
-    for code in 0..=15 {
+    for code in 0..=16 {
         assert_eq!(Stop::from_code(code).map(|stop| stop as u8), Some(code));
     }
-    assert_eq!(Stop::from_code(16), None);
+    assert_eq!(Stop::from_code(17), None);
     for code in 0..=4 {
         assert_eq!(Mode::from_code(code).map(|mode| mode as u8), Some(code));
     }
