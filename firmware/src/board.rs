@@ -2,7 +2,7 @@
 
 use drivers::{Amplifier, CurrentOutput, DacCode};
 use estimator_core::{Amps, Count, Sample};
-use firmware_app::config::{RATE_HZ, REFERENCE};
+use firmware_app::config::{REFERENCE, TIMER_HZ};
 use haptic_control::{Currents, Stop};
 use stm32f4xx_hal::dac::{C1, C2, DacOut, DacPin};
 use stm32f4xx_hal::gpio::{Input, Output, Pin};
@@ -10,24 +10,31 @@ use stm32f4xx_hal::pac::{self, TIM1, TIM3, TIM4};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::qei::Qei;
 use stm32f4xx_hal::rcc::{Config, Rcc};
-use stm32f4xx_hal::timer::Event;
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
 use crate::edge::{Source, Stamps as _};
 use crate::encoder::Encoder;
 use crate::reset;
-use crate::tick::Tick;
+use crate::tick::{Clock, Tick};
 
 /// Core clock, Hz.
 pub(crate) const CORE_HZ: u32 = 168_000_000;
-const _: () = assert!(CORE_HZ.is_multiple_of(RATE_HZ));
+const _: () = assert!(CORE_HZ.is_multiple_of(TIMER_HZ));
 
 /// Current of the large amplifier at the DAC's ends.
 const LARGE_FULL_SCALE: Amps = Amps::new(6.0);
 /// Current of the small amplifier at the DAC's ends.
 const SMALL_FULL_SCALE: Amps = Amps::new(1.5);
-/// Longest time without a control tick, ms, by an oscillator good to 50 %.
-const WATCHDOG_MS: u32 = 50;
+/// What the watchdog is asked for, ms. The HAL rounds to steps of 4 ms and adds one: 28 ms at the
+/// 32 kHz of its oscillator, 19 ms at the 47 kHz and 53 ms at the 17 kHz of the datasheet's limits.
+const WATCHDOG_MS: u32 = 25;
+/// Clock of the core and of its timers from a reset until the clocks are set up, Hz.
+const RESET_HZ: u32 = 16_000_000;
+/// The watchdog's settings reach it within 5 cycles of its oscillator, 0.3 ms at most, which starts
+/// in 0.04 ms at most, us.
+const WATCHDOG_STARTS_US: u32 = 400;
+/// How long the crystal is waited for, ms.
+const CRYSTAL_MS: u32 = 500;
 
 /// The encoders.
 pub(crate) struct Encoders {
@@ -93,12 +100,12 @@ impl Amplifiers {
 }
 
 /// The clock tree.
-pub(crate) struct Clock {
+pub(crate) struct Tree {
     rcc: Rcc,
     crystal: bool,
 }
 
-impl Clock {
+impl Tree {
     /// Whether the crystal never ran, or stopped: then the core is on the internal oscillator.
     /// The NMI comes first; this is for when it did not.
     pub(crate) fn has_failed(&self) -> bool {
@@ -114,13 +121,15 @@ pub(crate) struct Board {
     pub(crate) watchdog: IndependentWatchdog,
     /// Why the chip was reset.
     pub(crate) reset: Stop,
-    pub(crate) clock: Clock,
+    /// Whether a supply below 2.7 V resets the chip and says so.
+    pub(crate) brown_out_reset: bool,
+    pub(crate) clock: Tree,
 }
 
 impl Board {
     /// Takes the chip: amplifiers off, then the watchdog, then clocks, then the rest. The tick
     /// runs when this returns.
-    pub(crate) fn new(core: &mut cortex_m::Peripherals, chip: pac::Peripherals) -> Self {
+    pub(crate) fn new(chip: pac::Peripherals) -> Self {
         let mut rcc = chip.RCC.constrain();
         let e = chip.GPIOE.split(&mut rcc);
         // A port without its clock takes no write.
@@ -132,11 +141,24 @@ impl Board {
         bare::undo_debugger();
         let mut watchdog = IndependentWatchdog::new(chip.IWDG);
         watchdog.start(WATCHDOG_MS.millis());
-        // A probe reads RTT, and the cycle counter counts, while the core sleeps.
+        // A started watchdog counts from its longest period, 16 s, until it is fed with its settings.
+        let timer = Clock::start(chip.TIM5, &mut rcc);
+        timer.poll(WATCHDOG_STARTS_US * (RESET_HZ / 1_000_000), || {
+            watchdog.feed();
+            false
+        });
+        watchdog.feed();
+        // A probe reads RTT while the core sleeps.
         chip.DBGMCU.cr().modify(|_, w| w.dbg_sleep().set_bit());
 
         let reset = reset::cause(&rcc);
-        let crystal = reset::crystal_runs(&rcc);
+        let brown_out_reset = reset::by_brown_out(&chip.FLASH);
+        let crystal = reset::crystal_runs(&rcc, |runs| {
+            timer.poll(CRYSTAL_MS * (RESET_HZ / 1000), || {
+                watchdog.feed();
+                runs()
+            })
+        });
         let clock = if crystal {
             Config::hse(8.MHz()).bypass_hse_oscillator()
         } else {
@@ -179,19 +201,18 @@ impl Board {
             small: Amplifier::new(small, small_enable, e.pe6.into_pull_up_input()),
         };
 
-        core.DCB.enable_trace();
-        core.DWT.enable_cycle_counter();
-        let mut timer = chip.TIM5.counter_hz(&mut rcc);
-        timer.listen(Event::Update);
-        let started = timer.start(RATE_HZ.Hz());
-        defmt::assert!(started.is_ok(), "control rate out of the timer's range");
+        defmt::assert!(
+            rcc.clocks.timclk1().raw() == TIMER_HZ,
+            "timers are not clocked with half of the core's clock"
+        );
         Self {
             encoders,
             amplifiers,
             tick: Tick::new(timer),
             watchdog,
             reset,
-            clock: Clock { rcc, crystal },
+            brown_out_reset,
+            clock: Tree { rcc, crystal },
         }
     }
 }

@@ -21,7 +21,7 @@ mod app {
     use heapless::spsc::Consumer;
     use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
-    use crate::board::{Amplifiers, Board, Clock, Encoders};
+    use crate::board::{Amplifiers, Board, Encoders, Tree};
     use crate::log;
     use crate::tick::Tick;
 
@@ -30,7 +30,7 @@ mod app {
 
     #[local]
     struct Local {
-        clock: Clock,
+        clock: Tree,
         tick: Tick,
         encoders: Encoders,
         amplifiers: Amplifiers,
@@ -43,12 +43,17 @@ mod app {
     }
 
     #[init(local = [log_queue: Frames = Frames::new(), message_queue: Messages = Messages::new()])]
-    fn init(mut cx: init::Context) -> (Shared, Local, init::Monotonics) {
-        let mut board = Board::new(&mut cx.core, cx.device);
+    fn init(cx: init::Context) -> (Shared, Local, init::Monotonics) {
+        let mut board = Board::new(cx.device);
         let (to_log, frames) = cx.local.log_queue.split();
         let (to_control, messages) = cx.local.message_queue.split();
         let first = board.encoders.sample(Amps::ZERO);
-        defmt::info!("boot rate={=u32} cause={=u8}", RATE_HZ, board.reset as u8);
+        defmt::info!(
+            "boot rate={=u32} cause={=u8} brown-out-reset={=bool}",
+            RATE_HZ,
+            board.reset as u8,
+            board.brown_out_reset
+        );
         let local = Local {
             control: Control::new(&first, board.reset),
             clock: board.clock,
@@ -94,7 +99,11 @@ mod app {
         };
         amplifiers.apply(control.step(&sample, &inputs));
         if sender.is_due() {
-            sender.send(control.record(&sample), tick.cycles(), encoders.reference());
+            sender.send(
+                control.record(&sample),
+                tick.take_longest(),
+                encoders.reference(),
+            );
         }
         tick.leave();
     }

@@ -1,7 +1,7 @@
 //! Why the chip was reset, and whether its crystal runs.
 
 use haptic_control::Stop;
-use stm32f4xx_hal::pac::RCC;
+use stm32f4xx_hal::pac::{FLASH, RCC};
 
 /// Reads and clears the reset flags: what stopped the device, or nothing for a reset on purpose.
 pub(crate) fn cause(rcc: &RCC) -> Stop {
@@ -22,14 +22,18 @@ pub(crate) fn cause(rcc: &RCC) -> Stop {
     }
 }
 
-/// Looks at the crystal's ready flag so often: 10 ms or so on the internal oscillator.
-const PATIENCE: u32 = 20_000;
+/// Whether the option bytes have the chip reset below the highest of its thresholds, 2.7 V. Level 3
+/// has the code 0; the names that the register's description gives these codes are wrong.
+pub(crate) fn by_brown_out(flash: &FLASH) -> bool {
+    flash.optcr().read().bor_lev().bits() == 0
+}
 
-/// Starts the external clock, a square wave from ST-LINK; whether it runs.
-pub(crate) fn crystal_runs(rcc: &RCC) -> bool {
+/// Starts the external clock, a square wave from ST-LINK; whether it runs. `wait` calls what it is
+/// given until that is true or it has waited long enough, and says which.
+pub(crate) fn crystal_runs(rcc: &RCC, wait: impl FnOnce(&dyn Fn() -> bool) -> bool) -> bool {
     rcc.cr().modify(|_, w| w.hsebyp().set_bit());
     rcc.cr().modify(|_, w| w.hseon().set_bit());
-    let ready = (0..PATIENCE).any(|_| rcc.cr().read().hserdy().bit_is_set());
+    let ready = wait(&|| rcc.cr().read().hserdy().bit_is_set());
     if !ready {
         rcc.cr().modify(|_, w| w.hseon().clear_bit());
         rcc.cr().modify(|_, w| w.hsebyp().clear_bit());

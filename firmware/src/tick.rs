@@ -1,53 +1,96 @@
-//! The control tick and its bookkeeping in core clock cycles.
+//! The control tick and its bookkeeping, on one timer that counts for ever.
+//!
+//! The timer counts on while a debugger holds the core, so that the first tick after a halt knows
+//! how many it missed. The core's cycle counter stops then.
 
-use cortex_m::peripheral::DWT;
-use firmware_app::config::RATE_HZ;
+use firmware_app::config::{RATE_HZ, TIMER_HZ};
+use haptic_control::Grid;
 use stm32f4xx_hal::pac::TIM5;
-use stm32f4xx_hal::timer::{CounterHz, Flag};
-use stm32f4xx_hal::{ClearFlags, ReadFlags};
+use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 
 use crate::board::CORE_HZ;
 
-/// Core clock cycles of a control period.
-const PERIOD: u32 = CORE_HZ / RATE_HZ;
+/// Counts of a control period.
+const PERIOD: u32 = TIMER_HZ / RATE_HZ;
 
-/// The control tick: a timer's update interrupt.
+/// A timer that counts from 0 to 2^32 - 1 and starts again, at the rate of its bus.
+pub(crate) struct Clock(TIM5);
+
+impl Clock {
+    /// Starts it.
+    pub(crate) fn start(timer: TIM5, rcc: &mut Rcc) -> Self {
+        TIM5::enable(rcc);
+        TIM5::reset(rcc);
+        timer.arr().write(|w| w.arr().set(u32::MAX));
+        timer.cr1().write(|w| w.cen().set_bit());
+        Self(timer)
+    }
+
+    /// Asks `done` until it is true, at most for so many counts; whether it was. Without a running
+    /// clock it gives up by the number of times.
+    pub(crate) fn poll(&self, counts: u32, mut done: impl FnMut() -> bool) -> bool {
+        let since = self.now();
+        for _ in 0..counts {
+            if done() {
+                return true;
+            }
+            if self.now().wrapping_sub(since) >= counts {
+                break;
+            }
+        }
+        false
+    }
+
+    /// The count now.
+    pub(crate) fn now(&self) -> u32 {
+        self.0.cnt().read().bits()
+    }
+}
+
+/// The control tick: the interrupt of a comparison with the clock.
 pub(crate) struct Tick {
-    timer: CounterHz<TIM5>,
-    entered: u32,
-    late: bool,
-    cycles: u32,
+    clock: Clock,
+    grid: Grid<PERIOD>,
 }
 
 impl Tick {
-    /// The tick of a timer that runs since now.
-    pub(crate) fn new(timer: CounterHz<TIM5>) -> Self {
-        Self {
-            timer,
-            entered: DWT::cycle_count(),
-            late: false,
-            cycles: 0,
-        }
+    /// Ticks from a period after now.
+    pub(crate) fn new(clock: Clock) -> Self {
+        let grid = Grid::new(clock.now());
+        clock.0.sr().reset();
+        clock.0.dier().write(|w| w.cc1ie().set_bit());
+        let tick = Self { clock, grid };
+        tick.await_next();
+        tick
     }
 
     /// First thing in the control task: takes the interrupt; the ticks missed since the last,
     /// counting one that the last task overran.
     pub(crate) fn enter(&mut self) -> u32 {
-        self.timer.clear_flags(Flag::Update);
-        let now = DWT::cycle_count();
-        let periods = now.wrapping_sub(self.entered).saturating_add(PERIOD / 2) / PERIOD;
-        self.entered = now;
-        periods.saturating_sub(1).max(u32::from(self.late))
+        self.clock.0.sr().reset();
+        let missed = self.grid.begin(self.clock.now());
+        self.await_next();
+        missed
     }
 
     /// Last thing in the control task.
     pub(crate) fn leave(&mut self) {
-        self.late = self.timer.flags().contains(Flag::Update);
-        self.cycles = DWT::cycle_count().wrapping_sub(self.entered);
+        self.grid.end(self.clock.now());
     }
 
-    /// Cycles that the last control task took.
-    pub(crate) fn cycles(&self) -> u32 {
-        self.cycles
+    /// Core cycles of the longest control task since this was last asked for, from the instant at
+    /// which it was due.
+    pub(crate) fn take_longest(&mut self) -> u32 {
+        self.grid.take_longest() * (CORE_HZ / TIMER_HZ)
+    }
+
+    /// Has the clock interrupt at the next tick.
+    fn await_next(&self) {
+        let due = self.grid.due();
+        self.clock.0.ccr1().write(|w| w.ccr().set(due));
+        // A comparison with a count that has passed by now would come after a turn of the counter.
+        if self.clock.now().wrapping_sub(due) < PERIOD {
+            self.clock.0.egr().write(|w| w.cc1g().set_bit());
+        }
     }
 }

@@ -7,7 +7,11 @@ use rigless::machine::{Board, Target, armv7m};
 use rigless::mcu::{Mcu, Operate};
 use rigless::snapshot::Store;
 use rigless::soc::stm32f427::Stm32f427;
-use rigless::soc::stm32f427::generated::rcc::{Register, cr::HSERDY, csr::BORRSTF};
+use rigless::soc::stm32f427::generated::rcc::{
+    Register,
+    cr::{HSEON, HSERDY},
+    csr::BORRSTF,
+};
 use rigless::soc::{Bus, Error};
 use rigless::time::VirtualNanos;
 
@@ -35,6 +39,18 @@ impl Part {
     #[must_use]
     pub fn dac_codes(&self) -> [Option<u16>; 2] {
         Dac::codes(self.stm32.bus().slots()[self.dac_slot].registers())
+    }
+}
+
+impl Part {
+    /// Starts the crystal, which was dead until now, at this frequency.
+    pub(crate) fn start_crystal(&mut self, hz: u64) {
+        self.stm32.rcc.attach_crystals(hz, 0);
+        let (_, registers) = self.stm32.clocks();
+        let on = registers.get(Register::Cr) & HSEON.mask();
+        if on != 0 {
+            registers.restore(Register::Cr, HSERDY.mask(), HSERDY.mask());
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Board and plant in lockstep: the plant runs one step of 10 us ahead of the processor, and its
 //! edges reach the pins at their instants.
 
+mod core_access;
 mod follow;
 mod hits;
 mod inject;
@@ -24,6 +25,8 @@ use crate::probe::{Probe, schedule};
 use crate::quadrature::{Edge, Generator, LARGE};
 use crate::run::{Moment, RATE_HZ, Setup, Tick};
 use crate::stack::Stack;
+pub use core_access::CoreAccess;
+use core_access::CoreAccesses;
 use follow::Follow;
 use inject::Stalls;
 
@@ -35,6 +38,9 @@ const STEPS_PER_LOOK: u64 = 100;
 
 /// Counters of TIM4 (large) and TIM3 (small).
 const COUNTERS: [u64; 2] = [0x4000_0824, 0x4000_0424];
+
+/// Counter of TIM2, which stamps the large encoder's edges.
+const STAMP_CLOCK: u64 = 0x4000_0024;
 
 /// What a run has shown.
 #[derive(Debug, Default)]
@@ -65,8 +71,11 @@ pub(crate) struct Lockstep {
     end_ns: u64,
     currents: [f64; 2],
     faults: VecDeque<(u64, Fault)>,
+    /// When the crystal starts, ns, and its frequency, if it has not run from the beginning.
+    crystal: Option<(u64, u64)>,
     pub(crate) probe: Probe,
     stack: Stack,
+    pub(crate) accesses: CoreAccesses,
     entry: u64,
     exits: Vec<u64>,
     wait: u64,
@@ -119,8 +128,11 @@ impl Lockstep {
             end_ns: (setup.seconds * 1e9) as u64,
             currents: [0.0; 2],
             faults: schedule(setup.faults.iter().copied()),
+            crystal: (setup.crystal_from_s > 0.0)
+                .then_some(((setup.crystal_from_s * 1e9) as u64, setup.crystal_hz)),
             probe: Probe::new(image.rtt, setup),
             stack: Stack(image.stack),
+            accesses: CoreAccesses::new(&setup.accesses, Stack(image.stack)),
             entry: image.entry,
             exits: image.exits.clone(),
             wait: image.wait,
@@ -177,6 +189,11 @@ impl Driver<ControllerBoard> for Lockstep {
     ) {
         match settled {
             Settled::Access { access, value } => {
+                if let (AccessKind::Read, STAMP_CLOCK, Some((tick, _))) =
+                    (access.kind, access.address, &mut self.running)
+                {
+                    tick.stamp_clock_read_ns = Some(access.virtual_time.0);
+                }
                 let counter = COUNTERS.iter().position(|at| *at == access.address);
                 if let (AccessKind::Read, Some(encoder)) = (access.kind, counter) {
                     if encoder == LARGE {
@@ -195,6 +212,9 @@ impl Driver<ControllerBoard> for Lockstep {
             Settled::Hit(hit) => {
                 if hit.address == self.entry {
                     self.hang(hit.at, host);
+                    if self.asleep {
+                        self.accesses.wake(hit.at.0, self.wait + 2, host);
+                    }
                 }
                 self.hit(session, host, &hit);
             }
@@ -237,6 +257,9 @@ impl Driver<ControllerBoard> for Lockstep {
             if now_ns >= self.end_ns {
                 self.seen.stack = self.stack.used(host);
                 return None;
+            }
+            if let Some((_, hz)) = self.crystal.take_if(|(from_ns, _)| *from_ns <= now_ns) {
+                session.board_mut().part.start_crystal(hz);
             }
             while let Some((_, fault)) = self.faults.front().copied().filter(|f| f.0 <= now_ns) {
                 self.faults.pop_front();

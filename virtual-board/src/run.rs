@@ -17,6 +17,7 @@ use crate::board::{CORE_HZ, ControllerBoard};
 use crate::command::Command;
 use crate::fault::Fault;
 use crate::image::Image;
+pub use crate::lockstep::CoreAccess;
 use crate::lockstep::Lockstep;
 use crate::objections;
 use crate::scene::ImageScene;
@@ -50,8 +51,12 @@ pub struct Setup {
     pub generator_hz: Option<f64>,
     /// Frequency of the crystal, Hz; 0 is a dead one.
     pub crystal_hz: u64,
+    /// When the crystal starts, s.
+    pub crystal_from_s: f64,
     /// What both DAC outputs are off by, codes; on silicon up to 12.
     pub dac_offset: i16,
+    /// Loads and stores that the core makes beside the image's, and their instants, s.
+    pub accesses: Vec<(f64, CoreAccess)>,
     /// Instructions in a second of virtual time.
     pub instructions_per_second: NonZeroU64,
     /// Ticks, by their place in [`Outcome::ticks`], to follow instruction by instruction; slow.
@@ -74,7 +79,9 @@ impl Default for Setup {
             keep_alive: true,
             generator_hz: None,
             crystal_hz: 8_000_000,
+            crystal_from_s: 0.0,
             dac_offset: 0,
+            accesses: Vec::new(),
             instructions_per_second: NonZeroU64::new(CORE_HZ).expect("not zero"),
             follow: BTreeSet::new(),
         }
@@ -107,6 +114,8 @@ pub struct Tick {
     pub cycles: Option<u32>,
     /// What it read from the large and the small encoder's counter.
     pub counts: [Option<u16>; 2],
+    /// When it last read the clock that stamps the large encoder's edges, ns.
+    pub stamp_clock_read_ns: Option<u64>,
     /// DAC codes at its end.
     pub codes: [Option<u16>; 2],
     /// Amplifiers enabled at its end.
@@ -163,6 +172,8 @@ pub struct Outcome {
     /// What the emulator holds against the run, one line each: accesses that it cannot answer as
     /// the chip does, and what its models report of clocks and flash. None is allowed.
     pub objections: Vec<String>,
+    /// What the core stored and read for [`Setup::accesses`], in their order.
+    pub values: Vec<u32>,
     /// Bytes of stack in use at most, of those that a start leaves for it.
     pub stack: u64,
     /// What went down the command channel, and when its last byte did, ns.
@@ -211,7 +222,12 @@ pub fn on_board(
         cause: format!("{:?}", reset.cause),
     });
     let restarts = restarts.collect();
-    let Lockstep { seen, probe, .. } = lockstep;
+    let Lockstep {
+        seen,
+        probe,
+        accesses,
+        ..
+    } = lockstep;
     let telemetry = Telemetry::decode(&image.elf, &probe.stream)?;
     Ok(Outcome {
         first_tick: first_tick(&telemetry.frames, &seen.ticks),
@@ -224,6 +240,7 @@ pub fn on_board(
         complaints: seen.complaints,
         unclosed: seen.unclosed,
         stack: seen.stack,
+        values: accesses.values,
         sent: probe.sent,
         restarts,
         objections: objections::of(&session),
@@ -240,7 +257,7 @@ pub(crate) fn emulate(
     setup.device.validate()?;
     let emulator = |error: &dyn std::fmt::Display| format!("emulator: {error}");
     let has = |fault| setup.faults.iter().any(|(_, other)| *other == fault);
-    let crystal_hz = if has(Fault::DeadCrystal) {
+    let crystal_hz = if has(Fault::DeadCrystal) || setup.crystal_from_s > 0.0 {
         0
     } else {
         setup.crystal_hz

@@ -16,10 +16,23 @@ impl Stack {
         (low.next_multiple_of(4)..high).step_by(4)
     }
 
+    /// Addresses of its words, from the highest.
+    pub(crate) fn words_down(self) -> impl Iterator<Item = u64> {
+        let [low, high] = self.0;
+        (1..=(high - low) / 4).map(move |k| high - 4 * k)
+    }
+
     /// Paints all of it.
     pub(crate) fn paint(self, memory: &mut dyn Memory) {
         for address in self.words() {
             // It is RAM: the write cannot be refused.
+            let _ = memory.write(address, Width::W32, PAINT);
+        }
+    }
+
+    /// Paints its lowest words again.
+    pub(crate) fn paint_lowest(self, memory: &mut dyn Memory) {
+        for address in self.words().take(16) {
             let _ = memory.write(address, Width::W32, PAINT);
         }
     }

@@ -49,6 +49,7 @@ impl Lockstep {
             instructions: 0,
             cycles: None,
             counts: [None; 2],
+            stamp_clock_read_ns: None,
             codes: [None; 2],
             enabled: [false; 2],
             large: self.bench.plant.large(),
