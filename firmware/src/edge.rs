@@ -47,7 +47,7 @@ impl Stamps for Skip {
     }
 }
 
-/// TIM2 as a clock of 84 MHz, 32 bits wide, that both edges of A xor B capture.
+/// TIM2 as a clock of `TIMER_HZ`, 32 bits wide, that both edges of A xor B capture.
 pub(crate) struct Capture {
     timer: TIM2,
     /// The clock at the last reading.

@@ -7,12 +7,14 @@ use stm32f4xx_hal::pac;
 pub(crate) trait Counter {
     /// The counter as it stands.
     fn raw(&self) -> u16;
-    /// Filters both inputs: a level counts when 8 samples at the timer's clock agree (95 ns).
+    /// Filters both inputs: a level counts when it has stood for 95 ns.
     fn filter(&self);
 }
 
+/// Timers with the setting of their filter, which is of 8 samples: at 84 MHz each of them, at
+/// 168 MHz every other one.
 macro_rules! counter {
-    ($($timer:ty),+) => {$(
+    ($($timer:ty: $filter:ident),+) => {$(
         impl Counter for $timer {
             fn raw(&self) -> u16 {
                 self.cnt().read().cnt().bits() as u16
@@ -20,13 +22,13 @@ macro_rules! counter {
 
             fn filter(&self) {
                 self.ccmr1_input()
-                    .modify(|_, w| w.ic1f().fck_int_n8().ic2f().fck_int_n8());
+                    .modify(|_, w| w.ic1f().$filter().ic2f().$filter());
             }
         }
     )+};
 }
 
-counter!(pac::TIM1, pac::TIM3, pac::TIM4);
+counter!(pac::TIM1: fdts_div2_n8, pac::TIM3: fck_int_n8, pac::TIM4: fck_int_n8);
 
 /// An encoder: its counter widened to 32 bits, right as long as it is read before it has moved
 /// by 2^15 counts.
