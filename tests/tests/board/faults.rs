@@ -193,7 +193,7 @@ const MATRIX: [Bound; 32] = [
         ..bound(Fault::BusError, 0.2, End::Off(NEXT_TICK, "12"), [1.0, 0.0])
     },
     // Never on: there is nothing to compare with.
-    bound(Fault::DeadCrystal, -0.3, End::NeverOn("10"), [0.0, 0.0]),
+    bound(Fault::DeadCrystal, 0.3, End::NeverOn("10"), [0.0, 0.0]),
     // The emulator raises no NMI: the control task finds the lost crystal, on a clock of 16 MHz,
     // which makes every tick ten times as long and late.
     bound(

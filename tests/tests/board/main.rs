@@ -5,6 +5,7 @@ mod cost;
 mod edges;
 mod faults;
 mod golden;
+mod hardware;
 mod healthy;
 mod identify;
 mod image;

@@ -1,0 +1,222 @@
+//! What the image does about its chip: debugger, watchdog, tick, reset and exceptions.
+
+use std::num::NonZeroU64;
+
+use virtual_board::command::Command;
+use virtual_board::fault::Fault;
+use virtual_board::run::{CoreAccess, Outcome, Setup};
+
+use crate::image::{free_air, run};
+
+/// `DEMCR`, its vector catches and the trace enable that is no catch.
+const DEMCR: u32 = 0xE000_EDFC;
+const CATCHES: u32 = 0x07F1;
+/// `DBGMCU_APB1_FZ` and what OpenOCD sets in it when it connects: both watchdogs stop in a halt.
+const FREEZE: u32 = 0xE004_2008;
+const WATCHDOGS: u32 = 0x1800;
+
+/// State and cause in the last frame.
+fn last(run: &Outcome) -> (&str, &str) {
+    let frame = run.telemetry.frames.last().expect("frames");
+    (frame.state.as_str(), frame.cause.as_str())
+}
+
+#[test]
+fn debug_settings_are_cleared_while_the_image_runs() {
+    let accesses = vec![
+        (0.200, CoreAccess::Store(DEMCR, CATCHES)),
+        (0.200, CoreAccess::Store(FREEZE, WATCHDOGS)),
+        (0.202, CoreAccess::Load(DEMCR)),
+        (0.202, CoreAccess::Load(FREEZE)),
+    ];
+    let run = run(&Setup {
+        seconds: 0.25,
+        accesses,
+        ..Setup::default()
+    });
+    let [.., catches, freezes] = run.values[..] else {
+        panic!("{:?}", run.values)
+    };
+    assert_eq!(run.values[..2], [CATCHES, WATCHDOGS]);
+    assert_eq!((catches & CATCHES, freezes & WATCHDOGS), (0, 0));
+    assert_eq!(last(&run), ("2", "0"));
+}
+
+/// Whoever sets them ever again holds the outputs in the next halt.
+#[test]
+fn arming_is_refused_while_debug_settings_come_back() {
+    for (address, bits) in [(DEMCR, CATCHES), (DEMCR, 1 << 10), (FREEZE, WATCHDOGS)] {
+        let at = (0..500).map(|tick| 0.08 + 1e-4 * f64::from(tick));
+        let run = run(&Setup {
+            seconds: 0.25,
+            commands: vec![(0.1, Command::Arm), (0.2, Command::Arm)],
+            accesses: at.map(|s| (s, CoreAccess::Store(address, bits))).collect(),
+            ..Setup::default()
+        });
+        let of = |from: f64, to: f64| {
+            let enables = run.enables.iter();
+            enables
+                .filter(|(ns, on)| (from..to).contains(&(*ns as f64 * 1e-9)) && on.contains(&true))
+                .count()
+        };
+        let refused = run
+            .telemetry
+            .frames
+            .iter()
+            .find(|frame| frame.cause == "15");
+        assert_eq!(
+            refused.map(|frame| frame.state.as_str()),
+            Some("3"),
+            "{address:#x}"
+        );
+        assert_eq!((of(0.0, 0.2), of(0.2, 0.25)), (0, 1), "{address:#x}");
+        assert_eq!(last(&run), ("1", "0"), "{address:#x}");
+    }
+}
+
+/// Interrupt control and state: what it sets pending.
+const ICSR: u32 = 0xE000_ED04;
+const NMI: u32 = 1 << 31;
+const PEND_SV: u32 = 1 << 28;
+/// Counter of TIM4.
+const LARGE_COUNTER: &str = "0x40000824";
+
+/// What the image says while it runs scene and amplifiers, and takes this exception at 0.2 s: with
+/// the amplifiers off within 20 us it says `message`, and it starts again for `cause`.
+fn ends_with(pending: u32, message: &str, cause: &str) {
+    let run = run(&Setup {
+        seconds: 0.3,
+        accesses: vec![(0.2, CoreAccess::Store(ICSR, pending))],
+        ..Setup::default()
+    });
+    let off = run.off_after(0.2).expect("amplifiers are on");
+    // It runs when the processor wakes.
+    assert!(off < 120e-6, "{message}: {off} s");
+    let log = &run.telemetry.log;
+    assert!(log.iter().any(|said| said.contains(message)), "{log:?}");
+    assert_eq!((run.restarts.len(), last(&run)), (1, ("3", cause)));
+    assert_eq!(run.enables.last().map(|(_, on)| *on), Some([false; 2]));
+}
+
+#[test]
+fn an_nmi_disables_the_amplifiers_and_is_reported_after_the_reset() {
+    ends_with(NMI, "clock failure", "10");
+}
+
+#[test]
+fn an_exception_without_a_handler_disables_the_amplifiers_and_is_reported() {
+    ends_with(PEND_SV, "exception -2", "16");
+}
+
+/// A core so slow that the control task interrupts the log: a fault of the control task drops the
+/// frame that is being written, not its own.
+#[test]
+fn a_fault_in_the_midst_of_a_frame_is_logged() {
+    let slow = |faults| {
+        run(&Setup {
+            seconds: 0.3,
+            faults,
+            instructions_per_second: NonZeroU64::new(40_000_000).expect("not zero"),
+            ..Setup::default()
+        })
+    };
+    let healthy = slow(Vec::new());
+    let at_s = |k: u32| 0.2 + 1e-4 * f64::from(k);
+    let mut in_a_frame = 0;
+    for k in 0..10 {
+        let fault = slow(vec![(at_s(k), Fault::BusError)]);
+        let log = &fault.telemetry.log;
+        let said = log.iter().find(|said| said.starts_with("hard fault at"));
+        let said = said.unwrap_or_else(|| panic!("{k}: {log:?}"));
+        for word in ["cfsr=0x8200 ", "hfsr=0x40000000 ", LARGE_COUNTER] {
+            assert!(said.contains(word), "{k}: {said}");
+        }
+        assert_eq!(last(&fault), ("3", "12"));
+        let tick = healthy
+            .ticks
+            .iter()
+            .find(|tick| tick.at_ns as f64 * 1e-9 >= at_s(k));
+        in_a_frame += u32::from(!tick.expect("a tick").asleep);
+    }
+    assert!(in_a_frame > 0, "the log is never interrupted");
+}
+
+/// A frame says how long the longest task took since the frame before, its own tick's included,
+/// from the instant it was due.
+#[test]
+fn cycles_are_those_of_the_longest_task_since_the_last_frame() {
+    let run = free_air();
+    let mut compared = 0;
+    for pair in run.telemetry.frames.windows(2) {
+        let [before, frame] = pair else {
+            unreachable!()
+        };
+        let (Some(from), Some(to)) = (run.tick_index(before), run.tick_index(frame)) else {
+            continue;
+        };
+        let longest = run.ticks[from..to].iter().map(|tick| tick.instructions);
+        let longest = longest.max().expect("ticks");
+        // Entry and return are the core's, and the clock is read before the last instructions.
+        let beside = frame.cycles.abs_diff(longest);
+        assert!(
+            beside <= 40,
+            "{} cycles, {longest} instructions",
+            frame.cycles
+        );
+        compared += 1;
+    }
+    assert!(compared > 9000, "{compared}");
+}
+
+#[test]
+fn a_crystal_that_starts_late_is_waited_for() {
+    for (from, state) in [(0.45, ("2", "0")), (0.6, ("3", "10"))] {
+        let run = run(&Setup {
+            seconds: 1.0,
+            crystal_from_s: from,
+            commands: vec![(0.7, Command::Arm), (0.75, Setup::default().commands[0].1)],
+            ..Setup::default()
+        });
+        assert_eq!(
+            (last(&run), run.restarts.len()),
+            (state, 0),
+            "from {from} s"
+        );
+    }
+}
+
+/// Option keys, option control register, and the core's reset request.
+const OPTION_KEYS: u32 = 0x4002_3C08;
+const OPTIONS: u32 = 0x4002_3C14;
+const RESET: (u32, u32) = (0xE000_ED0C, 0x05FA_0004);
+
+/// From the factory the detector is off.
+#[test]
+fn the_boot_line_says_whether_the_chip_is_reset_below_2_7_volts() {
+    let stores = [
+        (OPTION_KEYS, 0x0819_2A3B),
+        (OPTION_KEYS, 0x4C5D_6E7F),
+        (OPTIONS, 0x0FFF_AAE0),
+        (OPTIONS, 0x0FFF_AAE2),
+    ];
+    let at = (0..).map(|k| 0.05 + 1e-3 * f64::from(k));
+    let stores = at
+        .zip(stores)
+        .map(|(s, (at, bits))| (s, CoreAccess::Store(at, bits)));
+    let reset = (0.1, CoreAccess::Store(RESET.0, RESET.1));
+    let run = run(&Setup {
+        seconds: 0.2,
+        commands: Vec::new(),
+        accesses: stores.chain([reset]).collect(),
+        ..Setup::default()
+    });
+    let boots = run
+        .telemetry
+        .log
+        .iter()
+        .filter(|said| said.starts_with("boot "));
+    let said: Vec<_> = boots
+        .filter_map(|line| line.split("brown-out-reset=").nth(1))
+        .collect();
+    assert_eq!(said, ["false", "true"]);
+}
