@@ -338,3 +338,34 @@ fn rotor_leaves_at_the_friction_of_the_design() {
         assert!((velocity(2.0 * limit) / exact - 1.0).abs() < 1e-5);
     }
 }
+
+/// A refusal says what is out of range: no other parameter, and no two errors the same.
+#[test]
+fn refusals_name_the_parameter() {
+    let said = [
+        (DesignError::Rate, "control rate"),
+        (DesignError::Cutoff, "cut-off"),
+        (DesignError::EdgeClock, "edge clock"),
+        (DesignError::Fade, "fade"),
+        (DesignError::Window, "window"),
+        (DesignError::NoiseBound, "noise bound"),
+        (DesignError::Device, "device constants"),
+        (DesignError::CoupledMotor, "friction and amplifier lag"),
+        (
+            DesignError::Tick,
+            "control rate is out of range for the device",
+        ),
+        (DesignError::Uncertainty, "torque noise and load"),
+        (DesignError::ProcessNoise, "process noise"),
+        (DesignError::NotConverged, "does not converge"),
+        (DesignError::NotStable, "not stable"),
+        (DesignError::Table, "table"),
+    ];
+    for (error, words) in said {
+        assert!(error.message().contains(words), "{error:?}: {error}");
+        let same = said
+            .iter()
+            .filter(|(other, _)| other.message() == error.message());
+        assert_eq!(same.count(), 1, "{error:?}");
+    }
+}

@@ -15,6 +15,7 @@
 //! | `limits` | the range of each parameter |
 //! | `steady_gain` | the plain recursion run until it stops changing |
 //! | `regressions` | each defect known from public code, one test by name |
+//! | `units` | counts, currents, scales and signals |
 //!
 //! What must not compile is in the package `refusals`, what the compiler makes of it for the board in
 //! `acceptance`, and longer runs in `stress`.
@@ -39,3 +40,4 @@ mod observer;
 mod reference;
 mod regressions;
 mod steady_gain;
+mod units;

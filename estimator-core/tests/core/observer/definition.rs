@@ -679,3 +679,74 @@ fn observers_without_an_input_are_their_definition() {
         }
     }
 }
+
+/// Gains by the gap, as far as the table goes and beyond.
+#[test]
+fn gains_are_those_of_the_filter_corrected_once_in_so_many_ticks() {
+    for rate in [1000.0, 8000.0] {
+        let device = other_device();
+        let observer = Observer::new(&device, Hertz(rate), &SURE).expect("valid");
+        let first = Sample::default();
+        let mut definition = Definition::new(Kind::Cells, false, &device, rate, &SURE, &first);
+        for ticks in [
+            1, 2, 3, 31, 63, 64, 65, 66, 96, 97, 500, 929, 960, 961, 962, 5000,
+        ] {
+            let (ours, exact) = (observer.gain(ticks), definition.gain(ticks as f64));
+            let ours = [ours.position, ours.velocity, ours.load, ours.variance];
+            let exact = [exact.k[0], exact.k[1], exact.k[2], exact.variance];
+            for (ours, exact) in ours.iter().zip(exact) {
+                assert!(
+                    (f64::from(*ours) / exact - 1.0).abs() < 1e-6,
+                    "{ticks} ticks at {rate} Hz: {ours} {exact}"
+                );
+            }
+        }
+    }
+}
+
+/// The factors of both covariances that are kept at run time.
+#[test]
+fn covariances_are_those_of_the_definition() {
+    let rate = 1000.0;
+    let hertz = Hertz(rate);
+    let belief = believed(&other_device());
+    let soft = Observer::soft(&belief, hertz, &SURE).expect("valid");
+    let learns = soft
+        .learning(belief.large.counts_per_rev, hertz)
+        .expect("valid");
+    let (_, samples) = samples(rate, &other_device()).swap_remove(0);
+    let mut definition = Definition::new(Kind::Soft, true, &belief, rate, &SURE, &samples[0]);
+    let mut state = learns.start(&samples[0]);
+    let mut off = 0.0f64;
+    for sample in &samples[1..] {
+        learns.update(&mut state, sample);
+        definition.update(sample);
+        let bell = definition.bell;
+        let coupling = bell[(0, 1)] / bell[(0, 0)];
+        let left = bell[(1, 1)] - coupling * bell[(0, 1)];
+        let learner = definition.learner.as_ref().expect("learns");
+        let (d, u) = factors(&learner.p);
+        let exact = [
+            bell[(0, 0)],
+            left,
+            coupling,
+            d[0],
+            d[1],
+            d[2],
+            u[(0, 1)],
+            u[(0, 2)],
+            u[(1, 2)],
+        ];
+        let ([p, s], g) = (
+            state.correction().bell().diagonal(),
+            state.correction().bell().coupling(),
+        );
+        let [d0, d1, d2] = *state.learning().diagonal();
+        let [u01, u02, u12] = *state.learning().upper();
+        for (ours, exact) in [p, s, g, d0, d1, d2, u01, u02, u12].iter().zip(exact) {
+            off = off.max((f64::from(*ours) - exact).abs() / (1e-3 + exact.abs()));
+        }
+    }
+    assert!(off < 1e-3, "{off}");
+    assert!(state.learning().upper().iter().all(|u| u.abs() > 1e-3));
+}
