@@ -25,6 +25,10 @@ const WATCHDOG_MS: f64 = 28.0;
 const FED_MS: f64 = 1.1;
 const STEP_MS: f64 = 0.05;
 
+/// What a fingertip notices, mN. Where the currents stay as they were while the hand moves on, the
+/// difference has to stay below it.
+const NOTICED_MN: f64 = 10.0;
+
 /// How a fault has to end.
 #[derive(Clone, Copy)]
 enum End {
@@ -151,24 +155,23 @@ const MATRIX: [Bound; 32] = [
         End::Off(NEXT_TICK, "5"),
         [1.0, 0.0],
     ),
-    // The currents stay as they were while the hand moves on.
-    dies(Fault::HungCore, NOMINAL, [40.0, 1.0]),
+    dies(Fault::HungCore, NOMINAL, [NOTICED_MN, 1.0]),
     Bound {
         with: Some(Fault::SlowWatchdog),
-        ..dies(Fault::HungCore, SLOW, [40.0, 1.0])
+        ..dies(Fault::HungCore, SLOW, [NOTICED_MN, 1.0])
     },
     Bound {
         with: Some(Fault::FastWatchdog),
-        ..dies(Fault::HungCore, FAST, [40.0, 0.0])
+        ..dies(Fault::HungCore, FAST, [NOTICED_MN, 0.0])
     },
     dies_at_start(None, NOMINAL),
     dies_at_start(Some(Fault::SlowWatchdog), SLOW),
     dies_at_start(Some(Fault::FastWatchdog), FAST),
-    halted(1, [40.0, 0.0]),
-    halted(5, [40.0, 0.0]),
-    halted(20, [40.0, 0.0]),
-    dies(Fault::Halt(100), NOMINAL, [40.0, 1.0]),
-    dies(Fault::Halt(500), NOMINAL, [40.0, 1.0]),
+    halted(1, [NOTICED_MN, 0.0]),
+    halted(5, [NOTICED_MN, 0.0]),
+    halted(20, [NOTICED_MN, 0.0]),
+    dies(Fault::Halt(100), NOMINAL, [NOTICED_MN, 1.0]),
+    dies(Fault::Halt(500), NOMINAL, [NOTICED_MN, 1.0]),
     // Each task that begins late counts as a missed tick, of which four in a row stop the device;
     // five tasks of 120 us bring as many.
     bound(
@@ -177,7 +180,7 @@ const MATRIX: [Bound; 32] = [
         End::Off([0.36, 0.85], "6"),
         [5.0, 0.0],
     ),
-    dies(Fault::HungControl, NOMINAL, [40.0, 1.0]),
+    dies(Fault::HungControl, NOMINAL, [NOTICED_MN, 1.0]),
     dies(Fault::HungIdle, NOMINAL, [1.0, 0.0]),
     dies(Fault::StarvedIdle, NOMINAL, [1.0, 0.0]),
     // Nothing is missed but frames.
