@@ -21,7 +21,7 @@ use crate::summary::summary;
 /// Where cargo puts the image.
 const IMAGE: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
-    "/../target/thumbv7em-none-eabihf/release/firmware"
+    "/../target/thumbv7em-none-eabihf/firmware/firmware"
 );
 
 /// Runs the firmware image on an emulated board, in closed loop with the simulated device, and

@@ -61,7 +61,7 @@ const LOOP: u16 = 0xE7FE;
 
 /// How to build the image, said where it is missing.
 pub const HOW_TO_BUILD: &str =
-    "cargo build --release --package firmware --target thumbv7em-none-eabihf";
+    "cargo build --profile firmware --package firmware --target thumbv7em-none-eabihf";
 
 impl Image {
     /// Builds the firmware of this tree with these features, separated by commas, in a target
@@ -76,15 +76,16 @@ impl Image {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let status = Command::new(cargo)
             .current_dir(&root)
-            .args(["build", "--quiet", "--release", "--package", "firmware"])
-            .args(["--features", features, "--target", triple, "--target-dir"])
+            .args(["build", "--quiet", "--profile", "firmware"])
+            .args(["--package", "firmware", "--features", features])
+            .args(["--target", triple, "--target-dir"])
             .arg(&target)
             .status()
             .map_err(|error| format!("cargo does not start: {error}"))?;
         if !status.success() {
             return Err(format!("firmware with '{features}' does not build"));
         }
-        Self::read(&target.join(triple).join("release/firmware"))
+        Self::read(&target.join(triple).join("firmware/firmware"))
     }
 
     /// Reads an ELF file.
