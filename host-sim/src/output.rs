@@ -17,11 +17,12 @@ use partial::Partial;
 /// Longest chain of symbolic links that is followed, as in Linux.
 const MOST_LINKS: usize = 40;
 
-/// Whether `path` stands for standard output: `-`, or a name that the system has for it.
+/// Whether `path` stands for standard output: `-`, a name that the system has for it, or a link to
+/// such a name.
 #[must_use]
 pub fn is_stdout(path: &Path) -> bool {
     let names = ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
-    names.iter().any(|name| path.as_os_str() == *name)
+    links(path).any(|path| names.iter().any(|name| path.as_os_str() == *name))
 }
 
 /// Writes `bytes` to `path`, creating its folder; see [`write_with`].
@@ -84,9 +85,11 @@ fn write_file(
     }
     // Descriptors that this process has inherited are no files to be replaced.
     let inherited = ["/dev/fd/", "/dev/std", "/proc/"];
-    let inherited = inherited
-        .iter()
-        .any(|start| path.to_string_lossy().starts_with(start));
+    let is_inherited = |path: PathBuf| {
+        let path = path.to_string_lossy();
+        inherited.iter().any(|start| path.starts_with(start))
+    };
+    let inherited = links(path).any(is_inherited);
     if inherited || old.as_ref().is_some_and(|old| !old.is_file()) {
         return in_place(OpenOptions::new().append(true).open(path)?, content);
     }
@@ -120,17 +123,23 @@ fn in_place(
     }
 }
 
+/// `path`, and where it leads to link by link.
+fn links(path: &Path) -> impl Iterator<Item = PathBuf> {
+    let next = |path: &PathBuf| {
+        let target = fs::read_link(path).ok()?;
+        // A relative target counts from the folder of its link.
+        Some(path.parent().unwrap_or(Path::new("")).join(target))
+    };
+    std::iter::successors(Some(path.to_owned()), next).take(MOST_LINKS + 1)
+}
+
 /// The file that `path` leads to through symbolic links, whether it exists or not.
 fn link_target(path: &Path) -> io::Result<PathBuf> {
-    let mut path = path.to_owned();
-    for _ in 0..MOST_LINKS {
-        match fs::read_link(&path) {
-            // A relative target counts from the folder of its link.
-            Ok(target) => path = path.parent().unwrap_or(Path::new("")).join(target),
-            Err(_) => return Ok(path),
-        }
+    let last = links(path).last().unwrap_or_default();
+    match fs::read_link(&last) {
+        Ok(_) => Err(io::Error::other("too many symbolic links")),
+        Err(_) => Ok(last),
     }
-    Err(io::Error::other("too many symbolic links"))
 }
 
 #[cfg(test)]

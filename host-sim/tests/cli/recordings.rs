@@ -187,7 +187,7 @@ fn scores_of_a_coupler_need_a_recording_with_both_encoders() {
             table.contains("chatter") && table.contains("pll"),
             "{table}"
         );
-        for column in ["force", "trans.", "outside"] {
+        for column in ["force", "outside"] {
             assert_eq!(table.contains(column), small, "{column}: {table}");
         }
     }
