@@ -3,6 +3,7 @@
 //! They read more than counts, so they have their own motions: the medley with a handle, currents
 //! and edges at random instants, and a motor that obeys its own model exactly.
 
+mod by_definition;
 mod definition;
 mod learned;
 mod modelled;

@@ -1,0 +1,282 @@
+//! The observers against their definition.
+
+use estimator_core::{
+    Amps, Confidence, Correction, CoupledMotor, CurrentSource, Device, Hertz, Learning, Observer,
+    Sample, SlipSource, Uncertainty, VelocityEstimator,
+};
+
+use super::definition::{Definition, Kind, factors};
+use super::modelled::modelled;
+use super::{CLOCK, dressed};
+use crate::motion::medley;
+
+fn other_device() -> CoupledMotor {
+    CoupledMotor {
+        large: Device {
+            counts_per_rev: 2000,
+            inertia: 2.3e-5,
+            damping: 1.7e-3,
+            torque_constant: 0.061,
+        },
+        coulomb_friction: 2.1e-3,
+        amplifier_lag: 0.9e-3,
+        small_counts_per_rev: 3000,
+    }
+}
+
+/// The same, but for constants that are all off: there is something to learn.
+fn believed(device: &CoupledMotor) -> CoupledMotor {
+    CoupledMotor {
+        large: Device {
+            damping: 0.7 * device.large.damping,
+            torque_constant: 1.2 * device.large.torque_constant,
+            ..device.large
+        },
+        coulomb_friction: 1.3 * device.coulomb_friction,
+        ..*device
+    }
+}
+
+const SURE: Uncertainty = Uncertainty {
+    torque_noise: 8e-6,
+    load: 2.5e-4,
+    load_time: 0.07,
+    friction_share: 0.6,
+    boundary_noise: 0.05,
+};
+
+fn samples(rate: f64, device: &CoupledMotor) -> Vec<(&'static str, Vec<Sample>)> {
+    let whole = modelled(rate, 1.2, 0.4, *device).0;
+    let in_motion = whole[(0.15 * rate) as usize..].to_vec();
+    let bare: Vec<Sample> = whole.iter().map(|s| Sample { edge: None, ..*s }).collect();
+    // Rest, a push below friction, and the motion again.
+    let mut rests = whole[..(0.2 * rate) as usize].to_vec();
+    let last = *rests.last().expect("not empty");
+    let push = last.with_current(Amps::new(0.01));
+    rests.resize(rests.len() + (0.1 * rate) as usize, push);
+    vec![
+        ("modelled", whole),
+        ("in motion", in_motion),
+        ("without edges", bare),
+        ("rest", rests),
+        ("medley", dressed(&medley(), 5, rate, 1)),
+    ]
+}
+
+/// Largest differences of velocity, its variance and the parameters, relative where they are large.
+fn largest_difference<C, S, M, L>(
+    estimator: &Observer<C, S, M, L>,
+    definition: &mut Definition,
+    samples: &[Sample],
+) -> [f64; 3]
+where
+    C: CurrentSource,
+    S: SlipSource,
+    M: Correction,
+    L: Learning,
+{
+    let mut state = estimator.start(&samples[0]);
+    let mut off = [0.0f64; 3];
+    for sample in &samples[1..] {
+        let (ours, exact) = (
+            estimator.update(&mut state, sample).0,
+            definition.update(sample),
+        );
+        off[0] = off[0].max((f64::from(ours) - exact).abs() / (1.0 + exact.abs()));
+        let (ours, exact) = (estimator.variance(&state).0, definition.variance());
+        off[1] = off[1].max((f64::from(ours) - exact).abs() / exact);
+        let ours = estimator.deviations(&state);
+        let ours = [ours.damping, ours.friction, ours.torque_constant];
+        let exact = definition
+            .learner
+            .as_ref()
+            .map_or([0.0; 3], |learner| learner.parameters.into());
+        for (ours, exact) in ours.iter().zip(exact) {
+            off[2] = off[2].max((f64::from(*ours) - exact).abs());
+        }
+    }
+    off
+}
+
+/// Roundings of 6e-8 over the some 100 ticks that an observer remembers. The medley has speeds of
+/// thousands of counts a tick, and what is left of their roundings is seen at rest.
+#[track_caller]
+fn assert_rounding(off: [f64; 3], samples: &str, what: &str) {
+    let allowed = if samples == "medley" {
+        [2e-3, 1e-3, 5e-4]
+    } else {
+        [1e-5, 1e-4, 1e-4]
+    };
+    let within = (0..3).all(|i| off[i] <= allowed[i]);
+    assert!(within, "{what}, {samples}: {off:?}");
+}
+
+#[test]
+fn observers_are_their_definition() {
+    for rate in [1000.0, 8000.0] {
+        let hertz = Hertz(rate);
+        let device = other_device();
+        let belief = believed(&device);
+        let n = belief.large.counts_per_rev;
+        let counts = Observer::new(&belief, hertz, &SURE).expect("valid");
+        let soft = Observer::soft(&belief, hertz, &SURE).expect("valid");
+        let edges = counts.with_edges(CLOCK, hertz).expect("valid");
+        let learns = (
+            counts.learning(n, hertz).expect("valid"),
+            soft.learning(n, hertz).expect("valid"),
+            edges.learning(n, hertz).expect("valid"),
+        );
+        for (name, samples) in samples(rate, &device) {
+            let new =
+                |kind, learns| Definition::new(kind, learns, &belief, rate, &SURE, &samples[0]);
+            for (what, off) in [
+                (
+                    "counts",
+                    largest_difference(&counts, &mut new(Kind::Cells, false), &samples),
+                ),
+                (
+                    "soft",
+                    largest_difference(&soft, &mut new(Kind::Soft, false), &samples),
+                ),
+                (
+                    "edges",
+                    largest_difference(&edges, &mut new(Kind::Edges, false), &samples),
+                ),
+                (
+                    "counts, learning",
+                    largest_difference(&learns.0, &mut new(Kind::Cells, true), &samples),
+                ),
+                (
+                    "soft, learning",
+                    largest_difference(&learns.1, &mut new(Kind::Soft, true), &samples),
+                ),
+                (
+                    "edges, learning",
+                    largest_difference(&learns.2, &mut new(Kind::Edges, true), &samples),
+                ),
+            ] {
+                assert_rounding(off, name, &format!("{what} at {rate} Hz"));
+            }
+        }
+    }
+}
+
+/// Without the small encoder, and without current, friction and damping: the same equations.
+#[test]
+fn observers_without_an_input_are_their_definition() {
+    for rate in [1000.0, 8000.0] {
+        let hertz = Hertz(rate);
+        let device = other_device();
+        let unknown = CoupledMotor {
+            large: Device {
+                damping: 0.0,
+                ..device.large
+            },
+            coulomb_friction: 0.0,
+            ..device
+        };
+        let counts = Observer::new(&device, hertz, &SURE).expect("valid");
+        // A motor without friction knows no share of it, whatever it is asked for.
+        let smooth = CoupledMotor {
+            coulomb_friction: 0.0,
+            ..device
+        };
+        let smooth_counts = Observer::new(&smooth, hertz, &SURE).expect("valid");
+        let wide = Uncertainty { load: 2e-2, ..SURE };
+        let blind = Observer::blind(&device, hertz, CLOCK, &wide).expect("valid");
+        for (name, samples) in samples(rate, &device) {
+            let new = |kind, device, unsure| {
+                let mut definition =
+                    Definition::new(kind, false, device, rate, unsure, &samples[0]);
+                definition.ratio = 0.0;
+                definition
+            };
+            let what = format!("held at {rate} Hz");
+            let off = largest_difference(
+                &counts.held(),
+                &mut new(Kind::Cells, &device, &SURE),
+                &samples,
+            );
+            assert_rounding(off, name, &what);
+            let mut definition = new(Kind::Cells, &smooth, &SURE);
+            let off = largest_difference(&smooth_counts.held(), &mut definition, &samples);
+            assert_rounding(off, name, &format!("without friction at {rate} Hz"));
+            let mut definition = new(Kind::Edges, &unknown, &wide);
+            definition.per_amp = 0.0;
+            definition.unstamped = 0.0;
+            let off = largest_difference(&blind, &mut definition, &samples);
+            assert_rounding(off, name, &format!("blind at {rate} Hz"));
+        }
+    }
+}
+
+/// Gains by the gap, as far as the table goes and beyond.
+#[test]
+fn gains_are_those_of_the_filter_corrected_once_in_so_many_ticks() {
+    for rate in [1000.0, 8000.0] {
+        let device = other_device();
+        let observer = Observer::new(&device, Hertz(rate), &SURE).expect("valid");
+        let first = Sample::default();
+        let mut definition = Definition::new(Kind::Cells, false, &device, rate, &SURE, &first);
+        for ticks in [
+            1, 2, 3, 31, 63, 64, 65, 66, 96, 97, 500, 929, 960, 961, 962, 5000,
+        ] {
+            let (ours, exact) = (observer.gain(ticks), definition.gain(ticks as f64));
+            let ours = [ours.position, ours.velocity, ours.load, ours.variance];
+            let exact = [exact.k[0], exact.k[1], exact.k[2], exact.variance];
+            for (ours, exact) in ours.iter().zip(exact) {
+                assert!(
+                    (f64::from(*ours) / exact - 1.0).abs() < 1e-6,
+                    "{ticks} ticks at {rate} Hz: {ours} {exact}"
+                );
+            }
+        }
+    }
+}
+
+/// The factors of both covariances that are kept at run time.
+#[test]
+fn covariances_are_those_of_the_definition() {
+    let rate = 1000.0;
+    let hertz = Hertz(rate);
+    let belief = believed(&other_device());
+    let soft = Observer::soft(&belief, hertz, &SURE).expect("valid");
+    let learns = soft
+        .learning(belief.large.counts_per_rev, hertz)
+        .expect("valid");
+    let (_, samples) = samples(rate, &other_device()).swap_remove(0);
+    let mut definition = Definition::new(Kind::Soft, true, &belief, rate, &SURE, &samples[0]);
+    let mut state = learns.start(&samples[0]);
+    let mut off = 0.0f64;
+    for sample in &samples[1..] {
+        learns.update(&mut state, sample);
+        definition.update(sample);
+        let bell = definition.bell;
+        let coupling = bell[(0, 1)] / bell[(0, 0)];
+        let left = bell[(1, 1)] - coupling * bell[(0, 1)];
+        let learner = definition.learner.as_ref().expect("learns");
+        let (d, u) = factors(&learner.p);
+        let exact = [
+            bell[(0, 0)],
+            left,
+            coupling,
+            d[0],
+            d[1],
+            d[2],
+            u[(0, 1)],
+            u[(0, 2)],
+            u[(1, 2)],
+        ];
+        let ([p, s], g) = (
+            state.correction().bell().diagonal(),
+            state.correction().bell().coupling(),
+        );
+        let [d0, d1, d2] = *state.learning().diagonal();
+        let [u01, u02, u12] = *state.learning().upper();
+        for (ours, exact) in [p, s, g, d0, d1, d2, u01, u02, u12].iter().zip(exact) {
+            off = off.max((f64::from(*ours) - exact).abs() / (1e-3 + exact.abs()));
+        }
+    }
+    assert!(off < 1e-3, "{off}");
+    assert!(state.learning().upper().iter().all(|u| u.abs() > 1e-3));
+}

@@ -1,0 +1,53 @@
+//! What is learned of the parameters.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// What [`Definition`] learns.
+pub(in super::super) struct Learner {
+    pub(in super::super) parameters: Vector3<f64>,
+    /// A column each for damping, friction and torque constant.
+    pub(in super::super) sensitivity: Matrix3<f64>,
+    pub(in super::super) p: Matrix3<f64>,
+    pub(in super::super) waiting: f64,
+    pub(in super::super) age: f64,
+    /// Whether the start is over, and whether it showed motion.
+    pub(in super::super) over: bool,
+    pub(in super::super) in_motion: bool,
+}
+
+pub(super) const PRIOR: [f64; 3] = [0.35, 0.6, 0.35];
+pub(super) const RANGE: [f64; 3] = [0.6, 0.9, 0.6];
+
+/// `U D Uᵀ` with a unit upper triangle U: the elements of D, and U.
+pub(in super::super) fn factors(p: &Matrix3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
+    let mut u = Matrix3::identity();
+    let d2 = p[(2, 2)];
+    u[(0, 2)] = p[(0, 2)] / d2;
+    u[(1, 2)] = p[(1, 2)] / d2;
+    let d1 = p[(1, 1)] - u[(1, 2)].powi(2) * d2;
+    u[(0, 1)] = (p[(0, 1)] - u[(0, 2)] * u[(1, 2)] * d2) / d1;
+    let d0 = p[(0, 0)] - u[(0, 1)].powi(2) * d1 - u[(0, 2)].powi(2) * d2;
+    (Vector3::new(d0, d1, d2), u)
+}
+
+impl Learner {
+    /// The gain of the velocity instead of `gain`, if this innovation belongs to a start in motion.
+    pub(super) fn starting(&mut self, e: f64, gap: f64, gain: f64, v: f64) -> Option<f64> {
+        if self.over || gap == 0.0 {
+            return None;
+        }
+        self.age += gap;
+        if self.age >= 1.0 / gain {
+            self.over = true;
+            return None;
+        }
+        if !self.in_motion {
+            if e.abs() <= 0.5 + 0.6 * v.abs() * gap {
+                return None;
+            }
+            self.in_motion = true;
+            self.age = gap;
+        }
+        Some(1.0 / self.age.max(1.0))
+    }
+}
