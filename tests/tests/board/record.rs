@@ -46,7 +46,7 @@ fn the_bytes_of_the_probe_make_the_recording_that_the_run_makes() {
     let kinds: Vec<_> = Kind::all().iter().collect();
     let (device, parameters) = (Device::default(), Parameters::default());
     let estimates = [&recording, &direct].map(|recording| {
-        replay(recording, "r", &kinds, &device, &parameters)
+        replay(recording, "r", &kinds, &device, &parameters, || ())
             .unwrap()
             .estimates
     });
@@ -78,7 +78,7 @@ fn stamps_of_the_board_are_recorded_and_replayed() {
     assert!(edges.iter().flatten().count() * 10 > 9 * edges.len());
     let kinds = ["observer", "observer-edge"].map(|name| Kind::named(name).unwrap());
     let (device, parameters) = (Device::default(), Parameters::default());
-    let replayed = replay(&recording, "r", &kinds, &device, &parameters).unwrap();
+    let replayed = replay(&recording, "r", &kinds, &device, &parameters, || ()).unwrap();
     assert_eq!(replayed.left_out, []);
     let [counts, stamps] = [0, 1].map(|i| replayed.rows[i].score.rms_rad_s.unwrap());
     println!("observer {counts} rad/s, observer-edge {stamps} rad/s");
