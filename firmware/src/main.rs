@@ -54,8 +54,11 @@ mod app {
             board.reset as u8,
             board.brown_out_reset
         );
+        if AUTO_ARM && !board.brown_out_reset {
+            defmt::warn!("auto-arm waits for a command: the brown-out level is not 3");
+        }
         let local = Local {
-            control: Control::new(&first, board.reset),
+            control: Control::new(&first, board.reset, board.brown_out_reset),
             clock: board.clock,
             tick: board.tick,
             encoders: board.encoders,

@@ -59,11 +59,17 @@ pub struct Control {
     /// Ticks so far, modulo 2^32.
     ticks: u32,
     overruns: u32,
+    /// Whether the supply's brown-out resets the chip.
+    brown_out_reset: bool,
 }
 
 impl Control {
     /// At rest at the first sample, after a reset for this cause.
-    pub fn new(first: &Sample, reset: Stop) -> Self {
+    ///
+    /// `brown_out_reset` says whether a falling supply resets the chip and is named as the cause.
+    /// Without it each dip looks like power-on, after which a device that arms by itself would
+    /// drive again: such an image then waits for a command.
+    pub fn new(first: &Sample, reset: Stop, brown_out_reset: bool) -> Self {
         Self {
             core: Core::start(first),
             monitor: MONITOR.start(first),
@@ -71,6 +77,7 @@ impl Control {
             action: Action::default(),
             ticks: 0,
             overruns: 0,
+            brown_out_reset,
         }
     }
 
@@ -139,13 +146,16 @@ impl Control {
         }
     }
 
-    /// What an image that arms by itself asks for; out of safe it does not.
+    /// Requests of an image that arms by itself, at boot and not out of safe.
     fn by_itself(&self) -> Option<Request> {
         const ARM: u32 = RATE_HZ / 10;
         const SELECT: u32 = ARM - 1;
+        if !(AUTO_ARM && self.brown_out_reset) {
+            return None;
+        }
         match (self.ticks, self.safety.mode()) {
-            (SELECT, Mode::Boot) if AUTO_ARM => Some(Request::Select(FIRST)),
-            (ARM, Mode::Boot) if AUTO_ARM => Some(Request::Arm),
+            (SELECT, Mode::Boot) => Some(Request::Select(FIRST)),
+            (ARM, Mode::Boot) => Some(Request::Arm),
             _ => None,
         }
     }

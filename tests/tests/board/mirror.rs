@@ -62,7 +62,7 @@ fn requests(run: &Outcome) -> Vec<(usize, Heard)> {
 /// reports.
 pub(crate) fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
     let (mut samples, first) = Samples::new(run);
-    let mut control = Control::new(&first, Stop::None);
+    let mut control = Control::new(&first, Stop::None, true);
     let requests = requests(run);
     let step = |(k, tick): (usize, &Tick)| {
         let sample = samples.next(tick, control.applied().large);

@@ -1,0 +1,142 @@
+//! A control without a board: counts that a test turns, and the ticks of its choice.
+
+use core::f64::consts::TAU;
+
+use estimator_core::{Amps, Count, Sample};
+use firmware_app::commands::{Commands, Messages};
+use firmware_app::config::{DEVICE, RATE_HZ};
+use firmware_app::control::{Control, Inputs, Message};
+use firmware_app::telemetry::Record;
+use haptic_control::{Currents, DualStage, Mode, Request, Stop};
+
+/// Counts per turn of the handle.
+const SMALL: f64 = 20_000.0;
+/// Counts per turn of the large motor.
+const LARGE: f64 = 4096.0;
+
+/// Ticks of a duration.
+pub(crate) fn ticks(seconds: f64) -> u32 {
+    (seconds * f64::from(RATE_HZ)) as u32
+}
+
+/// A tick at which nothing is wrong and nothing is asked for.
+pub(crate) const CALM: Inputs = Inputs {
+    amplifier_fault: false,
+    clock_failure: false,
+    missed: 0,
+    debugger: false,
+    request: None,
+};
+
+/// A control, its angles, rad, and the velocity of the large motor, which its current drives
+/// against the coupler's damping. The handle turns as the test says.
+pub(crate) struct Bench {
+    pub(crate) control: Control,
+    pub(crate) handle: f64,
+    pub(crate) large: f64,
+    velocity: f64,
+}
+
+impl Bench {
+    /// After a reset without a cause, with the brown-out reset on.
+    pub(crate) fn new() -> Self {
+        Self::after(Stop::None, true)
+    }
+
+    pub(crate) fn after(reset: Stop, brown_out_reset: bool) -> Self {
+        let first = Sample::new(Count(0)).with_small(Count(0));
+        Self {
+            control: Control::new(&first, reset, brown_out_reset),
+            handle: 0.0,
+            large: 0.0,
+            velocity: 0.0,
+        }
+    }
+
+    pub(crate) fn sample(&self) -> Sample {
+        let counts = |angle: f64, per_turn: f64| {
+            Count(((angle / TAU * per_turn).floor() as i32).cast_unsigned())
+        };
+        Sample::new(counts(self.large, LARGE))
+            .with_small(counts(self.handle, SMALL))
+            .with_current(self.control.applied().large)
+    }
+
+    /// One tick with these inputs.
+    pub(crate) fn step(&mut self, inputs: &Inputs) -> Option<Currents> {
+        let sample = self.sample();
+        let currents = self.control.step(&sample, inputs);
+        let DualStage { large, damping, .. } = DEVICE;
+        let current = f64::from(currents.unwrap_or_default().large.get());
+        let torque = large.torque_constant * current - damping * self.velocity;
+        self.velocity += torque / large.inertia / f64::from(RATE_HZ);
+        self.large += self.velocity / f64::from(RATE_HZ);
+        currents
+    }
+
+    /// One tick with this request.
+    pub(crate) fn request(&mut self, request: Request) -> Option<Currents> {
+        self.step(&Inputs {
+            request: Some(request),
+            ..CALM
+        })
+    }
+
+    /// Ticks in which the command channel is alive.
+    pub(crate) fn run(&mut self, ticks: u32) {
+        for _ in 0..ticks {
+            self.request(Request::KeepAlive);
+        }
+    }
+
+    /// Ticks without a command.
+    pub(crate) fn wait(&mut self, ticks: u32) {
+        for _ in 0..ticks {
+            self.step(&CALM);
+        }
+    }
+
+    /// Arms with this scene chosen, and waits until it is on.
+    pub(crate) fn start(scene: u8) -> Self {
+        let mut bench = Self::new();
+        bench.request(Request::Select(scene));
+        bench.request(Request::Arm);
+        bench.run(ticks(0.03));
+        bench
+    }
+
+    pub(crate) fn record(&self) -> Record {
+        self.control.record(&self.sample())
+    }
+
+    pub(crate) fn state(&self) -> (Mode, Stop) {
+        let Record { state, cause, .. } = self.record();
+        let mode = Mode::from_code(state).expect("a mode");
+        (mode, Stop::from_code(cause).expect("a cause"))
+    }
+
+    /// Torque that the handle should feel, mN.m.
+    pub(crate) fn torque_mnm(&self) -> f64 {
+        1e3 * f64::from(self.record().action.torque.0)
+    }
+}
+
+/// Messages of these command frames, as many as the queue takes at a time.
+pub(crate) fn messages(frames: &[[u8; 11]]) -> Vec<Message> {
+    let mut queue = Messages::new();
+    let (producer, mut consumer) = queue.split();
+    let mut commands = Commands::new(producer);
+    let mut bytes = frames.concat().into_iter();
+    let mut messages = Vec::new();
+    while bytes.len() > 0 {
+        commands.receive(|| bytes.next());
+        messages.extend(core::iter::from_fn(|| consumer.dequeue()));
+    }
+    messages
+}
+
+/// No current.
+pub(crate) const ZERO: Currents = Currents {
+    large: Amps::ZERO,
+    small: Amps::ZERO,
+};

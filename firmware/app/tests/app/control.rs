@@ -1,0 +1,194 @@
+use drivers::{Command, encode};
+use firmware_app::config::AUTO_ARM;
+use firmware_app::control::{Inputs, Message};
+use firmware_app::scene::FIRST;
+use haptic_control::{Mode, Request, Stop};
+
+use crate::bench::{Bench, CALM, ZERO, messages, ticks};
+
+#[test]
+fn the_first_record_is_of_tick_0() {
+    let mut bench = Bench::new();
+    bench.step(&CALM);
+    assert_eq!(bench.record().tick, 0);
+    bench.run(41);
+    assert_eq!(bench.record().tick, 41);
+}
+
+#[test]
+fn a_record_tells_of_the_sample_and_the_action_of_its_tick() {
+    let mut bench = Bench::start(FIRST);
+    bench.large = 1.0;
+    let currents = bench.request(Request::KeepAlive).expect("enabled");
+    let record = bench.record();
+    assert_eq!(record.sample.large.0, 651); // 4096 / (2 pi), rounded down
+    assert_eq!(record.action.currents, currents);
+    assert_eq!(bench.control.applied(), currents);
+}
+
+#[test]
+fn amplifiers_are_enabled_from_arm_to_disarm() {
+    let mut bench = Bench::new();
+    assert!(bench.step(&CALM).is_none());
+    bench.request(Request::Select(FIRST));
+    assert_eq!(bench.state(), (Mode::Boot, Stop::None));
+    // 20 ms without a current first.
+    for _ in 0..ticks(0.02) {
+        assert_eq!(bench.request(Request::Arm), Some(ZERO));
+        assert_eq!(bench.state().0, Mode::Settling);
+    }
+    assert!(bench.request(Request::KeepAlive).is_some());
+    let running = if FIRST == 0 {
+        Mode::Armed
+    } else {
+        Mode::Running
+    };
+    assert_eq!(bench.state(), (running, Stop::None));
+    assert!(bench.request(Request::Disarm).is_none());
+    assert_eq!(bench.state(), (Mode::Boot, Stop::None));
+    assert_eq!(bench.control.applied(), ZERO);
+}
+
+#[test]
+fn what_is_wrong_disables_the_amplifiers_in_the_same_tick() {
+    let calm = || Inputs { ..CALM };
+    let faults = [
+        (
+            Inputs {
+                amplifier_fault: true,
+                ..calm()
+            },
+            Stop::AmplifierFault,
+        ),
+        (
+            Inputs {
+                clock_failure: true,
+                ..calm()
+            },
+            Stop::ClockFailure,
+        ),
+        (
+            Inputs {
+                missed: 4,
+                ..calm()
+            },
+            Stop::TickOverrun,
+        ),
+    ];
+    for (inputs, cause) in faults {
+        let mut bench = Bench::start(FIRST);
+        assert_eq!(bench.step(&inputs), None, "{cause:?}");
+        assert_eq!(bench.state(), (Mode::Safe, cause));
+    }
+    // A jump of the large encoder, which the monitor finds.
+    let mut bench = Bench::start(FIRST);
+    bench.large = 100.0;
+    assert_eq!(bench.step(&CALM), None);
+    assert_eq!(bench.state(), (Mode::Safe, Stop::Jump));
+    // The monitor starts again where the encoder is now.
+    bench.request(Request::Arm);
+    bench.run(ticks(0.1));
+    assert_eq!(bench.state().0, Mode::Armed);
+}
+
+#[test]
+fn debug_settings_refuse_to_arm() {
+    let mut bench = Bench::new();
+    let inputs = Inputs {
+        debugger: true,
+        request: Some(Request::Arm),
+        ..CALM
+    };
+    assert_eq!(bench.step(&inputs), None);
+    assert_eq!(bench.state(), (Mode::Safe, Stop::Debugger));
+}
+
+#[test]
+fn a_reset_with_a_cause_starts_in_safe() {
+    let mut bench = Bench::after(Stop::Watchdog, true);
+    bench.wait(ticks(0.3));
+    assert_eq!(bench.state(), (Mode::Safe, Stop::Watchdog));
+}
+
+#[test]
+fn missed_ticks_add_up_to_overruns() {
+    let mut bench = Bench::new();
+    for missed in [0, 1, 0, 2] {
+        bench.step(&Inputs { missed, ..CALM });
+    }
+    assert_eq!(bench.record().overruns, 3);
+}
+
+#[test]
+fn a_scene_goes_off_after_half_a_second_of_silence_unless_the_image_arms_by_itself() {
+    if FIRST == 0 {
+        return;
+    }
+    let mut bench = Bench::start(FIRST);
+    bench.wait(ticks(0.5));
+    assert_eq!(bench.state(), (Mode::Running, Stop::None));
+    bench.wait(1);
+    let silent = if AUTO_ARM {
+        (Mode::Running, Stop::None)
+    } else {
+        (Mode::Armed, Stop::CommandTimeout)
+    };
+    assert_eq!(bench.state(), silent);
+    // 5 s in all, then the amplifiers are disabled too.
+    bench.wait(ticks(4.6));
+    assert_eq!(bench.state().0.is_enabled(), AUTO_ARM);
+}
+
+/// The supply's dips look like power-on where no brown-out reset is programmed.
+#[test]
+fn an_image_that_arms_by_itself_does_so_only_with_brown_out_reset() {
+    for (brown_out_reset, reset, arms) in [
+        (true, Stop::None, AUTO_ARM),
+        (false, Stop::None, false),
+        (true, Stop::BrownOut, false),
+    ] {
+        let mut bench = Bench::after(reset, brown_out_reset);
+        bench.wait(ticks(0.1));
+        assert!(!bench.state().0.is_enabled());
+        bench.wait(ticks(0.03));
+        let (mode, cause) = bench.state();
+        assert_eq!(mode.is_enabled(), arms, "{brown_out_reset} {reset:?}");
+        assert_eq!(cause, reset);
+        if arms && FIRST != 0 {
+            assert_eq!(mode, Mode::Running);
+        }
+    }
+}
+
+#[test]
+fn settings_are_a_sign_of_life_and_take_effect() {
+    let mut bench = Bench::new();
+    let request = |message| bench.control.hear(message);
+    let mut requests: Vec<_> = messages(&[
+        encode(Command::Request(Request::Select(3))),
+        encode(Command::Request(Request::Disarm)),
+    ])
+    .into_iter()
+    .map(Some)
+    .map(request)
+    .collect();
+    requests.push(bench.control.hear(None));
+    let [select, disarm] = [Request::Select(3), Request::Disarm].map(Some);
+    assert_eq!(requests, [select, disarm, None]);
+    // Scene 4 is viscous and has a damping; torque is of scene 8.
+    for command in [
+        Command::Tune {
+            scene: 4,
+            parameter: 0,
+            value: 1e-3,
+        },
+        Command::Torque(0.001),
+        Command::Estimator(1),
+    ] {
+        for message in messages(&[encode(command)]) {
+            let is_setting = matches!(message, Message::Tuned(_) | Message::Estimator(_));
+            assert!(is_setting, "{command:?}");
+            assert_eq!(bench.control.hear(Some(message)), Some(Request::KeepAlive));
+        }
+    }
+}

@@ -1,0 +1,64 @@
+use estimator_core::{Confidence as _, Count, Sample, Side, VelocityEstimator as _};
+use firmware_app::large::{
+    ADAPTIVE, ADAPTIVE_EDGE, Adaptive, AdaptiveEdge, BOTH, Both, FILTER, Filter, LargeEstimator,
+    Learnable as _, WINDOW, Window,
+};
+
+#[test]
+fn both_are_exchanged_by_number_in_40_ms() {
+    let first = Sample::new(Count(0));
+    let mut state = BOTH.start(&first);
+    assert_eq!(Both::in_charge(&state), Some(0));
+    assert_eq!(Both::choice(0), Some(Side::First));
+    assert_eq!(Both::choice(2), None);
+    BOTH.update(&mut state, &first);
+    Both::choose(&mut state, Both::choice(1).expect("the filter"));
+    let numbers: Vec<_> = (0..1000)
+        .map(|_| {
+            BOTH.update(&mut state, &first);
+            Both::in_charge(&state)
+        })
+        .collect();
+    let taking_over = numbers.iter().take_while(|number| number.is_none()).count();
+    assert!((399..=400).contains(&taking_over), "{taking_over} ticks");
+    assert!(
+        numbers[taking_over..]
+            .iter()
+            .all(|number| *number == Some(1))
+    );
+    assert_eq!(
+        BOTH.variance(&state),
+        FILTER.variance(&FILTER.start(&first))
+    );
+    assert_eq!(BOTH.learned(&state).deviations(), None);
+}
+
+fn alone<E: LargeEstimator>(estimator: &E, learns: bool) {
+    let state = estimator.start(&Sample::new(Count(0)));
+    assert_eq!(E::in_charge(&state), Some(0));
+    assert!((0..=u8::MAX).all(|number| E::choice(number).is_none()));
+    assert_eq!(estimator.learned(&state).deviations().is_some(), learns);
+}
+
+#[test]
+fn an_estimator_alone_is_number_0_and_leaves_no_choice() {
+    alone::<Window>(&WINDOW, false);
+    alone::<Filter>(&FILTER, false);
+    alone::<Adaptive>(&ADAPTIVE, true);
+    alone::<AdaptiveEdge>(&ADAPTIVE_EDGE, true);
+}
+
+#[test]
+fn what_is_learned_is_what_the_estimator_says() {
+    let mut state = ADAPTIVE.start(&Sample::new(Count(0)));
+    // A motor that turns ever faster without a current fits no believed damping.
+    for k in 0..20_000_u32 {
+        ADAPTIVE.update(
+            &mut state,
+            &Sample::new(Count(k * k / 40_000)).with_small(Count(0)),
+        );
+    }
+    let learned = ADAPTIVE.learned(&state);
+    assert_eq!(learned, ADAPTIVE.deviations(&state));
+    assert_ne!(learned, Default::default());
+}

@@ -1,0 +1,9 @@
+//! The firmware without its hardware, against its documentation in docs/telemetry.md and
+//! docs/board.md. Tests hold for every combination of features unless they say otherwise.
+
+mod bench;
+mod commands;
+mod control;
+mod large;
+mod scenes;
+mod telemetry;

@@ -1,0 +1,173 @@
+//! Scenes by their numbers, of the image of all scenes.
+#![cfg(not(any(
+    feature = "scene-off",
+    feature = "scene-free-air",
+    feature = "scene-wall",
+    feature = "scene-spring-damper",
+    feature = "scene-viscous",
+    feature = "scene-detents",
+    feature = "scene-texture",
+    feature = "scene-hold",
+    feature = "scene-torque",
+    feature = "scene-inertia",
+    feature = "scene-excite"
+)))]
+
+use drivers::{Command, encode};
+use haptic_control::{Mode, Request};
+
+use crate::bench::{Bench, messages, ticks};
+
+/// Turns the handle to an angle at a constant velocity, rad/s.
+fn turn(bench: &mut Bench, to: f64, velocity: f64) {
+    let step = velocity / 1e4;
+    while (to - bench.handle) * step > 0.0 {
+        bench.handle += step;
+        bench.request(Request::KeepAlive);
+    }
+}
+
+/// Turns the handle to an angle and keeps it there until its velocity is zero.
+fn rest(bench: &mut Bench, at: f64) {
+    turn(bench, at, if at < bench.handle { -2.0 } else { 2.0 });
+    bench.run(ticks(0.1));
+}
+
+fn send(bench: &mut Bench, command: Command) {
+    for message in messages(&[encode(command)]) {
+        let request = bench.control.hear(Some(message)).expect("a request");
+        bench.request(request);
+    }
+}
+
+fn near(is: f64, should: f64, within: f64) {
+    assert!((is - should).abs() <= within, "{is} is not {should}");
+}
+
+// A count of the handle is 0.3 mrad, so 0.3 N.m/rad make 0.1 mN.m of it.
+
+#[test]
+fn scenes_1_to_7_and_9_are_those_of_the_host_simulation() {
+    let mut wall = Bench::start(2);
+    rest(&mut wall, 0.15);
+    near(wall.torque_mnm(), -300.0 * 0.05, 0.2);
+    let mut spring = Bench::start(3);
+    rest(&mut spring, 0.15);
+    near(spring.torque_mnm(), -100.0 * 0.15, 0.1);
+    let mut viscous = Bench::start(4);
+    turn(&mut viscous, 0.4, 4.0);
+    near(viscous.torque_mnm(), -2.0 * 4.0, 0.2);
+    let mut hold = Bench::start(7);
+    rest(&mut hold, 0.05);
+    near(hold.torque_mnm(), -200.0 * 0.05, 0.2);
+    for (scene, amplitude) in [(1, 0.0), (5, 8.0), (6, 6.0)] {
+        let mut bench = Bench::start(scene);
+        let mut largest = 0.0_f64;
+        for _ in 0..4000 {
+            bench.handle += 3e-4;
+            bench.request(Request::KeepAlive);
+            largest = largest.max(bench.torque_mnm().abs());
+        }
+        near(largest, amplitude, 0.01 * amplitude);
+    }
+    // A negative inertia pushes with the acceleration: 2e-6 kg.m2 by 500 rad/s2 are 1 mN.m.
+    let mut inertia = Bench::start(9);
+    let mut mean = 0.0;
+    for k in 0..400 {
+        inertia.handle = 250.0 * (f64::from(k) * 1e-4).powi(2);
+        inertia.request(Request::KeepAlive);
+        if k >= 300 {
+            mean += inertia.torque_mnm() / 100.0;
+        }
+    }
+    near(mean, 1.0, 0.1);
+}
+
+#[test]
+fn free_air_estimates_and_off_does_not() {
+    let mut off = Bench::start(0);
+    turn(&mut off, 0.1, 4.0);
+    assert_eq!(off.state().0, Mode::Armed);
+    assert_eq!(
+        (off.record().action.handle.0, off.record().estimation.number),
+        (0.0, None)
+    );
+    let mut air = Bench::start(1);
+    turn(&mut air, 0.1, 4.0);
+    near(air.record().action.handle.0.into(), 4.0, 0.4);
+    assert!(air.record().estimation.variance.0 > 0.0);
+}
+
+#[test]
+fn a_scene_without_a_number_changes_nothing() {
+    let mut bench = Bench::start(3);
+    rest(&mut bench, 0.15);
+    bench.request(Request::Select(11));
+    bench.run(ticks(0.05));
+    near(bench.torque_mnm(), -100.0 * 0.15, 0.1);
+}
+
+#[test]
+fn a_set_point_counts_once_its_scene_is_on() {
+    let mut bench = Bench::new();
+    send(&mut bench, Command::Torque(0.003));
+    bench.request(Request::Select(8));
+    bench.request(Request::Arm);
+    bench.run(ticks(0.05));
+    assert_eq!(bench.torque_mnm(), 0.0);
+    send(&mut bench, Command::Torque(0.003));
+    bench.run(ticks(0.05));
+    near(bench.torque_mnm(), 3.0, 1e-6);
+    // Off and on again it begins at zero.
+    bench.request(Request::Select(0));
+    bench.run(ticks(0.05));
+    bench.request(Request::Select(8));
+    bench.run(ticks(0.05));
+    assert_eq!(bench.torque_mnm(), 0.0);
+}
+
+#[test]
+fn settings_act_on_the_scene_that_is_on_and_last_over_disarm() {
+    let mut bench = Bench::start(3);
+    rest(&mut bench, 0.1);
+    let stiffness = |scene, value| Command::Tune {
+        scene,
+        parameter: 1,
+        value,
+    };
+    // Another scene's parameter leaves this one as it is.
+    send(&mut bench, stiffness(2, 0.2));
+    bench.run(ticks(0.05));
+    near(bench.torque_mnm(), -100.0 * 0.1, 0.1);
+    send(&mut bench, stiffness(3, 0.05));
+    bench.run(ticks(0.05));
+    near(bench.torque_mnm(), -50.0 * 0.1, 0.1);
+    bench.request(Request::Disarm);
+    bench.handle = 0.0;
+    bench.request(Request::Select(3));
+    bench.request(Request::Arm);
+    bench.run(ticks(0.05));
+    rest(&mut bench, 0.2);
+    near(bench.torque_mnm(), -50.0 * 0.2, 0.3);
+    bench.request(Request::Select(2));
+    bench.run(ticks(0.05));
+    near(bench.torque_mnm(), -200.0 * 0.1, 0.3);
+}
+
+#[test]
+fn a_choice_of_estimator_lasts_over_restarts() {
+    let number = |bench: &Bench| bench.record().estimation.number;
+    let mut bench = Bench::start(1);
+    if number(&bench) != Some(0) || messages(&[encode(Command::Estimator(1))]).is_empty() {
+        return;
+    }
+    send(&mut bench, Command::Estimator(1));
+    assert_eq!(number(&bench), None);
+    bench.run(400);
+    assert_eq!(number(&bench), Some(1));
+    bench.request(Request::Disarm);
+    bench.request(Request::Select(1));
+    bench.request(Request::Arm);
+    bench.run(ticks(0.05));
+    assert_eq!(number(&bench), Some(1));
+}

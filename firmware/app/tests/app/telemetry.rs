@@ -1,0 +1,119 @@
+use core::f32::consts::TAU;
+
+use estimator_core::{ClockTicks, Count, Edge, Variance};
+use firmware_app::config::{EDGES, RATE_HZ};
+use firmware_app::large::Learnable as _;
+use firmware_app::scene::Estimation;
+use firmware_app::telemetry::{Frame, Frames, Record, Sender};
+
+use crate::bench::{Bench, CALM};
+
+fn record() -> Record {
+    let mut bench = Bench::new();
+    bench.step(&CALM);
+    bench.record()
+}
+
+/// The frame of this record, after `before` others.
+fn frame(record: Record, before: u32) -> Frame {
+    let mut queue = Frames::new();
+    let (producer, mut consumer) = queue.split();
+    let mut sender = Sender::new(producer);
+    for _ in 0..before {
+        sender.send(record, 0, None);
+        consumer.dequeue().expect("a frame");
+    }
+    sender.send(record, 321, Some(Count(7)));
+    consumer.dequeue().expect("a frame")
+}
+
+#[test]
+fn frames_come_a_thousand_times_a_second_from_the_first_tick_on() {
+    let mut queue = Frames::new();
+    let (producer, _consumer) = queue.split();
+    let mut sender = Sender::new(producer);
+    let due: Vec<u32> = (0..RATE_HZ).filter(|_| sender.is_due()).collect();
+    assert_eq!(due.len(), 1000);
+    assert!(due.iter().enumerate().all(|(k, at)| *at == 10 * k as u32));
+}
+
+#[test]
+fn a_frame_without_a_place_leaves_a_gap_in_seq_as_large_as_drops() {
+    let mut queue = Frames::new();
+    let (producer, mut consumer) = queue.split();
+    let mut sender = Sender::new(producer);
+    let record = record();
+    for _ in 0..40 {
+        sender.send(record, 0, None);
+    }
+    let waiting: Vec<_> = core::iter::from_fn(|| consumer.dequeue()).collect();
+    let found = waiting.len() as u32;
+    assert!(found < 40);
+    assert!(waiting.iter().map(|frame| frame.seq).eq(0..found));
+    assert!(waiting.iter().all(|frame| frame.drops(0) == 0));
+    sender.send(record, 0, None);
+    let next = consumer.dequeue().expect("there is place again");
+    assert_eq!(next.seq, 40);
+    assert_eq!(next.drops(0), 40 - found);
+    // And those that were lost behind the queue.
+    assert_eq!(next.drops(5), 40 - found + 5);
+}
+
+#[test]
+fn a_frame_carries_what_was_sent() {
+    let record = record();
+    let frame = frame(record, 3);
+    assert_eq!((frame.seq, frame.cycles), (3, 321));
+    assert_eq!(frame.reference, Some(Count(7)));
+    assert_eq!(frame.record.tick, record.tick);
+}
+
+#[test]
+fn sigma_is_in_rad_per_s_and_nobody_is_255() {
+    let mut record = record();
+    let of = |number, variance| Estimation {
+        variance: Variance(variance),
+        number,
+    };
+    record.estimation = of(None, 0.0);
+    assert_eq!(frame(record, 0).estimator(), 255);
+    assert_eq!(frame(record, 0).deviation(), 0.0);
+    // Two counts a tick are two 4096ths of a turn, 10 000 times a second.
+    record.estimation = of(Some(1), 4.0);
+    assert_eq!(frame(record, 0).estimator(), 1);
+    let sigma = 2.0 * TAU / 4096.0 * RATE_HZ as f32;
+    assert!((frame(record, 0).deviation() / sigma - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn an_edge_is_told_by_images_that_stamp_edges() {
+    let edge = Edge {
+        boundary: Count(9),
+        age: ClockTicks(100),
+    };
+    let mut record = record();
+    record.sample.edge = Some(edge);
+    assert_eq!(frame(record, 0).edge(), EDGES.then_some(edge));
+    record.sample.edge = None;
+    assert_eq!(frame(record, 0).edge(), None);
+}
+
+#[test]
+fn one_frame_of_128_tells_what_was_learned() {
+    let record = record();
+    let learned = record.learned.deviations();
+    assert_eq!(learned.is_some(), cfg!(feature = "large-adaptive"));
+    for (seq, due) in [
+        (0, true),
+        (1, false),
+        (127, false),
+        (128, true),
+        (129, false),
+    ] {
+        assert_eq!(
+            frame(record, seq).learned(),
+            learned.filter(|_| due),
+            "{seq}"
+        );
+    }
+}
