@@ -203,3 +203,6 @@ const fn angle_to_negative_axis(point: Complex) -> f64 {
         2.0 * core::f64::consts::PI - low
     }
 }
+
+#[cfg(test)]
+mod tests;
