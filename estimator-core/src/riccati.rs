@@ -339,7 +339,52 @@ const fn inverted<const S: usize>(mut m: Matrix<S>) -> Option<Matrix<S>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{norm, shrinks};
+    use super::{identity, inverted, norm, product, settled, shrinks};
+
+    #[test]
+    fn inverse_takes_the_largest_pivot() {
+        // Without exchange of rows the first divides by zero, the second loses all digits.
+        for m in [
+            [[0.0, 1.0, 0.0], [0.0, 0.0, 2.0], [4.0, 0.0, 0.0]],
+            [[1e-18, 1.0, 2.0], [3.0, -1.0, 0.5], [-2.0, 7.0, 1.0]],
+            [[2.0, 0.0, 1.0], [0.0, 1e-17, 3.0], [1.0, 5.0, -1.0]],
+        ] {
+            let inverse = inverted(m).expect("regular");
+            let (left, right) = (product(&inverse, &m), product(&m, &inverse));
+            for i in 0..3 {
+                for j in 0..3 {
+                    let unit = identity::<3>()[i][j];
+                    assert!((left[i][j] - unit).abs() < 1e-14, "{left:?}");
+                    assert!((right[i][j] - unit).abs() < 1e-14, "{right:?}");
+                }
+            }
+        }
+        assert!(inverted([[1.0, 2.0], [2.0, 4.0]]).is_none());
+        assert!(inverted([[0.0, 0.0], [0.0, 1.0]]).is_none());
+    }
+
+    #[test]
+    fn norm_is_the_largest_sum_of_a_row() {
+        assert_eq!(norm(&[[1.0, -2.0], [3.0, 4.0]]), 7.0);
+        assert_eq!(norm(&[[-5.0, -4.0], [3.0, 4.0]]), 9.0);
+        assert_eq!(norm(&[[0.0]]), 0.0);
+    }
+
+    #[test]
+    fn settled_is_a_change_of_1e_12_of_the_diagonal() {
+        let old = [[4.0, 0.0], [0.0, 1e-10]];
+        let moved = |i: usize, j: usize, by: f64| {
+            let mut new = old;
+            new[i][j] += by;
+            settled(&old, &new)
+        };
+        assert!(moved(0, 0, 3.9e-12) && !moved(0, 0, 4.1e-12));
+        assert!(moved(1, 1, 0.9e-22) && !moved(1, 1, 1.1e-22));
+        // Off the diagonal by the geometric mean of 4 and 1e-10, 2e-5.
+        assert!(moved(0, 1, 1.9e-17) && !moved(0, 1, 2.1e-17));
+        assert!(moved(1, 0, -1.9e-17) && !moved(1, 0, -2.1e-17));
+        assert!(!settled(&old, &[[f64::NAN, 0.0], [0.0, 1e-10]]));
+    }
 
     #[test]
     fn a_nan_is_never_stable() {
