@@ -83,3 +83,23 @@ fn quotient(dividend: i64, divisor: i32) -> f32 {
     let rest = dividend - i64::from(whole) * i64::from(divisor);
     whole as f32 + rest as i32 as f32 / by
 }
+
+#[cfg(test)]
+mod tests {
+    use super::fits_i32;
+
+    /// `(|step| + d) (n + 2)^4 / 3` is to be below 2^31.
+    #[test]
+    fn windows_whose_products_fit_take_32_bits() {
+        for (n, steepest) in [(128, 22), (64, 339), (32, 4820), (18, 40_265)] {
+            for d in [0, 1, 5] {
+                for sign in [1, -1] {
+                    assert!(fits_i32(sign * (steepest - d), n, d), "{n} {d}");
+                    assert!(!fits_i32(sign * (steepest - d + 1), n, d), "{n} {d}");
+                }
+            }
+        }
+        // The largest step and bound there are.
+        assert!(fits_i32(-(1 << 15), 15, 1 << 14) && !fits_i32(1 << 15, 18, 1 << 14));
+    }
+}
