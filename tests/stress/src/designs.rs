@@ -185,7 +185,7 @@ pub fn design(kind: &str, rate: f64, counts_per_rev: u32, parameter: f64) -> Ref
                 .map(|known| known.held())
         }),
         "observer-edge-blind" => {
-            refusable!(|c| { observer!(c, rate, counts_per_rev, parameter, blind, EDGE_CLOCK_HZ) })
+            refusable!(|c| observer!(c, rate, counts_per_rev, parameter, blind, EDGE_CLOCK_HZ))
         }
         "adaptive-soft" => refusable!(|c| {
             observer!(c, rate, counts_per_rev, parameter, soft)
