@@ -17,7 +17,7 @@ const SLOW: Hertz = Hertz(1000.0);
 const FAST: Hertz = Hertz(10_000.0);
 
 /// The clock that stamps edges.
-const CLOCK: Hertz = Hertz(84e6);
+pub const CLOCK: Hertz = Hertz(84e6);
 
 const fn observer(tuned_as: &str, rate: Hertz) -> Result<CountObserver, DesignError> {
     let unsure = tuned::uncertainty(tuned_as, rate);

@@ -9,5 +9,5 @@ pub mod mailbox;
 pub mod peers;
 mod subject;
 
-pub use estimators::SUBJECTS;
+pub use estimators::{CLOCK, SUBJECTS};
 pub use subject::{Measured, Run, Subject};

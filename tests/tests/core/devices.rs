@@ -1,4 +1,4 @@
-//! The default device, which three crates describe, each in its own terms.
+//! The default device and the edge clock, which several crates describe, each in its own terms.
 
 use estimator_core::{CoupledMotor, Device};
 use haptic_control::DualStage;
@@ -19,4 +19,11 @@ fn default_devices_are_the_same() {
         assert_eq!(host.counts_per_rev, control.counts_per_rev);
         assert_eq!(host.current_limit_a, control.current_limit);
     }
+}
+
+#[test]
+fn edge_clocks_are_the_same() {
+    let firmware = f64::from(firmware_app::config::TIMER_HZ);
+    assert_eq!(host_sim::trace::EDGE_CLOCK_HZ, firmware);
+    assert_eq!(bench_image::CLOCK.0, firmware);
 }
