@@ -165,3 +165,29 @@ impl Control {
 fn is_finite(action: &Action) -> bool {
     action.torque.0.is_finite() && action.large.0.is_finite() && action.handle.0.is_finite()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptic_control::{NewtonMetres, RadPerS};
+
+    #[test]
+    fn an_action_with_one_number_that_is_not_finite_is_found() {
+        assert!(is_finite(&Action::default()));
+        let zero = Action::default;
+        for number in [f32::NAN, f32::INFINITY] {
+            assert!(!is_finite(&Action {
+                torque: NewtonMetres(number),
+                ..zero()
+            }));
+            assert!(!is_finite(&Action {
+                large: RadPerS(number),
+                ..zero()
+            }));
+            assert!(!is_finite(&Action {
+                handle: RadPerS(number),
+                ..zero()
+            }));
+        }
+    }
+}

@@ -64,6 +64,8 @@ pub const SCENES: u8 = AnyScene::NAMES.len() as u8;
 /// The scene of the torque set-point.
 pub const TORQUE_SCENE: u8 = AnyScene::Torque(preset!(Torque::usual(&DEVICE, RATE))).number();
 
+pub mod all;
+
 macro_rules! image {
     ($($number:literal, $name:literal, $feature:literal, $scene:ident;)+) => {
         $(
@@ -80,8 +82,6 @@ macro_rules! image {
         #[cfg(any($(feature = $feature),+))]
         pub use one::{Core, Settings, Tuned};
 
-        #[cfg(not(any($(feature = $feature),+)))]
-        mod all;
         #[cfg(not(any($(feature = $feature),+)))]
         pub use all::{Core, Settings, Tuned};
         /// Number of the scene that arming by itself puts on: free-air.

@@ -92,6 +92,7 @@ pub(crate) fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
 pub(crate) fn same_bits(run: &Outcome, host: &[(Option<Currents>, Record)]) -> usize {
     let mut moving = 0;
     assert_eq!(run.telemetry.malformed, [""; 0]);
+    numbered_from_the_first_tick(run);
     for frame in &run.telemetry.frames {
         let k = run.tick_index(frame).expect("a frame tells of a tick");
         let Record {
@@ -115,6 +116,21 @@ pub(crate) fn same_bits(run: &Outcome, host: &[(Option<Currents>, Record)]) -> u
         moving += usize::from(action.large.0 != 0.0 && action.handle.0 != 0.0);
     }
     moving
+}
+
+/// Fails unless frames are numbered from 0, each tells of the tenth tick after the last, from tick 0
+/// on, and has the counts that the board's counters showed at that tick. The emulator saw those: no
+/// code of the firmware is on this side.
+fn numbered_from_the_first_tick(run: &Outcome) {
+    for (k, frame) in run.telemetry.frames.iter().enumerate() {
+        assert_eq!(
+            (frame.seq, frame.tick),
+            (k as u32, 10 * k as u32),
+            "{frame:?}"
+        );
+        let read = run.ticks[10 * k].counts.map(Option::unwrap);
+        assert_eq!([frame.large as u16, frame.small as u16], read, "{frame:?}");
+    }
 }
 
 fn same_action(frame: &Frame, action: &Action) {

@@ -135,7 +135,9 @@ fn a_scene_goes_off_after_half_a_second_of_silence_unless_the_image_arms_by_itse
     };
     assert_eq!(bench.state(), silent);
     // 5 s in all, then the amplifiers are disabled too.
-    bench.wait(ticks(4.6));
+    bench.wait(ticks(4.4));
+    assert!(bench.state().0.is_enabled());
+    bench.wait(ticks(0.2));
     assert_eq!(bench.state().0.is_enabled(), AUTO_ARM);
 }
 

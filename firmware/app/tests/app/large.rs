@@ -60,5 +60,6 @@ fn what_is_learned_is_what_the_estimator_says() {
     }
     let learned = ADAPTIVE.learned(&state);
     assert_eq!(learned, ADAPTIVE.deviations(&state));
+    assert_eq!(learned.deviations(), Some(learned));
     assert_ne!(learned, Default::default());
 }

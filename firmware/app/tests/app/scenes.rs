@@ -18,6 +18,15 @@ use haptic_control::{Mode, Request};
 
 use crate::bench::{Bench, messages, ticks};
 
+/// A set-point beyond what the small motor renders, 1.5 A at 27.5 mN.m/A, is refused.
+#[test]
+fn torque_ends_with_the_small_motor() {
+    for (torque, renders) in [(0.0412, true), (0.0413, false)] {
+        let taken = messages(&[encode(Command::Torque(torque))]);
+        assert_eq!(!taken.is_empty(), renders, "{torque}");
+    }
+}
+
 /// Turns the handle to an angle at a constant velocity, rad/s.
 fn turn(bench: &mut Bench, to: f64, velocity: f64) {
     let step = velocity / 1e4;
@@ -95,6 +104,7 @@ fn free_air_estimates_and_off_does_not() {
     let mut air = Bench::start(1);
     turn(&mut air, 0.1, 4.0);
     near(air.record().action.handle.0.into(), 4.0, 0.4);
+    assert!(air.control.applied().large.get() > 0.05);
     assert!(air.record().estimation.variance.0 > 0.0);
 }
 
