@@ -168,3 +168,32 @@ fn a_gated_controller_settles_after_a_tick_that_changed_nothing() {
     assert_ne!(gated.step(&mut state, &at(200)), last);
     assert!(!state.is_settled());
 }
+
+/// In free air the small motor takes half of the slip's torque off, and feeds its friction forward.
+#[test]
+fn the_slip_is_the_large_motors_velocity_less_the_handles() {
+    let free = Controller::new(FreeAir, FiniteDifference, FiniteDifference, &RIG);
+    for (large, handle) in [(1, 3), (1, -3), (-2, 10), (0, 5), (2, 0)] {
+        let at =
+            |k: i32| Sample::new(Count((large * k) as u32)).with_small(Count((handle * k) as u32));
+        let mut state = free.start(&at(0));
+        let action = (1..200).fold(free.step(&mut state, &at(0)), |_, k| {
+            free.step(&mut state, &at(k))
+        });
+        let turn = std::f64::consts::TAU * RATE.0;
+        let speeds = [
+            f64::from(large) / 4096.0 * turn,
+            f64::from(handle) / 20_000.0 * turn,
+        ];
+        assert!((f64::from(action.large.0) - speeds[0]).abs() < 1e-4);
+        assert!((f64::from(action.handle.0) - speeds[1]).abs() < 1e-4);
+        let friction = 0.8 * DEVICE.small.coulomb * (speeds[1] / 0.12).clamp(-1.0, 1.0);
+        let torque = friction - 0.5 * DEVICE.damping * (speeds[0] - speeds[1]);
+        let wanted = torque / DEVICE.small.torque_constant;
+        let small = f64::from(action.currents.small.get());
+        assert!(
+            (small - wanted).abs() < 1e-5,
+            "{large} {handle}: {small} {wanted}"
+        );
+    }
+}

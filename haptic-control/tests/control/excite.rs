@@ -105,6 +105,41 @@ fn the_pattern_is_two_sections_of_four_passes() {
     assert!(currents[end..end + 100].iter().all(is_off));
 }
 
+/// A handle that nobody holds comes back: each group of strokes is followed by its mirror image.
+#[test]
+fn strokes_come_in_mirrored_groups() {
+    let currents = run(1e3, STROKES_MS as u32, |_| 0);
+    let at = |ms: usize| [currents[ms].large, currents[ms].small].map(Amps::get);
+    let mut begin = 40;
+    for duration in [154, 152, 160] {
+        let group = begin..begin + duration;
+        for ms in group.clone() {
+            let mirror = at(ms + duration).map(|amps| -amps);
+            assert_eq!(at(ms), mirror, "{ms} ms");
+        }
+        // It begins with the large motor, and both motors push both ways.
+        assert!(at(begin)[0] > 0.0);
+        for motor in 0..2 {
+            let pushes = |sign: f32| group.clone().any(|ms| sign * at(ms)[motor] > 0.0);
+            assert!(motor == 0 || pushes(1.0) && pushes(-1.0), "{begin}");
+        }
+        begin += 2 * duration;
+    }
+    assert_eq!(begin, STROKES_MS);
+}
+
+#[test]
+fn a_pass_of_levels_is_400_ms_negative_and_2490_ms_positive() {
+    let currents = run(1e3, 20_000, |_| 0);
+    let pass = &currents[4 * STROKES_MS..4 * STROKES_MS + LEVELS_MS];
+    let [negative, positive] = [-1.0, 1.0].map(|sign| {
+        let is_there = |now: &&Currents| sign * now.large.get() > 0.0;
+        pass.iter().filter(is_there).count()
+    });
+    assert_eq!((negative, positive), (400, 2490));
+    assert!(pass.iter().all(|now| now.small == Amps::ZERO));
+}
+
 /// Millisecond of the last current that is not zero, and one.
 fn ended(currents: &[Currents]) -> usize {
     currents.iter().rposition(|c| !is_off(c)).unwrap() + 1
@@ -221,5 +256,29 @@ fn at_rates_between_whole_kilohertz_the_pattern_takes_as_long() {
         // The last pass ends with 100 ms of rest.
         let end = (4 * (STROKES_MS + LEVELS_MS) - 100) * hertz / 1000;
         assert!(last.abs_diff(end) <= 1, "{rate_hz}: {last} {end}");
+    }
+}
+
+#[test]
+fn selected_on_a_handle_that_was_turned_the_bounds_count_from_there() {
+    const RATE: Hertz = Hertz(1e3);
+    const RIG: Rig = preset!(Rig::new(&DEVICE, RATE, LoopPoles::DEFAULT));
+    const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(20_000, RATE, 4e3));
+    const HANDLE: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
+    let board = Switchboard::new(FiniteDifference, HANDLE, RIG, RATE);
+    let at = |count: i32| Sample::default().with_small(Count(count as u32));
+    for turned in [5000, -5000] {
+        let mut state = board.start(&at(0));
+        let scene = AnyScene::Excite(Excite::new(&DEVICE, RATE).unwrap());
+        board.select(&mut state, scene, &at(turned));
+        // 2 rad are 6366 counts: a creep of one a millisecond on from there, or back over the origin.
+        for way in [1, -1] {
+            let mut state = state.clone();
+            let currents: Vec<_> = (0..12_000)
+                .map(|k| board.step(&mut state, &at(turned + way * k)).currents)
+                .collect();
+            let end = ended(&currents);
+            assert!((6300..=6367).contains(&end), "{turned} {way}: {end}");
+        }
     }
 }

@@ -190,7 +190,8 @@ fn a_wall_begins_at_its_position_and_neither_pulls_nor_damps_before() {
 fn a_texture_is_its_sine_from_the_first_tick() {
     for (frequency, rate) in [(50.0, 1e3), (150.0, 10e3), (300.0, 100e3)] {
         let texture = Texture::new(6e-3, Hertz(frequency), Hertz(rate)).unwrap();
-        let mut phase = texture.start(Radians(0.0));
+        let mut phase = texture.start(Radians(0.3));
+        assert_eq!(phase, 0);
         let handle = Handle {
             angle: Radians(0.0),
             velocity: (),
