@@ -294,7 +294,15 @@ impl Learning for Learned {
         let r = caution * gain.variance;
         let Some(k) = bierman(&mut state.upper, &mut diagonal, h, r) else {
             unlikely();
-            state.sensitivity = [Dependence::default(); 3];
+            // Known to be zero, the compiler would have a routine clear it, by a loop of which the
+            // bound on an update's instructions knows no end.
+            let zero = core::hint::black_box(0.0);
+            let none = Dependence {
+                position: zero,
+                velocity: zero,
+                load: zero,
+            };
+            state.sensitivity = [none; 3];
             return None;
         };
         state.diagonal = diagonal;

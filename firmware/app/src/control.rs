@@ -11,9 +11,11 @@ use crate::scene::{Core, FIRST, SCENES, Tuned};
 use crate::telemetry::Record;
 
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
+/// Control ticks from arming to the first scene, 20 ms: amplifiers take 1 to 10 ms until they follow
+/// a command.
+pub const SETTLE: u32 = RATE_HZ / 50;
 const SAFETY: Safety = Safety {
-    // 20 ms: amplifiers take 1 to 10 ms until they follow a command.
-    settle: RATE_HZ / 50,
+    settle: SETTLE,
     silence: SILENCE,
     // Ten times as long as a scene goes on.
     disarm: match SILENCE {

@@ -47,10 +47,11 @@ fn telemetry_tells_who_is_in_charge() {
         let mut told: Vec<_> = told.iter().map(|frame| frame.estimator.unwrap()).collect();
         let taking_over = told.iter().filter(|number| **number == NOBODY).count();
         told.dedup();
-        // Nobody before the scene is on, and while one takes over: 40 ms each.
+        // Nobody before the scene is on, 100 ms until arming and 20 of settling, and while one takes
+        // over: 40 ms each.
         assert_eq!(told, [NOBODY, 0, NOBODY, 1, NOBODY, 0]);
         assert!(
-            (100 + 78..=105 + 82).contains(&taking_over),
+            (120 + 78..=125 + 82).contains(&taking_over),
             "{taking_over}"
         );
         let last = run.telemetry.frames.last().unwrap();

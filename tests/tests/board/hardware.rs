@@ -116,7 +116,7 @@ fn a_fault_in_the_midst_of_a_frame_is_logged() {
         run(&Setup {
             seconds: 0.3,
             faults,
-            instructions_per_second: NonZeroU64::new(40_000_000).expect("not zero"),
+            instructions_per_second: NonZeroU64::new(25_000_000).expect("not zero"),
             ..Setup::default()
         })
     };
