@@ -69,11 +69,6 @@ shared! {
     kalman_free_air = run_image("large-kalman", &of_scene(SceneName::FreeAir, Hand::Moving, 10.0));
     /// Free air with a moving hand, 10 s, the learning observer on the large motor.
     adaptive_free_air = run_image("large-adaptive", &of_scene(SceneName::FreeAir, Hand::Moving, 10.0));
-    /// The same with time stamps.
-    adaptive_edge_free_air = run_image(
-        "large-adaptive,edge-capture",
-        &of_scene(SceneName::FreeAir, Hand::Moving, 10.0)
-    );
     /// Free air with a hand that chirps and reverses, 10 s, the Kalman filter on the large motor.
     kalman_track = run_image("large-kalman", &of_scene(SceneName::FreeAir, Hand::Tracking, 10.0));
 }
