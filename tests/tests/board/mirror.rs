@@ -220,9 +220,6 @@ fn codes_are_the_hosts(run: &Outcome, host: &[(Option<Currents>, Record)]) -> us
     moved
 }
 
-/// Ticks from arming to the scene, in which the amplifiers get ready: 20 ms.
-const SETTLE: usize = 200;
-
 /// The switchboard of an image with another estimator on the large motor: a build of
 /// `firmware_app` has one choice.
 fn mirrored_with<L>(large: L, run: &Outcome) -> Vec<Action>
