@@ -14,6 +14,9 @@
 )))]
 
 use drivers::{Command, encode};
+use estimator_core::Deviations;
+use firmware_app::config::EDGES;
+use firmware_app::large::Learnable as _;
 use haptic_control::{Mode, Request};
 
 use crate::bench::{Bench, messages, ticks};
@@ -180,4 +183,22 @@ fn a_choice_of_estimator_lasts_over_restarts() {
     bench.request(Request::Arm);
     bench.run(ticks(0.05));
     assert_eq!(number(&bench), Some(1));
+}
+
+#[test]
+fn a_record_tells_what_was_learned() {
+    // A wall lets the coupler slip.
+    let mut bench = Bench::start(2);
+    for to in [0.2, 0.25, 0.2, 0.3].into_iter().cycle().take(40) {
+        rest(&mut bench, to);
+    }
+    assert_eq!(bench.state().0, Mode::Running);
+    // Nothing by an estimator that does not learn.
+    let learned = bench.record().learned.deviations();
+    assert_eq!(learned.is_some(), cfg!(feature = "large-adaptive"));
+    // Nor from edges, which nobody stamps here.
+    assert_eq!(
+        learned == Some(Deviations::default()),
+        learned.is_some() && EDGES
+    );
 }
