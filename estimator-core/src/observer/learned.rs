@@ -294,15 +294,16 @@ impl Learning for Learned {
         let r = caution * gain.variance;
         let Some(k) = bierman(&mut state.upper, &mut diagonal, h, r) else {
             unlikely();
-            // Known to be zero, the compiler would have a routine clear it, by a loop of which the
-            // bound on an update's instructions knows no end.
+            // Known to be zero or as an array, it would be cleared by a loop, of which the bound on an
+            // update's instructions knows no end.
             let zero = core::hint::black_box(0.0);
             let none = Dependence {
                 position: zero,
                 velocity: zero,
                 load: zero,
             };
-            state.sensitivity = [none; 3];
+            let [damping, friction, torque_constant] = &mut state.sensitivity;
+            (*damping, *friction, *torque_constant) = (none, none, none);
             return None;
         };
         state.diagonal = diagonal;
