@@ -3,3 +3,4 @@
 mod fuzz;
 mod lists;
 mod stress;
+mod traces;
