@@ -20,11 +20,11 @@ mod zwidth;
 
 use std::ffi::OsString;
 
-use clap::error::ErrorKind;
 use clap::{CommandFactory as _, Parser as _};
 
-use crate::failure::Failure;
 use arguments::{Arguments, Command};
+use terminal::explain;
+use terminal::failure::Failure;
 
 /// Runs the command line `arguments`, the program's name first; no arguments are `compare`.
 ///
@@ -58,26 +58,6 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Some(Command::Scenarios) => list::scenarios(),
         Some(Command::Device(options)) => list::device(&options),
     }
-}
-
-/// Help and version go out; anything else becomes one line that names `program` for help.
-///
-/// # Errors
-/// [`Failure::Input`] with that line.
-pub fn explain(error: &clap::Error, program: &str) -> Result<(), Failure> {
-    if let ErrorKind::DisplayHelp | ErrorKind::DisplayVersion = error.kind() {
-        return crate::output::print_bytes(error.render().to_string().as_bytes());
-    }
-    let text = error.render().to_string();
-    let said: Vec<_> = text
-        .lines()
-        .map(str::trim)
-        .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"))
-        .filter(|line| !line.is_empty())
-        .collect();
-    let said = said.join(" ");
-    let said = said.strip_prefix("error: ").unwrap_or(&said);
-    Err(Failure::Input(format!("{said}; see {program} --help")))
 }
 
 /// The program with the command that `arguments` name, whose --help has what they may be.

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
-use host_sim::device::Device;
-use host_sim::estimators::Kind;
-use host_sim::parameters::Parameters;
-use host_sim::zwidth::{Boundary, Case, Settings, boundaries, probe};
+use catalogue::estimators::Kind;
+use catalogue::parameters::Parameters;
+use experiments::zwidth::{Boundary, Case, Settings, boundaries, probe};
+use simulation::device::Device;
 
 fn case(name: &str, rate_hz: f64, lines: u32) -> Case {
     let kind = Kind::named(name).unwrap();

@@ -9,12 +9,12 @@ use bench_image::{SUBJECTS, Subject};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box, black_box_drop};
 use estimator_core::Sample;
-use host_sim::closed_loop::SceneName;
-use host_sim::device::Device;
-use host_sim::scenario::ScenarioName;
-use host_sim::simulate::simulate;
-use host_sim::trace::Columns;
+use experiments::closed_loop::SceneName;
 use pareto::traces::{self, Ground};
+use simulation::device::Device;
+use simulation::scenario::ScenarioName;
+use simulation::simulate::simulate;
+use simulation::trace::Columns;
 use virtual_board::image::Image;
 use virtual_board::run::{Setup, on_board};
 use virtual_board::scene::ImageScene;
@@ -58,8 +58,8 @@ fn update(bencher: Bencher<'_, '_>, module: &str) {
 fn host_sim(bencher: Bencher<'_, '_>, rate_hz: u32) {
     let device = Device::default();
     let rate = f64::from(rate_hz);
-    let kind = host_sim::estimators::Kind::named("kalman-motor-steady").expect("an estimator");
-    let setup = host_sim::compare::setup(&device, rate);
+    let kind = catalogue::estimators::Kind::named("kalman-motor-steady").expect("an estimator");
+    let setup = catalogue::estimators::Setup::of(&device, rate);
     let estimator = kind.build(&setup, &vec![0.1, 0.0]).expect("a filter");
     bencher.counter(ItemsCount::new(rate_hz)).bench_local(|| {
         let columns = Columns::default();

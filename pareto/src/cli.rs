@@ -4,8 +4,8 @@ use std::ffi::OsString;
 use std::path::Path;
 
 use clap::{Parser, Subcommand};
-use host_sim::failure::Failure;
-use host_sim::output::{print_bytes, write_whole};
+use terminal::failure::Failure;
+use terminal::output::{print_bytes, write_whole};
 
 use crate::golden::Golden;
 use crate::{control, measure, peer_tuning, plot, table};
@@ -34,7 +34,7 @@ enum What {
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
-        Err(error) => return host_sim::cli::explain(&error, "cargo pareto"),
+        Err(error) => return terminal::explain(&error, "cargo pareto"),
     };
     match arguments.what {
         None => everything(),

@@ -4,7 +4,7 @@
 pub mod plot;
 pub mod table;
 
-use host_sim::closed_loop::SceneName;
+use experiments::closed_loop::SceneName;
 use rayon::prelude::*;
 use serde::Serialize;
 use virtual_board::budget::{self, Budget, highest_rate_hz};

@@ -5,15 +5,15 @@ use std::fmt::Write as _;
 
 use bench_image::Measured;
 use bench_image::peers::{IdspLowPass, IdspPll};
+use catalogue::estimators::sample;
 use estimator_core::{Hertz, Signals};
-use host_sim::compare::interval;
-use host_sim::device::Device;
-use host_sim::estimators::sample;
-use host_sim::scenario::ScenarioName;
-use host_sim::score::{Truth, Wanted};
-use host_sim::simulate::simulate;
-use host_sim::trace::{Columns, Trace};
-use host_sim::tune::{FIRST_SEED, RMS_WEIGHT};
+use experiments::compare::interval;
+use experiments::tune::{FIRST_SEED, RMS_WEIGHT};
+use scoring::score::{Truth, Wanted};
+use simulation::device::Device;
+use simulation::scenario::ScenarioName;
+use simulation::simulate::simulate;
+use simulation::trace::{Columns, Trace};
 
 use crate::traces::{COUNTS_PER_REV, RATES_HZ, counts_per_tick};
 

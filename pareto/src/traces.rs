@@ -1,12 +1,12 @@
 //! The traces that everything runs over.
 
+use catalogue::estimators::sample;
 use estimator_core::{Amps, ClockTicks, Count, Edge, Sample, Signals};
-use host_sim::device::Device;
-use host_sim::estimators::sample;
-use host_sim::recording::Recording;
-use host_sim::scenario::ScenarioName;
-use host_sim::simulate::simulate;
-use host_sim::trace::{Columns, Trace};
+use recordings::recording::Recording;
+use simulation::device::Device;
+use simulation::scenario::ScenarioName;
+use simulation::simulate::simulate;
+use simulation::trace::{Columns, Trace};
 use stress::course::Course;
 
 /// Samples of each trace.

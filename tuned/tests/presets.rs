@@ -1,13 +1,13 @@
 //! Images run with what `host-sim tune` wrote for the plant with friction.
 
+use catalogue::estimators::{Kind, Setup};
+use catalogue::parameters::{Parameters, PlantKind};
 use estimator_core::{
     Amps, Count, CountObserver, DesignError, Device, Edge, Hertz, Observer, Sample, Uncertainty,
     VelocityEstimator,
 };
 use firmware_app::config::{DEVICE, RATE, TIMERS};
 use firmware_app::large::{ADAPTIVE, ADAPTIVE_EDGE, Adaptive, AdaptiveEdge};
-use host_sim::estimators::{Kind, Setup};
-use host_sim::parameters::{Parameters, PlantKind};
 
 fn setup(rate: Hertz) -> Setup {
     Setup {

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use host_sim::failure::Failure;
+use terminal::failure::Failure;
 
 use crate::board::CORE_HZ;
 use crate::image::Image;

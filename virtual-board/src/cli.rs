@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::Parser;
-use host_sim::closed_loop::Hand;
-use host_sim::failure::Failure;
-use host_sim::output::{print_bytes, write_whole};
+use experiments::closed_loop::Hand;
 use indicatif::{ProgressBar, ProgressStyle};
+use terminal::failure::Failure;
+use terminal::output::{print_bytes, write_whole};
 
 use crate::budget;
 use crate::command::Command;
@@ -145,7 +145,7 @@ fn timed<T: std::str::FromStr<Err: std::fmt::Display>>(text: &str) -> Result<(f6
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
-        Err(error) => return host_sim::cli::explain(&error, "cargo board"),
+        Err(error) => return terminal::explain(&error, "cargo board"),
     };
     if !(arguments.seconds > 0.0 && arguments.seconds <= 3600.0) {
         let message = format!(

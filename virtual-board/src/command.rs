@@ -1,6 +1,6 @@
 //! Commands to the firmware, as they go into RTT down channel 0.
 
-use host_sim::closed_loop::SceneName;
+use experiments::closed_loop::SceneName;
 
 /// Number of the scene of the torque set-point, which the host simulation does not have.
 pub const TORQUE_SCENE: u8 = 8;

@@ -9,12 +9,12 @@ mod plant;
 
 use std::collections::VecDeque;
 
-use host_sim::closed_loop::{Bench, Eye, Motion};
-use host_sim::encoder::{DiscErrors, Encoder};
-use host_sim::plant::Grip;
+use experiments::closed_loop::{Bench, Eye, Motion};
 use rigless::emulator::{AccessKind, Driver, Host, Settled, Stop, Watch};
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
+use simulation::encoder::{DiscErrors, Encoder};
+use simulation::plant::Grip;
 
 use crate::board::ControllerBoard;
 use crate::fault::Fault;

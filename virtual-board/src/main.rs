@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use host_sim::failure::ended;
+use terminal::failure::ended;
 
 fn main() -> ExitCode {
     ended(virtual_board::cli::run(std::env::args_os()))

@@ -1,8 +1,8 @@
 //! What the emulator holds against a run: accesses that it cannot answer as the chip does, and what
 //! its models report of clocks and flash.
 
-use host_sim::failure::Failure;
 use rigless::session::Session;
+use terminal::failure::Failure;
 
 use crate::board::ControllerBoard;
 

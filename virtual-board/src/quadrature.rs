@@ -1,6 +1,6 @@
 //! Quadrature: what an encoder's count looks like on its two lines, and when it changes.
 
-use host_sim::encoder::EdgeObserver;
+use simulation::encoder::EdgeObserver;
 
 /// Levels of A and B at a count. Upwards A leads, as an STM32 timer counts up.
 pub(crate) fn levels(count: u32) -> [bool; 2] {

@@ -1,6 +1,6 @@
 //! Frames of the image as the CSV that `host-sim replay` reads.
 
-use host_sim::record::{choose, csv};
+use recordings::record::{choose, csv};
 
 use crate::run::{Outcome, RATE_HZ};
 

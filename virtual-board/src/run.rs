@@ -4,14 +4,14 @@ use std::collections::BTreeSet;
 use std::num::NonZeroU64;
 use std::time::{Duration, Instant};
 
-use host_sim::closed_loop::{Hand, SceneName};
-use host_sim::device::Device;
-use host_sim::failure::Failure;
-use host_sim::plant::Pose;
-use host_sim::telemetry::{Frame, Telemetry};
+use experiments::closed_loop::{Hand, SceneName};
+use recordings::telemetry::{Frame, Telemetry};
 use rigless::emulator::{Start, run};
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
+use simulation::device::Device;
+use simulation::plant::Pose;
+use terminal::failure::Failure;
 
 use crate::board::{CORE_HZ, ControllerBoard};
 use crate::command::Command;

@@ -3,11 +3,11 @@
 use std::fmt;
 use std::str::FromStr;
 
+use experiments::closed_loop::{Hand, Press, SceneName};
 use haptic_control::{
     Detents, Hold, Inertia, SpringDamper, Texture, Torque, Tunable, Viscous, Wall,
 };
-use host_sim::closed_loop::{Hand, Press, SceneName};
-use host_sim::device::Device;
+use simulation::device::Device;
 
 use crate::command::{Command, number};
 

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use haptic_control::{Mode, Stop};
-use host_sim::telemetry::NOBODY;
+use recordings::telemetry::NOBODY;
 
 use crate::budget;
 use crate::run::{Outcome, Setup};

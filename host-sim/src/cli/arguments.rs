@@ -4,17 +4,17 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::device::Device;
-use crate::estimators::Kind;
-use crate::failure::Failure;
-use crate::parameters::{Parameters, Presets};
-use crate::scenario::ScenarioName;
+use catalogue::estimators::Kind;
+use catalogue::parameters::{Parameters, Presets};
+use simulation::device::Device;
+use simulation::scenario::ScenarioName;
+use terminal::failure::Failure;
 
 /// Velocity estimation for a dual-stage haptic device, simulated and scored.
 ///
 /// Without a command: compare, with everything at its default.
 #[derive(Debug, Parser)]
-#[command(name = "host-sim", version = crate::version::VERSION)]
+#[command(name = "host-sim", version = report::version::VERSION)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub(super) command: Option<Command>,
@@ -97,7 +97,7 @@ impl DeviceFile {
     pub(super) fn name(&self) -> String {
         self.device
             .as_deref()
-            .map_or_else(|| "default device".to_owned(), crate::replay::name)
+            .map_or_else(|| "default device".to_owned(), experiments::replay::name)
     }
 }
 

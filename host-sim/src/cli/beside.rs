@@ -1,12 +1,12 @@
 //! What the report of `compare` shows beside the scores: limits, wrong beliefs, a warming coupler.
 
-use crate::compare::{Case, Settings, compare};
-use crate::failure::Failure;
-use crate::limit::{self, limit};
-use crate::parameters::PlantKind;
-use crate::report::CaseReport;
-use crate::scenario::ScenarioName;
-use crate::sensitivity::{self, sensitivity};
+use catalogue::parameters::PlantKind;
+use experiments::compare::{Case, Settings, compare};
+use experiments::limit::{self, limit};
+use experiments::sensitivity::{self, sensitivity};
+use report::CaseReport;
+use simulation::scenario::ScenarioName;
+use terminal::failure::Failure;
 
 use super::arguments::rates;
 use super::compare::{Compare, case_report};

@@ -4,17 +4,20 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::compare::{Case, Cost, Outcome, Settings, compare};
-use crate::contest::Row;
-use crate::device::Device;
-use crate::failure::Failure;
-use crate::output::{Folder, note};
-use crate::parameters::PlantKind;
-use crate::report::{self, CaseReport, DeviceFacts, ReportInput, Traces};
-use crate::scenario::ScenarioName;
-use crate::score::{Field, SKIP_S, Score, Wanted};
-use crate::table::layout::terminal_width;
-use crate::{cost, rows, simulate, table};
+use catalogue::parameters::PlantKind;
+use experiments::compare::{Case, Cost, Outcome, Settings, compare};
+use experiments::rows;
+use experiments::table;
+use experiments::table::layout::terminal_width;
+use report::measured;
+use report::{self, CaseReport, DeviceFacts, ReportInput, Traces};
+use scoring::contest::Row;
+use scoring::score::{Field, SKIP_S, Score, Wanted};
+use simulation::device::Device;
+use simulation::scenario::ScenarioName;
+use simulation::simulate;
+use terminal::failure::Failure;
+use terminal::output::{Folder, note};
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds, rates, scenarios};
 use super::beside::{Beside, beside};
@@ -257,7 +260,7 @@ pub(super) fn case_report(outcome: &Outcome) -> CaseReport {
     let row = |row: &Row| report::Row {
         estimator: row.estimator.to_owned(),
         score: row.score,
-        instructions: cost::instructions(row.estimator, &row.parameters),
+        instructions: measured::instructions(row.estimator, &row.parameters),
     };
     let traces = outcome.signals.as_ref().map(|(trace, estimates)| Traces {
         t0: 0.0,

@@ -4,18 +4,20 @@ use std::path::PathBuf;
 
 use haptic_control::LoopPoles;
 
-use crate::closed_loop::{SceneName, believed};
-use crate::compare::Cost;
-use crate::estimators::Kind;
-use crate::failure::Failure;
-use crate::felt::compare::USUAL;
-use crate::felt::{self, Case, Design, FeltRow, Outcome, Settings, compare};
-use crate::output::{Folder, note};
-use crate::parameters::PlantKind;
-use crate::report::{ClosedLoop, ReportInput};
-use crate::scenario::ScenarioName;
-use crate::table::layout::terminal_width;
-use crate::{report, rows, simulate};
+use catalogue::estimators::Kind;
+use catalogue::parameters::PlantKind;
+use experiments::closed_loop::{SceneName, believed};
+use experiments::compare::Cost;
+use experiments::felt::compare::USUAL;
+use experiments::felt::{self, Case, Design, FeltRow, Outcome, Settings, compare};
+use experiments::rows;
+use experiments::table::layout::terminal_width;
+use report;
+use report::{ClosedLoop, ReportInput};
+use simulation::scenario::ScenarioName;
+use simulation::simulate;
+use terminal::failure::Failure;
+use terminal::output::{Folder, note};
 
 use super::arguments::{kinds, rates};
 use super::compare::{Compare, facts, longer_than_skipped, report_folder, timing, wanted};

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::failure::Failure;
-use crate::identify::{self, Known};
-use crate::output::{Folder, is_stdout, note, print_bytes, write_whole};
-use crate::recording::Recording;
-use crate::report;
+use experiments::identify::{self, Known};
+use recordings::recording::Recording;
+use report;
+use terminal::failure::Failure;
+use terminal::output::{Folder, is_stdout, note, print_bytes, write_whole};
 
 use super::arguments::DeviceFile;
 use super::input::{called, read, short_name};

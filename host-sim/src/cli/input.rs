@@ -3,7 +3,7 @@
 use std::io::Read as _;
 use std::path::Path;
 
-use crate::failure::Failure;
+use terminal::failure::Failure;
 
 /// Name of standard input in messages, and as a recording.
 const STDIN: &str = "standard input";
@@ -25,7 +25,7 @@ pub(super) fn called(path: &Path) -> String {
 pub(super) fn short_name(path: &Path) -> String {
     match is_stdin(path) {
         true => STDIN.to_owned(),
-        false => crate::replay::name(path),
+        false => experiments::replay::name(path),
     }
 }
 

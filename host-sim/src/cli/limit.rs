@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::compare::{Case, Settings};
-use crate::failure::Failure;
-use crate::limit::{SCENARIOS, limit, table::table};
-use crate::parameters::PlantKind;
-use crate::rows;
-use crate::score::Wanted;
-use crate::table::layout::terminal_width;
+use catalogue::parameters::PlantKind;
+use experiments::compare::{Case, Settings};
+use experiments::limit::{SCENARIOS, limit, table::table};
+use experiments::rows;
+use experiments::table::layout::terminal_width;
+use scoring::score::Wanted;
+use terminal::failure::Failure;
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds, rates, scenarios};
 use super::page::{self, progress};
@@ -59,7 +59,7 @@ pub(super) fn run(options: &Limit) -> Result<(), Failure> {
     let scenarios = scenarios(&options.scenarios, &SCENARIOS)?;
     let mut cases = Vec::new();
     for rate_hz in rates(&options.rates, &[1e3]) {
-        crate::simulate::ticks(rate_hz, options.seconds)?;
+        simulation::simulate::ticks(rate_hz, options.seconds)?;
         cases.extend(scenarios.iter().map(|&scenario| Case {
             scenario,
             rate_hz,

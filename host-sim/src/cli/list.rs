@@ -2,12 +2,12 @@
 
 use std::fmt::Write as _;
 
-use crate::estimators::{Kind, Search};
-use crate::failure::Failure;
-use crate::output::print_bytes;
-use crate::parameters::{PlantKind, Preset, Presets};
-use crate::scenario::ScenarioName;
-use crate::wording::{decimal, wrapped};
+use catalogue::estimators::{Kind, Search};
+use catalogue::parameters::{PlantKind, Preset, Presets};
+use simulation::scenario::ScenarioName;
+use terminal::failure::Failure;
+use terminal::output::print_bytes;
+use terminal::wording::{decimal, wrapped};
 
 use super::arguments::DeviceFile;
 

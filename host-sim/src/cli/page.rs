@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::failure::Failure;
-use crate::output::{Folder, is_stdout, print_bytes, write_whole};
-use crate::report;
+use report;
+use terminal::failure::Failure;
+use terminal::output::{Folder, is_stdout, print_bytes, write_whole};
 
 /// A progress bar on standard error, if that is a terminal.
 pub(super) fn progress(length: usize, doing: &'static str) -> ProgressBar {

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::compare::interval;
-use crate::failure::Failure;
-use crate::output::{is_stdout, note, print_bytes, write_whole};
-use crate::recording::{BoardColumns, Recording};
-use crate::replay;
-use crate::report::{self, RecordingView};
+use experiments::compare::interval;
+use experiments::replay;
+use recordings::recording::{BoardColumns, Recording};
+use report::{self, RecordingView};
+use terminal::failure::Failure;
+use terminal::output::{is_stdout, note, print_bytes, write_whole};
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds};
 use super::input::{self, called, is_stdin, short_name};

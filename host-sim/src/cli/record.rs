@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::failure::Failure;
-use crate::output::{note, write_whole};
-use crate::record::{choose, csv, report};
-use crate::telemetry::Telemetry;
+use recordings::record::{choose, csv, report};
+use recordings::telemetry::Telemetry;
+use terminal::failure::Failure;
+use terminal::output::{note, write_whole};
 
 use super::input::{called, read};
 

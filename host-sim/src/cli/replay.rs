@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::failure::Failure;
-use crate::output::{is_stdout, note, print_bytes, write_whole, write_with};
-use crate::recording::{BoardColumns, Recording};
-use crate::table::layout::terminal_width;
-use crate::wording::wrapped;
-use crate::{replay, rows};
+use experiments::replay;
+use experiments::rows;
+use experiments::table::layout::terminal_width;
+use recordings::recording::{BoardColumns, Recording};
+use terminal::failure::Failure;
+use terminal::output::{is_stdout, note, print_bytes, write_whole, write_with};
+use terminal::wording::wrapped;
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds};
 use super::input::{self, called, short_name};

@@ -4,16 +4,17 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::closed_loop::SceneName;
-use crate::estimators::Kind;
-use crate::failure::Failure;
-use crate::output::{Folder, print_bytes, write_whole};
-use crate::robust::row::Row;
-use crate::robust::shard::Part;
-use crate::robust::variation::Subject;
-use crate::robust::{Experiment, Settings, shard, summary};
-use crate::table::layout::{NARROW, terminal_width};
-use crate::{report, rows};
+use catalogue::estimators::Kind;
+use experiments::closed_loop::SceneName;
+use experiments::robust::row::Row;
+use experiments::robust::shard::Part;
+use experiments::robust::variation::Subject;
+use experiments::robust::{Experiment, Settings, shard, summary};
+use experiments::rows;
+use experiments::table::layout::{NARROW, terminal_width};
+use report;
+use terminal::failure::Failure;
+use terminal::output::{Folder, print_bytes, write_whole};
 
 use super::arguments::{DeviceFile, ParameterOptions};
 use super::page::{self, progress};

@@ -4,15 +4,16 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::compare::{Case, Settings};
-use crate::failure::Failure;
-use crate::output::Folder;
-use crate::parameters::PlantKind;
-use crate::scenario::ScenarioName;
-use crate::score::Wanted;
-use crate::sensitivity::{sensitivity, table::table};
-use crate::table::layout::{NARROW, terminal_width};
-use crate::{report, rows};
+use catalogue::parameters::PlantKind;
+use experiments::compare::{Case, Settings};
+use experiments::rows;
+use experiments::sensitivity::{sensitivity, table::table};
+use experiments::table::layout::{NARROW, terminal_width};
+use report;
+use scoring::score::Wanted;
+use simulation::scenario::ScenarioName;
+use terminal::failure::Failure;
+use terminal::output::Folder;
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds, rates, scenarios};
 use super::page::{self, progress};
@@ -94,7 +95,7 @@ fn cases(options: &Sensitivity) -> Result<Vec<Case>, Failure> {
             let seconds = options
                 .seconds
                 .unwrap_or_else(|| scenario.default_seconds());
-            crate::simulate::ticks(rate_hz, seconds)?;
+            simulation::simulate::ticks(rate_hz, seconds)?;
             cases.extend(seeds.iter().map(|&seed| Case {
                 scenario,
                 rate_hz,

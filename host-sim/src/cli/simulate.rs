@@ -5,16 +5,16 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use haptic_control::LoopPoles;
 
-use crate::closed_loop::{Eye, Hand, Loop, SceneName, believed, estimator};
-use crate::estimators::Kind;
-use crate::failure::Failure;
-use crate::output::write_whole;
-use crate::parameters::Parameters;
-use crate::recording::Recording;
-use crate::scenario::ScenarioName;
-use crate::simulate::{simulate, ticks};
-use crate::trace::Columns;
-use crate::wording::unknown;
+use catalogue::estimators::Kind;
+use catalogue::parameters::Parameters;
+use experiments::closed_loop::{Eye, Hand, Loop, SceneName, believed, estimator};
+use recordings::recording::Recording;
+use simulation::scenario::ScenarioName;
+use simulation::simulate::{simulate, ticks};
+use simulation::trace::Columns;
+use terminal::failure::Failure;
+use terminal::output::write_whole;
+use terminal::wording::unknown;
 
 use super::arguments::DeviceFile;
 

@@ -5,14 +5,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::belief::Belief;
-use crate::estimators::Kind;
-use crate::failure::Failure;
-use crate::output::{is_stdout, print_bytes, write_whole};
-use crate::parameters::{PlantKind, Preset, Presets};
-use crate::scenario::ScenarioName;
-use crate::simulate;
-use crate::tune::{FIRST_SEED, Ground, tune};
+use catalogue::belief::Belief;
+use catalogue::estimators::Kind;
+use catalogue::parameters::{PlantKind, Preset, Presets};
+use experiments::tune::{FIRST_SEED, Ground, tune};
+use simulation::scenario::ScenarioName;
+use simulation::simulate;
+use terminal::failure::Failure;
+use terminal::output::{is_stdout, print_bytes, write_whole};
 
 use super::arguments::{DeviceFile, kinds, rates, scenarios};
 use super::page::progress;
@@ -152,7 +152,7 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
         text += &tuned_on(kinds, ground);
     }
     for note in &notes {
-        crate::output::note(format_args!("note: {note}"));
+        terminal::output::note(format_args!("note: {note}"));
         text += &format!("# {note}\n");
     }
     text += &format!("\n{}", presets.to_toml()?);

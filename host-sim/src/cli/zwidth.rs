@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::estimators::Kind;
-use crate::failure::Failure;
-use crate::output::Folder;
-use crate::report;
-use crate::rows::{csv, json};
-use crate::table::layout::{NARROW, terminal_width};
-use crate::zwidth::{BOUNDS_A_CASE, Case, Settings, boundaries, rows, table};
+use catalogue::estimators::Kind;
+use experiments::rows::{csv, json};
+use experiments::table::layout::{NARROW, terminal_width};
+use experiments::zwidth::{BOUNDS_A_CASE, Case, Settings, boundaries, rows, table};
+use report;
+use terminal::failure::Failure;
+use terminal::output::Folder;
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds, rates};
 use super::page::{self, progress};
@@ -108,7 +108,7 @@ fn cases(options: &Zwidth) -> Result<Vec<Case>, Failure> {
     }
     let mut cases = Vec::new();
     for rate_hz in rates(&options.rates, &[1e3, 10e3, 11.6e3]) {
-        crate::simulate::ticks(rate_hz, 1.0)?;
+        simulation::simulate::ticks(rate_hz, 1.0)?;
         for &lines in &lines {
             cases.extend(estimators.iter().map(|&large| Case {
                 large,

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use host_sim::closed_loop::SceneName;
+use experiments::closed_loop::SceneName;
 use serde_json::Value;
 
 use crate::Folder;

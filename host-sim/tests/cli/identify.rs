@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use host_sim::device::Device;
+use simulation::device::Device;
 
 use crate::Folder;
 

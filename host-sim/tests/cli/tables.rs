@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use host_sim::score::Score;
+use scoring::score::Score;
 
 use crate::{Folder, json};
 

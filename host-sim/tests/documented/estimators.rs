@@ -9,9 +9,9 @@ use std::path::Path;
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 
-use host_sim::estimators::Kind;
-use host_sim::scenario::ScenarioName;
+use catalogue::estimators::Kind;
 use serde_json::Value;
+use simulation::scenario::ScenarioName;
 
 use crate::is_written_for;
 

@@ -1,12 +1,12 @@
 //! Figures of the closed loop.
 
-use host_sim::closed_loop::SceneName;
-use host_sim::device::Device;
-use host_sim::estimators::Kind;
-use host_sim::parameters::Parameters;
-use host_sim::robust::row::Row;
-use host_sim::robust::{self, summary};
-use host_sim::zwidth;
+use catalogue::estimators::Kind;
+use catalogue::parameters::Parameters;
+use experiments::closed_loop::SceneName;
+use experiments::robust::row::Row;
+use experiments::robust::{self, summary};
+use experiments::zwidth;
+use simulation::device::Device;
 
 use crate::{BENCHMARKS, is_written_for, table};
 

@@ -3,15 +3,15 @@
 mod estimators;
 mod in_the_loop;
 
-use host_sim::compare::{Case, Outcome, Settings, compare};
-use host_sim::contest::Row;
-use host_sim::device::{Device, Disc};
-use host_sim::estimators::Kind;
-use host_sim::parameters::{Parameters, PlantKind};
-use host_sim::scenario::ScenarioName;
-use host_sim::score::Wanted;
-use host_sim::sensitivity::{self, sensitivity};
-use host_sim::table::pooled_pct;
+use catalogue::estimators::Kind;
+use catalogue::parameters::{Parameters, PlantKind};
+use experiments::compare::{Case, Outcome, Settings, compare};
+use experiments::sensitivity::{self, sensitivity};
+use experiments::table::pooled_pct;
+use scoring::contest::Row;
+use scoring::score::Wanted;
+use simulation::device::{Device, Disc};
+use simulation::scenario::ScenarioName;
 
 const BENCHMARKS: &str = include_str!("../../../docs/benchmarks.md");
 

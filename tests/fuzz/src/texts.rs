@@ -1,7 +1,7 @@
 //! Any bytes as a file that somebody hands over.
 
-use host_sim::device::Device;
-use host_sim::recording::Recording;
+use recordings::recording::Recording;
+use simulation::device::Device;
 
 /// Reads `data` as each kind of file.
 ///

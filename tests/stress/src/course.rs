@@ -34,7 +34,7 @@ impl Draws {
     }
 }
 
-pub use host_sim::trace::EDGE_CLOCK_HZ;
+pub use simulation::trace::EDGE_CLOCK_HZ;
 
 /// Largest displacement in a tick that the estimators take for motion, counts.
 pub const TOP_STEP: i32 = (1 << 15) - 1;

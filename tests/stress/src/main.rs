@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-use host_sim::cli::explain;
-use host_sim::failure::{Failure, ended};
-use host_sim::output::{print_bytes, write_whole};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
+use terminal::explain;
+use terminal::failure::{Failure, ended};
+use terminal::output::{print_bytes, write_whole};
 
 use stress::contestants::{Contestant, at};
 use stress::parts::Plan;

@@ -1,11 +1,11 @@
 //! What f32 costs on signals that a device can give: every scenario of the simulated one.
 
-use host_sim::device::Device;
-use host_sim::estimators::sample;
-use host_sim::scenario::ScenarioName;
-use host_sim::simulate::simulate;
-use host_sim::trace::Columns;
+use catalogue::estimators::sample;
 use serde::Serialize;
+use simulation::device::Device;
+use simulation::scenario::ScenarioName;
+use simulation::simulate::simulate;
+use simulation::trace::Columns;
 
 use crate::contestants::Contestant;
 use crate::course::Shown;

@@ -3,10 +3,10 @@
 use std::sync::OnceLock;
 
 use estimator_core::{Confidence as _, VelocityEstimator as _};
+use experiments::closed_loop::{Hand, SceneName};
 use firmware_app::large;
 use firmware_app::scene::RIG;
-use host_sim::closed_loop::{Hand, SceneName};
-use host_sim::telemetry::{Frame, NOBODY};
+use recordings::telemetry::{Frame, NOBODY};
 use virtual_board::command::Command;
 use virtual_board::run::{Outcome, Setup, Tick};
 

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use host_sim::closed_loop::SceneName;
+use experiments::closed_loop::SceneName;
 use virtual_board::run::{Outcome, Setup, Tick};
 use virtual_board::scene::ImageScene;
 use virtual_board::score::Range;

@@ -1,6 +1,6 @@
 //! Time stamps of the large encoder's edges, captured by the image and known to the board.
 
-use host_sim::telemetry::Frame;
+use recordings::telemetry::Frame;
 use virtual_board::run::{Outcome, Setup};
 
 use crate::image::run_image;

@@ -4,9 +4,9 @@ mod matrix;
 
 use std::fmt::Write as _;
 
-use host_sim::closed_loop::{Hand, SceneName};
-use host_sim::device::Device;
-use host_sim::telemetry::Frame;
+use experiments::closed_loop::{Hand, SceneName};
+use recordings::telemetry::Frame;
+use simulation::device::Device;
 use virtual_board::fault::Fault;
 use virtual_board::run::{Outcome, Setup};
 

@@ -1,7 +1,7 @@
 //! The loop closes, on time and at a known cost, and does no harm before it is armed.
 
-use host_sim::closed_loop::{Hand, SceneName};
-use host_sim::device::Device;
+use experiments::closed_loop::{Hand, SceneName};
+use simulation::device::Device;
 use virtual_board::run::{AMPS_PER_CODE, Outcome, RATE_HZ, Setup};
 use virtual_board::scene::ImageScene;
 

@@ -1,9 +1,9 @@
 //! The device identified from what the image recorded of it.
 
-use host_sim::closed_loop::{Hand, SceneName};
-use host_sim::device::Device;
-use host_sim::identify::{Known, identify};
-use host_sim::recording::Recording;
+use experiments::closed_loop::{Hand, SceneName};
+use experiments::identify::{Known, identify};
+use recordings::recording::Recording;
+use simulation::device::Device;
 
 use virtual_board::run::Setup;
 

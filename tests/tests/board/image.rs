@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use host_sim::closed_loop::{Hand, SceneName};
+use experiments::closed_loop::{Hand, SceneName};
 use virtual_board::command::Command;
 use virtual_board::image::Image;
 use virtual_board::run::{Outcome, Setup, on_board};

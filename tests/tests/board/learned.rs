@@ -1,10 +1,10 @@
 //! What the image learns of a device that it believes to be another.
 
-use host_sim::closed_loop::{Hand, SceneName};
-use host_sim::device::Device;
-use host_sim::health;
-use host_sim::recording::BoardColumns;
-use host_sim::telemetry::LearnedLine;
+use experiments::closed_loop::{Hand, SceneName};
+use recordings::health;
+use recordings::recording::BoardColumns;
+use recordings::telemetry::LearnedLine;
+use simulation::device::Device;
 use virtual_board::run::{Outcome, Setup};
 
 use crate::image::{of_scene, run, run_image};

@@ -1,14 +1,14 @@
 //! The same control on the host, fed with what the image read: the same bits.
 
 use estimator_core::{Amps, Count, CountsPerTick, Sample, VelocityEstimator};
+use experiments::closed_loop::{Hand, SceneName};
 use firmware_app::config::RATE;
 use firmware_app::control::{Control, Inputs, Message, SETTLE};
 use firmware_app::large::{self, Large, LargeEstimator as _};
 use firmware_app::scene::{HANDLE, RIG};
 use firmware_app::telemetry::Record;
 use haptic_control::{Action, AnyScene, Currents, FreeAir, Request, Stop, Switchboard};
-use host_sim::closed_loop::{Hand, SceneName};
-use host_sim::telemetry::Frame;
+use recordings::telemetry::Frame;
 use virtual_board::run::{Outcome, Tick};
 
 use crate::image::{

@@ -1,14 +1,14 @@
 //! Telemetry off the board's RTT as a recording, and what commands set.
 
-use host_sim::closed_loop::{Hand, SceneName};
-use host_sim::compare::interval;
-use host_sim::device::Device;
-use host_sim::estimators::Kind;
-use host_sim::parameters::Parameters;
-use host_sim::record::{choose, csv};
-use host_sim::recording::{BoardColumns, Recording};
-use host_sim::replay::replay;
-use host_sim::telemetry::{Frame, Telemetry};
+use catalogue::estimators::Kind;
+use catalogue::parameters::Parameters;
+use experiments::closed_loop::{Hand, SceneName};
+use experiments::compare::interval;
+use experiments::replay::replay;
+use recordings::record::{choose, csv};
+use recordings::recording::{BoardColumns, Recording};
+use recordings::telemetry::{Frame, Telemetry};
+use simulation::device::Device;
 use virtual_board::command::Command;
 use virtual_board::fault::Fault;
 use virtual_board::run::{Outcome, Setup};
@@ -168,7 +168,7 @@ fn a_wall_is_tuned_while_it_pushes_and_the_torque_does_not_jump() {
     };
     let run = run(&Setup {
         seconds: 2.0,
-        hand: host_sim::closed_loop::Hand::Pushing,
+        hand: experiments::closed_loop::Hand::Pushing,
         commands: vec![
             (0.05, Command::Scene("wall".parse().unwrap())),
             (0.1, Command::Arm),

@@ -1,6 +1,6 @@
 //! Frames of the image as a recording.
 
-use host_sim::recording::Recording;
+use recordings::recording::Recording;
 
 use crate::image::free_air;
 

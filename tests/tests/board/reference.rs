@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use host_sim::closed_loop::{Hand, SceneName};
-use host_sim::device::Device;
+use experiments::closed_loop::{Hand, SceneName};
+use simulation::device::Device;
 
 use crate::image::{free_air, of_scene, run_image};
 

@@ -3,11 +3,11 @@
 use std::f64::consts::TAU;
 
 use estimator_core::Amps;
+use experiments::closed_loop::{Bench, Eye, Hand};
+use experiments::compare::interval;
 use firmware_app::scene::Core;
-use host_sim::closed_loop::{Bench, Eye, Hand};
-use host_sim::compare::interval;
-use host_sim::device::Device;
-use host_sim::score::{Score, Truth, Wanted};
+use scoring::score::{Score, Truth, Wanted};
+use simulation::device::Device;
 use virtual_board::run::{Outcome, RATE_HZ};
 use virtual_board::score::Parasitic;
 

@@ -2,7 +2,7 @@
 
 use estimator_core::{CoupledMotor, Device};
 use haptic_control::DualStage;
-use host_sim::device;
+use simulation::device;
 
 #[test]
 fn default_devices_are_the_same() {
@@ -24,6 +24,6 @@ fn default_devices_are_the_same() {
 #[test]
 fn edge_clocks_are_the_same() {
     let firmware = f64::from(firmware_app::config::TIMER_HZ);
-    assert_eq!(host_sim::trace::EDGE_CLOCK_HZ, firmware);
+    assert_eq!(simulation::trace::EDGE_CLOCK_HZ, firmware);
     assert_eq!(bench_image::CLOCK.0, firmware);
 }

@@ -79,7 +79,7 @@ fn csv_text() -> impl Strategy<Value = Vec<u8>> {
 
 /// The default device's file with lines lost, moved, and values exchanged.
 fn toml_text() -> impl Strategy<Value = Vec<u8>> {
-    let whole = toml::to_string(&host_sim::device::Device::default()).expect("serialises");
+    let whole = toml::to_string(&simulation::device::Device::default()).expect("serialises");
     let lines: Vec<String> = whole.lines().map(str::to_owned).collect();
     let count = lines.len();
     let value = prop_oneof![

@@ -1,7 +1,7 @@
 //! Lists of estimators that are written by hand, against the estimators of `host-sim`.
 
 use bench_image::SUBJECTS;
-use host_sim::estimators::Kind;
+use catalogue::estimators::Kind;
 use stress::contestants::at;
 use stress::designs;
 

@@ -5,13 +5,12 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use host_sim::compare::setup;
-use host_sim::device::Device;
-use host_sim::estimators::Kind;
-use host_sim::parameters::{Parameters, PlantKind};
-use host_sim::scenario::ScenarioName;
-use host_sim::simulate::simulate;
-use host_sim::trace::{Columns, Trace};
+use catalogue::estimators::{Kind, Setup};
+use catalogue::parameters::{Parameters, PlantKind};
+use simulation::device::Device;
+use simulation::scenario::ScenarioName;
+use simulation::simulate::simulate;
+use simulation::trace::{Columns, Trace};
 use stress::contestants::{Contestant, at};
 use stress::course::Course;
 
@@ -75,7 +74,7 @@ fn scenarios(rate_hz: f64, rows: &mut String) {
         let trace = simulate(&device, scenario, rate_hz, SEED, SECONDS, columns).unwrap();
         let input = input_hash(&trace);
         for kind in Kind::all() {
-            let setup = setup(&device, rate_hz);
+            let setup = Setup::of(&device, rate_hz);
             let values = parameters.values(kind, &setup, PlantKind::Friction);
             let mut hash = Hash::new();
             for velocity in kind.build(&setup, &values).unwrap().run(&trace) {

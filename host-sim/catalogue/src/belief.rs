@@ -1,0 +1,119 @@
+//! What an estimator believes of the device, right or wrong.
+
+use crate::estimators::Setup;
+
+/// A constant of the device that estimators believe in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Constant {
+    /// Damping b of the coupler.
+    Damping,
+    /// Inertia J of the large motor.
+    Inertia,
+    /// Torque constant Kt of the large motor.
+    TorqueConstant,
+    /// Coulomb friction of the large motor.
+    Friction,
+}
+
+impl Constant {
+    /// All of them, in the order of tables.
+    pub const ALL: [Self; 4] = [
+        Self::Damping,
+        Self::Inertia,
+        Self::TorqueConstant,
+        Self::Friction,
+    ];
+
+    /// The name in tables and files.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Damping => "damping",
+            Self::Inertia => "inertia",
+            Self::TorqueConstant => "torque-constant",
+            Self::Friction => "friction",
+        }
+    }
+
+    /// The largest error that a belief is tried with: friction is known worst.
+    #[must_use]
+    pub const fn largest_error(self) -> f64 {
+        match self {
+            Self::Friction => 0.5,
+            _ => 0.3,
+        }
+    }
+}
+
+/// One constant believed to be larger than it is by a part of it: 0.3 is 30 % too large.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Belief {
+    /// Which one.
+    pub constant: Constant,
+    /// Its relative error.
+    pub error: f64,
+}
+
+impl Belief {
+    /// Every constant at its largest error, both ways.
+    #[must_use]
+    pub fn extremes() -> Vec<Self> {
+        Self::at(&[-1.0, 1.0])
+    }
+
+    /// Every constant at these parts of its largest error.
+    #[must_use]
+    pub fn at(parts: &[f64]) -> Vec<Self> {
+        let of = |constant: Constant| {
+            parts.iter().map(move |part| Self {
+                constant,
+                error: part * constant.largest_error(),
+            })
+        };
+        Constant::ALL.into_iter().flat_map(of).collect()
+    }
+
+    /// What is then believed of the device that `setup` describes.
+    #[must_use]
+    pub fn of(&self, setup: &Setup) -> Setup {
+        let mut believed = *setup;
+        let value = match self.constant {
+            Constant::Damping => &mut believed.device.damping,
+            Constant::Inertia => &mut believed.device.inertia,
+            Constant::TorqueConstant => &mut believed.device.torque_constant,
+            Constant::Friction => &mut believed.friction_nm,
+        };
+        *value *= 1.0 + self.error;
+        believed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_belief_changes_its_constant_and_no_other() {
+        let device = simulation::device::Device::default();
+        let setup = Setup::of(&device, 1000.0);
+        let all = Belief::extremes();
+        assert_eq!(all.len(), 8);
+        for belief in all {
+            let believed = belief.of(&setup);
+            let ratios = [
+                believed.device.damping / setup.device.damping,
+                believed.device.inertia / setup.device.inertia,
+                believed.device.torque_constant / setup.device.torque_constant,
+                believed.friction_nm / setup.friction_nm,
+            ];
+            for (constant, ratio) in Constant::ALL.into_iter().zip(ratios) {
+                let meant = if constant == belief.constant {
+                    1.0 + belief.error
+                } else {
+                    1.0
+                };
+                assert!((ratio - meant).abs() < 1e-12, "{belief:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! One estimator over one trace.
+
+use estimator_core::{
+    Amps, ClockTicks, Count, CountsPerTick, Edge, Sample, Scale, Signals, VelocityEstimator,
+};
+
+use simulation::trace::{EDGE_CLOCK_HZ, EdgeStamp, Trace};
+
+/// Which signals a trace offers.
+#[must_use]
+pub fn available(trace: &Trace) -> Signals {
+    Signals {
+        current: trace.current.is_some(),
+        small: trace.counts_small.is_some(),
+        edge: trace.edges.is_some(),
+    }
+}
+
+/// The velocity at each tick, rad/s.
+pub(super) fn velocities<E>(estimator: &E, trace: &Trace, scale: &Scale) -> Vec<f32>
+where
+    E: VelocityEstimator<Output = CountsPerTick>,
+{
+    run(estimator, trace, 0.0, |_, velocity| {
+        velocity.rad_per_s(scale)
+    })
+}
+
+/// What `read` says after each tick; the first tick only starts the estimator and reads `first`.
+pub(super) fn run<E, T>(
+    estimator: &E,
+    trace: &Trace,
+    first: T,
+    read: impl Fn(&E::State, CountsPerTick) -> T,
+) -> Vec<T>
+where
+    E: VelocityEstimator<Output = CountsPerTick>,
+    T: Clone,
+{
+    let mut values = vec![first; trace.len()];
+    let mut state = match trace.is_empty() {
+        true => return values,
+        false => estimator.start(&sample(E::NEEDS, trace, 0)),
+    };
+    for (k, value) in values.iter_mut().enumerate().skip(1) {
+        let velocity = estimator.update(&mut state, &sample(E::NEEDS, trace, k));
+        *value = read(&state, velocity);
+    }
+    values
+}
+
+/// What the estimator may know at tick `k`: `needs` is a constant where this is inlined, so
+/// columns that the estimator does not read are not touched.
+#[inline(always)]
+#[must_use]
+pub fn sample(needs: Signals, trace: &Trace, k: usize) -> Sample {
+    let mut sample = Sample::new(Count(trace.counts_large[k]));
+    if needs.current {
+        // The trace's current acts from its tick on; the sample's acted until its tick.
+        if let (Some(current), Some(before)) = (&trace.current, k.checked_sub(1)) {
+            sample.current = Amps::new(current[before] as f32);
+        }
+    }
+    if let (true, Some(counts)) = (needs.small, &trace.counts_small) {
+        sample.small = Count(counts[k]);
+    }
+    if let (true, Some(edges)) = (needs.edge, &trace.edges) {
+        sample.edge = edges[k].map(edge);
+    }
+    sample
+}
+
+fn edge(stamp: EdgeStamp) -> Edge {
+    Edge {
+        boundary: Count(stamp.boundary),
+        // A float-to-integer cast saturates.
+        age: ClockTicks((stamp.age_s * EDGE_CLOCK_HZ).round() as u32),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Reads everything, so that what it returns shows what it was shown.
+    struct Spy;
+
+    impl VelocityEstimator for Spy {
+        type State = ();
+        type Output = CountsPerTick;
+        const NEEDS: Signals = Signals {
+            current: true,
+            small: true,
+            edge: true,
+        };
+
+        fn start(&self, first: &Sample) {
+            assert_eq!(first.current, Amps::ZERO);
+        }
+
+        fn update(&self, (): &mut (), sample: &Sample) -> CountsPerTick {
+            let edge = sample.edge.map_or(0.0, |edge| edge.age.0 as f32 / 84.0);
+            CountsPerTick(sample.current.get() + sample.small.0 as f32 + edge)
+        }
+    }
+
+    #[test]
+    fn a_sample_holds_the_current_applied_before_it() {
+        let stamp = |age_s| Some(EdgeStamp { age_s, boundary: 1 });
+        let trace = Trace {
+            rate_hz: 1000.0,
+            counts_large: vec![0, 0, 0],
+            counts_small: Some(vec![0, 100, 200]),
+            current: Some(vec![1.0, 2.0, 4.0]),
+            edges: Some(vec![None, None, stamp(1000e-6)]),
+            ..Trace::default()
+        };
+        let unit = Scale {
+            rad_per_s_per_count_per_tick: 1.0,
+        };
+        assert_eq!(velocities(&Spy, &trace, &unit), [0.0, 101.0, 1202.0]);
+    }
+}

@@ -1,0 +1,242 @@
+//! The controller of `haptic-control` in closed loop with the plant: what the hand feels.
+
+mod bench;
+mod fault;
+mod press;
+mod record;
+mod scene;
+mod tracking;
+
+use estimator_core::{Amps, Count, Hertz, Sample};
+use haptic_control::{
+    Action, Cause, Controller, DualStage, LoopPoles, Monitor, Motor, Rig, RstDesign, Scene, Senses,
+};
+
+use catalogue::estimators::{Estimator, Kind, Setup};
+use catalogue::parameters::{Parameters, PlantKind};
+use simulation::device::Device;
+use simulation::plant::{Pose, steps_per_tick};
+
+pub use bench::Bench;
+pub use fault::Fault;
+pub use press::Press;
+pub use scene::{Hand, Motion, SceneName, Visit};
+
+/// Which encoder of the large motor closes the loop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Eye {
+    /// The device's own, through the estimator under test.
+    Large,
+    /// The reference encoder, as the paper closed its loop.
+    Reference,
+}
+
+/// One closed-loop run.
+#[derive(Clone)]
+pub struct Loop {
+    /// The device as it is.
+    pub device: Device,
+    /// The device as the controller believes it to be.
+    pub believed: DualStage,
+    /// Scene with its parameters.
+    pub scene: SceneName,
+    /// Who holds the handle.
+    pub hand: Hand,
+    /// Control rate, Hz.
+    pub rate_hz: f64,
+    /// Seed of the hand's motion, the encoders' phases and the disc.
+    pub seed: u64,
+    /// Velocity of the large motor.
+    pub large: Estimator,
+    /// Velocity of the handle.
+    pub handle: Estimator,
+    /// Which encoder `large` looks at.
+    pub eye: Eye,
+    /// Poles of the velocity loop.
+    pub poles: LoopPoles,
+    /// Ticks by which the currents act late, beside the amplifier's lag.
+    pub late_ticks: usize,
+}
+
+/// What is known at a tick, truth included.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    /// Time, s.
+    pub t: f64,
+    /// Large motor.
+    pub large: Pose,
+    /// Handle.
+    pub handle: Pose,
+    /// Acceleration of the handle over the last tick, rad/s².
+    pub handle_acceleration: f64,
+    /// Torque felt on the handle, N.m.
+    pub felt: f64,
+    /// What the controller saw.
+    pub sample: Sample,
+    /// Count of the device's own large encoder, whichever encoder closes the loop.
+    pub own_count: Count,
+    /// What the controller did.
+    pub action: Action,
+    /// Currents that the monitor let through, large then small motor, A.
+    pub commanded: (f64, f64),
+    /// Why the monitor stopped the device, if it has.
+    pub stopped: Option<Cause>,
+}
+
+/// The controller's description of a device file's device.
+#[must_use]
+pub fn believed(device: &Device) -> DualStage {
+    let motor = |motor: &simulation::device::Motor| Motor {
+        inertia: motor.inertia_kg_m2,
+        torque_constant: motor.torque_constant_nm_per_a,
+        coulomb: motor.coulomb_nm,
+        counts_per_rev: motor.counts_per_rev,
+        current_limit: motor.current_limit_a,
+    };
+    DualStage {
+        large: motor(&device.large),
+        small: motor(&device.small),
+        damping: device.coupler.damping_nms_per_rad,
+        amplifier: Hertz(device.amplifier.bandwidth_hz),
+    }
+}
+
+impl Loop {
+    /// Runs for `ticks`, showing each moment to `observe`.
+    ///
+    /// # Errors
+    /// One line on an impossible device or a loop that cannot be designed.
+    pub fn run(&self, ticks: usize, observe: impl FnMut(&Moment)) -> Result<(), String> {
+        self.run_with(ticks, None, observe)
+    }
+
+    /// Runs for `ticks` with an encoder that is faulty from a tick on.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn run_with(
+        &self,
+        ticks: usize,
+        fault: Option<(usize, Fault)>,
+        observe: impl FnMut(&Moment),
+    ) -> Result<(), String> {
+        self.device.validate()?;
+        let rate = Hertz(self.rate_hz);
+        let designed = RstDesign::new(&self.believed, rate, self.poles)
+            .and_then(|_| Rig::new(&self.believed, rate, self.poles));
+        let mut rig = designed.map_err(|error| format!("control at {} Hz: {error}", rate.0))?;
+        if self.eye == Eye::Reference {
+            rig.large = estimator_core::Scale::new(self.device.reference.counts_per_rev, rate)
+                .map_err(|error| format!("reference encoder: {error}"))?;
+        }
+        if self.scene.asks_for_acceleration() && !self.handle.gives_acceleration() {
+            let names = Kind::all().iter().filter(|kind| kind.gives_acceleration());
+            let names: Vec<_> = names.map(|kind| kind.name).collect();
+            return Err(format!(
+                "scene {}: its estimator of the handle gives no acceleration; name one that does: {}",
+                self.scene,
+                names.join(", ")
+            ));
+        }
+        let visit = Running {
+            run: self,
+            rig: &rig,
+            ticks,
+            fault,
+            observe,
+        };
+        self.scene.visit(self.rate_hz, &self.believed, visit)
+    }
+}
+
+/// A run about to begin, for whichever type of scene.
+struct Running<'a, F> {
+    run: &'a Loop,
+    rig: &'a Rig,
+    ticks: usize,
+    fault: Option<(usize, Fault)>,
+    observe: F,
+}
+
+impl<F: FnMut(&Moment)> Visit for Running<'_, F> {
+    fn visit<S: Scene<Acceleration: Senses<Estimator>>>(mut self, scene: S) {
+        let Loop {
+            device,
+            believed,
+            rate_hz,
+            large,
+            handle,
+            ..
+        } = self.run;
+        let period = 1.0 / rate_hz;
+        let steps = steps_per_tick(period);
+        let step = period / f64::from(steps);
+        let run = self.run;
+        let mut bench = Bench::new(device, run.hand, run.eye, *rate_hz, run.seed, step);
+        let controller = Controller::new(scene, large.clone(), handle.clone(), self.rig);
+        let mut watched = *believed;
+        if self.run.eye == Eye::Reference {
+            watched.large.counts_per_rev = device.reference.counts_per_rev;
+        }
+        let monitor = Monitor::new(&watched, Hertz(*rate_hz));
+        let mut sample = bench.sample(Amps::ZERO);
+        let mut state = controller.start(&sample);
+        let mut watch = monitor.start(&sample);
+        let mut pending = vec![(0.0, 0.0); self.run.late_ticks];
+        let mut last_omega = bench.plant.small().omega;
+        let mut hand = self.run.hand.motion(period, self.run.seed);
+        let mut since = None;
+        for k in 0..self.ticks {
+            if let Some((_, fault)) = self.fault.filter(|(from, _)| k >= *from) {
+                let since = *since.get_or_insert(sample.large);
+                sample.large = fault.counted(sample.large, since);
+            }
+            let action = controller.step(&mut state, &sample);
+            let stopped = monitor.check(&mut watch, &sample);
+            let wanted = match stopped {
+                None => action.currents,
+                Some(_) => haptic_control::Currents::default(),
+            };
+            let commanded = (f64::from(wanted.large.get()), f64::from(wanted.small.get()));
+            pending.push(commanded);
+            let (large_a, small_a) = pending.remove(0);
+            bench.plant.command(large_a, small_a);
+            let grip = hand.grip(k as u64);
+            let omega = bench.plant.small().omega;
+            (self.observe)(&Moment {
+                t: k as f64 * period,
+                large: bench.plant.large(),
+                handle: bench.plant.small(),
+                handle_acceleration: (omega - last_omega) * rate_hz,
+                felt: bench.plant.handle_torque(&grip, 0.0),
+                sample,
+                own_count: Count(bench.own.as_ref().unwrap_or(&bench.large).count()),
+                action,
+                commanded,
+                stopped,
+            });
+            last_omega = omega;
+            for j in 0..steps {
+                bench.step(&grip, f64::from(j) * step, step, &mut (), &mut ());
+            }
+            sample = bench.sample(wanted.large);
+        }
+    }
+}
+
+/// The estimator called `kind` on the encoder that it looks at, with its tuned parameters.
+///
+/// # Errors
+/// As [`Kind::build`].
+pub fn estimator(
+    kind: &Kind,
+    device: &Device,
+    counts_per_rev: u32,
+    rate_hz: f64,
+    parameters: &Parameters,
+) -> Result<Estimator, terminal::failure::Failure> {
+    let mut setup: Setup = Setup::of(device, rate_hz);
+    setup.device.counts_per_rev = counts_per_rev;
+    let values = parameters.values(kind, &setup, PlantKind::Friction);
+    kind.build(&setup, &values)
+}

@@ -1,0 +1,92 @@
+//! Plant and encoders, without whoever controls them.
+
+use std::f64::consts::TAU;
+
+use estimator_core::{Amps, Count, Sample};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
+
+use super::{Eye, Hand};
+use simulation::device::Device;
+use simulation::encoder::{DiscErrors, EdgeObserver, Encoder};
+use simulation::plant::{Grip, Plant, Pose};
+use simulation::scenario::draw;
+
+/// The device on the bench: its shafts, and the encoders that look at them.
+pub struct Bench {
+    /// Shafts and amplifiers.
+    pub plant: Plant,
+    /// The encoder that the controller reads as the large motor's.
+    pub large: Encoder,
+    /// The device's own encoder of the large motor, where the controller reads another.
+    pub own: Option<Encoder>,
+    /// The handle's encoder.
+    pub small: Encoder,
+}
+
+impl Bench {
+    /// The device in `hand`, at rest: `seed` draws where the large motor stands and the encoders'
+    /// phases, `rate_hz` is the rate of the hand's motion and `step` the plant's step, s.
+    #[must_use]
+    pub fn new(device: &Device, hand: Hand, eye: Eye, rate_hz: f64, seed: u64, step: f64) -> Self {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(seed.rotate_left(17) ^ 0xC105_ED00);
+        let mut plant = Plant::new(device, step);
+        let start = Pose {
+            angle: draw(&mut random, 0.0, TAU),
+            omega: 0.0,
+        };
+        plant.place(start, hand.start(1.0 / rate_hz, seed));
+        let mut encoder = |counts_per_rev: u32, angle: f64, disc: DiscErrors| {
+            let first = random.next_u64() as u32;
+            let phase = draw(&mut random, 0.0, 1.0);
+            Encoder::new(counts_per_rev, first, phase, angle, disc)
+        };
+        let disc = DiscErrors::new(&device.disc, device.large.counts_per_rev, seed);
+        // The reference encoder is drawn last, so that it changes none of the others.
+        let own = encoder(device.large.counts_per_rev, start.angle, disc);
+        let angle = plant.small().angle;
+        let small = encoder(device.small.counts_per_rev, angle, DiscErrors::none());
+        let (large, own) = match eye {
+            Eye::Large => (own, None),
+            Eye::Reference => {
+                let counts_per_rev = device.reference.counts_per_rev;
+                let reference = encoder(counts_per_rev, start.angle, DiscErrors::none());
+                (reference, Some(own))
+            }
+        };
+        Self {
+            plant,
+            large,
+            own,
+            small,
+        }
+    }
+
+    /// One step of the plant, `since` s into the tick; each encoder tells its edges to its observer.
+    pub fn step(
+        &mut self,
+        grip: &Grip,
+        since: f64,
+        step: f64,
+        large: &mut impl EdgeObserver,
+        small: &mut impl EdgeObserver,
+    ) {
+        let (old_large, old_small) = (self.plant.large(), self.plant.small());
+        self.plant.step(grip, since, 0.0);
+        self.large
+            .follow(old_large, self.plant.large(), step, large);
+        if let Some(own) = &mut self.own {
+            own.follow(old_large, self.plant.large(), step, &mut ());
+        }
+        self.small
+            .follow(old_small, self.plant.small(), step, small);
+    }
+
+    /// What the controller sees now, with the large motor's `current`.
+    #[must_use]
+    pub fn sample(&self, current: Amps) -> Sample {
+        Sample::new(Count(self.large.count()))
+            .with_small(Count(self.small.count()))
+            .with_current(current)
+    }
+}

@@ -1,0 +1,234 @@
+//! How fast torque is rendered: many sines at once into a clamped handle.
+//!
+//! The scene asks for a constant torque, so that the large motor never turns round, plus sines
+//! of rising frequency, whole multiples of [`1 / PERIOD_S`](PERIOD_S). What is felt is sampled at
+//! every step of the plant, between ticks too. Gain and phase are those of the mean over
+//! [`PERIODS`] periods, against the sines as intended; coherence is the part of the power at that
+//! frequency that repeats from period to period: what is left is noise.
+
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+
+use estimator_core::{Amps, Count, Hertz, Sample, Skip};
+use haptic_control::{Controller, Handle, LoopPoles, NewtonMetres, Radians, Rig, Scene, Wanted};
+use rayon::prelude::*;
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex;
+
+use super::compare::{Settings, device};
+use super::run::estimator;
+use super::{Fingertip, REFERENCE};
+use crate::closed_loop::believed;
+use catalogue::estimators::{Estimator, Kind};
+use catalogue::parameters::PlantKind;
+use simulation::device::Device;
+use simulation::encoder::{DiscErrors, Encoder};
+use simulation::plant::{Grip, Plant, steps_per_tick};
+use terminal::failure::Failure;
+
+/// Length of a period, s; the lowest frequency is its inverse.
+pub const PERIOD_S: f64 = 0.5;
+/// Periods that are averaged, after four to settle in.
+pub const PERIODS: usize = 8;
+const SETTLE: usize = 4;
+/// How fast the constant torque turns the large motor, turns/s: what repeats once a turn falls
+/// between the sines and averages out over the periods.
+const TURNS_PER_S: f64 = 1.5;
+/// Sines a decade, and the highest as part of the rate and in Hz.
+const PER_DECADE: f64 = 13.0;
+const HIGHEST: (f64, f64) = (0.45, 3000.0);
+
+/// Response at one frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Response {
+    /// Frequency, Hz.
+    pub hz: f64,
+    /// Torque felt over torque wanted.
+    pub gain: f64,
+    /// Phase, degrees, continuous from the lowest frequency on; negative lags.
+    pub phase_deg: f64,
+    /// Part of the power that repeats, 0 to 1.
+    pub coherence: f64,
+}
+
+/// Responses at one rate.
+#[derive(Clone, Debug)]
+pub struct Swept {
+    /// Control rate, Hz.
+    pub rate_hz: f64,
+    /// Plant.
+    pub plant: PlantKind,
+    /// Who closed the loop, and the response at each frequency, rising.
+    pub runs: Vec<(&'static str, Vec<Response>)>,
+}
+
+/// Lowest frequency at which the gain has fallen by 3 dB, Hz; `None` if it does nowhere.
+#[must_use]
+pub fn bandwidth_hz(responses: &[Response]) -> Option<f64> {
+    let pair = responses
+        .windows(2)
+        .find(|pair| pair[0].gain >= FRAC_1_SQRT_2 && pair[1].gain < FRAC_1_SQRT_2)?;
+    let part = (pair[0].gain - FRAC_1_SQRT_2) / (pair[0].gain - pair[1].gain);
+    Some(pair[0].hz * (pair[1].hz / pair[0].hz).powf(part))
+}
+
+/// Every estimator in the loop, then the reference.
+///
+/// # Errors
+/// [`Failure::Input`] where estimator or loop cannot be built.
+pub fn sweep(settings: &Settings, rate_hz: f64, plant: PlantKind) -> Result<Swept, Failure> {
+    let device = device(settings, plant);
+    let build = |kind: &Kind, counts| estimator(kind, settings, counts, rate_hz, plant);
+    let handle = build(settings.handle, device.small.counts_per_rev)?;
+    let mut contestants = Vec::new();
+    for kind in &settings.estimators {
+        let counts = device.large.counts_per_rev;
+        contestants.push((kind.name, build(kind, counts)?, counts));
+    }
+    let counts = device.reference.counts_per_rev;
+    let usual = Kind::named(super::compare::USUAL)?;
+    contestants.push((REFERENCE, build(usual, counts)?, counts));
+    let bench = Bench::new(&device, rate_hz);
+    let runs = contestants
+        .par_iter()
+        .map(|(name, large, counts)| Ok((*name, bench.run(large, &handle, *counts)?)))
+        .collect::<Result<_, Failure>>()?;
+    Ok(Swept {
+        rate_hz,
+        plant,
+        runs,
+    })
+}
+
+/// The torque of one period, tick by tick, again and again.
+struct Sweep(Vec<f32>);
+
+impl Scene for Sweep {
+    type Velocity = Skip;
+    type Acceleration = Skip;
+    type Continuous = Wanted;
+    type Transient = Wanted;
+    /// Tick.
+    type State = usize;
+
+    fn start(&self, _: Radians) -> usize {
+        0
+    }
+
+    fn torque(&self, tick: &mut usize, _: &Handle<()>) -> NewtonMetres {
+        let torque = self.0[*tick % self.0.len()];
+        *tick += 1;
+        NewtonMetres(torque)
+    }
+}
+
+struct Bench<'a> {
+    device: &'a Device,
+    rate_hz: f64,
+    /// Ticks a period.
+    ticks: usize,
+    /// Sines a period, and their amplitudes with phase, N.m.
+    lines: Vec<(usize, Complex<f64>)>,
+    bias: f64,
+}
+
+impl<'a> Bench<'a> {
+    fn new(device: &'a Device, rate_hz: f64) -> Self {
+        let ticks = (PERIOD_S * rate_hz).round() as usize;
+        let base_hz = rate_hz / ticks as f64;
+        let most = (HIGHEST.0 * rate_hz).min(HIGHEST.1) / base_hz;
+        let mut numbers: Vec<usize> = (0..)
+            .map(|i| 10_f64.powf(f64::from(i) / PER_DECADE))
+            .take_while(|number| *number <= most)
+            .map(|number| number.round() as usize)
+            .collect();
+        numbers.dedup();
+        let fingertip = Fingertip::new(device);
+        // Together as strong, RMS, as a fingertip just notices; Schroeder's phases keep peaks low.
+        let together = fingertip.threshold_mn / fingertip.mn_per_nm;
+        let amplitude = together * (2.0 / numbers.len() as f64).sqrt();
+        let phase = |i: usize| -std::f64::consts::PI * (i * i) as f64 / numbers.len() as f64;
+        Self {
+            device,
+            rate_hz,
+            ticks,
+            lines: (numbers.iter().enumerate())
+                .map(|(i, &number)| (number, Complex::from_polar(amplitude, phase(i))))
+                .collect(),
+            bias: device.coupler.damping_nms_per_rad * TAU * TURNS_PER_S,
+        }
+    }
+
+    fn wanted(&self) -> Vec<f32> {
+        let torque = |tick: usize| {
+            let sines = self.lines.iter().map(|(number, amplitude)| {
+                let turn = (number * tick % self.ticks) as f64 / self.ticks as f64;
+                (amplitude * Complex::from_polar(1.0, TAU * turn)).re
+            });
+            (self.bias + sines.sum::<f64>()) as f32
+        };
+        (0..self.ticks).map(torque).collect()
+    }
+
+    fn run(
+        &self,
+        large: &Estimator,
+        handle: &Estimator,
+        counts_per_rev: u32,
+    ) -> Result<Vec<Response>, Failure> {
+        let rate = Hertz(self.rate_hz);
+        let refused = |error: &dyn std::fmt::Display| {
+            Failure::Input(format!("control at {} Hz: {error}", self.rate_hz))
+        };
+        let mut rig = Rig::new(&believed(self.device), rate, LoopPoles::DEFAULT)
+            .map_err(|error| refused(&error))?;
+        rig.large =
+            estimator_core::Scale::new(counts_per_rev, rate).map_err(|error| refused(&error))?;
+        let controller = Controller::new(Sweep(self.wanted()), large.clone(), handle.clone(), &rig);
+
+        let period = 1.0 / self.rate_hz;
+        let steps = steps_per_tick(period);
+        let step = period / f64::from(steps);
+        let mut plant = Plant::new(self.device, step);
+        let mut encoder = Encoder::new(counts_per_rev, 0, 0.5, 0.0, DiscErrors::none());
+        let mut sample = Sample::default();
+        let mut state = controller.start(&sample);
+        let mut felt = Vec::with_capacity(PERIODS * self.ticks * steps as usize);
+        for tick in 0..(SETTLE + PERIODS) * self.ticks {
+            let currents = controller.step(&mut state, &sample).currents;
+            plant.command(currents.large.get().into(), currents.small.get().into());
+            for _ in 0..steps {
+                if tick >= SETTLE * self.ticks {
+                    let torque = plant.handle_torque(&Grip::Clamped, 0.0);
+                    felt.push(Complex::new(torque, 0.0));
+                }
+                let from = plant.large();
+                plant.step(&Grip::Clamped, 0.0, 0.0);
+                encoder.follow(from, plant.large(), step, &mut ());
+            }
+            let current = Amps::new(currents.large.get());
+            sample = Sample::new(Count(encoder.count())).with_current(current);
+        }
+        Ok(self.responses(felt))
+    }
+
+    fn responses(&self, mut felt: Vec<Complex<f64>>) -> Vec<Response> {
+        let period = felt.len() / PERIODS;
+        let fft = FftPlanner::new().plan_fft_forward(period);
+        fft.process(&mut felt);
+        let mut last_phase = 0.0;
+        let of_line = |&(number, amplitude): &(usize, Complex<f64>)| {
+            let ratio = |of: usize| felt[of * period + number] * 2.0 / period as f64 / amplitude;
+            let mean: Complex<f64> = (0..PERIODS).map(ratio).sum::<Complex<f64>>() / PERIODS as f64;
+            let power = (0..PERIODS).map(|of| ratio(of).norm_sqr()).sum::<f64>() / PERIODS as f64;
+            let turns = (mean.arg().to_degrees() - last_phase) / 360.0;
+            last_phase += 360.0 * (turns - turns.round());
+            Response {
+                hz: number as f64 * self.rate_hz / self.ticks as f64,
+                gain: mean.norm(),
+                phase_deg: last_phase,
+                coherence: mean.norm_sqr() / power,
+            }
+        };
+        self.lines.iter().map(of_line).collect()
+    }
+}

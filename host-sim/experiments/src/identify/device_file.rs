@@ -1,0 +1,131 @@
+//! The device file with what was identified in it.
+
+use toml_edit::{DocumentMut, Item, Table, Value};
+
+use super::quantity::{Known, Quantity};
+use simulation::device::Device;
+
+/// `text` with the told quantities' values replaced or added, everything else as it was. A comment
+/// beside each value says how sure it is and what it rests on; `known` is written where it was given
+/// beside the file, because the others rest on it.
+///
+/// # Errors
+/// One line, where `text` is no device file or would not be one.
+pub fn updated(
+    text: &str,
+    quantities: &[Quantity],
+    known: Known,
+    given: bool,
+    source: &str,
+) -> Result<String, String> {
+    let mut document: DocumentMut = text.parse().map_err(|error| format!("{error}"))?;
+    if given {
+        let (key, value) = known.entry();
+        put(&mut document, key, value, "taken as known")?;
+    }
+    for quantity in quantities.iter().filter(|q| q.untold.is_none()) {
+        // Friction may come out as less than nothing.
+        let value = quantity.estimate.value.max(0.0);
+        let comment = format!(
+            "identified from {source} within {} (95 %), {known} taken as exact",
+            quantity.half_text(),
+        );
+        put(&mut document, quantity.key, value, &comment)?;
+    }
+    let text = document.to_string();
+    Device::from_toml_str(&text)?;
+    Ok(text)
+}
+
+/// Sets `section.name`, whether its section stands there as a table, inline, or not yet.
+fn put(document: &mut DocumentMut, key: &str, value: f64, comment: &str) -> Result<(), String> {
+    let (section, name) = key.split_once('.').unwrap_or(("", key));
+    let digits = format!("{value:.5e}");
+    let digits: f64 = digits.parse().unwrap_or(value);
+    let mut value = Value::from(digits);
+    let section = document
+        .entry(section)
+        .or_insert_with(|| Item::Table(Table::new()));
+    match section {
+        Item::Value(Value::InlineTable(table)) => {
+            // No place for a comment inside a line.
+            table.insert(name, value);
+        }
+        Item::Table(table) => {
+            value.decor_mut().set_suffix(format!(" # {comment}"));
+            let before = table.get(name).and_then(Item::as_value).map(Value::decor);
+            if let Some(prefix) = before.and_then(|decor| decor.prefix()) {
+                value.decor_mut().set_prefix(prefix.clone());
+            }
+            match table.get_mut(name) {
+                Some(item) => *item = Item::Value(value),
+                None => {
+                    table.insert(name, Item::Value(value));
+                }
+            }
+        }
+        _ => return Err(format!("{key}: its section is not one")),
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fit::Estimate;
+    use super::super::quantity::{DAMPING, INERTIA};
+    use super::*;
+
+    fn quantity(key: &'static str, value: f64) -> Quantity {
+        Quantity {
+            key,
+            estimate: Estimate {
+                value,
+                half: 0.01 * value,
+            },
+            file: value,
+            unit: super::super::quantity::MILLI_NM,
+            untold: None,
+        }
+    }
+
+    #[test]
+    fn only_what_is_known_is_replaced() {
+        let text = "# mine\n[large]\ncounts_per_rev = 2000 # coarse\ninertia_kg_m2 = 1e-5 # old\n\n[hand]\nstiffness_nm_per_rad = 0.4\n";
+        let quantities = [quantity(INERTIA, 1.234567e-5), quantity(DAMPING, 0.9e-3)];
+        let known = Known::TorqueConstant(0.05);
+        let new = updated(text, &quantities, known, true, "a.csv").unwrap();
+        assert!(
+            new.starts_with("# mine\n[large]\ncounts_per_rev = 2000 # coarse\ninertia_kg_m2 = ")
+        );
+        assert!(
+            new.contains("[hand]\nstiffness_nm_per_rad = 0.4\n"),
+            "{new}"
+        );
+        assert!(
+            !new.contains("old") && new.contains("within +-1.0 % (95 %)"),
+            "{new}"
+        );
+        let device = Device::from_toml_str(&new).unwrap();
+        let mut expected = Device::from_toml_str(text).unwrap();
+        expected.large.inertia_kg_m2 = 1.23457e-5;
+        expected.large.torque_constant_nm_per_a = 0.05;
+        expected.coupler.damping_nms_per_rad = 0.9e-3;
+        assert_eq!(device, expected);
+        // Once more changes nothing but the same values.
+        assert_eq!(
+            updated(&new, &quantities, known, true, "a.csv").unwrap(),
+            new
+        );
+    }
+
+    #[test]
+    fn an_inline_section_and_an_untold_value_are_left_in_their_form() {
+        let text = "large = { inertia_kg_m2 = 1e-5 }\n";
+        let mut untold = quantity(DAMPING, 1.0);
+        untold.untold = Some("vague".to_owned());
+        let quantities = [quantity(INERTIA, 2e-5), untold];
+        let known = Known::TorqueConstant(0.05);
+        let new = updated(text, &quantities, known, false, "a.csv").unwrap();
+        assert_eq!(new, "large = { inertia_kg_m2 = 0.00002 }\n");
+    }
+}

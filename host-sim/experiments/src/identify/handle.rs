@@ -1,0 +1,79 @@
+//! The handle, where nobody holds it.
+
+use super::equations::{Equations, FRICTION, HAND, SLIP};
+use super::fit::{Equation, Estimate, Fit};
+use super::quantity::{GRAM_CM2, Known, MILLI_NM, MILLI_NM_PER_A, Quantity};
+use simulation::device::Device;
+
+/// The equations of a recording in which nobody holds the handle, or why they say nothing.
+pub(super) fn free(equations: Equations) -> Result<Vec<Equation>, &'static str> {
+    let Some(fit) = Fit::new(&equations.usable) else {
+        return Err("hardly moves");
+    };
+    let pulls = |column: usize| {
+        let pull = fit.estimate(|ratios, _| ratios[column]);
+        pull.value.abs() > 2.0 * pull.half
+    };
+    let explained = fit.unexplained < super::MOST_UNEXPLAINED * fit.driven;
+    if pulls(HAND) || pulls(HAND + 1) || !explained {
+        return Err("is held");
+    }
+    let mut usable = equations.usable;
+    for equation in &mut usable {
+        // The damper stays: an eccentric disc stretches the short arc of the large motor, and with it
+        // b/J from that motor's velocity. From the handle's own it is the sum of both columns.
+        equation.others.remove(HAND - 1);
+    }
+    Ok(usable)
+}
+
+/// What the free handle's equations tell. Their scale is the damping that the large shaft's found.
+pub(super) fn quantities(
+    free: &[Equation],
+    turns: bool,
+    large: &Fit,
+    device: &Device,
+    known: Known,
+) -> Option<Vec<Quantity>> {
+    let fit = Fit::new(free)?;
+    let damping = large.estimate(|ratios, _| ratios[SLIP] * known.inertia(ratios));
+    let scaled = |f: &dyn Fn(&[f64]) -> f64| {
+        let ratio = fit.estimate(|ratios, _| f(ratios) / (ratios[SLIP] + ratios[HAND]));
+        let parts = [ratio.half * damping.value, ratio.value * damping.half];
+        Estimate {
+            value: ratio.value * damping.value,
+            half: parts[0].hypot(parts[1]),
+        }
+    };
+    let mut friction = Quantity::new(
+        "small.coulomb_nm",
+        MILLI_NM,
+        device.small.coulomb_nm,
+        scaled(&|ratios| ratios[FRICTION]),
+        0.0,
+        "needs slow motion both ways",
+    );
+    if !turns {
+        friction.untold =
+            Some("varies over a turn, and the handle made fewer than three".to_owned());
+    }
+    Some(vec![
+        Quantity::new(
+            "small.torque_constant_nm_per_a",
+            MILLI_NM_PER_A,
+            device.small.torque_constant_nm_per_a,
+            scaled(&|ratios| ratios[0]),
+            0.0,
+            "needs more strokes of the small motor",
+        ),
+        Quantity::new(
+            "small.inertia_kg_m2",
+            GRAM_CM2,
+            device.small.inertia_kg_m2,
+            scaled(&|_| 1.0),
+            0.0,
+            "needs more strokes of either motor",
+        ),
+        friction,
+    ])
+}

@@ -1,0 +1,124 @@
+//! The identified motor run beside the recording: what its velocity should have been.
+
+use super::equations::{FRICTION, OFFSET, SLIP};
+use super::fit::Fit;
+use super::motion::Motion;
+use recordings::recording::Recording;
+use simulation::device::Device;
+
+/// Velocity of the large motor over one recording, measured and by the model, rad/s.
+#[derive(Clone, Debug)]
+pub struct Beside {
+    /// The recording's name.
+    pub name: String,
+    /// Time of each value, s.
+    pub t: Vec<f64>,
+    /// Displacement over [`SPAN_S`] by the counts, over that time.
+    pub measured: Vec<f64>,
+    /// The same of the model, which sees current and handle alone.
+    pub model: Vec<f64>,
+}
+
+/// Time over which displacements are taken for velocities, s: a count of 4096 is 0.2 rad/s.
+pub const SPAN_S: f64 = 8e-3;
+
+/// Rows a second that are kept, for pictures.
+const KEPT_HZ: f64 = 1000.0;
+
+/// Runs the model over each recording from the first sample on; where the clock jumps, from the
+/// measured velocity.
+///
+/// What repeats once a turn is in the fit's columns and not here: it is in the residual, as it is
+/// in the motor.
+pub(super) fn beside(
+    recordings: &[(String, Recording)],
+    device: &Device,
+    fit: &Fit,
+) -> Vec<Beside> {
+    let one = |(name, recording): &(String, Recording)| {
+        let trace = &recording.trace;
+        let period_s = trace.period_s();
+        let large = Motion::new(&trace.counts_large, device.large.counts_per_rev, period_s);
+        let handle = trace
+            .counts_small
+            .as_ref()
+            .map(|counts| Motion::new(counts, device.small.counts_per_rev, period_s));
+        let side = ((0.5 * SPAN_S * trace.rate_hz).round() as usize).max(1);
+        let velocity = |angle: &[f64], k: usize| {
+            let (from, to) = (k.saturating_sub(side), (k + side).min(angle.len() - 1));
+            (angle[to] - angle[from]) / ((to - from) as f64 * period_s)
+        };
+        let breaks = super::breaks(&recording.t, period_s);
+        let current = trace.current.as_deref().unwrap_or_default();
+        let mut angle = vec![0.0; large.angle.len()];
+        let mut omega = velocity(&large.angle, 0);
+        for k in 1..angle.len() {
+            if breaks[k] != breaks[k - 1] {
+                omega = velocity(&large.angle, k);
+            }
+            let handle = handle.as_ref().map_or(0.0, |h| velocity(&h.angle, k - 1));
+            let drive = fit.coefficients[0] * current[k - 1]
+                + fit.coefficients[SLIP] * handle
+                + fit.coefficients[OFFSET];
+            let before = omega;
+            omega = step(
+                omega,
+                drive,
+                fit.coefficients[SLIP],
+                fit.coefficients[FRICTION],
+                period_s,
+            );
+            angle[k] = angle[k - 1] + 0.5 * (before + omega) * period_s;
+        }
+        let every = (trace.rate_hz / KEPT_HZ).round().max(1.0) as usize;
+        let kept = || (side..angle.len().saturating_sub(side)).step_by(every);
+        Beside {
+            name: name.clone(),
+            t: kept().map(|k| recording.t[k]).collect(),
+            measured: kept().map(|k| velocity(&large.angle, k)).collect(),
+            model: kept().map(|k| velocity(&angle, k)).collect(),
+        }
+    };
+    recordings.iter().map(one).collect()
+}
+
+/// `dω/dt = drive - damping ω - friction sign ω` over one period, exactly between the zeros of ω,
+/// where the rotor stops if the drive is not above friction.
+fn step(omega: f64, drive: f64, damping: f64, friction: f64, period_s: f64) -> f64 {
+    let way = if omega != 0.0 { omega } else { drive };
+    let net = drive - friction.abs().copysign(way);
+    if omega == 0.0 && net * way <= 0.0 {
+        return 0.0;
+    }
+    let decay = (-damping * period_s).exp();
+    let gained = match damping.abs() * period_s > 1e-9 {
+        true => net * (1.0 - decay) / damping,
+        false => net * period_s,
+    };
+    let end = decay * omega + gained;
+    if end * omega >= 0.0 {
+        return end;
+    }
+    // It passed zero; what is left of the period begins there, at rest.
+    let left = end / (end - omega) * period_s;
+    step(0.0, drive, damping, friction, left)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::step;
+
+    #[test]
+    fn friction_stops_and_holds_and_lets_go() {
+        assert_eq!(step(0.0, 2.0, 1.0, 2.0, 1e-3), 0.0);
+        assert_eq!(step(1e-4, 0.0, 1.0, 2.0, 1e-3), 0.0);
+        let left = step(0.0, -3.0, 0.0, 2.0, 1e-3);
+        assert!((left + 1e-3).abs() < 1e-12, "{left}");
+        // To the velocity at which damping and friction balance the drive.
+        let settled = (0..20_000).fold(0.0, |omega, _| step(omega, 10.0, 4.0, 2.0, 1e-3));
+        assert!((settled - 2.0).abs() < 1e-9, "{settled}");
+        // A reversal: 0.5 ms to stop at 5 a second, the rest at 1 a second.
+        let turned = step(2.5e-3, -3.0, 0.0, 2.0, 1e-3);
+        assert!((turned + 0.5e-3).abs() < 1e-9, "{turned}");
+    }
+}

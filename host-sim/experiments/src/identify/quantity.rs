@@ -1,0 +1,232 @@
+//! From ratios to what the device file calls them.
+
+use std::f64::consts::TAU;
+use std::fmt;
+
+use super::equations::{FRICTION as FRICTION_COLUMN, SLIP};
+use super::fit::{Estimate, Fit};
+use simulation::device::Device;
+
+/// Keys of the device file.
+pub(super) const INERTIA: &str = "large.inertia_kg_m2";
+pub(super) const TORQUE_CONSTANT: &str = "large.torque_constant_nm_per_a";
+pub(super) const FRICTION: &str = "large.coulomb_nm";
+pub(super) const DAMPING: &str = "coupler.damping_nms_per_rad";
+pub(super) const BANDWIDTH: &str = "amplifier.bandwidth_hz";
+
+/// What has to be known, because counts and current tell ratios only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Known {
+    /// Torque constant of the large motor, N.m/A.
+    TorqueConstant(f64),
+    /// Inertia of the large motor, kg.m2.
+    Inertia(f64),
+    /// Damping of the coupler, N.m.s/rad.
+    Damping(f64),
+}
+
+impl Known {
+    /// From `KEY=VALUE` with a key of the device file.
+    ///
+    /// # Errors
+    /// One line that names the keys there are, or the value.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let (key, value) = text
+            .split_once('=')
+            .ok_or_else(|| format!("--known {text}: must be KEY=VALUE"))?;
+        let make = match key.trim() {
+            TORQUE_CONSTANT => Self::TorqueConstant,
+            INERTIA => Self::Inertia,
+            DAMPING => Self::Damping,
+            _ => {
+                return Err(format!(
+                    "--known {text}: no key {key}; must be {TORQUE_CONSTANT}, {INERTIA} or {DAMPING}"
+                ));
+            }
+        };
+        match value.trim().parse() {
+            Ok(value) if value > 0.0 && f64::is_finite(value) => Ok(make(value)),
+            _ => Err(format!("--known {text}: must be a number above 0")),
+        }
+    }
+
+    /// Inertia of the large motor from `[Kt/J, b/J, friction/J]`.
+    pub(super) fn inertia(self, ratios: &[f64]) -> f64 {
+        match self {
+            Self::TorqueConstant(value) => value / ratios[0],
+            Self::Inertia(value) => value,
+            Self::Damping(value) => value / ratios[SLIP],
+        }
+    }
+
+    /// Its key in the device file, and its value.
+    pub(super) fn entry(self) -> (&'static str, f64) {
+        match self {
+            Self::TorqueConstant(value) => (TORQUE_CONSTANT, value),
+            Self::Inertia(value) => (INERTIA, value),
+            Self::Damping(value) => (DAMPING, value),
+        }
+    }
+}
+
+impl fmt::Display for Known {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (key, value) = self.entry();
+        write!(f, "{key} = {value}")
+    }
+}
+
+/// One identified quantity.
+#[derive(Clone, Debug)]
+pub struct Quantity {
+    /// Key of the device file.
+    pub key: &'static str,
+    /// In SI units, as in the device file.
+    pub estimate: Estimate,
+    /// What the device file says.
+    pub file: f64,
+    /// Unit to show.
+    pub unit: Unit,
+    /// Why it cannot be told, if so.
+    pub untold: Option<String>,
+}
+
+/// Largest half-width of the 95 % interval of what counts as told, as part of the value: then 3 % are
+/// three standard deviations.
+const TOLD: f64 = 0.02;
+
+/// A unit to show beside that of the device file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// Its name.
+    pub name: &'static str,
+    /// How many of it are one of SI.
+    pub per_si: f64,
+    /// The unit of the device file, SI.
+    pub si: &'static str,
+}
+
+impl Unit {
+    const fn new(name: &'static str, per_si: f64, si: &'static str) -> Self {
+        Self { name, per_si, si }
+    }
+}
+
+pub(super) const GRAM_CM2: Unit = Unit::new("g.cm2", 1e7, "kg.m2");
+pub(super) const MILLI_NM: Unit = Unit::new("mN.m", 1e3, "N.m");
+pub(super) const MILLI_NM_PER_A: Unit = Unit::new("mN.m/A", 1e3, "N.m/A");
+const MILLI_NMS: Unit = Unit::new("mN.m.s/rad", 1e3, "N.m.s/rad");
+const HERTZ: Unit = Unit::new("Hz", 1.0, "Hz");
+
+impl Quantity {
+    /// `least` is a value whose `TOLD` part is close enough to nothing.
+    pub(super) fn new(
+        key: &'static str,
+        unit: Unit,
+        file: f64,
+        estimate: Estimate,
+        least: f64,
+        remedy: &str,
+    ) -> Self {
+        let width = estimate.half / estimate.value.abs().max(least);
+        let vague = (width.is_nan() || width > TOLD).then(|| match 100.0 * width {
+            percent if percent < 1000.0 => format!("+-{percent:.1} % is too vague; {remedy}"),
+            _ => format!("does not show; {remedy}"),
+        });
+        // Friction may come out as a little less than none; nothing else may.
+        let negative = least == 0.0 && estimate.value <= 0.0;
+        Self {
+            key,
+            estimate,
+            file,
+            unit,
+            untold: vague
+                .or(negative.then(|| "comes out negative; is it the excitation?".to_owned())),
+        }
+    }
+
+    /// The interval's half-width, relative where that says something.
+    pub(super) fn half_text(&self) -> String {
+        let Estimate { value, half } = self.estimate;
+        if half < 0.1 * value.abs() {
+            return format!("+-{} %", digits(100.0 * half / value.abs()));
+        }
+        format!("+-{} {}", digits(self.unit.per_si * half), self.unit.name)
+    }
+
+    /// Key and half-width, for a message of one line.
+    pub(super) fn short(&self) -> String {
+        let percent = 100.0 * self.estimate.half / self.estimate.value.abs();
+        format!("{} +-{percent:.0} %", self.key)
+    }
+
+    /// How far from the device file's value, and whether by more than the interval.
+    #[must_use]
+    pub fn health(&self) -> (f64, bool) {
+        let away = self.estimate.value - self.file;
+        (
+            self.estimate.value / self.file,
+            away.abs() <= self.estimate.half,
+        )
+    }
+}
+
+/// What the large shaft's equation tells.
+pub(super) fn of_large(fit: &Fit, device: &Device, known: Known, current: f64) -> Vec<Quantity> {
+    let scaled = |k: usize| fit.estimate(|ratios, _| ratios[k] * known.inertia(ratios));
+    let torque = scaled(0).value * current;
+    let rows = [
+        (
+            TORQUE_CONSTANT,
+            MILLI_NM_PER_A,
+            device.large.torque_constant_nm_per_a,
+            scaled(0),
+            0.0,
+            "needs steps of current",
+        ),
+        (
+            INERTIA,
+            GRAM_CM2,
+            device.large.inertia_kg_m2,
+            fit.estimate(|ratios, _| known.inertia(ratios)),
+            0.0,
+            "needs steps of current",
+        ),
+        (
+            DAMPING,
+            MILLI_NMS,
+            device.coupler.damping_nms_per_rad,
+            scaled(SLIP),
+            0.0,
+            "needs slip of 10 rad/s and more, at several speeds",
+        ),
+        (
+            FRICTION,
+            MILLI_NM,
+            device.large.coulomb_nm,
+            scaled(FRICTION_COLUMN),
+            0.1 * torque,
+            "needs slow and fast motion both ways",
+        ),
+        (
+            BANDWIDTH,
+            HERTZ,
+            device.amplifier.bandwidth_hz,
+            fit.estimate(|_, lag_s| 1.0 / (TAU * lag_s)),
+            0.0,
+            "needs steps of current and a longer recording",
+        ),
+    ];
+    rows.into_iter()
+        .filter(|row| row.0 != known.entry().0)
+        .map(|(key, unit, file, estimate, least, remedy)| {
+            Quantity::new(key, unit, file, estimate, least, remedy)
+        })
+        .collect()
+}
+
+/// Two significant digits.
+fn digits(x: f64) -> String {
+    let places = (1.0 - x.abs().log10().floor()).clamp(0.0, 9.0);
+    format!("{x:.0$}", places as usize)
+}

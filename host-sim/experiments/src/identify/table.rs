@@ -1,0 +1,109 @@
+//! What was identified, for people and for programs.
+
+use std::fmt::Write as _;
+
+use serde_json::{Value, json};
+
+use super::Identification;
+use super::fit::Estimate;
+use super::quantity::{DAMPING, Quantity, Unit};
+use terminal::wording::wrapped;
+
+/// The table: values with units and intervals, what was assumed, and the health lines.
+#[must_use]
+pub fn text(found: &Identification) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        text,
+        "{:<32}{:>10}  {:<11}{:<12}95 %",
+        "", "value", "unit", "in the file"
+    );
+    let mut untold = String::new();
+    for quantity in &found.quantities {
+        let Unit { name, per_si, .. } = quantity.unit;
+        let key = quantity.key;
+        if let Some(why) = &quantity.untold {
+            let _ = writeln!(text, "{key:<32}{:>10}  {name:<11}", "-");
+            let _ = writeln!(untold, "{}", wrapped(&format!("not told: {key}: {why}"), 4));
+            continue;
+        }
+        let Estimate { value, .. } = quantity.estimate;
+        let _ = writeln!(
+            text,
+            "{key:<32}{:>10.4}  {name:<11}{:<12}{}",
+            per_si * value,
+            format!("{value:.4e}"),
+            quantity.half_text(),
+        );
+    }
+    let _ = write!(
+        text,
+        "The keys are those of the device file, whose values are in SI units.\n\n{untold}"
+    );
+    for quantity in found.quantities.iter().filter(|q| q.untold.is_none()) {
+        let _ = writeln!(
+            text,
+            "{}",
+            wrapped(&format!("health: {}", health(quantity)), 4)
+        );
+    }
+    let _ = writeln!(
+        text,
+        "\n{} of {} windows used; {:.1} % of the motor's torque unexplained, RMS",
+        found.windows.0,
+        found.windows.1,
+        100.0 * found.unexplained
+    );
+    for assumed in &found.assumed {
+        let _ = writeln!(text, "{}", wrapped(&format!("assumed: {assumed}"), 4));
+    }
+    text
+}
+
+/// How far a value is from the device file's, in terms of its interval.
+fn health(quantity: &Quantity) -> String {
+    let (part, inside) = quantity.health();
+    let Unit { name, per_si, .. } = quantity.unit;
+    let verdict = match (inside, quantity.key) {
+        (true, _) => "inside its interval",
+        _ if (part - 1.0).abs() < 0.01 => "outside its interval, but by less than 1 %",
+        (false, DAMPING) => "outside its interval: coupler hot, or the file wrong",
+        (false, _) => "outside its interval: the file is wrong, or what was assumed",
+    };
+    let file = per_si * quantity.file;
+    if quantity.file == 0.0 {
+        return format!("{}: the file has none, {verdict}", quantity.key);
+    }
+    format!(
+        "{}: {part:.3} of the file's {file:.4} {name}, {:+.1} %, {verdict}",
+        quantity.key,
+        100.0 * (part - 1.0)
+    )
+}
+
+/// One object a quantity, told or not, in the SI unit that it names.
+#[must_use]
+pub fn json(found: &Identification) -> Value {
+    let row = |quantity: &Quantity| {
+        let (part, inside) = quantity.health();
+        let told = quantity.untold.is_none();
+        json!({
+            "key": quantity.key,
+            "unit": quantity.unit.si,
+            "value": told.then_some(quantity.estimate.value),
+            "half_width_95": told.then_some(quantity.estimate.half),
+            "untold": quantity.untold,
+            "file": quantity.file,
+            "of_file": told.then_some(part).filter(|part| part.is_finite()),
+            "file_inside": told.then_some(inside),
+        })
+    };
+    json!({
+        "quantities": found.quantities.iter().map(row).collect::<Vec<_>>(),
+        "assumed": found.assumed,
+        "windows_used": found.windows.0,
+        "windows": found.windows.1,
+        "unexplained": found.unexplained,
+    })
+}

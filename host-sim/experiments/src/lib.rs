@@ -1,0 +1,15 @@
+//! The experiments that the commands run: comparison of estimators, closed loop, robustness,
+//! stiffness limits, wrong parameters, tuning, identification and replay of recordings.
+
+pub mod closed_loop;
+pub mod compare;
+pub mod felt;
+pub mod identify;
+pub mod limit;
+pub mod replay;
+pub mod robust;
+pub mod rows;
+pub mod sensitivity;
+pub mod table;
+pub mod tune;
+pub mod zwidth;

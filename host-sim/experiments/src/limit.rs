@@ -1,0 +1,142 @@
+//! How well velocity can be known at all: a particle filter with the true model and the exact
+//! likelihood of a count.
+//!
+//! It is no estimator for a controller: thousands of copies of the motor, each with its own
+//! noise, of which those live on that the encoder does not contradict. What the model does not
+//! know of the plant (the ripple of friction and torque) is a slow random torque here as in the
+//! observers.
+
+mod filter;
+pub mod table;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::compare::{Case, Settings, interval, setup_of, trace};
+use catalogue::estimators::Kind;
+use scoring::contest::Contest;
+use scoring::score::{Truth, Wanted};
+use simulation::scenario::{ScenarioName, TORQUE_INTENSITY_NM2_S};
+use terminal::failure::Failure;
+
+pub use filter::{Noise, velocities};
+
+/// One estimator, or the limit, on one run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Estimator; `limit` and `limit-edge` are the particle filter.
+    pub estimator: &'static str,
+    /// Scenario.
+    pub scenario: &'static str,
+    /// Control rate, Hz.
+    pub rate_hz: f64,
+    /// Seed.
+    pub seed: u64,
+    /// RMS error of the velocity, rad/s.
+    pub rms_rad_s: f64,
+    /// The same in % of finite difference on the same samples.
+    pub rms_pct: f64,
+    /// The same over that of the limit with the same signals.
+    pub over_limit: f64,
+}
+
+/// Scenarios that it is run on unless others are asked for.
+pub const SCENARIOS: [ScenarioName; 5] = {
+    use ScenarioName::{FreeAir, Step, Stochastic, Texture, Track};
+    [Stochastic, Step, Track, FreeAir, Texture]
+};
+
+/// What the model does not know in `scenario`.
+fn noise(scenario: ScenarioName) -> Noise {
+    if scenario.linear_plant() {
+        // The plant's own noise, and nothing else.
+        Noise {
+            torque_noise: TORQUE_INTENSITY_NM2_S.sqrt(),
+            load: 0.0,
+            load_time: 1.0,
+            rub: 0.0,
+        }
+    } else {
+        Noise {
+            torque_noise: 6e-6,
+            load: 2.5e-4,
+            load_time: 0.02,
+            rub: 3e-4,
+        }
+    }
+}
+
+/// Runs all cases in parallel with `particles` particles each; `done` is called as each ends.
+///
+/// # Errors
+/// [`Failure::Input`] of the first case, in order, that could not be run.
+pub fn limit(
+    cases: &[Case],
+    settings: &Settings,
+    particles: usize,
+    done: impl Fn() + Sync,
+) -> Result<Vec<Row>, Failure> {
+    let rows = cases
+        .par_iter()
+        .map(|case| {
+            let rows = run(case, settings, particles);
+            done();
+            rows
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok(rows.into_iter().flatten().collect())
+}
+
+fn run(case: &Case, settings: &Settings, particles: usize) -> Result<Vec<Row>, Failure> {
+    // The limit reads everything that there is.
+    let all: Vec<&Kind> = Kind::all().iter().collect();
+    let trace = trace(case, &settings.device, &all)?;
+    let setup = setup_of(case, &settings.device);
+    let contest = Contest::new(
+        &settings.estimators,
+        &settings.parameters,
+        &setup,
+        case.plant,
+    )?;
+    let wanted = Wanted {
+        rms: true,
+        ..Wanted::NONE
+    };
+    let omega = trace.true_omega.as_deref().unwrap_or_default();
+    let truth = Truth::new(omega, case.rate_hz, interval(&settings.device), wanted)
+        .map_err(|error| Failure::Input(format!("{}: {error}", case.scenario)))?;
+    let rms = |velocity: &[f32]| truth.score(velocity).rms_rad_s.unwrap_or(f64::NAN);
+    let difference = Kind::named("finite-difference")?.build(&setup, &Vec::new())?;
+    let reference = rms(&difference.run(&trace));
+    let noise = noise(case.scenario);
+    let of = |edges| {
+        rms(&velocities(
+            &trace, &setup, &noise, edges, particles, case.seed,
+        ))
+    };
+    let (counts, edges) = (of(false), of(true));
+    let row = |estimator, rms_rad_s: f64, limit: f64| Row {
+        estimator,
+        scenario: case.scenario.as_str(),
+        rate_hz: case.rate_hz,
+        seed: case.seed,
+        rms_rad_s,
+        rms_pct: 100.0 * rms_rad_s / reference,
+        over_limit: rms_rad_s / limit,
+    };
+    let mut rows = vec![
+        row("limit", counts, counts),
+        row("limit-edge", edges, edges),
+    ];
+    for contestant in contest.contestants() {
+        if let Some(estimate) = contestant.estimate(&trace) {
+            let limit = if contestant.kind.needs.edge {
+                edges
+            } else {
+                counts
+            };
+            rows.push(row(contestant.kind.name, rms(&estimate.velocity), limit));
+        }
+    }
+    Ok(rows)
+}

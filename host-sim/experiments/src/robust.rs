@@ -1,0 +1,286 @@
+//! Robustness of the closed loop: devices that differ from what the controller believes.
+//!
+//! Each scene runs with every corner of the tolerances and with drawn devices. Each run is judged:
+//! stable, stopped by the monitor in time, or violated.
+
+pub mod corners;
+mod high_pass;
+pub mod judge;
+pub mod row;
+pub mod shard;
+pub mod summary;
+pub mod variation;
+
+use haptic_control::LoopPoles;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::closed_loop::{Eye, Loop, SceneName, believed};
+use catalogue::estimators::Setup;
+use catalogue::estimators::{Estimator, Kind};
+use catalogue::parameters::{Parameters, PlantKind};
+use judge::{Instant, Judge};
+use row::Row;
+use simulation::device::Device;
+use simulation::simulate;
+use terminal::failure::Failure;
+use variation::Subject;
+
+/// Everything that the rows depend on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// Version of the program.
+    pub version: String,
+    /// Scenes, by name.
+    pub scenes: Vec<String>,
+    /// Control rate, Hz.
+    pub rate_hz: f64,
+    /// Estimator of both velocities.
+    pub estimator: String,
+    /// Values of its parameters, in their order.
+    pub values: Vec<f64>,
+    /// Drawn devices a scene.
+    pub devices: u64,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Duration of each run, s.
+    pub seconds: f64,
+    /// The device that the controller believes in.
+    pub device: Device,
+}
+
+/// What runs the devices of [`Settings`].
+#[derive(Clone)]
+pub struct Experiment {
+    settings: Settings,
+    ticks: usize,
+    large: Estimator,
+    handle: Estimator,
+    /// Poles of the velocity loop.
+    pub poles: LoopPoles,
+    /// Further ticks by which the currents act late.
+    pub late_ticks: usize,
+}
+
+/// One run to be done.
+pub type Job = (SceneName, Subject);
+
+impl Settings {
+    /// Settings of a run with these values of the estimator's parameters.
+    #[must_use]
+    pub fn values(kind: &Kind, device: &Device, rate_hz: f64, parameters: &Parameters) -> Vec<f64> {
+        let setup = Setup::of(device, rate_hz);
+        parameters.values(kind, &setup, PlantKind::Friction)
+    }
+
+    /// The scenes.
+    ///
+    /// # Errors
+    /// One line that names a scene that there is not.
+    pub fn scenes(&self) -> Result<Vec<SceneName>, String> {
+        self.scenes.iter().map(|name| name.parse()).collect()
+    }
+
+    /// All runs in the order of the rows: scene by scene, corners first.
+    ///
+    /// # Errors
+    /// As [`Settings::scenes`].
+    pub fn jobs(&self) -> Result<Vec<Job>, String> {
+        let corners = (0..corners::corners().len()).map(Subject::Corner);
+        let subjects: Vec<_> = corners
+            .chain((0..self.devices).map(Subject::Drawn))
+            .collect();
+        let jobs = self.scenes()?.into_iter().flat_map(|scene| {
+            let of = subjects.iter().map(move |&subject| (scene, subject));
+            of.collect::<Vec<_>>()
+        });
+        Ok(jobs.collect())
+    }
+}
+
+impl Experiment {
+    /// What runs these settings.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that names what cannot be used.
+    pub fn new(settings: &Settings) -> Result<Self, Failure> {
+        let kind = Kind::named(&settings.estimator)?;
+        if kind.needs.edge || kind.needs.small || kind.needs.current {
+            return Err(Failure::Input(format!(
+                "estimator {}: it reads more than its own encoder, so that it cannot look at the \
+                 handle; choose another one",
+                kind.name
+            )));
+        }
+        let Settings {
+            device, rate_hz, ..
+        } = settings;
+        let ticks = simulate::ticks(*rate_hz, settings.seconds)?;
+        let on = |counts_per_rev: u32| {
+            let mut setup = Setup::of(device, *rate_hz);
+            setup.device.counts_per_rev = counts_per_rev;
+            kind.build(&setup, &settings.values)
+        };
+        Ok(Self {
+            ticks,
+            large: on(device.large.counts_per_rev)?,
+            handle: on(device.small.counts_per_rev)?,
+            settings: settings.clone(),
+            poles: LoopPoles::DEFAULT,
+            late_ticks: 0,
+        })
+    }
+
+    /// Runs the jobs in parallel; `done` is called as each ends. Rows come in the jobs' order.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] of the first job, in order, that could not be run.
+    pub fn rows(&self, jobs: &[Job], done: impl Fn() + Sync) -> Result<Vec<Row>, Failure> {
+        jobs.par_iter()
+            .map(|&job| {
+                let row = self.row(job);
+                done();
+                row
+            })
+            .collect()
+    }
+
+    /// Runs one device.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] on a device or a loop that cannot be.
+    pub fn row(&self, (scene, subject): Job) -> Result<Row, Failure> {
+        let settings = &self.settings;
+        let (variation, seed) = subject.variation(settings.seed, scene);
+        let device = variation.of(&settings.device);
+        let inertia = device.small.inertia_kg_m2;
+        let run = Loop {
+            device,
+            believed: believed(&settings.device),
+            scene,
+            hand: variation.hand(scene),
+            rate_hz: settings.rate_hz,
+            seed,
+            large: self.large.clone(),
+            handle: self.handle.clone(),
+            eye: Eye::Large,
+            poles: self.poles,
+            late_ticks: variation.late_ticks + self.late_ticks,
+        };
+        let mut judge = Judge::new(scene, settings.rate_hz, self.ticks);
+        let mut cause = None;
+        run.run(self.ticks, |now| {
+            cause = now.stopped;
+            judge.see(&Instant {
+                handle_rad_s: now.handle.omega,
+                large_rad_s: now.large.omega,
+                felt_nm: now.felt,
+                // Its own friction included: the same whether somebody holds it or not.
+                rendered_nm: now.felt + inertia * now.handle_acceleration,
+                wanted_nm: f64::from(now.action.torque.0),
+                stopped: now.stopped.is_some(),
+            });
+        })
+        .map_err(|error| Failure::Input(format!("{scene}, device {subject}: {error}")))?;
+        Ok(Row::new(
+            settings,
+            (scene, subject),
+            variation,
+            &judge,
+            cause,
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::judge::{Reason, Verdict};
+    use super::*;
+
+    pub(super) fn settings(scenes: &[&str], devices: u64) -> Settings {
+        let device = Device::default();
+        let kind = Kind::named("kalman-triple-steady").unwrap();
+        Settings {
+            version: "test".into(),
+            scenes: scenes.iter().map(|name| (*name).to_owned()).collect(),
+            rate_hz: 2000.0,
+            estimator: kind.name.to_owned(),
+            values: Settings::values(kind, &device, 2000.0, &Parameters::default()),
+            devices,
+            seed: 1,
+            seconds: 0.5,
+            device,
+        }
+    }
+
+    #[test]
+    fn rows_depend_neither_on_order_nor_on_company() {
+        let settings = settings(&["hold", "wall"], 6);
+        let experiment = Experiment::new(&settings).unwrap();
+        let jobs = settings.jobs().unwrap();
+        let rows = experiment.rows(&jobs, || ()).unwrap();
+        let backwards: Vec<Job> = jobs.iter().rev().copied().collect();
+        let mut again = experiment.rows(&backwards, || ()).unwrap();
+        again.reverse();
+        assert_eq!(rows, again);
+        for i in [0, 30, 40, 65] {
+            assert_eq!(experiment.row(jobs[i]).unwrap(), rows[i]);
+        }
+    }
+
+    #[test]
+    fn the_nominal_device_is_stable_in_every_scene() {
+        let names = SceneName::ALL.map(SceneName::as_str);
+        let settings = settings(&names, 0);
+        let experiment = Experiment::new(&settings).unwrap();
+        for scene in SceneName::ALL {
+            let row = experiment.row((scene, Subject::Corner(0))).unwrap();
+            assert_eq!(row.device, "nominal");
+            assert_eq!((row.verdict, row.stop), (Verdict::Stable, None), "{scene}");
+        }
+    }
+
+    #[test]
+    fn a_loop_that_acts_far_too_late_is_never_called_stable() {
+        let names = ["free-air", "wall", "spring-damper", "viscous", "hold"];
+        let settings = Settings {
+            seconds: 3.0,
+            ..settings(&names, 0)
+        };
+        let mut experiment = Experiment::new(&settings).unwrap();
+        experiment.late_ticks = 200;
+        for scene in settings.scenes().unwrap() {
+            let row = experiment.row((scene, Subject::Corner(0))).unwrap();
+            assert_ne!(row.verdict, Verdict::Stable, "{row:?}");
+        }
+        // A wall that pushes 22 ms late: its limit cycle is neither fast nor strong, and the large
+        // motor's share of it just too weak for the monitor, which ends a later one.
+        experiment.late_ticks = 44;
+        let late_wall = |experiment: &Experiment| {
+            experiment
+                .row((SceneName::ALL[2], Subject::Corner(0)))
+                .unwrap()
+        };
+        assert_eq!(late_wall(&experiment).reason, Some(Reason::Oscillation));
+        experiment.late_ticks = 60;
+        assert_eq!(late_wall(&experiment).verdict, Verdict::Stopped);
+    }
+
+    #[test]
+    fn a_loop_whose_poles_are_far_too_fast_is_never_called_stable() {
+        let settings = settings(&["free-air", "viscous"], 0);
+        let mut experiment = Experiment::new(&settings).unwrap();
+        // The design does not know of the 3 ms, so that it lets such poles pass.
+        experiment.poles = LoopPoles {
+            regulation: estimator_core::Hertz(150.0),
+            tracking: estimator_core::Hertz(150.0),
+            estimator_delay_s: 0.0,
+        };
+        experiment.late_ticks = 6;
+        for scene in settings.scenes().unwrap() {
+            let row = experiment.row((scene, Subject::Corner(0))).unwrap();
+            assert_ne!(row.verdict, Verdict::Stable, "{row:?}");
+        }
+    }
+}

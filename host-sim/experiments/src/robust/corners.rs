@@ -1,0 +1,121 @@
+//! Devices at the ends of the tolerances.
+
+use super::variation::{
+    AMPLIFIER, CONSTANT, DAMPING, DISC, FRICTION, GONE_RAD_S, HAND, INERTIA, NOMINAL, Variation,
+};
+
+/// Names and devices: each value alone at its end, then the worst together.
+///
+/// *agile* answers most to a current, *sluggish* least; *thin* has the weakest coupler.
+#[must_use]
+pub fn corners() -> Vec<(&'static str, Variation)> {
+    let with = |mut base: Variation, change: fn(&mut Variation)| {
+        change(&mut base);
+        base
+    };
+    let n = NOMINAL;
+    let disc = with(n, |v| {
+        (v.disc_phase, v.disc_line, v.disc_random) = DISC;
+    });
+    let agile = with(disc, |v| {
+        (v.large_inertia, v.small_inertia) = (INERTIA.0, INERTIA.0);
+        (v.large_constant, v.small_constant) = (CONSTANT.1, CONSTANT.1);
+        (v.large_friction, v.small_friction) = (FRICTION.0, FRICTION.0);
+        (v.amplifier, v.late_ticks) = (AMPLIFIER.0, 1);
+    });
+    let sluggish = with(agile, |v| {
+        (v.large_inertia, v.small_inertia) = (INERTIA.1, INERTIA.1);
+        (v.large_constant, v.small_constant) = (CONSTANT.0, CONSTANT.0);
+        (v.large_friction, v.small_friction) = (FRICTION.1, FRICTION.1);
+    });
+    let thin = |base| with(base, |v| v.damping = DAMPING.0);
+    let stiff = |base| with(base, |v| v.hand = HAND.1);
+    let gone = |base| with(base, |v| v.gone_rad_s = Some(GONE_RAD_S.1));
+    vec![
+        ("nominal", n),
+        ("damping-low", thin(n)),
+        (
+            "large-inertia-low",
+            with(n, |v| v.large_inertia = INERTIA.0),
+        ),
+        (
+            "large-inertia-high",
+            with(n, |v| v.large_inertia = INERTIA.1),
+        ),
+        (
+            "small-inertia-low",
+            with(n, |v| v.small_inertia = INERTIA.0),
+        ),
+        (
+            "small-inertia-high",
+            with(n, |v| v.small_inertia = INERTIA.1),
+        ),
+        (
+            "large-constant-low",
+            with(n, |v| v.large_constant = CONSTANT.0),
+        ),
+        (
+            "large-constant-high",
+            with(n, |v| v.large_constant = CONSTANT.1),
+        ),
+        (
+            "small-constant-low",
+            with(n, |v| v.small_constant = CONSTANT.0),
+        ),
+        (
+            "small-constant-high",
+            with(n, |v| v.small_constant = CONSTANT.1),
+        ),
+        (
+            "large-friction-low",
+            with(n, |v| v.large_friction = FRICTION.0),
+        ),
+        (
+            "large-friction-high",
+            with(n, |v| v.large_friction = FRICTION.1),
+        ),
+        (
+            "small-friction-low",
+            with(n, |v| v.small_friction = FRICTION.0),
+        ),
+        (
+            "small-friction-high",
+            with(n, |v| v.small_friction = FRICTION.1),
+        ),
+        ("amplifier-slow", with(n, |v| v.amplifier = AMPLIFIER.0)),
+        ("tick-late", with(n, |v| v.late_ticks = 1)),
+        ("hand-stiff", stiff(n)),
+        ("hand-gone", gone(n)),
+        ("disc", disc),
+        ("agile", agile),
+        ("agile-stiff", stiff(agile)),
+        ("agile-gone", gone(agile)),
+        ("agile-thin", thin(agile)),
+        ("agile-thin-gone", gone(thin(agile))),
+        ("sluggish", sluggish),
+        ("sluggish-thin-stiff", stiff(thin(sluggish))),
+        ("sluggish-thin-gone", gone(thin(sluggish))),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robust::variation::Subject;
+    use simulation::device::Device;
+
+    #[test]
+    fn corners_reach_every_end_and_are_devices() {
+        let corners = corners();
+        assert_eq!(corners[0], ("nominal", NOMINAL));
+        for (i, (name, variation)) in corners.iter().enumerate() {
+            assert_eq!(name.parse(), Ok(Subject::Corner(i)));
+            assert_eq!(Subject::Corner(i).to_string(), *name);
+            variation.of(&Device::default()).validate().unwrap();
+        }
+        assert!("42".parse() == Ok(Subject::Drawn(42)));
+        assert!("corner".parse::<Subject>().is_err());
+        assert!(corners.iter().any(|(_, v)| v.damping == 0.6));
+        assert!(corners.iter().any(|(_, v)| v.hand == 4.0));
+    }
+}

@@ -1,0 +1,245 @@
+//! How a device differs from the one that the controller believes in.
+
+use std::fmt;
+use std::str::FromStr;
+
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
+use serde::{Deserialize, Serialize};
+
+use super::corners::corners;
+use crate::closed_loop::{Hand, SceneName};
+use simulation::device::Device;
+use simulation::scenario::{draw, draw_sign};
+
+/// Factors of the believed values, and what the controller does not know of at all.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Variation {
+    /// Factor of the coupler's damping b.
+    pub damping: f64,
+    /// Factor of the large motor's inertia.
+    pub large_inertia: f64,
+    /// Factor of the small motor's inertia, the handle with it.
+    pub small_inertia: f64,
+    /// Factor of the large motor's torque constant.
+    pub large_constant: f64,
+    /// Factor of the small motor's torque constant.
+    pub small_constant: f64,
+    /// Factor of the large motor's Coulomb friction.
+    pub large_friction: f64,
+    /// Factor of the small motor's Coulomb friction.
+    pub small_friction: f64,
+    /// Factor of the amplifiers' bandwidth.
+    pub amplifier: f64,
+    /// Ticks by which the currents act late.
+    pub late_ticks: usize,
+    /// Factor of the hand's stiffness and damping.
+    pub hand: f64,
+    /// Velocity of a handle that nobody holds, rad/s.
+    pub gone_rad_s: Option<f64>,
+    /// Phase error of the large encoder's disc, counts.
+    pub disc_phase: f64,
+    /// Once-a-turn error, counts.
+    pub disc_line: f64,
+    /// Random error, counts.
+    pub disc_random: f64,
+}
+
+/// The device that the controller believes in.
+pub const NOMINAL: Variation = Variation {
+    damping: 1.0,
+    large_inertia: 1.0,
+    small_inertia: 1.0,
+    large_constant: 1.0,
+    small_constant: 1.0,
+    large_friction: 1.0,
+    small_friction: 1.0,
+    amplifier: 1.0,
+    late_ticks: 0,
+    hand: 1.0,
+    gone_rad_s: None,
+    disc_phase: 0.0,
+    disc_line: 0.0,
+    disc_random: 0.0,
+};
+
+/// What is drawn uniformly between these: ends of the ranges; friction is known least.
+pub(super) const DAMPING: (f64, f64) = (0.6, 1.05);
+pub(super) const INERTIA: (f64, f64) = (0.7, 1.3);
+pub(super) const CONSTANT: (f64, f64) = (0.8, 1.2);
+pub(super) const FRICTION: (f64, f64) = (0.6, 1.5);
+pub(super) const AMPLIFIER: (f64, f64) = (0.5, 1.0);
+pub(super) const HAND: (f64, f64) = (1.0, 4.0);
+pub(super) const DISC: (f64, f64, f64) = (0.06, 0.25, 0.02);
+/// Part of the devices that nobody holds, and how fast their handle is then, rad/s.
+const GONE: f64 = 0.2;
+pub(super) const GONE_RAD_S: (f64, f64) = (0.5, 3.0);
+
+/// A device of a scene: a corner, or one that is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// A corner, by its place in [`corners`].
+    Corner(usize),
+    /// A drawn device, by its index.
+    Drawn(u64),
+}
+
+impl Subject {
+    /// The device, and the seed of the hand's motion, the encoders' phases and the disc: they
+    /// depend on `seed`, scene and subject alone.
+    #[must_use]
+    pub fn variation(self, seed: u64, scene: SceneName) -> (Variation, u64) {
+        let mut random = self.random(seed, scene);
+        let run_seed = random.next_u64();
+        let mut variation = match self {
+            Self::Corner(i) => corners()[i].1,
+            Self::Drawn(_) => drawn(&mut random),
+        };
+        if let (Some(omega), SceneName::Wall(..)) = (&mut variation.gone_rad_s, scene) {
+            // Away from the wall there is nothing to hit.
+            *omega = omega.abs();
+        }
+        (variation, run_seed)
+    }
+
+    fn random(self, seed: u64, scene: SceneName) -> Xoshiro256PlusPlus {
+        // FNV-1a of everything that a device is drawn from.
+        let hash = |state: u64, byte: u8| (state ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        let state = seed
+            .to_le_bytes()
+            .into_iter()
+            .chain(scene.as_str().bytes())
+            .chain([0])
+            .chain(self.to_string().bytes())
+            .fold(0xcbf2_9ce4_8422_2325, hash);
+        Xoshiro256PlusPlus::seed_from_u64(state)
+    }
+}
+
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Corner(i) => f.pad(corners()[*i].0),
+            Self::Drawn(i) => f.pad(&i.to_string()),
+        }
+    }
+}
+
+impl FromStr for Subject {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        if let Ok(index) = name.parse() {
+            return Ok(Self::Drawn(index));
+        }
+        let corners = corners();
+        let found = corners.iter().position(|(known, _)| *known == name);
+        found.map(Self::Corner).ok_or_else(|| {
+            let known: Vec<_> = corners.iter().map(|(known, _)| *known).collect();
+            format!(
+                "no device '{name}': must be an index from 0 on, or one of {}",
+                known.join(", ")
+            )
+        })
+    }
+}
+
+fn drawn(random: &mut Xoshiro256PlusPlus) -> Variation {
+    let mut within = |(low, high)| draw(random, low, high);
+    let mut variation = Variation {
+        damping: within(DAMPING),
+        large_inertia: within(INERTIA),
+        small_inertia: within(INERTIA),
+        large_constant: within(CONSTANT),
+        small_constant: within(CONSTANT),
+        large_friction: within(FRICTION),
+        small_friction: within(FRICTION),
+        amplifier: within(AMPLIFIER),
+        hand: within(HAND),
+        disc_phase: within((0.0, DISC.0)),
+        disc_line: within((0.0, DISC.1)),
+        disc_random: within((0.0, DISC.2)),
+        late_ticks: usize::from(within((0.0, 1.0)) < 0.5),
+        gone_rad_s: None,
+    };
+    if within((0.0, 1.0)) < GONE {
+        variation.gone_rad_s = Some(within(GONE_RAD_S) * draw_sign(random));
+    }
+    variation
+}
+
+impl Variation {
+    /// `nominal`, varied.
+    #[must_use]
+    pub fn of(&self, nominal: &Device) -> Device {
+        let mut device = nominal.clone();
+        device.coupler.damping_nms_per_rad *= self.damping;
+        device.large.inertia_kg_m2 *= self.large_inertia;
+        device.small.inertia_kg_m2 *= self.small_inertia;
+        device.large.torque_constant_nm_per_a *= self.large_constant;
+        device.small.torque_constant_nm_per_a *= self.small_constant;
+        device.large.coulomb_nm *= self.large_friction;
+        device.small.coulomb_nm *= self.small_friction;
+        device.amplifier.bandwidth_hz *= self.amplifier;
+        device.hand.stiffness_nm_per_rad *= self.hand;
+        device.hand.damping_nms_per_rad *= self.hand;
+        device.disc.phase_counts += self.disc_phase;
+        device.disc.line_counts += self.disc_line;
+        device.disc.random_counts += self.disc_random;
+        device
+    }
+
+    /// Who plays with `scene`.
+    #[must_use]
+    pub fn hand(&self, scene: SceneName) -> Hand {
+        match (self.gone_rad_s, scene) {
+            (Some(omega), _) => Hand::Gone(omega),
+            (None, SceneName::Wall(..)) => Hand::Pushing,
+            (None, SceneName::Hold(..)) => Hand::Still,
+            (None, _) => Hand::Moving,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_device_depends_on_seed_scene_and_index_alone() {
+        let (wall, hold) = (SceneName::ALL[2], SceneName::ALL[7]);
+        let of = |i, seed, scene| Subject::Drawn(i).variation(seed, scene);
+        let forwards: Vec<_> = (0..50).map(|i| of(i, 1, wall)).collect();
+        let backwards: Vec<_> = (0..50).rev().map(|i| of(i, 1, wall)).collect();
+        assert!(forwards.iter().eq(backwards.iter().rev()));
+        assert_ne!(of(3, 1, wall), of(3, 2, wall));
+        assert_ne!(of(3, 1, wall), of(3, 1, hold));
+        assert_ne!(of(3, 1, wall), of(4, 1, wall));
+    }
+
+    #[test]
+    fn draws_fill_their_ranges_and_a_fifth_is_not_held() {
+        let scene = SceneName::FreeAir;
+        let draws: Vec<_> = (0..2000)
+            .map(|i| Subject::Drawn(i).variation(1, scene).0)
+            .collect();
+        let check = |of: fn(&Variation) -> f64, (low, high): (f64, f64)| {
+            let smallest = draws.iter().map(of).fold(f64::INFINITY, f64::min);
+            let largest = draws.iter().map(of).fold(0.0, f64::max);
+            let edge = 0.01 * (high - low);
+            assert!(smallest >= low && smallest < low + edge, "{smallest}");
+            assert!(largest <= high && largest > high - edge, "{largest}");
+        };
+        check(|v| v.damping, DAMPING);
+        check(|v| v.large_inertia, INERTIA);
+        check(|v| v.small_inertia, INERTIA);
+        check(|v| v.large_constant, CONSTANT);
+        check(|v| v.small_constant, CONSTANT);
+        check(|v| v.amplifier, AMPLIFIER);
+        check(|v| v.hand, HAND);
+        check(|v| v.disc_line, (0.0, DISC.1));
+        check(|v| v.late_ticks as f64, (0.0, 1.0));
+        let gone = draws.iter().filter(|v| v.gone_rad_s.is_some()).count();
+        assert!((340..460).contains(&gone), "{gone}");
+    }
+}

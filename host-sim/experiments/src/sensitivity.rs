@@ -1,0 +1,110 @@
+//! How much an estimator loses by what it believes wrongly of the device.
+//!
+//! Each run of the plant is estimated over and over, each time by estimators that believe in one
+//! wrong constant: see [`Belief`]. The plant and its loop stay the same, and so does the finite
+//! difference that the errors are compared to.
+
+pub mod table;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::compare::{Case, Settings, interval, setup_of, trace};
+use catalogue::belief::Belief;
+use catalogue::estimators::{Kind, available};
+use scoring::score::{Truth, Wanted};
+use terminal::failure::Failure;
+
+/// Parts of the largest error that are tried, besides none.
+pub const PARTS: [f64; 4] = [-1.0, -0.5, 0.5, 1.0];
+
+/// One estimator with one belief on one run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Estimator.
+    pub estimator: &'static str,
+    /// Scenario.
+    pub scenario: &'static str,
+    /// Control rate, Hz.
+    pub rate_hz: f64,
+    /// Seed.
+    pub seed: u64,
+    /// Constant that is believed wrongly; `null` for none.
+    pub constant: Option<&'static str>,
+    /// By how much, as a part of it.
+    pub error: f64,
+    /// RMS error of the velocity, rad/s.
+    pub rms_rad_s: f64,
+    /// The same in % of finite difference on the same samples.
+    pub rms_pct: f64,
+    /// Part of the samples outside the haptic interval.
+    pub outside: f64,
+}
+
+/// Runs all cases in parallel; `done` is called as each ends.
+///
+/// # Errors
+/// [`Failure::Input`] of the first case, in order, that could not be run.
+pub fn sensitivity(
+    cases: &[Case],
+    settings: &Settings,
+    done: impl Fn() + Sync,
+) -> Result<Vec<Row>, Failure> {
+    let rows = cases
+        .par_iter()
+        .map(|case| {
+            let rows = run(case, settings);
+            done();
+            rows
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok(rows.into_iter().flatten().collect())
+}
+
+fn run(case: &Case, settings: &Settings) -> Result<Vec<Row>, Failure> {
+    let trace = trace(case, &settings.device, &settings.estimators)?;
+    let wanted = Wanted {
+        rms: true,
+        outside: true,
+        ..Wanted::NONE
+    };
+    let omega = trace.true_omega.as_deref().unwrap_or_default();
+    let truth = Truth::new(omega, case.rate_hz, interval(&settings.device), wanted)
+        .map_err(|error| Failure::Input(format!("{}: {error}", case.scenario)))?;
+    let setup = setup_of(case, &settings.device);
+    let score = |kind: &Kind, belief: Option<&Belief>| {
+        // Parameters stay as tuned: they are not a belief.
+        let values = settings.parameters.values(kind, &setup, case.plant);
+        let believed = belief.map_or(setup, |belief| belief.of(&setup));
+        let estimator = kind.build(&believed, &values)?;
+        let score = truth.score(&estimator.run(&trace));
+        let missing = || Failure::Input(format!("{}: no score", kind.name));
+        Ok::<_, Failure>((
+            score.rms_rad_s.ok_or_else(missing)?,
+            score.outside.ok_or_else(missing)?,
+        ))
+    };
+    let (reference, _) = score(Kind::named("finite-difference")?, None)?;
+    let beliefs = Belief::at(&PARTS);
+    let mut rows = Vec::new();
+    for kind in &settings.estimators {
+        if !kind.needs.within(available(&trace)) {
+            continue;
+        }
+        for belief in std::iter::once(None).chain(beliefs.iter().map(Some)) {
+            let (rms_rad_s, outside) = score(kind, belief)?;
+            rows.push(Row {
+                estimator: kind.name,
+                scenario: case.scenario.as_str(),
+                rate_hz: case.rate_hz,
+                seed: case.seed,
+                constant: belief.map(|belief| belief.constant.as_str()),
+                error: belief.map_or(0.0, |belief| belief.error),
+                rms_rad_s,
+                rms_pct: 100.0 * rms_rad_s / reference,
+                outside,
+            });
+        }
+    }
+    Ok(rows)
+}

@@ -1,0 +1,184 @@
+//! The rows of `sensitivity` as a table: estimators down, beliefs across.
+
+use std::fmt::Write as _;
+
+use super::Row;
+use crate::table::layout::{self, Column};
+use catalogue::belief::Belief;
+
+/// Scenarios in which the motor moves: at rest and in creep there is nothing to learn from.
+pub const MOVING: [&str; 6] = ["step", "permanent", "track", "free-air", "wall", "texture"];
+
+/// Mean RMS error in % of finite difference, one line an estimator, at each rate: with the believed
+/// constants right, over all scenarios and over those that move; and over those that move with each
+/// constant wrong by the most that is tried. Last the share of samples of moving scenarios outside
+/// the haptic interval, with the constants right and at the worst. Lines of `width` characters.
+#[must_use]
+pub fn table(rows: &[Row], width: usize) -> String {
+    let mut text = String::new();
+    for (i, at_rate) in rows_by_rate(rows).iter().enumerate() {
+        if i > 0 {
+            text.push('\n');
+        }
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "{} Hz, RMS in % of finite difference",
+            at_rate[0].rate_hz
+        );
+        let names = names(at_rate);
+        let each: Vec<Errors> = names
+            .iter()
+            .map(|name| {
+                let of = |row: &&&Row| row.estimator == *name;
+                Errors::of(&at_rate.iter().filter(of).copied().collect::<Vec<_>>())
+            })
+            .collect();
+        let column = |head: &str, unit, of: &dyn Fn(&Errors) -> f64| {
+            Column::numbers(head, unit, each.iter().map(|errors| number(of(errors))))
+        };
+        let mut columns = vec![
+            column("right", "all, %", &|of| of.right),
+            column("right", "moving, %", &|of| of.moving),
+        ];
+        for (i, belief) in Belief::extremes().iter().enumerate() {
+            let head = format!(
+                "{} {:+.0} %",
+                short(belief.constant.as_str()),
+                100.0 * belief.error
+            );
+            columns.push(column(&head, "%", &|of| of.wrong[i]));
+        }
+        columns.push(column("worst", "%", &|of| of.worst));
+        columns.push(column("outside", "right, %", &|of| of.outside));
+        columns.push(column("outside", "worst, %", &|of| of.outside_worst));
+        let names = names.iter().map(|name| (*name).to_owned());
+        text += &layout::table(&Column::text("believed:", "", names), &columns, width);
+    }
+    text
+}
+
+/// The errors of one estimator, %; NaN where there is no row.
+struct Errors {
+    right: f64,
+    moving: f64,
+    /// With each of [`Belief::extremes`].
+    wrong: Vec<f64>,
+    worst: f64,
+    outside: f64,
+    outside_worst: f64,
+}
+
+impl Errors {
+    fn of(rows: &[&Row]) -> Self {
+        let moving: Vec<&Row> = rows
+            .iter()
+            .copied()
+            .filter(|row| MOVING.contains(&row.scenario))
+            .collect();
+        let right = |rows: &[&Row]| mean(rows, |row| row.constant.is_none(), |row| row.rms_pct);
+        let outside = |only: &dyn Fn(&Row) -> bool| 100.0 * mean(&moving, only, |row| row.outside);
+        let mut errors = Self {
+            right: right(rows),
+            moving: right(&moving),
+            wrong: Vec::new(),
+            worst: right(&moving),
+            outside: outside(&|row| row.constant.is_none()),
+            outside_worst: outside(&|row| row.constant.is_none()),
+        };
+        for belief in Belief::extremes() {
+            let is = |row: &Row| {
+                row.constant == Some(belief.constant.as_str()) && row.error == belief.error
+            };
+            let value = mean(&moving, is, |row| row.rms_pct);
+            errors.wrong.push(value);
+            errors.worst = errors.worst.max(value);
+            errors.outside_worst = errors.outside_worst.max(outside(&is));
+        }
+        errors
+    }
+}
+
+fn number(value: f64) -> String {
+    if value.is_nan() {
+        "-".to_owned()
+    } else {
+        format!("{value:.2}")
+    }
+}
+
+/// NaN where there is no row.
+fn mean(rows: &[&Row], only: impl Fn(&Row) -> bool, value: impl Fn(&Row) -> f64) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for row in rows.iter().filter(|row| only(row)) {
+        sum += value(row);
+        count += 1.0;
+    }
+    sum / count
+}
+
+fn short(constant: &str) -> &str {
+    match constant {
+        "damping" => "b",
+        "inertia" => "J",
+        "torque-constant" => "Kt",
+        _ => "Tc",
+    }
+}
+
+/// Names of the estimators, in order of appearance.
+#[must_use]
+pub fn names<'a>(rows: &[&'a Row]) -> Vec<&'a str> {
+    let mut names = Vec::new();
+    for row in rows {
+        if !names.contains(&row.estimator) {
+            names.push(row.estimator);
+        }
+    }
+    names
+}
+
+/// The rows of each rate, in order of appearance.
+#[must_use]
+pub fn rows_by_rate(rows: &[Row]) -> Vec<Vec<&Row>> {
+    let mut rates: Vec<Vec<&Row>> = Vec::new();
+    for row in rows {
+        match rates.iter_mut().find(|of| of[0].rate_hz == row.rate_hz) {
+            Some(of) => of.push(row),
+            None => rates.push(vec![row]),
+        }
+    }
+    rates
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_worst_is_of_moving_scenarios_only() {
+        let row = |scenario, constant, error, rms_pct| Row {
+            estimator: "pll",
+            scenario,
+            rate_hz: 1000.0,
+            seed: 1,
+            constant,
+            error,
+            rms_rad_s: 1.0,
+            rms_pct,
+            outside: 0.5,
+        };
+        let rows = [
+            row("step", None, 0.0, 10.0),
+            row("creep", None, 0.0, 30.0),
+            row("step", Some("friction"), 0.5, 40.0),
+            row("creep", Some("friction"), 0.5, 900.0),
+        ];
+        let text = table(&rows, 1000);
+        let line = text.lines().last().unwrap();
+        let cells: Vec<_> = line.split_whitespace().collect();
+        assert_eq!(cells[..3], ["pll", "20.00", "10.00"]);
+        // The worst, and the shares outside.
+        assert_eq!(cells[cells.len() - 3..], ["40.00", "50.00", "50.00"]);
+    }
+}

@@ -1,0 +1,356 @@
+//! Search of the estimators' parameters on seeds that nothing is scored on.
+//!
+//! The search minimises the cost on the tuning seeds. The result and the shipped parameters are then
+//! compared on one more seed, and the shipped ones stay where they are at least as good there.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::compare::{Case, interval, trace};
+use catalogue::belief::Belief;
+use catalogue::estimators::{Kind, Parameter, Search, Setup, Values};
+use catalogue::parameters::{Parameters, PlantKind, Preset};
+use scoring::score::{Truth, Wanted};
+use simulation::device::Device;
+use simulation::scenario::ScenarioName;
+use simulation::trace::Trace;
+use terminal::failure::Failure;
+
+/// First seed that tuning may use; seeds below it are for scoring.
+pub const FIRST_SEED: u64 = 1 << 32;
+
+/// Weight of the RMS error beside the mean distance: it decides between parameters that never
+/// leave the interval.
+pub const RMS_WEIGHT: f64 = 0.01;
+
+/// Points of a search's first grid.
+const GRID: usize = 25;
+
+/// Inertia of the device for which the ranges of the parameters are stated, kg.m2.
+const DEFAULT_INERTIA: f64 = estimator_core::Device::DCX35L.inertia;
+
+/// Rounds of refinement between the neighbours of the best point.
+const REFINEMENTS: usize = 3;
+
+/// What to tune on.
+#[derive(Clone, Debug)]
+pub struct Ground {
+    /// The device.
+    pub device: Device,
+    /// Scenarios, pooled.
+    pub scenarios: Vec<ScenarioName>,
+    /// How many tuning seeds.
+    pub seeds: u64,
+    /// Duration of each run, s.
+    pub seconds: f64,
+    /// What the estimators believe wrongly, in turn, besides being right.
+    pub beliefs: Vec<Belief>,
+}
+
+/// What tuning found at one rate on one plant.
+#[derive(Clone, Debug)]
+pub struct Tuned {
+    /// The parameters.
+    pub preset: Preset,
+    /// One line for each parameter at an end of its range, and for each estimator whose shipped
+    /// parameters stay.
+    pub notes: Vec<String>,
+}
+
+/// Tunes `kinds`, all of them tunable, at one rate on one plant.
+///
+/// Minimises the mean distance outside the haptic interval plus a hundredth of the RMS error,
+/// averaged over scenarios and seeds: a grid over all parameters at once, then finer grids around
+/// the best. On the seed after the tuning seeds the result is compared with the shipped parameters;
+/// the better ones are returned. `done` is called as each estimator ends.
+///
+/// # Errors
+/// [`Failure::Input`] where a case cannot be simulated or an estimator needs what the
+/// simulation does not have.
+pub fn tune(
+    ground: &Ground,
+    kinds: &[&'static Kind],
+    rate_hz: f64,
+    plant: PlantKind,
+    done: impl Fn() + Sync,
+) -> Result<Tuned, Failure> {
+    let traces = |seeds: Range<u64>| {
+        let cases: Vec<_> = ground
+            .scenarios
+            .iter()
+            .flat_map(|&scenario| seeds.clone().map(move |i| (scenario, FIRST_SEED + i)))
+            .map(|(scenario, seed)| Case {
+                scenario,
+                rate_hz,
+                plant,
+                seed,
+                seconds: ground.seconds,
+                keep: false,
+            })
+            .collect();
+        let traces = cases
+            .par_iter()
+            .map(|case| trace(case, &ground.device, kinds));
+        traces.collect::<Result<Vec<_>, _>>()
+    };
+    let traces = [
+        traces(0..ground.seeds)?,
+        traces(ground.seeds..ground.seeds + 1)?,
+    ];
+    let [seen, unseen] = [
+        tracks(&traces[0], rate_hz, &ground.device)?,
+        tracks(&traces[1], rate_hz, &ground.device)?,
+    ];
+
+    let setup = match plant {
+        PlantKind::Friction => Setup::of(&ground.device, rate_hz),
+        PlantKind::Frictionless => Setup::of(&ground.device, rate_hz).frictionless(),
+    };
+    let wrong = ground.beliefs.iter().map(|belief| belief.of(&setup));
+    let setups: Vec<_> = std::iter::once(setup).chain(wrong).collect();
+    let shipped = Parameters::default();
+    let mut notes = Vec::new();
+    let mut estimators = BTreeMap::new();
+    for &kind in kinds {
+        let found = best_values(kind, &setups, &seen);
+        let before = shipped.values(kind, &setup, plant);
+        let cost = |values| mean_cost(kind, &setups, &unseen, values);
+        let best = if cost(&before) <= cost(&found) {
+            if before != found {
+                notes.push(format!(
+                    "{}: the shipped parameters stay; they are better on a seed that was not tuned on",
+                    kind.name
+                ));
+            }
+            before
+        } else {
+            notes.extend(ends_of_ranges(kind, &setup, &found));
+            found
+        };
+        let names = kind.parameters.iter().map(|p| p.name.to_owned());
+        estimators.insert(kind.name.to_owned(), names.zip(best).collect());
+        done();
+    }
+    Ok(Tuned {
+        preset: Preset {
+            rate_hz,
+            plant,
+            counts_per_rev: Some(ground.device.large.counts_per_rev),
+            estimators,
+        },
+        notes,
+    })
+}
+
+/// A recording and its truth.
+type Track<'a> = (&'a Trace, Truth<'a>);
+
+fn tracks<'a>(
+    traces: &'a [Trace],
+    rate_hz: f64,
+    device: &Device,
+) -> Result<Vec<Track<'a>>, String> {
+    let wanted = Wanted {
+        rms: true,
+        distance: true,
+        ..Wanted::NONE
+    };
+    let interval = interval(device);
+    let track = |trace: &'a Trace| {
+        let omega = trace.true_omega.as_deref().unwrap_or_default();
+        Ok((trace, Truth::new(omega, rate_hz, interval, wanted)?))
+    };
+    traces.iter().map(track).collect()
+}
+
+/// A line for each value that is an end of the range which was searched.
+fn ends_of_ranges(kind: &Kind, setup: &Setup, values: &Values) -> Vec<String> {
+    let searched = kind.parameters.iter().zip(values);
+    searched
+        .filter_map(|(parameter, &value)| {
+            let grid = first_grid(parameter, setup);
+            let (low, high) = (grid[0], grid[grid.len() - 1]);
+            let is = |end: f64| three_digits(end) == three_digits(value);
+            let at = match parameter.search {
+                Search::Fixed(_) => return None,
+                _ if is(low) => "lower",
+                _ if is(high) => "upper",
+                _ => return None,
+            };
+            Some(format!(
+                "{}.{} = {value} {} is the {at} end of the range searched; a value beyond it may be better: try --set",
+                kind.name, parameter.name, parameter.unit
+            ))
+        })
+        .collect()
+}
+
+fn best_values(kind: &Kind, setups: &[Setup], tracks: &[Track]) -> Values {
+    let mut axes: Vec<_> = kind
+        .parameters
+        .iter()
+        .map(|p| first_grid(p, &setups[0]))
+        .collect();
+    let mut best = evaluate(kind, setups, tracks, &axes);
+    for _ in 0..REFINEMENTS {
+        for ((axis, parameter), value) in axes.iter_mut().zip(kind.parameters).zip(&best) {
+            *axis = finer(parameter, axis, *value);
+        }
+        best = evaluate(kind, setups, tracks, &axes);
+    }
+    best
+}
+
+/// The best point of the grid spanned by `axes`.
+fn evaluate(kind: &Kind, setups: &[Setup], tracks: &[Track], axes: &[Vec<f64>]) -> Values {
+    let mut points = vec![Vec::new()];
+    for axis in axes {
+        points = points
+            .iter()
+            .flat_map(|point: &Values| {
+                axis.iter()
+                    .map(|&value| point.iter().copied().chain([value]).collect())
+            })
+            .collect();
+    }
+    points
+        .into_par_iter()
+        .map(|point| (mean_cost(kind, setups, tracks, &point), point))
+        // Equal costs go to the earlier point, so that the result does not depend on threads.
+        .min_by(|(a, p), (b, q)| a.total_cmp(b).then_with(|| compare_points(p, q)))
+        .map(|(_, point)| point)
+        .unwrap_or_default()
+}
+
+fn compare_points(p: &Values, q: &Values) -> std::cmp::Ordering {
+    let differing = p.iter().zip(q).map(|(a, b)| a.total_cmp(b));
+    differing
+        .into_iter()
+        .find(|o| o.is_ne())
+        .unwrap_or(std::cmp::Ordering::Equal)
+}
+
+fn mean_cost(kind: &Kind, setups: &[Setup], tracks: &[Track], values: &Values) -> f64 {
+    let costs = setups.iter().map(|setup| cost(kind, setup, tracks, values));
+    costs.sum::<f64>() / setups.len() as f64
+}
+
+/// Infinite for parameters that the design refuses.
+fn cost(kind: &Kind, setup: &Setup, tracks: &[Track], values: &Values) -> f64 {
+    let Ok(estimator) = kind.build(setup, values) else {
+        return f64::INFINITY;
+    };
+    let of_track = |(trace, truth): &Track| {
+        let score = truth.score(&estimator.run(trace));
+        score.distance_rad_s.unwrap_or(f64::INFINITY)
+            + RMS_WEIGHT * score.rms_rad_s.unwrap_or(f64::INFINITY)
+    };
+    tracks.iter().map(of_track).sum::<f64>() / tracks.len() as f64
+}
+
+fn first_grid(parameter: &Parameter, setup: &Setup) -> Vec<f64> {
+    match parameter.search {
+        Search::Fixed(value) => vec![value],
+        Search::Log(low, high) => {
+            // A torque moves the motor by its ratio to the inertia.
+            let scale = match parameter.is_torque() {
+                true => setup.device.inertia / DEFAULT_INERTIA,
+                false => 1.0,
+            };
+            let high = match parameter.unit {
+                "Hz" => high.min(setup.rate.0 / 2.0),
+                _ => high * scale,
+            };
+            logarithmic(low * scale, high, GRID)
+        }
+        Search::Each(low, high) if high - low < GRID as u32 => {
+            (low..=high).map(f64::from).collect()
+        }
+        Search::Each(low, high) => whole(logarithmic(f64::from(low), f64::from(high), GRID)),
+    }
+}
+
+/// A grid between the neighbours of `best` on `axis`.
+fn finer(parameter: &Parameter, axis: &[f64], best: f64) -> Vec<f64> {
+    let at = axis
+        .iter()
+        .position(|&value| value == best)
+        .unwrap_or_default();
+    let low = axis[at.saturating_sub(1)];
+    let high = axis[(at + 1).min(axis.len() - 1)];
+    match parameter.search {
+        Search::Fixed(_) => vec![best],
+        Search::Log(..) => {
+            // Three digits are what a tuned value can mean.
+            logarithmic(low, high, 9)
+                .into_iter()
+                .map(three_digits)
+                .collect()
+        }
+        Search::Each(..) if high - low <= 8.0 => {
+            (low as u32..=high as u32).map(f64::from).collect()
+        }
+        Search::Each(..) => {
+            let mut values = logarithmic(low, high, 9);
+            values.push(best);
+            whole(values)
+        }
+    }
+}
+
+fn logarithmic(low: f64, high: f64, points: usize) -> Vec<f64> {
+    let step = (high / low).ln() / (points - 1) as f64;
+    (0..points).map(|i| low * (step * i as f64).exp()).collect()
+}
+
+fn whole(mut values: Vec<f64>) -> Vec<f64> {
+    for value in &mut values {
+        *value = value.round();
+    }
+    values.sort_unstable_by(f64::total_cmp);
+    values.dedup();
+    values
+}
+
+fn three_digits(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grids_keep_their_ends_and_their_best() {
+        let grid = logarithmic(1.0, 100.0, 5);
+        assert!((grid[2] - 10.0).abs() < 1e-9 && (grid[4] - 100.0).abs() < 1e-9);
+        assert_eq!(whole(vec![1.2, 0.9, 3.0]), [1.0, 3.0]);
+        assert_eq!(three_digits(123.456), 123.0);
+        let window = Kind::named("foaw-end-fit").unwrap().parameters[0];
+        assert_eq!(
+            finer(&window, &[1.0, 5.0, 9.0], 5.0),
+            (1..=9).map(f64::from).collect::<Vec<_>>()
+        );
+    }
+
+    /// Twice the inertia needs twice the torque for the same motion.
+    #[test]
+    fn ranges_of_torques_follow_the_inertia() {
+        let kind = Kind::named("observer").unwrap();
+        let device = Device::default();
+        let mut heavy = device.clone();
+        heavy.large.inertia_kg_m2 *= 2.0;
+        for parameter in kind
+            .parameters
+            .iter()
+            .filter(|p| p.name != "boundary_noise")
+        {
+            let grid = |device| first_grid(parameter, &Setup::of(device, 1e3));
+            let ratio = grid(&heavy)[0] / grid(&device)[0];
+            let wanted = if parameter.is_torque() { 2.0 } else { 1.0 };
+            assert!((ratio - wanted).abs() < 1e-9, "{}: {ratio}", parameter.name);
+        }
+    }
+}

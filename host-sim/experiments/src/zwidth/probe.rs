@@ -1,0 +1,163 @@
+//! One wall or viscous field, tried by three who touch it.
+
+use std::fmt;
+
+use haptic_control::LoopPoles;
+
+use super::criterion::{Fault, Observer, Seen};
+use crate::closed_loop::{Eye, Hand, Loop, Press, SceneName, believed, estimator};
+use catalogue::estimators::{Estimator, Kind};
+use catalogue::parameters::Parameters;
+use simulation::device::Device;
+use terminal::failure::Failure;
+
+/// Where the wall begins, rad from the start.
+const WALL: f64 = 0.1;
+
+/// The hand means to be 0.08 rad inside the wall: at most 40 mN.m, 1.1 N at the fingertip of the
+/// default device. It meets the wall with 2.2 rad/s.
+const PRESS: Press = Press {
+    angle: WALL + 0.08,
+    moving_s: 0.15,
+    rest_s: 0.45,
+};
+/// From when on a resting hand has to feel rest, s.
+const SETTLED_S: f64 = 0.30;
+/// Duration of a run, s.
+const SECONDS: f64 = 0.85;
+
+/// A light grip, as part of the device's hand.
+const LIGHT: f64 = 0.1;
+/// Velocity of a handle that is thrown, rad/s: 70 mm/s at the rim.
+const THROW: f64 = 2.0;
+
+/// Who touches the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Touch {
+    /// A hand with a tenth of the stiffness and damping presses and lets go.
+    LightGrip,
+    /// The device's hand presses and lets go.
+    Hand,
+    /// Nobody: the handle is thrown at it.
+    Throw,
+}
+
+impl Touch {
+    /// In the order in which they are tried: first who most often finds a fault.
+    const ALL: [Self; 3] = [Self::LightGrip, Self::Throw, Self::Hand];
+
+    /// Name in tables and files.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::LightGrip => "light grip",
+            Self::Hand => "hand",
+            Self::Throw => "throw",
+        }
+    }
+}
+
+/// A fault and who found it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// Who.
+    pub touch: Touch,
+    /// What.
+    pub fault: Fault,
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.touch.as_str(), self.fault.as_str())
+    }
+}
+
+/// A device with its estimators, ready for any scene.
+pub struct Probe {
+    device: Device,
+    rate_hz: f64,
+    seed: u64,
+    large: Estimator,
+    handle: Estimator,
+}
+
+impl Probe {
+    /// With estimators `large` and `handle`, tuned by `parameters`.
+    ///
+    /// # Errors
+    /// As [`estimator`].
+    pub fn new(
+        device: Device,
+        rate_hz: f64,
+        seed: u64,
+        [large, handle]: [&Kind; 2],
+        parameters: &Parameters,
+    ) -> Result<Self, Failure> {
+        device.validate()?;
+        let build = |kind, counts| estimator(kind, &device, counts, rate_hz, parameters);
+        Ok(Self {
+            large: build(large, device.large.counts_per_rev)?,
+            handle: build(handle, device.small.counts_per_rev)?,
+            device,
+            rate_hz,
+            seed,
+        })
+    }
+
+    /// What is wrong with a wall of that stiffness (N.m/rad) and damping (N.m.s/rad), or with a
+    /// viscous field where the stiffness is zero; `None` if nothing.
+    ///
+    /// # Errors
+    /// One line on a loop that cannot be designed.
+    pub fn fault(&self, stiffness: f64, damping: f64) -> Result<Option<Finding>, Failure> {
+        for touch in Touch::ALL {
+            if let Some(fault) = self.touched(touch, stiffness, damping)? {
+                return Ok(Some(Finding { touch, fault }));
+            }
+        }
+        Ok(None)
+    }
+
+    fn touched(&self, touch: Touch, k: f64, b: f64) -> Result<Option<Fault>, Failure> {
+        let mut device = self.device.clone();
+        if touch == Touch::LightGrip {
+            device.hand.stiffness_nm_per_rad *= LIGHT;
+            device.hand.damping_nms_per_rad *= LIGHT;
+        }
+        let (hand, rests) = match touch {
+            Touch::Throw => (Hand::Gone(THROW), false),
+            _ => (Hand::Pressing(PRESS), true),
+        };
+        let scene = match k {
+            0.0 => SceneName::Viscous(b as f32),
+            _ => SceneName::Wall(k as f32, b as f32),
+        };
+        let threshold = 0.5 * device.interval.threshold_n * device.handle.diameter_m;
+        let inertia = device.small.inertia_kg_m2;
+        let mut observer = Observer::new(threshold, 1.0 / self.rate_hz, inertia);
+        let run = Loop {
+            believed: believed(&device),
+            device,
+            scene,
+            hand,
+            rate_hz: self.rate_hz,
+            seed: self.seed,
+            large: self.large.clone(),
+            handle: self.handle.clone(),
+            eye: Eye::Large,
+            poles: LoopPoles::DEFAULT,
+            late_ticks: 0,
+        };
+        let rest = SETTLED_S..PRESS.moving_s + PRESS.rest_s;
+        run.run((SECONDS * self.rate_hz) as usize, |moment| {
+            observer.see(Seen {
+                resting: rests && rest.contains(&moment.t),
+                contact: k == 0.0 || moment.handle.angle > WALL,
+                felt: moment.felt,
+                omega: moment.handle.omega,
+                stopped: moment.stopped.is_some(),
+            });
+        })?;
+        Ok(observer.fault())
+    }
+}

@@ -1,0 +1,187 @@
+//! What the closed loop's scores promise.
+
+use catalogue::estimators::Kind;
+use catalogue::parameters::{Parameters, PlantKind};
+use experiments::closed_loop::{Eye, Hand, Loop, Press, SceneName, believed, estimator};
+use experiments::felt::{Case, Fingertip, Parasitic, Settings, bandwidth_hz, compare, sweep};
+use haptic_control::LoopPoles;
+use scoring::score::Wanted;
+use simulation::device::Device;
+
+fn settings(names: &[&str]) -> Settings {
+    Settings {
+        device: Device::default(),
+        estimators: names
+            .iter()
+            .map(|name| Kind::named(name).unwrap())
+            .collect(),
+        handle: Kind::named("kalman-triple-steady").unwrap(),
+        parameters: Parameters::default(),
+        wanted: Wanted::ALL,
+    }
+}
+
+#[test]
+fn parasitic_is_felt_less_wanted_at_the_fingertip() {
+    let case = Case {
+        scene: SceneName::Wall(0.30, 0.0),
+        rate_hz: 1000.0,
+        plant: PlantKind::Friction,
+        seed: 3,
+        seconds: 1.5,
+        keep: true,
+    };
+    let outcomes = compare(&[case], &settings(&["pll"]), || ()).unwrap();
+    let fingertip = Fingertip::new(&Device::default());
+    for run in &outcomes[0].runs {
+        let signals = run.signals.as_ref().unwrap();
+        let pushed = signals.wanted_mn.iter().copied().fold(0.0, f32::min);
+        assert!(pushed < -300.0, "the hand is in the wall: {pushed} mN");
+        let forces = signals.felt_mn.iter().zip(&signals.wanted_mn);
+        let parasitic: Vec<f64> = forces
+            .map(|(felt, wanted)| f64::from(felt - wanted))
+            .collect();
+        let again = Parasitic::of(&parasitic, 1000.0, &fingertip);
+        let rms = |score: &Parasitic| score.parasitic_mn_rms.unwrap();
+        assert!((rms(&again) / rms(&run.parasitic) - 1.0).abs() < 1e-3);
+        assert!(rms(&again) < 30.0, "felt is what was wanted, nearly");
+    }
+}
+
+#[test]
+fn off_has_no_current_and_only_scenes_with_a_loop_know_the_large_motor_s_velocity() {
+    let (device, parameters, rate_hz) = (Device::default(), Parameters::default(), 1000.0);
+    let kind = Kind::named("kalman-triple-steady").unwrap();
+    let on = |counts| estimator(kind, &device, counts, rate_hz, &parameters).unwrap();
+    for scene in SceneName::ALL {
+        let run = Loop {
+            device: device.clone(),
+            believed: believed(&device),
+            scene,
+            hand: Hand::Moving,
+            rate_hz,
+            seed: 1,
+            large: on(device.large.counts_per_rev),
+            handle: on(device.small.counts_per_rev),
+            eye: Eye::Large,
+            poles: LoopPoles::DEFAULT,
+            late_ticks: 0,
+        };
+        let (mut driven, mut known, mut counted) = (false, false, false);
+        run.run(500, |moment| {
+            let currents = moment.action.currents;
+            driven |= currents.large.get() != 0.0 || currents.small.get() != 0.0;
+            known |= moment.action.large.0 != 0.0;
+            counted |= moment.own_count != moment.sample.large;
+        })
+        .unwrap();
+        assert_eq!(driven, scene != SceneName::Off, "{scene}");
+        assert_eq!(known, scene.asks_for_velocity(), "{scene}");
+        assert!(!counted, "the loop sees the device's own encoder");
+    }
+}
+
+#[test]
+fn a_hard_press_does_not_stop_a_scene() {
+    let (device, parameters, rate_hz) = (Device::default(), Parameters::default(), 1000.0);
+    let kind = Kind::named("kalman-triple-steady").unwrap();
+    let on = |counts| estimator(kind, &device, counts, rate_hz, &parameters).unwrap();
+    // 0.5 N.m/rad: 10 N at 35 mm on a handle that stays where it is, and twice as far.
+    for angle in [0.7, 1.4] {
+        for scene in SceneName::ALL {
+            let run = Loop {
+                device: device.clone(),
+                believed: believed(&device),
+                scene,
+                hand: Hand::Pressing(Press {
+                    angle: 0.1 + angle,
+                    moving_s: 0.4,
+                    rest_s: 0.3,
+                }),
+                rate_hz,
+                seed: 1,
+                large: on(device.large.counts_per_rev),
+                handle: on(device.small.counts_per_rev),
+                eye: Eye::Large,
+                poles: LoopPoles::DEFAULT,
+                late_ticks: 0,
+            };
+            let mut stopped = None;
+            run.run(1300, |moment| stopped = moment.stopped).unwrap();
+            assert_eq!(stopped, None, "{scene}, {angle} rad");
+        }
+    }
+}
+
+#[test]
+fn torque_is_rendered_flat_up_to_the_amplifiers() {
+    let swept = sweep(
+        &settings(&["finite-difference"]),
+        10e3,
+        PlantKind::Frictionless,
+    )
+    .unwrap();
+    let (name, responses) = &swept.runs[1];
+    assert_eq!((*name, responses[0].hz), ("reference", 2.0));
+    for response in responses {
+        assert!(
+            (0.0..=1.0 + 1e-9).contains(&response.coherence),
+            "{response:?}"
+        );
+        if response.hz < 10.0 {
+            assert!((response.gain - 1.0).abs() < 0.03, "{response:?}");
+            assert!(response.phase_deg.abs() < 3.0, "{response:?}");
+        }
+    }
+    // An amplifier of 2 kHz, a tick of delay in the large motor's part, half a tick of holding.
+    let bandwidth = bandwidth_hz(responses).unwrap();
+    assert!((1400.0..2100.0).contains(&bandwidth), "{bandwidth}");
+    let (_, difference) = &swept.runs[0];
+    let least =
+        |of: &[experiments::felt::Response]| of.iter().map(|r| r.coherence).fold(1.0, f64::min);
+    assert!(least(difference) < least(responses));
+}
+
+/// The inertia that a hand feels: felt torque against the handle's acceleration, least squares.
+fn felt_inertia(scene: SceneName) -> f64 {
+    let (device, parameters, rate_hz) = (Device::default(), Parameters::default(), 10e3);
+    let kind = Kind::named("kalman-triple-steady").unwrap();
+    let on = |counts| estimator(kind, &device, counts, rate_hz, &parameters).unwrap();
+    let run = Loop {
+        believed: believed(&device),
+        scene,
+        hand: Hand::Moving,
+        rate_hz,
+        seed: 1,
+        large: on(device.large.counts_per_rev),
+        handle: on(device.small.counts_per_rev),
+        eye: Eye::Large,
+        poles: LoopPoles::DEFAULT,
+        late_ticks: 0,
+        device,
+    };
+    let (mut products, mut squares) = (0.0, 0.0);
+    run.run(30_000, |now| {
+        products -= now.felt * now.handle_acceleration;
+        squares += now.handle_acceleration * now.handle_acceleration;
+    })
+    .unwrap();
+    products / squares
+}
+
+#[test]
+fn a_virtual_inertia_is_felt_and_a_negative_one_lightens_the_handle() {
+    let own = Device::default().small.inertia_kg_m2;
+    let [lighter, plain, heavier] =
+        [-0.4, 0.0, 0.4].map(|part| felt_inertia(SceneName::Inertia(part)) / own);
+    // The estimate is late, so that an added inertia arrives in part only.
+    assert!((plain - 1.0).abs() < 0.1, "{plain}");
+    assert!(
+        (0.3..0.6).contains(&(plain - lighter)),
+        "{lighter}, {plain}"
+    );
+    assert!(
+        (0.1..0.5).contains(&(heavier - plain)),
+        "{plain}, {heavier}"
+    );
+}

@@ -1,0 +1,119 @@
+//! Faults of the large encoder in closed loop: the monitor ends them, scene by scene.
+
+use catalogue::estimators::Kind;
+use catalogue::parameters::Parameters;
+use experiments::closed_loop::{Eye, Fault, Hand, Loop, SceneName, believed, estimator};
+use haptic_control::{Cause, LoopPoles};
+use simulation::device::Device;
+
+const FAULT_S: f64 = 0.5;
+
+fn closed(scene: SceneName, rate_hz: f64, seed: u64) -> Loop {
+    let device = Device::default();
+    let kind = Kind::named("kalman-triple-steady").unwrap();
+    let on =
+        |counts: u32| estimator(kind, &device, counts, rate_hz, &Parameters::default()).unwrap();
+    Loop {
+        large: on(device.large.counts_per_rev),
+        handle: on(device.small.counts_per_rev),
+        believed: believed(&device),
+        device,
+        scene,
+        hand: match scene {
+            SceneName::Wall(..) => Hand::Pushing,
+            _ => Hand::Moving,
+        },
+        rate_hz,
+        seed,
+        eye: Eye::Large,
+        poles: LoopPoles::DEFAULT,
+        late_ticks: 0,
+    }
+}
+
+struct Ended {
+    /// Time from the fault to the stop, s, and why.
+    stop: Option<(f64, Cause)>,
+    /// Largest difference from what a healthy device makes the hand feel, N.m.
+    spurious_nm: f64,
+}
+
+fn with(run: &Loop, fault: Fault, seconds: f64) -> Ended {
+    let ticks = (seconds * run.rate_hz) as usize;
+    let from = (FAULT_S * run.rate_hz) as usize;
+    let mut healthy = Vec::with_capacity(ticks);
+    run.run(ticks, |now| healthy.push(now.felt)).unwrap();
+    let mut ended = Ended {
+        stop: None,
+        spurious_nm: 0.0,
+    };
+    let mut k = 0;
+    run.run_with(ticks, Some((from, fault)), |now| {
+        if ended.stop.is_none() {
+            ended.spurious_nm = ended.spurious_nm.max((now.felt - healthy[k]).abs());
+            ended.stop = now.stopped.map(|cause| (now.t - FAULT_S, cause));
+        }
+        k += 1;
+    })
+    .unwrap();
+    ended
+}
+
+/// Largest time until the stop and largest spurious torque over seeds, and whether each cause was
+/// one of `causes`.
+fn worst(scene: SceneName, rate_hz: f64, fault: Fault, causes: &[Cause]) -> (f64, f64) {
+    let mut worst = (0.0_f64, 0.0_f64);
+    for seed in 1..=6 {
+        let ended = with(&closed(scene, rate_hz, seed), fault, 1.5);
+        let (stop_s, cause) = ended
+            .stop
+            .unwrap_or_else(|| panic!("{scene}, {fault:?}, {seed}"));
+        assert!(
+            causes.contains(&cause),
+            "{scene}, {fault:?}, {seed}: {cause:?}"
+        );
+        worst = (worst.0.max(stop_s), worst.1.max(ended.spurious_nm));
+    }
+    worst
+}
+
+fn with_large_motor() -> impl Iterator<Item = SceneName> {
+    SceneName::ALL
+        .into_iter()
+        .filter(|scene| scene.asks_for_velocity())
+}
+
+/// Whether the hand leans on a torque that may go away.
+fn springs(scene: SceneName) -> bool {
+    matches!(
+        scene,
+        SceneName::Wall(..) | SceneName::SpringDamper(..) | SceneName::Hold(..)
+    )
+}
+
+#[test]
+fn a_stuck_encoder_is_stopped_before_it_hurts() {
+    for scene in with_large_motor() {
+        for fault in [Fault::StuckA, Fault::StuckB, Fault::StuckBoth] {
+            let causes = [Cause::NotMoving, Cause::Against];
+            let (stop_s, spurious_nm) = worst(scene, 2e3, fault, &causes);
+            println!("{scene}, {fault:?}: {stop_s} s, {spurious_nm} N.m");
+            // Where nothing moves nothing is wrong yet; free air and a weak field need a motion.
+            assert!(stop_s < 0.8, "{scene}, {fault:?}: {stop_s} s");
+            let most = if springs(scene) { 0.15 } else { 0.0175 };
+            assert!(spurious_nm < most, "{scene}, {fault:?}: {spurious_nm} N.m");
+        }
+    }
+}
+
+#[test]
+fn exchanged_phases_are_stopped_at_the_first_motion() {
+    for scene in with_large_motor() {
+        let (stop_s, spurious_nm) = worst(scene, 2e3, Fault::Swapped, &[Cause::Against]);
+        println!("{scene}: {stop_s} s, {spurious_nm} N.m");
+        assert!(stop_s < 0.2, "{scene}: {stop_s} s");
+        // The estimate turns round at once, and with it half of what the coupler brings.
+        let most = if springs(scene) { 0.04 } else { 0.012 };
+        assert!(spurious_nm < most, "{scene}: {spurious_nm} N.m");
+    }
+}

@@ -1,0 +1,7 @@
+//! Recorded motion: the decoder of the board's telemetry, the CSV file of a recording, and the
+//! checks of the data that a recording holds.
+
+pub mod health;
+pub mod record;
+pub mod recording;
+pub mod telemetry;

@@ -1,0 +1,260 @@
+//! Telemetry as a recording.
+
+use std::fmt::Write as _;
+
+use crate::telemetry::{Frame, LearnedLine, Run, Telemetry};
+use simulation::trace::EDGE_CLOCK_HZ;
+use terminal::failure::Failure;
+
+/// The columns: those that [`Recording`](crate::recording::Recording) knows, then what the board
+/// made of them.
+const COLUMNS: &str = "t,counts_large,counts_small,current,current_small,torque,velocity_large,\
+    velocity_small,state,cause";
+
+/// The columns of what was learned.
+const LEARNED: &str = ",learned_damping,learned_friction,learned_torque_constant";
+
+/// A run as CSV: one row a frame, `t` from its first frame, by its ticks and the control rate.
+///
+/// `sigma_large` follows where every frame says how far off its velocity may be, `edge_tick` and
+/// `edge_bound` where the firmware stamped edges; a frame without a stamp
+/// leaves them empty. The three of `learned` stand in the rows whose frames had such a line, where any had.
+/// `true_omega` is a last column, if every frame has one.
+#[must_use]
+pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) -> String {
+    let truth: Option<Vec<f64>> = run.frames.iter().map(|(_, f)| true_omega(f)).collect();
+    let edges = run.frames.iter().any(|(_, f)| f.beside.edge.is_some());
+    let mut text = COLUMNS.to_owned();
+    let learned = run.frames.iter().any(|(_, f)| f.beside.learned.is_some());
+    let sigma = run.frames.iter().all(|(_, f)| f.sl.is_some());
+    let more = [
+        (",sigma_large", sigma),
+        (",edge_tick,edge_bound", edges),
+        (LEARNED, learned),
+        (",true_omega", truth.is_some()),
+    ];
+    for (name, _) in more.iter().filter(|(_, there)| *there) {
+        text += name;
+    }
+    text.push('\n');
+    for (k, (tick, frame)) in run.frames.iter().enumerate() {
+        let t = *tick as f64 / rate_hz;
+        let Frame {
+            large,
+            small,
+            il,
+            is,
+            torque,
+            wl,
+            ws,
+            state,
+            cause,
+            ..
+        } = frame;
+        // Writing to a string cannot fail.
+        let _ = write!(
+            text,
+            "{t},{large},{small},{il},{is},{torque},{wl},{ws},{state},{cause}"
+        );
+        if let (true, Some(sl)) = (sigma, frame.sl) {
+            let _ = write!(text, ",{sl}");
+        }
+        if edges {
+            let _ = match frame.beside.edge {
+                None => write!(text, ",,"),
+                Some(edge) => {
+                    let now = (t * EDGE_CLOCK_HZ).round() as i64;
+                    write!(text, ",{},{}", now - i64::from(edge.age), edge.boundary)
+                }
+            };
+        }
+        if learned {
+            let _ = match frame.beside.learned {
+                None => write!(text, ",,,"),
+                Some(LearnedLine {
+                    damping,
+                    friction,
+                    torque_constant,
+                }) => write!(text, ",{damping},{friction},{torque_constant}"),
+            };
+        }
+        if let Some(truth) = &truth {
+            let _ = write!(text, ",{}", truth[k]);
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Which run to record, 1 is the first; without a number the longest.
+///
+/// # Errors
+/// [`Failure::Input`] where there is none, or none of two frames.
+pub fn choose<'a, 'b>(runs: &'b [Run<'a>], number: Option<usize>) -> Result<&'b Run<'a>, Failure> {
+    let run = match number {
+        None => runs.iter().rev().max_by_key(|run| run.frames.len()),
+        Some(number) => runs.get(number.wrapping_sub(1)),
+    };
+    let run = run.ok_or_else(|| {
+        let (number, runs) = (number.unwrap_or_default(), runs.len());
+        Failure::Input(format!("--run {number}: there are {runs} runs, from 1"))
+    })?;
+    if run.frames.len() < 2 {
+        return Err(Failure::Input(
+            "only one telemetry frame in a run; a recording needs two at least".to_owned(),
+        ));
+    }
+    Ok(run)
+}
+
+/// What was lost of a run, and what is not in its recording, in lines.
+#[must_use]
+pub fn report(telemetry: &Telemetry, runs: &[Run], run: &Run) -> Vec<String> {
+    let mut lines = Vec::new();
+    let frames = run.frames.len();
+    let gaps = &run.gaps;
+    let plural = |n: u64, one: &str| format!("{n} {one}{}", if n == 1 { "" } else { "s" });
+    lines.push(format!(
+        "{} recorded, {} missing at {}",
+        plural(frames as u64, "frame"),
+        gaps.frames,
+        plural(gaps.places, "place"),
+    ));
+    let others = |other: &&Run| !std::ptr::eq(*other, run);
+    let left: Vec<_> = runs.iter().filter(others).map(|r| r.frames.len()).collect();
+    if !left.is_empty() {
+        lines.push(format!(
+            "the firmware began {} times; left out: runs of {left:?} frames (--run N takes another)",
+            runs.len(),
+        ));
+    }
+    let strays: u64 = runs.iter().map(|run| run.gaps.strays).sum();
+    if strays > 0 {
+        let strays = plural(strays, "damaged frame");
+        lines.push(format!("{strays} left out: numbers that fit nowhere"));
+    }
+    if let Some(first) = telemetry.malformed.first() {
+        let malformed = plural(telemetry.malformed.len() as u64, "piece");
+        lines.push(format!("{malformed} not readable, the first: {first}"));
+    }
+    if let [(_, first), .., (_, last)] = run.frames.as_slice() {
+        let late = last.overruns.wrapping_sub(first.overruns);
+        if late > 0 {
+            let late = plural(u64::from(late), "control tick");
+            lines.push(format!("{late} missed or late: t is that much short"));
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::Recording;
+
+    fn log(frames: impl Iterator<Item = u32>) -> String {
+        let mut log = "boot rate=10000 cause=0\n".to_owned();
+        for k in frames {
+            let _ = writeln!(
+                log,
+                "frame seq={k} tick={} large={} small={} wl=1.5 ws=-0.25 torque=0.01 il=0.5 \
+                 is=-0.125 state=2 cause=0 overruns=0 drops=0 cycles=900",
+                10 * k,
+                u32::MAX.wrapping_add(k),
+                3 * k,
+            );
+        }
+        log
+    }
+
+    #[test]
+    fn a_log_becomes_a_recording_that_replay_reads() {
+        let telemetry = Telemetry::text(log(0..4).as_bytes());
+        let runs = telemetry.runs();
+        let run = choose(&runs, None).unwrap();
+        let text = csv(run, run.rate_hz.unwrap(), |_| None);
+        assert_eq!(
+            text.lines().nth(1),
+            Some("0,4294967295,0,0.5,-0.125,0.01,1.5,-0.25,2,0")
+        );
+        let recording = Recording::parse(text.as_bytes(), "r").unwrap();
+        assert_eq!(recording.t, [0.0, 0.001, 0.002, 0.003]);
+        assert_eq!(recording.trace.counts_large, [u32::MAX, 0, 1, 2]);
+        assert_eq!(recording.trace.counts_small, Some(vec![0, 3, 6, 9]));
+        assert_eq!(recording.trace.current, Some(vec![0.5; 4]));
+        assert_eq!(recording.trace.true_omega, None);
+        assert_eq!(
+            report(&telemetry, &runs, run),
+            ["4 frames recorded, 0 missing at 0 places"]
+        );
+    }
+
+    #[test]
+    fn overruns_before_the_first_frame_are_not_counted() {
+        let text = log(0..4).replace("overruns=0", "overruns=5");
+        let telemetry = Telemetry::text(text.as_bytes());
+        let runs = telemetry.runs();
+        assert_eq!(report(&telemetry, &runs, &runs[0]).len(), 1);
+        let (first, last) = text.split_once("frame seq=3").unwrap();
+        let text = format!(
+            "{first}frame seq=3{}",
+            last.replace("overruns=5", "overruns=7")
+        );
+        let telemetry = Telemetry::text(text.as_bytes());
+        let runs = telemetry.runs();
+        let said = report(&telemetry, &runs, &runs[0]);
+        assert!(
+            said[1].starts_with("2 control ticks missed or late"),
+            "{said:?}"
+        );
+    }
+
+    #[test]
+    fn stamps_are_columns_that_replay_reads() {
+        let log = log(0..3) + "edge seq=2 bound=1 age=21000\n";
+        let telemetry = Telemetry::text(log.as_bytes());
+        let text = csv(&telemetry.runs()[0], 1e4, |_| Some(1.0));
+        let header = format!("{COLUMNS},edge_tick,edge_bound,true_omega");
+        assert_eq!(text.lines().next(), Some(header.as_str()));
+        assert!(text.lines().nth(1).unwrap().ends_with(",2,0,,,1"), "{text}");
+        assert!(
+            text.lines().nth(3).unwrap().ends_with(",2,0,147000,1,1"),
+            "{text}"
+        );
+        let edges = Recording::parse(text.as_bytes(), "r").unwrap().trace.edges;
+        let [None, None, Some(edge)] = edges.unwrap()[..] else {
+            panic!("one edge");
+        };
+        assert!((edge.age_s - 250e-6).abs() < 1e-9 && edge.boundary == 1);
+    }
+
+    #[test]
+    fn an_edge_from_before_the_recording_has_a_negative_tick() {
+        let (first, second) = (log(0..1), log(1..2));
+        let second = second.split_once('\n').unwrap().1;
+        let log = first + "edge seq=0 bound=0 age=84\n" + second;
+        let telemetry = Telemetry::text(log.as_bytes());
+        let text = csv(&telemetry.runs()[0], 1e4, |_| None);
+        assert!(text.lines().nth(1).unwrap().ends_with(",-84,0"), "{text}");
+    }
+
+    #[test]
+    fn the_longest_run_is_recorded_and_the_others_are_told() {
+        let text = log(3..8) + &log(0..3) + "frame seq=";
+        let telemetry = Telemetry::text((text + "\n").as_bytes());
+        let runs = telemetry.runs();
+        assert_eq!(choose(&runs, None).unwrap().frames.len(), 5);
+        let second = choose(&runs, Some(2)).unwrap();
+        assert_eq!(second.frames.len(), 3);
+        let said = report(&telemetry, &runs, second);
+        assert!(
+            said[1].contains("began 2 times; left out: runs of [5]"),
+            "{said:?}"
+        );
+        assert!(said[2].contains("1 piece not readable"), "{said:?}");
+        assert!(choose(&runs, Some(3)).is_err() && choose(&runs, Some(0)).is_err());
+        let one = Telemetry::text(log(0..1).as_bytes());
+        assert!(choose(&one.runs(), None).is_err());
+        assert!(choose(&[], None).is_err());
+    }
+}

@@ -1,0 +1,204 @@
+//! Absolute encoders: counts that begin again each revolution.
+
+use super::Recording;
+use simulation::device::Device;
+use simulation::trace::EdgeStamp;
+
+/// Modulus of a 16-bit counter.
+const SHORT: u32 = 1 << 16;
+
+impl Recording {
+    /// Continues counts that wrap at a revolution or at 16 bits, so that they go on modulo 2^32.
+    /// Gives a line on each column that was changed, or that looks as if its encoder had other
+    /// counts per revolution than `device` says.
+    #[must_use]
+    pub fn unwrap_counts(&mut self, device: &Device) -> Vec<String> {
+        let trace = &mut self.trace;
+        let longest = 1.5 * trace.period_s();
+        let mut said = Vec::new();
+        let per_rev = device.large.counts_per_rev;
+        let found = look(&trace.counts_large, &self.t, longest, per_rev);
+        said.extend(
+            found
+                .as_ref()
+                .map(|found| found.told("counts_large", "large", per_rev)),
+        );
+        if let Some(Found::Wraps(modulus)) = found {
+            let raw = unwrap(&mut trace.counts_large, modulus);
+            for (k, edge) in trace.edges.iter_mut().flatten().enumerate() {
+                if let Some(EdgeStamp { boundary, .. }) = edge {
+                    let away = centred(i64::from(*boundary as i32) - raw[k], modulus);
+                    *boundary = trace.counts_large[k].wrapping_add(away as u32);
+                }
+            }
+        }
+        if let Some(counts) = &mut trace.counts_small {
+            let per_rev = device.small.counts_per_rev;
+            let found = look(counts, &self.t, longest, per_rev);
+            said.extend(
+                found
+                    .as_ref()
+                    .map(|found| found.told("counts_small", "small", per_rev)),
+            );
+            if let Some(Found::Wraps(modulus)) = found {
+                unwrap(counts, modulus);
+            }
+        }
+        said
+    }
+}
+
+/// What is remarkable about a column of counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Found {
+    /// It wraps at this modulus.
+    Wraps(u32),
+    /// It makes a jump that no shaft makes, and spans so many counts.
+    Jumps(i64, i64),
+}
+
+impl Found {
+    fn told(self, column: &str, motor: &str, per_rev: u32) -> String {
+        match self {
+            Self::Wraps(modulus) => format!(
+                "{column} wraps at {modulus} and is continued: a {}",
+                match modulus == per_rev {
+                    true => "revolution of an absolute encoder",
+                    false => "counter of 16 bits",
+                }
+            ),
+            Self::Jumps(jump, span) => format!(
+                "{column} jumps by {jump} from one row to the next and spans {span} counts, with {per_rev} \
+                 counts a revolution: if the encoder is absolute, give its counts as \
+                 {motor}.counts_per_rev with --device"
+            ),
+        }
+    }
+}
+
+/// Looks for jumps between rows at most `longest` seconds apart.
+fn look(counts: &[u32], t: &[f64], longest: f64, per_rev: u32) -> Option<Found> {
+    let signed = |count: u32| i64::from(count as i32);
+    let jumps = counts.windows(2).zip(t.windows(2));
+    let jumps = jumps.filter(|(_, t)| t[1] - t[0] <= longest);
+    let jump = jumps.map(|(pair, _)| signed(pair[1]) - signed(pair[0]));
+    let jump = jump.max_by_key(|jump| jump.abs())?;
+    let values = || counts.iter().map(|&count| signed(count));
+    let span = values().max()? - values().min()?;
+    let wraps = |modulus: &u32| {
+        let modulus = i64::from(*modulus);
+        // A shaft that turns does less than a quarter of a revolution from row to row.
+        span < modulus && 4 * jump.abs() >= 3 * modulus
+    };
+    let wraps = [per_rev, SHORT].into_iter().find(wraps);
+    let far = 2 * jump.abs() > i64::from(per_rev) && span < i64::from(SHORT);
+    wraps
+        .map(Found::Wraps)
+        .or(far.then_some(Found::Jumps(jump, span + 1)))
+}
+
+/// Continues `counts` over each wrap; gives them as they were.
+fn unwrap(counts: &mut [u32], modulus: u32) -> Vec<i64> {
+    let raw: Vec<_> = counts
+        .iter()
+        .map(|&count| i64::from(count as i32))
+        .collect();
+    for k in 1..counts.len() {
+        let step = centred(raw[k] - raw[k - 1], modulus);
+        counts[k] = counts[k - 1].wrapping_add(step as u32);
+    }
+    raw
+}
+
+/// The number nearest to zero that differs from `x` by a multiple of `modulus`.
+fn centred(x: i64, modulus: u32) -> i64 {
+    let modulus = i64::from(modulus);
+    let half = modulus / 2;
+    (x + half).rem_euclid(modulus) - half
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A shaft that turns by `step` counts a row, read by an encoder that wraps.
+    fn recording(step: i64, modulus: i64, least: i64) -> (Recording, Vec<u32>) {
+        let mut text = String::from("t,counts_large,counts_small,edge_tick,edge_bound\n");
+        let mut truth = Vec::new();
+        for k in 0..3000_i64 {
+            let at = 5 + step * k;
+            let wrapped = (at - least).rem_euclid(modulus) + least;
+            // The edge that a forward motion crossed last is the count itself.
+            let tick = 84_000 * k;
+            text += &format!("{},{wrapped},{k},{tick},{wrapped}\n", k as f64 * 1e-3);
+            truth.push(at as u32);
+        }
+        (Recording::parse(text.as_bytes(), "r").unwrap(), truth)
+    }
+
+    fn device(counts: u32) -> Device {
+        let mut device = Device::default();
+        device.large.counts_per_rev = counts;
+        device
+    }
+
+    #[test]
+    fn absolute_encoders_are_continued_over_the_wrap() {
+        for (counts, step, least) in [
+            (4096, 3, 0),
+            (4096, -700, 0),
+            (16_384, 11, -8192),
+            (3600, 200, 0),
+        ] {
+            let (mut recording, truth) = recording(step, counts, least);
+            let said = recording.unwrap_counts(&device(counts as u32));
+            let start = recording.trace.counts_large[0].wrapping_sub(truth[0]);
+            let truth: Vec<_> = truth
+                .iter()
+                .map(|count| count.wrapping_add(start))
+                .collect();
+            assert_eq!(recording.trace.counts_large, truth, "{counts} {step}");
+            let edges = recording.trace.edges.unwrap();
+            let bounds: Vec<_> = edges.iter().map(|edge| edge.unwrap().boundary).collect();
+            assert_eq!(bounds, truth, "{counts} {step}");
+            assert_eq!(said.len(), 1, "{said:?}");
+            assert!(
+                said[0].contains(&format!("counts_large wraps at {counts}")),
+                "{said:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn short_counter_is_continued_too() {
+        let (mut recording, truth) = recording(100, 65_536, 0);
+        let said = recording.unwrap_counts(&device(4096));
+        assert_eq!(recording.trace.counts_large, truth);
+        assert!(said[0].contains("wraps at 65536"), "{said:?}");
+    }
+
+    #[test]
+    fn other_encoder_than_the_device_says_is_reported_and_left_alone() {
+        let (mut recording, _) = recording(11, 16_384, 0);
+        let before = recording.trace.counts_large.clone();
+        let said = recording.unwrap_counts(&device(4096));
+        let words = "counts, with 4096 counts a revolution: if the encoder is absolute, give its counts \
+                     as large.counts_per_rev with --device";
+        assert!(said[0].contains(words), "{said:?}");
+        assert!(
+            said[0].starts_with("counts_large jumps by -16373 "),
+            "{said:?}"
+        );
+        assert_eq!(recording.trace.counts_large, before);
+    }
+
+    #[test]
+    fn incremental_counts_are_left_alone() {
+        // Over the wrap of 32 bits, and with a gap in which the shaft turns nearly a revolution.
+        let text = "t,counts_large\n0,-2\n0.001,-1\n0.002,1\n0.003,2\n0.1,4000\n0.101,4001\n";
+        let mut recording = Recording::parse(text.as_bytes(), "r").unwrap();
+        let before = recording.trace.counts_large.clone();
+        assert_eq!(recording.unwrap_counts(&device(4096)), Vec::<String>::new());
+        assert_eq!(recording.trace.counts_large, before);
+    }
+}

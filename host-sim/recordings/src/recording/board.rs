@@ -1,0 +1,142 @@
+//! What the board made of its samples, in the same file: for figures alone.
+
+use std::io::Read;
+
+use csv::ByteRecord;
+
+use super::{Row, csv_failure};
+use crate::telemetry::LearnedLine;
+use terminal::failure::Failure;
+
+/// Columns that `record` writes and `replay` ignores; each may be missing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BoardColumns {
+    /// `current_small`: the small motor's current, A.
+    pub current_small: Option<Vec<f64>>,
+    /// `torque`: what the handle should feel, N.m.
+    pub torque: Option<Vec<f64>>,
+    /// `velocity_large`: the board's own estimate, rad/s.
+    pub velocity_large: Option<Vec<f64>>,
+    /// `sigma_large`: the standard deviation that the board believes that to have, rad/s.
+    pub sigma_large: Option<Vec<f64>>,
+    /// `velocity_small`: its estimate of the handle's velocity, rad/s.
+    pub velocity_small: Option<Vec<f64>>,
+    /// `state`: of the safety machine, by its number.
+    pub state: Option<Vec<f64>>,
+    /// `cause`: why it stopped, by its number.
+    pub cause: Option<Vec<f64>>,
+    /// `learned_damping`, `learned_friction`, `learned_torque_constant`: what it had learned last.
+    pub learned: Option<LearnedLine>,
+}
+
+/// Columns of [`BoardColumns::learned`], empty in most rows.
+const LEARNED: [&str; 3] = [
+    "learned_damping",
+    "learned_friction",
+    "learned_torque_constant",
+];
+
+impl BoardColumns {
+    /// Whether this CSV text is a recording of a board that says how sure it is, or what it learned.
+    #[must_use]
+    pub fn are_in(text: &[u8]) -> bool {
+        let header = text.split(|byte| *byte == b'\n').next().unwrap_or_default();
+        let mut names = header.split(|byte| *byte == b',').map(<[u8]>::trim_ascii);
+        names.any(|name| name == b"sigma_large" || name == LEARNED[0].as_bytes())
+    }
+
+    /// Reads CSV text called `name` in messages.
+    ///
+    /// # Errors
+    /// [`Failure::Input`], one line that names file, line and column.
+    pub fn parse(input: impl Read, name: &str) -> Result<Self, Failure> {
+        let mut reader = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .from_reader(input);
+        let mut board = Self::default();
+        let header = reader.byte_headers().map_err(|e| csv_failure(name, &e))?;
+        let names: Vec<_> = header.iter().map(<[u8]>::to_vec).collect();
+        let mut places = Vec::new();
+        for (place, column) in names.iter().enumerate() {
+            if let Some((column, values)) = board.column(column) {
+                *values = Some(Vec::new());
+                places.push((place, column));
+            }
+        }
+        let place = |column: &str| names.iter().position(|name| name == column.as_bytes());
+        let learned = LEARNED.map(place);
+        let mut record = ByteRecord::new();
+        while reader
+            .read_byte_record(&mut record)
+            .map_err(|e| csv_failure(name, &e))?
+        {
+            let row = Row {
+                name,
+                line: record.position().map_or(0, csv::Position::line),
+                record: &record,
+            };
+            for &(place, column) in &places {
+                let number = row.number(column, place)?;
+                if let Some((_, Some(values))) = board.column(column.as_bytes()) {
+                    values.push(number);
+                }
+            }
+            if let [Some(damping), Some(friction), Some(torque_constant)] = learned
+                && !row.text(LEARNED[0], damping)?.is_empty()
+            {
+                board.learned = Some(LearnedLine {
+                    damping: row.number(LEARNED[0], damping)?,
+                    friction: row.number(LEARNED[1], friction)?,
+                    torque_constant: row.number(LEARNED[2], torque_constant)?,
+                });
+            }
+        }
+        Ok(board)
+    }
+
+    /// The column called `name`.
+    fn column(&mut self, name: &[u8]) -> Option<(&'static str, &mut Option<Vec<f64>>)> {
+        match name {
+            b"current_small" => Some(("current_small", &mut self.current_small)),
+            b"torque" => Some(("torque", &mut self.torque)),
+            b"velocity_large" => Some(("velocity_large", &mut self.velocity_large)),
+            b"sigma_large" => Some(("sigma_large", &mut self.sigma_large)),
+            b"velocity_small" => Some(("velocity_small", &mut self.velocity_small)),
+            b"state" => Some(("state", &mut self.state)),
+            b"cause" => Some(("cause", &mut self.cause)),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_that_are_there_are_read_and_a_bad_field_is_named() {
+        let text = "t,torque,counts_large,state\n0,0.5,1,2\n1,-0.25,1,3\n";
+        let board = BoardColumns::parse(text.as_bytes(), "r.csv").unwrap();
+        assert_eq!(board.torque, Some(vec![0.5, -0.25]));
+        assert_eq!(board.state, Some(vec![2.0, 3.0]));
+        assert_eq!(board.current_small, None);
+        assert_eq!(board.learned, None);
+        let text = "learned_torque_constant,learned_damping,learned_friction\n,,\n3,1,2\n,,\n";
+        let learned = LearnedLine {
+            damping: 1.0,
+            friction: 2.0,
+            torque_constant: 3.0,
+        };
+        let board = BoardColumns::parse(text.as_bytes(), "r.csv").unwrap();
+        assert_eq!(board.learned, Some(learned));
+        let torn = text.replace("3,1,2", "3,1,");
+        let error = BoardColumns::parse(torn.as_bytes(), "r.csv").unwrap_err();
+        let said = "r.csv: line 3: column learned_friction: '' is not a number";
+        assert_eq!(error.to_string(), said);
+        let text = "t,torque,counts_large,state\n0,0.5,1,2\n1,-0.25,1,3\n";
+        let bad = text.replace("-0.25", "x");
+        let error = BoardColumns::parse(bad.as_bytes(), "r.csv").unwrap_err();
+        let said = "r.csv: line 3: column torque: 'x' is not a number";
+        assert_eq!(error.to_string(), said);
+    }
+}

@@ -1,0 +1,135 @@
+//! How long a row of a recording lasts, and how even its rows are.
+
+use super::Recording;
+use terminal::failure::Failure;
+
+/// Part of a period by which an even step may differ from it.
+const EVEN: f64 = 0.1;
+
+/// Part of the median step by which a step may differ that counts for the rate: a missing row does
+/// not, digits that are rounded away do.
+const REGULAR: f64 = 0.5;
+
+/// Slowest recording that can be of a motor's velocity, Hz.
+const SLOWEST_HZ: f64 = 10.0;
+
+/// Rate of the rows of `t`, Hz, and how many steps are uneven.
+///
+/// The rate is one over the mean of the steps near the median: the median alone is as coarse as the
+/// digits of `t`.
+pub(super) fn rate(t: &[f64], name: &str) -> Result<(f64, usize), Failure> {
+    let mut steps: Vec<_> = t.windows(2).map(|t| t[1] - t[0]).collect();
+    if steps.is_empty() {
+        return Err(Failure::Input(format!("{name}: needs two rows at least")));
+    }
+    steps.sort_unstable_by(f64::total_cmp);
+    let median = steps[steps.len() / 2];
+    if median <= 0.0 {
+        return Err(Failure::Input(format!(
+            "{name}: column t: stands still in most rows; it must be in seconds, with digits enough \
+             to tell rows apart"
+        )));
+    }
+    let regular = steps
+        .iter()
+        .filter(|step| differs(**step, median) <= REGULAR);
+    let (sum, number) = regular.fold((0.0, 0.0), |(sum, number), step| (sum + step, number + 1.0));
+    let period = sum / number;
+    // Decimal time steps are a few digits short of the rate they mean.
+    let rate_hz = to_digits(1.0 / period, 7);
+    if rate_hz < SLOWEST_HZ {
+        return Err(Failure::Input(format!(
+            "{name}: column t: rows {period} s apart are {rate_hz} Hz, which is below {SLOWEST_HZ} Hz; \
+             t must be in seconds: is it in ms or us?"
+        )));
+    }
+    let uneven = steps.iter().filter(|step| differs(**step, period) > EVEN);
+    Ok((rate_hz, uneven.count()))
+}
+
+impl Recording {
+    /// How uneven the steps of `t` are, in words; `None` where they are even.
+    #[must_use]
+    pub fn unevenness(&self) -> Option<String> {
+        let period = self.trace.period_s();
+        let steps = self.t.windows(2).map(|t| t[1] - t[0]);
+        let uneven = steps.filter(|step| differs(*step, period) > EVEN);
+        let most = uneven.fold(0.0_f64, |most, step| most.max((step - period).abs()));
+        (self.uneven_steps > 0).then(|| {
+            let all = self.t.len() - 1;
+            format!(
+                "t is uneven in {:.2} % of steps ({} of {all}), by up to {} us",
+                100.0 * self.uneven_share(),
+                self.uneven_steps,
+                to_digits(1e6 * most, 4)
+            )
+        })
+    }
+
+    /// Part of the steps of `t` that are uneven, 0 to 1.
+    #[must_use]
+    pub fn uneven_share(&self) -> f64 {
+        self.uneven_steps as f64 / (self.t.len() - 1) as f64
+    }
+}
+
+fn differs(step: f64, period: f64) -> f64 {
+    (step - period).abs() / period
+}
+
+/// `x` to so many significant digits.
+fn to_digits(x: f64, digits: usize) -> f64 {
+    format!("{x:.0$e}", digits - 1).parse().unwrap_or(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stamps(show: impl Fn(f64) -> String) -> Vec<f64> {
+        let rows = (0..20_000).map(|k| f64::from(k) / 11_600.0);
+        rows.map(|t| show(t).parse().unwrap()).collect()
+    }
+
+    /// `x` with six significant digits, as printf's %g and the streams of C++ write it.
+    fn six_digits(x: f64) -> String {
+        let exponent = if x > 0.0 { x.log10().floor() as i32 } else { 0 };
+        format!("{x:.0$}", (5 - exponent) as usize)
+    }
+
+    #[test]
+    fn rate_is_right_whatever_the_digits_of_t() {
+        let (exact, uneven) = rate(&stamps(|t| t.to_string()), "r").unwrap();
+        assert_eq!((exact, uneven), (11_600.0, 0));
+        for t in [stamps(|t| format!("{t:.6}")), stamps(six_digits)] {
+            let (rate_hz, uneven) = rate(&t, "r").unwrap();
+            // A stamp is off by 5 us at most, of 1.7 s.
+            assert!((rate_hz / 11_600.0 - 1.0).abs() < 1e-5, "{rate_hz}");
+            assert_eq!(uneven, 0);
+        }
+    }
+
+    #[test]
+    fn missing_rows_do_not_change_the_rate() {
+        let mut t = stamps(|t| format!("{t:.6}"));
+        let mut k = 0;
+        t.retain(|_| {
+            k += 1;
+            k % 7 > 0
+        });
+        let (rate_hz, uneven) = rate(&t, "r").unwrap();
+        assert!((rate_hz / 11_600.0 - 1.0).abs() < 1e-4, "{rate_hz}");
+        assert_eq!(uneven, 20_000 / 7);
+    }
+
+    #[test]
+    fn milliseconds_are_refused_with_the_unit() {
+        let t: Vec<_> = (0..10).map(f64::from).collect();
+        let error = rate(&t, "r.csv").unwrap_err().to_string();
+        assert!(
+            error.starts_with("r.csv: column t: rows 1 s apart are 1 Hz"),
+            "{error}"
+        );
+        assert!(error.contains("is it in ms"), "{error}");
+    }
+}

@@ -1,0 +1,220 @@
+//! Run time against error: a panel a scenario.
+
+use super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure, legend_height};
+use super::grid::{Group, Scenario};
+use super::palette::{INK, MUTED, Palette};
+use super::plot::{Axis, Plot};
+use super::text::{plant, rate};
+use experiments::limit;
+
+const LEFT: f64 = 62.0;
+const TOP: f64 = 58.0;
+const PANEL: f64 = 150.0;
+const GAP: f64 = 46.0;
+/// Room below a panel for labels, and the next one's heading.
+const BELOW: f64 = 62.0;
+const ACROSS: usize = 3;
+/// Half the side of a mark, px.
+const MARK: f64 = 3.5;
+
+/// The panels of one rate and plant; `None` where nothing has a cost. `limits` are the particle
+/// filter's on the plant with friction.
+pub(super) fn panels(
+    group: &Group,
+    limits: &[limit::Row],
+    palette: &Palette,
+) -> Result<Option<String>, String> {
+    let shown: Vec<&Scenario> = group
+        .scenarios
+        .iter()
+        .filter(|scenario| points(scenario).next().is_some())
+        .collect();
+    if shown.is_empty() {
+        return Ok(None);
+    }
+    let there: Vec<&str> = palette
+        .names()
+        .filter(|name| shown.iter().any(|s| points(s).any(|(of, ..)| of == *name)))
+        .collect();
+    let mut keys: Vec<Key> = there
+        .iter()
+        .map(|name| Key::Line(palette.style(name), name))
+        .collect();
+    let limit_of = |scenario: &Scenario| {
+        let mut rows = limits.iter().filter(|row| {
+            group.friction && row.rate_hz == group.rate_hz && row.scenario == scenario.name
+        });
+        let mut rms = |name| {
+            rows.find(|row| row.estimator == name)
+                .map(|row| row.rms_rad_s)
+        };
+        [rms("limit"), rms("limit-edge")]
+    };
+    if shown.iter().any(|scenario| limit_of(scenario)[0].is_some()) {
+        keys.push(Key::Line(
+            INK.into(),
+            "particle filter: counts above, time stamps below",
+        ));
+    }
+    let rows = shown.len().div_ceil(ACROSS);
+    let bottom = TOP + (PANEL + BELOW) * rows as f64;
+    let height = bottom + legend_height(&keys, LEFT);
+    let title = format!(
+        "Run time and error at {}, plant {}",
+        rate(group.rate_hz),
+        plant(group.friction)
+    );
+    let svg = figure(height, &title, |canvas| {
+        canvas.text(&title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
+        let width = (WIDTH - LEFT - 14.0 - GAP * (ACROSS - 1) as f64) / ACROSS as f64;
+        for (i, scenario) in shown.iter().enumerate() {
+            let left = LEFT + (width + GAP) * (i % ACROSS) as f64;
+            let top = TOP + (PANEL + BELOW) * (i / ACROSS) as f64;
+            let frame = [left, top, left + width, top + PANEL];
+            panel(canvas, scenario, limit_of(scenario), frame, palette)?;
+            if i % ACROSS == 0 {
+                let at = (14.0, top + 0.5 * PANEL);
+                canvas.text("RMS error, rad/s", at, Anchor::Upwards, LABEL, INK)?;
+            }
+        }
+        canvas.legend(&keys, (LEFT, bottom))
+    });
+    svg.map(Some)
+}
+
+/// Name, instructions and error of those that have both.
+fn points<'a>(scenario: &'a Scenario) -> impl Iterator<Item = (&'a str, f64, f64)> {
+    scenario.rows.iter().filter_map(|row| {
+        let error = row.score.rms_rad_s.filter(|e| *e > 0.0 && e.is_finite())?;
+        Some((row.estimator.as_str(), row.instructions?, error))
+    })
+}
+
+/// Those of `points` that no other beats in both, by rising cost.
+fn front(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let mut best = f64::INFINITY;
+    points.retain(|(_, error)| {
+        let better = *error < best;
+        best = best.min(*error);
+        better
+    });
+    points
+}
+
+fn panel(
+    canvas: &Canvas,
+    scenario: &Scenario,
+    limits: [Option<f64>; 2],
+    [left, top, right, bottom]: [f64; 4],
+    palette: &Palette,
+) -> Result<(), String> {
+    let limits = || limits.into_iter().flatten();
+    let errors = || points(scenario).map(|point| point.2).chain(limits());
+    let costs = || points(scenario).map(|point| point.1);
+    let ends = |values: &dyn Fn() -> Vec<f64>| {
+        let values = values();
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        [low / 1.3, 1.3 * values.iter().copied().fold(0.0, f64::max)]
+    };
+    let plot = Plot {
+        left,
+        top,
+        right,
+        bottom,
+        x: Axis::log(ends(&|| costs().collect())),
+        y: Axis::log(ends(&|| errors().collect())),
+    };
+    canvas.text(scenario.name, (left, top - 12.0), Anchor::Left, LABEL, INK)?;
+    plot.grid(canvas, 4, 4)?;
+    plot.x_title(canvas, "instructions an update")?;
+    for limit in limits() {
+        let line = [(plot.x.low, limit), (plot.x.high, limit)].map(|point| plot.at(point));
+        canvas.line(&line, INK, 1.5)?;
+    }
+    // From corner to corner: on the way nothing better is had.
+    let mut steps: Vec<(f64, f64)> = Vec::new();
+    for point in front(points(scenario).map(|(_, c, e)| (c, e)).collect()) {
+        let (x, y) = plot.at(point);
+        let corner = steps.last().map(|(_, before)| (x, *before));
+        steps.extend(corner);
+        steps.push((x, y));
+    }
+    canvas.line(&steps, MUTED, 1.0)?;
+    for (name, cost, error) in points(scenario) {
+        let (x, y) = plot.at((cost, error));
+        let corners = [(x - MARK, y - MARK), (x + MARK, y + MARK)];
+        canvas.rectangle(corners, palette.style(name))?;
+    }
+    plot.edges(canvas)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{CaseReport, ReportInput, Row};
+    use super::*;
+    use crate::grid::groups;
+    use scoring::score::Score;
+
+    #[test]
+    fn the_front_is_what_nothing_beats() {
+        let points = vec![
+            (9.0, 3.0),
+            (20.0, 4.0),
+            (50.0, 1.0),
+            (50.0, 2.0),
+            (90.0, 1.0),
+        ];
+        assert_eq!(front(points), [(9.0, 3.0), (50.0, 1.0)]);
+    }
+
+    #[test]
+    fn a_panel_a_scenario_and_the_particle_filter_where_it_ran() {
+        let row = |name: &str, instructions, rms| Row {
+            estimator: name.to_owned(),
+            instructions,
+            score: Score {
+                rms_rad_s: Some(rms),
+                ..Score::default()
+            },
+        };
+        let case = |scenario: &str, rows| CaseReport {
+            scenario: scenario.to_owned(),
+            rate_hz: 1000.0,
+            friction: true,
+            rows,
+            ..CaseReport::default()
+        };
+        let report = ReportInput {
+            cases: vec![
+                case(
+                    "step",
+                    vec![
+                        row("pll", Some(19.0), 1.0),
+                        row("observer", Some(120.0), 0.1),
+                    ],
+                ),
+                case("stochastic", vec![row("pll", Some(19.0), 1.0)]),
+                case("track", vec![row("unmeasured", None, 1.0)]),
+            ],
+            ..ReportInput::default()
+        };
+        let limits = ["limit", "limit-edge"].map(|estimator| limit::Row {
+            estimator,
+            scenario: "stochastic",
+            rate_hz: 1000.0,
+            seed: 1,
+            rms_rad_s: 0.05,
+            rms_pct: 5.0,
+            over_limit: 1.0,
+        });
+        let groups = groups(&report);
+        let palette = Palette::new(&report);
+        let svg = panels(&groups[0], &limits, &palette).unwrap().unwrap();
+        assert_eq!(svg.matches("instructions an update").count(), 2);
+        assert!(svg.contains("particle filter: counts") && !svg.contains("unmeasured"));
+        // Of the particle filter on another plant or at another rate, nothing.
+        let svg = panels(&groups[0], &[], &palette).unwrap().unwrap();
+        assert!(!svg.contains("particle filter: counts"));
+    }
+}

@@ -1,0 +1,180 @@
+//! Force wanted and force felt over time, a figure a scene.
+
+use std::ops::Range;
+
+use super::super::canvas::Key;
+use super::super::palette::{MUTED, Palette, TRUTH};
+use super::super::plot::Axis;
+use super::super::text::{number, plant, rate};
+use super::charts::{Curve, Green, Panel, panels};
+use super::{ClosedLoop, best, find, has_loop};
+use catalogue::parameters::PlantKind;
+use experiments::felt::{Outcome, REFERENCE, Run, Signals};
+use scoring::score::SKIP_S;
+
+/// One figure for each scene but `off`, in the order of the scenes.
+pub(super) fn figures(
+    closed: &ClosedLoop,
+    palette: &Palette,
+    threshold_mn: f64,
+) -> Result<Vec<String>, String> {
+    let mut scenes: Vec<&str> = Vec::new();
+    for outcome in &closed.outcomes {
+        let scene = outcome.case.scene.as_str();
+        if scene != "off" && !scenes.contains(&scene) {
+            scenes.push(scene);
+        }
+    }
+    let mut svgs = Vec::new();
+    for scene in scenes {
+        svgs.extend(figure(scene, &closed.of(scene), palette, threshold_mn)?);
+    }
+    Ok(svgs)
+}
+
+fn figure(
+    scene: &str,
+    outcomes: &[&Outcome],
+    palette: &Palette,
+    threshold_mn: f64,
+) -> Result<Option<String>, String> {
+    let shown: Vec<(f64, Vec<&Run>)> = (outcomes.iter())
+        .map(|outcome| (outcome.case.rate_hz, chosen(outcome)))
+        .filter(|(_, runs)| !runs.is_empty())
+        .collect();
+    let Some((first_hz, runs)) = shown.first() else {
+        return Ok(None);
+    };
+    let span_s = if scene == "texture" { 0.04 } else { 0.4 };
+    // The window of the reference at the lowest rate serves all, in seconds.
+    let signals = runs.last().and_then(|run| run.signals.as_ref());
+    let Some(at_s) = signals.and_then(|signals| busiest(signals, *first_hz, span_s)) else {
+        return Ok(None);
+    };
+    let columns = if has_loop(outcomes[0]) {
+        runs.len()
+    } else {
+        shown.len()
+    };
+    let window = |rate_hz: f64| -> Range<usize> {
+        let [from, to] = [at_s, at_s + span_s].map(|t| (t * rate_hz).round() as usize);
+        from..to + 1
+    };
+    let mut low_high = [f64::INFINITY, f64::NEG_INFINITY];
+    for (rate_hz, runs) in &shown {
+        for signals in runs.iter().filter_map(|run| run.signals.as_ref()) {
+            let Some(wanted) = signals.wanted_mn.get(window(*rate_hz)) else {
+                return Ok(None);
+            };
+            for &w in wanted {
+                low_high[0] = low_high[0].min(f64::from(w));
+                low_high[1] = low_high[1].max(f64::from(w));
+            }
+        }
+    }
+    let room = (0.3 * (low_high[1] - low_high[0])).max(4.0 * threshold_mn);
+    let y = Axis::linear([low_high[0] - room, low_high[1] + room]);
+    let mut all = Vec::new();
+    for (rate_hz, runs) in &shown {
+        for run in runs {
+            let Some(signals) = &run.signals else {
+                continue;
+            };
+            let mut panel = panel(
+                run,
+                signals,
+                window(*rate_hz),
+                *rate_hz,
+                threshold_mn,
+                palette,
+            );
+            panel.y = y;
+            all.push(panel);
+        }
+    }
+    let keys = [
+        Key::Line(TRUTH.into(), "wanted"),
+        Key::Band("what a fingertip cannot tell from it"),
+        Key::Line(MUTED.into(), "felt, in the colour of who closes the loop"),
+    ];
+    let plant = plant(outcomes[0].case.plant == PlantKind::Friction);
+    let title = format!("Force wanted and felt at the fingertip, scene {scene}, plant {plant}");
+    panels(&title, &keys, columns, 150.0, &all).map(Some)
+}
+
+/// Finite difference, the best of the others, the reference: those that are there and have signals.
+fn chosen(outcome: &Outcome) -> Vec<&Run> {
+    let difference = find(outcome, "finite-difference");
+    let best = best(outcome, |name| name != "finite-difference");
+    let mut runs: Vec<&Run> = Vec::new();
+    for run in [difference, best, find(outcome, REFERENCE)]
+        .into_iter()
+        .flatten()
+    {
+        if run.signals.is_some() && !runs.iter().any(|r| r.controlled_by == run.controlled_by) {
+            runs.push(run);
+        }
+    }
+    runs
+}
+
+/// The beginning, s, of the window in which the wanted force covers the widest range.
+fn busiest(signals: &Signals, rate_hz: f64, span_s: f64) -> Option<f64> {
+    let span = (span_s * rate_hz).round() as usize;
+    let first = (SKIP_S * rate_hz).round() as usize;
+    let last = signals.wanted_mn.len().checked_sub(span + 2)?;
+    let range = |from: usize| {
+        let window = &signals.wanted_mn[from..=from + span];
+        let low = window.iter().copied().fold(f32::INFINITY, f32::min);
+        window.iter().copied().fold(f32::NEG_INFINITY, f32::max) - low
+    };
+    let starts = (first..=last).step_by(span.div_ceil(4).max(1));
+    let best = starts.max_by(|&a, &b| range(a).total_cmp(&range(b)).then(b.cmp(&a)))?;
+    Some(best as f64 / rate_hz)
+}
+
+fn panel<'a>(
+    run: &Run,
+    signals: &Signals,
+    window: Range<usize>,
+    rate_hz: f64,
+    threshold_mn: f64,
+    palette: &Palette,
+) -> Panel<'a> {
+    let start = window.start;
+    let time = |k: usize| 1e3 * (k - start) as f64 / rate_hz;
+    let series = |of: &[f32]| -> Vec<(f64, f64)> {
+        window
+            .clone()
+            .map(|k| (time(k), f64::from(of[k])))
+            .collect()
+    };
+    let wanted = series(&signals.wanted_mn);
+    let around = wanted
+        .iter()
+        .map(|&(t, w)| (t, w - threshold_mn, w + threshold_mn));
+    let colour = match run.controlled_by {
+        "any" => MUTED.into(),
+        name => palette.style(name),
+    };
+    let rms = run
+        .parasitic
+        .parasitic_mn_rms
+        .map_or_else(String::new, number);
+    Panel {
+        heading: format!("{}, {}: {rms}\u{a0}mN", run.controlled_by, rate(rate_hz)),
+        x: Axis::linear([0.0, time(window.end - 1)]),
+        y: Axis::linear([0.0, 1.0]),
+        ticks: [4, 5],
+        x_title: "time, ms",
+        y_title: "force, mN",
+        green: Green::Around(around.collect()),
+        curves: vec![
+            Curve::new(TRUTH, wanted.clone()),
+            Curve {
+                width: 1.3,
+                ..Curve::new(colour, series(&signals.felt_mn))
+            },
+        ],
+    }
+}

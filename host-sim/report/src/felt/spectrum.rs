@@ -1,0 +1,81 @@
+//! At which frequencies the parasitic force in free air lies.
+
+use super::super::canvas::Key;
+use super::super::palette::{Palette, TRUTH};
+use super::super::plot::Axis;
+use super::super::spectra::average;
+use super::super::text::{plant, rate};
+use super::charts::{Curve, Green, Panel, panels};
+use super::{ClosedLoop, find};
+use catalogue::parameters::PlantKind;
+use experiments::felt::Signals;
+use scoring::score::{SKIP_S, TACTILE_BAND_HZ};
+use scoring::spectrum::Welch;
+
+/// Amplitude density of each closer's parasitic force, rates side by side; none without free air.
+pub(super) fn figure(closed: &ClosedLoop, palette: &Palette) -> Result<Option<String>, String> {
+    let outcomes = closed.of("free-air");
+    let names = closed.drawn();
+    let Some(first) = outcomes.first() else {
+        return Ok(None);
+    };
+    let mut all = Vec::new();
+    let mut highest = 0.0_f64;
+    for outcome in &outcomes {
+        let rate_hz = outcome.case.rate_hz;
+        let mut curves = Vec::new();
+        for name in &names {
+            let signals = find(outcome, name).and_then(|run| run.signals.as_ref());
+            let points = signals.and_then(|signals| density(signals, rate_hz));
+            curves.extend(points.map(|points| Curve::new(palette.style(name), points)));
+        }
+        let off = closed.of("off");
+        let off = off.iter().find(|o| o.case.rate_hz == rate_hz);
+        let off = off.and_then(|o| o.runs.first()?.signals.as_ref());
+        let off = off.and_then(|signals| density(signals, rate_hz));
+        curves.extend(off.map(|points| Curve {
+            width: 2.2,
+            ..Curve::new(TRUTH, points)
+        }));
+        let values = curves
+            .iter()
+            .flat_map(|curve| &curve.points)
+            .map(|(_, y)| *y);
+        highest = values.fold(highest, f64::max);
+        all.push(Panel {
+            heading: rate(rate_hz),
+            x: Axis::log_exact([4.0, 0.5 * rate_hz]),
+            y: Axis::log_exact([1.0, 10.0]),
+            ticks: [0, 0],
+            x_title: "frequency, Hz",
+            y_title: "parasitic force, mN per \u{221a}Hz",
+            green: Green::Across(TACTILE_BAND_HZ),
+            curves,
+        });
+    }
+    if highest <= 0.0 {
+        return Ok(None);
+    }
+    for panel in &mut all {
+        panel.y = Axis::log([1e-4 * highest, highest]);
+    }
+    let has_off = !closed.of("off").is_empty();
+    let keys: Vec<Key> = (names.iter())
+        .map(|name| Key::Line(palette.style(name), name))
+        .chain(has_off.then_some(Key::Line(TRUTH.into(), "motors off")))
+        .chain([Key::Band("felt as roughness, 50 to 500 Hz")])
+        .collect();
+    let plant = plant(first.case.plant == PlantKind::Friction);
+    let title = format!("Spectrum of the parasitic force in free air, plant {plant}");
+    panels(&title, &keys, outcomes.len(), 260.0, &all).map(Some)
+}
+
+fn density(signals: &Signals, rate_hz: f64) -> Option<Vec<(f64, f64)>> {
+    let skip = (SKIP_S * rate_hz).round() as usize;
+    let forces = signals.felt_mn.iter().zip(&signals.wanted_mn);
+    let parasitic: Vec<f64> = (forces.skip(skip))
+        .map(|(felt, wanted)| f64::from(felt - wanted))
+        .collect();
+    let density = Welch::new(rate_hz).density(&parasitic)?;
+    Some(average(density.bin_hz, &density.power_per_hz))
+}

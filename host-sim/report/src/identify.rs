@@ -1,0 +1,189 @@
+//! The page of `identify`: the identified motor beside the measured one, what is left over, and how
+//! sure each constant is.
+
+use super::canvas::{Anchor, Key, LABEL, TITLE, WIDTH, figure, legend_height};
+use super::page::{Document, printed};
+use super::palette::{BAND, INK, MUTED, TRUTH};
+use super::plot::{Axis, Plot};
+use experiments::identify::{Beside, Identification, Quantity, SPAN_S};
+use plotters::style::RGBColor;
+
+const LEFT: f64 = 70.0;
+const RIGHT: f64 = 14.0;
+const TOP: f64 = 46.0;
+const PANEL: f64 = 220.0;
+const RESIDUAL: f64 = 130.0;
+const ROW: f64 = 34.0;
+/// Room for the keys of the device file.
+const NAMES: f64 = 230.0;
+
+const MODEL: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
+
+/// The page: a figure a recording, one of the constants, then the `table` as it was printed.
+/// `count_rad_s` is what one count is worth over [`SPAN_S`].
+///
+/// # Errors
+/// If a figure cannot be drawn.
+pub fn identify(
+    found: &Identification,
+    count_rad_s: f64,
+    table: &str,
+    command: &str,
+) -> Result<String, String> {
+    let mut figures = String::new();
+    for beside in &found.beside {
+        figures += &format!("<figure>{}</figure>\n", motion(beside, count_rad_s)?);
+    }
+    figures += &format!("<figure>{}</figure>\n", constants(&found.quantities)?);
+    let intro = format!(
+        "<p>The identified motor ran beside the measured one: it \
+         saw the current and the handle, never the motor. Both velocities are displacements over \
+         {:.0} ms; the green band is one count of that. What repeats once a turn is fitted but not \
+         modelled here, so it stays in the residual.</p>\n",
+        1e3 * SPAN_S
+    );
+    Ok(Document {
+        title: "Identification",
+        intro,
+        facts: vec![("command", command.to_owned())],
+        notes: String::new(),
+        contents: String::new(),
+        body: figures + &printed(table),
+    }
+    .html())
+}
+
+/// Velocities, and below them their difference.
+fn motion(beside: &Beside, count_rad_s: f64) -> Result<String, String> {
+    let residual: Vec<f64> = beside
+        .measured
+        .iter()
+        .zip(&beside.model)
+        .map(|(measured, model)| measured - model)
+        .collect();
+    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    let rms = (residual.iter().map(|r| r * r).sum::<f64>() / residual.len().max(1) as f64).sqrt();
+    let keys = [
+        Key::Line(TRUTH.into(), "measured"),
+        Key::Line(MODEL.into(), "model"),
+        Key::Band("one count"),
+    ];
+    let below = TOP + PANEL + 34.0;
+    let bottom = below + RESIDUAL;
+    let height = bottom + 50.0 + legend_height(&keys, LEFT);
+    let title = format!(
+        "{}: velocity of the large motor; residual {rms:.2} rad/s RMS",
+        beside.name
+    );
+    let ends = [
+        &beside.t[..1],
+        &beside.t[beside.t.len().saturating_sub(1)..],
+    ]
+    .concat();
+    let [first, last] = ends[..] else {
+        return Err(format!("{}: nothing to draw", beside.name));
+    };
+    figure(height, &title, |canvas| {
+        canvas.text(&title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
+        let span = 1.05 * largest(&beside.measured).max(largest(&beside.model));
+        let plot = |top, height, span: f64| Plot {
+            left: LEFT,
+            top,
+            right: WIDTH - RIGHT,
+            bottom: top + height,
+            x: Axis::linear([first, last]),
+            y: Axis::linear([-span, span]),
+        };
+        let at = |values: &[f64]| -> Vec<(f64, f64)> {
+            beside
+                .t
+                .iter()
+                .copied()
+                .zip(values.iter().copied())
+                .collect()
+        };
+        let upper = plot(TOP, PANEL, span);
+        upper.grid(canvas, 6, 6)?;
+        upper.curve(canvas, at(&beside.measured).into_iter(), TRUTH, 2.0)?;
+        upper.curve(canvas, at(&beside.model).into_iter(), MODEL, 1.2)?;
+        upper.edges(canvas)?;
+        let lower = plot(below, RESIDUAL, 1.05 * largest(&residual).max(count_rad_s));
+        lower.grid(canvas, 6, 4)?;
+        let band = beside.t.iter().map(|t| (*t, -count_rad_s, count_rad_s));
+        lower.band(canvas, band, BAND)?;
+        lower.curve(canvas, at(&residual).into_iter(), INK, 1.0)?;
+        lower.edges(canvas)?;
+        lower.x_title(canvas, "time, s")?;
+        for (plot, name) in [(&upper, "velocity, rad/s"), (&lower, "residual, rad/s")] {
+            let middle = 0.5 * (plot.top + plot.bottom);
+            canvas.text(name, (16.0, middle), Anchor::Upwards, LABEL, INK)?;
+        }
+        canvas.legend(&keys, (LEFT, bottom + 42.0))
+    })
+}
+
+/// Each constant as part of the device file's value, with its 95 % interval.
+fn constants(quantities: &[Quantity]) -> Result<String, String> {
+    let parts: Vec<(&Quantity, f64, f64)> = quantities
+        .iter()
+        .filter(|quantity| quantity.file != 0.0)
+        .map(|q| (q, q.estimate.value / q.file, q.estimate.half / q.file.abs()))
+        .collect();
+    let told = || parts.iter().filter(|(q, ..)| q.untold.is_none());
+    let reach = told().map(|(_, part, half)| (part - 1.0).abs() + half);
+    let span = (1.15 * reach.fold(0.05, f64::max)).min(1.0);
+    let height = TOP + ROW * parts.len() as f64;
+    let title = "Identified over the device file, with 95 % intervals";
+    figure(height + 50.0, title, |canvas| {
+        canvas.text(title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
+        let plot = Plot {
+            left: NAMES,
+            top: TOP,
+            right: WIDTH - RIGHT,
+            bottom: height,
+            x: Axis::linear([1.0 - span, 1.0 + span]),
+            y: Axis::linear([0.0, parts.len() as f64]),
+        };
+        plot.grid(canvas, 6, 0)?;
+        canvas.line(
+            &[plot.at((1.0, 0.0)), plot.at((1.0, plot.y.high))],
+            INK,
+            1.5,
+        )?;
+        for (i, (quantity, part, half)) in parts.iter().enumerate() {
+            let y = TOP + ROW * (i as f64 + 0.5);
+            let colour = if quantity.untold.is_some() {
+                MUTED
+            } else {
+                INK
+            };
+            canvas.text(
+                quantity.key,
+                (NAMES - 10.0, y),
+                Anchor::Right,
+                LABEL,
+                colour,
+            )?;
+            if quantity.untold.is_some() {
+                let (x, _) = plot.at((1.0 - 0.95 * span, 0.0));
+                canvas.text(
+                    "cannot be told, see below",
+                    (x, y),
+                    Anchor::Left,
+                    LABEL,
+                    MUTED,
+                )?;
+                continue;
+            }
+            let x = |value: f64| plot.at((value.clamp(plot.x.low, plot.x.high), 0.0)).0;
+            let [low, at, high] = [part - half, *part, part + half].map(x);
+            canvas.line(&[(low, y), (high, y)], MODEL, 2.0)?;
+            for end in [low, high] {
+                canvas.line(&[(end, y - 5.0), (end, y + 5.0)], MODEL, 2.0)?;
+            }
+            canvas.line(&[(at, y - 8.0), (at, y + 8.0)], INK, 2.5)?;
+        }
+        plot.edges(canvas)?;
+        plot.x_title(canvas, "part of the device file\u{2019}s value")
+    })
+}

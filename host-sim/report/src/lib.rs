@@ -1,0 +1,198 @@
+//! One self-contained page that shows a comparison: figures, tables, and what to look for.
+//!
+//! Plain data in, text out: nothing here simulates, reads or writes a file. A figure whose data
+//! is not there is left out.
+
+use experiments::compare::Damping;
+use experiments::limit;
+use experiments::sensitivity as belief;
+use scoring::score::{Interval, Score};
+
+mod canvas;
+mod cost;
+mod curve;
+#[cfg(test)]
+mod demo;
+mod distances;
+mod felt;
+mod grid;
+mod heating;
+mod identify;
+pub mod measured;
+mod page;
+mod palette;
+mod plot;
+mod problem;
+mod recording;
+mod robust;
+mod score_tables;
+mod sections;
+mod sensitivity;
+mod spectra;
+mod style;
+mod tables;
+mod text;
+mod velocity;
+mod verdict;
+pub mod version;
+mod windows;
+mod zwidth;
+
+pub use sensitivity::sensitivity;
+
+pub use identify::identify;
+
+pub use zwidth::zwidth;
+
+pub use felt::ClosedLoop;
+
+pub use robust::robust;
+
+pub use recording::{RecordingView, recording};
+
+/// Everything that the page shows.
+#[derive(Clone, Debug, Default)]
+pub struct ReportInput {
+    /// The command line that produced it.
+    pub command: String,
+    /// The device that was simulated.
+    pub device: DeviceFacts,
+    /// Remarks printed below the heading, plain text, one paragraph each.
+    pub notes: Vec<String>,
+    /// One entry for each scenario, rate, plant and seed that was run; their order is the
+    /// tables' order.
+    pub cases: Vec<CaseReport>,
+    /// The best that can be had, by particle filter.
+    pub limits: Vec<limit::Row>,
+    /// Errors of estimators that believe in wrong constants.
+    pub beliefs: Vec<belief::Row>,
+    /// Runs of a coupler that warms up, for their damping alone.
+    pub warming: Vec<CaseReport>,
+    /// The loop closed on each estimator, where that was run.
+    pub closed_loop: ClosedLoop,
+}
+
+/// The constants of the device that its scores depend on.
+#[derive(Clone, Debug)]
+pub struct DeviceFacts {
+    /// What the device calls itself.
+    pub name: String,
+    /// Coupler damping b, N.m.s/rad.
+    pub damping: f64,
+    /// Diameter D of the handle, m.
+    pub diameter_m: f64,
+    /// Smallest force that a fingertip notices, F_shd, N.
+    pub threshold_n: f64,
+    /// Weber fraction k, without unit.
+    pub weber: f64,
+    /// Counts a revolution of the large motor's encoder, four times its lines.
+    pub counts_per_rev: u32,
+    /// Further constants to print: what it is, its value with unit.
+    pub more: Vec<(String, String)>,
+}
+
+impl Default for DeviceFacts {
+    /// The paper's device.
+    fn default() -> Self {
+        Self {
+            name: "default device".into(),
+            damping: 0.96e-3,
+            diameter_m: 0.070,
+            threshold_n: 0.010,
+            weber: 0.05,
+            counts_per_rev: 4096,
+            more: Vec::new(),
+        }
+    }
+}
+
+impl DeviceFacts {
+    /// What a hand cannot tell on this device.
+    #[must_use]
+    pub fn interval(&self) -> Interval {
+        Interval::new(self.weber, self.threshold_n, self.diameter_m, self.damping)
+    }
+}
+
+/// One scenario at one rate on one plant, and how every estimator did.
+#[derive(Clone, Debug, Default)]
+pub struct CaseReport {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Sample rate, Hz.
+    pub rate_hz: f64,
+    /// Whether the plant has Coulomb friction.
+    pub friction: bool,
+    /// Seed of its random draws.
+    pub seed: u64,
+    /// One for each estimator, in the order of the tables.
+    pub rows: Vec<Row>,
+    /// The signals, where a figure may want them. Needed by figures 1, 6, 7 and the spectrum.
+    pub traces: Option<Traces>,
+    /// Damping, true and learned, where the coupler warms up.
+    pub damping: Option<Damping>,
+}
+
+/// The scores of one estimator in one case.
+#[derive(Clone, Debug, Default)]
+pub struct Row {
+    /// Name of the estimator.
+    pub estimator: String,
+    /// Its scores.
+    pub score: Score,
+    /// Instructions an update on the board, where they were measured.
+    pub instructions: Option<f64>,
+}
+
+/// The signals of one case.
+#[derive(Clone, Debug, Default)]
+pub struct Traces {
+    /// Time of the first sample, s.
+    pub t0: f64,
+    /// Sample rate, Hz.
+    pub rate_hz: f64,
+    /// True velocity, rad/s.
+    pub truth: Vec<f64>,
+    /// Name and velocity (rad/s) of each estimator, as many samples as the truth.
+    pub estimates: Vec<(String, Vec<f32>)>,
+}
+
+impl Traces {
+    fn time(&self, sample: usize) -> f64 {
+        self.t0 + sample as f64 / self.rate_hz
+    }
+}
+
+/// The whole page as HTML that loads nothing from anywhere.
+///
+/// # Errors
+/// If signals differ in length or have no rate, or a figure cannot be drawn.
+pub fn html(report: &ReportInput) -> Result<String, String> {
+    for case in &report.cases {
+        let Some(traces) = &case.traces else { continue };
+        let what = format!("traces of {} at {} Hz", case.scenario, case.rate_hz);
+        if !(traces.rate_hz > 0.0 && traces.rate_hz.is_finite()) {
+            return Err(format!("{what}: sample rate {}", traces.rate_hz));
+        }
+        if traces.truth.iter().any(|w| !w.is_finite()) {
+            return Err(format!("{what}: the truth is not finite"));
+        }
+        for (name, estimate) in &traces.estimates {
+            if estimate.len() != traces.truth.len() {
+                let (has, needs) = (estimate.len(), traces.truth.len());
+                return Err(format!("{what}: {name} has {has} samples, not {needs}"));
+            }
+        }
+    }
+    page::page(report)
+}
+
+/// The figures of a page made by [`html`], in order, each an SVG document.
+pub fn figures(page: &str) -> impl Iterator<Item = &str> {
+    page.split("<figure>")
+        .skip(1)
+        .filter_map(|rest| rest.split("</figure>").next())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,215 @@
+//! One colour and dash for each estimator, the same in every figure.
+
+use plotters::style::RGBColor;
+
+use super::ReportInput;
+use super::style::{Dash, Style};
+
+/// The truth, and the interval around it.
+pub(super) const TRUTH: RGBColor = RGBColor(0x11, 0x11, 0x11);
+pub(super) const BAND: RGBColor = RGBColor(0xd9, 0xe8, 0xd2);
+pub(super) const BAND_EDGE: RGBColor = RGBColor(0x9c, 0xbb, 0x8c);
+pub(super) const INK: RGBColor = RGBColor(0x33, 0x33, 0x33);
+pub(super) const MUTED: RGBColor = RGBColor(0x77, 0x77, 0x77);
+pub(super) const GRID: RGBColor = RGBColor(0xe6, 0xe6, 0xe6);
+
+// Colours of Okabe and Ito, of Tol, and darker ones. With a dash each name differs from every other
+// for normal, protanopic and deuteranopic vision.
+const GREY: RGBColor = RGBColor(0x8c, 0x8c, 0x8c);
+const ORANGE: RGBColor = RGBColor(0xe6, 0x9f, 0x00);
+const SKY: RGBColor = RGBColor(0x56, 0xb4, 0xe9);
+const BLUE: RGBColor = RGBColor(0x00, 0x72, 0xb2);
+const GREEN: RGBColor = RGBColor(0x00, 0x9e, 0x73);
+const VERMILION: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
+const PINK: RGBColor = RGBColor(0xcc, 0x79, 0xa7);
+const OLIVE: RGBColor = RGBColor(0x99, 0x99, 0x33);
+const PURPLE: RGBColor = RGBColor(0x5d, 0x3a, 0x9b);
+const NAVY: RGBColor = RGBColor(0x1a, 0x1a, 0x6e);
+const CRIMSON: RGBColor = RGBColor(0xc0, 0x00, 0x3a);
+const PINE: RGBColor = RGBColor(0x00, 0x4d, 0x40);
+const BROWN: RGBColor = RGBColor(0x7a, 0x52, 0x30);
+
+/// One style for every estimator, and for the reference encoder in its place. Relatives share a
+/// colour.
+const STYLES: [(&str, RGBColor, Dash); 21] = [
+    ("finite-difference", GREY, Dash::Solid),
+    ("low-pass", ORANGE, Dash::Solid),
+    ("foaw-end-fit", SKY, Dash::Solid),
+    ("foaw-best-fit", BLUE, Dash::Solid),
+    ("kalman-triple", GREEN, Dash::Dotted),
+    ("kalman-triple-table", GREEN, Dash::Dashed),
+    ("kalman-triple-steady", GREEN, Dash::Mixed),
+    ("kalman-motor", VERMILION, Dash::Solid),
+    ("kalman-motor-steady", VERMILION, Dash::Dotted),
+    ("pll", PINK, Dash::Dotted),
+    ("m-over-t", OLIVE, Dash::Mixed),
+    ("observer", PURPLE, Dash::Solid),
+    ("observer-edge", NAVY, Dash::Solid),
+    ("adaptive", CRIMSON, Dash::Dashed),
+    ("adaptive-edge", PINE, Dash::Mixed),
+    ("observer-soft", PURPLE, Dash::Dashed),
+    ("adaptive-soft", CRIMSON, Dash::Dotted),
+    ("observer-held", PURPLE, Dash::Mixed),
+    ("observer-edge-held", NAVY, Dash::Mixed),
+    ("observer-edge-blind", NAVY, Dash::Dashed),
+    ("reference", BROWN, Dash::Solid),
+];
+
+/// Names in order of appearance.
+pub(super) struct Palette {
+    seen: Vec<String>,
+    /// How many of them are in the open-loop comparison.
+    compared: usize,
+}
+
+impl Palette {
+    pub(super) fn new(report: &ReportInput) -> Self {
+        let names = report.cases.iter().flat_map(|case| {
+            let drawn = case.traces.iter().flat_map(|t| &t.estimates);
+            let rows = case.rows.iter().map(|row| &row.estimator);
+            rows.chain(drawn.map(|(name, _)| name)).map(String::as_str)
+        });
+        let closed = report.closed_loop.closers().into_iter();
+        Self::named(
+            names
+                .map(|name| (name, true))
+                .chain(closed.map(|name| (name, false))),
+        )
+    }
+
+    pub(super) fn of<'a>(names: impl Iterator<Item = &'a str>) -> Self {
+        Self::named(names.map(|name| (name, true)))
+    }
+
+    /// Names by order of appearance, and whether each is in the open-loop comparison.
+    fn named<'a>(names: impl Iterator<Item = (&'a str, bool)>) -> Self {
+        let mut seen: Vec<String> = Vec::new();
+        let mut compared = 0;
+        for (name, is_compared) in names {
+            if !seen.iter().any(|known| known == name) {
+                compared += usize::from(is_compared);
+                seen.push(name.to_owned());
+            }
+        }
+        Self { seen, compared }
+    }
+
+    /// Style of an estimator; ink for a name that is no estimator's.
+    pub(super) fn style(&self, estimator: &str) -> Style {
+        STYLES
+            .iter()
+            .find(|(name, ..)| *name == estimator)
+            .map_or(INK.into(), |&(_, colour, dash)| Style { colour, dash })
+    }
+
+    /// Every estimator of the open-loop comparison, in order of first appearance.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.seen[..self.compared].iter().map(String::as_str)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use catalogue::estimators::Kind;
+    use experiments::felt::REFERENCE;
+
+    /// Least distance of two colours with the same dash, in OKLab, where 0.02 can just be seen side
+    /// by side.
+    const LEAST: f64 = 0.06;
+
+    /// Linear RGB as people with normal, protanopic and deuteranopic vision see it: Machado,
+    /// Oliveira and Fernandes (2009), severity 1.
+    const VISIONS: [[[f64; 3]; 3]; 3] = [
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        [
+            [0.152_286, 1.052_583, -0.204_868],
+            [0.114_503, 0.786_281, 0.099_216],
+            [-0.003_882, -0.048_116, 1.051_998],
+        ],
+        [
+            [0.367_322, 0.860_646, -0.227_968],
+            [0.280_085, 0.672_501, 0.047_413],
+            [-0.011_820, 0.042_940, 0.968_881],
+        ],
+    ];
+
+    fn times(matrix: &[[f64; 3]; 3], [x, y, z]: [f64; 3]) -> [f64; 3] {
+        matrix.map(|[a, b, c]| a * x + b * y + c * z)
+    }
+
+    /// Ottosson's OKLab of a linear RGB colour.
+    fn oklab(rgb: [f64; 3]) -> [f64; 3] {
+        let cones = times(
+            &[
+                [0.412_221_470_8, 0.536_332_536_3, 0.051_445_992_9],
+                [0.211_903_498_2, 0.680_699_545_1, 0.107_396_956_6],
+                [0.088_302_461_9, 0.281_718_837_6, 0.629_978_700_5],
+            ],
+            rgb.map(|part| part.clamp(0.0, 1.0)),
+        );
+        times(
+            &[
+                [0.210_454_255_3, 0.793_617_785_0, -0.004_072_046_8],
+                [1.977_998_495_1, -2.428_592_205_0, 0.450_593_709_9],
+                [0.025_904_037_1, 0.782_771_766_2, -0.808_675_766_0],
+            ],
+            cones.map(f64::cbrt),
+        )
+    }
+
+    /// The distance of two colours to whom it is smallest.
+    fn distance(a: RGBColor, b: RGBColor) -> f64 {
+        let linear = |RGBColor(r, g, b): RGBColor| {
+            [r, g, b].map(|part| {
+                let part = f64::from(part) / 255.0;
+                match part <= 0.040_45 {
+                    true => part / 12.92,
+                    false => ((part + 0.055) / 1.055).powf(2.4),
+                }
+            })
+        };
+        let (a, b) = (linear(a), linear(b));
+        VISIONS
+            .iter()
+            .map(|vision| {
+                let [a, b] = [a, b].map(|rgb| oklab(times(vision, rgb)));
+                let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
+                squares.sum::<f64>().sqrt()
+            })
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn the_distance_is_that_of_the_least_vision() {
+        let [black, white] = [RGBColor(0, 0, 0), RGBColor(255, 255, 255)];
+        assert!((distance(black, white) - 1.0).abs() < 1e-3);
+        // A red and a green of one lightness: alike only to who cannot see their hue.
+        assert!(distance(RGBColor(163, 60, 0), RGBColor(84, 100, 0)) < 0.08);
+    }
+
+    #[test]
+    fn every_estimator_has_a_style_that_no_other_can_be_taken_for() {
+        let mut names: Vec<&str> = Kind::all().iter().map(|kind| kind.name).collect();
+        names.push(REFERENCE);
+        let palette = Palette::of(names.iter().copied());
+        for (i, a) in names.iter().enumerate() {
+            let style = palette.style(a);
+            assert!(STYLES.iter().any(|(name, ..)| name == a), "{a}");
+            for b in &names[..i] {
+                let other = palette.style(b);
+                let apart = distance(style.colour, other.colour);
+                assert!(
+                    style.dash != other.dash || apart > LEAST,
+                    "{a} and {b}: {apart:.3} apart, both {:?}",
+                    style.dash
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_name_that_is_no_estimator_is_drawn_in_ink() {
+        assert_eq!(Palette::of(["mine"].into_iter()).style("mine"), INK.into());
+    }
+}

@@ -1,0 +1,67 @@
+//! The problem itself: what a finite difference makes of an encoder's counts.
+
+use std::ops::Range;
+
+use super::canvas::{Anchor, Key, LABEL, TITLE, WIDTH, figure, legend_height};
+use super::palette::{INK, Palette, TRUTH};
+use super::plot::{Axis, Plot};
+use super::{Traces, velocity};
+use scoring::score::Interval;
+
+const LEFT: f64 = 62.0;
+
+/// Truth, interval and one estimate over `window`, one wide panel that shows all of both.
+pub(super) fn figure_one(
+    title: &str,
+    traces: &Traces,
+    window: Range<usize>,
+    estimator: usize,
+    interval: &Interval,
+    palette: &Palette,
+) -> Result<String, String> {
+    let (name, estimate) = &traces.estimates[estimator];
+    let keys = [
+        Key::Line(palette.style(name), name),
+        Key::Line(TRUTH.into(), "true velocity"),
+        Key::Band("haptic interval"),
+    ];
+    let head = 34.0 + legend_height(&keys, LEFT) + 6.0;
+    let origin = traces.time(window.start);
+    let time = |at: usize| 1e3 * (traces.time(at) - origin);
+    let values = window.clone().flat_map(|at| {
+        let (w, e) = (traces.truth[at], f64::from(estimate[at]));
+        let tolerance = interval.tolerance(w);
+        [
+            w - tolerance,
+            w + tolerance,
+            if e.is_finite() { e } else { w },
+        ]
+    });
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+        (low.min(v), high.max(v))
+    });
+    let pad = 0.05 * (high - low);
+    let plot = Plot {
+        left: LEFT,
+        top: head,
+        right: WIDTH - 12.0,
+        bottom: head + 260.0,
+        x: Axis::linear([0.0, time(window.end - 1)]),
+        y: Axis::linear([low - pad, high + pad]),
+    };
+    figure(plot.bottom + 40.0, title, |canvas| {
+        canvas.text(title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
+        canvas.legend(&keys, (LEFT, 40.0))?;
+        plot.grid(canvas, 10, 7)?;
+        // The estimate below the truth, or it would hide it.
+        velocity::truth(canvas, &plot, traces, window.clone(), origin, interval)?;
+        let points = window.clone().map(|at| (time(at), f64::from(estimate[at])));
+        plot.curve(canvas, points, palette.style(name), 1.4)?;
+        let points = window.clone().map(|at| (time(at), traces.truth[at]));
+        plot.curve(canvas, points, TRUTH, 1.8)?;
+        plot.edges(canvas)?;
+        plot.x_title(canvas, "time, ms")?;
+        let middle = (14.0, 0.5 * (plot.top + plot.bottom));
+        canvas.text("velocity, rad/s", middle, Anchor::Upwards, LABEL, INK)
+    })
+}

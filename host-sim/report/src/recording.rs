@@ -1,0 +1,270 @@
+//! A recording as one picture: position, velocity, what the velocity is off by, currents, torque,
+//! over one time axis.
+
+mod changes;
+mod panel;
+
+use plotters::style::RGBColor;
+
+use changes::states;
+use panel::{Curve, Panel, range};
+
+use super::canvas::{Anchor, Key, TITLE, WIDTH, figure, legend_height};
+use super::palette::{INK, Palette, TRUTH};
+use super::plot::{Axis, Plot};
+use recordings::recording::{BoardColumns, Recording};
+use scoring::contest::Estimate;
+use scoring::score::Interval;
+
+/// Sizes, px.
+const LEFT: f64 = 70.0;
+const RIGHT: f64 = 14.0;
+const TOP: f64 = 52.0;
+const PANEL: f64 = 132.0;
+const GAP: f64 = 22.0;
+const LARGE: RGBColor = RGBColor(0x00, 0x72, 0xb2);
+const SMALL: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
+const BOARD: RGBColor = RGBColor(0xb0, 0x00, 0x20);
+
+/// What a picture shows.
+#[derive(Clone, Copy, Debug)]
+pub struct RecordingView<'a> {
+    /// What it goes by.
+    pub name: &'a str,
+    /// The recording.
+    pub recording: &'a Recording,
+    /// What the board made of it.
+    pub board: &'a BoardColumns,
+    /// Estimates of the large motor's velocity.
+    pub estimates: &'a [Estimate],
+    /// Counts a revolution, large and small.
+    pub counts_per_rev: [u32; 2],
+    /// What a fingertip cannot tell from the truth.
+    pub interval: Interval,
+    /// Time shown, s.
+    pub window: [f64; 2],
+}
+
+/// The picture as SVG.
+///
+/// # Errors
+/// If it cannot be drawn.
+pub fn recording(view: &RecordingView) -> Result<String, String> {
+    let panels = panels(view);
+    let ranges: Vec<_> = panels.iter().map(|panel| range(panel, view)).collect();
+    let named = |(panel, ends): (&Panel, &[f64; 2])| panel.names(view, *ends);
+    let names: Vec<Vec<String>> = panels.iter().zip(&ranges).map(named).collect();
+    let keys: Vec<Vec<Key>> = (panels.iter().zip(&names))
+        .map(|(panel, names)| keys(panel, names))
+        .collect();
+    let heads: Vec<f64> = keys.iter().map(|keys| head(keys)).collect();
+    let height: f64 = TOP + heads.iter().map(|head| head + PANEL + GAP).sum::<f64>() + 20.0;
+    figure(height, view.name, |canvas| {
+        canvas.text(view.name, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
+        let mut top = TOP;
+        for (i, (panel, head)) in panels.iter().zip(&heads).enumerate() {
+            canvas.legend(&keys[i], (LEFT, top + 8.0))?;
+            let plot = Plot {
+                left: LEFT,
+                top: top + head,
+                right: WIDTH - RIGHT,
+                bottom: top + head + PANEL,
+                x: Axis::linear(view.window),
+                y: Axis::linear(ranges[i]),
+            };
+            panel.draw(canvas, &plot, view)?;
+            states(canvas, &plot, view, i == 0)?;
+            top = plot.bottom + GAP;
+            if i + 1 == panels.len() {
+                plot.x_title(canvas, "time, s")?;
+            }
+        }
+        Ok(())
+    })
+}
+
+fn keys<'a>(panel: &Panel, names: &'a [String]) -> Vec<Key<'a>> {
+    let lines = panel.curves.iter().zip(names);
+    let mut keys: Vec<_> = lines.map(|(c, name)| Key::Line(c.style, name)).collect();
+    if panel.band.is_some() {
+        keys.push(Key::Band("what a fingertip cannot tell"));
+    }
+    keys
+}
+
+fn head(keys: &[Key]) -> f64 {
+    legend_height(keys, LEFT) + 2.0
+}
+
+fn panels(view: &RecordingView) -> Vec<Panel> {
+    let trace = &view.recording.trace;
+    let mut panels = Vec::new();
+    let mut add = |unit, curves: Vec<Curve>, band| {
+        if !curves.is_empty() {
+            panels.push(Panel { unit, curves, band });
+        }
+    };
+    let mut angles = vec![angle(
+        "large motor",
+        LARGE,
+        &trace.counts_large,
+        view.counts_per_rev[0],
+    )];
+    if let Some(small) = &trace.counts_small {
+        angles.push(angle("handle", SMALL, small, view.counts_per_rev[1]));
+    }
+    add("angle, rad", angles, None);
+
+    let velocities = velocities(view);
+    let errors = trace.true_omega.as_ref().map(|truth| {
+        let error = |curve: &Curve| Curve {
+            name: format!("{} less the truth", curve.name),
+            values: curve.values.iter().zip(truth).map(|(e, w)| e - w).collect(),
+            ..*curve
+        };
+        let band = truth.iter().map(|w| view.interval.tolerance(*w)).collect();
+        (velocities.iter().map(error).collect(), band)
+    });
+    let truth = trace.true_omega.iter();
+    let truth = truth.map(|truth| Curve::new("truth", TRUTH, truth).wide());
+    add(
+        "velocity, rad/s",
+        velocities.into_iter().chain(truth).collect(),
+        None,
+    );
+    if let Some((errors, band)) = errors {
+        add("error, rad/s", errors, Some(band));
+    }
+
+    let board = view.board;
+    let currents = [
+        ("large motor", LARGE, &trace.current),
+        ("small motor", SMALL, &board.current_small),
+    ];
+    let currents = currents.into_iter();
+    let there = currents.filter_map(|(n, c, v)| Some(Curve::new(n, c, v.as_ref()?)));
+    add("current, A", there.collect(), None);
+    let torque = board.torque.iter().map(|torque| {
+        let torque: Vec<_> = torque.iter().map(|torque| 1e3 * torque).collect();
+        Curve::new("wanted on the handle", INK, &torque)
+    });
+    add("torque, mN.m", torque.collect(), None);
+    panels
+}
+
+/// Estimates, then the board's own, of which only those that are there.
+fn velocities(view: &RecordingView) -> Vec<Curve> {
+    let palette = Palette::of(view.estimates.iter().map(|estimate| estimate.estimator));
+    let mut curves: Vec<_> = view
+        .estimates
+        .iter()
+        .map(|estimate| {
+            let values: Vec<_> = estimate.velocity.iter().map(|w| f64::from(*w)).collect();
+            let colour = palette.style(estimate.estimator);
+            let mut curve = Curve::new(estimate.estimator, colour, &values);
+            // Its quantisation would hide what the others differ by.
+            curve.sizes = estimate.estimator != "finite-difference";
+            curve
+        })
+        .collect();
+    if let Some(own) = &view.board.velocity_large {
+        curves.push(Curve::new("the board's own", BOARD, own));
+    }
+    if curves.iter().all(|curve| !curve.sizes) {
+        curves.iter_mut().for_each(|curve| curve.sizes = true);
+    }
+    curves
+}
+
+fn angle(name: &str, colour: RGBColor, counts: &[u32], per_rev: u32) -> Curve {
+    let mut moved = 0_i64;
+    let mut last = counts[0];
+    let angles = counts.iter().map(|&count| {
+        moved += i64::from(count.wrapping_sub(last) as i32);
+        last = count;
+        moved as f64 / f64::from(per_rev) * std::f64::consts::TAU
+    });
+    Curve::new(name, colour, &angles.collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn view<'a>(recording: &'a Recording, board: &'a BoardColumns) -> RecordingView<'a> {
+        RecordingView {
+            name: "r.csv",
+            recording,
+            board,
+            estimates: &[],
+            counts_per_rev: [4096, 20_000],
+            interval: Interval::new(0.05, 0.010, 0.070, 0.96e-3),
+            window: [0.0, 0.006],
+        }
+    }
+
+    const TEXT: &str = "t,counts_large,state,cause\n0,4294967295,1,0\n0.001,0,1,0\n0.002,1,2,0\n\
+        0.005,5,2,0\n0.006,6,3,5\n";
+
+    #[test]
+    fn curves_stop_at_gaps_and_counts_run_over_their_wrap() {
+        let recording = Recording::parse(TEXT.as_bytes(), "r").unwrap();
+        let board = BoardColumns::parse(TEXT.as_bytes(), "r").unwrap();
+        let view = view(&recording, &board);
+        assert_eq!(panel::segments(&view), [0..3, 3..5]);
+        let angle = angle("", INK, &recording.trace.counts_large, 4096);
+        let count = std::f64::consts::TAU / 4096.0;
+        assert!((angle.values[4] - 7.0 * count).abs() < 1e-12);
+        assert_eq!(
+            changes::changes(&view),
+            [
+                (0.002, "running".to_owned()),
+                (0.006, "safe, cause 5".to_owned())
+            ]
+        );
+    }
+
+    #[test]
+    fn what_is_not_there_has_no_panel() {
+        let text = "t,counts_large\n0,0\n0.001,1\n";
+        let recording = Recording::parse(text.as_bytes(), "r").unwrap();
+        let board = BoardColumns::default();
+        let view = view(&recording, &board);
+        let units: Vec<_> = panels(&view).iter().map(|panel| panel.unit).collect();
+        assert_eq!(units, ["angle, rad"]);
+        assert!(
+            super::recording(&view)
+                .unwrap()
+                .contains("<title>r.csv</title>")
+        );
+        let text = "t,counts_large,true_omega,current\n0,0,1,0\n0.001,1,1,0\n";
+        let recording = Recording::parse(text.as_bytes(), "r").unwrap();
+        let estimate = [Estimate {
+            estimator: "pll",
+            velocity: vec![0.5, 1.5],
+            deviation: None,
+        }];
+        let view = RecordingView {
+            recording: &recording,
+            estimates: &estimate,
+            ..view
+        };
+        let panels = panels(&view);
+        let units: Vec<_> = panels.iter().map(|panel| panel.unit).collect();
+        assert_eq!(
+            units,
+            [
+                "angle, rad",
+                "velocity, rad/s",
+                "error, rad/s",
+                "current, A"
+            ]
+        );
+        assert_eq!(panels[2].curves[0].values, [-0.5, 0.5]);
+        assert_eq!(panels[2].names(&view, [-1.0, 1.0]), ["pll less the truth"]);
+        assert_eq!(
+            panels[2].names(&view, [-1.0, 0.0]),
+            ["pll less the truth, 50\u{a0}% off scale"]
+        );
+    }
+}

@@ -1,0 +1,64 @@
+//! Where the safety machine changes its state.
+
+use haptic_control::Mode;
+
+use super::{RecordingView, TOP};
+use crate::canvas::{Anchor, Canvas, LABEL, text_width};
+use crate::palette::MUTED;
+use crate::plot::Plot;
+
+/// Changes of state that have a label each.
+const LABELS: usize = 12;
+
+/// A line where the safety machine changes its state, and over the first panel what it becomes.
+pub(super) fn states(
+    canvas: &Canvas,
+    plot: &Plot,
+    view: &RecordingView,
+    labelled: bool,
+) -> Result<(), String> {
+    let changes = changes(view);
+    // Many changes are a band of ink: the lines without words say as much.
+    let labelled = labelled && changes.len() <= LABELS;
+    let mut free = plot.left;
+    for (t, what) in changes {
+        let (x, _) = plot.at((t, plot.y.low));
+        canvas.line(&[(x, plot.top), (x, plot.bottom)], MUTED, 1.0)?;
+        if labelled && x >= free {
+            canvas.text(&what, (x, TOP - 12.0), Anchor::Left, LABEL, MUTED)?;
+            free = x + text_width(&what, LABEL) + 6.0;
+        }
+    }
+    Ok(())
+}
+
+/// Instants in the window at which state or cause are others than before, and what they are.
+pub(super) fn changes(view: &RecordingView) -> Vec<(f64, String)> {
+    let (t, board) = (&view.recording.t, view.board);
+    let Some(state) = &board.state else {
+        return Vec::new();
+    };
+    let told = |row: usize| {
+        (
+            state[row],
+            board.cause.as_ref().map_or(0.0, |cause| cause[row]),
+        )
+    };
+    let inside = |row: &usize| (view.window[0]..=view.window[1]).contains(&t[*row]);
+    (1..t.len())
+        .filter(|&row| told(row) != told(row - 1))
+        .filter(inside)
+        .map(|row| (t[row], words(told(row))))
+        .collect()
+}
+
+fn words((state, cause): (f64, f64)) -> String {
+    let known = (0..=u8::MAX)
+        .map_while(Mode::from_code)
+        .find(|mode| f64::from(*mode as u8) == state);
+    let state = known.map_or_else(|| format!("state {state}"), |mode| mode.as_str().to_owned());
+    match cause {
+        0.0 => state,
+        _ => format!("{state}, cause {cause}"),
+    }
+}

@@ -1,0 +1,194 @@
+//! The page of `robust`: how far devices came from the limits, scene by scene.
+
+use plotters::style::RGBColor;
+
+use super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure};
+use super::page::{Document, printed};
+use super::palette::{GRID, INK, MUTED};
+use super::sections::framed;
+use super::text::escape;
+use experiments::robust::judge::{FELT_NM, HANDLE_RAD_S};
+use experiments::robust::summary::{SceneSummary, Spread};
+
+/// Okabe and Ito's green, orange and red for stable, stopped and violated.
+const VERDICTS: [(RGBColor, &str); 3] = [
+    (RGBColor(0x00, 0x9e, 0x73), "stable"),
+    (RGBColor(0xe6, 0x9f, 0x00), "stopped in time"),
+    (RGBColor(0xb0, 0x00, 0x20), "violated"),
+];
+const SPREAD: RGBColor = RGBColor(0x56, 0xb4, 0xe9);
+const LIMIT: RGBColor = VERDICTS[2].0;
+
+/// Sizes, px.
+const LEFT: f64 = 110.0;
+const TOP: f64 = 84.0;
+const ROW: f64 = 30.0;
+const GAP: f64 = 36.0;
+
+/// One panel of distributions.
+struct Panel<'a> {
+    title: &'a str,
+    of: fn(&SceneSummary) -> Option<Spread>,
+    limit: fn(&SceneSummary) -> Option<f64>,
+    factor: f64,
+    axis: [f64; 2],
+}
+
+const PANELS: [Panel; 4] = [
+    Panel {
+        title: "handle speed, rad/s",
+        of: |scene| Some(scene.handle_rad_s),
+        limit: |_| Some(HANDLE_RAD_S),
+        factor: 1.0,
+        axis: [0.1, 100.0],
+    },
+    Panel {
+        title: "torque felt, mN.m",
+        of: |scene| Some(scene.felt_nm),
+        limit: |_| Some(FELT_NM),
+        factor: 1e3,
+        axis: [1.0, 1000.0],
+    },
+    Panel {
+        title: "parasitic force, N",
+        of: |scene| Some(scene.parasitic_n),
+        limit: |_| None,
+        factor: 1.0,
+        axis: [0.01, 10.0],
+    },
+    Panel {
+        title: "oscillation, mN.m RMS",
+        of: |scene| scene.oscillation_nm,
+        limit: |scene| Some(scene.oscillation_limit_nm),
+        factor: 1e3,
+        axis: [0.01, 100.0],
+    },
+];
+
+/// The page: the figure, then the `table` as it was printed.
+///
+/// # Errors
+/// If the figure cannot be drawn.
+pub fn robust(
+    heading: &str,
+    scenes: &[SceneSummary],
+    table: &str,
+    command: &str,
+) -> Result<String, String> {
+    let svg = chart(scenes)?;
+    let intro = format!(
+        "<p>{}. The controller believes the nominal \
+         device; each run has another one. Of each run the largest speed, torque and force, and \
+         the oscillation that stays. Bars reach from 5 % to 95 % of the devices, the line in them \
+         is the median, the dot the largest; red lines are limits.</p>\n",
+        escape(heading)
+    );
+    Ok(Document {
+        title: "Robustness of the loop",
+        intro,
+        facts: vec![("command", command.to_owned())],
+        notes: String::new(),
+        contents: String::new(),
+        body: framed(&svg) + &printed(table),
+    }
+    .html())
+}
+
+fn chart(scenes: &[SceneSummary]) -> Result<String, String> {
+    let title = "Devices that differ from the one believed in";
+    let bottom = TOP + ROW * scenes.len() as f64;
+    let share = (WIDTH - LEFT - 20.0 + GAP) / (PANELS.len() + 1) as f64;
+    figure(bottom + 34.0, title, |canvas| {
+        canvas.text(title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
+        let keys = VERDICTS.map(|(colour, name)| Key::Line(colour.into(), name));
+        canvas.legend(&keys, (LEFT, 38.0))?;
+        for (i, scene) in scenes.iter().enumerate() {
+            let at = (LEFT - 10.0, TOP + ROW * (i as f64 + 0.5));
+            canvas.text(&scene.scene, at, Anchor::Right, LABEL, INK)?;
+        }
+        verdicts(canvas, scenes, [LEFT, LEFT + share - GAP])?;
+        for (i, panel) in PANELS.iter().enumerate() {
+            let left = LEFT + share * (i + 1) as f64;
+            panel.draw(canvas, scenes, [left, left + share - GAP])?;
+        }
+        Ok(())
+    })
+}
+
+fn middle(i: usize) -> f64 {
+    TOP + ROW * (i as f64 + 0.5)
+}
+
+/// Shares of the verdicts as bars, with the counts of what was not stable.
+fn verdicts(
+    canvas: &Canvas,
+    scenes: &[SceneSummary],
+    [left, right]: [f64; 2],
+) -> Result<(), String> {
+    canvas.text("verdicts", (left, TOP - 18.0), Anchor::Left, LABEL, INK)?;
+    for (i, scene) in scenes.iter().enumerate() {
+        let whole = scene.counts.iter().sum::<usize>().max(1) as f64;
+        let y = middle(i) - 4.0;
+        // From the right, each at least to be seen; what is stable takes the rest.
+        let mut x = right;
+        for (count, (colour, _)) in scene.counts.iter().zip(VERDICTS).rev() {
+            let width = ((right - left) * *count as f64 / whole).max(2.0);
+            let from = if colour == VERDICTS[0].0 {
+                left
+            } else {
+                x - width
+            };
+            if *count > 0 {
+                canvas.rectangle([(from, y - 5.0), (x, y + 5.0)], colour)?;
+                x = from;
+            }
+        }
+        let [stable, stopped, violated] = scene.counts;
+        let counts = format!("{stable} / {stopped} / {violated}");
+        canvas.text(&counts, (left, y + 12.0), Anchor::Left, 9.5, MUTED)?;
+    }
+    Ok(())
+}
+
+impl Panel<'_> {
+    fn draw(
+        &self,
+        canvas: &Canvas,
+        scenes: &[SceneSummary],
+        [left, right]: [f64; 2],
+    ) -> Result<(), String> {
+        let [low, high] = self.axis;
+        let place = |value: f64| {
+            let part = (self.factor * value / low).max(1.0).ln() / (high / low).ln();
+            left + part.min(1.0) * (right - left)
+        };
+        canvas.text(self.title, (left, TOP - 18.0), Anchor::Left, LABEL, INK)?;
+        let bottom = middle(scenes.len()) - 0.5 * ROW;
+        let mut tick = low;
+        while tick <= high * 1.001 {
+            let x = place(tick / self.factor);
+            canvas.line(&[(x, TOP), (x, bottom)], GRID, 1.0)?;
+            let text = format!("{tick:.2}");
+            let text = text.trim_end_matches('0').trim_end_matches('.');
+            canvas.text(text, (x, bottom + 12.0), Anchor::Centre, 9.5, MUTED)?;
+            tick *= 10.0;
+        }
+        for (i, scene) in scenes.iter().enumerate() {
+            let y = middle(i);
+            if let Some(limit) = (self.limit)(scene) {
+                let x = place(limit);
+                canvas.line(&[(x, y - 0.5 * ROW), (x, y + 0.5 * ROW)], LIMIT, 1.5)?;
+            }
+            let Some(spread) = (self.of)(scene) else {
+                continue;
+            };
+            let [from, median, to, far] =
+                [spread.low, spread.median, spread.high, spread.largest].map(place);
+            canvas.line(&[(to, y), (far, y)], SPREAD, 1.0)?;
+            canvas.rectangle([(from, y - 5.0), (to.max(from + 1.0), y + 5.0)], SPREAD)?;
+            canvas.line(&[(median, y - 5.0), (median, y + 5.0)], INK, 1.5)?;
+            canvas.rectangle([(far - 2.0, y - 2.0), (far + 2.0, y + 2.0)], INK)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,110 @@
+//! Numbers and names as text.
+
+use catalogue::parameters::PlantKind;
+
+/// `text` with the characters that mean something to HTML and SVG replaced.
+pub(super) fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&#39;"),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+/// About three significant digits, no exponent above 0.001; infinity as its sign.
+pub(super) fn number(value: f64) -> String {
+    let size = value.abs();
+    let text = match size {
+        _ if value.is_nan() => return "not a number".into(),
+        _ if size.is_infinite() => "\u{221e}".into(),
+        0.0 => return "0".into(),
+        _ if size < 0.000_999_5 => format!("{size:.0e}"),
+        _ if size < 0.999_5 => format!("{size:.3}"),
+        _ if size < 9.995 => format!("{size:.2}"),
+        _ if size < 99.95 => format!("{size:.1}"),
+        _ => format!("{size:.0}"),
+    };
+    // U+2212, as wide as a digit.
+    if value < 0.0 {
+        format!("\u{2212}{text}")
+    } else {
+        text
+    }
+}
+
+/// A sample rate with its unit.
+pub(super) fn rate(hz: f64) -> String {
+    if hz >= 1000.0 {
+        let khz = (hz / 10.0).round() / 100.0;
+        format!("{khz} kHz")
+    } else {
+        format!("{hz} Hz")
+    }
+}
+
+/// A share of 1 as whole %, with a decimal where it is near either end.
+pub(super) fn share(part: f64) -> String {
+    let percent = 100.0 * part;
+    let near_an_end = percent.min(100.0 - percent) < 9.5;
+    if near_an_end && percent > 0.0 && percent < 100.0 {
+        format!("{percent:.1}\u{a0}%")
+    } else {
+        format!("{percent:.0}\u{a0}%")
+    }
+}
+
+/// Which plant.
+pub(super) fn plant(friction: bool) -> &'static str {
+    let kind = match friction {
+        true => PlantKind::Friction,
+        false => PlantKind::Frictionless,
+    };
+    kind.phrase()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn escapes_what_could_end_an_attribute_or_start_an_element() {
+        assert_eq!(
+            escape("a<b> & \"c\" 'd'"),
+            "a&lt;b&gt; &amp; &quot;c&quot; &#39;d&#39;"
+        );
+    }
+
+    #[test]
+    fn numbers_have_three_digits_and_round_across_their_limits() {
+        for (value, expected) in [
+            (0.0, "0"),
+            (0.000_32, "3e-4"),
+            (0.3646, "0.365"),
+            (0.999_6, "1.00"),
+            (1.534, "1.53"),
+            (-42.07, "\u{2212}42.1"),
+            (99.96, "100"),
+            (168.3, "168"),
+            (f64::INFINITY, "\u{221e}"),
+        ] {
+            assert_eq!(number(value), expected);
+        }
+    }
+
+    #[test]
+    fn rates_are_in_khz_and_shares_keep_a_decimal_near_the_ends() {
+        assert_eq!(rate(11_600.0), "11.6 kHz");
+        assert_eq!(rate(1000.0), "1 kHz");
+        assert_eq!(rate(500.0), "500 Hz");
+        assert_eq!(share(0.5), "50\u{a0}%");
+        assert_eq!(share(0.9968), "99.7\u{a0}%");
+        assert_eq!(share(1.0), "100\u{a0}%");
+    }
+}

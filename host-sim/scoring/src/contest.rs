@@ -1,0 +1,271 @@
+//! Estimators over one trace, and how each did.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::score::{Interval, SKIP_S, Score, Truth, Wanted};
+use catalogue::estimators::{Estimator, Kind, Setup, available};
+use catalogue::parameters::{Parameters, PlantKind};
+use simulation::trace::Trace;
+use terminal::failure::Failure;
+
+/// The scores of one estimator on one trace: an object of the JSON output, a row of the CSV.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// Scenario, or the recording's file name.
+    pub scenario: String,
+    /// Control rate, Hz.
+    pub rate_hz: f64,
+    /// Plant; a real motor has friction.
+    pub plant: PlantKind,
+    /// Seed; 0 for a recording.
+    pub seed: u64,
+    /// Estimator.
+    pub estimator: &'static str,
+    /// Scores.
+    #[serde(flatten)]
+    pub score: Score,
+    /// Parameters it ran with.
+    pub parameters: BTreeMap<&'static str, f64>,
+}
+
+/// Start of a run that no score of the learned damping looks at, s.
+pub const LEARNING_S: f64 = 3.0;
+
+/// What the rows of one trace have in common.
+#[derive(Clone, Debug)]
+pub struct Heading {
+    /// See [`Row::scenario`].
+    pub scenario: String,
+    /// See [`Row::rate_hz`].
+    pub rate_hz: f64,
+    /// See [`Row::plant`].
+    pub plant: PlantKind,
+    /// See [`Row::seed`].
+    pub seed: u64,
+}
+
+/// An estimator ready to run.
+pub struct Contestant {
+    /// What it is.
+    pub kind: &'static Kind,
+    /// Values of its parameters.
+    pub values: Vec<f64>,
+    estimator: Estimator,
+}
+
+/// An estimator's velocities over a trace, rad/s.
+#[derive(Clone, Debug)]
+pub struct Estimate {
+    /// Estimator.
+    pub estimator: &'static str,
+    /// One velocity a tick.
+    pub velocity: Vec<f32>,
+    /// The standard deviation that the estimator believes each to have, rad/s; `None` from one that
+    /// believes nothing.
+    pub deviation: Option<Vec<f32>>,
+}
+
+impl Estimate {
+    /// Share of samples within two standard deviations of the truth `omega`, rad/s.
+    #[must_use]
+    pub fn within_2_sigma(&self, omega: &[f64], rate_hz: f64) -> Option<f64> {
+        let deviations = self.deviation.as_ref()?;
+        let skip = (SKIP_S * rate_hz).round() as usize;
+        let samples = self.velocity.iter().zip(deviations).zip(omega).skip(skip);
+        let inside = |((velocity, deviation), truth): &((&f32, &f32), &f64)| {
+            (f64::from(**velocity) - **truth).abs() <= 2.0 * f64::from(**deviation)
+        };
+        let scored = self.velocity.len().saturating_sub(skip);
+        (scored > 0).then(|| samples.filter(inside).count() as f64 / scored as f64)
+    }
+}
+
+impl Contestant {
+    fn new(
+        kind: &'static Kind,
+        parameters: &Parameters,
+        setup: &Setup,
+        plant: PlantKind,
+    ) -> Result<Self, Failure> {
+        let values = parameters.values(kind, setup, plant);
+        let estimator = kind.build(setup, &values)?;
+        Ok(Self {
+            kind,
+            values,
+            estimator,
+        })
+    }
+
+    /// The estimate over `trace`, or `None` if the trace lacks a signal that it needs.
+    #[must_use]
+    pub fn estimate(&self, trace: &Trace) -> Option<Estimate> {
+        self.kind.needs.within(available(trace)).then(|| {
+            let (velocity, deviation) = self.estimator.run_confident(trace);
+            Estimate {
+                estimator: self.kind.name,
+                velocity,
+                deviation,
+            }
+        })
+    }
+
+    /// The estimator itself.
+    #[must_use]
+    pub fn estimator(&self) -> &Estimator {
+        &self.estimator
+    }
+
+    fn named_values(&self) -> BTreeMap<&'static str, f64> {
+        let names = self.kind.parameters.iter().map(|p| p.name);
+        names.zip(self.values.iter().copied()).collect()
+    }
+}
+
+/// Estimators built for one rate and plant, and the finite difference they are measured by.
+pub struct Contest {
+    contestants: Vec<Contestant>,
+    difference: Contestant,
+    believed_damping: f64,
+}
+
+impl Contest {
+    /// Builds the estimators `kinds` with `parameters`.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that names the estimator and the parameter.
+    pub fn new(
+        kinds: &[&'static Kind],
+        parameters: &Parameters,
+        setup: &Setup,
+        plant: PlantKind,
+    ) -> Result<Self, Failure> {
+        let new = |kind| Contestant::new(kind, parameters, setup, plant);
+        Ok(Self {
+            contestants: kinds
+                .iter()
+                .map(|&kind| new(kind))
+                .collect::<Result<_, _>>()?,
+            difference: new(Kind::named("finite-difference")?)?,
+            believed_damping: setup.device.damping,
+        })
+    }
+
+    /// The estimators.
+    #[must_use]
+    pub fn contestants(&self) -> &[Contestant] {
+        &self.contestants
+    }
+
+    /// The estimates of all that can run on `trace`.
+    #[must_use]
+    pub fn estimates(&self, trace: &Trace) -> Vec<Estimate> {
+        self.contestants
+            .iter()
+            .filter_map(|c| c.estimate(trace))
+            .collect()
+    }
+
+    /// Scores `estimates` of `trace` against its truth; none if the trace has no truth.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] where the truth is not finite.
+    pub fn rows(
+        &self,
+        heading: &Heading,
+        trace: &Trace,
+        estimates: &[Estimate],
+        interval: Interval,
+        wanted: Wanted,
+    ) -> Result<Vec<Row>, Failure> {
+        let Some(omega) = &trace.true_omega else {
+            return Ok(Vec::new());
+        };
+        let truth = Truth::new(omega, trace.rate_hz, interval, wanted)
+            .map_err(|error| Failure::Input(format!("{}: {error}", heading.scenario)))?;
+        let scores: Vec<_> = estimates.iter().map(|e| truth.score(&e.velocity)).collect();
+        let reference = estimates
+            .iter()
+            .position(|e| e.estimator == self.difference.kind.name)
+            .map_or_else(
+                || truth.score(&self.difference.estimator.run(trace)),
+                |i| scores[i],
+            );
+        let row = |(estimate, score): (&Estimate, &Score)| {
+            let contestant = self
+                .contestants
+                .iter()
+                .find(|c| c.kind.name == estimate.estimator);
+            let damping = contestant
+                .filter(|_| wanted.learned)
+                .and_then(|c| self.learned_damping(c, trace));
+            Row {
+                scenario: heading.scenario.clone(),
+                rate_hz: heading.rate_hz,
+                plant: heading.plant,
+                seed: heading.seed,
+                estimator: estimate.estimator,
+                score: Score {
+                    within_2_sigma: (wanted.within)
+                        .then(|| estimate.within_2_sigma(omega, trace.rate_hz))
+                        .flatten(),
+                    learned_damping_nms_per_rad: damping.as_deref().map(last_tenth),
+                    learned_damping_pct: damping.as_deref().and_then(|b| damping_error(b, trace)),
+                    ..score.relative_to(&reference)
+                },
+                parameters: contestant.map(Contestant::named_values).unwrap_or_default(),
+            }
+        };
+        Ok(estimates.iter().zip(&scores).map(row).collect())
+    }
+
+    /// Damping b at each tick of `trace`, N.m.s/rad, as `contestant` learns it.
+    #[must_use]
+    pub fn learned_damping(&self, contestant: &Contestant, trace: &Trace) -> Option<Vec<f64>> {
+        let ratios = contestant.estimator.damping_ratio(trace)?;
+        let believed = self.believed_damping;
+        Some(ratios.iter().map(|&b| believed * f64::from(b)).collect())
+    }
+}
+
+fn last_tenth(values: &[f64]) -> f64 {
+    let last = &values[values.len() - values.len().div_ceil(10)..];
+    last.iter().sum::<f64>() / last.len() as f64
+}
+
+/// RMS error in % of the true damping; `None` where that is not known or the run too short.
+fn damping_error(learned: &[f64], trace: &Trace) -> Option<f64> {
+    let truth = trace.true_damping.as_ref()?;
+    let skip = (LEARNING_S * trace.rate_hz) as usize;
+    let errors: Vec<_> = learned
+        .iter()
+        .zip(truth)
+        .skip(skip)
+        .map(|(learned, truth)| (learned / truth - 1.0).powi(2))
+        .collect();
+    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+    (!errors.is_empty()).then(|| 100.0 * mean.sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_within_two_deviations_are_counted_after_the_start() {
+        let estimate = Estimate {
+            estimator: "pll",
+            velocity: vec![9.0, 1.0, 1.0, 1.0, 1.0],
+            deviation: Some(vec![0.0, 0.5, 0.5, 0.4, 0.0]),
+        };
+        // At 10 Hz the first sample is the start.
+        let truth = [0.0, 2.0, 2.1, 1.5, 1.0];
+        assert_eq!(estimate.within_2_sigma(&truth, 10.0), Some(0.75));
+        let silent = Estimate {
+            deviation: None,
+            ..estimate
+        };
+        assert_eq!(silent.within_2_sigma(&truth, 10.0), None);
+    }
+}

@@ -1,0 +1,214 @@
+//! How well an estimate follows the truth, in the terms of the hand that feels it.
+//!
+//! One definition, used by the table, the report, the JSON and the tests:
+//!
+//! ```text
+//! tolerance(w) = k |w| + F_shd D / (2 b)            what a fingertip cannot tell from w, rad/s
+//! distance     = max(0, |estimate - w| - tolerance(w))
+//! ```
+//!
+//! Everything before the first [`SKIP_S`] seconds is ignored: estimators start from rest and
+//! their first samples say nothing about them.
+
+mod delay;
+pub mod fields;
+mod transient;
+mod truth;
+
+pub use fields::{Better, Field, Form, Over, Score};
+pub use truth::Truth;
+
+/// Start of every trace that no score looks at, s.
+pub const SKIP_S: f64 = 0.1;
+
+/// The band in which a fingertip is most sensitive to vibration, Hz.
+pub const TACTILE_BAND_HZ: [f64; 2] = [50.0, 500.0];
+
+/// What a hand cannot tell from the true velocity, and what a velocity error is worth in force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Weber fraction: the part of the velocity's size that goes unnoticed, without unit.
+    pub weber: f64,
+    /// Half width of the interval at zero velocity, rad/s.
+    pub floor_rad_s: f64,
+    /// Parasitic force at the fingertip for an error of 1 rad/s, mN.
+    pub force_mn_per_rad_s: f64,
+}
+
+impl Interval {
+    /// From the Weber fraction `weber`, the force threshold at the fingertip `threshold_n` (N),
+    /// the handle's diameter `diameter_m` (m) and the coupler's damping (N.m.s/rad).
+    ///
+    /// ```
+    /// # use scoring::score::Interval;
+    /// let paper = Interval::new(0.05, 0.010, 0.070, 0.96e-3);
+    /// assert!((paper.tolerance(0.0) - 0.3646).abs() < 1e-4);
+    /// assert!((paper.force_mn_per_rad_s - 27.43).abs() < 1e-2);
+    /// ```
+    #[must_use]
+    pub fn new(weber: f64, threshold_n: f64, diameter_m: f64, damping: f64) -> Self {
+        Self {
+            weber,
+            floor_rad_s: threshold_n * diameter_m / (2.0 * damping),
+            force_mn_per_rad_s: 2.0e3 * damping / diameter_m,
+        }
+    }
+
+    /// Half width of the interval around the velocity `omega` (rad/s), rad/s.
+    #[must_use]
+    pub fn tolerance(&self, omega: f64) -> f64 {
+        self.weber * omega.abs() + self.floor_rad_s
+    }
+}
+
+/// Which scores to compute; the others are `None` and take no time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    /// [`Score::rms_rad_s`].
+    pub rms: bool,
+    /// [`Score::max_rad_s`].
+    pub max: bool,
+    /// [`Score::distance_rad_s`].
+    pub distance: bool,
+    /// [`Score::distance_transient_rad_s`].
+    pub distance_transient: bool,
+    /// [`Score::outside`].
+    pub outside: bool,
+    /// [`Score::delay_ms`].
+    pub delay: bool,
+    /// [`Score::noise_rad_s`].
+    pub noise: bool,
+    /// [`Score::chatter_rad_s`].
+    pub chatter: bool,
+    /// [`Score::force_mn`].
+    pub force: bool,
+    /// [`Score::within_2_sigma`].
+    pub within: bool,
+    /// [`Score::learned_damping_nms_per_rad`] and its error.
+    pub learned: bool,
+}
+
+impl Wanted {
+    /// Every score.
+    pub const ALL: Self = Self::every(true);
+
+    /// No score: the start for `Wanted { rms: true, ..Wanted::NONE }`.
+    pub const NONE: Self = Self::every(false);
+
+    const fn every(wanted: bool) -> Self {
+        Self {
+            rms: wanted,
+            max: wanted,
+            distance: wanted,
+            distance_transient: wanted,
+            outside: wanted,
+            delay: wanted,
+            noise: wanted,
+            chatter: wanted,
+            force: wanted,
+            within: wanted,
+            learned: wanted,
+        }
+    }
+}
+
+impl Default for Wanted {
+    fn default() -> Self {
+        Self::ALL
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tolerance_is_the_floor_at_rest_and_grows_with_either_direction() {
+        let interval = Interval::new(0.05, 0.010, 0.070, 0.96e-3);
+        assert!((interval.tolerance(0.0) - 0.364_583_3).abs() < 1e-6);
+        assert!((interval.tolerance(10.0) - 0.864_583_3).abs() < 1e-6);
+        assert!((interval.tolerance(-10.0) - 0.864_583_3).abs() < 1e-6);
+        // An error of exactly the floor is the force threshold, 10 mN.
+        assert!((interval.floor_rad_s * interval.force_mn_per_rad_s - 10.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn percent_is_of_the_reference_and_none_without_one() {
+        let score = Score {
+            rms_rad_s: Some(0.5),
+            distance_rad_s: Some(0.1),
+            distance_transient_rad_s: Some(0.3),
+            ..Score::default()
+        };
+        let reference = Score {
+            rms_rad_s: Some(2.0),
+            distance_rad_s: Some(0.0),
+            ..Score::default()
+        };
+        let percent = score.relative_to(&reference);
+        assert_eq!(percent.rms_pct, Some(25.0));
+        assert_eq!(percent.distance_pct, None, "the reference is 0");
+        assert_eq!(percent.distance_transient_pct, None, "there is none");
+    }
+
+    /// Names of the output's contract: more may follow, none may go.
+    const CONTRACT: [&str; 12] = [
+        "rms_rad_s",
+        "max_rad_s",
+        "distance_rad_s",
+        "distance_transient_rad_s",
+        "distance_pct",
+        "distance_transient_pct",
+        "rms_pct",
+        "outside",
+        "delay_ms",
+        "noise_rad_s",
+        "chatter_rad_s",
+        "force_mn",
+    ];
+
+    #[test]
+    fn fields_include_the_contract_and_are_those_of_the_json() {
+        let json = serde_json::to_value(Score {
+            max_rad_s: Some(f64::INFINITY),
+            non_finite: 3,
+            ..Score::default()
+        })
+        .unwrap();
+        let mut names: Vec<_> = Score::FIELDS.iter().map(|field| field.name).collect();
+        for name in CONTRACT {
+            assert!(names.contains(&name), "{name}");
+            assert!(json[name].is_null() && json.get(name).is_some(), "{name}");
+        }
+        assert_eq!(json["non_finite"], 3);
+        names.push("non_finite");
+        names.sort_unstable();
+        let mut keys: Vec<_> = json.as_object().unwrap().keys().collect();
+        keys.sort_unstable();
+        assert_eq!(keys, names);
+    }
+
+    #[test]
+    fn seeds_become_their_mean_or_their_largest() {
+        let row = |value: f64| {
+            let mut row = Score::default();
+            for field in Score::FIELDS {
+                (field.set)(&mut row, Some(value));
+            }
+            row.non_finite = 2;
+            row
+        };
+        let rows = [row(1.0), Score::default(), row(5.0)];
+        let mean = Score::mean(rows.iter());
+        for field in Score::FIELDS {
+            // Rows without a value do not count.
+            let expected = match field.name {
+                "max_rad_s" => 5.0,
+                _ => 3.0,
+            };
+            assert_eq!((field.of)(&mean), Some(expected), "{}", field.name);
+        }
+        assert_eq!(mean.non_finite, 4);
+        assert_eq!(Score::mean(rows[1..2].iter()), Score::default());
+    }
+}

@@ -1,0 +1,353 @@
+//! What a device may be, and how a file that says otherwise is told so in one line.
+
+use super::{Device, Motor};
+use crate::plant::LONGEST_STEP_S;
+use terminal::wording::decimal;
+
+/// Allowed range of one value.
+enum Range {
+    Above0,
+    /// Above 0 and at most this; a larger value is probably in the unit of that name, of which one
+    /// is ten to this power.
+    Most(f64, &'static str, i32),
+    From0,
+    /// A share: from 0 to below 1.
+    Share,
+}
+
+fn check(key: &str, value: f64, unit: &str, range: &Range) -> Result<(), String> {
+    let (holds, rule) = match *range {
+        Range::Above0 => (value > 0.0, format!("above 0 {unit}")),
+        Range::Most(most, ..) if value > most => (
+            false,
+            format!("at most {most} {unit}{}", in_usual_unit(value, range)),
+        ),
+        Range::Most(..) => (value > 0.0, format!("above 0 {unit}")),
+        Range::From0 => (value >= 0.0, format!("0 {unit} or more")),
+        Range::Share => (
+            (0.0..1.0).contains(&value),
+            "at least 0 and below 1".to_owned(),
+        ),
+    };
+    if !value.is_finite() {
+        return Err(format!("{key} = {value}: must be a finite number"));
+    }
+    if !holds {
+        return Err(format!("{key} = {}: must be {rule}", decimal(value)));
+    }
+    Ok(())
+}
+
+/// What to write for a value that is too large, if it is right in the usual unit.
+fn in_usual_unit(value: f64, range: &Range) -> String {
+    let Range::Most(most, usual, power) = *range else {
+        return String::new();
+    };
+    if value * 10.0_f64.powi(power) > most {
+        return String::new();
+    }
+    let value = decimal(value);
+    format!("; did you mean {value}e{power}, which is {value} {usual}?")
+}
+
+fn check_counts(key: &str, counts: u32) -> Result<(), String> {
+    if (16..=4_000_000).contains(&counts) {
+        return Ok(());
+    }
+    Err(format!(
+        "{key} = {counts}: must be from 16 to 4000000 counts a revolution"
+    ))
+}
+
+fn check_motor(name: &str, motor: &Motor) -> Result<(), String> {
+    for (key, value, unit, range) in [
+        (
+            "inertia_kg_m2",
+            motor.inertia_kg_m2,
+            "kg.m2",
+            Range::Most(0.1, "g.cm2", -7),
+        ),
+        (
+            "torque_constant_nm_per_a",
+            motor.torque_constant_nm_per_a,
+            "N.m/A",
+            Range::Most(10.0, "mN.m/A", -3),
+        ),
+        ("coulomb_nm", motor.coulomb_nm, "N.m", Range::From0),
+        ("coulomb_ripple", motor.coulomb_ripple, "", Range::Share),
+        ("torque_ripple", motor.torque_ripple, "", Range::Share),
+        (
+            "ripple_per_rev",
+            motor.ripple_per_rev,
+            "periods a revolution",
+            Range::Above0,
+        ),
+        ("current_limit_a", motor.current_limit_a, "A", Range::Above0),
+    ] {
+        check(&format!("{name}.{key}"), value, unit, &range)?;
+    }
+    check_counts(&format!("{name}.counts_per_rev"), motor.counts_per_rev)
+}
+
+/// Largest rate of the plant, as part of one over the longest step, that it still follows well.
+const FASTEST: f64 = 0.1;
+
+/// The plant's fixed step must be short against every time constant that it integrates.
+fn check_rates(device: &Device) -> Result<(), String> {
+    let damping = device.coupler.damping_nms_per_rad;
+    let slow_enough = |key: &str, inertia: f64, rate: f64| {
+        if rate * LONGEST_STEP_S <= FASTEST {
+            return Ok(());
+        }
+        Err(format!(
+            "{key} = {}: too small for its dampers and springs, they would settle in {:.1e} s; \
+             must be {:.0e} s or more",
+            decimal(inertia),
+            1.0 / rate,
+            LONGEST_STEP_S / FASTEST
+        ))
+    };
+    let large = device.large.inertia_kg_m2;
+    slow_enough("large.inertia_kg_m2", large, damping / large)?;
+    let small = device.small.inertia_kg_m2;
+    let hand = &device.hand;
+    let rate = ((damping + hand.damping_nms_per_rad) / small)
+        .max((hand.stiffness_nm_per_rad / small).sqrt());
+    slow_enough("small.inertia_kg_m2", small, rate)
+}
+
+pub(super) fn validate(device: &Device) -> Result<(), String> {
+    check_motor("large", &device.large)?;
+    check_motor("small", &device.small)?;
+    for (key, value, unit, range) in [
+        (
+            "coupler.damping_nms_per_rad",
+            device.coupler.damping_nms_per_rad,
+            "N.m.s/rad",
+            Range::Above0,
+        ),
+        (
+            "coupler.fall_at_60_s",
+            device.coupler.fall_at_60_s,
+            "",
+            Range::Share,
+        ),
+        (
+            "amplifier.bandwidth_hz",
+            device.amplifier.bandwidth_hz,
+            "Hz",
+            Range::Above0,
+        ),
+        (
+            "hand.stiffness_nm_per_rad",
+            device.hand.stiffness_nm_per_rad,
+            "N.m/rad",
+            Range::From0,
+        ),
+        (
+            "hand.damping_nms_per_rad",
+            device.hand.damping_nms_per_rad,
+            "N.m.s/rad",
+            Range::From0,
+        ),
+        (
+            "handle.diameter_m",
+            device.handle.diameter_m,
+            "m",
+            Range::Most(1.0, "mm", -3),
+        ),
+        (
+            "interval.threshold_n",
+            device.interval.threshold_n,
+            "N",
+            Range::From0,
+        ),
+        ("interval.weber", device.interval.weber, "", Range::Share),
+        (
+            "disc.phase_counts",
+            device.disc.phase_counts,
+            "counts",
+            Range::From0,
+        ),
+        (
+            "disc.line_counts",
+            device.disc.line_counts,
+            "counts",
+            Range::From0,
+        ),
+        (
+            "disc.random_counts",
+            device.disc.random_counts,
+            "counts",
+            Range::From0,
+        ),
+    ] {
+        check(key, value, unit, &range)?;
+    }
+    let disc = device.disc.phase_counts + device.disc.line_counts + device.disc.random_counts;
+    if disc >= 0.45 {
+        return Err(format!(
+            "disc: phase_counts + line_counts + random_counts = {disc}: must be below 0.45 counts"
+        ));
+    }
+    check_counts("reference.counts_per_rev", device.reference.counts_per_rev)?;
+    check_rates(device)
+}
+
+/// The parser's error in one line, with the line's number and its key.
+pub(super) fn one_line(text: &str, error: &toml::de::Error) -> String {
+    let what = error
+        .message()
+        .trim()
+        .replace('\n', ", ")
+        .replace("expected f64", "expected a number")
+        .replace("expected u32", "expected a whole number from 0");
+    let Some(span) = error.span() else {
+        return what;
+    };
+    let before = &text.as_bytes()[..span.start.min(text.len())];
+    let number = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
+    let line = text.lines().nth(number - 1).unwrap_or("");
+    let key = line.split(['=', '#']).next().unwrap_or("").trim();
+    if key.is_empty() {
+        return format!("line {number}: {what}");
+    }
+    format!("line {number}, {key}: {what}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(text: &str) -> String {
+        let error = Device::from_toml_str(text).expect_err(text);
+        assert!(!error.contains('\n'), "one line: {error}");
+        error
+    }
+
+    #[test]
+    fn a_device_survives_toml_both_ways() {
+        let mut device = Device::default();
+        device.small.inertia_kg_m2 = 61.25e-7;
+        device.disc.phase_counts = 0.1;
+        device.reference.counts_per_rev = 8000;
+        let text = toml::to_string(&device).unwrap();
+        assert_eq!(Device::from_toml_str(&text).unwrap(), device);
+    }
+
+    #[test]
+    fn what_a_file_leaves_out_keeps_its_own_default() {
+        assert_eq!(Device::from_toml_str("").unwrap(), Device::default());
+        let device = Device::from_toml_str("[small]\ncoulomb_nm = 1").unwrap();
+        let mut expected = Device::default();
+        expected.small.coulomb_nm = 1.0;
+        assert_eq!(device, expected);
+    }
+
+    #[test]
+    fn an_unknown_key_is_named_with_its_line_and_the_right_ones() {
+        let error = refused("[large]\n\ninertia = 1e-5\n");
+        assert!(error.starts_with("line 3, inertia: "), "{error}");
+        assert!(error.contains("inertia_kg_m2"), "{error}");
+        let error = refused("[coupler]\nb = 1");
+        assert!(error.starts_with("line 2, b: "), "{error}");
+        let error = refused("[laarge]\ncoulomb_nm = 1e-5\n");
+        assert!(error.starts_with("line 1, [laarge]: "), "{error}");
+    }
+
+    #[test]
+    fn a_wrong_type_is_named_with_its_line() {
+        let error = refused("[hand]\nstiffness_nm_per_rad = 'firm'");
+        assert!(
+            error.starts_with("line 2, stiffness_nm_per_rad: "),
+            "{error}"
+        );
+        assert!(error.ends_with("expected a number"), "{error}");
+        let error = refused("[large]\ncoulomb_nm = 0,004");
+        assert!(error.starts_with("line 2, coulomb_nm: "), "{error}");
+        let error = refused("[large]\ncounts_per_rev = -4");
+        assert!(error.starts_with("line 2, counts_per_rev: "), "{error}");
+    }
+
+    #[test]
+    fn impossible_values_are_refused_by_name() {
+        for (text, expected) in [
+            (
+                "large.inertia_kg_m2 = -1",
+                "large.inertia_kg_m2 = -1: must be above 0 kg.m2",
+            ),
+            (
+                "large.counts_per_rev = 0",
+                "large.counts_per_rev = 0: must be from 16 to 4000000 counts a revolution",
+            ),
+            (
+                "reference.counts_per_rev = 4000001",
+                "reference.counts_per_rev = 4000001: must be from 16 to 4000000 counts a revolution",
+            ),
+            (
+                "coupler.damping_nms_per_rad = nan",
+                "coupler.damping_nms_per_rad = NaN: must be a finite number",
+            ),
+            (
+                "hand.stiffness_nm_per_rad = inf",
+                "hand.stiffness_nm_per_rad = inf: must be a finite number",
+            ),
+            (
+                "large.inertia_kg_m2 = 115",
+                "large.inertia_kg_m2 = 115: must be at most 0.1 kg.m2; did you mean 115e-7, which is \
+                 115 g.cm2?",
+            ),
+            (
+                "small.torque_constant_nm_per_a = 27.5",
+                "small.torque_constant_nm_per_a = 27.5: must be at most 10 N.m/A; did you mean 27.5e-3, \
+                 which is 27.5 mN.m/A?",
+            ),
+            (
+                "handle.diameter_m = 70",
+                "handle.diameter_m = 70: must be at most 1 m; did you mean 70e-3, which is 70 mm?",
+            ),
+            (
+                "large.inertia_kg_m2 = 1e-300",
+                "large.inertia_kg_m2 = 1e-300: too small for its dampers and springs, they would settle \
+                 in 1.0e-297 s; must be 1e-4 s or more",
+            ),
+            (
+                "small.current_limit_a = 0",
+                "small.current_limit_a = 0: must be above 0 A",
+            ),
+            (
+                "large.coulomb_ripple = 1.0",
+                "large.coulomb_ripple = 1: must be at least 0 and below 1",
+            ),
+            (
+                "small.coulomb_nm = -1e-3",
+                "small.coulomb_nm = -0.001: must be 0 N.m or more",
+            ),
+            (
+                "disc = { phase_counts = 0.25, random_counts = 0.25 }",
+                "disc: phase_counts + line_counts + random_counts = 0.5: must be below 0.45 counts",
+            ),
+        ] {
+            assert_eq!(refused(text), expected);
+        }
+    }
+
+    #[test]
+    fn an_inertia_too_small_for_the_step_is_refused() {
+        let error = refused("small.inertia_kg_m2 = 1e-9");
+        assert!(error.starts_with("small.inertia_kg_m2 = "), "{error}");
+        assert!(error.contains("too small"), "{error}");
+    }
+
+    #[test]
+    fn frictionless_takes_the_coulomb_friction_of_both_motors_and_nothing_else() {
+        let device = Device::default();
+        let mut expected = device.clone();
+        for motor in [&mut expected.large, &mut expected.small] {
+            motor.coulomb_nm = 0.0;
+            motor.coulomb_ripple = 0.0;
+        }
+        assert_eq!(device.frictionless(), expected);
+        assert_ne!(expected, device);
+    }
+}

@@ -1,0 +1,162 @@
+//! Scenarios `free-air` and `hold`: a hand that should feel nothing; and hands' motions.
+
+use super::{
+    Drive, Scenario, Seen, draw,
+    servo::{Servo, Tuning},
+};
+use crate::device::Device;
+use crate::plant::{Grip, HandMotion, Pose};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use std::f64::consts::TAU;
+
+/// The loop where a hand moves: friction is fed forward from a measured velocity.
+pub(super) const TUNING: Tuning = Tuning {
+    bandwidth_hz: 30.0,
+    integral_per_s: 0.0,
+    coulomb_at_rad_s: 0.3,
+};
+
+/// Amplitude of each of tremor's two sines, rad: 0.1 to 0.2 mm at the rim. The small motor's
+/// friction swallows 1.6 mrad of a hand's motion.
+const TREMOR_RAD: (f64, f64) = (2.5e-3, 5e-3);
+
+/// A tremor is slow: with [`TUNING`], friction would hold the large motor at rest, rad/s.
+const HOLD_COULOMB_AT: f64 = 0.05;
+
+/// What a hand intends: a few sines about a centre.
+#[derive(Clone, Debug)]
+pub struct Intent {
+    period: f64,
+    centre: f64,
+    sines: Vec<Sine>,
+    reached: Option<(u64, Pose)>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Sine {
+    amplitude: f64,
+    rad_per_s: f64,
+    phase: f64,
+}
+
+impl Intent {
+    /// A hand that rests at the angle `centre`, rad; control period in s.
+    pub const fn about(centre: f64, period_s: f64) -> Self {
+        Self {
+            period: period_s,
+            centre,
+            sines: Vec::new(),
+            reached: None,
+        }
+    }
+
+    /// Adds a sine of drawn frequency (Hz), amplitude (rad) and phase.
+    pub fn sine(
+        self,
+        random: &mut Xoshiro256PlusPlus,
+        hz: (f64, f64),
+        amplitude: (f64, f64),
+    ) -> Self {
+        self.sine_from(random, hz, amplitude, (0.0, TAU))
+    }
+
+    /// The same with a phase (rad) within bounds.
+    pub fn sine_from(
+        mut self,
+        random: &mut Xoshiro256PlusPlus,
+        hz: (f64, f64),
+        amplitude: (f64, f64),
+        phase: (f64, f64),
+    ) -> Self {
+        self.sines.push(Sine {
+            amplitude: draw(random, amplitude.0, amplitude.1),
+            rad_per_s: TAU * draw(random, hz.0, hz.1),
+            phase: draw(random, phase.0, phase.1),
+        });
+        self
+    }
+
+    /// Adds physiological tremor of 8 to 12 Hz.
+    pub fn tremor(self, random: &mut Xoshiro256PlusPlus) -> Self {
+        self.sine(random, (8.0, 10.0), TREMOR_RAD)
+            .sine(random, (10.0, 12.0), TREMOR_RAD)
+    }
+
+    fn at(&self, t: f64) -> Pose {
+        let still = Pose {
+            angle: self.centre,
+            omega: 0.0,
+        };
+        self.sines.iter().fold(still, |pose, sine| {
+            let (sin, cos) = (sine.rad_per_s * t + sine.phase).sin_cos();
+            Pose {
+                angle: pose.angle + sine.amplitude * sin,
+                omega: pose.omega + sine.amplitude * sine.rad_per_s * cos,
+            }
+        })
+    }
+
+    /// Angle and velocity at the start.
+    pub fn start(&self) -> Pose {
+        self.at(0.0)
+    }
+
+    /// The hand during tick `k`.
+    pub fn grip(&mut self, k: u64) -> Grip {
+        let at = |k: u64| self.at(k as f64 * self.period);
+        // One tick's end is the next one's beginning.
+        let from = match self.reached {
+            Some((tick, pose)) if tick == k => pose,
+            _ => at(k),
+        };
+        let to = at(k + 1);
+        self.reached = Some((k + 1, to));
+        Grip::Hand(HandMotion::between(from, to, self.period))
+    }
+}
+
+/// A hand that should feel nothing: slip zero, torque zero.
+pub(super) struct Nothing {
+    intent: Intent,
+    servo: Servo,
+}
+
+/// A hand that moves at 0.3 to 4 Hz.
+pub(super) fn free_air(device: &Device, period_s: f64, mut random: Xoshiro256PlusPlus) -> Nothing {
+    let intent = Intent::about(draw(&mut random, -0.5, 0.5), period_s)
+        .sine(&mut random, (0.3, 0.8), (0.3, 0.6))
+        .sine(&mut random, (1.0, 2.0), (0.05, 0.15))
+        .sine(&mut random, (2.5, 4.0), (0.02, 0.06))
+        .tremor(&mut random);
+    Nothing {
+        intent,
+        servo: Servo::new(device, period_s, TUNING),
+    }
+}
+
+/// A hand that only trembles.
+pub(super) fn hold(device: &Device, period_s: f64, mut random: Xoshiro256PlusPlus) -> Nothing {
+    let intent = Intent::about(draw(&mut random, -0.5, 0.5), period_s).tremor(&mut random);
+    let tuning = Tuning {
+        coulomb_at_rad_s: HOLD_COULOMB_AT,
+        ..TUNING
+    };
+    Nothing {
+        intent,
+        servo: Servo::new(device, period_s, tuning),
+    }
+}
+
+impl Scenario for Nothing {
+    fn start(&self) -> Pose {
+        self.intent.start()
+    }
+
+    fn tick(&mut self, k: u64, seen: Seen) -> Drive {
+        let currents = self.servo.update(seen, 0.0, 0.0, 0.0);
+        Drive {
+            grip: self.intent.grip(k),
+            ..Drive::clamped(currents.large_a, currents.small_a)
+        }
+    }
+}

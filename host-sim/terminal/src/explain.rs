@@ -1,0 +1,25 @@
+//! Messages of the command-line parser.
+
+use clap::error::ErrorKind;
+
+use crate::failure::Failure;
+
+/// Help and version go out; anything else becomes one line that names `program` for help.
+///
+/// # Errors
+/// [`Failure::Input`] with that line.
+pub fn explain(error: &clap::Error, program: &str) -> Result<(), Failure> {
+    if let ErrorKind::DisplayHelp | ErrorKind::DisplayVersion = error.kind() {
+        return crate::output::print_bytes(error.render().to_string().as_bytes());
+    }
+    let text = error.render().to_string();
+    let said: Vec<_> = text
+        .lines()
+        .map(str::trim)
+        .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"))
+        .filter(|line| !line.is_empty())
+        .collect();
+    let said = said.join(" ");
+    let said = said.strip_prefix("error: ").unwrap_or(&said);
+    Err(Failure::Input(format!("{said}; see {program} --help")))
+}
