@@ -99,7 +99,7 @@ impl Tally {
         }
     }
 
-    /// For docs/theory.md: `cargo test --release -p host-sim --test identify -- --nocapture`.
+    /// For docs/theory.md: `cargo test --release -p experiments --test identify -- --nocapture`.
     fn print(&self, what: &str) {
         println!(
             "{what}: {} values, the worst {:.2} % off, {} inside their intervals",
