@@ -1,4 +1,4 @@
-//! Hands the linker the memory map, which is the repository's `memory.x`.
+//! Hands the linker the memory map of the board, which is the repository's `memory.x`.
 
 use std::path::PathBuf;
 use std::{env, fs};

@@ -27,7 +27,7 @@ fn log(frame: &Frame) {
         frame.seq, record.tick, sample.large.0, sample.small.0,
         action.large.0, action.handle.0, frame.deviation(), frame.estimator(), action.torque.0,
         action.currents.large.get(), action.currents.small.get(),
-        record.state, record.cause, record.overruns, frame.drops(bare::lost()), frame.cycles
+        record.state, record.cause, record.overruns, frame.drops(firmware_rt::lost()), frame.cycles
     );
     if let Some(edge) = frame.edge() {
         defmt::info!("edge seq={=u32} bound={=u32} age={=u32}", frame.seq, edge.boundary.0, edge.age.0);

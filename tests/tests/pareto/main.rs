@@ -117,7 +117,7 @@ fn claims_of_tasks(tasks: &[Task], rows: &[Row]) {
     for task in tasks {
         let [.., most] = task.highest_rates_hz();
         assert!(most > 10e3, "{} with {}", task.scene, task.estimator);
-        // As firmware/src/main.rs has it: an eighth of the period.
+        // As firmware/src/tasks.rs has it: an eighth of the period.
         assert!(task.instructions.1 <= 16_800 / 8, "{}", task.scene);
     }
     // The guide by the rate.

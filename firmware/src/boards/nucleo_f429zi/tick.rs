@@ -8,17 +8,17 @@ use haptic_control::Grid;
 use stm32f4xx_hal::pac::TIM5;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 
-use crate::board::CORE_HZ;
+use super::parts::CORE_HZ;
 
 /// Counts of a control period.
 const PERIOD: u32 = TIMER_HZ / RATE_HZ;
 
 /// A timer that counts from 0 to 2^32 - 1 and starts again, at the rate of its bus.
-pub(crate) struct Clock(TIM5);
+pub(super) struct Clock(TIM5);
 
 impl Clock {
     /// Starts it.
-    pub(crate) fn start(timer: TIM5, rcc: &mut Rcc) -> Self {
+    pub(super) fn start(timer: TIM5, rcc: &mut Rcc) -> Self {
         TIM5::enable(rcc);
         TIM5::reset(rcc);
         timer.arr().write(|w| w.arr().set(u32::MAX));
@@ -28,7 +28,7 @@ impl Clock {
 
     /// Asks `done` until it is true, at most for so many counts; whether it was. Without a running
     /// clock it gives up by the number of times.
-    pub(crate) fn poll(&self, counts: u32, mut done: impl FnMut() -> bool) -> bool {
+    pub(super) fn poll(&self, counts: u32, mut done: impl FnMut() -> bool) -> bool {
         let since = self.now();
         for _ in 0..counts {
             if done() {
@@ -42,20 +42,20 @@ impl Clock {
     }
 
     /// The count now.
-    pub(crate) fn now(&self) -> u32 {
+    pub(super) fn now(&self) -> u32 {
         self.0.cnt().read().bits()
     }
 }
 
 /// The control tick: the interrupt of a comparison with the clock.
-pub(crate) struct Tick {
+pub(super) struct Tick {
     clock: Clock,
     grid: Grid<PERIOD>,
 }
 
 impl Tick {
     /// Ticks from a period after now.
-    pub(crate) fn new(clock: Clock) -> Self {
+    pub(super) fn new(clock: Clock) -> Self {
         let grid = Grid::new(clock.now());
         clock.0.sr().reset();
         clock.0.dier().write(|w| w.cc1ie().set_bit());
@@ -66,7 +66,7 @@ impl Tick {
 
     /// First thing in the control task: takes the interrupt; the ticks missed since the last,
     /// counting one that the last task overran.
-    pub(crate) fn enter(&mut self) -> u32 {
+    pub(super) fn enter(&mut self) -> u32 {
         self.clock.0.sr().reset();
         let missed = self.grid.begin(self.clock.now());
         self.await_next();
@@ -74,13 +74,13 @@ impl Tick {
     }
 
     /// Last thing in the control task.
-    pub(crate) fn leave(&mut self) {
+    pub(super) fn leave(&mut self) {
         self.grid.end(self.clock.now());
     }
 
     /// Core cycles of the longest control task since this was last asked for, from the instant at
     /// which it was due.
-    pub(crate) fn take_longest(&mut self) -> u32 {
+    pub(super) fn take_longest(&mut self) -> u32 {
         self.grid.take_longest() * (CORE_HZ / TIMER_HZ)
     }
 

@@ -4,7 +4,7 @@ use estimator_core::Count;
 use stm32f4xx_hal::pac;
 
 /// A timer in quadrature mode, of which the low 16 bits are enough.
-pub(crate) trait Counter {
+pub(super) trait Counter {
     /// The counter as it stands.
     fn raw(&self) -> u16;
     /// Filters both inputs: a level counts when it has stood for 95 ns.
@@ -32,27 +32,27 @@ counter!(pac::TIM1: fdts_div2_n8, pac::TIM3: fck_int_n8, pac::TIM4: fck_int_n8);
 
 /// An encoder: its counter widened to 32 bits, right as long as it is read before it has moved
 /// by 2^15 counts.
-pub(crate) struct Encoder<T> {
-    pub(crate) timer: T,
+pub(super) struct Encoder<T> {
+    pub(super) timer: T,
     /// The count as read last.
-    pub(crate) count: Count,
+    pub(super) count: Count,
 }
 
 impl<T: Counter> Encoder<T> {
     /// The encoder on a timer that already counts.
-    pub(crate) fn new(timer: T) -> Self {
+    pub(super) fn new(timer: T) -> Self {
         timer.filter();
         let count = Count(u32::from(timer.raw()));
         Self { timer, count }
     }
 
     /// The count now.
-    pub(crate) fn read(&mut self) -> Count {
+    pub(super) fn read(&mut self) -> Count {
         self.take(self.timer.raw())
     }
 
     /// The count that `raw` stands for, read from the timer just now.
-    pub(crate) fn take(&mut self, raw: u16) -> Count {
+    pub(super) fn take(&mut self, raw: u16) -> Count {
         self.count = self.count.extended(raw);
         self.count
     }

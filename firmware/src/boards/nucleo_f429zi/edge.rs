@@ -9,7 +9,7 @@ use stm32f4xx_hal::gpio::{Debugger, PA15, PB3};
 use stm32f4xx_hal::pac::{TIM2, TIM4};
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 
-use crate::encoder::{Counter as _, Encoder};
+use super::encoder::{Counter as _, Encoder};
 
 /// Readings of counter and capture that may disagree before the stamp of this tick is given up.
 /// One takes some 150 ns: at the filter's limit of 10 MHz of edges none would agree.
@@ -19,10 +19,10 @@ const READINGS: u32 = 4;
 const FILTER: u32 = 8;
 
 /// The pins of channels 1 and 2; the debug port's after a reset.
-pub(crate) type Pins = (PA15<Debugger>, PB3<Debugger>);
+pub(super) type Pins = (PA15<Debugger>, PB3<Debugger>);
 
 /// What stamps the edges of the large encoder: [`Capture`], or nothing.
-pub(crate) trait Stamps: Sized {
+pub(super) trait Stamps: Sized {
     /// Takes timer and pins.
     fn new(timer: TIM2, pins: Pins, rcc: &mut Rcc) -> Self;
 
@@ -32,9 +32,9 @@ pub(crate) trait Stamps: Sized {
 
 /// The image's source of stamps.
 #[cfg(feature = "edge-capture")]
-pub(crate) type Source = Capture;
+pub(super) type Source = Capture;
 #[cfg(not(feature = "edge-capture"))]
-pub(crate) type Source = Skip;
+pub(super) type Source = Skip;
 
 /// A board without the wires: no code.
 impl Stamps for Skip {
@@ -48,7 +48,7 @@ impl Stamps for Skip {
 }
 
 /// TIM2 as a clock of `TIMER_HZ`, 32 bits wide, that both edges of A xor B capture.
-pub(crate) struct Capture {
+pub(super) struct Capture {
     timer: TIM2,
     /// The clock at the last reading.
     now: u32,

@@ -1,0 +1,143 @@
+//! Panics and exceptions: outputs off, then the cause stored for after the reset, then the log.
+
+use core::panic::PanicInfo;
+
+use cortex_m::peripheral::SCB;
+use cortex_m_rt::{ExceptionFrame, exception};
+use haptic_control::Stop;
+use stm32f4xx_hal::pac;
+
+use crate::{reset_cause, rtt};
+
+/// The enables of both amplifiers, pins of one port. A board states them with
+/// [`emergency_outputs!`](crate::emergency_outputs): as a constant in flash, because memory may be
+/// corrupt when they are needed.
+pub struct EmergencyOutputs {
+    /// Address of the port's BSRR.
+    bsrr: usize,
+    /// The word for BSRR that sets the pins low.
+    low: u32,
+}
+
+impl EmergencyOutputs {
+    /// The pins of these numbers on port `A` to `K`.
+    ///
+    /// # Panics
+    /// If there is no such port or pin: in a constant, the build stops.
+    #[must_use]
+    pub const fn new(port: char, enables: [u8; 2]) -> Self {
+        assert!(
+            matches!(port, 'A'..='K') && enables[0] < 16 && enables[1] < 16,
+            "ports are A to K, pins 0 to 15"
+        );
+        Self {
+            // The ports follow one another, 0x400 apart; BSRR is at 0x18 of each.
+            bsrr: 0x4002_0000 + 0x400 * (port as usize - 'A' as usize) + 0x18,
+            low: 1 << (16 + enables[0]) | 1 << (16 + enables[1]),
+        }
+    }
+}
+
+/// States the amplifiers' enables of the board, as `port: 'E', enables: [4, 5]`; once in an image.
+#[macro_export]
+macro_rules! emergency_outputs {
+    (port: $port:expr, enables: $enables:expr $(,)?) => {
+        // SAFETY: the name is the one that this crate declares, with its type.
+        #[unsafe(no_mangle)]
+        static EMERGENCY_OUTPUTS: $crate::EmergencyOutputs =
+            $crate::EmergencyOutputs::new($port, $enables);
+    };
+}
+
+// SAFETY: `emergency_outputs!` defines it with this type; without that the image does not link.
+unsafe extern "Rust" {
+    safe static EMERGENCY_OUTPUTS: EmergencyOutputs;
+}
+
+/// Both DAC channels at mid-scale, as DAC_DHR12RD takes them: no current.
+const MID_SCALE: u32 = 2048 << 16 | 2048;
+
+/// Disables both amplifiers and commands no current, from any context.
+pub fn outputs_safe() {
+    // SAFETY: two stores of constants to write-only registers, of which BSRR's address is that of a
+    // port by construction. They have no side effects but the outputs and need no lock, because both
+    // registers are written whole, and every caller interrupts for good whatever else writes there.
+    // Before their clocks run, they do nothing.
+    unsafe {
+        (EMERGENCY_OUTPUTS.bsrr as *mut u32).write_volatile(EMERGENCY_OUTPUTS.low);
+        (*pac::DAC::ptr()).dhr12rd().write(|w| w.bits(MID_SCALE));
+    }
+}
+
+/// Disables the outputs, stores the cause, logs `message` and waits for the watchdog, which runs since
+/// before the clocks. A message that does not fit into the log's buffer is repeated while a probe
+/// empties the buffer.
+fn stop(cause: Stop, message: impl Fn()) -> ! {
+    cortex_m::interrupt::disable();
+    outputs_safe();
+    reset_cause::store(cause);
+    rtt::take_over();
+    loop {
+        let lost = rtt::lost();
+        message();
+        if rtt::lost() == lost {
+            break;
+        }
+    }
+    #[allow(clippy::empty_loop, reason = "nothing is left to do")]
+    loop {}
+}
+
+#[panic_handler]
+fn panic(info: &PanicInfo) -> ! {
+    stop(Stop::Panic, || {
+        defmt::error!("{}", defmt::Display2Format(info));
+    })
+}
+
+// SAFETY: the signature is that of the vector; nothing of the program is touched but the outputs.
+#[exception]
+unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
+    stop(Stop::HardFault, || {
+        // SAFETY: reads without side effects.
+        let (cfsr, hfsr, mmfar, bfar) = unsafe {
+            let scb = &*SCB::PTR;
+            (
+                scb.cfsr.read(),
+                scb.hfsr.read(),
+                scb.mmfar.read(),
+                scb.bfar.read(),
+            )
+        };
+        defmt::error!(
+            "hard fault at {=u32:#x} lr={=u32:#x} cfsr={=u32:#x} hfsr={=u32:#x} mmfar={=u32:#x} bfar={=u32:#x}",
+            frame.pc(),
+            frame.lr(),
+            cfsr,
+            hfsr,
+            mmfar,
+            bfar
+        );
+    })
+}
+
+// SAFETY: as above. The only source is the clock security system: the crystal stopped, and the
+// core runs on the internal oscillator.
+#[exception]
+unsafe fn NonMaskableInt() {
+    outputs_safe();
+    // SAFETY: sets the one bit that acknowledges; nobody else writes RCC_CIR.
+    unsafe {
+        (*pac::RCC::ptr()).cir().modify(|_, w| w.cssc().clear());
+    }
+    stop(Stop::ClockFailure, || defmt::error!("clock failure"))
+}
+
+// SAFETY: as above. Nothing enables another interrupt or exception, so whatever comes here is an
+// error of the chip or of the program.
+#[exception]
+unsafe fn DefaultHandler(interrupt: i16) {
+    stop(Stop::Exception, || {
+        defmt::error!("exception {=i16}", interrupt);
+    })
+}

@@ -1,0 +1,59 @@
+//! What the tasks need of a board, and the board of this image.
+//!
+//! A board is one folder beside `nucleo_f429zi`. It binds the two tasks to its interrupts and
+//! implements [`Board`]; pins, timers, clocks, encoders and amplifiers are named nowhere else. To
+//! add one: the folder, a feature in Cargo.toml that selects it and its chip, a line below, and its
+//! memory map in build.rs.
+
+use estimator_core::{Amps, Count, Sample};
+use haptic_control::{Currents, Stop};
+
+#[cfg(feature = "nucleo-f429zi")]
+mod nucleo_f429zi;
+
+#[cfg(not(feature = "nucleo-f429zi"))]
+compile_error!("an image needs a board: --features nucleo-f429zi");
+
+/// Inputs, outputs and tick of the control task. Each call is bounded and takes no lock.
+pub(crate) trait Board {
+    /// Acknowledges the tick's interrupt. Returns the number of ticks missed since the last one;
+    /// a tick that the last task overran counts as missed.
+    fn begin_tick(&mut self) -> u32;
+
+    /// Reads the encoders. `current` is the large motor's current over the period just ended.
+    fn sample(&mut self, current: Amps) -> Sample;
+
+    /// Reads the reference encoder, if the image has one.
+    fn reference(&mut self) -> Option<Count>;
+
+    /// Whether an amplifier reports a fault.
+    fn amplifier_fault(&mut self) -> bool;
+
+    /// Whether the core does not run on its crystal.
+    fn clock_failure(&self) -> bool;
+
+    /// Commands both currents and enables the amplifiers; `None` disables them.
+    fn apply(&mut self, currents: Option<Currents>);
+
+    /// Returns the core cycles of the longest control task since the last call, counted from the
+    /// instant at which the task was due.
+    fn take_longest(&mut self) -> u32;
+
+    /// Ends the control task.
+    fn end_tick(&mut self);
+}
+
+/// The watchdog of a board.
+pub(crate) trait Watchdog {
+    /// Restarts the watchdog's time.
+    fn feed(&mut self);
+}
+
+/// What a board knows when its tick runs.
+pub(crate) struct Start<W> {
+    pub(crate) watchdog: W,
+    /// Cause of the last reset.
+    pub(crate) reset: Stop,
+    /// Whether a falling supply resets the chip and is named as the cause.
+    pub(crate) brown_out_reset: bool,
+}

@@ -1,0 +1,57 @@
+//! NUCLEO-F429ZI: the tasks on their interrupts. The only folder that names a pin or a timer.
+
+#[allow(dead_code, reason = "an image without the wires captures nothing")]
+mod edge;
+mod encoder;
+mod parts;
+mod reset;
+mod tick;
+
+firmware_rt::emergency_outputs! {
+    port: parts::ENABLE_PORT,
+    enables: [parts::LARGE_ENABLE, parts::SMALL_ENABLE],
+}
+
+#[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
+mod app {
+    use stm32f4xx_hal::watchdog::IndependentWatchdog;
+
+    use super::parts::{Parts, start};
+    use crate::tasks::{ControlTask, IdleTask, Queues, tasks};
+
+    #[shared]
+    struct Shared {}
+
+    #[local]
+    struct Local {
+        parts: Parts,
+        control: ControlTask,
+
+        idle: IdleTask<IndependentWatchdog>,
+    }
+
+    #[init(local = [queues: Queues = Queues::new()])]
+    fn init(cx: init::Context) -> (Shared, Local, init::Monotonics) {
+        let (mut parts, start) = start(cx.device);
+        let (control, idle) = tasks(&mut parts, start, cx.local.queues);
+        let local = Local {
+            parts,
+            control,
+            idle,
+        };
+        (Shared {}, local, init::Monotonics())
+    }
+
+    #[task(binds = TIM5, priority = 15, local = [parts, control])]
+    fn control(cx: control::Context) {
+        cx.local.control.run(cx.local.parts);
+    }
+
+    #[idle(local = [idle])]
+    fn idle(cx: idle::Context) -> ! {
+        loop {
+            cx.local.idle.run();
+            cortex_m::asm::wfi();
+        }
+    }
+}
