@@ -2,7 +2,7 @@
 //!
 //! The equation of motion times a smooth test function, integrated by parts over each of many
 //! windows, is linear in `Kt/J`, `b/J` and `friction/J` and needs counts only, never a derivative
-//! of them; `docs/theory.md` has the whole of it.
+//! of them; `docs/theory/identification.md` has the derivation.
 
 mod device_file;
 mod equations;

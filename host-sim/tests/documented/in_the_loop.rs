@@ -11,7 +11,7 @@ use simulation::device::Device;
 use crate::{BENCHMARKS, is_written_for, table};
 
 const TELEMETRY: &str = include_str!("../../../docs/telemetry.md");
-const THEORY: &str = include_str!("../../../docs/theory.md");
+const Z_WIDTH: &str = include_str!("../../../docs/theory/z-width.md");
 
 /// A value of a run.
 type Value = fn(&Row) -> f64;
@@ -99,7 +99,7 @@ fn z_width_of_two_estimators() {
         seed: 1,
     };
     let found = zwidth::boundaries(&cases, &settings, || ()).unwrap();
-    let rows = table(THEORY, "| estimator | 1 kHz | | | | 11.6 kHz |");
+    let rows = table(Z_WIDTH, "| estimator | 1 kHz | | | | 11.6 kHz |");
     for (name, boundary) in names.iter().zip(&found) {
         let row = rows.iter().find(|row| row[0] == *name).unwrap();
         let (damping, best) = boundary.stiffest().unwrap();

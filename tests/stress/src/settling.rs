@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn the_radius_is_that_of_the_slowest_pole() {
-        // The tracking loop of theory.md 4.2: both poles at p.
+        // The tracking loop of docs/theory/pll.md: both poles at p.
         let p = 0.7f64;
         let k = [(1.0 - p * p) as f32, ((1.0 - p) * (1.0 - p)) as f32];
         let found = radius(&[[1.0, 1.0], [0.0, 1.0]], &k);

@@ -139,10 +139,10 @@ fn table(rows: &[Row]) -> String {
     table
 }
 
-/// What docs/theory.md says of windows of n intervals, `a + b n`, holds at either level and is not
-/// much more than the larger.
+/// The bound `a + b n` that docs/theory/foaw.md states for windows of n intervals holds at either
+/// level and is at most 10 instructions above the larger one.
 fn as_told_of_windows(rows: &[Row]) {
-    let theory = docs().with_file_name("theory.md");
+    let theory = docs().with_file_name("theory/foaw.md");
     let theory = std::fs::read_to_string(theory).unwrap();
     for (name, n, [a, b]) in [
         ("foaw-end-fit, n = 15", 15, [76, 19]),

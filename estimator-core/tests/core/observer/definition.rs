@@ -1,5 +1,5 @@
-//! The observers by their definition (docs/theory.md, sections 4.9 and 4.10), in f64: dense
-//! covariances, gains by the plain recursion, no code of the core.
+//! The observers by their definition (docs/theory/observer.md, docs/theory/adaptive-observer.md), in
+//! f64: dense covariances, gains by the plain recursion, no code of the core.
 
 mod correction;
 mod learner;
