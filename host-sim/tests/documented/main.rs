@@ -117,7 +117,7 @@ fn wrong_beliefs() {
         random_counts: 0.02,
     };
     let tables = [on(Disc::default()), on(errors)];
-    for row in table(BENCHMARKS, "| worst belief |") {
+    for row in table(BENCHMARKS, "| worst constants |") {
         let printed = tables.iter().flat_map(|text| {
             let is = |line: &&str| line.split_whitespace().next() == Some(row[0]);
             let line = text.lines().find(is).expect(row[0]);
@@ -126,7 +126,7 @@ fn wrong_beliefs() {
                 .skip(1)
                 .map(|cell| cell.parse().unwrap())
                 .collect();
-            // Right, over all scenarios; the worst belief, before the two shares outside.
+            // Right constants, over all scenarios; the worst ones, before the two shares outside.
             [cells[0], cells[cells.len() - 3]]
         });
         for (cell, value) in row[1..].iter().zip(printed) {
