@@ -1,15 +1,15 @@
 //! Identification against the truth of simulated devices. Tuned on seeds from 1000 on, scored here
 //! on others.
 
+use catalogue::estimators::Kind;
+use catalogue::parameters::Parameters;
+use experiments::closed_loop::{Eye, Hand, Loop, SceneName, believed, estimator};
+use experiments::identify::{Identification, Known, identify};
 use haptic_control::LoopPoles;
-use host_sim::closed_loop::{Eye, Hand, Loop, SceneName, believed, estimator};
-use host_sim::device::Device;
-use host_sim::estimators::Kind;
-use host_sim::identify::{Identification, Known, identify};
-use host_sim::parameters::Parameters;
-use host_sim::recording::Recording;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
+use recordings::recording::Recording;
+use simulation::device::Device;
 
 /// A device whose constants are up to 30 % (friction, amplifier 50 %) off, on a real disc.
 fn device(seed: u64) -> Device {
@@ -99,8 +99,7 @@ impl Tally {
         }
     }
 
-    /// For docs/theory/identification.md:
-    /// `cargo test --release -p experiments --test identify -- --nocapture`.
+    /// For docs/theory/identification.md: `cargo test --release -p experiments --test identify -- --nocapture`.
     fn print(&self, what: &str) {
         println!(
             "{what}: {} values, the worst {:.2} % off, {} inside their intervals",
