@@ -1,5 +1,7 @@
 //! One estimator under measurement.
 
+use core::fmt;
+
 use estimator_core::{CountsPerTick, Sample, VelocityEstimator};
 
 /// As much of an estimator as is measured: peers' states need be nothing but theirs.
@@ -29,13 +31,16 @@ impl<E: VelocityEstimator<Output = CountsPerTick>> Measured for E {
 }
 
 /// An estimator with its parameters fixed at compile time, as firmware has them.
+#[derive(Clone, Copy)]
 pub struct Subject {
-    /// What the table calls it.
+    /// Its name without the length of its window.
     pub name: &'static str,
-    /// Module of its `update`, by which its symbol is found.
-    pub module: &'static str,
+    /// Path of its `update` below the module `estimators`, by which its symbol is found.
+    pub path: &'static [&'static str],
     /// Control rate that its parameters are for, Hz; 0 for every rate.
     pub rate_hz: u32,
+    /// Length of its window, intervals; 0 without.
+    pub window: usize,
     /// Bytes of its state.
     pub state: usize,
     /// Bytes of its parameters.
@@ -44,58 +49,57 @@ pub struct Subject {
     pub run: Run,
 }
 
+/// What the table calls it.
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)?;
+        match self.window {
+            0 => Ok(()),
+            n => write!(f, ", n = {n}"),
+        }
+    }
+}
+
 impl Subject {
     /// Whether it is somebody else's.
     #[must_use]
     pub fn is_peer(&self) -> bool {
-        self.module.starts_with("peer_")
+        self.path[0].starts_with("peer_")
     }
 }
 
 /// Starts with the first sample and gives the velocity, counts a tick, at every one after it.
 pub type Run = fn(samples: &mut dyn Iterator<Item = Sample>, velocity: &mut dyn FnMut(f32));
 
-/// Writes the subjects down: `module, "name", rate: Type = value;`.
-macro_rules! subjects {
-    ($($module:ident, $name:literal, $rate:ident: $type:ty = $value:expr;)*) => {
-        $(
-            mod $module {
-                use super::*;
+/// The `SUBJECT` of a module that has the constant `ESTIMATOR`: name, path, rate in Hz, window, type.
+macro_rules! subject {
+    ($name:literal, $path:expr, $hertz:expr, $window:expr, $type:ty) => {
+        type State = <$type as Measured>::State;
 
-                const ESTIMATOR: $type = $value;
-                type State = <$type as Measured>::State;
+        #[inline(never)]
+        fn update(state: &mut State, sample: &Sample) -> f32 {
+            Measured::update(&ESTIMATOR, state, sample)
+        }
 
-                #[inline(never)]
-                fn update(state: &mut State, sample: &Sample) -> f32 {
-                    Measured::update(&ESTIMATOR, state, sample)
-                }
-
-                fn run(
-                    samples: &mut dyn Iterator<Item = Sample>,
-                    velocity: &mut dyn FnMut(f32),
-                ) {
-                    // Called through a pointer: the call's interface stays as it is written.
-                    let update = core::hint::black_box(update as fn(&mut State, &Sample) -> f32);
-                    let Some(first) = samples.next() else { return };
-                    let mut state = Measured::start(&ESTIMATOR, &first);
-                    for sample in samples {
-                        velocity(update(&mut state, &sample));
-                    }
-                }
-
-                pub(super) const SUBJECT: Subject = Subject {
-                    name: $name,
-                    module: stringify!($module),
-                    rate_hz: $rate.0 as u32,
-                    state: size_of::<State>(),
-                    parameters: size_of::<$type>(),
-                    run,
-                };
+        fn run(samples: &mut dyn Iterator<Item = Sample>, velocity: &mut dyn FnMut(f32)) {
+            // Called through a pointer: the call's interface stays as it is written.
+            let update = core::hint::black_box(update as fn(&mut State, &Sample) -> f32);
+            let Some(first) = samples.next() else { return };
+            let mut state = Measured::start(&ESTIMATOR, &first);
+            for sample in samples {
+                velocity(update(&mut state, &sample));
             }
-        )*
+        }
 
-        /// Everything that is measured.
-        pub static SUBJECTS: &[Subject] = &[$($module::SUBJECT),*];
+        pub(crate) const SUBJECT: Subject = Subject {
+            name: $name,
+            path: $path,
+            rate_hz: $hertz as u32,
+            window: $window,
+            state: size_of::<State>(),
+            parameters: size_of::<$type>(),
+            run,
+        };
     };
 }
-pub(crate) use subjects;
+pub(crate) use subject;

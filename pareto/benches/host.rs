@@ -33,15 +33,15 @@ fn track(rate_hz: u32) -> &'static [Sample] {
 }
 
 /// Subjects at 10 kHz, and of every rate.
-fn subjects() -> impl Iterator<Item = &'static str> {
+fn subjects() -> impl Iterator<Item = String> {
     let fast = SUBJECTS.iter().filter(|subject| subject.rate_hz != 1000);
-    fast.map(|subject| subject.module)
+    fast.map(Subject::to_string)
 }
 
 /// One update of each estimator and peer, through the calls of the bench image.
 #[divan::bench(args = subjects())]
-fn update(bencher: Bencher<'_, '_>, module: &str) {
-    let find = |subject: &&Subject| subject.module == module;
+fn update(bencher: Bencher<'_, '_>, name: &str) {
+    let find = |subject: &&Subject| subject.rate_hz != 1000 && subject.to_string() == name;
     let subject = SUBJECTS.iter().find(find).expect("a subject");
     let samples = track(10_000);
     bencher

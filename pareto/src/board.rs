@@ -13,7 +13,7 @@ use rigless::time::VirtualNanos;
 use virtual_board::board::{CORE_HZ, ControllerBoard};
 use virtual_board::{cycles, thumb};
 
-use crate::image::Image;
+use crate::image::{Image, subject_path};
 
 /// A trace for a subject.
 #[derive(Clone, Debug)]
@@ -47,7 +47,7 @@ struct Places {
 
 impl Places {
     fn of(image: &Image, subject: &Subject) -> Result<Self, String> {
-        let runner = image.function(&["bench_image", "estimators", subject.module, "run"])?;
+        let runner = image.function(&subject_path(subject, "run"))?;
         let entry = image.update(subject)?;
         Ok(Self {
             entry,

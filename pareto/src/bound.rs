@@ -12,15 +12,6 @@ use bench_image::Subject;
 use crate::flow::{self, Flow, Instruction};
 use crate::image::Image;
 
-/// How many turns all loops of an update can take together.
-///
-/// Only windows have loops, and every turn takes one of the n samples that a window can hold. The
-/// others are straight code.
-fn turns(subject: &Subject) -> usize {
-    let n = subject.name.split_once("n = ");
-    n.and_then(|(_, n)| n.parse().ok()).unwrap_or(0)
-}
-
 /// The most instructions of an update, from its first to its return.
 ///
 /// # Errors
@@ -28,7 +19,9 @@ fn turns(subject: &Subject) -> usize {
 /// without a known bound.
 pub fn of(image: &Image, subject: &Subject) -> Result<u32, String> {
     let update = image.update(subject)?;
-    let turns = turns(subject);
+    // Only windows have loops, and each turn takes one of the samples that a window can hold. The
+    // other estimators are straight code.
+    let turns = subject.window;
     let mut paths = Paths {
         image,
         turns,
@@ -36,8 +29,8 @@ pub fn of(image: &Image, subject: &Subject) -> Result<u32, String> {
         open: Vec::new(),
     };
     let costs = paths.of(update);
-    let costs = costs.map_err(|error| format!("{}: {error}", subject.name))?;
-    costs[turns].ok_or_else(|| format!("{}: never returns", subject.name))
+    let costs = costs.map_err(|error| format!("{subject}: {error}"))?;
+    costs[turns].ok_or_else(|| format!("{subject}: never returns"))
 }
 
 /// By turns that may be taken: instructions of the longest path to a return, if there is one.

@@ -110,14 +110,10 @@ impl Image {
     /// Address of a subject's `update`. Where parameters are part of a state, those of two rates
     /// are the same code, and the compiler keeps one.
     pub(crate) fn update(&self, subject: &Subject) -> Result<u64, String> {
-        let of = |module| self.function(&["bench_image", "estimators", module, "update"]);
-        let twins = SUBJECTS.iter().filter(|other| other.name == subject.name);
-        of(subject.module).or_else(|missing| {
-            twins
-                .filter_map(|twin| of(twin.module).ok())
-                .next()
-                .ok_or(missing)
-        })
+        let of = |subject: &Subject| self.function(&subject_path(subject, "update"));
+        let same = |other: &&Subject| (other.name, other.window) == (subject.name, subject.window);
+        let twins = SUBJECTS.iter().filter(same);
+        of(subject).or_else(|missing| twins.filter_map(|twin| of(twin).ok()).next().ok_or(missing))
     }
 
     /// Address of the function of this path inside the bench crate.
@@ -135,6 +131,15 @@ impl Image {
         let mut named = self.names.iter().filter(|(_, at)| **at == address);
         named.next().map_or("code without a name", |(name, _)| name)
     }
+}
+
+/// Path of a function of a subject's module inside the bench crate.
+pub(crate) fn subject_path(subject: &Subject, function: &'static str) -> Vec<&'static str> {
+    let modules = ["bench_image", "estimators"].into_iter();
+    modules
+        .chain(subject.path.iter().copied())
+        .chain([function])
+        .collect()
 }
 
 fn find(names: &BTreeMap<String, u64>, path: &[&str]) -> Result<u64, String> {

@@ -82,11 +82,11 @@ pub fn measure() -> Result<Vec<Row>, String> {
     let mut rows: Vec<Row> = Vec::new();
     for (level, (image, (counted, followed))) in images.iter().zip(runs?).enumerate() {
         for (index, subject) in SUBJECTS.iter().enumerate() {
-            let row = match rows.iter().position(|row| row.name == subject.name) {
+            let row = match rows.iter().position(|row| row.name == subject.to_string()) {
                 Some(row) => row,
                 None => {
                     rows.push(Row {
-                        name: subject.name.to_owned(),
+                        name: subject.to_string(),
                         peer: subject.is_peer(),
                         state: subject.state,
                         ..Row::default()
@@ -168,8 +168,8 @@ fn run<'a>(
         if !same || ran.instructions.len() != job.samples.len() - 1 {
             let level = image.level.name();
             return Err(format!(
-                "{} at opt-level {level}: the board and the host differ",
-                subject.module
+                "{subject} at {} Hz and opt-level {level}: the board and the host differ",
+                subject.rate_hz
             ));
         }
     }

@@ -2,10 +2,14 @@
 
 mod build;
 mod erased;
-mod observers;
 mod run;
 
-use estimator_core::{CoupledMotor, Device, Hertz, Signals};
+use std::ops::Deref;
+
+use estimator_catalogue::{ROWS, Row};
+use estimator_core::{CoupledMotor, Device, Hertz};
+
+pub use estimator_catalogue::{Parameter, Search};
 
 pub use erased::{Estimator, State};
 pub use run::{available, sample};
@@ -14,48 +18,21 @@ use crate::parameters::{Parameters, PlantKind};
 use terminal::failure::Failure;
 use terminal::wording::{decimal, unknown};
 
-/// One parameter of an estimator.
-#[derive(Clone, Copy, Debug)]
-pub struct Parameter {
-    /// Its name after the dot of `NAME.PARAM`.
-    pub name: &'static str,
-    /// Its unit.
-    pub unit: &'static str,
-    /// What it does.
-    pub meaning: &'static str,
-    /// Its smallest value.
-    pub lowest: f64,
-    /// Its largest value.
-    pub highest: f64,
-    /// Whether only whole numbers make sense.
-    pub whole: bool,
-    /// How `tune` looks for it.
-    pub search: Search,
-}
-
-/// How `tune` looks for a parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Search {
-    /// Evenly on a logarithmic scale between these bounds.
-    Log(f64, f64),
-    /// Every whole number between these bounds.
-    Each(u32, u32),
-    /// Not at all: it keeps this value.
-    Fixed(f64),
-}
-
-/// One kind of estimator.
+/// An estimator that can be built: its row of the catalogue, with its builder.
+///
+/// The facts of the row are fields of the kind: `kind.name`, `kind.parameters`.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
-    /// Its name on the command line.
-    pub name: &'static str,
-    /// What it is, in a line.
-    pub summary: &'static str,
-    /// Which columns it reads besides the large counts.
-    pub needs: Signals,
-    /// Its parameters.
-    pub parameters: &'static [Parameter],
+    row: &'static Row,
     build: build::Build,
+}
+
+impl Deref for Kind {
+    type Target = Row;
+
+    fn deref(&self) -> &Row {
+        self.row
+    }
 }
 
 /// What every estimator is built for.
@@ -127,15 +104,16 @@ impl Kind {
     /// All kinds, in the order in which they are shown.
     #[must_use]
     pub fn all() -> &'static [Self] {
-        const COUNT: usize = build::KINDS.len() + observers::KINDS.len();
-        static ALL: [Kind; COUNT] = {
-            let mut all = [build::KINDS[0]; COUNT];
+        static ALL: [Kind; ROWS.len()] = {
+            let mut all = [Kind {
+                row: &ROWS[0],
+                build: build::BUILDERS[0],
+            }; ROWS.len()];
             let mut i = 0;
-            while i < COUNT {
-                all[i] = if i < build::KINDS.len() {
-                    build::KINDS[i]
-                } else {
-                    observers::KINDS[i - build::KINDS.len()]
+            while i < all.len() {
+                all[i] = Kind {
+                    row: &ROWS[i],
+                    build: build::BUILDERS[i],
                 };
                 i += 1;
             }
@@ -210,7 +188,7 @@ impl Kind {
     /// [`Failure::Input`] that names the parameter or the reason of a refused design.
     pub fn build(&self, setup: &Setup, values: &Values) -> Result<Estimator, Failure> {
         for (parameter, &value) in self.parameters.iter().zip(values) {
-            parameter.check(self.name, value)?;
+            check(parameter, self.name, value)?;
         }
         (self.build)(setup, values).map_err(|error| {
             Failure::Input(format!("{} at {} Hz: {error}", self.name, setup.rate.0))
@@ -218,35 +196,27 @@ impl Kind {
     }
 }
 
-impl Parameter {
-    /// Whether it is a torque or a density of one.
-    #[must_use]
-    pub fn is_torque(&self) -> bool {
-        self.unit.starts_with("N.m")
+/// Whether `value` is in the range of a parameter of the estimator `kind`.
+///
+/// # Errors
+/// [`Failure::Input`] that names the parameter and its range.
+pub fn check(parameter: &Parameter, kind: &str, value: f64) -> Result<(), Failure> {
+    let whole = !parameter.whole || value.fract() == 0.0;
+    if (parameter.lowest..=parameter.highest).contains(&value) && whole {
+        return Ok(());
     }
-
-    /// Whether `value` is in the parameter's range.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] that names the parameter and its range.
-    pub fn check(&self, kind: &str, value: f64) -> Result<(), Failure> {
-        let whole = !self.whole || value.fract() == 0.0;
-        if (self.lowest..=self.highest).contains(&value) && whole {
-            return Ok(());
-        }
-        let number = if self.whole {
-            "a whole number"
-        } else {
-            "a number"
-        };
-        Err(Failure::Input(format!(
-            "{kind}.{} = {}: must be {number} from {} to {}{}{}",
-            self.name,
-            decimal(value),
-            decimal(self.lowest),
-            decimal(self.highest),
-            if self.unit.is_empty() { "" } else { " " },
-            self.unit,
-        )))
-    }
+    let number = if parameter.whole {
+        "a whole number"
+    } else {
+        "a number"
+    };
+    Err(Failure::Input(format!(
+        "{kind}.{} = {}: must be {number} from {} to {}{}{}",
+        parameter.name,
+        decimal(value),
+        decimal(parameter.lowest),
+        decimal(parameter.highest),
+        if parameter.unit.is_empty() { "" } else { " " },
+        parameter.unit,
+    )))
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::estimators::{Kind, Search, Setup, Values};
+use crate::estimators::{Kind, Search, Setup, Values, check};
 use terminal::failure::Failure;
 
 /// Whether the plant has Coulomb friction.
@@ -116,8 +116,7 @@ impl Presets {
                     let index = kind
                         .parameter(parameter)
                         .map_err(|e| wrong(e.to_string()))?;
-                    kind.parameters[index]
-                        .check(estimator, value)
+                    check(&kind.parameters[index], estimator, value)
                         .map_err(|e| wrong(e.to_string()))?;
                 }
             }
@@ -191,7 +190,7 @@ impl Parameters {
         let kind = Kind::named(kind.trim())?;
         let index = kind.parameter(parameter.trim())?;
         let value = value.trim().parse().map_err(|_| form())?;
-        kind.parameters[index].check(kind.name, value)?;
+        check(&kind.parameters[index], kind.name, value)?;
         self.overrides.push(Override {
             kind: kind.name,
             index,
@@ -205,7 +204,7 @@ impl Parameters {
     /// A tuned frequency above half the rate is lowered to it; a value set by name is not.
     #[must_use]
     pub fn values(&self, kind: &Kind, setup: &Setup, plant: PlantKind) -> Values {
-        let mut values: Values = kind.parameters.iter().map(|p| p.search.middle()).collect();
+        let mut values: Values = kind.parameters.iter().map(|p| middle(p.search)).collect();
         for layer in &self.layers {
             let Some(tuned) = layer.nearest(kind, setup.rate.0, plant) else {
                 continue;
@@ -232,14 +231,13 @@ impl Parameters {
     }
 }
 
-impl Search {
-    /// Where a search would begin, for a parameter that no preset knows.
-    fn middle(self) -> f64 {
-        match self {
-            Self::Log(low, high) => (low * high).sqrt(),
-            Self::Each(low, high) => f64::from(low + (high - low) / 4),
-            Self::Fixed(value) => value,
-        }
+/// The value from which a search starts, for a parameter that no preset gives.
+#[must_use]
+pub fn middle(search: Search) -> f64 {
+    match search {
+        Search::Log(low, high) => (low * high).sqrt(),
+        Search::Each(low, high) => f64::from(low + (high - low) / 4),
+        Search::Fixed(value) => value,
     }
 }
 

@@ -11,7 +11,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontTransform, IntoFont, RGBColor, TextStyle, WHITE};
 
 use super::palette::{BAND, INK};
-use super::style::Style;
+use super::style::{Strokes as _, Style};
 use super::text::escape;
 
 /// Width of every figure, px.

@@ -1,9 +1,11 @@
 //! One colour and dash for each estimator, the same in every figure.
 
+use estimator_catalogue::{Colour, Dash, ROWS};
+use experiments::felt::REFERENCE;
 use plotters::style::RGBColor;
 
 use super::ReportInput;
-use super::style::{Dash, Style};
+use super::style::Style;
 
 /// The truth, and the interval around it.
 pub(super) const TRUTH: RGBColor = RGBColor(0x11, 0x11, 0x11);
@@ -13,47 +15,17 @@ pub(super) const INK: RGBColor = RGBColor(0x33, 0x33, 0x33);
 pub(super) const MUTED: RGBColor = RGBColor(0x77, 0x77, 0x77);
 pub(super) const GRID: RGBColor = RGBColor(0xe6, 0xe6, 0xe6);
 
-// Colours of Okabe and Ito, of Tol, and darker ones. With a dash each name differs from every other
-// for normal, protanopic and deuteranopic vision.
-const GREY: RGBColor = RGBColor(0x8c, 0x8c, 0x8c);
-const ORANGE: RGBColor = RGBColor(0xe6, 0x9f, 0x00);
-const SKY: RGBColor = RGBColor(0x56, 0xb4, 0xe9);
-const BLUE: RGBColor = RGBColor(0x00, 0x72, 0xb2);
-const GREEN: RGBColor = RGBColor(0x00, 0x9e, 0x73);
-const VERMILION: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
-const PINK: RGBColor = RGBColor(0xcc, 0x79, 0xa7);
-const OLIVE: RGBColor = RGBColor(0x99, 0x99, 0x33);
-const PURPLE: RGBColor = RGBColor(0x5d, 0x3a, 0x9b);
-const NAVY: RGBColor = RGBColor(0x1a, 0x1a, 0x6e);
-const CRIMSON: RGBColor = RGBColor(0xc0, 0x00, 0x3a);
-const PINE: RGBColor = RGBColor(0x00, 0x4d, 0x40);
-const BROWN: RGBColor = RGBColor(0x7a, 0x52, 0x30);
+/// Style of the reference encoder in an estimator's place.
+const OF_REFERENCE: (Colour, Dash) = (Colour::BROWN, Dash::Solid);
 
-/// One style for every estimator, and for the reference encoder in its place. Relatives share a
-/// colour.
-const STYLES: [(&str, RGBColor, Dash); 21] = [
-    ("finite-difference", GREY, Dash::Solid),
-    ("low-pass", ORANGE, Dash::Solid),
-    ("foaw-end-fit", SKY, Dash::Solid),
-    ("foaw-best-fit", BLUE, Dash::Solid),
-    ("kalman-triple", GREEN, Dash::Dotted),
-    ("kalman-triple-table", GREEN, Dash::Dashed),
-    ("kalman-triple-steady", GREEN, Dash::Mixed),
-    ("kalman-motor", VERMILION, Dash::Solid),
-    ("kalman-motor-steady", VERMILION, Dash::Dotted),
-    ("pll", PINK, Dash::Dotted),
-    ("m-over-t", OLIVE, Dash::Mixed),
-    ("observer", PURPLE, Dash::Solid),
-    ("observer-edge", NAVY, Dash::Solid),
-    ("adaptive", CRIMSON, Dash::Dashed),
-    ("adaptive-edge", PINE, Dash::Mixed),
-    ("observer-soft", PURPLE, Dash::Dashed),
-    ("adaptive-soft", CRIMSON, Dash::Dotted),
-    ("observer-held", PURPLE, Dash::Mixed),
-    ("observer-edge-held", NAVY, Dash::Mixed),
-    ("observer-edge-blind", NAVY, Dash::Dashed),
-    ("reference", BROWN, Dash::Solid),
-];
+/// Style of an estimator, from its row of the catalogue; `None` for a name that is no estimator's.
+fn known(name: &str) -> Option<Style> {
+    let row = ROWS.iter().find(|row| row.name == name);
+    let of_row = row.map(|row| (row.colour, row.dash));
+    let (Colour(r, g, b), dash) = of_row.or((name == REFERENCE).then_some(OF_REFERENCE))?;
+    let colour = RGBColor(r, g, b);
+    Some(Style { colour, dash })
+}
 
 /// Names in order of appearance.
 pub(super) struct Palette {
@@ -96,10 +68,7 @@ impl Palette {
 
     /// Style of an estimator; ink for a name that is no estimator's.
     pub(super) fn style(&self, estimator: &str) -> Style {
-        STYLES
-            .iter()
-            .find(|(name, ..)| *name == estimator)
-            .map_or(INK.into(), |&(_, colour, dash)| Style { colour, dash })
+        known(estimator).unwrap_or_else(|| INK.into())
     }
 
     /// Every estimator of the open-loop comparison, in order of first appearance.
@@ -112,7 +81,6 @@ impl Palette {
 mod tests {
     use super::*;
     use catalogue::estimators::Kind;
-    use experiments::felt::REFERENCE;
 
     /// Least distance of two colours with the same dash, in OKLab, where 0.02 can just be seen side
     /// by side.
@@ -195,7 +163,7 @@ mod tests {
         let palette = Palette::of(names.iter().copied());
         for (i, a) in names.iter().enumerate() {
             let style = palette.style(a);
-            assert!(STYLES.iter().any(|(name, ..)| name == a), "{a}");
+            assert!(known(a).is_some(), "{a}");
             for b in &names[..i] {
                 let other = palette.style(b);
                 let apart = distance(style.colour, other.colour);

@@ -1,15 +1,7 @@
 //! How a line, a bar or a mark of a figure is drawn: a colour and a dash.
 
+pub(super) use estimator_catalogue::Dash;
 use plotters::style::RGBColor;
-
-/// The pattern of a line, or of the stripes across a bar.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Dash {
-    Solid,
-    Dashed,
-    Dotted,
-    Mixed,
-}
 
 /// A colour and a dash.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,9 +19,20 @@ impl From<RGBColor> for Style {
     }
 }
 
-impl Dash {
+/// The strokes of a dashed line, or of the stripes across a bar.
+pub(super) trait Strokes {
     /// Lengths drawn and left out in turn, px; empty for a solid line.
-    pub(super) fn pattern(self) -> &'static [f64] {
+    fn pattern(self) -> &'static [f64];
+
+    /// The drawn pieces of a polyline.
+    fn pieces(self, points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>>;
+
+    /// The filled parts of a bar from `low` to `high`.
+    fn spans(self, low: f64, high: f64) -> Vec<[f64; 2]>;
+}
+
+impl Strokes for Dash {
+    fn pattern(self) -> &'static [f64] {
         match self {
             Self::Solid => &[],
             Self::Dashed => &[7.0, 3.0],
@@ -38,8 +41,7 @@ impl Dash {
         }
     }
 
-    /// The drawn pieces of a polyline.
-    pub(super) fn pieces(self, points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
+    fn pieces(self, points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
         let pattern = self.pattern();
         let (Some(&first), Some(&start)) = (pattern.first(), points.first()) else {
             return vec![points.to_vec()];
@@ -73,8 +75,7 @@ impl Dash {
         pieces
     }
 
-    /// Where a bar from `low` to `high` is filled.
-    pub(super) fn spans(self, low: f64, high: f64) -> Vec<[f64; 2]> {
+    fn spans(self, low: f64, high: f64) -> Vec<[f64; 2]> {
         let pieces = self.pieces(&[(low, 0.0), (high, 0.0)]);
         let ends = |piece: &Vec<(f64, f64)>| Some([piece.first()?.0, piece.last()?.0]);
         pieces.iter().filter_map(ends).collect()

@@ -1,15 +1,13 @@
 //! One plain function per estimator and duty, built for the board and read by the test `codegen`.
 //!
-//! Names matter: `start_*` and `update_*` must be clean, `planted_*` must be found out.
+//! Names matter: `start` and `update` must be clean, `planted_*` must be found out.
 #![no_std]
 
 use estimator_core::{
-    AdaptiveEdgeObserver, AdaptiveObserver, AdaptiveSoftObserver, AmplifierCurrent, BestFit, Cells,
-    CountObserver, CountsPerTick, CoupledMotor, Device, EdgeObserver, Edges, EndFit,
-    FiniteDifference, Fixed, Foaw, Handover, HeldHandle, Hertz, Kalman, KalmanMotor, KalmanTriple,
-    LateCurrent, Learned, LowPass, MOverT, Model, NoCurrent, Observer, Pll, Sample, Skip,
-    SoftObserver, SteadyKalman, SteadyKalmanMotor, SteadyKalmanTriple, TableKalman,
-    TableKalmanMotor, TableKalmanTriple, Uncertainty, VelocityEstimator, preset,
+    AmplifierCurrent, BestFit, CountObserver, CountsPerTick, CoupledMotor, Device, Edges, EndFit,
+    Foaw, Handover, HeldHandle, Hertz, KalmanTriple, LateCurrent, Learned, LowPass, MOverT, Model,
+    Observer, Sample, Skip, SteadyKalman, SteadyKalmanMotor, TableKalman, TableKalmanMotor,
+    Uncertainty, VelocityEstimator, preset,
 };
 
 const RATE: Hertz = Hertz(10_000.0);
@@ -25,8 +23,6 @@ const UNSURE: Uncertainty = Uncertainty {
 };
 
 const COUNTS: CountObserver = preset!(Observer::new(&CoupledMotor::DCX35L, RATE, &UNSURE));
-
-const SOFT: SoftObserver = preset!(Observer::soft(&CoupledMotor::DCX35L, RATE, &UNSURE));
 
 macro_rules! probes {
     ($($start:ident, $update:ident: $type:ty = $value:expr;)*) => {
@@ -51,47 +47,101 @@ macro_rules! probes {
     };
 }
 
+macro_rules! rows {
+    ($(
+        $id:ident, $name:literal, $reports:ident,
+        ($($parameter:ident: $range:ident),*),
+        ($($variant:ident: $hertz:literal, $capacity:literal;)*),
+        { $($fact:tt)* },
+        |$c:ident, $motor:ident, $rate:ident, $clock:ident, $p:ident, $N:ident| $type:ty => $make:expr;
+    )*) => {
+        /// The rows of the catalogue: a module per row, and in it a module per variant.
+        pub mod rows {
+            $(
+                #[doc = concat!("Row `", $name, "`.")]
+                pub mod $id {
+                    use estimator_catalogue::design;
+                    use estimator_core::Hertz;
+
+                    #[allow(unused_variables, reason = "a row may have no parameter")]
+                    const fn parameters(rate: Hertz, capacity: usize) -> design::$id::Parameters {
+                        design::$id::Parameters {
+                            $($parameter: crate::value($name, rate, stringify!($parameter), capacity),)*
+                        }
+                    }
+
+                    $(
+                        #[doc = concat!("With the capacity ", $capacity, ".")]
+                        pub mod $variant {
+                            use estimator_core as $c;
+                            use estimator_core::{CoupledMotor, DesignError, Sample, VelocityEstimator};
+
+                            #[allow(dead_code, reason = "not every design has a capacity")]
+                            const $N: usize = $capacity;
+
+                            #[allow(unused_variables, reason = "not every design uses everything")]
+                            const ESTIMATOR: $type = {
+                                let ($rate, $clock) = (crate::rate($hertz), crate::CLOCK);
+                                let $motor = &CoupledMotor::DCX35L;
+                                let $p = super::parameters($rate, $capacity);
+                                let design: Result<$type, DesignError> = $make;
+                                match design {
+                                    Ok(estimator) => estimator,
+                                    Err(error) => panic!("{}", error.message()),
+                                }
+                            };
+
+                            /// Starts the estimator.
+                            #[inline(never)]
+                            pub fn start(first: &Sample) -> <$type as VelocityEstimator>::State {
+                                ESTIMATOR.start(first)
+                            }
+
+                            /// Updates the estimator.
+                            #[inline(never)]
+                            pub fn update(
+                                state: &mut <$type as VelocityEstimator>::State,
+                                sample: &Sample,
+                            ) -> <$type as VelocityEstimator>::Output {
+                                ESTIMATOR.update(state, sample)
+                            }
+                        }
+                    )*
+                }
+            )*
+        }
+    };
+}
+
+estimator_catalogue::estimators!(rows);
+
+/// The rate of a variant; [`RATE`] for one that suits every rate.
+const fn rate(hertz: f64) -> Hertz {
+    if hertz > 0.0 { Hertz(hertz) } else { RATE }
+}
+
+/// Tuned parameters; of a window the capacity and a noise bound of one count.
+const fn value(estimator: &str, rate: Hertz, parameter: &str, capacity: usize) -> f64 {
+    match parameter.as_bytes() {
+        b"n" => capacity as f64,
+        b"d" => 1.0,
+        _ => tuned::value(estimator, rate, parameter),
+    }
+}
+
+// What no row has: other sizes, wrappers and parts.
 probes! {
     start_skip, update_skip: Skip = Skip;
-    start_finite_difference, update_finite_difference: FiniteDifference = FiniteDifference;
-    start_low_pass, update_low_pass: LowPass<FiniteDifference> =
-        preset!(LowPass::new(FiniteDifference, Hertz(120.0), RATE));
     start_low_pass_foaw, update_low_pass_foaw: LowPass<Foaw<15, EndFit>> =
         preset!(LowPass::new(preset!(Foaw::new(15, 1)), Hertz(120.0), RATE));
     start_foaw_1, update_foaw_1: Foaw<1, EndFit> = preset!(Foaw::new(1, 1));
-    start_foaw_15_end, update_foaw_15_end: Foaw<15, EndFit> = preset!(Foaw::new(15, 1));
-    start_foaw_15_best, update_foaw_15_best: Foaw<15, BestFit> = preset!(Foaw::new(15, 1));
     start_foaw_16_end, update_foaw_16_end: Foaw<16, EndFit> = preset!(Foaw::new(16, 1));
     start_foaw_128_end, update_foaw_128_end: Foaw<128, EndFit> = preset!(Foaw::new(128, 1));
     start_foaw_128_best, update_foaw_128_best: Foaw<128, BestFit> = preset!(Foaw::new(100, 2));
-    start_triple, update_triple: KalmanTriple =
-        preset!(Kalman::new(&preset!(Model::triple_integrator(4096, RATE, 2e4))));
-    start_motor, update_motor: KalmanMotor =
-        preset!(Kalman::new(&preset!(Model::motor(&Device::DCX35L, RATE, 0.1))));
-    start_table_triple, update_table_triple: TableKalmanTriple<128> =
-        preset!(TableKalman::new(&preset!(Model::triple_integrator(4096, RATE, 2e4))));
     start_table_motor, update_table_motor: TableKalmanMotor<1024> =
         preset!(TableKalman::new(&preset!(Model::motor(&Device::DCX35L, RATE, 0.1))));
-    start_steady_triple, update_steady_triple: SteadyKalmanTriple =
-        preset!(SteadyKalman::new(&preset!(Model::triple_integrator(4096, RATE, 2e4))));
-    start_steady_motor, update_steady_motor: SteadyKalmanMotor =
-        preset!(SteadyKalman::new(&preset!(Model::motor(&Device::DCX35L, RATE, 0.1))));
     start_late_motor, update_late_motor: LateCurrent<SteadyKalmanMotor> =
         LateCurrent(preset!(SteadyKalman::new(&preset!(Model::motor(&Device::DCX35L, RATE, 0.1)))));
-    start_m_over_t, update_m_over_t: MOverT = preset!(MOverT::new(CLOCK, RATE));
-    start_observer, update_observer: CountObserver = COUNTS;
-    start_observer_edge, update_observer_edge: EdgeObserver =
-        preset!(COUNTS.with_edges(CLOCK, RATE));
-    start_observer_soft, update_observer_soft: SoftObserver = SOFT;
-    start_adaptive_soft, update_adaptive_soft: AdaptiveSoftObserver =
-        preset!(SOFT.learning(4096, RATE));
-    start_adaptive, update_adaptive: AdaptiveObserver = preset!(COUNTS.learning(4096, RATE));
-    start_adaptive_edge, update_adaptive_edge: AdaptiveEdgeObserver =
-        preset!(preset!(COUNTS.with_edges(CLOCK, RATE)).learning(4096, RATE));
-    start_observer_held, update_observer_held:
-        Observer<AmplifierCurrent, HeldHandle, Cells, Fixed> = COUNTS.held();
-    start_observer_blind, update_observer_blind: Observer<NoCurrent, HeldHandle, Edges, Fixed> =
-        preset!(Observer::blind(&CoupledMotor::DCX35L, RATE, CLOCK, &UNSURE));
     start_adaptive_edge_held, update_adaptive_edge_held:
         Observer<AmplifierCurrent, HeldHandle, Edges, Learned> =
         preset!(preset!(COUNTS.with_edges(CLOCK, RATE)).learning(4096, RATE)).held();
@@ -101,7 +151,6 @@ probes! {
         16,
         100
     ));
-    start_pll, update_pll: Pll = preset!(Pll::new(Hertz(60.0), RATE));
 }
 
 /// Does nothing, for comparison.

@@ -1,7 +1,7 @@
 //! Any parameters into every design.
 
 use stress::course::Course;
-use stress::designs::{KINDS, design};
+use stress::designs::{design, kinds};
 
 use crate::bytes::Bytes;
 
@@ -28,7 +28,8 @@ pub fn run(data: &[u8]) {
 /// # Panics
 /// As [`run`].
 pub fn try_one(kind: u8, rate: f64, counts: u32, parameter: f64) {
-    let kind = KINDS[usize::from(kind) % KINDS.len()];
+    let kinds = kinds();
+    let kind = kinds[usize::from(kind) % kinds.len()];
     let Ok(mut pair) = design(kind, rate, counts, parameter) else {
         return;
     };

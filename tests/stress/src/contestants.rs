@@ -1,12 +1,13 @@
 //! Every estimator of the core, beside its twin.
 
+use catalogue::parameters::middle;
+use estimator_catalogue::Settling;
 use estimator_core as core;
-use estimator_twin as twin;
 
-use crate::course::EDGE_CLOCK_HZ;
 use crate::definition::{Definition, Line};
 use crate::findings::Bounds;
-use crate::pair::{Both, Pair};
+use crate::pair::Pair;
+use crate::pairs::{self, Entry, Refusable, Request, request};
 use crate::settling;
 
 /// An estimator under stress.
@@ -25,6 +26,29 @@ pub struct Contestant {
 }
 
 impl Contestant {
+    /// One that holds nothing but the design.
+    fn new(
+        name: String,
+        rate_hz: f64,
+        capacity: usize,
+        design: fn(&Request<'_>) -> Refusable,
+        value: impl Fn(&str) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            name,
+            rate_hz,
+            definition: None,
+            bounds: Bounds {
+                deviation_rad_s: DEVIATION_RAD_S,
+                settles_ticks: 0,
+            },
+            at_rest_rad_s: AT_REST_RAD_S,
+            make: Box::new(move || {
+                design(&request(rate_hz, capacity, &value)).expect("a design that holds")
+            }),
+        }
+    }
+
     /// A fresh pair, not started.
     #[must_use]
     pub fn pair(&self) -> Box<dyn Pair> {
@@ -49,6 +73,12 @@ impl Contestant {
         self
     }
 
+    /// At rest after so many ticks more.
+    fn also(self, ticks: u32) -> Self {
+        let before = self.bounds.settles_ticks;
+        self.settles(before + ticks)
+    }
+
     /// At rest once so many poles within this radius have forgotten the fastest motion there is.
     fn poles(self, radius: f64, order: i32) -> Self {
         let quiet = self.at_rest_rad_s / self.rad_per_count();
@@ -56,7 +86,7 @@ impl Contestant {
     }
 
     /// At rest once only the current count is in the window; what the definition gives.
-    fn window(self, n: usize, d: i32, line: Line) -> Self {
+    fn window(self, (n, d, line): (usize, i32, Line)) -> Self {
         Self {
             definition: Some(Definition { n, d, line }),
             ..self
@@ -71,59 +101,6 @@ impl Contestant {
         let ticks = self.rad_per_count() / self.at_rest_rad_s;
         self.settles(ticks.ceil() as u32)
     }
-}
-
-/// The same expression over the core and over its twin.
-macro_rules! both {
-    ($name:expr, $rate:expr, |$c:ident| $make:expr) => {{
-        let rate_hz: f64 = $rate;
-        let core = {
-            use core as $c;
-            $make
-        };
-        let twin = {
-            use twin as $c;
-            $make
-        };
-        Contestant {
-            name: String::from($name),
-            rate_hz,
-            definition: None,
-            bounds: Bounds {
-                deviation_rad_s: DEVIATION_RAD_S,
-                settles_ticks: 0,
-            },
-            at_rest_rad_s: AT_REST_RAD_S,
-            make: Box::new(move || {
-                Box::new(Both {
-                    core,
-                    twin,
-                    states: None,
-                })
-            }),
-        }
-    }};
-}
-
-/// An observer as host-sim's presets have it.
-macro_rules! observer {
-    ($c:ident, $rate:expr) => {
-        observer!($c, $rate, new)
-    };
-    ($c:ident, $rate:expr, $ends:ident) => {
-        $c::Observer::$ends(
-            &$c::CoupledMotor::DCX35L,
-            $c::Hertz($rate),
-            &$c::Uncertainty {
-                torque_noise: 7e-5,
-                load: 7.5e-4,
-                load_time: LOAD_TIME_S,
-                friction_share: 0.7,
-                boundary_noise: 0.0625,
-            },
-        )
-        .expect("valid")
-    };
 }
 
 /// The project's goal for what f32 may cost, rad/s.
@@ -151,141 +128,176 @@ const LOAD_TIME_S: f64 = 0.1;
 /// what was seen.
 const LEARNED_NONSENSE_S: f64 = 6.0;
 
-/// Length of the gain tables, ticks.
-pub(crate) const TABLE: usize = 1024;
+/// Disturbance torque of the observers: white, N·m/√Hz, and slow, N·m.
+const TORQUE_NOISE: f64 = 7e-5;
+const DISTURBANCE_NM: f64 = 7.5e-4;
 
-/// Every estimator at one control rate.
+/// Uncertainty of the observer by its edges alone, whose disturbance torque holds damping, friction
+/// and the motor's torque too.
+const ALONE: core::Uncertainty = core::Uncertainty {
+    torque_noise: 5e-4,
+    load: 1e-4,
+    load_time: LOAD_TIME_S,
+    friction_share: 0.0,
+    boundary_noise: 0.03,
+};
+
+/// Frequency of the tracking loop's poles, Hz.
+const BANDWIDTH_HZ: f64 = 60.0;
+
+/// Cut-off of the low-pass, Hz.
+fn cutoff_hz(rate_hz: f64) -> f64 {
+    if rate_hz < 5000.0 { 240.0 } else { 120.0 }
+}
+
+/// Noise bound of a window, counts: the longest best fit is tried with a wider band.
+fn noise_bound(settling: Settling, capacity: usize) -> i32 {
+    match (settling, capacity) {
+        (Settling::BestFitWindow, 64) => 2,
+        _ => 1,
+    }
+}
+
+/// The value of a parameter in every run, by its name. A parameter that is not named here takes the
+/// middle of its search range.
+fn value(name: &str, entry: &Entry, rate_hz: f64, capacity: usize) -> f64 {
+    let alone = entry.row.settling == Settling::DisturbanceAlone;
+    match name {
+        "n" => capacity as f64,
+        "d" => f64::from(noise_bound(entry.row.settling, capacity)),
+        "cutoff_hz" => cutoff_hz(rate_hz),
+        "bandwidth_hz" => BANDWIDTH_HZ,
+        "jerk" => JERK,
+        "torque_noise" if alone => ALONE.torque_noise,
+        "load" if alone => ALONE.load,
+        "boundary_noise" if alone => ALONE.boundary_noise,
+        "current_noise" => CURRENT_NOISE,
+        "torque_noise" => TORQUE_NOISE,
+        "load" => DISTURBANCE_NM,
+        "load_time" => LOAD_TIME_S,
+        "friction_share" => 0.7,
+        "boundary_noise" => 0.0625,
+        name => {
+            let mut parameters = entry.row.parameters.iter();
+            let found = parameters.find(|parameter| parameter.name == name);
+            middle(found.expect("a parameter of the row").search)
+        }
+    }
+}
+
+/// Poles and longest times to rest of the laws of settling, at one rate.
+struct Laws {
+    rate_hz: f64,
+    triple: f64,
+    motor: f64,
+    forgotten: u32,
+    forgotten_softly: u32,
+    forgotten_alone: u32,
+    learned: u32,
+}
+
+impl Laws {
+    fn new(rate_hz: f64) -> Self {
+        let rate = core::Hertz(rate_hz);
+        let triple = {
+            let model = core::Model::triple_integrator(4096, rate, JERK).expect("valid");
+            settling::radius(model.transition(), &model.steady_gain().expect("valid"))
+        };
+        let motor = {
+            let model = core::Model::motor(&core::Device::DCX35L, rate, CURRENT_NOISE);
+            let model = model.expect("valid");
+            settling::radius(model.transition(), &model.steady_gain().expect("valid"))
+        };
+        let uncertainty = core::Uncertainty {
+            torque_noise: TORQUE_NOISE,
+            load: DISTURBANCE_NM,
+            load_time: LOAD_TIME_S,
+            friction_share: 0.7,
+            boundary_noise: 0.0625,
+        };
+        let counts = core::Observer::new(&core::CoupledMotor::DCX35L, rate, &uncertainty);
+        let counts = counts.expect("valid");
+        let forgotten = |gain| settling::unknown_torque(gain, LOAD_TIME_S, rate_hz);
+        let forgotten_alone = {
+            let free = core::CoupledMotor {
+                large: core::Device {
+                    damping: 0.0,
+                    ..core::Device::DCX35L
+                },
+                coulomb_friction: 0.0,
+                ..core::CoupledMotor::DCX35L
+            };
+            let counts = core::Observer::new(&free, rate, &ALONE).expect("valid");
+            settling::unknown_torque_alone(settling::largest_gain(&counts), LOAD_TIME_S, rate_hz)
+        };
+        Self {
+            rate_hz,
+            triple,
+            motor,
+            forgotten: forgotten(settling::largest_gain(&counts)),
+            forgotten_softly: forgotten(settling::largest_soft_gain(&counts)),
+            forgotten_alone,
+            learned: (LEARNED_NONSENSE_S * rate_hz) as u32,
+        }
+    }
+
+    /// The contestant with the bounds of its law.
+    fn bounded(&self, one: Contestant, settling: Settling, capacity: usize) -> Contestant {
+        let pole = |hertz| settling::pole(hertz, self.rate_hz);
+        let window = |line| (capacity, noise_bound(settling, capacity), line);
+        match settling {
+            Settling::AtOnce => one,
+            Settling::OnePole => one.poles(pole(cutoff_hz(self.rate_hz)), 1),
+            Settling::TwoPoles => one.poles(pole(BANDWIDTH_HZ), 2),
+            Settling::EndFitWindow => one.window(window(Line::EndFit)),
+            Settling::BestFitWindow => one.window(window(Line::BestFit)),
+            Settling::TripleIntegrator => one.poles(self.triple, 3),
+            Settling::MotorModel => one.poles(self.motor, 2),
+            Settling::OneCountOverTime => one.one_count_over_time().decides(),
+            Settling::Disturbance => one.decides().settles(self.forgotten),
+            Settling::DisturbanceTruncated => one.decides().settles(self.forgotten_softly),
+            Settling::DisturbanceAlone => {
+                let one = one.decides().one_count_over_time();
+                one.also(self.forgotten_alone)
+            }
+            Settling::Adapted => one.decides().settles(self.learned),
+        }
+    }
+}
+
+/// Every estimator at one control rate: the rows of the catalogue, and two designs of the core that
+/// no row has.
 #[must_use]
 #[allow(
     clippy::missing_panics_doc,
     reason = "the parameters are constants that a test tries"
 )]
-pub fn at(rate: f64) -> Vec<Contestant> {
-    let cutoff = if rate < 5000.0 { 240.0 } else { 120.0 };
-    let triple = {
-        let model = core::Model::triple_integrator(4096, core::Hertz(rate), JERK).expect("valid");
-        settling::radius(model.transition(), &model.steady_gain().expect("valid"))
-    };
-    let motor = {
-        let device = core::Device::DCX35L;
-        let model = core::Model::motor(&device, core::Hertz(rate), CURRENT_NOISE).expect("valid");
-        settling::radius(model.transition(), &model.steady_gain().expect("valid"))
-    };
-    let counts = observer!(core, rate);
-    let forgotten = |gain| settling::unknown_torque(gain, LOAD_TIME_S, rate);
-    let forgotten_softly = forgotten(settling::largest_soft_gain(&counts));
-    let forgotten = forgotten(settling::largest_gain(&counts));
-    let learned = (LEARNED_NONSENSE_S * rate) as u32;
-    let mut all = vec![
-        both!("finite-difference", rate, |c| c::FiniteDifference),
-        both!("low-pass", rate, |c| c::LowPass::new(
-            c::FiniteDifference,
-            c::Hertz(cutoff),
-            c::Hertz(rate)
-        )
-        .expect("valid"))
-        .poles(settling::pole(cutoff, rate), 1),
-        both!("foaw-end-fit n 15", rate, |c| {
-            c::Foaw::<15, c::EndFit>::new(15, 1).expect("valid")
-        })
-        .window(15, 1, Line::EndFit),
-        both!("foaw-end-fit n 64", rate, |c| {
-            c::Foaw::<64, c::EndFit>::new(64, 1).expect("valid")
-        })
-        .window(64, 1, Line::EndFit),
-        both!("foaw-best-fit n 15", rate, |c| {
-            c::Foaw::<15, c::BestFit>::new(15, 1).expect("valid")
-        })
-        .window(15, 1, Line::BestFit),
-        both!("foaw-best-fit n 64 d 2", rate, |c| {
-            c::Foaw::<64, c::BestFit>::new(64, 2).expect("valid")
-        })
-        .window(64, 2, Line::BestFit),
-        both!("pll", rate, |c| {
-            c::Pll::new(c::Hertz(60.0), c::Hertz(rate)).expect("valid")
-        })
-        .poles(settling::pole(60.0, rate), 2),
-        both!("kalman-triple", rate, |c| {
-            let model = c::Model::triple_integrator(4096, c::Hertz(rate), JERK).expect("valid");
-            c::Kalman::new(&model).expect("valid")
-        })
-        .poles(triple, 3),
-        both!("kalman-triple-table", rate, |c| {
-            let model = c::Model::triple_integrator(4096, c::Hertz(rate), JERK).expect("valid");
-            c::TableKalmanTriple::<TABLE>::new(&model).expect("valid")
-        })
-        .poles(triple, 3),
-        both!("kalman-triple-steady", rate, |c| {
-            let model = c::Model::triple_integrator(4096, c::Hertz(rate), JERK).expect("valid");
-            c::SteadyKalman::new(&model).expect("valid")
-        })
-        .poles(triple, 3),
-        both!("kalman-motor", rate, |c| {
-            let model =
-                c::Model::motor(&c::Device::DCX35L, c::Hertz(rate), CURRENT_NOISE).expect("valid");
-            c::Kalman::new(&model).expect("valid")
-        })
-        .poles(motor, 2),
-        both!("kalman-motor-table", rate, |c| {
-            let model =
-                c::Model::motor(&c::Device::DCX35L, c::Hertz(rate), CURRENT_NOISE).expect("valid");
-            c::TableKalmanMotor::<TABLE>::new(&model).expect("valid")
-        })
-        .poles(motor, 2),
-        both!("kalman-motor-steady", rate, |c| {
-            let model =
-                c::Model::motor(&c::Device::DCX35L, c::Hertz(rate), CURRENT_NOISE).expect("valid");
-            c::SteadyKalman::new(&model).expect("valid")
-        })
-        .poles(motor, 2),
-        both!("kalman-motor, literal", rate, |c| {
-            let model =
-                c::Model::motor(&c::Device::DCX35L, c::Hertz(rate), CURRENT_NOISE).expect("valid");
-            c::LateCurrent(c::SteadyKalman::new(&model).expect("valid"))
-        })
-        .poles(motor, 2),
-        both!("m-over-t", rate, |c| {
-            c::MOverT::new(c::Hertz(EDGE_CLOCK_HZ), c::Hertz(rate)).expect("valid")
-        })
-        .one_count_over_time()
-        .decides(),
-        both!("observer", rate, |c| observer!(c, rate))
-            .decides()
-            .settles(forgotten),
-        both!("observer-edge", rate, |c| {
-            observer!(c, rate)
-                .with_edges(c::Hertz(EDGE_CLOCK_HZ), c::Hertz(rate))
-                .expect("valid")
-        })
-        .decides()
-        .settles(forgotten),
-        both!("observer-soft", rate, |c| observer!(c, rate, soft))
-            .decides()
-            .settles(forgotten_softly),
-        both!("adaptive", rate, |c| {
-            observer!(c, rate)
-                .learning(4096, c::Hertz(rate))
-                .expect("valid")
-        })
-        .decides()
-        .settles(learned),
-        both!("adaptive-soft", rate, |c| {
-            observer!(c, rate, soft)
-                .learning(4096, c::Hertz(rate))
-                .expect("valid")
-        })
-        .decides()
-        .settles(learned),
-        both!("adaptive-edge", rate, |c| {
-            observer!(c, rate)
-                .with_edges(c::Hertz(EDGE_CLOCK_HZ), c::Hertz(rate))
-                .and_then(|observer| observer.learning(4096, c::Hertz(rate)))
-                .expect("valid")
-        })
-        .decides()
-        .settles(learned),
+pub fn at(rate_hz: f64) -> Vec<Contestant> {
+    let laws = Laws::new(rate_hz);
+    let mut all = Vec::new();
+    for entry in pairs::ALL {
+        for &capacity in entry.capacities() {
+            let settling = entry.row.settling;
+            let bound = noise_bound(settling, capacity);
+            let name = match (settling.is_window(), bound) {
+                (false, _) => entry.row.name.to_owned(),
+                (true, 1) => format!("{} n {capacity}", entry.row.name),
+                (true, d) => format!("{} n {capacity} d {d}", entry.row.name),
+            };
+            let value = move |name: &str| value(name, entry, rate_hz, capacity);
+            let one = Contestant::new(name, rate_hz, capacity, entry.design, value);
+            all.push(laws.bounded(one, settling, capacity));
+        }
+    }
+    let more: [(&str, fn(&Request<'_>) -> Refusable); 2] = [
+        ("kalman-motor-table", pairs::kalman_motor_table),
+        ("kalman-motor, literal", pairs::late_kalman_motor),
     ];
-    if rate > 5000.0 {
+    for (name, design) in more {
+        let one = Contestant::new(name.to_owned(), rate_hz, 0, design, |_| CURRENT_NOISE);
+        all.push(laws.bounded(one, Settling::MotorModel, 0));
+    }
+    if rate_hz > 5000.0 {
         let slowest = |one: &&mut Contestant| matches!(&*one.name, "pll" | "kalman-triple");
         for slow in all.iter_mut().filter(slowest) {
             slow.bounds.deviation_rad_s = SLOW_DEVIATION_RAD_S;

@@ -21,6 +21,7 @@ pub mod definition;
 pub mod designs;
 pub mod findings;
 pub mod pair;
+mod pairs;
 pub mod parts;
 pub mod sensitivity;
 mod settling;

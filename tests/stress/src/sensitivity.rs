@@ -34,7 +34,7 @@ pub struct Outcome {
 #[must_use]
 pub fn all() -> Vec<Outcome> {
     let mut all = Vec::new();
-    for kind in designs::KINDS {
+    for kind in designs::kinds() {
         let mut outcome = Outcome {
             estimator: kind.to_owned(),
             ..Outcome::default()

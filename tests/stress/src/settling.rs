@@ -87,6 +87,14 @@ pub(crate) fn unknown_torque(gain: f64, load_time: f64, rate_hz: f64) -> u32 {
     (load_time * rate_hz * (left / holds).ln()).ceil() as u32
 }
 
+/// Ticks until the unknown torque that the largest correction leaves, at its largest `gain`, no longer
+/// brings about a count per its own time: then the walls of the cell hold a rotor that no friction
+/// holds.
+pub(crate) fn unknown_torque_alone(gain: f64, load_time: f64, rate_hz: f64) -> u32 {
+    let time = load_time * rate_hz;
+    (time * (gain * LARGEST_INNOVATION * time * time).ln()).ceil() as u32
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -209,7 +209,9 @@ fn is_named(symbol: &str, krate: &str, name: &str) -> bool {
         let (_hash, path) = path.strip_prefix("Cs")?.split_once('_')?;
         path.strip_prefix(&format!("{}{krate}", krate.len()))
     };
-    within_crate().is_some_and(|path| path.ends_with(&format!("{}{name}", name.len())))
+    let parts = name.split("::");
+    let path_of_name: String = parts.map(|part| format!("{}{part}", part.len())).collect();
+    within_crate().is_some_and(|path| path.ends_with(&path_of_name))
 }
 
 /// Builds for the board with further arguments, in a directory of its own below `target`: cargo

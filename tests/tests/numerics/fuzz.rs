@@ -8,7 +8,7 @@ use drivers::{Command, encode};
 use fuzz_bodies::{commands, control, designs, samples, texts};
 use haptic_control::Request;
 use stress::contestants::Contestant;
-use stress::designs::KINDS;
+use stress::designs::kinds;
 
 /// So many cases. What fails is kept in `fuzz.regressions` beside this file, to be committed, and
 /// tried first from then on.
@@ -20,10 +20,11 @@ fn cases(count: u32) -> ProptestConfig {
     }
 }
 
-/// The kinds of [`KINDS`] that learn their parameters, by number.
+/// The [`kinds`] that learn their parameters, by number.
 fn kinds_that_learn() -> Vec<u8> {
-    let learns = |kind: &u8| KINDS[usize::from(*kind)].starts_with("adaptive");
-    (0..KINDS.len() as u8).filter(learns).collect()
+    let kinds = kinds();
+    let learns = |kind: &u8| kinds[usize::from(*kind)].starts_with("adaptive");
+    (0..kinds.len() as u8).filter(learns).collect()
 }
 
 fn any_bytes(most: usize) -> impl Strategy<Value = Vec<u8>> {

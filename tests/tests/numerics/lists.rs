@@ -1,34 +1,16 @@
-//! Lists of estimators that are written by hand, against the estimators of `host-sim`.
+//! Every row of the catalogue of estimators is in every list that is made from it.
+
+use std::collections::BTreeSet;
 
 use bench_image::SUBJECTS;
 use catalogue::estimators::Kind;
+use estimator_catalogue::{Parameter, ROWS, Search};
 use stress::contestants::at;
 use stress::designs;
 
-/// Estimators that a list leaves out, with the reason.
-type Exempt = &'static [(&'static str, &'static str)];
-
-const HELD: &str = "the observer without its slip: a part of the update of the observer itself";
-const BLIND: &str = "not measured yet: an observer without current and slip";
-
-const NOT_STRESSED: Exempt = &[
-    ("observer-held", HELD),
-    ("observer-edge-held", HELD),
-    ("observer-edge-blind", BLIND),
-];
-const NOT_DESIGNED: Exempt = &[("finite-difference", "it has no parameter")];
-const NOT_MEASURED: Exempt = NOT_STRESSED;
-
-/// Each estimator is in the list or exempt, and none both.
-fn complete(list: &str, names: &[&str], exempt: Exempt) {
-    for kind in Kind::all() {
-        let is_exempt = exempt.iter().any(|(name, _)| *name == kind.name);
-        let is_listed = names.contains(&kind.name);
-        assert!(is_listed != is_exempt, "{} in {list}: {names:?}", kind.name);
-    }
-    for (name, _) in exempt {
-        assert!(Kind::named(name).is_ok(), "{list} leaves out {name}");
-    }
+/// Names of all rows.
+fn rows() -> BTreeSet<&'static str> {
+    ROWS.iter().map(|row| row.name).collect()
 }
 
 /// The estimator's name before its parameters.
@@ -36,21 +18,62 @@ fn plain(name: &str) -> &str {
     name.split([' ', ',']).next().unwrap_or(name)
 }
 
+/// Names of a list that are names of rows.
+fn of_rows<'a>(list: impl Iterator<Item = &'a str>) -> BTreeSet<&'a str> {
+    list.map(plain)
+        .filter(|name| rows().contains(name))
+        .collect()
+}
+
 #[test]
-fn every_estimator_is_stressed_designed_and_measured_or_exempt() {
-    for rate_hz in [1000.0, 10_000.0] {
-        let contestants = at(rate_hz);
-        let names: Vec<_> = contestants.iter().map(|one| plain(&one.name)).collect();
-        complete("stress::contestants", &names, NOT_STRESSED);
-    }
-    complete("stress::designs", &designs::KINDS, NOT_DESIGNED);
-    for rate_hz in [1000, 10_000] {
-        let at_rate = |subject: &&bench_image::Subject| [0, rate_hz].contains(&subject.rate_hz);
-        let names: Vec<_> = SUBJECTS
+fn every_row_is_on_the_command_line_stressed_and_measured() {
+    assert_eq!(rows().len(), ROWS.len(), "two rows of one name");
+    assert_eq!(
+        Kind::all()
             .iter()
-            .filter(at_rate)
-            .map(|subject| plain(subject.name))
-            .collect();
-        complete("bench_image::SUBJECTS", &names, NOT_MEASURED);
+            .map(|kind| kind.name)
+            .collect::<BTreeSet<_>>(),
+        rows()
+    );
+    for rate_hz in [1000, 10_000] {
+        let contestants = at(f64::from(rate_hz));
+        let names = contestants.iter().map(|one| one.name.as_str());
+        assert_eq!(of_rows(names), rows(), "stress::contestants");
+        let at_rate = |subject: &&bench_image::Subject| [0, rate_hz].contains(&subject.rate_hz);
+        let names = SUBJECTS.iter().filter(at_rate).map(|subject| subject.name);
+        assert_eq!(
+            of_rows(names),
+            rows(),
+            "bench_image::SUBJECTS at {rate_hz} Hz"
+        );
+    }
+    let kinds = designs::kinds();
+    for row in ROWS {
+        let designed = kinds.contains(&row.name);
+        assert_eq!(designed, row.name != "finite-difference", "{}", row.name);
+    }
+}
+
+#[test]
+fn search_range_of_every_parameter_is_within_its_range() {
+    let inside =
+        |parameter: &Parameter, value: f64| (parameter.lowest..=parameter.highest).contains(&value);
+    for row in ROWS {
+        for parameter in row.parameters {
+            let ends = match parameter.search {
+                Search::Log(low, high) => [low, high],
+                Search::Each(low, high) => [low, high].map(f64::from),
+                Search::Fixed(value) => [value; 2],
+            };
+            let name = format!("{}.{}", row.name, parameter.name);
+            assert!(
+                ends.iter().all(|end| inside(parameter, *end)),
+                "{name}: {ends:?}"
+            );
+            assert!(
+                !parameter.name.is_empty() && !parameter.meaning.is_empty(),
+                "{name}"
+            );
+        }
     }
 }

@@ -49,7 +49,7 @@ struct Found {
 }
 
 struct Row {
-    name: &'static str,
+    name: String,
     /// By level, as [`LEVELS`].
     found: [Found; 2],
 }
@@ -79,14 +79,19 @@ fn measure() -> Result<Vec<Row>, String> {
             .filter(|(_, one)| !one.is_peer())
     };
     let mut jobs = Vec::new();
-    for (subject, Subject { rate_hz, name, .. }) in ours() {
+    for (
+        subject,
+        Subject {
+            rate_hz, window, ..
+        },
+    ) in ours()
+    {
         let suits = |rate: &u32| *rate_hz == 0 || rate_hz == rate;
         let suited = grounds.iter().filter(|(rate, _)| suits(rate));
         let suited = suited.map(|(_, samples)| *samples);
-        let is_window = name.contains("n = ");
         let fast = fast
             .iter()
-            .filter(|_| is_window)
+            .filter(|_| *window > 0)
             .map(|samples| &samples[..]);
         jobs.extend(suited.chain(fast).map(|samples| Job {
             subject,
@@ -106,14 +111,15 @@ fn measure() -> Result<Vec<Row>, String> {
                 .filter(|(job, _)| job.subject == index);
             let most = own.flat_map(|(_, ran)| ran.instructions.iter().copied());
             let most = most.max().ok_or("nothing ran")?;
-            if !rows.iter().any(|row| row.name == subject.name) {
+            let name = subject.to_string();
+            if !rows.iter().any(|row| row.name == name) {
                 let found = [Found::default(); 2];
                 rows.push(Row {
-                    name: subject.name,
+                    name: name.clone(),
                     found,
                 });
             }
-            let row = rows.iter_mut().find(|row| row.name == subject.name);
+            let row = rows.iter_mut().find(|row| row.name == name);
             let found = &mut row.ok_or("has a row")?.found[at];
             *found = Found {
                 bound: found.bound.max(bound),
@@ -178,7 +184,7 @@ fn no_update_takes_more_instructions_than_its_code_allows() {
     let rows = measure().unwrap();
     let all = rows
         .iter()
-        .flat_map(|row| row.found.map(|found| (row.name, found)));
+        .flat_map(|row| row.found.map(|found| (&row.name, found)));
     for (name, Found { bound, most }) in all {
         assert!(most <= bound, "{name}: {most} instructions, bound {bound}");
         // The bound takes every turn of a window for its dearest: one that moves both bounds.

@@ -1,0 +1,182 @@
+//! Parameters of estimators: name, unit, range, and how `host-sim tune` searches.
+
+/// One parameter of an estimator.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    /// Name after the dot of `NAME.PARAM`.
+    pub name: &'static str,
+    /// Unit; empty for a number without unit.
+    pub unit: &'static str,
+    /// Meaning, in a few words.
+    pub meaning: &'static str,
+    /// Smallest value.
+    pub lowest: f64,
+    /// Largest value.
+    pub highest: f64,
+    /// Whether the value must be a whole number.
+    pub whole: bool,
+    /// How `tune` searches.
+    pub search: Search,
+}
+
+/// How `tune` searches for a parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Search {
+    /// Evenly on a logarithmic scale between these bounds.
+    Log(f64, f64),
+    /// Every whole number between these bounds.
+    Each(u32, u32),
+    /// Not at all: the parameter keeps this value.
+    Fixed(f64),
+}
+
+/// Largest window of the host's FOAW, intervals. Firmware takes a ring of the size it needs.
+pub const WINDOW_LIMIT: usize = 128;
+
+/// Ranges of the rows' parameters. The row gives the name.
+impl Parameter {
+    /// Cut-off frequency of a first-order low-pass.
+    pub const CUTOFF: Self = Self {
+        name: "",
+        unit: "Hz",
+        meaning: "cut-off of the filter, at most half the rate",
+        lowest: 1e-3,
+        highest: 1e6,
+        whole: false,
+        search: Search::Log(5.0, 500.0),
+    };
+
+    /// Frequency of the two poles of a tracking loop.
+    pub const BANDWIDTH: Self = Self {
+        meaning: "frequency of the loop's two poles, at most half the rate",
+        ..Self::CUTOFF
+    };
+
+    /// Largest window of FOAW.
+    pub const WINDOW: Self = Self {
+        name: "",
+        unit: "intervals",
+        meaning: "largest number of intervals in the window",
+        lowest: 1.0,
+        highest: WINDOW_LIMIT as f64,
+        whole: true,
+        search: Search::Each(1, WINDOW_LIMIT as u32),
+    };
+
+    /// Noise bound of FOAW.
+    pub const NOISE_BOUND: Self = Self {
+        name: "",
+        unit: "counts",
+        meaning: "noise bound: half-width of the band around the line",
+        lowest: 0.0,
+        highest: 16_384.0,
+        whole: true,
+        search: Search::Each(0, 4),
+    };
+
+    /// Process noise of the triple integrator.
+    pub const JERK: Self = Self {
+        name: "",
+        unit: "rad/s^3/sqrt(Hz)",
+        meaning: "spectral density of the jerk that the filter expects",
+        lowest: 1e-9,
+        highest: 1e12,
+        whole: false,
+        search: Search::Log(1.0, 1e6),
+    };
+
+    /// Process noise of the motor model.
+    pub const CURRENT_NOISE: Self = Self {
+        name: "",
+        unit: "A",
+        meaning: "standard deviation of the current's error, drawn anew each tick",
+        lowest: 1e-9,
+        highest: 1e6,
+        whole: false,
+        search: Search::Log(1e-4, 100.0),
+    };
+
+    /// Choice between two readings of the paper's eq. 15.
+    pub const LITERAL: Self = Self {
+        name: "",
+        unit: "",
+        meaning: "1 takes the paper's eq. 15 literally: the current acts one tick late",
+        lowest: 0.0,
+        highest: 1.0,
+        whole: true,
+        search: Search::Fixed(0.0),
+    };
+
+    /// White disturbance torque of an observer.
+    pub const TORQUE_NOISE: Self = Self {
+        name: "",
+        unit: "N.m/sqrt(Hz)",
+        meaning: "spectral density of the white torque that the observer expects",
+        lowest: 1e-12,
+        highest: 1.0,
+        whole: false,
+        search: Search::Log(5e-7, 5e-4),
+    };
+
+    /// Slow disturbance torque of an observer.
+    pub const DISTURBANCE: Self = Self {
+        name: "",
+        unit: "N.m",
+        meaning: "standard deviation of the slow disturbance torque",
+        lowest: 1e-12,
+        highest: 1e3,
+        whole: false,
+        search: Search::Log(1e-5, 1e-2),
+    };
+
+    /// The same for an observer without current: the motor torque is part of the disturbance.
+    pub const DISTURBANCE_AND_MOTOR: Self = Self {
+        search: Search::Log(1e-4, 1.0),
+        ..Self::DISTURBANCE
+    };
+
+    /// Correlation time of the slow disturbance torque.
+    pub const DISTURBANCE_TIME: Self = Self {
+        name: "",
+        unit: "s",
+        meaning: "correlation time of the slow disturbance torque",
+        lowest: 1e-6,
+        highest: 1e6,
+        whole: false,
+        search: Search::Fixed(0.1),
+    };
+
+    /// Friction's part of the slow disturbance torque.
+    pub const FRICTION_SHARE: Self = Self {
+        name: "",
+        unit: "",
+        meaning: "part of the slow disturbance torque that corrects the friction",
+        lowest: 0.0,
+        highest: 1.0,
+        whole: false,
+        search: Search::Fixed(0.7),
+    };
+
+    /// Error of a count's boundary.
+    pub const BOUNDARY_NOISE: Self = Self {
+        name: "",
+        unit: "counts",
+        meaning: "error of a boundary's position: the disc's, and the rounding of the model",
+        lowest: 1e-4,
+        highest: 1e3,
+        whole: false,
+        search: Search::Fixed(0.0625),
+    };
+
+    /// The same with learned phases of the disc, which leave 0.02 to 0.03 counts.
+    pub const DISC_NOISE: Self = Self {
+        search: Search::Fixed(0.03),
+        ..Self::BOUNDARY_NOISE
+    };
+
+    /// Whether the parameter is a torque or a spectral density of a torque.
+    #[must_use]
+    pub fn is_torque(&self) -> bool {
+        self.unit.starts_with("N.m")
+    }
+}

@@ -1,0 +1,156 @@
+//! The facts of a row.
+
+use estimator_core::Signals;
+
+use crate::parameter::Parameter;
+
+/// An estimator's row, without its type and its design: these are in the macro alone.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// Name on the command line and in files.
+    pub name: &'static str,
+    /// Name of the row in the macro: a Rust identifier.
+    pub id: &'static str,
+    /// Summary, in one line.
+    pub summary: &'static str,
+    /// Signals that it reads.
+    pub needs: Signals,
+    /// What it reports besides the velocity.
+    pub reports: Reports,
+    /// How it comes to rest after any motion.
+    pub settling: Settling,
+    /// Colour in figures. Relatives share a colour.
+    pub colour: Colour,
+    /// Dash of its lines in figures.
+    pub dash: Dash,
+    /// Its parameters, in the order of tables.
+    pub parameters: &'static [Parameter],
+    /// What the bench image measures.
+    pub variants: &'static [Variant],
+    /// Goals of run time.
+    pub goals: &'static [Goal],
+}
+
+/// What an estimator reports besides the velocity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reports {
+    /// Nothing.
+    Nothing,
+    /// The standard deviation of the velocity.
+    Deviation,
+    /// The standard deviation, and the acceleration of its model.
+    Acceleration,
+    /// The standard deviation, and the coupler's damping that it learns.
+    Damping,
+    /// The standard deviation; parameter `literal` delays the current by a tick.
+    LateCurrent,
+}
+
+/// How the output comes to rest once the count does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Settling {
+    /// At the next tick.
+    AtOnce,
+    /// With the pole of parameter `cutoff_hz`.
+    OnePole,
+    /// With two poles at parameter `bandwidth_hz`.
+    TwoPoles,
+    /// Once only the resting count is in the window: the line through its ends.
+    EndFitWindow,
+    /// Once only the resting count is in the window: the least-squares line.
+    BestFitWindow,
+    /// With the three poles of the steady filter on the triple integrator.
+    TripleIntegrator,
+    /// With the two poles of the steady filter on the motor model.
+    MotorModel,
+    /// As one count over the time since the last edge.
+    OneCountOverTime,
+    /// Once the disturbance torque is forgotten.
+    Disturbance,
+    /// Once the disturbance torque is forgotten, with the truncated-Gaussian update.
+    DisturbanceTruncated,
+    /// Once the disturbance torque, which holds all other torques too, is forgotten, and then as one
+    /// count over the time since the last edge.
+    DisturbanceAlone,
+    /// Once adapted parameters are corrected.
+    Adapted,
+}
+
+impl Settling {
+    /// Whether the estimator has a window, of as many intervals as its variant's capacity.
+    #[must_use]
+    pub const fn is_window(self) -> bool {
+        matches!(self, Self::EndFitWindow | Self::BestFitWindow)
+    }
+}
+
+/// An RGB colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Colour(pub u8, pub u8, pub u8);
+
+/// Colours of Okabe and Ito, of Tol, and darker ones. A colour with a dash differs from every other
+/// pair for normal, protanopic and deuteranopic vision.
+impl Colour {
+    /// Grey.
+    pub const GREY: Self = Self(0x8c, 0x8c, 0x8c);
+    /// Orange.
+    pub const ORANGE: Self = Self(0xe6, 0x9f, 0x00);
+    /// Sky blue.
+    pub const SKY: Self = Self(0x56, 0xb4, 0xe9);
+    /// Blue.
+    pub const BLUE: Self = Self(0x00, 0x72, 0xb2);
+    /// Green.
+    pub const GREEN: Self = Self(0x00, 0x9e, 0x73);
+    /// Vermilion.
+    pub const VERMILION: Self = Self(0xd5, 0x5e, 0x00);
+    /// Pink.
+    pub const PINK: Self = Self(0xcc, 0x79, 0xa7);
+    /// Olive.
+    pub const OLIVE: Self = Self(0x99, 0x99, 0x33);
+    /// Purple.
+    pub const PURPLE: Self = Self(0x5d, 0x3a, 0x9b);
+    /// Navy.
+    pub const NAVY: Self = Self(0x1a, 0x1a, 0x6e);
+    /// Crimson.
+    pub const CRIMSON: Self = Self(0xc0, 0x00, 0x3a);
+    /// Pine green.
+    pub const PINE: Self = Self(0x00, 0x4d, 0x40);
+    /// Brown.
+    pub const BROWN: Self = Self(0x7a, 0x52, 0x30);
+}
+
+/// How a line is interrupted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dash {
+    /// Not at all.
+    Solid,
+    /// Long strokes.
+    Dashed,
+    /// Dots.
+    Dotted,
+    /// Strokes and dots.
+    Mixed,
+}
+
+/// A design that the bench image measures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Variant {
+    /// Its module in the image.
+    pub id: &'static str,
+    /// Control rate of the tuned parameters, Hz; 0 for a design that suits every rate.
+    pub rate_hz: f64,
+    /// Length of its window or gain table; 0 without.
+    pub capacity: usize,
+}
+
+/// Goals of run time for the variants of one capacity: instructions an update at `opt-level` 3 on a
+/// Cortex-M4F.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    /// The capacity concerned; 0 for all variants.
+    pub capacity: usize,
+    /// Mean over the traces, at most.
+    pub mean: f64,
+    /// Longest update, at most; infinite without a goal.
+    pub longest: f64,
+}
