@@ -58,6 +58,8 @@ pub(super) struct Definition {
     pub(super) sigma: f64,
     pub(super) started: bool,
     pub(super) learner: Option<Learner>,
+    /// Whether the state is rounded to f32 at the end of each tick.
+    pub(super) rounds: bool,
 }
 
 impl Definition {
@@ -136,6 +138,7 @@ impl Definition {
             sigma: 0.3,
             started: false,
             learner: learns.then_some(learner),
+            rounds: false,
         }
     }
 
@@ -252,7 +255,27 @@ impl Definition {
         if let Some(found) = self.innovation(from, lead, after - v, rests, sample) {
             self.correct(found);
         }
+        if self.rounds {
+            self.round();
+        }
         self.x[1]
+    }
+
+    /// Rounds the state to f32.
+    fn round(&mut self) {
+        let rounded = |value: f64| f64::from(value as f32);
+        self.x = self.x.map(rounded);
+        self.rub = rounded(self.rub);
+        self.way = rounded(self.way);
+        self.current = rounded(self.current);
+        self.offsets = self.offsets.map(rounded);
+        self.bell = self.bell.map(rounded);
+        self.sigma = rounded(self.sigma);
+        if let Some(learner) = &mut self.learner {
+            learner.parameters = learner.parameters.map(rounded);
+            learner.sensitivity = learner.sensitivity.map(rounded);
+            learner.p = learner.p.map(rounded);
+        }
     }
 
     /// Variance of the velocity, by what is not known of the parameters too.
