@@ -89,6 +89,22 @@ fn a_late_ramp_has_its_delay_in_ms() {
     );
 }
 
+/// At a rate at which a sample is not a millisecond.
+#[test]
+fn a_late_wave_has_its_delay_in_ms() {
+    let rate_hz = 8000.0;
+    let wave = |t: f64| 3.0 * (TAU * 7.0 * t).sin() + 2.0 * (TAU * 2.9 * t).cos();
+    let at = |i: usize| i as f64 / rate_hz;
+    let truth: Vec<f64> = (0..16_000).map(|i| wave(at(i))).collect();
+    let scorer = Truth::new(&truth, rate_hz, interval(), Wanted::ALL).unwrap();
+    for delay_ms in [1.5, -2.3, 0.06, 20.0] {
+        let late: Vec<f32> = (0..16_000)
+            .map(|i| wave(at(i) - 1e-3 * delay_ms) as f32)
+            .collect();
+        near(scorer.score(&late).delay_ms, delay_ms, 2e-3);
+    }
+}
+
 #[test]
 fn noise_is_the_rms_of_what_lies_in_the_tactile_band() {
     // The truth moves inside the band: that is motion, and no noise.
@@ -133,6 +149,28 @@ fn chatter_counts_what_a_saw_moves_beyond_the_truth() {
         score(&truth, &estimate(1100, |t| 5.0 * t)).chatter_rad_s,
         0.0,
         0.0,
+    );
+}
+
+/// A sine of amplitude A and frequency f travels 4 A f in a second, there and back.
+#[test]
+fn chatter_is_travel_beyond_that_of_a_truth_that_turns_round() {
+    let sine = |amplitude: f64| move |t: f64| amplitude * (TAU * 5.0 * t).sin();
+    // 2 s behind the start.
+    let truth = signal(2100, sine(3.0));
+    let chatter =
+        |of_time: &dyn Fn(f64) -> f64| score(&truth, &estimate(2100, of_time)).chatter_rad_s;
+    let travel = |amplitude: f64| 4.0 * amplitude * 5.0 / RATE_HZ;
+    near(chatter(&sine(4.5)), travel(4.5) - travel(3.0), 1e-4);
+    // As much travel the other way round is none more, and less is not less than none.
+    near(chatter(&sine(-3.0)), 0.0, 1e-5);
+    near(chatter(&sine(2.0)), 0.0, 0.0);
+    // A faster ripple travels by itself: 25 Hz of amplitude 2 on a truth that is met otherwise.
+    let rippled = |t: f64| 2.0 * (TAU * 25.0 * t).sin();
+    near(
+        chatter(&rippled),
+        4.0 * 2.0 * 25.0 / RATE_HZ - travel(3.0),
+        2e-3,
     );
 }
 
