@@ -15,7 +15,6 @@
 mod controller;
 mod design_error;
 mod device;
-mod gated;
 mod grid;
 mod limits;
 mod margins;
@@ -37,7 +36,6 @@ mod units;
 pub use controller::{Controller, ControllerState};
 pub use design_error::DesignError;
 pub use device::{DualStage, Motor};
-pub use gated::{Gated, GatedState};
 pub use grid::Grid;
 pub use limits::{CurrentLimits, Currents};
 pub use margins::Margins;
@@ -47,13 +45,10 @@ pub use rig::{AccelerationScale, AngleScale, Rig};
 pub use rst::{Rst, RstState};
 pub use rst_design::{LEAST_MODULUS, LoopPoles, RstDesign};
 pub use safety::{Findings, Mode, Order, Request, Safety, SafetyState};
-pub use scene::{
-    AnyScene, Detents, Excite, ExciteState, FreeAir, Handle, Hold, Inertia, Off, Scene, Seen,
-    SpringDamper, Texture, Torque, Viscous, Wall,
-};
+pub use scene::*;
 pub use stage::{ContinuousStage, ContinuousState, TransientStage, TransientState};
 pub use stop::Stop;
 pub use switchboard::{Switchboard, SwitchboardState};
 pub use tick::Action;
-pub use tuning::{Bounds, Refusal, Tunable};
+pub use tuning::{Bounds, Parameter, Quantity, Refusal, Tunable};
 pub use units::{NewtonMetres, RadPerS, RadPerS2, Radians};

@@ -1,21 +1,26 @@
-//! Virtual environments: what torque the handle should feel, and what is needed to know that.
+//! Virtual environments: the torque that the handle should feel, and what is needed to compute it.
+//!
+//! This file lists the scenes: a module, an export and a row of [`scenes!`](crate::scenes!) each.
 
 mod catalogue;
 mod detents;
+mod environment;
 mod excite;
 mod free_air;
 mod hold;
 mod impedance;
 mod inertia;
 mod off;
+mod sine;
 mod spring_damper;
 mod texture;
 mod torque;
 mod viscous;
 mod wall;
 
-pub use catalogue::AnyScene;
+pub use catalogue::{AnyScene, Needs, Role, SceneFacts, SceneKind, SimulatedHand};
 pub use detents::Detents;
+pub use environment::{Handle, Scene, Seen};
 pub use excite::{Excite, ExciteState};
 pub use free_air::FreeAir;
 pub use hold::Hold;
@@ -27,84 +32,107 @@ pub use torque::Torque;
 pub use viscous::Viscous;
 pub use wall::Wall;
 
-use crate::limits::Currents;
-use crate::need::Need;
-use crate::units::{NewtonMetres, RadPerS, RadPerS2, Radians};
-
-/// What a scene may know of the handle. What it does not need is `()`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Handle<V, A = ()> {
-    /// Angle from where the controller started.
-    pub angle: Radians,
-    /// Velocity.
-    pub velocity: V,
-    /// Acceleration.
-    pub acceleration: A,
-}
-
-/// What a scene sees of the handle.
-pub type Seen<S> = Handle<
-    <<S as Scene>::Velocity as Need>::Of<RadPerS>,
-    <<S as Scene>::Acceleration as Need>::Of<RadPerS2>,
->;
-
-/// A virtual environment.
+/// Calls the macro `$each` with the catalogue of scenes, one row per scene.
 ///
-/// What it needs is in its types: with [`Skip`](estimator_core::Skip) there is neither state nor
-/// code, and a velocity that was not asked for cannot be read.
-pub trait Scene {
-    /// Whether it reads the handle's velocity.
-    type Velocity: Need;
-    /// Whether it reads the handle's acceleration.
-    type Acceleration: Need;
-    /// Whether the large motor renders its torque.
-    type Continuous: Need;
-    /// Whether the small motor does.
-    type Transient: Need;
-    /// What it carries from tick to tick.
-    type State: Clone + PartialEq;
-
-    /// State when the handle is at `angle`.
-    fn start(&self, angle: Radians) -> Self::State;
-
-    /// One tick: the torque that the handle should feel.
-    fn torque(&self, state: &mut Self::State, handle: &Seen<Self>) -> NewtonMetres
-    where
-        Self: Sized;
-
-    /// Currents that the scene commands itself, past both stages, after [`Scene::torque`].
-    ///
-    /// Only an excitation does: it renders nothing.
-    #[inline]
-    fn open_loop(_: &Self::State) -> Option<Currents> {
-        None
-    }
-}
-
-/// Whether a stiffness, damping or amplitude is finite and at least zero.
-const fn is_gain(gain: f32) -> bool {
-    gain >= 0.0 && gain.is_finite()
-}
-
-/// `sin(π x)` for -1 <= x <= 1 from two parabolas, within 0.0011: no library, the same bits
-/// everywhere.
-pub(crate) fn sine(x: f32) -> f32 {
-    let magnitude = if x < 0.0 { -x } else { x };
-    let parabola = 4.0 * x * (1.0 - magnitude);
-    let size = if parabola < 0.0 { -parabola } else { parabola };
-    parabola * (0.775 + 0.225 * size)
-}
-
-#[cfg(test)]
-mod tests {
-    extern crate std;
-
-    #[test]
-    fn sine_is_within_its_bound() {
-        for i in -1000..=1000_i16 {
-            let x = f32::from(i) / 1000.0;
-            let error = super::sine(x) - (core::f32::consts::PI * x).sin();
-            assert!(error.abs() < 0.0011, "{x}: {error}");
+/// A row is `number, "name", Type, { facts };`. The number selects the scene in commands and never
+/// changes. [`SceneKind`] and [`AnyScene`] are made from the facts; other lists of scenes need
+/// number, name and type alone:
+///
+/// ```
+/// macro_rules! names {
+///     ($($number:literal, $name:literal, $scene:ident, $facts:tt;)+) => {
+///         [$($name),+]
+///     };
+/// }
+/// assert_eq!(haptic_control::scenes!(names)[2], "wall");
+/// ```
+///
+/// [`SceneKind`]: crate::SceneKind
+/// [`AnyScene`]: crate::AnyScene
+#[macro_export]
+macro_rules! scenes {
+    ($each:ident) => {
+        $each! {
+            0, "off", Off, {
+                summary: "no current in either motor",
+                torque: "none",
+                role: Environment,
+                hand: FreeMotion,
+                usual: |_device, _rate| Ok(Off)
+            };
+            1, "free-air", FreeAir, {
+                summary: "no torque on the handle; the large motor follows it",
+                torque: "0",
+                role: Environment,
+                hand: FreeMotion,
+                usual: |_device, _rate| Ok(FreeAir)
+            };
+            2, "wall", Wall, {
+                summary: "a spring and a damper beyond an angle, which never pull",
+                torque: "`-K (θ - θw) - B ω` for θ > θw, at most 0",
+                role: Environment,
+                hand: WallPress,
+                usual: |_device, _rate| Wall::new(Radians(0.1), 0.30, 0.0)
+            };
+            3, "spring-damper", SpringDamper, {
+                summary: "a spring and a damper to an angle",
+                torque: "`-K (θ - θ0) - B ω`",
+                role: Environment,
+                hand: FreeMotion,
+                usual: |_device, _rate| SpringDamper::new(Radians(0.0), 0.10, 0.5e-3)
+            };
+            4, "viscous", Viscous, {
+                summary: "viscous friction",
+                torque: "`-B ω`",
+                role: Environment,
+                hand: FreeMotion,
+                usual: |_device, _rate| Viscous::new(2e-3)
+            };
+            5, "detents", Detents, {
+                summary: "rest positions at equal angles",
+                torque: "`-A sin(n θ)`",
+                role: Environment,
+                hand: FreeMotion,
+                usual: |_device, _rate| Detents::new(8e-3, 24)
+            };
+            6, "texture", Texture, {
+                summary: "a vibration of 50 to 300 Hz",
+                torque: "`A sin(2π f t)`",
+                role: Environment,
+                hand: FreeMotion,
+                usual: |_device, rate| Texture::new(6e-3, Hertz(150.0), rate)
+            };
+            7, "hold", Hold, {
+                summary: "a spring and a damper to the angle at which the scene began",
+                torque: "`-K (θ - θ_start) - B ω`",
+                role: Environment,
+                hand: HoldStill,
+                usual: |_device, _rate| Hold::new(0.20, 1e-3)
+            };
+            8, "torque", Torque, {
+                summary: "the torque of the latest set-point command",
+                torque: "the set-point",
+                role: SetPoint,
+                hand: FreeMotion,
+                usual: |_device, _rate| Torque::new(0.0)
+            };
+            9, "inertia", Inertia, {
+                summary: "an inertia, at most half of the handle's own, added or taken away",
+                torque: "`-M α`",
+                role: Environment,
+                hand: FreeMotion,
+                usual: |device, _rate| {
+                    let own = device.small.inertia as f32;
+                    Inertia::new(-0.4 * own, own)
+                }
+            };
+            10, "excite", Excite, {
+                summary: "a fixed pattern of currents, open loop, to identify the device",
+                torque: "none",
+                role: Excitation,
+                hand: FreeMotion,
+                usual: |device, rate| Excite::new(device, rate)
+            };
         }
-    }
+    };
 }

@@ -1,4 +1,4 @@
-//! A controller of all scenes, one at a time.
+//! A controller of all scenes, one of which is on.
 
 use estimator_core::{
     AccelerationEstimator, Amps, Count, CountsPerTick, Hertz, Sample, VelocityEstimator,
@@ -7,45 +7,87 @@ use estimator_core::{
 use crate::limits::{Currents, within};
 use crate::need::{Need, Senses};
 use crate::rig::Rig;
-use crate::scene::{AnyScene, ExciteState, Off, Scene};
+use crate::scene::*;
+use crate::scenes;
 use crate::stage::{ContinuousState, TransientState};
 use crate::tick::{Action, Continuous, Estimated, HandleNeed, Parts, Transient, tick};
 use crate::units::{RadPerS, Radians};
 
-/// State of whichever scene is on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum SceneState {
-    Nothing,
-    Phase(u32),
-    Start(Radians),
-    Excite(ExciteState),
-}
+macro_rules! active_scene {
+    ($($number:literal, $name:literal, $scene:ident, $facts:tt;)+) => {
+        /// The scene that is on, with its state.
+        #[derive(Clone)]
+        enum Active {
+            $($scene($scene, <$scene as Scene>::State),)+
+        }
 
-/// The controller of all scenes: one `match` a tick, and of the parts they share only those that
-/// the scene needs are run.
+        impl Active {
+            /// `scene` from its start, when the handle is at `angle`.
+            fn start(scene: AnyScene, angle: Radians) -> Self {
+                match scene {
+                    $(AnyScene::$scene(scene) => Self::$scene(scene, scene.start(angle)),)+
+                }
+            }
+
+            /// Changes the parameters and keeps the state; `false` if another scene is on.
+            fn retune(&mut self, tuned: AnyScene) -> bool {
+                match (self, tuned) {
+                    $((Self::$scene(scene, _), AnyScene::$scene(tuned)) => *scene = tuned,)+
+                    _ => return false,
+                }
+                true
+            }
+        }
+
+        impl<L, H> Switchboard<L, H>
+        where
+            L: VelocityEstimator<Output = CountsPerTick>,
+            H: AccelerationEstimator<Output = CountsPerTick>,
+        {
+            /// One tick of the scene that is on.
+            fn run_active(
+                &self,
+                active: &mut Active,
+                shared: &mut Shared<L, H>,
+                angle: Radians,
+                sample: &Sample,
+            ) -> Action {
+                match active {
+                    $(Active::$scene(scene, state) => {
+                        self.run(scene, state, shared, angle, sample)
+                    })+
+                }
+            }
+        }
+    };
+}
+scenes!(active_scene);
+
+/// The controller of all scenes. A tick runs one scene, and of the shared parts only those that the
+/// scene needs.
 ///
-/// Scenes are swapped whole between two ticks. What the currents would jump by at a swap is
-/// added and fades away over some 20 ms, so that the torque does not jump. An estimator that the
-/// scene before needed too goes on; another starts at rest.
+/// The scene changes between two ticks. The difference of the currents before and after the change
+/// is added to the new currents and fades with a time constant of 20 ms, so that the torque does not
+/// jump. An estimator that both scenes need continues; one that the scene before did not need starts
+/// at rest.
 #[derive(Clone, Copy, Debug)]
 pub struct Switchboard<L, H> {
     large: L,
     handle: H,
     rig: Rig,
-    /// Part of the difference that fades in a tick.
+    /// Ratio by which the added currents decrease in a tick.
     fade: f32,
 }
 
 /// State of a [`Switchboard`].
 #[derive(Clone)]
 pub struct SwitchboardState<L: VelocityEstimator, H: VelocityEstimator> {
-    scene: AnyScene,
-    scene_state: SceneState,
+    active: Active,
     shared: Shared<L, H>,
     origin: Count,
     /// Set by a swap until the next tick.
     swapped: bool,
-    /// What was added to the currents, large and small, A.
+    /// Currents that are added, of the large and the small motor, A.
     added: [f32; 2],
     applied: Currents,
 }
@@ -56,22 +98,22 @@ struct Shared<L: VelocityEstimator, H: VelocityEstimator> {
     continuous: ContinuousState,
     handle: H::State,
     transient: TransientState,
-    /// Which of them ran in the last tick: the continuous stage, the handle's estimator, the
-    /// transient stage.
+    /// Whether the continuous stage, the handle's estimator and the transient stage ran in the last
+    /// tick.
     live: [bool; 3],
 }
 
-/// Time constant with which a difference at a swap fades, s.
+/// Time constant with which the difference of the currents at a change of scenes fades, s.
 const FADE_S: f64 = 0.02;
 
 impl<L: VelocityEstimator, H: VelocityEstimator> SwitchboardState<L, H> {
-    /// State of the large motor's estimator; it stands where it was while no scene needs it.
+    /// State of the large motor's estimator. It does not change while no scene needs it.
     #[must_use]
     pub const fn large(&self) -> &L::State {
         &self.shared.large
     }
 
-    /// The same, to choose among estimators.
+    /// State of the large motor's estimator, to choose among estimators.
     pub const fn large_mut(&mut self) -> &mut L::State {
         &mut self.shared.large
     }
@@ -101,8 +143,7 @@ where
     /// State at the first sample, with [`Off`]; angles count from there.
     pub fn start(&self, first: &Sample) -> SwitchboardState<L, H> {
         SwitchboardState {
-            scene: AnyScene::Off(Off),
-            scene_state: SceneState::Nothing,
+            active: Active::Off(Off, ()),
             shared: Shared {
                 large: self.large.start(first),
                 continuous: self.rig.continuous.start(RadPerS(0.0)),
@@ -117,7 +158,7 @@ where
         }
     }
 
-    /// Begins again at this sample, as at the first; the choice among estimators stays.
+    /// Starts again at this sample, as at the first. The choice among estimators stays.
     pub fn restart(&self, state: &mut SwitchboardState<L, H>, first: &Sample) {
         let mut fresh = self.start(first);
         self.large.restart(&mut state.shared.large, first);
@@ -125,66 +166,28 @@ where
         *state = fresh;
     }
 
-    /// Swaps the scene before the next tick; `sample` is the latest.
+    /// Changes the scene before the next tick; `sample` is the latest sample.
     pub fn select(&self, state: &mut SwitchboardState<L, H>, scene: AnyScene, sample: &Sample) {
         let angle = self.rig.angle.of(sample.small - state.origin);
-        state.scene_state = match &scene {
-            AnyScene::Texture(texture) => SceneState::Phase(texture.start(angle)),
-            AnyScene::Hold(hold) => SceneState::Start(hold.start(angle)),
-            AnyScene::Excite(excite) => SceneState::Excite(excite.start(angle)),
-            _ => SceneState::Nothing,
-        };
-        state.scene = scene;
+        state.active = Active::start(scene, angle);
         state.swapped = true;
     }
 
-    /// Changes the parameters of the scene that is on, before the next tick: what it carries from
-    /// tick to tick goes on. Another scene than the one that is on is not taken.
+    /// Changes the parameters of the scene that is on, before the next tick. The scene's state
+    /// continues. If another scene is on, nothing changes.
     pub fn retune(&self, state: &mut SwitchboardState<L, H>, scene: AnyScene) {
-        if core::mem::discriminant(&state.scene) == core::mem::discriminant(&scene) {
-            state.scene = scene;
-            state.swapped = true;
-        }
+        state.swapped |= state.active.retune(scene);
     }
 
     /// One tick.
     pub fn step(&self, state: &mut SwitchboardState<L, H>, sample: &Sample) -> Action {
-        let SwitchboardState {
-            scene,
-            scene_state,
-            shared,
-            origin,
-            ..
-        } = state;
-        let angle = self.rig.angle.of(sample.small - *origin);
-        let mut action = match (scene, scene_state) {
-            (AnyScene::FreeAir(scene), _) => self.run(scene, &mut (), shared, angle, sample),
-            (AnyScene::Wall(scene), _) => self.run(scene, &mut (), shared, angle, sample),
-            (AnyScene::SpringDamper(scene), _) => self.run(scene, &mut (), shared, angle, sample),
-            (AnyScene::Viscous(scene), _) => self.run(scene, &mut (), shared, angle, sample),
-            (AnyScene::Detents(scene), _) => self.run(scene, &mut (), shared, angle, sample),
-            (AnyScene::Torque(scene), _) => self.run(scene, &mut (), shared, angle, sample),
-            (AnyScene::Inertia(scene), _) => self.run(scene, &mut (), shared, angle, sample),
-            (AnyScene::Texture(scene), SceneState::Phase(phase)) => {
-                self.run(scene, phase, shared, angle, sample)
-            }
-            (AnyScene::Hold(scene), SceneState::Start(start)) => {
-                self.run(scene, start, shared, angle, sample)
-            }
-            (AnyScene::Excite(scene), SceneState::Excite(state)) => {
-                self.run(scene, state, shared, angle, sample)
-            }
-            // A scene whose state is another's cannot come from `select`; it is off.
-            (
-                AnyScene::Off(_) | AnyScene::Texture(_) | AnyScene::Hold(_) | AnyScene::Excite(_),
-                _,
-            ) => self.run(&Off, &mut (), shared, angle, sample),
-        };
+        let angle = self.rig.angle.of(sample.small - state.origin);
+        let mut action = self.run_active(&mut state.active, &mut state.shared, angle, sample);
         action.currents = self.faded(state, action.currents);
         action
     }
 
-    /// The currents with what is left of the last swap's difference, within their limits.
+    /// The currents plus the rest of the difference at the last change of scenes, within the limits.
     fn faded(&self, state: &mut SwitchboardState<L, H>, wanted: Currents) -> Currents {
         let wanted = [wanted.large.get(), wanted.small.get()];
         let before = [state.applied.large.get(), state.applied.small.get()];

@@ -1,14 +1,12 @@
-//! Parameters of scenes, changed while they run: one at a time, within bounds.
+//! Parameters of scenes: names, quantities, bounds, and how one of them is changed.
+
+use core::ops::RangeInclusive;
 
 use estimator_core::Hertz;
 
-use crate::scene::{
-    Detents, Excite, FreeAir, Hold, Inertia, Off, Scene, SpringDamper, Texture, Torque, Viscous,
-    Wall,
-};
-use crate::units::Radians;
+use crate::scene::{Inertia, Scene};
 
-/// What parameters may be; a scene is built for them anew or not at all.
+/// Limits of scene parameters on one device at one control rate.
 ///
 /// ```
 /// use estimator_core::*;
@@ -38,165 +36,168 @@ pub struct Bounds {
     pub rate: Hertz,
 }
 
+/// The quantity of a parameter: it determines unit and bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Angle, to either side.
+    Angle,
+    /// Stiffness.
+    Stiffness,
+    /// Damping.
+    Damping,
+    /// Torque, to either side.
+    Torque,
+    /// Amplitude of a torque, or a torque that opposes a motion.
+    Amplitude,
+    /// Detents in a turn, a whole number.
+    DetentsPerTurn,
+    /// Frequency of a vibration.
+    Frequency,
+    /// Inertia that is added to the handle's own or taken away.
+    Inertia,
+}
+
+impl Quantity {
+    /// Name of the SI unit; empty for a number.
+    #[must_use]
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Angle => "rad",
+            Self::Stiffness => "N·m/rad",
+            Self::Damping => "N·m·s/rad",
+            Self::Torque | Self::Amplitude => "N·m",
+            Self::DetentsPerTurn => "",
+            Self::Frequency => "Hz",
+            Self::Inertia => "kg·m²",
+        }
+    }
+
+    /// Smallest and largest value. A scene may refuse values in this range, for what they amount to
+    /// together with its other parameters.
+    #[must_use]
+    pub fn range(self, bounds: &Bounds) -> RangeInclusive<f32> {
+        let (least, most) = match self {
+            Self::Angle => (-bounds.angle, bounds.angle),
+            Self::Stiffness => (0.0, bounds.stiffness),
+            Self::Damping => (0.0, bounds.damping),
+            Self::Torque => (-bounds.torque, bounds.torque),
+            Self::Amplitude => (0.0, bounds.torque),
+            Self::DetentsPerTurn => (1.0, 1000.0),
+            Self::Frequency => (50.0, 300.0),
+            Self::Inertia => {
+                let largest = Inertia::LARGEST_PART * bounds.inertia;
+                (-largest, largest)
+            }
+        };
+        least..=most
+    }
+}
+
+/// A parameter of a scene. Its number is its place among the scene's parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parameter {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// Quantity.
+    pub quantity: Quantity,
+}
+
 /// Why a parameter was not set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// The value is no finite number.
+    /// The value is not a finite number.
     NotFinite,
-    /// The value is outside what the device renders safely.
+    /// The value is outside the bounds within which the device renders the scene safely.
     OutOfBounds,
-    /// There is no such scene or parameter.
+    /// The scene or the parameter does not exist.
     Unknown,
 }
 
 /// A scene whose parameters have numbers.
 pub trait Tunable: Scene + Copy {
-    /// Names of the parameters, in the order of their numbers.
-    const PARAMETERS: &'static [&'static str];
+    /// Parameters, in the order of their numbers.
+    const PARAMETERS: &'static [Parameter];
 
     /// This scene with parameter number `parameter` set to `value`.
     ///
     /// # Errors
     /// [`Refusal`]: the scene stays as it was.
     fn tuned(&self, parameter: u8, value: f32, bounds: &Bounds) -> Result<Self, Refusal> {
-        if usize::from(parameter) >= Self::PARAMETERS.len() {
-            Err(Refusal::Unknown)
-        } else if !value.is_finite() {
+        let Some(known) = Self::PARAMETERS.get(usize::from(parameter)) else {
+            return Err(Refusal::Unknown);
+        };
+        if !value.is_finite() {
             Err(Refusal::NotFinite)
+        } else if !known.quantity.range(bounds).contains(&value) {
+            Err(Refusal::OutOfBounds)
         } else {
-            self.set(parameter, value, bounds)
+            self.with(parameter, value, bounds)
                 .ok_or(Refusal::OutOfBounds)
         }
     }
 
-    /// The same for a known parameter and a finite value; `None` out of bounds.
+    /// The value of parameter number `parameter` at this control rate, if the scene has it.
+    fn value(&self, parameter: u8, rate: Hertz) -> Option<f32>;
+
+    /// This scene with another value of a known parameter, within the range of its quantity;
+    /// `None` if the scene refuses the value.
     #[doc(hidden)]
-    fn set(&self, parameter: u8, value: f32, bounds: &Bounds) -> Option<Self>;
+    fn with(&self, parameter: u8, value: f32, bounds: &Bounds) -> Option<Self>;
 }
 
-/// `value`, if it is at least zero and at most `largest`.
-fn gain(value: f32, largest: f32) -> Option<f32> {
-    (value >= 0.0 && value <= largest).then_some(value)
-}
+/// Implements [`Tunable`]: a line per parameter with its name, its quantity, the expression of its
+/// value, and the scene with another value of it.
+macro_rules! parameters {
+    ($scene:ident) => {
+        impl crate::tuning::Tunable for $scene {
+            const PARAMETERS: &'static [crate::tuning::Parameter] = &[];
 
-/// `value`, if it is at most `largest` to either side.
-fn signed(value: f32, largest: f32) -> Option<f32> {
-    (value >= -largest && value <= largest).then_some(value)
-}
+            fn value(&self, _: u8, _: estimator_core::Hertz) -> Option<f32> {
+                None
+            }
 
-impl Tunable for Off {
-    const PARAMETERS: &'static [&'static str] = &[];
-
-    fn set(&self, _: u8, _: f32, _: &Bounds) -> Option<Self> {
-        None
-    }
-}
-
-impl Tunable for FreeAir {
-    const PARAMETERS: &'static [&'static str] = &[];
-
-    fn set(&self, _: u8, _: f32, _: &Bounds) -> Option<Self> {
-        None
-    }
-}
-
-impl Tunable for Wall {
-    const PARAMETERS: &'static [&'static str] = &["position", "stiffness", "damping"];
-
-    fn set(&self, parameter: u8, value: f32, bounds: &Bounds) -> Option<Self> {
-        let (mut position, [mut stiffness, mut damping]) = self.parameters();
-        match parameter {
-            0 => position = Radians(signed(value, bounds.angle)?),
-            1 => stiffness = gain(value, bounds.stiffness)?,
-            _ => damping = gain(value, bounds.damping)?,
+            fn with(&self, _: u8, _: f32, _: &crate::tuning::Bounds) -> Option<Self> {
+                None
+            }
         }
-        Self::new(position, stiffness, damping).ok()
-    }
-}
+    };
+    ($scene:ident, |$this:ident, $value:ident, $bounds:ident, $rate:ident| {
+        $($name:literal: $quantity:ident = $get:expr, $with:expr;)+
+    }) => {
+        impl crate::tuning::Tunable for $scene {
+            const PARAMETERS: &'static [crate::tuning::Parameter] = &[$(
+                crate::tuning::Parameter {
+                    name: $name,
+                    quantity: crate::tuning::Quantity::$quantity,
+                }
+            ),+];
 
-impl Tunable for SpringDamper {
-    const PARAMETERS: &'static [&'static str] = &["centre", "stiffness", "damping"];
+            fn value(&self, parameter: u8, $rate: estimator_core::Hertz) -> Option<f32> {
+                let ($this, _) = (self, $rate);
+                [$($get),+].get(usize::from(parameter)).copied()
+            }
 
-    fn set(&self, parameter: u8, value: f32, bounds: &Bounds) -> Option<Self> {
-        let (mut centre, [mut stiffness, mut damping]) = self.parameters();
-        match parameter {
-            0 => centre = Radians(signed(value, bounds.angle)?),
-            1 => stiffness = gain(value, bounds.stiffness)?,
-            _ => damping = gain(value, bounds.damping)?,
+            #[allow(unused_assignments, reason = "nothing follows the last number")]
+            fn with(
+                &self,
+                parameter: u8,
+                $value: f32,
+                $bounds: &crate::tuning::Bounds,
+            ) -> Option<Self> {
+                let $this = self;
+                let $rate = $bounds.rate;
+                // Not every scene reads all of them.
+                let _ = ($this, $rate);
+                let mut number = 0;
+                $(
+                    if parameter == number {
+                        return $with.ok();
+                    }
+                    number += 1;
+                )+
+                None
+            }
         }
-        Self::new(centre, stiffness, damping).ok()
-    }
+    };
 }
-
-impl Tunable for Viscous {
-    const PARAMETERS: &'static [&'static str] = &["damping"];
-
-    fn set(&self, _: u8, value: f32, bounds: &Bounds) -> Option<Self> {
-        Self::new(gain(value, bounds.damping)?).ok()
-    }
-}
-
-impl Tunable for Detents {
-    const PARAMETERS: &'static [&'static str] = &["amplitude", "per-turn"];
-
-    fn set(&self, parameter: u8, value: f32, bounds: &Bounds) -> Option<Self> {
-        let (mut amplitude, mut per_rev) = self.parameters();
-        match parameter {
-            0 => amplitude = gain(value, bounds.torque)?,
-            _ => per_rev = gain(value, f32::from(u16::MAX))?,
-        }
-        // The slope at a detent is a stiffness like any other.
-        gain(amplitude * per_rev, bounds.stiffness)?;
-        let whole = per_rev as u16;
-        (f32::from(whole) == per_rev).then_some(())?;
-        Self::new(amplitude, whole).ok()
-    }
-}
-
-impl Tunable for Texture {
-    const PARAMETERS: &'static [&'static str] = &["amplitude", "frequency"];
-
-    fn set(&self, parameter: u8, value: f32, bounds: &Bounds) -> Option<Self> {
-        match parameter {
-            0 => Some(self.with_amplitude(gain(value, bounds.torque)?)),
-            _ => Self::new(self.amplitude(), Hertz(f64::from(value)), bounds.rate).ok(),
-        }
-    }
-}
-
-impl Tunable for Hold {
-    const PARAMETERS: &'static [&'static str] = &["stiffness", "damping"];
-
-    fn set(&self, parameter: u8, value: f32, bounds: &Bounds) -> Option<Self> {
-        let [mut stiffness, mut damping] = self.parameters();
-        match parameter {
-            0 => stiffness = gain(value, bounds.stiffness)?,
-            _ => damping = gain(value, bounds.damping)?,
-        }
-        Self::new(stiffness, damping).ok()
-    }
-}
-
-impl Tunable for Torque {
-    const PARAMETERS: &'static [&'static str] = &["torque"];
-
-    fn set(&self, _: u8, value: f32, bounds: &Bounds) -> Option<Self> {
-        Self::new(signed(value, bounds.torque)?).ok()
-    }
-}
-
-impl Tunable for Excite {
-    const PARAMETERS: &'static [&'static str] = &[];
-
-    fn set(&self, _: u8, _: f32, _: &Bounds) -> Option<Self> {
-        None
-    }
-}
-
-impl Tunable for Inertia {
-    const PARAMETERS: &'static [&'static str] = &["inertia"];
-
-    fn set(&self, _: u8, value: f32, bounds: &Bounds) -> Option<Self> {
-        Self::new(value, bounds.inertia).ok()
-    }
-}
+pub(crate) use parameters;

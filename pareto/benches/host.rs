@@ -9,7 +9,7 @@ use bench_image::{SUBJECTS, Subject};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box, black_box_drop};
 use estimator_core::Sample;
-use experiments::closed_loop::SceneName;
+use haptic_control::SceneKind;
 use pareto::traces::{self, Ground};
 use simulation::device::Device;
 use simulation::scenario::ScenarioName;
@@ -17,7 +17,6 @@ use simulation::simulate::simulate;
 use simulation::trace::Columns;
 use virtual_board::image::Image;
 use virtual_board::run::{Setup, on_board};
-use virtual_board::scene::ImageScene;
 
 fn main() {
     divan::main();
@@ -72,7 +71,7 @@ fn host_sim(bencher: Bencher<'_, '_>, rate_hz: u32) {
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn virtual_board(bencher: Bencher<'_, '_>) {
     let image = Image::build("").expect("the firmware builds");
-    let scene = ImageScene::Host(SceneName::FreeAir);
+    let scene = SceneKind::FreeAir;
     bencher
         .counter(ItemsCount::new(10_000_u32))
         .bench_local(|| on_board(&image, &Setup::playing(scene, 1.0), |_| ()).expect("a run"));

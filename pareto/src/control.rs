@@ -4,13 +4,12 @@
 pub mod plot;
 pub mod table;
 
-use experiments::closed_loop::SceneName;
+use haptic_control::SceneKind;
 use rayon::prelude::*;
 use serde::Serialize;
 use virtual_board::budget::{self, Budget, highest_rate_hz};
 use virtual_board::image::Image;
 use virtual_board::run::Setup;
-use virtual_board::scene::ImageScene;
 
 use crate::measure::Row;
 
@@ -45,7 +44,7 @@ pub struct Task {
 }
 
 impl Task {
-    fn new(scene: ImageScene, estimator: &'static str, budget: &Budget) -> Self {
+    fn new(scene: SceneKind, estimator: &'static str, budget: &Budget) -> Self {
         Self {
             scene: scene.to_string(),
             estimator,
@@ -64,14 +63,6 @@ impl Task {
     }
 }
 
-fn asks_for_velocity(scene: ImageScene) -> bool {
-    match scene {
-        ImageScene::Host(SceneName::Excite) => false,
-        ImageScene::Host(scene) => scene.asks_for_velocity(),
-        ImageScene::Torque => true,
-    }
-}
-
 /// Measures every scene of every image.
 ///
 /// # Errors
@@ -83,14 +74,14 @@ pub fn measure() -> Result<Vec<Task>, String> {
         .collect();
     let images = images?;
     let mut jobs = Vec::new();
-    for scene in ImageScene::all() {
-        if asks_for_velocity(scene) {
+    for scene in SceneKind::ALL {
+        if scene.facts().needs.continuous {
             jobs.extend(images.iter().map(|(name, image)| (scene, *name, image)));
         } else {
             jobs.push((scene, NONE, &images[0].1));
         }
     }
-    let task = |(scene, estimator, image): (ImageScene, &'static str, &Image)| {
+    let task = |(scene, estimator, image): (SceneKind, &'static str, &Image)| {
         let budget = budget::measure(image, &Setup::playing(scene, SECONDS))
             .map_err(|error| format!("{scene} with {estimator}: {error}"))?;
         Ok(Task::new(scene, estimator, &budget))

@@ -4,12 +4,12 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
+use haptic_control::SceneKind;
 use terminal::failure::Failure;
 
 use crate::board::CORE_HZ;
 use crate::image::Image;
 use crate::run::{Outcome, RATE_HZ, Setup, Tick, on_board};
-use crate::scene::ImageScene;
 use crate::score::Range;
 
 /// Part of the core's cycles that the control task may take.
@@ -106,7 +106,7 @@ pub(crate) fn share(cost: Range) -> String {
     format!("{mean:.1} % in the mean, {most:.1} % at most, at one cycle an instruction")
 }
 
-/// A line a scene, each run for `seconds` by whoever plays with it.
+/// One line per scene, each run for `seconds` with the hand that tries it.
 ///
 /// # Errors
 /// As [`measure`].
@@ -126,7 +126,7 @@ pub(crate) fn table(image: &Image, seconds: f64, seed: u64) -> Result<String, Fa
         "mean",
         "most"
     );
-    for scene in ImageScene::all() {
+    for scene in SceneKind::ALL {
         let setup = Setup {
             seed,
             ..Setup::playing(scene, seconds)
@@ -139,7 +139,7 @@ pub(crate) fn table(image: &Image, seconds: f64, seed: u64) -> Result<String, Fa
         let _ = writeln!(
             text,
             "{:<16}{min:>7}{mean:>8.0}{max:>8}{:>11.0}{:>8.0}{often:>10.1}{always:>8.1}",
-            scene.to_string(),
+            scene.name(),
             cycles[0],
             cycles[1]
         );

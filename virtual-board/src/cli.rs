@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use experiments::closed_loop::Hand;
+use haptic_control::SceneKind;
 use indicatif::{ProgressBar, ProgressStyle};
 use terminal::failure::Failure;
 use terminal::output::{print_bytes, write_whole};
@@ -15,7 +16,7 @@ use crate::command::Command;
 use crate::fault::Fault;
 use crate::image::{HOW_TO_BUILD, Image};
 use crate::run::{Setup, on_board};
-use crate::scene::ImageScene;
+use crate::scene;
 use crate::summary::summary;
 
 /// Where cargo puts the image.
@@ -32,8 +33,8 @@ const IMAGE: &str = concat!(
 #[command(name = "cargo board", bin_name = "cargo board", version, after_help = after_help())]
 struct Arguments {
     /// Scene that the image is told to render
-    #[arg(long, default_value = "free-air", value_parser = str::parse::<ImageScene>)]
-    scene: ImageScene,
+    #[arg(long, default_value = "free-air", value_parser = scene::named)]
+    scene: SceneKind,
     /// Sets a parameter of the scene at S seconds, as stiffness=0.2@1.5; the set-point of the scene
     /// torque is torque=0.01@1; may be given more than once
     #[arg(long, value_name = "NAME=VALUE@S", value_parser = timed::<String>)]
@@ -159,9 +160,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         .clone()
         .unwrap_or_else(|| PathBuf::from(IMAGE));
     let scene = arguments.scene;
-    let mut commands = vec![(0.05, scene.select()), (0.1, Command::Arm)];
+    let mut commands = vec![(0.05, Command::Scene(scene)), (0.1, Command::Arm)];
     for (at, what) in &arguments.tune {
-        commands.push((*at, scene.tune(what)?));
+        commands.push((*at, scene::tune(scene, what)?));
     }
     let choices = arguments.estimator.iter();
     commands.extend(choices.map(|(at, number)| (*at, Command::Estimator(number.0))));
@@ -176,7 +177,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     let setup = Setup {
         hand: match arguments.hand {
             Holder::Hand(hand) => hand,
-            Holder::Pressing => scene.press(),
+            Holder::Pressing => scene::press(scene),
         },
         seed: arguments.seed,
         seconds: arguments.seconds,

@@ -1,11 +1,8 @@
-//! Commands to the firmware, as they go into RTT down channel 0.
+//! Commands to the firmware, as they are written to RTT down channel 0.
 
-use experiments::closed_loop::SceneName;
+use haptic_control::SceneKind;
 
-/// Number of the scene of the torque set-point, which the host simulation does not have.
-pub const TORQUE_SCENE: u8 = 8;
-
-/// Something to tell the firmware.
+/// A command to the firmware.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
     /// Enable the amplifiers.
@@ -13,12 +10,10 @@ pub enum Command {
     /// Disable the amplifiers.
     Disarm,
     /// Change the scene.
-    Scene(SceneName),
-    /// Change to the scene of the torque set-point.
-    TorqueScene,
+    Scene(SceneKind),
     /// A torque set-point, N.m.
     Torque(f32),
-    /// Somebody is still there.
+    /// The host is still connected.
     KeepAlive,
     /// Set a parameter of a scene, both by their numbers.
     Tune {
@@ -34,8 +29,8 @@ pub enum Command {
 }
 
 impl Command {
-    /// Start byte, kind, payload, checksum: written from docs/telemetry.md, not shared with the
-    /// firmware, so that each checks the other.
+    /// Start byte, kind, payload and checksum by docs/telemetry.md. The firmware has its own
+    /// implementation, so that each checks the other.
     #[must_use]
     pub fn encode(self) -> [u8; 11] {
         let mut bytes = [0; 11];
@@ -43,15 +38,14 @@ impl Command {
         bytes[1] = match self {
             Self::Arm => 1,
             Self::Disarm => 2,
-            Self::Scene(_) | Self::TorqueScene => 3,
+            Self::Scene(_) => 3,
             Self::Torque(_) => 4,
             Self::KeepAlive => 5,
             Self::Tune { .. } => 6,
             Self::Estimator(_) => 7,
         };
         match self {
-            Self::Scene(scene) => bytes[2] = number(scene),
-            Self::TorqueScene => bytes[2] = TORQUE_SCENE,
+            Self::Scene(scene) => bytes[2] = scene.number(),
             Self::Torque(torque) => bytes[2..6].copy_from_slice(&torque.to_le_bytes()),
             Self::Tune {
                 scene,
@@ -66,23 +60,6 @@ impl Command {
         }
         bytes[10] = crc8(&bytes[1..10]);
         bytes
-    }
-}
-
-/// Number of a scene; parameters do not matter.
-#[must_use]
-pub const fn number(scene: SceneName) -> u8 {
-    match scene {
-        SceneName::Off => 0,
-        SceneName::FreeAir => 1,
-        SceneName::Wall(..) => 2,
-        SceneName::SpringDamper(..) => 3,
-        SceneName::Viscous(..) => 4,
-        SceneName::Detents(..) => 5,
-        SceneName::Texture(..) => 6,
-        SceneName::Hold(..) => 7,
-        SceneName::Inertia(..) => 9,
-        SceneName::Excite => 10,
     }
 }
 
@@ -104,15 +81,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_checksum_is_that_of_the_catalogue() {
+    fn the_checksum_is_crc_8() {
         assert_eq!(crc8(b"123456789"), 0xF4);
     }
 
     #[test]
-    fn scenes_are_numbered_as_the_firmware_numbers_them() {
-        let wall = Command::Scene(SceneName::ALL[2]).encode();
-        assert_eq!(wall[..3], [0xA5, 3, 2]);
-        assert_eq!(Command::TorqueScene.encode()[..3], [0xA5, 3, 8]);
+    fn scenes_have_the_numbers_of_the_documented_table() {
+        for (scene, number) in [
+            (SceneKind::Off, 0),
+            (SceneKind::Wall, 2),
+            (SceneKind::Torque, 8),
+            (SceneKind::Excite, 10),
+        ] {
+            let command = Command::Scene(scene).encode();
+            assert_eq!(command[..3], [0xA5, 3, number], "{scene}");
+        }
     }
 
     #[test]

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
 
+use haptic_control::SceneKind;
 use object::read::Symbol;
 use object::{Object, ObjectSection, ObjectSymbol};
 
@@ -70,6 +71,18 @@ impl Image {
     /// # Errors
     /// One line if cargo cannot build it.
     pub fn build(features: &str) -> Result<Self, String> {
+        Self::build_with(features, None)
+    }
+
+    /// Builds and reads the image of one scene alone.
+    ///
+    /// # Errors
+    /// As [`Self::build`].
+    pub fn build_one(scene: SceneKind) -> Result<Self, String> {
+        Self::build_with("", Some(scene))
+    }
+
+    fn build_with(features: &str, scene: Option<SceneKind>) -> Result<Self, String> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
         let target: PathBuf = root.join("target/firmware-image");
         let triple = "thumbv7em-none-eabihf";
@@ -80,10 +93,14 @@ impl Image {
             .args(["--package", "firmware", "--features", features])
             .args(["--target", triple, "--target-dir"])
             .arg(&target)
+            .env("SCENE", scene.map_or("", SceneKind::name))
             .status()
             .map_err(|error| format!("cargo does not start: {error}"))?;
         if !status.success() {
-            return Err(format!("firmware with '{features}' does not build"));
+            let scene = scene.map_or("all scenes", SceneKind::name);
+            return Err(format!(
+                "firmware with '{features}' and {scene} does not build"
+            ));
         }
         Self::read(&target.join(triple).join("firmware/firmware"))
     }

@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use std::num::NonZeroU64;
 use std::time::{Duration, Instant};
 
-use experiments::closed_loop::{Hand, SceneName};
+use experiments::closed_loop::Hand;
+use haptic_control::SceneKind;
 use recordings::telemetry::{Frame, Telemetry};
 use rigless::emulator::{Start, run};
 use rigless::session::Session;
@@ -20,7 +21,7 @@ use crate::image::Image;
 pub use crate::lockstep::CoreAccess;
 use crate::lockstep::Lockstep;
 use crate::objections;
-use crate::scene::ImageScene;
+use crate::scene;
 
 /// Control rate of the image, Hz.
 pub const RATE_HZ: f64 = 10e3;
@@ -72,7 +73,7 @@ impl Default for Setup {
             seconds: 1.0,
             faults: Vec::new(),
             commands: vec![
-                (0.05, Command::Scene(SceneName::FreeAir)),
+                (0.05, Command::Scene(SceneKind::FreeAir)),
                 (0.1, Command::Arm),
             ],
             garbage: Vec::new(),
@@ -89,13 +90,13 @@ impl Default for Setup {
 }
 
 impl Setup {
-    /// A scene from the start, put on and armed in the first 0.1 s, by whoever plays with it.
+    /// A scene, selected and armed in the first 0.1 s, with the hand that tries it.
     #[must_use]
-    pub fn playing(scene: ImageScene, seconds: f64) -> Self {
+    pub fn playing(scene: SceneKind, seconds: f64) -> Self {
         Self {
-            hand: scene.hand(),
+            hand: scene::hand(scene),
             seconds,
-            commands: vec![(0.05, scene.select()), (0.1, Command::Arm)],
+            commands: vec![(0.05, Command::Scene(scene)), (0.1, Command::Arm)],
             ..Self::default()
         }
     }

@@ -1,180 +1,129 @@
-//! What the image can be told to render, by name.
+//! Scenes of the image: the hand that tries them, and the commands that set their parameters.
 
-use std::fmt;
-use std::str::FromStr;
-
-use experiments::closed_loop::{Hand, Press, SceneName};
-use haptic_control::{
-    Detents, Hold, Inertia, SpringDamper, Texture, Torque, Tunable, Viscous, Wall,
-};
+use estimator_core::Hertz;
+use experiments::closed_loop::{Hand, Press};
+use haptic_control::{DualStage, SceneKind, SimulatedHand};
 use simulation::device::Device;
+use terminal::wording::unknown;
 
-use crate::command::{Command, number};
+use crate::command::Command;
 
-/// A scene of the image.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ImageScene {
-    /// One that the host simulation has too.
-    Host(SceneName),
-    /// The torque set-point.
-    Torque,
+/// The scene of this name.
+///
+/// # Errors
+/// One line with all names.
+pub fn named(name: &str) -> Result<SceneKind, String> {
+    SceneKind::named(name)
+        .ok_or_else(|| unknown("scene", name, SceneKind::ALL.iter().map(|kind| kind.name())))
 }
 
-impl FromStr for ImageScene {
-    type Err = String;
-
-    fn from_str(name: &str) -> Result<Self, String> {
-        match name {
-            "torque" => Ok(Self::Torque),
-            _ => name
-                .parse()
-                .map(Self::Host)
-                .map_err(|error| format!("{error}, torque")),
-        }
+/// The simulated hand that tries a scene.
+#[must_use]
+pub fn hand(scene: SceneKind) -> Hand {
+    match scene.facts().hand {
+        SimulatedHand::FreeMotion => Hand::Moving,
+        SimulatedHand::WallPress => Hand::Pushing,
+        SimulatedHand::HoldStill => Hand::Still,
     }
 }
 
-impl fmt::Display for ImageScene {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Host(scene) => f.write_str(scene.as_str()),
-            Self::Torque => f.write_str("torque"),
-        }
-    }
+/// A finger that presses with 10 N, if the scene resists: it moves into the scene as far as the
+/// scene's stiffness asks for, and further by the compliance of the hand.
+#[must_use]
+pub fn press(scene: SceneKind) -> Hand {
+    let device = Device::default();
+    let torque = 10.0 * 0.5 * device.handle.diameter_m;
+    // A scene without a stiffness is pressed as far as the wall.
+    let stiffness = stiffness(scene).or_else(|| stiffness(SceneKind::Wall));
+    let stiffness = f64::from(stiffness.expect("a wall has a stiffness"));
+    let compliance = torque / stiffness + torque / device.hand.stiffness_nm_per_rad;
+    Hand::Pressing(Press {
+        // The wall begins at 0.1 rad.
+        angle: 0.1 + compliance,
+        moving_s: 0.8,
+        rest_s: 0.6,
+    })
 }
 
-impl ImageScene {
-    /// All of them.
-    pub fn all() -> impl Iterator<Item = Self> {
-        let hosts = SceneName::ALL.into_iter().chain([SceneName::Excite]);
-        hosts.map(Self::Host).chain([Self::Torque])
-    }
+/// The usual stiffness of a scene, N·m/rad, if it has one.
+#[must_use]
+pub fn stiffness(scene: SceneKind) -> Option<f32> {
+    const RATE: Hertz = Hertz(10e3);
+    let usual = scene.usual(&DualStage::DEFAULT, RATE).ok()?;
+    usual.value(scene.parameter("stiffness")?, RATE)
+}
 
-    /// The command that puts it on.
-    #[must_use]
-    pub fn select(self) -> Command {
-        match self {
-            Self::Host(scene) => Command::Scene(scene),
-            Self::Torque => Command::TorqueScene,
-        }
-    }
-
-    /// Who plays with it.
-    #[must_use]
-    pub const fn hand(self) -> Hand {
-        match self {
-            Self::Host(SceneName::Wall(..)) => Hand::Pushing,
-            Self::Host(SceneName::Hold(..)) => Hand::Still,
-            _ => Hand::Moving,
-        }
-    }
-
-    /// A finger that would press with 10 N, had the scene as much to set against it: it goes as far
-    /// into the scene as its stiffness asks for, and further by what the hand itself gives way.
-    #[must_use]
-    pub fn press(self) -> Hand {
-        let device = Device::default();
-        let torque = 10.0 * 0.5 * device.handle.diameter_m;
-        let stiffness = match self {
-            Self::Host(
-                SceneName::Wall(stiffness, _)
-                | SceneName::SpringDamper(stiffness, _)
-                | SceneName::Hold(stiffness, _),
-            ) => f64::from(stiffness),
-            // As far as into a wall, whatever is there.
-            _ => 0.30,
-        };
-        let given_way = torque / stiffness + torque / device.hand.stiffness_nm_per_rad;
-        Hand::Pressing(Press {
-            // The wall begins there.
-            angle: 0.1 + given_way,
-            moving_s: 0.8,
-            rest_s: 0.6,
-        })
-    }
-
-    /// Names of its parameters, in the order of their numbers.
-    #[must_use]
-    pub fn parameters(self) -> &'static [&'static str] {
-        match self {
-            Self::Host(SceneName::Off | SceneName::FreeAir | SceneName::Excite) => &[],
-            Self::Host(SceneName::Wall(..)) => Wall::PARAMETERS,
-            Self::Host(SceneName::SpringDamper(..)) => SpringDamper::PARAMETERS,
-            Self::Host(SceneName::Viscous(..)) => Viscous::PARAMETERS,
-            Self::Host(SceneName::Detents(..)) => Detents::PARAMETERS,
-            Self::Host(SceneName::Texture(..)) => Texture::PARAMETERS,
-            Self::Host(SceneName::Hold(..)) => Hold::PARAMETERS,
-            Self::Host(SceneName::Inertia(..)) => Inertia::PARAMETERS,
-            Self::Torque => Torque::PARAMETERS,
-        }
-    }
-
-    /// The command that sets a parameter, from text as `stiffness=0.2`. Whether the value is in
-    /// bounds is for the image to say.
-    ///
-    /// # Errors
-    /// One line on another text, or a name that is none of its parameters.
-    pub fn tune(self, text: &str) -> Result<Command, String> {
-        let (name, value) = text
-            .split_once('=')
-            .ok_or_else(|| format!("--tune {text}: give it as stiffness=0.2@1.5"))?;
-        let parameters = self.parameters();
-        let parameter = parameters.iter().position(|known| *known == name);
-        let parameter = parameter.ok_or_else(|| match parameters {
-            [] => format!("--tune {text}: {self} has no parameters"),
-            _ => format!("--tune {text}: {self} has {}", parameters.join(", ")),
-        })? as u8;
-        let value = value
-            .parse()
-            .map_err(|_| format!("--tune {text}: '{value}' is no number"))?;
-        Ok(match self {
-            Self::Torque => Command::Torque(value),
-            Self::Host(scene) => Command::Tune {
-                scene: number(scene),
-                parameter,
-                value,
-            },
-        })
-    }
+/// The command that sets a parameter, from text as `stiffness=0.2`. The image checks whether the
+/// value is in bounds.
+///
+/// # Errors
+/// One line on another text, or a name that is not one of the scene's parameters.
+pub fn tune(scene: SceneKind, text: &str) -> Result<Command, String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or_else(|| format!("--tune {text}: give it as stiffness=0.2@1.5"))?;
+    let parameters: Vec<_> = (scene.facts().parameters.iter())
+        .map(|parameter| parameter.name)
+        .collect();
+    let parameter = scene.parameter(name).ok_or_else(|| match &*parameters {
+        [] => format!("--tune {text}: {scene} has no parameters"),
+        _ => format!("--tune {text}: {scene} has {}", parameters.join(", ")),
+    })?;
+    let value = value
+        .parse()
+        .map_err(|_| format!("--tune {text}: '{value}' is no number"))?;
+    Ok(match scene {
+        SceneKind::Torque => Command::Torque(value),
+        _ => Command::Tune {
+            scene: scene.number(),
+            parameter,
+            value,
+        },
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::TORQUE_SCENE;
 
     #[test]
-    fn what_is_typed_becomes_a_command_or_a_reason() {
-        let wall: ImageScene = "wall".parse().unwrap();
-        let tune = Command::Tune {
+    fn text_becomes_a_command_or_an_error() {
+        let wall = named("wall").unwrap();
+        let command = Command::Tune {
             scene: 2,
             parameter: 1,
             value: 0.2,
         };
-        assert_eq!(wall.tune("stiffness=0.2"), Ok(tune));
-        assert_eq!(
-            ImageScene::Torque.tune("torque=-0.01"),
-            Ok(Command::Torque(-0.01))
-        );
-        assert_eq!(TORQUE_SCENE, 8);
+        assert_eq!(tune(wall, "stiffness=0.2"), Ok(command));
+        let torque = tune(SceneKind::Torque, "torque=-0.01");
+        assert_eq!(torque, Ok(Command::Torque(-0.01)));
         for (text, said) in [
             ("stiffness", "give it as"),
             ("softness=1", "wall has position, stiffness, damping"),
             ("stiffness=soft", "'soft' is no number"),
         ] {
-            assert!(wall.tune(text).unwrap_err().contains(said), "{text}");
+            assert!(tune(wall, text).unwrap_err().contains(said), "{text}");
         }
-        assert!(
-            "tarpit"
-                .parse::<ImageScene>()
-                .unwrap_err()
-                .ends_with(", torque")
-        );
-        for scene in SceneName::ALL {
-            assert_eq!(
-                ImageScene::Host(scene).to_string().parse(),
-                Ok(ImageScene::Host(scene))
-            );
+        let off = tune(SceneKind::Off, "torque=1").unwrap_err();
+        assert!(off.ends_with("off has no parameters"), "{off}");
+    }
+
+    #[test]
+    fn every_scene_is_known_by_its_name_and_named_in_the_error() {
+        let error = named("tarpit").unwrap_err();
+        for scene in SceneKind::ALL {
+            assert_eq!(named(scene.name()), Ok(scene));
+            assert!(error.contains(scene.name()), "{error}");
+        }
+    }
+
+    #[test]
+    fn every_parameter_has_a_command() {
+        for scene in SceneKind::ALL {
+            for parameter in scene.facts().parameters {
+                let text = format!("{}=0.01", parameter.name);
+                assert!(tune(scene, &text).is_ok(), "{scene} {text}");
+            }
         }
     }
 }

@@ -2,12 +2,11 @@
 
 use std::fmt::Write as _;
 
-use haptic_control::{Mode, Stop};
+use haptic_control::{Mode, SceneKind, Stop};
 use recordings::telemetry::NOBODY;
 
 use crate::budget;
 use crate::run::{Outcome, Setup};
-use crate::scene::ImageScene;
 use crate::score::Range;
 
 /// Before this the image boots and arms itself, s.
@@ -47,7 +46,7 @@ fn words(identifier: &str) -> String {
 }
 
 /// What a run of `scene` came to, a line each.
-pub(crate) fn summary(scene: ImageScene, setup: &Setup, outcome: &Outcome) -> String {
+pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> String {
     let mut out = String::new();
     let mut line = |name: &str, text: String| {
         // Writing to a string cannot fail.

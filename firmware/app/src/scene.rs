@@ -5,7 +5,7 @@ use estimator_core::{
     Confidence as _, Model, NoInput, SteadyKalman, SteadyKalmanTriple, Variance, VelocityEstimator,
     preset,
 };
-use haptic_control::{AnyScene, Bounds, LoopPoles, Rig, Torque};
+use haptic_control::{Bounds, LoopPoles, Rig, SceneKind};
 
 use crate::config::{DEVICE, RATE};
 use crate::large::{LARGE, Large, LargeEstimator as _};
@@ -59,35 +59,37 @@ pub const BOUNDS: Bounds = Bounds {
     rate: RATE,
 };
 
-/// How many scenes there are.
-pub const SCENES: u8 = AnyScene::NAMES.len() as u8;
-/// The scene of the torque set-point.
-pub const TORQUE_SCENE: u8 = AnyScene::Torque(preset!(Torque::usual(&DEVICE, RATE))).number();
+/// Number of scenes.
+pub const SCENES: u8 = SceneKind::ALL.len() as u8;
+/// Number of the scene of the torque set-point.
+pub const TORQUE_SCENE: u8 = SceneKind::Torque.number();
 
 pub mod all;
 
 macro_rules! image {
-    ($($number:literal, $name:literal, $feature:literal, $scene:ident;)+) => {
+    ($($number:literal, $name:literal, $scene:ident, $facts:tt;)+) => {
         $(
-            #[cfg(feature = $feature)]
+            #[cfg(scene = $name)]
             use haptic_control::$scene as TheScene;
-            #[cfg(feature = $feature)]
+            #[cfg(scene = $name)]
             const THE_SCENE: TheScene = preset!(TheScene::usual(&DEVICE, RATE));
             /// Number of the one scene, which arming by itself puts on.
-            #[cfg(feature = $feature)]
+            #[cfg(scene = $name)]
             pub const FIRST: u8 = $number;
         )+
-        #[cfg(any($(feature = $feature),+))]
-        mod one;
-        #[cfg(any($(feature = $feature),+))]
-        pub use one::{Core, Settings, Tuned};
-
-        #[cfg(not(any($(feature = $feature),+)))]
-        pub use all::{Core, Settings, Tuned};
-        /// Number of the scene that arming by itself puts on: free-air.
-        #[cfg(not(any($(feature = $feature),+)))]
-        pub const FIRST: u8 = 1;
+        #[cfg(all(one_scene, not(any($(scene = $name),+))))]
+        compile_error!(concat!("SCENE must be the name of a scene:" $(, " ", $name)+));
     };
 }
-
 haptic_control::scenes!(image);
+
+#[cfg(one_scene)]
+mod one;
+#[cfg(one_scene)]
+pub use one::{Core, Settings, Tuned};
+
+#[cfg(not(one_scene))]
+pub use all::{Core, Settings, Tuned};
+/// Number of the scene that arming by itself puts on: free-air.
+#[cfg(not(one_scene))]
+pub const FIRST: u8 = SceneKind::FreeAir.number();

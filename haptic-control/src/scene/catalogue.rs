@@ -1,93 +1,186 @@
-//! The list of all scenes: every other list of scenes is made from it.
+//! Types made from the catalogue of scenes.
 
 use estimator_core::Hertz;
 
 use super::{
-    Detents, Excite, FreeAir, Hold, Inertia, Off, SpringDamper, Texture, Torque, Viscous, Wall,
+    Detents, Excite, FreeAir, Hold, Inertia, Off, Scene, SpringDamper, Texture, Torque, Viscous,
+    Wall,
 };
 use crate::design_error::DesignError;
 use crate::device::DualStage;
-use crate::tuning::{Bounds, Refusal, Tunable};
-use crate::units::Radians;
+use crate::need::Need;
+use crate::scenes;
+use crate::tick::HandleNeed;
+use crate::tuning::{Bounds, Parameter, Refusal, Tunable};
+use crate::units::{NewtonMetres, Radians};
 
-/// Calls the macro `$each` with all scenes, a row a scene: its number in commands, its name, the
-/// feature of an image that holds no other scene, and its type.
-///
-/// ```
-/// macro_rules! names {
-///     ($($number:literal, $name:literal, $feature:literal, $scene:ident;)+) => {
-///         [$($name),+]
-///     };
-/// }
-/// assert_eq!(haptic_control::scenes!(names)[2], "wall");
-/// ```
-#[macro_export]
-macro_rules! scenes {
-    ($each:ident) => {
-        $each! {
-            0, "off", "scene-off", Off;
-            1, "free-air", "scene-free-air", FreeAir;
-            2, "wall", "scene-wall", Wall;
-            3, "spring-damper", "scene-spring-damper", SpringDamper;
-            4, "viscous", "scene-viscous", Viscous;
-            5, "detents", "scene-detents", Detents;
-            6, "texture", "scene-texture", Texture;
-            7, "hold", "scene-hold", Hold;
-            8, "torque", "scene-torque", Torque;
-            9, "inertia", "scene-inertia", Inertia;
-            10, "excite", "scene-excite", Excite;
-        }
-    };
+/// What a scene is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Renders a virtual environment. Comparisons and robustness runs try every environment.
+    Environment,
+    /// Renders a torque that commands set.
+    SetPoint,
+    /// Commands currents open loop, to identify the device.
+    Excitation,
 }
 
-macro_rules! any_scene {
-    ($($number:literal, $name:literal, $feature:literal, $scene:ident;)+) => {
-        /// Any of the scenes, with its parameters.
+/// The simulated hand that tries a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SimulatedHand {
+    /// Moves the handle to and fro.
+    FreeMotion,
+    /// Moves the handle into the angle of the wall and back.
+    WallPress,
+    /// Keeps the handle where it is, apart from tremor.
+    HoldStill,
+}
+
+/// Parts of the controller that a scene needs, as its types say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Needs {
+    /// The scene reads the handle's velocity.
+    pub velocity: bool,
+    /// The scene reads the handle's acceleration.
+    pub acceleration: bool,
+    /// The large motor renders the scene's torque.
+    pub continuous: bool,
+    /// The small motor renders the scene's torque.
+    pub transient: bool,
+    /// The handle's velocity is estimated: for the scene, for the slip of the coupler, or because
+    /// the scene reads the acceleration.
+    pub handle_estimator: bool,
+}
+
+impl Needs {
+    const fn of<S: Scene>() -> Self {
+        Self {
+            velocity: S::Velocity::WANTED,
+            acceleration: S::Acceleration::WANTED,
+            continuous: S::Continuous::WANTED,
+            transient: S::Transient::WANTED,
+            handle_estimator: HandleNeed::<S>::WANTED,
+        }
+    }
+}
+
+/// A row of the catalogue of scenes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneFacts {
+    /// Number in commands and telemetry.
+    pub number: u8,
+    /// Name on the command line and in tables.
+    pub name: &'static str,
+    /// One line that says what the scene is.
+    pub summary: &'static str,
+    /// The torque on the handle, as a formula.
+    pub torque: &'static str,
+    /// What the scene is for.
+    pub role: Role,
+    /// The simulated hand that tries the scene.
+    pub hand: SimulatedHand,
+    /// Parts of the controller that the scene needs.
+    pub needs: Needs,
+    /// Parameters, in the order of their numbers.
+    pub parameters: &'static [Parameter],
+}
+
+macro_rules! scene_types {
+    ($(
+        $number:literal, $name:literal, $scene:ident, {
+            summary: $summary:literal,
+            torque: $torque:literal,
+            role: $role:ident,
+            hand: $hand:ident,
+            usual: |$device:ident, $rate:ident| $usual:expr
+        };
+    )+) => {
+        /// A scene of the catalogue, without parameters.
+        ///
+        /// ```
+        /// use haptic_control::SceneKind;
+        /// let wall = SceneKind::named("wall").unwrap();
+        /// assert_eq!((wall, wall.number()), (SceneKind::Wall, 2));
+        /// assert!(wall.facts().needs.velocity);
+        /// ```
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[repr(u8)]
+        pub enum SceneKind {
+            $(
+                #[doc = concat!("See [`", stringify!($scene), "`](crate::", stringify!($scene), ").")]
+                $scene = $number,
+            )+
+        }
+
+        impl SceneKind {
+            /// All scenes, each at its number.
+            pub const ALL: [Self; [$($name),+].len()] = [$(Self::$scene),+];
+
+            /// The scene's row of the catalogue.
+            #[must_use]
+            pub const fn facts(self) -> &'static SceneFacts {
+                match self {
+                    $(Self::$scene => {
+                        const FACTS: SceneFacts = SceneFacts {
+                            number: $number,
+                            name: $name,
+                            summary: $summary,
+                            torque: $torque,
+                            role: Role::$role,
+                            hand: SimulatedHand::$hand,
+                            needs: Needs::of::<$scene>(),
+                            parameters: $scene::PARAMETERS,
+                        };
+                        &FACTS
+                    })+
+                }
+            }
+
+            /// The scene with its usual parameters, for a device at a control rate.
+            ///
+            /// # Errors
+            /// [`DesignError`] if the scene cannot be rendered by this device or at this rate.
+            pub const fn usual(
+                self,
+                device: &DualStage,
+                rate: Hertz,
+            ) -> Result<AnyScene, DesignError> {
+                Ok(match self {
+                    $(Self::$scene => match $scene::usual(device, rate) {
+                        Ok(scene) => AnyScene::$scene(scene),
+                        Err(error) => return Err(error),
+                    },)+
+                })
+            }
+        }
+
+        /// A scene of the catalogue, with its parameters.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum AnyScene {
             $(
-                #[doc = concat!("See [`", stringify!($scene), "`].")]
+                #[doc = concat!("See [`", stringify!($scene), "`](crate::", stringify!($scene), ").")]
                 $scene($scene),
             )+
         }
 
         impl AnyScene {
-            /// Names of all scenes, at their numbers.
-            pub const NAMES: [&'static str; [$($name),+].len()] = [$($name),+];
-
-            /// Number of the scene in commands.
+            /// The scene without its parameters.
             #[must_use]
-            pub const fn number(&self) -> u8 {
+            pub const fn kind(&self) -> SceneKind {
                 match self {
-                    $(Self::$scene(_) => $number,)+
+                    $(Self::$scene(_) => SceneKind::$scene,)+
                 }
             }
 
-            /// All scenes with their usual parameters, at their numbers.
-            ///
-            /// # Errors
-            /// As the scenes' own `usual`: a device or a rate that one of them cannot do with.
-            pub const fn usual(
-                device: &DualStage,
-                rate: Hertz,
-            ) -> Result<[Self; Self::NAMES.len()], DesignError> {
-                Ok([$(
-                    match $scene::usual(device, rate) {
-                        Ok(scene) => Self::$scene(scene),
-                        Err(error) => return Err(error),
-                    },
-                )+])
-            }
-
-            /// Names of its parameters, in the order of their numbers.
+            /// The value of a parameter, see [`Tunable::value`].
             #[must_use]
-            pub const fn parameters(&self) -> &'static [&'static str] {
+            pub fn value(&self, parameter: u8, rate: Hertz) -> Option<f32> {
                 match self {
-                    $(Self::$scene(_) => $scene::PARAMETERS,)+
+                    $(Self::$scene(scene) => scene.value(parameter, rate),)+
                 }
             }
 
-            /// As [`Tunable::tuned`].
+            /// The scene with one parameter changed, see [`Tunable::tuned`].
             ///
             /// # Errors
             /// [`Refusal`]: the scene stays as it was.
@@ -103,21 +196,28 @@ macro_rules! any_scene {
                     })+
                 })
             }
-        }
-    };
-}
-scenes!(any_scene);
 
-/// The usual parameters of a scene.
-macro_rules! usual {
-    ($($scene:ident: |$device:ident, $rate:ident| $usual:expr;)+) => {
+            /// Amplitude of the scene's own vibration, see [`Scene::vibration`].
+            #[must_use]
+            pub fn vibration(&self) -> NewtonMetres {
+                match self {
+                    $(Self::$scene(scene) => scene.vibration(),)+
+                }
+            }
+        }
+
         $(
+            impl From<$scene> for AnyScene {
+                fn from(scene: $scene) -> Self {
+                    Self::$scene(scene)
+                }
+            }
+
             impl $scene {
                 /// The scene with its usual parameters, for a device at a control rate.
                 ///
                 /// # Errors
-                /// [`DesignError`], where the scene depends on a device or a rate that it cannot
-                /// do with.
+                /// [`DesignError`] if the scene cannot be rendered by this device or at this rate.
                 pub const fn usual($device: &DualStage, $rate: Hertz) -> Result<Self, DesignError> {
                     $usual
                 }
@@ -125,20 +225,67 @@ macro_rules! usual {
         )+
     };
 }
+scenes!(scene_types);
 
-usual! {
-    Off: |_device, _rate| Ok(Self);
-    FreeAir: |_device, _rate| Ok(Self);
-    Wall: |_device, _rate| Self::new(Radians(0.1), 0.30, 0.0);
-    SpringDamper: |_device, _rate| Self::new(Radians(0.0), 0.10, 0.5e-3);
-    Viscous: |_device, _rate| Self::new(2e-3);
-    Detents: |_device, _rate| Self::new(8e-3, 24);
-    Texture: |_device, rate| Self::new(6e-3, Hertz(150.0), rate);
-    Hold: |_device, _rate| Self::new(0.20, 1e-3);
-    Torque: |_device, _rate| Self::new(0.0);
-    Inertia: |device, _rate| {
-        let own = device.small.inertia as f32;
-        Self::new(-0.4 * own, own)
-    };
-    Excite: |device, rate| Self::new(device, rate);
+impl SceneKind {
+    /// Number of the scene in commands and telemetry.
+    #[must_use]
+    pub const fn number(self) -> u8 {
+        self as u8
+    }
+
+    /// Name of the scene.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        self.facts().name
+    }
+
+    /// The virtual environments, in the order of their numbers.
+    pub fn environments() -> impl Iterator<Item = Self> + Clone {
+        Self::ALL
+            .into_iter()
+            .filter(|kind| kind.facts().role == Role::Environment)
+    }
+
+    /// The scene of this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+
+    /// Number of the scene's parameter of this name.
+    #[must_use]
+    pub fn parameter(self, name: &str) -> Option<u8> {
+        let parameters = self.facts().parameters;
+        let number = parameters.iter().position(|known| known.name == name)?;
+        u8::try_from(number).ok()
+    }
+}
+
+impl core::fmt::Display for SceneKind {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl AnyScene {
+    /// All scenes with their usual parameters, each at its number.
+    ///
+    /// # Errors
+    /// As [`SceneKind::usual`].
+    pub const fn usual(
+        device: &DualStage,
+        rate: Hertz,
+    ) -> Result<[Self; SceneKind::ALL.len()], DesignError> {
+        let mut all = [Self::Off(Off); SceneKind::ALL.len()];
+        let mut i = 0;
+        while i < all.len() {
+            all[i] = match SceneKind::ALL[i].usual(device, rate) {
+                Ok(scene) => scene,
+                Err(error) => return Err(error),
+            };
+            i += 1;
+        }
+        Ok(all)
+    }
 }

@@ -1,14 +1,17 @@
 use estimator_core::Skip;
 
-use super::{Handle, Scene, sine};
+use super::environment::is_gain;
+use super::sine::sine;
+use super::{Handle, Scene};
 use crate::design_error::DesignError;
 use crate::need::Wanted;
+use crate::tuning::{Bounds, parameters};
 use crate::units::{NewtonMetres, Radians};
 
-/// Detents: `torque = -A sin(n θ)`, a rest at every n-th of a turn.
+/// Detents: `torque = -A sin(n θ)`, with n rest positions a turn.
 ///
-/// Knows the handle's position only and renders with the small motor alone, so it holds no
-/// velocity estimator. A in N·m, at least zero; n from 1 to 1000.
+/// The scene reads the handle's position alone and the small motor alone renders it, so the
+/// controller has no velocity estimator. A in N·m, at least zero; n from 1 to 1000.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detents {
     amplitude: f32,
@@ -17,12 +20,12 @@ pub struct Detents {
 }
 
 impl Detents {
-    /// `per_rev` detents a turn of `amplitude`.
+    /// `per_rev` detents a turn with this amplitude, N·m.
     ///
     /// # Errors
-    /// [`DesignError::Scene`] out of range.
+    /// [`DesignError::Scene`] if a parameter is out of its range.
     pub const fn new(amplitude: f32, per_rev: u16) -> Result<Self, DesignError> {
-        if super::is_gain(amplitude) && per_rev >= 1 && per_rev <= 1000 {
+        if is_gain(amplitude) && per_rev >= 1 && per_rev <= 1000 {
             Ok(Self {
                 amplitude,
                 half_periods_per_rad: per_rev as f32 / core::f32::consts::PI,
@@ -32,12 +35,27 @@ impl Detents {
         }
     }
 
-    /// Amplitude, and detents a turn to the nearest whole number.
-    pub(crate) const fn parameters(&self) -> (f32, f32) {
-        let per_rev = self.half_periods_per_rad * core::f32::consts::PI + 0.5;
-        (self.amplitude, per_rev as u16 as f32)
+    /// Number of detents a turn.
+    const fn per_rev(&self) -> f32 {
+        (self.half_periods_per_rad * core::f32::consts::PI + 0.5) as u16 as f32
+    }
+
+    /// `per_rev` detents a turn, a whole number, whose slope at rest is within the bound of a
+    /// stiffness.
+    fn tuned(amplitude: f32, per_rev: f32, bounds: &Bounds) -> Result<Self, DesignError> {
+        let whole = per_rev as u16;
+        if f32::from(whole) == per_rev && amplitude * per_rev <= bounds.stiffness {
+            Self::new(amplitude, whole)
+        } else {
+            Err(DesignError::Scene)
+        }
     }
 }
+
+parameters! { Detents, |detents, value, bounds, rate| {
+    "amplitude": Amplitude = detents.amplitude, Self::tuned(value, detents.per_rev(), bounds);
+    "per-turn": DetentsPerTurn = detents.per_rev(), Self::tuned(detents.amplitude, value, bounds);
+}}
 
 impl Scene for Detents {
     type Velocity = Skip;
@@ -58,5 +76,8 @@ impl Scene for Detents {
         };
         let phase = half_periods - 2.0 * (nearest * 0.5) as i32 as f32;
         NewtonMetres(-self.amplitude * sine(phase))
+    }
+    fn vibration(&self) -> NewtonMetres {
+        NewtonMetres(self.amplitude)
     }
 }

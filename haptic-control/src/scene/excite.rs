@@ -4,6 +4,7 @@ use super::{Handle, Scene};
 use crate::design_error::DesignError;
 use crate::device::DualStage;
 use crate::limits::Currents;
+use crate::tuning::parameters;
 use crate::units::{NewtonMetres, Radians};
 
 mod pattern;
@@ -33,6 +34,8 @@ use pattern::{LARGEST, SECTIONS, Segment};
 pub struct Excite {
     rate_hz: u32,
 }
+
+parameters! { Excite }
 
 /// State of an [`Excite`].
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,9 +4,10 @@ use super::impedance::Impedance;
 use super::{Handle, Scene};
 use crate::design_error::DesignError;
 use crate::need::Wanted;
+use crate::tuning::parameters;
 use crate::units::{NewtonMetres, RadPerS, Radians};
 
-/// Holds the handle where it was when the scene began: `torque = -K (θ - θ_start) - B ω`.
+/// Holds the handle at the angle at which the scene began: `torque = -K (θ - θ_start) - B ω`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
     impedance: Impedance,
@@ -23,19 +24,19 @@ impl Hold {
             Err(error) => Err(error),
         }
     }
-
-    /// Stiffness and damping.
-    pub(crate) const fn parameters(&self) -> [f32; 2] {
-        self.impedance.parameters()
-    }
 }
+
+parameters! { Hold, |hold, value, bounds, rate| {
+    "stiffness": Stiffness = hold.impedance.stiffness, Self::new(value, hold.impedance.damping);
+    "damping": Damping = hold.impedance.damping, Self::new(hold.impedance.stiffness, value);
+}}
 
 impl Scene for Hold {
     type Velocity = Wanted;
     type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
-    /// Where it began.
+    /// The angle at which the scene began.
     type State = Radians;
 
     fn start(&self, angle: Radians) -> Radians {

@@ -3,19 +3,20 @@ use estimator_core::Skip;
 use super::{Handle, Scene};
 use crate::design_error::DesignError;
 use crate::need::Wanted;
+use crate::tuning::parameters;
 use crate::units::{NewtonMetres, RadPerS2};
 
 /// Virtual inertia: `torque = -M α`, with the handle's acceleration α.
 ///
-/// A negative M takes some of the handle's own inertia away. Rendered a little late, an inertia
-/// larger than the handle's own would not be stable, so |M| is bounded by a part of that.
+/// A negative M takes a part of the handle's own inertia away. The torque acts with a delay, so an
+/// inertia larger than the handle's own would be unstable: |M| is at most half of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inertia {
     inertia: f32,
 }
 
 impl Inertia {
-    /// Largest part of the handle's own inertia: with a torque constant 20 % high and an inertia
+    /// Largest ratio of |M| to the handle's own inertia: with a torque constant 20 % high and an inertia
     /// 30 % low the loop's gain stays below 1 at every frequency, if the estimator's does.
     pub const LARGEST_PART: f32 = 0.5;
 
@@ -32,6 +33,10 @@ impl Inertia {
         }
     }
 }
+
+parameters! { Inertia, |inertia, value, bounds, rate| {
+    "inertia": Inertia = inertia.inertia, Self::new(value, bounds.inertia);
+}}
 
 impl Scene for Inertia {
     type Velocity = Skip;

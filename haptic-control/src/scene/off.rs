@@ -1,11 +1,14 @@
 use estimator_core::Skip;
 
 use super::{Handle, Scene};
+use crate::tuning::parameters;
 use crate::units::{NewtonMetres, Radians};
 
-/// Nothing: both motors without current, nothing estimated.
+/// No torque: both motors are without current, and no velocity is estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Off;
+
+parameters! { Off }
 
 impl Scene for Off {
     type Velocity = Skip;

@@ -4,6 +4,7 @@ use super::impedance::Impedance;
 use super::{Handle, Scene};
 use crate::design_error::DesignError;
 use crate::need::Wanted;
+use crate::tuning::parameters;
 use crate::units::{NewtonMetres, RadPerS, Radians};
 
 /// Spring and damper to an angle: `torque = -K (θ - θ_0) - B ω`.
@@ -25,12 +26,16 @@ impl SpringDamper {
             _ => Err(DesignError::Scene),
         }
     }
-
-    /// Centre, and stiffness and damping.
-    pub(crate) const fn parameters(&self) -> (Radians, [f32; 2]) {
-        (self.centre, self.impedance.parameters())
-    }
 }
+
+parameters! { SpringDamper, |spring, value, bounds, rate| {
+    "centre": Angle = spring.centre.0,
+        Self::new(Radians(value), spring.impedance.stiffness, spring.impedance.damping);
+    "stiffness": Stiffness = spring.impedance.stiffness,
+        Self::new(spring.centre, value, spring.impedance.damping);
+    "damping": Damping = spring.impedance.damping,
+        Self::new(spring.centre, spring.impedance.stiffness, value);
+}}
 
 impl Scene for SpringDamper {
     type Velocity = Wanted;

@@ -1,18 +1,21 @@
 use estimator_core::{Hertz, Skip};
 
-use super::{Handle, Scene, sine};
+use super::environment::is_gain;
+use super::sine::sine;
+use super::{Handle, Scene};
 use crate::design_error::DesignError;
 use crate::need::Wanted;
+use crate::tuning::parameters;
 use crate::units::{NewtonMetres, Radians};
 
 /// Texture: a vibration of 50 to 300 Hz, `torque = A sin(2π f t)`.
 ///
-/// Rendered with the small motor alone, so it holds neither a velocity estimator nor the large
-/// motor's loop. The phase is an integer that wraps once a period, so it never drifts.
+/// The small motor alone renders it, so the controller has neither a velocity estimator nor the
+/// large motor's loop. The phase is an integer that wraps once a period, so it never drifts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Texture {
     amplitude: f32,
-    /// 2^-32 of a period a tick.
+    /// Phase per tick, in 2^-32 of a period.
     step: u32,
 }
 
@@ -24,33 +27,46 @@ impl Texture {
     /// 50 to 300 Hz and at most half the rate.
     pub const fn new(amplitude: f32, frequency: Hertz, rate: Hertz) -> Result<Self, DesignError> {
         let in_band = frequency.0 >= 50.0 && frequency.0 <= 300.0 && frequency.0 <= rate.0 / 2.0;
-        if super::is_gain(amplitude) && in_band && rate.0 <= 100e3 {
+        if is_gain(amplitude) && in_band && rate.0 <= 100e3 {
             Ok(Self {
                 amplitude,
-                step: (frequency.0 / rate.0 * 4_294_967_296.0) as u32,
+                step: (frequency.0 / rate.0 * PHASE_PER_PERIOD) as u32,
             })
         } else {
             Err(DesignError::Scene)
         }
     }
 
-    /// Amplitude.
-    pub(crate) const fn amplitude(&self) -> f32 {
-        self.amplitude
+    /// This vibration with another amplitude; its frequency keeps all its bits.
+    const fn with_amplitude(self, amplitude: f32) -> Result<Self, DesignError> {
+        if is_gain(amplitude) {
+            Ok(Self { amplitude, ..self })
+        } else {
+            Err(DesignError::Scene)
+        }
     }
 
-    /// The same vibration with another amplitude.
-    pub(crate) const fn with_amplitude(self, amplitude: f32) -> Self {
-        Self { amplitude, ..self }
+    /// Frequency in a controller that runs at `rate`, Hz.
+    fn frequency(&self, rate: Hertz) -> f32 {
+        (f64::from(self.step) / PHASE_PER_PERIOD * rate.0) as f32
     }
 }
+
+/// A phase of 2^32 is one period.
+const PHASE_PER_PERIOD: f64 = 4_294_967_296.0;
+
+parameters! { Texture, |texture, value, bounds, rate| {
+    "amplitude": Amplitude = texture.amplitude, texture.with_amplitude(value);
+    "frequency": Frequency = texture.frequency(rate),
+        Self::new(texture.amplitude, Hertz(f64::from(value)), rate);
+}}
 
 impl Scene for Texture {
     type Velocity = Skip;
     type Acceleration = Skip;
     type Continuous = Skip;
     type Transient = Wanted;
-    /// Phase, 2^-32 of a period.
+    /// Phase, in 2^-32 of a period.
     type State = u32;
 
     fn start(&self, _: Radians) -> u32 {
@@ -60,5 +76,8 @@ impl Scene for Texture {
     fn torque(&self, phase: &mut u32, _: &Handle<()>) -> NewtonMetres {
         *phase = phase.wrapping_add(self.step);
         NewtonMetres(self.amplitude * sine(*phase as i32 as f32 / 2_147_483_648.0))
+    }
+    fn vibration(&self) -> NewtonMetres {
+        NewtonMetres(self.amplitude)
     }
 }

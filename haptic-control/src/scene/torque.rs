@@ -3,9 +3,10 @@ use estimator_core::Skip;
 use super::{Handle, Scene};
 use crate::design_error::DesignError;
 use crate::need::Wanted;
+use crate::tuning::parameters;
 use crate::units::{NewtonMetres, Radians};
 
-/// A torque that somebody else decides on, N·m: whatever the handle does, this is felt.
+/// A torque set-point, N·m, which does not depend on the handle's motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Torque {
     torque: f32,
@@ -24,6 +25,10 @@ impl Torque {
         }
     }
 }
+
+parameters! { Torque, |set_point, value, bounds, rate| {
+    "torque": Torque = set_point.torque, Self::new(value);
+}}
 
 impl Scene for Torque {
     type Velocity = Skip;

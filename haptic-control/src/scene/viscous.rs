@@ -1,8 +1,10 @@
 use estimator_core::Skip;
 
+use super::environment::is_gain;
 use super::{Handle, Scene};
 use crate::design_error::DesignError;
 use crate::need::Wanted;
+use crate::tuning::parameters;
 use crate::units::{NewtonMetres, RadPerS, Radians};
 
 /// Viscous field: `torque = -B ω`, B in N·m·s/rad, at least zero.
@@ -12,18 +14,22 @@ pub struct Viscous {
 }
 
 impl Viscous {
-    /// A field of `damping`.
+    /// A field with this damping, N·m·s/rad.
     ///
     /// # Errors
     /// [`DesignError::Scene`] unless it is finite and at least zero.
     pub const fn new(damping: f32) -> Result<Self, DesignError> {
-        if super::is_gain(damping) {
+        if is_gain(damping) {
             Ok(Self { damping })
         } else {
             Err(DesignError::Scene)
         }
     }
 }
+
+parameters! { Viscous, |viscous, value, bounds, rate| {
+    "damping": Damping = viscous.damping, Self::new(value);
+}}
 
 impl Scene for Viscous {
     type Velocity = Wanted;

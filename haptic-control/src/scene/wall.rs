@@ -4,9 +4,11 @@ use super::impedance::Impedance;
 use super::{Handle, Scene};
 use crate::design_error::DesignError;
 use crate::need::Wanted;
+use crate::tuning::parameters;
 use crate::units::{NewtonMetres, RadPerS, Radians};
 
-/// Virtual wall: beyond an angle, `torque = -K (θ - θ_w) - B ω`, and never a pull.
+/// Virtual wall: `torque = -K (θ - θ_w) - B ω` beyond the angle θ_w and 0 elsewhere. A torque that
+/// would pull the handle into the wall is set to 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wall {
     position: Radians,
@@ -27,12 +29,16 @@ impl Wall {
             _ => Err(DesignError::Scene),
         }
     }
-
-    /// Position, and stiffness and damping.
-    pub(crate) const fn parameters(&self) -> (Radians, [f32; 2]) {
-        (self.position, self.impedance.parameters())
-    }
 }
+
+parameters! { Wall, |wall, value, bounds, rate| {
+    "position": Angle = wall.position.0,
+        Self::new(Radians(value), wall.impedance.stiffness, wall.impedance.damping);
+    "stiffness": Stiffness = wall.impedance.stiffness,
+        Self::new(wall.position, value, wall.impedance.damping);
+    "damping": Damping = wall.impedance.damping,
+        Self::new(wall.position, wall.impedance.stiffness, value);
+}}
 
 impl Scene for Wall {
     type Velocity = Wanted;

@@ -5,7 +5,7 @@ use estimator_core::{
     SteadyKalman, SteadyKalmanTriple, VelocityEstimator, preset,
 };
 use haptic_control::{
-    Controller, ControllerState, Detents, DualStage, FreeAir, Gated, Hold, Inertia, LoopPoles, Off,
+    Controller, ControllerState, Detents, DualStage, FreeAir, Hold, Inertia, LoopPoles, Off,
     Radians, Rig, Scene, Senses, SpringDamper, Texture, Viscous, Wall,
 };
 
@@ -136,37 +136,6 @@ fn retuned_parameters_act_at_the_next_tick_and_the_state_goes_on() {
     controller.retune(Hold::new(0.1, 0.0).unwrap());
     let after = controller.step(&mut state, &there).torque.0;
     assert!((after / before - 0.5).abs() < 1e-6 && before < -0.06);
-}
-
-#[test]
-fn a_gated_controller_settles_after_a_tick_that_changed_nothing() {
-    let detents = Detents::new(8e-3, 24).unwrap();
-    let gated = Gated(Controller::new(
-        detents,
-        FiniteDifference,
-        FiniteDifference,
-        &RIG,
-    ));
-    let at = |count| Sample::default().with_small(Count(count));
-    let mut state = gated.start(&at(0));
-    assert!(!state.is_settled());
-    // The current rises by the slew limit for some ticks: the sample is the same, the action is
-    // another.
-    let mut last = gated.step(&mut state, &at(100));
-    assert!(!state.is_settled());
-    let mut ticks = 0;
-    while !state.is_settled() {
-        let action = gated.step(&mut state, &at(100));
-        // Settled means that neither action nor state changed in this tick.
-        assert_eq!(state.is_settled(), action == last);
-        last = action;
-        ticks += 1;
-    }
-    assert!((3..20).contains(&ticks), "{ticks}");
-    assert_eq!(gated.step(&mut state, &at(100)), last);
-    assert!(state.is_settled());
-    assert_ne!(gated.step(&mut state, &at(200)), last);
-    assert!(!state.is_settled());
 }
 
 /// In free air the small motor takes half of the slip's torque off, and feeds its friction forward.

@@ -1,9 +1,9 @@
 //! Tests of the control core, in one program because that is built sooner.
 
+mod bench;
 mod controller;
 mod design;
 mod excite;
-mod gated;
 mod margins;
 mod monitor;
 mod monitor_limits;

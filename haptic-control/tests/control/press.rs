@@ -6,7 +6,7 @@ use estimator_core::{
     Count, Hertz, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple, preset,
 };
 use haptic_control::{
-    AnyScene, Cause, Currents, DualStage, LoopPoles, Monitor, Rig, Switchboard, Torque,
+    AnyScene, Cause, Currents, DualStage, LoopPoles, Monitor, Rig, SceneKind, Switchboard, Torque,
 };
 
 const RATE: Hertz = Hertz(10e3);
@@ -27,7 +27,7 @@ const HANDLE: SteadyKalmanTriple = preset!(SteadyKalman::new(&FAST));
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
 
 /// All scenes; the torque that is set is all that the small motor makes.
-fn scenes() -> [AnyScene; AnyScene::NAMES.len()] {
+fn scenes() -> [AnyScene; SceneKind::ALL.len()] {
     let set = Torque::new((DEVICE.small.torque_constant * DEVICE.small.current_limit) as f32);
     AnyScene::usual(&DEVICE, RATE)
         .unwrap()

@@ -1,20 +1,12 @@
 //! Scenes: the torque they want, and the parameters that they take.
 
-use estimator_core::{
-    Amps, Count, EndFit, Foaw, Hertz, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple,
-    preset,
-};
+use estimator_core::{Count, Hertz, Sample, preset};
 use haptic_control::{
-    Controller, DesignError, Detents, DualStage, FreeAir, Handle, Hold, Inertia, LoopPoles, Off,
-    RadPerS, RadPerS2, Radians, Rig, Scene, Seen, Senses, SpringDamper, Texture, Torque, Viscous,
-    Wall,
+    Controller, DesignError, Detents, FreeAir, Handle, Hold, Inertia, Off, RadPerS, RadPerS2,
+    Radians, Scene, Seen, Senses, SpringDamper, Texture, Torque, Viscous, Wall,
 };
 
-const RATE: Hertz = Hertz(10e3);
-const RIG: Rig = preset!(Rig::new(&DualStage::DEFAULT, RATE, LoopPoles::DEFAULT));
-const LARGE: Foaw<15, EndFit> = preset!(Foaw::new(15, 1));
-const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(20_000, RATE, 4e3));
-const HANDLE: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
+use crate::bench::{HANDLE, LARGE, RATE, RIG, motion};
 
 const OFF: Off = Off;
 const FREE_AIR: FreeAir = FreeAir;
@@ -25,23 +17,11 @@ const DETENTS: Detents = preset!(Detents::new(8e-3, 24));
 const TEXTURE: Texture = preset!(Texture::new(6e-3, Hertz(200.0), RATE));
 const HOLD: Hold = preset!(Hold::new(0.2, 1e-3));
 
-/// A medley: still, slow, fast there and back, still again; both encoders.
-fn motion(k: u32) -> Sample {
-    let phase = k % 8000;
-    let handle = match phase {
-        0..1000 => 0,
-        1000..3000 => (phase - 1000) / 40,
-        3000..5000 => 50 + (phase - 3000) * 2,
-        5000..7000 => 4050 - (phase - 5000) * 2,
-        _ => 50,
-    };
-    Sample::new(Count((handle / 3).wrapping_sub(7)))
-        .with_small(Count(handle.wrapping_sub(1000)))
-        .with_current(Amps::new(0.1))
-}
-
 /// What the handle feels at rest, `counts` from where it started.
-fn torque_at(scene: impl Scene<Acceleration: Senses<SteadyKalmanTriple>>, counts: i32) -> f32 {
+fn torque_at(
+    scene: impl Scene<Acceleration: Senses<estimator_core::SteadyKalmanTriple>>,
+    counts: i32,
+) -> f32 {
     let controller = Controller::new(scene, LARGE, HANDLE, &RIG);
     let start = Sample::default();
     let mut state = controller.start(&start);

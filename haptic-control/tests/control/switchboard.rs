@@ -1,47 +1,63 @@
 //! The switchboard: scenes swapped while the handle moves.
 
-use estimator_core::{
-    Amps, Count, EndFit, Foaw, Hertz, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple,
-    preset,
-};
+use estimator_core::{Count, Sample, SteadyKalmanTriple, preset};
 use haptic_control::{
-    Action, AnyScene, Currents, DualStage, Hold, LoopPoles, Rig, Switchboard, SwitchboardState,
-    Torque, Viscous,
+    Action, AnyScene, Controller, Currents, Hold, Role, Scene, SceneKind, Senses, Switchboard,
+    SwitchboardState, Torque, Viscous, scenes,
 };
 
-const RATE: Hertz = Hertz(10e3);
-const DEVICE: DualStage = DualStage::DEFAULT;
-const RIG: Rig = preset!(Rig::new(&DEVICE, RATE, LoopPoles::DEFAULT));
-const LARGE: Foaw<15, EndFit> = preset!(Foaw::new(15, 1));
-const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(20_000, RATE, 4e3));
-const HANDLE: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
-const ALL: [AnyScene; AnyScene::NAMES.len()] = preset!(AnyScene::usual(&DEVICE, RATE));
+use crate::bench::{DEVICE, HANDLE, LARGE, Large, RATE, RIG, SCENES, motion, usual};
 
-type Board = Switchboard<Foaw<15, EndFit>, SteadyKalmanTriple>;
-type State = SwitchboardState<Foaw<15, EndFit>, SteadyKalmanTriple>;
+type Board = Switchboard<Large, SteadyKalmanTriple>;
+type State = SwitchboardState<Large, SteadyKalmanTriple>;
 
 fn board() -> Board {
     Switchboard::new(LARGE, HANDLE, RIG, RATE)
 }
 
-/// Whether the scene steps its currents by itself, past the slew limits.
+/// Whether the scene commands currents directly, past the slew limits.
 fn steps(scene: &AnyScene) -> bool {
-    matches!(scene, AnyScene::Excite(_))
+    scene.kind().facts().role == Role::Excitation
 }
 
-/// A medley: still, slow, fast there and back, still again; both encoders.
-fn motion(k: u32) -> Sample {
-    let phase = k % 8000;
-    let handle = match phase {
-        0..1000 => 0,
-        1000..3000 => (phase - 1000) / 40,
-        3000..5000 => 50 + (phase - 3000) * 2,
-        5000..7000 => 4050 - (phase - 5000) * 2,
-        _ => 50,
-    };
-    Sample::new(Count((handle / 3).wrapping_sub(7)))
-        .with_small(Count(handle.wrapping_sub(1000)))
-        .with_current(Amps::new(0.1))
+/// Runs a scene in a controller of its own and in the switchboard.
+fn same_bits_alone_and_in_the_switchboard<S>(kind: SceneKind, scene: S)
+where
+    S: Scene<Acceleration: Senses<SteadyKalmanTriple>> + Into<AnyScene> + Copy,
+{
+    let alone = Controller::new(scene, LARGE, HANDLE, &RIG);
+    let board = board();
+    let first = motion(0);
+    let (mut one, mut other) = (alone.start(&first), board.start(&first));
+    board.select(&mut other, scene.into(), &first);
+    // The switchboard fades in the current with which a vibration or an excitation begins.
+    let fades = scene.vibration().0 > 0.0 || steps(&scene.into());
+    for k in 0..20_000 {
+        let sample = motion(k);
+        let (one, other) = (
+            alone.step(&mut one, &sample),
+            board.step(&mut other, &sample),
+        );
+        let bits =
+            |action: &Action| [action.torque.0, action.large.0, action.handle.0].map(f32::to_bits);
+        assert_eq!(bits(&one), bits(&other), "{kind} at {k}");
+        if !fades {
+            assert_eq!(one.currents, other.currents, "{kind} at {k}");
+        }
+    }
+}
+
+#[test]
+fn every_scene_has_the_same_bits_alone_and_in_the_switchboard() {
+    macro_rules! check {
+        ($($number:literal, $name:literal, $scene:ident, $facts:tt;)+) => {
+            $(same_bits_alone_and_in_the_switchboard(
+                SceneKind::$scene,
+                haptic_control::$scene::usual(&DEVICE, RATE).unwrap(),
+            );)+
+        };
+    }
+    scenes!(check);
 }
 
 #[test]
@@ -51,8 +67,8 @@ fn swapping_scenes_does_not_make_the_currents_jump() {
     // of what fades: at most the excitation's currents.
     let slew = [0.12 + 0.9 / 200.0, 0.06 + 0.3 / 200.0];
     let mut wanted = Vec::new();
-    for from in ALL {
-        for to in ALL {
+    for from in SCENES {
+        for to in SCENES {
             // In the wall, moving; the swap is at 4500.
             let mut state = board.start(&motion(2000));
             board.select(&mut state, from, &motion(2000));
@@ -90,16 +106,16 @@ fn swapping_scenes_does_not_make_the_currents_jump() {
 #[test]
 fn after_a_swap_the_scene_is_as_if_it_had_been_on_all_along() {
     let board = board();
-    for from in ALL {
+    for from in SCENES {
         let mut swapped = board.start(&motion(0));
         let mut always = board.start(&motion(0));
         board.select(&mut swapped, from, &motion(0));
-        board.select(&mut always, ALL[5], &motion(0));
+        board.select(&mut always, usual(SceneKind::Detents), &motion(0));
         for k in 0..3000 {
             board.step(&mut swapped, &motion(k));
             board.step(&mut always, &motion(k));
         }
-        board.select(&mut swapped, ALL[5], &motion(2999));
+        board.select(&mut swapped, usual(SceneKind::Detents), &motion(2999));
         // Ten time constants of the fade later.
         let (mut one, mut other) = (None, None);
         for k in 3000..5000 {
@@ -129,10 +145,10 @@ fn first_after_off(scene: AnyScene, before: Option<AnyScene>) -> Action {
     let mut state = board.start(&far(0));
     for k in 0..4000 {
         if k == 500 {
-            board.select(&mut state, before.unwrap_or(ALL[0]), &far(k));
+            board.select(&mut state, before.unwrap_or(usual(SceneKind::Off)), &far(k));
         }
         if k == 1000 {
-            board.select(&mut state, ALL[0], &far(k));
+            board.select(&mut state, usual(SceneKind::Off), &far(k));
         }
         board.step(&mut state, &far(k));
     }
@@ -143,8 +159,18 @@ fn first_after_off(scene: AnyScene, before: Option<AnyScene>) -> Action {
 #[test]
 fn an_estimator_that_was_not_needed_starts_at_rest() {
     // The same whatever ran before, and no velocity from the counts of a second.
-    for scene in [ALL[1], ALL[3], ALL[4], ALL[9]] {
-        for before in [None, Some(ALL[1]), Some(ALL[3]), Some(ALL[9])] {
+    for scene in [
+        usual(SceneKind::FreeAir),
+        usual(SceneKind::SpringDamper),
+        usual(SceneKind::Viscous),
+        usual(SceneKind::Inertia),
+    ] {
+        for before in [
+            None,
+            Some(usual(SceneKind::FreeAir)),
+            Some(usual(SceneKind::SpringDamper)),
+            Some(usual(SceneKind::Inertia)),
+        ] {
             let first = first_after_off(scene, before);
             assert_eq!((first.large.0, first.handle.0), (0.0, 0.0), "{scene:?}");
             // What the currents fade by is over.
@@ -159,11 +185,11 @@ fn an_estimator_that_both_scenes_need_goes_on() {
     let board = board();
     let (mut swapped, mut kept) = (board.start(&far(0)), board.start(&far(0)));
     for state in [&mut swapped, &mut kept] {
-        board.select(state, ALL[4], &far(0));
+        board.select(state, usual(SceneKind::Viscous), &far(0));
     }
     for k in 0..1000 {
         if k == 500 {
-            board.select(&mut swapped, ALL[3], &far(499));
+            board.select(&mut swapped, usual(SceneKind::SpringDamper), &far(499));
         }
         let (one, other) = (
             board.step(&mut swapped, &far(k)),
@@ -177,14 +203,14 @@ fn an_estimator_that_both_scenes_need_goes_on() {
 #[test]
 fn a_restart_is_a_start_and_estimates_tell_whether_they_run() {
     let board = board();
-    for scene in ALL {
+    for scene in SCENES {
         let mut restarted = board.start(&far(0));
         assert!(!restarted.estimates_large());
         board.select(&mut restarted, scene, &far(0));
         for k in 0..300 {
             board.step(&mut restarted, &far(k));
         }
-        let rendered = !matches!(scene.number(), 0 | 5 | 6 | 10);
+        let rendered = scene.kind().facts().needs.continuous;
         assert_eq!(restarted.estimates_large(), rendered, "{scene:?}");
         board.restart(&mut restarted, &far(300));
         assert!(!restarted.estimates_large());
@@ -246,7 +272,7 @@ fn swaps_of_saturated_scenes_stay_within_the_limits() {
                 torque(if k < 10_000 { 1.0 } else { -1.0 }),
                 &at(0),
             ),
-            999 => board.select(&mut state, ALL[0], &at(0)),
+            999 => board.select(&mut state, usual(SceneKind::Off), &at(0)),
             _ => {}
         }
         let Currents { large, small } = board.step(&mut state, &at(0)).currents;
@@ -263,10 +289,10 @@ fn what_a_swap_would_jump_by_fades_with_20_ms() {
     // Off is no current at all: what is left is the difference.
     let board = board();
     let mut state = board.start(&at(0));
-    board.select(&mut state, ALL[7], &at(0));
+    board.select(&mut state, usual(SceneKind::Hold), &at(0));
     let before = run(&board, &mut state, &at(500), 3000).currents;
     assert!(before.small.get() < -0.1 && before.large.get() < -0.1);
-    board.select(&mut state, ALL[0], &at(500));
+    board.select(&mut state, usual(SceneKind::Off), &at(500));
     for k in 0..1000 {
         let now = board.step(&mut state, &at(500)).currents;
         // A backward difference of the exponential, half a tick late at most.
@@ -283,7 +309,7 @@ fn settings_of_another_scene_are_not_taken() {
     let board = board();
     let stiff = AnyScene::Viscous(Viscous::new(5e-3).unwrap());
     let mut state = board.start(&at(0));
-    board.select(&mut state, ALL[2], &at(0));
+    board.select(&mut state, usual(SceneKind::Wall), &at(0));
     let mut same = state.clone();
     board.retune(&mut state, stiff);
     for k in 0..2000 {

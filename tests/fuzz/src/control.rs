@@ -5,7 +5,7 @@ use estimator_core::{
 };
 use haptic_control::{
     AnyScene, Bounds, Currents, DualStage, Findings, LoopPoles, Mode, Monitor, Refusal, Request,
-    Rig, Safety, Stop, Switchboard, SwitchboardState,
+    Rig, Safety, SceneKind, Stop, Switchboard, SwitchboardState,
 };
 
 use crate::bytes::Bytes;
@@ -23,8 +23,8 @@ type Board = Switchboard<Foaw<15, EndFit>, SteadyKalmanTriple>;
 type State = SwitchboardState<Foaw<15, EndFit>, SteadyKalmanTriple>;
 const HANDLE: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
-const SCENES: [AnyScene; AnyScene::NAMES.len()] = preset!(AnyScene::usual(&DEVICE, RATE));
-/// More than any device renders: what is set is bounded by the currents alone.
+const SCENES: [AnyScene; SceneKind::ALL.len()] = preset!(AnyScene::usual(&DEVICE, RATE));
+/// Beyond what any device renders, so that the current limits alone bound the currents.
 const BOUNDS: Bounds = Bounds {
     stiffness: 10.0,
     damping: 0.1,
@@ -108,7 +108,7 @@ pub fn run(data: &[u8]) {
     }
 }
 
-/// Sets a parameter of a scene to any bits; another scene than the one that is on is not taken.
+/// Sets a parameter of a scene to any bits. The switchboard ignores scenes that are not on.
 fn tune(board: &Board, scene: &mut State, bytes: &mut Bytes<'_>) {
     let mut next = || bytes.byte().unwrap_or(0);
     let (number, parameter) = (usize::from(next()) % SCENES.len(), next());
@@ -119,7 +119,7 @@ fn tune(board: &Board, scene: &mut State, bytes: &mut Bytes<'_>) {
             board.retune(scene, tuned);
         }
         Err(Refusal::Unknown) => {
-            assert!(usize::from(parameter) >= SCENES[number].parameters().len());
+            assert!(usize::from(parameter) >= SCENES[number].kind().facts().parameters.len());
         }
         Err(_) => {}
     }

@@ -1,4 +1,4 @@
-//! All scenes, one at a time.
+//! The switchboard of all scenes, one of which is on.
 #![no_std]
 
 use haptic_control::{AnyScene, Switchboard, SwitchboardState};
@@ -22,7 +22,7 @@ pub fn start(controller: &OfScenes, first: &Sample) -> State {
     controller.start(first)
 }
 
-/// Swaps the scene.
+/// Changes the scene.
 #[inline(never)]
 pub fn select(controller: &OfScenes, state: &mut State, scene: AnyScene, sample: &Sample) {
     controller.select(state, scene, sample);

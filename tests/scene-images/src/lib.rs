@@ -1,8 +1,9 @@
-//! What the libraries in `examples/` share, each of which holds the controller of one scene; built
-//! for the board and read by the test `scene_images`.
+//! The controller of each scene alone, in a module named after the scene. The example `all` is the
+//! switchboard of all scenes, a library of its own so that it shares no code with them. The test
+//! `scene_images` builds both for the board and reads code and memory of each.
 //!
-//! Names matter: `large_*` and `handle_*` are in an image exactly if the scene needs them. They are
-//! never inlined, so that the reader finds them.
+//! `large_*` and `handle_*` are in an image exactly if the scene needs them. They are never inlined,
+//! so that the test finds their names.
 #![no_std]
 
 pub use estimator_core::Sample;
@@ -113,41 +114,48 @@ impl VelocityEstimator for OfHandle {
     }
 }
 
-/// The image of one scene: all that firmware calls of its controller, and what it weighs in RAM.
-///
-/// The controller lies in memory, as where a scene can be tuned: its parameters are not folded into
-/// the code.
-#[macro_export]
-macro_rules! image {
-    ($scene:ty = $value:expr) => {
-        type OfScene = $crate::Controller<$scene, $crate::Large, $crate::OfHandle>;
-        type State = $crate::ControllerState<$scene, $crate::Large, $crate::OfHandle>;
+macro_rules! images {
+    ($($number:literal, $name:literal, $scene:ident, $facts:tt;)+) => {$(
+        #[doc = concat!("The scene ", $name, " alone.")]
+        ///
+        /// The controller is in memory, as where a scene can be tuned: its parameters are not
+        /// constants in the code.
+        #[allow(non_snake_case, reason = "named after the type of the scene")]
+        pub mod $scene {
+            use estimator_core::preset;
+            use haptic_control::{DualStage, $scene as Scene};
 
-        const SCENE: $scene = $value;
+            use crate::{
+                Action, Controller, ControllerState, HANDLE, LARGE, Large, OfHandle, RATE, RIG,
+                Sample,
+            };
 
-        /// Bytes of the controller and of its state.
-        pub static RAM: [usize; 2] = [size_of::<OfScene>(), size_of::<State>()];
+            type OfScene = Controller<Scene, Large, OfHandle>;
+            type State = ControllerState<Scene, Large, OfHandle>;
 
-        /// Makes the controller.
-        #[inline(never)]
-        pub fn make() -> OfScene {
-            $crate::Controller::new(SCENE, $crate::LARGE, $crate::HANDLE, &$crate::RIG)
+            const SCENE: Scene = preset!(Scene::usual(&DualStage::DEFAULT, RATE));
+
+            /// Bytes of the controller and of its state.
+            pub static RAM: [usize; 2] = [size_of::<OfScene>(), size_of::<State>()];
+
+            /// Makes the controller.
+            #[inline(never)]
+            pub fn make() -> OfScene {
+                Controller::new(SCENE, LARGE, HANDLE, &RIG)
+            }
+
+            /// Starts it.
+            #[inline(never)]
+            pub fn start(controller: &OfScene, first: &Sample) -> State {
+                controller.start(first)
+            }
+
+            /// One tick.
+            #[inline(never)]
+            pub fn step(controller: &OfScene, state: &mut State, sample: &Sample) -> Action {
+                controller.step(state, sample)
+            }
         }
-
-        /// Starts it.
-        #[inline(never)]
-        pub fn start(controller: &OfScene, first: &$crate::Sample) -> State {
-            controller.start(first)
-        }
-
-        /// One tick.
-        #[inline(never)]
-        pub fn step(
-            controller: &OfScene,
-            state: &mut State,
-            sample: &$crate::Sample,
-        ) -> $crate::Action {
-            controller.step(state, sample)
-        }
-    };
+    )+};
 }
+haptic_control::scenes!(images);

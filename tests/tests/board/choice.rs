@@ -3,9 +3,11 @@
 use std::sync::OnceLock;
 
 use estimator_core::{Confidence as _, VelocityEstimator as _};
+use experiments::closed_loop::Hand;
 use experiments::closed_loop::{Hand, SceneName};
 use firmware_app::large;
 use firmware_app::scene::RIG;
+use haptic_control::SceneKind;
 use recordings::telemetry::{Frame, NOBODY};
 use virtual_board::command::Command;
 use virtual_board::run::{Outcome, Setup, Tick};
@@ -19,7 +21,7 @@ const CHANGES_S: [f64; 2] = [2.0, 3.5];
 const CHANGE: usize = 400;
 const FADE: f32 = 200.0;
 
-fn changing(scene: SceneName, hand: Hand) -> Setup {
+fn changing(scene: SceneKind, hand: Hand) -> Setup {
     let mut setup = of_scene(scene, hand, 5.0);
     let changes = CHANGES_S.into_iter().zip([1, 0]);
     setup
@@ -33,8 +35,8 @@ fn runs() -> &'static [Outcome; 2] {
     static RUNS: OnceLock<[Outcome; 2]> = OnceLock::new();
     RUNS.get_or_init(|| {
         [
-            (SceneName::FreeAir, Hand::Moving),
-            (SceneName::ALL[2], Hand::Pushing),
+            (SceneKind::FreeAir, Hand::Moving),
+            (SceneKind::Wall, Hand::Pushing),
         ]
         .map(|(scene, hand)| run(&changing(scene, hand)))
     })
@@ -188,7 +190,7 @@ fn the_confidence_in_telemetry_holds() {
 
 #[test]
 fn an_estimator_that_is_not_there_is_refused() {
-    let mut setup = of_scene(SceneName::FreeAir, Hand::Moving, 1.0);
+    let mut setup = of_scene(SceneKind::FreeAir, Hand::Moving, 1.0);
     setup.commands.push((0.5, Command::Estimator(2)));
     let refused = |run: &Outcome| {
         let mut log = run.telemetry.log.iter();
@@ -209,13 +211,13 @@ fn an_estimator_that_is_not_there_is_refused() {
 /// A choice lasts: over a change of scene that needs no estimator, and over disarm.
 #[test]
 fn a_choice_lasts() {
-    let air = Command::Scene(SceneName::FreeAir);
+    let air = Command::Scene(SceneKind::FreeAir);
     let run = run(&Setup {
         commands: vec![
             (0.05, air),
             (0.1, Command::Arm),
             (0.3, Command::Estimator(1)),
-            (0.5, Command::Scene(SceneName::Off)),
+            (0.5, Command::Scene(SceneKind::Off)),
             (0.6, air),
             (0.8, Command::Disarm),
             (0.9, Command::Arm),

@@ -2,24 +2,21 @@
 
 use std::sync::OnceLock;
 
-use experiments::closed_loop::SceneName;
+use haptic_control::SceneKind;
 use virtual_board::run::{Outcome, Setup, Tick};
-use virtual_board::scene::ImageScene;
 use virtual_board::score::Range;
 
 use crate::golden::Golden;
-use crate::image::{FIRST_S, SETTLED_S, free_air, run_image, tour};
+use crate::image::{FIRST_S, SETTLED_S, free_air, run_image, run_one, tour};
 
 /// Instructions may move by this part of what is written.
 const SLACK: f64 = 0.1;
 
-/// An image of one scene alone.
+/// A run of the image of one scene alone.
 pub(crate) struct Alone {
-    /// Name of the scene.
-    pub(crate) scene: &'static str,
-    /// The feature.
-    pub(crate) feature: &'static str,
-    /// A run of it.
+    /// The scene.
+    pub(crate) scene: SceneKind,
+    /// A run of its image.
     pub(crate) run: Outcome,
 }
 
@@ -27,27 +24,11 @@ pub(crate) struct Alone {
 pub(crate) fn alone() -> &'static [Alone] {
     static RUNS: OnceLock<Vec<Alone>> = OnceLock::new();
     RUNS.get_or_init(|| {
-        let scenes = ImageScene::all();
-        let features = [
-            "scene-off",
-            "scene-free-air",
-            "scene-wall",
-            "scene-spring-damper",
-            "scene-viscous",
-            "scene-detents",
-            "scene-texture",
-            "scene-hold",
-            "scene-inertia",
-            "scene-excite",
-            "scene-torque",
-        ];
-        assert_eq!(ImageScene::all().count(), features.len());
-        let run = |(scene, feature): (ImageScene, &'static str)| Alone {
-            scene: feature.trim_start_matches("scene-"),
-            feature,
-            run: playing(feature, scene),
+        let run = |scene| Alone {
+            scene,
+            run: healthy(scene, run_one(scene, &Setup::playing(scene, 1.0))),
         };
-        scenes.zip(features).map(run).collect()
+        SceneKind::ALL.into_iter().map(run).collect()
     })
 }
 
@@ -61,12 +42,15 @@ fn between(run: &Outcome, from_s: f64, to_s: f64) -> Range {
     Range::of(ticks.map(|tick| u64::from(tick.instructions))).expect("ticks")
 }
 
-/// A second of a scene; it must not have been stopped.
-fn playing(features: &'static str, scene: ImageScene) -> Outcome {
-    let run = run_image(features, &Setup::playing(scene, 1.0));
+/// A second of a scene.
+fn playing(features: &'static str, scene: SceneKind) -> Outcome {
+    healthy(scene, run_image(features, &Setup::playing(scene, 1.0)))
+}
+
+/// A run of a scene that was not stopped.
+fn healthy(scene: SceneKind, run: Outcome) -> Outcome {
     let last = run.telemetry.frames.last().expect("frames");
-    let off = scene == ImageScene::Host(SceneName::Off);
-    let state = if off { "1" } else { "2" };
+    let state = if scene == SceneKind::Off { "1" } else { "2" };
     assert_eq!(
         (last.state.as_str(), last.cause.as_str()),
         (state, "0"),
@@ -76,17 +60,17 @@ fn playing(features: &'static str, scene: ImageScene) -> Outcome {
 }
 
 /// Instructions of each scene in an image of all of them.
-fn by_scene(features: &'static str) -> Vec<(SceneName, Range)> {
+fn by_scene(features: &'static str) -> Vec<(SceneKind, Range)> {
     let of = |scene| {
-        let run = playing(features, ImageScene::Host(scene));
+        let run = playing(features, scene);
         (scene, between(&run, SETTLED_S, f64::INFINITY))
     };
-    SceneName::ALL.into_iter().map(of).collect()
+    SceneKind::environments().map(of).collect()
 }
 
 /// Those of the images with either estimator on the large motor.
-fn of_both() -> &'static [Vec<(SceneName, Range)>; 2] {
-    static BOTH: OnceLock<[Vec<(SceneName, Range)>; 2]> = OnceLock::new();
+fn of_both() -> &'static [Vec<(SceneKind, Range)>; 2] {
+    static BOTH: OnceLock<[Vec<(SceneKind, Range)>; 2]> = OnceLock::new();
     BOTH.get_or_init(|| ["", "large-kalman"].map(by_scene))
 }
 
@@ -99,9 +83,9 @@ fn figures(range: Range) -> [u64; 2] {
 fn a_scene_alone_costs_the_instructions_that_the_table_says() {
     let all = between(tour(), FIRST_S, f64::INFINITY);
     let mut rows = vec![("all", figures(all))];
-    for Alone { scene, run, .. } in alone() {
+    for Alone { scene, run } in alone() {
         let range = between(run, SETTLED_S, f64::INFINITY);
-        rows.push((scene, figures(range)));
+        rows.push((scene.name(), figures(range)));
     }
     let table = Golden {
         file: "benchmarks.md",
@@ -120,7 +104,7 @@ fn every_scene_and_estimator_costs_what_the_table_says() {
         .map(|((scene, foaw), (_, kalman))| {
             let figures = [*foaw, *kalman].map(|range| [range.min, figures(range)[0], range.max]);
             let figures = figures.as_flattened().iter().map(u64::to_string);
-            [scene.as_str().to_owned()]
+            [scene.name().to_owned()]
                 .into_iter()
                 .chain(figures)
                 .collect()
@@ -150,7 +134,7 @@ fn every_scene_and_estimator_costs_what_the_table_says() {
 fn scenes_pay_only_for_what_they_need() {
     let [foaw, kalman] = of_both();
     for ((scene, foaw), (_, kalman)) in foaw.iter().zip(kalman) {
-        if scene.asks_for_velocity() {
+        if scene.facts().needs.continuous {
             let (foaw, kalman) = (foaw.max, kalman.max);
             assert!(kalman < foaw, "{scene}: {kalman}, {foaw}");
         } else {
@@ -162,7 +146,7 @@ fn scenes_pay_only_for_what_they_need() {
     }
     for scenes in [foaw, kalman] {
         let mean = |name: &str| {
-            let found = scenes.iter().find(|(scene, _)| scene.as_str() == name);
+            let found = scenes.iter().find(|(scene, _)| scene.name() == name);
             found.expect("a scene").1.mean
         };
         let (off, air) = (mean("off"), mean("free-air"));
@@ -177,7 +161,7 @@ fn scenes_pay_only_for_what_they_need() {
     }
     // A window costs what the motion makes of it, the filter always the same.
     let mean = |name: &str| {
-        let found = kalman.iter().find(|(scene, _)| scene.as_str() == name);
+        let found = kalman.iter().find(|(scene, _)| scene.name() == name);
         found.expect("a scene").1.mean
     };
     for large in ["wall", "spring-damper", "viscous", "hold", "inertia"] {

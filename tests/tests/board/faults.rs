@@ -4,7 +4,8 @@ mod matrix;
 
 use std::fmt::Write as _;
 
-use experiments::closed_loop::{Hand, SceneName};
+use experiments::closed_loop::Hand;
+use haptic_control::SceneKind;
 use recordings::telemetry::Frame;
 use simulation::device::Device;
 use virtual_board::fault::Fault;
@@ -36,7 +37,7 @@ impl Bound {
         let fault = (self.at_s.min(seconds), self.fault);
         let run = run(&Setup {
             faults: with.into_iter().chain([fault]).collect(),
-            ..of_scene(SceneName::FreeAir, Hand::Moving, seconds)
+            ..of_scene(SceneKind::FreeAir, Hand::Moving, seconds)
         });
         let never_on = run.enables.len() == 1;
         let off_s = run.off_after(self.at_s).filter(|_| !never_on);

@@ -1,9 +1,10 @@
 //! The loop closes, on time and at a known cost, and does no harm before it is armed.
 
-use experiments::closed_loop::{Hand, SceneName};
+use experiments::closed_loop::Hand;
+use haptic_control::SceneKind;
 use simulation::device::Device;
 use virtual_board::run::{AMPS_PER_CODE, Outcome, RATE_HZ, Setup};
-use virtual_board::scene::ImageScene;
+use virtual_board::scene::{press, stiffness};
 
 use crate::image::{SETTLED_S, free_air, of_scene, run};
 
@@ -79,10 +80,10 @@ fn largest_force(run: &Outcome) -> f64 {
 
 #[test]
 fn a_press_of_10_n_switches_no_scene_off() {
-    for scene in SceneName::ALL {
-        let run = run(&of_scene(scene, ImageScene::Host(scene).press(), 2.4));
+    for scene in SceneKind::environments() {
+        let run = run(&of_scene(scene, press(scene), 2.4));
         let last = run.telemetry.frames.last().expect("frames");
-        let state = if scene == SceneName::Off { "1" } else { "2" };
+        let state = if scene == SceneKind::Off { "1" } else { "2" };
         assert_eq!(
             (last.state.as_str(), last.cause.as_str()),
             (state, "0"),
@@ -90,7 +91,7 @@ fn a_press_of_10_n_switches_no_scene_off() {
         );
         let force = largest_force(&run);
         println!("{scene}: {force} N");
-        if let SceneName::Wall(..) | SceneName::SpringDamper(..) | SceneName::Hold(..) = scene {
+        if stiffness(scene).is_some() {
             // What the coupler transmits at the limit of its slip is 4.1 N, so it is near that.
             assert!(force > 3.0, "{scene}: {force} N");
         }
@@ -104,7 +105,7 @@ fn an_offset_of_the_dac_is_felt_and_stops_nothing() {
     let mean = |dac_offset: i16| {
         let run = run(&Setup {
             dac_offset,
-            ..of_scene(SceneName::FreeAir, Hand::Still, 3.0)
+            ..of_scene(SceneKind::FreeAir, Hand::Still, 3.0)
         });
         let last = run.telemetry.frames.last().expect("frames");
         assert_eq!((last.state.as_str(), last.cause.as_str()), ("2", "0"));

@@ -1,7 +1,8 @@
 //! The device identified from what the image recorded of it.
 
-use experiments::closed_loop::{Hand, SceneName};
+use experiments::closed_loop::Hand;
 use experiments::identify::{Known, identify};
+use haptic_control::SceneKind;
 use recordings::recording::Recording;
 use simulation::device::Device;
 
@@ -19,7 +20,7 @@ fn the_image_excites_a_device_and_its_recording_tells_what_it_is() {
     device.coupler.damping_nms_per_rad *= 0.88;
     let excited = run(&Setup {
         device: device.clone(),
-        ..of_scene(SceneName::Excite, Hand::Still, 16.2)
+        ..of_scene(SceneKind::Excite, Hand::Still, 16.2)
     });
     let last = excited.telemetry.frames.last().unwrap();
     assert_eq!((last.state.as_str(), last.cause.as_str()), ("2", "0"));

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use experiments::closed_loop::{Hand, SceneName};
+use experiments::closed_loop::Hand;
+use haptic_control::SceneKind;
 use virtual_board::command::Command;
 use virtual_board::image::Image;
 use virtual_board::run::{Outcome, Setup, on_board};
@@ -22,21 +23,40 @@ pub(crate) fn image(features: &'static str) -> &'static Image {
         .or_insert_with(|| Box::leak(Box::new(Image::build(features).unwrap())))
 }
 
+/// The image of this tree with one scene alone.
+pub(crate) fn image_of_one(scene: SceneKind) -> &'static Image {
+    static BUILT: Mutex<Option<HashMap<SceneKind, &Image>>> = Mutex::new(None);
+    let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
+    let built = built.get_or_insert_default();
+    built
+        .entry(scene)
+        .or_insert_with(|| Box::leak(Box::new(Image::build_one(scene).unwrap())))
+}
+
+/// Runs the image of one scene alone.
+pub(crate) fn run_one(scene: SceneKind, setup: &Setup) -> Outcome {
+    run_checked(image_of_one(scene), setup)
+}
+
 /// Runs the image of all scenes.
 pub(crate) fn run(setup: &Setup) -> Outcome {
     run_image("", setup)
 }
 
-/// Runs the image with these features. Every run of the tests is made here, and none may do what
-/// the emulator does not model.
+/// Runs the image with these features.
 pub(crate) fn run_image(features: &'static str, setup: &Setup) -> Outcome {
-    let outcome = on_board(image(features), setup, |_| ()).unwrap();
+    run_checked(image(features), setup)
+}
+
+/// Every run of the tests: none may do what the emulator does not model.
+fn run_checked(image: &Image, setup: &Setup) -> Outcome {
+    let outcome = on_board(image, setup, |_| ()).unwrap();
     outcome.check().unwrap();
     outcome
 }
 
 /// A scene from the start, in this hand.
-pub(crate) fn of_scene(scene: SceneName, hand: Hand, seconds: f64) -> Setup {
+pub(crate) fn of_scene(scene: SceneKind, hand: Hand, seconds: f64) -> Setup {
     Setup {
         hand,
         seconds,
@@ -58,19 +78,19 @@ macro_rules! shared {
 
 shared! {
     /// Free air with a moving hand, 10 s.
-    free_air = run(&of_scene(SceneName::FreeAir, Hand::Moving, 10.0));
+    free_air = run(&of_scene(SceneKind::FreeAir, Hand::Moving, 10.0));
     /// Free air with a hand that chirps and reverses, a minute.
-    soak = run(&of_scene(SceneName::FreeAir, Hand::Tracking, 60.2));
+    soak = run(&of_scene(SceneKind::FreeAir, Hand::Tracking, 60.2));
     /// A hand that pushes into the wall, 10 s.
-    wall = run(&of_scene(SceneName::ALL[2], Hand::Pushing, 10.0));
+    wall = run(&of_scene(SceneKind::Wall, Hand::Pushing, 10.0));
     /// Every scene in turn.
     tour = run(&touring());
     /// Free air with a moving hand, 10 s, the Kalman filter on the large motor.
-    kalman_free_air = run_image("large-kalman", &of_scene(SceneName::FreeAir, Hand::Moving, 10.0));
+    kalman_free_air = run_image("large-kalman", &of_scene(SceneKind::FreeAir, Hand::Moving, 10.0));
     /// Free air with a moving hand, 10 s, the learning observer on the large motor.
-    adaptive_free_air = run_image("large-adaptive", &of_scene(SceneName::FreeAir, Hand::Moving, 10.0));
+    adaptive_free_air = run_image("large-adaptive", &of_scene(SceneKind::FreeAir, Hand::Moving, 10.0));
     /// Free air with a hand that chirps and reverses, 10 s, the Kalman filter on the large motor.
-    kalman_track = run_image("large-kalman", &of_scene(SceneName::FreeAir, Hand::Tracking, 10.0));
+    kalman_track = run_image("large-kalman", &of_scene(SceneKind::FreeAir, Hand::Tracking, 10.0));
 }
 
 /// How long a tour stays in a scene, s.
@@ -82,14 +102,14 @@ pub(crate) const FIRST_S: f64 = 0.1;
 /// in the wall when it appears.
 fn touring() -> Setup {
     let at = |k: usize| FIRST_S + k as f64 * STAY_S;
-    let scenes = SceneName::ALL.into_iter().enumerate();
+    let scenes = SceneKind::environments().enumerate();
     let mut commands: Vec<_> = scenes
         .map(|(k, scene)| (at(k), Command::Scene(scene)))
         .collect();
     commands.push((0.05, Command::Arm));
     Setup {
         hand: Hand::Still,
-        seconds: at(SceneName::ALL.len()),
+        seconds: at(SceneKind::environments().count()),
         commands,
         ..Setup::default()
     }

@@ -1,6 +1,7 @@
 //! What the image learns of a device that it believes to be another.
 
-use experiments::closed_loop::{Hand, SceneName};
+use experiments::closed_loop::Hand;
+use haptic_control::SceneKind;
 use recordings::health;
 use recordings::recording::BoardColumns;
 use recordings::telemetry::LearnedLine;
@@ -24,7 +25,7 @@ fn a_coupler_with_less_damping_is_told_in_telemetry() {
         device.coupler.damping_nms_per_rad *= part;
         Setup {
             device,
-            ..of_scene(SceneName::ALL[2], Hand::Pushing, 12.0)
+            ..of_scene(SceneKind::Wall, Hand::Pushing, 12.0)
         }
     };
     for part in [1.0, 0.75] {

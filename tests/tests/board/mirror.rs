@@ -1,13 +1,14 @@
 //! The same control on the host, fed with what the image read: the same bits.
 
 use estimator_core::{Amps, Count, CountsPerTick, Sample, VelocityEstimator};
+use experiments::closed_loop::Hand;
 use experiments::closed_loop::{Hand, SceneName};
 use firmware_app::config::RATE;
 use firmware_app::control::{Control, Inputs, Message, SETTLE};
 use firmware_app::large::{self, Large, LargeEstimator as _};
 use firmware_app::scene::{HANDLE, RIG};
 use firmware_app::telemetry::Record;
-use haptic_control::{Action, AnyScene, Currents, FreeAir, Request, Stop, Switchboard};
+use haptic_control::{Action, AnyScene, Currents, FreeAir, Request, SceneKind, Stop, Switchboard};
 use recordings::telemetry::Frame;
 use virtual_board::run::{Outcome, Tick};
 
@@ -189,7 +190,11 @@ fn every_change_of_scene_is_what_the_host_computes_bit_for_bit() {
     let host = mirrored(run);
     same_bits(run, &host);
     let changes = requests(run).len();
-    assert_eq!(changes, 1 + SceneName::ALL.len(), "arm and every scene");
+    assert_eq!(
+        changes,
+        1 + SceneKind::environments().count(),
+        "arm and every scene"
+    );
     let last = run.telemetry.frames.last().unwrap();
     assert_eq!((last.state.as_str(), last.cause.as_str()), ("2", "0"));
     // At every tick, not at every frame alone: the codes of both converters.
@@ -298,7 +303,7 @@ fn the_observers_see_more_on_the_board_too() {
     println!("free air: FOAW {foaw}, adaptive {counts} rad/s");
     assert!(counts < 0.1 * foaw, "{counts} {foaw}");
     let pushed = |features| {
-        let setup = of_scene(SceneName::ALL[2], Hand::Pushing, 5.0);
+        let setup = of_scene(SceneKind::Wall, Hand::Pushing, 5.0);
         velocity_error(&run_image(features, &setup))
     };
     let errors = [

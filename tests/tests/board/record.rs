@@ -2,9 +2,10 @@
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::closed_loop::{Hand, SceneName};
+use experiments::closed_loop::Hand;
 use experiments::compare::interval;
 use experiments::replay::replay;
+use haptic_control::SceneKind;
 use recordings::record::{choose, csv};
 use recordings::recording::{BoardColumns, Recording};
 use recordings::telemetry::{Frame, Telemetry};
@@ -68,7 +69,7 @@ fn the_bytes_of_the_probe_make_the_recording_that_the_run_makes() {
 #[test]
 fn stamps_of_the_board_are_recorded_and_replayed() {
     const IMAGE: &str = "edge-capture";
-    let run = run_image(IMAGE, &of_scene(SceneName::FreeAir, Hand::Moving, 3.0));
+    let run = run_image(IMAGE, &of_scene(SceneKind::FreeAir, Hand::Moving, 3.0));
     let telemetry = Telemetry::decode(image(IMAGE).elf(), &run.rtt).unwrap();
     let runs = telemetry.runs();
     let chosen = choose(&runs, None).unwrap();
@@ -129,7 +130,7 @@ fn a_torque_set_point_is_felt_bounded_and_gone_when_nobody_speaks() {
         commands: vec![
             // Set before the scene is on, it does not count.
             torque(0.04, 0.02),
-            (0.05, Command::TorqueScene),
+            (0.05, Command::Scene(SceneKind::Torque)),
             (0.1, Command::Arm),
             torque(0.4, 0.004),
             torque(0.7, f32::NAN),
@@ -170,7 +171,7 @@ fn a_wall_is_tuned_while_it_pushes_and_the_torque_does_not_jump() {
         seconds: 2.0,
         hand: experiments::closed_loop::Hand::Pushing,
         commands: vec![
-            (0.05, Command::Scene("wall".parse().unwrap())),
+            (0.05, Command::Scene(SceneKind::Wall)),
             (0.1, Command::Arm),
             tune(1.5, 1, 0.15),
             tune(1.6, 1, 0.4),
@@ -212,7 +213,7 @@ fn missing(run: &Outcome) -> [u32; 2] {
 fn frames_that_find_no_place_in_the_queue_are_numbered_and_counted() {
     let run = run(&Setup {
         faults: vec![(0.0, Fault::SlowWatchdog), (0.5, Fault::StarvedIdle)],
-        ..of_scene(SceneName::FreeAir, Hand::Moving, 1.0)
+        ..of_scene(SceneKind::FreeAir, Hand::Moving, 1.0)
     });
     assert_eq!(run.restarts, []);
     let [missing, drops] = missing(&run);
@@ -225,7 +226,7 @@ fn frames_that_find_no_place_in_the_queue_are_numbered_and_counted() {
 fn frames_that_find_no_place_in_rtt_are_counted() {
     let run = run(&Setup {
         faults: vec![(0.5, Fault::DrainPause)],
-        ..of_scene(SceneName::FreeAir, Hand::Moving, 1.0)
+        ..of_scene(SceneKind::FreeAir, Hand::Moving, 1.0)
     });
     let [missing, drops] = missing(&run);
     assert!((150..300).contains(&missing), "{missing} are missing");

@@ -2,14 +2,15 @@
 
 use std::f64::consts::TAU;
 
-use experiments::closed_loop::{Hand, SceneName};
+use experiments::closed_loop::Hand;
+use haptic_control::SceneKind;
 use simulation::device::Device;
 
 use crate::image::{free_air, of_scene, run_image};
 
 #[test]
 fn the_reference_encoder_is_logged_and_right() {
-    let setup = of_scene(SceneName::FreeAir, Hand::Moving, 2.0);
+    let setup = of_scene(SceneKind::FreeAir, Hand::Moving, 2.0);
     let run = run_image("reference", &setup);
     assert_eq!(run.complaints, [""; 0], "pins");
     let counts_per_rad = f64::from(Device::default().reference.counts_per_rev) / TAU;

@@ -1,24 +1,39 @@
 //! What each image takes, and how deep its stack gets.
 
+use virtual_board::image::Size;
 use virtual_board::run::Outcome;
 
 use crate::cost::{Alone, alone};
 use crate::golden::Golden;
-use crate::image::{free_air, image, kalman_free_air, tour};
+use crate::image::{free_air, image, image_of_one, kalman_free_air, tour};
 
 const SIZES: Golden = Golden {
     file: "board.md",
     name: "sizes",
 };
 
-/// Every image, and the deepest stack of its runs.
-fn images() -> Vec<(&'static str, u64)> {
+/// Name and size of every image, and the deepest stack of its runs.
+fn images() -> Vec<(String, Size, u64)> {
     let deepest = |runs: &[&Outcome]| runs.iter().map(|run| run.stack).max().unwrap();
     let mut images = vec![
-        ("", deepest(&[free_air(), tour()])),
-        ("large-kalman", deepest(&[kalman_free_air()])),
+        (
+            "default".to_owned(),
+            image("").size,
+            deepest(&[free_air(), tour()]),
+        ),
+        (
+            "large-kalman".to_owned(),
+            image("large-kalman").size,
+            deepest(&[kalman_free_air()]),
+        ),
     ];
-    images.extend(alone().iter().map(|image| (image.feature, image.run.stack)));
+    images.extend(alone().iter().map(|Alone { scene, run }| {
+        (
+            format!("scene-{scene}"),
+            image_of_one(*scene).size,
+            run.stack,
+        )
+    }));
     images
 }
 
@@ -26,16 +41,10 @@ fn images() -> Vec<(&'static str, u64)> {
 fn every_image_takes_what_the_table_says() {
     let rows: Vec<Vec<String>> = images()
         .into_iter()
-        .map(|(features, stack)| {
-            let size = image(features).size;
-            let name = if features.is_empty() {
-                "default"
-            } else {
-                features
-            };
+        .map(|(name, size, stack)| {
             let figures = [size.text, size.data, size.bss, stack];
             let figures = figures.iter().map(u64::to_string);
-            [name.to_owned()].into_iter().chain(figures).collect()
+            [name].into_iter().chain(figures).collect()
         })
         .collect();
     let head = ["image", "text", "data", "bss", "stack"];
@@ -63,13 +72,8 @@ fn an_estimator_alone_is_smaller_than_two() {
 #[test]
 fn a_scene_alone_is_smaller_than_all_of_them() {
     let whole = image("").size;
-    for Alone {
-        scene,
-        feature,
-        run,
-    } in alone()
-    {
-        let size = image(feature).size;
+    for Alone { scene, run } in alone() {
+        let size = image_of_one(*scene).size;
         assert!(size.text < whole.text, "{scene}: {size:?}, {whole:?}");
         assert!(
             run.stack > 256 && run.stack < 8192,

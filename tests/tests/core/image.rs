@@ -131,9 +131,9 @@ impl Image {
         self.section(krate, name).0
     }
 
-    /// The bytes of this crate's function or static of this name.
-    pub(crate) fn data(&self, krate: &str, name: &str) -> &[u8] {
-        &self.section(krate, name).1.data
+    /// The bytes of the function or static with this symbol.
+    pub(crate) fn data(&self, symbol: &str) -> &[u8] {
+        &self.sections[self.defined[symbol]].data
     }
 
     /// Everything that is reached from these functions, directly or not.
@@ -201,17 +201,17 @@ fn is_loaded(kind: SectionKind) -> bool {
     )
 }
 
-/// Whether a symbol is that of a plain function or static of this crate, in whatever module: after
-/// the kinds of its parts and the crate's hash come the names, each behind its length.
+/// Whether a symbol is that of a plain function or static of this crate: `module::name`, or `name`
+/// in whatever module. After the kinds of its parts and the crate's hash come the names, each behind
+/// its length.
 fn is_named(symbol: &str, krate: &str, name: &str) -> bool {
     let within_crate = || {
         let path = symbol.strip_prefix("_RNv")?.trim_start_matches("Nt");
         let (_hash, path) = path.strip_prefix("Cs")?.split_once('_')?;
         path.strip_prefix(&format!("{}{krate}", krate.len()))
     };
-    let parts = name.split("::");
-    let path_of_name: String = parts.map(|part| format!("{}{part}", part.len())).collect();
-    within_crate().is_some_and(|path| path.ends_with(&path_of_name))
+    let parts = name.split("::").map(|part| format!("{}{part}", part.len()));
+    within_crate().is_some_and(|path| path.ends_with(&parts.collect::<String>()))
 }
 
 /// Builds for the board with further arguments, in a directory of its own below `target`: cargo

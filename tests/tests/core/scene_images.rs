@@ -7,79 +7,71 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
+use haptic_control::{Role, SceneKind};
+
 use crate::image::{Image, Reached, build};
 
-/// What a scene needs, as written down here: the types have to say the same.
+/// What a scene needs, by the catalogue.
 #[derive(Clone, Copy, PartialEq)]
 struct Needs {
-    velocity: bool,
-    acceleration: bool,
+    /// Parts: the handle's velocity, its acceleration, the large and the small motor, and currents
+    /// that the scene commands directly.
+    parts: [bool; 5],
+    /// The large motor renders the scene.
     continuous: bool,
+    /// The small motor renders the scene.
     transient: bool,
-    /// Whether it commands the currents itself.
-    open_loop: bool,
+    /// The handle's velocity is estimated.
+    handle: bool,
 }
 
 impl Needs {
-    const NOTHING: Self = Self {
-        velocity: false,
-        acceleration: false,
-        continuous: false,
-        transient: false,
-        open_loop: false,
-    };
-    const SMALL_MOTOR: Self = Self {
-        transient: true,
-        ..Self::NOTHING
-    };
-    const BOTH_MOTORS: Self = Self {
-        continuous: true,
-        ..Self::SMALL_MOTOR
-    };
-    const VELOCITY: Self = Self {
-        velocity: true,
-        ..Self::BOTH_MOTORS
-    };
-    const ACCELERATION: Self = Self {
-        acceleration: true,
-        ..Self::BOTH_MOTORS
-    };
-    const EVERYTHING: Self = Self {
-        acceleration: true,
-        open_loop: true,
-        ..Self::VELOCITY
-    };
-    const OPEN_LOOP: Self = Self {
-        open_loop: true,
-        ..Self::NOTHING
-    };
+    fn of(kind: SceneKind) -> Self {
+        let facts = kind.facts();
+        let needs = facts.needs;
+        Self {
+            parts: [
+                needs.velocity,
+                needs.acceleration,
+                needs.continuous,
+                needs.transient,
+                facts.role == Role::Excitation,
+            ],
+            continuous: needs.continuous,
+            transient: needs.transient,
+            handle: needs.handle_estimator,
+        }
+    }
 
     /// Whether the other needs all of this and more.
     fn are_part_of(self, other: Self) -> bool {
-        self != other
-            && self.velocity <= other.velocity
-            && self.acceleration <= other.acceleration
-            && self.continuous <= other.continuous
-            && self.transient <= other.transient
-            && self.open_loop <= other.open_loop
+        self.parts != other.parts && (0..5).all(|i| self.parts[i] <= other.parts[i])
     }
 }
 
-/// Every library of the package `scene-images`, in the order of the table.
-const SCENES: [(&str, Needs); 12] = [
-    ("off", Needs::NOTHING),
-    ("excite", Needs::OPEN_LOOP),
-    ("detents", Needs::SMALL_MOTOR),
-    ("texture", Needs::SMALL_MOTOR),
-    ("free-air", Needs::BOTH_MOTORS),
-    ("torque", Needs::BOTH_MOTORS),
-    ("wall", Needs::VELOCITY),
-    ("spring-damper", Needs::VELOCITY),
-    ("viscous", Needs::VELOCITY),
-    ("hold", Needs::VELOCITY),
-    ("inertia", Needs::ACCELERATION),
-    ("all", Needs::EVERYTHING),
-];
+/// The library of the switchboard of all scenes.
+const ALL: &str = "all";
+
+/// Name, module in the package `scene-images` and needs of every scene and of the switchboard, in
+/// the order of the table: scenes that need less come first.
+static SCENES: LazyLock<Vec<(&str, String, Needs)>> = LazyLock::new(|| {
+    let mut scenes: Vec<_> = SceneKind::ALL
+        .into_iter()
+        .map(|kind| (kind.name(), format!("{kind:?}"), Needs::of(kind)))
+        .collect();
+    scenes.sort_by_key(|(_, _, needs)| {
+        let [velocity, acceleration, continuous, transient, open_loop] = needs.parts;
+        [acceleration, velocity, continuous, transient, open_loop]
+    });
+    let everything = Needs {
+        parts: [true; 5],
+        continuous: true,
+        transient: true,
+        handle: true,
+    };
+    scenes.push((ALL, ALL.to_owned(), everything));
+    scenes
+});
 
 /// Optimisation levels of the table's columns of text.
 const LEVELS: [&str; 2] = ["3", "s"];
@@ -92,26 +84,34 @@ fn image(level: &str) -> Image {
         level => &format!("profile.release.opt-level={level}"),
     };
     let units = "profile.release.codegen-units=1";
-    let arguments = ["--examples", "--config", level, "--config", units];
+    let arguments = ["--lib", "--examples", "--config", level, "--config", units];
     let libraries = build("scene-images", &directory, &arguments);
     assert_eq!(
         libraries.len(),
-        SCENES.len() + 3,
-        "scenes, what they share, control and core: {libraries:?}"
+        4,
+        "scenes, the switchboard, control and core: {libraries:?}"
     );
     Image::read(&libraries)
 }
 
 static IMAGES: LazyLock<[Image; 2]> = LazyLock::new(|| LEVELS.map(image));
 
-/// What firmware with this scene alone calls of its controller, and all that this calls.
-fn reached<'a>(image: &'a Image, scene: &str) -> Reached<'a> {
-    let krate = scene.replace('-', "_");
-    let functions = match scene {
-        "all" => &["make", "start", "step", "select"][..],
+/// The symbol of a module's function or static.
+fn symbol<'a>(image: &'a Image, module: &str, name: &str) -> &'a str {
+    match module {
+        ALL => image.function(ALL, name),
+        _ => image.function("scene_images", &format!("{module}::{name}")),
+    }
+}
+
+/// What firmware with the scene in this module alone calls of its controller, and all that this
+/// calls.
+fn reached<'a>(image: &'a Image, module: &str) -> Reached<'a> {
+    let functions = match module {
+        ALL => &["make", "start", "step", "select"][..],
         _ => &["make", "start", "step"],
     };
-    let functions = functions.iter().map(|name| image.function(&krate, name));
+    let functions = functions.iter().map(|name| symbol(image, module, name));
     image.reached(&functions.collect::<Vec<_>>())
 }
 
@@ -125,10 +125,10 @@ struct Cost {
 }
 
 impl Cost {
-    fn of(scene: &str) -> Self {
-        let text = IMAGES.each_ref().map(|image| reached(image, scene).size());
+    fn of(module: &str) -> Self {
+        let text = IMAGES.each_ref().map(|image| reached(image, module).size());
         let ram = IMAGES.each_ref().map(|image| {
-            let data = image.data(&scene.replace('-', "_"), "RAM");
+            let data = image.data(symbol(image, module, "RAM"));
             let words = [0, 4].map(|at| data[at..at + 4].try_into().expect("two words"));
             words.map(u32::from_le_bytes).map(u64::from)
         });
@@ -170,14 +170,14 @@ fn a_scene_costs_what_the_table_says() {
 
     if std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1") {
         let mut table = HEAD.to_owned();
-        for (scene, _) in SCENES {
-            let figures = Cost::of(scene).figures().map(|bytes| bytes.to_string());
+        for (scene, module, _) in SCENES.iter() {
+            let figures = Cost::of(module).figures().map(|bytes| bytes.to_string());
             // Instructions are counted elsewhere.
             let instructions = match row(scene).and_then(|cells| cells.get(5..)) {
                 Some([mean, most]) => [mean, most].map(|cell| (*cell).to_owned()),
                 _ => ["later", "later"].map(String::from),
             };
-            let cells = [&[scene.to_owned()], &figures[..], &instructions].concat();
+            let cells = [&[(*scene).to_owned()], &figures[..], &instructions].concat();
             table += &format!("| {} |\n", cells.join(" | "));
         }
         let text = format!("{before}{BEGIN}\n\n{table}\n{END}{after}");
@@ -189,11 +189,15 @@ fn a_scene_costs_what_the_table_says() {
     let written = rows.iter().filter(|cells| cells.len() > 1).count();
     assert_eq!(written, SCENES.len() + 2, "head and a row for each scene");
     let mut moved = Vec::new();
-    for (scene, _) in SCENES {
+    for (scene, module, _) in SCENES.iter() {
         let cells = row(scene).unwrap_or_else(|| panic!("no row for {scene}"));
         // Code may move a little with what has nothing to do with the scene, memory by two words.
         let slack = [32, 32, 8, 8];
-        for ((cell, bytes), slack) in cells[1..5].iter().zip(Cost::of(scene).figures()).zip(slack) {
+        for ((cell, bytes), slack) in cells[1..5]
+            .iter()
+            .zip(Cost::of(module).figures())
+            .zip(slack)
+        {
             let golden: u64 = cell.parse().expect("bytes");
             if bytes.abs_diff(golden) > slack.max(golden / 10) {
                 moved.push(format!("{scene}: {golden} became {bytes}"));
@@ -209,20 +213,20 @@ fn a_scene_costs_what_the_table_says() {
 #[test]
 fn a_scene_contains_what_it_needs_and_nothing_else() {
     for image in IMAGES.iter() {
-        for (scene, needs) in SCENES {
-            let symbols: Vec<&str> = reached(image, scene).symbols().collect();
+        for (scene, module, needs) in SCENES.iter() {
+            let symbols: Vec<&str> = reached(image, module).symbols().collect();
             let estimators = [
                 ("large_start", needs.continuous),
                 ("large_update", needs.continuous),
-                ("handle_start", needs.velocity || needs.continuous),
-                ("handle_update", needs.velocity || needs.continuous),
+                ("handle_start", needs.handle),
+                ("handle_update", needs.handle),
             ];
             for (function, needed) in estimators {
                 let symbol = image.function("scene_images", function);
                 assert_eq!(symbols.contains(&symbol), needed, "{scene}: {function}");
             }
-            // These are methods of plain types that other crates call, so they are not copied
-            // into them: where they are needed they are found.
+            // These are methods of types that are not generic, in another crate, so they are not
+            // inlined: where they are needed the image has their symbols.
             for (update, needed) in [
                 ("15ContinuousStage6update", needs.continuous),
                 ("14TransientStage6update", needs.transient),
@@ -230,9 +234,9 @@ fn a_scene_contains_what_it_needs_and_nothing_else() {
                 let found = symbols.iter().any(|symbol| symbol.contains(update));
                 assert_eq!(found, needed, "{scene}: {update}");
             }
-            // Nor is there an estimator that the scene keeps for itself: of the core it uses
-            // quantities and samples.
-            if !(needs.velocity || needs.continuous) {
+            // A scene without a velocity has no other estimator: of the core it uses quantities
+            // and samples alone.
+            if !needs.handle {
                 for symbol in &symbols {
                     let mut modules = symbol.split("14estimator_core").skip(1);
                     let quantity = |module: &str| {
@@ -248,8 +252,8 @@ fn a_scene_contains_what_it_needs_and_nothing_else() {
 #[test]
 fn a_scene_calls_nothing_on_the_board() {
     for image in IMAGES.iter() {
-        for (scene, _) in SCENES {
-            let foreign = reached(image, scene).foreign();
+        for (scene, module, _) in SCENES.iter() {
+            let foreign = reached(image, module).foreign();
             assert!(foreign.is_empty(), "{scene} refers to {foreign:?}");
         }
     }
@@ -257,19 +261,22 @@ fn a_scene_calls_nothing_on_the_board() {
 
 #[test]
 fn a_scene_that_needs_less_costs_less() {
-    let costs = SCENES.map(|(scene, needs)| (scene, needs, Cost::of(scene)));
+    let costs = SCENES
+        .iter()
+        .map(|(scene, module, needs)| (*scene, *needs, Cost::of(module)));
+    let costs: Vec<_> = costs.collect();
     for (scene, needs, cost) in &costs {
         for (other, more, dearer) in &costs {
             // In one image of all, scenes share their parts, not their code, and the one that is
             // on is state.
-            if needs.are_part_of(*more) && *other != "all" {
+            if needs.are_part_of(*more) && *other != ALL {
                 let mut pairs = cost.figures().into_iter().zip(dearer.figures());
                 assert!(
                     pairs.all(|(bytes, most)| bytes <= most),
                     "{scene} {cost:?}, {other} {dearer:?}"
                 );
             }
-            if *other == "all" {
+            if *other == ALL {
                 let mut pairs = cost.text.into_iter().zip(dearer.text);
                 assert!(
                     pairs.all(|(bytes, most)| bytes <= most),
@@ -282,13 +289,13 @@ fn a_scene_that_needs_less_costs_less() {
 
 #[test]
 fn off_costs_next_to_nothing_and_a_position_little() {
-    let off = Cost::of("off");
+    let off = Cost::of("Off");
     assert!(off.text.iter().all(|&bytes| bytes <= 128), "{off:?}");
     assert!(off.controller <= 8 && off.state <= 8, "{off:?}");
 
-    let wall = Cost::of("wall");
+    let wall = Cost::of("Wall");
     let total = |cost: &Cost| [cost.text[0], cost.text[1], cost.controller + cost.state];
-    for (scene, times) in [("off", 6), ("detents", 2), ("texture", 2)] {
+    for (scene, times) in [("Off", 6), ("Detents", 2), ("Texture", 2)] {
         let cost = Cost::of(scene);
         let mut pairs = total(&cost).into_iter().zip(total(&wall));
         assert!(

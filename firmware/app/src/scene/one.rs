@@ -98,6 +98,9 @@ impl Core {
 
     /// What the large motor's estimator has learned.
     pub fn learned(&self) -> Learned {
-        self.state.large().map(|state| LARGE.learned(state)).unwrap_or_default()
+        self.state
+            .large()
+            .map(|state| LARGE.learned(state))
+            .unwrap_or_default()
     }
 }

@@ -1,22 +1,11 @@
 //! Scenes by their numbers, of the image of all scenes.
-#![cfg(not(any(
-    feature = "scene-off",
-    feature = "scene-free-air",
-    feature = "scene-wall",
-    feature = "scene-spring-damper",
-    feature = "scene-viscous",
-    feature = "scene-detents",
-    feature = "scene-texture",
-    feature = "scene-hold",
-    feature = "scene-torque",
-    feature = "scene-inertia",
-    feature = "scene-excite"
-)))]
+#![cfg(not(one_scene))]
 
 use drivers::{Command, encode};
 use estimator_core::Deviations;
 use firmware_app::config::EDGES;
 use firmware_app::large::Learnable as _;
+use firmware_app::scene::SCENES;
 use haptic_control::{Mode, Request};
 
 use crate::bench::{Bench, messages, ticks};
@@ -115,7 +104,7 @@ fn free_air_estimates_and_off_does_not() {
 fn a_scene_without_a_number_changes_nothing() {
     let mut bench = Bench::start(3);
     rest(&mut bench, 0.15);
-    bench.request(Request::Select(11));
+    bench.request(Request::Select(SCENES));
     bench.run(ticks(0.05));
     near(bench.torque_mnm(), -100.0 * 0.15, 0.1);
 }

@@ -1,0 +1,64 @@
+use crate::limits::Currents;
+use crate::need::Need;
+use crate::units::{NewtonMetres, RadPerS, RadPerS2, Radians};
+
+/// The handle's motion as a scene reads it. A quantity that the scene does not need is `()`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Handle<V, A = ()> {
+    /// Angle from the position at which the controller started.
+    pub angle: Radians,
+    /// Velocity.
+    pub velocity: V,
+    /// Acceleration.
+    pub acceleration: A,
+}
+
+/// The handle's motion as the scene `S` reads it.
+pub type Seen<S> = Handle<
+    <<S as Scene>::Velocity as Need>::Of<RadPerS>,
+    <<S as Scene>::Acceleration as Need>::Of<RadPerS2>,
+>;
+
+/// A virtual environment.
+///
+/// Its associated types say what it needs, see [`Need`]. A part that is not needed has neither
+/// state nor code, and the scene cannot read a velocity that it did not ask for.
+pub trait Scene {
+    /// Whether the scene reads the handle's velocity.
+    type Velocity: Need;
+    /// Whether the scene reads the handle's acceleration.
+    type Acceleration: Need;
+    /// Whether the large motor renders the scene's torque.
+    type Continuous: Need;
+    /// Whether the small motor renders the scene's torque.
+    type Transient: Need;
+    /// State that the scene keeps from tick to tick.
+    type State: Clone + PartialEq;
+
+    /// State when the handle is at `angle`.
+    fn start(&self, angle: Radians) -> Self::State;
+
+    /// One tick: the torque that the handle should feel.
+    fn torque(&self, state: &mut Self::State, handle: &Seen<Self>) -> NewtonMetres
+    where
+        Self: Sized;
+
+    /// Currents that the scene commands directly, past both stages, after [`Scene::torque`].
+    ///
+    /// Only an excitation commands currents: it renders no torque.
+    #[inline]
+    fn open_loop(_: &Self::State) -> Option<Currents> {
+        None
+    }
+
+    /// Amplitude of the torque with which the scene by itself vibrates a moving handle; simulations
+    /// do not count this vibration as an instability.
+    fn vibration(&self) -> NewtonMetres {
+        NewtonMetres(0.0)
+    }
+}
+
+/// Whether a stiffness, damping or amplitude is finite and at least zero.
+pub(super) const fn is_gain(gain: f32) -> bool {
+    gain >= 0.0 && gain.is_finite()
+}
