@@ -21,7 +21,6 @@ use crate::image::Image;
 pub use crate::lockstep::CoreAccess;
 use crate::lockstep::Lockstep;
 use crate::objections;
-use crate::scene;
 
 /// Control rate of the image, Hz.
 pub const RATE_HZ: f64 = 10e3;
@@ -94,7 +93,7 @@ impl Setup {
     #[must_use]
     pub fn playing(scene: SceneKind, seconds: f64) -> Self {
         Self {
-            hand: scene::hand(scene),
+            hand: scene.facts().hand.into(),
             seconds,
             commands: vec![(0.05, Command::Scene(scene)), (0.1, Command::Arm)],
             ..Self::default()

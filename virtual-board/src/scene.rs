@@ -1,10 +1,9 @@
 //! Scenes of the image: the hand that tries them, and the commands that set their parameters.
 
 use estimator_core::Hertz;
-use experiments::closed_loop::{Hand, Press};
-use haptic_control::{DualStage, SceneKind, SimulatedHand};
+use experiments::closed_loop::{self, Hand, Press};
+use haptic_control::{DualStage, SceneKind};
 use simulation::device::Device;
-use terminal::wording::unknown;
 
 use crate::command::Command;
 
@@ -13,18 +12,7 @@ use crate::command::Command;
 /// # Errors
 /// One line with all names.
 pub fn named(name: &str) -> Result<SceneKind, String> {
-    SceneKind::named(name)
-        .ok_or_else(|| unknown("scene", name, SceneKind::ALL.iter().map(|kind| kind.name())))
-}
-
-/// The simulated hand that tries a scene.
-#[must_use]
-pub fn hand(scene: SceneKind) -> Hand {
-    match scene.facts().hand {
-        SimulatedHand::FreeMotion => Hand::Moving,
-        SimulatedHand::WallPress => Hand::Pushing,
-        SimulatedHand::HoldStill => Hand::Still,
-    }
+    closed_loop::named(name, SceneKind::ALL.into_iter())
 }
 
 /// A finger that presses with 10 N, if the scene resists: it moves into the scene as far as the

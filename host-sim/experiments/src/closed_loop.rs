@@ -2,6 +2,7 @@
 
 mod bench;
 mod fault;
+mod hand;
 mod press;
 mod record;
 mod scene;
@@ -9,7 +10,8 @@ mod tracking;
 
 use estimator_core::{Amps, Count, Hertz, Sample};
 use haptic_control::{
-    Action, Cause, Controller, DualStage, LoopPoles, Monitor, Motor, Rig, RstDesign, Scene, Senses,
+    Action, AnyScene, Cause, Controller, DualStage, LoopPoles, Monitor, Motor, Rig, RstDesign,
+    Scene, Senses,
 };
 
 use catalogue::estimators::{Estimator, Kind, Setup};
@@ -19,8 +21,9 @@ use simulation::plant::{Pose, steps_per_tick};
 
 pub use bench::Bench;
 pub use fault::Fault;
+pub use hand::{Hand, Motion};
 pub use press::Press;
-pub use scene::{Hand, Motion, SceneName, Visit};
+pub use scene::{Visit, environments_with, named, usual};
 
 /// Which encoder of the large motor closes the loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,8 +42,8 @@ pub struct Loop {
     /// The device as the controller believes it to be.
     pub believed: DualStage,
     /// Scene with its parameters.
-    pub scene: SceneName,
-    /// Who holds the handle.
+    pub scene: AnyScene,
+    /// The simulated hand.
     pub hand: Hand,
     /// Control rate, Hz.
     pub rate_hz: f64,
@@ -129,12 +132,13 @@ impl Loop {
             rig.large = estimator_core::Scale::new(self.device.reference.counts_per_rev, rate)
                 .map_err(|error| format!("reference encoder: {error}"))?;
         }
-        if self.scene.asks_for_acceleration() && !self.handle.gives_acceleration() {
+        let scene = self.scene.kind();
+        if scene.facts().needs.acceleration && !self.handle.gives_acceleration() {
             let names = Kind::all().iter().filter(|kind| kind.gives_acceleration());
             let names: Vec<_> = names.map(|kind| kind.name).collect();
             return Err(format!(
                 "scene {}: its estimator of the handle gives no acceleration; name one that does: {}",
-                self.scene,
+                scene,
                 names.join(", ")
             ));
         }
@@ -145,7 +149,8 @@ impl Loop {
             fault,
             observe,
         };
-        self.scene.visit(self.rate_hz, &self.believed, visit)
+        scene::visit(&self.scene, visit);
+        Ok(())
     }
 }
 

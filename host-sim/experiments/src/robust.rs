@@ -11,11 +11,11 @@ pub mod shard;
 pub mod summary;
 pub mod variation;
 
-use haptic_control::LoopPoles;
+use haptic_control::{LoopPoles, SceneKind};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::closed_loop::{Eye, Loop, SceneName, believed};
+use crate::closed_loop::{Eye, Loop, believed, named, usual};
 use catalogue::estimators::Setup;
 use catalogue::estimators::{Estimator, Kind};
 use catalogue::parameters::{Parameters, PlantKind};
@@ -64,7 +64,7 @@ pub struct Experiment {
 }
 
 /// One run to be done.
-pub type Job = (SceneName, Subject);
+pub type Job = (SceneKind, Subject);
 
 impl Settings {
     /// Settings of a run with these values of the estimator's parameters.
@@ -77,9 +77,10 @@ impl Settings {
     /// The scenes.
     ///
     /// # Errors
-    /// One line that names a scene that there is not.
-    pub fn scenes(&self) -> Result<Vec<SceneName>, String> {
-        self.scenes.iter().map(|name| name.parse()).collect()
+    /// One line that names an unknown scene.
+    pub fn scenes(&self) -> Result<Vec<SceneKind>, String> {
+        let named = |name: &String| named(name, SceneKind::environments());
+        self.scenes.iter().map(named).collect()
     }
 
     /// All runs in the order of the rows: scene by scene, corners first.
@@ -155,10 +156,12 @@ impl Experiment {
         let (variation, seed) = subject.variation(settings.seed, scene);
         let device = variation.of(&settings.device);
         let inertia = device.small.inertia_kg_m2;
+        let believed = believed(&settings.device);
+        let usual = usual(scene, &believed, settings.rate_hz)?;
         let run = Loop {
             device,
-            believed: believed(&settings.device),
-            scene,
+            believed,
+            scene: usual,
             hand: variation.hand(scene),
             rate_hz: settings.rate_hz,
             seed,
@@ -168,7 +171,7 @@ impl Experiment {
             poles: self.poles,
             late_ticks: variation.late_ticks + self.late_ticks,
         };
-        let mut judge = Judge::new(scene, settings.rate_hz, self.ticks);
+        let mut judge = Judge::new(&usual, settings.rate_hz, self.ticks);
         let mut cause = None;
         run.run(self.ticks, |now| {
             cause = now.stopped;
@@ -231,10 +234,10 @@ mod tests {
 
     #[test]
     fn the_nominal_device_is_stable_in_every_scene() {
-        let names = SceneName::ALL.map(SceneName::as_str);
+        let names: Vec<_> = SceneKind::environments().map(SceneKind::name).collect();
         let settings = settings(&names, 0);
         let experiment = Experiment::new(&settings).unwrap();
-        for scene in SceneName::ALL {
+        for scene in SceneKind::environments() {
             let row = experiment.row((scene, Subject::Corner(0))).unwrap();
             assert_eq!(row.device, "nominal");
             assert_eq!((row.verdict, row.stop), (Verdict::Stable, None), "{scene}");
@@ -259,7 +262,7 @@ mod tests {
         experiment.late_ticks = 44;
         let late_wall = |experiment: &Experiment| {
             experiment
-                .row((SceneName::ALL[2], Subject::Corner(0)))
+                .row((SceneKind::Wall, Subject::Corner(0)))
                 .unwrap()
         };
         assert_eq!(late_wall(&experiment).reason, Some(Reason::Oscillation));

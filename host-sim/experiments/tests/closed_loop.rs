@@ -2,9 +2,9 @@
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind};
-use experiments::closed_loop::{Eye, Hand, Loop, Press, SceneName, believed, estimator};
+use experiments::closed_loop::{Eye, Hand, Loop, Press, believed, estimator, usual};
 use experiments::felt::{Case, Fingertip, Parasitic, Settings, bandwidth_hz, compare, sweep};
-use haptic_control::LoopPoles;
+use haptic_control::{AnyScene, Inertia, LoopPoles, SceneKind};
 use scoring::score::Wanted;
 use simulation::device::Device;
 use std::f64::consts::TAU;
@@ -25,7 +25,7 @@ fn settings(names: &[&str]) -> Settings {
 #[test]
 fn parasitic_is_felt_less_wanted_at_the_fingertip() {
     let case = Case {
-        scene: SceneName::Wall(0.30, 0.0),
+        scene: SceneKind::Wall,
         rate_hz: 1000.0,
         plant: PlantKind::Friction,
         seed: 3,
@@ -54,11 +54,11 @@ fn off_has_no_current_and_only_scenes_with_a_loop_know_the_large_motor_s_velocit
     let (device, parameters, rate_hz) = (Device::default(), Parameters::default(), 1000.0);
     let kind = Kind::named("kalman-triple-steady").unwrap();
     let on = |counts| estimator(kind, &device, counts, rate_hz, &parameters).unwrap();
-    for scene in SceneName::ALL {
+    for scene in SceneKind::environments() {
         let run = Loop {
             device: device.clone(),
+            scene: usual(scene, &believed(&device), rate_hz).unwrap(),
             believed: believed(&device),
-            scene,
             hand: Hand::Moving,
             rate_hz,
             seed: 1,
@@ -76,8 +76,8 @@ fn off_has_no_current_and_only_scenes_with_a_loop_know_the_large_motor_s_velocit
             counted |= moment.own_count != moment.sample.large;
         })
         .unwrap();
-        assert_eq!(driven, scene != SceneName::Off, "{scene}");
-        assert_eq!(known, scene.asks_for_velocity(), "{scene}");
+        assert_eq!(driven, scene != SceneKind::Off, "{scene}");
+        assert_eq!(known, scene.facts().needs.continuous, "{scene}");
         assert!(!counted, "the loop sees the device's own encoder");
     }
 }
@@ -89,11 +89,11 @@ fn a_hard_press_does_not_stop_a_scene() {
     let on = |counts| estimator(kind, &device, counts, rate_hz, &parameters).unwrap();
     // 0.5 N.m/rad: 10 N at 35 mm on a handle that stays where it is, and twice as far.
     for angle in [0.7, 1.4] {
-        for scene in SceneName::ALL {
+        for scene in SceneKind::environments() {
             let run = Loop {
                 device: device.clone(),
+                scene: usual(scene, &believed(&device), rate_hz).unwrap(),
                 believed: believed(&device),
-                scene,
                 hand: Hand::Pressing(Press {
                     angle: 0.1 + angle,
                     moving_s: 0.4,
@@ -145,14 +145,14 @@ fn torque_is_rendered_flat_up_to_the_amplifiers() {
 
 /// The inertia that a hand feels: felt torque against the handle's acceleration, least squares, over
 /// the whole motion and with both through the same four poles at 1 Hz.
-fn felt_inertia(scene: SceneName, device: &Device) -> [f64; 2] {
+fn felt_inertia(scene: impl Into<AnyScene>, device: &Device) -> [f64; 2] {
     let (parameters, rate_hz) = (Parameters::default(), 10e3);
     let kind = Kind::named("kalman-triple-steady").unwrap();
     let on = |counts| estimator(kind, device, counts, rate_hz, &parameters).unwrap();
     let run = Loop {
         device: device.clone(),
         believed: believed(device),
-        scene,
+        scene: scene.into(),
         hand: Hand::Moving,
         rate_hz,
         seed: 1,
@@ -187,15 +187,21 @@ fn felt_inertia(scene: SceneName, device: &Device) -> [f64; 2] {
     [0, 1].map(|at| products[at] / squares[at] / own)
 }
 
+/// An inertia as a part of the handle's own.
+fn inertia(part: f32, device: &Device) -> Inertia {
+    let own = believed(device).small.inertia as f32;
+    Inertia::new(part * own, own).unwrap()
+}
+
 #[test]
 fn a_virtual_inertia_is_felt_and_a_negative_one_lightens_the_handle() {
     let device = Device::default();
-    let plain = felt_inertia(SceneName::Inertia(0.0), &device)[0];
+    let plain = felt_inertia(inertia(0.0, &device), &device)[0];
     assert!((plain - 1.0).abs() < 0.1, "{plain}");
     // In slow motion the lag of the estimate is none, and without friction torques add up.
     let device = device.frictionless();
     let [lighter, plain, heavier] =
-        [-0.4, 0.0, 0.4].map(|part| felt_inertia(SceneName::Inertia(part), &device)[1]);
+        [-0.4, 0.0, 0.4].map(|part| felt_inertia(inertia(part, &device), &device)[1]);
     for added in [heavier - plain, plain - lighter] {
         assert!((added - 0.4).abs() < 0.005, "{lighter}, {plain}, {heavier}");
     }

@@ -2,13 +2,13 @@
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::closed_loop::{Eye, Fault, Hand, Loop, SceneName, believed, estimator};
-use haptic_control::{Cause, LoopPoles};
+use experiments::closed_loop::{Eye, Fault, Hand, Loop, believed, estimator, usual};
+use haptic_control::{Cause, LoopPoles, SceneKind, SimulatedHand};
 use simulation::device::Device;
 
 const FAULT_S: f64 = 0.5;
 
-fn closed(scene: SceneName, rate_hz: f64, seed: u64) -> Loop {
+fn closed(scene: SceneKind, rate_hz: f64, seed: u64) -> Loop {
     let device = Device::default();
     let kind = Kind::named("kalman-triple-steady").unwrap();
     let on =
@@ -16,11 +16,11 @@ fn closed(scene: SceneName, rate_hz: f64, seed: u64) -> Loop {
     Loop {
         large: on(device.large.counts_per_rev),
         handle: on(device.small.counts_per_rev),
+        scene: usual(scene, &believed(&device), rate_hz).unwrap(),
         believed: believed(&device),
         device,
-        scene,
-        hand: match scene {
-            SceneName::Wall(..) => Hand::Pushing,
+        hand: match scene.facts().hand {
+            SimulatedHand::WallPress => Hand::Pushing,
             _ => Hand::Moving,
         },
         rate_hz,
@@ -61,7 +61,7 @@ fn with(run: &Loop, fault: Fault, seconds: f64) -> Ended {
 
 /// Largest time until the stop and largest spurious torque over seeds, and whether each cause was
 /// one of `causes`.
-fn worst(scene: SceneName, rate_hz: f64, fault: Fault, causes: &[Cause]) -> (f64, f64) {
+fn worst(scene: SceneKind, rate_hz: f64, fault: Fault, causes: &[Cause]) -> (f64, f64) {
     let mut worst = (0.0_f64, 0.0_f64);
     for seed in 1..=6 {
         let ended = with(&closed(scene, rate_hz, seed), fault, 1.5);
@@ -77,18 +77,13 @@ fn worst(scene: SceneName, rate_hz: f64, fault: Fault, causes: &[Cause]) -> (f64
     worst
 }
 
-fn with_large_motor() -> impl Iterator<Item = SceneName> {
-    SceneName::ALL
-        .into_iter()
-        .filter(|scene| scene.asks_for_velocity())
+fn with_large_motor() -> impl Iterator<Item = SceneKind> {
+    SceneKind::environments().filter(|scene| scene.facts().needs.continuous)
 }
 
-/// Whether the hand leans on a torque that may go away.
-fn springs(scene: SceneName) -> bool {
-    matches!(
-        scene,
-        SceneName::Wall(..) | SceneName::SpringDamper(..) | SceneName::Hold(..)
-    )
+/// Whether the hand presses against a spring, whose torque may vanish.
+fn springs(scene: SceneKind) -> bool {
+    scene.parameter("stiffness").is_some()
 }
 
 #[test]

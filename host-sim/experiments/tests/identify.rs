@@ -3,9 +3,9 @@
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::closed_loop::{Eye, Hand, Loop, SceneName, believed, estimator};
+use experiments::closed_loop::{Eye, Hand, Loop, believed, estimator, usual};
 use experiments::identify::{Identification, Known, identify};
-use haptic_control::LoopPoles;
+use haptic_control::{LoopPoles, SceneKind};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use recordings::recording::Recording;
@@ -41,7 +41,7 @@ fn record(device: &Device, hand: Hand, seed: u64, every: usize) -> Recording {
     let run = Loop {
         device: device.clone(),
         believed: believed(device),
-        scene: SceneName::Excite,
+        scene: usual(SceneKind::Excite, &believed(device), 10e3).unwrap(),
         hand,
         rate_hz: 10e3,
         seed,

@@ -14,8 +14,8 @@ use super::palette::Palette;
 use super::sections::{Section, framed, words};
 use super::text::{number, plant, rate, share};
 use catalogue::parameters::PlantKind;
-use experiments::closed_loop::SceneName;
 use experiments::felt::{Design, Outcome, REFERENCE, Run, Swept};
+use haptic_control::SceneKind;
 
 /// What was run with the loop closed.
 #[derive(Clone, Debug, Default)]
@@ -102,7 +102,7 @@ impl ClosedLoop {
         let of_scene = self
             .outcomes
             .iter()
-            .filter(|o| o.case.scene.as_str() == scene);
+            .filter(|o| o.case.scene.name() == scene);
         let mut outcomes: Vec<_> = of_scene.collect();
         outcomes.sort_by(|a, b| a.case.rate_hz.total_cmp(&b.case.rate_hz));
         outcomes.dedup_by_key(|o| o.case.rate_hz.to_bits());
@@ -114,7 +114,7 @@ impl ClosedLoop {
 }
 
 fn has_loop(outcome: &Outcome) -> bool {
-    outcome.case.scene.asks_for_velocity()
+    outcome.case.scene.facts().needs.continuous
 }
 
 fn find<'a>(outcome: &'a Outcome, controlled_by: &str) -> Option<&'a Run> {
@@ -195,8 +195,8 @@ fn in_words(closed: &ClosedLoop) -> Option<String> {
     let scene = closed
         .outcomes
         .iter()
-        .find(|o| o.case.scene == SceneName::FreeAir);
-    let scene = scene.unwrap_or(with_loop).case.scene.as_str();
+        .find(|o| o.case.scene == SceneKind::FreeAir);
+    let scene = scene.unwrap_or(with_loop).case.scene.name();
     let clauses: Vec<String> = (closed.of(scene).into_iter())
         .filter_map(|outcome| {
             let says = |run: &Run| run.parasitic.parasitic_mn_rms.map(number);

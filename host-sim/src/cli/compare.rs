@@ -9,6 +9,7 @@ use experiments::compare::{Case, Cost, Outcome, Settings, compare};
 use experiments::rows;
 use experiments::table;
 use experiments::table::layout::terminal_width;
+use haptic_control::SceneKind;
 use report::measured;
 use report::{self, CaseReport, DeviceFacts, ReportInput, Traces};
 use scoring::contest::Row;
@@ -34,16 +35,23 @@ const DRAWN: [ScenarioName; 3] = [
     ScenarioName::Track,
 ];
 
+/// Help of `--scenario`, with the names of the scenes.
+fn scenario_help() -> String {
+    let scenes: Vec<_> = SceneKind::environments().map(SceneKind::name).collect();
+    format!(
+        "Scenario to run; repeatable [default: all but heating; see host-sim scenarios]. With \
+         --closed-loop a scene [default: all: {}]",
+        scenes.join(", ")
+    )
+}
+
 #[derive(Debug, Args)]
 pub(super) struct Compare {
     /// Close the loop: each estimator in turn, then the reference encoder, drives the motors in
     /// the scenes; scored is the force that the hand feels and should not
     #[arg(long)]
     pub(super) closed_loop: bool,
-    /// Scenario to run; repeatable [default: all but heating; see host-sim scenarios]. With
-    /// --closed-loop a scene [default: all: off, free-air, wall, spring-damper, viscous, detents,
-    /// texture, hold, inertia]
-    #[arg(long = "scenario", visible_alias = "scene", value_name = "NAME")]
+    #[arg(long = "scenario", visible_alias = "scene", value_name = "NAME", help = scenario_help())]
     pub(super) scenarios: Vec<String>,
     /// Estimator of the handle's velocity, with --closed-loop [default: kalman-triple-steady]
     #[arg(long, value_name = "NAME", requires = "closed_loop")]

@@ -6,12 +6,13 @@ use haptic_control::LoopPoles;
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::PlantKind;
-use experiments::closed_loop::{SceneName, believed};
+use experiments::closed_loop::{believed, environments_with, named};
 use experiments::compare::Cost;
 use experiments::felt::compare::USUAL;
 use experiments::felt::{self, Case, Design, FeltRow, Outcome, Settings, compare};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
+use haptic_control::SceneKind;
 use report;
 use report::{ClosedLoop, ReportInput};
 use simulation::scenario::ScenarioName;
@@ -163,20 +164,20 @@ pub(super) fn settings(options: &Compare) -> Result<Settings, Failure> {
     })
 }
 
-/// The scenes by these names, once each; where there is no name all that
-/// can be had with this estimator of the handle.
-fn scenes(names: &[String], handle: &Kind) -> Result<Vec<SceneName>, Failure> {
+/// The scenes of these names, each once. Without a name, all environments that this estimator of the
+/// handle can serve.
+fn scenes(names: &[String], handle: &Kind) -> Result<Vec<SceneKind>, Failure> {
     if names.is_empty() {
-        return Ok(SceneName::all_with(handle).collect());
+        return Ok(environments_with(handle).collect());
     }
     let mut scenes = Vec::new();
     for name in names {
-        let scene =
-            name.parse::<SceneName>()
-                .map_err(|error| match name.parse::<ScenarioName>() {
-                    Ok(_) => format!("scenario '{name}' cannot close a loop: {error}"),
-                    Err(_) => error,
-                })?;
+        let scene = named(name, SceneKind::environments()).map_err(|error| {
+            match name.parse::<ScenarioName>() {
+                Ok(_) => format!("scenario '{name}' cannot close a loop: {error}"),
+                Err(_) => error,
+            }
+        })?;
         if !scenes.contains(&scene) {
             scenes.push(scene);
         }
@@ -187,7 +188,7 @@ fn scenes(names: &[String], handle: &Kind) -> Result<Vec<SceneName>, Failure> {
 /// The cases, rate by rate.
 pub(super) fn cases(
     options: &Compare,
-    scenes: &[SceneName],
+    scenes: &[SceneKind],
     seconds: f64,
     keep: bool,
 ) -> Result<Vec<Case>, Failure> {

@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use catalogue::estimators::Kind;
-use experiments::closed_loop::SceneName;
+use experiments::closed_loop::{environments_with, named};
 use experiments::robust::row::Row;
 use experiments::robust::shard::Part;
 use experiments::robust::variation::Subject;
 use experiments::robust::{Experiment, Settings, shard, summary};
 use experiments::rows;
 use experiments::table::layout::{NARROW, terminal_width};
+use haptic_control::SceneKind;
 use report;
 use terminal::failure::Failure;
 use terminal::output::{Folder, print_bytes, write_whole};
@@ -132,19 +133,19 @@ fn settings(options: &Robust) -> Result<Settings, Failure> {
     let kind = Kind::named(&options.estimator)?;
     let device = options.device.load()?;
     let parameters = options.parameters.load()?;
-    let mut scenes: Vec<SceneName> = Vec::new();
+    let mut scenes: Vec<SceneKind> = Vec::new();
     for name in &options.scenes {
-        let scene = name.parse()?;
+        let scene = named(name, SceneKind::environments())?;
         if !scenes.contains(&scene) {
             scenes.push(scene);
         }
     }
     if scenes.is_empty() {
-        scenes.extend(SceneName::all_with(kind));
+        scenes.extend(environments_with(kind));
     }
     Ok(Settings {
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        scenes: scenes.iter().map(SceneName::to_string).collect(),
+        scenes: scenes.iter().map(ToString::to_string).collect(),
         rate_hz: options.rate,
         estimator: kind.name.to_owned(),
         values: Settings::values(kind, &device, options.rate, &parameters),

@@ -3,18 +3,17 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use haptic_control::LoopPoles;
+use haptic_control::{LoopPoles, SceneKind};
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::closed_loop::{Eye, Hand, Loop, SceneName, believed, estimator};
+use experiments::closed_loop::{Eye, Hand, Loop, believed, estimator, named, usual};
 use recordings::recording::Recording;
 use simulation::scenario::ScenarioName;
 use simulation::simulate::{simulate, ticks};
 use simulation::trace::Columns;
 use terminal::failure::Failure;
 use terminal::output::write_whole;
-use terminal::wording::unknown;
 
 use super::arguments::DeviceFile;
 
@@ -94,18 +93,17 @@ fn of_scenario(options: &Simulate, name: ScenarioName) -> Result<Recording, Fail
     })
 }
 
-/// The scene called `name`: the excitation, or one that can be felt.
-fn scene(name: &str) -> Result<SceneName, String> {
-    let mut scenes = [SceneName::Excite].into_iter().chain(SceneName::ALL);
-    let found = scenes.clone().find(|scene| scene.as_str() == name);
-    found.ok_or_else(|| unknown("scene", name, scenes.by_ref().map(SceneName::as_str)))
-}
-
 fn of_scene(options: &Simulate) -> Result<Recording, Failure> {
     let device = options.device.load()?;
     let scene = match options.scene.as_deref() {
-        None => SceneName::Excite,
-        Some(name) => scene(name)?,
+        None => SceneKind::Excite,
+        // The excitation, or an environment.
+        Some(name) => named(
+            name,
+            [SceneKind::Excite]
+                .into_iter()
+                .chain(SceneKind::environments()),
+        )?,
     };
     let ticks = ticks(options.rate, options.seconds.unwrap_or(EXCITE_S))?;
     let parameters = Parameters::default();
@@ -113,9 +111,10 @@ fn of_scene(options: &Simulate) -> Result<Recording, Failure> {
         let kind = Kind::named("kalman-triple-steady")?;
         estimator(kind, &device, counts_per_rev, options.rate, &parameters)
     };
+    let believed = believed(&device);
     let run = Loop {
-        believed: believed(&device),
-        scene,
+        believed,
+        scene: usual(scene, &believed, options.rate)?,
         hand: match options.hand {
             Holder::Still => Hand::Still,
             Holder::Clamp => Hand::Clamp,

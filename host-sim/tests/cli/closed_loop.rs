@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use experiments::closed_loop::SceneName;
+use haptic_control::SceneKind;
 use serde_json::Value;
 
 use crate::Folder;
@@ -117,14 +117,14 @@ fn the_same_command_gives_the_same_bytes_and_seed_handle_and_friction_count() {
 #[test]
 fn every_scene_runs_and_those_of_the_small_motor_alone_are_the_same_for_all() {
     let rows = rows(&TWO);
-    for scene in SceneName::ALL {
-        let of_scene = rows.iter().filter(|row| row["scenario"] == scene.as_str());
+    for scene in SceneKind::environments() {
+        let of_scene = rows.iter().filter(|row| row["scenario"] == scene.name());
         let rms: Vec<f64> = of_scene
             .map(|row| number(row, "parasitic_mn_rms"))
             .collect();
         assert_eq!(rms.len(), 4, "{scene}");
         let alike = rms.iter().all(|value| *value == rms[0]);
-        assert_eq!(alike, !scene.asks_for_velocity(), "{scene}: {rms:?}");
+        assert_eq!(alike, !scene.facts().needs.continuous, "{scene}: {rms:?}");
     }
 }
 
@@ -233,7 +233,10 @@ fn the_report_has_the_figures_and_no_broken_number() {
     }
     assert_sound(&page);
     let csv = fs::read_to_string(folder.0.join("page/closed-loop.csv")).unwrap();
-    assert_eq!(csv.lines().count(), 1 + 4 * SceneName::ALL.len());
+    assert_eq!(
+        csv.lines().count(),
+        1 + 4 * SceneKind::environments().count()
+    );
     assert!(csv.starts_with("scenario,rate_hz,plant,seed,estimator,rms_rad_s,"));
     // Too short for most figures, and still a page.
     let short = page_of(

@@ -2,10 +2,10 @@
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::closed_loop::SceneName;
 use experiments::robust::row::Row;
 use experiments::robust::{self, summary};
 use experiments::zwidth;
+use haptic_control::SceneKind;
 use simulation::device::Device;
 
 use crate::{BENCHMARKS, is_written_for, table};
@@ -20,7 +20,7 @@ type Value = fn(&Row) -> f64;
 #[test]
 fn robustness_of_the_loop() {
     let rows = table(BENCHMARKS, "| stable | stopped | violated |");
-    assert_eq!(rows.len(), SceneName::ALL.len());
+    assert_eq!(rows.len(), SceneKind::environments().count());
     let part = |rate_hz, devices| {
         let device = Device::default();
         let kind = Kind::named("kalman-triple-steady").unwrap();

@@ -4,7 +4,6 @@ use std::sync::OnceLock;
 
 use estimator_core::{Confidence as _, VelocityEstimator as _};
 use experiments::closed_loop::Hand;
-use experiments::closed_loop::{Hand, SceneName};
 use firmware_app::large;
 use firmware_app::scene::RIG;
 use haptic_control::SceneKind;

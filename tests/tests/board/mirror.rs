@@ -2,7 +2,6 @@
 
 use estimator_core::{Amps, Count, CountsPerTick, Sample, VelocityEstimator};
 use experiments::closed_loop::Hand;
-use experiments::closed_loop::{Hand, SceneName};
 use firmware_app::config::RATE;
 use firmware_app::control::{Control, Inputs, Message, SETTLE};
 use firmware_app::large::{self, Large, LargeEstimator as _};

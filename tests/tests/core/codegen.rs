@@ -64,7 +64,7 @@ fn estimators_call_nothing_on_the_board() {
 
     // `Skip` is an empty function: a return, with the frame that this target keeps for every
     // function. The smallest function that reads something is larger.
-    let size = |function: &str| image.data("codegen_probe", function).len();
+    let size = |function: &str| image.data(image.function("codegen_probe", function)).len();
     let empty = size("empty");
     assert!(
         0 < empty && empty <= 6,

@@ -2,9 +2,10 @@
 
 use rayon::prelude::*;
 
+use haptic_control::SceneKind;
+
 use super::run::{By, Prepared};
 use super::{FeltRow, Fingertip, Parasitic};
-use crate::closed_loop::{Hand, SceneName};
 use crate::compare::Cost;
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind};
@@ -19,8 +20,8 @@ pub const USUAL: &str = "kalman-triple-steady";
 /// One scene at one rate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
-    /// Scene; whose hand plays with it follows from it, see [`hand`].
-    pub scene: SceneName,
+    /// Scene. The catalogue names the simulated hand that tries it.
+    pub scene: SceneKind,
     /// Control rate, Hz.
     pub rate_hz: f64,
     /// With or without Coulomb friction; the controller knows which.
@@ -91,16 +92,6 @@ pub struct Signals {
     pub handle_rad_s: Vec<f32>,
 }
 
-/// The hand that plays with a scene.
-#[must_use]
-pub fn hand(scene: SceneName) -> Hand {
-    match scene {
-        SceneName::Wall(..) => Hand::Pushing,
-        SceneName::Hold(..) => Hand::Still,
-        _ => Hand::Moving,
-    }
-}
-
 /// The plant's device, with or without its friction.
 #[must_use]
 pub fn device(settings: &Settings, plant: PlantKind) -> Device {
@@ -157,7 +148,7 @@ pub fn compare(
 /// How many runs a case takes.
 #[must_use]
 pub fn runs(case: &Case, settings: &Settings) -> usize {
-    match case.scene.asks_for_velocity() {
+    match case.scene.facts().needs.continuous {
         true => settings.estimators.len() + 1,
         false => 1,
     }

@@ -4,9 +4,9 @@ use std::time::{Duration, Instant};
 
 use haptic_control::{Cause, DualStage, LoopPoles};
 
-use super::compare::{Case, Run, Settings, Signals, USUAL, device, hand};
+use super::compare::{Case, Run, Settings, Signals, USUAL, device};
 use super::{FeltRow, Fingertip, Parasitic, REFERENCE};
-use crate::closed_loop::{self, Eye, Loop, Moment};
+use crate::closed_loop::{self, Eye, Loop, Moment, usual};
 use crate::compare::{Cost, interval};
 use catalogue::estimators::Setup;
 use catalogue::estimators::{Estimator, Kind};
@@ -24,7 +24,7 @@ pub(super) enum By {
     /// The estimator of this number.
     Contestant(usize),
     Reference,
-    /// Nobody: the scene has no loop around the large motor.
+    /// No estimator: the scene has no loop around the large motor.
     Nobody,
 }
 
@@ -77,7 +77,7 @@ impl<'a> Prepared<'a> {
     }
 
     pub(super) fn closers(&self) -> Vec<By> {
-        if !self.case.scene.asks_for_velocity() {
+        if !self.case.scene.facts().needs.continuous {
             return vec![By::Nobody];
         }
         let contestants = (0..self.settings.estimators.len()).map(By::Contestant);
@@ -95,8 +95,8 @@ impl<'a> Prepared<'a> {
         let run = Loop {
             device: self.device.clone(),
             believed: self.believed,
-            scene: case.scene,
-            hand: hand(case.scene),
+            scene: usual(case.scene, &self.believed, case.rate_hz)?,
+            hand: case.scene.facts().hand.into(),
             rate_hz: case.rate_hz,
             seed: case.seed,
             large: large.clone(),
@@ -140,7 +140,7 @@ impl<'a> Prepared<'a> {
     ) -> Result<(Vec<FeltRow>, Option<Score>), Failure> {
         let case = self.case;
         let heading = Heading {
-            scenario: case.scene.as_str().to_owned(),
+            scenario: case.scene.name().to_owned(),
             rate_hz: case.rate_hz,
             plant: case.plant,
             seed: case.seed,

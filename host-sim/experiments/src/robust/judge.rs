@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use haptic_control::AnyScene;
+
 use super::high_pass::HighPass;
-use crate::closed_loop::SceneName;
 
 /// Largest speed of the handle that is allowed, rad/s: 2.1 m/s at the fingertip of the default
 /// handle, whose energy is then 9 mJ, that of a small coin dropped from 15 cm. It is twice what
@@ -25,11 +26,8 @@ const STRONGEST: f64 = 1.2;
 ///
 /// A texture is a vibration, and detents are one under a hand that drags the handle over them.
 #[must_use]
-pub fn oscillation_limit_nm(scene: SceneName) -> f64 {
-    let own = match scene {
-        SceneName::Texture(amplitude, _) | SceneName::Detents(amplitude, _) => f64::from(amplitude),
-        _ => 0.0,
-    };
+pub fn oscillation_limit_nm(scene: &AnyScene) -> f64 {
+    let own = f64::from(scene.vibration().0);
     OSCILLATION_NM + STRONGEST * own / std::f64::consts::SQRT_2
 }
 
@@ -114,7 +112,7 @@ impl Judge {
     /// A judge of a run of `scene` for `ticks` at `rate_hz`: oscillation is what is left in the
     /// last quarter.
     #[must_use]
-    pub fn new(scene: SceneName, rate_hz: f64, ticks: usize) -> Self {
+    pub fn new(scene: &AnyScene, rate_hz: f64, ticks: usize) -> Self {
         Self {
             limit_nm: oscillation_limit_nm(scene),
             before: Peaks::default(),
@@ -195,7 +193,7 @@ mod tests {
     const RATE: f64 = 1000.0;
 
     fn judged(ticks: usize, at: impl Fn(usize, f64) -> Instant) -> Judge {
-        let mut judge = Judge::new(SceneName::FreeAir, RATE, ticks);
+        let mut judge = Judge::new(&haptic_control::FreeAir.into(), RATE, ticks);
         for k in 0..ticks {
             judge.see(&at(k, k as f64 / RATE));
         }

@@ -84,11 +84,11 @@ fn digits(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::closed_loop::SceneName;
     use crate::robust::variation::Subject;
+    use haptic_control::SceneKind;
 
     fn row() -> Row {
-        let (variation, _) = Subject::Drawn(3).variation(7, SceneName::FreeAir);
+        let (variation, _) = Subject::Drawn(3).variation(7, SceneKind::FreeAir);
         Row {
             scene: "free-air".into(),
             device: "3".into(),
@@ -111,7 +111,7 @@ mod tests {
     #[test]
     fn a_row_reads_back_to_the_last_bit() {
         for i in 0..200 {
-            let (variation, _) = Subject::Drawn(i).variation(1, SceneName::Off);
+            let (variation, _) = Subject::Drawn(i).variation(1, SceneKind::Off);
             let row = Row { variation, ..row() };
             let text = serde_json::to_string(&row).unwrap();
             assert_eq!(serde_json::from_str::<Row>(&text).unwrap(), row, "{text}");

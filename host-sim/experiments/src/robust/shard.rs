@@ -167,7 +167,7 @@ fn read(path: &Path) -> Result<(Heading, Vec<Row>), Failure> {
 /// Whether these are the rows of those jobs.
 fn check(path: &Path, jobs: &[Job], rows: &[Row]) -> Result<(), Failure> {
     let name = path.display();
-    let is = |job: &Job, row: &Row| row.scene == job.0.as_str() && row.device == job.1.to_string();
+    let is = |job: &Job, row: &Row| row.scene == job.0.name() && row.device == job.1.to_string();
     let wrong = jobs.iter().zip(rows).position(|(job, row)| !is(job, row));
     let at = wrong.unwrap_or(jobs.len().min(rows.len()));
     match (jobs.get(at), rows.get(at)) {

@@ -2,11 +2,13 @@
 
 use std::fmt::Write as _;
 
+use haptic_control::{DualStage, SceneKind};
+
 use super::judge::{FELT_NM, HANDLE_RAD_S, Verdict, oscillation_limit_nm};
 use super::row::Row;
 use super::{Settings, corners};
 
-use crate::closed_loop::SceneName;
+use crate::closed_loop::{named, usual};
 use crate::table::layout::{self, Column};
 
 /// A distribution.
@@ -70,12 +72,14 @@ pub fn summaries(rows: &[Row]) -> Result<Vec<SceneSummary>, String> {
 }
 
 fn summary(rows: &[Row]) -> Result<SceneSummary, String> {
-    let scene: SceneName = rows[0].scene.parse()?;
+    let scene = named(&rows[0].scene, SceneKind::environments())?;
+    // The amplitude of its own vibration is that of every device and rate.
+    let nominal = usual(scene, &DualStage::DEFAULT, 10e3)?;
     let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
     let spread = |of: fn(&Row) -> f64| Spread::of(rows.iter().map(of)).unwrap_or_default();
     Ok(SceneSummary {
         scene: scene.to_string(),
-        oscillation_limit_nm: oscillation_limit_nm(scene),
+        oscillation_limit_nm: oscillation_limit_nm(&nominal),
         counts: [Verdict::Stable, Verdict::Stopped, Verdict::Violated].map(count),
         handle_rad_s: spread(|row| row.handle_rad_s.max(row.after_handle_rad_s.unwrap_or(0.0))),
         large_rad_s: spread(|row| row.large_rad_s),
@@ -205,7 +209,7 @@ mod tests {
 
     #[test]
     fn a_summary_takes_each_column_and_the_larger_of_before_and_after_a_stop() {
-        let (variation, _) = Subject::Drawn(3).variation(7, SceneName::FreeAir);
+        let (variation, _) = Subject::Drawn(3).variation(7, SceneKind::FreeAir);
         let stable = Row {
             scene: "free-air".into(),
             device: "0".into(),

@@ -7,8 +7,10 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
 
+use haptic_control::SceneKind;
+
 use super::corners::corners;
-use crate::closed_loop::{Hand, SceneName};
+use crate::closed_loop::Hand;
 use simulation::device::Device;
 use simulation::scenario::{draw, draw_sign};
 
@@ -88,27 +90,27 @@ impl Subject {
     /// The device, and the seed of the hand's motion, the encoders' phases and the disc: they
     /// depend on `seed`, scene and subject alone.
     #[must_use]
-    pub fn variation(self, seed: u64, scene: SceneName) -> (Variation, u64) {
+    pub fn variation(self, seed: u64, scene: SceneKind) -> (Variation, u64) {
         let mut random = self.random(seed, scene);
         let run_seed = random.next_u64();
         let mut variation = match self {
             Self::Corner(i) => corners()[i].1,
             Self::Drawn(_) => drawn(&mut random),
         };
-        if let (Some(omega), SceneName::Wall(..)) = (&mut variation.gone_rad_s, scene) {
+        if let (Some(omega), SceneKind::Wall) = (&mut variation.gone_rad_s, scene) {
             // Away from the wall there is nothing to hit.
             *omega = omega.abs();
         }
         (variation, run_seed)
     }
 
-    fn random(self, seed: u64, scene: SceneName) -> Xoshiro256PlusPlus {
+    fn random(self, seed: u64, scene: SceneKind) -> Xoshiro256PlusPlus {
         // FNV-1a of everything that a device is drawn from.
         let hash = |state: u64, byte: u8| (state ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
         let state = seed
             .to_le_bytes()
             .into_iter()
-            .chain(scene.as_str().bytes())
+            .chain(scene.name().bytes())
             .chain([0])
             .chain(self.to_string().bytes())
             .fold(0xcbf2_9ce4_8422_2325, hash);
@@ -189,14 +191,12 @@ impl Variation {
         device
     }
 
-    /// Who plays with `scene`.
+    /// The hand that tries `scene`.
     #[must_use]
-    pub fn hand(&self, scene: SceneName) -> Hand {
-        match (self.gone_rad_s, scene) {
-            (Some(omega), _) => Hand::Gone(omega),
-            (None, SceneName::Wall(..)) => Hand::Pushing,
-            (None, SceneName::Hold(..)) => Hand::Still,
-            (None, _) => Hand::Moving,
+    pub fn hand(&self, scene: SceneKind) -> Hand {
+        match self.gone_rad_s {
+            Some(omega) => Hand::Gone(omega),
+            None => scene.facts().hand.into(),
         }
     }
 }
@@ -207,7 +207,7 @@ mod tests {
 
     #[test]
     fn a_device_depends_on_seed_scene_and_index_alone() {
-        let (wall, hold) = (SceneName::ALL[2], SceneName::ALL[7]);
+        let (wall, hold) = (SceneKind::Wall, SceneKind::Hold);
         let of = |i, seed, scene| Subject::Drawn(i).variation(seed, scene);
         let forwards: Vec<_> = (0..50).map(|i| of(i, 1, wall)).collect();
         let backwards: Vec<_> = (0..50).rev().map(|i| of(i, 1, wall)).collect();
@@ -219,7 +219,7 @@ mod tests {
 
     #[test]
     fn draws_fill_their_ranges_and_a_fifth_is_not_held() {
-        let scene = SceneName::FreeAir;
+        let scene = SceneKind::FreeAir;
         let draws: Vec<_> = (0..2000)
             .map(|i| Subject::Drawn(i).variation(1, scene).0)
             .collect();

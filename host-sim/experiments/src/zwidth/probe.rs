@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use haptic_control::LoopPoles;
+use haptic_control::{AnyScene, LoopPoles, Radians, Viscous, Wall};
 
 use super::criterion::{Fault, Observer, Seen};
-use crate::closed_loop::{Eye, Hand, Loop, Press, SceneName, believed, estimator};
+use crate::closed_loop::{Eye, Hand, Loop, Press, believed, estimator};
 use catalogue::estimators::{Estimator, Kind};
 use catalogue::parameters::Parameters;
 use simulation::device::Device;
@@ -129,9 +129,10 @@ impl Probe {
             _ => (Hand::Pressing(PRESS), true),
         };
         let scene = match k {
-            0.0 => SceneName::Viscous(b as f32),
-            _ => SceneName::Wall(k as f32, b as f32),
+            0.0 => Viscous::new(b as f32).map(AnyScene::from),
+            _ => Wall::new(Radians(WALL as f32), k as f32, b as f32).map(AnyScene::from),
         };
+        let scene = scene.map_err(|error| Failure::Input(error.to_string()))?;
         let threshold = 0.5 * device.interval.threshold_n * device.handle.diameter_m;
         let inertia = device.small.inertia_kg_m2;
         let mut observer = Observer::new(threshold, 1.0 / self.rate_hz, inertia);

@@ -26,7 +26,7 @@ pub(super) fn below(closed: &ClosedLoop, palette: &Palette) -> Result<String, St
     let mut scenes: Vec<(&str, f64)> = Vec::new();
     let mut rates: Vec<f64> = Vec::new();
     for outcome in &closed.outcomes {
-        let scene = outcome.case.scene.as_str();
+        let scene = outcome.case.scene.name();
         if !scenes.iter().any(|(known, _)| *known == scene) {
             let bars = BAR * names.len() as f64 + BETWEEN;
             scenes.push((scene, if has_loop(outcome) { bars } else { LONE }));
@@ -68,7 +68,7 @@ pub(super) fn below(closed: &ClosedLoop, palette: &Palette) -> Result<String, St
                     canvas.text(scene, at, Anchor::Right, 12.0, INK)?;
                 }
                 let outcome = (closed.outcomes.iter())
-                    .find(|o| o.case.rate_hz == rate_hz && o.case.scene.as_str() == scene);
+                    .find(|o| o.case.rate_hz == rate_hz && o.case.scene.name() == scene);
                 if let Some(outcome) = outcome {
                     bars(canvas, &plot, row_top, outcome, &names, palette)?;
                 }

@@ -34,7 +34,7 @@ pub(super) fn figures(
         let runs = closed
             .outcomes
             .iter()
-            .filter(|o| o.case.scene.as_str() == "off");
+            .filter(|o| o.case.scene.name() == "off");
         let mut runs = runs.filter(|o| o.case.rate_hz == outcome.case.rate_hz);
         runs.next().and_then(|o| o.runs.first()?.signals.as_ref())
     };

@@ -20,7 +20,7 @@ pub(super) fn figures(
 ) -> Result<Vec<String>, String> {
     let mut scenes: Vec<&str> = Vec::new();
     for outcome in &closed.outcomes {
-        let scene = outcome.case.scene.as_str();
+        let scene = outcome.case.scene.name();
         if scene != "off" && !scenes.contains(&scene) {
             scenes.push(scene);
         }

@@ -54,7 +54,7 @@ fn block(outcome: &Outcome, palette: &Palette) -> String {
     let mut html = format!(
         "<tbody><tr class=\"scenario\"><th colspan=\"{}\" scope=\"rowgroup\">{}</th></tr>\n",
         Parasitic::FIELDS.len() + velocity_fields(&[]).count() + 1,
-        escape(outcome.case.scene.as_str())
+        escape(outcome.case.scene.name())
     );
     let competes = |run: &&Run| run.controlled_by != experiments::felt::REFERENCE;
     for run in &outcome.runs {

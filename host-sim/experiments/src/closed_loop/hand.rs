@@ -1,0 +1,104 @@
+//! Simulated hands.
+
+use haptic_control::SimulatedHand;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::SeedableRng;
+use simulation::plant::{Grip, Pose};
+use simulation::scenario::{Intent, draw};
+
+use super::press::Press;
+use super::tracking::Tracking;
+
+/// The simulated hand on the handle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Hand {
+    /// Moves at 0.3 to 4 Hz and trembles, as in the open-loop scenario free-air.
+    Moving,
+    /// Swings into the angle of the wall and back, and trembles.
+    Pushing,
+    /// Moves as the slip of the open-loop scenario track does: chirps and reversals.
+    Tracking,
+    /// Means to keep the handle still and trembles.
+    Still,
+    /// No hand: the handle starts with this velocity, rad/s.
+    Gone(f64),
+    /// Presses and lets go, without tremor.
+    Pressing(Press),
+    /// Not a hand: a clamp.
+    Clamp,
+}
+
+impl From<SimulatedHand> for Hand {
+    fn from(hand: SimulatedHand) -> Self {
+        match hand {
+            SimulatedHand::FreeMotion => Self::Moving,
+            SimulatedHand::WallPress => Self::Pushing,
+            SimulatedHand::HoldStill => Self::Still,
+        }
+    }
+}
+
+/// A hand's motion, tick by tick.
+pub struct Motion(Mover);
+
+enum Mover {
+    Intent(Box<Intent>),
+    Pressing(Press, f64),
+    Tracking(Box<Tracking>),
+    Gone,
+    Clamp,
+}
+
+impl Motion {
+    /// What holds the handle during tick `k`, which follows the one asked for before.
+    pub fn grip(&mut self, k: u64) -> Grip {
+        match &mut self.0 {
+            Mover::Intent(intent) => intent.grip(k),
+            Mover::Pressing(press, period_s) => press.grip(k, *period_s),
+            Mover::Tracking(tracking) => tracking.grip(k),
+            Mover::Gone => Grip::Free,
+            Mover::Clamp => Grip::Clamped,
+        }
+    }
+}
+
+impl Hand {
+    fn intent(self, period_s: f64, seed: u64) -> Option<Intent> {
+        let random = &mut Xoshiro256PlusPlus::seed_from_u64(seed ^ 0x4A4D);
+        let about = |random: &mut _, low, high| Intent::about(draw(random, low, high), period_s);
+        Some(match self {
+            Self::Moving => about(random, -0.05, 0.05)
+                .sine(random, (0.3, 0.8), (0.3, 0.6))
+                .sine(random, (1.0, 2.0), (0.05, 0.15))
+                .sine(random, (2.5, 4.0), (0.02, 0.06))
+                .tremor(random),
+            Self::Pushing => about(random, 0.05, 0.10)
+                .sine_from(random, (0.4, 1.2), (0.12, 0.18), (-2.2, -0.9))
+                .tremor(random),
+            Self::Still => about(random, -0.02, 0.02).tremor(random),
+            Self::Tracking | Self::Gone(_) | Self::Pressing(_) | Self::Clamp => return None,
+        })
+    }
+
+    /// Where the handle is at first.
+    #[must_use]
+    pub fn start(self, period_s: f64, seed: u64) -> Pose {
+        match (self.intent(period_s, seed), self) {
+            (Some(intent), _) => intent.start(),
+            (None, Self::Gone(omega)) => Pose { angle: 0.0, omega },
+            (None, _) => Pose::default(),
+        }
+    }
+
+    /// The motion for ticks of `period_s`, drawn from `seed`.
+    #[must_use]
+    pub fn motion(self, period_s: f64, seed: u64) -> Motion {
+        Motion(match (self.intent(period_s, seed), self) {
+            (Some(intent), _) => Mover::Intent(Box::new(intent)),
+            (None, Self::Pressing(press)) => Mover::Pressing(press, period_s),
+            (None, Self::Tracking) => Mover::Tracking(Box::new(Tracking::new(period_s, seed))),
+            (None, Self::Clamp) => Mover::Clamp,
+            (None, _) => Mover::Gone,
+        })
+    }
+}
