@@ -5,6 +5,7 @@
 //! |---|---|
 //! | `codegen` | functions of `estimator-core` |
 //! | `devices` | the default device, the same in every crate |
+//! | `scene_docs` | tables of scenes in docs/ |
 //! | `scene_images` | what one scene of `haptic-control` costs on the board |
 //!
 //! The tests of what `estimator-core` computes are in its own package.
@@ -12,4 +13,5 @@
 mod codegen;
 mod devices;
 mod image;
+mod scene_docs;
 mod scene_images;
