@@ -3,8 +3,8 @@
 use embedded_hal::digital::{InputPin, OutputPin};
 use estimator_core::Amps;
 
-/// Something that takes a current command: a DAC channel, which embedded-hal has no trait for, or
-/// a [`PwmCurrent`](crate::PwmCurrent).
+/// An output for a current command: a DAC channel, for which embedded-hal has no trait, or a
+/// [`PwmCurrent`](crate::PwmCurrent).
 pub trait CurrentOutput {
     /// Commands a current.
     fn command(&mut self, current: Amps);
@@ -12,7 +12,7 @@ pub trait CurrentOutput {
 
 /// A current amplifier with an enable input, active high, and a fault output, active low.
 ///
-/// While it is disabled, its command is no current.
+/// While the amplifier is disabled, its command is zero current.
 pub struct Amplifier<C, E, F> {
     output: C,
     enable: E,
@@ -21,7 +21,7 @@ pub struct Amplifier<C, E, F> {
 }
 
 impl<C: CurrentOutput, E: OutputPin, F: InputPin> Amplifier<C, E, F> {
-    /// The amplifier, disabled and at no current.
+    /// The amplifier, disabled and at zero current.
     pub fn new(output: C, enable: E, fault: F) -> Self {
         let mut amplifier = Self {
             output,
@@ -33,7 +33,7 @@ impl<C: CurrentOutput, E: OutputPin, F: InputPin> Amplifier<C, E, F> {
         amplifier
     }
 
-    /// Disables it and commands no current.
+    /// Disables the amplifier and commands zero current.
     pub fn disable(&mut self) {
         self.enabled = false;
         // A pin of the chip itself cannot fail; one behind a bus that did would show as a fault.
@@ -41,7 +41,7 @@ impl<C: CurrentOutput, E: OutputPin, F: InputPin> Amplifier<C, E, F> {
         self.output.command(Amps::ZERO);
     }
 
-    /// Commands a current and enables it, if that is not done yet; the command comes first.
+    /// Commands a current and then enables the amplifier, if it is not enabled yet.
     pub fn drive(&mut self, current: Amps) {
         self.output.command(current);
         if !self.enabled {
@@ -49,7 +49,7 @@ impl<C: CurrentOutput, E: OutputPin, F: InputPin> Amplifier<C, E, F> {
         }
     }
 
-    /// Whether it reports a fault; a pin that cannot be read is one.
+    /// Whether the amplifier reports a fault. A pin that cannot be read counts as a fault.
     pub fn is_faulty(&mut self) -> bool {
         !matches!(self.fault.is_high(), Ok(true))
     }

@@ -1,4 +1,4 @@
-//! Commands: framed, checksummed, bounded.
+//! Frames of commands, with a checksum.
 
 use haptic_control::Request;
 
@@ -29,23 +29,23 @@ const fn crc8(bytes: &[u8]) -> u8 {
     crc
 }
 
-/// What a frame asks for.
+/// A command in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
-    /// Something of the safety machine.
+    /// A request to the safety state machine.
     Request(Request),
-    /// A torque set-point, N·m, for the scene that takes one.
+    /// A torque set-point, N·m, for the scene `torque`.
     Torque(f32),
-    /// A parameter of a scene, both by their numbers.
+    /// Sets a parameter of a scene.
     Tune {
-        /// Scene.
+        /// Number of the scene.
         scene: u8,
-        /// Parameter.
+        /// Number of the parameter.
         parameter: u8,
         /// Value, in the parameter's unit.
         value: f32,
     },
-    /// The large motor's estimator, by its number.
+    /// Selects the estimator of the large motor by its number.
     Estimator(u8),
 }
 
@@ -86,8 +86,8 @@ pub const fn encode(command: Command) -> [u8; FRAME] {
 
 /// Finds frames in a stream of bytes, in constant memory and time per byte.
 ///
-/// What is no frame is counted and ignored: a start byte without a command of the right CRC behind it
-/// costs itself, and the search goes on at the byte after it.
+/// Bytes outside of frames are counted and ignored. After a start byte without a valid frame, the
+/// search continues at the next byte.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Parser {
     window: [u8; FRAME],
@@ -96,13 +96,13 @@ pub struct Parser {
 }
 
 impl Parser {
-    /// Bytes that belonged to no frame.
+    /// Number of bytes outside of frames.
     #[must_use]
     pub const fn garbage(&self) -> u32 {
         self.garbage
     }
 
-    /// Takes a byte; the command, if it completes one.
+    /// Processes a byte and returns the command that it completes.
     pub fn take(&mut self, byte: u8) -> Option<Command> {
         self.window[self.filled] = byte;
         self.filled += 1;
@@ -122,7 +122,7 @@ impl Parser {
         None
     }
 
-    /// Throws away what cannot begin a frame.
+    /// Discards bytes that cannot begin a frame.
     fn skip_to_start(&mut self) {
         let held = &self.window[..self.filled];
         let full = usize::from(self.filled == FRAME);

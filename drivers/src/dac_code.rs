@@ -1,8 +1,8 @@
-//! The one place where a current becomes a DAC code.
+//! Conversion of a current to a DAC code.
 
 use estimator_core::Amps;
 
-/// A 12-bit DAC code; mid-scale is no current, 2047 steps are full scale.
+/// A 12-bit DAC code. Mid-scale is zero current, 2047 steps are full scale.
 ///
 /// ```
 /// use drivers::DacCode;
@@ -16,11 +16,11 @@ use estimator_core::Amps;
 pub struct DacCode(u16);
 
 impl DacCode {
-    /// No current.
+    /// Zero current.
     pub const ZERO: Self = Self(2048);
 
-    /// `2048 + round(current / full_scale * 2047)`, saturated to 1 to 4095. Signed first, so that
-    /// nothing but a number moves it off mid-scale: without a full scale it stays there too.
+    /// `2048 + round(current / full_scale * 2047)`, saturated to 1 to 4095. NaN and a full scale of 0
+    /// give mid-scale, because the conversion to an integer comes before the offset.
     #[must_use]
     pub const fn new(current: Amps, full_scale: Amps) -> Self {
         let scaled = current.get() / full_scale.get() * 2047.0;
@@ -37,7 +37,7 @@ impl DacCode {
         Self((2048 + steps) as u16)
     }
 
-    /// The code as the DAC takes it.
+    /// The value for the register of the DAC.
     #[must_use]
     pub const fn get(self) -> u16 {
         self.0

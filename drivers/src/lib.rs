@@ -1,4 +1,4 @@
-//! Drivers of the controller board, over embedded-hal 1.0 traits where it has them.
+//! Drivers of the controller board, over the traits of embedded-hal 1.0 where they exist.
 #![no_std]
 
 mod amplifier;

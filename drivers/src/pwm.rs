@@ -1,12 +1,12 @@
-//! A set-point by PWM, for amplifiers that take one.
+//! A current command by PWM.
 
 use embedded_hal::pwm::SetDutyCycle;
 use estimator_core::Amps;
 
 use crate::amplifier::CurrentOutput;
 
-/// A PWM channel as a current command: half duty is no current, 10 % and 90 % are full scale,
-/// as amplifiers with a PWM set value take it. With a full scale of 0 the duty is always half.
+/// A PWM channel as a current command, for amplifiers with a PWM set value: 50 % duty is zero
+/// current, 10 % and 90 % are full scale. With a full scale of 0 the duty is always 50 %.
 pub struct PwmCurrent<P> {
     channel: P,
     full_scale: Amps,

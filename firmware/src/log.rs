@@ -25,7 +25,7 @@ fn log(frame: &Frame) {
     defmt::info!(
         "frame seq={=u32} tick={=u32} large={=u32} small={=u32} wl={=f32} ws={=f32} sl={=f32} estimator={=u8} torque={=f32} il={=f32} is={=f32} state={=u8} cause={=u8} overruns={=u32} drops={=u32} cycles={=u32}",
         frame.seq, record.tick, sample.large.0, sample.small.0,
-        action.large.0, action.handle.0, frame.deviation(), frame.estimator(), action.torque.0,
+        action.large_velocity.0, action.handle_velocity.0, frame.deviation(), frame.estimator(), action.torque.0,
         action.currents.large.get(), action.currents.small.get(),
         record.state, record.cause, record.overruns, frame.drops(firmware_rt::lost()), frame.cycles
     );

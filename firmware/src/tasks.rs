@@ -83,7 +83,7 @@ impl ControlTask {
         } = self;
         let missed = board.begin_tick();
         let sample = board.sample(control.applied().large);
-        let request = control.hear(messages.dequeue());
+        let request = control.accept(messages.dequeue());
         let arms = AUTO_ARM || request == Some(Request::Arm);
         let inputs = Inputs {
             amplifier_fault: board.amplifier_fault(),

@@ -63,7 +63,7 @@ impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> ControllerState<S, L,
         S::Continuous::or(large, None)
     }
 
-    /// The same, to choose among estimators.
+    /// State of the large motor's estimator, to choose among estimators.
     pub fn large_mut(&mut self) -> Option<&mut L::State> {
         let large =
             S::Continuous::map(S::Continuous::as_mut(&mut self.continuous), |(large, _)| {
@@ -101,15 +101,15 @@ where
     L: VelocityEstimator<Output = CountsPerTick>,
     H: VelocityEstimator<Output = CountsPerTick>,
 {
-    /// A controller for `scene` on `rig`, with these estimators where the scene needs them.
+    /// A controller for `scene` on `rig`, with those of the estimators that the scene needs.
     pub fn new(scene: S, large: L, handle: H, rig: &Rig) -> Self {
         Self {
             scene,
-            continuous: S::Continuous::make(|| (large, rig.large, rig.continuous)),
-            handle: HandleNeed::<S>::make(|| (handle, rig.handle)),
-            acceleration: S::Acceleration::make(|| rig.acceleration),
+            continuous: S::Continuous::make(|| (large, rig.large_scale, rig.continuous)),
+            handle: HandleNeed::<S>::make(|| (handle, rig.handle_scale)),
+            acceleration: S::Acceleration::make(|| rig.acceleration_scale),
             transient: S::Transient::make(|| rig.transient),
-            angle: rig.angle,
+            angle: rig.angle_scale,
         }
     }
 
@@ -130,7 +130,7 @@ where
         }
     }
 
-    /// Begins again at rest at this sample, from which angles count; the choice among estimators
+    /// Starts again at rest at this sample, from which angles count. The choice among estimators
     /// stays.
     pub fn restart(&self, state: &mut ControllerState<S, L, H>, first: &Sample) {
         let mut fresh = self.start(first);
@@ -149,8 +149,8 @@ where
         *state = fresh;
     }
 
-    /// Changes the scene's parameters before the next tick; the slew limit bounds what the currents
-    /// change by.
+    /// Changes the scene's parameters before the next tick. The slew limit bounds the change of the
+    /// currents.
     pub fn retune(&mut self, scene: S) {
         self.scene = scene;
     }

@@ -1,4 +1,4 @@
-//! The instants at which control ticks are due, and what each tick made of them.
+//! The instants at which control ticks are due, and missed ticks.
 
 /// The grid of control ticks, `PERIOD` counts apart, by a counter of 32 bits that wraps.
 ///

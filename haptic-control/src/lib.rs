@@ -1,11 +1,14 @@
 //! Dual-stage haptic control as one pure step: counts in, currents out, `no_std`.
 //!
-//! A [`Scene`] says what torque the handle should feel and, in its types, what it needs to know
-//! that; a [`Controller`] holds that scene and nothing that it does not need. The large motor
-//! renders torque through the coupler, by a velocity loop designed at compile time ([`RstDesign`]);
-//! the small motor adds what the large one is too slow for. [`Monitor`] says when to stop.
+//! A [`Scene`] computes the torque that the handle should feel. Its types state what it needs, see
+//! [`Need`]; a [`Controller`] contains the scene and only the parts that the scene needs. A
+//! [`Switchboard`] contains all scenes of the catalogue ([`scenes!`]), one of which is on. The large
+//! motor renders the torque through the coupler, by a velocity loop designed at compile time
+//! ([`RstDesign`]); the small motor adds the torque that the large motor is too slow for. [`Monitor`]
+//! and [`Safety`] decide when the motors stop.
 //!
-//! f32 `+ - * /` and integers only, no panics: the same bits on every machine.
+//! The crate uses f32 `+ - * /` and integers only, so its results are the same bits on every machine.
+//! It does not panic.
 #![no_std]
 #![allow(
     clippy::neg_cmp_op_on_partial_ord,
@@ -39,7 +42,7 @@ pub use device::{DualStage, Motor};
 pub use grid::Grid;
 pub use limits::{CurrentLimits, Currents};
 pub use margins::Margins;
-pub use monitor::{Cause, Monitor, MonitorState};
+pub use monitor::{Monitor, MonitorState};
 pub use need::{Need, Senses, Wanted};
 pub use rig::{AccelerationScale, AngleScale, Rig};
 pub use rst::{Rst, RstState};

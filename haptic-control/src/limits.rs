@@ -1,9 +1,9 @@
-//! The one place where currents are made safe.
+//! Limits of the currents: the only place that saturates.
 
 use estimator_core::Amps;
 
-/// Limits of one motor's current, applied after everything else: not a number becomes zero,
-/// magnitude saturates, and a tick changes the current by at most the slew limit.
+/// Limits of one motor's current, applied last: NaN becomes zero, the magnitude saturates, and a tick
+/// changes the current by at most the slew limit.
 ///
 /// ```
 /// use haptic_control::CurrentLimits;

@@ -15,7 +15,7 @@ pub struct Margins {
     pub cos_phase: f64,
     /// Crossover of gain 1, Hz; the highest if there are several.
     pub crossover_hz: f64,
-    /// Delay margin: further delay that takes the phase margin away, s.
+    /// Delay margin: additional delay that reduces the phase margin to zero, s.
     pub delay_s: f64,
 }
 
@@ -33,8 +33,8 @@ const PER_HALVING: usize = 16;
 
 /// Margins of the loop, with `delay_s` of delay beside the model.
 ///
-/// The open loop is followed downwards from the Nyquist frequency through 14 octaves, 16 points
-/// each: integral action makes it large below. Crossings are interpolated linearly.
+/// The open loop is evaluated from the Nyquist frequency down through 14 octaves, 16 points each;
+/// below, integral action makes it large. Crossings are interpolated linearly.
 pub(crate) const fn margins(
     a: &[f64; 3],
     b: &[f64; 3],
@@ -196,7 +196,7 @@ const fn angle_to_negative_axis(point: Complex) -> f64 {
         }
         i += 1;
     }
-    // Below the axis the way is short, above it the long way round.
+    // Below the axis the angle is less than π, above it more.
     if point.im <= 0.0 {
         low
     } else {

@@ -1,77 +1,48 @@
-//! What stops the device: a pure check of each tick that the firmware's safety state calls too.
+//! Checks of each tick that stop the device.
 
 use core::f64::consts::PI;
 
 use estimator_core::{Count, Counts, Hertz, Sample};
 
 use crate::device::DualStage;
+use crate::stop::Stop;
 
-/// Why the device was stopped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Cause {
-    /// The handle moved faster than allowed.
-    HandleOverspeed,
-    /// The large motor moved faster than allowed.
-    LargeOverspeed,
-    /// A counter jumped further than any motion could.
-    Jump,
-    /// The large motor's current was high for long and its encoder did not move.
-    NotMoving,
-    /// The large motor sped up against its current: an encoder's phases are swapped, or a motor's.
-    Against,
-}
-
-impl Cause {
-    /// Name in tables and recordings.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::HandleOverspeed => "handle-overspeed",
-            Self::LargeOverspeed => "large-overspeed",
-            Self::Jump => "jump",
-            Self::NotMoving => "not-moving",
-            Self::Against => "against",
-        }
-    }
-}
-
-/// Speed over a window from which on the large motor is stopped, rad/s.
+/// Speed over a window above which the large motor is stopped, rad/s.
 pub(crate) const LARGE_OVERSPEED: f64 = 150.0;
 
 /// Slots of a window.
 const SLOTS: usize = 5;
 
-/// Largest displacements, currents and times, in counts, mA and ticks.
+/// Limits of displacements, currents and times, in counts, mA and ticks.
 ///
-/// Positions are marked once a slot, and each slot ends a window of five: speeds are displacements
-/// over such a sliding window, exact in integers.
+/// Positions are stored once per slot. A window is five slots, so a speed is the displacement over a
+/// sliding window, exact in integers.
 ///
-/// What pushes the large motor is its current and the coupler's pull, `b ω_S / Kt_L`; b is not
-/// known well, so the push is the weaker of the current alone and the two together, over all ticks
-/// of a slot: no weaker coupler makes it less. A motor that is pushed cannot run the other way
-/// ever faster, and one that is pushed harder than its friction holds cannot stay where it is.
+/// The drive of the large motor is its current plus the pull of the coupler, `b ω_S / Kt_L`, in mA of
+/// its current. The damping b is uncertain, so the drive of a slot is the smaller of the current alone
+/// and the sum of both, over all ticks of the slot: a weaker coupler does not reduce it. A motor does
+/// not accelerate against its drive, and a motor whose drive exceeds its friction does not rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Monitor {
     /// Ticks of a slot, at least 1.
     pub slot: u32,
-    /// Largest displacement of the handle in a window.
-    pub handle: u32,
-    /// Largest displacement of the large motor in a window.
-    pub large: u32,
+    /// Largest displacement of the handle in a window, counts.
+    pub handle_window: u32,
+    /// Largest displacement of the large motor in a window, counts.
+    pub large_window: u32,
     /// Largest displacement of either in one tick.
     pub jump: u32,
-    /// Longest time that the large motor is pushed without getting anywhere, slots.
+    /// Longest time in which the driven large motor may rest, slots.
     pub stall: u32,
-    /// Push that no friction of the large motor withstands, mA of its current.
+    /// Drive above any friction of the large motor, mA of its current.
     pub stall_milliamps: i32,
-    /// Push whose direction is certain, mA.
+    /// Drive whose direction is certain, mA.
     pub push_milliamps: i32,
-    /// The coupler's pull for a count of the handle in a slot, 2^-8 mA.
+    /// Pull of the coupler per count that the handle moves in a slot, 2^-8 mA.
     pub pull: i32,
 }
 
-/// State of a [`Monitor`]: it latches the first cause.
+/// State of a [`Monitor`], which latches the first cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MonitorState {
     last: [Count; 2],
@@ -79,31 +50,31 @@ pub struct MonitorState {
     ticks: u32,
     /// Smallest and largest current of this slot, mA.
     currents: (i32, i32),
-    /// The large motor at the ends of the slots of two windows, the latest first.
+    /// Positions of the large motor at the ends of the slots of two windows, the latest first.
     large: [Count; 2 * SLOTS],
-    /// The handle at the ends of the slots of a window.
+    /// Positions of the handle at the ends of the slots of a window, the latest first.
     small: [Count; SLOTS],
-    /// Direction of the push, and for how many slots.
+    /// Direction of the drive, and the number of slots with this direction.
     push: (i32, u32),
-    /// Where the large motor was when it last moved, and slots pushed since.
+    /// Position of the large motor when it last moved, and the number of driven slots since.
     resting: (Count, u32),
-    cause: Option<Cause>,
+    cause: Option<Stop>,
 }
 
 const NO_CURRENT: (i32, i32) = (i32::MAX, i32::MIN);
 
 impl Monitor {
-    /// Limits that no scene of `device` reaches in a hand that holds the handle, at a control rate:
-    /// the handle 30 rad/s and the large motor 150 rad/s, over 5 ms (what is wanted of the large
-    /// motor ends at 85 % of that); 50 ms without a count under 2.5 times the current that the
-    /// large motor's friction is worth, 0.1 A at least. (With friction half as much again, its
-    /// ripple of a tenth and a torque constant 20 % less, 2.1 times are needed to move.)
+    /// Limits that no scene of `device` reaches while a hand holds the handle, at a control rate: the
+    /// handle 30 rad/s and the large motor 150 rad/s over 5 ms (the commanded velocity of the large
+    /// motor is at most 85 % of that); 50 ms without a count under 2.5 times the current of the large
+    /// motor's friction, at least 0.1 A. (A motor with 1.5 times the friction, 10 % ripple and a torque
+    /// constant 20 % lower moves at 2.1 times that current.)
     ///
     /// ```
     /// use estimator_core::Hertz;
     /// use haptic_control::{DualStage, Monitor};
     /// const MONITOR: Monitor = Monitor::new(&DualStage::DEFAULT, Hertz(10e3));
-    /// assert_eq!((MONITOR.slot, MONITOR.handle, MONITOR.large), (10, 478, 489));
+    /// assert_eq!((MONITOR.slot, MONITOR.handle_window, MONITOR.large_window), (10, 478, 489));
     /// assert_eq!((MONITOR.stall, MONITOR.stall_milliamps), (50, 213));
     /// ```
     #[must_use]
@@ -118,9 +89,11 @@ impl Monitor {
         let pull = device.damping * rad_per_s_per_count * milliamps_per_nm;
         Self {
             slot,
-            handle: (30.0 * turns_per_rad_per_s * device.small.counts_per_rev as f64) as u32 + 1,
-            large: (LARGE_OVERSPEED * turns_per_rad_per_s * device.large.counts_per_rev as f64)
-                as u32
+            handle_window: (30.0 * turns_per_rad_per_s * device.small.counts_per_rev as f64) as u32
+                + 1,
+            large_window: (LARGE_OVERSPEED
+                * turns_per_rad_per_s
+                * device.large.counts_per_rev as f64) as u32
                 + 1,
             jump: 1 << 14,
             stall: (0.05 / slot_s) as u32,
@@ -134,7 +107,7 @@ impl Monitor {
         }
     }
 
-    /// State at the first sample, with nothing to complain of.
+    /// State at the first sample, without a cause.
     #[must_use]
     pub const fn start(&self, first: &Sample) -> MonitorState {
         MonitorState {
@@ -149,8 +122,8 @@ impl Monitor {
         }
     }
 
-    /// One tick; whatever was found first stays found.
-    pub fn check(&self, state: &mut MonitorState, sample: &Sample) -> Option<Cause> {
+    /// One tick. The first cause stays.
+    pub fn check(&self, state: &mut MonitorState, sample: &Sample) -> Option<Stop> {
         let now = [sample.large, sample.small];
         let [large, small] = [0, 1].map(|i| distance(now[i] - state.last[i]));
         state.last = now;
@@ -165,14 +138,14 @@ impl Monitor {
             state.currents = NO_CURRENT;
         }
         if large > self.jump || small > self.jump {
-            found = Some(Cause::Jump);
+            found = Some(Stop::Jump);
         }
         state.cause = state.cause.or(found);
         state.cause
     }
 
-    /// The end of a slot.
-    fn slot(&self, state: &mut MonitorState, sample: &Sample) -> Option<Cause> {
+    /// Checks at the end of a slot.
+    fn slot(&self, state: &mut MonitorState, sample: &Sample) -> Option<Stop> {
         let handled = sample.small - state.small[0];
         let push = self.push(state.currents, handled);
         let direction = if push.saturating_abs() > self.push_milliamps {
@@ -186,7 +159,7 @@ impl Monitor {
         };
         let (rest, still) = state.resting;
         let hard = push.saturating_abs() > self.stall_milliamps;
-        // An encoder with a dead phase dithers by a count or two and gets nowhere.
+        // An encoder with a dead phase alternates between neighbouring counts.
         state.resting = if hard && distance(sample.large - rest) <= DITHER {
             (rest, still.saturating_add(1))
         } else {
@@ -201,25 +174,25 @@ impl Monitor {
         state.large.copy_within(..2 * SLOTS - 1, 1);
         state.large[0] = sample.large;
 
-        // Along the push: negative and falling is away from it, ever faster.
+        // Displacements along the drive: negative and decreasing is accelerating against it.
         let [moved_along, before_along] =
-            [moved, before].map(|way| way.0.saturating_mul(direction));
+            [moved, before].map(|displacement| displacement.0.saturating_mul(direction));
         let faster = before_along.saturating_sub(moved_along);
-        if distance(handle) > self.handle {
-            Some(Cause::HandleOverspeed)
-        } else if distance(moved) > self.large {
-            Some(Cause::LargeOverspeed)
+        if distance(handle) > self.handle_window {
+            Some(Stop::HandleOverspeed)
+        } else if distance(moved) > self.large_window {
+            Some(Stop::LargeOverspeed)
         } else if state.push.1 > 2 * SLOTS as u32 && moved_along < 0 && faster > FASTER {
-            Some(Cause::Against)
+            Some(Stop::RunawayDirection)
         } else if state.resting.1 > self.stall {
-            Some(Cause::NotMoving)
+            Some(Stop::Stall)
         } else {
             None
         }
     }
 
-    /// What pushed the large motor at least, all through a slot in which the handle was displaced,
-    /// mA; zero where it was not one way.
+    /// The smallest drive of the large motor in a slot with this displacement of the handle, mA; zero
+    /// if its direction changed.
     fn push(&self, (low, high): (i32, i32), handled: Counts) -> i32 {
         let pull = handled.0.saturating_mul(self.pull) / 256;
         let forwards = low.min(low.saturating_add(pull));
@@ -228,11 +201,11 @@ impl Monitor {
     }
 }
 
-/// Counts by which an encoder may move without getting anywhere.
+/// Counts by which the encoder of a resting motor may change.
 const DITHER: u32 = 2;
 
-/// Counts by which two windows may differ though the motor did not speed up: one of rounding at
-/// each of three instants, the middle one twice, and as much for the disc.
+/// Counts by which the displacements of two windows may differ at constant speed: one count of
+/// rounding at each of three instants, the middle one twice, and one for errors of the disc.
 const FASTER: i32 = 4;
 
 fn distance(displacement: Counts) -> u32 {

@@ -1,40 +1,61 @@
-//! What a scene needs, in the type: a part that is not needed is `()`, so it has neither state
-//! nor code.
+//! Optional parts of a controller, decided by types: a part that a scene does not need is `()`.
+//!
+//! A scene states a need as an associated type, [`Wanted`] or [`Skip`]. [`Need::Of`] maps the need
+//! and the type of a part to the type that the controller holds:
+//!
+//! ```text
+//!   scene                    controller                        tick
+//!
+//!   type Continuous          Of<Continuous, (L, Scale, ..)>    Continuous::map(part, |part| ..)
+//!     = Wanted  ---------->    = (L, Scale, ..)  ------------>   runs the closure
+//!     = Skip    ---------->    = ()              ------------>   does nothing
+//!
+//!   type Velocity    --.
+//!   type Continuous  --+-- Or --> HandleNeed: the handle's velocity is estimated if the scene
+//!   type Acceleration -'          reads it, if the slip of the coupler needs it, or if the scene
+//!                                 reads the acceleration
+//! ```
+//!
+//! The methods of [`Need`] are those of an `Option` whose variant is a type: `make` and `map` build
+//! and use a part, `zip` joins two parts of the same need, `as_ref`, `as_mut` and `lend` borrow a
+//! part, `or` replaces an absent part by a value, and `narrow` takes a value of a combined need. The
+//! variant is known at compile time, so an absent part has neither state nor code: the controller of
+//! [`Off`](crate::Off) is 42 bytes of code.
 
 use estimator_core::{AccelerationEstimator, CountsPerTickSquared, Skip, VelocityEstimator};
 
-/// Whether a part is there: [`Wanted`] or [`Skip`].
+/// Whether a part is present: [`Wanted`] or [`Skip`].
 pub trait Need: Copy + 'static {
-    /// Whether the part is there.
+    /// Whether the part is present.
     const WANTED: bool;
     /// `T` where the part is wanted, `()` where it is not.
     type Of<T>;
-    /// Wanted if either is.
+    /// [`Wanted`] if this need or the other one is.
     type Or<Other: Need>: Need;
 
     /// Makes the part, if it is wanted.
     fn make<T>(make: impl FnOnce() -> T) -> Self::Of<T>;
-    /// Uses the part, if it is there.
+    /// Applies `f` to the part, if it is present.
     fn map<T, R>(part: Self::Of<T>, f: impl FnOnce(T) -> R) -> Self::Of<R>;
     /// Copies the part.
     fn copy<T: Clone>(part: &Self::Of<T>) -> Self::Of<T>;
-    /// Whether two parts are the same; those that are not there are.
+    /// Whether two parts are equal; two absent parts are.
     fn same<T: PartialEq>(a: &Self::Of<T>, b: &Self::Of<T>) -> bool;
-    /// Puts two parts of one need together.
+    /// Applies `f` to two parts of one need, if they are present.
     fn zip<T, U, R>(a: Self::Of<T>, b: Self::Of<U>, f: impl FnOnce(T, U) -> R) -> Self::Of<R>;
-    /// Borrows the part where it is kept.
+    /// Borrows the part.
     fn as_ref<T>(part: &Self::Of<T>) -> Self::Of<&T>;
-    /// Borrows the part where it is kept, to change it.
+    /// Borrows the part to change it.
     fn as_mut<T>(part: &mut Self::Of<T>) -> Self::Of<&mut T>;
-    /// Borrows a part that others keep for everybody, to change it.
+    /// Borrows a part that is present for other scenes too, to change it; `()` if it is not wanted.
     fn lend<T>(part: &mut T) -> Self::Of<&mut T>;
-    /// The value, or `absent` where the part is not there.
+    /// The part, or `absent` if it is not present.
     fn or<T>(part: Self::Of<T>, absent: T) -> T;
     /// Takes a value of a need that includes this one.
     fn narrow<Other: Need, T: Copy>(part: &<Self::Or<Other> as Need>::Of<T>) -> Self::Of<T>;
 }
 
-/// The part is there.
+/// The part is present.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wanted;
 
@@ -114,7 +135,7 @@ impl Need for Skip {
     fn narrow<Other: Need, T: Copy>(_: &<Other as Need>::Of<T>) {}
 }
 
-/// A need for an acceleration, of an estimator that gives one if it is [`Wanted`].
+/// A need for the acceleration. [`Wanted`] requires an estimator that gives one.
 pub trait Senses<E: VelocityEstimator>: Need {
     /// The acceleration at the latest update.
     fn acceleration(estimator: &E, state: &E::State) -> Self::Of<CountsPerTickSquared>;

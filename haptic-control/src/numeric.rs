@@ -1,4 +1,4 @@
-//! The little linear algebra and analysis that designs need at compile time, in f64.
+//! Linear algebra and analysis for designs at compile time, in f64.
 
 /// `(cos x, sin x)` for 0 <= x <= π, by halving and doubling the angle.
 pub(crate) const fn cos_sin(x: f64) -> (f64, f64) {

@@ -1,4 +1,5 @@
-//! A device made ready: everything but the scene and the estimators.
+//! The designed loop and the scales of a device: everything of a controller except scene and
+//! estimators.
 
 use core::f64::consts::PI;
 
@@ -16,7 +17,7 @@ use crate::units::{RadPerS2, Radians};
 /// use estimator_core::{Hertz, preset};
 /// use haptic_control::{DualStage, LoopPoles, Rig};
 /// const RIG: Rig = preset!(Rig::new(&DualStage::DEFAULT, Hertz(10e3), LoopPoles::DEFAULT));
-/// assert!(RIG.large.rad_per_s_per_count_per_tick > RIG.handle.rad_per_s_per_count_per_tick);
+/// assert!(RIG.large_scale.rad_per_s_per_count_per_tick > RIG.handle_scale.rad_per_s_per_count_per_tick);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rig {
@@ -25,13 +26,13 @@ pub struct Rig {
     /// The small motor.
     pub transient: TransientStage,
     /// Scale of the large encoder.
-    pub large: Scale,
+    pub large_scale: Scale,
     /// Scale of the small encoder's velocity.
-    pub handle: Scale,
+    pub handle_scale: Scale,
     /// Scale of the small encoder's position.
-    pub angle: AngleScale,
+    pub angle_scale: AngleScale,
     /// Scale of the small encoder's acceleration.
-    pub acceleration: AccelerationScale,
+    pub acceleration_scale: AccelerationScale,
 }
 
 /// The factor between counts per tick squared and rad/s² of one encoder.
@@ -91,12 +92,12 @@ impl Rig {
         Ok(Self {
             continuous: ContinuousStage::new(device, &design, (LARGE_SLEW * t) as f32),
             transient: TransientStage::new(device, (SMALL_SLEW * t) as f32),
-            large,
-            handle,
-            angle: AngleScale {
+            large_scale: large,
+            handle_scale: handle,
+            angle_scale: AngleScale {
                 rad_per_count: (2.0 * PI / device.small.counts_per_rev as f64) as f32,
             },
-            acceleration: AccelerationScale {
+            acceleration_scale: AccelerationScale {
                 rad_per_s2_per_count_per_tick2: (2.0 * PI * rate.0 * rate.0
                     / device.small.counts_per_rev as f64)
                     as f32,

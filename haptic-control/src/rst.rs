@@ -5,29 +5,29 @@ use crate::units::RadPerS;
 
 /// RST compensator (section II-B of the paper), `S u = T ω_f - R ω` with `T = P / B(1)`.
 ///
-/// Since `P = A S + B R`, this is the plant's inverse fed forward plus a regulator of what is
-/// left of the error, and in that form it runs:
+/// Since `P = A S + B R`, this is the plant's inverse fed forward plus a regulator of the remaining
+/// error. The implementation has this form:
 /// ```text
 /// u = A ω_f / B(1) + c          S c = R (B ω_f / B(1) - ω)
 /// ```
-/// As printed, T is a small difference of large coefficients (at 10 kHz its sum is 10⁻⁶ of them),
-/// which f32 does not hold; in this form everything small is a difference of signals. `A` is
-/// applied as `1 - e^(-T/τm) z⁻¹ = (1 - z⁻¹) + (1 - e^(-T/τm)) z⁻¹`, and S keeps its integrator
-/// exact as `c₁ - s1 (c₁ - c₂)`, with what a sum rounds away carried to the next: at 11.6 kHz the
-/// integrator moves by 10⁻⁶ A per rad/s and tick, less than the last digit of an ampere.
+/// In the printed form, T is a small difference of large coefficients (at 10 kHz its sum is 10⁻⁶ of
+/// them), below the resolution of f32. In this form every small quantity is a difference of signals.
+/// `A` is applied as `1 - e^(-T/τm) z⁻¹ = (1 - z⁻¹) + (1 - e^(-T/τm)) z⁻¹`. The integrator of S is
+/// exact as `c₁ - s1 (c₁ - c₂)`, and the rounding error of a sum is added to the next sum: at 11.6 kHz
+/// the integrator changes by 10⁻⁶ A per rad/s and tick, less than the resolution of an f32 at 1 A.
 ///
-/// Anti-windup: with `d` the current applied less the current asked for, the regulator is
+/// Anti-windup: with `d` the applied current minus the commanded current, the regulator is
 /// `S c = R (B ω_f / B(1) - ω) + (Q - S) d`, which is `Q c = R (..) + (Q - S) (c + d)` with both
-/// poles of Q at the regulation bandwidth. So a limit that lasts draws the regulator along, and
-/// one that lasts a few ticks, as a slew limit does, leaves it nearly as it was. (With Q = 1 the
-/// regulator takes what a slew limit cuts off for its own, and S, whose second pole is close to 1
-/// at high rates, prolongs that as a ramp: a step of the wanted velocity first sends the motor the
-/// other way.) Current in A, velocities in rad/s.
+/// poles of Q at the regulation bandwidth. A limit that lasts makes the regulator follow the limited
+/// current. A limit of a few ticks, as a slew limit, hardly changes the regulator. (With Q = 1 the
+/// regulator would integrate the current that a slew limit removes, and S, whose second pole is close
+/// to 1 at high rates, would extend it to a ramp: a step of the commanded velocity would first move
+/// the motor in the opposite direction.) Current in A, velocities in rad/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rst {
     r: [f32; 3],
     s1: f32,
-    /// B / B(1): shares of one and two ticks of delay.
+    /// B / B(1): weights of one and two ticks of delay.
     share: [f32; 2],
     /// 1 - e^(-T/τm).
     mechanical_gain: f32,
@@ -54,9 +54,9 @@ pub struct RstState {
     errors: [f32; 2],
     /// c one and two ticks ago.
     regulated: [f32; 2],
-    /// Current applied less the current asked for, one and two ticks ago.
+    /// Applied minus commanded current, one and two ticks ago.
     cut: [f32; 2],
-    /// What the last sum for c rounded away.
+    /// Rounding error of the last sum for c.
     carry: f32,
     /// A ω_f / B(1) of this tick.
     forward: f32,
@@ -82,7 +82,7 @@ impl Rst {
         }
     }
 
-    /// State at rest at a velocity: it is wanted and measured, and no current flows.
+    /// State at a constant velocity, commanded and measured, without current.
     #[must_use]
     pub const fn start(&self, at: RadPerS) -> RstState {
         RstState {
@@ -97,7 +97,7 @@ impl Rst {
         }
     }
 
-    /// One tick: the current wanted, A. Tell [`RstState::limited`] if less was applied.
+    /// One tick: the commanded current, A. Call [`RstState::limited`] with the applied current.
     #[must_use]
     pub fn update(&self, state: &mut RstState, wanted: RadPerS, measured: RadPerS) -> f32 {
         let [w1, w2] = state.wanted;
@@ -126,13 +126,13 @@ impl Rst {
 }
 
 impl RstState {
-    /// The velocity wanted behind the tracking filter.
+    /// The commanded velocity after the tracking filter.
     #[must_use]
     pub const fn filtered(&self) -> RadPerS {
         RadPerS(self.wanted[0])
     }
 
-    /// Takes what was applied instead of the current wanted, after all limits, A.
+    /// Takes the current that was applied after all limits, A.
     pub fn limited(&mut self, current: f32) {
         self.cut[0] = current - (self.forward + self.regulated[0]);
     }

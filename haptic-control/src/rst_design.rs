@@ -7,7 +7,7 @@
 //! regulation  A S + B R = P                P = (1 - p z⁻¹)³ (1 - e^(-T/τa) z⁻¹)
 //! tracking    T = P / B(1)                 ω_f = ((1 - m) / (1 - m z⁻¹))² ω_wanted
 //! ```
-//! so that ω follows `B / B(1) ω_f`, a delay of a tick, whatever the regulation poles are.
+//! so that ω follows `B / B(1) ω_f`, a delay of about one tick, for any regulation poles.
 //! `p = e^(-2π f_r T)`, `m = e^(-2π f_t T)`.
 
 use crate::design_error::DesignError;
@@ -20,16 +20,16 @@ use estimator_core::const_math::exp;
 /// Poles and least margins of the velocity loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopPoles {
-    /// Bandwidth f_r of regulation: where disturbances are given up.
+    /// Bandwidth f_r of regulation, up to which disturbances are rejected.
     pub regulation: Hertz,
-    /// Bandwidth f_t of tracking: where wanted velocities are given up.
+    /// Bandwidth f_t of tracking, up to which the commanded velocity is followed.
     pub tracking: Hertz,
-    /// What the loop has to bear beside the modelled lags: delay of the estimator, s.
+    /// Delay of the estimator, which the loop has to tolerate besides the modelled lags, s.
     pub estimator_delay_s: f64,
 }
 
 impl LoopPoles {
-    /// 12 Hz against disturbances, 60 Hz in tracking, an estimator 1 ms late.
+    /// Regulation at 12 Hz, tracking at 60 Hz, a delay of the estimator of 1 ms.
     pub const DEFAULT: Self = Self {
         regulation: Hertz(12.0),
         tracking: Hertz(60.0),
@@ -104,7 +104,7 @@ impl RstDesign {
         let pa = exp(-t / electrical);
         let a = multiply([1.0, -pm, 0.0], [1.0, -pa, 0.0]);
         let a = [a[0], a[1], a[2]];
-        // Response to a unit step after one tick, and what is left to the final value.
+        // Response to a unit step after one tick, and the rest up to the final value.
         let b1 = gain * (1.0 - (mechanical * pm - electrical * pa) / (mechanical - electrical));
         let b2 = gain * (1.0 - pm) * (1.0 - pa) - b1;
         if !(b1 > 0.0 && b2 > 0.0) {

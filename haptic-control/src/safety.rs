@@ -1,9 +1,8 @@
-//! The firmware's safety state machine, pure.
+//! The safety state machine of the firmware, as a pure step.
 
-use crate::monitor::Cause;
 use crate::stop::Stop;
 
-/// Where the device is.
+/// State of the device.
 ///
 /// ```text
 /// boot -> settling -> armed <-> running     arm; select a scene (before or after), or off again
@@ -15,15 +14,15 @@ use crate::stop::Stop;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum Mode {
-    /// Amplifiers disabled, nothing wrong. The cause is that of a silence which disarmed the
-    /// device, or none.
+    /// Amplifiers disabled, no fault. The cause is [`Stop::CommandTimeout`] if a silence disarmed the
+    /// device, otherwise [`Stop::None`].
     #[default]
     Boot = 0,
     /// Amplifiers enabled, no scene.
     Armed = 1,
-    /// Amplifiers enabled, a scene on.
+    /// Amplifiers enabled, a scene is on.
     Running = 2,
-    /// Amplifiers disabled, because of the cause.
+    /// Amplifiers disabled because of a fault, which is the cause.
     Safe = 3,
     /// Amplifiers enabled, no current commanded until they are ready.
     Settling = 4,
@@ -62,28 +61,28 @@ impl Mode {
     }
 }
 
-/// What the world asks for.
+/// A request to the state machine, from a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Request {
     /// Enable the amplifiers; the only way out of safe into armed.
     Arm,
-    /// Disable the amplifiers; forgets the cause.
+    /// Disable the amplifiers and clear the cause.
     Disarm,
-    /// Put a scene on, by its number; 0 is off.
+    /// Select a scene by its number; 0 is off.
     Select(u8),
-    /// Somebody is still there.
+    /// The host is still connected.
     KeepAlive,
 }
 
-/// What one tick found.
+/// Findings of one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Findings {
-    /// What the monitor found.
-    pub monitor: Option<Cause>,
+    /// Cause that the monitor found.
+    pub monitor: Option<Stop>,
     /// An amplifier's fault input is active.
     pub amplifier_fault: bool,
-    /// The clock is not the crystal's.
+    /// The clock is not that of the crystal.
     pub clock_failure: bool,
     /// Torque and velocities are finite.
     pub finite: bool,
@@ -95,7 +94,7 @@ pub struct Findings {
 }
 
 impl Findings {
-    /// A tick at which all is well.
+    /// Findings of a tick without a fault.
     pub const WELL: Self = Self {
         monitor: None,
         amplifier_fault: false,
@@ -106,10 +105,10 @@ impl Findings {
     };
 }
 
-/// What to do at the end of the tick.
+/// Actions at the end of a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Order {
-    /// Amplifiers enabled; otherwise the currents are zero too.
+    /// Enable the amplifiers; otherwise the currents are zero, too.
     pub enable: bool,
     /// Start controller and monitor again, at rest.
     pub restart: bool,
@@ -140,7 +139,7 @@ pub struct Safety {
     pub disarm: Option<u32>,
     /// Missed ticks that stop the device: this many at once, or more than one in 16 for long.
     pub missed: u32,
-    /// Scenes there are.
+    /// Number of scenes.
     pub scenes: u8,
 }
 
@@ -154,12 +153,12 @@ pub struct SafetyState {
     debt: u32,
     /// Ticks left of settling.
     settling: u32,
-    /// The scene to put on once armed, chosen before.
+    /// The scene to select when the device is armed.
     chosen: u8,
 }
 
 impl SafetyState {
-    /// Where the device is.
+    /// State of the device.
     #[must_use]
     pub const fn mode(&self) -> Mode {
         self.mode
@@ -172,18 +171,18 @@ impl SafetyState {
     }
 }
 
-/// What begins again at rest, with nothing selected.
+/// Restart at rest, without a selection.
 const RESTART: Order = Order {
     enable: false,
     restart: true,
     select: None,
 };
 
-/// What one missed tick weighs against ticks that came.
+/// Weight of a missed tick against ticks on time.
 const MISSED_WEIGHT: u32 = 16;
 
 impl Safety {
-    /// State after a reset: safe if the reset had a cause.
+    /// State after a reset: safe if the reset has a cause.
     #[must_use]
     pub const fn start(&self, reset: Stop) -> SafetyState {
         SafetyState {
@@ -199,7 +198,7 @@ impl Safety {
         }
     }
 
-    /// One tick. What is wrong now comes before what is asked for.
+    /// One tick. A fault has priority over a request.
     pub fn tick(
         &self,
         state: &mut SafetyState,
@@ -223,7 +222,7 @@ impl Safety {
             }
             (Mode::Boot | Mode::Safe, _) => {}
             (Mode::Settling | Mode::Armed | Mode::Running, request) => {
-                let wrong = self.wrong(state, findings);
+                let wrong = self.fault(state, findings);
                 if wrong != Stop::None {
                     (state.mode, state.stop, state.chosen) = (Mode::Safe, wrong, 0);
                     order.restart = true;
@@ -239,14 +238,14 @@ impl Safety {
     }
 
     fn arm(&self, state: &mut SafetyState, findings: &Findings) -> Order {
-        // What the monitor latched and what was missed ends here; what is wrong still refuses.
+        // Arming clears what the monitor latched and the missed ticks. Present faults refuse it.
         state.debt = 0;
         let now = Findings {
             monitor: None,
             missed: 0,
             ..*findings
         };
-        state.stop = match self.wrong(state, &now) {
+        state.stop = match self.fault(state, &now) {
             Stop::None if findings.debugger => Stop::Debugger,
             wrong => wrong,
         };
@@ -323,13 +322,14 @@ impl Safety {
         order
     }
 
-    fn wrong(&self, state: &SafetyState, findings: &Findings) -> Stop {
+    /// The most urgent cause of a stop among the findings.
+    fn fault(&self, state: &SafetyState, findings: &Findings) -> Stop {
         if findings.clock_failure {
             Stop::ClockFailure
         } else if findings.amplifier_fault {
             Stop::AmplifierFault
         } else if let Some(cause) = findings.monitor {
-            cause.into()
+            cause
         } else if !findings.finite {
             Stop::NonFinite
         } else if state.debt >= self.missed.saturating_mul(MISSED_WEIGHT).max(1) {

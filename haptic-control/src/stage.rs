@@ -11,11 +11,11 @@ use crate::units::{NewtonMetres, RadPerS};
 
 /// The continuous stage: the large motor behind the coupler (fig. 3 of the paper).
 ///
-/// Torque on the handle is `b (ω_L - ω_S)`, so a wanted torque is a wanted velocity
-/// `ω_L = ω_S + torque / b`, which an [`Rst`] compensator follows. The wanted velocity is limited
-/// to 85 % of the speed at which [`Monitor::new`](crate::Monitor::new) stops the large motor; the
-/// transient stage gets the torque that is missing then. Fed forward: Coulomb friction
-/// in the direction of the wanted velocity, and the coupler's pull on the large motor, `-b ω_S`.
+/// The torque on the handle is `b (ω_L - ω_S)`. A commanded torque therefore is a commanded velocity
+/// `ω_L = ω_S + torque / b`, which an [`Rst`] compensator tracks. The commanded velocity is limited to
+/// 85 % of the speed at which [`Monitor::new`](crate::Monitor::new) stops the large motor; the
+/// transient stage renders the missing torque. Two terms are fed forward: Coulomb friction in the
+/// direction of the commanded velocity, and the pull of the coupler on the large motor, `-b ω_S`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContinuousStage {
     rst: Rst,
@@ -26,9 +26,9 @@ pub struct ContinuousStage {
     damping: f32,
     /// Fed forward for friction, A.
     friction: f32,
-    /// Velocity over which the friction is faded in, 1 / (rad/s).
+    /// Inverse of the velocity over which the friction is faded in, 1 / (rad/s).
     per_fade: f32,
-    /// What counts of the measured slip's torque, N·m per rad/s.
+    /// Torque that is compensated per measured slip, N·m per rad/s.
     measured: f32,
     /// 1 - m, the gain of each half of the tracking filter.
     tracking_gain: f32,
@@ -39,34 +39,35 @@ pub struct ContinuousStage {
 pub struct ContinuousState {
     rst: RstState,
     current: f32,
-    /// The wanted torque, as far as the largest velocity lets the coupler bring it, N·m.
+    /// The commanded torque, limited by the largest velocity of the large motor, N·m.
     asked: f32,
     /// Both halves of the tracking filter, for `asked`.
     expected: [f32; 2],
 }
 
-/// Largest velocity that is wanted of the large motor, rad/s. The rest of the monitor's limit is
-/// for overshoot where the device is not as believed.
+/// Largest commanded velocity of the large motor, rad/s. The rest up to the monitor's limit is for
+/// overshoot on a device whose parameters differ from the description.
 const LARGEST_WANTED: f32 = (0.85 * LARGE_OVERSPEED) as f32;
 
-/// Velocity below which the direction of the large motor's wanted motion is not trusted to feed
-/// friction forward, rad/s.
+/// Commanded velocity of the large motor below which the friction that is fed forward is reduced,
+/// because its direction is uncertain, rad/s.
 const FADE: f64 = 0.5;
 
-/// The same for the handle, whose velocity is measured finer.
+/// Velocity of the handle below which the friction that is fed forward is reduced, rad/s. It is lower
+/// than that of the large motor, because the handle's encoder is finer.
 const HANDLE_FADE: f64 = 0.12;
 
 /// Part of the small motor's friction that is fed forward. With all of it, a torque constant 20 %
-/// above the believed one would drive a handle that nobody holds.
+/// above that of the description would drive a handle that is not held.
 const FRICTION_PART: f64 = 0.8;
 
-/// Least damping of the coupler and largest torque constant of the small motor that the transient
-/// stage stays passive with, as factors of the believed ones.
+/// Least damping of the coupler and largest torque constant of the small motor with which the
+/// transient stage is passive, as factors of the values in the description.
 const LEAST_DAMPING: f64 = 0.6;
 const LARGEST_CONSTANT: f64 = 1.2;
 
-/// Part of the measured slip's torque that the small motor takes off. With more, the handle would
-/// be driven by what a strong small motor takes off beyond what a thin coupler brings.
+/// Part of the measured slip's torque that the small motor compensates. A larger part would drive the
+/// handle, if the small motor is stronger and the coupler weaker than in the description.
 const MEASURED_PART: f64 = LEAST_DAMPING / LARGEST_CONSTANT;
 const EXPECTED_PART: f32 = (1.0 - MEASURED_PART) as f32;
 
@@ -106,7 +107,7 @@ impl ContinuousStage {
         }
     }
 
-    /// One tick: the large motor's current for a wanted torque.
+    /// One tick: the large motor's current for a commanded torque.
     #[must_use]
     pub fn update(
         &self,
@@ -133,12 +134,12 @@ impl ContinuousStage {
         Amps::new(state.current)
     }
 
-    /// One tick, after [`Self::update`]: the torque that the coupler is taken to bring.
+    /// One tick, after [`Self::update`]: the torque that the coupler is assumed to transmit.
     ///
-    /// Half of it is what the measured slip makes, half what the loop was asked for,
-    /// `b slip / 2 + F torque / 2` with the tracking filter F and the torque that the limit of the
-    /// wanted velocity leaves: both are the wanted torque once the
-    /// large motor has followed, and only half of a slip that nobody asked for is taken off.
+    /// It is the average of the torque of the measured slip and of the commanded torque after the
+    /// tracking filter F and the limit of the velocity, `b slip / 2 + F torque / 2`. Both are equal
+    /// once the large motor follows. Only half of an uncommanded slip torque is compensated, which
+    /// keeps the loop passive.
     #[must_use]
     pub fn coupled(&self, state: &mut ContinuousState, slip: RadPerS) -> NewtonMetres {
         let [lag, expected] = &mut state.expected;
@@ -150,9 +151,9 @@ impl ContinuousStage {
 
 /// The transient stage: the small motor on the handle.
 ///
-/// With a continuous stage it gets the torque that the coupler is not taken to bring, at once
-/// (see [`ContinuousStage::coupled`]). Alone it gets the whole torque. Four fifths of its own Coulomb
-/// friction are fed forward in the direction of the handle's velocity, where that is known.
+/// With a continuous stage it renders the torque that the coupler is assumed not to transmit, without
+/// delay (see [`ContinuousStage::coupled`]). Alone it renders the whole torque. Four fifths of its own
+/// Coulomb friction are fed forward in the direction of the handle's velocity, if that is estimated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransientStage {
     limits: CurrentLimits,

@@ -1,85 +1,80 @@
-//! Causes of a stop, and their numbers.
+//! Causes of a stop: one table of variants, telemetry numbers and names.
 
-use crate::monitor::Cause;
+macro_rules! stops {
+    ($($(#[$doc:meta])+ $stop:ident = $code:literal, $name:literal;)+) => {
+        /// Cause of a stop. The numbers and names are those of telemetry.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+        #[repr(u8)]
+        pub enum Stop {
+            $($(#[$doc])+ $stop = $code,)+
+        }
 
-/// Why the device is, or was, stopped. The numbers are those of telemetry.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(u8)]
-pub enum Stop {
-    /// Nothing.
+        impl Stop {
+            /// All causes, each at its number.
+            pub const ALL: [Self; [$($code),+].len()] = [$(Self::$stop),+];
+
+            /// Name in tables and recordings.
+            #[must_use]
+            pub const fn as_str(self) -> &'static str {
+                match self {
+                    $(Self::$stop => $name,)+
+                }
+            }
+        }
+    };
+}
+
+stops! {
+    /// The device has not stopped.
     #[default]
-    None = 0,
+    None = 0, "none";
     /// The handle moved faster than allowed.
-    HandleOverspeed = 1,
+    HandleOverspeed = 1, "handle-overspeed";
     /// The large motor moved faster than allowed.
-    LargeOverspeed = 2,
-    /// A counter jumped further than any motion could.
-    Jump = 3,
-    /// The large motor's encoder did not move under current.
-    NotMoving = 4,
+    LargeOverspeed = 2, "large-overspeed";
+    /// A counter changed by more than any motion can cause in a tick.
+    Jump = 3, "jump";
+    /// The large motor's current was high for long, and its encoder did not move.
+    Stall = 4, "not-moving";
     /// An amplifier reports a fault.
-    AmplifierFault = 5,
+    AmplifierFault = 5, "amplifier-fault";
     /// Control ticks were missed.
-    TickOverrun = 6,
+    TickOverrun = 6, "tick-overrun";
     /// A torque or velocity was not a finite number.
-    NonFinite = 7,
+    NonFinite = 7, "non-finite";
     /// The watchdog reset the chip.
-    Watchdog = 8,
-    /// The supply was too low.
-    BrownOut = 9,
+    Watchdog = 8, "watchdog";
+    /// The supply voltage was too low.
+    BrownOut = 9, "brown-out";
     /// The crystal does not run, or stopped.
-    ClockFailure = 10,
+    ClockFailure = 10, "clock-failure";
     /// The program panicked.
-    Panic = 11,
+    Panic = 11, "panic";
     /// The core took a hard fault.
-    HardFault = 12,
-    /// No command came for too long. The scene went off; this one does not lead to safe.
-    CommandTimeout = 13,
-    /// The large motor sped up against its current.
-    Against = 14,
+    HardFault = 12, "hard-fault";
+    /// No command came for too long. The scene is off; the device is not in [`Mode::Safe`].
+    ///
+    /// [`Mode::Safe`]: crate::Mode::Safe
+    CommandTimeout = 13, "command-timeout";
+    /// The large motor accelerated against its current: the phases of an encoder or of a motor are
+    /// exchanged.
+    RunawayDirection = 14, "against";
     /// Debug settings would hold the outputs in a halt: a vector catch is set, or the watchdog is
     /// frozen in a halt. The device cannot be armed; an armed device is not stopped.
-    Debugger = 15,
+    Debugger = 15, "debugger";
     /// An interrupt or exception that nothing handles, in the session before this reset.
-    Exception = 16,
+    Exception = 16, "exception";
 }
 
 impl Stop {
-    /// The cause of a number, for whoever kept it over a reset.
+    /// The cause with this number.
     #[must_use]
     pub const fn from_code(code: u8) -> Option<Self> {
-        Some(match code {
-            0 => Self::None,
-            1 => Self::HandleOverspeed,
-            2 => Self::LargeOverspeed,
-            3 => Self::Jump,
-            4 => Self::NotMoving,
-            5 => Self::AmplifierFault,
-            6 => Self::TickOverrun,
-            7 => Self::NonFinite,
-            8 => Self::Watchdog,
-            9 => Self::BrownOut,
-            10 => Self::ClockFailure,
-            11 => Self::Panic,
-            12 => Self::HardFault,
-            13 => Self::CommandTimeout,
-            14 => Self::Against,
-            15 => Self::Debugger,
-            16 => Self::Exception,
-            _ => return None,
-        })
-    }
-}
-
-impl From<Cause> for Stop {
-    fn from(cause: Cause) -> Self {
-        match cause {
-            Cause::HandleOverspeed => Self::HandleOverspeed,
-            Cause::LargeOverspeed => Self::LargeOverspeed,
-            Cause::Jump => Self::Jump,
-            Cause::NotMoving => Self::NotMoving,
-            Cause::Against => Self::Against,
+        if (code as usize) < Self::ALL.len() {
+            Some(Self::ALL[code as usize])
+        } else {
+            None
         }
     }
 }

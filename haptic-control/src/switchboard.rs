@@ -168,7 +168,7 @@ where
 
     /// Changes the scene before the next tick; `sample` is the latest sample.
     pub fn select(&self, state: &mut SwitchboardState<L, H>, scene: AnyScene, sample: &Sample) {
-        let angle = self.rig.angle.of(sample.small - state.origin);
+        let angle = self.rig.angle_scale.of(sample.small - state.origin);
         state.active = Active::start(scene, angle);
         state.swapped = true;
     }
@@ -181,7 +181,7 @@ where
 
     /// One tick.
     pub fn step(&self, state: &mut SwitchboardState<L, H>, sample: &Sample) -> Action {
-        let angle = self.rig.angle.of(sample.small - state.origin);
+        let angle = self.rig.angle_scale.of(sample.small - state.origin);
         let mut action = self.run_active(&mut state.active, &mut state.shared, angle, sample);
         action.currents = self.faded(state, action.currents);
         action
@@ -241,7 +241,7 @@ where
                     large: Estimated {
                         estimator: &self.large,
                         state: estimated,
-                        scale: self.rig.large,
+                        scale: self.rig.large_scale,
                     },
                     stage: &self.rig.continuous,
                     state,
@@ -251,10 +251,10 @@ where
                 Estimated {
                     estimator: &self.handle,
                     state,
-                    scale: self.rig.handle,
+                    scale: self.rig.handle_scale,
                 }
             }),
-            acceleration: S::Acceleration::make(|| self.rig.acceleration),
+            acceleration: S::Acceleration::make(|| self.rig.acceleration_scale),
             transient: S::Transient::map(S::Transient::lend(&mut shared.transient), |state| {
                 Transient {
                     stage: &self.rig.transient,

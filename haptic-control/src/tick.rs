@@ -1,4 +1,4 @@
-//! The one step that everybody calls, for any scene and any keeper of its state.
+//! The control step of any scene, which controller and switchboard share.
 
 use estimator_core::{CountsPerTick, Sample, Scale, VelocityEstimator};
 
@@ -9,10 +9,11 @@ use crate::scene::{Handle, Scene};
 use crate::stage::{ContinuousStage, ContinuousState, TransientStage, TransientState};
 use crate::units::{NewtonMetres, RadPerS, RadPerS2, Radians};
 
-/// For what the large motor or the handle's acceleration is needed.
+/// The need for the large motor or for the handle's acceleration.
 type ForOthers<S> = <<S as Scene>::Continuous as Need>::Or<<S as Scene>::Acceleration>;
 
-/// Whether the handle's velocity is estimated: for the scene, for the slip or with acceleration.
+/// Whether the handle's velocity is estimated: for the scene, for the slip of the coupler or with the
+/// acceleration.
 pub(crate) type HandleNeed<S> = <<S as Scene>::Velocity as Need>::Or<ForOthers<S>>;
 
 /// An estimator, its state and its scale.
@@ -32,20 +33,20 @@ impl<E: VelocityEstimator<Output = CountsPerTick>> Estimated<'_, E> {
     }
 }
 
-/// Everything that a continuous stage works with.
+/// The continuous stage with the large motor's estimator.
 pub(crate) struct Continuous<'a, L: VelocityEstimator> {
     pub(crate) large: Estimated<'a, L>,
     pub(crate) stage: &'a ContinuousStage,
     pub(crate) state: &'a mut ContinuousState,
 }
 
-/// Everything that a transient stage works with.
+/// The transient stage with its state.
 pub(crate) struct Transient<'a> {
     pub(crate) stage: &'a TransientStage,
     pub(crate) state: &'a mut TransientState,
 }
 
-/// The parts that a scene needs; the others are `()`.
+/// The parts that a scene needs. A part that it does not need is `()`.
 pub(crate) struct Parts<'a, S: Scene, L: VelocityEstimator, H: VelocityEstimator> {
     pub(crate) continuous: <S::Continuous as Need>::Of<Continuous<'a, L>>,
     pub(crate) handle: <HandleNeed<S> as Need>::Of<Estimated<'a, H>>,
@@ -53,7 +54,7 @@ pub(crate) struct Parts<'a, S: Scene, L: VelocityEstimator, H: VelocityEstimator
     pub(crate) transient: <S::Transient as Need>::Of<Transient<'a>>,
 }
 
-/// What a tick came to.
+/// Result of a control tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Action {
@@ -61,10 +62,10 @@ pub struct Action {
     pub currents: Currents,
     /// Torque that the handle should feel.
     pub torque: NewtonMetres,
-    /// Velocity of the large motor; zero where the scene does not need it.
-    pub large: RadPerS,
-    /// Velocity of the handle; zero where the scene does not need it.
-    pub handle: RadPerS,
+    /// Velocity of the large motor; zero if the scene does not need it.
+    pub large_velocity: RadPerS,
+    /// Velocity of the handle; zero if the scene does not need it.
+    pub handle_velocity: RadPerS,
 }
 
 /// One tick of `scene`.
@@ -82,7 +83,7 @@ where
 {
     let mut acceleration = S::Acceleration::make(RadPerS2::default);
     let velocity = HandleNeed::<S>::map(parts.handle, |mut handle| {
-        // An estimator looks at the large encoder of its sample: show it the handle's there.
+        // An estimator reads the large encoder's field of its sample: the handle's count goes there.
         let velocity = handle.velocity(&Sample::new(sample.small));
         let sensed = S::Acceleration::acceleration(handle.estimator, handle.state);
         acceleration = S::Acceleration::zip(sensed, parts.acceleration, |a, scale| scale.of(a));
@@ -97,13 +98,15 @@ where
     let handle = HandleNeed::<S>::or(velocity, RadPerS(0.0));
     let mut action = Action {
         torque,
-        handle,
+        handle_velocity: handle,
         ..Action::default()
     };
     let coupled = S::Continuous::map(parts.continuous, |mut part| {
-        action.large = part.large.velocity(sample);
-        action.currents.large = part.stage.update(part.state, torque, action.large, handle);
-        let slip = RadPerS(action.large.0 - handle.0);
+        action.large_velocity = part.large.velocity(sample);
+        action.currents.large =
+            part.stage
+                .update(part.state, torque, action.large_velocity, handle);
+        let slip = RadPerS(action.large_velocity.0 - handle.0);
         part.stage.coupled(part.state, slip)
     });
     let coupled = S::Continuous::or(coupled, NewtonMetres(0.0));

@@ -1,4 +1,4 @@
-//! Quantities of the handle and its motors, one type each.
+//! Types of the quantities of handle and motors.
 
 /// Angle, rad.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]

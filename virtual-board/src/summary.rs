@@ -23,26 +23,14 @@ fn numbered(number: &str, named: impl Fn(u8) -> Option<String>) -> String {
 
 fn mode(number: &str) -> String {
     numbered(number, |number| {
-        Some(words(&format!("{:?}", Mode::from_code(number)?)))
+        Some(Mode::from_code(number)?.as_str().to_owned())
     })
 }
 
 fn cause(number: &str) -> String {
     numbered(number, |number| {
-        Some(words(&format!("{:?}", Stop::from_code(number)?)))
+        Some(Stop::from_code(number)?.as_str().replace('-', " "))
     })
-}
-
-/// An identifier as words: "not moving" of `NotMoving`.
-fn words(identifier: &str) -> String {
-    let mut words = String::new();
-    for letter in identifier.chars() {
-        if letter.is_uppercase() && !words.is_empty() {
-            words.push(' ');
-        }
-        words.extend(letter.to_lowercase());
-    }
-    words
 }
 
 /// What a run of `scene` came to, a line each.

@@ -88,9 +88,9 @@ impl Control {
         self.action.currents
     }
 
-    /// Takes a message before its tick; what there is to ask the safety machine. Settings too are a
-    /// sign of life.
-    pub fn hear(&mut self, message: Option<Message>) -> Option<Request> {
+    /// Applies a message before the tick and returns the request for the safety state machine.
+    /// Parameter changes also count as keep-alives.
+    pub fn accept(&mut self, message: Option<Message>) -> Option<Request> {
         match message? {
             Message::Request(request) => Some(request),
             Message::Tuned(tuned) => {
@@ -116,7 +116,7 @@ impl Control {
             missed: inputs.missed,
             debugger: inputs.debugger,
         };
-        let request = inputs.request.or_else(|| self.by_itself());
+        let request = inputs.request.or_else(|| self.auto_arm_request());
         let order = SAFETY.tick(&mut self.safety, &findings, request);
         if order.restart {
             self.core.restart(sample);
@@ -148,8 +148,8 @@ impl Control {
         }
     }
 
-    /// Requests of an image that arms by itself, at boot and not out of safe.
-    fn by_itself(&self) -> Option<Request> {
+    /// Request of an image that arms without a command. It arms after boot, not out of safe.
+    fn auto_arm_request(&self) -> Option<Request> {
         const ARM: u32 = RATE_HZ / 10;
         const SELECT: u32 = ARM - 1;
         if !(AUTO_ARM && self.brown_out_reset) {
@@ -165,7 +165,9 @@ impl Control {
 
 /// Currents cannot be anything else.
 fn is_finite(action: &Action) -> bool {
-    action.torque.0.is_finite() && action.large.0.is_finite() && action.handle.0.is_finite()
+    action.torque.0.is_finite()
+        && action.large_velocity.0.is_finite()
+        && action.handle_velocity.0.is_finite()
 }
 
 #[cfg(test)]
@@ -183,11 +185,11 @@ mod tests {
                 ..zero()
             }));
             assert!(!is_finite(&Action {
-                large: RadPerS(number),
+                large_velocity: RadPerS(number),
                 ..zero()
             }));
             assert!(!is_finite(&Action {
-                handle: RadPerS(number),
+                handle_velocity: RadPerS(number),
                 ..zero()
             }));
         }

@@ -109,7 +109,7 @@ impl Frame {
     #[must_use]
     pub fn deviation(&self) -> f32 {
         let variance = self.record.estimation.variance;
-        variance.deviation().rad_per_s(&RIG.large)
+        variance.deviation().rad_per_s(&RIG.large_scale)
     }
 
     /// Number of the estimator in charge of the large motor; 255 for none.

@@ -1,12 +1,12 @@
 //! The monitor: what it stops, and that it stops nothing else.
 
 use estimator_core::{Amps, Count, Sample};
-use haptic_control::{Cause, CurrentLimits, Monitor};
+use haptic_control::{CurrentLimits, Monitor, Stop};
 
 const MONITOR: Monitor = Monitor {
     slot: 10,
-    handle: 400,
-    large: 500,
+    handle_window: 400,
+    large_window: 500,
     jump: 1000,
     stall: 200,
     stall_milliamps: 500,
@@ -15,7 +15,7 @@ const MONITOR: Monitor = Monitor {
 };
 
 /// The first cause over `ticks` of a motion, and the tick.
-fn first(ticks: u32, motion: impl Fn(u32) -> Sample) -> Option<(u32, Cause)> {
+fn first(ticks: u32, motion: impl Fn(u32) -> Sample) -> Option<(u32, Stop)> {
     let mut state = MONITOR.start(&motion(0));
     (1..ticks).find_map(|k| {
         MONITOR
@@ -46,22 +46,22 @@ fn each_cause_is_found_within_its_time() {
         sample(0, if k < 200 { 0 } else { 9 * (k - 200) }, 0.0)
     });
     assert!(
-        matches!(runaway, Some((201..=300, Cause::HandleOverspeed))),
+        matches!(runaway, Some((201..=300, Stop::HandleOverspeed))),
         "{runaway:?}"
     );
     let runaway = first(1000, |k| sample(0_u32.wrapping_sub(11 * k), 0, 0.0));
     assert!(
-        matches!(runaway, Some((1..=50, Cause::LargeOverspeed))),
+        matches!(runaway, Some((1..=50, Stop::LargeOverspeed))),
         "{runaway:?}"
     );
     let jump = first(1000, |k| sample(if k < 77 { 5 } else { 1006 }, 0, 0.0));
-    assert_eq!(jump, Some((77, Cause::Jump)));
+    assert_eq!(jump, Some((77, Stop::Jump)));
     let jump = first(1000, |k| {
         sample(0, if k < 77 { 5 } else { 5_u32.wrapping_sub(1001) }, 0.0)
     });
-    assert_eq!(jump, Some((77, Cause::Jump)));
+    assert_eq!(jump, Some((77, Stop::Jump)));
     let stall = first(5000, |_| sample(3, 0, -0.51));
-    assert_eq!(stall, Some((2010, Cause::NotMoving)));
+    assert_eq!(stall, Some((2010, Stop::Stall)));
 }
 
 #[test]
@@ -83,11 +83,11 @@ fn the_first_cause_is_latched() {
     let mut state = MONITOR.start(&sample(0, 0, 0.0));
     assert_eq!(
         MONITOR.check(&mut state, &sample(2000, 0, 0.0)),
-        Some(Cause::Jump)
+        Some(Stop::Jump)
     );
     for k in 0..100 {
         let runaway = sample(2000, 900 * k, 0.0);
-        assert_eq!(MONITOR.check(&mut state, &runaway), Some(Cause::Jump));
+        assert_eq!(MONITOR.check(&mut state, &runaway), Some(Stop::Jump));
     }
 }
 
@@ -125,7 +125,7 @@ fn limits_hold_for_every_input() {
 fn a_dithering_phase_is_a_stall() {
     let stall = first(5000, |k| sample(7 + k % 3, 0, 2.0));
     assert!(
-        matches!(stall, Some((2000..=2010, Cause::NotMoving))),
+        matches!(stall, Some((2000..=2010, Stop::Stall))),
         "{stall:?}"
     );
 }
@@ -135,9 +135,15 @@ fn speeding_up_against_the_current_is_found_and_slowing_down_is_not() {
     // 1 A on the default device: 4000 rad/s², 0.026 counts a tick each tick.
     let moved = |k: u32| (0.013 * f64::from(k) * f64::from(k)) as u32;
     let away = first(1000, |k| sample(0_u32.wrapping_sub(moved(k)), 0, 1.0));
-    assert!(matches!(away, Some((51..=150, Cause::Against))), "{away:?}");
+    assert!(
+        matches!(away, Some((51..=150, Stop::RunawayDirection))),
+        "{away:?}"
+    );
     let away = first(1000, |k| sample(moved(k), 0, -1.0));
-    assert!(matches!(away, Some((51..=150, Cause::Against))), "{away:?}");
+    assert!(
+        matches!(away, Some((51..=150, Stop::RunawayDirection))),
+        "{away:?}"
+    );
     let along = first(300, |k| sample(moved(k), 0, 1.0));
     assert_eq!(along, None);
     let braking = first(300, |k| sample(0_u32.wrapping_sub(moved(300 - k)), 0, -1.0));
@@ -154,7 +160,7 @@ fn a_push_that_the_handle_holds_against_may_stand_still() {
     // The same motion the other way is no excuse: a coupler that brings nothing stalls too.
     let stuck = first(20_000, |k| sample(9, 7 * k, 0.55));
     assert!(
-        matches!(stuck, Some((2000..=2020, Cause::NotMoving))),
+        matches!(stuck, Some((2000..=2020, Stop::Stall))),
         "{stuck:?}"
     );
 }
@@ -172,7 +178,7 @@ fn speed_is_seen_wherever_it_begins() {
     for begin in 200..260 {
         let runaway = first(1000, |k| sample(0, 9 * k.saturating_sub(begin), 0.0));
         let (tick, cause) = runaway.expect("a stop");
-        assert_eq!(cause, Cause::HandleOverspeed);
+        assert_eq!(cause, Stop::HandleOverspeed);
         // 400 counts take 45 ticks, and a slot is 10.
         assert!((45..=56).contains(&(tick - begin)), "{begin}: {tick}");
     }

@@ -3,12 +3,12 @@
 use std::f64::consts::TAU;
 
 use estimator_core::{Amps, Count, Hertz, Sample};
-use haptic_control::{Cause, DualStage, Monitor};
+use haptic_control::{DualStage, Monitor, Stop};
 
 const MONITOR: Monitor = Monitor {
     slot: 10,
-    handle: 400,
-    large: 500,
+    handle_window: 400,
+    large_window: 500,
     jump: 1000,
     stall: 20,
     stall_milliamps: 500,
@@ -23,7 +23,7 @@ fn sample(large: i32, small: i32, milliamps: f32) -> Sample {
 }
 
 /// The first cause over `ticks` of a motion, and the tick.
-fn first(ticks: i32, motion: impl Fn(i32) -> Sample) -> Option<(i32, Cause)> {
+fn first(ticks: i32, motion: impl Fn(i32) -> Sample) -> Option<(i32, Stop)> {
     let mut state = MONITOR.start(&motion(0));
     (1..ticks).find_map(|k| {
         let found = MONITOR.check(&mut state, &motion(k));
@@ -37,7 +37,7 @@ fn a_jump_is_more_than_its_limit_in_a_tick_by_either_encoder_either_way() {
         for (counts, stops) in [(1000, false), (1001, true)] {
             // In the middle of a slot; back by as much, so that no window is too long.
             let there = |k: i32| if k == 13 { sign * counts } else { 0 };
-            let wanted = stops.then_some((13, Cause::Jump));
+            let wanted = stops.then_some((13, Stop::Jump));
             assert_eq!(first(40, |k| sample(there(k), 0, 0.0)), wanted);
             assert_eq!(first(40, |k| sample(0, there(k), 0.0)), wanted);
         }
@@ -50,12 +50,12 @@ fn a_speed_is_more_than_its_limit_over_five_slots_either_way() {
         // All of it in one tick, within the limit of a jump, or evenly.
         for (counts, stops) in [(400, false), (401, true)] {
             let step = |k: i32| sample(0, if k < 42 { 0 } else { sign * counts }, 0.0);
-            let wanted = stops.then_some((50, Cause::HandleOverspeed));
+            let wanted = stops.then_some((50, Stop::HandleOverspeed));
             assert_eq!(first(200, step), wanted);
         }
         for (counts, stops) in [(500, false), (501, true)] {
             let step = |k: i32| sample(if k < 42 { 0 } else { sign * counts }, 0, 0.0);
-            let wanted = stops.then_some((50, Cause::LargeOverspeed));
+            let wanted = stops.then_some((50, Stop::LargeOverspeed));
             assert_eq!(first(200, step), wanted);
         }
         // 401 counts in 51 ticks are within a window of 50 wherever it begins.
@@ -64,11 +64,11 @@ fn a_speed_is_more_than_its_limit_over_five_slots_either_way() {
             assert_eq!(first(500, slow), None);
         }
         let fast = |k: i32| sample(0, sign * (405 * k / 50), 0.0);
-        assert_eq!(first(500, fast), Some((50, Cause::HandleOverspeed)));
+        assert_eq!(first(500, fast), Some((50, Stop::HandleOverspeed)));
     }
     // The handle is named first where both are too fast.
     let both = first(200, |k| sample(20 * k, 20 * k, 0.0));
-    assert_eq!(both, Some((30, Cause::HandleOverspeed)));
+    assert_eq!(both, Some((30, Stop::HandleOverspeed)));
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn a_rest_under_a_push_is_more_than_its_limits_of_current_and_time() {
         for (milliamps, stops) in [(500, false), (502, true)] {
             let rest = |_| sample(7, 0, push(milliamps));
             // The slot in which the push begins is the first of 21.
-            let wanted = stops.then_some((210, Cause::NotMoving));
+            let wanted = stops.then_some((210, Stop::Stall));
             assert_eq!(first(1000, rest), wanted, "{milliamps}");
         }
         // Twenty slots of push, and one without.
@@ -105,7 +105,7 @@ fn a_rest_under_a_push_is_more_than_its_limits_of_current_and_time() {
                 },
             )
         };
-        assert_eq!(first(2000, longer), Some((210, Cause::NotMoving)));
+        assert_eq!(first(2000, longer), Some((210, Stop::Stall)));
         // One tick of less current in each slot is enough.
         let ripple = |k: i32| sample(7, 0, if k % 10 == 4 { push(500) } else { push(600) });
         assert_eq!(first(2000, ripple), None);
@@ -135,7 +135,7 @@ fn against_is_a_motion_against_the_push_that_is_ever_faster() {
             let path = two_windows(before, after);
             first(260, |k| sample(-sign * path(k), 0, sign as f32 * milliamps))
         };
-        let against = Some((250, Cause::Against));
+        let against = Some((250, Stop::RunawayDirection));
         // Five counts more in a window than in the one before; four may be rounding.
         assert_eq!(run(100.0, 10, 15), against);
         assert_eq!(run(100.0, 10, 14), None);
@@ -179,10 +179,10 @@ fn the_push_is_the_weaker_of_the_current_and_both_together() {
         };
         // The handle pulls along: the current alone counts.
         assert_eq!(rest(490.0, 3), None);
-        assert_eq!(rest(502.0, 3), Some(Cause::NotMoving));
+        assert_eq!(rest(502.0, 3), Some(Stop::Stall));
         // It pulls back: the sum counts.
         assert_eq!(rest(529.0, -3), None);
-        assert_eq!(rest(532.0, -3), Some(Cause::NotMoving));
+        assert_eq!(rest(532.0, -3), Some(Stop::Stall));
         // A pull alone is no push.
         assert_eq!(rest(0.0, 7), None);
     }
@@ -220,8 +220,14 @@ fn limits_of_a_device_are_those_of_the_formulas() {
                 (rad_per_s * 5.0 * slot / rate * f64::from(per_rev) / TAU) as u32 + 1
             };
             assert_eq!(monitor.slot, slot as u32, "{rate}");
-            assert_eq!(monitor.handle, counts(30.0, device.small.counts_per_rev));
-            assert_eq!(monitor.large, counts(150.0, device.large.counts_per_rev));
+            assert_eq!(
+                monitor.handle_window,
+                counts(30.0, device.small.counts_per_rev)
+            );
+            assert_eq!(
+                monitor.large_window,
+                counts(150.0, device.large.counts_per_rev)
+            );
             assert_eq!(monitor.stall, (0.05 * rate / slot) as u32);
             assert_eq!(monitor.jump, 16_384);
             assert_eq!(monitor.push_milliamps, 80);
@@ -238,11 +244,11 @@ fn limits_of_a_device_are_those_of_the_formulas() {
 #[test]
 fn causes_have_names() {
     let named = [
-        (Cause::HandleOverspeed, "handle-overspeed"),
-        (Cause::LargeOverspeed, "large-overspeed"),
-        (Cause::Jump, "jump"),
-        (Cause::NotMoving, "not-moving"),
-        (Cause::Against, "against"),
+        (Stop::HandleOverspeed, "handle-overspeed"),
+        (Stop::LargeOverspeed, "large-overspeed"),
+        (Stop::Jump, "jump"),
+        (Stop::Stall, "not-moving"),
+        (Stop::RunawayDirection, "against"),
     ];
     for (cause, name) in named {
         assert_eq!(cause.as_str(), name);

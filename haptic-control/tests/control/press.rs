@@ -6,7 +6,7 @@ use estimator_core::{
     Count, Hertz, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple, preset,
 };
 use haptic_control::{
-    AnyScene, Cause, Currents, DualStage, LoopPoles, Monitor, Rig, SceneKind, Switchboard, Torque,
+    AnyScene, Currents, DualStage, LoopPoles, Monitor, Rig, SceneKind, Stop, Switchboard, Torque,
 };
 
 const RATE: Hertz = Hertz(10e3);
@@ -117,7 +117,7 @@ impl Hand {
 /// What a press led to.
 #[derive(Debug, Default)]
 struct Pressed {
-    stopped: Option<Cause>,
+    stopped: Option<Stop>,
     /// Torque of the hand at the end of its rest, N·m.
     resting: f64,
     /// Velocity of the large motor farthest to either side, rad/s.

@@ -1,6 +1,6 @@
 //! The safety state machine: what each mode does with findings and requests.
 
-use haptic_control::{Cause, Findings, Mode, Order, Request, Safety, SafetyState, Stop};
+use haptic_control::{Findings, Mode, Order, Request, Safety, SafetyState, Stop};
 
 const SAFETY: Safety = Safety {
     settle: 0,
@@ -65,11 +65,11 @@ fn wrongs() -> [(Findings, Stop); 9] {
             },
             Stop::AmplifierFault,
         ),
-        (of(Cause::HandleOverspeed), Stop::HandleOverspeed),
-        (of(Cause::LargeOverspeed), Stop::LargeOverspeed),
-        (of(Cause::Jump), Stop::Jump),
-        (of(Cause::NotMoving), Stop::NotMoving),
-        (of(Cause::Against), Stop::Against),
+        (of(Stop::HandleOverspeed), Stop::HandleOverspeed),
+        (of(Stop::LargeOverspeed), Stop::LargeOverspeed),
+        (of(Stop::Jump), Stop::Jump),
+        (of(Stop::Stall), Stop::Stall),
+        (of(Stop::RunawayDirection), Stop::RunawayDirection),
         (
             Findings {
                 finite: false,
@@ -326,4 +326,36 @@ fn only_arm_enables() {
             }
         }
     }
+}
+
+/// Numbers and names are part of telemetry and tables: they never change.
+#[test]
+fn every_stop_keeps_its_number_and_name() {
+    let names = [
+        "none",
+        "handle-overspeed",
+        "large-overspeed",
+        "jump",
+        "not-moving",
+        "amplifier-fault",
+        "tick-overrun",
+        "non-finite",
+        "watchdog",
+        "brown-out",
+        "clock-failure",
+        "panic",
+        "hard-fault",
+        "command-timeout",
+        "against",
+        "debugger",
+        "exception",
+    ];
+    assert_eq!(Stop::ALL.map(Stop::as_str), names);
+    for code in 0..=u8::MAX {
+        match Stop::from_code(code) {
+            Some(stop) => assert_eq!((stop as u8, stop), (code, Stop::ALL[usize::from(code)])),
+            None => assert!(usize::from(code) >= names.len(), "{code}"),
+        }
+    }
+    assert_eq!(Stop::from_code(16), Some(Stop::Exception));
 }

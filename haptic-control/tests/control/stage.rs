@@ -186,19 +186,19 @@ fn scales_are_those_of_the_encoders() {
     for rate in [1e3, 10e3] {
         let rig = Rig::new(&DEVICE, Hertz(rate), LoopPoles::DEFAULT).unwrap();
         let turn = std::f64::consts::TAU;
-        near(rig.angle.of(Counts(20_000)).0, turn, 1e-6);
-        near(rig.angle.of(Counts(-5000)).0, -turn / 4.0, 1e-6);
+        near(rig.angle_scale.of(Counts(20_000)).0, turn, 1e-6);
+        near(rig.angle_scale.of(Counts(-5000)).0, -turn / 4.0, 1e-6);
         near(
-            rig.large.rad_per_s_per_count_per_tick,
+            rig.large_scale.rad_per_s_per_count_per_tick,
             turn / 4096.0 * rate,
             1e-5,
         );
         near(
-            rig.handle.rad_per_s_per_count_per_tick,
+            rig.handle_scale.rad_per_s_per_count_per_tick,
             turn / 20_000.0 * rate,
             1e-6,
         );
-        let acceleration = rig.acceleration.of(CountsPerTickSquared(0.5)).0;
+        let acceleration = rig.acceleration_scale.of(CountsPerTickSquared(0.5)).0;
         let wanted = 0.5 * turn / 20_000.0 * rate * rate;
         near(acceleration, wanted, 1e-6 * wanted);
     }

@@ -38,8 +38,14 @@ where
             alone.step(&mut one, &sample),
             board.step(&mut other, &sample),
         );
-        let bits =
-            |action: &Action| [action.torque.0, action.large.0, action.handle.0].map(f32::to_bits);
+        let bits = |action: &Action| {
+            [
+                action.torque.0,
+                action.large_velocity.0,
+                action.handle_velocity.0,
+            ]
+            .map(f32::to_bits)
+        };
         assert_eq!(bits(&one), bits(&other), "{kind} at {k}");
         if !fades {
             assert_eq!(one.currents, other.currents, "{kind} at {k}");
@@ -172,7 +178,11 @@ fn an_estimator_that_was_not_needed_starts_at_rest() {
             Some(usual(SceneKind::Inertia)),
         ] {
             let first = first_after_off(scene, before);
-            assert_eq!((first.large.0, first.handle.0), (0.0, 0.0), "{scene:?}");
+            assert_eq!(
+                (first.large_velocity.0, first.handle_velocity.0),
+                (0.0, 0.0),
+                "{scene:?}"
+            );
             // What the currents fade by is over.
             let large = first.currents.large.get();
             assert!(large.abs() < 1e-4, "{scene:?} {before:?}: {large} A");
@@ -195,8 +205,12 @@ fn an_estimator_that_both_scenes_need_goes_on() {
             board.step(&mut swapped, &far(k)),
             board.step(&mut kept, &far(k)),
         );
-        assert_eq!((one.large, one.handle), (other.large, other.handle), "{k}");
-        assert!(k < 100 || one.handle.0 > 100.0);
+        assert_eq!(
+            (one.large_velocity, one.handle_velocity),
+            (other.large_velocity, other.handle_velocity),
+            "{k}"
+        );
+        assert!(k < 100 || one.handle_velocity.0 > 100.0);
     }
 }
 

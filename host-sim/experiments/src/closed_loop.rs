@@ -10,8 +10,8 @@ mod tracking;
 
 use estimator_core::{Amps, Count, Hertz, Sample};
 use haptic_control::{
-    Action, AnyScene, Cause, Controller, DualStage, LoopPoles, Monitor, Motor, Rig, RstDesign,
-    Scene, Senses,
+    Action, AnyScene, Controller, DualStage, LoopPoles, Monitor, Motor, Rig, RstDesign, Scene,
+    Senses, Stop,
 };
 
 use catalogue::estimators::{Estimator, Kind, Setup};
@@ -83,7 +83,7 @@ pub struct Moment {
     /// Currents that the monitor let through, large then small motor, A.
     pub commanded: (f64, f64),
     /// Why the monitor stopped the device, if it has.
-    pub stopped: Option<Cause>,
+    pub stopped: Option<Stop>,
 }
 
 /// The controller's description of a device file's device.
@@ -129,8 +129,9 @@ impl Loop {
             .and_then(|_| Rig::new(&self.believed, rate, self.poles));
         let mut rig = designed.map_err(|error| format!("control at {} Hz: {error}", rate.0))?;
         if self.eye == Eye::Reference {
-            rig.large = estimator_core::Scale::new(self.device.reference.counts_per_rev, rate)
-                .map_err(|error| format!("reference encoder: {error}"))?;
+            rig.large_scale =
+                estimator_core::Scale::new(self.device.reference.counts_per_rev, rate)
+                    .map_err(|error| format!("reference encoder: {error}"))?;
         }
         let scene = self.scene.kind();
         if scene.facts().needs.acceleration && !self.handle.gives_acceleration() {

@@ -72,7 +72,7 @@ fn off_has_no_current_and_only_scenes_with_a_loop_know_the_large_motor_s_velocit
         run.run(500, |moment| {
             let currents = moment.action.currents;
             driven |= currents.large.get() != 0.0 || currents.small.get() != 0.0;
-            known |= moment.action.large.0 != 0.0;
+            known |= moment.action.large_velocity.0 != 0.0;
             counted |= moment.own_count != moment.sample.large;
         })
         .unwrap();

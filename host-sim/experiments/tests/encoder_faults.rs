@@ -3,7 +3,7 @@
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
 use experiments::closed_loop::{Eye, Fault, Hand, Loop, believed, estimator, usual};
-use haptic_control::{Cause, LoopPoles, SceneKind, SimulatedHand};
+use haptic_control::{LoopPoles, SceneKind, SimulatedHand, Stop};
 use simulation::device::Device;
 
 const FAULT_S: f64 = 0.5;
@@ -33,7 +33,7 @@ fn closed(scene: SceneKind, rate_hz: f64, seed: u64) -> Loop {
 
 struct Ended {
     /// Time from the fault to the stop, s, and why.
-    stop: Option<(f64, Cause)>,
+    stop: Option<(f64, Stop)>,
     /// Largest difference from what a healthy device makes the hand feel, N.m.
     spurious_nm: f64,
 }
@@ -61,7 +61,7 @@ fn with(run: &Loop, fault: Fault, seconds: f64) -> Ended {
 
 /// Largest time until the stop and largest spurious torque over seeds, and whether each cause was
 /// one of `causes`.
-fn worst(scene: SceneKind, rate_hz: f64, fault: Fault, causes: &[Cause]) -> (f64, f64) {
+fn worst(scene: SceneKind, rate_hz: f64, fault: Fault, causes: &[Stop]) -> (f64, f64) {
     let mut worst = (0.0_f64, 0.0_f64);
     for seed in 1..=6 {
         let ended = with(&closed(scene, rate_hz, seed), fault, 1.5);
@@ -90,7 +90,7 @@ fn springs(scene: SceneKind) -> bool {
 fn a_stuck_encoder_is_stopped_before_it_hurts() {
     for scene in with_large_motor() {
         for fault in [Fault::StuckA, Fault::StuckB, Fault::StuckBoth] {
-            let causes = [Cause::NotMoving, Cause::Against];
+            let causes = [Stop::Stall, Stop::RunawayDirection];
             let (stop_s, spurious_nm) = worst(scene, 2e3, fault, &causes);
             println!("{scene}, {fault:?}: {stop_s} s, {spurious_nm} N.m");
             // Where nothing moves nothing is wrong yet; free air and a weak field need a motion.
@@ -104,7 +104,7 @@ fn a_stuck_encoder_is_stopped_before_it_hurts() {
 #[test]
 fn exchanged_phases_are_stopped_at_the_first_motion() {
     for scene in with_large_motor() {
-        let (stop_s, spurious_nm) = worst(scene, 2e3, Fault::Swapped, &[Cause::Against]);
+        let (stop_s, spurious_nm) = worst(scene, 2e3, Fault::Swapped, &[Stop::RunawayDirection]);
         println!("{scene}: {stop_s} s, {spurious_nm} N.m");
         assert!(stop_s < 0.2, "{scene}: {stop_s} s");
         // The estimate turns round at once, and with it half of what the coupler brings.

@@ -78,7 +78,7 @@ pub fn run(data: &[u8]) {
         check(&action.currents);
         assert!(action.torque.0.is_finite(), "{action:?}");
         assert!(
-            action.large.0.is_finite() && action.handle.0.is_finite(),
+            action.large_velocity.0.is_finite() && action.handle_velocity.0.is_finite(),
             "{action:?}"
         );
 

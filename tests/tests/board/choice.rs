@@ -94,9 +94,9 @@ fn a_change_is_no_step_in_the_velocity() {
         let mut last = [0.0_f32; 3];
         for (k, record) in records.iter().enumerate().skip(1) {
             let sample = &record.sample;
-            let velocity = |v: estimator_core::CountsPerTick| v.rad_per_s(&RIG.large);
+            let velocity = |v: estimator_core::CountsPerTick| v.rad_per_s(&RIG.large_scale);
             let now = [
-                record.action.large.0,
+                record.action.large_velocity.0,
                 velocity(large::WINDOW.update(&mut window, sample)),
                 velocity(large::FILTER.update(&mut filter, sample)),
             ];
@@ -184,7 +184,7 @@ fn the_confidence_in_telemetry_holds() {
     // The very numbers: a full window of 32 and the steady filter.
     let first = |number| frames(number).next().unwrap().sl.unwrap();
     let filter = large::FILTER.variance(&large::FILTER.start(&estimator_core::Sample::default()));
-    assert_eq!(first(1), filter.deviation().rad_per_s(&RIG.large));
+    assert_eq!(first(1), filter.deviation().rad_per_s(&RIG.large_scale));
 }
 
 #[test]

@@ -74,7 +74,7 @@ pub(crate) fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
                 Message::Estimator(Large::choice(*number).expect("it is there"))
             }
         });
-        let request = control.hear(message);
+        let request = control.accept(message);
         let inputs = Inputs {
             amplifier_fault: false,
             clock_failure: false,
@@ -114,7 +114,7 @@ pub(crate) fn same_bits(run: &Outcome, host: &[(Option<Currents>, Record)]) -> u
             "{frame:?}"
         );
         same_action(frame, &action);
-        moving += usize::from(action.large.0 != 0.0 && action.handle.0 != 0.0);
+        moving += usize::from(action.large_velocity.0 != 0.0 && action.handle_velocity.0 != 0.0);
     }
     moving
 }
@@ -138,8 +138,8 @@ fn same_action(frame: &Frame, action: &Action) {
     let image = [frame.wl, frame.ws, frame.torque, frame.il, frame.is];
     let currents = [action.currents.large.get(), action.currents.small.get()];
     let wanted = [
-        action.large.0,
-        action.handle.0,
+        action.large_velocity.0,
+        action.handle_velocity.0,
         action.torque.0,
         currents[0],
         currents[1],
@@ -260,7 +260,7 @@ fn same_frames(run: &Outcome, host: &[Action]) {
     for frame in &run.telemetry.frames {
         let action = &host[run.tick_index(frame).expect("a frame tells of a tick")];
         same_action(frame, action);
-        moving += usize::from(action.large.0 != 0.0);
+        moving += usize::from(action.large_velocity.0 != 0.0);
     }
     // An observer that knows friction says zero where it holds the rotor.
     assert!(moving > 8000, "{moving} frames of a moving device");

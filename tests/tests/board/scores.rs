@@ -159,7 +159,7 @@ fn on_host(scene: u8, hand: Hand, seconds: f64) -> Scores {
         let grip = motion.grip(k);
         if k as f64 >= SETTLED_S * RATE_HZ && k.is_multiple_of(10) {
             rows.push(Row {
-                estimate: action.large.0,
+                estimate: action.large_velocity.0,
                 omega: bench.plant.large().omega,
                 felt: bench.plant.handle_torque(&grip, 0.0),
                 wanted: action.torque.0.into(),

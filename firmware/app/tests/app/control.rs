@@ -165,7 +165,7 @@ fn an_image_that_arms_by_itself_does_so_only_with_brown_out_reset() {
 #[test]
 fn settings_are_a_sign_of_life_and_take_effect() {
     let mut bench = Bench::new();
-    let request = |message| bench.control.hear(message);
+    let request = |message| bench.control.accept(message);
     let mut requests: Vec<_> = messages(&[
         encode(Command::Request(Request::Select(3))),
         encode(Command::Request(Request::Disarm)),
@@ -174,7 +174,7 @@ fn settings_are_a_sign_of_life_and_take_effect() {
     .map(Some)
     .map(request)
     .collect();
-    requests.push(bench.control.hear(None));
+    requests.push(bench.control.accept(None));
     let [select, disarm] = [Request::Select(3), Request::Disarm].map(Some);
     assert_eq!(requests, [select, disarm, None]);
     // Scene 4 is viscous and has a damping; torque is of scene 8.
@@ -190,7 +190,10 @@ fn settings_are_a_sign_of_life_and_take_effect() {
         for message in messages(&[encode(command)]) {
             let is_setting = matches!(message, Message::Tuned(_) | Message::Estimator(_));
             assert!(is_setting, "{command:?}");
-            assert_eq!(bench.control.hear(Some(message)), Some(Request::KeepAlive));
+            assert_eq!(
+                bench.control.accept(Some(message)),
+                Some(Request::KeepAlive)
+            );
         }
     }
 }

@@ -36,7 +36,7 @@ fn rest(bench: &mut Bench, at: f64) {
 
 fn send(bench: &mut Bench, command: Command) {
     for message in messages(&[encode(command)]) {
-        let request = bench.control.hear(Some(message)).expect("a request");
+        let request = bench.control.accept(Some(message)).expect("a request");
         bench.request(request);
     }
 }
@@ -90,12 +90,15 @@ fn free_air_estimates_and_off_does_not() {
     turn(&mut off, 0.1, 4.0);
     assert_eq!(off.state().0, Mode::Armed);
     assert_eq!(
-        (off.record().action.handle.0, off.record().estimation.number),
+        (
+            off.record().action.handle_velocity.0,
+            off.record().estimation.number
+        ),
         (0.0, None)
     );
     let mut air = Bench::start(1);
     turn(&mut air, 0.1, 4.0);
-    near(air.record().action.handle.0.into(), 4.0, 0.4);
+    near(air.record().action.handle_velocity.0.into(), 4.0, 0.4);
     assert!(air.control.applied().large.get() > 0.05);
     assert!(air.record().estimation.variance.0 > 0.0);
 }

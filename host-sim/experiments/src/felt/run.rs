@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use haptic_control::{Cause, DualStage, LoopPoles};
+use haptic_control::{DualStage, LoopPoles, Stop};
 
 use super::compare::{Case, Run, Settings, Signals, USUAL, device};
 use super::{FeltRow, Fingertip, Parasitic, REFERENCE};
@@ -231,7 +231,7 @@ impl Seen {
         let mn = self.fingertip.mn_per_nm;
         let wanted = f64::from(moment.action.torque.0);
         self.parasitic_mn.push(mn * (moment.felt - wanted));
-        self.used.push(moment.action.large.0);
+        self.used.push(moment.action.large_velocity.0);
         self.trace.counts_large.push(moment.own_count.0);
         if let Some(counts) = &mut self.trace.counts_small {
             counts.push(moment.sample.small.0);
@@ -252,6 +252,6 @@ impl Seen {
             signals.felt_mn.push((mn * moment.felt) as f32);
             signals.handle_rad_s.push(moment.handle.omega as f32);
         }
-        self.stopped = self.stopped.or(moment.stopped.map(Cause::as_str));
+        self.stopped = self.stopped.or(moment.stopped.map(Stop::as_str));
     }
 }

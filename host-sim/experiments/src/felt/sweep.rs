@@ -181,7 +181,7 @@ impl<'a> Bench<'a> {
         };
         let mut rig = Rig::new(&believed(self.device), rate, LoopPoles::DEFAULT)
             .map_err(|error| refused(&error))?;
-        rig.large =
+        rig.large_scale =
             estimator_core::Scale::new(counts_per_rev, rate).map_err(|error| refused(&error))?;
         let controller = Controller::new(Sweep(self.wanted()), large.clone(), handle.clone(), &rig);
 

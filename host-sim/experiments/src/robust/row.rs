@@ -1,6 +1,6 @@
 //! One run as a row of a table.
 
-use haptic_control::Cause;
+use haptic_control::Stop;
 use serde::{Deserialize, Serialize};
 
 use super::judge::{Judge, Reason, Verdict};
@@ -48,7 +48,7 @@ impl Row {
         (scene, subject): Job,
         variation: Variation,
         judge: &Judge,
-        cause: Option<Cause>,
+        cause: Option<Stop>,
     ) -> Self {
         let (verdict, reason) = judge.verdict();
         let radius = settings.device.handle.diameter_m / 2.0;
