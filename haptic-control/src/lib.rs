@@ -55,3 +55,7 @@ pub use switchboard::{Switchboard, SwitchboardState};
 pub use tick::Action;
 pub use tuning::{Bounds, Parameter, Quantity, Refusal, Tunable};
 pub use units::{NewtonMetres, RadPerS, RadPerS2, Radians};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,5 +1,5 @@
-//! The image's scenes and the handle's estimator. Only this file, `large` and `config`
-//! have `cfg`.
+//! The scenes of the image and the estimator of the handle. Only this file, `large` and `config` have
+//! `cfg`.
 
 use estimator_core::{
     Confidence as _, Model, NoInput, SteadyKalman, SteadyKalmanTriple, Variance, VelocityEstimator,
@@ -13,17 +13,17 @@ use crate::large::{LARGE, Large, LargeEstimator as _};
 /// Scales, friction and loop of the device at the control rate.
 pub const RIG: Rig = preset!(Rig::new(&DEVICE, RATE, LoopPoles::DEFAULT));
 
-/// What the large motor's estimator says of itself after a tick.
+/// Confidence and number of the large motor's estimator after a tick.
 #[derive(Clone, Copy)]
 pub struct Estimation {
-    /// Variance of its velocity; 0 where the scene needs none.
+    /// Variance of the velocity; 0 if the scene needs no velocity.
     pub variance: Variance,
-    /// Its number; `None` while one takes over, and where the scene needs none.
+    /// Number of the estimator; `None` during a handover and if the scene needs no velocity.
     pub number: Option<u8>,
 }
 
 impl Estimation {
-    /// Of an estimator that did not run.
+    /// Of a tick without an estimator.
     pub const NONE: Self = Self {
         variance: Variance(0.0),
         number: None,
@@ -37,7 +37,7 @@ impl Estimation {
     }
 }
 
-/// The handle's estimator.
+/// The estimator of the handle.
 pub type Handle = SteadyKalmanTriple;
 const HANDLE_MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(
     DEVICE.small.counts_per_rev,
@@ -47,9 +47,9 @@ const HANDLE_MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(
 /// The parameters of [`Handle`].
 pub const HANDLE: Handle = preset!(SteadyKalman::new(&HANDLE_MODEL));
 
-/// What commands may set: stiffness and damping stay inside the passive region that
-/// `host-sim zwidth` finds for these estimators (docs/telemetry.md), torque inside what the small
-/// motor makes.
+/// Bounds of parameters that commands set. Stiffness and damping are inside the passive region that
+/// `host-sim zwidth` finds for these estimators (docs/telemetry.md). Torque is at most that of the small
+/// motor.
 pub const BOUNDS: Bounds = Bounds {
     stiffness: 0.35,
     damping: 5e-3,
@@ -73,7 +73,7 @@ macro_rules! image {
             use haptic_control::$scene as TheScene;
             #[cfg(scene = $name)]
             const THE_SCENE: TheScene = preset!(TheScene::usual(&DEVICE, RATE));
-            /// Number of the one scene, which arming by itself puts on.
+            /// Number of the one scene, which an image that arms without a command selects.
             #[cfg(scene = $name)]
             pub const FIRST: u8 = $number;
         )+
@@ -90,6 +90,6 @@ pub use one::{Core, Settings, Tuned};
 
 #[cfg(not(one_scene))]
 pub use all::{Core, Settings, Tuned};
-/// Number of the scene that arming by itself puts on: free-air.
+/// Number of the scene that an image that arms without a command selects: free-air.
 #[cfg(not(one_scene))]
 pub const FIRST: u8 = SceneKind::FreeAir.number();

@@ -2,10 +2,7 @@
 
 use estimator_core::Hertz;
 
-use super::{
-    Detents, Excite, FreeAir, Hold, Inertia, Off, Scene, SpringDamper, Texture, Torque, Viscous,
-    Wall,
-};
+use super::*;
 use crate::design_error::DesignError;
 use crate::device::DualStage;
 use crate::need::Need;

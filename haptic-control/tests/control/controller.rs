@@ -1,21 +1,14 @@
 //! The controller of one scene: its states, copied, compared and started again.
 
 use estimator_core::{
-    Count, EndFit, FiniteDifference, Foaw, Handover, Hertz, Model, NoInput, Sample, Side,
-    SteadyKalman, SteadyKalmanTriple, VelocityEstimator, preset,
+    Count, FiniteDifference, Handover, Hertz, Sample, Side, SteadyKalmanTriple, VelocityEstimator,
+    preset,
 };
 use haptic_control::{
-    Controller, ControllerState, Detents, DualStage, FreeAir, Hold, Inertia, LoopPoles, Off,
-    Radians, Rig, Scene, Senses, SpringDamper, Texture, Viscous, Wall,
+    Controller, ControllerState, Detents, FreeAir, Hold, Off, Scene, Senses, Texture, Viscous,
 };
 
-const RATE: Hertz = Hertz(10e3);
-const DEVICE: DualStage = DualStage::DEFAULT;
-const RIG: Rig = preset!(Rig::new(&DEVICE, RATE, LoopPoles::DEFAULT));
-const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(20_000, RATE, 4e3));
-const HANDLE: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
-type Large = Foaw<15, EndFit>;
-const LARGE: Large = preset!(Foaw::new(15, 1));
+use crate::bench::{DEVICE, HANDLE, LARGE, Large, RATE, RIG};
 
 type Of<S> = Controller<S, Large, SteadyKalmanTriple>;
 type StateOf<S> = ControllerState<S, Large, SteadyKalmanTriple>;
@@ -59,15 +52,12 @@ where
 #[test]
 fn every_scene_restarts_and_copies() {
     use a_restart_is_a_start_and_copies_are_equal_until_they_move_apart as check;
-    check(Off);
-    check(FreeAir);
-    check(Wall::new(Radians(0.1), 0.3, 1e-3).unwrap());
-    check(SpringDamper::new(Radians(0.0), 0.1, 1e-3).unwrap());
-    check(Viscous::new(2e-3).unwrap());
-    check(Detents::new(8e-3, 24).unwrap());
-    check(Texture::new(6e-3, Hertz(150.0), RATE).unwrap());
-    check(Hold::new(0.2, 1e-3).unwrap());
-    check(Inertia::new(1e-6, 5e-6).unwrap());
+    macro_rules! check_all {
+        ($($number:literal, $name:literal, $scene:ident, $facts:tt;)+) => {
+            $(check(haptic_control::$scene::usual(&DEVICE, RATE).unwrap());)+
+        };
+    }
+    haptic_control::scenes!(check_all);
 }
 
 /// Which of two states' parts is looked at: a part that differs alone makes them differ.

@@ -1,4 +1,4 @@
-//! An image of all scenes, one at a time.
+//! An image of all scenes, one of which is on.
 
 use estimator_core::{Sample, preset};
 use haptic_control::{Action, AnyScene, Refusal, Switchboard, SwitchboardState};
@@ -13,14 +13,14 @@ const SCENES_BY_NUMBER: Scenes = preset!(AnyScene::usual(&DEVICE, RATE));
 
 static SWITCHBOARD: Switchboard<Large, Handle> = Switchboard::new(LARGE, HANDLE, RIG, RATE);
 
-/// A scene built anew, on its way to the control task.
+/// A scene with changed parameters, sent to the control task.
 #[derive(Clone, Copy)]
 pub struct Tuned {
     number: u8,
     scene: AnyScene,
 }
 
-/// What the scenes are set to, as the lowest priority knows it.
+/// Parameters of the scenes, kept at the lowest priority.
 pub struct Settings(Scenes);
 
 /// The presets.
@@ -42,7 +42,7 @@ impl Settings {
     }
 }
 
-/// The control core: a switchboard, and what its scenes are set to.
+/// The control core: a switchboard and the parameters of its scenes.
 pub struct Core {
     state: SwitchboardState<Large, Handle>,
     scenes: Scenes,
@@ -50,7 +50,7 @@ pub struct Core {
 }
 
 impl Core {
-    /// At rest at the first sample, with no scene.
+    /// State at rest at the first sample, without a scene.
     pub fn start(first: &Sample) -> Self {
         Self {
             state: SWITCHBOARD.start(first),
@@ -59,13 +59,13 @@ impl Core {
         }
     }
 
-    /// At rest at this sample, with no scene; settings stay.
+    /// Starts again at rest at this sample, without a scene. Parameters stay.
     pub fn restart(&mut self, first: &Sample) {
         SWITCHBOARD.restart(&mut self.state, first);
         self.on = 0;
     }
 
-    /// Swaps the scene before the next tick. Torque begins at zero, whatever was set before.
+    /// Changes the scene before the next tick. The torque set-point starts at zero.
     pub fn select(&mut self, number: u8, latest: &Sample) {
         if let Some(scene) = self.scenes.get_mut(usize::from(number)) {
             if number == TORQUE_SCENE {
@@ -76,7 +76,7 @@ impl Core {
         }
     }
 
-    /// Takes settings; those of the scene that is on act from the next tick.
+    /// Changes the parameters of a scene. Those of the scene that is on act from the next tick.
     pub fn retune(&mut self, tuned: Tuned) {
         if let Some(scene) = self.scenes.get_mut(usize::from(tuned.number)) {
             *scene = tuned.scene;
@@ -86,7 +86,7 @@ impl Core {
         }
     }
 
-    /// Puts this estimator in charge of the large motor.
+    /// Selects the estimator of the large motor.
     pub fn choose(&mut self, choice: Choice) {
         Large::choose(self.state.large_mut(), choice);
     }
@@ -96,7 +96,7 @@ impl Core {
         SWITCHBOARD.step(&mut self.state, sample)
     }
 
-    /// What the large motor's estimator says of its latest velocity.
+    /// Confidence and number of the large motor's estimator after the latest tick.
     pub fn estimation(&self) -> Estimation {
         if self.state.estimates_large() {
             Estimation::of(self.state.large())
@@ -105,7 +105,7 @@ impl Core {
         }
     }
 
-    /// What the large motor's estimator has learned.
+    /// Parameters that the large motor's estimator adapted.
     pub fn learned(&self) -> Learned {
         LARGE.learned(self.state.large())
     }

@@ -1,4 +1,4 @@
-//! An image of one scene: no code and no memory of the others.
+//! An image of one scene, without code and memory of other scenes.
 
 use estimator_core::Sample;
 use haptic_control::{Action, Controller, ControllerState, Refusal, Tunable};
@@ -6,11 +6,11 @@ use haptic_control::{Action, Controller, ControllerState, Refusal, Tunable};
 use super::{BOUNDS, Estimation, FIRST, HANDLE, Handle, RIG, THE_SCENE, TORQUE_SCENE, TheScene};
 use crate::large::{Choice, LARGE, Large, LargeEstimator as _, Learned};
 
-/// The scene built anew, on its way to the control task.
+/// The scene with changed parameters, sent to the control task.
 #[derive(Clone, Copy)]
 pub struct Tuned(TheScene);
 
-/// What the scene is set to, as the lowest priority knows it.
+/// Parameters of the scene, kept at the lowest priority.
 pub struct Settings(TheScene);
 
 /// The preset.
@@ -39,7 +39,7 @@ pub struct Core {
 }
 
 impl Core {
-    /// At rest at the first sample, off.
+    /// State at rest at the first sample, off.
     pub fn start(first: &Sample) -> Self {
         let controller = Controller::new(THE_SCENE, LARGE, HANDLE, &RIG);
         Self {
@@ -49,13 +49,13 @@ impl Core {
         }
     }
 
-    /// At rest at this sample, off; settings stay.
+    /// Starts again at rest at this sample, off. Parameters stay.
     pub fn restart(&mut self, first: &Sample) {
         self.controller.restart(&mut self.state, first);
         self.on = false;
     }
 
-    /// Puts the one scene on, from rest, or off. Torque begins at zero, whatever was set before.
+    /// Switches the scene on, from rest, or off. The torque set-point starts at zero.
     pub fn select(&mut self, scene: u8, latest: &Sample) {
         let on = scene == FIRST;
         if on && FIRST == TORQUE_SCENE {
@@ -67,12 +67,12 @@ impl Core {
         self.on = on;
     }
 
-    /// Takes settings, which act from the next tick.
+    /// Changes the parameters, from the next tick on.
     pub fn retune(&mut self, tuned: Tuned) {
         self.controller.retune(tuned.0);
     }
 
-    /// Puts this estimator in charge of the large motor.
+    /// Selects the estimator of the large motor.
     pub fn choose(&mut self, choice: Choice) {
         if let Some(state) = self.state.large_mut() {
             Large::choose(state, choice);
@@ -88,7 +88,7 @@ impl Core {
         }
     }
 
-    /// What the large motor's estimator says of its latest velocity.
+    /// Confidence and number of the large motor's estimator after the latest tick.
     pub fn estimation(&self) -> Estimation {
         match self.state.large() {
             Some(state) if self.on => Estimation::of(state),
@@ -96,7 +96,7 @@ impl Core {
         }
     }
 
-    /// What the large motor's estimator has learned.
+    /// Parameters that the large motor's estimator adapted.
     pub fn learned(&self) -> Learned {
         self.state
             .large()
