@@ -2,6 +2,7 @@
 
 mod estimators;
 mod in_the_loop;
+mod pages;
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind};
