@@ -154,7 +154,8 @@ impl Repository {
         faults
     }
 
-    /// Pages that no chain of links reaches from the first one. The table of contents does not count.
+    /// Pages that no chain of links reaches from the first one. The table of contents does not count,
+    /// and changelogs are found by their name.
     fn unreachable(&self) -> Vec<String> {
         let mut reached = BTreeSet::from([PathBuf::from(FIRST)]);
         let mut waiting = vec![PathBuf::from(FIRST)];
@@ -170,7 +171,8 @@ impl Repository {
                 }
             }
         }
-        let is_orphan = |path: &&PathBuf| **path != Path::new(SUMMARY) && !reached.contains(*path);
+        let is_known = |path: &Path| path == Path::new(SUMMARY) || path.ends_with("CHANGELOG.md");
+        let is_orphan = |path: &&PathBuf| !is_known(path) && !reached.contains(*path);
         (self.pages.keys().filter(is_orphan))
             .map(|path| format!("{}: no link leads here from {FIRST}", path.display()))
             .collect()

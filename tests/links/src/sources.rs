@@ -5,6 +5,9 @@ use std::path::Path;
 /// Extensions of the files that a name has to be one of.
 const NAMED: [&str; 6] = [".md", ".svg", ".rs", ".toml", ".csv", ".yml"];
 
+/// Stands for any name in a path.
+const PLACEHOLDER: &str = "NAME";
+
 /// Names of files with their line: in a page the code spans that are a path, elsewhere the names that
 /// begin with `docs/`.
 pub(crate) fn names<'a>(path: &Path, text: &'a str) -> Vec<(usize, &'a str)> {
@@ -38,6 +41,7 @@ fn is_part_of_a_path(c: char) -> bool {
 
 fn is_path(text: &str) -> bool {
     text.contains('/')
+        && !text.contains(PLACEHOLDER)
         && text.chars().all(is_part_of_a_path)
         && NAMED.iter().any(|extension| text.ends_with(extension))
 }

@@ -122,7 +122,7 @@ fn names_of_missing_files_are_reported() {
     tree.write("src/x.rs", "// See docs/gone.md.\n");
     tree.write(
         "docs/sub/b.md",
-        "# B\n\n`src/y.rs`, `src/x.rs`, `elsewhere/z.rs`\n",
+        "# B\n\n`src/y.rs`, `src/x.rs`, `src/NAME.rs`, `elsewhere/z.rs`\n",
     );
     let faults = [
         "docs/sub/b.md:3: no file src/y.rs",
