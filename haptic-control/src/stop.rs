@@ -14,6 +14,15 @@ macro_rules! stops {
             /// All causes, each at its number.
             pub const ALL: [Self; [$($code),+].len()] = [$(Self::$stop),+];
 
+            /// The cause with this number.
+            #[must_use]
+            pub const fn from_code(code: u8) -> Option<Self> {
+                match code {
+                    $($code => Some(Self::$stop),)+
+                    _ => None,
+                }
+            }
+
             /// Name in tables and recordings.
             #[must_use]
             pub const fn as_str(self) -> &'static str {
@@ -65,16 +74,4 @@ stops! {
     Debugger = 15, "debugger";
     /// An interrupt or exception that nothing handles, in the session before this reset.
     Exception = 16, "exception";
-}
-
-impl Stop {
-    /// The cause with this number.
-    #[must_use]
-    pub const fn from_code(code: u8) -> Option<Self> {
-        if (code as usize) < Self::ALL.len() {
-            Some(Self::ALL[code as usize])
-        } else {
-            None
-        }
-    }
 }

@@ -93,6 +93,22 @@ impl Quantity {
     }
 }
 
+impl Quantity {
+    /// Whether the value is a finite number in the range.
+    ///
+    /// # Errors
+    /// [`Refusal::NotFinite`] or [`Refusal::OutOfBounds`].
+    pub(crate) fn admits(self, value: f32, bounds: &Bounds) -> Result<(), Refusal> {
+        if !value.is_finite() {
+            Err(Refusal::NotFinite)
+        } else if self.range(bounds).contains(&value) {
+            Ok(())
+        } else {
+            Err(Refusal::OutOfBounds)
+        }
+    }
+}
+
 /// A parameter of a scene. Its number is its place among the scene's parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Parameter {
@@ -123,21 +139,19 @@ pub trait Tunable: Scene + Copy {
     /// # Errors
     /// [`Refusal`]: the scene stays as it was.
     fn tuned(&self, parameter: u8, value: f32, bounds: &Bounds) -> Result<Self, Refusal> {
-        let Some(known) = Self::PARAMETERS.get(usize::from(parameter)) else {
-            return Err(Refusal::Unknown);
-        };
-        if !value.is_finite() {
-            Err(Refusal::NotFinite)
-        } else if !known.quantity.range(bounds).contains(&value) {
-            Err(Refusal::OutOfBounds)
-        } else {
-            self.with(parameter, value, bounds)
-                .ok_or(Refusal::OutOfBounds)
-        }
+        let quantity = Self::quantity(parameter).ok_or(Refusal::Unknown)?;
+        quantity.admits(value, bounds)?;
+        self.with(parameter, value, bounds)
+            .ok_or(Refusal::OutOfBounds)
     }
 
     /// The value of parameter number `parameter` at this control rate, if the scene has it.
     fn value(&self, parameter: u8, rate: Hertz) -> Option<f32>;
+
+    /// The quantity of parameter number `parameter`. Firmware reads this instead of the parameters,
+    /// so that it does not contain their names.
+    #[doc(hidden)]
+    fn quantity(parameter: u8) -> Option<Quantity>;
 
     /// This scene with another value of a known parameter, within the range of its quantity;
     /// `None` if the scene refuses the value.
@@ -145,57 +159,55 @@ pub trait Tunable: Scene + Copy {
     fn with(&self, parameter: u8, value: f32, bounds: &Bounds) -> Option<Self>;
 }
 
-/// Implements [`Tunable`]: a line per parameter with its name, its quantity, the expression of its
-/// value, and the scene with another value of it.
+/// Implements [`Tunable`]: a line per parameter with its name, variable, quantity and value, and the
+/// scene of these variables.
 macro_rules! parameters {
     ($scene:ident) => {
-        impl crate::tuning::Tunable for $scene {
-            const PARAMETERS: &'static [crate::tuning::Parameter] = &[];
-
-            fn value(&self, _: u8, _: estimator_core::Hertz) -> Option<f32> {
-                None
-            }
-
-            fn with(&self, _: u8, _: f32, _: &crate::tuning::Bounds) -> Option<Self> {
-                None
-            }
-        }
+        parameters! { $scene, |scene, bounds, rate| {} => Ok::<Self, ()>(*scene) }
     };
-    ($scene:ident, |$this:ident, $value:ident, $bounds:ident, $rate:ident| {
-        $($name:literal: $quantity:ident = $get:expr, $with:expr;)+
-    }) => {
+    ($scene:ident, |$this:ident, $bounds:ident, $rate:ident| {
+        $($name:literal $variable:ident: $quantity:ident = $get:expr;)*
+    } => $build:expr) => {
         impl crate::tuning::Tunable for $scene {
             const PARAMETERS: &'static [crate::tuning::Parameter] = &[$(
                 crate::tuning::Parameter {
                     name: $name,
                     quantity: crate::tuning::Quantity::$quantity,
                 }
-            ),+];
+            ),*];
 
-            fn value(&self, parameter: u8, $rate: estimator_core::Hertz) -> Option<f32> {
-                let ($this, _) = (self, $rate);
-                [$($get),+].get(usize::from(parameter)).copied()
+            fn quantity(parameter: u8) -> Option<crate::tuning::Quantity> {
+                const QUANTITIES: &[crate::tuning::Quantity] =
+                    &[$(crate::tuning::Quantity::$quantity),*];
+                QUANTITIES.get(usize::from(parameter)).copied()
             }
 
-            #[allow(unused_assignments, reason = "nothing follows the last number")]
+            fn value(&self, parameter: u8, $rate: estimator_core::Hertz) -> Option<f32> {
+                let $this = self;
+                // Not every scene reads them.
+                let _ = ($this, $rate);
+                let values: &[f32] = &[$($get),*];
+                values.get(usize::from(parameter)).copied()
+            }
+
             fn with(
                 &self,
                 parameter: u8,
-                $value: f32,
+                value: f32,
                 $bounds: &crate::tuning::Bounds,
             ) -> Option<Self> {
-                let $this = self;
-                let $rate = $bounds.rate;
+                let ($this, $rate) = (self, $bounds.rate);
                 // Not every scene reads all of them.
-                let _ = ($this, $rate);
-                let mut number = 0;
+                let _ = ($this, $rate, value);
+                let mut numbers = 0..;
                 $(
-                    if parameter == number {
-                        return $with.ok();
-                    }
-                    number += 1;
-                )+
-                None
+                    let $variable = match numbers.next() == Some(parameter) {
+                        true => value,
+                        false => $get,
+                    };
+                )*
+                let _ = (numbers.next(), parameter);
+                $build.ok()
             }
         }
     };

@@ -187,11 +187,16 @@ macro_rules! scene_types {
                 value: f32,
                 bounds: &Bounds,
             ) -> Result<Self, Refusal> {
-                Ok(match self {
+                let quantity = match self {
+                    $(Self::$scene(_) => $scene::quantity(parameter),)+
+                };
+                quantity.ok_or(Refusal::Unknown)?.admits(value, bounds)?;
+                let tuned = match self {
                     $(Self::$scene(scene) => {
-                        Self::$scene(scene.tuned(parameter, value, bounds)?)
+                        scene.with(parameter, value, bounds).map(Self::$scene)
                     })+
-                })
+                };
+                tuned.ok_or(Refusal::OutOfBounds)
             }
 
             /// Amplitude of the scene's own vibration, see [`Scene::vibration`].

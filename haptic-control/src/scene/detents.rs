@@ -52,10 +52,10 @@ impl Detents {
     }
 }
 
-parameters! { Detents, |detents, value, bounds, rate| {
-    "amplitude": Amplitude = detents.amplitude, Self::tuned(value, detents.per_rev(), bounds);
-    "per-turn": DetentsPerTurn = detents.per_rev(), Self::tuned(detents.amplitude, value, bounds);
-}}
+parameters! { Detents, |detents, bounds, rate| {
+    "amplitude" amplitude: Amplitude = detents.amplitude;
+    "per-turn" per_rev: DetentsPerTurn = detents.per_rev();
+} => Self::tuned(amplitude, per_rev, bounds) }
 
 impl Scene for Detents {
     type Velocity = Skip;

@@ -26,10 +26,10 @@ impl Hold {
     }
 }
 
-parameters! { Hold, |hold, value, bounds, rate| {
-    "stiffness": Stiffness = hold.impedance.stiffness, Self::new(value, hold.impedance.damping);
-    "damping": Damping = hold.impedance.damping, Self::new(hold.impedance.stiffness, value);
-}}
+parameters! { Hold, |hold, bounds, rate| {
+    "stiffness" stiffness: Stiffness = hold.impedance.stiffness;
+    "damping" damping: Damping = hold.impedance.damping;
+} => Self::new(stiffness, damping) }
 
 impl Scene for Hold {
     type Velocity = Wanted;

@@ -34,9 +34,9 @@ impl Inertia {
     }
 }
 
-parameters! { Inertia, |inertia, value, bounds, rate| {
-    "inertia": Inertia = inertia.inertia, Self::new(value, bounds.inertia);
-}}
+parameters! { Inertia, |scene, bounds, rate| {
+    "inertia" inertia: Inertia = scene.inertia;
+} => Self::new(inertia, bounds.inertia) }
 
 impl Scene for Inertia {
     type Velocity = Skip;

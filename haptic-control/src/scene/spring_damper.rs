@@ -28,14 +28,11 @@ impl SpringDamper {
     }
 }
 
-parameters! { SpringDamper, |spring, value, bounds, rate| {
-    "centre": Angle = spring.centre.0,
-        Self::new(Radians(value), spring.impedance.stiffness, spring.impedance.damping);
-    "stiffness": Stiffness = spring.impedance.stiffness,
-        Self::new(spring.centre, value, spring.impedance.damping);
-    "damping": Damping = spring.impedance.damping,
-        Self::new(spring.centre, spring.impedance.stiffness, value);
-}}
+parameters! { SpringDamper, |spring, bounds, rate| {
+    "centre" centre: Angle = spring.centre.0;
+    "stiffness" stiffness: Stiffness = spring.impedance.stiffness;
+    "damping" damping: Damping = spring.impedance.damping;
+} => Self::new(Radians(centre), stiffness, damping) }
 
 impl Scene for SpringDamper {
     type Velocity = Wanted;

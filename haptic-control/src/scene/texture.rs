@@ -37,28 +37,23 @@ impl Texture {
         }
     }
 
-    /// This vibration with another amplitude; its frequency keeps all its bits.
-    const fn with_amplitude(self, amplitude: f32) -> Result<Self, DesignError> {
-        if is_gain(amplitude) {
-            Ok(Self { amplitude, ..self })
-        } else {
-            Err(DesignError::Scene)
-        }
-    }
-
-    /// Frequency in a controller that runs at `rate`, Hz.
+    /// Frequency in a controller that runs at `rate`, a whole number of Hz, to 2^-17 Hz.
     fn frequency(&self, rate: Hertz) -> f32 {
-        (f64::from(self.step) / PHASE_PER_PERIOD * rate.0) as f32
+        let product = u64::from(self.step) * u64::from(rate.0 as u32);
+        ((product + (1 << 15)) >> 16) as u32 as f32 / 65_536.0
     }
 }
 
 /// A phase of 2^32 is one period.
 const PHASE_PER_PERIOD: f64 = 4_294_967_296.0;
 
-parameters! { Texture, |texture, value, bounds, rate| {
-    "amplitude": Amplitude = texture.amplitude, texture.with_amplitude(value);
-    "frequency": Frequency = texture.frequency(rate),
-        Self::new(texture.amplitude, Hertz(f64::from(value)), rate);
+parameters! { Texture, |texture, bounds, rate| {
+    "amplitude" amplitude: Amplitude = texture.amplitude;
+    "frequency" frequency: Frequency = texture.frequency(rate);
+} => match frequency == texture.frequency(rate) {
+    // The step keeps all its bits.
+    true => Ok(Self { amplitude, ..*texture }),
+    false => Self::new(amplitude, Hertz(f64::from(frequency)), rate),
 }}
 
 impl Scene for Texture {

@@ -26,9 +26,9 @@ impl Torque {
     }
 }
 
-parameters! { Torque, |set_point, value, bounds, rate| {
-    "torque": Torque = set_point.torque, Self::new(value);
-}}
+parameters! { Torque, |set_point, bounds, rate| {
+    "torque" torque: Torque = set_point.torque;
+} => Self::new(torque) }
 
 impl Scene for Torque {
     type Velocity = Skip;

@@ -27,9 +27,9 @@ impl Viscous {
     }
 }
 
-parameters! { Viscous, |viscous, value, bounds, rate| {
-    "damping": Damping = viscous.damping, Self::new(value);
-}}
+parameters! { Viscous, |viscous, bounds, rate| {
+    "damping" damping: Damping = viscous.damping;
+} => Self::new(damping) }
 
 impl Scene for Viscous {
     type Velocity = Wanted;

@@ -31,14 +31,11 @@ impl Wall {
     }
 }
 
-parameters! { Wall, |wall, value, bounds, rate| {
-    "position": Angle = wall.position.0,
-        Self::new(Radians(value), wall.impedance.stiffness, wall.impedance.damping);
-    "stiffness": Stiffness = wall.impedance.stiffness,
-        Self::new(wall.position, value, wall.impedance.damping);
-    "damping": Damping = wall.impedance.damping,
-        Self::new(wall.position, wall.impedance.stiffness, value);
-}}
+parameters! { Wall, |wall, bounds, rate| {
+    "position" position: Angle = wall.position.0;
+    "stiffness" stiffness: Stiffness = wall.impedance.stiffness;
+    "damping" damping: Damping = wall.impedance.damping;
+} => Self::new(Radians(position), stiffness, damping) }
 
 impl Scene for Wall {
     type Velocity = Wanted;
