@@ -15,3 +15,4 @@ mod stage;
 mod switchboard;
 mod tuning;
 mod velocity_loop;
+mod wind_up;

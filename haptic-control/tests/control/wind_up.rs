@@ -1,0 +1,34 @@
+//! Saturation of the large motor's current, and what the velocity loop remembers of it.
+
+use estimator_core::Hertz;
+use haptic_control::{ContinuousStage, DualStage, LoopPoles, NewtonMetres, RadPerS, RstDesign};
+
+/// Currents behind so many ticks at the limit against a large motor that is held: the wanted torque
+/// turns round.
+fn turned(saturated: u32) -> Vec<f32> {
+    let device = DualStage::DEFAULT;
+    let design = RstDesign::new(&device, Hertz(1e3), LoopPoles::DEFAULT).unwrap();
+    let stage = ContinuousStage::new(&device, &design, 1e3);
+    let held = RadPerS(0.0);
+    let mut state = stage.start(held);
+    let mut current = |torque: f32| {
+        let current = stage.update(&mut state, NewtonMetres(torque), held, held);
+        current.get()
+    };
+    for _ in 0..saturated {
+        current(0.1);
+    }
+    assert_eq!(f64::from(current(0.1)), device.large.current_limit);
+    (0..200).map(|_| current(-0.1)).collect()
+}
+
+/// The loop is told of the limit, so that the time spent at it leaves nothing behind.
+#[test]
+fn time_at_the_limit_is_not_remembered() {
+    let [short, long] = [300, 6000].map(turned);
+    for (tick, (short, long)) in short.iter().zip(&long).enumerate() {
+        assert!((short - long).abs() < 1e-3, "{tick}: {short} A, {long} A");
+    }
+    let last = f64::from(*long.last().unwrap());
+    assert_eq!(last, -DualStage::DEFAULT.large.current_limit);
+}
