@@ -45,7 +45,8 @@ pub(crate) trait Board {
 
 /// The watchdog of a board.
 pub(crate) trait Watchdog {
-    /// Restarts the watchdog's time.
+    /// Restarts the watchdog's time. A board that started without its crystal looks for it too, and
+    /// restarts the chip when it runs.
     fn feed(&mut self);
 }
 

@@ -88,6 +88,14 @@ fn stop(cause: Stop, message: impl Fn()) -> ! {
     loop {}
 }
 
+/// Disables the outputs, stores the cause and restarts the chip.
+pub fn restart(cause: Stop) -> ! {
+    cortex_m::interrupt::disable();
+    outputs_safe();
+    reset_cause::store(cause);
+    SCB::sys_reset()
+}
+
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
     stop(Stop::Panic, || {

@@ -14,9 +14,7 @@ firmware_rt::emergency_outputs! {
 
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
-    use stm32f4xx_hal::watchdog::IndependentWatchdog;
-
-    use super::parts::{Parts, start};
+    use super::parts::{Guard, Parts, start};
     use crate::tasks::{ControlTask, IdleTask, Queues, tasks};
 
     #[shared]
@@ -27,7 +25,7 @@ mod app {
         parts: Parts,
         control: ControlTask,
 
-        idle: IdleTask<IndependentWatchdog>,
+        idle: IdleTask<Guard>,
     }
 
     #[init(local = [queues: Queues = Queues::new()])]

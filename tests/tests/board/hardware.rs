@@ -169,20 +169,48 @@ fn cycles_are_those_of_the_longest_task_since_the_last_frame() {
 }
 
 #[test]
-fn a_crystal_that_starts_late_is_waited_for() {
-    for (from, state) in [(0.45, ("2", "0")), (0.6, ("3", "10"))] {
-        let run = run(&Setup {
-            seconds: 1.0,
-            crystal_from_s: from,
-            commands: vec![(0.7, Command::Arm), (0.75, Setup::default().commands[0].1)],
+fn a_crystal_that_starts_within_half_a_second_is_waited_for() {
+    let run = run(&Setup {
+        seconds: 1.0,
+        crystal_from_s: 0.45,
+        commands: vec![(0.7, Command::Arm), (0.75, Setup::default().commands[0].1)],
+        ..Setup::default()
+    });
+    assert_eq!((last(&run), run.restarts.len()), (("2", "0"), 0));
+}
+
+/// Without its crystal the board is safe and cannot be armed. Once the crystal has run for 0.1 s, the
+/// board restarts, is safe still, and can be armed.
+#[test]
+fn a_crystal_that_starts_later_restarts_the_board() {
+    let until = |seconds| {
+        run(&Setup {
+            seconds,
+            crystal_from_s: 0.8,
+            commands: vec![
+                (0.6, Command::Arm),
+                (0.85, Command::Arm),
+                (1.3, Command::Arm),
+                (1.35, Setup::default().commands[0].1),
+            ],
             ..Setup::default()
-        });
-        assert_eq!(
-            (last(&run), run.restarts.len()),
-            (state, 0),
-            "from {from} s"
-        );
-    }
+        })
+    };
+    let refused = until(1.25);
+    assert_eq!(last(&refused), ("3", "10"));
+    assert_eq!(refused.enables.len(), 1, "never on: {:?}", refused.enables);
+    let armed = until(1.5);
+    assert_eq!(last(&armed), ("2", "0"));
+    let [restart] = &armed.restarts[..] else {
+        panic!("{:?}", armed.restarts)
+    };
+    // A frame a millisecond, and the looks are as many frames apart as there are.
+    let late = restart.at_s - 0.8;
+    assert!(
+        (0.099..0.102).contains(&late),
+        "{late} s, {}",
+        restart.cause
+    );
 }
 
 /// Option keys, option control register, and the core's reset request.

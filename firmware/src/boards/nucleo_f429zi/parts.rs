@@ -14,7 +14,7 @@ use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
 use super::edge::{Source, Stamps as _};
 use super::encoder::Encoder;
-use super::reset;
+use super::reset::{self, LateCrystal};
 use super::tick::{Clock, Tick};
 use crate::boards::{Board, Start, Watchdog};
 
@@ -139,15 +139,22 @@ impl Board for Parts {
     }
 }
 
-impl Watchdog for IndependentWatchdog {
+/// The watchdog, and with it the look at a crystal that is late.
+pub(super) struct Guard {
+    watchdog: IndependentWatchdog,
+    crystal: LateCrystal,
+}
+
+impl Watchdog for Guard {
     fn feed(&mut self) {
-        IndependentWatchdog::feed(self);
+        self.watchdog.feed();
+        self.crystal.look();
     }
 }
 
 /// Starts the board: amplifiers off, then the watchdog, then the clocks, then the rest. The tick runs
 /// when this returns.
-pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<IndependentWatchdog>) {
+pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard>) {
     let mut rcc = chip.RCC.constrain();
     let e = chip.GPIOE.split(&mut rcc);
     // A port without its clock takes no write.
@@ -230,7 +237,10 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<IndependentWatchdog
         clock: Tree { rcc, crystal },
     };
     let start = Start {
-        watchdog,
+        watchdog: Guard {
+            watchdog,
+            crystal: LateCrystal::new(crystal),
+        },
         reset,
         brown_out_reset,
     };
