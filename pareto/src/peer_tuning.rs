@@ -11,17 +11,12 @@ use experiments::compare::interval;
 use experiments::tune::{FIRST_SEED, RMS_WEIGHT};
 use scoring::score::{Truth, Wanted};
 use simulation::device::Device;
-use simulation::scenario::ScenarioName;
+use simulation::scenario::{Role, ScenarioName};
 use simulation::simulate::simulate;
 use simulation::trace::{Columns, Trace};
 
 use crate::traces::{COUNTS_PER_REV, RATES_HZ, counts_per_tick};
 
-const SCENARIOS: [ScenarioName; 3] = [
-    ScenarioName::Step,
-    ScenarioName::Permanent,
-    ScenarioName::Track,
-];
 const SEEDS: u64 = 3;
 const SECONDS: f64 = 10.0;
 
@@ -34,7 +29,7 @@ type Track<'a> = (&'a Trace, Truth<'a>);
 
 fn traces(device: &Device, rate_hz: f64) -> Result<Vec<Trace>, String> {
     let seeds = FIRST_SEED..FIRST_SEED + SEEDS;
-    let runs = SCENARIOS
+    let runs = ScenarioName::of(&[Role::Tuning])
         .into_iter()
         .flat_map(|scenario| seeds.clone().map(move |seed| (scenario, seed)));
     let columns = Columns::default();

@@ -9,7 +9,7 @@ use catalogue::parameters::{Parameters, PlantKind};
 use scoring::contest::{Contest, Estimate, Heading, Row};
 use scoring::score::{Interval, Wanted};
 use simulation::device::Device;
-use simulation::scenario::ScenarioName;
+use simulation::scenario::{Role, ScenarioName};
 use simulation::simulate::{plant_steps, simulate};
 use simulation::trace::{Columns, Trace};
 use terminal::failure::Failure;
@@ -172,7 +172,7 @@ fn run(case: &Case, settings: &Settings) -> Result<Outcome, Failure> {
         seed: case.seed,
     };
     let rows = contest.rows(&heading, &trace, &estimates, interval(device), *wanted)?;
-    let heats = case.scenario == ScenarioName::Heating;
+    let heats = case.scenario.role() == Role::Warming;
     Ok(Outcome {
         case: case.clone(),
         rows,

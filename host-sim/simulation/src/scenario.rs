@@ -29,122 +29,210 @@ use rand_xoshiro::{
 };
 use std::{fmt, str::FromStr};
 
-/// Every scenario there is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum ScenarioName {
+/// What a scenario is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// The paper's experiment: presets are tuned on it, and the report's figures show it.
+    Tuning,
+    /// Motion with friction that no preset of a plain filter is tuned on.
+    Judging,
+    /// The linear plant without friction or ripple, whatever the device: the model of the filters.
+    Linear,
+    /// A device that changes during the run.
+    Warming,
+}
+
+/// The row of a scenario.
+struct Row {
+    /// Name on the command line and in reports.
+    name: &'static str,
+    /// Description, in one line.
+    description: &'static str,
+    role: Role,
+    /// Length of a run unless told otherwise, s.
+    seconds: f64,
+    /// Whether its own loop reads the reference encoder; if not, that encoder is not simulated.
+    reads_reference: bool,
+    /// Whether its own loop reads the small encoder; if not, only a trace that wants it has it.
+    reads_small: bool,
+    /// The scenario on a device, with its control period in s and its source of random numbers.
+    build: fn(&Device, f64, Xoshiro256PlusPlus) -> Box<dyn Scenario>,
+}
+
+impl Row {
+    /// What most rows have.
+    const USUAL: Self = Self {
+        name: "",
+        description: "",
+        role: Role::Judging,
+        seconds: 10.0,
+        reads_reference: true,
+        reads_small: false,
+        build: |_, _, random| Box::new(stochastic::Stochastic::new(random)),
+    };
+}
+
+/// The enumeration of the scenarios and their rows, from one list.
+macro_rules! scenarios {
+    ($($(#[$about:meta])* $Name:ident { $($fact:tt)* })+) => {
+        /// Every scenario there is.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum ScenarioName {
+            $($(#[$about])* $Name,)+
+        }
+
+        impl ScenarioName {
+            /// All scenarios, in the order of reports.
+            pub const ALL: [Self; [$(stringify!($Name)),+].len()] = [$(Self::$Name),+];
+
+            const ROWS: [Row; Self::ALL.len()] = [$(Row { $($fact)* ..Row::USUAL }),+];
+        }
+    };
+}
+
+scenarios! {
     /// Current steps, open loop.
-    Step,
+    Step {
+        name: "step",
+        description: "current on at 0.15 to 0.9 A and off each 0.25 s, open loop, handle clamped",
+        role: Role::Tuning,
+        reads_reference: false,
+        build: |_, period_s, random| Box::new(step::Step::new(period_s, random)),
+    }
     /// Constant slip.
-    Permanent,
+    Permanent {
+        name: "permanent",
+        description: "constant slip of 2 to 20 rad/s, 1 s each, handle clamped",
+        role: Role::Tuning,
+        build: |device, period_s, random| {
+            Box::new(clamped::follow(permanent::Permanent::new(random), device, period_s))
+        },
+    }
     /// Chirp and reversals of slip.
-    Track,
+    Track {
+        name: "track",
+        description: "slip chirp of 0.5 to 20 Hz and triangular reversals, handle clamped",
+        role: Role::Tuning,
+        build: |device, period_s, random| {
+            Box::new(clamped::follow(Track::new(random), device, period_s))
+        },
+    }
     /// A moving hand that should feel nothing.
-    FreeAir,
+    FreeAir {
+        name: "free-air",
+        description: "hand moves at 0.3 to 4 Hz and trembles, zero torque wanted",
+        reads_small: true,
+        build: |device, period_s, random| Box::new(hand::free_air(device, period_s, random)),
+    }
     /// A virtual wall.
-    Wall,
+    Wall {
+        name: "wall",
+        description: "hand pushes into a wall of 0.30 N.m/rad at 0.10 rad",
+        reads_small: true,
+        build: |device, period_s, random| Box::new(wall::Wall::new(device, period_s, random)),
+    }
     /// A vibration of 50 to 300 Hz.
-    Texture,
+    Texture {
+        name: "texture",
+        description: "vibration of 6 mN.m from 50 to 300 Hz over slow motion of the hand",
+        reads_small: true,
+        build: |device, period_s, random| {
+            Box::new(texture::Texture::new(device, period_s, random))
+        },
+    }
     /// Very slow motion.
-    Creep,
+    Creep {
+        name: "creep",
+        description: "0.05 rad/s both ways, handle clamped",
+        build: |device, period_s, random| {
+            Box::new(clamped::follow(creep::Creep::new(random), device, period_s))
+        },
+    }
     /// A trembling hand that holds still.
-    Hold,
+    Hold {
+        name: "hold",
+        description: "a hand trembling at 8 to 12 Hz holds still, zero torque wanted",
+        reads_small: true,
+        build: |device, period_s, random| Box::new(hand::hold(device, period_s, random)),
+    }
     /// A linear plant under known noise.
-    Stochastic,
+    Stochastic {
+        name: "stochastic",
+        description: "linear frictionless plant under known white noise, handle clamped",
+        role: Role::Linear,
+        reads_reference: false,
+    }
     /// A coupler that warms up.
-    Heating,
+    Heating {
+        name: "heating",
+        description: "the motion of track while the coupler loses damping, 30 % in 60 s",
+        role: Role::Warming,
+        seconds: 60.0,
+        build: |device, period_s, random| {
+            let motion = clamped::follow(Track::new(random), device, period_s);
+            Box::new(motion.heating(device.coupler.fall_at_60_s))
+        },
+    }
 }
 
 impl ScenarioName {
-    /// All scenarios, in the order of reports.
-    pub const ALL: [Self; 10] = [
-        Self::Step,
-        Self::Permanent,
-        Self::Track,
-        Self::FreeAir,
-        Self::Wall,
-        Self::Texture,
-        Self::Creep,
-        Self::Hold,
-        Self::Stochastic,
-        Self::Heating,
-    ];
+    const fn row(self) -> &'static Row {
+        &Self::ROWS[self as usize]
+    }
+
+    /// All scenarios of these roles, in the order of reports.
+    #[must_use]
+    pub fn of(roles: &[Role]) -> Vec<Self> {
+        let has_role = |scenario: &Self| roles.contains(&scenario.role());
+        Self::ALL.into_iter().filter(has_role).collect()
+    }
 
     /// The scenarios whose plant has friction and whose device stays as it is.
-    pub const WITH_FRICTION: [Self; 8] = [
-        Self::Step,
-        Self::Permanent,
-        Self::Track,
-        Self::FreeAir,
-        Self::Wall,
-        Self::Texture,
-        Self::Creep,
-        Self::Hold,
-    ];
+    #[must_use]
+    pub fn with_friction() -> Vec<Self> {
+        Self::of(&[Role::Tuning, Role::Judging])
+    }
+
+    /// What it is for.
+    #[must_use]
+    pub const fn role(self) -> Role {
+        self.row().role
+    }
 
     /// Name on the command line and in reports.
     #[must_use]
     pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Step => "step",
-            Self::Permanent => "permanent",
-            Self::Track => "track",
-            Self::FreeAir => "free-air",
-            Self::Wall => "wall",
-            Self::Texture => "texture",
-            Self::Creep => "creep",
-            Self::Hold => "hold",
-            Self::Stochastic => "stochastic",
-            Self::Heating => "heating",
-        }
+        self.row().name
     }
 
     /// What happens, in one line.
     #[must_use]
     pub const fn description(self) -> &'static str {
-        match self {
-            Self::Step => {
-                "current on at 0.15 to 0.9 A and off each 0.25 s, open loop, handle clamped"
-            }
-            Self::Permanent => "constant slip of 2 to 20 rad/s, 1 s each, handle clamped",
-            Self::Track => "slip chirp of 0.5 to 20 Hz and triangular reversals, handle clamped",
-            Self::FreeAir => "hand moves at 0.3 to 4 Hz and trembles, zero torque wanted",
-            Self::Wall => "hand pushes into a wall of 0.30 N.m/rad at 0.10 rad",
-            Self::Texture => "vibration of 6 mN.m from 50 to 300 Hz over slow motion of the hand",
-            Self::Creep => "0.05 rad/s both ways, handle clamped",
-            Self::Hold => "a hand trembling at 8 to 12 Hz holds still, zero torque wanted",
-            Self::Stochastic => "linear frictionless plant under known white noise, handle clamped",
-            Self::Heating => "the motion of track while the coupler loses damping, 30 % in 60 s",
-        }
+        self.row().description
     }
 
     /// Length of a run unless told otherwise, s.
     #[must_use]
     pub const fn default_seconds(self) -> f64 {
-        match self {
-            Self::Heating => 60.0,
-            _ => 10.0,
-        }
+        self.row().seconds
     }
 
     /// Whether its loop reads the reference encoder; if not, that encoder is not simulated.
     #[must_use]
     pub const fn reads_reference(self) -> bool {
-        !matches!(self, Self::Step | Self::Stochastic)
+        self.row().reads_reference
     }
 
     /// Whether its loop reads the small encoder; if not, only a trace that wants it has it.
     #[must_use]
     pub const fn reads_small(self) -> bool {
-        matches!(
-            self,
-            Self::FreeAir | Self::Wall | Self::Texture | Self::Hold
-        )
+        self.row().reads_small
     }
 
     /// Whether it takes the linear plant, without friction or ripple, whatever the device.
     #[must_use]
     pub const fn linear_plant(self) -> bool {
-        matches!(self, Self::Stochastic)
+        matches!(self.role(), Role::Linear)
     }
 
     /// Seed of everything drawn for this scenario.
@@ -234,29 +322,7 @@ pub(crate) fn build(
     seed: u64,
 ) -> Box<dyn Scenario> {
     let random = Xoshiro256PlusPlus::seed_from_u64(name.mix(seed));
-    match name {
-        ScenarioName::Step => Box::new(step::Step::new(period_s, random)),
-        ScenarioName::Permanent => Box::new(clamped::follow(
-            permanent::Permanent::new(random),
-            device,
-            period_s,
-        )),
-        ScenarioName::Track => {
-            Box::new(clamped::follow(track::Track::new(random), device, period_s))
-        }
-        ScenarioName::FreeAir => Box::new(hand::free_air(device, period_s, random)),
-        ScenarioName::Wall => Box::new(wall::Wall::new(device, period_s, random)),
-        ScenarioName::Texture => Box::new(texture::Texture::new(device, period_s, random)),
-        ScenarioName::Creep => {
-            Box::new(clamped::follow(creep::Creep::new(random), device, period_s))
-        }
-        ScenarioName::Hold => Box::new(hand::hold(device, period_s, random)),
-        ScenarioName::Stochastic => Box::new(stochastic::Stochastic::new(random)),
-        ScenarioName::Heating => Box::new(
-            clamped::follow(track::Track::new(random), device, period_s)
-                .heating(device.coupler.fall_at_60_s),
-        ),
-    }
+    (name.row().build)(device, period_s, random)
 }
 
 /// Uniform in `low..high`.

@@ -15,7 +15,7 @@ use report::{self, CaseReport, DeviceFacts, ReportInput, Traces};
 use scoring::contest::Row;
 use scoring::score::{Field, SKIP_S, Score, Wanted};
 use simulation::device::Device;
-use simulation::scenario::ScenarioName;
+use simulation::scenario::{Role, ScenarioName};
 use simulation::simulate;
 use terminal::failure::Failure;
 use terminal::output::{Folder, note};
@@ -29,11 +29,7 @@ use super::page::{self, progress};
 const REPORT: &str = "target/report";
 
 /// Scenarios whose signals the report's figures show.
-const DRAWN: [ScenarioName; 3] = [
-    ScenarioName::Step,
-    ScenarioName::Permanent,
-    ScenarioName::Track,
-];
+const DRAWN: Role = Role::Tuning;
 
 /// Help of `--scenario`, with the names of the scenes.
 fn scenario_help() -> String {
@@ -182,10 +178,7 @@ pub(super) fn report_folder(options: &Compare) -> Result<Option<&Path>, Failure>
 /// The cases to run, and how many of them were asked for: the rest, at the end, is the other
 /// plant for the report.
 fn cases(options: &Compare, with_report: bool) -> Result<(Vec<Case>, usize), Failure> {
-    let all_but_heating: Vec<_> = ScenarioName::ALL
-        .into_iter()
-        .filter(|&s| s != ScenarioName::Heating)
-        .collect();
+    let all_but_heating = ScenarioName::of(&[Role::Tuning, Role::Judging, Role::Linear]);
     let scenarios = scenarios(&options.scenarios, &all_but_heating)?;
     let plants: &[_] = match (options.frictionless, with_report) {
         (true, _) => &[PlantKind::Frictionless],
@@ -205,7 +198,7 @@ fn cases(options: &Compare, with_report: bool) -> Result<(Vec<Case>, usize), Fai
                     plant,
                     seed: options.seed,
                     seconds,
-                    keep: with_report && DRAWN.contains(&scenario),
+                    keep: with_report && scenario.role() == DRAWN,
                 });
             }
         }

@@ -83,7 +83,7 @@ pub(super) fn run(options: &Sensitivity, command_line: &str) -> Result<(), Failu
 }
 
 fn cases(options: &Sensitivity) -> Result<Vec<Case>, Failure> {
-    let scenarios = scenarios(&options.scenarios, &ScenarioName::WITH_FRICTION)?;
+    let scenarios = scenarios(&options.scenarios, &ScenarioName::with_friction())?;
     let seeds = if options.seeds.is_empty() {
         vec![1]
     } else {

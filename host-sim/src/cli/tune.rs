@@ -9,7 +9,7 @@ use catalogue::belief::Belief;
 use catalogue::estimators::Kind;
 use catalogue::parameters::{PlantKind, Preset, Presets};
 use experiments::tune::{FIRST_SEED, Ground, tune};
-use simulation::scenario::ScenarioName;
+use simulation::scenario::{Role, ScenarioName};
 use simulation::simulate;
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, print_bytes, write_whole};
@@ -19,7 +19,7 @@ use super::page::progress;
 
 /// What an estimator is tuned on unless told otherwise.
 struct Recipe {
-    scenarios: &'static [ScenarioName],
+    roles: &'static [Role],
     seeds: u64,
     seconds: f64,
     doubting: bool,
@@ -28,11 +28,7 @@ struct Recipe {
 impl Recipe {
     /// The paper's experiment.
     const PLAIN: Self = Self {
-        scenarios: &[
-            ScenarioName::Step,
-            ScenarioName::Permanent,
-            ScenarioName::Track,
-        ],
+        roles: &[Role::Tuning],
         seeds: 3,
         seconds: 10.0,
         doubting: false,
@@ -40,7 +36,7 @@ impl Recipe {
     /// Observers are never outside the interval in the paper's experiment, so that it cannot tell
     /// good parameters from bad ones; and they have constants of the device that may be wrong.
     const OBSERVER: Self = Self {
-        scenarios: &ScenarioName::WITH_FRICTION,
+        roles: &[Role::Tuning, Role::Judging],
         seeds: 1,
         seconds: 4.0,
         doubting: true,
@@ -85,7 +81,7 @@ impl Tune {
         let doubting = self.doubting || recipe.doubting && self.scenarios.is_empty();
         Ok(Ground {
             device: self.device.load()?,
-            scenarios: scenarios(&self.scenarios, recipe.scenarios)?,
+            scenarios: scenarios(&self.scenarios, &ScenarioName::of(recipe.roles))?,
             seeds: self.seeds.unwrap_or(recipe.seeds),
             seconds: self.seconds.unwrap_or(recipe.seconds),
             beliefs: match doubting {
