@@ -46,9 +46,9 @@ impl Parameter {
         search: Search::Log(5.0, 500.0),
     };
 
-    /// Frequency of the two poles of a tracking loop.
+    /// Frequency of the equal poles of a tracking loop.
     pub const BANDWIDTH: Self = Self {
-        meaning: "frequency of the loop's two poles, at most half the rate",
+        meaning: "frequency of the loop's poles, at most half the rate",
         ..Self::CUTOFF
     };
 

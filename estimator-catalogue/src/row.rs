@@ -53,8 +53,8 @@ pub enum Settling {
     AtOnce,
     /// With the pole of parameter `cutoff_hz`.
     OnePole,
-    /// With two poles at parameter `bandwidth_hz`.
-    TwoPoles,
+    /// With so many poles at parameter `bandwidth_hz`.
+    EqualPoles(u8),
     /// Once only the resting count is in the window: the line through its ends.
     EndFitWindow,
     /// Once only the resting count is in the window: the least-squares line.

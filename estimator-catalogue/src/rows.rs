@@ -156,7 +156,7 @@ macro_rules! estimators {
             {
                 summary: "critically damped tracking loop, as motor boards have it",
                 needs: Signals::COUNT,
-                settling: Settling::TwoPoles,
+                settling: Settling::EqualPoles(2),
                 colour: Colour::PINK,
                 dash: Dash::Dotted,
                 goals: &[],

@@ -248,7 +248,7 @@ impl Laws {
         match settling {
             Settling::AtOnce => one,
             Settling::OnePole => one.poles(pole(cutoff_hz(self.rate_hz)), 1),
-            Settling::TwoPoles => one.poles(pole(BANDWIDTH_HZ), 2),
+            Settling::EqualPoles(order) => one.poles(pole(BANDWIDTH_HZ), order.into()),
             Settling::EndFitWindow => one.window(window(Line::EndFit)),
             Settling::BestFitWindow => one.window(window(Line::BestFit)),
             Settling::TripleIntegrator => one.poles(self.triple, 3),
