@@ -1,10 +1,11 @@
-//! The device description that controllers are designed from.
+//! The description of the device that controllers and estimators are designed from.
 
 use core::f64::consts::PI;
 
 use estimator_core::{CoupledMotor, Device, Hertz};
 
 use crate::design_error::DesignError;
+use crate::fingerprint::Fingerprint;
 
 /// A motor with its encoder and amplifier. SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,8 +14,8 @@ pub struct Motor {
     pub inertia: f64,
     /// Torque constant Kt, N·m/A.
     pub torque_constant: f64,
-    /// Coulomb friction Tc, N·m.
-    pub coulomb: f64,
+    /// Coulomb friction Tc, N·m; what holds the shaft at rest is the same.
+    pub coulomb_friction: f64,
     /// Counts per revolution: four times the encoder's lines.
     pub counts_per_rev: u32,
     /// Largest current, A.
@@ -31,7 +32,7 @@ pub struct DualStage {
     /// Damping b of the coupler, N·m·s/rad.
     pub damping: f64,
     /// Bandwidth of both current amplifiers, first order.
-    pub amplifier: Hertz,
+    pub amplifier_bandwidth: Hertz,
 }
 
 impl DualStage {
@@ -43,19 +44,19 @@ impl DualStage {
         large: Motor {
             inertia: CoupledMotor::DCX35L.large.inertia,
             torque_constant: CoupledMotor::DCX35L.large.torque_constant,
-            coulomb: CoupledMotor::DCX35L.coulomb_friction,
+            coulomb_friction: CoupledMotor::DCX35L.coulomb_friction,
             counts_per_rev: CoupledMotor::DCX35L.large.counts_per_rev,
             current_limit: 6.0,
         },
         small: Motor {
             inertia: 50e-7,
             torque_constant: 27.5e-3,
-            coulomb: 0.8e-3,
+            coulomb_friction: 0.8e-3,
             counts_per_rev: CoupledMotor::DCX35L.small_counts_per_rev,
             current_limit: 1.5,
         },
         damping: CoupledMotor::DCX35L.large.damping,
-        amplifier: Hertz(2000.0),
+        amplifier_bandwidth: Hertz(2000.0),
     };
 
     /// The large motor and what acts on it, for an observer.
@@ -68,10 +69,20 @@ impl DualStage {
                 damping: self.damping,
                 torque_constant: self.large.torque_constant,
             },
-            coulomb_friction: self.large.coulomb,
-            amplifier_lag: 1.0 / (2.0 * PI * self.amplifier.0),
+            coulomb_friction: self.large.coulomb_friction,
+            amplifier_lag: 1.0 / (2.0 * PI * self.amplifier_bandwidth.0),
             small_counts_per_rev: self.small.counts_per_rev,
         }
+    }
+
+    /// Hash of all constants: equal for equal devices on every machine. An image logs it at boot,
+    /// so that a recording tells which device the image was built for.
+    #[must_use]
+    pub const fn fingerprint(&self) -> Fingerprint {
+        self.small
+            .hashed(self.large.hashed(Fingerprint::EMPTY))
+            .number(self.damping)
+            .number(self.amplifier_bandwidth.0)
     }
 
     /// The device itself, if every constant is in its range.
@@ -82,7 +93,7 @@ impl DualStage {
         if self.large.is_possible()
             && self.small.is_possible()
             && is_positive(self.damping)
-            && is_positive(self.amplifier.0)
+            && is_positive(self.amplifier_bandwidth.0)
         {
             Ok(self)
         } else {
@@ -92,12 +103,20 @@ impl DualStage {
 }
 
 impl Motor {
+    const fn hashed(&self, hash: Fingerprint) -> Fingerprint {
+        hash.number(self.inertia)
+            .number(self.torque_constant)
+            .number(self.coulomb_friction)
+            .number(self.counts_per_rev as f64)
+            .number(self.current_limit)
+    }
+
     const fn is_possible(&self) -> bool {
         is_positive(self.inertia)
             && is_positive(self.torque_constant)
             && is_positive(self.current_limit)
-            && self.coulomb >= 0.0
-            && self.coulomb.is_finite()
+            && self.coulomb_friction >= 0.0
+            && self.coulomb_friction.is_finite()
             && self.counts_per_rev > 0
     }
 }

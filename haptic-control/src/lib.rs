@@ -18,6 +18,7 @@
 mod controller;
 mod design_error;
 mod device;
+mod fingerprint;
 mod grid;
 mod limits;
 mod margins;
@@ -39,6 +40,7 @@ mod units;
 pub use controller::{Controller, ControllerState};
 pub use design_error::DesignError;
 pub use device::{DualStage, Motor};
+pub use fingerprint::Fingerprint;
 pub use grid::Grid;
 pub use limits::{CurrentLimits, Currents};
 pub use margins::Margins;

@@ -85,7 +85,7 @@ impl Monitor {
         let turns_per_rad_per_s = SLOTS as f64 * slot_s / (2.0 * PI);
         let rad_per_s_per_count = 2.0 * PI / device.small.counts_per_rev as f64 / slot_s;
         let milliamps_per_nm = 1e3 / device.large.torque_constant;
-        let friction = 2.5 * device.large.coulomb * milliamps_per_nm;
+        let friction = 2.5 * device.large.coulomb_friction * milliamps_per_nm;
         let pull = device.damping * rad_per_s_per_count * milliamps_per_nm;
         Self {
             slot,

@@ -84,7 +84,7 @@ impl ContinuousStage {
             rad_per_s_per_nm: (1.0 / device.damping) as f32,
             nm_per_rad_per_s: device.damping as f32,
             damping: (-device.damping / device.large.torque_constant) as f32,
-            friction: (device.large.coulomb / device.large.torque_constant) as f32,
+            friction: (device.large.coulomb_friction / device.large.torque_constant) as f32,
             per_fade: (1.0 / FADE) as f32,
             measured: (MEASURED_PART * device.damping) as f32,
             tracking_gain: (1.0 - design.tracking_pole) as f32,
@@ -178,7 +178,7 @@ impl TransientStage {
                 slew,
             },
             amps_per_nm: (1.0 / device.small.torque_constant) as f32,
-            friction: NewtonMetres((FRICTION_PART * device.small.coulomb) as f32),
+            friction: NewtonMetres((FRICTION_PART * device.small.coulomb_friction) as f32),
             per_fade: (1.0 / HANDLE_FADE) as f32,
         }
     }

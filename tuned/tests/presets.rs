@@ -3,19 +3,17 @@
 use catalogue::estimators::{Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
 use estimator_core::{
-    Amps, Count, CountObserver, DesignError, Device, Edge, Hertz, Observer, Sample, Uncertainty,
+    Amps, Count, CountObserver, DesignError, Edge, Hertz, Observer, Sample, Uncertainty,
     VelocityEstimator,
 };
 use firmware_app::config::{DEVICE, RATE, TIMERS};
 use firmware_app::large::{ADAPTIVE, ADAPTIVE_EDGE, Adaptive, AdaptiveEdge};
+use haptic_control::DualStage;
 
 fn setup(rate: Hertz) -> Setup {
     Setup {
         rate,
-        device: Device::DCX35L,
-        friction_nm: 0.0,
-        amplifier_lag_s: 0.0,
-        small_counts_per_rev: 20_000,
+        stages: DualStage::DEFAULT,
     }
 }
 

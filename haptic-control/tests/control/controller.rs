@@ -146,7 +146,7 @@ fn the_slip_is_the_large_motors_velocity_less_the_handles() {
         ];
         assert!((f64::from(action.large_velocity.0) - speeds[0]).abs() < 1e-4);
         assert!((f64::from(action.handle_velocity.0) - speeds[1]).abs() < 1e-4);
-        let friction = 0.8 * DEVICE.small.coulomb * (speeds[1] / 0.12).clamp(-1.0, 1.0);
+        let friction = 0.8 * DEVICE.small.coulomb_friction * (speeds[1] / 0.12).clamp(-1.0, 1.0);
         let torque = friction - 0.5 * DEVICE.damping * (speeds[0] - speeds[1]);
         let wanted = torque / DEVICE.small.torque_constant;
         let small = f64::from(action.currents.small.get());

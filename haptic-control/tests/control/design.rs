@@ -33,7 +33,7 @@ fn the_plant_is_the_motor_behind_its_amplifier() {
             let steps = 20_000;
             let h = 1.0 / rate / f64::from(steps);
             for _ in 0..steps {
-                let lag = TAU * device.amplifier.0;
+                let lag = TAU * device.amplifier_bandwidth.0;
                 let middle = current + 0.5 * h * lag * (1.0 - current);
                 let torque = device.large.torque_constant * middle;
                 omega += h * (torque - device.damping * omega) / device.large.inertia;

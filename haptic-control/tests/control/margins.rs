@@ -37,7 +37,7 @@ fn margins_are_those_of_the_frequency_response() {
     heavy.large.inertia *= 4.0;
     heavy.damping *= 0.5;
     let mut slow = DualStage::DEFAULT;
-    slow.amplifier = Hertz(60.0);
+    slow.amplifier_bandwidth = Hertz(60.0);
     for device in [DualStage::DEFAULT, heavy, slow] {
         for rate in RATES {
             for (regulation, delay_s) in [(12.0, 1e-3), (12.0, 0.0), (20.0, 4e-3), (40.0, 2e-4)] {

@@ -205,12 +205,12 @@ fn the_push_is_the_weaker_of_the_current_and_both_together() {
 fn limits_of_a_device_are_those_of_the_formulas() {
     let fine = DualStage::DEFAULT;
     let mut heavy = fine;
-    heavy.large.coulomb = 9e-3;
+    heavy.large.coulomb_friction = 9e-3;
     heavy.large.counts_per_rev = 20_000;
     heavy.small.counts_per_rev = 4096;
     heavy.damping = 2e-3;
     let mut smooth = fine;
-    smooth.large.coulomb = 1e-3;
+    smooth.large.coulomb_friction = 1e-3;
     for device in [fine, heavy, smooth] {
         for rate in [400.0, 1e3, 2600.0, 10e3, 11.6e3] {
             let monitor = Monitor::new(&device, Hertz(rate));
@@ -232,7 +232,7 @@ fn limits_of_a_device_are_those_of_the_formulas() {
             assert_eq!(monitor.jump, 16_384);
             assert_eq!(monitor.push_milliamps, 80);
             let milliamps = |torque: f64| 1000.0 * torque / device.large.torque_constant;
-            let friction = milliamps(2.5 * device.large.coulomb);
+            let friction = milliamps(2.5 * device.large.coulomb_friction);
             assert_eq!(monitor.stall_milliamps, friction.max(100.0) as i32);
             let speed = TAU / f64::from(device.small.counts_per_rev) * rate / slot;
             let pull = 256.0 * milliamps(device.damping * speed);

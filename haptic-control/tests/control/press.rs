@@ -51,7 +51,7 @@ impl Plant {
         const STEPS: u32 = 20;
         let h = RATE.period_s() / f64::from(STEPS);
         let motors = [self.device.large, self.device.small];
-        let lag = 1.0 - (-TAU * self.device.amplifier.0 * h).exp();
+        let lag = 1.0 - (-TAU * self.device.amplifier_bandwidth.0 * h).exp();
         for _ in 0..STEPS {
             let slip = self.device.damping * (self.omega[0] - self.omega[1]);
             let outside = [-slip, slip + hand(self.angle[1], self.omega[1])];
@@ -60,7 +60,7 @@ impl Plant {
                 let torque = outside[i] + motors[i].torque_constant * self.current[i];
                 let moved = self.omega[i] + h * torque / motors[i].inertia;
                 // Coulomb friction takes velocity away, and at most all of it.
-                let friction = h * motors[i].coulomb / motors[i].inertia;
+                let friction = h * motors[i].coulomb_friction / motors[i].inertia;
                 self.omega[i] = moved - moved.clamp(-friction, friction);
                 self.angle[i] += h * self.omega[i];
             }

@@ -43,7 +43,7 @@ fn a_wanted_torque_is_a_wanted_velocity_with_friction_and_pull_fed_forward() {
         let wanted = handle + torque / DEVICE.damping;
         let asked = rst.update(&mut looped, RadPerS(wanted as f32), RadPerS(large as f32));
         let direction = (f64::from(looped.filtered().0) / 0.5).clamp(-1.0, 1.0);
-        let forward = DEVICE.large.coulomb * direction - DEVICE.damping * handle;
+        let forward = DEVICE.large.coulomb_friction * direction - DEVICE.damping * handle;
         let applied = f64::from(asked) + forward / DEVICE.large.torque_constant;
         near(current.get(), applied, 1e-3);
     }
@@ -117,7 +117,7 @@ fn the_small_motor_makes_the_torque_and_four_fifths_of_its_friction() {
                 NewtonMetres(missing),
                 RadPerS(handle),
             );
-            let torque = f64::from(missing) + 0.8 * DEVICE.small.coulomb * direction;
+            let torque = f64::from(missing) + 0.8 * DEVICE.small.coulomb_friction * direction;
             near(current.get(), torque / DEVICE.small.torque_constant, 1e-6);
         }
     }
@@ -213,9 +213,9 @@ const CONSTANTS: [fn(&mut DualStage, f64); 10] = [
     |device, value| device.small.torque_constant = value,
     |device, value| device.small.current_limit = value,
     |device, value| device.damping = value,
-    |device, value| device.amplifier = Hertz(value),
-    |device, value| device.large.coulomb = value,
-    |device, value| device.small.coulomb = value,
+    |device, value| device.amplifier_bandwidth = Hertz(value),
+    |device, value| device.large.coulomb_friction = value,
+    |device, value| device.small.coulomb_friction = value,
 ];
 
 #[test]
@@ -250,7 +250,7 @@ fn the_observer_is_told_of_the_same_device() {
     assert_eq!(motor.large.inertia, DEVICE.large.inertia);
     assert_eq!(motor.large.damping, DEVICE.damping);
     assert_eq!(motor.large.torque_constant, DEVICE.large.torque_constant);
-    assert_eq!(motor.coulomb_friction, DEVICE.large.coulomb);
+    assert_eq!(motor.coulomb_friction, DEVICE.large.coulomb_friction);
     assert_eq!(motor.small_counts_per_rev, DEVICE.small.counts_per_rev);
     // A bandwidth of 2 kHz is a lag of 79.6 us.
     assert!((motor.amplifier_lag * std::f64::consts::TAU * 2000.0 - 1.0).abs() < 1e-12);

@@ -78,10 +78,10 @@ impl Belief {
     pub fn of(&self, setup: &Setup) -> Setup {
         let mut believed = *setup;
         let value = match self.constant {
-            Constant::Damping => &mut believed.device.damping,
-            Constant::Inertia => &mut believed.device.inertia,
-            Constant::TorqueConstant => &mut believed.device.torque_constant,
-            Constant::Friction => &mut believed.friction_nm,
+            Constant::Damping => &mut believed.stages.damping,
+            Constant::Inertia => &mut believed.stages.large.inertia,
+            Constant::TorqueConstant => &mut believed.stages.large.torque_constant,
+            Constant::Friction => &mut believed.stages.large.coulomb_friction,
         };
         *value *= 1.0 + self.error;
         believed
@@ -101,10 +101,10 @@ mod tests {
         for belief in all {
             let believed = belief.of(&setup);
             let ratios = [
-                believed.device.damping / setup.device.damping,
-                believed.device.inertia / setup.device.inertia,
-                believed.device.torque_constant / setup.device.torque_constant,
-                believed.friction_nm / setup.friction_nm,
+                believed.stages.damping / setup.stages.damping,
+                believed.stages.large.inertia / setup.stages.large.inertia,
+                believed.stages.large.torque_constant / setup.stages.large.torque_constant,
+                believed.stages.large.coulomb_friction / setup.stages.large.coulomb_friction,
             ];
             for (constant, ratio) in Constant::ALL.into_iter().zip(ratios) {
                 let meant = if constant == belief.constant {

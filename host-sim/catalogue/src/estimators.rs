@@ -6,8 +6,10 @@ mod run;
 
 use std::ops::Deref;
 
+use device_files::decimal;
 use estimator_catalogue::{ROWS, Row};
-use estimator_core::{CoupledMotor, Device, Hertz};
+use estimator_core::Hertz;
+use haptic_control::DualStage;
 
 pub use estimator_catalogue::{Parameter, Search};
 
@@ -16,7 +18,7 @@ pub use run::{available, sample};
 
 use crate::parameters::{Parameters, PlantKind};
 use terminal::failure::Failure;
-use terminal::wording::{decimal, unknown};
+use terminal::wording::unknown;
 
 /// An estimator that can be built: its row of the catalogue, with its builder.
 ///
@@ -40,14 +42,8 @@ impl Deref for Kind {
 pub struct Setup {
     /// Control rate.
     pub rate: Hertz,
-    /// The large motor as the estimators believe it to be.
-    pub device: Device,
-    /// Its Coulomb friction, N.m.
-    pub friction_nm: f64,
-    /// Time constant of its amplifier, s.
-    pub amplifier_lag_s: f64,
-    /// Counts per revolution of the small encoder.
-    pub small_counts_per_rev: u32,
+    /// The device as the estimators believe it to be.
+    pub stages: DualStage,
 }
 
 /// The default device at 1 kHz.
@@ -58,42 +54,20 @@ impl Default for Setup {
 }
 
 impl Setup {
-    /// The constants of a simulated device that its estimators are designed for: those of the large
-    /// motor, of its encoder and amplifier, and of the coupler.
+    /// The constants of a simulated device.
     #[must_use]
     pub fn of(device: &simulation::device::Device, rate_hz: f64) -> Self {
         Self {
             rate: Hertz(rate_hz),
-            device: Device {
-                counts_per_rev: device.large.counts_per_rev,
-                inertia: device.large.inertia_kg_m2,
-                damping: device.coupler.damping_nms_per_rad,
-                torque_constant: device.large.torque_constant_nm_per_a,
-            },
-            friction_nm: device.large.coulomb_nm,
-            amplifier_lag_s: 1.0 / (std::f64::consts::TAU * device.amplifier.bandwidth_hz),
-            small_counts_per_rev: device.small.counts_per_rev,
+            stages: device.stages,
         }
     }
 
-    /// All that the estimators believe of the device.
+    /// The same without friction of the large motor.
     #[must_use]
-    pub fn stages(&self) -> CoupledMotor {
-        CoupledMotor {
-            large: self.device,
-            coulomb_friction: self.friction_nm,
-            amplifier_lag: self.amplifier_lag_s,
-            small_counts_per_rev: self.small_counts_per_rev,
-        }
-    }
-
-    /// The same without friction.
-    #[must_use]
-    pub fn frictionless(self) -> Self {
-        Self {
-            friction_nm: 0.0,
-            ..self
-        }
+    pub fn frictionless(mut self) -> Self {
+        self.stages.large.coulomb_friction = 0.0;
+        self
     }
 }
 

@@ -2,147 +2,35 @@
 
 mod tuned;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
+pub use device_files::presets::{PlantKind, Preset, Presets};
 
 use crate::estimators::{Kind, Search, Setup, Values, check};
 use terminal::failure::Failure;
 
-/// Whether the plant has Coulomb friction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum PlantKind {
-    /// As the device says.
-    Friction,
-    /// The same device without Coulomb friction: the plant of the paper's model.
-    Frictionless,
+/// Reads a presets file, and checks its estimators and their parameters.
+///
+/// # Errors
+/// [`Failure::Input`] that names the file and what is wrong in it.
+pub fn read(path: &Path) -> Result<Presets, Failure> {
+    let name = path.display().to_string();
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
+    checked(Presets::parse(&text, &name).map_err(Failure::Input)?)
 }
 
-impl PlantKind {
-    /// The name in tables and files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Friction => "friction",
-            Self::Frictionless => "frictionless",
+fn checked(presets: Presets) -> Result<Presets, Failure> {
+    let tuned = presets.preset.iter().map(|preset| &preset.estimators);
+    for (estimator, values) in tuned.chain(presets.image.values()).flatten() {
+        let wrong = |what: Failure| Failure::Input(format!("{}: {what}", presets.source));
+        let kind = Kind::named(estimator).map_err(wrong)?;
+        for (parameter, &value) in values {
+            let index = kind.parameter(parameter).map_err(wrong)?;
+            check(&kind.parameters[index], estimator, value).map_err(wrong)?;
         }
     }
-
-    /// The kind after the word "plant".
-    #[must_use]
-    pub fn phrase(self) -> &'static str {
-        match self {
-            Self::Friction => "with friction",
-            Self::Frictionless => "without friction",
-        }
-    }
-}
-
-/// Tuned parameters: what `tune` writes and `--presets` reads.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Presets {
-    /// One entry for each rate and plant tuned for.
-    #[serde(default)]
-    pub preset: Vec<Preset>,
-    /// The file that they come from, as messages name it.
-    #[serde(skip)]
-    pub source: String,
-}
-
-/// Tuned parameters at one rate on one plant.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Preset {
-    /// Control rate, Hz.
-    pub rate_hz: f64,
-    /// PlantKind.
-    pub plant: PlantKind,
-    /// Counts per revolution of the large encoder; `None` in files that do not say.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub counts_per_rev: Option<u32>,
-    /// Values by estimator and parameter.
-    pub estimators: BTreeMap<String, BTreeMap<String, f64>>,
-}
-
-impl Presets {
-    /// The presets shipped with the program, written by `host-sim tune`.
-    #[must_use]
-    pub fn shipped() -> Self {
-        Self::parse(include_str!("../../presets.toml"), "the shipped presets")
-            .expect("the shipped presets are tested")
-    }
-
-    /// Reads a file that `tune` wrote.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] that names the file and what is wrong in it.
-    pub fn read(path: &Path) -> Result<Self, Failure> {
-        let name = path.display().to_string();
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
-        Self::parse(&text, &name)
-    }
-
-    /// The file's text.
-    ///
-    /// # Errors
-    /// [`Failure::Input`]; none is known to happen.
-    pub fn to_toml(&self) -> Result<String, Failure> {
-        toml::to_string(self).map_err(|error| Failure::Input(error.to_string()))
-    }
-
-    fn parse(text: &str, name: &str) -> Result<Self, Failure> {
-        let mut presets: Self = toml::from_str(text).map_err(|error| {
-            let line = error
-                .span()
-                .map_or(1, |span| 1 + text[..span.start].matches('\n').count());
-            Failure::Input(format!("{name}: line {line}: {}", error.message()))
-        })?;
-        presets.source = name.to_owned();
-        for preset in &presets.preset {
-            let wrong = |what: String| Failure::Input(format!("{name}: {what}"));
-            if !(preset.rate_hz > 0.0 && preset.rate_hz.is_finite()) {
-                return Err(wrong(format!(
-                    "rate_hz = {}: must be above 0 Hz",
-                    preset.rate_hz
-                )));
-            }
-            for (estimator, values) in &preset.estimators {
-                let kind = Kind::named(estimator).map_err(|e| wrong(e.to_string()))?;
-                for (parameter, &value) in values {
-                    let index = kind
-                        .parameter(parameter)
-                        .map_err(|e| wrong(e.to_string()))?;
-                    check(&kind.parameters[index], estimator, value)
-                        .map_err(|e| wrong(e.to_string()))?;
-                }
-            }
-        }
-        Ok(presets)
-    }
-
-    /// The values tuned for `kind` at the nearest rate (by ratio) on that plant.
-    fn nearest(
-        &self,
-        kind: &Kind,
-        rate_hz: f64,
-        plant: PlantKind,
-    ) -> Option<&BTreeMap<String, f64>> {
-        let preset = self.nearest_preset(kind, rate_hz, plant)?;
-        preset.estimators.get(kind.name)
-    }
-
-    /// The preset of those values.
-    fn nearest_preset(&self, kind: &Kind, rate_hz: f64, plant: PlantKind) -> Option<&Preset> {
-        let far = |preset: &Preset| (preset.rate_hz / rate_hz).ln().abs();
-        self.preset
-            .iter()
-            .filter(|preset| preset.plant == plant && preset.estimators.contains_key(kind.name))
-            .min_by(|a, b| far(a).total_cmp(&far(b)))
-    }
+    Ok(presets)
 }
 
 /// Where parameter values come from, the strongest last: shipped presets, a presets file, values
@@ -206,7 +94,8 @@ impl Parameters {
     pub fn values(&self, kind: &Kind, setup: &Setup, plant: PlantKind) -> Values {
         let mut values: Values = kind.parameters.iter().map(|p| middle(p.search)).collect();
         for layer in &self.layers {
-            let Some(tuned) = layer.nearest(kind, setup.rate.0, plant) else {
+            let nearest = layer.nearest(kind.name, setup.rate.0, plant);
+            let Some(tuned) = nearest.and_then(|preset| preset.estimators.get(kind.name)) else {
                 continue;
             };
             for (value, parameter) in values.iter_mut().zip(kind.parameters) {
@@ -244,15 +133,13 @@ pub fn middle(search: Search) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use estimator_core::{Device, Hertz};
+    use estimator_core::Hertz;
+    use haptic_control::DualStage;
 
     fn setup(rate: f64) -> Setup {
         Setup {
             rate: Hertz(rate),
-            device: Device::DCX35L,
-            friction_nm: 4e-3,
-            amplifier_lag_s: 80e-6,
-            small_counts_per_rev: 20_000,
+            stages: DualStage::DEFAULT,
         }
     }
 
@@ -278,7 +165,7 @@ mod tests {
         let file = "[[preset]]\nrate_hz = 1000\nplant = 'friction'\nestimators = { pll = { bandwidth_hz = 10 } }\n\
                     [[preset]]\nrate_hz = 10000\nplant = 'friction'\nestimators = { pll = { bandwidth_hz = 20 } }";
         let mut parameters = Parameters::default();
-        parameters.layer(Presets::parse(file, "f").unwrap());
+        parameters.layer(checked(Presets::parse(file, "f").unwrap()).unwrap());
         let pll = Kind::named("pll").unwrap();
         assert_eq!(
             parameters.values(pll, &setup(3000.0), PlantKind::Friction),

@@ -10,8 +10,8 @@ mod tracking;
 
 use estimator_core::{Amps, Count, Hertz, Sample};
 use haptic_control::{
-    Action, AnyScene, Controller, DualStage, LoopPoles, Monitor, Motor, Rig, RstDesign, Scene,
-    Senses, Stop,
+    Action, AnyScene, Controller, DualStage, LoopPoles, Monitor, Rig, RstDesign, Scene, Senses,
+    Stop,
 };
 
 use catalogue::estimators::{Estimator, Kind, Setup};
@@ -84,24 +84,6 @@ pub struct Moment {
     pub commanded: (f64, f64),
     /// Why the monitor stopped the device, if it has.
     pub stopped: Option<Stop>,
-}
-
-/// The controller's description of a device file's device.
-#[must_use]
-pub fn believed(device: &Device) -> DualStage {
-    let motor = |motor: &simulation::device::Motor| Motor {
-        inertia: motor.inertia_kg_m2,
-        torque_constant: motor.torque_constant_nm_per_a,
-        coulomb: motor.coulomb_nm,
-        counts_per_rev: motor.counts_per_rev,
-        current_limit: motor.current_limit_a,
-    };
-    DualStage {
-        large: motor(&device.large),
-        small: motor(&device.small),
-        damping: device.coupler.damping_nms_per_rad,
-        amplifier: Hertz(device.amplifier.bandwidth_hz),
-    }
 }
 
 impl Loop {
@@ -242,7 +224,7 @@ pub fn estimator(
     parameters: &Parameters,
 ) -> Result<Estimator, terminal::failure::Failure> {
     let mut setup: Setup = Setup::of(device, rate_hz);
-    setup.device.counts_per_rev = counts_per_rev;
+    setup.stages.large.counts_per_rev = counts_per_rev;
     let values = parameters.values(kind, &setup, PlantKind::Friction);
     kind.build(&setup, &values)
 }

@@ -128,7 +128,7 @@ pub fn interval(device: &Device) -> Interval {
         device.interval.weber,
         device.interval.threshold_n,
         device.handle.diameter_m,
-        device.coupler.damping_nms_per_rad,
+        device.stages.damping,
     )
 }
 

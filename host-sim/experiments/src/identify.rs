@@ -138,9 +138,9 @@ impl Gathered {
             )));
         };
         let motion = |counts: &[u32], counts_per_rev| Motion::new(counts, counts_per_rev, period_s);
-        let own = motion(&trace.counts_large, device.large.counts_per_rev);
+        let own = motion(&trace.counts_large, device.stages.large.counts_per_rev);
         let handle = trace.counts_small.as_ref();
-        let handle = handle.map(|counts| motion(counts, device.small.counts_per_rev));
+        let handle = handle.map(|counts| motion(counts, device.stages.small.counts_per_rev));
         let breaks = breaks(&recording.t, period_s);
         if recording.uneven_share() * WINDOW_S > UNEVEN_WINDOWS * period_s {
             self.uneven = self.uneven.take().or_else(|| recording.unevenness());
@@ -150,7 +150,7 @@ impl Gathered {
             own: &own,
             other: handle.as_ref(),
             current,
-            ripple_per_rev: device.large.ripple_per_rev,
+            ripple_per_rev: device.large_ripple.per_rev,
             breaks: &breaks,
             hand: false,
         };
@@ -172,7 +172,7 @@ impl Gathered {
                     own: handle,
                     other: Some(&own),
                     current,
-                    ripple_per_rev: device.small.ripple_per_rev,
+                    ripple_per_rev: device.small_ripple.per_rev,
                     hand: true,
                     ..shaft
                 };
@@ -222,7 +222,7 @@ impl Gathered {
                 "{:.0} % of the motor's torque goes where the model knows nothing; is column \
                  current in A, large.counts_per_rev = {} right, {}?",
                 100.0 * unexplained,
-                device.large.counts_per_rev,
+                device.stages.large.counts_per_rev,
                 match self.unseen {
                     true => "and was the handle clamped",
                     false => "and did nothing else touch the shafts",
@@ -263,8 +263,8 @@ impl Gathered {
 /// A hand gives way: with `b w_S = (b^2 / K) dw_L/dt` it takes `b^2 / K` off the inertia, and no
 /// column of the large motor tells that apart.
 fn unseen(name: &str, device: &Device) -> Failure {
-    let b = device.coupler.damping_nms_per_rad;
-    let part = b * b / device.hand.stiffness_nm_per_rad / device.large.inertia_kg_m2;
+    let b = device.stages.damping;
+    let part = b * b / device.hand.stiffness_nm_per_rad / device.stages.large.inertia;
     Failure::Input(format!(
         "{name}: line 1: no column counts_small, and a hand of {} N.m/rad that gives way unseen takes \
          {:.0} % off the inertia; record it, or clamp the handle and say --clamped",
@@ -279,7 +279,7 @@ pub fn default_counts(device: &Device) -> String {
     format!(
         "large.counts_per_rev = {} and small.counts_per_rev = {}, those of the default device, because \
          no --device is given; with other encoders every value is wrong",
-        device.large.counts_per_rev, device.small.counts_per_rev
+        device.stages.large.counts_per_rev, device.stages.small.counts_per_rev
     )
 }
 

@@ -92,7 +92,7 @@ pub fn header(
         "{} rows at {} Hz, {} counts/rev ({device_name}), parameters: {}",
         recording.t.len(),
         recording.trace.rate_hz,
-        device.large.counts_per_rev,
+        device.stages.large.counts_per_rev,
         parameters.sources()
     )
 }

@@ -15,7 +15,7 @@ use haptic_control::{LoopPoles, SceneKind};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::closed_loop::{Eye, Loop, believed, named, usual};
+use crate::closed_loop::{Eye, Loop, named, usual};
 use catalogue::estimators::Setup;
 use catalogue::estimators::{Estimator, Kind};
 use catalogue::parameters::{Parameters, PlantKind};
@@ -120,13 +120,13 @@ impl Experiment {
         let ticks = simulate::ticks(*rate_hz, settings.seconds)?;
         let on = |counts_per_rev: u32| {
             let mut setup = Setup::of(device, *rate_hz);
-            setup.device.counts_per_rev = counts_per_rev;
+            setup.stages.large.counts_per_rev = counts_per_rev;
             kind.build(&setup, &settings.values)
         };
         Ok(Self {
             ticks,
-            large: on(device.large.counts_per_rev)?,
-            handle: on(device.small.counts_per_rev)?,
+            large: on(device.stages.large.counts_per_rev)?,
+            handle: on(device.stages.small.counts_per_rev)?,
             settings: settings.clone(),
             poles: LoopPoles::DEFAULT,
             late_ticks: 0,
@@ -155,8 +155,8 @@ impl Experiment {
         let settings = &self.settings;
         let (variation, seed) = subject.variation(settings.seed, scene);
         let device = variation.of(&settings.device);
-        let inertia = device.small.inertia_kg_m2;
-        let believed = believed(&settings.device);
+        let inertia = device.stages.small.inertia;
+        let believed = settings.device.stages;
         let usual = usual(scene, &believed, settings.rate_hz)?;
         let run = Loop {
             device,

@@ -137,7 +137,7 @@ pub fn tune(
         preset: Preset {
             rate_hz,
             plant,
-            counts_per_rev: Some(ground.device.large.counts_per_rev),
+            counts_per_rev: Some(ground.device.stages.large.counts_per_rev),
             estimators,
         },
         notes,
@@ -256,7 +256,7 @@ fn first_grid(parameter: &Parameter, setup: &Setup) -> Vec<f64> {
         Search::Log(low, high) => {
             // A torque moves the motor by its ratio to the inertia.
             let scale = match parameter.is_torque() {
-                true => setup.device.inertia / DEFAULT_INERTIA,
+                true => setup.stages.large.inertia / DEFAULT_INERTIA,
                 false => 1.0,
             };
             let high = match parameter.unit {
@@ -341,7 +341,7 @@ mod tests {
         let kind = Kind::named("observer").unwrap();
         let device = Device::default();
         let mut heavy = device.clone();
-        heavy.large.inertia_kg_m2 *= 2.0;
+        heavy.stages.large.inertia *= 2.0;
         for parameter in kind
             .parameters
             .iter()

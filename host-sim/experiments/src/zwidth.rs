@@ -136,7 +136,7 @@ pub fn boundaries(
 /// As [`Probe::new`].
 pub fn probe(case: &Case, settings: &Settings) -> Result<Probe, Failure> {
     let mut device = settings.device.clone();
-    device.large.counts_per_rev = case.lines.saturating_mul(4);
+    device.stages.large.counts_per_rev = case.lines.saturating_mul(4);
     Probe::new(
         device,
         case.rate_hz,

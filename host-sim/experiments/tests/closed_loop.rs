@@ -2,7 +2,7 @@
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind};
-use experiments::closed_loop::{Eye, Hand, Loop, Press, believed, estimator, usual};
+use experiments::closed_loop::{Eye, Hand, Loop, Press, estimator, usual};
 use experiments::felt::{Case, Fingertip, Parasitic, Settings, bandwidth_hz, compare, sweep};
 use haptic_control::{AnyScene, Inertia, LoopPoles, SceneKind};
 use scoring::score::Wanted;
@@ -57,13 +57,13 @@ fn off_has_no_current_and_only_scenes_with_a_loop_know_the_large_motor_s_velocit
     for scene in SceneKind::environments() {
         let run = Loop {
             device: device.clone(),
-            scene: usual(scene, &believed(&device), rate_hz).unwrap(),
-            believed: believed(&device),
+            scene: usual(scene, &device.stages, rate_hz).unwrap(),
+            believed: device.stages,
             hand: Hand::Moving,
             rate_hz,
             seed: 1,
-            large: on(device.large.counts_per_rev),
-            handle: on(device.small.counts_per_rev),
+            large: on(device.stages.large.counts_per_rev),
+            handle: on(device.stages.small.counts_per_rev),
             eye: Eye::Large,
             poles: LoopPoles::DEFAULT,
             late_ticks: 0,
@@ -92,8 +92,8 @@ fn a_hard_press_does_not_stop_a_scene() {
         for scene in SceneKind::environments() {
             let run = Loop {
                 device: device.clone(),
-                scene: usual(scene, &believed(&device), rate_hz).unwrap(),
-                believed: believed(&device),
+                scene: usual(scene, &device.stages, rate_hz).unwrap(),
+                believed: device.stages,
                 hand: Hand::Pressing(Press {
                     angle: 0.1 + angle,
                     moving_s: 0.4,
@@ -101,8 +101,8 @@ fn a_hard_press_does_not_stop_a_scene() {
                 }),
                 rate_hz,
                 seed: 1,
-                large: on(device.large.counts_per_rev),
-                handle: on(device.small.counts_per_rev),
+                large: on(device.stages.large.counts_per_rev),
+                handle: on(device.stages.small.counts_per_rev),
                 eye: Eye::Large,
                 poles: LoopPoles::DEFAULT,
                 late_ticks: 0,
@@ -151,13 +151,13 @@ fn felt_inertia(scene: impl Into<AnyScene>, device: &Device) -> [f64; 2] {
     let on = |counts| estimator(kind, device, counts, rate_hz, &parameters).unwrap();
     let run = Loop {
         device: device.clone(),
-        believed: believed(device),
+        believed: device.stages,
         scene: scene.into(),
         hand: Hand::Moving,
         rate_hz,
         seed: 1,
-        large: on(device.large.counts_per_rev),
-        handle: on(device.small.counts_per_rev),
+        large: on(device.stages.large.counts_per_rev),
+        handle: on(device.stages.small.counts_per_rev),
         eye: Eye::Large,
         poles: LoopPoles::DEFAULT,
         late_ticks: 0,
@@ -183,13 +183,13 @@ fn felt_inertia(scene: impl Into<AnyScene>, device: &Device) -> [f64; 2] {
         }
     })
     .unwrap();
-    let own = device.small.inertia_kg_m2;
+    let own = device.stages.small.inertia;
     [0, 1].map(|at| products[at] / squares[at] / own)
 }
 
 /// An inertia as a part of the handle's own.
 fn inertia(part: f32, device: &Device) -> Inertia {
-    let own = believed(device).small.inertia as f32;
+    let own = device.stages.small.inertia as f32;
     Inertia::new(part * own, own).unwrap()
 }
 

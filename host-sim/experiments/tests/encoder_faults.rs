@@ -2,7 +2,7 @@
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::closed_loop::{Eye, Fault, Hand, Loop, believed, estimator, usual};
+use experiments::closed_loop::{Eye, Fault, Hand, Loop, estimator, usual};
 use haptic_control::{LoopPoles, SceneKind, SimulatedHand, Stop};
 use simulation::device::Device;
 
@@ -14,10 +14,10 @@ fn closed(scene: SceneKind, rate_hz: f64, seed: u64) -> Loop {
     let on =
         |counts: u32| estimator(kind, &device, counts, rate_hz, &Parameters::default()).unwrap();
     Loop {
-        large: on(device.large.counts_per_rev),
-        handle: on(device.small.counts_per_rev),
-        scene: usual(scene, &believed(&device), rate_hz).unwrap(),
-        believed: believed(&device),
+        large: on(device.stages.large.counts_per_rev),
+        handle: on(device.stages.small.counts_per_rev),
+        scene: usual(scene, &device.stages, rate_hz).unwrap(),
+        believed: device.stages,
         device,
         hand: match scene.facts().hand {
             SimulatedHand::WallPress => Hand::Pushing,

@@ -3,7 +3,7 @@
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::closed_loop::{Eye, Hand, Loop, believed, estimator, usual};
+use experiments::closed_loop::{Eye, Hand, Loop, estimator, usual};
 use experiments::identify::{Identification, Known, identify};
 use haptic_control::{LoopPoles, SceneKind};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -19,14 +19,14 @@ fn device(seed: u64) -> Device {
         1.0 + spread * (2.0 * unit - 1.0)
     };
     let mut device = Device::default();
-    device.large.inertia_kg_m2 *= factor(0.3);
-    device.large.torque_constant_nm_per_a *= factor(0.1);
-    device.large.coulomb_nm *= factor(0.5);
-    device.small.inertia_kg_m2 *= factor(0.3);
-    device.small.torque_constant_nm_per_a *= factor(0.2);
-    device.small.coulomb_nm *= factor(0.5);
-    device.coupler.damping_nms_per_rad *= factor(0.15);
-    device.amplifier.bandwidth_hz *= factor(0.5);
+    device.stages.large.inertia *= factor(0.3);
+    device.stages.large.torque_constant *= factor(0.1);
+    device.stages.large.coulomb_friction *= factor(0.5);
+    device.stages.small.inertia *= factor(0.3);
+    device.stages.small.torque_constant *= factor(0.2);
+    device.stages.small.coulomb_friction *= factor(0.5);
+    device.stages.damping *= factor(0.15);
+    device.stages.amplifier_bandwidth.0 *= factor(0.5);
     device.disc.phase_counts = 0.06;
     device.disc.line_counts = 0.25;
     device.disc.random_counts = 0.02;
@@ -40,13 +40,13 @@ fn record(device: &Device, hand: Hand, seed: u64, every: usize) -> Recording {
     let estimator = |counts| estimator(kind, device, counts, 10e3, &parameters).unwrap();
     let run = Loop {
         device: device.clone(),
-        believed: believed(device),
-        scene: usual(SceneKind::Excite, &believed(device), 10e3).unwrap(),
+        believed: device.stages,
+        scene: usual(SceneKind::Excite, &device.stages, 10e3).unwrap(),
         hand,
         rate_hz: 10e3,
         seed,
-        large: estimator(device.large.counts_per_rev),
-        handle: estimator(device.small.counts_per_rev),
+        large: estimator(device.stages.large.counts_per_rev),
+        handle: estimator(device.stages.small.counts_per_rev),
         eye: Eye::Large,
         poles: LoopPoles::DEFAULT,
         late_ticks: 0,
@@ -55,7 +55,7 @@ fn record(device: &Device, hand: Hand, seed: u64, every: usize) -> Recording {
 }
 
 fn torque_constant(device: &Device) -> Known {
-    Known::TorqueConstant(device.large.torque_constant_nm_per_a)
+    Known::TorqueConstant(device.stages.large.torque_constant)
 }
 
 /// Identified against a device file that says something else.
@@ -67,14 +67,14 @@ fn found(recordings: Vec<Recording>, known: Known) -> Result<Identification, Str
 
 fn truth(device: &Device, key: &str) -> f64 {
     match key {
-        "large.inertia_kg_m2" => device.large.inertia_kg_m2,
-        "large.torque_constant_nm_per_a" => device.large.torque_constant_nm_per_a,
-        "large.coulomb_nm" => device.large.coulomb_nm,
-        "small.inertia_kg_m2" => device.small.inertia_kg_m2,
-        "small.torque_constant_nm_per_a" => device.small.torque_constant_nm_per_a,
-        "small.coulomb_nm" => device.small.coulomb_nm,
-        "coupler.damping_nms_per_rad" => device.coupler.damping_nms_per_rad,
-        "amplifier.bandwidth_hz" => device.amplifier.bandwidth_hz,
+        "large.inertia_kg_m2" => device.stages.large.inertia,
+        "large.torque_constant_nm_per_a" => device.stages.large.torque_constant,
+        "large.coulomb_nm" => device.stages.large.coulomb_friction,
+        "small.inertia_kg_m2" => device.stages.small.inertia,
+        "small.torque_constant_nm_per_a" => device.stages.small.torque_constant,
+        "small.coulomb_nm" => device.stages.small.coulomb_friction,
+        "coupler.damping_nms_per_rad" => device.stages.damping,
+        "amplifier.bandwidth_hz" => device.stages.amplifier_bandwidth.0,
         _ => panic!("{key}"),
     }
 }
@@ -210,8 +210,8 @@ fn whatever_is_known_the_ratios_are_the_same() {
             .collect::<Vec<_>>()
     };
     for known in [
-        Known::Inertia(device.large.inertia_kg_m2),
-        Known::Damping(device.coupler.damping_nms_per_rad),
+        Known::Inertia(device.stages.large.inertia),
+        Known::Damping(device.stages.damping),
         torque_constant(&device),
     ] {
         let told = with(known);

@@ -19,18 +19,17 @@ pub fn lines(learned: &LearnedLine, device: &Device) -> Vec<String> {
     let Motor {
         inertia,
         torque_constant,
-        coulomb,
+        coulomb_friction,
         ..
     } = large;
-    let found = &device.large;
-    let by_inertia = 1.0 / found.inertia_kg_m2;
-    let identified = device.coupler.damping_nms_per_rad;
+    let found = &device.stages.large;
+    let by_inertia = 1.0 / found.inertia;
+    let identified = device.stages.damping;
     let kt = 1.0 + learned.torque_constant;
     let pairs = [
         (
             "damping b, N.m.s/rad",
-            damping * (1.0 + learned.damping) / kt * found.torque_constant_nm_per_a
-                / torque_constant,
+            damping * (1.0 + learned.damping) / kt * found.torque_constant / torque_constant,
             identified,
         ),
         (
@@ -40,13 +39,13 @@ pub fn lines(learned: &LearnedLine, device: &Device) -> Vec<String> {
         ),
         (
             "friction / J, rad/s^2",
-            coulomb / inertia * (1.0 + learned.friction),
-            found.coulomb_nm * by_inertia,
+            coulomb_friction / inertia * (1.0 + learned.friction),
+            found.coulomb_friction * by_inertia,
         ),
         (
             "Kt / J, rad/s^2/A",
             torque_constant / inertia * kt,
-            found.torque_constant_nm_per_a * by_inertia,
+            found.torque_constant * by_inertia,
         ),
     ];
     let line = |(name, learned, identified): (&str, f64, f64)| {
@@ -82,15 +81,15 @@ mod tests {
         );
         // A device identified to be just that is in health.
         let mut found = Device::default();
-        found.coupler.damping_nms_per_rad *= 0.8;
-        found.large.coulomb_nm *= 1.05;
+        found.stages.damping *= 0.8;
+        found.stages.large.coulomb_friction *= 1.05;
         assert!(
             lines(&learned, &found)
                 .iter()
                 .all(|line| !line.contains("no longer"))
         );
         // An inertia that is off shows in what is per inertia, and not in b.
-        found.large.inertia_kg_m2 *= 1.3;
+        found.stages.large.inertia *= 1.3;
         let said = lines(&learned, &found);
         assert!(
             said[0].ends_with("+0.0 %") && said[1].contains("+30.0 %: no"),

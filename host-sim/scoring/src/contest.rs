@@ -148,7 +148,7 @@ impl Contest {
                 .map(|&kind| new(kind))
                 .collect::<Result<_, _>>()?,
             difference: new(Kind::named("finite-difference")?)?,
-            believed_damping: setup.device.damping,
+            believed_damping: setup.stages.damping,
         })
     }
 

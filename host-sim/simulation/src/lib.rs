@@ -3,7 +3,8 @@
 //!
 //! The true position and velocity are in the trace too. Only scores read them.
 
-pub mod device;
+pub use device_files::device;
+
 pub mod encoder;
 pub mod plant;
 pub mod scenario;

@@ -14,12 +14,9 @@ mod hand;
 pub use axis::saturate;
 pub use hand::{Grip, HandMotion, Pose};
 
-use crate::device::Device;
+use crate::device::{Device, LONGEST_STEP_S};
 use axis::Axis;
 use std::f64::consts::TAU;
-
-/// Longest step of the plant, s.
-pub const LONGEST_STEP_S: f64 = 10e-6;
 
 /// Number of steps of at most [`LONGEST_STEP_S`] that divide a tick of `period_s` exactly.
 #[must_use]
@@ -55,11 +52,11 @@ impl Plant {
     /// The device at rest at angle zero, without current; `step_s` is fixed, s.
     #[must_use]
     pub fn new(device: &Device, step_s: f64) -> Self {
-        let lag = 1.0 / (TAU * device.amplifier.bandwidth_hz);
+        let lag = 1.0 / (TAU * device.stages.amplifier_bandwidth.0);
         Self {
-            large: Axis::new(&device.large, lag, step_s),
-            small: Axis::new(&device.small, lag, step_s),
-            damping: device.coupler.damping_nms_per_rad,
+            large: Axis::new(&device.stages.large, &device.large_ripple, lag, step_s),
+            small: Axis::new(&device.stages.small, &device.small_ripple, lag, step_s),
+            damping: device.stages.damping,
             hand_stiffness: device.hand.stiffness_nm_per_rad,
             hand_damping: device.hand.damping_nms_per_rad,
             step: step_s,

@@ -170,7 +170,7 @@ scenarios! {
         seconds: 60.0,
         build: |device, period_s, random| {
             let motion = clamped::follow(Track::new(random), device, period_s);
-            Box::new(motion.heating(device.coupler.fall_at_60_s))
+            Box::new(motion.heating(device.fall_at_60_s))
         },
     }
 }

@@ -1,17 +1,17 @@
 //! One run: a scenario on a device at a rate, sampled into a [`Trace`].
 
-use crate::device::{Device, Disc};
+use crate::device::{Device, Disc, LONGEST_STEP_S};
 use crate::encoder::{DiscErrors, EdgeObserver, Encoder};
-use crate::plant::{LONGEST_STEP_S, Plant, Pose, steps_per_tick};
+use crate::plant::{Plant, Pose, steps_per_tick};
 use crate::scenario::{Drive, Scenario, ScenarioName, Seen, build, draw};
 use crate::trace::{Columns, EDGE_CLOCK_HZ, EdgeStamp, Trace};
+use device_files::decimal;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::{
     Xoshiro256PlusPlus,
     rand_core::{Rng, SeedableRng},
 };
 use std::f64::consts::TAU;
-use terminal::wording::decimal;
 
 /// Lowest and highest control rate, Hz.
 pub const RATES_HZ: (f64, f64) = (100.0, 100_000.0);
@@ -182,16 +182,24 @@ impl Run {
         let mut plant = Plant::new(&device, step);
         plant.place(start, scenario.start());
 
-        let disc = DiscErrors::new(&device.disc, device.large.counts_per_rev, random.next_u64());
+        let disc = DiscErrors::new(
+            &device.disc,
+            device.stages.large.counts_per_rev,
+            random.next_u64(),
+        );
         let mut encoder = |counts_per_rev: u32, angle: f64, disc: DiscErrors| {
             let first = random.next_u64() as u32;
             let phase = draw(&mut random, 0.0, 1.0);
             Encoder::new(counts_per_rev, first, phase, angle, disc)
         };
         // All three are drawn, read or not, so that no column changes another.
-        let large = encoder(device.large.counts_per_rev, start.angle, disc);
+        let large = encoder(device.stages.large.counts_per_rev, start.angle, disc);
         let handle = plant.small().angle;
-        let small = encoder(device.small.counts_per_rev, handle, DiscErrors::none());
+        let small = encoder(
+            device.stages.small.counts_per_rev,
+            handle,
+            DiscErrors::none(),
+        );
         let reference = encoder(
             device.reference.counts_per_rev,
             start.angle,
@@ -202,7 +210,7 @@ impl Run {
             period,
             steps,
             step,
-            damping: device.coupler.damping_nms_per_rad,
+            damping: device.stages.damping,
             plant,
             scenario,
             large,
@@ -286,8 +294,8 @@ impl Run {
 /// The device without friction, ripple or errors of its disc.
 fn linear(device: &Device) -> Device {
     let mut device = device.frictionless();
-    device.large.torque_ripple = 0.0;
-    device.small.torque_ripple = 0.0;
+    device.large_ripple.torque = 0.0;
+    device.small_ripple.torque = 0.0;
     device.disc = Disc::default();
     device
 }

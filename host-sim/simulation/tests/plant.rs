@@ -8,8 +8,8 @@ const STEP_S: f64 = 10e-6;
 
 fn smooth() -> Device {
     let mut device = Device::default().frictionless();
-    device.large.torque_ripple = 0.0;
-    device.small.torque_ripple = 0.0;
+    device.large_ripple.torque = 0.0;
+    device.small_ripple.torque = 0.0;
     device
 }
 
@@ -28,9 +28,9 @@ fn run(plant: &mut Plant, grip: &Grip, steps: u32, step_s: f64) {
 fn free_decay_on_the_coupler_is_the_closed_form() {
     let device = smooth();
     let (b, jl, js) = (
-        device.coupler.damping_nms_per_rad,
-        device.large.inertia_kg_m2,
-        device.small.inertia_kg_m2,
+        device.stages.damping,
+        device.stages.large.inertia,
+        device.stages.small.inertia,
     );
     let t = 0.02;
     let steps = (t / STEP_S).round() as u32;
@@ -63,7 +63,7 @@ fn the_amplifier_is_an_exact_lag_and_saturates() {
     plant.command(100.0, -100.0);
     assert_eq!(plant.commands(), (6.0, -1.5));
     run(&mut plant, &Grip::Clamped, 8, STEP_S);
-    let reached = 1.0 - (-8.0 * STEP_S * TAU * device.amplifier.bandwidth_hz).exp();
+    let reached = 1.0 - (-8.0 * STEP_S * TAU * device.stages.amplifier_bandwidth.0).exp();
     assert!((plant.currents().0 - 6.0 * reached).abs() < 1e-12);
     assert!((plant.currents().1 + 1.5 * reached).abs() < 1e-12);
 }
@@ -71,19 +71,19 @@ fn the_amplifier_is_an_exact_lag_and_saturates() {
 #[test]
 fn constant_current_settles_where_friction_and_coupler_balance_it() {
     let mut device = Device::default();
-    device.large.torque_ripple = 0.0;
-    device.large.coulomb_ripple = 0.0;
+    device.large_ripple.torque = 0.0;
+    device.large_ripple.friction = 0.0;
     for current in [-0.7, 0.2, 0.9_f64] {
         let mut plant = Plant::new(&device, STEP_S);
         plant.command(current, 0.0);
         run(&mut plant, &Grip::Clamped, 40_000, STEP_S);
-        let torque = device.large.torque_constant_nm_per_a * current.abs();
-        let settled = (torque - device.large.coulomb_nm) / device.coupler.damping_nms_per_rad;
+        let torque = device.stages.large.torque_constant * current.abs();
+        let settled = (torque - device.stages.large.coulomb_friction) / device.stages.damping;
         let expected = settled.copysign(current);
         assert!((plant.large().omega - expected).abs() < 1e-9, "{current} A");
         // What the clamp feels is the coupler's torque.
         let felt = plant.handle_torque(&Grip::Clamped, 0.0);
-        assert!((felt - device.coupler.damping_nms_per_rad * expected).abs() < 1e-12);
+        assert!((felt - device.stages.damping * expected).abs() < 1e-12);
     }
 }
 
@@ -91,8 +91,8 @@ fn constant_current_settles_where_friction_and_coupler_balance_it() {
 fn below_its_friction_a_motor_does_not_move_at_all() {
     let device = Device::default();
     // The ripple of friction takes 10 % at most, that of torque adds 1.5 %.
-    let holds = 0.88 * device.large.coulomb_nm / device.large.torque_constant_nm_per_a;
-    let moves = 1.13 * device.large.coulomb_nm / device.large.torque_constant_nm_per_a;
+    let holds = 0.88 * device.stages.large.coulomb_friction / device.stages.large.torque_constant;
+    let moves = 1.13 * device.stages.large.coulomb_friction / device.stages.large.torque_constant;
     for angle in [0.0, 1.0, 4.7] {
         let at = Pose { angle, omega: 0.0 };
         for current in [holds, -holds] {
@@ -113,11 +113,11 @@ fn below_its_friction_a_motor_does_not_move_at_all() {
 #[test]
 fn friction_stops_a_free_shaft_where_the_closed_form_does_and_for_good() {
     let mut device = Device::default();
-    device.large.coulomb_ripple = 0.0;
+    device.large_ripple.friction = 0.0;
     let (b, j, c) = (
-        device.coupler.damping_nms_per_rad,
-        device.large.inertia_kg_m2,
-        device.large.coulomb_nm,
+        device.stages.damping,
+        device.stages.large.inertia,
+        device.stages.large.coulomb_friction,
     );
     let mut plant = Plant::new(&device, STEP_S);
     plant.place(spinning(5.0), Pose::default());
@@ -137,17 +137,17 @@ fn friction_stops_a_free_shaft_where_the_closed_form_does_and_for_good() {
 #[test]
 fn a_shaft_driven_through_rest_turns_inside_the_step() {
     let mut device = Device::default();
-    device.large.coulomb_ripple = 0.0;
-    device.large.torque_ripple = 0.0;
+    device.large_ripple.friction = 0.0;
+    device.large_ripple.torque = 0.0;
     let (b, j, c) = (
-        device.coupler.damping_nms_per_rad,
-        device.large.inertia_kg_m2,
-        device.large.coulomb_nm,
+        device.stages.damping,
+        device.stages.large.inertia,
+        device.stages.large.coulomb_friction,
     );
     let mut plant = Plant::new(&device, STEP_S);
     plant.command(-0.5, 0.0);
     run(&mut plant, &Grip::Clamped, 500, STEP_S);
-    let torque = device.large.torque_constant_nm_per_a * 0.5;
+    let torque = device.stages.large.torque_constant * 0.5;
     for k in 0..50 {
         // Many starts, so that rest falls anywhere in a step.
         let start = 5.0 + f64::from(k) * 1e-3;
@@ -253,9 +253,9 @@ fn what_the_hand_feels_is_the_balance_of_the_small_shaft() {
     let at = plant.clone();
     plant.step(&grip, 0.0, 0.0);
     let slope = (plant.small().omega - before.small().omega) / (2.0 * STEP_S);
-    let balance = device.small.torque_constant_nm_per_a * at.currents().1
-        + device.coupler.damping_nms_per_rad * (at.large().omega - at.small().omega)
-        - device.small.inertia_kg_m2 * slope;
+    let balance = device.stages.small.torque_constant * at.currents().1
+        + device.stages.damping * (at.large().omega - at.small().omega)
+        - device.stages.small.inertia * slope;
     let felt = at.handle_torque(&grip, 0.0);
     assert!(felt.abs() > 1e-3);
     assert!(

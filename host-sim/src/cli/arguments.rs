@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand};
 
 use catalogue::estimators::Kind;
-use catalogue::parameters::{Parameters, Presets};
+use catalogue::parameters::Parameters;
 use simulation::device::Device;
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
@@ -106,7 +106,7 @@ impl ParameterOptions {
     pub(super) fn load(&self) -> Result<Parameters, Failure> {
         let mut parameters = Parameters::default();
         if let Some(path) = &self.presets {
-            parameters.layer(Presets::read(path)?);
+            parameters.layer(catalogue::parameters::read(path)?);
         }
         for text in &self.set {
             parameters.set(text)?;

@@ -247,11 +247,11 @@ pub(super) fn timing(cost: Cost) -> String {
 pub(super) fn facts(device: &Device, name: &str) -> DeviceFacts {
     DeviceFacts {
         name: name.to_owned(),
-        damping: device.coupler.damping_nms_per_rad,
+        damping: device.stages.damping,
         diameter_m: device.handle.diameter_m,
         threshold_n: device.interval.threshold_n,
         weber: device.interval.weber,
-        counts_per_rev: device.large.counts_per_rev,
+        counts_per_rev: device.stages.large.counts_per_rev,
         more: Vec::new(),
     }
 }

@@ -6,7 +6,7 @@ use haptic_control::LoopPoles;
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::PlantKind;
-use experiments::closed_loop::{believed, environments_with, named};
+use experiments::closed_loop::{environments_with, named};
 use experiments::compare::Cost;
 use experiments::felt::compare::USUAL;
 use experiments::felt::{self, Case, Design, FeltRow, Outcome, Settings, compare};
@@ -106,12 +106,12 @@ fn closed_loop(outcomes: Vec<Outcome>, settings: &Settings) -> Result<ClosedLoop
         designs: each()
             .map(|(rate_hz, plant)| design(settings, rate_hz, plant))
             .collect::<Result<_, _>>()?,
-        handle_inertia: settings.device.small.inertia_kg_m2,
+        handle_inertia: settings.device.stages.small.inertia,
     })
 }
 
 fn design(settings: &Settings, rate_hz: f64, plant: PlantKind) -> Result<Design, Failure> {
-    let believed = believed(&felt::compare::device(settings, plant));
+    let believed = felt::compare::device(settings, plant).stages;
     Design::new(&believed, rate_hz, LoopPoles::DEFAULT)
 }
 

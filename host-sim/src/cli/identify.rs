@@ -51,7 +51,7 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
     let device = options.device.load()?;
     let known = match &options.known {
         Some(text) => Known::parse(text)?,
-        None => Known::TorqueConstant(device.large.torque_constant_nm_per_a),
+        None => Known::TorqueConstant(device.stages.large.torque_constant),
     };
     let mut recordings = Vec::new();
     let mut wraps = Vec::new();
@@ -75,7 +75,7 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
         write_whole(out, text.as_bytes())?;
     }
     if let Some(folder) = &options.report {
-        let counts = f64::from(device.large.counts_per_rev);
+        let counts = f64::from(device.stages.large.counts_per_rev);
         let count_rad_s = TAU / counts / identify::SPAN_S;
         let table = identify::text(&found);
         let page = report::identify(&found, count_rad_s, &table, command_line)?;

@@ -4,10 +4,11 @@ use std::fmt::Write as _;
 
 use catalogue::estimators::{Kind, Search};
 use catalogue::parameters::{PlantKind, Preset, Presets};
+use device_files::decimal;
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
 use terminal::output::print_bytes;
-use terminal::wording::{decimal, wrapped};
+use terminal::wording::wrapped;
 
 use super::arguments::DeviceFile;
 

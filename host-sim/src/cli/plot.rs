@@ -78,7 +78,10 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
         recording: &recording,
         board: &board,
         estimates: &replayed.estimates,
-        counts_per_rev: [device.large.counts_per_rev, device.small.counts_per_rev],
+        counts_per_rev: [
+            device.stages.large.counts_per_rev,
+            device.stages.small.counts_per_rev,
+        ],
         interval: interval(&device),
         window,
     })?;

@@ -7,7 +7,7 @@ use haptic_control::{LoopPoles, SceneKind};
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::closed_loop::{Eye, Hand, Loop, believed, estimator, named, usual};
+use experiments::closed_loop::{Eye, Hand, Loop, estimator, named, usual};
 use recordings::recording::Recording;
 use simulation::scenario::ScenarioName;
 use simulation::simulate::{simulate, ticks};
@@ -111,7 +111,7 @@ fn of_scene(options: &Simulate) -> Result<Recording, Failure> {
         let kind = Kind::named("kalman-triple-steady")?;
         estimator(kind, &device, counts_per_rev, options.rate, &parameters)
     };
-    let believed = believed(&device);
+    let believed = device.stages;
     let run = Loop {
         believed,
         scene: usual(scene, &believed, options.rate)?,
@@ -123,8 +123,8 @@ fn of_scene(options: &Simulate) -> Result<Recording, Failure> {
         },
         rate_hz: options.rate,
         seed: options.seed,
-        large: estimator(device.large.counts_per_rev)?,
-        handle: estimator(device.small.counts_per_rev)?,
+        large: estimator(device.stages.large.counts_per_rev)?,
+        handle: estimator(device.stages.small.counts_per_rev)?,
         eye: Eye::Large,
         poles: LoopPoles::DEFAULT,
         late_ticks: 0,

@@ -130,7 +130,7 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
                 plant,
                 counts_per_rev: groups
                     .first()
-                    .map(|(_, ground)| ground.device.large.counts_per_rev),
+                    .map(|(_, ground)| ground.device.stages.large.counts_per_rev),
                 estimators: BTreeMap::new(),
             };
             for (kinds, ground) in &groups {
@@ -151,7 +151,7 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
         terminal::output::note(format_args!("note: {note}"));
         text += &format!("# {note}\n");
     }
-    text += &format!("\n{}", presets.to_toml()?);
+    text += &format!("\n{}", presets.to_toml().map_err(Failure::Input)?);
     write_whole(&options.out, text.as_bytes())?;
     if is_stdout(&options.out) {
         return Ok(());

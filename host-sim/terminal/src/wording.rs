@@ -1,4 +1,4 @@
-//! Text that people read: lines of a terminal's width, names that are nearly right, numbers.
+//! Text that people read: lines of a terminal's width, names that are nearly right.
 
 /// Columns of a terminal that is not known to be wider.
 pub const WIDTH: usize = 80;
@@ -53,15 +53,6 @@ pub fn unknown<'a>(what: &str, name: &str, known: impl IntoIterator<Item = &'a s
     }
 }
 
-/// A number in as few digits as it needs, with an exponent where there would be many zeros.
-#[must_use]
-pub fn decimal(x: f64) -> String {
-    if x == 0.0 || (1e-4..1e10).contains(&x.abs()) {
-        return format!("{x}");
-    }
-    format!("{x:e}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -84,11 +75,5 @@ mod tests {
             unknown("scene", "q", known),
             "no scene 'q'; there are wall, free-air, excite"
         );
-    }
-
-    #[test]
-    fn numbers_have_an_exponent_where_it_is_shorter() {
-        let shown = [1e-300, 0.0, -0.5, 1e6, 1e12, f64::NAN].map(decimal);
-        assert_eq!(shown, ["1e-300", "0", "-0.5", "1000000", "1e12", "NaN"]);
     }
 }

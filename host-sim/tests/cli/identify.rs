@@ -63,8 +63,8 @@ fn the_command_writes_a_device_file_with_only_what_it_knows_replaced() {
         "{text}"
     );
     let device = Device::from_toml_str(&text).unwrap();
-    assert!((device.large.inertia_kg_m2 / 1.3e-5 - 1.0).abs() < 0.01);
-    assert!((device.coupler.damping_nms_per_rad / 0.8e-3 - 1.0).abs() < 0.01);
+    assert!((device.stages.large.inertia / 1.3e-5 - 1.0).abs() < 0.01);
+    assert!((device.stages.damping / 0.8e-3 - 1.0).abs() < 0.01);
 
     // The same recording again finds its own file right, and JSON is alone on standard output.
     let json = good("identify excite.csv --device mine.toml --json -");

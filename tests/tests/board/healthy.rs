@@ -115,7 +115,7 @@ fn an_offset_of_the_dac_is_felt_and_stops_nothing() {
     };
     let [up, down] = [15, -15].map(mean);
     let device = Device::default();
-    let small = 15.0 * AMPS_PER_CODE[1] * device.small.torque_constant_nm_per_a;
+    let small = 15.0 * AMPS_PER_CODE[1] * device.stages.small.torque_constant;
     println!("{up} {down} N.m of {small}");
     assert!(((up - down) / 2.0 / small - 1.0).abs() < 0.1);
 }

@@ -15,9 +15,9 @@ use crate::image::{of_scene, run};
 #[test]
 fn the_image_excites_a_device_and_its_recording_tells_what_it_is() {
     let mut device = Device::default();
-    device.large.inertia_kg_m2 *= 1.2;
-    device.large.coulomb_nm *= 1.3;
-    device.coupler.damping_nms_per_rad *= 0.88;
+    device.stages.large.inertia *= 1.2;
+    device.stages.large.coulomb_friction *= 1.3;
+    device.stages.damping *= 0.88;
     let excited = run(&Setup {
         device: device.clone(),
         ..of_scene(SceneKind::Excite, Hand::Still, 16.2)
@@ -26,7 +26,7 @@ fn the_image_excites_a_device_and_its_recording_tells_what_it_is() {
     assert_eq!((last.state.as_str(), last.cause.as_str()), ("2", "0"));
     let text = excited.csv().unwrap();
     let recording = Recording::parse(text.as_bytes(), "board").unwrap();
-    let known = Known::TorqueConstant(device.large.torque_constant_nm_per_a);
+    let known = Known::TorqueConstant(device.stages.large.torque_constant);
     let found = identify(
         &[("board".to_owned(), recording)],
         &Device::default(),
@@ -35,12 +35,9 @@ fn the_image_excites_a_device_and_its_recording_tells_what_it_is() {
     )
     .unwrap();
     for (key, truth) in [
-        ("large.inertia_kg_m2", device.large.inertia_kg_m2),
-        ("large.coulomb_nm", device.large.coulomb_nm),
-        (
-            "coupler.damping_nms_per_rad",
-            device.coupler.damping_nms_per_rad,
-        ),
+        ("large.inertia_kg_m2", device.stages.large.inertia),
+        ("large.coulomb_nm", device.stages.large.coulomb_friction),
+        ("coupler.damping_nms_per_rad", device.stages.damping),
     ] {
         let quantity = found.quantities.iter().find(|q| q.key == key);
         let quantity = quantity.unwrap_or_else(|| panic!("{key} among what is known"));

@@ -22,7 +22,7 @@ fn last_learned(run: &Outcome) -> Option<LearnedLine> {
 fn a_coupler_with_less_damping_is_told_in_telemetry() {
     let setup = |part: f64| {
         let mut device = Device::default();
-        device.coupler.damping_nms_per_rad *= part;
+        device.stages.damping *= part;
         Setup {
             device,
             ..of_scene(SceneKind::Wall, Hand::Pushing, 12.0)

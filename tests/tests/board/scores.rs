@@ -79,7 +79,7 @@ fn by_definition(rows: &[Row]) -> [f64; 4] {
     [
         velocity,
         tactile(&errors),
-        1e3 * n_per_nm * device.coupler.damping_nms_per_rad * velocity,
+        1e3 * n_per_nm * device.stages.damping * velocity,
         rms(&mut force.map(|torque| 1e3 * n_per_nm * torque)),
     ]
 }

@@ -64,10 +64,10 @@ macro_rules! kinds {
                 let $p = design::$id::Parameters {
                     $($parameter: values.next().unwrap_or(f64::NAN),)*
                 };
-                let motor = setup.stages();
+                let motor = setup.stages.coupled_motor();
                 let ($motor, $rate, $clock) = (&motor, setup.rate, Hertz(EDGE_CLOCK_HZ));
                 let estimator: $type = $make?;
-                let scale = Scale::new(setup.device.counts_per_rev, setup.rate)?;
+                let scale = Scale::new(setup.stages.large.counts_per_rev, setup.rate)?;
                 Ok(reporting!($reports, estimator, scale, $p))
             }
         )*

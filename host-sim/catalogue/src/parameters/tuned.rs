@@ -27,10 +27,15 @@ impl Parameters {
             let Some((source, preset)) = self.tuned(kind, setup, plant) else {
                 continue;
             };
-            let counts = preset.counts_per_rev.unwrap_or(setup.device.counts_per_rev);
+            let counts = preset
+                .counts_per_rev
+                .unwrap_or(setup.stages.large.counts_per_rev);
             let near = |a: f64, b: f64| (1.0 / FAR..=FAR).contains(&(a / b));
             let near = near(preset.rate_hz, setup.rate.0)
-                && near(f64::from(counts), f64::from(setup.device.counts_per_rev));
+                && near(
+                    f64::from(counts),
+                    f64::from(setup.stages.large.counts_per_rev),
+                );
             if !near {
                 let tuned = format!("{source} for {counts} counts/rev at {} Hz", preset.rate_hz);
                 far.entry(tuned).or_default().push(kind.name);
@@ -38,7 +43,7 @@ impl Parameters {
         }
         let here = format!(
             "{} counts/rev at {} Hz",
-            setup.device.counts_per_rev, setup.rate.0
+            setup.stages.large.counts_per_rev, setup.rate.0
         );
         let line = |(tuned, names): (String, Vec<&str>)| {
             format!(
@@ -63,9 +68,9 @@ impl Parameters {
         if searched.all(|(index, p)| matches!(p.search, Search::Fixed(_)) || set(index)) {
             return None;
         }
-        let preset = |layer: &'_ Presets| layer.nearest_preset(kind, setup.rate.0, plant).is_some();
+        let preset = |layer: &'_ Presets| layer.nearest(kind.name, setup.rate.0, plant).is_some();
         let layer = self.layers.iter().rev().find(|layer| preset(layer))?;
-        let preset = layer.nearest_preset(kind, setup.rate.0, plant)?;
+        let preset = layer.nearest(kind.name, setup.rate.0, plant)?;
         Some((&layer.source, preset))
     }
 }
@@ -77,7 +82,7 @@ mod tests {
     fn far(parameters: &Parameters, kinds: &[&str], rate_hz: f64, counts: u32) -> Vec<String> {
         let mut setup = Setup::default();
         setup.rate.0 = rate_hz;
-        setup.device.counts_per_rev = counts;
+        setup.stages.large.counts_per_rev = counts;
         let kinds: Vec<_> = kinds
             .iter()
             .map(|name| Kind::named(name).unwrap())

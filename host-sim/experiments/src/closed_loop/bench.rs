@@ -41,11 +41,15 @@ impl Bench {
             let phase = draw(&mut random, 0.0, 1.0);
             Encoder::new(counts_per_rev, first, phase, angle, disc)
         };
-        let disc = DiscErrors::new(&device.disc, device.large.counts_per_rev, seed);
+        let disc = DiscErrors::new(&device.disc, device.stages.large.counts_per_rev, seed);
         // The reference encoder is drawn last, so that it changes none of the others.
-        let own = encoder(device.large.counts_per_rev, start.angle, disc);
+        let own = encoder(device.stages.large.counts_per_rev, start.angle, disc);
         let angle = plant.small().angle;
-        let small = encoder(device.small.counts_per_rev, angle, DiscErrors::none());
+        let small = encoder(
+            device.stages.small.counts_per_rev,
+            angle,
+            DiscErrors::none(),
+        );
         let (large, own) = match eye {
             Eye::Large => (own, None),
             Eye::Reference => {

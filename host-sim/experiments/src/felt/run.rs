@@ -6,7 +6,7 @@ use haptic_control::{DualStage, LoopPoles, Stop};
 
 use super::compare::{Case, Run, Settings, Signals, USUAL, device};
 use super::{FeltRow, Fingertip, Parasitic, REFERENCE};
-use crate::closed_loop::{self, Eye, Loop, Moment, usual};
+use crate::closed_loop::{Eye, Loop, Moment, usual};
 use crate::compare::{Cost, interval};
 use catalogue::estimators::Setup;
 use catalogue::estimators::{Estimator, Kind};
@@ -49,7 +49,7 @@ pub(super) fn estimator(
     plant: PlantKind,
 ) -> Result<Estimator, Failure> {
     let mut setup = Setup::of(&settings.device, rate_hz);
-    setup.device.counts_per_rev = counts_per_rev;
+    setup.stages.large.counts_per_rev = counts_per_rev;
     kind.build(&setup, &settings.parameters.values(kind, &setup, plant))
 }
 
@@ -62,14 +62,14 @@ impl<'a> Prepared<'a> {
         Ok(Self {
             case,
             settings,
-            believed: closed_loop::believed(&device),
+            believed: device.stages,
             contest: Contest::new(
                 &settings.estimators,
                 &settings.parameters,
                 &Setup::of(&device, case.rate_hz),
                 case.plant,
             )?,
-            handle: on(settings.handle, device.small.counts_per_rev)?,
+            handle: on(settings.handle, device.stages.small.counts_per_rev)?,
             reference: on(Kind::named(USUAL)?, device.reference.counts_per_rev)?,
             ticks: ticks(case.rate_hz, case.seconds)?,
             device,

@@ -17,7 +17,6 @@ use rustfft::num_complex::Complex;
 use super::compare::{Settings, device};
 use super::run::estimator;
 use super::{Fingertip, REFERENCE};
-use crate::closed_loop::believed;
 use catalogue::estimators::{Estimator, Kind};
 use catalogue::parameters::PlantKind;
 use simulation::device::Device;
@@ -78,10 +77,10 @@ pub fn bandwidth_hz(responses: &[Response]) -> Option<f64> {
 pub fn sweep(settings: &Settings, rate_hz: f64, plant: PlantKind) -> Result<Swept, Failure> {
     let device = device(settings, plant);
     let build = |kind: &Kind, counts| estimator(kind, settings, counts, rate_hz, plant);
-    let handle = build(settings.handle, device.small.counts_per_rev)?;
+    let handle = build(settings.handle, device.stages.small.counts_per_rev)?;
     let mut contestants = Vec::new();
     for kind in &settings.estimators {
-        let counts = device.large.counts_per_rev;
+        let counts = device.stages.large.counts_per_rev;
         contestants.push((kind.name, build(kind, counts)?, counts));
     }
     let counts = device.reference.counts_per_rev;
@@ -154,7 +153,7 @@ impl<'a> Bench<'a> {
             lines: (numbers.iter().enumerate())
                 .map(|(i, &number)| (number, Complex::from_polar(amplitude, phase(i))))
                 .collect(),
-            bias: device.coupler.damping_nms_per_rad * TAU * TURNS_PER_S,
+            bias: device.stages.damping * TAU * TURNS_PER_S,
         }
     }
 
@@ -179,7 +178,7 @@ impl<'a> Bench<'a> {
         let refused = |error: &dyn std::fmt::Display| {
             Failure::Input(format!("control at {} Hz: {error}", self.rate_hz))
         };
-        let mut rig = Rig::new(&believed(self.device), rate, LoopPoles::DEFAULT)
+        let mut rig = Rig::new(&self.device.stages, rate, LoopPoles::DEFAULT)
             .map_err(|error| refused(&error))?;
         rig.large_scale =
             estimator_core::Scale::new(counts_per_rev, rate).map_err(|error| refused(&error))?;

@@ -107,9 +107,9 @@ mod tests {
         );
         let device = Device::from_toml_str(&new).unwrap();
         let mut expected = Device::from_toml_str(text).unwrap();
-        expected.large.inertia_kg_m2 = 1.23457e-5;
-        expected.large.torque_constant_nm_per_a = 0.05;
-        expected.coupler.damping_nms_per_rad = 0.9e-3;
+        expected.stages.large.inertia = 1.23457e-5;
+        expected.stages.large.torque_constant = 0.05;
+        expected.stages.damping = 0.9e-3;
         assert_eq!(device, expected);
         // Once more changes nothing but the same values.
         assert_eq!(

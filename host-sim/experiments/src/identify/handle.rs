@@ -48,7 +48,7 @@ pub(super) fn quantities(
     let mut friction = Quantity::new(
         "small.coulomb_nm",
         MILLI_NM,
-        device.small.coulomb_nm,
+        device.stages.small.coulomb_friction,
         scaled(&|ratios| ratios[FRICTION]),
         0.0,
         "needs slow motion both ways",
@@ -61,7 +61,7 @@ pub(super) fn quantities(
         Quantity::new(
             "small.torque_constant_nm_per_a",
             MILLI_NM_PER_A,
-            device.small.torque_constant_nm_per_a,
+            device.stages.small.torque_constant,
             scaled(&|ratios| ratios[0]),
             0.0,
             "needs more strokes of the small motor",
@@ -69,7 +69,7 @@ pub(super) fn quantities(
         Quantity::new(
             "small.inertia_kg_m2",
             GRAM_CM2,
-            device.small.inertia_kg_m2,
+            device.stages.small.inertia,
             scaled(&|_| 1.0),
             0.0,
             "needs more strokes of either motor",

@@ -38,11 +38,15 @@ pub(super) fn beside(
     let one = |(name, recording): &(String, Recording)| {
         let trace = &recording.trace;
         let period_s = trace.period_s();
-        let large = Motion::new(&trace.counts_large, device.large.counts_per_rev, period_s);
+        let large = Motion::new(
+            &trace.counts_large,
+            device.stages.large.counts_per_rev,
+            period_s,
+        );
         let handle = trace
             .counts_small
             .as_ref()
-            .map(|counts| Motion::new(counts, device.small.counts_per_rev, period_s));
+            .map(|counts| Motion::new(counts, device.stages.small.counts_per_rev, period_s));
         let side = ((0.5 * SPAN_S * trace.rate_hz).round() as usize).max(1);
         let velocity = |angle: &[f64], k: usize| {
             let (from, to) = (k.saturating_sub(side), (k + side).min(angle.len() - 1));

@@ -179,7 +179,7 @@ pub(super) fn of_large(fit: &Fit, device: &Device, known: Known, current: f64) -
         (
             TORQUE_CONSTANT,
             MILLI_NM_PER_A,
-            device.large.torque_constant_nm_per_a,
+            device.stages.large.torque_constant,
             scaled(0),
             0.0,
             "needs steps of current",
@@ -187,7 +187,7 @@ pub(super) fn of_large(fit: &Fit, device: &Device, known: Known, current: f64) -
         (
             INERTIA,
             GRAM_CM2,
-            device.large.inertia_kg_m2,
+            device.stages.large.inertia,
             fit.estimate(|ratios, _| known.inertia(ratios)),
             0.0,
             "needs steps of current",
@@ -195,7 +195,7 @@ pub(super) fn of_large(fit: &Fit, device: &Device, known: Known, current: f64) -
         (
             DAMPING,
             MILLI_NMS,
-            device.coupler.damping_nms_per_rad,
+            device.stages.damping,
             scaled(SLIP),
             0.0,
             "needs slip of 10 rad/s and more, at several speeds",
@@ -203,7 +203,7 @@ pub(super) fn of_large(fit: &Fit, device: &Device, known: Known, current: f64) -
         (
             FRICTION,
             MILLI_NM,
-            device.large.coulomb_nm,
+            device.stages.large.coulomb_friction,
             scaled(FRICTION_COLUMN),
             0.1 * torque,
             "needs slow and fast motion both ways",
@@ -211,7 +211,7 @@ pub(super) fn of_large(fit: &Fit, device: &Device, known: Known, current: f64) -
         (
             BANDWIDTH,
             HERTZ,
-            device.amplifier.bandwidth_hz,
+            device.stages.amplifier_bandwidth.0,
             fit.estimate(|_, lag_s| 1.0 / (TAU * lag_s)),
             0.0,
             "needs steps of current and a longer recording",

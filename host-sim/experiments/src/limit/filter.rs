@@ -60,7 +60,7 @@ struct Model {
 impl Model {
     fn new(setup: &Setup, noise: &Noise) -> Self {
         let t = setup.rate.period_s();
-        let device = &setup.device;
+        let device = setup.stages.coupled_motor().large;
         let beta = (device.damping * t / device.inertia).max(1e-9);
         let phi1 = -(-beta).exp_m1() / beta;
         let per_torque = f64::from(device.counts_per_rev) / TAU * t * t / device.inertia;
@@ -73,10 +73,10 @@ impl Model {
             phi1,
             phi2: (1.0 - phi1) / beta,
             coupling: beta,
-            friction: per_torque * setup.friction_nm,
+            friction: per_torque * setup.stages.large.coulomb_friction,
             per_amp: per_torque * device.torque_constant,
-            lag: setup.amplifier_lag_s / t,
-            ratio: f64::from(device.counts_per_rev) / f64::from(setup.small_counts_per_rev),
+            lag: setup.stages.coupled_motor().amplifier_lag / t,
+            ratio: f64::from(device.counts_per_rev) / f64::from(setup.stages.small.counts_per_rev),
             white: per_torque * noise.torque_noise / t.sqrt(),
             load: slow(noise.load, noise.load_time),
             rub: slow(noise.rub, 10.0 * noise.load_time),
@@ -128,7 +128,7 @@ pub fn velocities(
 ) -> Vec<f32> {
     let model = Model::new(setup, noise);
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed ^ 0x11_417);
-    let rad_s = TAU * setup.rate.0 / f64::from(setup.device.counts_per_rev);
+    let rad_s = TAU * setup.rate.0 / f64::from(setup.stages.large.counts_per_rev);
     let mut cloud: Vec<Particle> = (0..particles)
         .map(|i| Particle {
             x: (i as f64 + 0.5) / particles as f64,
@@ -272,7 +272,7 @@ mod tests {
             };
             model.step(&mut p, 0.0, &mut random);
             // dw/dt = -(b w + friction) / J over a tick of 1 ms; the unknown part lasts 10 s.
-            let beta = setup.device.damping * 1e-3 / setup.device.inertia;
+            let beta = setup.stages.damping * 1e-3 / setup.stages.large.inertia;
             let brake = model.friction + unknown * (-1e-4_f64).exp();
             let end = 50.0 * (-beta).exp() - brake * (1.0 - (-beta).exp()) / beta;
             assert!((p.v - way * end).abs() < 1e-9, "{} {end}", p.v);
@@ -283,11 +283,12 @@ mod tests {
     fn a_current_that_lags_is_followed_without_a_drift() {
         // An amplifier of one tick, no friction, no damping: the motion has a formula.
         let mut setup = Setup::of(&Device::default(), 1e3).frictionless();
-        setup.amplifier_lag_s = 1e-3;
-        setup.device.damping = 0.0;
-        let per_amp =
-            f64::from(setup.device.counts_per_rev) / TAU * 1e-6 * setup.device.torque_constant
-                / setup.device.inertia;
+        setup.stages.amplifier_bandwidth.0 = 1e3 / TAU;
+        setup.stages.damping = 0.0;
+        let per_amp = f64::from(setup.stages.large.counts_per_rev) / TAU
+            * 1e-6
+            * setup.stages.large.torque_constant
+            / setup.stages.large.inertia;
         let ticks = 400_u32;
         // A triangle of 50 A, whose slope is 0.5 A a tick.
         let command = |k: u32| 0.5 * (50.0 - (f64::from(k % 200) - 100.0).abs());
@@ -301,7 +302,7 @@ mod tests {
             v += per_amp * (command(k) - missing * (1.0 - left));
             i = command(k) - left * missing;
             counts.push((x as i64) as u32);
-            truth.push(v * TAU * 1e3 / f64::from(setup.device.counts_per_rev));
+            truth.push(v * TAU * 1e3 / f64::from(setup.stages.large.counts_per_rev));
         }
         let trace = Trace {
             rate_hz: 1e3,
@@ -321,7 +322,7 @@ mod tests {
         let squares = squares.map(|(found, truth)| (f64::from(*found) - truth).powi(2));
         let rms = (squares.sum::<f64>() / f64::from(ticks - 20)).sqrt();
         // The other sign of the lag is wrong by 0.16 of the slope's counts a tick.
-        let wrong = 0.16 * per_amp * 0.5 * TAU * 1e3 / f64::from(setup.device.counts_per_rev);
+        let wrong = 0.16 * per_amp * 0.5 * TAU * 1e3 / f64::from(setup.stages.large.counts_per_rev);
         assert!(rms < 0.2 * wrong, "{rms} rad/s, of {wrong}");
     }
 }

@@ -175,14 +175,14 @@ impl Variation {
     #[must_use]
     pub fn of(&self, nominal: &Device) -> Device {
         let mut device = nominal.clone();
-        device.coupler.damping_nms_per_rad *= self.damping;
-        device.large.inertia_kg_m2 *= self.large_inertia;
-        device.small.inertia_kg_m2 *= self.small_inertia;
-        device.large.torque_constant_nm_per_a *= self.large_constant;
-        device.small.torque_constant_nm_per_a *= self.small_constant;
-        device.large.coulomb_nm *= self.large_friction;
-        device.small.coulomb_nm *= self.small_friction;
-        device.amplifier.bandwidth_hz *= self.amplifier;
+        device.stages.damping *= self.damping;
+        device.stages.large.inertia *= self.large_inertia;
+        device.stages.small.inertia *= self.small_inertia;
+        device.stages.large.torque_constant *= self.large_constant;
+        device.stages.small.torque_constant *= self.small_constant;
+        device.stages.large.coulomb_friction *= self.large_friction;
+        device.stages.small.coulomb_friction *= self.small_friction;
+        device.stages.amplifier_bandwidth.0 *= self.amplifier;
         device.hand.stiffness_nm_per_rad *= self.hand;
         device.hand.damping_nms_per_rad *= self.hand;
         device.disc.phase_counts += self.disc_phase;

@@ -5,7 +5,7 @@ use std::fmt;
 use haptic_control::{AnyScene, LoopPoles, Radians, Viscous, Wall};
 
 use super::criterion::{Fault, Observer, Seen};
-use crate::closed_loop::{Eye, Hand, Loop, Press, believed, estimator};
+use crate::closed_loop::{Eye, Hand, Loop, Press, estimator};
 use catalogue::estimators::{Estimator, Kind};
 use catalogue::parameters::Parameters;
 use simulation::device::Device;
@@ -96,8 +96,8 @@ impl Probe {
         device.validate()?;
         let build = |kind, counts| estimator(kind, &device, counts, rate_hz, parameters);
         Ok(Self {
-            large: build(large, device.large.counts_per_rev)?,
-            handle: build(handle, device.small.counts_per_rev)?,
+            large: build(large, device.stages.large.counts_per_rev)?,
+            handle: build(handle, device.stages.small.counts_per_rev)?,
             device,
             rate_hz,
             seed,
@@ -134,10 +134,10 @@ impl Probe {
         };
         let scene = scene.map_err(|error| Failure::Input(error.to_string()))?;
         let threshold = 0.5 * device.interval.threshold_n * device.handle.diameter_m;
-        let inertia = device.small.inertia_kg_m2;
+        let inertia = device.stages.small.inertia;
         let mut observer = Observer::new(threshold, 1.0 / self.rate_hz, inertia);
         let run = Loop {
-            believed: believed(&device),
+            believed: device.stages,
             device,
             scene,
             hand,

@@ -16,7 +16,7 @@ impl Recording {
         let trace = &mut self.trace;
         let longest = 1.5 * trace.period_s();
         let mut said = Vec::new();
-        let per_rev = device.large.counts_per_rev;
+        let per_rev = device.stages.large.counts_per_rev;
         let found = look(&trace.counts_large, &self.t, longest, per_rev);
         said.extend(
             found
@@ -33,7 +33,7 @@ impl Recording {
             }
         }
         if let Some(counts) = &mut trace.counts_small {
-            let per_rev = device.small.counts_per_rev;
+            let per_rev = device.stages.small.counts_per_rev;
             let found = look(counts, &self.t, longest, per_rev);
             said.extend(
                 found
@@ -138,7 +138,7 @@ mod tests {
 
     fn device(counts: u32) -> Device {
         let mut device = Device::default();
-        device.large.counts_per_rev = counts;
+        device.stages.large.counts_per_rev = counts;
         device
     }
 

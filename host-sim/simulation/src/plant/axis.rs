@@ -1,6 +1,7 @@
 //! One motor: its shaft, its amplifier, its friction and its ripple.
 
-use crate::device::Motor;
+use crate::device;
+use haptic_control::Motor;
 use std::f64::consts::TAU;
 
 /// The one place that saturates a commanded current: to the limit, and NaN to zero.
@@ -40,20 +41,20 @@ pub(super) struct Drive {
 }
 
 impl Axis {
-    pub(super) fn new(motor: &Motor, lag_s: f64, step_s: f64) -> Self {
+    pub(super) fn new(motor: &Motor, ripple: &device::Ripple, lag_s: f64, step_s: f64) -> Self {
         Self {
             angle: 0.0,
             omega: 0.0,
             current: 0.0,
             command: 0.0,
-            limit: motor.current_limit_a,
-            torque_constant: motor.torque_constant_nm_per_a,
-            coulomb: motor.coulomb_nm,
-            inertia: motor.inertia_kg_m2,
-            per_inertia: 1.0 / motor.inertia_kg_m2,
+            limit: motor.current_limit,
+            torque_constant: motor.torque_constant,
+            coulomb: motor.coulomb_friction,
+            inertia: motor.inertia,
+            per_inertia: 1.0 / motor.inertia,
             left: (-step_s / lag_s).exp(),
             mean_left: -(-step_s / lag_s).exp_m1() * lag_s / step_s,
-            ripple: Ripple::new(motor),
+            ripple: Ripple::new(motor, ripple),
         }
     }
 
@@ -148,16 +149,16 @@ struct Ripple {
 const SERIES_REACH: f64 = 0.15;
 
 impl Ripple {
-    fn new(motor: &Motor) -> Self {
-        let smooth = motor.coulomb_nm * motor.coulomb_ripple == 0.0 && motor.torque_ripple == 0.0;
+    fn new(motor: &Motor, ripple: &device::Ripple) -> Self {
+        let smooth = motor.coulomb_friction * ripple.friction == 0.0 && ripple.torque == 0.0;
         Self {
-            friction: motor.coulomb_ripple,
-            torque: motor.torque_ripple,
-            per_rev: motor.ripple_per_rev,
+            friction: ripple.friction,
+            torque: ripple.torque,
+            per_rev: ripple.per_rev,
             reach: if smooth {
                 f64::INFINITY
             } else {
-                SERIES_REACH / motor.ripple_per_rev.max(1.0)
+                SERIES_REACH / ripple.per_rev.max(1.0)
             },
             anchor: 0.0,
             once: (0.0, 1.0),
@@ -198,6 +199,7 @@ fn series((sin, cos): (f64, f64), x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use haptic_control::DualStage;
 
     #[test]
     fn saturation_limits_and_turns_nan_to_zero() {
@@ -209,16 +211,16 @@ mod tests {
 
     #[test]
     fn the_series_follows_the_sines() {
-        let motor = Motor::large();
-        let mut ripple = Ripple::new(&motor);
+        let exact = device::Ripple::default();
+        let mut ripple = Ripple::new(&DualStage::DEFAULT.large, &exact);
         let (mut worst_friction, mut worst_torque) = (0.0_f64, 0.0_f64);
         for k in -40_000..40_000 {
             let angle = f64::from(k) * 3.7e-4;
             let (friction, torque) = ripple.factors(angle);
-            let exact = 1.0 + motor.coulomb_ripple * angle.sin();
-            worst_friction = worst_friction.max((friction - exact).abs());
-            let exact = 1.0 + motor.torque_ripple * (motor.ripple_per_rev * angle).sin();
-            worst_torque = worst_torque.max((torque - exact).abs());
+            let sine = 1.0 + exact.friction * angle.sin();
+            worst_friction = worst_friction.max((friction - sine).abs());
+            let sine = 1.0 + exact.torque * (exact.per_rev * angle).sin();
+            worst_torque = worst_torque.max((torque - sine).abs());
         }
         assert!(worst_friction < 1e-12, "{worst_friction:e}");
         assert!(worst_torque < 3e-10, "{worst_torque:e}");

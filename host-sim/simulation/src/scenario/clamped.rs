@@ -36,7 +36,7 @@ pub(super) fn follow<P: Profile>(profile: P, device: &Device, period_s: f64) -> 
         servo: Servo::new(device, period_s, P::TUNING),
         period: period_s,
         slip: 0.0,
-        damping_b: device.coupler.damping_nms_per_rad,
+        damping_b: device.stages.damping,
         fall_per_s: 0.0,
     }
 }

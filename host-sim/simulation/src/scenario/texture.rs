@@ -40,7 +40,7 @@ impl Texture {
             intent,
             servo: Servo::new(device, period_s, TUNING),
             period: period_s,
-            damping: device.coupler.damping_nms_per_rad,
+            damping: device.stages.damping,
             share: low_pass_share(CROSSOVER_HZ, period_s),
             sweep_rad_per_s: TAU / draw(&mut random, 2.0, 4.0),
             sweep_phase: draw(&mut random, 0.0, TAU),

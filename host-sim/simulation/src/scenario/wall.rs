@@ -37,8 +37,8 @@ impl Wall {
         Self {
             intent,
             servo: Servo::new(device, period_s, TUNING),
-            damping: device.coupler.damping_nms_per_rad,
-            rad_per_count: TAU / f64::from(device.small.counts_per_rev),
+            damping: device.stages.damping,
+            rad_per_count: TAU / f64::from(device.stages.small.counts_per_rev),
             share: low_pass_share(CROSSOVER_HZ, period_s),
             home: None,
             slip: 0.0,

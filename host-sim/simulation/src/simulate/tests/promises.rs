@@ -198,11 +198,8 @@ fn a_hand_that_should_feel_nothing_feels_little() {
 #[test]
 fn heating_takes_30_percent_in_60_s_and_no_more() {
     let mut device = Device::default();
-    device.small.torque_ripple = 0.0;
-    let (kt, b) = (
-        device.small.torque_constant_nm_per_a,
-        device.coupler.damping_nms_per_rad,
-    );
+    device.small_ripple.torque = 0.0;
+    let (kt, b) = (device.stages.small.torque_constant, device.stages.damping);
     let (mut decided, mut slipped) = (1.0, 0.0_f64);
     let each = |t: f64, plant: &Plant, drive: &Drive| {
         // The plant was left with the damping decided a tick ago.
@@ -221,13 +218,10 @@ fn heating_takes_30_percent_in_60_s_and_no_more() {
 #[test]
 fn stochastic_is_the_model_that_its_doc_states() {
     let device = Device::default();
-    let (b, j) = (
-        device.coupler.damping_nms_per_rad,
-        device.large.inertia_kg_m2,
-    );
+    let (b, j) = (device.stages.damping, device.stages.large.inertia);
     let (kt, lag) = (
-        device.large.torque_constant_nm_per_a,
-        1.0 / (TAU * device.amplifier.bandwidth_hz),
+        device.stages.large.torque_constant,
+        1.0 / (TAU * device.stages.amplifier_bandwidth.0),
     );
     for rate in RATES {
         let trace = trace(ScenarioName::Stochastic, rate, 1);

@@ -1,8 +1,9 @@
 //! What a device may be, and how a file that says otherwise is told so in one line.
 
-use super::{Device, Motor};
-use crate::plant::LONGEST_STEP_S;
-use terminal::wording::decimal;
+use haptic_control::Motor;
+
+use super::{Device, LONGEST_STEP_S, Ripple};
+use crate::decimal;
 
 /// Allowed range of one value.
 enum Range {
@@ -59,30 +60,30 @@ fn check_counts(key: &str, counts: u32) -> Result<(), String> {
     ))
 }
 
-fn check_motor(name: &str, motor: &Motor) -> Result<(), String> {
+fn check_motor(name: &str, motor: &Motor, ripple: &Ripple) -> Result<(), String> {
     for (key, value, unit, range) in [
         (
             "inertia_kg_m2",
-            motor.inertia_kg_m2,
+            motor.inertia,
             "kg.m2",
             Range::Most(0.1, "g.cm2", -7),
         ),
         (
             "torque_constant_nm_per_a",
-            motor.torque_constant_nm_per_a,
+            motor.torque_constant,
             "N.m/A",
             Range::Most(10.0, "mN.m/A", -3),
         ),
-        ("coulomb_nm", motor.coulomb_nm, "N.m", Range::From0),
-        ("coulomb_ripple", motor.coulomb_ripple, "", Range::Share),
-        ("torque_ripple", motor.torque_ripple, "", Range::Share),
+        ("coulomb_nm", motor.coulomb_friction, "N.m", Range::From0),
+        ("coulomb_ripple", ripple.friction, "", Range::Share),
+        ("torque_ripple", ripple.torque, "", Range::Share),
         (
             "ripple_per_rev",
-            motor.ripple_per_rev,
+            ripple.per_rev,
             "periods a revolution",
             Range::Above0,
         ),
-        ("current_limit_a", motor.current_limit_a, "A", Range::Above0),
+        ("current_limit_a", motor.current_limit, "A", Range::Above0),
     ] {
         check(&format!("{name}.{key}"), value, unit, &range)?;
     }
@@ -94,7 +95,7 @@ const FASTEST: f64 = 0.1;
 
 /// The plant's fixed step must be short against every time constant that it integrates.
 fn check_rates(device: &Device) -> Result<(), String> {
-    let damping = device.coupler.damping_nms_per_rad;
+    let damping = device.stages.damping;
     let slow_enough = |key: &str, inertia: f64, rate: f64| {
         if rate * LONGEST_STEP_S <= FASTEST {
             return Ok(());
@@ -107,9 +108,9 @@ fn check_rates(device: &Device) -> Result<(), String> {
             LONGEST_STEP_S / FASTEST
         ))
     };
-    let large = device.large.inertia_kg_m2;
+    let large = device.stages.large.inertia;
     slow_enough("large.inertia_kg_m2", large, damping / large)?;
-    let small = device.small.inertia_kg_m2;
+    let small = device.stages.small.inertia;
     let hand = &device.hand;
     let rate = ((damping + hand.damping_nms_per_rad) / small)
         .max((hand.stiffness_nm_per_rad / small).sqrt());
@@ -117,24 +118,24 @@ fn check_rates(device: &Device) -> Result<(), String> {
 }
 
 pub(super) fn validate(device: &Device) -> Result<(), String> {
-    check_motor("large", &device.large)?;
-    check_motor("small", &device.small)?;
+    check_motor("large", &device.stages.large, &device.large_ripple)?;
+    check_motor("small", &device.stages.small, &device.small_ripple)?;
     for (key, value, unit, range) in [
         (
             "coupler.damping_nms_per_rad",
-            device.coupler.damping_nms_per_rad,
+            device.stages.damping,
             "N.m.s/rad",
             Range::Above0,
         ),
         (
             "coupler.fall_at_60_s",
-            device.coupler.fall_at_60_s,
+            device.fall_at_60_s,
             "",
             Range::Share,
         ),
         (
             "amplifier.bandwidth_hz",
-            device.amplifier.bandwidth_hz,
+            device.stages.amplifier_bandwidth.0,
             "Hz",
             Range::Above0,
         ),
@@ -228,7 +229,7 @@ mod tests {
     #[test]
     fn a_device_survives_toml_both_ways() {
         let mut device = Device::default();
-        device.small.inertia_kg_m2 = 61.25e-7;
+        device.stages.small.inertia = 61.25e-7;
         device.disc.phase_counts = 0.1;
         device.reference.counts_per_rev = 8000;
         let text = toml::to_string(&device).unwrap();
@@ -240,7 +241,7 @@ mod tests {
         assert_eq!(Device::from_toml_str("").unwrap(), Device::default());
         let device = Device::from_toml_str("[small]\ncoulomb_nm = 1").unwrap();
         let mut expected = Device::default();
-        expected.small.coulomb_nm = 1.0;
+        expected.stages.small.coulomb_friction = 1.0;
         assert_eq!(device, expected);
     }
 
@@ -343,10 +344,10 @@ mod tests {
     fn frictionless_takes_the_coulomb_friction_of_both_motors_and_nothing_else() {
         let device = Device::default();
         let mut expected = device.clone();
-        for motor in [&mut expected.large, &mut expected.small] {
-            motor.coulomb_nm = 0.0;
-            motor.coulomb_ripple = 0.0;
-        }
+        expected.stages.large.coulomb_friction = 0.0;
+        expected.stages.small.coulomb_friction = 0.0;
+        expected.large_ripple.friction = 0.0;
+        expected.small_ripple.friction = 0.0;
         assert_eq!(device.frictionless(), expected);
         assert_ne!(expected, device);
     }

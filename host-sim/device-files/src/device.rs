@@ -1,0 +1,213 @@
+//! The device: masses, motors, encoders, coupler and hand, read from TOML, in SI units.
+//!
+//! Damping, handle diameter, threshold and Weber fraction are the paper's Table I. Inertias,
+//! torque constants, friction, ripple, amplifier and hand are *assumed*: catalogue values good to
+//! about 15 %, to be replaced by a data sheet or by identification.
+
+use std::path::Path;
+
+use haptic_control::DualStage;
+use serde::{Deserialize, Serialize};
+
+mod check;
+mod sections;
+
+/// Longest step of the plant, s. It must be short against every time constant of a device.
+pub const LONGEST_STEP_S: f64 = 10e-6;
+
+/// The whole device: the constants that controllers and estimators are designed from, and around
+/// them what only a simulation needs. `Device::default()` is the design's; a TOML file overrides any
+/// of it.
+///
+/// ```
+/// use device_files::device::Device;
+/// let device = Device::from_toml_str("[large]\ncounts_per_rev = 2000").unwrap();
+/// assert_eq!(device.stages.large.counts_per_rev, 2000);
+/// assert_eq!(device.stages.small.counts_per_rev, 20_000);
+/// let error = Device::from_toml_str("[large]\ninertia_kg_m2 = -1").unwrap_err();
+/// assert_eq!(error, "large.inertia_kg_m2 = -1: must be above 0 kg.m2");
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "sections::File", into = "sections::File")]
+pub struct Device {
+    /// Both motors with their encoders and amplifiers, and the coupler.
+    pub stages: DualStage,
+    /// Ripple of the large motor.
+    pub large_ripple: Ripple,
+    /// Ripple of the small motor.
+    pub small_ripple: Ripple,
+    /// Part of the coupler's damping lost after 60 s of scenario `heating`, 0 to 1.
+    pub fall_at_60_s: f64,
+    /// The hand that holds the handle.
+    pub hand: Hand,
+    /// The handle.
+    pub handle: Handle,
+    /// The interval of differences that a hand does not feel.
+    pub interval: Interval,
+    /// Errors of the large encoder's disc.
+    pub disc: Disc,
+    /// Reference encoder on the large motor, for evaluation only.
+    pub reference: Reference,
+}
+
+/// What varies with a motor's angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ripple {
+    /// Part of the Coulomb friction that swings once a revolution, 0 to 1.
+    pub friction: f64,
+    /// Part of the torque constant that swings `per_rev` times a revolution, 0 to 1.
+    pub torque: f64,
+    /// Periods of the torque ripple a revolution.
+    pub per_rev: f64,
+}
+
+/// The hand: a spring and a damper to the motion that it intends.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Hand {
+    /// Stiffness, N.m/rad.
+    pub stiffness_nm_per_rad: f64,
+    /// Damping, N.m.s/rad.
+    pub damping_nms_per_rad: f64,
+}
+
+/// The handle.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Handle {
+    /// Diameter at the fingertip, m.
+    pub diameter_m: f64,
+}
+
+/// Differences of force that pass unnoticed: a threshold plus a fraction of the force.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Interval {
+    /// Threshold at zero force (F_shd), N.
+    pub threshold_n: f64,
+    /// Weber fraction (k), 0 to 1.
+    pub weber: f64,
+}
+
+/// Errors of the large encoder's disc, in counts; their sum is below 0.45, so that boundaries
+/// keep their order. The disc itself is drawn from the run's seed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Disc {
+    /// Largest error of the four phases of a line (duty and quadrature), counts.
+    pub phase_counts: f64,
+    /// Amplitude of the once-a-turn error (eccentricity), counts.
+    pub line_counts: f64,
+    /// Largest random error of a single boundary (uniform), counts.
+    pub random_counts: f64,
+}
+
+/// The reference encoder.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Reference {
+    /// Counts a revolution: four times its lines.
+    pub counts_per_rev: u32,
+}
+
+/// Assumed, the same for both motors.
+impl Default for Ripple {
+    fn default() -> Self {
+        Self {
+            friction: 0.10,
+            torque: 0.015,
+            per_rev: 26.0,
+        }
+    }
+}
+
+impl Default for Device {
+    fn default() -> Self {
+        Self {
+            stages: DualStage::DEFAULT,
+            large_ripple: Ripple::default(),
+            small_ripple: Ripple::default(),
+            fall_at_60_s: 0.30,
+            hand: Hand::default(),
+            handle: Handle::default(),
+            interval: Interval::default(),
+            disc: Disc::default(),
+            reference: Reference::default(),
+        }
+    }
+}
+
+impl Default for Hand {
+    fn default() -> Self {
+        Self {
+            stiffness_nm_per_rad: 0.5,
+            damping_nms_per_rad: 3e-3,
+        }
+    }
+}
+
+impl Default for Handle {
+    fn default() -> Self {
+        Self { diameter_m: 0.070 }
+    }
+}
+
+impl Default for Interval {
+    fn default() -> Self {
+        Self {
+            threshold_n: 0.010,
+            weber: 0.05,
+        }
+    }
+}
+
+impl Default for Reference {
+    fn default() -> Self {
+        Self {
+            counts_per_rev: 20_000,
+        }
+    }
+}
+
+impl Device {
+    /// Reads a device from TOML text: what the text leaves out keeps its default.
+    ///
+    /// # Errors
+    /// One line that names the line and the key, or the impossible value, and what would be right.
+    pub fn from_toml_str(text: &str) -> Result<Self, String> {
+        let device: Self = toml::from_str(text).map_err(|error| check::one_line(text, &error))?;
+        device.validate()?;
+        Ok(device)
+    }
+
+    /// Reads a device file.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml_str`], with the file's name first; also for a path that is no file.
+    pub fn read(path: &Path) -> Result<Self, String> {
+        let text = crate::text(path)?;
+        Self::from_toml_str(&text).map_err(|error| format!("{}: {error}", path.display()))
+    }
+
+    /// Refuses values that no device can have, or that the plant's step cannot follow.
+    ///
+    /// # Errors
+    /// One line, for example `large.inertia_kg_m2 = -1: must be above 0 kg.m2`.
+    pub fn validate(&self) -> Result<(), String> {
+        check::validate(self)
+    }
+
+    /// The same device without the Coulomb friction of both motors; torque ripple stays.
+    #[must_use]
+    pub fn frictionless(&self) -> Self {
+        let mut device = self.clone();
+        for (motor, ripple) in [
+            (&mut device.stages.large, &mut device.large_ripple),
+            (&mut device.stages.small, &mut device.small_ripple),
+        ] {
+            motor.coulomb_friction = 0.0;
+            ripple.friction = 0.0;
+        }
+        device
+    }
+}

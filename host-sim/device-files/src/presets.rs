@@ -1,0 +1,131 @@
+//! Tuned parameters of the estimators: what `host-sim tune` writes.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::decimal;
+
+/// Whether the plant has Coulomb friction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PlantKind {
+    /// As the device says.
+    Friction,
+    /// The same device without Coulomb friction: the plant of the paper's model.
+    Frictionless,
+}
+
+impl PlantKind {
+    /// The name in tables and files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Friction => "friction",
+            Self::Frictionless => "frictionless",
+        }
+    }
+
+    /// The kind after the word "plant".
+    #[must_use]
+    pub fn phrase(self) -> &'static str {
+        match self {
+            Self::Friction => "with friction",
+            Self::Frictionless => "without friction",
+        }
+    }
+}
+
+/// Values by estimator and parameter.
+pub type Estimators = BTreeMap<String, BTreeMap<String, f64>>;
+
+/// A presets file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Presets {
+    /// One entry for each rate and plant tuned for.
+    #[serde(default)]
+    pub preset: Vec<Preset>,
+    /// Values chosen for the control loop of a flash image, by motor: `large` or `handle`. They
+    /// replace those of [`Self::preset`] there. `tune` does not write them.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub image: BTreeMap<String, Estimators>,
+    /// The file that they come from, as messages name it.
+    #[serde(skip)]
+    pub source: String,
+}
+
+/// Tuned parameters at one rate on one plant.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Preset {
+    /// Control rate, Hz.
+    pub rate_hz: f64,
+    /// Plant.
+    pub plant: PlantKind,
+    /// Counts per revolution of the large encoder; `None` in files that do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub counts_per_rev: Option<u32>,
+    /// The values.
+    pub estimators: Estimators,
+}
+
+impl Presets {
+    /// The presets shipped with the program.
+    #[must_use]
+    pub fn shipped() -> Self {
+        Self::parse(include_str!("../../presets.toml"), "the shipped presets")
+            .expect("the shipped presets are tested")
+    }
+
+    /// Reads a presets file. It is not checked whether its estimators exist.
+    ///
+    /// # Errors
+    /// One line that names the file and what is wrong in it.
+    pub fn read(path: &Path) -> Result<Self, String> {
+        Self::parse(&crate::text(path)?, &path.display().to_string())
+    }
+
+    /// The file's text.
+    ///
+    /// # Errors
+    /// One line; no case is known.
+    pub fn to_toml(&self) -> Result<String, String> {
+        toml::to_string(self).map_err(|error| error.to_string())
+    }
+
+    /// Reads the text of a presets file that messages call `name`.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn parse(text: &str, name: &str) -> Result<Self, String> {
+        let mut presets: Self = toml::from_str(text).map_err(|error| {
+            let line = error
+                .span()
+                .map_or(1, |span| 1 + text[..span.start].matches('\n').count());
+            format!("{name}: line {line}: {}", error.message())
+        })?;
+        presets.source = name.to_owned();
+        for preset in &presets.preset {
+            let rate = preset.rate_hz;
+            if !(rate > 0.0 && rate.is_finite()) {
+                return Err(format!(
+                    "{name}: rate_hz = {}: must be above 0 Hz",
+                    decimal(rate)
+                ));
+            }
+        }
+        Ok(presets)
+    }
+
+    /// The preset tuned for `estimator` at the nearest rate (by ratio) on that plant.
+    #[must_use]
+    pub fn nearest(&self, estimator: &str, rate_hz: f64, plant: PlantKind) -> Option<&Preset> {
+        let far = |preset: &Preset| (preset.rate_hz / rate_hz).ln().abs();
+        self.preset
+            .iter()
+            .filter(|preset| preset.plant == plant && preset.estimators.contains_key(estimator))
+            .min_by(|a, b| far(a).total_cmp(&far(b)))
+    }
+}
