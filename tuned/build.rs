@@ -1,42 +1,254 @@
-//! Writes host-sim/presets.toml, as far as it is for the plant with friction, as a Rust table.
+//! Writes the device file and the presets files as Rust constants.
+//!
+//! The environment variables DEVICE and PRESETS name the files. Without DEVICE the device is
+//! `DualStage::DEFAULT`. The presets file lies over the shipped one, as in host-sim.
 
-use std::path::PathBuf;
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use toml::{Table, Value};
+use device_files::decimal;
+use device_files::device::Device;
+use device_files::presets::{Estimators, PlantKind, Preset, Presets};
+use haptic_control::{DualStage, Fingerprint, Motor};
 
-const FILE: &str = "../host-sim/presets.toml";
+/// Ratio of counts per revolution up to which tuned values still serve.
+const FAR: f64 = 1.5;
 
 fn main() {
-    println!("cargo:rerun-if-changed={FILE}");
-    println!("cargo:rerun-if-changed=build.rs");
-    let text = fs::read_to_string(FILE).unwrap_or_else(|error| panic!("{FILE}: {error}"));
-    let rows = rows(&text).unwrap_or_else(|error| panic!("{FILE}: {error}"));
-    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
-    fs::write(out.join("table.rs"), format!("&[\n{rows}]\n")).expect("OUT_DIR is writable");
+    println!("cargo::rerun-if-changed=build.rs");
+    match constants() {
+        Ok(text) => {
+            let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
+            fs::write(out.join("constants.rs"), text).expect("OUT_DIR is writable");
+        }
+        Err(error) => println!("cargo::error={error}"),
+    }
 }
 
-/// A row of the table for each parameter.
-fn rows(text: &str) -> Result<String, String> {
-    let file: Table = text.parse().map_err(|error| format!("{error}"))?;
-    let presets = file.get("preset").and_then(Value::as_array);
-    let mut rows = String::new();
-    for preset in presets.ok_or("no [[preset]]")? {
-        let rate = preset.get("rate_hz").and_then(Value::as_float);
-        let rate = rate.ok_or("a preset without rate_hz")?;
-        if preset.get("plant").and_then(Value::as_str) != Some("friction") {
-            continue;
+/// The constants as Rust text.
+fn constants() -> Result<String, String> {
+    let device = match named_file("DEVICE")? {
+        Some(path) => Device::read(&path).map_err(|error| format!("DEVICE: {error}"))?,
+        None => Device::default(),
+    };
+    let mut layers = vec![Presets::shipped()];
+    if let Some(path) = named_file("PRESETS")? {
+        let presets = Presets::read(&path).map_err(|error| format!("PRESETS: {error}"))?;
+        known(&presets, &layers[0])
+            .map_err(|error| format!("PRESETS: {}: {error}", path.display()))?;
+        layers.insert(0, presets);
+    }
+    warn_of_far_presets(&layers[0], device.stages.large.counts_per_rev);
+    let mut text = device_text(&device.stages);
+    let _ = writeln!(
+        text,
+        "const PRESETS: Fingerprint = {:?};",
+        fingerprint(&layers)
+    );
+    text += "static LAYERS: &[Layer] = &[\n";
+    for layer in &layers {
+        text += &layer_text(layer);
+    }
+    text += "];\n";
+    Ok(text)
+}
+
+/// The file that an environment variable names.
+fn named_file(variable: &str) -> Result<Option<PathBuf>, String> {
+    println!("cargo::rerun-if-env-changed={variable}");
+    let Some(path) = env::var_os(variable) else {
+        return Ok(None);
+    };
+    if path.is_empty() {
+        return Err(format!(
+            "{variable} is empty: name a TOML file, or unset it"
+        ));
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent();
+    let path = root.expect("a parent").join(path);
+    println!("cargo::rerun-if-changed={}", path.display());
+    if !path.exists() {
+        return Err(format!(
+            "{variable}: no file {}; a relative path starts at the top of the repository",
+            path.display()
+        ));
+    }
+    Ok(Some(path))
+}
+
+/// Refuses estimators and parameters that the shipped presets do not have, and impossible values.
+fn known(presets: &Presets, shipped: &Presets) -> Result<(), String> {
+    for (preset, place) in presets.preset.iter().zip(1..) {
+        let all = shipped.preset.iter().map(|preset| &preset.estimators);
+        let all: Vec<_> = all.collect();
+        check(&preset.estimators, &all).map_err(|error| format!("preset {place}: {error}"))?;
+    }
+    for (motor, estimators) in &presets.image {
+        let Some(all) = shipped.image.get(motor) else {
+            return Err(format!(
+                "[image.{motor}]: no such motor; there are large and handle"
+            ));
+        };
+        check(estimators, &[all]).map_err(|error| format!("[image.{motor}]: {error}"))?;
+    }
+    Ok(())
+}
+
+fn check(estimators: &Estimators, known: &[&Estimators]) -> Result<(), String> {
+    for (estimator, parameters) in estimators {
+        let known: Vec<_> = known.iter().filter_map(|all| all.get(estimator)).collect();
+        if known.is_empty() {
+            return Err(format!("no parameters of '{estimator}' can be set here"));
         }
-        let estimators = preset.get("estimators").and_then(Value::as_table);
-        for (estimator, parameters) in estimators.ok_or("a preset without estimators")? {
-            let parameters = parameters.as_table().ok_or("an estimator is no table")?;
-            for (name, value) in parameters {
-                let value = value.as_float().filter(|value| value.is_finite());
-                let value = value.ok_or(format!("{estimator}.{name} is no number"))?;
-                // Debug of a float has all the digits that distinguish it.
-                rows += &format!("    ({rate:?}, {estimator:?}, {name:?}, {value:?}),\n");
+        for (name, &value) in parameters {
+            let names: BTreeSet<_> = known.iter().flat_map(|all| all.keys()).collect();
+            if !names.contains(name) {
+                let names: Vec<_> = names.into_iter().map(String::as_str).collect();
+                return Err(format!(
+                    "{estimator} has no parameter '{name}'; there are {}",
+                    names.join(", ")
+                ));
+            }
+            let rule = match (estimator.starts_with("foaw"), name.as_str()) {
+                (true, "n") if value.fract() != 0.0 || !(1.0..=128.0).contains(&value) => {
+                    "a whole number from 1 to 128"
+                }
+                (true, "d") if value.fract() != 0.0 || !(0.0..=16384.0).contains(&value) => {
+                    "a whole number from 0 to 16384"
+                }
+                _ if !(value >= 0.0 && value.is_finite()) => "0 or more",
+                _ => continue,
+            };
+            return Err(format!(
+                "{estimator}.{name} = {}: must be {rule}",
+                decimal(value)
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Warns where all of the strongest presets were tuned for an encoder that is far from the device's.
+fn warn_of_far_presets(presets: &Presets, counts_per_rev: u32) {
+    let tuned = presets
+        .preset
+        .iter()
+        .filter_map(|preset| preset.counts_per_rev);
+    let far = |tuned: &u32| {
+        let ratio = f64::from(*tuned) / f64::from(counts_per_rev);
+        !(1.0 / FAR..=FAR).contains(&ratio)
+    };
+    let counts: BTreeSet<_> = tuned.collect();
+    if !counts.is_empty() && counts.iter().all(far) {
+        let counts: Vec<_> = counts.iter().map(u32::to_string).collect();
+        println!(
+            "cargo::warning={}: parameters tuned for {} counts/rev are used for {counts_per_rev}; tune them \
+             with host-sim tune --device FILE.toml --out tuned.toml and build with PRESETS=tuned.toml",
+            presets.source,
+            counts.join(", "),
+        );
+    }
+}
+
+/// Presets that images use: those for the plant with friction.
+fn of_images(layer: &Presets) -> impl Iterator<Item = &Preset> {
+    let tuned = layer.preset.iter();
+    tuned.filter(|preset| preset.plant == PlantKind::Friction)
+}
+
+/// Hash of the values that images find: at every rate tuned for, and those of the image alone. It is
+/// the same for the shipped presets and for a file that repeats them.
+fn fingerprint(layers: &[Presets]) -> Fingerprint {
+    let all = || layers.iter().flat_map(of_images);
+    let mut hash = Fingerprint::EMPTY;
+    let mut rates: Vec<_> = all().map(|preset| preset.rate_hz).collect();
+    rates.sort_by(f64::total_cmp);
+    rates.dedup();
+    let names: BTreeSet<_> = all()
+        .flat_map(|preset| &preset.estimators)
+        .flat_map(|(estimator, values)| values.keys().map(move |name| (estimator, name)))
+        .collect();
+    for rate_hz in rates {
+        for (estimator, name) in &names {
+            let tuned = layers.iter().find_map(|layer| {
+                let preset = layer.nearest(estimator, rate_hz, PlantKind::Friction)?;
+                preset.estimators[*estimator].get(*name)
+            });
+            let tuned = *tuned.expect("it is in one of the layers");
+            hash = hash
+                .number(rate_hz)
+                .text(estimator)
+                .text(name)
+                .number(tuned);
+        }
+    }
+    let mut image = BTreeSet::new();
+    for (motor, estimators) in layers.iter().flat_map(|layer| &layer.image) {
+        for (estimator, values) in estimators {
+            image.extend(values.keys().map(|name| (motor, estimator, name)));
+        }
+    }
+    for (motor, estimator, name) in image {
+        // As `tuned::image` does: a presets file with values for the large motor comes before the
+        // shipped values of the image.
+        let found = layers.iter().find_map(|layer| {
+            let image = layer
+                .image
+                .get(motor)
+                .and_then(|all| all.get(estimator)?.get(name));
+            let tuned =
+                || of_images(layer).find_map(|preset| preset.estimators.get(estimator)?.get(name));
+            image
+                .copied()
+                .map(Some)
+                .or_else(|| (motor == "large" && tuned().is_some()).then_some(None))
+        });
+        hash = hash.text(motor).text(estimator).text(name);
+        if let Some(Some(value)) = found {
+            hash = hash.number(value);
+        }
+    }
+    hash
+}
+
+fn device_text(device: &DualStage) -> String {
+    let motor = |motor: &Motor| format!("{motor:?}");
+    // Debug of a float has all the digits that distinguish it.
+    format!(
+        "/// The device that images are built for.\npub const DEVICE: DualStage = DualStage {{ large: {}, \
+         small: {}, damping: {:?}, amplifier_bandwidth: {:?} }};\n",
+        motor(&device.large),
+        motor(&device.small),
+        device.damping,
+        device.amplifier_bandwidth,
+    )
+}
+
+fn layer_text(layer: &Presets) -> String {
+    let mut text = "Layer { image: &[".to_owned();
+    for (motor, estimators) in &layer.image {
+        for (estimator, values) in estimators {
+            for (name, value) in values {
+                let _ = write!(
+                    text,
+                    "({motor:?}, {estimator:?}, {name:?}, {value:?}),\n    "
+                );
             }
         }
     }
-    Ok(rows)
+    text += "], tuned: &[\n    ";
+    for preset in of_images(layer) {
+        for (estimator, values) in &preset.estimators {
+            for (name, value) in values {
+                let rate = preset.rate_hz;
+                let _ = write!(
+                    text,
+                    "({rate:?}, {estimator:?}, {name:?}, {value:?}),\n    "
+                );
+            }
+        }
+    }
+    text + "] },\n"
 }

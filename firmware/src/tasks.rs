@@ -7,6 +7,7 @@ use firmware_app::control::{Control, Inputs, Message};
 use firmware_app::telemetry::{Frame, Frames, Sender};
 use haptic_control::Request;
 use heapless::spsc::Consumer;
+use tuned::{DEVICE_FINGERPRINT, PRESETS_FINGERPRINT};
 
 use crate::boards::{Board, Start, Watchdog};
 use crate::log;
@@ -42,10 +43,12 @@ pub(crate) fn tasks<W: Watchdog>(
     let (to_control, messages) = queues.messages.split();
     let first = board.sample(Amps::ZERO);
     defmt::info!(
-        "boot rate={=u32} cause={=u8} brown-out-reset={=bool}",
+        "boot rate={=u32} cause={=u8} brown-out-reset={=bool} device={=u32:08x} presets={=u32:08x}",
         RATE_HZ,
         reset as u8,
-        brown_out_reset
+        brown_out_reset,
+        DEVICE_FINGERPRINT.0,
+        PRESETS_FINGERPRINT.0
     );
     if AUTO_ARM && !brown_out_reset {
         defmt::warn!("auto-arm waits for a command: the brown-out level is not 3");

@@ -1,5 +1,7 @@
-//! The tuned parameters of host-sim/presets.toml for the plant with friction, as constants: images
-//! take what `host-sim tune` wrote and carry no copy.
+//! The device and the tuned parameters that images are built for, as constants: images take what
+//! `host-sim identify` and `host-sim tune` wrote and carry no copy.
+//!
+//! `DEVICE=mine.toml PRESETS=tuned.toml cargo firmware` builds for other files than the shipped ones.
 //!
 //! ```
 //! use estimator_core::Hertz;
@@ -10,39 +12,106 @@
 #![no_std]
 
 use estimator_core::{Hertz, Uncertainty};
+use haptic_control::{DualStage, Fingerprint, Motor};
 
-/// Rate in Hz, estimator, parameter, value.
-type Row = (f64, &'static str, &'static str, f64);
+/// Values of one presets file.
+struct Layer {
+    /// Motor, estimator, parameter, value.
+    image: &'static [(&'static str, &'static str, &'static str, f64)],
+    /// Rate in Hz, estimator, parameter, value.
+    tuned: &'static [(f64, &'static str, &'static str, f64)],
+}
 
-static TABLE: &[Row] = include!(concat!(env!("OUT_DIR"), "/table.rs"));
+include!(concat!(env!("OUT_DIR"), "/constants.rs"));
+
+/// Hash of the device that images are built for.
+pub const DEVICE_FINGERPRINT: Fingerprint = DEVICE.fingerprint();
+/// Hash of the tuned parameters.
+pub const PRESETS_FINGERPRINT: Fingerprint = PRESETS;
+
+impl Layer {
+    /// The value tuned at the rate nearest to `rate` by ratio, among the rates at which `estimator`
+    /// is tuned.
+    const fn tuned(&self, estimator: &str, rate: Hertz, parameter: &str) -> Option<f64> {
+        let (mut value, mut nearest) = (None, f64::INFINITY);
+        let mut rows = self.tuned;
+        while let [(at, of, name, tuned), rest @ ..] = rows {
+            rows = rest;
+            if !same(of, estimator) {
+                continue;
+            }
+            let ratio = if *at < rate.0 {
+                rate.0 / *at
+            } else {
+                *at / rate.0
+            };
+            if ratio < nearest {
+                (value, nearest) = (None, ratio);
+            }
+            if ratio == nearest && same(name, parameter) {
+                value = Some(*tuned);
+            }
+        }
+        value
+    }
+
+    const fn image(&self, motor: &str, estimator: &str, parameter: &str) -> Option<f64> {
+        let mut rows = self.image;
+        while let [(moved, of, name, value), rest @ ..] = rows {
+            if same(moved, motor) && same(of, estimator) && same(name, parameter) {
+                return Some(*value);
+            }
+            rows = rest;
+        }
+        None
+    }
+}
 
 /// The value of an estimator's parameter, tuned at the rate nearest to `rate` by ratio, as host-sim
-/// takes it; `None` if the file has no such parameter.
+/// takes it; `None` if no file has such a parameter.
 #[must_use]
 pub const fn find(estimator: &str, rate: Hertz, parameter: &str) -> Option<f64> {
-    let (mut value, mut nearest) = (None, f64::INFINITY);
-    let mut rows = TABLE;
-    while let [(at, of, name, tuned), rest @ ..] = rows {
-        rows = rest;
-        let ratio = if *at < rate.0 {
-            rate.0 / *at
-        } else {
-            *at / rate.0
-        };
-        if same(of, estimator) && same(name, parameter) && ratio < nearest {
-            (value, nearest) = (Some(*tuned), ratio);
+    let mut layers = LAYERS;
+    while let [layer, rest @ ..] = layers {
+        let value = layer.tuned(estimator, rate, parameter);
+        if value.is_some() {
+            return value;
         }
+        layers = rest;
     }
-    value
+    None
 }
 
 /// The value that [`find`] finds.
 ///
 /// # Panics
-/// If the file has no such parameter: in a constant, the build stops.
+/// If no file has such a parameter: in a constant, the build stops.
 #[must_use]
 pub const fn value(estimator: &str, rate: Hertz, parameter: &str) -> f64 {
     find(estimator, rate, parameter).expect("a parameter in host-sim/presets.toml")
+}
+
+/// The value of a parameter in the control loop of an image: the `[image]` section's for that motor,
+/// `large` or `handle`; for the large motor else the tuned value. The file that PRESETS names comes
+/// before the shipped one.
+///
+/// # Panics
+/// If no file has such a value: in a constant, the build stops.
+#[must_use]
+pub const fn image(motor: &str, estimator: &str, rate: Hertz, parameter: &str) -> f64 {
+    let mut layers = LAYERS;
+    while let [layer, rest @ ..] = layers {
+        if let Some(value) = layer.image(motor, estimator, parameter) {
+            return value;
+        }
+        if same(motor, "large")
+            && let Some(value) = layer.tuned(estimator, rate, parameter)
+        {
+            return value;
+        }
+        layers = rest;
+    }
+    panic!("a parameter in the section [image] of host-sim/presets.toml")
 }
 
 /// The uncertainty that an observer is tuned to.

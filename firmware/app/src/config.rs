@@ -29,8 +29,9 @@ const _: () = assert!(
 /// Control ticks for one telemetry frame.
 pub const DECIMATION: u32 = RATE_HZ / FRAMES_HZ;
 
-/// The device that the image is designed for.
-pub const DEVICE: DualStage = DualStage::DEFAULT;
+/// The device that the image is designed for: the one of the file that the environment variable
+/// `DEVICE` named at build time, or the default.
+pub const DEVICE: DualStage = tuned::DEVICE;
 
 /// Whether the image arms without a command.
 pub const AUTO_ARM: bool = cfg!(feature = "auto-arm");

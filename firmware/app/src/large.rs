@@ -10,17 +10,22 @@ use estimator_core::{
 
 use crate::config::{DEVICE, RATE, TIMERS};
 
-/// FOAW over at most 32 intervals.
-pub type Window = Foaw<32, EndFit>;
+/// Longest window of [`Window`], intervals.
+pub const INTERVALS: usize = tuned::image("large", "foaw-end-fit", RATE, "n") as usize;
+/// FOAW over at most [`INTERVALS`].
+pub type Window = Foaw<INTERVALS, EndFit>;
 /// The parameters of [`Window`].
-pub const WINDOW: Window = preset!(Foaw::new(32, 1));
+pub const WINDOW: Window = preset!(Foaw::new(
+    INTERVALS,
+    tuned::image("large", "foaw-end-fit", RATE, "d") as u16
+));
 
 /// A steady-state Kalman filter.
 pub type Filter = SteadyKalmanTriple;
 const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(
     DEVICE.large.counts_per_rev,
     RATE,
-    1e4
+    tuned::image("large", "kalman-triple-steady", RATE, "jerk")
 ));
 /// The parameters of [`Filter`].
 pub const FILTER: Filter = preset!(SteadyKalman::new(&MODEL));

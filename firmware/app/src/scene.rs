@@ -42,7 +42,7 @@ pub type Handle = SteadyKalmanTriple;
 const HANDLE_MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(
     DEVICE.small.counts_per_rev,
     RATE,
-    4e3
+    tuned::image("handle", "kalman-triple-steady", RATE, "jerk")
 ));
 /// The parameters of [`Handle`].
 pub const HANDLE: Handle = preset!(SteadyKalman::new(&HANDLE_MODEL));

@@ -2,7 +2,7 @@
 
 use drivers::{Amplifier, CurrentOutput, DacCode};
 use estimator_core::{Amps, Count, Sample};
-use firmware_app::config::{REFERENCE, TIMER_HZ};
+use firmware_app::config::{DEVICE, REFERENCE, TIMER_HZ};
 use haptic_control::Currents;
 use stm32f4xx_hal::dac::{C1, C2, DacOut, DacPin};
 use stm32f4xx_hal::gpio::{Input, Output, Pin};
@@ -33,6 +33,12 @@ pub(super) const SMALL_ENABLE: u8 = 5;
 const LARGE_FULL_SCALE: Amps = Amps::new(6.0);
 /// Current of the small amplifier at the DAC's ends.
 const SMALL_FULL_SCALE: Amps = Amps::new(1.5);
+const _: () = assert!(
+    DEVICE.large.current_limit <= LARGE_FULL_SCALE.get() as f64
+        && DEVICE.small.current_limit <= SMALL_FULL_SCALE.get() as f64,
+    "large.current_limit_a or small.current_limit_a of the device file is above what the board's \
+     amplifiers give at full scale, 6 A and 1.5 A"
+);
 /// Period that the watchdog is set to, ms. The HAL rounds to steps of 4 ms and adds one: 28 ms at the
 /// 32 kHz of its oscillator, 19 ms at the 47 kHz and 53 ms at the 17 kHz of the datasheet's limits.
 const WATCHDOG_MS: u32 = 25;
