@@ -8,6 +8,7 @@ use clap::Parser;
 use experiments::closed_loop::Hand;
 use haptic_control::SceneKind;
 use indicatif::{ProgressBar, ProgressStyle};
+use simulation::device::Device;
 use terminal::failure::Failure;
 use terminal::output::{print_bytes, write_whole};
 
@@ -61,6 +62,9 @@ struct Arguments {
     /// once
     #[arg(long, value_name = "NAME@S", value_parser = timed::<Fault>)]
     fault: Vec<(f64, Fault)>,
+    /// Device file, as host-sim identify writes it: the device that the image drives
+    #[arg(long, value_name = "FILE.toml")]
+    device: Option<PathBuf>,
     /// ELF file of the image [default: the one that the command below builds]
     #[arg(long)]
     image: Option<PathBuf>,
@@ -72,7 +76,7 @@ struct Arguments {
     rtt: Option<PathBuf>,
     /// Prints what a control tick costs in every scene instead, each run for --seconds, at most 1:
     /// instructions, estimated cycles, and the control rate at which ticks take half of the core
-    #[arg(long, conflicts_with_all = ["scene", "hand", "fault", "record", "rtt", "tune", "estimator", "dac_offset"])]
+    #[arg(long, conflicts_with_all = ["device", "scene", "hand", "fault", "record", "rtt", "tune", "estimator", "dac_offset"])]
     budget: bool,
 }
 
@@ -174,7 +178,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         let table = budget::table(&image, arguments.seconds.min(1.0), arguments.seed)?;
         return print_bytes(table.as_bytes());
     }
+    let device = arguments
+        .device
+        .as_deref()
+        .map_or_else(|| Ok(Device::default()), Device::read);
     let setup = Setup {
+        device: device?,
         hand: match arguments.hand {
             Holder::Hand(hand) => hand,
             Holder::Pressing => scene::press(scene),

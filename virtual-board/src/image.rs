@@ -1,6 +1,7 @@
 //! The flash image: its bytes, and where in it the things are that a probe needs to know.
 
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
@@ -71,7 +72,7 @@ impl Image {
     /// # Errors
     /// One line if cargo cannot build it.
     pub fn build(features: &str) -> Result<Self, String> {
-        Self::build_with(features, None)
+        Self::build_with(features, &[])
     }
 
     /// Builds and reads the image of one scene alone.
@@ -79,10 +80,16 @@ impl Image {
     /// # Errors
     /// As [`Self::build`].
     pub fn build_one(scene: SceneKind) -> Result<Self, String> {
-        Self::build_with("", Some(scene))
+        Self::build_with("", &[("SCENE", scene.name().as_ref())])
     }
 
-    fn build_with(features: &str, scene: Option<SceneKind>) -> Result<Self, String> {
+    /// As [`Self::build`], with environment variables: `SCENE` names the one scene of the image,
+    /// `DEVICE` and `PRESETS` the files that it is built for. Two builds must not run at once in one
+    /// process, because they write the same file.
+    ///
+    /// # Errors
+    /// As [`Self::build`].
+    pub fn build_with(features: &str, variables: &[(&str, &OsStr)]) -> Result<Self, String> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
         let target: PathBuf = root.join("target/firmware-image");
         let triple = "thumbv7em-none-eabihf";
@@ -93,13 +100,13 @@ impl Image {
             .args(["--package", "firmware", "--features", features])
             .args(["--target", triple, "--target-dir"])
             .arg(&target)
-            .env("SCENE", scene.map_or("", SceneKind::name))
+            .env("SCENE", "")
+            .envs(variables.iter().copied())
             .status()
             .map_err(|error| format!("cargo does not start: {error}"))?;
         if !status.success() {
-            let scene = scene.map_or("all scenes", SceneKind::name);
             return Err(format!(
-                "firmware with '{features}' and {scene} does not build"
+                "firmware with '{features}' and {variables:?} does not build"
             ));
         }
         Self::read(&target.join(triple).join("firmware/firmware"))

@@ -63,6 +63,17 @@ pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> Str
             format!("{:.4} s, {}", restart.at_s, restart.cause),
         );
     }
+    let built_for = outcome.telemetry.boots.last().and_then(|boot| boot.device);
+    let here = setup.device.stages.fingerprint();
+    if let Some(other) = built_for.filter(|device| *device != here) {
+        line(
+            "DEVICE",
+            format!(
+                "the image is built for device {other}, this run has device {here}: build the image \
+                 with DEVICE=FILE.toml and give the same file as --device"
+            ),
+        );
+    }
     let range = |range: Option<Range>, unit: &str| {
         range.map_or("none".to_owned(), |r| {
             format!("{} to {}, mean {:.1} {unit}", r.min, r.max, r.mean)

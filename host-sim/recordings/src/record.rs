@@ -120,6 +120,15 @@ pub fn report(telemetry: &Telemetry, runs: &[Run], run: &Run) -> Vec<String> {
         gaps.frames,
         plural(gaps.places, "place"),
     ));
+    if let Some((device, presets)) = telemetry
+        .boots
+        .last()
+        .and_then(|boot| boot.device.zip(boot.presets))
+    {
+        lines.push(format!(
+            "image built for device {device}, presets {presets}"
+        ));
+    }
     let others = |other: &&Run| !std::ptr::eq(*other, run);
     let left: Vec<_> = runs.iter().filter(others).map(|r| r.frames.len()).collect();
     if !left.is_empty() {

@@ -7,6 +7,8 @@ mod rtt;
 mod run;
 mod text;
 
+use haptic_control::Fingerprint;
+
 pub use beside::{Beside, EdgeLine, LearnedLine};
 pub use frame::{Frame, NOBODY};
 pub use run::{Gaps, Run};
@@ -31,6 +33,10 @@ pub struct Boot {
     pub after: usize,
     /// Control rate, Hz.
     pub rate_hz: f64,
+    /// Hash of the device that the image was built for; `None` if the line does not tell it.
+    pub device: Option<Fingerprint>,
+    /// Hash of the tuned parameters of the image; `None` if the line does not tell it.
+    pub presets: Option<Fingerprint>,
 }
 
 impl Telemetry {
@@ -49,8 +55,12 @@ impl Telemetry {
             return;
         }
         if let Some(rate_hz) = boot_rate(line) {
-            let after = self.frames.len();
-            self.boots.push(Boot { after, rate_hz });
+            self.boots.push(Boot {
+                after: self.frames.len(),
+                rate_hz,
+                device: fingerprint(line, "device="),
+                presets: fingerprint(line, "presets="),
+            });
         }
         self.log.push(line.to_owned());
     }
@@ -61,4 +71,27 @@ fn boot_rate(line: &str) -> Option<f64> {
     let word = line.strip_prefix("boot rate=")?.split_whitespace().next()?;
     let rate: u32 = word.parse().ok()?;
     (rate > 0).then(|| f64::from(rate))
+}
+
+/// The hash behind `key` in a boot line: eight hexadecimal digits.
+fn fingerprint(line: &str, key: &str) -> Option<Fingerprint> {
+    let mut words = line.split_whitespace();
+    let digits = words.find_map(|word| word.strip_prefix(key))?;
+    u32::from_str_radix(digits, 16).ok().map(Fingerprint)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boot_line_tells_rate_and_hashes() {
+        let line = "boot rate=10000 cause=0 brown-out-reset=true device=0012abcd presets=ffffffff\n";
+        let boot = Telemetry::text(line.as_bytes()).boots[0];
+        assert_eq!(boot.rate_hz, 10_000.0);
+        assert_eq!(boot.device, Some(Fingerprint(0x0012_ABCD)));
+        assert_eq!(boot.presets, Some(Fingerprint(u32::MAX)));
+        let old = Telemetry::text(b"boot rate=1000 cause=0\n").boots[0];
+        assert_eq!((old.device, old.presets), (None, None));
+    }
 }

@@ -1,6 +1,7 @@
 //! The images, each built once, and runs of them that several tests look at.
 
 use std::collections::HashMap;
+use std::path::Path;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use experiments::closed_loop::Hand;
@@ -12,25 +13,40 @@ use virtual_board::run::{Outcome, Setup, on_board};
 /// Before this the image boots, is armed and settles, s.
 pub(crate) const SETTLED_S: f64 = 0.4;
 
-/// The image of this tree with these features, separated by commas. It is built in a target
-/// directory of its own: cargo holds the usual one.
-pub(crate) fn image(features: &'static str) -> &'static Image {
-    static BUILT: Mutex<Option<HashMap<&str, &Image>>> = Mutex::new(None);
+/// Images by their features and their one scene.
+type Images = HashMap<(&'static str, Option<SceneKind>), &'static Image>;
+
+/// The images built so far. The lock is held while cargo builds one: all are written to one file.
+static BUILT: Mutex<Option<Images>> = Mutex::new(None);
+
+fn built(
+    features: &'static str,
+    scene: Option<SceneKind>,
+    build: impl FnOnce() -> Result<Image, String>,
+) -> &'static Image {
     let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
     let built = built.get_or_insert_default();
     built
-        .entry(features)
-        .or_insert_with(|| Box::leak(Box::new(Image::build(features).unwrap())))
+        .entry((features, scene))
+        .or_insert_with(|| Box::leak(Box::new(build().unwrap())))
+}
+
+/// The image of this tree with these features, separated by commas. It is built in a target
+/// directory of its own: cargo holds the usual one.
+pub(crate) fn image(features: &'static str) -> &'static Image {
+    built(features, None, || Image::build(features))
 }
 
 /// The image of this tree with one scene alone.
 pub(crate) fn image_of_one(scene: SceneKind) -> &'static Image {
-    static BUILT: Mutex<Option<HashMap<SceneKind, &Image>>> = Mutex::new(None);
-    let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
-    let built = built.get_or_insert_default();
-    built
-        .entry(scene)
-        .or_insert_with(|| Box::leak(Box::new(Image::build_one(scene).unwrap())))
+    built("", Some(scene), || Image::build_one(scene))
+}
+
+/// The image of all scenes, built for a device file and a presets file.
+pub(crate) fn image_for(device: &Path, presets: &Path) -> Image {
+    let _built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
+    let files = [("DEVICE", device.as_os_str()), ("PRESETS", presets.as_os_str())];
+    Image::build_with("", &files).unwrap()
 }
 
 /// Runs the image of one scene alone.

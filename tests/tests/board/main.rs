@@ -11,6 +11,7 @@ mod identify;
 mod image;
 mod learned;
 mod mirror;
+mod own_device;
 mod record;
 mod recording;
 mod reference;

@@ -169,6 +169,8 @@ mod tests {
         telemetry.boots = vec![Boot {
             after: 4,
             rate_hz: 1e4,
+            device: None,
+            presets: None,
         }];
         let runs = telemetry.runs();
         let lengths: Vec<_> = runs.iter().map(|run| run.frames.len()).collect();
