@@ -5,6 +5,7 @@ mod amplifier;
 mod command;
 mod dac_code;
 mod pwm;
+mod telemetry;
 
 pub use amplifier::{Amplifier, CurrentOutput};
 pub use command::{Command, Parser, encode};

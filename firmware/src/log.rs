@@ -18,24 +18,31 @@ pub(crate) fn frames(frames: &mut Consumer<'static, Frame>) -> bool {
     any
 }
 
-#[rustfmt::skip]
+/// One line of all fields of a frame.
+macro_rules! line {
+    ($format:literal; $($(#[$doc:meta])* $name:ident: $type:ty, $old:literal, $csv:ident, $value:expr;)+) => {
+        defmt::info!($format, $($value),+)
+    };
+}
+
 fn log(frame: &Frame) {
-    let record = &frame.record;
-    let (sample, action) = (&record.sample, &record.action);
-    defmt::info!(
-        "frame seq={=u32} tick={=u32} large={=u32} small={=u32} wl={=f32} ws={=f32} sl={=f32} estimator={=u8} torque={=f32} il={=f32} is={=f32} state={=u8} cause={=u8} overruns={=u32} drops={=u32} cycles={=u32}",
-        frame.seq, record.tick, sample.large.0, sample.small.0,
-        action.large_velocity.0, action.handle_velocity.0, frame.deviation(), frame.estimator(), action.torque.0,
-        action.currents.large.get(), action.currents.small.get(),
-        record.state, record.cause, record.overruns, frame.drops(firmware_rt::lost()), frame.cycles
-    );
+    let lost = firmware_rt::lost();
+    drivers::frame_fields!(line, frame, lost);
     if let Some(edge) = frame.edge() {
-        defmt::info!("edge seq={=u32} bound={=u32} age={=u32}", frame.seq, edge.boundary.0, edge.age.0);
+        defmt::info!(
+            "edge seq={=u32} bound={=u32} age={=u32}",
+            frame.seq,
+            edge.boundary.0,
+            edge.age.0
+        );
     }
     if let Some(learned) = frame.learned() {
         defmt::info!(
             "learned seq={=u32} damping={=f32} friction={=f32} torque_constant={=f32}",
-            frame.seq, learned.damping, learned.friction, learned.torque_constant
+            frame.seq,
+            learned.damping,
+            learned.friction,
+            learned.torque_constant
         );
     }
     if let Some(Count(count)) = frame.reference {

@@ -292,7 +292,11 @@ fn first_tick(frames: &[Frame], ticks: &[Tick]) -> Option<u32> {
         frames.iter().all(|frame| {
             let tick = ticks.get(frame.tick.wrapping_sub(*first) as usize);
             tick.is_some_and(|tick| {
-                tick.counts == [Some(frame.large as u16), Some(frame.small as u16)]
+                tick.counts
+                    == [
+                        Some(frame.counts_large as u16),
+                        Some(frame.counts_small as u16),
+                    ]
             })
         })
     })

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use haptic_control::{Mode, SceneKind, Stop};
+use haptic_control::SceneKind;
 use recordings::telemetry::NOBODY;
 
 use crate::budget;
@@ -12,25 +12,9 @@ use crate::score::Range;
 /// Before this the image boots and arms itself, s.
 const SETTLED_S: f64 = 0.4;
 
-/// A number of telemetry, with the name that `named` has for it.
-fn numbered(number: &str, named: impl Fn(u8) -> Option<String>) -> String {
-    let name = number.parse().ok().and_then(named);
-    name.map_or_else(
-        || format!("number {number}, which has no name here"),
-        |name| format!("{name} ({number})"),
-    )
-}
-
-fn mode(number: &str) -> String {
-    numbered(number, |number| {
-        Some(Mode::from_code(number)?.as_str().to_owned())
-    })
-}
-
-fn cause(number: &str) -> String {
-    numbered(number, |number| {
-        Some(Stop::from_code(number)?.as_str().replace('-', " "))
-    })
+/// A state or a cause in words, with its number in telemetry.
+fn numbered(name: &str, number: u8) -> String {
+    format!("{} ({number})", name.replace('-', " "))
 }
 
 /// What a run of `scene` came to, a line each.
@@ -91,13 +75,18 @@ pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> Str
     let frames = &outcome.telemetry.frames;
     line("frames", format!("{}, {malformed} malformed", frames.len()));
     if let Some(last) = frames.last() {
-        line("mode", mode(&last.state));
-        line("cause of the stop", cause(&last.cause));
-        if let (Some(estimator), Some(sl)) = (last.estimator, last.sl) {
+        line("mode", numbered(last.state.as_str(), last.state as u8));
+        line(
+            "cause of the stop",
+            numbered(last.cause.as_str(), last.cause as u8),
+        );
+        if let (Some(estimator), Some(sigma)) = (last.estimator, last.sigma_large) {
             let name = match estimator {
                 NOBODY => "none in charge".to_owned(),
                 number => {
-                    format!("number {number}, which gives its standard deviation as {sl:.3} rad/s")
+                    format!(
+                        "number {number}, which gives its standard deviation as {sigma:.3} rad/s"
+                    )
                 }
             };
             line("estimator", name);
@@ -139,13 +128,15 @@ pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> Str
 #[cfg(test)]
 mod tests {
     use super::*;
+    use haptic_control::{Mode, Stop};
 
     #[test]
     fn numbers_of_telemetry_have_names() {
-        assert_eq!(mode("3"), "safe (3)");
-        assert_eq!(mode("4"), "settling (4)");
-        assert_eq!(cause("0"), "none (0)");
-        assert_eq!(cause("4"), "not moving (4)");
-        assert_eq!(cause("200"), "number 200, which has no name here");
+        let mode = |mode: Mode| numbered(mode.as_str(), mode as u8);
+        assert_eq!(mode(Mode::Safe), "safe (3)");
+        assert_eq!(mode(Mode::Settling), "settling (4)");
+        let cause = |cause: Stop| numbered(cause.as_str(), cause as u8);
+        assert_eq!(cause(Stop::None), "none (0)");
+        assert_eq!(cause(Stop::Stall), "not moving (4)");
     }
 }

@@ -1,7 +1,7 @@
 //! Telemetry frames: made by the control task, logged at the lowest priority.
 
 use estimator_core::{Count, Deviations, Edge, Sample};
-use haptic_control::Action;
+use haptic_control::{Action, Mode, Stop};
 use heapless::spsc::{Producer, Queue};
 
 use crate::config::{DECIMATION, EDGES};
@@ -23,10 +23,10 @@ pub struct Record {
     pub sample: Sample,
     /// The tick's output.
     pub action: Action,
-    /// [`haptic_control::Mode`] as a number.
-    pub state: u8,
-    /// [`haptic_control::Stop`] as a number.
-    pub cause: u8,
+    /// State of the safety machine.
+    pub state: Mode,
+    /// Cause of the latest stop.
+    pub cause: Stop,
     /// Ticks missed or late so far, modulo 2^32.
     pub overruns: u32,
     /// The large motor's estimator on its latest velocity.

@@ -124,9 +124,11 @@ pub fn table(rows: &[Row], with_coupler: bool, width: usize) -> String {
 pub fn of_the_board(recording: &Recording, board: &BoardColumns, device: &Device) -> Vec<String> {
     let mut said = Vec::new();
     let trace = &recording.trace;
-    if let (Some(omega), Some(velocity), Some(sigma)) =
-        (&trace.true_omega, &board.velocity_large, &board.sigma_large)
-    {
+    if let (Some(omega), Some(velocity), Some(sigma)) = (
+        &trace.true_omega,
+        board.column("velocity_large"),
+        board.column("sigma_large"),
+    ) {
         let own = Estimate {
             estimator: "board",
             velocity: velocity.iter().map(|v| *v as f32).collect(),

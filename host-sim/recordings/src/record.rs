@@ -2,33 +2,32 @@
 
 use std::fmt::Write as _;
 
-use crate::telemetry::{Frame, LearnedLine, Run, Telemetry};
+use crate::telemetry::{COLUMNS, Column, Frame, LearnedLine, Run, Telemetry};
 use simulation::trace::EDGE_CLOCK_HZ;
 use terminal::failure::Failure;
-
-/// The columns: those that [`Recording`](crate::recording::Recording) knows, then what the board
-/// made of them.
-const COLUMNS: &str = "t,counts_large,counts_small,current,current_small,torque,velocity_large,\
-    velocity_small,state,cause";
 
 /// The columns of what was learned.
 const LEARNED: &str = ",learned_damping,learned_friction,learned_torque_constant";
 
 /// A run as CSV: one row a frame, `t` from its first frame, by its ticks and the control rate.
 ///
-/// `sigma_large` follows where every frame says how far off its velocity may be, `edge_tick` and
-/// `edge_bound` where the firmware stamped edges; a frame without a stamp
-/// leaves them empty. The three of `learned` stand in the rows whose frames had such a line, where any had.
-/// `true_omega` is a last column, if every frame has one.
+/// Fields of the frame follow as far as every frame has them, `edge_tick` and `edge_bound` where the
+/// firmware stamped edges; a frame without a stamp leaves them empty. The three columns of what was
+/// learned are there if any frame has them, and empty in the other rows. `true_omega` is a last
+/// column, if every frame has one.
 #[must_use]
 pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) -> String {
     let truth: Option<Vec<f64>> = run.frames.iter().map(|(_, f)| true_omega(f)).collect();
     let edges = run.frames.iter().any(|(_, f)| f.beside.edge.is_some());
-    let mut text = COLUMNS.to_owned();
     let learned = run.frames.iter().any(|(_, f)| f.beside.learned.is_some());
-    let sigma = run.frames.iter().all(|(_, f)| f.sl.is_some());
+    let known = |(_, value): &&Column| run.frames.iter().all(|(_, frame)| value(frame).is_some());
+    let columns: Vec<_> = COLUMNS.iter().filter(known).collect();
+    let mut text = "t".to_owned();
+    for (name, _) in &columns {
+        text.push(',');
+        text += name;
+    }
     let more = [
-        (",sigma_large", sigma),
         (",edge_tick,edge_bound", edges),
         (LEARNED, learned),
         (",true_omega", truth.is_some()),
@@ -39,25 +38,11 @@ pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) 
     text.push('\n');
     for (k, (tick, frame)) in run.frames.iter().enumerate() {
         let t = *tick as f64 / rate_hz;
-        let Frame {
-            large,
-            small,
-            il,
-            is,
-            torque,
-            wl,
-            ws,
-            state,
-            cause,
-            ..
-        } = frame;
         // Writing to a string cannot fail.
-        let _ = write!(
-            text,
-            "{t},{large},{small},{il},{is},{torque},{wl},{ws},{state},{cause}"
-        );
-        if let (true, Some(sl)) = (sigma, frame.sl) {
-            let _ = write!(text, ",{sl}");
+        let _ = write!(text, "{t}");
+        for (_, value) in &columns {
+            text.push(',');
+            text += &value(frame).unwrap_or_default();
         }
         if edges {
             let _ = match frame.beside.edge {
@@ -223,8 +208,9 @@ mod tests {
         let log = log(0..3) + "edge seq=2 bound=1 age=21000\n";
         let telemetry = Telemetry::text(log.as_bytes());
         let text = csv(&telemetry.runs()[0], 1e4, |_| Some(1.0));
-        let header = format!("{COLUMNS},edge_tick,edge_bound,true_omega");
-        assert_eq!(text.lines().next(), Some(header.as_str()));
+        let header = "t,counts_large,counts_small,current,current_small,torque,velocity_large,\
+                      velocity_small,state,cause,edge_tick,edge_bound,true_omega";
+        assert_eq!(text.lines().next(), Some(header));
         assert!(text.lines().nth(1).unwrap().ends_with(",2,0,,,1"), "{text}");
         assert!(
             text.lines().nth(3).unwrap().ends_with(",2,0,147000,1,1"),

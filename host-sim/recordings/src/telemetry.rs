@@ -10,6 +10,7 @@ mod text;
 use haptic_control::Fingerprint;
 
 pub use beside::{Beside, EdgeLine, LearnedLine};
+pub(crate) use frame::{COLUMNS, Column};
 pub use frame::{Frame, NOBODY};
 pub use run::{Gaps, Run};
 
@@ -86,7 +87,8 @@ mod tests {
 
     #[test]
     fn boot_line_tells_rate_and_hashes() {
-        let line = "boot rate=10000 cause=0 brown-out-reset=true device=0012abcd presets=ffffffff\n";
+        let line =
+            "boot rate=10000 cause=0 brown-out-reset=true device=0012abcd presets=ffffffff\n";
         let boot = Telemetry::text(line.as_bytes()).boots[0];
         assert_eq!(boot.rate_hz, 10_000.0);
         assert_eq!(boot.device, Some(Fingerprint(0x0012_ABCD)));

@@ -138,13 +138,13 @@ fn panels(view: &RecordingView) -> Vec<Panel> {
 
     let board = view.board;
     let currents = [
-        ("large motor", LARGE, &trace.current),
-        ("small motor", SMALL, &board.current_small),
+        ("large motor", LARGE, trace.current.as_deref()),
+        ("small motor", SMALL, board.column("current_small")),
     ];
     let currents = currents.into_iter();
-    let there = currents.filter_map(|(n, c, v)| Some(Curve::new(n, c, v.as_ref()?)));
+    let there = currents.filter_map(|(n, c, v)| Some(Curve::new(n, c, v?)));
     add("current, A", there.collect(), None);
-    let torque = board.torque.iter().map(|torque| {
+    let torque = board.column("torque").into_iter().map(|torque| {
         let torque: Vec<_> = torque.iter().map(|torque| 1e3 * torque).collect();
         Curve::new("wanted on the handle", INK, &torque)
     });
@@ -167,7 +167,7 @@ fn velocities(view: &RecordingView) -> Vec<Curve> {
             curve
         })
         .collect();
-    if let Some(own) = &view.board.velocity_large {
+    if let Some(own) = view.board.column("velocity_large") {
         curves.push(Curve::new("the board's own", BOARD, own));
     }
     if curves.iter().all(|curve| !curve.sizes) {

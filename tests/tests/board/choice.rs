@@ -1,5 +1,6 @@
 //! The large motor's estimator, exchanged by command while the board runs.
 
+use haptic_control::{Mode, Stop};
 use std::sync::OnceLock;
 
 use estimator_core::{Confidence as _, VelocityEstimator as _};
@@ -56,7 +57,7 @@ fn telemetry_tells_who_is_in_charge() {
             "{taking_over}"
         );
         let last = run.telemetry.frames.last().unwrap();
-        assert_eq!((last.state.as_str(), last.cause.as_str()), ("2", "0"));
+        assert_eq!((last.state, last.cause), (Mode::Running, Stop::None));
         assert_eq!((last.overruns, last.drops), (0, 0));
         // While both run the task takes longer; less than a quarter of its period, at
         // one cycle an instruction.
@@ -166,8 +167,9 @@ fn the_confidence_in_telemetry_holds() {
         air.telemetry.frames.iter().filter(inside)
     };
     for number in [0, 1] {
-        let error = |frame: &Frame| f64::from(frame.wl) - air.tick(frame).unwrap().large.omega;
-        let sigma = |frame: &Frame| f64::from(frame.sl.unwrap());
+        let error =
+            |frame: &Frame| f64::from(frame.velocity_large) - air.tick(frame).unwrap().large.omega;
+        let sigma = |frame: &Frame| f64::from(frame.sigma_large.unwrap());
         let n = frames(number).count() as f64;
         let within = frames(number).filter(|f| error(f).abs() <= 2.0 * sigma(f));
         let within = within.count() as f64 / n;
@@ -182,7 +184,7 @@ fn the_confidence_in_telemetry_holds() {
         );
     }
     // The very numbers: a full window of 32 and the steady filter.
-    let first = |number| frames(number).next().unwrap().sl.unwrap();
+    let first = |number| frames(number).next().unwrap().sigma_large.unwrap();
     let filter = large::FILTER.variance(&large::FILTER.start(&estimator_core::Sample::default()));
     assert_eq!(first(1), filter.deviation().rad_per_s(&RIG.large_scale));
 }

@@ -1,8 +1,8 @@
 //! Instructions of the control task, and when it begins.
 
+use haptic_control::{Mode, SceneKind, Stop};
 use std::sync::OnceLock;
 
-use haptic_control::SceneKind;
 use virtual_board::run::{Outcome, Setup, Tick};
 use virtual_board::score::Range;
 
@@ -50,12 +50,12 @@ fn playing(features: &'static str, scene: SceneKind) -> Outcome {
 /// A run of a scene that was not stopped.
 fn healthy(scene: SceneKind, run: Outcome) -> Outcome {
     let last = run.telemetry.frames.last().expect("frames");
-    let state = if scene == SceneKind::Off { "1" } else { "2" };
-    assert_eq!(
-        (last.state.as_str(), last.cause.as_str()),
-        (state, "0"),
-        "{scene}"
-    );
+    let state = if scene == SceneKind::Off {
+        Mode::Armed
+    } else {
+        Mode::Running
+    };
+    assert_eq!((last.state, last.cause), (state, Stop::None), "{scene}");
     run
 }
 

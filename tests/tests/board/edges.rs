@@ -60,7 +60,7 @@ fn lost(run: &Outcome, hz: f64) -> i32 {
         .map(|frame| {
             let tick = run.tick(frame).expect("its tick");
             let made = (tick.at_ns as f64 * 1e-9 * hz.abs()) as i32;
-            made - (frame.large as i32).abs()
+            made - (frame.counts_large as i32).abs()
         })
         .collect();
     lost.sort_unstable();

@@ -2,11 +2,10 @@
 
 mod matrix;
 
+use haptic_control::{Mode, SceneKind, Stop};
 use std::fmt::Write as _;
 
 use experiments::closed_loop::Hand;
-use haptic_control::SceneKind;
-use recordings::telemetry::Frame;
 use simulation::device::Device;
 use virtual_board::fault::Fault;
 use virtual_board::run::{Outcome, Setup};
@@ -21,8 +20,8 @@ struct Found {
     never_on: bool,
     reset_ms: Vec<f64>,
     force_mn: f64,
-    state: String,
-    cause: String,
+    state: Option<Mode>,
+    cause: Option<Stop>,
     quiet: bool,
 }
 
@@ -55,16 +54,14 @@ impl Bound {
         };
         let after = run.moments.iter().skip(from);
         let last = run.telemetry.frames.last();
-        let said =
-            |number: fn(&Frame) -> &String| last.map_or("none".to_owned(), |f| number(f).clone());
         let resets = run.restarts.iter();
         Found {
             off_ms: off_s.map(|s| s * 1e3),
             never_on,
             reset_ms: resets.map(|reset| 1e3 * (reset.at_s - self.at_s)).collect(),
             force_mn,
-            state: said(|frame| &frame.state),
-            cause: said(|frame| &frame.cause),
+            state: last.map(|frame| frame.state),
+            cause: last.map(|frame| frame.cause),
             quiet: after.clone().count() > 100 && after.into_iter().all(|m| m.currents == [0.0; 2]),
         }
     }
@@ -77,11 +74,15 @@ impl Bound {
         };
         let [most, least] = self.force_mn;
         // Whatever came after, no amplifier was on again.
-        let safe = found.quiet && found.state == "3";
+        let safe = found.quiet && found.state == Some(Mode::Safe);
         let end = match (self.end, found.off_ms) {
-            (End::Off(range, cause), Some(ms)) => safe && found.cause == cause && within(ms, range),
-            (End::NeverOn(cause), None) => found.never_on && safe && found.cause == cause,
-            (End::On, None) => found.state == "2" && found.cause == "0",
+            (End::Off(range, cause), Some(ms)) => {
+                safe && found.cause == Some(cause) && within(ms, range)
+            }
+            (End::NeverOn(cause), None) => found.never_on && safe && found.cause == Some(cause),
+            (End::On, None) => {
+                found.state == Some(Mode::Running) && found.cause == Some(Stop::None)
+            }
             _ => false,
         };
         reset && end && within(found.force_mn, [least, most])
@@ -133,11 +134,13 @@ fn every_fault_ends_as_it_has_to() {
             off,
             resets.collect::<Vec<_>>().join(" "),
             format!("{:.1}", found.force_mn),
-            found.cause.clone(),
+            found
+                .cause
+                .map_or("none".to_owned(), |cause| (cause as u8).to_string()),
         ];
         if !bound.holds(found) {
             let Found { state, quiet, .. } = found;
-            let more = format!("state {state}, quiet {quiet}");
+            let more = format!("state {state:?}, quiet {quiet}");
             writeln!(failed, "{}; {more}", row.join(", ")).unwrap();
         }
         rows.push(row);

@@ -1,5 +1,6 @@
 //! What the image does about its chip: debugger, watchdog, tick, reset and exceptions.
 
+use haptic_control::{Mode, Stop};
 use std::num::NonZeroU64;
 
 use virtual_board::command::Command;
@@ -16,9 +17,9 @@ const FREEZE: u32 = 0xE004_2008;
 const WATCHDOGS: u32 = 0x1800;
 
 /// State and cause in the last frame.
-fn last(run: &Outcome) -> (&str, &str) {
+fn last(run: &Outcome) -> (Mode, Stop) {
     let frame = run.telemetry.frames.last().expect("frames");
-    (frame.state.as_str(), frame.cause.as_str())
+    (frame.state, frame.cause)
 }
 
 #[test]
@@ -39,7 +40,7 @@ fn debug_settings_are_cleared_while_the_image_runs() {
     };
     assert_eq!(run.values[..2], [CATCHES, WATCHDOGS]);
     assert_eq!((catches & CATCHES, freezes & WATCHDOGS), (0, 0));
-    assert_eq!(last(&run), ("2", "0"));
+    assert_eq!(last(&run), (Mode::Running, Stop::None));
 }
 
 /// Whoever sets them ever again holds the outputs in the next halt.
@@ -63,14 +64,14 @@ fn arming_is_refused_while_debug_settings_come_back() {
             .telemetry
             .frames
             .iter()
-            .find(|frame| frame.cause == "15");
+            .find(|frame| frame.cause == Stop::Debugger);
         assert_eq!(
-            refused.map(|frame| frame.state.as_str()),
-            Some("3"),
+            refused.map(|frame| frame.state),
+            Some(Mode::Safe),
             "{address:#x}"
         );
         assert_eq!((of(0.0, 0.2), of(0.2, 0.25)), (0, 1), "{address:#x}");
-        assert_eq!(last(&run), ("1", "0"), "{address:#x}");
+        assert_eq!(last(&run), (Mode::Armed, Stop::None), "{address:#x}");
     }
 }
 
@@ -83,7 +84,7 @@ const LARGE_COUNTER: &str = "0x40000824";
 
 /// What the image says while it runs scene and amplifiers, and takes this exception at 0.2 s: with
 /// the amplifiers off within 20 us it says `message`, and it starts again for `cause`.
-fn ends_with(pending: u32, message: &str, cause: &str) {
+fn ends_with(pending: u32, message: &str, cause: Stop) {
     let run = run(&Setup {
         seconds: 0.3,
         accesses: vec![(0.2, CoreAccess::Store(ICSR, pending))],
@@ -94,18 +95,18 @@ fn ends_with(pending: u32, message: &str, cause: &str) {
     assert!(off < 120e-6, "{message}: {off} s");
     let log = &run.telemetry.log;
     assert!(log.iter().any(|said| said.contains(message)), "{log:?}");
-    assert_eq!((run.restarts.len(), last(&run)), (1, ("3", cause)));
+    assert_eq!((run.restarts.len(), last(&run)), (1, (Mode::Safe, cause)));
     assert_eq!(run.enables.last().map(|(_, on)| *on), Some([false; 2]));
 }
 
 #[test]
 fn an_nmi_disables_the_amplifiers_and_is_reported_after_the_reset() {
-    ends_with(NMI, "clock failure", "10");
+    ends_with(NMI, "clock failure", Stop::ClockFailure);
 }
 
 #[test]
 fn an_exception_without_a_handler_disables_the_amplifiers_and_is_reported() {
-    ends_with(PEND_SV, "exception -2", "16");
+    ends_with(PEND_SV, "exception -2", Stop::Exception);
 }
 
 /// A core so slow that the control task interrupts the log: a fault of the control task drops the
@@ -131,7 +132,7 @@ fn a_fault_in_the_midst_of_a_frame_is_logged() {
         for word in ["cfsr=0x8200 ", "hfsr=0x40000000 ", LARGE_COUNTER] {
             assert!(said.contains(word), "{k}: {said}");
         }
-        assert_eq!(last(&fault), ("3", "12"));
+        assert_eq!(last(&fault), (Mode::Safe, Stop::HardFault));
         let tick = healthy
             .ticks
             .iter()
@@ -176,7 +177,7 @@ fn a_crystal_that_starts_within_half_a_second_is_waited_for() {
         commands: vec![(0.7, Command::Arm), (0.75, Setup::default().commands[0].1)],
         ..Setup::default()
     });
-    assert_eq!((last(&run), run.restarts.len()), (("2", "0"), 0));
+    assert_eq!((last(&run), run.restarts.len()), ((Mode::Running, Stop::None), 0));
 }
 
 /// Without its crystal the board is safe and cannot be armed. Once the crystal has run for 0.1 s, the
@@ -197,10 +198,10 @@ fn a_crystal_that_starts_later_restarts_the_board() {
         })
     };
     let refused = until(1.25);
-    assert_eq!(last(&refused), ("3", "10"));
+    assert_eq!(last(&refused), (Mode::Safe, Stop::ClockFailure));
     assert_eq!(refused.enables.len(), 1, "never on: {:?}", refused.enables);
     let armed = until(1.5);
-    assert_eq!(last(&armed), ("2", "0"));
+    assert_eq!(last(&armed), (Mode::Running, Stop::None));
     let [restart] = &armed.restarts[..] else {
         panic!("{:?}", armed.restarts)
     };

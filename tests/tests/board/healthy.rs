@@ -1,7 +1,7 @@
 //! The loop closes, on time and at a known cost, and does no harm before it is armed.
 
 use experiments::closed_loop::Hand;
-use haptic_control::SceneKind;
+use haptic_control::{Mode, SceneKind, Stop};
 use simulation::device::Device;
 use virtual_board::run::{AMPS_PER_CODE, Outcome, RATE_HZ, Setup};
 use virtual_board::scene::{press, stiffness};
@@ -83,12 +83,12 @@ fn a_press_of_10_n_switches_no_scene_off() {
     for scene in SceneKind::environments() {
         let run = run(&of_scene(scene, press(scene), 2.4));
         let last = run.telemetry.frames.last().expect("frames");
-        let state = if scene == SceneKind::Off { "1" } else { "2" };
-        assert_eq!(
-            (last.state.as_str(), last.cause.as_str()),
-            (state, "0"),
-            "{scene}"
-        );
+        let state = if scene == SceneKind::Off {
+            Mode::Armed
+        } else {
+            Mode::Running
+        };
+        assert_eq!((last.state, last.cause), (state, Stop::None), "{scene}");
         let force = largest_force(&run);
         println!("{scene}: {force} N");
         if stiffness(scene).is_some() {
@@ -108,7 +108,7 @@ fn an_offset_of_the_dac_is_felt_and_stops_nothing() {
             ..of_scene(SceneKind::FreeAir, Hand::Still, 3.0)
         });
         let last = run.telemetry.frames.last().expect("frames");
-        assert_eq!((last.state.as_str(), last.cause.as_str()), ("2", "0"));
+        assert_eq!((last.state, last.cause), (Mode::Running, Stop::None));
         let felt = run.moments.iter().skip((SETTLED_S * 1e4) as usize);
         let n = felt.len() as f64;
         felt.map(|moment| moment.felt).sum::<f64>() / n

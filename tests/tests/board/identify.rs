@@ -2,7 +2,7 @@
 
 use experiments::closed_loop::Hand;
 use experiments::identify::{Known, identify};
-use haptic_control::SceneKind;
+use haptic_control::{Mode, SceneKind, Stop};
 use recordings::recording::Recording;
 use simulation::device::Device;
 
@@ -23,7 +23,7 @@ fn the_image_excites_a_device_and_its_recording_tells_what_it_is() {
         ..of_scene(SceneKind::Excite, Hand::Still, 16.2)
     });
     let last = excited.telemetry.frames.last().unwrap();
-    assert_eq!((last.state.as_str(), last.cause.as_str()), ("2", "0"));
+    assert_eq!((last.state, last.cause), (Mode::Running, Stop::None));
     let text = excited.csv().unwrap();
     let recording = Recording::parse(text.as_bytes(), "board").unwrap();
     let known = Known::TorqueConstant(device.stages.large.torque_constant);

@@ -45,7 +45,10 @@ pub(crate) fn image_of_one(scene: SceneKind) -> &'static Image {
 /// The image of all scenes, built for a device file and a presets file.
 pub(crate) fn image_for(device: &Path, presets: &Path) -> Image {
     let _built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
-    let files = [("DEVICE", device.as_os_str()), ("PRESETS", presets.as_os_str())];
+    let files = [
+        ("DEVICE", device.as_os_str()),
+        ("PRESETS", presets.as_os_str()),
+    ];
     Image::build_with("", &files).unwrap()
 }
 

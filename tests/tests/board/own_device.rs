@@ -1,12 +1,12 @@
 //! The path of a device of one's own: identify, tune, image, board.
 
+use haptic_control::{DualStage, Fingerprint, Mode, SceneKind, Stop};
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use estimator_core::{Count, EndFit, Foaw, Hertz, Sample, Scale, VelocityEstimator};
 use experiments::closed_loop::Hand;
-use haptic_control::{DualStage, Fingerprint, SceneKind};
 use simulation::device::Device;
 use virtual_board::run::{Outcome, Setup, on_board};
 
@@ -107,9 +107,13 @@ fn image_built_for_identified_and_tuned_files_drives_that_device() {
     let (mut along, mut square) = (0.0, 0.0);
     for frame in &frames {
         let tick = run.tick_index(frame).unwrap();
-        assert_eq!(frame.wl.to_bits(), velocities[tick].to_bits(), "{frame:?}");
+        assert_eq!(
+            frame.velocity_large.to_bits(),
+            velocities[tick].to_bits(),
+            "{frame:?}"
+        );
         let omega = run.ticks[tick].large.omega;
-        along += f64::from(frame.wl) * omega;
+        along += f64::from(frame.velocity_large) * omega;
         square += omega * omega;
     }
     // In radians of this encoder: with the counts of the default device it would be twice as fast.
@@ -118,5 +122,5 @@ fn image_built_for_identified_and_tuned_files_drives_that_device() {
 
     // The scene goes on to the end, without a stop.
     let last = run.telemetry.frames.last().unwrap();
-    assert_eq!((last.state.as_str(), last.cause.as_str()), ("2", "0"));
+    assert_eq!((last.state, last.cause), (Mode::Running, Stop::None));
 }

@@ -5,7 +5,7 @@ use catalogue::parameters::Parameters;
 use experiments::closed_loop::Hand;
 use experiments::compare::interval;
 use experiments::replay::replay;
-use haptic_control::SceneKind;
+use haptic_control::{Mode, SceneKind, Stop};
 use recordings::record::{choose, csv};
 use recordings::recording::{BoardColumns, Recording};
 use recordings::telemetry::{Frame, Telemetry};
@@ -56,7 +56,7 @@ fn the_bytes_of_the_probe_make_the_recording_that_the_run_makes() {
         assert_eq!((a.estimator, &a.velocity), (b.estimator, &b.velocity));
     }
     let board = BoardColumns::parse(text.as_bytes(), "r").unwrap();
-    let own = board.velocity_large.unwrap();
+    let own = board.column("velocity_large").unwrap();
     let truth = direct.trace.true_omega.unwrap();
     let inside = own.iter().zip(&truth);
     let inside =
@@ -151,8 +151,11 @@ fn a_torque_set_point_is_felt_bounded_and_gone_when_nobody_speaks() {
     );
     // Half a second after the last word the scene is off, and cause 13 says why.
     let last = run.telemetry.frames.last().unwrap();
-    assert_eq!((last.state.as_str(), last.cause.as_str()), ("1", "13"));
-    let currents = [last.il, last.is].map(f32::abs);
+    assert_eq!(
+        (last.state, last.cause),
+        (Mode::Armed, Stop::CommandTimeout)
+    );
+    let currents = [last.current, last.current_small].map(f32::abs);
     assert!(last.torque == 0.0 && currents < [1e-6; 2], "{currents:?}");
     assert_eq!(last.overruns, 0);
 }
@@ -194,7 +197,7 @@ fn a_wall_is_tuned_while_it_pushes_and_the_torque_does_not_jump() {
         refusals(&run),
         Some("refused not-finite=0 out-of-bounds=1 unknown=1")
     );
-    assert_eq!(frames.last().unwrap().state, "2");
+    assert_eq!(frames.last().unwrap().state, Mode::Running);
 }
 
 /// Frames that were made and did not come, by their numbers, and what the last one says was dropped.

@@ -50,7 +50,7 @@ fn rows(run: &Outcome) -> Vec<Row> {
     let rows = run.telemetry.frames.iter().filter_map(|frame| {
         let tick = run.tick(frame)?;
         (tick.at_ns as f64 * 1e-9 >= SETTLED_S).then(|| Row {
-            estimate: frame.wl,
+            estimate: frame.velocity_large,
             omega: tick.large.omega,
             felt: tick.felt,
             wanted: frame.torque.into(),

@@ -111,8 +111,7 @@ impl Bench {
 
     pub(crate) fn state(&self) -> (Mode, Stop) {
         let Record { state, cause, .. } = self.record();
-        let mode = Mode::from_code(state).expect("a mode");
-        (mode, Stop::from_code(cause).expect("a cause"))
+        (state, cause)
     }
 
     /// Torque that the handle should feel, mN.m.

@@ -1,30 +1,18 @@
 //! What the board made of its samples, in the same file: for figures alone.
 
+use std::collections::BTreeMap;
 use std::io::Read;
 
 use csv::ByteRecord;
 
 use super::{Row, csv_failure};
-use crate::telemetry::LearnedLine;
+use crate::telemetry::{COLUMNS, LearnedLine};
 use terminal::failure::Failure;
 
 /// Columns that `record` writes and `replay` ignores; each may be missing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BoardColumns {
-    /// `current_small`: the small motor's current, A.
-    pub current_small: Option<Vec<f64>>,
-    /// `torque`: what the handle should feel, N.m.
-    pub torque: Option<Vec<f64>>,
-    /// `velocity_large`: the board's own estimate, rad/s.
-    pub velocity_large: Option<Vec<f64>>,
-    /// `sigma_large`: the standard deviation that the board believes that to have, rad/s.
-    pub sigma_large: Option<Vec<f64>>,
-    /// `velocity_small`: its estimate of the handle's velocity, rad/s.
-    pub velocity_small: Option<Vec<f64>>,
-    /// `state`: of the safety machine, by its number.
-    pub state: Option<Vec<f64>>,
-    /// `cause`: why it stopped, by its number.
-    pub cause: Option<Vec<f64>>,
+    columns: BTreeMap<&'static str, Vec<f64>>,
     /// `learned_damping`, `learned_friction`, `learned_torque_constant`: what it had learned last.
     pub learned: Option<LearnedLine>,
 }
@@ -57,10 +45,11 @@ impl BoardColumns {
         let header = reader.byte_headers().map_err(|e| csv_failure(name, &e))?;
         let names: Vec<_> = header.iter().map(<[u8]>::to_vec).collect();
         let mut places = Vec::new();
-        for (place, column) in names.iter().enumerate() {
-            if let Some((column, values)) = board.column(column) {
-                *values = Some(Vec::new());
-                places.push((place, column));
+        for (place, name) in names.iter().enumerate() {
+            let known = COLUMNS.iter().find(|(column, _)| column.as_bytes() == name);
+            if let Some((column, _)) = known {
+                board.columns.insert(column, Vec::new());
+                places.push((place, *column));
             }
         }
         let place = |column: &str| names.iter().position(|name| name == column.as_bytes());
@@ -77,7 +66,7 @@ impl BoardColumns {
             };
             for &(place, column) in &places {
                 let number = row.number(column, place)?;
-                if let Some((_, Some(values))) = board.column(column.as_bytes()) {
+                if let Some(values) = board.columns.get_mut(column) {
                     values.push(number);
                 }
             }
@@ -94,18 +83,10 @@ impl BoardColumns {
         Ok(board)
     }
 
-    /// The column called `name`.
-    fn column(&mut self, name: &[u8]) -> Option<(&'static str, &mut Option<Vec<f64>>)> {
-        match name {
-            b"current_small" => Some(("current_small", &mut self.current_small)),
-            b"torque" => Some(("torque", &mut self.torque)),
-            b"velocity_large" => Some(("velocity_large", &mut self.velocity_large)),
-            b"sigma_large" => Some(("sigma_large", &mut self.sigma_large)),
-            b"velocity_small" => Some(("velocity_small", &mut self.velocity_small)),
-            b"state" => Some(("state", &mut self.state)),
-            b"cause" => Some(("cause", &mut self.cause)),
-            _ => None,
-        }
+    /// The column called `name`, a field of telemetry frames.
+    #[must_use]
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        self.columns.get(name).map(Vec::as_slice)
     }
 }
 
@@ -117,9 +98,9 @@ mod tests {
     fn columns_that_are_there_are_read_and_a_bad_field_is_named() {
         let text = "t,torque,counts_large,state\n0,0.5,1,2\n1,-0.25,1,3\n";
         let board = BoardColumns::parse(text.as_bytes(), "r.csv").unwrap();
-        assert_eq!(board.torque, Some(vec![0.5, -0.25]));
-        assert_eq!(board.state, Some(vec![2.0, 3.0]));
-        assert_eq!(board.current_small, None);
+        assert_eq!(board.column("torque"), Some(&[0.5, -0.25][..]));
+        assert_eq!(board.column("state"), Some(&[2.0, 3.0][..]));
+        assert_eq!(board.column("current_small"), None);
         assert_eq!(board.learned, None);
         let text = "learned_torque_constant,learned_damping,learned_friction\n,,\n3,1,2\n,,\n";
         let learned = LearnedLine {

@@ -1,4 +1,8 @@
+//! A telemetry frame, by the list of fields that the firmware logs.
+
 use std::str::FromStr;
+
+use haptic_control::{Mode, Stop};
 
 use super::beside::Beside;
 
@@ -8,72 +12,124 @@ pub(super) const START: &str = "frame seq=";
 /// The number of no estimator.
 pub const NOBODY: u8 = u8::MAX;
 
-/// What the firmware says of one control tick.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Frame {
-    /// Sequence number.
-    pub seq: u32,
-    /// Control tick.
-    pub tick: u32,
-    /// Large encoder.
-    pub large: u32,
-    /// Small encoder.
-    pub small: u32,
-    /// Velocity of the large motor, rad/s.
-    pub wl: f32,
-    /// Velocity of the handle, rad/s.
-    pub ws: f32,
-    /// Standard deviation of `wl` that its estimator believes in, rad/s.
-    pub sl: Option<f32>,
-    /// Number of that estimator; [`NOBODY`] while one takes over, and where the scene needs none.
-    pub estimator: Option<u8>,
-    /// Torque that the handle should feel, N.m.
-    pub torque: f32,
-    /// Current of the large motor, A.
-    pub il: f32,
-    /// Current of the small motor, A.
-    pub is: f32,
-    /// State of the safety machine.
-    pub state: String,
-    /// Why it stopped.
-    pub cause: String,
-    /// Ticks missed or late.
-    pub overruns: u32,
-    /// Frames lost.
-    pub drops: u32,
-    /// Cycles of the control task.
-    pub cycles: u32,
-    /// What was said beside it.
-    pub beside: Beside,
+/// A column of recordings: its name, and the value of a frame as text, if the frame has one.
+pub(crate) type Column = (&'static str, fn(&Frame) -> Option<String>);
+
+macro_rules! frame {
+    ($format:literal; $($(#[$doc:meta])* $name:ident: $type:ty, $old:literal, $csv:ident, $value:expr;)+) => {
+        /// A telemetry frame: what the firmware logs of one control tick.
+        #[derive(Clone, Debug, Default, PartialEq)]
+        pub struct Frame {
+            $($(#[$doc])* pub $name: $type,)+
+            /// Lines that the firmware logs beside the frame.
+            pub beside: Beside,
+        }
+
+        impl FromStr for Frame {
+            type Err = String;
+
+            /// By names, in any order; names that are not known, and what a log puts behind, are
+            /// skipped.
+            fn from_str(line: &str) -> Result<Self, String> {
+                let fields = Fields(line);
+                Ok(Self {
+                    $($name: Field::read(&fields, stringify!($name), $old)?,)+
+                    beside: Beside::default(),
+                })
+            }
+        }
+
+        /// The columns of a recording, in their order.
+        pub(crate) const COLUMNS: &[Column] = {
+            const ALL: &[(bool, Column)] = &[
+                $((is_csv(stringify!($csv)), (stringify!($name), |frame| frame.$name.text()))),+
+            ];
+            const COUNT: usize = {
+                let (mut count, mut rest) = (0, ALL);
+                while let [(csv, _), others @ ..] = rest {
+                    (count, rest) = (count + *csv as usize, others);
+                }
+                count
+            };
+            const CHOSEN: [Column; COUNT] = {
+                let (mut chosen, mut count, mut rest) = ([ALL[0].1; COUNT], 0, ALL);
+                while let [(csv, column), others @ ..] = rest {
+                    if *csv {
+                        chosen[count] = *column;
+                        count += 1;
+                    }
+                    rest = others;
+                }
+                chosen
+            };
+            &CHOSEN
+        };
+    };
 }
 
-impl FromStr for Frame {
-    type Err = String;
+drivers::frame_fields!(frame, frame, lost);
 
-    /// By names, in any order; names that are not known, and what a log puts behind, are skipped.
-    fn from_str(line: &str) -> Result<Self, String> {
-        let fields = Fields(line);
-        Ok(Self {
-            seq: fields.number("seq")?,
-            tick: fields.number("tick")?,
-            large: fields.number("large")?,
-            small: fields.number("small")?,
-            wl: fields.number("wl")?,
-            ws: fields.number("ws")?,
-            sl: fields.optional("sl")?,
-            estimator: fields.optional("estimator")?,
-            torque: fields.number("torque")?,
-            il: fields.number("il")?,
-            is: fields.number("is")?,
-            state: fields.text("state")?.to_owned(),
-            cause: fields.text("cause")?.to_owned(),
-            overruns: fields.number("overruns")?,
-            drops: fields.number("drops")?,
-            cycles: fields.number("cycles")?,
-            beside: Beside::default(),
-        })
+/// Whether the word of a row says that its field is a column.
+const fn is_csv(word: &str) -> bool {
+    matches!(word.as_bytes(), b"csv")
+}
+
+/// A value in a frame's line and in a recording.
+trait Field: Sized {
+    /// The value under either name.
+    fn read(fields: &Fields<'_>, name: &str, old: &str) -> Result<Self, String>;
+
+    /// The value in a recording, if there is one.
+    fn text(&self) -> Option<String>;
+}
+
+macro_rules! numbers {
+    ($($type:ty)+) => {$(
+        impl Field for $type {
+            fn read(fields: &Fields<'_>, name: &str, old: &str) -> Result<Self, String> {
+                fields.number(fields.name_of(name, old))
+            }
+
+            fn text(&self) -> Option<String> {
+                Some(self.to_string())
+            }
+        }
+    )+};
+}
+
+numbers!(u8 u32 f32);
+
+/// A field that older images do not have.
+impl<T: Field> Field for Option<T> {
+    fn read(fields: &Fields<'_>, name: &str, old: &str) -> Result<Self, String> {
+        match fields.text(fields.name_of(name, old)) {
+            Ok(_) => T::read(fields, name, old).map(Some),
+            Err(_) => Ok(None),
+        }
+    }
+
+    fn text(&self) -> Option<String> {
+        self.as_ref()?.text()
     }
 }
+
+macro_rules! codes {
+    ($($type:ty)+) => {$(
+        impl Field for $type {
+            fn read(fields: &Fields<'_>, name: &str, old: &str) -> Result<Self, String> {
+                let code = u8::read(fields, name, old)?;
+                let value = Self::from_code(code);
+                value.ok_or_else(|| format!("{name}={code} has no meaning in '{}'", fields.0))
+            }
+
+            fn text(&self) -> Option<String> {
+                (*self as u8).text()
+            }
+        }
+    )+};
+}
+
+codes!(Mode Stop);
 
 /// Words `name=value` of a line.
 pub(super) struct Fields<'a>(pub(super) &'a str);
@@ -85,11 +141,11 @@ impl<'a> Fields<'a> {
         found.ok_or_else(|| format!("no {name} in '{}'", self.0))
     }
 
-    /// What older images do not say.
-    fn optional<T: FromStr>(&self, name: &str) -> Result<Option<T>, String> {
+    /// The one of a field's two names that the line has; the new one if it has neither.
+    fn name_of<'n>(&self, name: &'n str, old: &'n str) -> &'n str {
         match self.text(name) {
-            Ok(_) => self.number(name).map(Some),
-            Err(_) => Ok(None),
+            Err(_) if self.text(old).is_ok() => old,
+            _ => name,
         }
     }
 
@@ -105,17 +161,24 @@ pub(super) mod tests {
     use super::*;
 
     pub(in super::super) const LINE: &str = "frame seq=3 tick=30 large=65535 small=7 wl=-1.5 \
-        ws=0.25 torque=0.0 il=0.1 is=-0.2 state=Running cause=None overruns=0 drops=1 cycles=900";
+        ws=0.25 torque=0.0 il=0.1 is=-0.2 state=2 cause=0 overruns=0 drops=1 cycles=900";
 
     #[test]
     fn a_frame_is_read_by_names() {
         let frame: Frame = LINE.parse().unwrap();
-        assert_eq!((frame.tick, frame.large, frame.drops), (30, 65535, 1));
-        assert_eq!((frame.wl, frame.state.as_str()), (-1.5, "Running"));
-        assert_eq!((frame.sl, frame.estimator), (None, None));
+        assert_eq!(
+            (frame.tick, frame.counts_large, frame.drops),
+            (30, 65535, 1)
+        );
+        assert_eq!((frame.velocity_large, frame.state), (-1.5, Mode::Running));
+        assert_eq!((frame.current_small, frame.cause), (-0.2, Stop::None));
+        assert_eq!((frame.sigma_large, frame.estimator), (None, None));
         let said = LINE.replace("torque", "sl=0.5 estimator=255 torque");
         let said: Frame = said.parse().unwrap();
-        assert_eq!((said.sl, said.estimator), (Some(0.5), Some(NOBODY)));
+        assert_eq!(
+            (said.sigma_large, said.estimator),
+            (Some(0.5), Some(NOBODY))
+        );
         assert!(
             LINE.replace("torque", "sl=x torque")
                 .parse::<Frame>()
@@ -123,6 +186,62 @@ pub(super) mod tests {
         );
         let longer = LINE.replace(" ws", " new=1 ws") + " (firmware src/telemetry.rs:93)";
         assert_eq!(longer.parse(), Ok(frame));
+    }
+
+    #[test]
+    fn names_of_older_logs_and_of_today_give_the_same_frame() {
+        let today = [
+            (" large=", " counts_large="),
+            (" small=", " counts_small="),
+            (" wl=", " velocity_large="),
+            (" ws=", " velocity_small="),
+            (" il=", " current="),
+            (" is=", " current_small="),
+        ];
+        let mut line = LINE.to_owned();
+        for (old, new) in today {
+            assert!(line.contains(old), "{old}");
+            line = line.replace(old, new);
+        }
+        assert_eq!(line.parse::<Frame>(), LINE.parse());
+    }
+
+    #[test]
+    fn state_and_cause_without_meaning_are_refused() {
+        let wrong = LINE.replace("state=2", "state=9");
+        assert!(
+            wrong
+                .parse::<Frame>()
+                .unwrap_err()
+                .contains("state=9 has no meaning")
+        );
+        let wrong = LINE.replace("cause=0", "cause=200");
+        assert!(
+            wrong
+                .parse::<Frame>()
+                .unwrap_err()
+                .contains("cause=200 has no meaning")
+        );
+    }
+
+    #[test]
+    fn recording_has_these_columns_of_a_frame() {
+        let names: Vec<_> = COLUMNS.iter().map(|(name, _)| *name).collect();
+        assert_eq!(
+            names,
+            [
+                "counts_large",
+                "counts_small",
+                "current",
+                "current_small",
+                "torque",
+                "velocity_large",
+                "velocity_small",
+                "state",
+                "cause",
+                "sigma_large"
+            ]
+        );
     }
 
     #[test]

@@ -35,13 +35,13 @@ pub(super) fn states(
 /// Instants in the window at which state or cause are others than before, and what they are.
 pub(super) fn changes(view: &RecordingView) -> Vec<(f64, String)> {
     let (t, board) = (&view.recording.t, view.board);
-    let Some(state) = &board.state else {
+    let Some(state) = board.column("state") else {
         return Vec::new();
     };
     let told = |row: usize| {
         (
             state[row],
-            board.cause.as_ref().map_or(0.0, |cause| cause[row]),
+            board.column("cause").map_or(0.0, |cause| cause[row]),
         )
     };
     let inside = |row: &usize| (view.window[0]..=view.window[1]).contains(&t[*row]);

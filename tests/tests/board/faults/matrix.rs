@@ -1,5 +1,6 @@
 //! What each fault may cost, and how it has to end.
 
+use haptic_control::Stop;
 use virtual_board::fault::Fault;
 
 /// When most faults happen: the device runs in free air.
@@ -24,9 +25,9 @@ const NOTICED_MN: f64 = 10.0;
 #[derive(Clone, Copy)]
 pub(super) enum End {
     /// Amplifiers off so many ms later, within a range, for this cause.
-    Off([f64; 2], &'static str),
+    Off([f64; 2], Stop),
     /// Amplifiers never on, for this cause.
-    NeverOn(&'static str),
+    NeverOn(Stop),
     /// Amplifiers on, no cause: nothing dangerous, or nothing that is noticed yet.
     On,
 }
@@ -78,7 +79,7 @@ const FAST: [f64; 2] = starved(47e3);
 const fn dies(fault: Fault, when: [f64; 2], force_mn: [f64; 2]) -> Bound {
     Bound {
         reset_ms: Some(when),
-        ..bound(fault, 0.2, End::Off(when, "8"), force_mn)
+        ..bound(fault, 0.2, End::Off(when, Stop::Watchdog), force_mn)
     }
 }
 
@@ -91,7 +92,7 @@ const fn dies_at_start(with: Option<Fault>, [least, most]: [f64; 2]) -> Bound {
         with,
         // No longer, because the run is armed again at 100 ms.
         watched_s: 0.09,
-        end: End::NeverOn("8"),
+        end: End::NeverOn(Stop::Watchdog),
         reset_ms: Some(reset_ms),
         ..bound(Fault::HungCore, 0.0, End::On, [0.0, 0.0])
     }
@@ -101,7 +102,7 @@ const fn dies_at_start(with: Option<Fault>, [least, most]: [f64; 2]) -> Bound {
 /// device at the end of the first one behind it. A halted core cannot do better.
 const fn halted(ms: u16, force_mn: [f64; 2]) -> Bound {
     let [_, late] = NEXT_TICK;
-    let end = End::Off([ms as f64, ms as f64 + late], "6");
+    let end = End::Off([ms as f64, ms as f64 + late], Stop::TickOverrun);
     bound(Fault::Halt(ms), 0.2, end, force_mn)
 }
 
@@ -110,40 +111,40 @@ pub(super) const MATRIX: [Bound; 32] = [
     bound(
         Fault::StuckA,
         0.3,
-        End::Off([0.0, 10.0], "14"),
+        End::Off([0.0, 10.0], Stop::RunawayDirection),
         [60.0, 10.0],
     ),
     bound(
         Fault::StuckB,
         0.3,
-        End::Off([0.0, 10.0], "14"),
+        End::Off([0.0, 10.0], Stop::RunawayDirection),
         [60.0, 10.0],
     ),
     // The loop pushes ever harder until the monitor misses the motion.
     bound(
         Fault::StuckBoth,
         0.5,
-        End::Off([0.0, 200.0], "4"),
+        End::Off([0.0, 200.0], Stop::Stall),
         [300.0, 10.0],
     ),
     // The loop drives the motor the wrong way until the monitor has seen enough of it.
     bound(
         Fault::Swapped,
         0.3,
-        End::Off([0.0, 6.0], "14"),
+        End::Off([0.0, 6.0], Stop::RunawayDirection),
         [90.0, 10.0],
     ),
     bound(Fault::LostCounts, 2.0, End::On, [100.0, 10.0]),
     bound(
         Fault::AmplifierFault,
         0.2,
-        End::Off(NEXT_TICK, "5"),
+        End::Off(NEXT_TICK, Stop::AmplifierFault),
         [1.0, 0.0],
     ),
     bound(
         Fault::SmallAmplifierFault,
         0.2,
-        End::Off(NEXT_TICK, "5"),
+        End::Off(NEXT_TICK, Stop::AmplifierFault),
         [1.0, 0.0],
     ),
     dies(Fault::HungCore, NOMINAL, [NOTICED_MN, 1.0]),
@@ -168,7 +169,7 @@ pub(super) const MATRIX: [Bound; 32] = [
     bound(
         Fault::LongTasks,
         0.2,
-        End::Off([0.36, 0.85], "6"),
+        End::Off([0.36, 0.85], Stop::TickOverrun),
         [5.0, 0.0],
     ),
     dies(Fault::HungControl, NOMINAL, [NOTICED_MN, 1.0]),
@@ -184,16 +185,26 @@ pub(super) const MATRIX: [Bound; 32] = [
     bound(Fault::FastWatchdog, 0.3, End::On, [0.0, 0.0]),
     Bound {
         reset_ms: Some(NOMINAL),
-        ..bound(Fault::BusError, 0.2, End::Off(NEXT_TICK, "12"), [1.0, 0.0])
+        ..bound(
+            Fault::BusError,
+            0.2,
+            End::Off(NEXT_TICK, Stop::HardFault),
+            [1.0, 0.0],
+        )
     },
     // Never on: there is nothing to compare with.
-    bound(Fault::DeadCrystal, 0.3, End::NeverOn("10"), [0.0, 0.0]),
+    bound(
+        Fault::DeadCrystal,
+        0.3,
+        End::NeverOn(Stop::ClockFailure),
+        [0.0, 0.0],
+    ),
     // The emulator raises no NMI: the control task finds the lost crystal, on a clock of 16 MHz,
     // which makes every tick ten times as long and late.
     bound(
         Fault::CrystalFails,
         0.2,
-        End::Off([0.0, 1.5], "10"),
+        End::Off([0.0, 1.5], Stop::ClockFailure),
         [5.0, 0.0],
     ),
     // Control is not touched; but an interrupt that comes an instruction later may take a current
@@ -206,7 +217,7 @@ pub(super) const MATRIX: [Bound; 32] = [
         ..bound(
             Fault::BrownOut,
             0.2,
-            End::Off([0.0, STEP_MS], "9"),
+            End::Off([0.0, STEP_MS], Stop::BrownOut),
             [1.0, 0.0],
         )
     },
