@@ -177,7 +177,10 @@ fn a_crystal_that_starts_within_half_a_second_is_waited_for() {
         commands: vec![(0.7, Command::Arm), (0.75, Setup::default().commands[0].1)],
         ..Setup::default()
     });
-    assert_eq!((last(&run), run.restarts.len()), ((Mode::Running, Stop::None), 0));
+    assert_eq!(
+        (last(&run), run.restarts.len()),
+        ((Mode::Running, Stop::None), 0)
+    );
 }
 
 /// Without its crystal the board is safe and cannot be armed. Once the crystal has run for 0.1 s, the
