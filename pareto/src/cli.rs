@@ -4,16 +4,17 @@ use std::ffi::OsString;
 use std::path::Path;
 
 use clap::{Parser, Subcommand};
+use measured::Table;
 use terminal::failure::Failure;
 use terminal::output::{print_bytes, write_whole};
 
-use crate::golden::Golden;
 use crate::{control, measure, peer_tuning, plot, table};
 
 /// Counts on the emulated board what every estimator costs and sets it against its error, and what
 /// the control task costs in every scene: tables here, CSV, JSON and plots in target/pareto.
 ///
-/// With UPDATE_GOLDEN=1 in the environment tables and plots of docs/ are written anew.
+/// With UPDATE_GOLDEN=1 in the environment measured/*.csv, and tables and plots of docs/ are written
+/// anew.
 #[derive(Debug, Parser)]
 #[command(name = "cargo pareto", bin_name = "cargo pareto", version)]
 struct Arguments {
@@ -48,21 +49,22 @@ fn everything() -> Result<(), Failure> {
     control::rate(&mut rows, &tasks);
     let estimators = Report {
         name: "pareto",
-        golden: &table::GOLDEN,
-        markdown: table::markdown(&rows),
+        table: &table::TABLE,
+        cells: table::cells(&rows),
         csv: table::csv(&rows),
         json: json(&rows)?,
         plot: plot::svg(&rows)?,
     };
     let control = Report {
         name: "control-rate",
-        golden: &control::table::GOLDEN,
-        markdown: control::table::markdown(&tasks),
+        table: &control::table::TABLE,
+        cells: control::table::cells(&tasks),
         csv: control::table::csv(&tasks),
         json: json(&tasks)?,
         plot: control::plot::svg(&tasks)?,
     };
-    print_bytes(format!("{}\n{}", estimators.markdown, control.markdown).as_bytes())?;
+    let shown = [&estimators, &control].map(|one| one.table.markdown(&one.cells));
+    print_bytes(shown.join("\n").as_bytes())?;
     estimators.write()?;
     control.write()
 }
@@ -75,9 +77,8 @@ fn json(rows: &impl serde::Serialize) -> Result<String, Failure> {
 struct Report {
     /// Of its files.
     name: &'static str,
-    /// Where its table stands in the docs.
-    golden: &'static Golden,
-    markdown: String,
+    table: &'static Table,
+    cells: Vec<Vec<String>>,
     csv: String,
     json: String,
     plot: String,
@@ -97,13 +98,9 @@ impl Report {
             let file = folder.join(self.name).with_extension(extension);
             write_whole(&file, text.as_bytes())?;
         }
-        if std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1") {
-            let docs = root.join("docs");
-            let page = docs.join("benchmarks.md");
-            let text = std::fs::read_to_string(&page)
-                .map_err(|error| Failure::Input(format!("{}: {error}", page.display())))?;
-            write_whole(&page, self.golden.placed(&text, &self.markdown)?.as_bytes())?;
-            let plot = docs.join(self.name).with_extension("svg");
+        if measured::update() {
+            self.table.write(&self.cells).map_err(Failure::Input)?;
+            let plot = root.join("docs").join(self.name).with_extension("svg");
             write_whole(&plot, self.plot.as_bytes())?;
         }
         Ok(())

@@ -6,7 +6,6 @@ pub mod bound;
 pub mod cli;
 pub mod control;
 mod flow;
-pub mod golden;
 pub mod image;
 pub mod measure;
 mod peer_tuning;

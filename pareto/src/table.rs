@@ -2,25 +2,42 @@
 
 use std::fmt::Write;
 
-use crate::golden::Golden;
+use measured::Table;
+
 use crate::measure::Row;
 
-/// Where the table stands.
-pub const GOLDEN: Golden = Golden {
-    begin: "<!-- pareto: written by cargo pareto -->",
-    end: "<!-- end of pareto -->",
+/// Run time against error of every estimator.
+pub const TABLE: Table = Table {
+    name: "pareto",
+    page: "benchmarks.md",
+    columns: &[
+        ("estimator", "estimator"),
+        ("mean_3", "mean, `3`"),
+        ("most_3", "most, `3`"),
+        ("at_rest_3", "at rest, `3`"),
+        ("mean_s", "mean, `s`"),
+        ("most_s", "most, `s`"),
+        ("cycles_3", "cycles, `3`"),
+        ("code_3", "code, `3`"),
+        ("state", "state"),
+        ("rms_1khz_rad_s", "RMS, 1 kHz"),
+        ("rms_10khz_rad_s", "RMS, 10 kHz"),
+        ("front", "front"),
+        ("rate_khz", "kHz"),
+    ],
+    command: "cargo pareto",
 };
 
-const HEAD: &str = "\
-| estimator | mean, `3` | most, `3` | at rest, `3` | mean, `s` | most, `s` | cycles, `3` | code, `3` | state | RMS, 1 kHz | RMS, 10 kHz | front | kHz |
-|---|---|---|---|---|---|---|---|---|---|---|---|---|
-";
-
-/// The table in Markdown.
+/// A count may move by a tenth or by 3; an error is small and the same everywhere.
 #[must_use]
-pub fn markdown(rows: &[Row]) -> String {
-    let mut table = HEAD.to_owned();
-    for row in rows {
+pub fn slack(_column: &str, then: f64) -> f64 {
+    (0.1 * then).max(if then < 3.0 { 0.0 } else { 3.0 })
+}
+
+/// The cells of the table.
+#[must_use]
+pub fn cells(rows: &[Row]) -> Vec<Vec<String>> {
+    let row = |row: &Row| {
         let [fast, small] = &row.cost;
         let front = match row.front {
             [true, true] => "both",
@@ -29,23 +46,23 @@ pub fn markdown(rows: &[Row]) -> String {
             [false, false] => "",
         };
         let [slow_rate, fast_rate] = row.rms_rad_s;
-        writeln!(
-            table,
-            "| {} | {:.0} | {} | {:.0} | {:.0} | {} | {:.0} | {} | {} | {slow_rate:.3} | {fast_rate:.3} | {front} | {:.1} |",
-            row.name,
-            fast.mean,
-            fast.most,
-            fast.at_rest,
-            small.mean,
-            small.most,
-            row.cycles(),
-            fast.code,
-            row.state,
-            1e-3 * row.highest_rate_hz,
-        )
-        .expect("a string takes all");
-    }
-    table
+        vec![
+            row.name.clone(),
+            format!("{:.0}", fast.mean),
+            fast.most.to_string(),
+            format!("{:.0}", fast.at_rest),
+            format!("{:.0}", small.mean),
+            small.most.to_string(),
+            format!("{:.0}", row.cycles()),
+            fast.code.to_string(),
+            row.state.to_string(),
+            format!("{slow_rate:.3}"),
+            format!("{fast_rate:.3}"),
+            front.to_owned(),
+            format!("{:.1}", 1e-3 * row.highest_rate_hz),
+        ]
+    };
+    rows.iter().map(row).collect()
 }
 
 /// Everything as CSV.

@@ -2,36 +2,48 @@
 
 use std::fmt::Write as _;
 
-use super::Task;
-use crate::golden::Golden;
+use measured::Table;
 
-/// Where the table stands.
-pub const GOLDEN: Golden = Golden {
-    begin: "<!-- control: written by cargo pareto -->",
-    end: "<!-- end of control -->",
+use super::Task;
+
+/// The control task in every scene.
+pub const TABLE: Table = Table {
+    name: "control",
+    page: "benchmarks.md",
+    columns: &[
+        ("scene", "scene"),
+        ("estimator", "large motor by"),
+        ("instructions_mean", "instructions, mean"),
+        ("instructions_most", "most"),
+        ("cycles_mean", "cycles, mean"),
+        ("cycles_most", "most"),
+        ("khz_instructions_mean", "kHz, instructions, mean"),
+        ("khz_instructions_most", "most"),
+        ("khz_cycles_mean", "kHz, cycles, mean"),
+        ("khz_cycles_most", "most"),
+    ],
+    command: "cargo pareto",
 };
 
-const HEAD: &str = "\
-| scene | large motor by | instructions, mean | most | cycles, mean | most | kHz, instructions, mean | most | kHz, cycles, mean | most |
-|---|---|---|---|---|---|---|---|---|---|
-";
-
-/// The table in Markdown.
+/// The cells of the table.
 #[must_use]
-pub fn markdown(tasks: &[Task]) -> String {
-    let mut table = HEAD.to_owned();
-    for task in tasks {
+pub fn cells(tasks: &[Task]) -> Vec<Vec<String>> {
+    let row = |task: &Task| {
         let (mean, most) = task.instructions;
         let (cycles, cycles_most) = task.cycles;
-        let [a, b, c, d] = task.highest_rates_hz().map(|hertz| 1e-3 * hertz);
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            table,
-            "| {} | {} | {mean:.0} | {most} | {cycles:.0} | {cycles_most} | {a:.1} | {b:.1} | {c:.1} | {d:.1} |",
-            task.scene, task.estimator
-        );
-    }
-    table
+        let rates = task.highest_rates_hz();
+        let mut cells = vec![
+            task.scene.clone(),
+            task.estimator.to_owned(),
+            format!("{mean:.0}"),
+            most.to_string(),
+            format!("{cycles:.0}"),
+            cycles_most.to_string(),
+        ];
+        cells.extend(rates.map(|hertz| format!("{:.1}", 1e-3 * hertz)));
+        cells
+    };
+    tasks.iter().map(row).collect()
 }
 
 /// Everything as CSV.

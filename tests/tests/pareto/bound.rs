@@ -1,18 +1,15 @@
 //! The bound of every update's instructions, from its machine code, against the most that hostile
 //! and simulated traces make of it. `UPDATE_GOLDEN=1` writes the table anew.
 
-use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use bench_image::{SUBJECTS, Subject};
 use estimator_core::{Counts, Sample};
+use measured::Table;
 use pareto::board::{Job, on_board};
 use pareto::image::{Image, Level};
 use pareto::{bound, traces};
 use stress::course::Course;
-
-const BEGIN: &str = "<!-- bounds: written by the test of pareto -->";
-const END: &str = "<!-- end of bounds -->";
 
 /// Ticks of a hostile stretch, and stretches; the mailbox holds 4096 samples.
 const STRETCH: usize = 100;
@@ -130,25 +127,32 @@ fn measure() -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-fn docs() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/benchmarks.md")
-}
+const TABLE: Table = Table {
+    name: "bounds",
+    page: "benchmarks.md",
+    columns: &[
+        ("estimator", "estimator"),
+        ("bound_3", "bound, `3`"),
+        ("most_3", "most seen, `3`"),
+        ("bound_s", "bound, `s`"),
+        ("most_s", "most seen, `s`"),
+    ],
+    command: "cargo test --release -p acceptance --test pareto bound",
+};
 
-fn table(rows: &[Row]) -> String {
-    let mut table = String::from(
-        "| estimator | bound, `3` | most seen, `3` | bound, `s` | most seen, `s` |\n|---|---:|---:|---:|---:|\n",
-    );
-    for Row { name, found } in rows {
-        let [speed, size] = found.map(|Found { bound, most }| format!("{bound} | {most}"));
-        writeln!(table, "| {name} | {speed} | {size} |").expect("a string takes all");
-    }
-    table
+fn cells(rows: &[Row]) -> Vec<Vec<String>> {
+    let row = |Row { name, found }: &Row| {
+        let figures = found.iter().flat_map(|found| [found.bound, found.most]);
+        let figures = figures.map(|figure| figure.to_string());
+        std::iter::once(name.clone()).chain(figures).collect()
+    };
+    rows.iter().map(row).collect()
 }
 
 /// The bound `a + b n` that docs/theory/foaw.md states for windows of n intervals holds at either
 /// level and is at most 10 instructions above the larger one.
 fn as_told_of_windows(rows: &[Row]) {
-    let theory = docs().with_file_name("theory/foaw.md");
+    let theory = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/theory/foaw.md");
     let theory = std::fs::read_to_string(theory).unwrap();
     for (name, n, [a, b]) in [
         ("foaw-end-fit, n = 15", 15, [76, 19]),
@@ -166,17 +170,6 @@ fn as_told_of_windows(rows: &[Row]) {
             "{name}: {bound} instructions, told {told}"
         );
     }
-}
-
-/// Figures of the table by line.
-fn figures(table: &str) -> Vec<(String, Vec<f64>)> {
-    let rows = table.lines().filter(|line| line.starts_with('|')).skip(2);
-    rows.map(|line| {
-        let mut cells = line.trim_matches('|').split('|').map(str::trim);
-        let name = cells.next().unwrap_or_default().to_owned();
-        (name, cells.map(|cell| cell.parse().unwrap()).collect())
-    })
-    .collect()
 }
 
 #[test]
@@ -197,22 +190,6 @@ fn no_update_takes_more_instructions_than_its_code_allows() {
 
     as_told_of_windows(&rows);
 
-    let text = std::fs::read_to_string(docs()).unwrap();
-    let (before, rest) = text.split_once(BEGIN).unwrap();
-    let (written, after) = rest.split_once(END).unwrap();
-    let now = table(&rows);
-    if std::env::var_os("UPDATE_GOLDEN").is_some() {
-        std::fs::write(docs(), format!("{before}{BEGIN}\n\n{now}\n{END}{after}")).unwrap();
-        return;
-    }
-    let (written, now) = (figures(written), figures(&now));
-    assert_eq!(written.len(), now.len());
-    for ((name, then), (_, now)) in written.iter().zip(&now) {
-        for (then, now) in then.iter().zip(now) {
-            assert!(
-                (then - now).abs() <= (0.1 * then).max(3.0),
-                "{name}: {then} written, {now} now; UPDATE_GOLDEN=1 writes the table anew"
-            );
-        }
-    }
+    let checked = TABLE.check(&cells(&rows), |_, then| (0.1 * then).max(3.0));
+    checked.unwrap_or_else(|error| panic!("{error}"));
 }

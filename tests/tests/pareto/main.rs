@@ -1,33 +1,14 @@
-//! The tables of run time against error and of the control task in docs/benchmarks.md, measured
-//! again.
+//! The tables of run time against error and of the control task, measured again.
 //!
 //! `UPDATE_GOLDEN=1 cargo pareto` writes them anew.
 
 mod bound;
 
-use std::path::Path;
-
 use bench_image::SUBJECTS;
 use estimator_catalogue::ROWS;
 use pareto::control::{self, Task};
-use pareto::golden::Golden;
 use pareto::measure::{self, Row};
 use pareto::table;
-
-fn docs() -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/benchmarks.md");
-    std::fs::read_to_string(path).expect("docs/benchmarks.md")
-}
-
-/// Fails with the rows of a table that are not what they were.
-fn check(golden: &Golden, now: &str) {
-    let moved = golden.moved(&docs(), now).unwrap();
-    assert!(
-        moved.is_empty(),
-        "{}\nif that is meant, UPDATE_GOLDEN=1 cargo pareto writes the table anew",
-        moved.join("\n")
-    );
-}
 
 #[test]
 fn run_time_error_and_control_rate_are_what_the_tables_say() {
@@ -35,8 +16,13 @@ fn run_time_error_and_control_rate_are_what_the_tables_say() {
     let mut rows = measure::measure().unwrap();
     let tasks = control::measure().unwrap();
     control::rate(&mut rows, &tasks);
-    check(&table::GOLDEN, &table::markdown(&rows));
-    check(&control::table::GOLDEN, &control::table::markdown(&tasks));
+    let estimators = (table::TABLE, table::cells(&rows));
+    let control = (control::table::TABLE, control::table::cells(&tasks));
+    for (table, cells) in [&estimators, &control] {
+        table
+            .check(cells, table::slack)
+            .unwrap_or_else(|error| panic!("{error}"));
+    }
     claims_of_estimators(&rows);
     claims_of_tasks(&tasks, &rows);
 
@@ -44,11 +30,11 @@ fn run_time_error_and_control_rate_are_what_the_tables_say() {
     for factor in [0.8, 1.25] {
         let mut broken = rows.clone();
         broken[2].cost[0].mean *= factor;
-        let moved = table::GOLDEN.moved(&docs(), &table::markdown(&broken));
+        let moved = table::TABLE.moved(&table::cells(&broken), table::slack);
         assert_eq!(moved.unwrap().len(), 1);
         let mut broken = tasks.clone();
         broken[2].cycles.0 *= factor;
-        let moved = control::table::GOLDEN.moved(&docs(), &control::table::markdown(&broken));
+        let moved = control::table::TABLE.moved(&control::table::cells(&broken), table::slack);
         assert_eq!(moved.unwrap().len(), 1);
     }
 }
