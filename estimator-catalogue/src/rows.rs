@@ -163,6 +163,19 @@ macro_rules! estimators {
             },
             |c, motor, rate, clock, p, N| c::Pll =>
                 c::Pll::new(c::Hertz(p.bandwidth_hz), rate);
+            fading_memory, "fading-memory", Nothing,
+            (bandwidth_hz: BANDWIDTH),
+            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
+            {
+                summary: "alpha-beta-gamma filter: a parabola through all counts, old ones fading",
+                needs: Signals::COUNT,
+                settling: Settling::EqualPoles(3),
+                colour: Colour::BROWN,
+                dash: Dash::Dotted,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::FadingMemory =>
+                c::FadingMemory::new(c::Hertz(p.bandwidth_hz), rate);
             m_over_t, "m-over-t", Nothing,
             (),
             (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),

@@ -19,6 +19,7 @@
 //! | Kalman, full covariance | [`Kalman`] | x, P | counts; current with [`Model::motor`] |
 //! | Kalman, preset gain table | [`TableKalman`] | x, 1 index | the same |
 //! | Kalman, preset steady gain | [`SteadyKalman`] | x | the same |
+//! | alpha-beta-gamma filter with fading memory | [`FadingMemory`] | 3 floats | counts |
 //! | critically damped tracking loop | [`Pll`] | 2 floats | counts |
 //! | M/T from edge time stamps | [`MOverT`] | 1 edge | counts, edges |
 //! | observer with friction and slip | [`Observer`] | 4 floats | counts; as built: current, small count, edges |
@@ -59,6 +60,7 @@ mod design_error;
 mod device;
 mod edge_clock;
 mod estimator;
+mod fading_memory;
 mod finite_difference;
 mod foaw;
 mod handover;
@@ -82,6 +84,7 @@ pub use coupled_motor::CoupledMotor;
 pub use design_error::DesignError;
 pub use device::Device;
 pub use estimator::{AccelerationEstimator, Skip, VelocityEstimator};
+pub use fading_memory::{FadingMemory, FadingMemoryState};
 pub use finite_difference::FiniteDifference;
 pub use foaw::{BestFit, EndFit, Fit, Foaw, FoawState};
 pub use handover::{Handover, HandoverState, Side};

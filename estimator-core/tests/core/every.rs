@@ -8,9 +8,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use estimator_core::{
-    BestFit, CountsPerTick, Device, EndFit, FiniteDifference, Fit, Foaw, Handover, Hertz, Kalman,
-    LateCurrent, LowPass, Model, Pll, Sample, Signals, SteadyKalman, TableKalmanMotor,
-    TableKalmanTriple, VelocityEstimator,
+    BestFit, CountsPerTick, Device, EndFit, FadingMemory, FiniteDifference, Fit, Foaw, Handover,
+    Hertz, Kalman, LateCurrent, LowPass, Model, Pll, Sample, Signals, SteadyKalman,
+    TableKalmanMotor, TableKalmanTriple, VelocityEstimator,
 };
 
 use crate::observer;
@@ -158,6 +158,33 @@ where
     }
 }
 
+/// The fading-memory filter, with the response of its textbook form.
+fn fading_memory(bandwidth: f64, rate: f64) -> Case {
+    let p = (-std::f64::consts::TAU * bandwidth / rate).exp();
+    let gains = [
+        1.0 - p.powi(3),
+        1.5 * (1.0 - p).powi(2) * (1.0 + p),
+        (1.0 - p).powi(3),
+    ];
+    // A triple pole: n² p^n.
+    let memory = forgets(bandwidth, rate) * 3 / 2;
+    let (mut x, mut v, mut a, mut per_count) = (0.0, 0.0, 0.0, 0.0f64);
+    // The answer to a step of the count, the displacement of one tick.
+    for _ in 0..memory {
+        let predicted = x + v + 0.5 * a;
+        let innovation = 1.0 - predicted;
+        x = predicted + gains[0] * innovation;
+        v += a + gains[1] * innovation;
+        a += gains[2] * innovation;
+        per_count += f64::abs(v);
+    }
+    let filter = FadingMemory::new(Hertz(bandwidth), Hertz(rate)).expect("valid");
+    Case {
+        per_count,
+        ..averaging("fading memory", rate, Ramp::Rounded, memory, filter)
+    }
+}
+
 fn foaw<const N: usize, F>(fit: &str, rate: f64, n: usize, d: u16) -> Case
 where
     F: Fit + Copy + Send + Sync + 'static,
@@ -231,6 +258,7 @@ pub(crate) fn at(rate: f64) -> Vec<Case> {
             forgets(60.0, rate) * 5 / 4,
             pll,
         ),
+        fading_memory(60.0, rate),
         kalman(
             "Kalman triple",
             rate,
