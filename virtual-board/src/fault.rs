@@ -37,6 +37,8 @@ pub enum Fault {
     FastWatchdog,
     /// The next read of the large motor's counter is answered with a bus error.
     BusError,
+    /// An assertion fails in the task of lowest priority.
+    Panic,
     /// The crystal never runs, from power-up on whatever the instant.
     DeadCrystal,
     /// The crystal stops.
@@ -52,7 +54,7 @@ pub enum Fault {
 }
 
 /// Each fault with its name on the command line and what it is.
-const NAMES: [(Fault, &str, &str); 26] = [
+const NAMES: [(Fault, &str, &str); 27] = [
     (Fault::StuckA, "stuck-a", "large encoder's line A stuck"),
     (Fault::StuckB, "stuck-b", "large encoder's line B stuck"),
     (
@@ -140,6 +142,11 @@ const NAMES: [(Fault, &str, &str); 26] = [
         Fault::BusError,
         "bus-error",
         "a read of the large counter fails",
+    ),
+    (
+        Fault::Panic,
+        "panic",
+        "an assertion fails in the task of lowest priority",
     ),
     (
         Fault::DeadCrystal,

@@ -29,6 +29,8 @@ pub struct Image {
     pub(crate) wait: u64,
     /// An instruction that branches to itself.
     pub(crate) for_ever: u64,
+    /// First instruction of what a failed assertion of the firmware ends in: a panic.
+    pub(crate) panic: u64,
     /// Memory that the stack may take: its lowest address and the one behind its highest.
     pub(crate) stack: [u64; 2],
     /// Code and data.
@@ -54,6 +56,9 @@ const IDLE: &str = "3app4idle";
 
 /// In the name of the function that an emergency ends in.
 const EMERGENCY: &str = "9emergency4stop";
+
+/// What a failed assertion of the firmware calls: it takes nothing and panics.
+const PANIC: &str = "_defmt_panic";
 
 /// Wait for interrupt.
 const WFI: u16 = 0xBF30;
@@ -150,6 +155,7 @@ impl Image {
             control: Arc::default(),
             wait: end,
             for_ever: end,
+            panic: end,
             stack: [RAM + 0x800, RAM + 0x1000],
             size: Size {
                 text: 0,
@@ -186,6 +192,7 @@ impl Image {
         let mut for_ever = instructions(at, code(&file, &emergency)?);
         let for_ever = for_ever.find(|(_, [first, _])| *first == LOOP);
         let for_ever = for_ever.ok_or("an emergency ends")?.0;
+        let panic = symbol(PANIC)?.address() & !1;
         let stack = [symbol("_stack_end")?, symbol("_stack_start")?].map(|symbol| symbol.address());
         let size = size(&file);
         let all = Code::of(&file).map_err(|error| error.to_string())?;
@@ -200,6 +207,7 @@ impl Image {
             control: Arc::new(all.instructions(entry)),
             wait,
             for_ever,
+            panic,
             stack,
             size,
         })

@@ -80,6 +80,7 @@ pub(crate) struct Lockstep {
     exits: Vec<u64>,
     wait: u64,
     for_ever: u64,
+    panic: u64,
     /// Whether the processor waits for an interrupt, or is about to.
     asleep: bool,
     /// The call of the control task that is running, and the instruction count at its start.
@@ -137,6 +138,7 @@ impl Lockstep {
             exits: image.exits.clone(),
             wait: image.wait,
             for_ever: image.for_ever,
+            panic: image.panic,
             asleep: false,
             running: None,
             follow: Follow::new(image, setup),

@@ -109,6 +109,30 @@ fn an_exception_without_a_handler_disables_the_amplifiers_and_is_reported() {
     ends_with(PEND_SV, "exception -2", Stop::Exception);
 }
 
+/// An assertion that fails while the device runs: the outputs are off at once, the message is logged,
+/// and the cause is there after the watchdog's reset.
+#[test]
+fn a_panic_disables_the_amplifiers_and_is_reported_after_the_reset() {
+    let run = run(&Setup {
+        seconds: 0.3,
+        faults: vec![(0.2, Fault::Panic)],
+        ..Setup::default()
+    });
+    let log = &run.telemetry.log;
+    assert!(
+        log.iter().any(|said| said.contains("panicked at")),
+        "{log:?}"
+    );
+    assert_eq!(
+        (run.restarts.len(), last(&run)),
+        (1, (Mode::Safe, Stop::Panic))
+    );
+    // Up to a tick until the task of lowest priority is woken, and a step of the lockstep.
+    let off_ms = 1e3 * run.off_after(0.2).expect("off");
+    assert!(off_ms < 0.15, "{off_ms} ms");
+    assert_eq!(run.enables.last().map(|(_, on)| *on), Some([false; 2]));
+}
+
 /// A core so slow that the control task interrupts the log: a fault of the control task drops the
 /// frame that is being written, not its own.
 #[test]

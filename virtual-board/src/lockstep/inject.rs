@@ -40,6 +40,8 @@ pub(super) struct Stalls {
     hang: Option<u64>,
     /// When the task of lowest priority is to go on.
     hung: Option<u64>,
+    /// Whether the task of lowest priority is to panic from its next wake on.
+    panics: bool,
 }
 
 impl Lockstep {
@@ -73,6 +75,7 @@ impl Lockstep {
             }
             Fault::HungIdle => self.stalls.hang = Some(u64::MAX),
             Fault::StarvedIdle => self.stalls.hang = Some(STARVED_NS),
+            Fault::Panic => self.stalls.panics = true,
             Fault::BusError => session.fail_next(COUNTERS[LARGE], COUNTERS[LARGE] + 4),
             // The board was built so.
             Fault::DeadCrystal | Fault::SlowWatchdog | Fault::FastWatchdog => {}
@@ -122,10 +125,13 @@ impl Lockstep {
 
     /// The control task begins. If it has woken the processor and the task of lowest priority is to
     /// hang, it returns not behind the instruction that waits, but into a loop without end, which
-    /// the exception's frame on the stack says; and back when the time is over.
+    /// the exception's frame on the stack says; and back when the time is over. If the task is to
+    /// panic, it returns to where a failed assertion ends.
     pub(super) fn hang(&mut self, at: VirtualNanos, host: &mut dyn Host) {
         let (behind, for_ever) = (self.wait + 2, self.for_ever);
-        if self.asleep
+        if self.asleep && std::mem::take(&mut self.stalls.panics) {
+            self.exchange(behind, self.panic, host);
+        } else if self.asleep
             && let Some(how_long) = self.stalls.hang.take()
         {
             self.stalls.hung = Some(at.0.saturating_add(how_long));

@@ -106,7 +106,7 @@ const fn halted(ms: u16, force_mn: [f64; 2]) -> Bound {
     bound(Fault::Halt(ms), 0.2, end, force_mn)
 }
 
-pub(super) const MATRIX: [Bound; 32] = [
+pub(super) const MATRIX: [Bound; 33] = [
     // One phase alone counts to and fro, which looks like motion against the push.
     bound(
         Fault::StuckA,
@@ -189,6 +189,16 @@ pub(super) const MATRIX: [Bound; 32] = [
             Fault::BusError,
             0.2,
             End::Off(NEXT_TICK, Stop::HardFault),
+            [1.0, 0.0],
+        )
+    },
+    // Up to a tick until the task of lowest priority is woken.
+    Bound {
+        reset_ms: Some(NOMINAL),
+        ..bound(
+            Fault::Panic,
+            0.2,
+            End::Off(NEXT_TICK, Stop::Panic),
             [1.0, 0.0],
         )
     },
