@@ -114,6 +114,19 @@ fn settles<const S: usize, U: Input<S>>(model: &Model<S, U>, what: &str) {
     }
 }
 
+/// Noise of which f64 cannot hold the variance is none: of 1e-162 A that of the position is below
+/// 5e-324, and that of the velocity still is not.
+#[test]
+fn noise_whose_square_is_nothing_is_refused() {
+    for noise in [1e-162, 1e-170] {
+        let motor = Model::motor(&Device::DCX35L, Hertz(1000.0), noise);
+        assert_eq!(motor.err(), Some(DesignError::ProcessNoise), "{noise} A");
+        let triple = Model::triple_integrator(4096, Hertz(1000.0), noise);
+        assert_eq!(triple.err(), Some(DesignError::ProcessNoise), "{noise}");
+    }
+    assert!(Model::motor(&Device::DCX35L, Hertz(1000.0), 1e-160).is_ok());
+}
+
 #[test]
 fn refusals_have_names() {
     let rate = Hertz(1000.0);
