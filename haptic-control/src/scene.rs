@@ -7,6 +7,7 @@ mod detents;
 mod environment;
 mod excite;
 mod free_air;
+mod friction;
 mod hold;
 mod impedance;
 mod inertia;
@@ -23,6 +24,7 @@ pub use detents::Detents;
 pub use environment::{Handle, Scene, Seen};
 pub use excite::{Excite, ExciteState};
 pub use free_air::FreeAir;
+pub use friction::Friction;
 pub use hold::Hold;
 pub use inertia::Inertia;
 pub use off::Off;
@@ -132,6 +134,13 @@ macro_rules! scenes {
                 role: Excitation,
                 hand: FreeMotion,
                 usual: |device, rate| Excite::new(device, rate)
+            };
+            11, "friction", Friction, {
+                summary: "Coulomb friction, viscous around zero velocity",
+                torque: "`-max(-T, min(B ω, T))`",
+                role: Environment,
+                hand: FreeMotion,
+                usual: |_device, _rate| Friction::new(4e-3, 2e-3)
             };
         }
     };
