@@ -11,6 +11,7 @@ use std::{env, fs};
 use device_files::decimal;
 use device_files::device::Device;
 use device_files::presets::{Estimators, PlantKind, Preset, Presets};
+use estimator_catalogue::ROWS;
 use haptic_control::{DualStage, Fingerprint, Motor};
 
 /// Ratio of counts per revolution up to which tuned values still serve.
@@ -78,53 +79,56 @@ fn named_file(variable: &str) -> Result<Option<PathBuf>, String> {
     Ok(Some(path))
 }
 
-/// Refuses estimators and parameters that the shipped presets do not have, and impossible values.
+/// Refuses estimators, parameters and values that the catalogue does not have, and in the section of
+/// the image those that no image reads, which are not in the shipped file.
 fn known(presets: &Presets, shipped: &Presets) -> Result<(), String> {
-    for (preset, place) in presets.preset.iter().zip(1..) {
-        let all = shipped.preset.iter().map(|preset| &preset.estimators);
-        let all: Vec<_> = all.collect();
-        check(&preset.estimators, &all).map_err(|error| format!("preset {place}: {error}"))?;
+    for preset in &presets.preset {
+        check(&preset.estimators)
+            .map_err(|error| format!("preset at {} Hz: {error}", preset.rate_hz))?;
     }
     for (motor, estimators) in &presets.image {
-        let Some(all) = shipped.image.get(motor) else {
+        let Some(read) = shipped.image.get(motor) else {
             return Err(format!(
-                "[image.{motor}]: no such motor; there are large and handle"
+                "image.{motor}: no such motor; there are large and handle"
             ));
         };
-        check(estimators, &[all]).map_err(|error| format!("[image.{motor}]: {error}"))?;
+        check(estimators).map_err(|error| format!("image.{motor}: {error}"))?;
+        for estimator in estimators.keys().filter(|name| !read.contains_key(*name)) {
+            let names: Vec<_> = read.keys().map(String::as_str).collect();
+            return Err(format!(
+                "image.{motor}.{estimator}: no image reads it; there are {}",
+                names.join(", ")
+            ));
+        }
     }
     Ok(())
 }
 
-fn check(estimators: &Estimators, known: &[&Estimators]) -> Result<(), String> {
+fn check(estimators: &Estimators) -> Result<(), String> {
     for (estimator, parameters) in estimators {
-        let known: Vec<_> = known.iter().filter_map(|all| all.get(estimator)).collect();
-        if known.is_empty() {
-            return Err(format!("no parameters of '{estimator}' can be set here"));
-        }
+        let Some(row) = ROWS.iter().find(|row| row.name == estimator) else {
+            return Err(format!(
+                "no estimator '{estimator}'; host-sim estimators lists them"
+            ));
+        };
         for (name, &value) in parameters {
-            let names: BTreeSet<_> = known.iter().flat_map(|all| all.keys()).collect();
-            if !names.contains(name) {
-                let names: Vec<_> = names.into_iter().map(String::as_str).collect();
+            let Some(parameter) = row.parameters.iter().find(|p| p.name == name) else {
+                let names: Vec<_> = row.parameters.iter().map(|p| p.name).collect();
                 return Err(format!(
                     "{estimator} has no parameter '{name}'; there are {}",
                     names.join(", ")
                 ));
-            }
-            let rule = match (estimator.starts_with("foaw"), name.as_str()) {
-                (true, "n") if value.fract() != 0.0 || !(1.0..=128.0).contains(&value) => {
-                    "a whole number from 1 to 128"
-                }
-                (true, "d") if value.fract() != 0.0 || !(0.0..=16384.0).contains(&value) => {
-                    "a whole number from 0 to 16384"
-                }
-                _ if !(value >= 0.0 && value.is_finite()) => "0 or more",
-                _ => continue,
             };
-            return Err(format!(
-                "{estimator}.{name} = {}: must be {rule}",
-                decimal(value)
-            ));
+            let range = parameter.lowest..=parameter.highest;
+            if !range.contains(&value) || parameter.whole && value.fract() != 0.0 {
+                return Err(format!(
+                    "{estimator}.{name} = {}: must be a {}number from {} to {}",
+                    decimal(value),
+                    if parameter.whole { "whole " } else { "" },
+                    decimal(parameter.lowest),
+                    decimal(parameter.highest),
+                ));
+            }
         }
     }
     Ok(())
@@ -191,26 +195,33 @@ fn fingerprint(layers: &[Presets]) -> Fingerprint {
         }
     }
     for (motor, estimator, name) in image {
-        // As `tuned::image` does: a presets file with values for the large motor comes before the
-        // shipped values of the image.
-        let found = layers.iter().find_map(|layer| {
-            let image = layer
-                .image
-                .get(motor)
-                .and_then(|all| all.get(estimator)?.get(name));
-            let tuned =
-                || of_images(layer).find_map(|preset| preset.estimators.get(estimator)?.get(name));
-            image
-                .copied()
-                .map(Some)
-                .or_else(|| (motor == "large" && tuned().is_some()).then_some(None))
-        });
-        hash = hash.text(motor).text(estimator).text(name);
-        if let Some(Some(value)) = found {
-            hash = hash.number(value);
+        let value = layers
+            .iter()
+            .find_map(|layer| of_the_image(layer, motor, estimator, name));
+        // A tuned value is hashed above.
+        if let Some(Value::Image(value)) = value {
+            hash = hash.text(motor).text(estimator).text(name).number(value);
         }
     }
     hash
+}
+
+/// What an image takes from a file, as `tuned::image` does.
+enum Value {
+    /// A value of the section of the image.
+    Image(f64),
+    /// A value tuned for the large motor.
+    Tuned,
+}
+
+fn of_the_image(layer: &Presets, motor: &str, estimator: &str, name: &str) -> Option<Value> {
+    let image = || layer.image.get(motor)?.get(estimator)?.get(name);
+    let tuned = || of_images(layer).find(|preset| preset.estimators.contains_key(estimator));
+    match image() {
+        Some(value) => Some(Value::Image(*value)),
+        None if motor == "large" => tuned().map(|_| Value::Tuned),
+        None => None,
+    }
 }
 
 fn device_text(device: &DualStage) -> String {
