@@ -14,7 +14,7 @@
 macro_rules! frame_fields {
     ($then:ident, $frame:ident, $lost:ident) => {
         $then! {
-            "frame seq={=u32} tick={=u32} counts_large={=u32} counts_small={=u32} current={=f32} current_small={=f32} torque={=f32} velocity_large={=f32} velocity_small={=f32} state={=u8} cause={=u8} sigma_large={=f32} estimator={=u8} overruns={=u32} drops={=u32} cycles={=u32}";
+            "frame seq={=u32} tick={=u32} counts_large={=u32} counts_small={=u32} current={=f32} current_small={=f32} torque={=f32} velocity_large={=f32} velocity_small={=f32} state={=u8} cause={=u8} sigma_large={=f32} estimator={=u8} overruns={=u32} drops={=u32} rtt_drops={=u16} cycles={=u32}";
             /// Number of the frame from 0, modulo 2^32. Frames that were lost count.
             seq: u32, "seq", log, $frame.seq;
             /// Number of the control tick from 0, modulo 2^32.
@@ -47,6 +47,9 @@ macro_rules! frame_fields {
             overruns: u32, "overruns", log, $frame.record.overruns;
             /// Frames lost since boot, modulo 2^32.
             drops: u32, "drops", log, $frame.drops($lost);
+            /// Those of `drops` that found no place in RTT, modulo 2^16; the others found none in the
+            /// queue. Older images do not have it.
+            rtt_drops: Option<u32>, "rtt_drops", log, $lost as u16;
             /// Core clock cycles of the longest control task since the frame before.
             cycles: u32, "cycles", log, $frame.cycles;
         }

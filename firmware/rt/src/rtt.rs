@@ -9,8 +9,8 @@ use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 
 use cortex_m::peripheral::SCB;
 
-/// Bytes that wait for the probe: at least 69 lines of a telemetry frame, which has 57 bytes before
-/// and at most 59 after its encoding.
+/// Bytes that wait for the probe: at least 67 lines of a telemetry frame, which has 59 bytes before
+/// and at most 61 after its encoding.
 const UP: usize = 4096;
 /// Bytes of commands that wait, and that one look takes at most.
 const DOWN: usize = 64;
