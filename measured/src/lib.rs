@@ -205,7 +205,7 @@ mod tests {
 
     const TABLE: Table = Table {
         name: "x",
-        page: "x.md",
+        page: "NAME.md",
         columns: &[("name", "name"), ("mean_3", "mean, `3`")],
         command: "cargo x",
     };
@@ -222,7 +222,7 @@ mod tests {
     #[test]
     fn block_without_its_comments_is_refused_by_name() {
         let error = TABLE.parts("<!-- measured: x -->").unwrap_err();
-        assert_eq!(error, "docs/x.md: no '<!-- end of x -->'");
+        assert_eq!(error, "docs/NAME.md: no '<!-- end of x -->'");
         let text = "a <!-- measured: x -->b<!-- end of x --> c";
         let [before, block, after] = TABLE.parts(text).unwrap();
         assert_eq!([&*before, &*block, &*after].concat(), text);
