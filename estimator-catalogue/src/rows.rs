@@ -163,7 +163,7 @@ macro_rules! estimators {
             },
             |c, motor, rate, clock, p, N| c::Pll =>
                 c::Pll::new(c::Hertz(p.bandwidth_hz), rate);
-            fading_memory, "fading-memory", Nothing,
+            alpha_beta_gamma, "alpha-beta-gamma", Nothing,
             (bandwidth_hz: BANDWIDTH),
             (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
             {
@@ -174,8 +174,8 @@ macro_rules! estimators {
                 dash: Dash::Dotted,
                 goals: &[],
             },
-            |c, motor, rate, clock, p, N| c::FadingMemory =>
-                c::FadingMemory::new(c::Hertz(p.bandwidth_hz), rate);
+            |c, motor, rate, clock, p, N| c::AlphaBetaGamma =>
+                c::AlphaBetaGamma::new(c::Hertz(p.bandwidth_hz), rate);
             m_over_t, "m-over-t", Nothing,
             (),
             (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),

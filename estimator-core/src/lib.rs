@@ -19,7 +19,7 @@
 //! | Kalman, full covariance | [`Kalman`] | x, P | counts; current with [`Model::motor`] |
 //! | Kalman, preset gain table | [`TableKalman`] | x, 1 index | the same |
 //! | Kalman, preset steady gain | [`SteadyKalman`] | x | the same |
-//! | alpha-beta-gamma filter with fading memory | [`FadingMemory`] | 3 floats | counts |
+//! | alpha-beta-gamma filter with fading memory | [`AlphaBetaGamma`] | 3 floats | counts |
 //! | critically damped tracking loop | [`Pll`] | 2 floats | counts |
 //! | M/T from edge time stamps | [`MOverT`] | 1 edge | counts, edges |
 //! | observer with friction and slip | [`Observer`] | 4 floats | counts; as built: current, small count, edges |
@@ -52,6 +52,7 @@
     reason = "a NaN has to fail these comparisons"
 )]
 
+mod alpha_beta_gamma;
 mod branch;
 mod confidence;
 pub mod const_math;
@@ -60,7 +61,6 @@ mod design_error;
 mod device;
 mod edge_clock;
 mod estimator;
-mod fading_memory;
 mod finite_difference;
 mod foaw;
 mod handover;
@@ -79,12 +79,12 @@ mod table_kalman;
 mod triple_integrator;
 mod units;
 
+pub use alpha_beta_gamma::{AlphaBetaGamma, AlphaBetaGammaState};
 pub use confidence::{Confidence, Variance};
 pub use coupled_motor::CoupledMotor;
 pub use design_error::DesignError;
 pub use device::Device;
 pub use estimator::{AccelerationEstimator, Skip, VelocityEstimator};
-pub use fading_memory::{FadingMemory, FadingMemoryState};
 pub use finite_difference::FiniteDifference;
 pub use foaw::{BestFit, EndFit, Fit, Foaw, FoawState};
 pub use handover::{Handover, HandoverState, Side};

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use estimator_core::{
-    BestFit, CountsPerTick, Device, EndFit, FadingMemory, FiniteDifference, Fit, Foaw, Handover,
+    AlphaBetaGamma, BestFit, CountsPerTick, Device, EndFit, FiniteDifference, Fit, Foaw, Handover,
     Hertz, Kalman, LateCurrent, LowPass, Model, Pll, Sample, Signals, SteadyKalman,
     TableKalmanMotor, TableKalmanTriple, VelocityEstimator,
 };
@@ -159,7 +159,7 @@ where
 }
 
 /// The fading-memory filter, with the response of its textbook form.
-fn fading_memory(bandwidth: f64, rate: f64) -> Case {
+fn alpha_beta_gamma(bandwidth: f64, rate: f64) -> Case {
     let p = (-std::f64::consts::TAU * bandwidth / rate).exp();
     let gains = [
         1.0 - p.powi(3),
@@ -178,7 +178,7 @@ fn fading_memory(bandwidth: f64, rate: f64) -> Case {
         a += gains[2] * innovation;
         per_count += f64::abs(v);
     }
-    let filter = FadingMemory::new(Hertz(bandwidth), Hertz(rate)).expect("valid");
+    let filter = AlphaBetaGamma::new(Hertz(bandwidth), Hertz(rate)).expect("valid");
     Case {
         per_count,
         ..averaging("fading memory", rate, Ramp::Rounded, memory, filter)
@@ -258,7 +258,7 @@ pub(crate) fn at(rate: f64) -> Vec<Case> {
             forgets(60.0, rate) * 5 / 4,
             pll,
         ),
-        fading_memory(60.0, rate),
+        alpha_beta_gamma(60.0, rate),
         kalman(
             "Kalman triple",
             rate,

@@ -7,7 +7,7 @@ use estimator_core as core;
 use crate::definition::{Definition, Line};
 use crate::findings::Bounds;
 use crate::pair::Pair;
-use crate::pairs::{self, Entry, Refusable, Request, request};
+use crate::pairs::{self, Design, Entry, request};
 use crate::settling;
 
 /// An estimator under stress.
@@ -31,7 +31,7 @@ impl Contestant {
         name: String,
         rate_hz: f64,
         capacity: usize,
-        design: fn(&Request<'_>) -> Refusable,
+        design: Design,
         value: impl Fn(&str) -> f64 + Send + Sync + 'static,
     ) -> Self {
         Self {
@@ -289,7 +289,7 @@ pub fn at(rate_hz: f64) -> Vec<Contestant> {
             all.push(laws.bounded(one, settling, capacity));
         }
     }
-    let more: [(&str, fn(&Request<'_>) -> Refusable); 2] = [
+    let more: [(&str, Design); 2] = [
         ("kalman-motor-table", pairs::kalman_motor_table),
         ("kalman-motor, literal", pairs::late_kalman_motor),
     ];

@@ -36,7 +36,7 @@ pub(crate) trait State<E> {
 }
 
 impl<E> State<E> for core::Count {}
-impl<E> State<E> for core::FadingMemoryState {}
+impl<E> State<E> for core::AlphaBetaGammaState {}
 impl<E> State<E> for core::PllState {}
 impl<E> State<E> for core::MOverTState {}
 impl<E, const S: usize> State<E> for core::SteadyKalmanState<S> {}

@@ -24,12 +24,15 @@ pub(crate) struct Request<'a> {
     pub(crate) value: &'a dyn Fn(&str) -> f64,
 }
 
+/// A design in both precisions, or the error that they agree in.
+pub(crate) type Design = fn(&Request<'_>) -> Refusable;
+
 /// A row with its designs in both precisions.
 pub(crate) struct Entry {
     /// The row.
     pub(crate) row: &'static Row,
     /// The design, or the error that both precisions agree in.
-    pub(crate) design: fn(&Request<'_>) -> Refusable,
+    pub(crate) design: Design,
 }
 
 /// Windows that are tried, intervals.

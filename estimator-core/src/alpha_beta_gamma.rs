@@ -21,8 +21,8 @@ use crate::units::{Count, CountsPerTick, CountsPerTickSquared, Hertz};
 /// degree, Morrison, Introduction to Sequential Smoothing and Prediction, 1969.
 ///
 /// ```
-/// use estimator_core::{Count, FadingMemory, Hertz, Sample, VelocityEstimator, preset};
-/// const FILTER: FadingMemory = preset!(FadingMemory::new(Hertz(20.0), Hertz(1000.0)));
+/// use estimator_core::{Count, AlphaBetaGamma, Hertz, Sample, VelocityEstimator, preset};
+/// const FILTER: AlphaBetaGamma = preset!(AlphaBetaGamma::new(Hertz(20.0), Hertz(1000.0)));
 /// let mut state = FILTER.start(&Sample::new(Count(0)));
 /// let mut v = 0.0;
 /// for k in 1..400u32 {
@@ -32,7 +32,7 @@ use crate::units::{Count, CountsPerTick, CountsPerTickSquared, Hertz};
 /// assert!((v - 2.0 * 399.0).abs() < 1e-2);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FadingMemory {
+pub struct AlphaBetaGamma {
     /// The part of the innovation that the position gain leaves: p³.
     leftover: f32,
     /// Velocity gain β, 3/2 (1 - p)² (1 + p).
@@ -41,7 +41,7 @@ pub struct FadingMemory {
     gamma: f32,
 }
 
-impl FadingMemory {
+impl AlphaBetaGamma {
     /// A filter with its three poles at the frequency `bandwidth`, updated at `rate`.
     ///
     /// # Errors
@@ -64,23 +64,23 @@ impl FadingMemory {
     }
 }
 
-/// State of a [`FadingMemory`]: the innovation, which stands for the position behind the newest
+/// State of a [`AlphaBetaGamma`]: the innovation, which stands for the position behind the newest
 /// count, velocity and acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FadingMemoryState {
+pub struct AlphaBetaGammaState {
     anchor: Count,
     innovation: f32,
     velocity: f32,
     acceleration: f32,
 }
 
-impl VelocityEstimator for FadingMemory {
-    type State = FadingMemoryState;
+impl VelocityEstimator for AlphaBetaGamma {
+    type State = AlphaBetaGammaState;
     type Output = CountsPerTick;
     const NEEDS: Signals = Signals::COUNT;
 
-    fn start(&self, first: &Sample) -> FadingMemoryState {
-        FadingMemoryState {
+    fn start(&self, first: &Sample) -> AlphaBetaGammaState {
+        AlphaBetaGammaState {
             anchor: first.large,
             innovation: 0.0,
             velocity: 0.0,
@@ -89,7 +89,7 @@ impl VelocityEstimator for FadingMemory {
     }
 
     #[inline(always)]
-    fn update(&self, state: &mut FadingMemoryState, sample: &Sample) -> CountsPerTick {
+    fn update(&self, state: &mut AlphaBetaGammaState, sample: &Sample) -> CountsPerTick {
         let displacement = (sample.large - state.anchor).to_f32();
         state.anchor = sample.large;
         let predicted = state.velocity + 0.5 * state.acceleration;
@@ -100,8 +100,8 @@ impl VelocityEstimator for FadingMemory {
     }
 }
 
-impl AccelerationEstimator for FadingMemory {
-    fn acceleration(&self, state: &FadingMemoryState) -> CountsPerTickSquared {
+impl AccelerationEstimator for AlphaBetaGamma {
+    fn acceleration(&self, state: &AlphaBetaGammaState) -> CountsPerTickSquared {
         CountsPerTickSquared(state.acceleration)
     }
 }
