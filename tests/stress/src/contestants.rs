@@ -110,7 +110,7 @@ pub const DEVIATION_RAD_S: f64 = 1e-5;
 const AT_REST_RAD_S: f64 = 1e-5;
 
 /// What it costs those with the slowest poles at 10 kHz, where a count a tick is 15 rad/s: as many
-/// half units in the last place of it as the pole has ticks of memory. The loop always passes
+/// half units in the last place of it as two poles have ticks of memory. The loop always passes
 /// [`DEVIATION_RAD_S`], the full covariance in one of ten courses of 1e8 ticks.
 const SLOW_DEVIATION_RAD_S: f64 = 2e-5;
 
@@ -248,7 +248,14 @@ impl Laws {
         match settling {
             Settling::AtOnce => one,
             Settling::OnePole => one.poles(pole(cutoff_hz(self.rate_hz)), 1),
-            Settling::EqualPoles(order) => one.poles(pole(BANDWIDTH_HZ), order.into()),
+            Settling::EqualPoles(order) => {
+                let mut one = one.poles(pole(BANDWIDTH_HZ), order.into());
+                if self.rate_hz > 5000.0 {
+                    // Poles in series add up their memories.
+                    one.bounds.deviation_rad_s = SLOW_DEVIATION_RAD_S * f64::from(order) / 2.0;
+                }
+                one
+            }
             Settling::EndFitWindow => one.window(window(Line::EndFit)),
             Settling::BestFitWindow => one.window(window(Line::BestFit)),
             Settling::TripleIntegrator => one.poles(self.triple, 3),
@@ -298,7 +305,7 @@ pub fn at(rate_hz: f64) -> Vec<Contestant> {
         all.push(laws.bounded(one, Settling::MotorModel, 0));
     }
     if rate_hz > 5000.0 {
-        let slowest = |one: &&mut Contestant| matches!(&*one.name, "pll" | "kalman-triple");
+        let slowest = |one: &&mut Contestant| one.name == "kalman-triple";
         for slow in all.iter_mut().filter(slowest) {
             slow.bounds.deviation_rad_s = SLOW_DEVIATION_RAD_S;
         }
