@@ -272,7 +272,10 @@ fn the_boot_line_says_whether_the_chip_is_reset_below_2_7_volts() {
         .iter()
         .filter(|said| said.starts_with("boot "));
     let said: Vec<_> = boots
-        .filter_map(|line| line.split("brown-out-reset=").nth(1))
+        .filter_map(|line| {
+            let mut words = line.split_whitespace();
+            words.find_map(|word| word.strip_prefix("brown-out-reset="))
+        })
         .collect();
     assert_eq!(said, ["false", "true"]);
 }
