@@ -11,16 +11,18 @@ mod pattern;
 
 use pattern::{LARGEST, SECTIONS, Segment};
 
-/// Excitation, to identify the device from a recording: currents by a fixed pattern, open loop.
+/// Excitation to identify the device from a recording: a fixed pattern of currents, open loop.
 ///
-/// First short strokes of both motors, forth and back, in which a handle that nobody holds stays
-/// within its bounds; then, for a handle held fast, steps between levels and slow sweeps of the
-/// large motor. Each section runs four times with alternating sign, 16 s in all, and ends at zero
-/// current, for good. Levels change at whole milliseconds, so that frames of 1 kHz know the current.
+/// The first section has short strokes of both motors to and fro, in which a free handle stays within
+/// its bounds. The other sections are for a clamped handle: steps between levels and slow sweeps of
+/// the large motor. Each section runs four times with alternating sign, 16 s in all. The pattern ends
+/// at zero current and does not repeat. Levels change at whole milliseconds, so that a recording at
+/// 1 kHz contains the exact currents.
 ///
-/// Bounded in current by the pattern (0.9 A large, 0.15 A small); in speed of the large motor by what
-/// that current can drive against the coupler of a held handle, checked where it is built. A handle
-/// further than 2 rad from where the scene began, or faster than 25 rad/s over a millisecond, ends it.
+/// The pattern bounds the currents (0.9 A large, 0.15 A small). The speed of the large motor is
+/// bounded by its largest current against the coupler of a held handle; the constructor checks it. The
+/// excitation ends when the handle is more than 2 rad from its angle at the start, or faster than
+/// 25 rad/s over a millisecond.
 ///
 /// ```
 /// use estimator_core::Hertz;
@@ -40,7 +42,7 @@ parameters! { Excite }
 /// State of an [`Excite`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExciteState {
-    /// Where the handle was at first, and a millisecond ago.
+    /// Angle of the handle at the start, and a millisecond ago.
     start: Radians,
     before: Radians,
     /// Thousandths of a tick, times the rate, into the millisecond.
@@ -54,13 +56,13 @@ pub struct ExciteState {
     currents: Currents,
 }
 
-/// Fastest the large motor may turn, rad/s; the pattern is judged by it at compile time.
+/// Largest speed of the large motor, rad/s.
 const LARGE_SPEED: f64 = 60.0;
-/// Farthest the handle may turn, rad.
+/// Largest angle of the handle from the start, rad.
 const HANDLE_ANGLE: f32 = 2.0;
-/// Farthest the handle may turn in a millisecond, rad.
+/// Largest change of the handle's angle in a millisecond, rad.
 const HANDLE_STEP: f32 = 0.025;
-/// Times that a section runs, with alternating sign.
+/// Number of runs of a section, with alternating sign.
 const PASSES: u8 = 4;
 
 impl Excite {
@@ -95,7 +97,7 @@ impl ExciteState {
         self.currents = Currents::default();
     }
 
-    /// A millisecond has passed.
+    /// Advances by a millisecond.
     fn advance(&mut self) {
         let Some(segment) = self.segment() else {
             return self.end();

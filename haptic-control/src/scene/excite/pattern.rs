@@ -1,6 +1,6 @@
 //! The currents of the excitation over time.
 
-/// Levels of the large motor's current from one to another, each held as long.
+/// Equidistant levels of the large motor's current, each held for the same time.
 #[derive(Clone, Copy)]
 pub(super) struct Segment {
     /// First level, mA.
@@ -64,7 +64,7 @@ const fn larger(a: i16, b: i16) -> i16 {
     if a > b { a } else { b }
 }
 
-/// Strokes of a few currents each, forth and back, so that a handle that nobody holds comes back too.
+/// Strokes to and fro at a few currents, after which a free handle is back near its start.
 const STROKES: [Segment; 49] = [
     Segment::hold(0, 0, 40),
     Segment::hold(300, 0, 18),
