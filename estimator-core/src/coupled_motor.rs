@@ -32,32 +32,43 @@ impl CoupledMotor {
     /// The device itself, if every constant is in its range at this rate.
     ///
     /// # Errors
-    /// [`DesignError::Rate`]; [`DesignError::Device`] as [`Device::checked`];
-    /// [`DesignError::CoupledMotor`] if friction or lag are negative or not finite, or without
-    /// counts of the small encoder; [`DesignError::Tick`] if the coupler stops the motor within a
-    /// few ticks or an ampere or its friction moves it by 10^6 counts in one.
+    /// [`DesignError::RATE`]; the errors of [`Device::checked`]; [`DesignError::COULOMB_FRICTION`],
+    /// [`DesignError::AMPLIFIER_LAG`], [`DesignError::SMALL_COUNTS_PER_REV`];
+    /// [`DesignError::RATE_FOR_DAMPING`], [`DesignError::RATE_FOR_CURRENT`],
+    /// [`DesignError::RATE_FOR_FRICTION`] if damping, an ampere or the friction moves the motor too far
+    /// in a tick.
     pub(crate) const fn checked(self, rate: Hertz) -> Result<Self, DesignError> {
         if !rate.is_positive() {
-            return Err(DesignError::Rate);
+            return Err(DesignError::RATE);
         }
         let large = match self.large.checked() {
             Ok(large) => large,
             Err(error) => return Err(error),
         };
+        if !(self.coulomb_friction >= 0.0 && self.coulomb_friction.is_finite()) {
+            return Err(DesignError::COULOMB_FRICTION);
+        }
         let lag = self.amplifier_lag * rate.0;
-        let friction = self.coulomb_friction >= 0.0 && self.coulomb_friction.is_finite();
-        if !(friction && lag >= 0.0 && lag < 1e6 && self.small_counts_per_rev > 0) {
-            return Err(DesignError::CoupledMotor);
+        if !(lag >= 0.0 && lag < 1e6) {
+            return Err(DesignError::AMPLIFIER_LAG);
+        }
+        if self.small_counts_per_rev == 0 {
+            return Err(DesignError::SMALL_COUNTS_PER_REV);
         }
         let square = rate.period_s() * rate.period_s();
         let counts = large.counts_per_rev as f64;
         let moved = counts * large.torque_constant * square / large.inertia;
         let braked = counts * self.coulomb_friction * square / large.inertia;
         let damped = large.damping * rate.period_s() / large.inertia;
-        if moved > 0.0 && moved < 1e6 && braked < 1e6 && damped < 8.0 {
-            Ok(self)
-        } else {
-            Err(DesignError::Tick)
+        if !(moved > 0.0 && moved < 1e6) {
+            return Err(DesignError::RATE_FOR_CURRENT);
         }
+        if !(braked < 1e6) {
+            return Err(DesignError::RATE_FOR_FRICTION);
+        }
+        if !(damped < 8.0) {
+            return Err(DesignError::RATE_FOR_DAMPING);
+        }
+        Ok(self)
     }
 }

@@ -30,17 +30,22 @@ impl Device {
     /// The device itself, if every constant is in its range.
     ///
     /// # Errors
-    /// [`DesignError::Device`] unless all are finite, damping is at least zero and the rest
+    /// [`DesignError::COUNTS_PER_REV`], [`DesignError::INERTIA`], [`DesignError::DAMPING`],
+    /// [`DesignError::TORQUE_CONSTANT`]: all are finite, the damping at least zero and the others
     /// above zero.
     pub const fn checked(self) -> Result<Self, DesignError> {
-        let positive = self.counts_per_rev > 0 && self.inertia > 0.0 && self.torque_constant > 0.0;
-        let finite = self.inertia.is_finite()
-            && self.torque_constant.is_finite()
-            && self.damping.is_finite();
-        if positive && finite && self.damping >= 0.0 {
-            Ok(self)
-        } else {
-            Err(DesignError::Device)
+        if self.counts_per_rev == 0 {
+            return Err(DesignError::COUNTS_PER_REV);
         }
+        if !(self.inertia > 0.0 && self.inertia.is_finite()) {
+            return Err(DesignError::INERTIA);
+        }
+        if !(self.damping >= 0.0 && self.damping.is_finite()) {
+            return Err(DesignError::DAMPING);
+        }
+        if !(self.torque_constant > 0.0 && self.torque_constant.is_finite()) {
+            return Err(DesignError::TORQUE_CONSTANT);
+        }
+        Ok(self)
     }
 }

@@ -24,14 +24,13 @@ pub(crate) struct FreshEdge {
 
 impl EdgeClock {
     /// # Errors
-    /// [`DesignError::Rate`] unless the clock is at least as fast as the rate and both are
-    /// positive and finite.
+    /// [`DesignError::RATE`], [`DesignError::CLOCK`].
     pub(crate) const fn new(clock: Hertz, rate: Hertz) -> Result<Self, DesignError> {
         if !rate.is_positive() {
-            return Err(DesignError::Rate);
+            return Err(DesignError::RATE);
         }
         if !(clock.is_positive() && clock.0 >= rate.0) {
-            return Err(DesignError::EdgeClock);
+            return Err(DesignError::CLOCK);
         }
         Ok(Self {
             period: (rate.0 / clock.0) as f32,

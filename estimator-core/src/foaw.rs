@@ -67,15 +67,15 @@ impl<const N: usize, F: Fit> Foaw<N, F> {
     /// FOAW over at most `window` intervals, n, with a noise bound d of `bound` counts.
     ///
     /// # Errors
-    /// [`DesignError::Window`] unless `1 <= window <= N`, [`DesignError::NoiseBound`] if `bound`
+    /// [`DesignError::WINDOW`] unless `1 <= window <= N`, [`DesignError::BOUND`] if `bound`
     /// is above 2^14. `N` outside 1 to 128 does not compile.
     pub const fn new(window: usize, bound: u16) -> Result<Self, DesignError> {
         const { assert!(1 <= N && N <= 128, "window of 1 to 128 intervals") };
         if window == 0 || window > N {
-            return Err(DesignError::Window);
+            return Err(DesignError::WINDOW);
         }
         if bound > 1 << 14 {
-            return Err(DesignError::NoiseBound);
+            return Err(DesignError::BOUND);
         }
         Ok(Self {
             window: window as u8,

@@ -53,15 +53,19 @@ impl<A, B> Handover<A, B> {
     /// `first`, that `second` may relieve, after `settle` ticks unheard and `fade` of fading.
     ///
     /// # Errors
-    /// [`DesignError::Fade`] unless `fade` is 1 to 2^15 and `settle` below 2^15 ticks.
+    /// [`DesignError::FADE`] unless `fade` is 1 to 2^15 ticks, [`DesignError::SETTLE`] unless `settle`
+    /// is below 2^15 ticks.
     pub const fn new(first: A, second: B, settle: u16, fade: u16) -> Result<Self, DesignError>
     where
         A: Copy,
         B: Copy,
     {
         const LONGEST: u16 = 1 << 15;
-        if fade == 0 || fade > LONGEST || settle >= LONGEST {
-            return Err(DesignError::Fade);
+        if fade == 0 || fade > LONGEST {
+            return Err(DesignError::FADE);
+        }
+        if settle >= LONGEST {
+            return Err(DesignError::SETTLE);
         }
         Ok(Self {
             first,

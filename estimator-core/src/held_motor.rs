@@ -24,15 +24,15 @@ impl Model<2, CurrentInput> {
     /// The paper's model has no friction and a still handle: both end up in the error.
     ///
     /// # Errors
-    /// [`DesignError::Rate`], [`DesignError::Device`], [`DesignError::Tick`],
-    /// [`DesignError::ProcessNoise`].
+    /// [`DesignError::RATE`]; the errors of [`Device::checked`]; [`DesignError::RATE_FOR_DAMPING`],
+    /// [`DesignError::RATE_FOR_CURRENT`]; [`DesignError::CURRENT_NOISE`].
     pub const fn motor(
         device: &Device,
         rate: Hertz,
         current_noise: f64,
     ) -> Result<Self, DesignError> {
         if !rate.is_positive() {
-            return Err(DesignError::Rate);
+            return Err(DesignError::RATE);
         }
         let device = match device.checked() {
             Ok(device) => device,
@@ -42,13 +42,16 @@ impl Model<2, CurrentInput> {
         let beta = device.damping * t / device.inertia;
         let per_amp =
             counts_per_rad(device.counts_per_rev) * device.torque_constant * t * t / device.inertia;
-        if !(beta < 700.0 && per_amp > 0.0 && per_amp < 1e9) {
-            return Err(DesignError::Tick);
+        if !(beta < 700.0) {
+            return Err(DesignError::RATE_FOR_DAMPING);
+        }
+        if !(per_amp > 0.0 && per_amp < 1e9) {
+            return Err(DesignError::RATE_FOR_CURRENT);
         }
         let b = [per_amp * phi2(beta), per_amp * phi1(beta)];
         let g = [current_noise * b[0], current_noise * b[1]];
         if !(current_noise > 0.0 && g[0] * g[0] > 0.0 && (g[1] * g[1]).is_finite()) {
-            return Err(DesignError::ProcessNoise);
+            return Err(DesignError::CURRENT_NOISE);
         }
         Ok(Self {
             a: [[1.0, phi1(beta)], [0.0, exp(-beta)]],

@@ -59,7 +59,7 @@ impl<const S: usize, U: Copy> Kalman<S, U> {
     ///
     /// # Errors
     /// As [`Model::steady_gain`]: a filter that does not settle is refused.
-    /// [`DesignError::ProcessNoise`] if a variance of Q is above 2^18.
+    /// [`DesignError::PROCESS_NOISE`] if a variance of Q is above 2^18.
     pub const fn new(model: &Model<S, U>) -> Result<Self, DesignError> {
         const { assert!(S >= 2, "position and velocity at least") };
         if let Err(error) = model.steady_gain() {
@@ -74,7 +74,7 @@ impl<const S: usize, U: Copy> Kalman<S, U> {
         let mut i = 0;
         while i < S {
             if !(model.q[i][i] <= LARGEST_PROCESS_NOISE) {
-                return Err(DesignError::ProcessNoise);
+                return Err(DesignError::PROCESS_NOISE);
             }
             filter.prior[i] = (model.prior[i] / model.r) as f32;
             let mut j = 0;

@@ -31,14 +31,13 @@ impl<E: Copy> LowPass<E> {
     /// A low-pass with `cutoff` over `inner`, updated at `rate`.
     ///
     /// # Errors
-    /// [`DesignError::Rate`] unless the rate is positive and finite, [`DesignError::Cutoff`]
-    /// unless the cut-off is 1e-6 to 1/2 of the rate.
+    /// [`DesignError::RATE`], [`DesignError::CUTOFF`].
     pub const fn new(inner: E, cutoff: Hertz, rate: Hertz) -> Result<Self, DesignError> {
         if !rate.is_positive() {
-            return Err(DesignError::Rate);
+            return Err(DesignError::RATE);
         }
         if !cutoff.is_cutoff_at(rate) {
-            return Err(DesignError::Cutoff);
+            return Err(DesignError::CUTOFF);
         }
         let alpha = 1.0 - exp(-2.0 * core::f64::consts::PI * cutoff.0 / rate.0);
         Ok(Self {

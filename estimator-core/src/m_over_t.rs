@@ -36,8 +36,7 @@ impl MOverT {
     /// For stamps by a clock of this frequency.
     ///
     /// # Errors
-    /// [`DesignError::Rate`]; [`DesignError::EdgeClock`] unless the clock is finite and at least as
-    /// fast as the rate.
+    /// [`DesignError::RATE`], [`DesignError::CLOCK`].
     pub const fn new(clock: Hertz, rate: Hertz) -> Result<Self, DesignError> {
         match EdgeClock::new(clock, rate) {
             Ok(clock) => Ok(Self { clock }),

@@ -62,7 +62,7 @@ impl<const S: usize, U: Copy> Model<S, U> {
     /// loop `(I - K H) A`, with the gain rounded as it will run, shrink.
     ///
     /// # Errors
-    /// [`DesignError::NotConverged`], [`DesignError::NotStable`].
+    /// [`DesignError::NOT_CONVERGED`], [`DesignError::NOT_STABLE`].
     pub const fn steady_gain(&self) -> Result<[f32; S], DesignError> {
         riccati::steady_gain(&self.a, &self.q, self.r)
     }

@@ -40,14 +40,13 @@ impl Pll {
     /// A loop of `bandwidth`, updated at `rate`.
     ///
     /// # Errors
-    /// [`DesignError::Rate`] unless the rate is positive and finite, [`DesignError::Cutoff`]
-    /// unless the bandwidth is 1e-6 to 1/2 of the rate.
+    /// [`DesignError::RATE`], [`DesignError::BANDWIDTH`].
     pub const fn new(bandwidth: Hertz, rate: Hertz) -> Result<Self, DesignError> {
         if !rate.is_positive() {
-            return Err(DesignError::Rate);
+            return Err(DesignError::RATE);
         }
         if !bandwidth.is_cutoff_at(rate) {
-            return Err(DesignError::Cutoff);
+            return Err(DesignError::BANDWIDTH);
         }
         let pole = exp(-2.0 * core::f64::consts::PI * bandwidth.0 / rate.0);
         Ok(Self {

@@ -37,7 +37,7 @@ pub(crate) const fn steady<const S: usize>(
     r: f64,
 ) -> Result<Steady<S>, DesignError> {
     let Some(covariance) = predicted_covariance(a, q, r) else {
-        return Err(DesignError::NotConverged);
+        return Err(DesignError::NOT_CONVERGED);
     };
     let exact = gain(&covariance, r);
     let further = gain(&next_covariance(a, q, r, &covariance), r);
@@ -45,7 +45,7 @@ pub(crate) const fn steady<const S: usize>(
     let mut i = 0;
     while i < S {
         if !((further[i] - exact[i]).abs() <= 1e-9 * exact[i].abs()) {
-            return Err(DesignError::NotConverged);
+            return Err(DesignError::NOT_CONVERGED);
         }
         rounded[i] = exact[i] as f32;
         i += 1;
@@ -63,7 +63,7 @@ pub(crate) const fn steady<const S: usize>(
             velocity: [before, before - corrected],
         })
     } else {
-        Err(DesignError::NotStable)
+        Err(DesignError::NOT_STABLE)
     }
 }
 

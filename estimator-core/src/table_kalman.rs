@@ -64,7 +64,7 @@ impl<const S: usize, const N: usize, U: Copy> TableKalman<S, N, U> {
     /// The filter of `model` with the gains of its first N ticks.
     ///
     /// # Errors
-    /// As [`Model::steady_gain`]. [`DesignError::Table`] if the gain is not within 1e-6 of the
+    /// As [`Model::steady_gain`]. [`DesignError::TABLE`] if the gain is not within 1e-6 of the
     /// steady gain at the N-th tick.
     pub const fn new(model: &Model<S, U>) -> Result<Self, DesignError> {
         const { assert!(S >= 2, "position and velocity at least") };
@@ -94,7 +94,7 @@ impl<const S: usize, const N: usize, U: Copy> TableKalman<S, N, U> {
         let mut i = 0;
         while i < S {
             if !((last[i] - steady[i]).abs() <= SETTLED * steady[i].abs()) {
-                return Err(DesignError::Table);
+                return Err(DesignError::TABLE);
             }
             i += 1;
         }

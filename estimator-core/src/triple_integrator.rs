@@ -20,23 +20,23 @@ impl Model<3, NoInput> {
     /// `jerk_density` ρ is the jerk's spectral density, rad/s³ per √Hz.
     ///
     /// # Errors
-    /// [`DesignError::Rate`], [`DesignError::Device`] (no counts), [`DesignError::ProcessNoise`].
+    /// [`DesignError::RATE`], [`DesignError::COUNTS_PER_REV`], [`DesignError::JERK_DENSITY`].
     pub const fn triple_integrator(
         counts_per_rev: u32,
         rate: Hertz,
         jerk_density: f64,
     ) -> Result<Self, DesignError> {
         if !rate.is_positive() {
-            return Err(DesignError::Rate);
+            return Err(DesignError::RATE);
         }
         if counts_per_rev == 0 {
-            return Err(DesignError::Device);
+            return Err(DesignError::COUNTS_PER_REV);
         }
         let t = rate.period_s();
         let q = jerk_density * counts_per_rad(counts_per_rev) * t * t;
         let q = q * q * t;
         if !(jerk_density > 0.0 && q > 0.0 && q.is_finite()) {
-            return Err(DesignError::ProcessNoise);
+            return Err(DesignError::JERK_DENSITY);
         }
         Ok(Self {
             a: [[1.0, 1.0, 0.5], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]],

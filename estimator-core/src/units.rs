@@ -184,14 +184,13 @@ impl Scale {
     /// The factor for an encoder of `counts_per_rev` (four times its lines) at a control rate.
     ///
     /// # Errors
-    /// [`DesignError::Rate`] unless the rate is positive and finite, [`DesignError::Device`]
-    /// without counts.
+    /// [`DesignError::RATE`], [`DesignError::COUNTS_PER_REV`].
     pub const fn new(counts_per_rev: u32, rate: Hertz) -> Result<Self, DesignError> {
         if !rate.is_positive() {
-            return Err(DesignError::Rate);
+            return Err(DesignError::RATE);
         }
         if counts_per_rev == 0 {
-            return Err(DesignError::Device);
+            return Err(DesignError::COUNTS_PER_REV);
         }
         let factor = 2.0 * core::f64::consts::PI * rate.0 / counts_per_rev as f64;
         Ok(Self {

@@ -36,11 +36,24 @@ pub struct Uncertainty {
 const WAY_TIME: f64 = 8e-3;
 
 impl Uncertainty {
-    const fn is_sane(&self) -> bool {
-        let positive = self.torque_noise > 0.0 && self.load > 0.0 && self.load_time > 0.0;
-        let finite = self.torque_noise < 1e6 && self.load < 1e6 && self.load_time < 1e9;
-        let share = self.friction_share >= 0.0 && self.friction_share <= 1.0;
-        positive && finite && share && self.boundary_noise >= 1e-4 && self.boundary_noise <= 1e3
+    /// The uncertainty itself, if every value is in its range.
+    const fn checked(&self) -> Result<&Self, DesignError> {
+        if !(self.torque_noise > 0.0 && self.torque_noise < 1e6) {
+            return Err(DesignError::TORQUE_NOISE);
+        }
+        if !(self.load > 0.0 && self.load < 1e6) {
+            return Err(DesignError::LOAD);
+        }
+        if !(self.load_time > 0.0 && self.load_time < 1e9) {
+            return Err(DesignError::LOAD_TIME);
+        }
+        if !(self.friction_share >= 0.0 && self.friction_share <= 1.0) {
+            return Err(DesignError::FRICTION_SHARE);
+        }
+        if !(self.boundary_noise >= 1e-4 && self.boundary_noise <= 1e3) {
+            return Err(DesignError::BOUNDARY_NOISE);
+        }
+        Ok(self)
     }
 }
 
@@ -82,11 +95,13 @@ impl Noise {
             decay,
             boundary: uncertainty.boundary_noise,
         };
-        if noise.white > 0.0 && noise.load > 0.0 {
-            Ok(noise)
-        } else {
-            Err(DesignError::ProcessNoise)
+        if !(noise.white > 0.0) {
+            return Err(DesignError::TORQUE_NOISE);
         }
+        if !(noise.load > 0.0) {
+            return Err(DesignError::LOAD);
+        }
+        Ok(noise)
     }
 }
 
@@ -108,9 +123,10 @@ impl Plan {
             Ok(device) => device,
             Err(error) => return Err(error),
         };
-        if !uncertainty.is_sane() {
-            return Err(DesignError::Uncertainty);
-        }
+        let uncertainty = match uncertainty.checked() {
+            Ok(uncertainty) => uncertainty,
+            Err(error) => return Err(error),
+        };
         let t = rate.period_s();
         let beta = device.large.damping * t / device.large.inertia;
         // Counts a tick² per N·m.
@@ -165,10 +181,9 @@ impl Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed> {
     /// The observer of a device that has everything but time stamps: current and both encoders.
     ///
     /// # Errors
-    /// [`DesignError::Rate`]; [`DesignError::Device`], [`DesignError::CoupledMotor`],
-    /// [`DesignError::Tick`]; [`DesignError::Uncertainty`], and [`DesignError::ProcessNoise`] if it
-    /// is nothing in counts and ticks; [`DesignError::NotConverged`] and [`DesignError::NotStable`] as
-    /// [`Model::steady_gain`](crate::Model::steady_gain), for any row of the table.
+    /// The constant of [`DesignError`] for the rate, for the constant of `device` or for the value of
+    /// `uncertainty` that is out of its range; [`DesignError::NOT_CONVERGED`] and
+    /// [`DesignError::NOT_STABLE`] for any row of the table.
     pub const fn new(
         device: &CoupledMotor,
         rate: Hertz,
@@ -195,8 +210,8 @@ impl Observer<AmplifierCurrent, SmallEncoder, SoftCells, Fixed> {
     /// The same, but of counts that say something inside their cell too: see [`SoftCells`].
     ///
     /// # Errors
-    /// As [`Observer::new`]; [`DesignError::ProcessNoise`] too if the white torque alone spreads
-    /// the velocity by less than 1e-9 or more than 512 counts a tick in a tick.
+    /// As [`Observer::new`]; [`DesignError::TORQUE_NOISE_FOR_SOFT`] too if the white torque alone
+    /// spreads the velocity by less than 1e-9 or more than 512 counts a tick in a tick.
     pub const fn soft(
         device: &CoupledMotor,
         rate: Hertz,
@@ -288,7 +303,7 @@ impl<C: Copy, S: Copy, L: Copy> Observer<C, S, Cells, L> {
     /// The same with edge time stamps by a clock of this frequency, at the rate it was made for.
     ///
     /// # Errors
-    /// [`DesignError::EdgeClock`] unless the clock is at least as fast as the rate.
+    /// [`DesignError::RATE`], [`DesignError::CLOCK`].
     pub const fn with_edges(
         self,
         clock: Hertz,
@@ -307,7 +322,7 @@ impl<C: Copy, S: Copy, M: Copy> Observer<C, S, M, Fixed> {
     /// learned.
     ///
     /// # Errors
-    /// [`DesignError::Rate`], [`DesignError::Device`] without counts.
+    /// [`DesignError::RATE`], [`DesignError::COUNTS_PER_REV`].
     pub const fn learning(
         self,
         counts_per_rev: u32,

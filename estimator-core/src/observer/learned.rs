@@ -122,10 +122,10 @@ const DENSE_CAUTION: f32 = 2.0;
 impl Learned {
     pub(super) const fn new(counts_per_rev: u32, rate: Hertz) -> Result<Self, DesignError> {
         if !rate.is_positive() {
-            return Err(DesignError::Rate);
+            return Err(DesignError::RATE);
         }
         if counts_per_rev == 0 {
-            return Err(DesignError::Device);
+            return Err(DesignError::COUNTS_PER_REV);
         }
         let per_rad = counts_per_rev as f64 / (2.0 * core::f64::consts::PI);
         let mut walk = [0.0; 3];

@@ -81,7 +81,7 @@ const WHITE: [f64; 2] = [1e-18, 262_144.0];
 impl SoftCells {
     pub(super) const fn new(beta: f64, noise: &Noise) -> Result<Self, DesignError> {
         if !(noise.white >= WHITE[0] && noise.white <= WHITE[1]) {
-            return Err(DesignError::ProcessNoise);
+            return Err(DesignError::TORQUE_NOISE_FOR_SOFT);
         }
         let r = noise.boundary * noise.boundary;
         let (a, q) = one_tick(beta, noise);

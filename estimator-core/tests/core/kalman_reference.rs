@@ -304,11 +304,11 @@ fn table_that_ends_too_early_is_refused() {
     let model = Model::triple_integrator(4096, Hertz(1e3), 1e3).unwrap();
     assert!(TableKalmanTriple::<37>::new(&model).is_ok());
     let refused = TableKalmanTriple::<36>::new(&model).err();
-    assert_eq!(refused, Some(DesignError::Table));
+    assert_eq!(refused, Some(DesignError::TABLE));
     let model = Model::triple_integrator(4096, Hertz(1e4), 3650.0).unwrap();
     assert!(TableKalmanTriple::<167>::new(&model).is_ok());
     let refused = TableKalmanTriple::<166>::new(&model).err();
-    assert_eq!(refused, Some(DesignError::Table));
+    assert_eq!(refused, Some(DesignError::TABLE));
     assert!(TableKalmanTriple::<0>::new(&model).is_err());
 }
 

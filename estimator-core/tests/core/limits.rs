@@ -42,46 +42,46 @@ fn uncertainty_has_a_range() {
         change(&mut unsure);
         Observer::new(&CoupledMotor::DCX35L, RATE, &unsure)
     };
-    let error = DesignError::Uncertainty;
     assert_range(
         "torque noise",
-        error,
+        DesignError::TORQUE_NOISE,
         &[1e-6, 999_999.0],
         &[0.0, -1e-6, 1e6],
         |value| design(&|unsure| unsure.torque_noise = value),
     );
     assert_range(
         "load",
-        error,
+        DesignError::LOAD,
         &[1e-5, 999_999.0],
         &[0.0, -1e-5, 1e6],
         |value| design(&|unsure| unsure.load = value),
     );
     assert_range(
         "load time",
-        error,
+        DesignError::LOAD_TIME,
         &[1e-3, 9.9e8],
         &[0.0, -1e-3, 1e9],
         |value| design(&|unsure| unsure.load_time = value),
     );
     assert_range(
         "friction share",
-        error,
+        DesignError::FRICTION_SHARE,
         &[0.0, 1.0],
         &[-1e-3, 1.001],
         |value| design(&|unsure| unsure.friction_share = value),
     );
     assert_range(
         "boundary",
-        error,
+        DesignError::BOUNDARY_NOISE,
         &[1e-4, 1e3],
         &[0.99e-4, 1001.0, 0.0, -0.1],
         |value| design(&|unsure| unsure.boundary_noise = value),
     );
-    // Noise that is nothing in counts and ticks is none.
-    let error = Some(DesignError::ProcessNoise);
-    assert_eq!(design(&|unsure| unsure.torque_noise = 1e-200).err(), error);
-    assert_eq!(design(&|unsure| unsure.load = 1e-200).err(), error);
+    // A variance that rounds to zero in counts and ticks is refused too.
+    let refused = design(&|unsure| unsure.torque_noise = 1e-200);
+    assert_eq!(refused.err(), Some(DesignError::TORQUE_NOISE));
+    let refused = design(&|unsure| unsure.load = 1e-200);
+    assert_eq!(refused.err(), Some(DesignError::LOAD));
 }
 
 /// White torque that alone spreads the velocity by 1e-9 to 512 counts a tick in a tick.
@@ -96,7 +96,7 @@ fn soft_observer_has_a_range_of_white_torque() {
         };
         Observer::soft(&CoupledMotor::DCX35L, RATE, &unsure)
     };
-    let refused = |counts| spread(counts).err() == Some(DesignError::ProcessNoise);
+    let refused = |counts| spread(counts).err() == Some(DesignError::TORQUE_NOISE_FOR_SOFT);
     assert!(refused(0.999e-9) && !refused(1.001e-9));
     assert!(refused(512.1) && !refused(511.9));
 }
@@ -115,35 +115,35 @@ fn coupled_motor_has_a_range() {
     let lag = |value| design(1000.0, &|device| device.amplifier_lag = value);
     assert_range(
         "friction",
-        DesignError::CoupledMotor,
+        DesignError::COULOMB_FRICTION,
         &[0.0, 2.8],
         &[-1e-6],
         friction,
     );
     assert_range(
         "lag",
-        DesignError::CoupledMotor,
+        DesignError::AMPLIFIER_LAG,
         &[0.0, 1e-9, 999.0],
         &[-1e-6, 1001.0],
         lag,
     );
     assert_range(
         "torque constant",
-        DesignError::Device,
+        DesignError::TORQUE_CONSTANT,
         &[1e-3],
         &[0.0, -1e-3],
         torque_constant,
     );
     assert_range(
         "damping",
-        DesignError::Device,
+        DesignError::DAMPING,
         &[0.0, 1e-3],
         &[-1e-6],
         damping,
     );
     assert_range(
         "inertia",
-        DesignError::Device,
+        DesignError::INERTIA,
         &[115e-7],
         &[0.0, -1e-6],
         inertia,
@@ -151,27 +151,31 @@ fn coupled_motor_has_a_range() {
     // In counts and ticks at 1 kHz, 4096 counts and 115e-7 kg.m2.
     let strongest = 1e6 * 115e-7 / 1e-6 / 4096.0;
     let stiffest = 8.0 * 115e-7 * 1000.0;
-    for (what, limit, design) in [
-        ("friction", strongest, &friction as &dyn Fn(f64) -> _),
-        ("torque constant", strongest, &torque_constant),
-        ("damping", stiffest, &damping),
+    for (limit, error, design) in [
+        (
+            strongest,
+            DesignError::RATE_FOR_FRICTION,
+            &friction as &dyn Fn(f64) -> _,
+        ),
+        (strongest, DesignError::RATE_FOR_CURRENT, &torque_constant),
+        (stiffest, DesignError::RATE_FOR_DAMPING, &damping),
     ] {
-        assert_ne!(design(0.999 * limit), Err(DesignError::Tick), "{what}");
-        assert_eq!(design(1.001 * limit), Err(DesignError::Tick), "{what}");
+        assert_ne!(design(0.999 * limit), Err(error), "{error}");
+        assert_eq!(design(1.001 * limit), Err(error), "{error}");
     }
     // An ampere that moves nothing.
     let moved = design(1000.0, &|device| {
         (device.large.inertia, device.large.torque_constant) = (1e300, 1e-300);
     });
-    assert_eq!(moved, Err(DesignError::Tick));
+    assert_eq!(moved, Err(DesignError::RATE_FOR_CURRENT));
     let small = |counts| design(1000.0, &|device| device.small_counts_per_rev = counts);
     assert_eq!(
         (small(0), small(1)),
-        (Err(DesignError::CoupledMotor), Ok(()))
+        (Err(DesignError::SMALL_COUNTS_PER_REV), Ok(()))
     );
     let refused = design(1000.0, &|device| device.large.counts_per_rev = 0);
-    assert_eq!(refused, Err(DesignError::Device));
-    assert_range("rate", DesignError::Rate, &[500.0], &[0.0, -1.0], |rate| {
+    assert_eq!(refused, Err(DesignError::COUNTS_PER_REV));
+    assert_range("rate", DesignError::RATE, &[500.0], &[0.0, -1.0], |rate| {
         design(rate, &|_| ())
     });
 }
@@ -183,22 +187,30 @@ fn device_has_a_range() {
         change(&mut device);
         device.checked()
     };
-    let error = DesignError::Device;
     assert_eq!(check(&|_| ()), Ok(Device::DCX35L));
-    assert_range("inertia", error, &[1e-30, 1e30], &[0.0, -1e-9], |value| {
-        check(&|device| device.inertia = value)
-    });
+    assert_range(
+        "inertia",
+        DesignError::INERTIA,
+        &[1e-30, 1e30],
+        &[0.0, -1e-9],
+        |value| check(&|device| device.inertia = value),
+    );
     assert_range(
         "torque constant",
-        error,
+        DesignError::TORQUE_CONSTANT,
         &[1e-30, 1e30],
         &[0.0, -1e-9],
         |value| check(&|device| device.torque_constant = value),
     );
-    assert_range("damping", error, &[0.0, 1e30], &[-1e-9], |value| {
-        check(&|device| device.damping = value)
-    });
-    assert_eq!(check(&|device| device.counts_per_rev = 0), Err(error));
+    assert_range(
+        "damping",
+        DesignError::DAMPING,
+        &[0.0, 1e30],
+        &[-1e-9],
+        |value| check(&|device| device.damping = value),
+    );
+    let refused = check(&|device| device.counts_per_rev = 0);
+    assert_eq!(refused, Err(DesignError::COUNTS_PER_REV));
     assert!(check(&|device| device.counts_per_rev = 1).is_ok());
 }
 
@@ -211,15 +223,14 @@ fn motor_model_has_a_range() {
     };
     let stiffest = 700.0 * Device::DCX35L.inertia * 1e3;
     let strongest = 1e9 * Device::DCX35L.inertia / 1e-6 / (4096.0 / std::f64::consts::TAU);
-    for (part, error) in [(0.999, None), (1.001, Some(DesignError::Tick))] {
-        assert_eq!(design(&|device| device.damping = part * stiffest), error);
-        assert_eq!(
-            design(&|device| device.torque_constant = part * strongest),
-            error
-        );
+    for (part, refused) in [(0.999, false), (1.001, true)] {
+        let damped = design(&|device| device.damping = part * stiffest);
+        assert_eq!(damped, refused.then_some(DesignError::RATE_FOR_DAMPING));
+        let moved = design(&|device| device.torque_constant = part * strongest);
+        assert_eq!(moved, refused.then_some(DesignError::RATE_FOR_CURRENT));
     }
     let moved = design(&|device| (device.inertia, device.torque_constant) = (1e300, 1e-300));
-    assert_eq!(moved, Some(DesignError::Tick));
+    assert_eq!(moved, Some(DesignError::RATE_FOR_CURRENT));
 }
 
 #[test]
@@ -227,18 +238,19 @@ fn cutoff_is_a_millionth_to_half_of_the_rate() {
     let low_pass = |cutoff: f64| LowPass::new(FiniteDifference, Hertz(cutoff), RATE);
     let pll = |cutoff: f64| Pll::new(Hertz(cutoff), RATE);
     let (inside, outside) = ([1.001e-3, 1.0, 500.0], [0.999e-3, 500.1, 0.0, -1.0]);
-    assert_range("low-pass", DesignError::Cutoff, &inside, &outside, low_pass);
-    assert_range("PLL", DesignError::Cutoff, &inside, &outside, pll);
+    assert_range("low-pass", DesignError::CUTOFF, &inside, &outside, low_pass);
+    assert_range("PLL", DesignError::BANDWIDTH, &inside, &outside, pll);
     for rate in [0.0, -1000.0, f64::NAN, f64::INFINITY] {
         let refused = LowPass::new(FiniteDifference, Hertz(1.0), Hertz(rate));
-        assert_eq!(refused.err(), Some(DesignError::Rate));
+        assert_eq!(refused.err(), Some(DesignError::RATE));
         assert_eq!(
             Pll::new(Hertz(1.0), Hertz(rate)).err(),
-            Some(DesignError::Rate)
+            Some(DesignError::RATE)
         );
-        assert_eq!(Scale::new(4096, Hertz(rate)).err(), Some(DesignError::Rate));
+        assert_eq!(Scale::new(4096, Hertz(rate)).err(), Some(DesignError::RATE));
     }
-    assert_eq!(Scale::new(0, RATE).err(), Some(DesignError::Device));
+    let refused = Scale::new(0, RATE).err();
+    assert_eq!(refused, Some(DesignError::COUNTS_PER_REV));
 }
 
 /// The pole of a first-order low-pass is `exp(-2 π cutoff / rate)`: after a step of the velocity, n
@@ -283,13 +295,13 @@ fn pll_has_its_double_pole() {
 #[test]
 fn foaw_has_a_range() {
     for (window, bound, error) in [
-        (0, 1, Some(DesignError::Window)),
+        (0, 1, Some(DesignError::WINDOW)),
         (1, 1, None),
         (15, 1, None),
-        (16, 1, Some(DesignError::Window)),
+        (16, 1, Some(DesignError::WINDOW)),
         (15, 0, None),
         (15, 1 << 14, None),
-        (15, (1 << 14) + 1, Some(DesignError::NoiseBound)),
+        (15, (1 << 14) + 1, Some(DesignError::BOUND)),
     ] {
         let refused = Foaw::<15, EndFit>::new(window, bound).err();
         assert_eq!(refused, error, "{window} {bound}");
@@ -303,12 +315,13 @@ fn handover_has_a_range() {
     for (settle, fade) in [(0, 1), (0, longest), (longest - 1, longest)] {
         assert!(new(settle, fade).is_ok(), "{settle} {fade}");
     }
-    for (settle, fade) in [(0, 0), (0, longest + 1), (longest, 1), (u16::MAX, 1)] {
-        assert_eq!(
-            new(settle, fade).err(),
-            Some(DesignError::Fade),
-            "{settle} {fade}"
-        );
+    for (settle, fade, error) in [
+        (0, 0, DesignError::FADE),
+        (0, longest + 1, DesignError::FADE),
+        (longest, 1, DesignError::SETTLE),
+        (u16::MAX, 1, DesignError::SETTLE),
+    ] {
+        assert_eq!(new(settle, fade).err(), Some(error), "{settle} {fade}");
     }
 }
 
@@ -339,33 +352,39 @@ fn rotor_leaves_at_the_friction_of_the_design() {
     }
 }
 
-/// A refusal says what is out of range: no other parameter, and no two errors the same.
+/// A message begins with the parameter, states the requirement and ends with the unit, and no two
+/// messages are the same.
 #[test]
-fn refusals_name_the_parameter() {
-    let said = [
-        (DesignError::Rate, "control rate"),
-        (DesignError::Cutoff, "cut-off"),
-        (DesignError::EdgeClock, "edge clock"),
-        (DesignError::Fade, "fade"),
-        (DesignError::Window, "window"),
-        (DesignError::NoiseBound, "noise bound"),
-        (DesignError::Device, "device constants"),
-        (DesignError::CoupledMotor, "friction and amplifier lag"),
-        (
-            DesignError::Tick,
-            "control rate is out of range for the device",
-        ),
-        (DesignError::Uncertainty, "torque noise and load"),
-        (DesignError::ProcessNoise, "process noise"),
-        (DesignError::NotConverged, "does not converge"),
-        (DesignError::NotStable, "not stable"),
-        (DesignError::Table, "table"),
-    ];
-    for (error, words) in said {
-        assert!(error.message().contains(words), "{error:?}: {error}");
-        let same = said
-            .iter()
-            .filter(|(other, _)| other.message() == error.message());
-        assert_eq!(same.count(), 1, "{error:?}");
+fn message_has_parameter_requirement_and_unit() {
+    for error in DesignError::ALL {
+        let (parameter, unit) = (error.parameter(), error.unit());
+        let message = error.to_string();
+        let rest = message.strip_prefix(parameter).expect("the parameter");
+        let words = rest.strip_suffix(&format!(" ({unit})")).unwrap_or(rest);
+        assert_eq!(
+            words.strip_prefix(' '),
+            Some(error.requirement()),
+            "{error}"
+        );
+        assert_eq!(words == rest, unit.is_empty(), "{error}");
+        assert!(!parameter.is_empty() && !message.contains("  "), "{error}");
+        let same = DesignError::ALL.iter();
+        let same = same.filter(|other| other.message() == error.message());
+        assert_eq!(same.count(), 1, "{error}");
+    }
+}
+
+/// Names the API has: constructors and fields. A unit is left out where the parameter is a number.
+#[test]
+fn errors_name_parameters_of_the_api() {
+    for (error, parameter, unit) in [
+        (DesignError::RATE, "rate", "Hz"),
+        (DesignError::CUTOFF, "cutoff", "Hz"),
+        (DesignError::INERTIA, "inertia", "kg m^2"),
+        (DesignError::TORQUE_NOISE, "torque_noise", "N m/sqrt(Hz)"),
+        (DesignError::FRICTION_SHARE, "friction_share", ""),
+        (DesignError::TABLE, "N", "ticks"),
+    ] {
+        assert_eq!((error.parameter(), error.unit()), (parameter, unit));
     }
 }

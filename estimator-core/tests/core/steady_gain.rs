@@ -25,7 +25,7 @@ fn agree<const S: usize, U: Copy>(ours: &Model<S, U>, model: &Reference<S>, what
             true
         }
         (Err(error), None | Some((_, 20))) => {
-            assert_eq!(error, DesignError::NotConverged, "{what}");
+            assert_eq!(error, DesignError::NOT_CONVERGED, "{what}");
             false
         }
         (ours, limit) => panic!("{what}: {ours:?} against {limit:?}"),
@@ -128,49 +128,53 @@ fn noise_whose_square_is_nothing_is_refused() {
 }
 
 #[test]
-fn refusals_have_names() {
+fn model_names_the_parameter_out_of_range() {
     let rate = Hertz(1000.0);
     let motor = |device: Device, rate: f64, noise: f64| Model::motor(&device, Hertz(rate), noise);
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let triple = Model::triple_integrator(4096, Hertz(bad), JERK);
-        assert_eq!(triple.err(), Some(DesignError::Rate));
+        assert_eq!(triple.err(), Some(DesignError::RATE));
         assert_eq!(
             motor(Device::DCX35L, bad, 0.1).err(),
-            Some(DesignError::Rate)
+            Some(DesignError::RATE)
         );
         let triple = Model::triple_integrator(4096, rate, bad);
-        assert_eq!(triple.err(), Some(DesignError::ProcessNoise), "{bad}");
+        assert_eq!(triple.err(), Some(DesignError::JERK_DENSITY), "{bad}");
         assert_eq!(
             motor(Device::DCX35L, 1e3, bad).err(),
-            Some(DesignError::ProcessNoise)
+            Some(DesignError::CURRENT_NOISE)
         );
         let inertia = Device {
             inertia: bad,
             ..Device::DCX35L
         };
-        assert_eq!(motor(inertia, 1e3, 0.1).err(), Some(DesignError::Device));
+        assert_eq!(motor(inertia, 1e3, 0.1).err(), Some(DesignError::INERTIA));
         let torque_constant = Device {
             torque_constant: bad,
             ..Device::DCX35L
         };
         assert_eq!(
             motor(torque_constant, 1e3, 0.1).err(),
-            Some(DesignError::Device)
+            Some(DesignError::TORQUE_CONSTANT)
         );
         let damping = Device {
             damping: bad,
             ..Device::DCX35L
         };
         let refused = motor(damping, 1e3, 0.1).err();
-        assert_eq!(refused.is_some(), bad != 0.0, "damping {bad}");
+        let error = (bad != 0.0).then_some(DesignError::DAMPING);
+        assert_eq!(refused, error, "damping {bad}");
     }
     let none = Device {
         counts_per_rev: 0,
         ..Device::DCX35L
     };
-    assert_eq!(motor(none, 1e3, 0.1).err(), Some(DesignError::Device));
+    assert_eq!(
+        motor(none, 1e3, 0.1).err(),
+        Some(DesignError::COUNTS_PER_REV)
+    );
     assert_eq!(
         Model::triple_integrator(0, rate, JERK).err(),
-        Some(DesignError::Device)
+        Some(DesignError::COUNTS_PER_REV)
     );
 }
