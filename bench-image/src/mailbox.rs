@@ -29,8 +29,8 @@ pub fn encode(sample: &Sample) -> [u32; WORDS] {
     let age = sample.edge.map_or(0, |edge| edge.age.0.saturating_add(1));
     let current = sample.current.get().to_bits();
     [
-        sample.large.0,
-        sample.small.0,
+        sample.count.0,
+        sample.coupled.0,
         current,
         edge.boundary.0,
         age,
@@ -42,8 +42,8 @@ pub fn encode(sample: &Sample) -> [u32; WORDS] {
 pub fn decode(words: [u32; WORDS]) -> Sample {
     let [large, small, current, boundary, age] = words;
     Sample {
-        large: Count(large),
-        small: Count(small),
+        count: Count(large),
+        coupled: Count(small),
         current: Amps::new(f32::from_bits(current)),
         edge: age.checked_sub(1).map(|age| Edge {
             boundary: Count(boundary),

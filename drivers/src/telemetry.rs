@@ -20,9 +20,9 @@ macro_rules! frame_fields {
             /// Number of the control tick from 0, modulo 2^32.
             tick: u32, "tick", log, $frame.record.tick;
             /// Count of the large encoder, modulo 2^32.
-            counts_large: u32, "large", csv, $frame.record.sample.large.0;
+            counts_large: u32, "large", csv, $frame.record.sample.count.0;
             /// Count of the small encoder, modulo 2^32.
-            counts_small: u32, "small", csv, $frame.record.sample.small.0;
+            counts_small: u32, "small", csv, $frame.record.sample.coupled.0;
             /// Current of the large motor, commanded from this tick on, A.
             current: f32, "il", csv, $frame.record.action.currents.large.get();
             /// Current of the small motor, commanded from this tick on, A.

@@ -97,7 +97,7 @@ macro_rules! estimators {
                 goals: &[Goal { capacity: 0, mean: 60.0, longest: f64::INFINITY }],
             },
             |c, motor, rate, clock, p, N| c::KalmanTriple =>
-                $crate::then!(c::Model::triple_integrator(motor.large.counts_per_rev, rate, p.jerk), |model| c::Kalman::new(&model));
+                $crate::then!(c::Model::triple_integrator(motor.motor.counts_per_rev, rate, p.jerk), |model| c::Kalman::new(&model));
             kalman_triple_table, "kalman-triple-table", Acceleration,
             (jerk: JERK),
             (at_1k: 1000.0, 24; at_10k: 10_000.0, 168;),
@@ -110,7 +110,7 @@ macro_rules! estimators {
                 goals: &[Goal { capacity: 0, mean: 30.0, longest: 30.0 }],
             },
             |c, motor, rate, clock, p, N| c::TableKalmanTriple<N> =>
-                $crate::then!(c::Model::triple_integrator(motor.large.counts_per_rev, rate, p.jerk), |model| c::TableKalman::new(&model));
+                $crate::then!(c::Model::triple_integrator(motor.motor.counts_per_rev, rate, p.jerk), |model| c::TableKalman::new(&model));
             kalman_triple_steady, "kalman-triple-steady", Acceleration,
             (jerk: JERK),
             (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
@@ -123,7 +123,7 @@ macro_rules! estimators {
                 goals: &[],
             },
             |c, motor, rate, clock, p, N| c::SteadyKalmanTriple =>
-                $crate::then!(c::Model::triple_integrator(motor.large.counts_per_rev, rate, p.jerk), |model| c::SteadyKalman::new(&model));
+                $crate::then!(c::Model::triple_integrator(motor.motor.counts_per_rev, rate, p.jerk), |model| c::SteadyKalman::new(&model));
             kalman_motor, "kalman-motor", LateCurrent,
             (current_noise: CURRENT_NOISE, literal: LITERAL),
             (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
@@ -136,7 +136,7 @@ macro_rules! estimators {
                 goals: &[],
             },
             |c, motor, rate, clock, p, N| c::KalmanMotor =>
-                $crate::then!(c::Model::motor(&motor.large, rate, p.current_noise), |model| c::Kalman::new(&model));
+                $crate::then!(c::Model::motor(&motor.motor, rate, p.current_noise), |model| c::Kalman::new(&model));
             kalman_motor_steady, "kalman-motor-steady", LateCurrent,
             (current_noise: CURRENT_NOISE, literal: LITERAL),
             (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
@@ -149,7 +149,7 @@ macro_rules! estimators {
                 goals: &[],
             },
             |c, motor, rate, clock, p, N| c::SteadyKalmanMotor =>
-                $crate::then!(c::Model::motor(&motor.large, rate, p.current_noise), |model| c::SteadyKalman::new(&model));
+                $crate::then!(c::Model::motor(&motor.motor, rate, p.current_noise), |model| c::SteadyKalman::new(&model));
             pll, "pll", Nothing,
             (bandwidth_hz: BANDWIDTH),
             (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
@@ -230,7 +230,7 @@ macro_rules! estimators {
                 goals: &[],
             },
             |c, motor, rate, clock, p, N| c::AdaptiveObserver =>
-                $crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.learning(motor.large.counts_per_rev, rate));
+                $crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.adaptive(motor.motor.counts_per_rev, rate));
             adaptive_edge, "adaptive-edge", Damping,
             (torque_noise: TORQUE_NOISE, load: DISTURBANCE, load_time: DISTURBANCE_TIME,
              friction_share: FRICTION_SHARE, boundary_noise: DISC_NOISE),
@@ -244,7 +244,7 @@ macro_rules! estimators {
                 goals: &[Goal { capacity: 0, mean: 300.0, longest: f64::INFINITY }],
             },
             |c, motor, rate, clock, p, N| c::AdaptiveEdgeObserver =>
-                $crate::then!($crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.with_edges(clock, rate)), |known| known.learning(motor.large.counts_per_rev, rate));
+                $crate::then!($crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.with_edges(clock, rate)), |known| known.adaptive(motor.motor.counts_per_rev, rate));
             observer_soft, "observer-soft", Deviation,
             (torque_noise: TORQUE_NOISE, load: DISTURBANCE, load_time: DISTURBANCE_TIME,
              friction_share: FRICTION_SHARE, boundary_noise: BOUNDARY_NOISE),
@@ -257,8 +257,8 @@ macro_rules! estimators {
                 dash: Dash::Dashed,
                 goals: &[Goal { capacity: 0, mean: 200.0, longest: f64::INFINITY }],
             },
-            |c, motor, rate, clock, p, N| c::SoftObserver =>
-                c::Observer::soft(motor, rate, &$crate::uncertainty!(c, p));
+            |c, motor, rate, clock, p, N| c::QuantisedObserver =>
+                c::Observer::quantised(motor, rate, &$crate::uncertainty!(c, p));
             adaptive_soft, "adaptive-soft", Damping,
             (torque_noise: TORQUE_NOISE, load: DISTURBANCE, load_time: DISTURBANCE_TIME,
              friction_share: FRICTION_SHARE, boundary_noise: BOUNDARY_NOISE),
@@ -271,8 +271,8 @@ macro_rules! estimators {
                 dash: Dash::Dotted,
                 goals: &[Goal { capacity: 0, mean: 300.0, longest: f64::INFINITY }],
             },
-            |c, motor, rate, clock, p, N| c::AdaptiveSoftObserver =>
-                $crate::then!(c::Observer::soft(motor, rate, &$crate::uncertainty!(c, p)), |known| known.learning(motor.large.counts_per_rev, rate));
+            |c, motor, rate, clock, p, N| c::AdaptiveQuantisedObserver =>
+                $crate::then!(c::Observer::quantised(motor, rate, &$crate::uncertainty!(c, p)), |known| known.adaptive(motor.motor.counts_per_rev, rate));
             observer_held, "observer-held", Deviation,
             (torque_noise: TORQUE_NOISE, load: DISTURBANCE, load_time: DISTURBANCE_TIME,
              friction_share: FRICTION_SHARE, boundary_noise: BOUNDARY_NOISE),
@@ -285,7 +285,7 @@ macro_rules! estimators {
                 dash: Dash::Mixed,
                 goals: &[],
             },
-            |c, motor, rate, clock, p, N| c::Observer<c::AmplifierCurrent, c::HeldHandle, c::Cells, c::Fixed> =>
+            |c, motor, rate, clock, p, N| c::Observer<c::AmplifierCurrent, c::HeldShaft, c::CountUpdate, c::Fixed> =>
                 $crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| Ok(known.held()));
             observer_edge_held, "observer-edge-held", Deviation,
             (torque_noise: TORQUE_NOISE, load: DISTURBANCE, load_time: DISTURBANCE_TIME,
@@ -299,7 +299,7 @@ macro_rules! estimators {
                 dash: Dash::Mixed,
                 goals: &[],
             },
-            |c, motor, rate, clock, p, N| c::Observer<c::AmplifierCurrent, c::HeldHandle, c::Edges, c::Fixed> =>
+            |c, motor, rate, clock, p, N| c::Observer<c::AmplifierCurrent, c::HeldShaft, c::EdgeUpdate, c::Fixed> =>
                 $crate::then!($crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.with_edges(clock, rate)), |known| Ok(known.held()));
             observer_edge_blind, "observer-edge-blind", Deviation,
             (torque_noise: TORQUE_NOISE, load: DISTURBANCE_AND_MOTOR, load_time: DISTURBANCE_TIME,
@@ -313,11 +313,11 @@ macro_rules! estimators {
                 dash: Dash::Dashed,
                 goals: &[],
             },
-            |c, motor, rate, clock, p, N| c::Observer<c::NoCurrent, c::HeldHandle, c::Edges, c::Fixed> =>
+            |c, motor, rate, clock, p, N| c::Observer<c::NoCurrent, c::HeldShaft, c::EdgeUpdate, c::Fixed> =>
                 c::Observer::blind(motor, rate, clock, &c::Uncertainty {
                     torque_noise: p.torque_noise,
-                    load: p.load,
-                    load_time: p.load_time,
+                    disturbance: p.load,
+                    disturbance_time: p.load_time,
                     friction_share: 0.0,
                     boundary_noise: p.boundary_noise,
                 });
@@ -332,8 +332,8 @@ macro_rules! uncertainty {
     ($c:ident, $p:ident) => {
         $c::Uncertainty {
             torque_noise: $p.torque_noise,
-            load: $p.load,
-            load_time: $p.load_time,
+            disturbance: $p.load,
+            disturbance_time: $p.load_time,
             friction_share: $p.friction_share,
             boundary_noise: $p.boundary_noise,
         }
@@ -358,7 +358,7 @@ const EDGE: Signals = Signals {
 };
 
 const COUNT_CURRENT_AND_SLIP: Signals = Signals {
-    small: true,
+    coupled: true,
     ..Signals::COUNT_AND_CURRENT
 };
 

@@ -1,6 +1,5 @@
-//! What the compiler should know of a branch.
+//! Branch hints for the compiler.
 
-/// Says that the branch it stands in is rare, or not one of the longest update: the others are then
-/// laid out without jumps.
+/// Marks the enclosing branch as cold, so that the hot path has no taken branches.
 #[cold]
 pub(crate) const fn unlikely() {}

@@ -1,31 +1,28 @@
-//! What estimators believe of their own error.
+//! The variance of an estimate, according to its own model.
 
 use crate::estimator::VelocityEstimator;
-use crate::finite_difference::FiniteDifference;
-use crate::foaw::{Fit, Foaw, FoawState};
-use crate::kalman::{Kalman, KalmanState};
-use crate::late_current::{LateCurrent, LateCurrentState};
-use crate::model::Input;
-use crate::observer::{Correction, CurrentSource, Learning, Observer, ObserverState, SlipSource};
-use crate::steady_kalman::{SteadyKalman, SteadyKalmanState};
-use crate::table_kalman::{TableKalman, TableKalmanState};
+use crate::filters::{
+    FiniteDifference, Fit, Foaw, FoawState, Kalman, KalmanState, LateCurrent, LateCurrentState,
+    SteadyKalman, SteadyKalmanState, TableKalman, TableKalmanState,
+};
+use crate::models::Input;
+use crate::observer::{Adaptation, Correction, CurrentSource, Observer, ObserverState, SlipSource};
 use crate::units::{Count, CountsPerTick};
 
-/// An estimator that says how far off its latest velocity may be.
+/// An estimator that gives the variance of its latest velocity.
 ///
-/// | estimator | variance, (counts a tick)² |
+/// | estimator | variance, (counts/tick)² |
 /// |---|---|
-/// | finite difference | 1: one count a tick |
+/// | finite difference | 1: one count/tick |
 /// | FOAW | 1 / n²: one count over the window of n intervals |
-/// | Kalman | P_11 of the covariance it runs with |
-/// | Kalman, table | P_11 after as many ticks, computed at compile time |
+/// | Kalman | P_11 of its covariance |
+/// | Kalman, table | P_11 after the same number of ticks, computed at compile time |
 /// | Kalman, steady | P_11 of the limit, computed at compile time |
-/// | observer | that of the filter corrected every n ticks before its correction, n ticks after the last |
+/// | observer | n ticks after the last correction, P_11 before a correction of the filter that is corrected every n ticks |
 /// | handover | the larger of the two while both run |
 ///
-/// It is what the model says, no more: a motor with friction that the model lacks errs by more
-/// than its filter believes. `host-sim compare` counts how often the truth lies within two standard
-/// deviations.
+/// The variance covers the errors that the model contains, and no others: with friction that the
+/// model lacks, the error is larger than the variance says.
 ///
 /// ```
 /// use estimator_core::*;
@@ -34,25 +31,25 @@ use crate::units::{Count, CountsPerTick};
 /// for tick in 1..=20 {
 ///     FOAW.update(&mut state, &Sample::new(Count(tick)));
 /// }
-/// // A full window: a sixteenth of a count a tick.
-/// assert_eq!(FOAW.variance(&state).deviation(), CountsPerTick(0.0625));
+/// // A full window: 1/16 count/tick.
+/// assert_eq!(FOAW.variance(&state).std_dev(), CountsPerTick(0.0625));
 /// ```
 pub trait Confidence: VelocityEstimator {
     /// Variance of the latest velocity.
     fn variance(&self, state: &Self::State) -> Variance;
 }
 
-/// Variance of a velocity, (counts a tick)².
+/// Variance of a velocity, (counts/tick)².
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct Variance(pub f32);
 
 impl Variance {
-    /// The standard deviation, to the last digit; 0 unless the variance is positive.
+    /// The standard deviation, correct to the last digit; 0 unless the variance is positive.
     ///
-    /// Newton's iteration from above, which falls until it is there: f32 and no library. Takes up
-    /// to 80 divisions, so it is for whoever has time.
+    /// Found by Newton's iteration from above, which falls monotonically to the root. It takes up to
+    /// 80 divisions, so call it outside the control interrupt.
     #[must_use]
-    pub fn deviation(self) -> CountsPerTick {
+    pub fn std_dev(self) -> CountsPerTick {
         let Self(x) = self;
         if !(x > 0.0) {
             return CountsPerTick(0.0);
@@ -111,7 +108,7 @@ where
     C: CurrentSource,
     S: SlipSource,
     M: Correction,
-    L: Learning,
+    L: Adaptation,
 {
     fn variance(&self, state: &ObserverState<C::State, S::State, M::State, L::State>) -> Variance {
         Variance(self.velocity_variance(state))
@@ -124,16 +121,16 @@ mod tests {
     use super::Variance;
 
     #[test]
-    fn the_root_is_the_librarys() {
+    fn std_dev_is_the_square_root() {
         for x in [1e-45, 1e-38, 1e-12, 0.25, 1.0, 2.0, 9.0, 1e6, f32::MAX] {
-            let (root, exact) = (Variance(x).deviation().0, x.sqrt());
+            let (root, exact) = (Variance(x).std_dev().0, x.sqrt());
             assert!(
                 (root - exact).abs() <= 1.2e-7 * exact,
                 "{x}: {root}, {exact}"
             );
         }
         for x in [0.0, -1.0, f32::NAN] {
-            assert_eq!(Variance(x).deviation().0, 0.0);
+            assert_eq!(Variance(x).std_dev().0, 0.0);
         }
     }
 }

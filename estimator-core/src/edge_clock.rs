@@ -1,28 +1,30 @@
-//! The clock that stamps encoder edges, against the control period.
+//! The clock that stamps encoder edges, relative to the control period.
 
-use crate::design_error::DesignError;
+use crate::design::DesignError;
 use crate::sample::Sample;
 use crate::units::Hertz;
 
-/// How many ticks of the capture clock a control period has.
+/// Capture clock of edge time stamps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EdgeClock {
-    /// Periods per tick of the clock.
+    /// Control periods per tick of the capture clock.
     period: f32,
 }
 
-/// An edge since the last sample.
+/// An edge that came since the last sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FreshEdge {
-    /// Number of the boundary modulo 4: which phase of a line it is.
+    /// Number of the boundary modulo 4: the phase of an encoder line.
     pub(crate) phase: usize,
-    /// Where it lies, from the middle of the newest count's cell: -1/2 or 1/2 count.
+    /// Position from the middle of the quantisation interval of the newest count: ±1/2 count.
     pub(crate) position: f32,
-    /// Its age in control periods, 0 to below 1.
+    /// Age in control periods, 0 to below 1.
     pub(crate) age: f32,
 }
 
 impl EdgeClock {
+    /// A capture clock of frequency `clock` at this control rate.
+    ///
     /// # Errors
     /// [`DesignError::RATE`], [`DesignError::CLOCK`].
     pub(crate) const fn new(clock: Hertz, rate: Hertz) -> Result<Self, DesignError> {
@@ -37,13 +39,13 @@ impl EdgeClock {
         })
     }
 
-    /// The latest edge, if it came since the last sample and bounds the newest count; one that
-    /// does not is a stamp out of step with its counter, and is no edge.
+    /// The latest edge, if it came since the last sample and is a boundary of the newest count's
+    /// interval. Any other stamp disagrees with the counter and is ignored.
     #[inline(always)]
     pub(crate) fn fresh(&self, sample: &Sample) -> Option<FreshEdge> {
         let edge = sample.edge?;
         let age = edge.age.0 as f32 * self.period;
-        let above = (edge.boundary - sample.large).0;
+        let above = (edge.boundary - sample.count).0;
         if age < 1.0 && (above == 0 || above == 1) {
             Some(FreshEdge {
                 phase: (edge.boundary.0 & 3) as usize,

@@ -1,44 +1,41 @@
-//! What every estimator is.
+//! The interface of every estimator.
 
 use crate::sample::{Sample, Signals};
 use crate::units::CountsPerTickSquared;
 
 /// A velocity estimator: immutable parameters, with the state apart.
 ///
-/// The state begins with a sample, so an estimator can neither difference against memory that was
-/// never written nor jump at the first tick; to reset, start again.
+/// The state is made from the first sample, so the first update has no jump and no state is ever
+/// uninitialised. To reset an estimator, start it again. Any crate may implement this trait.
 pub trait VelocityEstimator {
-    /// What is carried from tick to tick. A tick that leaves it equal, bit for bit but for signs
-    /// of zero, changes nothing to come.
+    /// State carried from tick to tick. If a tick leaves it equal, bit for bit but for the sign of
+    /// zeros, the tick has no influence on later outputs.
     type State: Clone + PartialEq;
-    /// What a tick yields: [`CountsPerTick`](crate::CountsPerTick), or `()` where no velocity is
-    /// wanted.
+    /// Output of a tick: [`CountsPerTick`](crate::CountsPerTick), or `()` for [`Skip`].
     type Output: Copy;
-    /// Which parts of a sample, besides the large count, it reads.
+    /// The parts of a sample that the estimator reads besides the count.
     const NEEDS: Signals;
 
     /// The state at rest at the first sample.
     fn start(&self, first: &Sample) -> Self::State;
 
-    /// Begins again at rest at this sample. What was chosen from outside, as by a [`Handover`]'s
-    /// [`select`](crate::HandoverState::select), stays.
-    ///
-    /// [`Handover`]: crate::Handover
+    /// Sets the state to rest at this sample. A choice made from outside stays, as that of
+    /// [`HandoverState::select`](crate::HandoverState::select).
     fn restart(&self, state: &mut Self::State, first: &Sample) {
         *state = self.start(first);
     }
 
-    /// One tick: take the next sample, return the velocity at its instant.
+    /// Processes the sample of one tick and returns the velocity at the instant of that sample.
     fn update(&self, state: &mut Self::State, sample: &Sample) -> Self::Output;
 }
 
-/// An estimator whose model has an acceleration too.
+/// An estimator whose model has an acceleration.
 pub trait AccelerationEstimator: VelocityEstimator {
     /// The acceleration at the instant of the latest update.
     fn acceleration(&self, state: &Self::State) -> CountsPerTickSquared;
 }
 
-/// The estimator of whoever needs no velocity: no state, no output, no code.
+/// An estimator without state, output and code, for a controller that needs no velocity.
 ///
 /// ```
 /// use estimator_core::{Count, Sample, Skip, VelocityEstimator};

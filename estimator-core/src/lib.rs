@@ -1,32 +1,36 @@
 //! Velocity estimation from quadrature encoder counts: `no_std`, no allocation, no panics.
 //!
-//! The same code runs in a control interrupt, in the host simulation and in the replay of a
-//! recording. Arithmetic is integers and f32 `+ - * /` only, so all of them agree bit for bit.
+//! The same code runs in a control interrupt, in a host simulation and in the replay of a
+//! recording. It computes with integers and f32 `+ - * /` only, so all of them agree bit for bit.
 //!
-//! * An estimator is a set of immutable parameters; its state is apart and begins with a sample,
-//!   so there is no state that was never initialised and no jump at the first tick.
-//! * Positions are integers modulo 2^32 ([`Count`]); floats see differences only.
-//! * Inside, everything is in counts and ticks. Physical units enter once, through [`Scale`].
-//! * An estimator may say how far off its velocity may be: [`Confidence`].
-//! * Parameters come from `const fn` that return a [`DesignError`]; [`preset!`] turns that into a
-//!   build error.
+//! * An estimator is a set of immutable parameters. Its state is a separate value, made from the
+//!   first sample, so no state is uninitialised and the first update has no jump.
+//! * Positions are integers modulo 2^32 ([`Count`]). Floats hold differences only.
+//! * Internal quantities are in counts and ticks; one tick is one control period T. Physical units
+//!   are converted once, by [`Scale`].
+//! * [`Confidence`] gives the variance of an estimate.
+//! * Constructors are `const fn` and return a [`DesignError`] that names the parameter. [`preset!`]
+//!   turns it into a build error.
+//! * The traits [`VelocityEstimator`], [`AccelerationEstimator`] and [`Confidence`] may be
+//!   implemented by any crate. The traits of an estimator's parts ([`Fit`], [`Input`],
+//!   [`CurrentSource`], [`SlipSource`], [`Correction`], [`Adaptation`]) are sealed.
 //!
 //! | estimator | type | state | reads |
 //! |---|---|---|---|
-//! | finite difference (eq. 4) | [`FiniteDifference`] | 1 count | counts |
-//! | first-order low-pass over another | [`LowPass`] | 1 float | as the other |
-//! | FOAW, end-fit or best-fit (eqs. 5 to 8) | [`Foaw`] | a ring of counts | counts |
+//! | finite difference | [`FiniteDifference`] | 1 count | counts |
+//! | first-order low-pass over another estimator | [`LowPass`] | 1 float | as that estimator |
+//! | first-order adaptive windowing (FOAW), end-fit or best-fit | [`Foaw`] | a ring of counts | counts |
 //! | Kalman, full covariance | [`Kalman`] | x, P | counts; current with [`Model::motor`] |
-//! | Kalman, preset gain table | [`TableKalman`] | x, 1 index | the same |
-//! | Kalman, preset steady gain | [`SteadyKalman`] | x | the same |
+//! | Kalman, preset gain table | [`TableKalman`] | x, 1 index | as [`Kalman`] |
+//! | Kalman, preset steady gain | [`SteadyKalman`] | x | as [`Kalman`] |
 //! | alpha-beta-gamma filter with fading memory | [`AlphaBetaGamma`] | 3 floats | counts |
 //! | critically damped tracking loop | [`Pll`] | 2 floats | counts |
 //! | M/T from edge time stamps | [`MOverT`] | 1 edge | counts, edges |
-//! | observer with friction and slip | [`Observer`] | 4 floats | counts; as built: current, small count, edges |
-//! | the same, hearing counts inside their cell | [`SoftObserver`] | 9 floats | the same |
-//! | the same, learning its parameters | [`AdaptiveObserver`] | 23 floats | the same |
-//! | two, exchanged while they run | [`Handover`] | as the one in charge | as both |
-//! | none | [`Skip`] | none | nothing |
+//! | observer with friction and slip | [`Observer`] | 4 floats | counts; by its parts: current, coupled count, edges |
+//! | observer with truncated-Gaussian update | [`QuantisedObserver`] | 9 floats | counts, current, coupled count |
+//! | observer with parameter adaptation | [`AdaptiveObserver`] | 23 floats | counts, current, coupled count |
+//! | two estimators, exchanged while they run | [`Handover`] | as the selected one | as both |
+//! | no estimator | [`Skip`] | none | nothing |
 //!
 //! ```
 //! use estimator_core::{Count, EndFit, Foaw, Hertz, Sample, Scale, VelocityEstimator, preset};
@@ -49,67 +53,44 @@
 )]
 #![allow(
     clippy::neg_cmp_op_on_partial_ord,
-    reason = "a NaN has to fail these comparisons"
+    reason = "a NaN must fail these comparisons"
 )]
 
-mod alpha_beta_gamma;
 mod branch;
 mod confidence;
-pub mod const_math;
-mod coupled_motor;
-mod design_error;
-mod device;
+mod design;
 mod edge_clock;
 mod estimator;
-mod finite_difference;
-mod foaw;
-mod handover;
-mod held_motor;
-mod kalman;
-mod late_current;
-mod low_pass;
-mod m_over_t;
-mod model;
+mod filters;
+mod models;
 mod observer;
-mod pll;
-mod riccati;
 mod sample;
-mod steady_kalman;
-mod table_kalman;
-mod triple_integrator;
+mod sealed;
 mod units;
 
-pub use alpha_beta_gamma::{AlphaBetaGamma, AlphaBetaGammaState};
 pub use confidence::{Confidence, Variance};
-pub use coupled_motor::CoupledMotor;
-pub use design_error::DesignError;
-pub use device::Device;
+pub use design::{DesignError, const_math};
 pub use estimator::{AccelerationEstimator, Skip, VelocityEstimator};
-pub use finite_difference::FiniteDifference;
-pub use foaw::{BestFit, EndFit, Fit, Foaw, FoawState};
-pub use handover::{Handover, HandoverState, Side};
-pub use held_motor::CurrentInput;
-pub use kalman::{Kalman, KalmanMotor, KalmanState, KalmanTriple};
-pub use late_current::{LateCurrent, LateCurrentState};
-pub use low_pass::{LowPass, LowPassState};
-pub use m_over_t::{MOverT, MOverTState};
-pub use model::{Input, Model};
-pub use observer::{
-    AdaptiveEdgeObserver, AdaptiveObserver, AdaptiveSoftObserver, AmplifierCurrent, Bell, Cells,
-    Correction, CountObserver, CurrentSource, Deviations, EdgeObserver, Edges, EdgesState, Fixed,
-    Gain, HeldHandle, Learned, LearnedState, Learning, NoCurrent, Observer, ObserverState,
-    SlipSource, SmallEncoder, SoftCells, SoftCellsState, SoftObserver, Uncertainty,
+pub use filters::{
+    AlphaBetaGamma, AlphaBetaGammaState, BestFit, EndFit, FiniteDifference, Fit, Foaw, FoawState,
+    Handover, HandoverState, Kalman, KalmanMotor, KalmanState, KalmanTriple, LateCurrent,
+    LateCurrentState, LowPass, LowPassState, MOverT, MOverTState, Pll, PllState, Side,
+    SteadyKalman, SteadyKalmanMotor, SteadyKalmanState, SteadyKalmanTriple, TableKalman,
+    TableKalmanMotor, TableKalmanState, TableKalmanTriple,
 };
-pub use pll::{Pll, PllState};
+pub use models::{CoupledMotor, CurrentInput, Input, Model, MotorModel, NoInput};
+pub use observer::{
+    Adaptation, Adaptive, AdaptiveEdgeObserver, AdaptiveObserver, AdaptiveQuantisedObserver,
+    AdaptiveState, AmplifierCurrent, Correction, CountObserver, CountUpdate, CoupledEncoder,
+    Covariance, CurrentSource, EdgeObserver, EdgeUpdate, EdgeUpdateState, Fixed, Gain, HeldShaft,
+    NoCurrent, Observer, ObserverState, ParameterErrors, QuantisedObserver, QuantisedUpdate,
+    QuantisedUpdateState, SlipSource, Uncertainty,
+};
 pub use sample::{Edge, Sample, Signals};
-pub use steady_kalman::{SteadyKalman, SteadyKalmanMotor, SteadyKalmanState, SteadyKalmanTriple};
-pub use table_kalman::{TableKalman, TableKalmanMotor, TableKalmanState, TableKalmanTriple};
-pub use triple_integrator::NoInput;
 pub use units::{
     Amps, ClockTicks, Count, Counts, CountsPerTick, CountsPerTickSquared, Hertz, Scale,
 };
 
-/// The README's example, compiled.
 #[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
+#[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,102 +1,121 @@
-//! Observer of a motor with known current, coupler and friction, with scheduled gains.
+//! Observer of a coupled motor with friction, with scheduled gains.
 
-mod bell;
+mod adaptation;
+mod adaptive;
 mod bierman;
 mod correction;
-mod dependence;
+mod count_update;
+mod covariance;
 mod design;
+mod edge_update;
+mod gain;
+mod gain_table;
+mod innovation;
 mod inputs;
-mod learned;
-mod learning;
 mod motion;
-mod soft_cells;
-mod table;
+mod moving_start;
+mod quantised_update;
+mod sensitivity;
+mod uncertainty;
 
-pub use bell::Bell;
-pub use correction::{Cells, Correction, Edges, EdgesState};
-pub use design::{Gain, Uncertainty};
+pub use adaptation::{Adaptation, Fixed, ParameterErrors};
+pub use adaptive::{Adaptive, AdaptiveState};
+pub use correction::Correction;
+pub use count_update::CountUpdate;
+pub use covariance::Covariance;
+pub use edge_update::{EdgeUpdate, EdgeUpdateState};
+pub use gain::Gain;
 pub use inputs::{
-    AmplifierCurrent, CurrentSource, HeldHandle, NoCurrent, SlipSource, SmallEncoder,
+    AmplifierCurrent, CoupledEncoder, CurrentSource, HeldShaft, NoCurrent, SlipSource,
 };
-pub use learned::{Learned, LearnedState};
-pub use learning::{Deviations, Fixed, Learning};
-pub use soft_cells::{SoftCells, SoftCellsState};
+pub use quantised_update::{QuantisedUpdate, QuantisedUpdateState};
+pub use uncertainty::Uncertainty;
 
 use core::borrow::Borrow;
 
-use crate::const_math::limited;
+use crate::design::const_math::limited;
 use crate::estimator::VelocityEstimator;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick};
-use correction::Path;
-use dependence::{Lesson, Tick};
+use innovation::Prediction;
 use motion::Motion;
+use sensitivity::{Tick, Update};
 
-/// [`Observer`] of counts, current and slip.
-pub type CountObserver = Observer<AmplifierCurrent, SmallEncoder, Cells, Fixed>;
+/// [`Observer`] of counts, current and coupled shaft.
+pub type CountObserver = Observer<AmplifierCurrent, CoupledEncoder, CountUpdate, Fixed>;
 
 /// [`CountObserver`] with edge time stamps.
-pub type EdgeObserver = Observer<AmplifierCurrent, SmallEncoder, Edges, Fixed>;
+pub type EdgeObserver = Observer<AmplifierCurrent, CoupledEncoder, EdgeUpdate, Fixed>;
 
-/// [`CountObserver`] that hears counts inside their cell too.
-pub type SoftObserver = Observer<AmplifierCurrent, SmallEncoder, SoftCells, Fixed>;
+/// [`CountObserver`] that also uses a count while the prediction agrees with it
+/// (truncated-Gaussian update).
+pub type QuantisedObserver = Observer<AmplifierCurrent, CoupledEncoder, QuantisedUpdate, Fixed>;
 
-/// [`CountObserver`] that learns damping, friction and torque constant.
-pub type AdaptiveObserver = Observer<AmplifierCurrent, SmallEncoder, Cells, Learned>;
+/// [`CountObserver`] that adapts damping, friction and torque constant.
+pub type AdaptiveObserver = Observer<AmplifierCurrent, CoupledEncoder, CountUpdate, Adaptive>;
 
-/// [`AdaptiveObserver`] that hears counts inside their cell too.
-pub type AdaptiveSoftObserver = Observer<AmplifierCurrent, SmallEncoder, SoftCells, Learned>;
+/// [`QuantisedObserver`] that adapts damping, friction and torque constant.
+pub type AdaptiveQuantisedObserver =
+    Observer<AmplifierCurrent, CoupledEncoder, QuantisedUpdate, Adaptive>;
 
-/// [`AdaptiveObserver`] with edge time stamps.
-pub type AdaptiveEdgeObserver = Observer<AmplifierCurrent, SmallEncoder, Edges, Learned>;
+/// [`EdgeObserver`] that adapts damping, friction and torque constant.
+pub type AdaptiveEdgeObserver = Observer<AmplifierCurrent, CoupledEncoder, EdgeUpdate, Adaptive>;
 
-/// Largest innovation that moves the velocity, counts: a count that jumps further is wrong.
+/// Largest innovation that changes the velocity, counts: a larger step of the count is a fault.
 const LARGEST_INNOVATION: f32 = 65_536.0;
 
-/// Largest part of the friction believed in that an unknown torque may add or take.
+/// Largest friction correction, in parts of the model's friction.
 const LARGEST_FRICTION_ERROR: f32 = 0.5;
 
-/// Observer of `J dω/dt = Kt i - b (ω - ω_S) - friction + unknown torque`.
+/// Observer of `J dω/dt = Kt i - b (ω - ω_S) - friction + disturbance torque`.
 ///
-/// One tick, in counts and ticks (φ0, φ1, φ2 of `β = b T / J`; x from the middle of the newest
-/// count's cell):
+/// One tick, in counts and ticks, with φ0, φ1, φ2 of `β = b T / J`. x is the position from the
+/// middle of the quantisation interval of the newest count.
 /// ```text
-/// drive      u = (Kt i_mean) s T² / J + β Δ_S + a
-/// motion     v' = φ0 v + φ1 (u - f),  x += φ1 v + φ2 (u - f),  f = sign(v) (Tc s T² / J + c)
-///            where v' would pass zero, the rotor stops and stays, or leaves again ([motion])
-/// unknown    a *= exp(-T / τ)
-/// cells      x -= counts since the last tick;  e = what x is outside ±1/2;  none: keep all
-/// correction x += e,  v += K_v[n] e,  a += (1 - ρ) K_a[n] e,  c -= ρ K_a[n] e d
+/// drive       u = (Kt i_mean) s T² / J + β Δ_S + a
+/// motion      v' = φ0 v + φ1 (u - f),  x += φ1 v + φ2 (u - f),  f = sign(v) (Tc s T² / J + c)
+///             where v' would pass zero, the rotor stops and stays, or leaves again
+/// disturbance a *= exp(-T / τ)
+/// innovation  x -= counts since the last tick;  e = distance of x to ±1/2, none inside
+/// correction  x += e,  v += K_v[n] e,  a += (1 - ρ) K_a[n] e,  c -= ρ K_a[n] e d
 /// ```
-/// n is the number of ticks since the last correction, and K\[n\] the steady gain of the filter
-/// that is corrected once every n ticks, from the Riccati recursion, at compile time: a row for each
-/// n to 64, then for every 32nd, to 961. So there is no covariance at run time and nothing that could
-/// lose its definiteness. i_mean is the current behind the amplifier's lag, Δ_S the handle's
-/// displacement (an exact integral of its velocity), ρ the share of the unknown torque that is taken
-/// for friction, d the mean direction of the last 8 ms (at rest, that of the drive), because an
-/// innovation is what went wrong over some time: the direction of the moment would make a fast
-/// vibration teach a wrong friction. c is within half of the friction believed in.
+/// * K\[n\] is the steady gain of a filter that is corrected once every n ticks, where n is the
+///   number of ticks since the last correction. It comes from the Riccati recursion at compile time:
+///   a row for each n to 64, then for every 32nd, to 961. No covariance is kept at run time.
+/// * i_mean is the mean current behind the amplifier's lag, Δ_S the displacement of the coupled
+///   shaft, which is the exact integral of its velocity.
+/// * a is the disturbance torque, c the friction correction, at most half of the model's friction, and
+///   ρ the share of the disturbance that corrects the friction.
+/// * d is the mean direction of motion over the last 8 ms, at rest the direction of the drive. An
+///   innovation is the result of the recent motion; with the present direction a fast vibration
+///   would give a wrong friction correction.
 ///
-/// What a device lacks is left out by type: [`held`](Self::held) without the small encoder,
-/// [`blind`](Self::blind) without current; [`with_edges`](Self::with_edges) adds time stamps,
-/// [`soft`](Self::soft) hears counts inside their cell too, by a covariance instead of the table
-/// ([`SoftCells`]), [`learning`](Self::learning) learns the parameters.
+/// The type parameters leave out what a device does not measure: the current source C
+/// ([`AmplifierCurrent`], [`NoCurrent`]), the slip source S ([`CoupledEncoder`], [`HeldShaft`]), the
+/// correction M ([`CountUpdate`], [`QuantisedUpdate`], [`EdgeUpdate`]) and the adaptation L
+/// ([`Fixed`], [`Adaptive`]). [`new`](Self::new), [`quantised`](Self::quantised) and
+/// [`blind`](Self::blind) construct an observer; [`held`](Self::held),
+/// [`with_edges`](Self::with_edges) and [`adaptive`](Self::adaptive) exchange one part of it.
 ///
-/// Valid for innovations up to 65536 counts; beyond, the position follows and the velocity takes
-/// 65536. A displacement beyond ±2^24 counts a tick is rounded.
+/// Valid for innovations up to 65536 counts; beyond, the position follows and the velocity is
+/// corrected by 65536. A displacement beyond ±2^24 counts/tick is rounded.
 ///
 /// ```
 /// use estimator_core::*;
-/// const UNSURE: Uncertainty = Uncertainty {
-///     torque_noise: 5e-6, load: 1e-4, load_time: 0.1, friction_share: 0.7, boundary_noise: 0.0625,
+/// const UNCERTAINTY: Uncertainty = Uncertainty {
+///     torque_noise: 5e-6,
+///     disturbance: 1e-4,
+///     disturbance_time: 0.1,
+///     friction_share: 0.7,
+///     boundary_noise: 0.0625,
 /// };
 /// const OBSERVER: CountObserver =
-///     preset!(Observer::new(&CoupledMotor::DCX35L, Hertz(1000.0), &UNSURE));
+///     preset!(Observer::new(&CoupledMotor::DCX35L, Hertz(1000.0), &UNCERTAINTY));
 /// let first = Sample::new(Count(0));
 /// let mut state = OBSERVER.start(&first);
-/// // 80 mA are 3.7 mN·m: below the 4 mN·m of friction, so nothing moves.
+/// // 80 mA give 3.7 mN·m, less than the friction of 4 mN·m: the rotor stays.
 /// assert_eq!(OBSERVER.update(&mut state, &first.with_current(Amps::new(0.08))).0, 0.0);
-/// // At 0.5 A it knows at once that it does, before the first count.
+/// // 0.5 A accelerate it: the velocity changes before the first count does.
 /// assert!(OBSERVER.update(&mut state, &first.with_current(Amps::new(0.5))).0 > 0.9);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,9 +124,9 @@ pub struct Observer<C, S, M, L> {
     current: C,
     slip: S,
     correction: M,
-    learning: L,
-    load_decay: f32,
-    way_pole: f32,
+    adaptation: L,
+    disturbance_decay: f32,
+    direction_pole: f32,
     friction_share: f32,
 }
 
@@ -117,47 +136,50 @@ pub struct ObserverState<C, S, M, L> {
     anchor: Count,
     position: f32,
     velocity: f32,
-    /// Unknown torque, counts a tick²: what pushes, and what rubs.
-    load: f32,
-    rub: f32,
-    /// Recent mean of what friction acts against, -1 to 1.
-    way: f32,
+    /// Disturbance torque and friction correction, counts/tick².
+    disturbance: f32,
+    friction_correction: f32,
+    /// Recent mean of the direction that friction acts against, -1 to 1.
+    mean_direction: f32,
     current: C,
     slip: S,
     correction: M,
-    learning: L,
+    adaptation: L,
 }
 
 impl<C, S, M, L> ObserverState<C, S, M, L> {
-    /// What is carried of the corrections.
+    /// State of the correction.
     #[must_use]
     pub const fn correction(&self) -> &M {
         &self.correction
     }
 
-    /// What is carried of the parameters.
+    /// State of the adaptation.
     #[must_use]
-    pub const fn learning(&self) -> &L {
-        &self.learning
+    pub const fn adaptation(&self) -> &L {
+        &self.adaptation
     }
 }
 
-impl<C, S, M, L: Learning> Observer<C, S, M, L> {
-    /// What the observer has learned of its parameters.
+impl<C, S, M, L: Adaptation> Observer<C, S, M, L> {
+    /// The relative parameter errors estimated so far; zero without adaptation.
     #[must_use]
-    pub fn deviations<A, B, D>(&self, state: &ObserverState<A, B, D, L::State>) -> Deviations {
-        self.learning.deviations(&state.learning)
+    pub fn parameter_errors<A, B, D>(
+        &self,
+        state: &ObserverState<A, B, D, L::State>,
+    ) -> ParameterErrors {
+        self.adaptation.parameter_errors(&state.adaptation)
     }
 }
 
-impl<C, S, M: Correction, L: Learning> Observer<C, S, M, L> {
-    /// Variance of the velocity, by what is not known of the parameters too.
+impl<C, S, M: Correction, L: Adaptation> Observer<C, S, M, L> {
+    /// Variance of the velocity, including that due to the uncertainty of the parameters.
     pub(crate) fn velocity_variance<A, B>(
         &self,
         state: &ObserverState<A, B, M::State, L::State>,
     ) -> f32 {
         let known = self.correction.velocity_variance(&state.correction);
-        known + self.learning.velocity_variance(&state.learning)
+        known + self.adaptation.velocity_variance(&state.adaptation)
     }
 }
 
@@ -166,7 +188,7 @@ where
     C: CurrentSource,
     S: SlipSource,
     M: Correction,
-    L: Learning,
+    L: Adaptation,
 {
     type State = ObserverState<C::State, S::State, M::State, L::State>;
     type Output = CountsPerTick;
@@ -174,99 +196,103 @@ where
 
     fn start(&self, first: &Sample) -> Self::State {
         ObserverState {
-            anchor: first.large,
+            anchor: first.count,
             position: 0.0,
             velocity: 0.0,
-            load: 0.0,
-            rub: 0.0,
-            way: 0.0,
+            disturbance: 0.0,
+            friction_correction: 0.0,
+            mean_direction: 0.0,
             current: self.current.start(first),
             slip: self.slip.start(first),
             correction: self.correction.start(),
-            learning: self.learning.start(),
+            adaptation: self.adaptation.start(),
         }
     }
 
     #[inline(always)]
     fn update(&self, state: &mut Self::State, sample: &Sample) -> CountsPerTick {
-        let push = self.current.push(&mut state.current, sample);
-        let handle = self.slip.moved(&mut state.slip, sample);
+        let input = self.current.input(&mut state.current, sample);
+        let coupled = self.slip.displacement(&mut state.slip, sample);
         let before = state.velocity;
         let driven = self
-            .learning
-            .drive(&state.learning, &self.motion, push, handle, before);
-        let friction = self.learning.friction(&state.learning, &self.motion) + state.rub;
-        let drive = driven.mean + state.load;
+            .adaptation
+            .drive(&state.adaptation, &self.motion, input, coupled, before);
+        let friction =
+            self.adaptation.friction(&state.adaptation, &self.motion) + state.friction_correction;
+        let drive = driven.mean + state.disturbance;
         let step = self.motion.step(before, drive, friction);
-        let dependence = self.learning.follow(
-            &state.learning,
+        let sensitivity = self.adaptation.propagate(
+            &state.adaptation,
             &Tick {
                 motion: &self.motion,
-                push,
-                handle,
+                input,
+                coupled,
                 before,
                 step: &step,
-                load_decay: self.load_decay,
+                disturbance_decay: self.disturbance_decay,
             },
         );
-        let load = state.load * self.load_decay;
-        let way = step.against + self.way_pole * (state.way - step.against);
-        state.way = way;
+        let disturbance = state.disturbance * self.disturbance_decay;
+        let direction = step.against + self.direction_pole * (state.mean_direction - step.against);
+        state.mean_direction = direction;
 
-        let counts = (sample.large - state.anchor).to_f32();
-        state.anchor = sample.large;
-        let path = Path {
+        let counts = (sample.count - state.anchor).to_f32();
+        state.anchor = sample.count;
+        let prediction = Prediction {
             from: state.position - counts,
-            lead: step.moved - driven.behind,
-            gained: step.velocity - before,
-            rests: step.stuck,
+            displacement: step.moved - driven.lag,
+            velocity_change: step.velocity - before,
+            stuck: step.stuck,
         };
-        let position = path.from + path.lead;
+        let position = prediction.from + prediction.displacement;
         let found = self
             .correction
-            .innovation(&mut state.correction, path, sample);
+            .innovation(&mut state.correction, prediction, sample);
         let Some((innovation, gain)) = found else {
             state.position = position;
             state.velocity = step.velocity;
-            state.load = load;
-            self.learning.keep(&mut state.learning, dependence);
+            state.disturbance = disturbance;
+            self.adaptation.store(&mut state.adaptation, sensitivity);
             return CountsPerTick(step.velocity);
         };
         let gain = gain.borrow();
-        let starting =
-            self.learning
-                .starting(&mut state.learning, &innovation, gain, step.velocity);
-        let gain = starting.as_ref().unwrap_or(gain);
+        let moving_start =
+            self.adaptation
+                .moving_start(&mut state.adaptation, &innovation, gain, step.velocity);
+        let gain = moving_start.as_ref().unwrap_or(gain);
         let error = limited(innovation.error, LARGEST_INNOVATION);
         // The age is zero without time stamps: then the compiler drops it.
-        let carried = innovation.position + innovation.age * gain.velocity;
-        let mut position = position + carried * innovation.error;
+        let position_gain = innovation.position_gain + innovation.age * gain.velocity;
+        let mut position = position + position_gain * innovation.error;
         let mut velocity = step.velocity + gain.velocity * error;
-        let unknown = gain.load * error;
-        let rubbing = self.friction_share * unknown;
-        let mut load = load + unknown - rubbing;
+        let change = gain.disturbance * error;
+        let friction_change = self.friction_share * change;
+        let mut disturbance = disturbance + change - friction_change;
         let limit = LARGEST_FRICTION_ERROR * self.motion.friction;
-        state.rub = limited(state.rub - rubbing * way, limit);
-        let lesson = Lesson {
+        state.friction_correction = limited(
+            state.friction_correction - friction_change * direction,
+            limit,
+        );
+        let update = Update {
             innovation: &innovation,
             gain,
             error,
             dense: M::DENSE,
-            starting: starting.is_some(),
-            position: carried,
+            moving_start: moving_start.is_some(),
+            position_gain,
             velocity,
         };
-        let shift = self
-            .learning
-            .learn(&mut state.learning, dependence, &lesson);
-        if let Some(shift) = shift {
-            position += shift.position;
-            velocity += shift.velocity;
-            load += shift.load;
+        let change = self
+            .adaptation
+            .update(&mut state.adaptation, sensitivity, &update);
+        if let Some(change) = change {
+            position += change.position;
+            velocity += change.velocity;
+            disturbance += change.disturbance;
         }
         state.position = position;
         state.velocity = velocity;
-        state.load = load;
+        state.disturbance = disturbance;
         CountsPerTick(velocity)
     }
 }

@@ -1,50 +1,50 @@
-//! What one tick knows.
+//! One sample: the inputs of an estimator at one tick.
 
 use crate::units::{Amps, ClockTicks, Count};
 
-/// What the controller knows at one tick, and all that an estimator may look at.
+/// The measurements of one tick, and the only input of an estimator.
 ///
-/// A part that the device does not have keeps its default; an estimator that reads it says so in
-/// [`VelocityEstimator::NEEDS`](crate::VelocityEstimator::NEEDS). A part that an estimator does
-/// not read costs it nothing.
+/// A part that the device does not measure keeps its default. An estimator states the parts that it
+/// reads in [`VelocityEstimator::NEEDS`](crate::VelocityEstimator::NEEDS). A part that an estimator
+/// does not read costs no instructions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Sample {
-    /// Encoder of the large motor: the one whose velocity is estimated.
-    pub large: Count,
-    /// Encoder of the small motor, on the handle.
-    pub small: Count,
-    /// Current commanded to the large motor over the period that ends with this sample.
+    /// Count of the shaft whose velocity is estimated.
+    pub count: Count,
+    /// Count of the coupled shaft: the shaft on the other side of the coupling.
+    pub coupled: Count,
+    /// Motor current commanded over the period that ends with this sample.
     pub current: Amps,
-    /// Latest edge of the large encoder, if one has been stamped yet.
+    /// Latest edge of the encoder that gives `count`; `None` before the first time stamp.
     pub edge: Option<Edge>,
 }
 
 impl Sample {
-    /// A sample of a device that has nothing but the large encoder.
+    /// A sample with a count and nothing else.
     #[must_use]
-    pub const fn new(large: Count) -> Self {
+    pub const fn new(count: Count) -> Self {
         Self {
-            large,
-            small: Count(0),
+            count,
+            coupled: Count(0),
             current: Amps::ZERO,
             edge: None,
         }
     }
 
-    /// The same sample with the current applied over the period that ends with it.
+    /// This sample with the current that was commanded over the period that ends with it.
     #[must_use]
     pub const fn with_current(self, current: Amps) -> Self {
         Self { current, ..self }
     }
 
-    /// The same sample with the small encoder.
+    /// This sample with the count of the coupled shaft.
     #[must_use]
-    pub const fn with_small(self, small: Count) -> Self {
-        Self { small, ..self }
+    pub const fn with_coupled(self, coupled: Count) -> Self {
+        Self { coupled, ..self }
     }
 
-    /// The same sample with the latest edge.
+    /// This sample with the latest edge.
     #[must_use]
     pub const fn with_edge(self, edge: Edge) -> Self {
         Self {
@@ -54,7 +54,7 @@ impl Sample {
     }
 }
 
-/// One encoder edge and when it was.
+/// One encoder edge with its age.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Edge {
@@ -64,46 +64,46 @@ pub struct Edge {
     pub age: ClockTicks,
 }
 
-/// Which parts of a [`Sample`], besides the large count, an estimator reads.
+/// The optional parts of a [`Sample`] that an estimator reads. Every estimator reads the count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Signals {
-    /// The large motor's current.
+    /// The motor current.
     pub current: bool,
-    /// The small encoder.
-    pub small: bool,
-    /// Edge time stamps of the large encoder.
+    /// The count of the coupled shaft.
+    pub coupled: bool,
+    /// Edge time stamps.
     pub edge: bool,
 }
 
 impl Signals {
-    /// The large count alone.
+    /// The count alone.
     pub const COUNT: Self = Self {
         current: false,
-        small: false,
+        coupled: false,
         edge: false,
     };
 
-    /// The large count and the current.
+    /// The count and the current.
     pub const COUNT_AND_CURRENT: Self = Self {
         current: true,
         ..Self::COUNT
     };
 
-    /// What either needs.
+    /// The parts that `self` or `other` contains.
     #[must_use]
     pub const fn or(self, other: Self) -> Self {
         Self {
             current: self.current | other.current,
-            small: self.small | other.small,
+            coupled: self.coupled | other.coupled,
             edge: self.edge | other.edge,
         }
     }
 
-    /// Whether everything in `self` is in `available`.
+    /// Whether `available` contains every part of `self`.
     #[must_use]
     pub const fn within(self, available: Self) -> bool {
         (!self.current | available.current)
-            & (!self.small | available.small)
+            & (!self.coupled | available.coupled)
             & (!self.edge | available.edge)
     }
 }

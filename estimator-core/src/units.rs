@@ -1,13 +1,13 @@
-//! The quantities that cross the crate's edge, one type each.
+//! Quantities of the public interface, one type each.
 
 use core::ops::{Add, Sub};
 
-use crate::design_error::DesignError;
+use crate::design::DesignError;
 
 /// Position of an encoder as its counter shows it, modulo 2^32.
 ///
-/// Only differences mean anything: `Count - Count` is a displacement, right as long as the true
-/// one is within ±2^31 counts.
+/// Only differences have a meaning: `Count - Count` is a displacement, correct if the true
+/// displacement is within ±2^31 counts.
 ///
 /// ```
 /// use estimator_core::{Count, Counts};
@@ -18,9 +18,9 @@ use crate::design_error::DesignError;
 pub struct Count(pub u32);
 
 impl Count {
-    /// The count that a 16-bit counter reading `raw` stands for, given the previous count.
+    /// Extends the reading `raw` of a 16-bit counter to a count; `self` is the previous count.
     ///
-    /// Right as long as the encoder moved by less than 2^15 counts since `self` was read.
+    /// Correct if the encoder moved by less than 2^15 counts since the previous count was read.
     ///
     /// ```
     /// use estimator_core::Count;
@@ -38,7 +38,7 @@ impl Count {
 impl Sub for Count {
     type Output = Counts;
 
-    // Every update begins with it.
+    // Every update begins with this subtraction.
     #[inline(always)]
     fn sub(self, earlier: Self) -> Counts {
         Counts(self.0.wrapping_sub(earlier.0) as i32)
@@ -99,7 +99,7 @@ impl Amps {
 
     /// A current of `amps`; NaN and infinities become zero, the rest saturates at ±[`Amps::MAX`].
     ///
-    /// This is the one place where a current is made safe, so no estimator has to.
+    /// Currents are limited here and nowhere else, so estimators need no check.
     ///
     /// ```
     /// use estimator_core::Amps;
@@ -118,7 +118,8 @@ impl Amps {
         }
     }
 
-    /// What none of a device's currents is.
+    /// Slow path for currents that no device carries: NaN, infinities and magnitudes above
+    /// [`Amps::MAX`].
     #[cold]
     const fn made_safe(amps: f32) -> Self {
         if amps.is_finite() {
@@ -140,18 +141,18 @@ impl Amps {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ClockTicks(pub u32);
 
-/// Frequency in Hz. A control rate is one of these; its period is never given in ticks.
+/// Frequency in Hz: a control rate, a cut-off or the frequency of a clock.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Hertz(pub f64);
 
 impl Hertz {
-    /// Whether a period of it is a time: positive and finite.
+    /// Whether the frequency is positive and finite.
     pub(crate) const fn is_positive(self) -> bool {
         self.0 > 0.0 && self.0.is_finite()
     }
 
-    /// Whether it can be a cut-off at a control rate: a millionth to half of it. Below, gains
-    /// round to nothing in f32.
+    /// Whether the frequency is a valid cut-off at a control rate: 1e-6 to 1/2 of it. Below, gains
+    /// round to zero in f32.
     pub(crate) const fn is_cutoff_at(self, rate: Self) -> bool {
         self.0 >= 1e-6 * rate.0 && self.0 <= rate.0 / 2.0
     }
@@ -165,8 +166,8 @@ impl Hertz {
 
 /// The factor between counts per tick and rad/s, for one encoder at one control rate.
 ///
-/// `rad_per_s_per_count_per_tick = 2 π rate / counts_per_rev`: what one count is worth to a
-/// finite difference (eq. 5, with its factor 4 in `counts_per_rev`).
+/// `rad_per_s_per_count_per_tick = 2 π rate / counts_per_rev`: the velocity of a finite difference
+/// per count (eq. 5 of the paper, with its factor 4 in `counts_per_rev`).
 ///
 /// ```
 /// use estimator_core::{CountsPerTick, Hertz, Scale};

@@ -27,7 +27,7 @@ type Of<N, T> = <N as Need>::Of<T>;
 /// let wall = Controller::new(WALL, LOOP, LOOP, &RIG);
 /// let mut state = wall.start(&Sample::default());
 /// // 1000 counts are 0.314 rad, 0.214 into the wall: it pushes back with 64 mN.m.
-/// let inside = Sample::default().with_small(Count(1000));
+/// let inside = Sample::default().with_coupled(Count(1000));
 /// let action = wall.step(&mut state, &inside);
 /// assert!((action.torque.0 + 0.0642).abs() < 1e-4 && action.currents.small.get() < 0.0);
 ///
@@ -115,7 +115,7 @@ where
 
     /// State at rest at the first sample; angles count from there.
     pub fn start(&self, first: &Sample) -> ControllerState<S, L, H> {
-        let handle_sample = Sample::new(first.small);
+        let handle_sample = Sample::new(first.coupled);
         ControllerState {
             scene: self.scene.start(Radians(0.0)),
             continuous: S::Continuous::map(
@@ -126,7 +126,7 @@ where
                 handle.start(&handle_sample)
             }),
             transient: S::Transient::make(TransientState::default),
-            origin: first.small,
+            origin: first.coupled,
         }
     }
 
@@ -157,7 +157,7 @@ where
 
     /// One tick.
     pub fn step(&self, state: &mut ControllerState<S, L, H>, sample: &Sample) -> Action {
-        let angle = self.angle.of(sample.small - state.origin);
+        let angle = self.angle.of(sample.coupled - state.origin);
         let parts = Parts {
             continuous: S::Continuous::zip(
                 S::Continuous::as_ref(&self.continuous),

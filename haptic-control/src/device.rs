@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 
-use estimator_core::{CoupledMotor, Device, Hertz};
+use estimator_core::{CoupledMotor, Hertz, MotorModel};
 
 use crate::design_error::DesignError;
 use crate::fingerprint::Fingerprint;
@@ -42,20 +42,20 @@ impl DualStage {
     /// are working values, assumed good to 15 %.
     pub const DEFAULT: Self = Self {
         large: Motor {
-            inertia: CoupledMotor::DCX35L.large.inertia,
-            torque_constant: CoupledMotor::DCX35L.large.torque_constant,
+            inertia: CoupledMotor::DCX35L.motor.inertia,
+            torque_constant: CoupledMotor::DCX35L.motor.torque_constant,
             coulomb_friction: CoupledMotor::DCX35L.coulomb_friction,
-            counts_per_rev: CoupledMotor::DCX35L.large.counts_per_rev,
+            counts_per_rev: CoupledMotor::DCX35L.motor.counts_per_rev,
             current_limit: 6.0,
         },
         small: Motor {
             inertia: 50e-7,
             torque_constant: 27.5e-3,
             coulomb_friction: 0.8e-3,
-            counts_per_rev: CoupledMotor::DCX35L.small_counts_per_rev,
+            counts_per_rev: CoupledMotor::DCX35L.coupled_counts_per_rev,
             current_limit: 1.5,
         },
-        damping: CoupledMotor::DCX35L.large.damping,
+        damping: CoupledMotor::DCX35L.motor.damping,
         amplifier_bandwidth: Hertz(2000.0),
     };
 
@@ -63,7 +63,7 @@ impl DualStage {
     #[must_use]
     pub const fn coupled_motor(&self) -> CoupledMotor {
         CoupledMotor {
-            large: Device {
+            motor: MotorModel {
                 counts_per_rev: self.large.counts_per_rev,
                 inertia: self.large.inertia,
                 damping: self.damping,
@@ -71,7 +71,7 @@ impl DualStage {
             },
             coulomb_friction: self.large.coulomb_friction,
             amplifier_lag: 1.0 / (2.0 * PI * self.amplifier_bandwidth.0),
-            small_counts_per_rev: self.small.counts_per_rev,
+            coupled_counts_per_rev: self.small.counts_per_rev,
         }
     }
 

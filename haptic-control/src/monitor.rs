@@ -111,20 +111,20 @@ impl Monitor {
     #[must_use]
     pub const fn start(&self, first: &Sample) -> MonitorState {
         MonitorState {
-            last: [first.large, first.small],
+            last: [first.count, first.coupled],
             ticks: 0,
             currents: NO_CURRENT,
-            large: [first.large; 2 * SLOTS],
-            small: [first.small; SLOTS],
+            large: [first.count; 2 * SLOTS],
+            small: [first.coupled; SLOTS],
             push: (0, 0),
-            resting: (first.large, 0),
+            resting: (first.count, 0),
             cause: None,
         }
     }
 
     /// One tick. The first cause stays.
     pub fn check(&self, state: &mut MonitorState, sample: &Sample) -> Option<Stop> {
-        let now = [sample.large, sample.small];
+        let now = [sample.count, sample.coupled];
         let [large, small] = [0, 1].map(|i| distance(now[i] - state.last[i]));
         state.last = now;
         let milliamps = (sample.current.get() * 1000.0) as i32;
@@ -146,7 +146,7 @@ impl Monitor {
 
     /// Checks at the end of a slot.
     fn slot(&self, state: &mut MonitorState, sample: &Sample) -> Option<Stop> {
-        let handled = sample.small - state.small[0];
+        let handled = sample.coupled - state.small[0];
         let push = self.push(state.currents, handled);
         let direction = if push.saturating_abs() > self.push_milliamps {
             push.signum()
@@ -160,19 +160,19 @@ impl Monitor {
         let (rest, still) = state.resting;
         let hard = push.saturating_abs() > self.stall_milliamps;
         // An encoder with a dead phase alternates between neighbouring counts.
-        state.resting = if hard && distance(sample.large - rest) <= DITHER {
+        state.resting = if hard && distance(sample.count - rest) <= DITHER {
             (rest, still.saturating_add(1))
         } else {
-            (sample.large, 0)
+            (sample.count, 0)
         };
 
-        let handle = sample.small - state.small[SLOTS - 1];
-        let moved = sample.large - state.large[SLOTS - 1];
+        let handle = sample.coupled - state.small[SLOTS - 1];
+        let moved = sample.count - state.large[SLOTS - 1];
         let before = state.large[SLOTS - 1] - state.large[2 * SLOTS - 1];
         state.small.copy_within(..SLOTS - 1, 1);
-        state.small[0] = sample.small;
+        state.small[0] = sample.coupled;
         state.large.copy_within(..2 * SLOTS - 1, 1);
-        state.large[0] = sample.large;
+        state.large[0] = sample.count;
 
         // Displacements along the drive: negative and decreasing is accelerating against it.
         let [moved_along, before_along] =

@@ -147,11 +147,11 @@ where
             shared: Shared {
                 large: self.large.start(first),
                 continuous: self.rig.continuous.start(RadPerS(0.0)),
-                handle: self.handle.start(&Sample::new(first.small)),
+                handle: self.handle.start(&Sample::new(first.coupled)),
                 transient: TransientState::default(),
                 live: [false; 3],
             },
-            origin: first.small,
+            origin: first.coupled,
             swapped: false,
             added: [0.0; 2],
             applied: Currents::default(),
@@ -168,7 +168,7 @@ where
 
     /// Changes the scene before the next tick; `sample` is the latest sample.
     pub fn select(&self, state: &mut SwitchboardState<L, H>, scene: AnyScene, sample: &Sample) {
-        let angle = self.rig.angle_scale.of(sample.small - state.origin);
+        let angle = self.rig.angle_scale.of(sample.coupled - state.origin);
         state.active = Active::start(scene, angle);
         state.swapped = true;
     }
@@ -181,7 +181,7 @@ where
 
     /// One tick.
     pub fn step(&self, state: &mut SwitchboardState<L, H>, sample: &Sample) -> Action {
-        let angle = self.rig.angle_scale.of(sample.small - state.origin);
+        let angle = self.rig.angle_scale.of(sample.coupled - state.origin);
         let mut action = self.run_active(&mut state.active, &mut state.shared, angle, sample);
         action.currents = self.faded(state, action.currents);
         action
@@ -227,7 +227,7 @@ where
             shared.continuous = self.rig.continuous.start(RadPerS(0.0));
         }
         if wanted[1] && !shared.live[1] {
-            shared.handle = self.handle.start(&Sample::new(sample.small));
+            shared.handle = self.handle.start(&Sample::new(sample.coupled));
         }
         if wanted[2] && !shared.live[2] {
             shared.transient = TransientState::default();

@@ -84,7 +84,7 @@ where
     let mut acceleration = S::Acceleration::make(RadPerS2::default);
     let velocity = HandleNeed::<S>::map(parts.handle, |mut handle| {
         // An estimator reads the large encoder's field of its sample: the handle's count goes there.
-        let velocity = handle.velocity(&Sample::new(sample.small));
+        let velocity = handle.velocity(&Sample::new(sample.coupled));
         let sensed = S::Acceleration::acceleration(handle.estimator, handle.state);
         acceleration = S::Acceleration::zip(sensed, parts.acceleration, |a, scale| scale.of(a));
         velocity

@@ -24,7 +24,7 @@ const SEED: u64 = 7;
 /// What some estimator reads.
 const EVERYTHING: Signals = Signals {
     current: true,
-    small: true,
+    coupled: true,
     edge: true,
 };
 const COLUMNS: Columns = Columns {
@@ -108,8 +108,8 @@ pub(crate) fn hostile(rate_hz: u32) -> Vec<Sample> {
             age: ClockTicks(age),
         };
         samples.push(Sample {
-            large: Count(shown.large),
-            small: Count(shown.small),
+            count: Count(shown.large),
+            coupled: Count(shown.small),
             current: Amps::new(shown.amps),
             edge: shown.edge.map(stamp),
         });

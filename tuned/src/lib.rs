@@ -122,8 +122,8 @@ pub const fn image(motor: &str, estimator: &str, rate: Hertz, parameter: &str) -
 pub const fn uncertainty(observer: &str, rate: Hertz) -> Uncertainty {
     Uncertainty {
         torque_noise: value(observer, rate, "torque_noise"),
-        load: value(observer, rate, "load"),
-        load_time: value(observer, rate, "load_time"),
+        disturbance: value(observer, rate, "load"),
+        disturbance_time: value(observer, rate, "load_time"),
         friction_share: value(observer, rate, "friction_share"),
         boundary_noise: value(observer, rate, "boundary_noise"),
     }

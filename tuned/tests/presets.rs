@@ -55,8 +55,8 @@ fn designed(name: &str, plant: PlantKind) -> Result<CountObserver, DesignError> 
     let value = |name: &str| values[kind.parameter(name).unwrap()];
     let unsure = Uncertainty {
         torque_noise: value("torque_noise"),
-        load: value("load"),
-        load_time: value("load_time"),
+        disturbance: value("load"),
+        disturbance_time: value("load_time"),
         friction_share: value("friction_share"),
         boundary_noise: value("boundary_noise"),
     };
@@ -90,12 +90,12 @@ fn the_adaptive_images_are_tuned_for_the_plant_with_friction() {
     let counts_per_rev = DEVICE.large.counts_per_rev;
     let counts = |plant| -> Adaptive {
         let observer = designed("adaptive", plant).unwrap();
-        observer.learning(counts_per_rev, RATE).unwrap()
+        observer.adaptive(counts_per_rev, RATE).unwrap()
     };
     let edges = |plant| -> AdaptiveEdge {
         let observer = designed("adaptive-edge", plant).unwrap();
         let observer = observer.with_edges(TIMERS, RATE).unwrap();
-        observer.learning(counts_per_rev, RATE).unwrap()
+        observer.adaptive(counts_per_rev, RATE).unwrap()
     };
     let [rough, smooth] = [PlantKind::Friction, PlantKind::Frictionless];
     assert_eq!(velocities(&ADAPTIVE), velocities(&counts(rough)));

@@ -89,13 +89,13 @@ impl Measured for AdsKalman {
 
     fn start(&self, first: &Sample) -> Self::State {
         let estimate = StateAndCovariance::new(Vector3::zeros(), self.prior);
-        (first.large, estimate)
+        (first.count, estimate)
     }
 
     #[inline]
     fn update(&self, (anchor, estimate): &mut Self::State, sample: &Sample) -> f32 {
-        let step = (sample.large - *anchor).to_f32();
-        *anchor = sample.large;
+        let step = (sample.count - *anchor).to_f32();
+        *anchor = sample.count;
         let filter = KalmanFilterNoControl::new(&self.transition, &self.observation);
         // The cheapest of its three updates, and the same algebra as ours.
         if let Ok(next) = filter.step_with_options(estimate, &Vector1::new(step), OptimalKalman) {

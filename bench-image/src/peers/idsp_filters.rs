@@ -47,14 +47,14 @@ impl Measured for IdspPll {
     fn start(&self, first: &Sample) -> PLLState {
         // The output settles to the input's complement.
         PLLState {
-            y: -phase(first.large),
+            y: -phase(first.count),
             ..PLLState::default()
         }
     }
 
     #[inline]
     fn update(&self, state: &mut PLLState, sample: &Sample) -> f32 {
-        self.0.process(state, phase(sample.large));
+        self.0.process(state, phase(sample.count));
         const SCALE: f32 = 1.0 / (1_u32 << PHASE_BITS) as f32;
         -state.frequency().0 as f32 * SCALE
     }
@@ -81,13 +81,13 @@ impl Measured for IdspLowPass {
     type State = (Count, LowpassState<1>);
 
     fn start(&self, first: &Sample) -> Self::State {
-        (first.large, LowpassState::default())
+        (first.count, LowpassState::default())
     }
 
     #[inline]
     fn update(&self, (last, state): &mut Self::State, sample: &Sample) -> f32 {
-        let step = sample.large - *last;
-        *last = sample.large;
+        let step = sample.count - *last;
+        *last = sample.count;
         const SCALE: f32 = 1.0 / (1_u32 << STEP_BITS) as f32;
         self.0.process(state, step.0 << STEP_BITS) as f32 * SCALE
     }

@@ -28,13 +28,13 @@ impl Measured for IdspKalman {
     type State = (Count, Estimate<f32, 3>);
 
     fn start(&self, first: &Sample) -> Self::State {
-        (first.large, Estimate::new([0.0; 3], self.prior))
+        (first.count, Estimate::new([0.0; 3], self.prior))
     }
 
     #[inline]
     fn update(&self, (anchor, estimate): &mut Self::State, sample: &Sample) -> f32 {
-        let step = (sample.large - *anchor).to_f32();
-        *anchor = sample.large;
+        let step = (sample.count - *anchor).to_f32();
+        *anchor = sample.count;
         self.transition.predict(estimate);
         self.observation.correct(estimate, step);
         estimate.state[0] -= step;

@@ -98,13 +98,13 @@ impl Measured for MiniKalman {
             [0.0; 3].into(),
             [0.0; 9].into(),
         );
-        (first.large, filter, observation)
+        (first.count, filter, observation)
     }
 
     #[inline]
     fn update(&self, (anchor, filter, observation): &mut Self::State, sample: &Sample) -> f32 {
-        let step = (sample.large - *anchor).to_f32();
-        *anchor = sample.large;
+        let step = (sample.count - *anchor).to_f32();
+        *anchor = sample.count;
         filter.predict();
         observation.measurement_vector_mut().set_at(0, 0, step);
         filter.correct(observation);

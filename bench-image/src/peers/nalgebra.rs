@@ -29,13 +29,13 @@ impl Measured for NalgebraKalman {
     type State = (Count, Vector3<f32>, Matrix3<f32>);
 
     fn start(&self, first: &Sample) -> Self::State {
-        (first.large, Vector3::zeros(), Matrix3::from(self.prior))
+        (first.count, Vector3::zeros(), Matrix3::from(self.prior))
     }
 
     #[inline]
     fn update(&self, (anchor, x, p): &mut Self::State, sample: &Sample) -> f32 {
-        let step = (sample.large - *anchor).to_f32();
-        *anchor = sample.large;
+        let step = (sample.count - *anchor).to_f32();
+        *anchor = sample.count;
         // Arrays are columns to nalgebra.
         let a = Matrix3::from(self.a).transpose();
         let h = RowVector3::new(1.0, 0.0, 0.0);

@@ -1,7 +1,7 @@
 //! Bierman's update of a factored covariance.
 
 use super::LARGEST_INNOVATION;
-use crate::const_math::limited;
+use crate::design::const_math::limited;
 
 /// Largest element of U.
 const LARGEST_SHARE: f32 = 1e3;

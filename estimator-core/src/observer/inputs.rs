@@ -1,63 +1,69 @@
-//! What drives the motor, where the device can tell: its current and the handle. A device that
-//! cannot takes [`NoCurrent`] or [`HeldHandle`]: no state, no code.
+//! Measured inputs of the motor: its current and the displacement of the coupled shaft. A device
+//! without one takes [`NoCurrent`] or [`HeldShaft`], which have no state and no code.
 
-use crate::const_math::exp;
+use crate::design::const_math::exp;
 use crate::sample::{Sample, Signals};
+use crate::sealed::Sealed;
 use crate::units::Count;
 
-/// What a current did over one tick.
+/// Acceleration that an input causes over one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Push {
-    /// Its mean acceleration, counts per tick².
+pub struct TickInput {
+    /// Mean acceleration over the tick, counts/tick².
     pub mean: f32,
-    /// How far the rotor is behind of one that was pushed by the mean throughout, counts.
-    pub behind: f32,
+    /// Lag of the displacement, counts: displacement under the mean acceleration throughout, less
+    /// the displacement under the acceleration as it rises.
+    pub lag: f32,
 }
 
-/// The large motor's current, or nothing.
-pub trait CurrentSource: Copy {
-    /// What is carried from tick to tick.
+/// Source of the motor current: [`AmplifierCurrent`] or [`NoCurrent`].
+///
+/// This trait is sealed: only types of this crate implement it.
+pub trait CurrentSource: Copy + Sealed {
+    /// State of the source, carried from tick to tick.
     type State: Clone + PartialEq;
-    /// What it reads of a sample.
+    /// The parts of a sample that the source reads besides the count.
     const NEEDS: Signals;
 
     /// The state at the first sample.
     fn start(&self, first: &Sample) -> Self::State;
 
-    /// The push over the tick that ends with `sample`.
-    fn push(&self, state: &mut Self::State, sample: &Sample) -> Push;
+    /// The acceleration by the current over the tick that ends with `sample`.
+    fn input(&self, state: &mut Self::State, sample: &Sample) -> TickInput;
 }
 
-/// The handle's motion, or none.
-pub trait SlipSource: Copy {
-    /// What is carried from tick to tick.
+/// Source of the coupled shaft's motion: [`CoupledEncoder`] or [`HeldShaft`].
+///
+/// This trait is sealed: only types of this crate implement it.
+pub trait SlipSource: Copy + Sealed {
+    /// State of the source, carried from tick to tick.
     type State: Clone + PartialEq;
-    /// What it reads of a sample.
+    /// The parts of a sample that the source reads besides the count.
     const NEEDS: Signals;
 
     /// The state at the first sample.
     fn start(&self, first: &Sample) -> Self::State;
 
-    /// How far the handle turned over the tick, in counts of the large encoder.
-    fn moved(&self, state: &mut Self::State, sample: &Sample) -> f32;
+    /// Displacement of the coupled shaft over the tick, in counts of the motor's encoder.
+    fn displacement(&self, state: &mut Self::State, sample: &Sample) -> f32;
 }
 
-/// A current behind an amplifier of time constant τ, `x = τ / T`, `p = exp(-1 / x)`,
-/// `m = x (1 - p)`:
+/// Motor current behind an amplifier with a first-order lag of time constant τ. With `x = τ / T`,
+/// `p = exp(-1 / x)` and `m = x (1 - p)`:
 /// ```text
-/// Δ = i_command - i        mean = i_command - m Δ        behind = (x (1 - m) - m / 2) Δ
+/// Δ = i_command - i        mean = i_command - m Δ        lag = (x (1 - m) - m / 2) Δ
 /// i = i_command - p Δ
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AmplifierCurrent {
     per_amp: f32,
     missing: f32,
-    behind: f32,
+    lag: f32,
     left: f32,
 }
 
 impl AmplifierCurrent {
-    /// `per_amp`: counts per tick² per A; `lag`: τ / T.
+    /// `per_amp` is in counts/tick² per A, `lag` is τ / T.
     pub(super) const fn new(per_amp: f64, lag: f64) -> Self {
         // Above 700 time constants a tick, exp is out of range and zero.
         let left = if lag * 700.0 < 1.0 {
@@ -69,11 +75,13 @@ impl AmplifierCurrent {
         Self {
             per_amp: per_amp as f32,
             missing: missing as f32,
-            behind: (per_amp * (lag * (1.0 - missing) - missing / 2.0)) as f32,
+            lag: (per_amp * (lag * (1.0 - missing) - missing / 2.0)) as f32,
             left: left as f32,
         }
     }
 }
+
+impl Sealed for AmplifierCurrent {}
 
 impl CurrentSource for AmplifierCurrent {
     /// The amplifier's current at the sample, A.
@@ -85,20 +93,22 @@ impl CurrentSource for AmplifierCurrent {
     }
 
     #[inline(always)]
-    fn push(&self, current: &mut f32, sample: &Sample) -> Push {
+    fn input(&self, current: &mut f32, sample: &Sample) -> TickInput {
         let command = sample.current.get();
         let difference = command - *current;
         *current = command - self.left * difference;
-        Push {
+        TickInput {
             mean: self.per_amp * (command - self.missing * difference),
-            behind: self.behind * difference,
+            lag: self.lag * difference,
         }
     }
 }
 
-/// A motor whose current nobody measures.
+/// No current: the motor's current is not measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NoCurrent;
+
+impl Sealed for NoCurrent {}
 
 impl CurrentSource for NoCurrent {
     type State = ();
@@ -107,49 +117,53 @@ impl CurrentSource for NoCurrent {
     fn start(&self, _: &Sample) {}
 
     #[inline(always)]
-    fn push(&self, (): &mut (), _: &Sample) -> Push {
-        Push::default()
+    fn input(&self, (): &mut (), _: &Sample) -> TickInput {
+        TickInput::default()
     }
 }
 
-/// The small motor's encoder on the handle.
+/// Encoder on the coupled shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SmallEncoder {
-    /// Counts of the large encoder per count of the small one.
+pub struct CoupledEncoder {
+    /// Counts of the motor's encoder per count of this encoder.
     pub(super) ratio: f32,
 }
 
-impl SlipSource for SmallEncoder {
+impl Sealed for CoupledEncoder {}
+
+impl SlipSource for CoupledEncoder {
     type State = Count;
     const NEEDS: Signals = Signals {
-        small: true,
+        coupled: true,
         ..Signals::COUNT
     };
 
     fn start(&self, first: &Sample) -> Count {
-        first.small
+        first.coupled
     }
 
     #[inline(always)]
-    fn moved(&self, previous: &mut Count, sample: &Sample) -> f32 {
-        let moved = sample.small - *previous;
-        *previous = sample.small;
-        self.ratio * moved.to_f32()
+    fn displacement(&self, previous: &mut Count, sample: &Sample) -> f32 {
+        let displacement = sample.coupled - *previous;
+        *previous = sample.coupled;
+        self.ratio * displacement.to_f32()
     }
 }
 
-/// A handle that stands still, or of which nothing is known.
+/// Coupled shaft at rest: it is held, or its motion is not measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct HeldHandle;
+pub struct HeldShaft;
 
-impl SlipSource for HeldHandle {
+impl Sealed for HeldShaft {}
+
+impl SlipSource for HeldShaft {
     type State = ();
     const NEEDS: Signals = Signals::COUNT;
 
     fn start(&self, _: &Sample) {}
 
     #[inline(always)]
-    fn moved(&self, (): &mut (), _: &Sample) -> f32 {
+    fn displacement(&self, (): &mut (), _: &Sample) -> f32 {
         0.0
     }
 }

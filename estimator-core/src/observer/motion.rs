@@ -1,7 +1,6 @@
-//! The large motor over one tick, with friction that stops it inside the tick.
+//! Motion of the motor over one tick, with friction that can stop it inside the tick.
 
-/// The motor without its friction, discretised exactly for a drive that is constant over the tick,
-/// `β = b T / J`:
+/// The motor, discretised exactly for a drive that is constant over the tick, with `β = b T / J`:
 /// ```text
 /// φ0 = exp(-β)     φ1 = (1 - φ0) / β     φ2 = (1 - φ1) / β
 /// ```
@@ -10,28 +9,28 @@ pub struct Motion {
     pub(super) phi0: f32,
     pub(super) phi1: f32,
     pub(super) phi2: f32,
-    /// β: acceleration per count a tick of slip, counts a tick².
+    /// β: acceleration per slip velocity, counts/tick² per count/tick.
     pub(super) coupling: f32,
-    /// Coulomb friction, counts a tick².
+    /// Coulomb friction, counts/tick².
     pub(super) friction: f32,
 }
 
-/// Where a tick leads.
+/// Motion over one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Step {
     /// Displacement over the tick, counts.
     pub(super) moved: f32,
-    /// Velocity at its end, counts a tick.
+    /// Velocity at the end of the tick, counts/tick.
     pub(super) velocity: f32,
-    /// Mean over the tick of the direction of motion, -1 to 1: what friction acted against.
+    /// Mean direction of motion over the tick, -1 to 1: friction acted against it.
     pub(super) direction: f32,
-    /// What friction acts against: the motion, or at rest what would move the rotor.
+    /// Direction that friction acts against: that of the motion, or at rest that of the drive.
     pub(super) against: f32,
-    /// Whether the rotor rests at the end of the tick.
+    /// Whether friction holds the rotor at the end of the tick.
     pub(super) stuck: bool,
 }
 
-/// -1, 0 or 1.
+/// Sign of `value`: -1, 0 or 1.
 #[inline]
 fn sign(value: f32) -> f32 {
     if value > 0.0 {
@@ -43,7 +42,7 @@ fn sign(value: f32) -> f32 {
     }
 }
 
-/// Where a drive that overcomes friction takes a resting rotor: -1, 1, or 0 if it does not.
+/// Direction in which `drive` moves a rotor at rest: -1, 1, or 0 if friction holds the rotor.
 #[inline]
 fn leaving(drive: f32, friction: f32) -> f32 {
     if drive > friction {
@@ -56,16 +55,17 @@ fn leaving(drive: f32, friction: f32) -> f32 {
 }
 
 impl Motion {
-    /// One tick from `velocity` under `drive`, everything but damping of the motor itself and
-    /// friction; both drive and `friction` in counts a tick².
+    /// Motion over one tick from `velocity` under `drive`, the acceleration by all torques except
+    /// friction and the damping of the motor's own velocity. `drive` and `friction` are in
+    /// counts/tick².
     ///
-    /// A rotor whose velocity would pass zero stops at the part `v / (v - v')` of the tick, and
-    /// stays there unless the drive overcomes friction: then it leaves with what is left of the
-    /// tick. So a reversal costs the friction of both directions, each for its part.
+    /// A rotor whose velocity would pass zero stops at the part `v / (v - v')` of the tick. It stays
+    /// there unless the drive overcomes friction; then it accelerates during the rest of the tick. In
+    /// a reversal friction therefore acts in both directions, each for its part of the tick.
     ///
-    /// The rotor leaves with damping: over the part l of a tick φ1 is `φ1 / (φ1 + l (1 - φ1))`, which
-    /// is exact at both ends. Without it a drive that is proportional to the velocity, as that of a
-    /// learned damping, would leave more velocity than there was before, from `β = 4.6` on.
+    /// Damping acts during that rest too: over the part l of a tick φ1 is `φ1 / (φ1 + l (1 - φ1))`,
+    /// which is exact at both ends. Without it a drive in proportion to the velocity, as that of an
+    /// adapted damping, would increase the speed from `β = 4.6` on.
     #[inline(always)]
     pub(super) fn step(&self, velocity: f32, drive: f32, friction: f32) -> Step {
         let (direction, net) = if velocity > 0.0 {

@@ -2,8 +2,8 @@
 //! are told: simulated in steps far shorter than a tick, in SI units, without a matrix.
 
 use estimator_core::{
-    Amps, ClockTicks, Confidence, Count, CountsPerTick, CoupledMotor, Device, Edge, Hertz, Kalman,
-    Model, Observer, Sample, SteadyKalman, Uncertainty, VelocityEstimator,
+    Amps, ClockTicks, Confidence, Count, CountsPerTick, CoupledMotor, Edge, Hertz, Kalman, Model,
+    MotorModel, Observer, Sample, SteadyKalman, Uncertainty, VelocityEstimator,
 };
 use std::f64::consts::TAU;
 
@@ -97,15 +97,15 @@ struct Motor {
     unsure: Uncertainty,
     mean: f64,
     current: f64,
-    load: f64,
+    disturbance: f64,
     draws: Draws,
 }
 
 impl Drive for Motor {
     fn tick(&mut self) -> f64 {
-        let left = (-1.0 / (RATE.0 * self.unsure.load_time)).exp();
-        let new = self.unsure.load * (1.0 - left * left).sqrt();
-        self.load = left * self.load + new * gauss(&mut self.draws);
+        let left = (-1.0 / (RATE.0 * self.unsure.disturbance_time)).exp();
+        let new = self.unsure.disturbance * (1.0 - left * left).sqrt();
+        self.disturbance = left * self.disturbance + new * gauss(&mut self.draws);
         if self.draws.bits() % 50 == 0 {
             self.current = self.mean + 0.02 * self.draws.unit();
         }
@@ -114,9 +114,10 @@ impl Drive for Motor {
 
     fn acceleration(&mut self, omega: f64) -> f64 {
         let white = self.unsure.torque_noise / DT.sqrt() * gauss(&mut self.draws);
-        let large = &self.device.large;
-        let torque = large.torque_constant * self.current - large.damping * omega + self.load;
-        (torque + white) / large.inertia
+        let motor = &self.device.motor;
+        let torque =
+            motor.torque_constant * self.current - motor.damping * omega + self.disturbance;
+        (torque + white) / motor.inertia
     }
 }
 
@@ -134,7 +135,7 @@ where
             continue;
         }
         let velocity = estimator.update(&mut state, &sample);
-        if k >= 1000 && next.large != sample.large {
+        if k >= 1000 && next.count != sample.count {
             let error = f64::from(velocity.0) - truth;
             sum += error * error / f64::from(estimator.variance(&state).0);
             terms += 1;
@@ -146,20 +147,20 @@ where
 /// A device without friction and lag, whose encoder has so many counts.
 fn device(counts_per_rev: u32) -> CoupledMotor {
     CoupledMotor {
-        large: Device {
+        motor: MotorModel {
             counts_per_rev,
-            ..Device::DCX35L
+            ..MotorModel::DCX35L
         },
         coulomb_friction: 0.0,
         amplifier_lag: 0.0,
-        small_counts_per_rev: 4096,
+        coupled_counts_per_rev: 4096,
     }
 }
 
 const UNSURE: Uncertainty = Uncertainty {
     torque_noise: 1e-5,
-    load: 3e-4,
-    load_time: 0.1,
+    disturbance: 3e-4,
+    disturbance_time: 0.1,
     friction_share: 0.0,
     boundary_noise: 0.0625,
 };
@@ -170,13 +171,13 @@ const TICKS: usize = 200_000;
 
 fn motor(counts_per_rev: u32, unsure: Uncertainty) -> Vec<(Sample, f64)> {
     let device = device(counts_per_rev);
-    let mean = device.large.damping * OMEGA / device.large.torque_constant;
+    let mean = device.motor.damping * OMEGA / device.motor.torque_constant;
     let drive = Motor {
         device,
         unsure,
         mean,
         current: mean,
-        load: 0.0,
+        disturbance: 0.0,
         draws: Draws(4),
     };
     simulated(
@@ -190,7 +191,7 @@ fn motor(counts_per_rev: u32, unsure: Uncertainty) -> Vec<(Sample, f64)> {
 
 /// A motor whose current is off by a noise that is drawn anew at each tick.
 struct NoisyCurrent {
-    device: Device,
+    device: MotorModel,
     mean: f64,
     noise: f64,
     draws: Draws,
@@ -245,25 +246,28 @@ fn observers_err_by_their_deviation_where_the_motor_is_as_random_as_they_are_tol
         };
         let samples = motor(counts_per_rev, UNSURE);
         let what = |name: &str| format!("{name}, {counts_per_rev} counts");
-        assert_calibrated(ratio(&edges(&UNSURE), &samples), &what("edges, load"));
-        // Counts do not say when in its tick a boundary was passed, which the load shows, and soft
-        // ends know of no load.
+        assert_calibrated(
+            ratio(&edges(&UNSURE), &samples),
+            &what("edges, disturbance"),
+        );
+        // Without time stamps the instant of a crossing inside its tick is unknown, which matters with
+        // a disturbance; and the covariance of the quantised update contains no disturbance.
         let unsure = Uncertainty {
-            load: 1e-5,
+            disturbance: 1e-5,
             ..UNSURE
         };
         let samples = motor(counts_per_rev, unsure);
         let counts = Observer::new(&device, RATE, &unsure).expect("valid");
-        let soft = Observer::soft(&device, RATE, &unsure).expect("valid");
+        let quantised = Observer::quantised(&device, RATE, &unsure).expect("valid");
         assert_calibrated(ratio(&edges(&unsure), &samples), &what("edges"));
         assert_calibrated(ratio(&counts, &samples), &what("counts"));
-        assert_calibrated(ratio(&soft, &samples), &what("soft"));
+        assert_calibrated(ratio(&quantised, &samples), &what("quantised"));
     }
 }
 
 #[test]
 fn filters_err_by_their_deviation_where_the_motor_is_their_model() {
-    let device = Device::DCX35L;
+    let device = MotorModel::DCX35L;
     for noise in [0.1, 1.0] {
         let mean = device.damping * OMEGA / device.torque_constant;
         let drive = NoisyCurrent {

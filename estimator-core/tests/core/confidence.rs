@@ -36,8 +36,8 @@ fn the_full_filter_settles_to_the_steady_ones_variance() {
 fn an_observer_is_less_sure_the_longer_it_heard_nothing() {
     let unsure = Uncertainty {
         torque_noise: 5e-6,
-        load: 1e-4,
-        load_time: 0.1,
+        disturbance: 1e-4,
+        disturbance_time: 0.1,
         friction_share: 0.7,
         boundary_noise: 0.0625,
     };

@@ -1,19 +1,15 @@
 //! Every estimator that reads counts and a current at most, with what is known about it, so that one
-//! test can try them all. The others, observers and M/T, have a list of their own in `observer`;
-//! [`every_estimator_of_the_core_is_tried`] holds both together against the core.
+//! test can try them all. The others, observers and M/T, have a list in `observer`; the module
+//! `complete` compares both lists with the source of the core.
 
 use std::any::type_name;
-use std::collections::BTreeSet;
-use std::fs;
-use std::path::{Path, PathBuf};
 
 use estimator_core::{
-    AlphaBetaGamma, BestFit, CountsPerTick, Device, EndFit, FiniteDifference, Fit, Foaw, Handover,
-    Hertz, Kalman, LateCurrent, LowPass, Model, Pll, Sample, Signals, SteadyKalman,
+    AlphaBetaGamma, BestFit, CountsPerTick, EndFit, FiniteDifference, Fit, Foaw, Handover, Hertz,
+    Kalman, LateCurrent, LowPass, Model, MotorModel, Pll, Sample, Signals, SteadyKalman,
     TableKalmanMotor, TableKalmanTriple, VelocityEstimator,
 };
 
-use crate::observer;
 use crate::reference::{self, Reference, Vector};
 
 /// The control rates of the paper and of the board, Hz.
@@ -202,7 +198,7 @@ fn forgets(cutoff: f64, rate: f64) -> usize {
 /// Every estimator at this rate.
 pub(crate) fn at(rate: f64) -> Vec<Case> {
     let hertz = Hertz(rate);
-    let device = Device::DCX35L;
+    let device = MotorModel::DCX35L;
     let cutoff = if rate < 5000.0 { 240.0 } else { 120.0 };
     let low_pass = LowPass::new(FiniteDifference, Hertz(cutoff), hertz).expect("valid");
     let window = Foaw::<15, EndFit>::new(15, 1).expect("valid");
@@ -320,70 +316,4 @@ pub(crate) fn worst_steps<const S: usize>(
     let (steps, _) = model.response(gains);
     let sign = |h: &f64| if *h < 0.0 { -limit } else { limit };
     steps.iter().map(sign).collect()
-}
-
-/// Every source file of the core.
-fn sources(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).expect("readable");
-    let paths = entries.map(|entry| entry.expect("readable").path());
-    paths
-        .flat_map(|path| {
-            if path.is_dir() {
-                sources(&path)
-            } else {
-                vec![path]
-            }
-        })
-        .collect()
-}
-
-/// A type without the modules it is in, and without the length of its tables.
-fn bare(name: &str) -> String {
-    let words = name.split_inclusive(['<', '>', ',', ' ']);
-    let last = words.map(|word| word.rsplit("::").next().unwrap_or(word));
-    last.collect::<String>().replace("512", "N")
-}
-
-/// A type that implements `VelocityEstimator`, or has a name of its own for one of its parameters,
-/// and is in neither list is named here.
-#[test]
-fn every_estimator_of_the_core_is_tried() {
-    let tried: BTreeSet<String> = at(1000.0)
-        .iter()
-        .map(|case| case.kind)
-        .chain(observer::kinds())
-        .map(bare)
-        .collect();
-    let mut missing = Vec::new();
-    let mut found = 0;
-    for path in sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src")) {
-        let text = fs::read_to_string(&path).expect("readable");
-        for line in text.lines() {
-            let implementor = line
-                .strip_prefix("impl")
-                .and_then(|line| line.split_once("VelocityEstimator for "))
-                .map(|(_, name)| name.trim_end_matches(" {"));
-            if let Some(name) = implementor {
-                found += 1;
-                let base = name.split('<').next().unwrap_or(name);
-                let tries = |kind: &String| kind.split('<').next() == Some(base);
-                // It estimates nothing; `invariants` has a test for it.
-                if base != "Skip" && !tried.iter().any(tries) {
-                    missing.push(name.to_owned());
-                }
-            }
-            let alias = line
-                .strip_prefix("pub type ")
-                .and_then(|line| line.split_once(" = "))
-                .map(|(_, of)| of.trim_end_matches(';'));
-            if let Some(of) = alias {
-                found += 1;
-                if !tried.contains(of) {
-                    missing.push(of.to_owned());
-                }
-            }
-        }
-    }
-    assert!(found >= 20, "{found} implementations and names");
-    assert!(missing.is_empty(), "{missing:?} of {tried:#?}");
 }

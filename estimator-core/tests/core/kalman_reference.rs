@@ -5,10 +5,11 @@
 //! says, so the errors add up to fewer than `memory` roundings. The gain of the run-time
 //! covariance is rounded as well: a relative error of a few ε times the innovation.
 
+mod tables;
+
 use estimator_core::{
-    Amps, Confidence, Count, CountsPerTick, DesignError, Device, Hertz, Kalman, KalmanMotor,
-    KalmanTriple, LateCurrent, Model, Sample, Scale, SteadyKalman, TableKalmanMotor,
-    TableKalmanTriple, VelocityEstimator,
+    Amps, Count, CountsPerTick, Hertz, Kalman, KalmanMotor, KalmanTriple, LateCurrent, Model,
+    MotorModel, Sample, Scale, SteadyKalman, VelocityEstimator,
 };
 
 use crate::every::{CURRENT_NOISE, JERK, RATES};
@@ -105,15 +106,15 @@ fn model_of_the_triple_integrator_is_that_of_van_loan() {
 
 #[test]
 fn model_of_the_motor_is_the_matrix_exponential() {
-    let stiff = Device {
+    let stiff = MotorModel {
         damping: 0.5,
-        ..Device::DCX35L
+        ..MotorModel::DCX35L
     };
-    let undamped = Device {
+    let undamped = MotorModel {
         damping: 0.0,
-        ..Device::DCX35L
+        ..MotorModel::DCX35L
     };
-    for device in [Device::DCX35L, stiff, undamped] {
+    for device in [MotorModel::DCX35L, stiff, undamped] {
         for rate in [100.0, 1e3, 1e4, 1.16e4, 1e5] {
             let ours = Model::motor(&device, Hertz(rate), CURRENT_NOISE).unwrap();
             let theirs = reference::motor_reduced(&device, rate, CURRENT_NOISE);
@@ -169,7 +170,7 @@ fn motor_follows_the_textbook_of_three_states() {
     let motion = motion();
     for rate in RATES {
         for noise in [0.03, CURRENT_NOISE, 0.6] {
-            let model = reference::motor(&Device::DCX35L, rate, noise);
+            let model = reference::motor(&MotorModel::DCX35L, rate, noise);
             // The current of a sample is that of the period before it: it is commanded at the
             // sample before, and enters the state there.
             let mut textbook = Textbook::new(&model, 0.0);
@@ -182,7 +183,7 @@ fn motor_follows_the_textbook_of_three_states() {
                 // The measured current is known, but for its own noise.
                 assert!((textbook.x[2] - f64::from(commanded)).abs() < 1e-9);
             }
-            let ours = Model::motor(&Device::DCX35L, Hertz(rate), noise).unwrap();
+            let ours = Model::motor(&MotorModel::DCX35L, Hertz(rate), noise).unwrap();
             let filter: KalmanMotor = Kalman::new(&ours).unwrap();
             let outputs = run(&filter, &motion.samples(u32::MAX - 500));
             let difference = largest_difference(&outputs, &expected);
@@ -203,14 +204,14 @@ fn motor_follows_the_textbook_of_three_states() {
 fn late_current_is_the_textbook_of_eq_15() {
     let motion = motion();
     for rate in RATES {
-        let model = reference::motor_reduced(&Device::DCX35L, rate, CURRENT_NOISE);
+        let model = reference::motor_reduced(&MotorModel::DCX35L, rate, CURRENT_NOISE);
         let mut textbook = Textbook::new(&model, 0.0);
         let mut expected = Vec::new();
         for tick in 1..motion.counts.len() {
             textbook.tick(f64::from(motion.amps[tick - 1]), motion.counts[tick] as f64);
             expected.push(textbook.x[1]);
         }
-        let ours = Model::motor(&Device::DCX35L, Hertz(rate), CURRENT_NOISE).unwrap();
+        let ours = Model::motor(&MotorModel::DCX35L, Hertz(rate), CURRENT_NOISE).unwrap();
         let late = LateCurrent(Kalman::new(&ours).unwrap());
         let difference = largest_difference(&run(&late, &motion.samples(0)), &expected);
         assert!(difference < DEVIATION, "{rate} Hz: {difference}");
@@ -228,10 +229,10 @@ fn steady_filters_follow_the_textbook_with_its_limit() {
         let ours = SteadyKalman::new(&ours).unwrap();
         let mut state = ours.start(&Sample::new(Count(0)));
 
-        let motor = reference::motor_reduced(&Device::DCX35L, rate, CURRENT_NOISE);
+        let motor = reference::motor_reduced(&MotorModel::DCX35L, rate, CURRENT_NOISE);
         let mut motor_textbook = Textbook::new(&motor, 0.0);
         motor_textbook.preset = Some(motor.steady_gain());
-        let motor = Model::motor(&Device::DCX35L, Hertz(rate), CURRENT_NOISE).unwrap();
+        let motor = Model::motor(&MotorModel::DCX35L, Hertz(rate), CURRENT_NOISE).unwrap();
         let motor = SteadyKalman::new(&motor).unwrap();
         let mut motor_state = motor.start(&Sample::new(Count(0)));
 
@@ -250,89 +251,6 @@ fn steady_filters_follow_the_textbook_with_its_limit() {
     }
 }
 
-/// A table gives what the full filter gives, from any start: in motion, at a boundary of the
-/// motion's stretches, and long after it ended.
-#[test]
-fn tables_follow_the_textbook_and_the_full_filter_after_any_start() {
-    let motion = motion();
-    let samples = motion.samples(u32::MAX - 500);
-    for rate in RATES {
-        let triple = reference::triple(4096, rate, JERK);
-        let model = Model::triple_integrator(4096, Hertz(rate), JERK).unwrap();
-        let full = Kalman::new(&model).unwrap();
-        let table = TableKalmanTriple::<128>::new(&model).unwrap();
-        let motor = reference::motor_reduced(&Device::DCX35L, rate, CURRENT_NOISE);
-        let motor_model = Model::motor(&Device::DCX35L, Hertz(rate), CURRENT_NOISE).unwrap();
-        let motor_full = Kalman::new(&motor_model).unwrap();
-        let motor_table = TableKalmanMotor::<512>::new(&motor_model).unwrap();
-        for start in (0..1500).step_by(50) {
-            let mut textbook = Textbook::new(&triple, motion.counts[start] as f64);
-            let mut motor_textbook = Textbook::new(&motor, motion.counts[start] as f64);
-            let (mut expected, mut motor_expected) = (Vec::new(), Vec::new());
-            for tick in start + 1..motion.counts.len() {
-                let position = motion.counts[tick] as f64;
-                textbook.tick(0.0, position);
-                expected.push(textbook.x[1]);
-                motor_textbook.tick(f64::from(motion.amps[tick]), position);
-                motor_expected.push(motor_textbook.x[1]);
-            }
-            let what = format!("{rate} Hz, from {start}");
-            for (ours, full, expected) in [
-                (
-                    run(&table, &samples[start..]),
-                    run(&full, &samples[start..]),
-                    expected,
-                ),
-                (
-                    run(&motor_table, &samples[start..]),
-                    run(&motor_full, &samples[start..]),
-                    motor_expected,
-                ),
-            ] {
-                let difference = largest_difference(&ours, &expected);
-                assert!(difference < DEVIATION / 10.0, "{what}: {difference}");
-                let difference = largest_difference(&ours, &full);
-                assert!(difference < START_DEVIATION, "{what}: {difference}");
-            }
-        }
-    }
-}
-
-/// As many ticks as the documentation says: with one gain less it has not settled.
-#[test]
-fn table_that_ends_too_early_is_refused() {
-    let model = Model::triple_integrator(4096, Hertz(1e3), 1e3).unwrap();
-    assert!(TableKalmanTriple::<37>::new(&model).is_ok());
-    let refused = TableKalmanTriple::<36>::new(&model).err();
-    assert_eq!(refused, Some(DesignError::TABLE));
-    let model = Model::triple_integrator(4096, Hertz(1e4), 3650.0).unwrap();
-    assert!(TableKalmanTriple::<167>::new(&model).is_ok());
-    let refused = TableKalmanTriple::<166>::new(&model).err();
-    assert_eq!(refused, Some(DesignError::TABLE));
-    assert!(TableKalmanTriple::<0>::new(&model).is_err());
-}
-
-/// What a table believes of its velocity is the textbook's P_11, from before the first tick on.
-#[test]
-fn tables_know_the_variance_of_their_velocity() {
-    for rate in RATES {
-        let model = reference::triple(4096, rate, JERK);
-        let ours = Model::triple_integrator(4096, Hertz(rate), JERK).unwrap();
-        let filter = TableKalmanTriple::<128>::new(&ours).unwrap();
-        let sample = Sample::new(Count(1));
-        let mut state = filter.start(&sample);
-        let mut p = model.p0;
-        for tick in 0..200 {
-            let ours = f64::from(filter.variance(&state).0);
-            let error = (ours / p[(1, 1)] - 1.0).abs();
-            assert!(error < 1e-5, "{rate} Hz, {tick}: {ours}, {}", p[(1, 1)]);
-            filter.update(&mut state, &sample);
-            p = model.predicted(&p);
-            p = Reference::updated(&p, &Reference::gain(&p));
-        }
-    }
-}
-
 /// The covariance at run time is the textbook's, tick by tick.
 #[test]
 fn covariance_follows_the_textbook() {
@@ -340,8 +258,8 @@ fn covariance_follows_the_textbook() {
         let model = reference::triple(4096, rate, JERK);
         let ours = Model::triple_integrator(4096, Hertz(rate), JERK).unwrap();
         let filter = Kalman::new(&ours).unwrap();
-        let motor_model = reference::motor_reduced(&Device::DCX35L, rate, CURRENT_NOISE);
-        let motor = Model::motor(&Device::DCX35L, Hertz(rate), CURRENT_NOISE).unwrap();
+        let motor_model = reference::motor_reduced(&MotorModel::DCX35L, rate, CURRENT_NOISE);
+        let motor = Model::motor(&MotorModel::DCX35L, Hertz(rate), CURRENT_NOISE).unwrap();
         let motor = Kalman::new(&motor).unwrap();
         let sample = Sample::new(Count(1));
         let mut state = filter.start(&sample);

@@ -4,12 +4,15 @@
 //! | module | holds the core against |
 //! |---|---|
 //! | `invariants` | what must be true of any velocity estimator |
-//! | `endurance` | long runs: covariance, counts beyond f32, bad currents, huge jumps |
+//! | `ramps` | constant velocity and rest |
+//! | `endurance` | long runs: covariance, bad currents, huge jumps |
+//! | `distance` | counts beyond the exact range of f32, long ramps |
+//! | `complete` | the lists that these tests iterate over, against the source of the core |
 //! | `foaw_definition` | the O(n²) definition of FOAW in exact fractions |
 //! | `kalman_reference` | the textbook filter in f64, absolute positions, the current as a state |
 //! | `acceleration` | a constant acceleration |
 //! | `m_over_t` | ramps and stamps, of which the M/T method knows the result |
-//! | `observer` | invariants of the observers, which read more than counts; a motor that obeys their model; what they learn |
+//! | `observer` | invariants of the observers, which read more than counts; a motor that obeys their model; adaptation |
 //! | `confidence` | the variances that estimators claim, against errors and theory |
 //! | `calibration` | the same variances, on a motor that is as random as its estimator is told |
 //! | `handover` | two estimators that are exchanged while they run |
@@ -28,7 +31,9 @@
 
 mod acceleration;
 mod calibration;
+mod complete;
 mod confidence;
+mod distance;
 mod endurance;
 mod every;
 mod foaw_definition;
@@ -39,6 +44,7 @@ mod limits;
 mod m_over_t;
 mod motion;
 mod observer;
+mod ramps;
 mod reference;
 mod regressions;
 mod steady_gain;

@@ -1,146 +1,35 @@
-//! What must be true of the observers and the M/T method, whatever the motion.
+//! Invariants of the observers and of the M/T method, which hold for any motion.
 //!
-//! They read more than counts, so they have their own motions: the medley with a handle, currents
-//! and edges at random instants, and a motor that obeys its own model exactly.
+//! These estimators read more than counts, so they have motions of their own: the medley with a
+//! coupled shaft, currents and edges at random instants, and a motor that obeys its model exactly.
 
+mod adaptive;
+mod adaptive_covariance;
 mod by_definition;
+mod cases;
 mod definition;
-mod learned;
 mod modelled;
 
 use estimator_core::{
-    Amps, ClockTicks, Count, Counts, CountsPerTick, CoupledMotor, Edge, Hertz, MOverT, Observer,
-    Sample, Signals, Uncertainty, VelocityEstimator,
+    Amps, ClockTicks, Count, Counts, CoupledMotor, Edge, Hertz, Observer, Sample, Uncertainty,
 };
 use proptest::prelude::*;
 
-use crate::motion::{Draws, Motion, any_motion, medley};
+pub(crate) use cases::kinds;
+use cases::{Case, at, bits, case, dressed, everywhere};
+
+use crate::motion::{Draws, any_motion, medley};
 
 const CLOCK: Hertz = Hertz(84e6);
 const RATES: [f64; 3] = [1000.0, 10_000.0, 11_600.0];
 
 const UNSURE: Uncertainty = Uncertainty {
     torque_noise: 1e-5,
-    load: 3e-4,
-    load_time: 0.1,
+    disturbance: 3e-4,
+    disturbance_time: 0.1,
     friction_share: 0.7,
     boundary_noise: 0.03,
 };
-
-type Runner = Box<dyn Fn(&[Sample]) -> Vec<f32> + Send + Sync>;
-
-struct Case {
-    name: String,
-    /// The estimator's type.
-    kind: &'static str,
-    needs: Signals,
-    run: Runner,
-}
-
-fn case<E>(name: &str, rate: f64, estimator: E) -> Case
-where
-    E: VelocityEstimator<Output = CountsPerTick> + Send + Sync + 'static,
-{
-    Case {
-        name: format!("{name} at {rate} Hz"),
-        kind: std::any::type_name::<E>(),
-        needs: E::NEEDS,
-        run: Box::new(move |samples| {
-            let mut state = estimator.start(&samples[0]);
-            let update = |sample| estimator.update(&mut state, sample).0;
-            samples[1..].iter().map(update).collect()
-        }),
-    }
-}
-
-/// Every type of observer, and M/T, at this rate.
-fn at(rate: f64) -> Vec<Case> {
-    let hertz = Hertz(rate);
-    let device = CoupledMotor::DCX35L;
-    let counts = Observer::new(&device, hertz, &UNSURE).expect("valid");
-    let soft = Observer::soft(&device, hertz, &UNSURE).expect("valid");
-    let edges = counts.with_edges(CLOCK, hertz).expect("valid");
-    let blind = Observer::blind(&device, hertz, CLOCK, &UNSURE).expect("valid");
-    vec![
-        case("M/T", rate, MOverT::new(CLOCK, hertz).expect("valid")),
-        case("observer", rate, counts),
-        case("observer, held", rate, counts.held()),
-        case("observer, soft", rate, soft),
-        case(
-            "adaptive, soft",
-            rate,
-            soft.learning(4096, hertz).expect("valid"),
-        ),
-        case("observer, edges", rate, edges),
-        case("observer, edges, held", rate, edges.held()),
-        case("observer, edges, blind", rate, blind),
-        case(
-            "adaptive",
-            rate,
-            counts.learning(4096, hertz).expect("valid"),
-        ),
-        case(
-            "adaptive, edges",
-            rate,
-            edges.learning(4096, hertz).expect("valid"),
-        ),
-    ]
-}
-
-/// Their types.
-pub(crate) fn kinds() -> impl Iterator<Item = &'static str> {
-    at(RATES[0]).into_iter().map(|case| case.kind)
-}
-
-fn everywhere() -> Vec<Case> {
-    RATES.iter().flat_map(|&rate| at(rate)).collect()
-}
-
-/// The motion with a handle that follows and an edge wherever a count changed, at a drawn age.
-fn dressed(motion: &Motion, start: u32, rate: f64, direction: i64) -> Vec<Sample> {
-    let mut draws = Draws(77);
-    let period = (CLOCK.0 / rate) as u64;
-    let (mut edge, mut stamped) = (None, 0u64);
-    let mut samples = Vec::new();
-    for (tick, (&count, &amps)) in motion.counts.iter().zip(&motion.amps).enumerate() {
-        let now = period * (tick as u64 + 1);
-        // The same draws whatever the direction.
-        let (instant, handle) = (now - draws.bits() % period, draws.within(3));
-        let before = if tick == 0 {
-            count
-        } else {
-            motion.counts[tick - 1]
-        };
-        if count != before {
-            stamped = instant;
-            edge = Some(if count > before { count } else { count + 1 });
-        }
-        let age = ClockTicks(u32::try_from(now - stamped).unwrap_or(u32::MAX));
-        let place = |count: i64| ((direction * count) as u32).wrapping_add(start);
-        let mut sample = Sample::new(Count(place(count)))
-            .with_small(Count(place(4 * count + handle)))
-            .with_current(Amps::new(direction as f32 * amps));
-        if let Some(boundary) = edge {
-            // Boundary e lies between counts e - 1 and e: turned round, it is 1 - e.
-            let turned = if direction < 0 {
-                boundary - 1
-            } else {
-                boundary
-            };
-            sample = sample.with_edge(Edge {
-                boundary: Count(place(turned)),
-                age,
-            });
-        }
-        samples.push(sample);
-    }
-    samples
-}
-
-fn bits(values: &[f32]) -> Vec<u32> {
-    // Adding zero turns the negative zero into the positive one.
-    values.iter().map(|value| (value + 0.0).to_bits()).collect()
-}
 
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(24) })]
@@ -174,12 +63,12 @@ proptest! {
         let samples: Vec<Sample> = (0..400).map(|_| {
             let wild = |draws: &mut Draws| Count(draws.bits() as u32);
             let current = f32::from_bits(draws.bits() as u32);
-            let large = if draws.bits() % 4 == 0 { wild(&mut draws) } else { Count(draws.within(40) as u32) };
+            let count = if draws.bits() % 4 == 0 { wild(&mut draws) } else { Count(draws.within(40) as u32) };
             // Half of the stamps fit their count.
-            let boundary = if draws.bits() % 2 == 0 { wild(&mut draws) } else { Count(large.0.wrapping_add(draws.bits() as u32 & 1)) };
+            let boundary = if draws.bits() % 2 == 0 { wild(&mut draws) } else { Count(count.0.wrapping_add(draws.bits() as u32 & 1)) };
             let age = ClockTicks((draws.bits() >> (draws.bits() % 60)) as u32);
-            Sample::new(large)
-                .with_small(wild(&mut draws))
+            Sample::new(count)
+                .with_coupled(wild(&mut draws))
                 .with_current(Amps::new(current))
                 .with_edge(Edge { boundary, age })
         }).collect();
@@ -198,7 +87,7 @@ proptest! {
                 let other: Vec<Sample> = samples.iter().map(|sample| {
                     let mut other = *sample;
                     if !case.needs.current { other.current = Amps::new(draws.unit() as f32); }
-                    if !case.needs.small { other.small = Count(draws.bits() as u32); }
+                    if !case.needs.coupled { other.coupled = Count(draws.bits() as u32); }
                     if !case.needs.edge { other.edge = None; }
                     other
                 }).collect();
@@ -227,7 +116,8 @@ fn wrap_of_either_counter_leaves_no_trace() {
 fn rest_is_silent_anywhere_and_below_friction() {
     let mut draws = Draws(5);
     for _ in 0..20 {
-        let still = Sample::new(Count(draws.bits() as u32)).with_small(Count(draws.bits() as u32));
+        let still =
+            Sample::new(Count(draws.bits() as u32)).with_coupled(Count(draws.bits() as u32));
         // 80 mA are 3.7 of 4 mN.m; only who believes in friction may see them.
         for case in everywhere() {
             let pushed = still.with_current(Amps::new(if case.needs.current { 0.08 } else { 0.0 }));
@@ -270,7 +160,7 @@ fn velocity_comes_back_to_zero_at_rest_without_current() {
 /// A stamp of a boundary that does not touch the count's cell, as a counter read one count late
 /// shows it, or one that is older than a tick, is none, bit for bit.
 #[test]
-fn stamp_of_another_cell_or_tick_is_none() {
+fn stamp_of_another_interval_or_tick_is_ignored() {
     let rate = 1000.0;
     let motion = medley();
     let whole = dressed(&motion, 40, rate, 1);
@@ -287,7 +177,7 @@ fn stamp_of_another_cell_or_tick_is_none() {
         for (above, age) in [(-1, 500), (2, 500), (-1, 0), (0, 84_000), (1, 84_000)] {
             let wrong = with(&|sample| {
                 Some(Edge {
-                    boundary: sample.large + Counts(above),
+                    boundary: sample.count + Counts(above),
                     age: ClockTicks(age),
                 })
             });
@@ -301,7 +191,7 @@ fn stamp_of_another_cell_or_tick_is_none() {
         for (above, age) in [(0, 500), (1, 500), (0, 83_999)] {
             let right = with(&|sample| {
                 Some(Edge {
-                    boundary: sample.large + Counts(above),
+                    boundary: sample.count + Counts(above),
                     age: ClockTicks(age),
                 })
             });
@@ -317,19 +207,19 @@ fn stamp_of_another_cell_or_tick_is_none() {
 
 /// A knock that no current explains: counts find the new velocity, at any speed, and keep it.
 #[test]
-fn soft_ends_find_a_velocity_that_jumps() {
+fn quantised_observer_finds_a_velocity_that_jumps() {
     for rate in [1000.0, 10_000.0] {
         let hertz = Hertz(rate);
         let unsure = Uncertainty {
             torque_noise: 8e-6,
-            load: 3e-4,
+            disturbance: 3e-4,
             boundary_noise: 0.0625,
             ..UNSURE
         };
         let device = CoupledMotor::DCX35L;
-        let soft = Observer::soft(&device, hertz, &unsure).expect("valid");
-        let learning = soft.learning(4096, hertz).expect("valid");
-        let friction = (device.coulomb_friction / device.large.torque_constant) as f32;
+        let quantised = Observer::quantised(&device, hertz, &unsure).expect("valid");
+        let learning = quantised.adaptive(4096, hertz).expect("valid");
+        let friction = (device.coulomb_friction / device.motor.torque_constant) as f32;
         for step in 0..60 {
             let turns = 0.2 * 1.08f64.powi(step);
             let velocity = turns * 4096.0 / rate;
@@ -340,7 +230,7 @@ fn soft_ends_find_a_velocity_that_jumps() {
                     let count = Count(7000 + moved as u32);
                     let current = if tick > jump { current } else { 0.0 };
                     Sample::new(count)
-                        .with_small(count)
+                        .with_coupled(count)
                         .with_current(Amps::new(current))
                 };
                 (0..3 * jump).map(at).collect::<Vec<_>>()
@@ -355,7 +245,7 @@ fn soft_ends_find_a_velocity_that_jumps() {
                 f64::from(last as i32 + 2 - jump) / rate
             };
             for (case, current) in [
-                (case("soft", rate, soft), friction),
+                (case("quantised", rate, quantised), friction),
                 (case("learning", rate, learning), friction),
                 // A second error: friction that nothing overcomes does not slow the rotor down.
                 (case("learning", rate, learning), 0.0),

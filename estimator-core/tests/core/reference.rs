@@ -3,7 +3,7 @@
 //! Units are counts, ticks and ampere. With `s` counts per radian and period T a velocity of
 //! 1 count per tick is `1 / (s T)` rad/s.
 
-use estimator_core::Device;
+use estimator_core::MotorModel;
 use nalgebra::{SMatrix, SVector};
 
 /// Variance of a uniform error of one count.
@@ -49,7 +49,7 @@ pub(crate) fn triple(counts_per_rev: u32, rate: f64, density: f64) -> Reference<
 }
 
 /// The exact transition of `[θ, ω, i]` over a tick in which the current is held.
-fn motor_transition(device: &Device, rate: f64) -> Matrix<3> {
+fn motor_transition(device: &MotorModel, rate: f64) -> Matrix<3> {
     let t = 1.0 / rate;
     let pull = counts_per_rad(device.counts_per_rev) * device.torque_constant * t * t;
     Matrix::<3>::new(
@@ -68,7 +68,7 @@ fn motor_transition(device: &Device, rate: f64) -> Matrix<3> {
 
 /// Eq. 16 as printed: state `[θ, ω, i]`; the third row of A is zero and the measured current
 /// enters it as an input, with the error of its measurement as the only process noise.
-pub(crate) fn motor(device: &Device, rate: f64, current_noise: f64) -> Reference<3> {
+pub(crate) fn motor(device: &MotorModel, rate: f64, current_noise: f64) -> Reference<3> {
     let mut a = motor_transition(device, rate);
     a.row_mut(2).fill(0.0);
     let mut q = Matrix::zeros();
@@ -84,7 +84,7 @@ pub(crate) fn motor(device: &Device, rate: f64, current_noise: f64) -> Reference
 }
 
 /// The motor model without its third state, for what needs a square Q: gains and bounds.
-pub(crate) fn motor_reduced(device: &Device, rate: f64, current_noise: f64) -> Reference<2> {
+pub(crate) fn motor_reduced(device: &MotorModel, rate: f64, current_noise: f64) -> Reference<2> {
     let a = motor_transition(device, rate);
     let b = Vector::<2>::new(a[(0, 2)], a[(1, 2)]);
     Reference {

@@ -1,7 +1,7 @@
 //! Preset gains against the plain recursion, run until it stops changing.
 
 use estimator_core::{
-    Count, DesignError, Device, Hertz, Input, Kalman, Model, Sample, VelocityEstimator,
+    Count, DesignError, Hertz, Input, Kalman, Model, MotorModel, Sample, VelocityEstimator,
 };
 
 use crate::every::{CURRENT_NOISE, JERK, RATES};
@@ -63,9 +63,9 @@ fn motor_settles_where_the_recursion_does() {
         for lines in LINES {
             for exponent in [-9, -7, -4, -2, 0, 2] {
                 let noise = 2.7 * 10f64.powi(exponent);
-                let device = Device {
+                let device = MotorModel {
                     counts_per_rev: 4 * lines,
-                    ..Device::DCX35L
+                    ..MotorModel::DCX35L
                 };
                 let ours = Model::motor(&device, Hertz(rate), noise).unwrap();
                 let model = reference::motor_reduced(&device, rate, noise);
@@ -90,7 +90,8 @@ fn run_time_covariance_settles_to_the_preset_gain() {
                 &triple,
                 &format!("triple at {rate} Hz, noise times {scale}"),
             );
-            let motor = Model::motor(&Device::DCX35L, Hertz(rate), CURRENT_NOISE * scale).unwrap();
+            let motor =
+                Model::motor(&MotorModel::DCX35L, Hertz(rate), CURRENT_NOISE * scale).unwrap();
             settles(&motor, &format!("motor at {rate} Hz, noise times {scale}"));
         }
     }
@@ -119,55 +120,56 @@ fn settles<const S: usize, U: Input<S>>(model: &Model<S, U>, what: &str) {
 #[test]
 fn noise_whose_square_is_nothing_is_refused() {
     for noise in [1e-162, 1e-170] {
-        let motor = Model::motor(&Device::DCX35L, Hertz(1000.0), noise);
-        assert_eq!(motor.err(), Some(DesignError::ProcessNoise), "{noise} A");
+        let motor = Model::motor(&MotorModel::DCX35L, Hertz(1000.0), noise);
+        assert_eq!(motor.err(), Some(DesignError::CURRENT_NOISE), "{noise} A");
         let triple = Model::triple_integrator(4096, Hertz(1000.0), noise);
-        assert_eq!(triple.err(), Some(DesignError::ProcessNoise), "{noise}");
+        assert_eq!(triple.err(), Some(DesignError::JERK_DENSITY), "{noise}");
     }
-    assert!(Model::motor(&Device::DCX35L, Hertz(1000.0), 1e-160).is_ok());
+    assert!(Model::motor(&MotorModel::DCX35L, Hertz(1000.0), 1e-160).is_ok());
 }
 
 #[test]
 fn model_names_the_parameter_out_of_range() {
     let rate = Hertz(1000.0);
-    let motor = |device: Device, rate: f64, noise: f64| Model::motor(&device, Hertz(rate), noise);
+    let motor =
+        |device: MotorModel, rate: f64, noise: f64| Model::motor(&device, Hertz(rate), noise);
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let triple = Model::triple_integrator(4096, Hertz(bad), JERK);
         assert_eq!(triple.err(), Some(DesignError::RATE));
         assert_eq!(
-            motor(Device::DCX35L, bad, 0.1).err(),
+            motor(MotorModel::DCX35L, bad, 0.1).err(),
             Some(DesignError::RATE)
         );
         let triple = Model::triple_integrator(4096, rate, bad);
         assert_eq!(triple.err(), Some(DesignError::JERK_DENSITY), "{bad}");
         assert_eq!(
-            motor(Device::DCX35L, 1e3, bad).err(),
+            motor(MotorModel::DCX35L, 1e3, bad).err(),
             Some(DesignError::CURRENT_NOISE)
         );
-        let inertia = Device {
+        let inertia = MotorModel {
             inertia: bad,
-            ..Device::DCX35L
+            ..MotorModel::DCX35L
         };
         assert_eq!(motor(inertia, 1e3, 0.1).err(), Some(DesignError::INERTIA));
-        let torque_constant = Device {
+        let torque_constant = MotorModel {
             torque_constant: bad,
-            ..Device::DCX35L
+            ..MotorModel::DCX35L
         };
         assert_eq!(
             motor(torque_constant, 1e3, 0.1).err(),
             Some(DesignError::TORQUE_CONSTANT)
         );
-        let damping = Device {
+        let damping = MotorModel {
             damping: bad,
-            ..Device::DCX35L
+            ..MotorModel::DCX35L
         };
         let refused = motor(damping, 1e3, 0.1).err();
         let error = (bad != 0.0).then_some(DesignError::DAMPING);
         assert_eq!(refused, error, "damping {bad}");
     }
-    let none = Device {
+    let none = MotorModel {
         counts_per_rev: 0,
-        ..Device::DCX35L
+        ..MotorModel::DCX35L
     };
     assert_eq!(
         motor(none, 1e3, 0.1).err(),

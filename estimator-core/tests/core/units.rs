@@ -1,8 +1,8 @@
 //! Quantities at the core's edge: counts modulo 2^32, currents that are numbers, scales, signals.
 
 use estimator_core::{
-    AccelerationEstimator, Amps, Confidence, Count, Counts, CountsPerTick, Deviations, Hertz,
-    LateCurrent, Model, Sample, Scale, Signals, SteadyKalman, Variance, VelocityEstimator,
+    AccelerationEstimator, Amps, Confidence, Count, Counts, CountsPerTick, Hertz, LateCurrent,
+    Model, ParameterErrors, Sample, Scale, Signals, SteadyKalman, Variance, VelocityEstimator,
 };
 
 #[test]
@@ -72,7 +72,7 @@ fn scale_is_a_turn_per_counts_and_ticks() {
 fn signals_are_sets() {
     let all = (0..8u8).map(|bits| Signals {
         current: bits & 1 != 0,
-        small: bits & 2 != 0,
+        coupled: bits & 2 != 0,
         edge: bits & 4 != 0,
     });
     let all: Vec<Signals> = all.collect();
@@ -90,7 +90,7 @@ fn signals_are_sets() {
 
 #[test]
 fn ratio_of_the_damping_is_by_the_torque_constant() {
-    let learned = Deviations {
+    let learned = ParameterErrors {
         damping: 0.2,
         friction: 0.9,
         torque_constant: -0.4,

@@ -3,8 +3,8 @@
 use core::convert::Infallible;
 
 use estimator_core::{
-    AdaptiveEdgeObserver, AdaptiveObserver, Confidence, CountObserver, DesignError, Deviations,
-    EndFit, Foaw, Handover, HandoverState, Model, NoInput, Observer, Side, Skip, SteadyKalman,
+    AdaptiveEdgeObserver, AdaptiveObserver, Confidence, CountObserver, DesignError, EndFit, Foaw,
+    Handover, HandoverState, Model, NoInput, Observer, ParameterErrors, Side, Skip, SteadyKalman,
     SteadyKalmanTriple, preset,
 };
 
@@ -47,14 +47,14 @@ const fn observer(tuned_as: &str) -> Result<CountObserver, DesignError> {
 pub type Adaptive = AdaptiveObserver;
 /// The parameters of [`Adaptive`], as tuned for the plant with friction.
 pub const ADAPTIVE: Adaptive =
-    preset!(preset!(observer("adaptive")).learning(DEVICE.large.counts_per_rev, RATE));
+    preset!(preset!(observer("adaptive")).adaptive(DEVICE.large.counts_per_rev, RATE));
 
 /// An observer that learns damping, friction and torque constant from stamped edges.
 pub type AdaptiveEdge = AdaptiveEdgeObserver;
 /// The parameters of [`AdaptiveEdge`], as tuned for the plant with friction.
 pub const ADAPTIVE_EDGE: AdaptiveEdge = preset!(
     preset!(preset!(observer("adaptive-edge")).with_edges(TIMERS, RATE))
-        .learning(DEVICE.large.counts_per_rev, RATE)
+        .adaptive(DEVICE.large.counts_per_rev, RATE)
 );
 
 #[cfg(all(feature = "large-adaptive", not(feature = "edge-capture")))]
@@ -88,7 +88,7 @@ pub type Learned = <Large as LargeEstimator>::Learned;
 pub trait LargeEstimator: Confidence {
     /// A choice between estimators.
     type Choice: Copy;
-    /// Learned parameter errors: [`Deviations`], or [`Skip`] for an estimator that learns nothing.
+    /// Learned parameter errors: [`ParameterErrors`], or [`Skip`] for an estimator that learns nothing.
     type Learned: Learnable;
 
     /// The choice of this number, if there is one.
@@ -159,25 +159,25 @@ macro_rules! alone {
 alone! {
     Window, Skip, |_it, _state| Skip;
     Filter, Skip, |_it, _state| Skip;
-    Adaptive, Deviations, |it, state| it.deviations(state);
-    AdaptiveEdge, Deviations, |it, state| it.deviations(state);
+    Adaptive, ParameterErrors, |it, state| it.parameter_errors(state);
+    AdaptiveEdge, ParameterErrors, |it, state| it.parameter_errors(state);
 }
 
 /// Learned parameter errors, or nothing in their place.
 pub trait Learnable: Copy + Default {
     /// The errors, if they are learned.
-    fn deviations(&self) -> Option<Deviations>;
+    fn deviations(&self) -> Option<ParameterErrors>;
 }
 
 /// Nothing is learned: no code.
 impl Learnable for Skip {
-    fn deviations(&self) -> Option<Deviations> {
+    fn deviations(&self) -> Option<ParameterErrors> {
         None
     }
 }
 
-impl Learnable for Deviations {
-    fn deviations(&self) -> Option<Deviations> {
+impl Learnable for ParameterErrors {
+    fn deviations(&self) -> Option<ParameterErrors> {
         Some(*self)
     }
 }

@@ -1,6 +1,6 @@
 //! Telemetry frames: made by the control task, logged at the lowest priority.
 
-use estimator_core::{Count, Deviations, Edge, Sample};
+use estimator_core::{Count, Edge, ParameterErrors, Sample};
 use haptic_control::{Action, Mode, Stop};
 use heapless::spsc::{Producer, Queue};
 
@@ -109,7 +109,7 @@ impl Frame {
     #[must_use]
     pub fn deviation(&self) -> f32 {
         let variance = self.record.estimation.variance;
-        variance.deviation().rad_per_s(&RIG.large_scale)
+        variance.std_dev().rad_per_s(&RIG.large_scale)
     }
 
     /// Number of the estimator in charge of the large motor; 255 for none.
@@ -126,7 +126,7 @@ impl Frame {
 
     /// Learned parameter errors, in one frame of 128 and by estimators that learn.
     #[must_use]
-    pub fn learned(&self) -> Option<Deviations> {
+    pub fn learned(&self) -> Option<ParameterErrors> {
         let due = self.seq.is_multiple_of(LEARNED_EVERY);
         self.record.learned.deviations().filter(|_| due)
     }

@@ -44,6 +44,6 @@ pub(crate) fn motion(k: u32) -> Sample {
         _ => 50,
     };
     Sample::new(Count((handle / 3).wrapping_sub(7)))
-        .with_small(Count(handle.wrapping_sub(1000)))
+        .with_coupled(Count(handle.wrapping_sub(1000)))
         .with_current(Amps::new(0.1))
 }

@@ -14,7 +14,7 @@ type Of<S> = Controller<S, Large, SteadyKalmanTriple>;
 type StateOf<S> = ControllerState<S, Large, SteadyKalmanTriple>;
 
 fn sample(k: u32) -> Sample {
-    Sample::new(Count(k / 3)).with_small(Count(k * k / 50))
+    Sample::new(Count(k / 3)).with_coupled(Count(k * k / 50))
 }
 
 /// Runs over ticks of a motion.
@@ -65,7 +65,7 @@ fn every_scene_restarts_and_copies() {
 fn states_differ_where_one_part_differs() {
     let start = |controller: &Of<Viscous>, at: u32| controller.start(&sample(at));
     let viscous = Controller::new(Viscous::new(2e-3).unwrap(), LARGE, HANDLE, &RIG);
-    let (origin, other) = (Sample::default(), Sample::default().with_small(Count(1)));
+    let (origin, other) = (Sample::default(), Sample::default().with_coupled(Count(1)));
     // The origin, in a scene that has nothing else.
     let off = Controller::new(Off, LARGE, HANDLE, &RIG);
     assert!(off.start(&origin) != off.start(&other));
@@ -121,7 +121,7 @@ fn the_large_estimator_is_there_where_the_scene_needs_it() {
 fn retuned_parameters_act_at_the_next_tick_and_the_state_goes_on() {
     let mut controller = Controller::new(Hold::new(0.2, 0.0).unwrap(), LARGE, HANDLE, &RIG);
     let mut state = controller.start(&Sample::default());
-    let there = Sample::default().with_small(Count(1000));
+    let there = Sample::default().with_coupled(Count(1000));
     let before = controller.step(&mut state, &there).torque.0;
     controller.retune(Hold::new(0.1, 0.0).unwrap());
     let after = controller.step(&mut state, &there).torque.0;
@@ -133,8 +133,9 @@ fn retuned_parameters_act_at_the_next_tick_and_the_state_goes_on() {
 fn the_slip_is_the_large_motors_velocity_less_the_handles() {
     let free = Controller::new(FreeAir, FiniteDifference, FiniteDifference, &RIG);
     for (large, handle) in [(1, 3), (1, -3), (-2, 10), (0, 5), (2, 0)] {
-        let at =
-            |k: i32| Sample::new(Count((large * k) as u32)).with_small(Count((handle * k) as u32));
+        let at = |k: i32| {
+            Sample::new(Count((large * k) as u32)).with_coupled(Count((handle * k) as u32))
+        };
         let mut state = free.start(&at(0));
         let action = (1..200).fold(free.step(&mut state, &at(0)), |_, k| {
             free.step(&mut state, &at(k))

@@ -22,7 +22,7 @@ fn run(rate_hz: f64, ticks: u32, handle: impl Fn(u32) -> i32) -> Vec<Currents> {
     let mut state = controller.start(&Sample::default());
     (0..ticks)
         .map(|k| {
-            let sample = Sample::default().with_small(Count(handle(k) as u32));
+            let sample = Sample::default().with_coupled(Count(handle(k) as u32));
             controller.step(&mut state, &sample).currents
         })
         .collect()
@@ -184,7 +184,7 @@ fn angles_count_from_where_it_began() {
     let rig = Rig::new(&DEVICE, Hertz(1e3), LoopPoles::DEFAULT).unwrap();
     let excite = Excite::new(&DEVICE, Hertz(1e3)).unwrap();
     let controller = Controller::new(excite, FiniteDifference, FiniteDifference, &rig);
-    let here = Sample::default().with_small(Count(1_000_000));
+    let here = Sample::default().with_coupled(Count(1_000_000));
     let mut state = controller.start(&here);
     let currents: Vec<_> = (0..17_000)
         .map(|_| controller.step(&mut state, &here).currents)
@@ -266,7 +266,7 @@ fn selected_on_a_handle_that_was_turned_the_bounds_count_from_there() {
     const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(20_000, RATE, 4e3));
     const HANDLE: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
     let board = Switchboard::new(FiniteDifference, HANDLE, RIG, RATE);
-    let at = |count: i32| Sample::default().with_small(Count(count as u32));
+    let at = |count: i32| Sample::default().with_coupled(Count(count as u32));
     for turned in [5000, -5000] {
         let mut state = board.start(&at(0));
         let scene = AnyScene::Excite(Excite::new(&DEVICE, RATE).unwrap());

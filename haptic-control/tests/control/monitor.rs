@@ -26,7 +26,7 @@ fn first(ticks: u32, motion: impl Fn(u32) -> Sample) -> Option<(u32, Stop)> {
 
 fn sample(large: u32, small: u32, amps: f32) -> Sample {
     Sample::new(Count(large))
-        .with_small(Count(small))
+        .with_coupled(Count(small))
         .with_current(Amps::new(amps))
 }
 

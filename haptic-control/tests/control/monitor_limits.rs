@@ -18,7 +18,7 @@ const MONITOR: Monitor = Monitor {
 
 fn sample(large: i32, small: i32, milliamps: f32) -> Sample {
     Sample::new(Count(large as u32))
-        .with_small(Count(small as u32))
+        .with_coupled(Count(small as u32))
         .with_current(Amps::new(milliamps / 1000.0))
 }
 

@@ -74,7 +74,7 @@ impl Plant {
         ]
         .map(|(angle, counts)| Count((angle / TAU * f64::from(counts)).floor() as i64 as u32));
         Sample::new(large)
-            .with_small(small)
+            .with_coupled(small)
             .with_current(current.large)
     }
 }

@@ -25,7 +25,7 @@ fn torque_at(
     let controller = Controller::new(scene, LARGE, HANDLE, &RIG);
     let start = Sample::default();
     let mut state = controller.start(&start);
-    let there = start.with_small(Count(counts as u32));
+    let there = start.with_coupled(Count(counts as u32));
     let mut torque = 0.0;
     for _ in 0..20_000 {
         torque = controller.step(&mut state, &there).torque.0;

@@ -246,12 +246,12 @@ fn a_device_has_finite_constants_above_zero_and_friction_of_at_least_zero() {
 #[test]
 fn the_observer_is_told_of_the_same_device() {
     let motor = DEVICE.coupled_motor();
-    assert_eq!(motor.large.counts_per_rev, DEVICE.large.counts_per_rev);
-    assert_eq!(motor.large.inertia, DEVICE.large.inertia);
-    assert_eq!(motor.large.damping, DEVICE.damping);
-    assert_eq!(motor.large.torque_constant, DEVICE.large.torque_constant);
+    assert_eq!(motor.motor.counts_per_rev, DEVICE.large.counts_per_rev);
+    assert_eq!(motor.motor.inertia, DEVICE.large.inertia);
+    assert_eq!(motor.motor.damping, DEVICE.damping);
+    assert_eq!(motor.motor.torque_constant, DEVICE.large.torque_constant);
     assert_eq!(motor.coulomb_friction, DEVICE.large.coulomb_friction);
-    assert_eq!(motor.small_counts_per_rev, DEVICE.small.counts_per_rev);
+    assert_eq!(motor.coupled_counts_per_rev, DEVICE.small.counts_per_rev);
     // A bandwidth of 2 kHz is a lag of 79.6 us.
     assert!((motor.amplifier_lag * std::f64::consts::TAU * 2000.0 - 1.0).abs() < 1e-12);
 }

@@ -142,7 +142,7 @@ fn after_a_swap_the_scene_is_as_if_it_had_been_on_all_along() {
 
 /// Counts of a handle that moved on by 100 counts a tick while it was off.
 fn far(k: u32) -> Sample {
-    Sample::new(Count(k.wrapping_mul(7))).with_small(Count(k.wrapping_mul(100)))
+    Sample::new(Count(k.wrapping_mul(7))).with_coupled(Count(k.wrapping_mul(100)))
 }
 
 /// The first action of `scene` after `off` ticks without one, in which both encoders move.
@@ -242,7 +242,7 @@ fn a_restart_is_a_start_and_estimates_tell_whether_they_run() {
 }
 
 fn at(angle: i32) -> Sample {
-    Sample::default().with_small(Count(angle as u32))
+    Sample::default().with_coupled(Count(angle as u32))
 }
 
 fn run(board: &Board, state: &mut State, sample: &Sample, ticks: u32) -> Action {

@@ -268,7 +268,7 @@ fn tuning_and_torque_set_points_do_not_jump() {
     const PLL: Pll = preset!(Pll::new(Hertz(100.0), RATE));
     let board = Switchboard::new(PLL, HANDLE, RIG, RATE);
     // 1000 counts are 0.31 rad, 0.21 rad into the wall. Everything begins at 400 counts.
-    let (first, inside) = ([400, 1000].map(|at| Sample::default().with_small(Count(at)))).into();
+    let (first, inside) = ([400, 1000].map(|at| Sample::default().with_coupled(Count(at)))).into();
     const ANGLE: f32 = 0.314_159_27;
     for (scene, parameter, value, wanted) in [
         (2, 1, 0.1, -0.1 * (ANGLE - 0.1)),

@@ -176,8 +176,8 @@ impl<F: FnMut(&Moment)> Visit for Running<'_, F> {
         let mut since = None;
         for k in 0..self.ticks {
             if let Some((_, fault)) = self.fault.filter(|(from, _)| k >= *from) {
-                let since = *since.get_or_insert(sample.large);
-                sample.large = fault.counted(sample.large, since);
+                let since = *since.get_or_insert(sample.count);
+                sample.count = fault.counted(sample.count, since);
             }
             let action = controller.step(&mut state, &sample);
             let stopped = monitor.check(&mut watch, &sample);

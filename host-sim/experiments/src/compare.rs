@@ -193,7 +193,7 @@ fn run(case: &Case, settings: &Settings) -> Result<Outcome, Failure> {
 /// [`Failure::Input`] where rate or duration are out of range.
 pub fn trace(case: &Case, device: &Device, estimators: &[&Kind]) -> Result<Trace, Failure> {
     let columns = Columns {
-        counts_small: estimators.iter().any(|kind| kind.needs.small),
+        counts_small: estimators.iter().any(|kind| kind.needs.coupled),
         edges: estimators.iter().any(|kind| kind.needs.edge),
     };
     let frictionless;

@@ -67,7 +67,7 @@ pub fn replay(
         let has = available(trace);
         let column = match kind.needs {
             needs if needs.current && !has.current => "current",
-            needs if needs.small && !has.small => "counts_small",
+            needs if needs.coupled && !has.coupled => "counts_small",
             _ => "edge_tick",
         };
         (kind.name, column)

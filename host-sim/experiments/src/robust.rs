@@ -107,7 +107,7 @@ impl Experiment {
     /// [`Failure::Input`] that names what cannot be used.
     pub fn new(settings: &Settings) -> Result<Self, Failure> {
         let kind = Kind::named(&settings.estimator)?;
-        if kind.needs.edge || kind.needs.small || kind.needs.current {
+        if kind.needs.edge || kind.needs.coupled || kind.needs.current {
             return Err(Failure::Input(format!(
                 "estimator {}: it reads more than its own encoder, so that it cannot look at the \
                  handle; choose another one",

@@ -29,7 +29,7 @@ pub const RMS_WEIGHT: f64 = 0.01;
 const GRID: usize = 25;
 
 /// Inertia of the device for which the ranges of the parameters are stated, kg.m2.
-const DEFAULT_INERTIA: f64 = estimator_core::Device::DCX35L.inertia;
+const DEFAULT_INERTIA: f64 = estimator_core::MotorModel::DCX35L.inertia;
 
 /// Rounds of refinement between the neighbours of the best point.
 const REFINEMENTS: usize = 3;

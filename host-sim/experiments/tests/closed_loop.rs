@@ -73,7 +73,7 @@ fn off_has_no_current_and_only_scenes_with_a_loop_know_the_large_motor_s_velocit
             let currents = moment.action.currents;
             driven |= currents.large.get() != 0.0 || currents.small.get() != 0.0;
             known |= moment.action.large_velocity.0 != 0.0;
-            counted |= moment.own_count != moment.sample.large;
+            counted |= moment.own_count != moment.sample.count;
         })
         .unwrap();
         assert_eq!(driven, scene != SceneKind::Off, "{scene}");

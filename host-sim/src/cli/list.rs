@@ -22,7 +22,7 @@ pub(super) fn estimators() -> Result<(), Failure> {
         let _ = writeln!(text, "{}", wrapped(&line, 22));
         for (needed, what) in [
             (kind.needs.current, "the large motor's current"),
-            (kind.needs.small, "the small encoder"),
+            (kind.needs.coupled, "the small encoder"),
             (kind.needs.edge, "edge time stamps"),
         ] {
             if needed {

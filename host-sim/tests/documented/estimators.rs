@@ -120,7 +120,7 @@ fn signals(kind: &Kind) -> String {
     if needs.current {
         words.push("current");
     }
-    if needs.small {
+    if needs.coupled {
         words.push("handle");
     }
     words.join(", ")

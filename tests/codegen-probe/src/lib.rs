@@ -4,10 +4,10 @@
 #![no_std]
 
 use estimator_core::{
-    AmplifierCurrent, BestFit, CountObserver, CountsPerTick, CoupledMotor, Device, Edges, EndFit,
-    Foaw, Handover, HeldHandle, Hertz, KalmanTriple, LateCurrent, Learned, LowPass, MOverT, Model,
-    Observer, Sample, Skip, SteadyKalman, SteadyKalmanMotor, TableKalman, TableKalmanMotor,
-    Uncertainty, VelocityEstimator, preset,
+    Adaptive, AmplifierCurrent, BestFit, CountObserver, CountsPerTick, CoupledMotor, EdgeUpdate,
+    EndFit, Foaw, Handover, HeldShaft, Hertz, KalmanTriple, LateCurrent, LowPass, MOverT, Model,
+    MotorModel, Observer, Sample, Skip, SteadyKalman, SteadyKalmanMotor, TableKalman,
+    TableKalmanMotor, Uncertainty, VelocityEstimator, preset,
 };
 
 const RATE: Hertz = Hertz(10_000.0);
@@ -16,8 +16,8 @@ const CLOCK: Hertz = Hertz(84e6);
 
 const UNSURE: Uncertainty = Uncertainty {
     torque_noise: 5e-6,
-    load: 1e-4,
-    load_time: 0.1,
+    disturbance: 1e-4,
+    disturbance_time: 0.1,
     friction_share: 0.7,
     boundary_noise: 0.03,
 };
@@ -139,12 +139,12 @@ probes! {
     start_foaw_128_end, update_foaw_128_end: Foaw<128, EndFit> = preset!(Foaw::new(128, 1));
     start_foaw_128_best, update_foaw_128_best: Foaw<128, BestFit> = preset!(Foaw::new(100, 2));
     start_table_motor, update_table_motor: TableKalmanMotor<1024> =
-        preset!(TableKalman::new(&preset!(Model::motor(&Device::DCX35L, RATE, 0.1))));
+        preset!(TableKalman::new(&preset!(Model::motor(&MotorModel::DCX35L, RATE, 0.1))));
     start_late_motor, update_late_motor: LateCurrent<SteadyKalmanMotor> =
-        LateCurrent(preset!(SteadyKalman::new(&preset!(Model::motor(&Device::DCX35L, RATE, 0.1)))));
+        LateCurrent(preset!(SteadyKalman::new(&preset!(Model::motor(&MotorModel::DCX35L, RATE, 0.1)))));
     start_adaptive_edge_held, update_adaptive_edge_held:
-        Observer<AmplifierCurrent, HeldHandle, Edges, Learned> =
-        preset!(preset!(COUNTS.with_edges(CLOCK, RATE)).learning(4096, RATE)).held();
+        Observer<AmplifierCurrent, HeldShaft, EdgeUpdate, Adaptive> =
+        preset!(preset!(COUNTS.with_edges(CLOCK, RATE)).adaptive(4096, RATE)).held();
     start_handover, update_handover: Handover<MOverT, Foaw<15, EndFit>> = preset!(Handover::new(
         preset!(MOverT::new(CLOCK, RATE)),
         preset!(Foaw::new(15, 1)),
@@ -185,13 +185,13 @@ pub mod planted {
     /// Indexes with a check.
     #[inline(never)]
     pub fn planted_index(window: &[f32; 16], sample: &Sample) -> f32 {
-        window[sample.large.0 as usize]
+        window[sample.count.0 as usize]
     }
 
     /// Slices with a check.
     #[inline(never)]
     pub fn planted_slice<'a>(window: &'a [f32; 16], sample: &Sample) -> &'a [f32] {
-        &window[sample.large.0 as usize..]
+        &window[sample.count.0 as usize..]
     }
 
     /// Unwraps.
@@ -215,7 +215,7 @@ pub mod planted {
     /// Divides in 64 bits, which the board has no instruction for.
     #[inline(never)]
     pub fn planted_wide_division(sample: &Sample) -> i64 {
-        i64::from(sample.large.0 as i32) * 0x1_0000_0001 / i64::from(sample.small.0 | 1)
+        i64::from(sample.count.0 as i32) * 0x1_0000_0001 / i64::from(sample.coupled.0 | 1)
     }
 
     /// Reads a part of the sample that it should not: large where it should be empty.

@@ -38,8 +38,8 @@ impl Bytes<'_> {
             _ => i32::from(self.byte()? as i8) >> (kind & 3),
         };
         let mut next = Sample {
-            large: last.large + Counts(step),
-            small: last.small + Counts(i32::from(kind as i8) >> 3),
+            count: last.count + Counts(step),
+            coupled: last.coupled + Counts(i32::from(kind as i8) >> 3),
             ..*last
         };
         if kind & 0x10 != 0 {
@@ -47,7 +47,7 @@ impl Bytes<'_> {
         }
         if kind & 0x20 != 0 {
             next.edge = Some(Edge {
-                boundary: Count(next.large.0.wrapping_add(u32::from(kind >> 7))),
+                boundary: Count(next.count.0.wrapping_add(u32::from(kind >> 7))),
                 age: ClockTicks(self.u32()?),
             });
         }

@@ -24,7 +24,7 @@ pub fn run(contestants: &[Contestant], data: &[u8]) {
         pair.start(&Shown::of(&sample));
         while let Some(next) = bytes.sample(&sample) {
             sample = next;
-            if sample.large.0.is_multiple_of(251) {
+            if sample.count.0.is_multiple_of(251) {
                 pair.start(&Shown::of(&sample));
             }
             let (output, _) = pair.update(&Shown::of(&sample));

@@ -136,8 +136,8 @@ const DISTURBANCE_NM: f64 = 7.5e-4;
 /// and the motor's torque too.
 const ALONE: core::Uncertainty = core::Uncertainty {
     torque_noise: 5e-4,
-    load: 1e-4,
-    load_time: LOAD_TIME_S,
+    disturbance: 1e-4,
+    disturbance_time: LOAD_TIME_S,
     friction_share: 0.0,
     boundary_noise: 0.03,
 };
@@ -169,7 +169,7 @@ fn value(name: &str, entry: &Entry, rate_hz: f64, capacity: usize) -> f64 {
         "bandwidth_hz" => BANDWIDTH_HZ,
         "jerk" => JERK,
         "torque_noise" if alone => ALONE.torque_noise,
-        "load" if alone => ALONE.load,
+        "load" if alone => ALONE.disturbance,
         "boundary_noise" if alone => ALONE.boundary_noise,
         "current_noise" => CURRENT_NOISE,
         "torque_noise" => TORQUE_NOISE,
@@ -204,14 +204,14 @@ impl Laws {
             settling::radius(model.transition(), &model.steady_gain().expect("valid"))
         };
         let motor = {
-            let model = core::Model::motor(&core::Device::DCX35L, rate, CURRENT_NOISE);
+            let model = core::Model::motor(&core::MotorModel::DCX35L, rate, CURRENT_NOISE);
             let model = model.expect("valid");
             settling::radius(model.transition(), &model.steady_gain().expect("valid"))
         };
         let uncertainty = core::Uncertainty {
             torque_noise: TORQUE_NOISE,
-            load: DISTURBANCE_NM,
-            load_time: LOAD_TIME_S,
+            disturbance: DISTURBANCE_NM,
+            disturbance_time: LOAD_TIME_S,
             friction_share: 0.7,
             boundary_noise: 0.0625,
         };
@@ -220,9 +220,9 @@ impl Laws {
         let forgotten = |gain| settling::unknown_torque(gain, LOAD_TIME_S, rate_hz);
         let forgotten_alone = {
             let free = core::CoupledMotor {
-                large: core::Device {
+                motor: core::MotorModel {
                     damping: 0.0,
-                    ..core::Device::DCX35L
+                    ..core::MotorModel::DCX35L
                 },
                 coulomb_friction: 0.0,
                 ..core::CoupledMotor::DCX35L

@@ -57,8 +57,8 @@ impl Shown {
     #[must_use]
     pub fn of(sample: &Sample) -> Self {
         Self {
-            large: sample.large.0,
-            small: sample.small.0,
+            large: sample.count.0,
+            small: sample.coupled.0,
             amps: sample.current.get(),
             edge: sample.edge.map(|edge| (edge.boundary.0, edge.age.0)),
         }
@@ -68,8 +68,8 @@ impl Shown {
     #[must_use]
     pub fn sample(&self) -> Sample {
         Sample {
-            large: Count(self.large),
-            small: Count(self.small),
+            count: Count(self.large),
+            coupled: Count(self.small),
             current: Amps::new(self.amps),
             edge: self.edge.map(|(boundary, age)| Edge {
                 boundary: Count(boundary),

@@ -72,11 +72,11 @@ trait Corrections {
 }
 
 impl Corrections for f32 {}
-impl Corrections for core::EdgesState {}
+impl Corrections for core::EdgeUpdateState {}
 
-impl Corrections for core::SoftCellsState {
+impl Corrections for core::QuantisedUpdateState {
     fn fault(&self) -> Option<&'static str> {
-        let bell = self.bell();
+        let bell = self.covariance();
         let sound = bell.diagonal().iter().all(|d| *d >= 0.0 && *d < 1e20);
         // The core says why: rounding apart, the coupling is within 0 and 3/2.
         let coupled = bell.coupling() >= 0.0 && bell.coupling() < 1.500_01;
@@ -91,12 +91,12 @@ impl<E, C, S, M: Corrections> State<E> for core::ObserverState<C, S, M, ()> {
 }
 
 /// `U D Uᵀ` is positive definite if D is positive and U is made of numbers.
-impl<E, C, S, M: Corrections> State<E> for core::ObserverState<C, S, M, core::LearnedState> {
+impl<E, C, S, M: Corrections> State<E> for core::ObserverState<C, S, M, core::AdaptiveState> {
     fn fault(&self, _: &E) -> Option<&'static str> {
         if let Some(fault) = self.correction().fault() {
             return Some(fault);
         }
-        let learned = self.learning();
+        let learned = self.adaptation();
         let positive = learned.diagonal().iter().all(|d| *d > 0.0 && *d < 1.0);
         let finite = learned.upper().iter().all(|u| u.is_finite());
         (!(positive && finite)).then_some("covariance of the parameters not positive definite")
@@ -159,8 +159,8 @@ where
 
 fn twin_sample(shown: &Shown) -> twin::Sample {
     twin::Sample {
-        large: twin::Count(shown.large),
-        small: twin::Count(shown.small),
+        count: twin::Count(shown.large),
+        coupled: twin::Count(shown.small),
         current: twin::Amps::new(f64::from(shown.amps)),
         edge: shown.edge.map(|(boundary, age)| twin::Edge {
             boundary: twin::Count(boundary),

@@ -99,9 +99,9 @@ macro_rules! one {
      $type:ty, $make:expr) => {{
         use $crate_of as $c;
         let motor = $c::CoupledMotor {
-            large: $c::Device {
+            motor: $c::MotorModel {
                 counts_per_rev: $request.counts_per_rev,
-                ..$c::Device::DCX35L
+                ..$c::MotorModel::DCX35L
             },
             ..$c::CoupledMotor::DCX35L
         };
@@ -153,9 +153,9 @@ pub(crate) fn kalman_motor_table(request: &Request<'_>) -> Refusable {
     let noise = (request.value)("current_noise");
     macro_rules! table {
         ($c:ident) => {{
-            let device = $c::Device {
+            let device = $c::MotorModel {
                 counts_per_rev: request.counts_per_rev,
-                ..$c::Device::DCX35L
+                ..$c::MotorModel::DCX35L
             };
             $c::Model::motor(&device, $c::Hertz(request.rate_hz), noise)
                 .and_then(|model| $c::TableKalmanMotor::<TABLE>::new(&model))
@@ -169,7 +169,7 @@ pub(crate) fn late_kalman_motor(request: &Request<'_>) -> Refusable {
     let noise = (request.value)("current_noise");
     macro_rules! late {
         ($c:ident) => {
-            $c::Model::motor(&$c::Device::DCX35L, $c::Hertz(request.rate_hz), noise)
+            $c::Model::motor(&$c::MotorModel::DCX35L, $c::Hertz(request.rate_hz), noise)
                 .and_then(|model| $c::SteadyKalman::new(&model))
                 .map($c::LateCurrent)
         };
@@ -185,7 +185,7 @@ pub(crate) fn request<'a>(
 ) -> Request<'a> {
     Request {
         rate_hz,
-        counts_per_rev: core::Device::DCX35L.counts_per_rev,
+        counts_per_rev: core::MotorModel::DCX35L.counts_per_rev,
         clock_hz: EDGE_CLOCK_HZ,
         capacity,
         value,

@@ -61,14 +61,14 @@ pub(crate) fn radius<const S: usize>(a: &[[f64; S]; S], k: &[f32; S]) -> f64 {
 
 /// The largest gain of the unknown torque in the table.
 pub(crate) fn largest_gain(observer: &CountObserver) -> f64 {
-    let gains = (1..=64).map(|ticks| f64::from(observer.gain(ticks).load));
+    let gains = (1..=64).map(|ticks| f64::from(observer.gain(ticks).disturbance));
     gains.fold(0.0, f64::max)
 }
 
 /// The same with soft ends: that of the velocity is at most 3/2, and they have a fixed ratio.
 pub(crate) fn largest_soft_gain(observer: &CountObserver) -> f64 {
     let every_tick = observer.gain(1);
-    1.5 * f64::from(every_tick.load / every_tick.velocity)
+    1.5 * f64::from(every_tick.disturbance / every_tick.velocity)
 }
 
 /// Ticks until the unknown torque that the largest correction leaves, at its largest `gain`, has
@@ -76,12 +76,12 @@ pub(crate) fn largest_soft_gain(observer: &CountObserver) -> f64 {
 /// have been taken for wrong.
 pub(crate) fn unknown_torque(gain: f64, load_time: f64, rate_hz: f64) -> u32 {
     let CoupledMotor {
-        large,
+        motor,
         coulomb_friction,
         ..
     } = CoupledMotor::DCX35L;
-    let per_torque = f64::from(large.counts_per_rev)
-        / (std::f64::consts::TAU * rate_hz * rate_hz * large.inertia);
+    let per_torque = f64::from(motor.counts_per_rev)
+        / (std::f64::consts::TAU * rate_hz * rate_hz * motor.inertia);
     let holds = 0.5 * per_torque * coulomb_friction;
     let left = gain * LARGEST_INNOVATION;
     (load_time * rate_hz * (left / holds).ln()).ceil() as u32

@@ -31,7 +31,7 @@ pub struct Scenario {
 pub fn at(rate_hz: f64, seed: u64) -> Vec<Scenario> {
     let everything = estimator_core::Signals {
         current: true,
-        small: true,
+        coupled: true,
         edge: true,
     };
     let columns = Columns {

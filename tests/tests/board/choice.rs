@@ -186,7 +186,7 @@ fn the_confidence_in_telemetry_holds() {
     // The very numbers: a full window of 32 and the steady filter.
     let first = |number| frames(number).next().unwrap().sigma_large.unwrap();
     let filter = large::FILTER.variance(&large::FILTER.start(&estimator_core::Sample::default()));
-    assert_eq!(first(1), filter.deviation().rad_per_s(&RIG.large_scale));
+    assert_eq!(first(1), filter.std_dev().rad_per_s(&RIG.large_scale));
 }
 
 #[test]

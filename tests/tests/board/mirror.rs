@@ -24,7 +24,7 @@ struct Samples([Count; 2]);
 impl Samples {
     fn new(run: &Outcome) -> (Self, Sample) {
         let start = run.first_counts.map(|read| Count(u32::from(read.unwrap())));
-        let first = Sample::new(start[0]).with_small(start[1]);
+        let first = Sample::new(start[0]).with_coupled(start[1]);
         (Self(start), first)
     }
 
@@ -33,7 +33,7 @@ impl Samples {
             *count = count.extended(read.expect("each tick reads both encoders"));
         }
         Sample::new(self.0[0])
-            .with_small(self.0[1])
+            .with_coupled(self.0[1])
             .with_current(current)
     }
 }
@@ -108,7 +108,7 @@ pub(crate) fn same_bits(run: &Outcome, host: &[(Option<Currents>, Record)]) -> u
         } = host[k].1;
         assert_eq!(
             (frame.tick, frame.counts_large, frame.counts_small),
-            (tick, sample.large.0, sample.small.0)
+            (tick, sample.count.0, sample.coupled.0)
         );
         assert_eq!((frame.state, frame.cause), (state, cause), "{frame:?}");
         same_action(frame, &action);

@@ -99,7 +99,7 @@ fn f32_costs_nothing_on_the_signals_of_a_device() {
             // without the handle or the current it decides that between two edges too.
             let decides = ROWS.iter().any(|row| {
                 let observer = row.parameters.iter().any(Parameter::is_torque);
-                row.name == found.estimator && observer && !(row.needs.edge && row.needs.small)
+                row.name == found.estimator && observer && !(row.needs.edge && row.needs.coupled)
             });
             if !decides {
                 assert!(found.rms_rad_s < 1e-5, "{found:?}");

@@ -32,7 +32,7 @@ const FASTER: i32 = 1000;
 fn faster(samples: &[Sample]) -> Vec<Sample> {
     let ticks = samples.iter().zip(0..);
     let moved = ticks.map(|(sample, tick)| Sample {
-        large: sample.large + Counts(FASTER * tick),
+        count: sample.count + Counts(FASTER * tick),
         ..*sample
     });
     moved.collect()

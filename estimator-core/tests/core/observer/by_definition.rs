@@ -1,8 +1,8 @@
 //! The observers against their definition.
 
 use estimator_core::{
-    Amps, Confidence, Correction, Counts, CoupledMotor, CurrentSource, Device, Edge, Hertz,
-    Learning, Observer, Sample, SlipSource, Uncertainty, VelocityEstimator,
+    Adaptation, Amps, Confidence, Correction, Counts, CoupledMotor, CurrentSource, Edge, Hertz,
+    MotorModel, Observer, Sample, SlipSource, Uncertainty, VelocityEstimator,
 };
 
 use super::definition::{Definition, Kind, factors};
@@ -12,7 +12,7 @@ use crate::motion::medley;
 
 fn other_device() -> CoupledMotor {
     CoupledMotor {
-        large: Device {
+        motor: MotorModel {
             counts_per_rev: 2000,
             inertia: 2.3e-5,
             damping: 1.7e-3,
@@ -20,17 +20,17 @@ fn other_device() -> CoupledMotor {
         },
         coulomb_friction: 2.1e-3,
         amplifier_lag: 0.9e-3,
-        small_counts_per_rev: 3000,
+        coupled_counts_per_rev: 3000,
     }
 }
 
 /// The same, but for constants that are all off: there is something to learn.
 fn believed(device: &CoupledMotor) -> CoupledMotor {
     CoupledMotor {
-        large: Device {
-            damping: 0.7 * device.large.damping,
-            torque_constant: 1.2 * device.large.torque_constant,
-            ..device.large
+        motor: MotorModel {
+            damping: 0.7 * device.motor.damping,
+            torque_constant: 1.2 * device.motor.torque_constant,
+            ..device.motor
         },
         coulomb_friction: 1.3 * device.coulomb_friction,
         ..*device
@@ -39,8 +39,8 @@ fn believed(device: &CoupledMotor) -> CoupledMotor {
 
 const SURE: Uncertainty = Uncertainty {
     torque_noise: 8e-6,
-    load: 2.5e-4,
-    load_time: 0.07,
+    disturbance: 2.5e-4,
+    disturbance_time: 0.07,
     friction_share: 0.6,
     boundary_noise: 0.05,
 };
@@ -58,7 +58,7 @@ fn samples(rate: f64, device: &CoupledMotor) -> Vec<(&'static str, Vec<Sample>)>
     let third = whole.len() / 3;
     let mut jumps = whole.clone();
     for sample in &mut jumps[third..2 * third] {
-        sample.large = sample.large + Counts(300_000);
+        sample.count = sample.count + Counts(300_000);
         sample.edge = sample.edge.map(|edge| Edge {
             boundary: edge.boundary + Counts(300_000),
             ..edge
@@ -84,7 +84,7 @@ where
     C: CurrentSource,
     S: SlipSource,
     M: Correction,
-    L: Learning,
+    L: Adaptation,
 {
     let mut state = estimator.start(&samples[0]);
     let mut off = [0.0f64; 3];
@@ -96,7 +96,7 @@ where
         off[0] = off[0].max((f64::from(ours) - exact).abs() / (1.0 + exact.abs()));
         let (ours, exact) = (estimator.variance(&state).0, definition.variance());
         off[1] = off[1].max((f64::from(ours) - exact).abs() / exact);
-        let ours = estimator.deviations(&state);
+        let ours = estimator.parameter_errors(&state);
         let ours = [ours.damping, ours.friction, ours.torque_constant];
         let exact = definition
             .learner
@@ -150,14 +150,14 @@ fn observers_are_their_definition() {
         let hertz = Hertz(rate);
         let device = other_device();
         let belief = believed(&device);
-        let n = belief.large.counts_per_rev;
+        let n = belief.motor.counts_per_rev;
         let counts = Observer::new(&belief, hertz, &SURE).expect("valid");
-        let soft = Observer::soft(&belief, hertz, &SURE).expect("valid");
+        let quantised = Observer::quantised(&belief, hertz, &SURE).expect("valid");
         let edges = counts.with_edges(CLOCK, hertz).expect("valid");
         let learns = (
-            counts.learning(n, hertz).expect("valid"),
-            soft.learning(n, hertz).expect("valid"),
-            edges.learning(n, hertz).expect("valid"),
+            counts.adaptive(n, hertz).expect("valid"),
+            quantised.adaptive(n, hertz).expect("valid"),
+            edges.adaptive(n, hertz).expect("valid"),
         );
         for (name, samples) in samples(rate, &device) {
             let new =
@@ -168,24 +168,33 @@ fn observers_are_their_definition() {
                 let spread = spread(new(kind, learner), new(kind, learner), &samples);
                 found.push((name, format!("{what} at {rate} Hz"), off, spread));
             };
-            compare("counts", Kind::Cells, false, &|exact, samples| {
+            compare("counts", Kind::CountUpdate, false, &|exact, samples| {
                 largest_difference(&counts, exact, samples)
             });
-            compare("soft", Kind::Soft, false, &|exact, samples| {
-                largest_difference(&soft, exact, samples)
+            compare("quantised", Kind::Quantised, false, &|exact, samples| {
+                largest_difference(&quantised, exact, samples)
             });
-            compare("edges", Kind::Edges, false, &|exact, samples| {
+            compare("edges", Kind::EdgeUpdate, false, &|exact, samples| {
                 largest_difference(&edges, exact, samples)
             });
-            compare("counts, learning", Kind::Cells, true, &|exact, samples| {
-                largest_difference(&learns.0, exact, samples)
-            });
-            compare("soft, learning", Kind::Soft, true, &|exact, samples| {
-                largest_difference(&learns.1, exact, samples)
-            });
-            compare("edges, learning", Kind::Edges, true, &|exact, samples| {
-                largest_difference(&learns.2, exact, samples)
-            });
+            compare(
+                "counts, learning",
+                Kind::CountUpdate,
+                true,
+                &|exact, samples| largest_difference(&learns.0, exact, samples),
+            );
+            compare(
+                "adaptive, quantised",
+                Kind::Quantised,
+                true,
+                &|exact, samples| largest_difference(&learns.1, exact, samples),
+            );
+            compare(
+                "edges, learning",
+                Kind::EdgeUpdate,
+                true,
+                &|exact, samples| largest_difference(&learns.2, exact, samples),
+            );
         }
     }
     // The core rounds every operation, some ten times as often as the definition is rounded here.
@@ -208,9 +217,9 @@ fn observers_without_an_input_are_their_definition() {
         let hertz = Hertz(rate);
         let device = other_device();
         let unknown = CoupledMotor {
-            large: Device {
+            motor: MotorModel {
                 damping: 0.0,
-                ..device.large
+                ..device.motor
             },
             coulomb_friction: 0.0,
             ..device
@@ -222,7 +231,10 @@ fn observers_without_an_input_are_their_definition() {
             ..device
         };
         let smooth_counts = Observer::new(&smooth, hertz, &SURE).expect("valid");
-        let wide = Uncertainty { load: 2e-2, ..SURE };
+        let wide = Uncertainty {
+            disturbance: 2e-2,
+            ..SURE
+        };
         let blind = Observer::blind(&device, hertz, CLOCK, &wide).expect("valid");
         for (name, samples) in samples(rate, &device) {
             let new = |kind, device, unsure| {
@@ -234,14 +246,14 @@ fn observers_without_an_input_are_their_definition() {
             let what = format!("held at {rate} Hz");
             let off = largest_difference(
                 &counts.held(),
-                &mut new(Kind::Cells, &device, &SURE),
+                &mut new(Kind::CountUpdate, &device, &SURE),
                 &samples,
             );
             assert_rounding(off, name, &what);
-            let mut definition = new(Kind::Cells, &smooth, &SURE);
+            let mut definition = new(Kind::CountUpdate, &smooth, &SURE);
             let off = largest_difference(&smooth_counts.held(), &mut definition, &samples);
             assert_rounding(off, name, &format!("without friction at {rate} Hz"));
-            let mut definition = new(Kind::Edges, &unknown, &wide);
+            let mut definition = new(Kind::EdgeUpdate, &unknown, &wide);
             definition.per_amp = 0.0;
             definition.unstamped = 0.0;
             let off = largest_difference(&blind, &mut definition, &samples);
@@ -257,12 +269,18 @@ fn gains_are_those_of_the_filter_corrected_once_in_so_many_ticks() {
         let device = other_device();
         let observer = Observer::new(&device, Hertz(rate), &SURE).expect("valid");
         let first = Sample::default();
-        let mut definition = Definition::new(Kind::Cells, false, &device, rate, &SURE, &first);
+        let mut definition =
+            Definition::new(Kind::CountUpdate, false, &device, rate, &SURE, &first);
         for ticks in [
             1, 2, 3, 31, 63, 64, 65, 66, 96, 97, 500, 929, 960, 961, 962, 5000,
         ] {
             let (ours, exact) = (observer.gain(ticks), definition.gain(ticks as f64));
-            let ours = [ours.position, ours.velocity, ours.load, ours.variance];
+            let ours = [
+                ours.position,
+                ours.velocity,
+                ours.disturbance,
+                ours.variance,
+            ];
             let exact = [exact.k[0], exact.k[1], exact.k[2], exact.variance];
             for (ours, exact) in ours.iter().zip(exact) {
                 assert!(
@@ -280,24 +298,24 @@ fn covariances_are_those_of_the_definition() {
     let rate = 1000.0;
     let hertz = Hertz(rate);
     let belief = believed(&other_device());
-    let soft = Observer::soft(&belief, hertz, &SURE).expect("valid");
-    let learns = soft
-        .learning(belief.large.counts_per_rev, hertz)
+    let quantised = Observer::quantised(&belief, hertz, &SURE).expect("valid");
+    let learns = quantised
+        .adaptive(belief.motor.counts_per_rev, hertz)
         .expect("valid");
     let (_, samples) = samples(rate, &other_device()).swap_remove(0);
-    let mut definition = Definition::new(Kind::Soft, true, &belief, rate, &SURE, &samples[0]);
+    let mut definition = Definition::new(Kind::Quantised, true, &belief, rate, &SURE, &samples[0]);
     let mut state = learns.start(&samples[0]);
     let mut off = 0.0f64;
     for sample in &samples[1..] {
         learns.update(&mut state, sample);
         definition.update(sample);
-        let bell = definition.bell;
-        let coupling = bell[(0, 1)] / bell[(0, 0)];
-        let left = bell[(1, 1)] - coupling * bell[(0, 1)];
+        let covariance = definition.covariance;
+        let coupling = covariance[(0, 1)] / covariance[(0, 0)];
+        let left = covariance[(1, 1)] - coupling * covariance[(0, 1)];
         let learner = definition.learner.as_ref().expect("learns");
         let (d, u) = factors(&learner.p);
         let exact = [
-            bell[(0, 0)],
+            covariance[(0, 0)],
             left,
             coupling,
             d[0],
@@ -308,15 +326,15 @@ fn covariances_are_those_of_the_definition() {
             u[(1, 2)],
         ];
         let ([p, s], g) = (
-            state.correction().bell().diagonal(),
-            state.correction().bell().coupling(),
+            state.correction().covariance().diagonal(),
+            state.correction().covariance().coupling(),
         );
-        let [d0, d1, d2] = *state.learning().diagonal();
-        let [u01, u02, u12] = *state.learning().upper();
+        let [d0, d1, d2] = *state.adaptation().diagonal();
+        let [u01, u02, u12] = *state.adaptation().upper();
         for (ours, exact) in [p, s, g, d0, d1, d2, u01, u02, u12].iter().zip(exact) {
             off = off.max((f64::from(*ours) - exact).abs() / (1e-3 + exact.abs()));
         }
     }
     assert!(off < 1e-3, "{off}");
-    assert!(state.learning().upper().iter().all(|u| u.abs() > 1e-3));
+    assert!(state.adaptation().upper().iter().all(|u| u.abs() > 1e-3));
 }

@@ -14,9 +14,9 @@ use learner::{Learner, PRIOR};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kind {
-    Cells,
-    Edges,
-    Soft,
+    CountUpdate,
+    EdgeUpdate,
+    Quantised,
 }
 
 /// Gain of one correction, variance of its innovation, and of the velocity before it.
@@ -48,13 +48,13 @@ pub(super) struct Definition {
     // The state.
     pub(super) last: Sample,
     pub(super) x: Vector3<f64>,
-    pub(super) rub: f64,
-    pub(super) way: f64,
+    pub(super) friction_correction: f64,
+    pub(super) mean_direction: f64,
     pub(super) current: f64,
     pub(super) gap: f64,
     pub(super) alone: f64,
     pub(super) offsets: [f64; 4],
-    pub(super) bell: Matrix2<f64>,
+    pub(super) covariance: Matrix2<f64>,
     pub(super) sigma: f64,
     pub(super) started: bool,
     pub(super) learner: Option<Learner>,
@@ -72,9 +72,9 @@ impl Definition {
         first: &Sample,
     ) -> Self {
         let t = 1.0 / rate;
-        let counts_per_rad = f64::from(device.large.counts_per_rev) / std::f64::consts::TAU;
-        let per_torque = counts_per_rad * t * t / device.large.inertia;
-        let beta = device.large.damping * t / device.large.inertia;
+        let counts_per_rad = f64::from(device.motor.counts_per_rev) / std::f64::consts::TAU;
+        let per_torque = counts_per_rad * t * t / device.motor.inertia;
+        let beta = device.motor.damping * t / device.motor.inertia;
         let phi0 = (-beta).exp();
         // Without damping the limits.
         let (phi1, phi2) = if beta > 0.0 {
@@ -83,9 +83,9 @@ impl Definition {
         } else {
             (1.0, 0.5)
         };
-        let decay = (-t / unsure.load_time).exp();
+        let decay = (-t / unsure.disturbance_time).exp();
         let white = (per_torque * unsure.torque_noise).powi(2) * rate;
-        let load = (per_torque * unsure.load).powi(2) * (1.0 - decay * decay);
+        let disturbance = (per_torque * unsure.disturbance).powi(2) * (1.0 - decay * decay);
         let learner = Learner {
             parameters: Vector3::zeros(),
             sensitivity: Matrix3::zeros(),
@@ -100,10 +100,11 @@ impl Definition {
             rate,
             counts_per_rad,
             beta,
-            per_amp: per_torque * device.large.torque_constant,
+            per_amp: per_torque * device.motor.torque_constant,
             lag: device.amplifier_lag * rate,
             friction: per_torque * device.coulomb_friction,
-            ratio: f64::from(device.large.counts_per_rev) / f64::from(device.small_counts_per_rev),
+            ratio: f64::from(device.motor.counts_per_rev)
+                / f64::from(device.coupled_counts_per_rev),
             share: if device.coulomb_friction > 0.0 {
                 unsure.friction_share
             } else {
@@ -123,18 +124,18 @@ impl Definition {
                 0.0,
                 0.0,
                 0.0,
-                load,
+                disturbance,
             ),
             gains: HashMap::new(),
             last: *first,
             x: Vector3::zeros(),
-            rub: 0.0,
-            way: 0.0,
+            friction_correction: 0.0,
+            mean_direction: 0.0,
             current: f64::from(first.current.get()),
             gap: 0.0,
             alone: 0.0,
             offsets: [0.0; 4],
-            bell: Matrix2::from_diagonal_element(1.0 / 12.0),
+            covariance: Matrix2::from_diagonal_element(1.0 / 12.0),
             sigma: 0.3,
             started: false,
             learner: learns.then_some(learner),
@@ -216,25 +217,28 @@ impl Definition {
         let mut push = self.per_amp * (command - missing * difference);
         let mut behind = self.per_amp * (self.lag * (1.0 - missing) - missing / 2.0) * difference;
         let believed_push = push;
-        let handle = self.ratio * f64::from((sample.small - self.last.small).0);
-        let counts = f64::from((sample.large - self.last.large).0);
+        let coupled = self.ratio * f64::from((sample.coupled - self.last.coupled).0);
+        let counts = f64::from((sample.count - self.last.count).0);
         self.last = *sample;
 
         let v = self.x[1];
-        let mut slip = self.beta * handle;
+        let mut slip = self.beta * coupled;
         let mut friction = self.friction;
         if let Some(learner) = &self.learner {
             let p = learner.parameters;
             push *= 1.0 + p[2];
             behind *= 1.0 + p[2];
-            slip += self.beta * p[0] * (handle - v);
+            slip += self.beta * p[0] * (coupled - v);
             friction *= 1.0 + p[1];
         }
-        let (moved, after, direction, against, rests) =
-            self.motion(v, push + slip + self.x[2], friction + self.rub);
+        let (moved, after, direction, against, rests) = self.motion(
+            v,
+            push + slip + self.x[2],
+            friction + self.friction_correction,
+        );
         if let Some(learner) = &mut self.learner {
             let force = Vector3::new(
-                self.beta * (handle - (v + after) / 2.0),
+                self.beta * (coupled - (v + after) / 2.0),
                 -direction * self.friction,
                 believed_push,
             );
@@ -249,7 +253,8 @@ impl Definition {
                 learner.sensitivity.set_column(j, &next);
             }
         }
-        self.way += (1.0 - (-1.0 / (8e-3 * self.rate)).exp()) * (against - self.way);
+        self.mean_direction +=
+            (1.0 - (-1.0 / (8e-3 * self.rate)).exp()) * (against - self.mean_direction);
         let (from, lead) = (self.x[0] - counts, moved - behind);
         self.x = Vector3::new(from + lead, after, self.x[2] * self.decay);
         if let Some(found) = self.innovation(from, lead, after - v, rests, sample) {
@@ -265,11 +270,11 @@ impl Definition {
     fn round(&mut self) {
         let rounded = |value: f64| f64::from(value as f32);
         self.x = self.x.map(rounded);
-        self.rub = rounded(self.rub);
-        self.way = rounded(self.way);
+        self.friction_correction = rounded(self.friction_correction);
+        self.mean_direction = rounded(self.mean_direction);
         self.current = rounded(self.current);
         self.offsets = self.offsets.map(rounded);
-        self.bell = self.bell.map(rounded);
+        self.covariance = self.covariance.map(rounded);
         self.sigma = rounded(self.sigma);
         if let Some(learner) = &mut self.learner {
             learner.parameters = learner.parameters.map(rounded);
@@ -281,14 +286,14 @@ impl Definition {
     /// Variance of the velocity, by what is not known of the parameters too.
     pub(super) fn variance(&mut self) -> f64 {
         let known = match self.kind {
-            Kind::Soft => self.bell[(1, 1)],
+            Kind::Quantised => self.covariance[(1, 1)],
             // The row of the whole ticks since the last correction or edge, rounded down.
-            Kind::Cells | Kind::Edges => self.gain(self.gap.floor()).velocity,
+            Kind::CountUpdate | Kind::EdgeUpdate => self.gain(self.gap.floor()).velocity,
         };
-        let learned = self.learner.as_ref().map_or(0.0, |learner| {
+        let errors = self.learner.as_ref().map_or(0.0, |learner| {
             let s = learner.sensitivity.row(1);
             (s * learner.p * s.transpose())[(0, 0)]
         });
-        known + learned
+        known + errors
     }
 }

@@ -13,22 +13,22 @@ struct Motor {
 }
 
 impl Motor {
-    fn step(&mut self, command: f64, handle: f64, dt: f64) {
+    fn step(&mut self, command: f64, coupled: f64, dt: f64) {
         let device = &self.device;
         if device.amplifier_lag > 0.0 {
             self.current += (command - self.current) * (1.0 - (-dt / device.amplifier_lag).exp());
         } else {
             self.current = command;
         }
-        let push = device.large.torque_constant * self.current
-            - device.large.damping * (self.omega - handle);
+        let push = device.motor.torque_constant * self.current
+            - device.motor.damping * (self.omega - coupled);
         let friction = device.coulomb_friction;
-        let way = if self.omega == 0.0 { push } else { self.omega };
+        let direction = if self.omega == 0.0 { push } else { self.omega };
         if self.omega == 0.0 && push.abs() <= friction {
             return;
         }
-        let next = self.omega + dt * (push - friction * way.signum()) / device.large.inertia;
-        self.omega = if next * way < 0.0 { 0.0 } else { next };
+        let next = self.omega + dt * (push - friction * direction.signum()) / device.motor.inertia;
+        self.omega = if next * direction < 0.0 { 0.0 } else { next };
         self.angle += dt * self.omega;
     }
 }
@@ -41,8 +41,8 @@ pub(super) fn modelled(
     first: f64,
     device: CoupledMotor,
 ) -> (Vec<Sample>, Vec<f64>) {
-    let per_rad = f64::from(device.large.counts_per_rev) / std::f64::consts::TAU;
-    let per_small = f64::from(device.small_counts_per_rev) / std::f64::consts::TAU;
+    let per_rad = f64::from(device.motor.counts_per_rev) / std::f64::consts::TAU;
+    let per_small = f64::from(device.coupled_counts_per_rev) / std::f64::consts::TAU;
     let mut motor = Motor {
         device,
         angle: first / per_rad,
@@ -51,14 +51,14 @@ pub(super) fn modelled(
     };
     let steps = (2e5 / rate) as u32;
     let dt = 1.0 / rate / f64::from(steps);
-    let handle = |t: f64| 0.3 * (7.0 * t).sin();
+    let coupled = |t: f64| 0.3 * (7.0 * t).sin();
     let (mut samples, mut truth) = (Vec::new(), Vec::new());
     let (mut last, mut command) = (None, 0.0);
     for tick in 0..(rate * seconds) as u32 {
         let t = f64::from(tick) / rate;
         let count = (motor.angle * per_rad).floor() as i64;
         let mut sample = Sample::new(Count(count as u32))
-            .with_small(Count((handle(t) * per_small).round() as i64 as u32))
+            .with_coupled(Count((coupled(t) * per_small).round() as i64 as u32))
             .with_current(Amps::new(command as f32));
         if let Some((instant, boundary)) = last {
             let age: f64 = (t - instant) * CLOCK.0;
@@ -99,7 +99,7 @@ fn motor_that_obeys_the_model_is_followed() {
         let (samples, truth) = modelled(rate, 4.0, 0.4, CoupledMotor::DCX35L);
         let from = (0.3 * rate) as usize;
         for case in at(rate) {
-            let knows = case.needs.current && case.needs.small;
+            let knows = case.needs.current && case.needs.coupled;
             if knows {
                 let error = rms(&(case.run)(&samples), &truth, from);
                 assert!(error < bound, "{}: {error}", case.name);

@@ -44,7 +44,7 @@ impl Bench {
     }
 
     pub(crate) fn after(reset: Stop, brown_out_reset: bool) -> Self {
-        let first = Sample::new(Count(0)).with_small(Count(0));
+        let first = Sample::new(Count(0)).with_coupled(Count(0));
         Self {
             control: Control::new(&first, reset, brown_out_reset),
             handle: 0.0,
@@ -58,7 +58,7 @@ impl Bench {
             Count(((angle / TAU * per_turn).floor() as i32).cast_unsigned())
         };
         Sample::new(counts(self.large, LARGE))
-            .with_small(counts(self.handle, SMALL))
+            .with_coupled(counts(self.handle, SMALL))
             .with_current(self.control.applied().large)
     }
 

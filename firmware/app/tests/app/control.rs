@@ -21,7 +21,7 @@ fn a_record_tells_of_the_sample_and_the_action_of_its_tick() {
     bench.large = 1.0;
     let currents = bench.request(Request::KeepAlive).expect("enabled");
     let record = bench.record();
-    assert_eq!(record.sample.large.0, 651); // 4096 / (2 pi), rounded down
+    assert_eq!(record.sample.count.0, 651); // 4096 / (2 pi), rounded down
     assert_eq!(record.action.currents, currents);
     assert_eq!(bench.control.applied(), currents);
 }

@@ -55,11 +55,11 @@ fn what_is_learned_is_what_the_estimator_says() {
     for k in 0..20_000_u32 {
         ADAPTIVE.update(
             &mut state,
-            &Sample::new(Count(k * k / 40_000)).with_small(Count(0)),
+            &Sample::new(Count(k * k / 40_000)).with_coupled(Count(0)),
         );
     }
     let learned = ADAPTIVE.learned(&state);
-    assert_eq!(learned, ADAPTIVE.deviations(&state));
+    assert_eq!(learned, ADAPTIVE.parameter_errors(&state));
     assert_eq!(learned.deviations(), Some(learned));
     assert_ne!(learned, Default::default());
 }

@@ -2,7 +2,7 @@
 #![cfg(not(one_scene))]
 
 use drivers::{Command, encode};
-use estimator_core::Deviations;
+use estimator_core::ParameterErrors;
 use firmware_app::config::EDGES;
 use firmware_app::large::Learnable as _;
 use firmware_app::scene::SCENES;
@@ -190,7 +190,7 @@ fn a_record_tells_what_was_learned() {
     assert_eq!(learned.is_some(), cfg!(feature = "large-adaptive"));
     // Nor from edges, which nobody stamps here.
     assert_eq!(
-        learned == Some(Deviations::default()),
+        learned == Some(ParameterErrors::default()),
         learned.is_some() && EDGES
     );
 }

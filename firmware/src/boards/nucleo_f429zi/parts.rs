@@ -105,8 +105,8 @@ impl Board for Parts {
         } = &mut self.encoders;
         let (large, edge) = stamps.read(large);
         Sample {
-            large,
-            small: small.read(),
+            count: large,
+            coupled: small.read(),
             current,
             edge,
         }

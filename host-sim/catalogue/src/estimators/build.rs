@@ -35,7 +35,7 @@ macro_rules! reporting {
     };
     (Damping, $estimator:ident, $scale:ident, $p:ident) => {
         learner($estimator, $scale, |estimator, state| {
-            estimator.deviations(state).damping_ratio()
+            estimator.parameter_errors(state).damping_ratio()
         })
     };
     (LateCurrent, $estimator:ident, $scale:ident, $p:ident) => {

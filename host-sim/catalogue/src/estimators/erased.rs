@@ -44,7 +44,7 @@ impl VelocityEstimator for Estimator {
     type Output = CountsPerTick;
     const NEEDS: Signals = Signals {
         current: true,
-        small: true,
+        coupled: true,
         edge: true,
     };
 
@@ -153,7 +153,7 @@ impl<E: VelocityEstimator> Says<E> {
 
 impl<E: Confidence<Output = CountsPerTick>> Says<E> {
     const DEVIATION: Self = Self {
-        deviation: Some(|estimator, state| estimator.variance(state).deviation()),
+        deviation: Some(|estimator, state| estimator.variance(state).std_dev()),
         ..Self::NOTHING
     };
 }

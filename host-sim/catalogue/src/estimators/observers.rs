@@ -1,8 +1,8 @@
 //! How the observers and the M/T method are built from their parameters.
 
 use estimator_core::{
-    AmplifierCurrent, Cells, Correction, CurrentSource, DesignError, Edges, Fixed, HeldHandle,
-    Hertz, Learning, MOverT, NoCurrent, Observer, Signals, SlipSource, SmallEncoder, SoftCells,
+    AmplifierCurrent, CountUpdate, Correction, CurrentSource, DesignError, EdgeUpdate, Fixed, HeldShaft,
+    Hertz, Adaptation, MOverT, NoCurrent, Observer, Signals, SlipSource, CoupledEncoder, QuantisedUpdate,
     Uncertainty,
 };
 
@@ -98,7 +98,7 @@ const EDGE: Signals = Signals {
     ..Signals::COUNT
 };
 
-type Known<M, L> = Observer<AmplifierCurrent, SmallEncoder, M, L>;
+type Known<M, L> = Observer<AmplifierCurrent, CoupledEncoder, M, L>;
 
 pub(super) const KINDS: &[Kind] = &[
     Kind {
@@ -193,7 +193,7 @@ fn uncertainty(values: &[f64; 5]) -> Uncertainty {
     }
 }
 
-fn counts(setup: &Setup, values: &Values) -> Result<Known<Cells, Fixed>, DesignError> {
+fn counts(setup: &Setup, values: &Values) -> Result<Known<CountUpdate, Fixed>, DesignError> {
     let values = [values[0], values[1], values[2], values[3], values[4]];
     Observer::new(
         &setup.stages.coupled_motor(),
@@ -205,7 +205,7 @@ fn counts(setup: &Setup, values: &Values) -> Result<Known<Cells, Fixed>, DesignE
 fn blind(
     setup: &Setup,
     values: &Values,
-) -> Result<Observer<NoCurrent, HeldHandle, Edges, Fixed>, DesignError> {
+) -> Result<Observer<NoCurrent, HeldShaft, EdgeUpdate, Fixed>, DesignError> {
     let values = [values[0], values[1], values[2], 0.0, values[3]];
     let clock = Hertz(EDGE_CLOCK_HZ);
     Observer::blind(
@@ -216,13 +216,13 @@ fn blind(
     )
 }
 
-fn edges(setup: &Setup, values: &Values) -> Result<Known<Edges, Fixed>, DesignError> {
+fn edges(setup: &Setup, values: &Values) -> Result<Known<EdgeUpdate, Fixed>, DesignError> {
     counts(setup, values)?.with_edges(Hertz(EDGE_CLOCK_HZ), setup.rate)
 }
 
-fn soft(setup: &Setup, values: &Values) -> Result<Known<SoftCells, Fixed>, DesignError> {
+fn soft(setup: &Setup, values: &Values) -> Result<Known<QuantisedUpdate, Fixed>, DesignError> {
     let values = [values[0], values[1], values[2], values[3], values[4]];
-    Observer::soft(
+    Observer::quantised(
         &setup.stages.coupled_motor(),
         setup.rate,
         &uncertainty(&values),
@@ -233,7 +233,7 @@ fn learning<M>(observer: Known<M, Fixed>, setup: &Setup) -> Result<Estimator, De
 where
     M: Correction<State: Send> + Send + Sync + 'static,
 {
-    let observer = observer.learning(setup.stages.large.counts_per_rev, setup.rate)?;
+    let observer = observer.adaptive(setup.stages.large.counts_per_rev, setup.rate)?;
     Ok(learner(observer, scale(setup)?, |observer, state| {
         observer.deviations(state).damping_ratio()
     }))
@@ -247,7 +247,7 @@ where
     C: CurrentSource<State: Send> + Send + Sync + 'static,
     S: SlipSource<State: Send> + Send + Sync + 'static,
     M: Correction<State: Send> + Send + Sync + 'static,
-    L: Learning<State: Send> + Send + Sync + 'static,
+    L: Adaptation<State: Send> + Send + Sync + 'static,
 {
     Ok(confident(observer, scale(setup)?))
 }

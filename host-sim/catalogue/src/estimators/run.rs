@@ -11,7 +11,7 @@ use simulation::trace::{EDGE_CLOCK_HZ, EdgeStamp, Trace};
 pub fn available(trace: &Trace) -> Signals {
     Signals {
         current: trace.current.is_some(),
-        small: trace.counts_small.is_some(),
+        coupled: trace.counts_small.is_some(),
         edge: trace.edges.is_some(),
     }
 }
@@ -61,8 +61,8 @@ pub fn sample(needs: Signals, trace: &Trace, k: usize) -> Sample {
             sample.current = Amps::new(current[before] as f32);
         }
     }
-    if let (true, Some(counts)) = (needs.small, &trace.counts_small) {
-        sample.small = Count(counts[k]);
+    if let (true, Some(counts)) = (needs.coupled, &trace.counts_small) {
+        sample.coupled = Count(counts[k]);
     }
     if let (true, Some(edges)) = (needs.edge, &trace.edges) {
         sample.edge = edges[k].map(edge);
@@ -90,7 +90,7 @@ mod tests {
         type Output = CountsPerTick;
         const NEEDS: Signals = Signals {
             current: true,
-            small: true,
+            coupled: true,
             edge: true,
         };
 
@@ -100,7 +100,7 @@ mod tests {
 
         fn update(&self, (): &mut (), sample: &Sample) -> CountsPerTick {
             let edge = sample.edge.map_or(0.0, |edge| edge.age.0 as f32 / 84.0);
-            CountsPerTick(sample.current.get() + sample.small.0 as f32 + edge)
+            CountsPerTick(sample.current.get() + sample.coupled.0 as f32 + edge)
         }
     }
 

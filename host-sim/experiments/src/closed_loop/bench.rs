@@ -90,7 +90,7 @@ impl Bench {
     #[must_use]
     pub fn sample(&self, current: Amps) -> Sample {
         Sample::new(Count(self.large.count()))
-            .with_small(Count(self.small.count()))
+            .with_coupled(Count(self.small.count()))
             .with_current(current)
     }
 }

@@ -28,8 +28,8 @@ impl Loop {
         self.run(ticks, |moment| {
             if k % every == 0 {
                 recording.t.push(k as f64 / self.rate_hz);
-                recording.trace.counts_large.push(moment.sample.large.0);
-                small.push(moment.sample.small.0);
+                recording.trace.counts_large.push(moment.sample.count.0);
+                small.push(moment.sample.coupled.0);
                 large_a.push(moment.commanded.0);
                 small_a.push(moment.commanded.1);
                 omega.push(moment.large.omega);

@@ -234,7 +234,7 @@ impl Seen {
         self.used.push(moment.action.large_velocity.0);
         self.trace.counts_large.push(moment.own_count.0);
         if let Some(counts) = &mut self.trace.counts_small {
-            counts.push(moment.sample.small.0);
+            counts.push(moment.sample.coupled.0);
         }
         if let Some(current) = &mut self.trace.current {
             let wanted = f64::from(moment.action.currents.large.get());

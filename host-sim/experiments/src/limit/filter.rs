@@ -60,7 +60,7 @@ struct Model {
 impl Model {
     fn new(setup: &Setup, noise: &Noise) -> Self {
         let t = setup.rate.period_s();
-        let device = setup.stages.coupled_motor().large;
+        let device = setup.stages.coupled_motor().motor;
         let beta = (device.damping * t / device.inertia).max(1e-9);
         let phi1 = -(-beta).exp_m1() / beta;
         let per_torque = f64::from(device.counts_per_rev) / TAU * t * t / device.inertia;

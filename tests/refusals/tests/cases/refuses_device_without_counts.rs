@@ -1,8 +1,8 @@
 use estimator_core::*;
 
-const BARE: Device = Device {
+const BARE: MotorModel = MotorModel {
     counts_per_rev: 0,
-    ..Device::DCX35L
+    ..MotorModel::DCX35L
 };
 const MODEL: Model<2, CurrentInput> = preset!(Model::motor(&BARE, Hertz(1000.0), 0.1));
 

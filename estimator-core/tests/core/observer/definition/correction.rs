@@ -21,18 +21,18 @@ impl Definition {
         let x = from + lead;
         let outside = (x.abs() > 0.5).then_some(if x > 0.0 { 0.5 - x } else { -0.5 - x });
         match self.kind {
-            Kind::Cells => {
+            Kind::CountUpdate => {
                 self.gap += 1.0;
                 let e = outside?;
                 let gap = std::mem::take(&mut self.gap);
                 Some((e, 0.0, 1.0, gap, self.gain(gap)))
             }
-            Kind::Edges => {
+            Kind::EdgeUpdate => {
                 self.gap += 1.0;
                 self.alone += 1.0;
                 let edge = sample.edge.and_then(|edge| {
                     let age = f64::from(edge.age.0) * self.rate / CLOCK.0;
-                    let above = (edge.boundary - sample.large).0;
+                    let above = (edge.boundary - sample.count).0;
                     (age < 1.0 && (0..=1).contains(&above)).then_some((edge.boundary.0, above, age))
                 });
                 let Some((boundary, above, age)) = edge else {
@@ -50,21 +50,21 @@ impl Definition {
                 let gain = self.gain(gap);
                 Some((e, age, gain.k[0], gap, gain))
             }
-            Kind::Soft => {
+            Kind::Quantised => {
                 self.gap += 1.0;
                 if rests && outside.is_none() {
                     // p stays, g = 0, s = w.
-                    self.bell = Matrix2::new(self.bell[(0, 0)], 0.0, 0.0, self.white);
+                    self.covariance = Matrix2::new(self.covariance[(0, 0)], 0.0, 0.0, self.white);
                     return None;
                 }
                 let (phi0, phi1) = (self.a[(1, 1)], self.a[(0, 1)]);
                 let a = Matrix2::new(1.0, phi1, 0.0, phi0);
                 let w = self.white;
                 let q = Matrix2::new(w / 3.0, w / 2.0, w / 2.0, w);
-                self.bell = a * self.bell * a.transpose() + q;
-                let p = self.bell[(0, 0)];
-                let g = self.bell[(0, 1)] / p;
-                let s = self.bell[(1, 1)] - g * g * p;
+                self.covariance = a * self.covariance * a.transpose() + q;
+                let p = self.covariance[(0, 0)];
+                let g = self.covariance[(0, 1)] / p;
+                let s = self.covariance[(1, 1)] - g * g * p;
                 self.started |= s < 64.0 * w;
                 let r = self.boundary * self.boundary;
                 let variance = p + r;
@@ -84,19 +84,19 @@ impl Definition {
                 let e = -inwards * x.signum() * (1.0 - blur);
                 let left = kept + (1.0 - kept) * blur;
                 let p = p * left;
-                self.bell = Matrix2::new(p, g * p, g * p, s + g * g * p);
+                self.covariance = Matrix2::new(p, g * p, g * p, s + g * g * p);
                 // From above, so that Newton's next step falls to the root.
                 self.sigma *= 0.5 + 0.5 * left;
                 if kept == 0.0 {
                     self.sigma = 1.25 * self.boundary;
                 }
                 let steady = self.gain(1.0).k;
-                let load = if self.started {
+                let disturbance = if self.started {
                     g * steady[2] / steady[1]
                 } else {
                     0.0
                 };
-                let k = Vector3::new(1.0 - blur, g, load);
+                let k = Vector3::new(1.0 - blur, g, disturbance);
                 let gap = if outside.is_some() {
                     std::mem::take(&mut self.gap)
                 } else {
@@ -132,10 +132,12 @@ impl Definition {
         self.x[0] += to_position * e;
         self.x[1] += k[1] * within;
         self.x[2] += (1.0 - self.share) * k[2] * within;
-        self.rub -= self.share * k[2] * within * self.way;
-        self.rub = self.rub.clamp(-0.5 * self.friction, 0.5 * self.friction);
+        self.friction_correction -= self.share * k[2] * within * self.mean_direction;
+        self.friction_correction = self
+            .friction_correction
+            .clamp(-0.5 * self.friction, 0.5 * self.friction);
         let slow = self.x[1].abs() < 0.5 * self.counts_per_rad / self.rate;
-        let edges = self.kind == Kind::Edges;
+        let edges = self.kind == Kind::EdgeUpdate;
         let rate = self.rate;
         let Some(learner) = &mut self.learner else {
             return;

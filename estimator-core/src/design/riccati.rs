@@ -1,0 +1,253 @@
+//! Steady Kalman gain of `x_k = A x_{k-1} + w`, `y_k = [1 0 ..] x_k + n`, at compile time.
+
+use super::matrix::{Matrix, identity, inverted, norm, product, sum, transposed};
+use crate::design::DesignError;
+
+/// Doublings until a filter that has not settled, in 2^20 ticks, is refused.
+const DOUBLINGS: usize = 20;
+
+/// See [`Model::steady_gain`](crate::Model::steady_gain).
+pub(crate) const fn steady_gain<const S: usize>(
+    a: &Matrix<S>,
+    q: &Matrix<S>,
+    r: f64,
+) -> Result<[f32; S], DesignError> {
+    match steady(a, q, r) {
+        Ok(steady) => Ok(steady.gain),
+        Err(error) => Err(error),
+    }
+}
+
+/// Limit of the recursion.
+#[derive(Clone, Copy)]
+pub(crate) struct Steady<const S: usize> {
+    /// The gain K.
+    pub(crate) gain: [f32; S],
+    /// Variance `H P Hᵀ + r` of the innovation.
+    pub(crate) innovation: f64,
+    /// Variance P_11 of the second state, the velocity, before and after a correction.
+    pub(crate) velocity: [f64; 2],
+}
+
+/// The limit of the recursion.
+pub(crate) const fn steady<const S: usize>(
+    a: &Matrix<S>,
+    q: &Matrix<S>,
+    r: f64,
+) -> Result<Steady<S>, DesignError> {
+    let Some(covariance) = predicted_covariance(a, q, r) else {
+        return Err(DesignError::NOT_CONVERGED);
+    };
+    let exact = gain(&covariance, r);
+    let further = gain(&next_covariance(a, q, r, &covariance), r);
+    let mut rounded = [0.0; S];
+    let mut i = 0;
+    while i < S {
+        if !((further[i] - exact[i]).abs() <= 1e-9 * exact[i].abs()) {
+            return Err(DesignError::NOT_CONVERGED);
+        }
+        rounded[i] = exact[i] as f32;
+        i += 1;
+    }
+    if shrinks(closed_loop(a, &rounded)) {
+        let before = if S > 1 { covariance[1][1] } else { 0.0 };
+        let corrected = if S > 1 {
+            exact[1] * covariance[0][1]
+        } else {
+            0.0
+        };
+        Ok(Steady {
+            gain: rounded,
+            innovation: covariance[0][0] + r,
+            velocity: [before, before - corrected],
+        })
+    } else {
+        Err(DesignError::NOT_STABLE)
+    }
+}
+
+/// The gains of the first N ticks after a start with uncorrelated variances `prior`, and the
+/// variance P_11 of the velocity before each, from the correction before.
+pub(crate) const fn first_gains<const S: usize, const N: usize>(
+    a: &Matrix<S>,
+    q: &Matrix<S>,
+    r: f64,
+    prior: &[f64; S],
+) -> ([[f64; S]; N], [f64; N]) {
+    let mut covariance = [[0.0; S]; S];
+    let mut i = 0;
+    while i < S {
+        covariance[i][i] = prior[i];
+        i += 1;
+    }
+    covariance = later_noise(a, q, &covariance);
+    let mut gains = [[0.0; S]; N];
+    let mut velocity = [0.0; N];
+    let mut corrected = prior[1];
+    let mut tick = 0;
+    while tick < N {
+        let k = gain(&covariance, r);
+        gains[tick] = k;
+        velocity[tick] = corrected;
+        corrected = covariance[1][1] - k[1] * covariance[0][1];
+        covariance = next_covariance(a, q, r, &covariance);
+        tick += 1;
+    }
+    (gains, velocity)
+}
+
+/// Process noise of n + 1 ticks from that of n: `A Q_n Aᵀ + Q`.
+pub(crate) const fn later_noise<const S: usize>(
+    a: &Matrix<S>,
+    q: &Matrix<S>,
+    q_n: &Matrix<S>,
+) -> Matrix<S> {
+    sum(&product(&product(a, q_n), &transposed(a)), q)
+}
+
+/// Limit of the predicted covariance, by the doubling algorithm (Anderson 1978) in its
+/// structure-preserving form: after k doublings `h` is the covariance after 2^k ticks from certainty, and `e` the
+/// transition of the estimation error over them.
+const fn predicted_covariance<const S: usize>(
+    a: &Matrix<S>,
+    q: &Matrix<S>,
+    r: f64,
+) -> Option<Matrix<S>> {
+    let mut e = transposed(a);
+    let mut g = [[0.0; S]; S];
+    g[0][0] = 1.0 / r;
+    let mut h = *q;
+    let mut doubling = 0;
+    while doubling < DOUBLINGS {
+        let Some(inverse) = inverted(sum(&identity(), &product(&g, &h))) else {
+            return None;
+        };
+        let we = product(&inverse, &e);
+        let g_next = sum(
+            &g,
+            &product(&product(&e, &product(&inverse, &g)), &transposed(&e)),
+        );
+        let h_next = sum(&h, &product(&product(&transposed(&e), &h), &we));
+        e = product(&e, &we);
+        if settled(&h, &h_next) {
+            return Some(h_next);
+        }
+        g = g_next;
+        h = h_next;
+        doubling += 1;
+    }
+    None
+}
+
+/// `K = P Hᵀ / (H P Hᵀ + r)`.
+const fn gain<const S: usize>(covariance: &Matrix<S>, r: f64) -> [f64; S] {
+    let mut k = [0.0; S];
+    let mut i = 0;
+    while i < S {
+        k[i] = covariance[i][0] / (covariance[0][0] + r);
+        i += 1;
+    }
+    k
+}
+
+/// One tick of the plain recursion: update, then predict.
+const fn next_covariance<const S: usize>(
+    a: &Matrix<S>,
+    q: &Matrix<S>,
+    r: f64,
+    covariance: &Matrix<S>,
+) -> Matrix<S> {
+    let k = gain(covariance, r);
+    let mut updated = *covariance;
+    let mut i = 0;
+    while i < S {
+        let mut j = 0;
+        while j < S {
+            updated[i][j] -= k[i] * covariance[0][j];
+            j += 1;
+        }
+        i += 1;
+    }
+    sum(&product(&product(a, &updated), &transposed(a)), q)
+}
+
+/// `(I - K H) A`: transition of the estimation error over one tick.
+const fn closed_loop<const S: usize>(a: &Matrix<S>, k: &[f32; S]) -> Matrix<S> {
+    let mut m = *a;
+    let mut i = 0;
+    while i < S {
+        let mut j = 0;
+        while j < S {
+            m[i][j] -= k[i] as f64 * a[0][j];
+            j += 1;
+        }
+        i += 1;
+    }
+    m
+}
+
+/// Whether some power `m^(2^k)` has a norm below 1/2, which proves a spectral radius below 1.
+const fn shrinks<const S: usize>(mut m: Matrix<S>) -> bool {
+    let mut squaring = 0;
+    while squaring <= DOUBLINGS {
+        if norm(&m) < 0.5 {
+            return true;
+        }
+        m = product(&m, &m);
+        squaring += 1;
+    }
+    false
+}
+
+/// Whether no element changed by more than 1e-12 of the geometric mean of its diagonal elements, a
+/// measure that does not depend on the units of the states.
+const fn settled<const S: usize>(old: &Matrix<S>, new: &Matrix<S>) -> bool {
+    let mut i = 0;
+    while i < S {
+        let mut j = 0;
+        while j < S {
+            let change = new[i][j] - old[i][j];
+            if !(change * change <= 1e-24 * new[i][i] * new[j][j]) {
+                return false;
+            }
+            j += 1;
+        }
+        i += 1;
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{settled, shrinks};
+
+    #[test]
+    fn settled_is_a_change_of_1e_12_of_the_diagonal() {
+        let old = [[4.0, 0.0], [0.0, 1e-10]];
+        let moved = |i: usize, j: usize, by: f64| {
+            let mut new = old;
+            new[i][j] += by;
+            settled(&old, &new)
+        };
+        assert!(moved(0, 0, 3.9e-12) && !moved(0, 0, 4.1e-12));
+        assert!(moved(1, 1, 0.9e-22) && !moved(1, 1, 1.1e-22));
+        // Off the diagonal by the geometric mean of 4 and 1e-10, 2e-5.
+        assert!(moved(0, 1, 1.9e-17) && !moved(0, 1, 2.1e-17));
+        assert!(moved(1, 0, -1.9e-17) && !moved(1, 0, -2.1e-17));
+        assert!(!settled(&old, &[[f64::NAN, 0.0], [0.0, 1e-10]]));
+    }
+
+    #[test]
+    fn a_nan_is_never_stable() {
+        let m = [[f64::NAN, 0.0], [0.0, 0.1]];
+        assert!(!shrinks(m) && !shrinks([[0.1, 0.0], [0.0, f64::NAN]]));
+    }
+
+    #[test]
+    fn only_a_spectral_radius_below_one_shrinks() {
+        // A large norm with small eigenvalues grows first and shrinks then.
+        assert!(shrinks([[0.9, 100.0], [0.0, 0.9]]));
+        assert!(!shrinks([[1.0, 0.0], [0.0, 0.5]]));
+        assert!(!shrinks([[0.0, 1.1], [-1.1, 0.0]]));
+    }
+}

@@ -1,0 +1,25 @@
+//! Estimators without a model of the motor, and Kalman filters over a linear model.
+
+mod alpha_beta_gamma;
+mod finite_difference;
+mod foaw;
+mod handover;
+mod kalman;
+mod late_current;
+mod low_pass;
+mod m_over_t;
+mod pll;
+mod steady_kalman;
+mod table_kalman;
+
+pub use alpha_beta_gamma::{AlphaBetaGamma, AlphaBetaGammaState};
+pub use finite_difference::FiniteDifference;
+pub use foaw::{BestFit, EndFit, Fit, Foaw, FoawState};
+pub use handover::{Handover, HandoverState, Side};
+pub use kalman::{Kalman, KalmanMotor, KalmanState, KalmanTriple};
+pub use late_current::{LateCurrent, LateCurrentState};
+pub use low_pass::{LowPass, LowPassState};
+pub use m_over_t::{MOverT, MOverTState};
+pub use pll::{Pll, PllState};
+pub use steady_kalman::{SteadyKalman, SteadyKalmanMotor, SteadyKalmanState, SteadyKalmanTriple};
+pub use table_kalman::{TableKalman, TableKalmanMotor, TableKalmanState, TableKalmanTriple};

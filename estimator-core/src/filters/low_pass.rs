@@ -1,0 +1,78 @@
+//! First-order low-pass over another estimator.
+
+use crate::design::DesignError;
+use crate::design::const_math::exp;
+use crate::estimator::VelocityEstimator;
+use crate::sample::{Sample, Signals};
+use crate::units::{CountsPerTick, Hertz};
+
+/// First-order low-pass over the velocity of another estimator:
+/// `v_k = v_{k-1} + α (u_k - v_{k-1})`, `α = 1 - exp(-2 π cut-off / rate)`.
+///
+/// The filter acts on the velocity, so a wrap of the counter has no effect. Its pole is that of the
+/// continuous filter; the delay at low frequency is `(1 - α) / α` periods.
+/// Valid for a cut-off from 1e-6 to 1/2 of the rate.
+///
+/// ```
+/// use estimator_core::{Count, FiniteDifference, Hertz, LowPass, Sample, VelocityEstimator, preset};
+/// const FILTER: LowPass<FiniteDifference> =
+///     preset!(LowPass::new(FiniteDifference, Hertz(100.0), Hertz(1000.0)));
+/// let mut state = FILTER.start(&Sample::new(Count(0)));
+/// let v = FILTER.update(&mut state, &Sample::new(Count(1)));
+/// assert_eq!(v.0, 0.466_511_92); // 1 - exp(-0.2 π)
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LowPass<E> {
+    inner: E,
+    alpha: f32,
+}
+
+impl<E: Copy> LowPass<E> {
+    /// A low-pass with `cutoff` over `inner`, updated at `rate`.
+    ///
+    /// # Errors
+    /// [`DesignError::RATE`], [`DesignError::CUTOFF`].
+    pub const fn new(inner: E, cutoff: Hertz, rate: Hertz) -> Result<Self, DesignError> {
+        if !rate.is_positive() {
+            return Err(DesignError::RATE);
+        }
+        if !cutoff.is_cutoff_at(rate) {
+            return Err(DesignError::CUTOFF);
+        }
+        let alpha = 1.0 - exp(-2.0 * core::f64::consts::PI * cutoff.0 / rate.0);
+        Ok(Self {
+            inner,
+            alpha: alpha as f32,
+        })
+    }
+}
+
+/// State of a [`LowPass`]: the filtered velocity and the inner state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LowPassState<S> {
+    velocity: f32,
+    inner: S,
+}
+
+impl<E> VelocityEstimator for LowPass<E>
+where
+    E: VelocityEstimator<Output = CountsPerTick>,
+{
+    type State = LowPassState<E::State>;
+    type Output = CountsPerTick;
+    const NEEDS: Signals = E::NEEDS;
+
+    fn start(&self, first: &Sample) -> Self::State {
+        LowPassState {
+            velocity: 0.0,
+            inner: self.inner.start(first),
+        }
+    }
+
+    #[inline(always)]
+    fn update(&self, state: &mut Self::State, sample: &Sample) -> CountsPerTick {
+        let CountsPerTick(velocity) = self.inner.update(&mut state.inner, sample);
+        state.velocity += self.alpha * (velocity - state.velocity);
+        CountsPerTick(state.velocity)
+    }
+}

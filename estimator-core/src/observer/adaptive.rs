@@ -1,0 +1,286 @@
+//! Adaptation of damping, friction and torque constant while the motor runs.
+
+use super::adaptation::{Adaptation, ParameterErrors, StateChange};
+use super::bierman::bierman;
+use super::gain::Gain;
+use super::innovation::Innovation;
+use super::inputs::TickInput;
+use super::motion::Motion;
+use super::moving_start::MovingStart;
+use super::sensitivity::{Sensitivity, Tick, Update};
+use crate::branch::unlikely;
+use crate::design::DesignError;
+use crate::design::const_math::limited;
+use crate::sealed::Sealed;
+use crate::units::Hertz;
+
+/// Adaptation of damping, friction and torque constant per inertia by the observer's innovations.
+///
+/// A relative parameter error p causes errors of position x, velocity v and disturbance a in
+/// proportion to a sensitivity s = (s_x, s_v, s_a), which propagates through the observer as these
+/// errors do (Friedland 1969):
+/// ```text
+/// each tick      φ = -β (mean v - v_S), -direction . friction, input    for b, Tc, Kt
+///                s_x += φ1 s_v + φ2 (φ + s_a)    s_v = φ0 s_v + φ1 (φ + s_a)    s_a *= decay
+/// stuck          s_x += φ1 s_v / 2               s_v = 0
+/// innovation e   h = s_x                         s -= K h
+///                p = U D Uᵀ                      p += k e, k = P h / (hᵀ P h + c S)
+/// ```
+/// S is the variance of the innovation without parameter errors. c = 8, because innovations of counts
+/// and of a torque that is not quite white are correlated. Edges come as often as the rate is high
+/// and are more strongly correlated: the parameters are updated by one edge in 3.5 ms, with c = 2.
+///
+/// The 3 × 3 covariance P is kept as U (unit upper triangular) and D (diagonal) and updated after
+/// Bierman: every new element of D is an old one times a ratio of positive sums, so rounding cannot
+/// make P indefinite. Edges that contradict the counts can make s grow without limit. Where
+/// hᵀ P h + c S is above 65536², the square of the observer's range, the parameters stay and s
+/// restarts at zero, so D cannot underflow. The standard deviations start at 35, 60 and 35 %, grow by
+/// a tenth of that in a second of motion, and never exceed it. The parameter errors are limited to
+/// ±60 % (friction: ±90 %). Below 0.5 rad/s friction hides the other parameters, and all stay.
+///
+/// If the motor is already moving at start-up, the first innovations are not attributed to parameter
+/// errors: the velocity gain is then that of the mean since the start, and p, U and D stay.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Adaptive {
+    /// Velocity below which the parameters stay, counts/tick.
+    slowest: f32,
+    /// Growth of each element of D in a tick.
+    walk: [f32; 3],
+    /// [`SPACING`] in ticks.
+    spacing: f32,
+}
+
+/// State of [`Adaptive`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AdaptiveState {
+    parameters: [f32; 3],
+    /// Sensitivity to each parameter.
+    sensitivity: [Sensitivity; 3],
+    /// U: elements 01, 02 and 12.
+    upper: [f32; 3],
+    diagonal: [f32; 3],
+    /// Ticks since D last grew.
+    waiting: f32,
+    start: MovingStart,
+}
+
+impl AdaptiveState {
+    /// D: the variance of each parameter given the parameters after it.
+    #[must_use]
+    pub const fn diagonal(&self) -> &[f32; 3] {
+        &self.diagonal
+    }
+
+    /// Elements 01, 02 and 12 of U.
+    #[must_use]
+    pub const fn upper(&self) -> &[f32; 3] {
+        &self.upper
+    }
+}
+
+/// Standard deviations of the parameter errors before the first update.
+const PRIOR: [f32; 3] = [0.35, 0.6, 0.35];
+
+/// Largest parameter errors.
+const LARGEST: [f32; 3] = [0.6, 0.9, 0.6];
+
+/// Growth of a standard deviation in a second of motion, in parts of [`PRIOR`].
+const WALK: f64 = 0.1;
+
+/// Velocity below which the parameters stay, rad/s.
+const SLOWEST: f64 = 0.5;
+
+/// Factor c of an innovation's variance: innovations of counts and of a torque that is not quite
+/// white are correlated.
+const CAUTION: f32 = 8.0;
+
+/// Time between two updates of the parameters where every tick may have an innovation, s: the
+/// innovations between them are strongly correlated.
+const SPACING: f64 = 3.5e-3;
+
+/// [`CAUTION`] for innovations that are [`SPACING`] apart.
+const DENSE_CAUTION: f32 = 2.0;
+
+impl Adaptive {
+    pub(super) const fn new(counts_per_rev: u32, rate: Hertz) -> Result<Self, DesignError> {
+        if !rate.is_positive() {
+            return Err(DesignError::RATE);
+        }
+        if counts_per_rev == 0 {
+            return Err(DesignError::COUNTS_PER_REV);
+        }
+        let per_rad = counts_per_rev as f64 / (2.0 * core::f64::consts::PI);
+        let mut walk = [0.0; 3];
+        let mut i = 0;
+        while i < 3 {
+            let step = WALK * PRIOR[i] as f64;
+            walk[i] = (step * step / rate.0) as f32;
+            i += 1;
+        }
+        Ok(Self {
+            slowest: (SLOWEST * per_rad / rate.0) as f32,
+            walk,
+            spacing: (SPACING * rate.0) as f32,
+        })
+    }
+}
+
+impl Sealed for Adaptive {}
+
+impl Adaptation for Adaptive {
+    type State = AdaptiveState;
+    /// Sensitivity to each parameter.
+    type Sensitivity = [Sensitivity; 3];
+
+    fn start(&self) -> AdaptiveState {
+        AdaptiveState {
+            parameters: [0.0; 3],
+            sensitivity: [Sensitivity::default(); 3],
+            upper: [0.0; 3],
+            diagonal: PRIOR.map(|std_dev| std_dev * std_dev),
+            waiting: 0.0,
+            start: MovingStart::new(),
+        }
+    }
+
+    fn parameter_errors(&self, state: &AdaptiveState) -> ParameterErrors {
+        let [damping, friction, torque_constant] = state.parameters;
+        ParameterErrors {
+            damping,
+            friction,
+            torque_constant,
+        }
+    }
+
+    /// `s_vᵀ U D Uᵀ s_v`.
+    fn velocity_variance(&self, state: &AdaptiveState) -> f32 {
+        let [a, b, c] = state.sensitivity.map(|s| s.velocity);
+        let [u01, u02, u12] = state.upper;
+        let y = [a, u01 * a + b, u02 * a + u12 * b + c];
+        let [d0, d1, d2] = state.diagonal;
+        d0 * y[0] * y[0] + d1 * y[1] * y[1] + d2 * y[2] * y[2]
+    }
+
+    #[inline(always)]
+    fn drive(
+        &self,
+        state: &AdaptiveState,
+        motion: &Motion,
+        input: TickInput,
+        coupled: f32,
+        velocity: f32,
+    ) -> TickInput {
+        let [damping, _, torque_constant] = state.parameters;
+        let slip = coupled + damping * (coupled - velocity);
+        TickInput {
+            mean: input.mean + torque_constant * input.mean + motion.coupling * slip,
+            lag: input.lag + torque_constant * input.lag,
+        }
+    }
+
+    #[inline(always)]
+    fn friction(&self, state: &AdaptiveState, motion: &Motion) -> f32 {
+        motion.friction + state.parameters[1] * motion.friction
+    }
+
+    #[inline(always)]
+    fn moving_start(
+        &self,
+        state: &mut AdaptiveState,
+        innovation: &Innovation,
+        gain: &Gain,
+        velocity: f32,
+    ) -> Option<Gain> {
+        state.start.gain(innovation, gain, velocity, LARGEST[0])
+    }
+
+    #[inline(always)]
+    fn propagate(&self, state: &AdaptiveState, tick: &Tick<'_>) -> [Sensitivity; 3] {
+        let Tick { motion, step, .. } = tick;
+        let mean = 0.5 * (tick.before + step.velocity);
+        let regressors = [
+            motion.coupling * (tick.coupled - mean),
+            -step.direction * motion.friction,
+            tick.input.mean,
+        ];
+        let [damping, friction, torque_constant] = state.sensitivity;
+        [
+            damping.propagated(regressors[0], tick),
+            friction.propagated(regressors[1], tick),
+            torque_constant.propagated(regressors[2], tick),
+        ]
+    }
+
+    #[inline(always)]
+    fn store(&self, state: &mut AdaptiveState, sensitivity: [Sensitivity; 3]) {
+        state.sensitivity = sensitivity;
+    }
+
+    #[inline(always)]
+    fn update(
+        &self,
+        state: &mut AdaptiveState,
+        sensitivity: [Sensitivity; 3],
+        update: &Update<'_>,
+    ) -> Option<StateChange> {
+        let Update {
+            innovation, gain, ..
+        } = update;
+        let h = [
+            sensitivity[0].at_edge(innovation),
+            sensitivity[1].at_edge(innovation),
+            sensitivity[2].at_edge(innovation),
+        ];
+        let after = [
+            sensitivity[0].corrected(update, h[0]),
+            sensitivity[1].corrected(update, h[1]),
+            sensitivity[2].corrected(update, h[2]),
+        ];
+        state.sensitivity = after;
+        let waiting = state.waiting + innovation.gap;
+        state.waiting = waiting;
+        let early = update.dense && waiting < self.spacing;
+        let slow = update.velocity.abs() < self.slowest;
+        if update.moving_start || innovation.gap == 0.0 || early || slow {
+            return None;
+        }
+        state.waiting = 0.0;
+        let grown = |i: usize| {
+            let grown = state.diagonal[i] + self.walk[i] * waiting;
+            let prior = PRIOR[i] * PRIOR[i];
+            if grown < prior { grown } else { prior }
+        };
+        let caution = if update.dense { DENSE_CAUTION } else { CAUTION };
+        let mut diagonal = [grown(0), grown(1), grown(2)];
+        let r = caution * gain.variance;
+        let Some(k) = bierman(&mut state.upper, &mut diagonal, h, r) else {
+            unlikely();
+            // A loop would clear a known zero or an array, and the bound on the instructions of an
+            // update cannot bound that loop.
+            let zero = core::hint::black_box(0.0);
+            let none = Sensitivity {
+                position: zero,
+                velocity: zero,
+                disturbance: zero,
+            };
+            let [damping, friction, torque_constant] = &mut state.sensitivity;
+            (*damping, *friction, *torque_constant) = (none, none, none);
+            return None;
+        };
+        state.diagonal = diagonal;
+        let mut change = |i: usize| {
+            let before = state.parameters[i];
+            state.parameters[i] = limited(before + k[i] * update.error, LARGEST[i]);
+            state.parameters[i] - before
+        };
+        let change = [change(0), change(1), change(2)];
+        let sum = |of: fn(&Sensitivity) -> f32| {
+            of(&after[0]) * change[0] + of(&after[1]) * change[1] + of(&after[2]) * change[2]
+        };
+        Some(StateChange {
+            position: sum(|s| s.position),
+            velocity: sum(|s| s.velocity),
+            disturbance: sum(|s| s.disturbance),
+        })
+    }
+}

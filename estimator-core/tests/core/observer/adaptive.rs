@@ -1,0 +1,144 @@
+//! Adaptation of the parameters, and motions that must not change them.
+
+use estimator_core::{
+    Adaptive, AmplifierCurrent, Amps, Correction, Count, CoupledEncoder, CoupledMotor, Hertz,
+    Observer, Sample, Uncertainty, VelocityEstimator,
+};
+
+use super::modelled::{modelled, rms};
+use super::{CLOCK, UNSURE, at};
+
+/// The parameters of a motor whose damping, friction and torque constant are wrong are estimated.
+#[test]
+fn wrong_parameters_are_estimated() {
+    let rate = Hertz(1000.0);
+    let believed = CoupledMotor::DCX35L;
+    for (damping, inertia, friction) in [(0.7, 1.0, 1.0), (1.3, 1.2, 0.7), (0.8, 0.8, 1.4)] {
+        let mut device = believed;
+        device.motor.damping *= damping;
+        device.motor.inertia *= inertia;
+        device.coulomb_friction *= friction;
+        let (samples, truth) = modelled(rate.0, 12.0, 0.3, device);
+        let counts = Observer::new(&believed, rate, &UNSURE).expect("valid");
+        let edges = counts.with_edges(CLOCK, rate).expect("valid");
+        let fixed = at(rate.0);
+        let fixed = fixed
+            .iter()
+            .find(|case| case.name.starts_with("observer, edges at"));
+        let fixed = rms(&(fixed.expect("there").run)(&samples), &truth, 6000);
+
+        let estimator = edges.adaptive(4096, rate).expect("valid");
+        let mut state = estimator.start(&samples[0]);
+        let mut velocities = Vec::new();
+        for sample in &samples[1..] {
+            velocities.push(estimator.update(&mut state, sample).0);
+        }
+        let errors = f64::from(estimator.parameter_errors(&state).damping_ratio());
+        assert!(
+            (errors / damping - 1.0).abs() < 0.05,
+            "{errors} for {damping}"
+        );
+        let error = rms(&velocities, &truth, 6000);
+        assert!(error < 0.5 * fixed, "{error} of {fixed}");
+    }
+}
+
+/// Who starts in motion has the velocity to find, not parameters: those believed in are right.
+#[test]
+fn moving_start_changes_no_parameter() {
+    let rate = Hertz(10_000.0);
+    // Small gains, as one that learns is tuned to.
+    let sure = Uncertainty {
+        torque_noise: 5.75e-6,
+        disturbance: 1.38e-4,
+        boundary_noise: 0.0625,
+        ..UNSURE
+    };
+    let counts = Observer::new(&CoupledMotor::DCX35L, rate, &sure).expect("valid");
+    moving_start(&counts.adaptive(4096, rate).expect("valid"), rate, 0.003);
+    let quantised = Observer::quantised(&CoupledMotor::DCX35L, rate, &sure).expect("valid");
+    // With one count in every tick a count has least information.
+    moving_start(
+        &quantised.adaptive(4096, rate).expect("valid"),
+        rate,
+        0.0045,
+    );
+}
+
+fn moving_start<M: Correction>(
+    estimator: &Observer<AmplifierCurrent, CoupledEncoder, M, Adaptive>,
+    rate: Hertz,
+    bound: f64,
+) {
+    let (samples, truth) = modelled(rate.0, 4.0, 0.4, CoupledMotor::DCX35L);
+    // 0.3 counts a tick are 4.6 rad/s.
+    let fast = (0..samples.len() - 2500).filter(|k| truth[*k].abs() > 0.3);
+    let starts: Vec<usize> = fast.step_by(500).collect();
+    assert!(starts.len() > 20, "{starts:?}");
+    for start in starts {
+        let samples = &samples[start..start + 2500];
+        let mut state = estimator.start(&samples[0]);
+        let mut velocities = Vec::new();
+        for sample in &samples[1..] {
+            velocities.push(estimator.update(&mut state, sample).0);
+        }
+        let error = rms(&velocities, &truth[start..start + 2500], 200);
+        assert!(error < bound, "{error} from tick {start}");
+        let errors = estimator.parameter_errors(&state);
+        let errors = [errors.damping, errors.friction, errors.torque_constant];
+        assert!(
+            errors.iter().all(|deviation| deviation.abs() < 0.05),
+            "{errors:?} from tick {start}"
+        );
+    }
+}
+
+/// In creep friction hides the rest: a current just above it, and fewer counts than it should
+/// give, teach nothing.
+#[test]
+fn creep_changes_no_parameter() {
+    let rate = Hertz(1000.0);
+    let counts = Observer::new(&CoupledMotor::DCX35L, rate, &UNSURE).expect("valid");
+    let estimator = counts.adaptive(4096, rate).expect("valid");
+    let mut state = estimator.start(&Sample::new(Count(7)));
+    let fresh = estimator.parameter_errors(&state);
+    let mut fastest = 0.0f32;
+    for tick in 0..10_000u32 {
+        // 4.2 of 4.0 mN.m: 0.22 rad/s, 0.14 counts a tick.
+        let sample = Sample::new(Count(7 + tick / 20)).with_current(Amps::new(0.09));
+        fastest = fastest.max(estimator.update(&mut state, &sample).0);
+    }
+    assert!(fastest > 0.02, "{fastest}");
+    assert_eq!(estimator.parameter_errors(&state), fresh);
+}
+
+/// Where every tick may have an edge, the parameters are updated by one edge in 3.5 ms: the
+/// innovations of the others are correlated with it.
+#[test]
+fn edges_update_parameters_once_in_3_5_ms() {
+    for rate in [5_000.0, 10_000.0, 20_000.0] {
+        let hertz = Hertz(rate);
+        let seconds = 2.0;
+        let (samples, truth) = modelled(rate, seconds, 0.4, CoupledMotor::DCX35L);
+        let counts = Observer::new(&CoupledMotor::DCX35L, hertz, &UNSURE).expect("valid");
+        let edges = counts.with_edges(CLOCK, hertz).expect("valid");
+        let edges = edges.adaptive(4096, hertz).expect("valid");
+        let mut state = edges.start(&samples[0]);
+        let (mut updates, mut before) = (0, *state.adaptation().diagonal());
+        for sample in &samples[1..] {
+            edges.update(&mut state, sample);
+            updates += u32::from(*state.adaptation().diagonal() != before);
+            before = *state.adaptation().diagonal();
+        }
+        // Above 5 rad/s there is an edge a millisecond or more.
+        let fast = 5.0 * 4096.0 / std::f64::consts::TAU / rate;
+        let moving = truth.iter().filter(|v| v.abs() > fast).count() as f64 / rate;
+        let updates = f64::from(updates);
+        assert!(updates <= seconds / 3.5e-3 + 1.0, "{updates} at {rate} Hz");
+        // An update waits for the next edge after 3.5 ms: within a millisecond.
+        assert!(
+            updates >= moving / 4.5e-3,
+            "{updates} in {moving} s at {rate} Hz"
+        );
+    }
+}

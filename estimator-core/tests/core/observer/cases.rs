@@ -1,0 +1,124 @@
+//! Every type of observer and the M/T method, and the samples that they are tried with.
+
+use estimator_core::{
+    Amps, ClockTicks, Count, CountsPerTick, CoupledMotor, Edge, Hertz, MOverT, Observer, Sample,
+    Signals, VelocityEstimator,
+};
+
+use super::{CLOCK, RATES, UNSURE};
+use crate::motion::{Draws, Motion};
+
+type Runner = Box<dyn Fn(&[Sample]) -> Vec<f32> + Send + Sync>;
+
+pub(super) struct Case {
+    pub(super) name: String,
+    /// The estimator's type.
+    pub(super) kind: &'static str,
+    pub(super) needs: Signals,
+    pub(super) run: Runner,
+}
+
+pub(super) fn case<E>(name: &str, rate: f64, estimator: E) -> Case
+where
+    E: VelocityEstimator<Output = CountsPerTick> + Send + Sync + 'static,
+{
+    Case {
+        name: format!("{name} at {rate} Hz"),
+        kind: std::any::type_name::<E>(),
+        needs: E::NEEDS,
+        run: Box::new(move |samples| {
+            let mut state = estimator.start(&samples[0]);
+            let update = |sample| estimator.update(&mut state, sample).0;
+            samples[1..].iter().map(update).collect()
+        }),
+    }
+}
+
+/// Every type of observer, and M/T, at this rate.
+pub(super) fn at(rate: f64) -> Vec<Case> {
+    let hertz = Hertz(rate);
+    let device = CoupledMotor::DCX35L;
+    let counts = Observer::new(&device, hertz, &UNSURE).expect("valid");
+    let quantised = Observer::quantised(&device, hertz, &UNSURE).expect("valid");
+    let edges = counts.with_edges(CLOCK, hertz).expect("valid");
+    let blind = Observer::blind(&device, hertz, CLOCK, &UNSURE).expect("valid");
+    vec![
+        case("M/T", rate, MOverT::new(CLOCK, hertz).expect("valid")),
+        case("observer", rate, counts),
+        case("observer, held", rate, counts.held()),
+        case("observer, quantised", rate, quantised),
+        case(
+            "adaptive, quantised",
+            rate,
+            quantised.adaptive(4096, hertz).expect("valid"),
+        ),
+        case("observer, edges", rate, edges),
+        case("observer, edges, held", rate, edges.held()),
+        case("observer, edges, blind", rate, blind),
+        case(
+            "adaptive",
+            rate,
+            counts.adaptive(4096, hertz).expect("valid"),
+        ),
+        case(
+            "adaptive, edges",
+            rate,
+            edges.adaptive(4096, hertz).expect("valid"),
+        ),
+    ]
+}
+
+/// Their types.
+pub(crate) fn kinds() -> impl Iterator<Item = &'static str> {
+    at(RATES[0]).into_iter().map(|case| case.kind)
+}
+
+pub(super) fn everywhere() -> Vec<Case> {
+    RATES.iter().flat_map(|&rate| at(rate)).collect()
+}
+
+/// The motion with a coupled shaft that follows and an edge wherever a count changed, at a drawn age.
+pub(super) fn dressed(motion: &Motion, start: u32, rate: f64, direction: i64) -> Vec<Sample> {
+    let mut draws = Draws(77);
+    let period = (CLOCK.0 / rate) as u64;
+    let (mut edge, mut stamped) = (None, 0u64);
+    let mut samples = Vec::new();
+    for (tick, (&count, &amps)) in motion.counts.iter().zip(&motion.amps).enumerate() {
+        let now = period * (tick as u64 + 1);
+        // The same draws whatever the direction.
+        let (instant, coupled) = (now - draws.bits() % period, draws.within(3));
+        let before = if tick == 0 {
+            count
+        } else {
+            motion.counts[tick - 1]
+        };
+        if count != before {
+            stamped = instant;
+            edge = Some(if count > before { count } else { count + 1 });
+        }
+        let age = ClockTicks(u32::try_from(now - stamped).unwrap_or(u32::MAX));
+        let place = |count: i64| ((direction * count) as u32).wrapping_add(start);
+        let mut sample = Sample::new(Count(place(count)))
+            .with_coupled(Count(place(4 * count + coupled)))
+            .with_current(Amps::new(direction as f32 * amps));
+        if let Some(boundary) = edge {
+            // Boundary e lies between counts e - 1 and e: turned round, it is 1 - e.
+            let turned = if direction < 0 {
+                boundary - 1
+            } else {
+                boundary
+            };
+            sample = sample.with_edge(Edge {
+                boundary: Count(place(turned)),
+                age,
+            });
+        }
+        samples.push(sample);
+    }
+    samples
+}
+
+pub(super) fn bits(values: &[f32]) -> Vec<u32> {
+    // Adding zero turns the negative zero into the positive one.
+    values.iter().map(|value| (value + 0.0).to_bits()).collect()
+}
