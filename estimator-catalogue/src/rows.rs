@@ -170,8 +170,8 @@ macro_rules! estimators {
                 summary: "alpha-beta-gamma filter: a parabola through all counts, old ones fading",
                 needs: Signals::COUNT,
                 settling: Settling::EqualPoles(3),
-                colour: Colour::BROWN,
-                dash: Dash::Dotted,
+                colour: Colour::PINK,
+                dash: Dash::Dashed,
                 goals: &[],
             },
             |c, motor, rate, clock, p, N| c::AlphaBetaGamma =>
