@@ -18,6 +18,10 @@ const READINGS: u32 = 4;
 /// Ticks of the capture clock that both input filters take alike: 8 samples agree.
 const FILTER: u32 = 8;
 
+/// Least age of a capture that is taken, ticks of the clock: the two timers may see an edge some ticks
+/// apart, and the last reading of the counter is up to 8 ticks old.
+const SETTLED: u32 = 16;
+
 /// The pins of channels 1 and 2; the debug port's after a reset.
 pub(super) type Pins = (PA15<Debugger>, PB3<Debugger>);
 
@@ -95,16 +99,17 @@ impl Stamps for Capture {
         // Reading the capture clears the flag: look at it first.
         let flagged = self.timer.sr().read().cc1if().bit_is_set();
         let mut reading = self.reading(encoder);
+        let mut now = 0;
         let mut agreed = false;
         for _ in 1..READINGS {
             let again = self.reading(encoder);
-            agreed = again == reading;
+            now = self.timer.cnt().read().bits();
+            agreed = again == reading && now.wrapping_sub(again.instant) >= SETTLED;
             reading = again;
             if agreed {
                 break;
             }
         }
-        let now = self.timer.cnt().read().bits();
         let passed = now.wrapping_sub(self.now);
         self.now = now;
         let before = encoder.count;
