@@ -93,7 +93,7 @@ fn known(presets: &Presets, shipped: &Presets) -> Result<(), String> {
             ));
         };
         check(estimators).map_err(|error| format!("image.{motor}: {error}"))?;
-        for estimator in estimators.keys().filter(|name| !read.contains_key(*name)) {
+        if let Some(estimator) = estimators.keys().find(|name| !read.contains_key(*name)) {
             let names: Vec<_> = read.keys().map(String::as_str).collect();
             return Err(format!(
                 "image.{motor}.{estimator}: no image reads it; there are {}",
