@@ -71,7 +71,7 @@ impl Setup {
     }
 }
 
-/// Values of a kind's parameters, in the order of [`Kind::parameters`].
+/// Values of a kind's parameters, in the order of its row.
 pub type Values = Vec<f64>;
 
 impl Kind {

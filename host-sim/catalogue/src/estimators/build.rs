@@ -60,7 +60,7 @@ macro_rules! kinds {
                 use estimator_core as $c;
                 const $N: usize = capacity(&design::$id::ROW);
                 let mut values = values.iter().copied();
-                // The order of `Kind::parameters`, which is that of the row.
+                // In the order of the row.
                 let $p = design::$id::Parameters {
                     $($parameter: values.next().unwrap_or(f64::NAN),)*
                 };

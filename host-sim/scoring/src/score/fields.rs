@@ -77,11 +77,14 @@ impl<T> Field<T> {
         }
     }
 
-    /// The first sentence of what the score is, without units.
+    /// The first sentence of what the score is, up to a semicolon or a colon.
     #[must_use]
     pub fn sentence(&self) -> String {
         let text = self.about.join("");
-        let end = text.find([';', ':', '.']).unwrap_or(text.len());
+        // A unit such as N.m.s/rad has full stops inside.
+        let ends = [";", ":", ". "].map(|end| text.find(end));
+        let end = ends.into_iter().flatten().min();
+        let end = end.unwrap_or(text.trim_end_matches('.').len());
         text[..end].trim().replace('`', "")
     }
 
@@ -271,5 +274,24 @@ impl Wanted {
             *takes(self) = true;
         }
         Ok(field)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::score::Score;
+
+    #[test]
+    fn sentence_keeps_the_full_stops_of_a_unit() {
+        let sentence = |name| {
+            let field = Score::FIELDS.iter().find(|field| field.name == name);
+            field.expect("a score").sentence()
+        };
+        assert_eq!(
+            sentence("rms_rad_s"),
+            "Root mean square of the error, rad/s"
+        );
+        let damping = sentence("learned_damping_nms_per_rad");
+        assert!(damping.ends_with("last tenth, N.m.s/rad"), "{damping}");
     }
 }
