@@ -26,7 +26,7 @@ fn bad_words_are_refused_with_what_to_do() {
                 "--rate",
                 "1000",
             ],
-            "1/2 of the control rate",
+            "cutoff must be between 1e-6 and 1/2 of the rate (Hz)",
         ),
         (
             &["compare", "--device", "none.toml"],
