@@ -83,7 +83,7 @@ impl DesignError {
         FRICTION_SHARE: "friction_share", "must be between 0 and 1";
         BOUNDARY_NOISE: "boundary_noise", "must be between 1e-4 and 1e3", "counts";
         PROCESS_NOISE: "process_noise", "must be at most 2^18 on the diagonal for a covariance in \
-            f32", "counts^2 in a tick";
+            single precision", "counts^2 in a tick";
         NOT_CONVERGED: "process_noise", "is too small or too large for the rate and the encoder: \
             the steady gain does not converge in 2^20 ticks";
         NOT_STABLE: "process_noise", "makes the closed loop of model and steady gain unstable";

@@ -87,7 +87,7 @@ where
         })),
         (Err(core), Err(twin)) => {
             assert_eq!(core.message(), twin.message());
-            Err(format!("{core:?}"))
+            Err(core.parameter().to_owned())
         }
         (core, twin) => panic!("refused by one alone: {:?}, {:?}", core.err(), twin.err()),
     }

@@ -22,7 +22,7 @@ pub struct Outcome {
     pub estimator: String,
     /// Designs tried.
     pub tried: u32,
-    /// Of these, refused, with the error's name.
+    /// Of these, refused, by the parameter that the error names.
     pub refused: std::collections::BTreeMap<String, u32>,
     /// Largest |f32 - f64| of an accepted design, in parts of the fastest velocity.
     pub relative_deviation: f64,
