@@ -118,7 +118,7 @@ fn claims_of_tasks(tasks: &[Task], rows: &[Row]) {
             "foaw-best-fit, n = 64" => 10e3..20e3,
             "foaw-end-fit, n = 64" => 20e3..33e3,
             "foaw-best-fit, n = 15" | "adaptive" | "adaptive-edge" | "adaptive-soft" => 33e3..43e3,
-            _ => 43e3..58e3,
+            _ => 43e3..60e3,
         };
         let rate = row.highest_rate_hz;
         assert!(range.contains(&rate), "{}: {rate} Hz", row.name);
