@@ -9,6 +9,7 @@ mod late_current;
 mod low_pass;
 mod m_over_t;
 mod pll;
+mod pole;
 mod steady_kalman;
 mod table_kalman;
 

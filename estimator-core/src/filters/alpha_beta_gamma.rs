@@ -1,10 +1,11 @@
 //! Alpha-beta-gamma filter with fading memory.
 
 use crate::design::DesignError;
-use crate::design::const_math::exp;
 use crate::estimator::{AccelerationEstimator, VelocityEstimator};
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick, CountsPerTickSquared, Hertz};
+
+use super::pole::pole;
 
 /// Alpha-beta-gamma filter with fading memory: the parabola through all past counts whose squared
 /// errors, weighted by `p^(2 age)`, are least, with `p = exp(-2 π f / rate)`:
@@ -47,13 +48,10 @@ impl AlphaBetaGamma {
     /// # Errors
     /// [`DesignError::RATE`], [`DesignError::BANDWIDTH`].
     pub const fn new(bandwidth: Hertz, rate: Hertz) -> Result<Self, DesignError> {
-        if !rate.is_positive() {
-            return Err(DesignError::RATE);
-        }
-        if !bandwidth.is_cutoff_at(rate) {
-            return Err(DesignError::BANDWIDTH);
-        }
-        let pole = exp(-2.0 * core::f64::consts::PI * bandwidth.0 / rate.0);
+        let pole = match pole(bandwidth, rate, DesignError::BANDWIDTH) {
+            Ok(pole) => pole,
+            Err(error) => return Err(error),
+        };
         let forgotten = 1.0 - pole;
         Ok(Self {
             leftover: (pole * pole * pole) as f32,
@@ -63,7 +61,7 @@ impl AlphaBetaGamma {
     }
 }
 
-/// State of a [`AlphaBetaGamma`]: the innovation, which stands for the position behind the newest
+/// State of an [`AlphaBetaGamma`]: the innovation, which stands for the position behind the newest
 /// count, velocity and acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AlphaBetaGammaState {

@@ -1,10 +1,11 @@
 //! First-order low-pass over another estimator.
 
 use crate::design::DesignError;
-use crate::design::const_math::exp;
 use crate::estimator::VelocityEstimator;
 use crate::sample::{Sample, Signals};
 use crate::units::{CountsPerTick, Hertz};
+
+use super::pole::pole;
 
 /// First-order low-pass over the velocity of another estimator:
 /// `v_k = v_{k-1} + α (u_k - v_{k-1})`, `α = 1 - exp(-2 π cut-off / rate)`.
@@ -33,17 +34,13 @@ impl<E: Copy> LowPass<E> {
     /// # Errors
     /// [`DesignError::RATE`], [`DesignError::CUTOFF`].
     pub const fn new(inner: E, cutoff: Hertz, rate: Hertz) -> Result<Self, DesignError> {
-        if !rate.is_positive() {
-            return Err(DesignError::RATE);
+        match pole(cutoff, rate, DesignError::CUTOFF) {
+            Ok(pole) => Ok(Self {
+                inner,
+                alpha: (1.0 - pole) as f32,
+            }),
+            Err(error) => Err(error),
         }
-        if !cutoff.is_cutoff_at(rate) {
-            return Err(DesignError::CUTOFF);
-        }
-        let alpha = 1.0 - exp(-2.0 * core::f64::consts::PI * cutoff.0 / rate.0);
-        Ok(Self {
-            inner,
-            alpha: alpha as f32,
-        })
     }
 }
 

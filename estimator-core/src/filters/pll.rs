@@ -1,10 +1,11 @@
 //! Critically damped tracking loop.
 
 use crate::design::DesignError;
-use crate::design::const_math::exp;
 use crate::estimator::VelocityEstimator;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick, Hertz};
+
+use super::pole::pole;
 
 /// Critically damped tracking loop, known as the PLL of motor controllers, in exact discrete form:
 /// ```text
@@ -42,13 +43,10 @@ impl Pll {
     /// # Errors
     /// [`DesignError::RATE`], [`DesignError::BANDWIDTH`].
     pub const fn new(bandwidth: Hertz, rate: Hertz) -> Result<Self, DesignError> {
-        if !rate.is_positive() {
-            return Err(DesignError::RATE);
-        }
-        if !bandwidth.is_cutoff_at(rate) {
-            return Err(DesignError::BANDWIDTH);
-        }
-        let pole = exp(-2.0 * core::f64::consts::PI * bandwidth.0 / rate.0);
+        let pole = match pole(bandwidth, rate, DesignError::BANDWIDTH) {
+            Ok(pole) => pole,
+            Err(error) => return Err(error),
+        };
         Ok(Self {
             leftover: (pole * pole) as f32,
             gain: ((1.0 - pole) * (1.0 - pole)) as f32,
