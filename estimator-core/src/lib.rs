@@ -71,13 +71,7 @@ mod units;
 pub use confidence::{Confidence, Variance};
 pub use design::{DesignError, const_math};
 pub use estimator::{AccelerationEstimator, Skip, VelocityEstimator};
-pub use filters::{
-    AlphaBetaGamma, AlphaBetaGammaState, BestFit, EndFit, FiniteDifference, Fit, Foaw, FoawState,
-    Handover, HandoverState, Kalman, KalmanMotor, KalmanState, KalmanTriple, LateCurrent,
-    LateCurrentState, LowPass, LowPassState, MOverT, MOverTState, Pll, PllState, Side,
-    SteadyKalman, SteadyKalmanMotor, SteadyKalmanState, SteadyKalmanTriple, TableKalman,
-    TableKalmanMotor, TableKalmanState, TableKalmanTriple,
-};
+pub use filters::*;
 pub use models::{CoupledMotor, CurrentInput, Input, Model, MotorModel, NoInput};
 pub use observer::{
     Adaptation, Adaptive, AdaptiveEdgeObserver, AdaptiveObserver, AdaptiveQuantisedObserver,
