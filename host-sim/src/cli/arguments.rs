@@ -1,4 +1,4 @@
-//! What can be said on the command line.
+//! Commands of the command line, and the options that several commands share.
 
 use std::path::{Path, PathBuf};
 
@@ -9,12 +9,19 @@ use catalogue::parameters::Parameters;
 use simulation::device::Device;
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
+use terminal::wording::WIDTH;
 
 /// Velocity estimation for a dual-stage haptic device, simulated and scored.
 ///
-/// Without a command: compare, with everything at its default.
+/// Without a command, host-sim runs compare with all defaults.
 #[derive(Debug, Parser)]
-#[command(name = "host-sim", version = report::version::VERSION)]
+#[command(
+    name = "host-sim",
+    bin_name = "host-sim",
+    version = report::version::VERSION,
+    max_term_width = WIDTH,
+    after_help = "Example:\n  host-sim compare --scenario track --rate 1000"
+)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub(super) command: Option<Command>,
@@ -22,57 +29,89 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Simulate the device, run the estimators on it, print scores and write a report
+    /// Simulate the device, run the estimators, print their scores and write a report
+    #[command(after_help = "Examples:
+  host-sim compare --scenario track --rate 1000 --estimator foaw-best-fit
+  host-sim compare --closed-loop --scene wall --out target/wall")]
     Compare(super::compare::Compare),
-    /// Run a recording through the estimators
+    /// Run the estimators on a recording and write their velocities
+    #[command(after_help = "Example:
+  host-sim replay motor.csv --estimator pll --out velocity.csv")]
     Replay(super::replay::Replay),
-    /// Turn the firmware's telemetry into a recording
+    /// Convert the firmware's telemetry to a recording (CSV)
+    #[command(after_help = "Example:
+  host-sim record firmware.log --out motor.csv")]
     Record(super::record::Record),
-    /// Draw a recording
+    /// Draw a recording as SVG: counts, velocities, currents
+    #[command(after_help = "Example:
+  host-sim plot motor.csv --from 1 --to 2.5 --out motor.svg")]
     Plot(super::plot::Plot),
-    /// Fit the device to recordings of an excitation and write it as a device file
+    /// Fit the device's constants to recordings of scene excite and write a device file
+    #[command(after_help = "Example:
+  host-sim identify excite.csv --out device.toml --report target/identify")]
     Identify(super::identify::Identify),
-    /// Simulate a scene or a scenario and write it as a recording
+    /// Simulate a scene or a scenario and write it as a recording (CSV)
+    #[command(after_help = "Example:
+  host-sim simulate --scene wall --hand moving --seconds 5 --out wall.csv")]
     Simulate(super::simulate::Simulate),
-    /// Search the estimators' parameters on tuning seeds and write them to a file
+    /// Search the estimators' parameters on separate tuning seeds and write a presets file
+    #[command(after_help = "Example:
+  host-sim tune --estimator pll --rate 1000 --out presets.toml")]
     Tune(super::tune::Tune),
-    /// Run estimators that believe in wrong constants of the device, and say what it costs them
+    /// Measure how errors in the device's constants degrade each estimator
+    #[command(after_help = "Example:
+  host-sim sensitivity --estimator kalman-motor --estimator adaptive")]
     Sensitivity(super::sensitivity::Sensitivity),
-    /// Say how well velocity can be known at all, by a particle filter with the true model
+    /// Compute a lower bound of the RMS error with a particle filter on the true model
+    #[command(after_help = "Example:
+  host-sim limit --scenario step --seconds 2")]
     Limit(super::limit::Limit),
-    /// Find the stiffest wall and the strongest damping that stay passive and free of limit cycles
+    /// Find the largest stiffness and damping that stay passive and free of limit cycles
+    #[command(after_help = "Example:
+  host-sim zwidth --estimator pll --rate 10000 --lines 1024")]
     Zwidth(super::zwidth::Zwidth),
-    /// Close the loop on devices that differ from what the controller believes, and judge each run
+    /// Check the closed loop on devices whose constants differ from the controller's
+    #[command(after_help = "Example:
+  host-sim robust --scene wall --devices 100")]
     Robust(super::robust::Robust),
-    /// Join the shards of a robust run
+    /// Merge the shards of a robust run
+    #[command(after_help = "Example:
+  host-sim merge target/robust/shard-*-of-4.jsonl")]
     Merge(super::robust::Merge),
-    /// List the estimators and their parameters
+    /// List the estimators with their parameters, ranges and tuned values
+    #[command(after_help = "Example:
+  host-sim estimators")]
     Estimators,
     /// List the scenarios
+    #[command(after_help = "Example:
+  host-sim scenarios")]
     Scenarios,
-    /// Print the device as TOML: the default one, or a checked file with all its values
+    /// Check a device file and print it as TOML with all values and defaults
+    #[command(after_help = "Example:
+  host-sim device --device mine.toml")]
     Device(DeviceFile),
 }
 
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct DeviceFile {
-    /// Device file; what it leaves out keeps its default [see host-sim device]
+    /// Device file; a key that is not in the file keeps its default [see host-sim device]
     #[arg(long, value_name = "FILE.toml")]
     device: Option<PathBuf>,
 }
 
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct ParameterOptions {
-    /// Parameters tuned by host-sim tune, over the shipped ones
+    /// Presets file written by host-sim tune; its values replace the shipped presets
     #[arg(long, value_name = "FILE.toml")]
     presets: Option<PathBuf>,
-    /// Set a parameter, over everything else; repeatable
+    /// Set one parameter of an estimator, for example pll.bandwidth_hz=200; replaces all presets;
+    /// repeatable
     #[arg(long = "set", value_name = "NAME.PARAM=VALUE")]
     set: Vec<String>,
 }
 
 impl DeviceFile {
-    /// The file's text, or none.
+    /// The text of the file, empty without a file.
     pub(super) fn text(&self) -> Result<String, Failure> {
         let Some(path) = &self.device else {
             return Ok(String::new());
@@ -88,12 +127,12 @@ impl DeviceFile {
             .map_err(|error| Failure::Input(format!("{}: {error}", name.display())))
     }
 
-    /// Whether there is a file.
+    /// Whether a file was given.
     pub(super) fn is_given(&self) -> bool {
         self.device.is_some()
     }
 
-    /// What the device goes by.
+    /// Name of the device in reports: the file's name, or "default device".
     pub(super) fn name(&self) -> String {
         self.device
             .as_deref()
@@ -102,7 +141,8 @@ impl DeviceFile {
 }
 
 impl ParameterOptions {
-    /// Shipped presets, the file over them, the values set by name over both.
+    /// The parameters. A value from `--set` replaces one from `--presets`, which replaces a shipped
+    /// one.
     pub(super) fn load(&self) -> Result<Parameters, Failure> {
         let mut parameters = Parameters::default();
         if let Some(path) = &self.presets {
@@ -115,7 +155,7 @@ impl ParameterOptions {
     }
 }
 
-/// The estimators by these names, once each; all where there is no name.
+/// The estimators of these names without duplicates; all estimators if no name is given.
 pub(super) fn kinds(names: &[String]) -> Result<Vec<&'static Kind>, Failure> {
     if names.is_empty() {
         return Ok(Kind::all().iter().collect());
@@ -130,7 +170,7 @@ pub(super) fn kinds(names: &[String]) -> Result<Vec<&'static Kind>, Failure> {
     Ok(kinds)
 }
 
-/// The scenarios by these names, once each; `default` where there is no name.
+/// The scenarios of these names without duplicates; `default` if no name is given.
 pub(super) fn scenarios(
     names: &[String],
     default: &[ScenarioName],
@@ -148,7 +188,7 @@ pub(super) fn scenarios(
     Ok(scenarios)
 }
 
-/// These rates, once each; `default` where there is none.
+/// The given rates without duplicates; `default` if no rate is given.
 pub(super) fn rates(given: &[f64], default: &[f64]) -> Vec<f64> {
     let mut rates = Vec::new();
     for &rate in if given.is_empty() { default } else { given } {
@@ -157,4 +197,50 @@ pub(super) fn rates(given: &[f64], default: &[f64]) -> Vec<f64> {
         }
     }
     rates
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    /// The lines of the examples in a help text.
+    fn examples(help: &str) -> Vec<&str> {
+        let (_, examples) = help.split_once("\nExample").unwrap_or_default();
+        let lines = examples.lines().skip(1);
+        lines
+            .map(str::trim)
+            .filter(|line| !line.is_empty())
+            .collect()
+    }
+
+    #[test]
+    fn examples_of_every_help_text_are_command_lines() {
+        let mut root = Arguments::command();
+        root.build();
+        let mut texts = vec![("".to_owned(), root.render_long_help().to_string())];
+        for command in root.get_subcommands_mut() {
+            if command.get_name() != "help" {
+                let help = command.render_long_help().to_string();
+                texts.push((command.get_name().to_owned(), help));
+            }
+        }
+        assert_eq!(texts.len(), 16);
+        for (name, help) in texts {
+            let examples = examples(&help);
+            assert!(!examples.is_empty(), "{name}: {help}");
+            for example in examples {
+                assert!(
+                    example.starts_with(&format!("host-sim {name}")),
+                    "{example}"
+                );
+                let parsed = Arguments::try_parse_from(example.split(' '));
+                assert!(parsed.is_ok(), "{example}: {}", parsed.unwrap_err());
+            }
+            for line in help.lines() {
+                assert!(line.chars().count() <= WIDTH, "{name}: {line}");
+            }
+        }
+    }
 }

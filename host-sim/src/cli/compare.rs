@@ -25,46 +25,46 @@ use super::beside::{Beside, beside};
 use super::felt;
 use super::page::{self, progress};
 
-/// Where the report goes unless told otherwise.
+/// Default folder of the report.
 const REPORT: &str = "target/report";
 
 /// Scenarios whose signals the report's figures show.
 const DRAWN: Role = Role::Tuning;
 
-/// Help of `--scenario`, with the names of the scenes.
+/// Help text of `--scenario`, with the names of the scenes.
 fn scenario_help() -> String {
     let scenes: Vec<_> = SceneKind::environments().map(SceneKind::name).collect();
     format!(
-        "Scenario to run; repeatable [default: all but heating; see host-sim scenarios]. With \
-         --closed-loop a scene [default: all: {}]",
+        "Scenario to run, see host-sim scenarios; repeatable [default: all except heating]. With \
+         --closed-loop, scene to run: {} [default: all]",
         scenes.join(", ")
     )
 }
 
 #[derive(Debug, Args)]
 pub(super) struct Compare {
-    /// Close the loop: each estimator in turn, then the reference encoder, drives the motors in
-    /// the scenes; scored is the force that the hand feels and should not
+    /// Score the rendered force in closed loop: the velocity of each estimator in turn, and then
+    /// that of the reference encoder, controls the motors in the scenes
     #[arg(long)]
     pub(super) closed_loop: bool,
     #[arg(long = "scenario", visible_alias = "scene", value_name = "NAME", help = scenario_help())]
     pub(super) scenarios: Vec<String>,
-    /// Estimator of the handle's velocity, with --closed-loop [default: kalman-triple-steady]
+    /// Estimator of the handle's velocity, only with --closed-loop [default: kalman-triple-steady]
     #[arg(long, value_name = "NAME", requires = "closed_loop")]
     pub(super) handle_estimator: Option<String>,
     /// Control rate, 100 to 100000 Hz; repeatable [default: 1000 and 11600]
     #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
     pub(super) rates: Vec<f64>,
-    /// Estimator to run; repeatable [default: all; see host-sim estimators]
+    /// Estimator to run, see host-sim estimators; repeatable [default: all]
     #[arg(long = "estimator", value_name = "NAME")]
     pub(super) estimators: Vec<String>,
-    /// Seed of everything random; seeds from 2^32 on are those that tune uses
+    /// Seed of all random numbers; seeds from 2^32 on are reserved for host-sim tune
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) seed: u64,
-    /// Duration of each run, s [default: 10, heating 60]
+    /// Duration of each run, s [default: 10; scenario heating: 60]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(super) seconds: Option<f64>,
-    /// Take the plant without Coulomb friction
+    /// Simulate the plant without Coulomb friction
     #[arg(long)]
     pub(super) frictionless: bool,
     #[command(flatten)]
@@ -73,17 +73,17 @@ pub(super) struct Compare {
     pub(super) parameters: ParameterOptions,
     #[arg(long = "score", value_name = "NAME", help = score_help())]
     pub(super) scores: Vec<String>,
-    /// Folder for the report: index.html, its figures as SVG, scores.csv, scores.json [default:
-    /// target/report; with --json - none]
+    /// Folder of the report: index.html, figures as SVG, scores.csv, scores.json [default:
+    /// target/report; no report with --json -]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Write no report: no plot is drawn, and the plant without friction is not run beside
+    /// Write no report; the plant without friction, which only the report shows, is not simulated
     #[arg(long, conflicts_with = "out")]
     pub(super) no_report: bool,
-    /// Write the scores as JSON to FILE; - is standard output, with nothing else there
+    /// Write the scores as JSON to FILE; - is standard output, which then has nothing else
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
-    /// Say on standard error where the time went
+    /// Print to standard error how long simulation, estimators and scores took
     #[arg(long)]
     pub(super) timing: bool,
 }
@@ -167,7 +167,7 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
     page::print(options.json.as_deref(), &rows::json(&asked_rows)?, &text)
 }
 
-/// Where the report goes, if there is one.
+/// Folder of the report, if a report is written.
 pub(super) fn report_folder(options: &Compare) -> Result<Option<&Path>, Failure> {
     if options.no_report {
         return Ok(None);
@@ -175,8 +175,8 @@ pub(super) fn report_folder(options: &Compare) -> Result<Option<&Path>, Failure>
     page::folder(options.out.as_deref(), options.json.as_deref(), REPORT)
 }
 
-/// The cases to run, and how many of them were asked for: the rest, at the end, is the other
-/// plant for the report.
+/// The cases to run, and the number of requested cases among them. The requested cases come first.
+/// The others simulate the plant without friction for the report.
 fn cases(options: &Compare, with_report: bool) -> Result<(Vec<Case>, usize), Failure> {
     let all_but_heating = ScenarioName::of(&[Role::Tuning, Role::Judging, Role::Linear]);
     let scenarios = scenarios(&options.scenarios, &all_but_heating)?;
@@ -207,8 +207,8 @@ fn cases(options: &Compare, with_report: bool) -> Result<(Vec<Case>, usize), Fai
     Ok((cases, asked))
 }
 
-/// What to compute for the scores by their JSON names, and their columns; everything and no column
-/// where there is no name.
+/// The computations that the scores of these JSON names need, and the columns of these scores.
+/// Without a name: all computations and no column.
 pub(super) fn wanted(names: &[String]) -> Result<(Wanted, Vec<&'static Field<Score>>), Failure> {
     if names.is_empty() {
         return Ok((Wanted::ALL, Vec::new()));
@@ -218,7 +218,7 @@ pub(super) fn wanted(names: &[String]) -> Result<(Wanted, Vec<&'static Field<Sco
     Ok((wanted, fields?))
 }
 
-/// Help of `--score`.
+/// Help text of `--score`, with the names of the scores.
 fn score_help() -> String {
     let each: String = Score::FIELDS
         .iter()
@@ -230,7 +230,7 @@ fn score_help() -> String {
     )
 }
 
-/// Where the time went, in a line.
+/// Run time of simulation, estimators and scores in one line.
 pub(super) fn timing(cost: Cost) -> String {
     let seconds = cost.simulation.as_secs_f64();
     format!(
@@ -243,7 +243,7 @@ pub(super) fn timing(cost: Cost) -> String {
     )
 }
 
-/// What the report says of the device.
+/// The constants of the device that the report shows.
 pub(super) fn facts(device: &Device, name: &str) -> DeviceFacts {
     DeviceFacts {
         name: name.to_owned(),
@@ -256,7 +256,7 @@ pub(super) fn facts(device: &Device, name: &str) -> DeviceFacts {
     }
 }
 
-/// An outcome as the report takes it.
+/// Converts an outcome to the input of the report.
 pub(super) fn case_report(outcome: &Outcome) -> CaseReport {
     let row = |row: &Row| report::Row {
         estimator: row.estimator.to_owned(),
@@ -283,12 +283,12 @@ pub(super) fn case_report(outcome: &Outcome) -> CaseReport {
     }
 }
 
-/// Refuses runs of which nothing would be scored.
+/// Refuses runs that are too short to be scored.
 pub(super) fn longer_than_skipped(seconds: f64) -> Result<(), Failure> {
     if seconds > SKIP_S {
         return Ok(());
     }
     Err(Failure::Input(format!(
-        "duration {seconds} s: scores begin after {SKIP_S} s; use --seconds with more"
+        "duration {seconds} s: scores begin after {SKIP_S} s; give a longer --seconds"
     )))
 }

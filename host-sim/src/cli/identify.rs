@@ -17,28 +17,29 @@ use super::page;
 
 #[derive(Debug, Args)]
 pub(super) struct Identify {
-    /// Recording of scene excite: CSV as for replay, with columns current and counts_small; where
-    /// nobody held the handle, current_small shows the handle too. Several of one device are joined;
-    /// - is standard input
+    /// Recording of scene excite: CSV as for host-sim replay, with the columns current and
+    /// counts_small. With column current_small and a free handle, the handle is identified too.
+    /// Several recordings of one device are fitted together; - is standard input
     #[arg(value_name = "RECORDING", required = true)]
     recordings: Vec<PathBuf>,
     #[command(flatten)]
     device: DeviceFile,
-    /// What is known: large.torque_constant_nm_per_a, large.inertia_kg_m2 or
-    /// coupler.damping_nms_per_rad [default: the device's torque constant]
+    /// Constant with a known value, from which the others follow: large.torque_constant_nm_per_a,
+    /// large.inertia_kg_m2 or coupler.damping_nms_per_rad [default: the device's torque constant]
     #[arg(long, value_name = "KEY=VALUE")]
     known: Option<String>,
-    /// The handle was clamped in recordings without counts_small
+    /// State that the handle was clamped in recordings without column counts_small
     #[arg(long)]
     clamped: bool,
-    /// Write the device file with what was identified in it, everything else as it was; may be the
-    /// same file; - is standard output
+    /// Write the device file to FILE with the identified constants; other keys and comments of
+    /// --device are kept; may be the file of --device; - is standard output
     #[arg(long, value_name = "FILE.toml")]
     out: Option<PathBuf>,
-    /// Write a page with the model beside the measurement, residuals and intervals to DIR
+    /// Write index.html to DIR: model and measurement, residuals and confidence intervals
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
-    /// Write what was identified as JSON to FILE; - is standard output, with nothing else there
+    /// Write the identified constants as JSON to FILE; - is standard output, which then has nothing
+    /// else
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }

@@ -17,16 +17,17 @@ use super::page::{self, progress};
 
 #[derive(Debug, Args)]
 pub(super) struct Limit {
-    /// Scenario to run; repeatable [default: stochastic, step, track, free-air, texture]
+    /// Scenario to run, see host-sim scenarios; repeatable [default: stochastic, step, track,
+    /// free-air, texture]
     #[arg(long = "scenario", value_name = "NAME")]
     pub(super) scenarios: Vec<String>,
     /// Control rate, 100 to 100000 Hz; repeatable [default: 1000]
     #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
     pub(super) rates: Vec<f64>,
-    /// Estimator to run beside it; repeatable [default: all]
+    /// Estimator to compare with the bound, see host-sim estimators; repeatable [default: all]
     #[arg(long = "estimator", value_name = "NAME")]
     pub(super) estimators: Vec<String>,
-    /// Seed of everything random, the particles' noise too
+    /// Seed of all random numbers, also of the particles
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) seed: u64,
     /// Duration of each run, s
@@ -37,14 +38,14 @@ pub(super) struct Limit {
         allow_negative_numbers = true
     )]
     pub(super) seconds: f64,
-    /// Number of particles
+    /// Number of particles, 10 to 1000000
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(10..=1_000_000))]
     pub(super) particles: u32,
     #[command(flatten)]
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Write the scores as JSON to FILE; - is standard output, with nothing else there
+    /// Write the scores as JSON to FILE; - is standard output, which then has nothing else
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
 }

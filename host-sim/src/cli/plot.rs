@@ -15,7 +15,7 @@ use super::arguments::{DeviceFile, ParameterOptions, kinds};
 use super::input::{self, called, is_stdin, short_name};
 use super::replay::note_about;
 
-/// What is drawn unless told otherwise: few enough to tell apart.
+/// Estimators that are drawn by default.
 const ESTIMATORS: [&str; 2] = ["finite-difference", "kalman-triple-steady"];
 
 #[derive(Debug, Args)]
@@ -23,22 +23,22 @@ pub(super) struct Plot {
     /// Recording: CSV as for host-sim replay; - is standard input
     #[arg(value_name = "RECORDING.csv")]
     pub(super) recording: PathBuf,
-    /// Estimator to draw; repeatable [default: finite-difference and
+    /// Estimator to draw, see host-sim estimators; repeatable [default: finite-difference and
     /// kalman-triple-steady]
     #[arg(long = "estimator", value_name = "NAME")]
     pub(super) estimators: Vec<String>,
-    /// From this time on, s [default: the start]
+    /// Begin of the plot, s [default: begin of the recording]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(super) from: Option<f64>,
-    /// Up to this time, s [default: the end]
+    /// End of the plot, s [default: end of the recording]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(super) to: Option<f64>,
     #[command(flatten)]
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Write the picture to FILE; - is standard output [default: the recording's name with
-    /// .svg, or - where the recording is standard input]
+    /// Write the plot to FILE; - is standard output [default: the recording's name with .svg, or -
+    /// if the recording is standard input]
     #[arg(long, value_name = "FILE.svg")]
     pub(super) out: Option<PathBuf>,
 }

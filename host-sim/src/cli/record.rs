@@ -13,17 +13,18 @@ use super::input::{called, read};
 
 #[derive(Debug, Args)]
 pub(super) struct Record {
-    /// The log that cargo firmware prints, or with --image raw bytes of RTT channel 0; - is
+    /// Log that cargo firmware prints, or with --image the raw bytes of RTT channel 0; - is
     /// standard input
     #[arg(value_name = "STREAM", default_value = "-")]
     pub(super) stream: PathBuf,
-    /// The image that sent the bytes
+    /// Firmware image that sent the raw bytes; needs cargo record instead of cargo sim record
     #[arg(long, value_name = "ELF")]
     pub(super) image: Option<PathBuf>,
-    /// Control rate, Hz, of a stream that begins after the boot line
+    /// Control rate, 1 to 1e6 Hz [default: from the boot line of the stream]
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub(super) rate: Option<f64>,
-    /// Which start of the firmware to record, from 1 [default: the one with most frames]
+    /// Number of the firmware's start to record, 1 is the first in the stream [default: the start
+    /// with the most frames]
     #[arg(long, value_name = "N")]
     pub(super) run: Option<usize>,
     /// Write the recording to FILE; - is standard output [default: -]

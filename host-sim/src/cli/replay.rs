@@ -19,23 +19,25 @@ use super::page::{one_to_stdout, progress};
 
 #[derive(Debug, Args)]
 pub(super) struct Replay {
-    /// Recording: CSV with columns t (s) and counts_large, optionally counts_small, current (A),
-    /// edge_tick (84 MHz), edge_bound, true_omega (rad/s); others are ignored; - is standard input
+    /// Recording: CSV with the columns t (s) and counts_large; optional columns: counts_small,
+    /// current (A), edge_tick (periods of 84 MHz), edge_bound, true_omega (rad/s); other columns
+    /// are ignored; - is standard input
     #[arg(value_name = "TRACE.csv")]
     pub(super) trace: PathBuf,
-    /// Estimator to run; repeatable [default: all that the columns suffice for]
+    /// Estimator to run, see host-sim estimators; repeatable [default: all whose needed columns are
+    /// present]
     #[arg(long = "estimator", value_name = "NAME")]
     pub(super) estimators: Vec<String>,
     #[command(flatten)]
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Write t and a column for each estimator (rad/s) to FILE; - is standard output [default: -,
-    /// or none with --json -]
+    /// Write t and one column per estimator (rad/s) to FILE; - is standard output [default: -;
+    /// nothing with --json -]
     #[arg(long, value_name = "FILE.csv")]
     pub(super) out: Option<PathBuf>,
-    /// Write the scores against true_omega as JSON to FILE; - is standard output, with nothing else
-    /// there
+    /// Write the scores against true_omega as JSON to FILE; - is standard output, which then has
+    /// nothing else
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
 }
@@ -49,7 +51,8 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let (mut recording, board) = read(&options.trace)?;
     if options.json.is_some() && recording.trace.true_omega.is_none() {
         return Err(Failure::Input(format!(
-            "{}: line 1: no column true_omega, which the scores of --json are against",
+            "{}: line 1: no column true_omega, which --json needs for the scores; add it or leave out \
+             --json",
             called(&options.trace)
         )));
     }
@@ -102,8 +105,8 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     print_bytes(format!("{header}\n{table}").as_bytes())
 }
 
-/// The recording and what the board made of its samples; nothing of the latter where no board that
-/// says how sure it is made the recording, whose other columns may then be anything.
+/// The recording, and the columns with the board's own estimates. A recording without the board's
+/// column `sigma` is from another source: its further columns are not read.
 fn read(path: &Path) -> Result<(Recording, BoardColumns), Failure> {
     let text = input::read(path)?;
     let name = called(path);
@@ -115,8 +118,8 @@ fn read(path: &Path) -> Result<(Recording, BoardColumns), Failure> {
     Ok((recording, board))
 }
 
-/// Notes on estimators that were left out, a line for each missing column, on parameters that were
-/// tuned for something else, and on an uneven clock.
+/// Prints notes: one line per missing column with the estimators left out, parameters that were
+/// tuned for another encoder or rate, and an uneven clock.
 pub(super) fn note_about(name: &str, recording: &Recording, replayed: &replay::Replay) {
     let mut columns: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for (estimator, column) in &replayed.left_out {
@@ -125,16 +128,16 @@ pub(super) fn note_about(name: &str, recording: &Recording, replayed: &replay::R
     for (column, estimators) in columns {
         let names = estimators.join(", ");
         note(format_args!(
-            "{name}: no column {column}; left out: {names}"
+            "{name}: no column {column}; estimators left out: {names}"
         ));
     }
     for line in &replayed.far {
         note(format_args!("{name}: {line}"));
     }
-    // Estimators cannot know how long a tick was.
+    // The estimators assume a constant period.
     if let Some(uneven) = recording.unevenness() {
         note(format_args!(
-            "{name}: {uneven}; estimators take every step for one tick of 1/{} s",
+            "{name}: {uneven}; the estimators assume a constant step of 1/{} s",
             recording.trace.rate_hz,
         ));
     }

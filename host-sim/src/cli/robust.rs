@@ -20,15 +20,15 @@ use terminal::output::{Folder, print_bytes, write_whole};
 use super::arguments::{DeviceFile, ParameterOptions};
 use super::page::{self, progress};
 
-/// Where the report goes unless told otherwise.
+/// Default folder of the report.
 const REPORT: &str = "target/robust";
 
 #[derive(Debug, Args)]
 pub(super) struct Robust {
-    /// Scene to run; repeatable [default: all]
+    /// Scene to run, as in compare --closed-loop; repeatable [default: all]
     #[arg(long = "scene", value_name = "NAME")]
     pub(super) scenes: Vec<String>,
-    /// Control rate, Hz
+    /// Control rate, 100 to 100000 Hz
     #[arg(
         long,
         value_name = "HZ",
@@ -36,13 +36,13 @@ pub(super) struct Robust {
         allow_negative_numbers = true
     )]
     pub(super) rate: f64,
-    /// Estimator of both velocities
+    /// Estimator of both velocities, see host-sim estimators
     #[arg(long, value_name = "NAME", default_value = "kalman-triple-steady")]
     pub(super) estimator: String,
-    /// How many devices are drawn for each scene, beside the corners
+    /// Number of random devices per scene, 0 to 10000000; the corners of the ranges are added
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(0..=10_000_000))]
     pub(super) devices: u64,
-    /// Seed of everything random
+    /// Seed of all random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) seed: u64,
     /// Duration of each run, s
@@ -57,30 +57,30 @@ pub(super) struct Robust {
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Run one device of each scene alone: its index, or a corner's name
+    /// Run only one device of each scene, given by its index or the name of a corner
     #[arg(long, value_name = "INDEX", conflicts_with = "shard")]
     pub(super) only: Option<Subject>,
-    /// Run part K of N, and write a file for host-sim merge instead of the report
+    /// Run only part K of N, for example 1/4, and write a file for host-sim merge, no report
     #[arg(long, value_name = "K/N", conflicts_with = "json")]
     pub(super) shard: Option<Part>,
-    /// Folder for index.html, summary.svg, robust.csv, robust.json, or for the shard's file
-    /// [default: target/robust; with --json - or --only none]
+    /// Folder of index.html, summary.svg, robust.csv, robust.json, or of the shard's file
+    /// [default: target/robust; no folder with --json - or --only]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Write the rows as JSON to FILE; - is standard output, with nothing else there
+    /// Write the rows as JSON to FILE; - is standard output, which then has nothing else
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct Merge {
-    /// Files that host-sim robust --shard wrote, all of one run, in any order
+    /// All files that host-sim robust --shard wrote for one run, in any order
     #[arg(value_name = "SHARD", required = true)]
     pub(super) shards: Vec<PathBuf>,
-    /// Folder for what the run would have written in one piece [default: target/robust]
+    /// Folder of index.html, summary.svg, robust.csv, robust.json [default: target/robust]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Write the rows as JSON to FILE; - is standard output, with nothing else there
+    /// Write the rows as JSON to FILE; - is standard output, which then has nothing else
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
 }
@@ -156,7 +156,7 @@ fn settings(options: &Robust) -> Result<Settings, Failure> {
     })
 }
 
-/// Everything that comes of all rows, the same whether they were run here or merged.
+/// Prints the table and writes report and JSON of all rows, whether they were run now or merged.
 fn finish(
     settings: &Settings,
     rows: &[Row],
@@ -188,7 +188,7 @@ fn finish(
     judged(settings, rows)
 }
 
-/// A violation is a check that failed.
+/// Fails with exit status 1 if a row violates a criterion.
 fn judged(settings: &Settings, rows: &[Row]) -> Result<(), Failure> {
     summary::complaint(settings, rows).map_or(Ok(()), |said| Err(Failure::Check(said)))
 }

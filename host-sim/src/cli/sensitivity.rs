@@ -18,35 +18,36 @@ use terminal::output::Folder;
 use super::arguments::{DeviceFile, ParameterOptions, kinds, rates, scenarios};
 use super::page::{self, progress};
 
-/// Where the page goes unless told otherwise.
+/// Default folder of the page.
 const PAGE: &str = "target/sensitivity";
 
 #[derive(Debug, Args)]
 pub(super) struct Sensitivity {
-    /// Scenario to run; repeatable [default: all with friction but heating]
+    /// Scenario to run, see host-sim scenarios; repeatable [default: all with friction except
+    /// heating]
     #[arg(long = "scenario", value_name = "NAME")]
     pub(super) scenarios: Vec<String>,
     /// Control rate, 100 to 100000 Hz; repeatable [default: 1000]
     #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
     pub(super) rates: Vec<f64>,
-    /// Estimator to run; repeatable [default: all]
+    /// Estimator to run, see host-sim estimators; repeatable [default: all]
     #[arg(long = "estimator", value_name = "NAME")]
     pub(super) estimators: Vec<String>,
-    /// Seed of everything random; repeatable [default: 1]
+    /// Seed of all random numbers; repeatable [default: 1]
     #[arg(long = "seed", value_name = "N")]
     pub(super) seeds: Vec<u64>,
-    /// Duration of each run, s [default: 10]
+    /// Duration of each run, s [default: 10; scenario heating: 60]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(super) seconds: Option<f64>,
     #[command(flatten)]
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Folder for index.html, its figures as SVG, sensitivity.csv, sensitivity.json [default:
-    /// target/sensitivity; with --json - none]
+    /// Folder of index.html, figures as SVG, sensitivity.csv, sensitivity.json [default:
+    /// target/sensitivity; no folder with --json -]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Write the scores as JSON to FILE; - is standard output, with nothing else there
+    /// Write the scores as JSON to FILE; - is standard output, which then has nothing else
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
 }

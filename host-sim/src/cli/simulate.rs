@@ -17,31 +17,32 @@ use terminal::output::write_whole;
 
 use super::arguments::DeviceFile;
 
-/// Who holds the handle in a scene.
+/// Load on the handle in a scene.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Holder {
-    /// A hand that means to keep it still and trembles.
+    /// A trembling hand holds the handle still.
     Still,
-    /// A clamp.
+    /// A clamp blocks the handle.
     Clamp,
-    /// Nobody.
+    /// The handle is free.
+    #[value(alias = "free")]
     Nobody,
-    /// A hand that moves.
+    /// A hand moves the handle.
     Moving,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct Simulate {
-    /// Scene, closed loop: excite, or as in compare --closed-loop [default: excite]
+    /// Scene to simulate in closed loop: excite, or one of compare --closed-loop [default: excite]
     #[arg(long, value_name = "NAME", conflicts_with = "scenario")]
     scene: Option<String>,
-    /// Scenario, open loop, instead of a scene; see host-sim scenarios
+    /// Scenario to simulate in open loop instead of a scene, see host-sim scenarios
     #[arg(long, value_name = "NAME")]
     scenario: Option<String>,
-    /// Who holds the handle in a scene
+    /// Load on the handle in a scene
     #[arg(long, value_enum, default_value = "still", conflicts_with = "scenario")]
     hand: Holder,
-    /// Control rate, Hz
+    /// Control rate, 100 to 100000 Hz
     #[arg(
         long,
         value_name = "HZ",
@@ -49,14 +50,14 @@ pub(super) struct Simulate {
         allow_negative_numbers = true
     )]
     rate: f64,
-    /// Write every N-th tick of a scene only, as telemetry does
+    /// Write only every N-th tick of a scene, 1 to 1000, as telemetry does
     #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "scenario",
         value_parser = clap::value_parser!(u32).range(1..=1000))]
     every: u32,
-    /// Duration, s [default: 16, a scenario 10]
+    /// Duration, s [default: 16; scenarios: 10, heating 60]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     seconds: Option<f64>,
-    /// Seed of everything random
+    /// Seed of all random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
@@ -66,7 +67,7 @@ pub(super) struct Simulate {
     out: PathBuf,
 }
 
-/// All of the excitation and a little more, s.
+/// Default duration of a scene, s: a little longer than the excitation.
 const EXCITE_S: f64 = 16.0;
 
 pub(super) fn run(options: &Simulate) -> Result<(), Failure> {

@@ -17,74 +17,75 @@ use terminal::output::{is_stdout, print_bytes, write_whole};
 use super::arguments::{DeviceFile, kinds, rates, scenarios};
 use super::page::progress;
 
-/// What an estimator is tuned on unless told otherwise.
+/// Defaults of the tuning options for one kind of estimators.
 struct Recipe {
     roles: &'static [Role],
     seeds: u64,
     seconds: f64,
-    doubting: bool,
+    perturbed: bool,
 }
 
 impl Recipe {
-    /// The paper's experiment.
+    /// For filters: the paper's experiment.
     const PLAIN: Self = Self {
         roles: &[Role::Tuning],
         seeds: 3,
         seconds: 10.0,
-        doubting: false,
+        perturbed: false,
     };
-    /// Observers are never outside the interval in the paper's experiment, so that it cannot tell
-    /// good parameters from bad ones; and they have constants of the device that may be wrong.
+    /// For observers. Their error never leaves the haptic interval in the paper's experiment, so
+    /// that experiment does not discriminate between parameters. Observers use constants of the
+    /// device, which may be wrong.
     const OBSERVER: Self = Self {
         roles: &[Role::Tuning, Role::Judging],
         seeds: 1,
         seconds: 4.0,
-        doubting: true,
+        perturbed: true,
     };
 }
 
 #[derive(Debug, Args)]
 pub(super) struct Tune {
-    /// Take the mean over right and wrong constants of the device, as sensitivity tries them
-    /// [default: for observers, unless --scenario is given]
-    #[arg(long)]
-    pub(super) doubting: bool,
-    /// Scenario to tune on; repeatable [default: step, permanent, track; for observers all with
-    /// friction but heating]
+    /// Average the cost over the true and perturbed device constants, with the errors of host-sim
+    /// sensitivity [default: only for observers, and only without --scenario]
+    #[arg(long = "perturbed", visible_alias = "doubting")]
+    pub(super) perturbed: bool,
+    /// Scenario to tune on, see host-sim scenarios; repeatable [default: step, permanent, track;
+    /// observers: all with friction except heating]
     #[arg(long = "scenario", value_name = "NAME")]
     pub(super) scenarios: Vec<String>,
-    /// Control rate, Hz; repeatable [default: 1000, 10000 and 11600]
+    /// Control rate, 100 to 100000 Hz; repeatable [default: 1000, 10000 and 11600]
     #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
     pub(super) rates: Vec<f64>,
-    /// Estimator to tune; repeatable [default: all that have parameters]
+    /// Estimator to tune, see host-sim estimators; repeatable [default: all that have parameters]
     #[arg(long = "estimator", value_name = "NAME")]
     pub(super) estimators: Vec<String>,
-    /// How many tuning seeds, from 2^32 on; the next one decides between the result and the shipped
-    /// parameters [default: 3, for observers 1]
+    /// Number of tuning seeds, 1 to 1000; they start at 2^32. The seed after the last one decides
+    /// between the result and the shipped parameters [default: 3; observers: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub(super) seeds: Option<u64>,
-    /// Duration of each run, s [default: 10, for observers 4]
+    /// Duration of each run, s [default: 10; observers: 4]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(super) seconds: Option<f64>,
-    /// Tune on the plant without Coulomb friction only [default: on both]
+    /// Tune only on the plant without Coulomb friction [default: on both plants]
     #[arg(long)]
     pub(super) frictionless: bool,
     #[command(flatten)]
     pub(super) device: DeviceFile,
-    /// Write the parameters to FILE, which compare and replay take as presets; - is standard output
+    /// Write the parameters to FILE, for option --presets of other commands; - is standard output
     #[arg(long, value_name = "FILE.toml", default_value = "target/presets.toml")]
     pub(super) out: PathBuf,
 }
 
 impl Tune {
     fn ground(&self, recipe: &Recipe) -> Result<Ground, Failure> {
-        let doubting = self.doubting || recipe.doubting && self.scenarios.is_empty();
+        let perturbed = self.perturbed || recipe.perturbed && self.scenarios.is_empty();
         Ok(Ground {
             device: self.device.load()?,
             scenarios: scenarios(&self.scenarios, &ScenarioName::of(recipe.roles))?,
             seeds: self.seeds.unwrap_or(recipe.seeds),
             seconds: self.seconds.unwrap_or(recipe.seconds),
-            beliefs: match doubting {
+            beliefs: match perturbed {
                 true => Belief::extremes(),
                 false => Vec::new(),
             },
@@ -159,7 +160,7 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
     print_bytes(format!("{}\n", options.out.display()).as_bytes())
 }
 
-/// A comment that says on what these estimators were tuned.
+/// Comment line of the presets file: the tuning set of these estimators.
 fn tuned_on(kinds: &[&Kind], ground: &Ground) -> String {
     let names: Vec<_> = kinds.iter().map(|kind| kind.name).collect();
     let scenarios: Vec<_> = ground

@@ -15,36 +15,37 @@ use terminal::output::Folder;
 use super::arguments::{DeviceFile, ParameterOptions, kinds, rates};
 use super::page::{self, progress};
 
-/// Where the page goes unless told otherwise.
+/// Default folder of the page.
 const PAGE: &str = "target/zwidth";
 
 #[derive(Debug, Args)]
 pub(super) struct Zwidth {
-    /// Estimator of the large motor's velocity; repeatable [default: all but the steady ones]
+    /// Estimator of the large motor's velocity, see host-sim estimators; repeatable [default: all
+    /// without edge time stamps, except those with a steady gain]
     #[arg(long = "estimator", value_name = "NAME")]
     pub(super) estimators: Vec<String>,
-    /// Estimator of the handle's velocity [default: the large motor's, or kalman-triple where that
-    /// one reads the current]
+    /// Estimator of the handle's velocity [default: that of the large motor, or kalman-triple if
+    /// that one needs the current]
     #[arg(long, value_name = "NAME")]
     pub(super) handle: Option<String>,
-    /// Control rate, Hz; repeatable [default: 1000, 10000 and 11600]
+    /// Control rate, 100 to 100000 Hz; repeatable [default: 1000, 10000 and 11600]
     #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
     pub(super) rates: Vec<f64>,
-    /// Lines of the large encoder; repeatable [default: 256, 1024 and 5000]
+    /// Number of lines of the large encoder, 1 to 1000000; repeatable [default: 256, 1024 and 5000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(super) lines: Vec<u32>,
-    /// Seed of the encoders' phases and the disc
+    /// Seed of the encoders' phases and of the disc's errors
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) seed: u64,
     #[command(flatten)]
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Folder for index.html, its figures as SVG, zwidth.csv, zwidth.json [default: target/zwidth;
-    /// with --json - none]
+    /// Folder of index.html, figures as SVG, zwidth.csv, zwidth.json [default: target/zwidth; no
+    /// folder with --json -]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Write the bounds as JSON to FILE; - is standard output, with nothing else there
+    /// Write the bounds as JSON to FILE; - is standard output, which then has nothing else
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
 }
