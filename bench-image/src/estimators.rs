@@ -30,7 +30,7 @@ const fn triple(rate: Hertz) -> Result<Model<3, NoInput>, DesignError> {
 macro_rules! rows {
     ($(
         $id:ident, $name:literal, $reports:ident,
-        ($($parameter:ident: $range:ident),*),
+        ($($parameter:ident: $range:tt),*),
         ($($variant:ident: $hertz:literal, $capacity:literal;)*),
         { $($fact:tt)* },
         |$c:ident, $motor:ident, $rate:ident, $clock:ident, $p:ident, $N:ident| $type:ty => $make:expr;

@@ -47,7 +47,7 @@ pub enum Reports {
 }
 
 /// How the output comes to rest once the count does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Settling {
     /// At the next tick.
     AtOnce,
@@ -55,10 +55,9 @@ pub enum Settling {
     OnePole,
     /// With so many poles at parameter `bandwidth_hz`.
     EqualPoles(u8),
-    /// Once only the resting count is in the window: the line through its ends.
-    EndFitWindow,
-    /// Once only the resting count is in the window: the least-squares line.
-    BestFitWindow,
+    /// Once only the resting count is in the window, which has as many intervals as the variant's
+    /// capacity.
+    Window,
     /// With the three poles of the steady filter on the triple integrator.
     TripleIntegrator,
     /// With the two poles of the steady filter on the motor model.
@@ -72,15 +71,16 @@ pub enum Settling {
     /// Once the disturbance torque, which holds all other torques too, is forgotten, and then as one
     /// count over the time since the last edge.
     DisturbanceAlone,
-    /// Once adapted parameters are corrected.
-    Adapted,
+    /// Within this time, s, which was measured and not derived. An estimator whose law is not in
+    /// this list takes this one.
+    Within(f64),
 }
 
 impl Settling {
-    /// Whether the estimator has a window, of as many intervals as its variant's capacity.
+    /// Whether the estimator has a window.
     #[must_use]
     pub const fn is_window(self) -> bool {
-        matches!(self, Self::EndFitWindow | Self::BestFitWindow)
+        matches!(self, Self::Window)
     }
 }
 

@@ -1,4 +1,9 @@
-//! All estimators.
+//! All estimators: a file per family, in the order in which the command line shows them.
+
+mod kalman;
+mod observers;
+mod tracking;
+mod windows;
 
 use estimator_core::Signals;
 
@@ -18,7 +23,9 @@ use crate::row::{Colour, Dash, Goal, Reports, Row, Settling, Variant};
 /// with `c` the crate `estimator-core` or its f64 twin, `motor` a `&c::CoupledMotor`, `rate` and
 /// `clock` (of the edge time stamps) a `c::Hertz`, `p` the parameters by name
 /// ([`design`](crate::design)), and `N` the length of a window or a table, a constant. The design is
-/// a `Result<Type, c::DesignError>` and a constant expression.
+/// a `Result<Type, c::DesignError>` and a constant expression. RANGE is a constant of
+/// [`Parameter`](crate::Parameter), or the fields of a range that no other row has, in braces:
+/// `n: { lowest: 2.0, ..Parameter::WINDOW }`.
 ///
 /// ```
 /// macro_rules! names {
@@ -32,311 +39,23 @@ use crate::row::{Colour, Dash, Goal, Reports, Row, Settling, Variant};
 #[macro_export]
 macro_rules! estimators {
     ($each:ident) => {
-        $each! {
-            finite_difference, "finite-difference", Deviation,
-            (),
-            (any: 0.0, 0;),
-            {
-                summary: "displacement over the last period (eq. 4)",
-                needs: Signals::COUNT,
-                settling: Settling::AtOnce,
-                colour: Colour::GREY,
-                dash: Dash::Solid,
-                goals: &[],
-            },
-            |c, motor, rate, clock, p, N| c::FiniteDifference =>
-                Ok(c::FiniteDifference);
-            low_pass, "low-pass", Nothing,
-            (cutoff_hz: CUTOFF),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "first-order low-pass over the finite difference",
-                needs: Signals::COUNT,
-                settling: Settling::OnePole,
-                colour: Colour::ORANGE,
-                dash: Dash::Solid,
-                goals: &[],
-            },
-            |c, motor, rate, clock, p, N| c::LowPass<c::FiniteDifference> =>
-                c::LowPass::new(c::FiniteDifference, c::Hertz(p.cutoff_hz), rate);
-            foaw_end_fit, "foaw-end-fit", Deviation,
-            (n: WINDOW, d: NOISE_BOUND),
-            (n_15: 0.0, 15; n_64: 0.0, 64;),
-            {
-                summary: "slope through both ends of the longest straight window",
-                needs: Signals::COUNT,
-                settling: Settling::EndFitWindow,
-                colour: Colour::SKY,
-                dash: Dash::Solid,
-                goals: &[Goal { capacity: 15, mean: 210.0, longest: 280.0 }, Goal { capacity: 64, mean: 600.0, longest: 1160.0 }],
-            },
-            |c, motor, rate, clock, p, N| c::Foaw<N, c::EndFit> =>
-                c::Foaw::new(p.n as usize, p.d as u16);
-            foaw_best_fit, "foaw-best-fit", Deviation,
-            (n: WINDOW, d: NOISE_BOUND),
-            (n_15: 0.0, 15; n_64: 0.0, 64;),
-            {
-                summary: "least-squares slope of the longest straight window (eq. 6)",
-                needs: Signals::COUNT,
-                settling: Settling::BestFitWindow,
-                colour: Colour::BLUE,
-                dash: Dash::Solid,
-                goals: &[Goal { capacity: 15, mean: 450.0, longest: 550.0 }, Goal { capacity: 64, mean: 1600.0, longest: 2500.0 }],
-            },
-            |c, motor, rate, clock, p, N| c::Foaw<N, c::BestFit> =>
-                c::Foaw::new(p.n as usize, p.d as u16);
-            kalman_triple, "kalman-triple", Acceleration,
-            (jerk: JERK),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "Kalman filter on a triple integrator, full covariance (eqs. 9 to 12)",
-                needs: Signals::COUNT,
-                settling: Settling::TripleIntegrator,
-                colour: Colour::GREEN,
-                dash: Dash::Dotted,
-                goals: &[Goal { capacity: 0, mean: 60.0, longest: f64::INFINITY }],
-            },
-            |c, motor, rate, clock, p, N| c::KalmanTriple =>
-                $crate::then!(c::Model::triple_integrator(motor.motor.counts_per_rev, rate, p.jerk), |model| c::Kalman::new(&model));
-            kalman_triple_table, "kalman-triple-table", Acceleration,
-            (jerk: JERK),
-            (at_1k: 1000.0, 24; at_10k: 10_000.0, 168;),
-            {
-                summary: "the same with a preset table of gains, from the start until they are steady",
-                needs: Signals::COUNT,
-                settling: Settling::TripleIntegrator,
-                colour: Colour::GREEN,
-                dash: Dash::Dashed,
-                goals: &[Goal { capacity: 0, mean: 30.0, longest: 30.0 }],
-            },
-            |c, motor, rate, clock, p, N| c::TableKalmanTriple<N> =>
-                $crate::then!(c::Model::triple_integrator(motor.motor.counts_per_rev, rate, p.jerk), |model| c::TableKalman::new(&model));
-            kalman_triple_steady, "kalman-triple-steady", Acceleration,
-            (jerk: JERK),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "the same with its preset steady gain alone",
-                needs: Signals::COUNT,
-                settling: Settling::TripleIntegrator,
-                colour: Colour::GREEN,
-                dash: Dash::Mixed,
-                goals: &[],
-            },
-            |c, motor, rate, clock, p, N| c::SteadyKalmanTriple =>
-                $crate::then!(c::Model::triple_integrator(motor.motor.counts_per_rev, rate, p.jerk), |model| c::SteadyKalman::new(&model));
-            kalman_motor, "kalman-motor", LateCurrent,
-            (current_noise: CURRENT_NOISE, literal: LITERAL),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "Kalman filter on the motor model with known current, full covariance (eqs. 14, 16)",
-                needs: Signals::COUNT_AND_CURRENT,
-                settling: Settling::MotorModel,
-                colour: Colour::VERMILION,
-                dash: Dash::Solid,
-                goals: &[],
-            },
-            |c, motor, rate, clock, p, N| c::KalmanMotor =>
-                $crate::then!(c::Model::motor(&motor.motor, rate, p.current_noise), |model| c::Kalman::new(&model));
-            kalman_motor_steady, "kalman-motor-steady", LateCurrent,
-            (current_noise: CURRENT_NOISE, literal: LITERAL),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "the same with its preset steady gain",
-                needs: Signals::COUNT_AND_CURRENT,
-                settling: Settling::MotorModel,
-                colour: Colour::VERMILION,
-                dash: Dash::Dotted,
-                goals: &[],
-            },
-            |c, motor, rate, clock, p, N| c::SteadyKalmanMotor =>
-                $crate::then!(c::Model::motor(&motor.motor, rate, p.current_noise), |model| c::SteadyKalman::new(&model));
-            pll, "pll", Nothing,
-            (bandwidth_hz: BANDWIDTH),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "critically damped tracking loop, as motor boards have it",
-                needs: Signals::COUNT,
-                settling: Settling::EqualPoles(2),
-                colour: Colour::PINK,
-                dash: Dash::Dotted,
-                goals: &[],
-            },
-            |c, motor, rate, clock, p, N| c::Pll =>
-                c::Pll::new(c::Hertz(p.bandwidth_hz), rate);
-            alpha_beta_gamma, "alpha-beta-gamma", Nothing,
-            (bandwidth_hz: BANDWIDTH),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "alpha-beta-gamma filter: a parabola through all counts, old ones fading",
-                needs: Signals::COUNT,
-                settling: Settling::EqualPoles(3),
-                colour: Colour::PINK,
-                dash: Dash::Dashed,
-                goals: &[],
-            },
-            |c, motor, rate, clock, p, N| c::AlphaBetaGamma =>
-                c::AlphaBetaGamma::new(c::Hertz(p.bandwidth_hz), rate);
-            m_over_t, "m-over-t", Nothing,
-            (),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "counts over the time between edges, at most one count over the time since the last",
-                needs: EDGE,
-                settling: Settling::OneCountOverTime,
-                colour: Colour::OLIVE,
-                dash: Dash::Mixed,
-                goals: &[],
-            },
-            |c, motor, rate, clock, p, N| c::MOverT =>
-                c::MOverT::new(clock, rate);
-            observer, "observer", Deviation,
-            (torque_noise: TORQUE_NOISE, load: DISTURBANCE, load_time: DISTURBANCE_TIME,
-             friction_share: FRICTION_SHARE, boundary_noise: BOUNDARY_NOISE),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "observer with current, slip, friction and dead zone, scheduled gains",
-                needs: COUNT_CURRENT_AND_SLIP,
-                settling: Settling::Disturbance,
-                colour: Colour::PURPLE,
-                dash: Dash::Solid,
-                goals: &[Goal { capacity: 0, mean: 90.0, longest: f64::INFINITY }],
-            },
-            |c, motor, rate, clock, p, N| c::CountObserver =>
-                c::Observer::new(motor, rate, &$crate::uncertainty!(c, p));
-            observer_edge, "observer-edge", Deviation,
-            (torque_noise: TORQUE_NOISE, load: DISTURBANCE, load_time: DISTURBANCE_TIME,
-             friction_share: FRICTION_SHARE, boundary_noise: DISC_NOISE),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "the same with edge time stamps",
-                needs: COUNT_CURRENT_AND_SLIP.or(EDGE),
-                settling: Settling::Disturbance,
-                colour: Colour::NAVY,
-                dash: Dash::Solid,
-                goals: &[Goal { capacity: 0, mean: 130.0, longest: f64::INFINITY }],
-            },
-            |c, motor, rate, clock, p, N| c::EdgeObserver =>
-                $crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.with_edges(clock, rate));
-            adaptive, "adaptive", Damping,
-            (torque_noise: TORQUE_NOISE, load: DISTURBANCE, load_time: DISTURBANCE_TIME,
-             friction_share: FRICTION_SHARE, boundary_noise: BOUNDARY_NOISE),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "observer that learns damping, friction and torque constant per inertia",
-                needs: COUNT_CURRENT_AND_SLIP,
-                settling: Settling::Adapted,
-                colour: Colour::CRIMSON,
-                dash: Dash::Dashed,
-                goals: &[],
-            },
-            |c, motor, rate, clock, p, N| c::AdaptiveObserver =>
-                $crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.adaptive(motor.motor.counts_per_rev, rate));
-            adaptive_edge, "adaptive-edge", Damping,
-            (torque_noise: TORQUE_NOISE, load: DISTURBANCE, load_time: DISTURBANCE_TIME,
-             friction_share: FRICTION_SHARE, boundary_noise: DISC_NOISE),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "the same with edge time stamps",
-                needs: COUNT_CURRENT_AND_SLIP.or(EDGE),
-                settling: Settling::Adapted,
-                colour: Colour::PINE,
-                dash: Dash::Mixed,
-                goals: &[Goal { capacity: 0, mean: 300.0, longest: f64::INFINITY }],
-            },
-            |c, motor, rate, clock, p, N| c::AdaptiveEdgeObserver =>
-                $crate::then!($crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.with_edges(clock, rate)), |known| known.adaptive(motor.motor.counts_per_rev, rate));
-            observer_soft, "observer-soft", Deviation,
-            (torque_noise: TORQUE_NOISE, load: DISTURBANCE, load_time: DISTURBANCE_TIME,
-             friction_share: FRICTION_SHARE, boundary_noise: BOUNDARY_NOISE),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "observer that also uses a count while the prediction agrees with it (truncated Gaussian)",
-                needs: COUNT_CURRENT_AND_SLIP,
-                settling: Settling::DisturbanceTruncated,
-                colour: Colour::PURPLE,
-                dash: Dash::Dashed,
-                goals: &[Goal { capacity: 0, mean: 200.0, longest: f64::INFINITY }],
-            },
-            |c, motor, rate, clock, p, N| c::QuantisedObserver =>
-                c::Observer::quantised(motor, rate, &$crate::uncertainty!(c, p));
-            adaptive_soft, "adaptive-soft", Damping,
-            (torque_noise: TORQUE_NOISE, load: DISTURBANCE, load_time: DISTURBANCE_TIME,
-             friction_share: FRICTION_SHARE, boundary_noise: BOUNDARY_NOISE),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "the same, learning as adaptive",
-                needs: COUNT_CURRENT_AND_SLIP,
-                settling: Settling::Adapted,
-                colour: Colour::CRIMSON,
-                dash: Dash::Dotted,
-                goals: &[Goal { capacity: 0, mean: 300.0, longest: f64::INFINITY }],
-            },
-            |c, motor, rate, clock, p, N| c::AdaptiveQuantisedObserver =>
-                $crate::then!(c::Observer::quantised(motor, rate, &$crate::uncertainty!(c, p)), |known| known.adaptive(motor.motor.counts_per_rev, rate));
-            observer_held, "observer-held", Deviation,
-            (torque_noise: TORQUE_NOISE, load: DISTURBANCE, load_time: DISTURBANCE_TIME,
-             friction_share: FRICTION_SHARE, boundary_noise: BOUNDARY_NOISE),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "observer without the small encoder",
-                needs: Signals::COUNT_AND_CURRENT,
-                settling: Settling::Disturbance,
-                colour: Colour::PURPLE,
-                dash: Dash::Mixed,
-                goals: &[],
-            },
-            |c, motor, rate, clock, p, N| c::Observer<c::AmplifierCurrent, c::HeldShaft, c::CountUpdate, c::Fixed> =>
-                $crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| Ok(known.held()));
-            observer_edge_held, "observer-edge-held", Deviation,
-            (torque_noise: TORQUE_NOISE, load: DISTURBANCE, load_time: DISTURBANCE_TIME,
-             friction_share: FRICTION_SHARE, boundary_noise: DISC_NOISE),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "observer-edge without the small encoder",
-                needs: Signals::COUNT_AND_CURRENT.or(EDGE),
-                settling: Settling::Disturbance,
-                colour: Colour::NAVY,
-                dash: Dash::Mixed,
-                goals: &[],
-            },
-            |c, motor, rate, clock, p, N| c::Observer<c::AmplifierCurrent, c::HeldShaft, c::EdgeUpdate, c::Fixed> =>
-                $crate::then!($crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.with_edges(clock, rate)), |known| Ok(known.held()));
-            observer_edge_blind, "observer-edge-blind", Deviation,
-            (torque_noise: TORQUE_NOISE, load: DISTURBANCE_AND_MOTOR, load_time: DISTURBANCE_TIME,
-             boundary_noise: DISC_NOISE),
-            (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;),
-            {
-                summary: "observer-edge without current and small encoder",
-                needs: EDGE,
-                settling: Settling::DisturbanceAlone,
-                colour: Colour::NAVY,
-                dash: Dash::Dashed,
-                goals: &[],
-            },
-            |c, motor, rate, clock, p, N| c::Observer<c::NoCurrent, c::HeldShaft, c::EdgeUpdate, c::Fixed> =>
-                c::Observer::blind(motor, rate, clock, &c::Uncertainty {
-                    torque_noise: p.torque_noise,
-                    disturbance: p.load,
-                    disturbance_time: p.load_time,
-                    friction_share: 0.0,
-                    boundary_noise: p.boundary_noise,
-                });
+        $crate::joined! {
+            $each (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;) []
+            window_rows kalman_rows tracking_rows observer_rows
         }
     };
 }
 
-/// The observer's uncertainty from parameters of the same names.
+/// Passes the rows of the families, in this order, to `$each`. Each family adds its rows to those in
+/// brackets. `$rates` are the variants of a design that depends on the control rate.
 #[doc(hidden)]
 #[macro_export]
-macro_rules! uncertainty {
-    ($c:ident, $p:ident) => {
-        $c::Uncertainty {
-            torque_noise: $p.torque_noise,
-            disturbance: $p.load,
-            disturbance_time: $p.load_time,
-            friction_share: $p.friction_share,
-            boundary_noise: $p.boundary_noise,
-        }
+macro_rules! joined {
+    ($each:ident $rates:tt [$($rows:tt)*]) => {
+        $each! { $($rows)* }
+    };
+    ($each:ident $rates:tt $before:tt $family:ident $($families:ident)*) => {
+        $crate::$family! { $each $rates $before $($families)* }
     };
 }
 
@@ -362,10 +81,24 @@ const COUNT_CURRENT_AND_SLIP: Signals = Signals {
     ..Signals::COUNT_AND_CURRENT
 };
 
+/// The range of a parameter: a constant of [`Parameter`], or fields in braces.
+macro_rules! range {
+    ({ $($field:tt)* }) => {
+        Parameter { $($field)* }
+    };
+    ($range:ident) => {
+        Parameter::$range
+    };
+}
+
+/// An adaptive observer that has learned from nonsense may have a friction near zero: it then rests only
+/// when its disturbance torque has been corrected, count by count. Twice what was seen.
+const ADAPTED: Settling = Settling::Within(6.0);
+
 macro_rules! rows {
     ($(
         $id:ident, $name:literal, $reports:ident,
-        ($($parameter:ident: $range:ident),*),
+        ($($parameter:ident: $range:tt),*),
         ($($variant:ident: $rate:literal, $capacity:literal;)*),
         { $($fact:tt)* },
         |$($used:ident),*| $type:ty => $make:expr;
@@ -386,7 +119,7 @@ macro_rules! rows {
                         id: stringify!($id),
                         reports: Reports::$reports,
                         parameters: &[$(
-                            Parameter { name: stringify!($parameter), ..Parameter::$range }
+                            Parameter { name: stringify!($parameter), ..range!($range) }
                         ),*],
                         variants: &[$(
                             Variant {
@@ -402,7 +135,7 @@ macro_rules! rows {
                     #[derive(Clone, Copy, Debug, PartialEq)]
                     pub struct Parameters {
                         $(
-                            #[doc = concat!("See `Parameter::", stringify!($range), "`.")]
+                            #[doc = concat!("Range: `", stringify!($range), "`.")]
                             pub $parameter: f64,
                         )*
                     }

@@ -50,7 +50,7 @@ macro_rules! probes {
 macro_rules! rows {
     ($(
         $id:ident, $name:literal, $reports:ident,
-        ($($parameter:ident: $range:ident),*),
+        ($($parameter:ident: $range:tt),*),
         ($($variant:ident: $hertz:literal, $capacity:literal;)*),
         { $($fact:tt)* },
         |$c:ident, $motor:ident, $rate:ident, $clock:ident, $p:ident, $N:ident| $type:ty => $make:expr;

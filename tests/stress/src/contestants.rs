@@ -1,7 +1,7 @@
 //! Every estimator of the core, beside its twin.
 
 use catalogue::parameters::middle;
-use estimator_catalogue::Settling;
+use estimator_catalogue::{Row, Settling};
 use estimator_core as core;
 
 use crate::definition::{Definition, Line};
@@ -85,15 +85,6 @@ impl Contestant {
         self.settles(settling::poles(radius, order, quiet))
     }
 
-    /// At rest once only the current count is in the window; what the definition gives.
-    fn window(self, (n, d, line): (usize, i32, Line)) -> Self {
-        Self {
-            definition: Some(Definition { n, d, line }),
-            ..self
-        }
-        .settles(n as u32 - 1)
-    }
-
     /// At rest once one count over the time since is below 0.05 rad/s: it would take two minutes
     /// and a half to come below 1e-5.
     fn one_count_over_time(mut self) -> Self {
@@ -123,11 +114,6 @@ const CURRENT_NOISE: f64 = 0.1;
 /// Time constant of the torque that the observers know nothing of, s.
 const LOAD_TIME_S: f64 = 0.1;
 
-/// An observer that has learned from nonsense may believe in a friction near nothing: then it rests
-/// only when what it takes for friction has been corrected, count by count. Not derived: twice
-/// what was seen.
-const LEARNED_NONSENSE_S: f64 = 6.0;
-
 /// Disturbance torque of the observers: white, N·m/√Hz, and slow, N·m.
 const TORQUE_NOISE: f64 = 7e-5;
 const DISTURBANCE_NM: f64 = 7.5e-4;
@@ -150,10 +136,19 @@ fn cutoff_hz(rate_hz: f64) -> f64 {
     if rate_hz < 5000.0 { 240.0 } else { 120.0 }
 }
 
+/// The line of a row that has the definition of FOAW.
+fn line(row: &Row) -> Option<Line> {
+    match row.id {
+        "foaw_end_fit" => Some(Line::EndFit),
+        "foaw_best_fit" => Some(Line::BestFit),
+        _ => None,
+    }
+}
+
 /// Noise bound of a window, counts: the longest best fit is tried with a wider band.
-fn noise_bound(settling: Settling, capacity: usize) -> i32 {
-    match (settling, capacity) {
-        (Settling::BestFitWindow, 64) => 2,
+fn noise_bound(row: &Row, capacity: usize) -> i32 {
+    match (line(row), capacity) {
+        (Some(Line::BestFit), 64) => 2,
         _ => 1,
     }
 }
@@ -164,7 +159,7 @@ fn value(name: &str, entry: &Entry, rate_hz: f64, capacity: usize) -> f64 {
     let alone = entry.row.settling == Settling::DisturbanceAlone;
     match name {
         "n" => capacity as f64,
-        "d" => f64::from(noise_bound(entry.row.settling, capacity)),
+        "d" => f64::from(noise_bound(entry.row, capacity)),
         "cutoff_hz" => cutoff_hz(rate_hz),
         "bandwidth_hz" => BANDWIDTH_HZ,
         "jerk" => JERK,
@@ -193,7 +188,6 @@ struct Laws {
     forgotten: u32,
     forgotten_softly: u32,
     forgotten_alone: u32,
-    learned: u32,
 }
 
 impl Laws {
@@ -237,14 +231,12 @@ impl Laws {
             forgotten: forgotten(settling::largest_gain(&counts)),
             forgotten_softly: forgotten(settling::largest_soft_gain(&counts)),
             forgotten_alone,
-            learned: (LEARNED_NONSENSE_S * rate_hz) as u32,
         }
     }
 
     /// The contestant with the bounds of its law.
     fn bounded(&self, one: Contestant, settling: Settling, capacity: usize) -> Contestant {
         let pole = |hertz| settling::pole(hertz, self.rate_hz);
-        let window = |line| (capacity, noise_bound(settling, capacity), line);
         match settling {
             Settling::AtOnce => one,
             Settling::OnePole => one.poles(pole(cutoff_hz(self.rate_hz)), 1),
@@ -256,8 +248,7 @@ impl Laws {
                 }
                 one
             }
-            Settling::EndFitWindow => one.window(window(Line::EndFit)),
-            Settling::BestFitWindow => one.window(window(Line::BestFit)),
+            Settling::Window => one.settles(capacity as u32 - 1),
             Settling::TripleIntegrator => one.poles(self.triple, 3),
             Settling::MotorModel => one.poles(self.motor, 2),
             Settling::OneCountOverTime => one.one_count_over_time().decides(),
@@ -267,7 +258,7 @@ impl Laws {
                 let one = one.decides().one_count_over_time();
                 one.also(self.forgotten_alone)
             }
-            Settling::Adapted => one.decides().settles(self.learned),
+            Settling::Within(seconds) => one.decides().settles((seconds * self.rate_hz) as u32),
         }
     }
 }
@@ -285,14 +276,19 @@ pub fn at(rate_hz: f64) -> Vec<Contestant> {
     for entry in pairs::ALL {
         for &capacity in entry.capacities() {
             let settling = entry.row.settling;
-            let bound = noise_bound(settling, capacity);
+            let bound = noise_bound(entry.row, capacity);
             let name = match (settling.is_window(), bound) {
                 (false, _) => entry.row.name.to_owned(),
                 (true, 1) => format!("{} n {capacity}", entry.row.name),
                 (true, d) => format!("{} n {capacity} d {d}", entry.row.name),
             };
             let value = move |name: &str| value(name, entry, rate_hz, capacity);
-            let one = Contestant::new(name, rate_hz, capacity, entry.design, value);
+            let mut one = Contestant::new(name, rate_hz, capacity, entry.design, value);
+            one.definition = line(entry.row).map(|line| Definition {
+                n: capacity,
+                d: bound,
+                line,
+            });
             all.push(laws.bounded(one, settling, capacity));
         }
     }

@@ -115,7 +115,7 @@ macro_rules! one {
 macro_rules! pairs {
     ($(
         $id:ident, $name:literal, $reports:ident,
-        ($($parameter:ident: $range:ident),*),
+        ($($parameter:ident: $range:tt),*),
         ($($variant:tt)*),
         { $($fact:tt)* },
         |$c:ident, $motor:ident, $rate:ident, $clock:ident, $p:ident, $N:ident| $type:ty => $make:expr;

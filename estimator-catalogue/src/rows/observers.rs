@@ -1,0 +1,164 @@
+//! Observers of the motor with friction and slip.
+
+/// The rows of this file, added to those before them: see [`estimators!`](crate::estimators).
+#[doc(hidden)]
+#[macro_export]
+macro_rules! observer_rows {
+    // Lists that rows share.
+    ($each:ident $rates:tt $before:tt $($families:ident)*) => {
+        $crate::observer_rows! {
+            $each $rates $before [$($families)*]
+            uncertainty [
+                torque_noise: TORQUE_NOISE, load: DISTURBANCE,
+                load_time: DISTURBANCE_TIME, friction_share: FRICTION_SHARE
+            ]
+        }
+    };
+    (
+        $each:ident $rates:tt [$($before:tt)*] [$($families:ident)*]
+        uncertainty [$($uncertainty:tt)*]
+    ) => {
+        $crate::joined! { $each $rates [
+            $($before)*
+            observer, "observer", Deviation,
+            ($($uncertainty)*, boundary_noise: BOUNDARY_NOISE),
+            $rates,
+            {
+                summary: "observer with current, slip, friction and dead zone, scheduled gains",
+                needs: COUNT_CURRENT_AND_SLIP,
+                settling: Settling::Disturbance,
+                colour: Colour::PURPLE,
+                dash: Dash::Solid,
+                goals: &[Goal { capacity: 0, mean: 90.0, longest: f64::INFINITY }],
+            },
+            |c, motor, rate, clock, p, N| c::CountObserver =>
+                c::Observer::new(motor, rate, &$crate::uncertainty!(c, p));
+            observer_edge, "observer-edge", Deviation,
+            ($($uncertainty)*, boundary_noise: DISC_NOISE),
+            $rates,
+            {
+                summary: "observer that also uses edge time stamps",
+                needs: COUNT_CURRENT_AND_SLIP.or(EDGE),
+                settling: Settling::Disturbance,
+                colour: Colour::NAVY,
+                dash: Dash::Solid,
+                goals: &[Goal { capacity: 0, mean: 130.0, longest: f64::INFINITY }],
+            },
+            |c, motor, rate, clock, p, N| c::EdgeObserver =>
+                $crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.with_edges(clock, rate));
+            adaptive, "adaptive", Damping,
+            ($($uncertainty)*, boundary_noise: BOUNDARY_NOISE),
+            $rates,
+            {
+                summary: "observer that learns damping, friction and torque constant per inertia",
+                needs: COUNT_CURRENT_AND_SLIP,
+                settling: ADAPTED,
+                colour: Colour::CRIMSON,
+                dash: Dash::Dashed,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::AdaptiveObserver =>
+                $crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.adaptive(motor.motor.counts_per_rev, rate));
+            adaptive_edge, "adaptive-edge", Damping,
+            ($($uncertainty)*, boundary_noise: DISC_NOISE),
+            $rates,
+            {
+                summary: "adaptive observer that also uses edge time stamps",
+                needs: COUNT_CURRENT_AND_SLIP.or(EDGE),
+                settling: ADAPTED,
+                colour: Colour::PINE,
+                dash: Dash::Mixed,
+                goals: &[Goal { capacity: 0, mean: 300.0, longest: f64::INFINITY }],
+            },
+            |c, motor, rate, clock, p, N| c::AdaptiveEdgeObserver =>
+                $crate::then!($crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.with_edges(clock, rate)), |known| known.adaptive(motor.motor.counts_per_rev, rate));
+            observer_soft, "observer-soft", Deviation,
+            ($($uncertainty)*, boundary_noise: BOUNDARY_NOISE),
+            $rates,
+            {
+                summary: "observer with truncated-Gaussian correction: also uses a count that agrees with the prediction",
+                needs: COUNT_CURRENT_AND_SLIP,
+                settling: Settling::DisturbanceTruncated,
+                colour: Colour::PURPLE,
+                dash: Dash::Dashed,
+                goals: &[Goal { capacity: 0, mean: 200.0, longest: f64::INFINITY }],
+            },
+            |c, motor, rate, clock, p, N| c::QuantisedObserver =>
+                c::Observer::quantised(motor, rate, &$crate::uncertainty!(c, p));
+            adaptive_soft, "adaptive-soft", Damping,
+            ($($uncertainty)*, boundary_noise: BOUNDARY_NOISE),
+            $rates,
+            {
+                summary: "observer-soft that learns damping, friction and torque constant per inertia",
+                needs: COUNT_CURRENT_AND_SLIP,
+                settling: ADAPTED,
+                colour: Colour::CRIMSON,
+                dash: Dash::Dotted,
+                goals: &[Goal { capacity: 0, mean: 300.0, longest: f64::INFINITY }],
+            },
+            |c, motor, rate, clock, p, N| c::AdaptiveQuantisedObserver =>
+                $crate::then!(c::Observer::quantised(motor, rate, &$crate::uncertainty!(c, p)), |known| known.adaptive(motor.motor.counts_per_rev, rate));
+            observer_held, "observer-held", Deviation,
+            ($($uncertainty)*, boundary_noise: BOUNDARY_NOISE),
+            $rates,
+            {
+                summary: "observer without the small encoder",
+                needs: Signals::COUNT_AND_CURRENT,
+                settling: Settling::Disturbance,
+                colour: Colour::PURPLE,
+                dash: Dash::Mixed,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::Observer<c::AmplifierCurrent, c::HeldShaft, c::CountUpdate, c::Fixed> =>
+                $crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| Ok(known.held()));
+            observer_edge_held, "observer-edge-held", Deviation,
+            ($($uncertainty)*, boundary_noise: DISC_NOISE),
+            $rates,
+            {
+                summary: "observer-edge without the small encoder",
+                needs: Signals::COUNT_AND_CURRENT.or(EDGE),
+                settling: Settling::Disturbance,
+                colour: Colour::NAVY,
+                dash: Dash::Mixed,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::Observer<c::AmplifierCurrent, c::HeldShaft, c::EdgeUpdate, c::Fixed> =>
+                $crate::then!($crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.with_edges(clock, rate)), |known| Ok(known.held()));
+            observer_edge_blind, "observer-edge-blind", Deviation,
+            (torque_noise: TORQUE_NOISE, load: DISTURBANCE_AND_MOTOR, load_time: DISTURBANCE_TIME,
+             boundary_noise: DISC_NOISE),
+            $rates,
+            {
+                summary: "observer-edge without current and small encoder",
+                needs: EDGE,
+                settling: Settling::DisturbanceAlone,
+                colour: Colour::NAVY,
+                dash: Dash::Dashed,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::Observer<c::NoCurrent, c::HeldShaft, c::EdgeUpdate, c::Fixed> =>
+                c::Observer::blind(motor, rate, clock, &c::Uncertainty {
+                    torque_noise: p.torque_noise,
+                    disturbance: p.load,
+                    disturbance_time: p.load_time,
+                    friction_share: 0.0,
+                    boundary_noise: p.boundary_noise,
+                });
+        ] $($families)* }
+    };
+}
+
+/// The observer's uncertainty from parameters of the same names.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! uncertainty {
+    ($c:ident, $p:ident) => {
+        $c::Uncertainty {
+            torque_noise: $p.torque_noise,
+            disturbance: $p.load,
+            disturbance_time: $p.load_time,
+            friction_share: $p.friction_share,
+            boundary_noise: $p.boundary_noise,
+        }
+    };
+}

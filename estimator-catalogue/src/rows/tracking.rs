@@ -1,0 +1,51 @@
+//! Tracking loops, and the time between edges.
+
+/// The rows of this file, added to those before them: see [`estimators!`](crate::estimators).
+#[doc(hidden)]
+#[macro_export]
+macro_rules! tracking_rows {
+    ($each:ident $rates:tt [$($before:tt)*] $($families:ident)*) => {
+        $crate::joined! { $each $rates [
+            $($before)*
+            pll, "pll", Nothing,
+            (bandwidth_hz: BANDWIDTH),
+            $rates,
+            {
+                summary: "critically damped tracking loop, as motor boards have it",
+                needs: Signals::COUNT,
+                settling: Settling::EqualPoles(2),
+                colour: Colour::PINK,
+                dash: Dash::Dotted,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::Pll =>
+                c::Pll::new(c::Hertz(p.bandwidth_hz), rate);
+            alpha_beta_gamma, "alpha-beta-gamma", Nothing,
+            (bandwidth_hz: BANDWIDTH),
+            $rates,
+            {
+                summary: "alpha-beta-gamma filter: a parabola through all counts, old ones fading",
+                needs: Signals::COUNT,
+                settling: Settling::EqualPoles(3),
+                colour: Colour::PINK,
+                dash: Dash::Dashed,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::AlphaBetaGamma =>
+                c::AlphaBetaGamma::new(c::Hertz(p.bandwidth_hz), rate);
+            m_over_t, "m-over-t", Nothing,
+            (),
+            $rates,
+            {
+                summary: "counts over the time between edges, at most one count over the time since the last",
+                needs: EDGE,
+                settling: Settling::OneCountOverTime,
+                colour: Colour::OLIVE,
+                dash: Dash::Mixed,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::MOverT =>
+                c::MOverT::new(clock, rate);
+        ] $($families)* }
+    };
+}

@@ -1,0 +1,75 @@
+//! Differences of counts, filtered or over a window.
+
+/// The rows of this file, added to those before them: see [`estimators!`](crate::estimators).
+#[doc(hidden)]
+#[macro_export]
+macro_rules! window_rows {
+    // Lists that rows share.
+    ($each:ident $rates:tt $before:tt $($families:ident)*) => {
+        $crate::window_rows! {
+            $each $rates $before [$($families)*]
+            foaw (n: WINDOW, d: NOISE_BOUND)
+            windows (n_15: 0.0, 15; n_64: 0.0, 64;)
+        }
+    };
+    (
+        $each:ident $rates:tt [$($before:tt)*] [$($families:ident)*]
+        foaw $foaw:tt windows $windows:tt
+    ) => {
+        $crate::joined! { $each $rates [
+            $($before)*
+            finite_difference, "finite-difference", Deviation,
+            (),
+            (any: 0.0, 0;),
+            {
+                summary: "displacement over the last period (eq. 4)",
+                needs: Signals::COUNT,
+                settling: Settling::AtOnce,
+                colour: Colour::GREY,
+                dash: Dash::Solid,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::FiniteDifference =>
+                Ok(c::FiniteDifference);
+            low_pass, "low-pass", Nothing,
+            (cutoff_hz: CUTOFF),
+            $rates,
+            {
+                summary: "first-order low-pass over the finite difference",
+                needs: Signals::COUNT,
+                settling: Settling::OnePole,
+                colour: Colour::ORANGE,
+                dash: Dash::Solid,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::LowPass<c::FiniteDifference> =>
+                c::LowPass::new(c::FiniteDifference, c::Hertz(p.cutoff_hz), rate);
+            foaw_end_fit, "foaw-end-fit", Deviation,
+            $foaw,
+            $windows,
+            {
+                summary: "slope through both ends of the longest straight window",
+                needs: Signals::COUNT,
+                settling: Settling::Window,
+                colour: Colour::SKY,
+                dash: Dash::Solid,
+                goals: &[Goal { capacity: 15, mean: 210.0, longest: 280.0 }, Goal { capacity: 64, mean: 600.0, longest: 1160.0 }],
+            },
+            |c, motor, rate, clock, p, N| c::Foaw<N, c::EndFit> =>
+                c::Foaw::new(p.n as usize, p.d as u16);
+            foaw_best_fit, "foaw-best-fit", Deviation,
+            $foaw,
+            $windows,
+            {
+                summary: "least-squares slope of the longest straight window (eq. 6)",
+                needs: Signals::COUNT,
+                settling: Settling::Window,
+                colour: Colour::BLUE,
+                dash: Dash::Solid,
+                goals: &[Goal { capacity: 15, mean: 450.0, longest: 550.0 }, Goal { capacity: 64, mean: 1600.0, longest: 2500.0 }],
+            },
+            |c, motor, rate, clock, p, N| c::Foaw<N, c::BestFit> =>
+                c::Foaw::new(p.n as usize, p.d as u16);
+        ] $($families)* }
+    };
+}
