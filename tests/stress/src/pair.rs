@@ -24,35 +24,37 @@ pub trait Pair {
     fn window(&self) -> Option<usize>;
 }
 
-/// What may be asked of a state of estimator `E`.
-pub(crate) trait State<E> {
-    fn fault(&self, _: &E) -> Option<&'static str> {
+/// A state of the core and its estimator, to check the invariant of the state.
+///
+/// A method of the type itself is preferred to the method of a trait. A state with an invariant of
+/// its own has the methods below; every other state has those of [`General`]. The choice is made where
+/// both types are known: in [`asks!`].
+pub(crate) struct Of<'a, E, S>(pub(crate) &'a E, pub(crate) &'a S);
+
+/// What holds for a state without an invariant of its own.
+pub(crate) trait General {
+    /// What is wrong with the state.
+    fn fault(&self) -> Option<&'static str> {
         None
     }
 
+    /// Length of the window last used.
     fn window(&self) -> Option<usize> {
         None
     }
 }
 
-impl<E> State<E> for core::Count {}
-impl<E> State<E> for core::AlphaBetaGammaState {}
-impl<E> State<E> for core::PllState {}
-impl<E> State<E> for core::MOverTState {}
-impl<E, const S: usize> State<E> for core::SteadyKalmanState<S> {}
-impl<E, const S: usize> State<E> for core::TableKalmanState<S> {}
-impl<E, S> State<E> for core::LateCurrentState<S> {}
-impl<E, S> State<E> for core::LowPassState<S> {}
+impl<E, S> General for Of<'_, E, S> {}
 
-impl<E, const N: usize> State<E> for core::FoawState<N> {
-    fn window(&self) -> Option<usize> {
-        Some(self.window())
+impl<E, const N: usize> Of<'_, E, core::FoawState<N>> {
+    pub(crate) fn window(&self) -> Option<usize> {
+        Some(self.1.window())
     }
 }
 
-impl<const S: usize, U: core::Input<S>> State<core::Kalman<S, U>> for core::KalmanState<S> {
-    fn fault(&self, filter: &core::Kalman<S, U>) -> Option<&'static str> {
-        let p = filter.covariance(self);
+impl<const S: usize, U: core::Input<S>> Of<'_, core::Kalman<S, U>, core::KalmanState<S>> {
+    pub(crate) fn fault(&self) -> Option<&'static str> {
+        let p = self.0.covariance(self.1);
         for i in 0..S {
             for j in 0..i {
                 if p[i][j].to_bits() != p[j][i].to_bits() {
@@ -64,8 +66,47 @@ impl<const S: usize, U: core::Input<S>> State<core::Kalman<S, U>> for core::Kalm
     }
 }
 
-/// What is carried of an observer's corrections.
-trait Corrections {
+impl<E, C, S, M: Corrections> Of<'_, E, core::ObserverState<C, S, M, ()>> {
+    pub(crate) fn fault(&self) -> Option<&'static str> {
+        self.1.correction().fault()
+    }
+}
+
+/// `U D Uᵀ` is positive definite if D is positive and U is made of numbers.
+impl<E, C, S, M: Corrections> Of<'_, E, core::ObserverState<C, S, M, core::AdaptiveState>> {
+    pub(crate) fn fault(&self) -> Option<&'static str> {
+        if let Some(fault) = self.1.correction().fault() {
+            return Some(fault);
+        }
+        let learned = self.1.adaptation();
+        let positive = learned.diagonal().iter().all(|d| *d > 0.0 && *d < 1.0);
+        let finite = learned.upper().iter().all(|u| u.is_finite());
+        (!(positive && finite)).then_some("covariance of the parameters not positive definite")
+    }
+}
+
+/// The methods of [`Of`] for one estimator.
+pub(crate) struct Asks<E: core::VelocityEstimator> {
+    pub(crate) fault: fn(&E, &E::State) -> Option<&'static str>,
+    pub(crate) window: fn(&E, &E::State) -> Option<usize>,
+}
+
+/// The methods of [`Of`] for an estimator of this type.
+macro_rules! asks {
+    ($type:ty) => {{
+        #[allow(unused_imports, reason = "a state may have both methods of its own")]
+        use $crate::pair::General as _;
+        $crate::pair::Asks::<$type> {
+            fault: |estimator, state| $crate::pair::Of(estimator, state).fault(),
+            window: |estimator, state| $crate::pair::Of(estimator, state).window(),
+        }
+    }};
+}
+
+pub(crate) use asks;
+
+/// The part of an observer's state that belongs to its correction.
+pub(crate) trait Corrections {
     fn fault(&self) -> Option<&'static str> {
         None
     }
@@ -76,30 +117,11 @@ impl Corrections for core::EdgeUpdateState {}
 
 impl Corrections for core::QuantisedUpdateState {
     fn fault(&self) -> Option<&'static str> {
-        let bell = self.covariance();
-        let sound = bell.diagonal().iter().all(|d| *d >= 0.0 && *d < 1e20);
-        // The core says why: rounding apart, the coupling is within 0 and 3/2.
-        let coupled = bell.coupling() >= 0.0 && bell.coupling() < 1.500_01;
-        (!(sound && coupled)).then_some("covariance of position and velocity out of its range")
-    }
-}
-
-impl<E, C, S, M: Corrections> State<E> for core::ObserverState<C, S, M, ()> {
-    fn fault(&self, _: &E) -> Option<&'static str> {
-        self.correction().fault()
-    }
-}
-
-/// `U D Uᵀ` is positive definite if D is positive and U is made of numbers.
-impl<E, C, S, M: Corrections> State<E> for core::ObserverState<C, S, M, core::AdaptiveState> {
-    fn fault(&self, _: &E) -> Option<&'static str> {
-        if let Some(fault) = self.correction().fault() {
-            return Some(fault);
-        }
-        let learned = self.adaptation();
-        let positive = learned.diagonal().iter().all(|d| *d > 0.0 && *d < 1.0);
-        let finite = learned.upper().iter().all(|u| u.is_finite());
-        (!(positive && finite)).then_some("covariance of the parameters not positive definite")
+        let covariance = self.covariance();
+        let bounded = (covariance.diagonal().iter()).all(|d| *d >= 0.0 && *d < 1e20);
+        // The core derives it: rounding apart, the coupling is within 0 and 3/2.
+        let coupled = covariance.coupling() >= 0.0 && covariance.coupling() < 1.500_01;
+        (!(bounded && coupled)).then_some("covariance of position and velocity out of its range")
     }
 }
 
@@ -125,12 +147,13 @@ fn is_positive_definite<const S: usize>(p: &[[f32; S]; S]) -> bool {
 pub(crate) struct Both<C: core::VelocityEstimator, T: twin::VelocityEstimator> {
     pub(crate) core: C,
     pub(crate) twin: T,
+    pub(crate) asks: Asks<C>,
     pub(crate) states: Option<(C::State, T::State)>,
 }
 
 impl<C, T> Pair for Both<C, T>
 where
-    C: core::VelocityEstimator<Output = core::CountsPerTick, State: State<C>>,
+    C: core::VelocityEstimator<Output = core::CountsPerTick>,
     T: twin::VelocityEstimator<Output = twin::CountsPerTick>,
 {
     fn start(&mut self, first: &Shown) {
@@ -147,13 +170,13 @@ where
     }
 
     fn fault(&self) -> Option<&'static str> {
-        self.states
-            .as_ref()
-            .and_then(|(core, _)| core.fault(&self.core))
+        let (core, _) = self.states.as_ref()?;
+        (self.asks.fault)(&self.core, core)
     }
 
     fn window(&self) -> Option<usize> {
-        self.states.as_ref().and_then(|(core, _)| core.window())
+        let (core, _) = self.states.as_ref()?;
+        (self.asks.window)(&self.core, core)
     }
 }
 
@@ -166,5 +189,32 @@ fn twin_sample(shown: &Shown) -> twin::Sample {
             boundary: twin::Count(boundary),
             age: twin::ClockTicks(age),
         }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use estimator_core::{
+        AdaptiveEdgeObserver, AdaptiveObserver, AdaptiveQuantisedObserver, CountObserver,
+        EdgeObserver, EndFit, Foaw, KalmanMotor, KalmanTriple, QuantisedObserver,
+        VelocityEstimator,
+    };
+
+    // [`General`](super::General) is not in scope here, so that only a method of the type compiles.
+    use super::Of;
+
+    #[test]
+    fn states_with_an_invariant_have_methods_of_their_own() {
+        macro_rules! have {
+            ($method:ident: $($type:ty),* $(,)?) => {
+                $(let _ = |estimator: &$type, state: &<$type as VelocityEstimator>::State| {
+                    Of(estimator, state).$method()
+                };)*
+            };
+        }
+        have!(window: Foaw<15, EndFit>);
+        have!(fault: KalmanTriple, KalmanMotor);
+        have!(fault: CountObserver, EdgeObserver, QuantisedObserver);
+        have!(fault: AdaptiveObserver, AdaptiveEdgeObserver, AdaptiveQuantisedObserver);
     }
 }

@@ -5,7 +5,7 @@ use estimator_core as core;
 use estimator_twin as twin;
 
 use crate::course::EDGE_CLOCK_HZ;
-use crate::pair::{Both, Pair};
+use crate::pair::{Asks, Both, Pair, asks};
 
 /// A pair, or the name of the error with which both precisions refuse the design.
 pub type Refusable = Result<Box<dyn Pair>, String>;
@@ -73,16 +73,17 @@ const fn longest(row: &Row) -> usize {
 pub(crate) fn both<C, T>(
     core: Result<C, core::DesignError>,
     twin: Result<T, twin::DesignError>,
+    asks: Asks<C>,
 ) -> Refusable
 where
-    C: core::VelocityEstimator + 'static,
-    T: twin::VelocityEstimator + 'static,
-    Both<C, T>: Pair,
+    C: core::VelocityEstimator<Output = core::CountsPerTick> + 'static,
+    T: twin::VelocityEstimator<Output = twin::CountsPerTick> + 'static,
 {
     match (core, twin) {
         (Ok(core), Ok(twin)) => Ok(Box::new(Both {
             core,
             twin,
+            asks,
             states: None,
         })),
         (Err(core), Err(twin)) => {
@@ -129,6 +130,10 @@ macro_rules! pairs {
                 both(
                     one!(core, $c, $motor, $rate, $clock, request, $type, $make),
                     one!(twin, $c, $motor, $rate, $clock, request, $type, $make),
+                    {
+                        use core as $c;
+                        asks!($type)
+                    },
                 )
             }
         )*
@@ -161,7 +166,11 @@ pub(crate) fn kalman_motor_table(request: &Request<'_>) -> Refusable {
                 .and_then(|model| $c::TableKalmanMotor::<TABLE>::new(&model))
         }};
     }
-    both(table!(core), table!(twin))
+    both(
+        table!(core),
+        table!(twin),
+        asks!(core::TableKalmanMotor<TABLE>),
+    )
 }
 
 /// The motor model with the paper's eq. 15 taken literally: the row has it behind a parameter.
@@ -174,7 +183,11 @@ pub(crate) fn late_kalman_motor(request: &Request<'_>) -> Refusable {
                 .map($c::LateCurrent)
         };
     }
-    both(late!(core), late!(twin))
+    both(
+        late!(core),
+        late!(twin),
+        asks!(core::LateCurrent<core::SteadyKalmanMotor>),
+    )
 }
 
 /// A request at the edge clock and the encoder of the default device.
