@@ -1,9 +1,8 @@
 //! The command line.
 
 mod arguments;
-mod beside;
+mod closed_loop;
 mod compare;
-mod felt;
 mod identify;
 mod input;
 mod limit;
@@ -12,6 +11,7 @@ mod page;
 mod plot;
 mod record;
 mod replay;
+mod report_extras;
 mod robust;
 mod sensitivity;
 mod simulate;
@@ -40,7 +40,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     match parsed.command {
         None => compare::run(&compare::Compare::default(), "host-sim compare"),
         Some(Command::Compare(options)) if options.closed_loop => {
-            felt::run(&options, &command_line)
+            closed_loop::run(&options, &command_line)
         }
         Some(Command::Compare(options)) => compare::run(&options, &command_line),
         Some(Command::Replay(options)) => replay::run(&options),

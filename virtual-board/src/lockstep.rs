@@ -9,7 +9,7 @@ mod plant;
 
 use std::collections::VecDeque;
 
-use experiments::closed_loop::{Bench, Eye, Motion};
+use experiments::closed_loop::{Bench, FeedbackEncoder, Motion};
 use rigless::emulator::{AccessKind, Driver, Host, Settled, Stop, Watch};
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
@@ -99,7 +99,7 @@ impl Lockstep {
         let bench = Bench::new(
             &setup.device,
             setup.hand,
-            Eye::Large,
+            FeedbackEncoder::Own,
             RATE_HZ,
             setup.seed,
             STEP_S,

@@ -1,4 +1,4 @@
-//! The controller of `haptic-control` in closed loop with the plant: what the hand feels.
+//! Simulation of the controller of `haptic-control` in closed loop with the plant.
 
 mod bench;
 mod fault;
@@ -25,21 +25,21 @@ pub use hand::{Hand, Motion};
 pub use press::Press;
 pub use scene::{Visit, environments_with, named, usual};
 
-/// Which encoder of the large motor closes the loop.
+/// Encoder of the large motor that closes the loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Eye {
-    /// The device's own, through the estimator under test.
-    Large,
-    /// The reference encoder, as the paper closed its loop.
+pub enum FeedbackEncoder {
+    /// The device's own encoder.
+    Own,
+    /// The reference encoder, as in the paper.
     Reference,
 }
 
 /// One closed-loop run.
 #[derive(Clone)]
 pub struct Loop {
-    /// The device as it is.
+    /// The simulated device.
     pub device: Device,
-    /// The device as the controller believes it to be.
+    /// The device constants that the controller uses.
     pub believed: DualStage,
     /// Scene with its parameters.
     pub scene: AnyScene,
@@ -49,53 +49,53 @@ pub struct Loop {
     pub rate_hz: f64,
     /// Seed of the hand's motion, the encoders' phases and the disc.
     pub seed: u64,
-    /// Velocity of the large motor.
+    /// Estimator of the large motor's velocity.
     pub large: Estimator,
-    /// Velocity of the handle.
+    /// Estimator of the handle's velocity.
     pub handle: Estimator,
-    /// Which encoder `large` looks at.
-    pub eye: Eye,
+    /// Encoder that `large` reads.
+    pub encoder: FeedbackEncoder,
     /// Poles of the velocity loop.
     pub poles: LoopPoles,
-    /// Ticks by which the currents act late, beside the amplifier's lag.
+    /// Delay of the currents in ticks, in addition to the amplifier's lag.
     pub late_ticks: usize,
 }
 
-/// What is known at a tick, truth included.
+/// State of the simulation at a tick, with the true values.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment {
     /// Time, s.
     pub t: f64,
-    /// Large motor.
+    /// True angle and velocity of the large motor.
     pub large: Pose,
-    /// Handle.
+    /// True angle and velocity of the handle.
     pub handle: Pose,
     /// Acceleration of the handle over the last tick, rad/s².
     pub handle_acceleration: f64,
-    /// Torque felt on the handle, N.m.
+    /// Torque of the handle on the hand, N.m.
     pub felt: f64,
-    /// What the controller saw.
+    /// Input of the controller.
     pub sample: Sample,
     /// Count of the device's own large encoder, whichever encoder closes the loop.
     pub own_count: Count,
-    /// What the controller did.
+    /// Output of the controller.
     pub action: Action,
-    /// Currents that the monitor let through, large then small motor, A.
+    /// Currents after the monitor, large then small motor, A; zero after a stop.
     pub commanded: (f64, f64),
-    /// Why the monitor stopped the device, if it has.
+    /// Reason for which the monitor stopped the device, if it did.
     pub stopped: Option<Stop>,
 }
 
 impl Loop {
-    /// Runs for `ticks`, showing each moment to `observe`.
+    /// Runs for `ticks` and calls `observe` at each tick.
     ///
     /// # Errors
-    /// One line on an impossible device or a loop that cannot be designed.
+    /// One line on an invalid device or a loop that cannot be designed.
     pub fn run(&self, ticks: usize, observe: impl FnMut(&Moment)) -> Result<(), String> {
         self.run_with(ticks, None, observe)
     }
 
-    /// Runs for `ticks` with an encoder that is faulty from a tick on.
+    /// Runs for `ticks`; the encoder is faulty from the tick of `fault` on.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -110,7 +110,7 @@ impl Loop {
         let designed = RstDesign::new(&self.believed, rate, self.poles)
             .and_then(|_| Rig::new(&self.believed, rate, self.poles));
         let mut rig = designed.map_err(|error| format!("control at {} Hz: {error}", rate.0))?;
-        if self.eye == Eye::Reference {
+        if self.encoder == FeedbackEncoder::Reference {
             rig.large_scale =
                 estimator_core::Scale::new(self.device.reference.counts_per_rev, rate)
                     .map_err(|error| format!("reference encoder: {error}"))?;
@@ -120,7 +120,7 @@ impl Loop {
             let names = Kind::all().iter().filter(|kind| kind.gives_acceleration());
             let names: Vec<_> = names.map(|kind| kind.name).collect();
             return Err(format!(
-                "scene {}: its estimator of the handle gives no acceleration; name one that does: {}",
+                "scene {}: the handle's estimator provides no acceleration; choose one of {}",
                 scene,
                 names.join(", ")
             ));
@@ -137,7 +137,7 @@ impl Loop {
     }
 }
 
-/// A run about to begin, for whichever type of scene.
+/// A prepared run; generic over the type of the scene.
 struct Running<'a, F> {
     run: &'a Loop,
     rig: &'a Rig,
@@ -160,13 +160,13 @@ impl<F: FnMut(&Moment)> Visit for Running<'_, F> {
         let steps = steps_per_tick(period);
         let step = period / f64::from(steps);
         let run = self.run;
-        let mut bench = Bench::new(device, run.hand, run.eye, *rate_hz, run.seed, step);
+        let mut bench = Bench::new(device, run.hand, run.encoder, *rate_hz, run.seed, step);
         let controller = Controller::new(scene, large.clone(), handle.clone(), self.rig);
-        let mut watched = *believed;
-        if self.run.eye == Eye::Reference {
-            watched.large.counts_per_rev = device.reference.counts_per_rev;
+        let mut monitored = *believed;
+        if self.run.encoder == FeedbackEncoder::Reference {
+            monitored.large.counts_per_rev = device.reference.counts_per_rev;
         }
-        let monitor = Monitor::new(&watched, Hertz(*rate_hz));
+        let monitor = Monitor::new(&monitored, Hertz(*rate_hz));
         let mut sample = bench.sample(Amps::ZERO);
         let mut state = controller.start(&sample);
         let mut watch = monitor.start(&sample);
@@ -212,7 +212,7 @@ impl<F: FnMut(&Moment)> Visit for Running<'_, F> {
     }
 }
 
-/// The estimator called `kind` on the encoder that it looks at, with its tuned parameters.
+/// The estimator `kind` with its tuned parameters, for an encoder of `counts_per_rev`.
 ///
 /// # Errors
 /// As [`Kind::build`].

@@ -1,4 +1,4 @@
-//! The main job: scenarios × rates × plants, every estimator on each, scored.
+//! Open-loop comparison: scores of every estimator for each scenario, rate and plant.
 
 use std::time::{Duration, Instant};
 
@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use catalogue::estimators::{Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
-use scoring::contest::{Contest, Estimate, Heading, Row};
+use scoring::evaluation::{Estimate, Evaluation, Heading, Row};
 use scoring::score::{Interval, Wanted};
 use simulation::device::Device;
 use simulation::scenario::{Role, ScenarioName};
@@ -27,7 +27,7 @@ pub struct Case {
     pub seed: u64,
     /// Duration, s.
     pub seconds: f64,
-    /// Whether the signals are kept for figures.
+    /// Whether the outcome has the signals, for figures.
     pub keep: bool,
 }
 
@@ -44,27 +44,27 @@ pub struct Settings {
     pub wanted: Wanted,
 }
 
-/// One case, scored.
+/// Scores of one case.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// What was run.
+    /// The case.
     pub case: Case,
-    /// One row an estimator.
+    /// One row per estimator.
     pub rows: Vec<Row>,
-    /// The signals, where [`Case::keep`] asked for them.
+    /// The signals, if [`Case::keep`] is set.
     pub signals: Option<(Trace, Vec<Estimate>)>,
-    /// Damping, true and learned, in scenario heating.
+    /// True and estimated damping, in scenario heating.
     pub damping: Option<Damping>,
-    /// Where the time went.
+    /// Run time.
     pub cost: Cost,
 }
 
-/// Damping b over a run, N.m.s/rad, true and as estimators learned it, each [`Damping::STEP_S`].
+/// Damping b over a run, N.m.s/rad: true values and estimates, one each [`Damping::STEP_S`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Damping {
-    /// The coupler's.
+    /// True damping of the coupler.
     pub truth: Vec<f64>,
-    /// By estimator.
+    /// Estimated damping by estimator.
     pub learned: Vec<(&'static str, Vec<f64>)>,
 }
 
@@ -72,12 +72,12 @@ impl Damping {
     /// Time from one value to the next, s.
     pub const STEP_S: f64 = 0.1;
 
-    fn of(contest: &Contest, trace: &Trace) -> Option<Self> {
+    fn of(evaluation: &Evaluation, trace: &Trace) -> Option<Self> {
         let every = (Self::STEP_S * trace.rate_hz).round().max(1.0) as usize;
         let thinned = |values: &[f64]| values.iter().copied().step_by(every).collect();
-        let learned = contest.contestants().iter().filter_map(|contestant| {
-            let damping = contest.learned_damping(contestant, trace)?;
-            Some((contestant.kind.name, thinned(&damping)))
+        let learned = evaluation.candidates().iter().filter_map(|candidate| {
+            let damping = evaluation.learned_damping(candidate, trace)?;
+            Some((candidate.kind.name, thinned(&damping)))
         });
         Some(Self {
             truth: thinned(trace.true_damping.as_ref()?),
@@ -86,16 +86,16 @@ impl Damping {
     }
 }
 
-/// Where the time of a case went, on its one thread.
+/// Run time of a case on one thread.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cost {
     /// Steps of the plant.
     pub plant_steps: u64,
-    /// Simulation of plant, encoders and scenario.
+    /// Time for plant, encoders and scenario.
     pub simulation: Duration,
-    /// All estimators.
+    /// Time for all estimators.
     pub estimation: Duration,
-    /// All scores.
+    /// Time for all scores.
     pub scoring: Duration,
 }
 
@@ -110,7 +110,7 @@ impl std::iter::Sum for Cost {
     }
 }
 
-/// The device of a case as estimators see it: of a plant without friction, they know that.
+/// The device constants that the estimators of a case use; without friction if the plant has none.
 #[must_use]
 pub fn setup_of(case: &Case, device: &Device) -> Setup {
     let setup = Setup::of(device, case.rate_hz);
@@ -132,11 +132,10 @@ pub fn interval(device: &Device) -> Interval {
     )
 }
 
-/// Runs all cases in parallel; `done` is called as each ends. The outcomes come in the order of
-/// the cases, whatever the order they ended in.
+/// Runs all cases in parallel and calls `done` after each. The outcomes have the order of the cases.
 ///
 /// # Errors
-/// [`Failure::Input`] of the first case, in order, that could not be run.
+/// [`Failure::Input`] of the first case, in order, that cannot be run.
 pub fn compare(
     cases: &[Case],
     settings: &Settings,
@@ -159,11 +158,11 @@ fn run(case: &Case, settings: &Settings) -> Result<Outcome, Failure> {
         parameters,
         wanted,
     } = settings;
-    let contest = Contest::new(estimators, parameters, &setup_of(case, device), case.plant)?;
+    let evaluation = Evaluation::new(estimators, parameters, &setup_of(case, device), case.plant)?;
     let begin = Instant::now();
     let trace = trace(case, device, estimators)?;
     let simulated = Instant::now();
-    let estimates = contest.estimates(&trace);
+    let estimates = evaluation.estimates(&trace);
     let estimated = Instant::now();
     let heading = Heading {
         scenario: case.scenario.as_str().to_owned(),
@@ -171,12 +170,12 @@ fn run(case: &Case, settings: &Settings) -> Result<Outcome, Failure> {
         plant: case.plant,
         seed: case.seed,
     };
-    let rows = contest.rows(&heading, &trace, &estimates, interval(device), *wanted)?;
+    let rows = evaluation.rows(&heading, &trace, &estimates, interval(device), *wanted)?;
     let heats = case.scenario.role() == Role::Warming;
     Ok(Outcome {
         case: case.clone(),
         rows,
-        damping: heats.then(|| Damping::of(&contest, &trace)).flatten(),
+        damping: heats.then(|| Damping::of(&evaluation, &trace)).flatten(),
         cost: Cost {
             plant_steps: plant_steps(case.rate_hz, case.seconds)?,
             simulation: simulated - begin,
@@ -187,10 +186,10 @@ fn run(case: &Case, settings: &Settings) -> Result<Outcome, Failure> {
     })
 }
 
-/// Simulates a case, with no column but those that the estimators read.
+/// Simulates a case with only the columns that the estimators read.
 ///
 /// # Errors
-/// [`Failure::Input`] where rate or duration are out of range.
+/// [`Failure::Input`] if rate or duration are out of range.
 pub fn trace(case: &Case, device: &Device, estimators: &[&Kind]) -> Result<Trace, Failure> {
     let columns = Columns {
         counts_small: estimators.iter().any(|kind| kind.needs.coupled),

@@ -3,7 +3,6 @@
 
 pub mod closed_loop;
 pub mod compare;
-pub mod felt;
 pub mod identify;
 pub mod limit;
 pub mod replay;
@@ -11,5 +10,6 @@ pub mod robust;
 pub mod rows;
 pub mod sensitivity;
 pub mod table;
+pub mod transparency;
 pub mod tune;
 pub mod zwidth;

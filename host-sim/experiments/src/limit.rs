@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use crate::compare::{Case, Settings, interval, setup_of, trace};
 use catalogue::estimators::Kind;
-use scoring::contest::Contest;
+use scoring::evaluation::Evaluation;
 use scoring::score::{Truth, Wanted};
 use simulation::scenario::{ScenarioName, TORQUE_INTENSITY_NM2_S};
 use terminal::failure::Failure;
@@ -92,7 +92,7 @@ fn run(case: &Case, settings: &Settings, particles: usize) -> Result<Vec<Row>, F
     let all: Vec<&Kind> = Kind::all().iter().collect();
     let trace = trace(case, &settings.device, &all)?;
     let setup = setup_of(case, &settings.device);
-    let contest = Contest::new(
+    let evaluation = Evaluation::new(
         &settings.estimators,
         &settings.parameters,
         &setup,
@@ -128,14 +128,14 @@ fn run(case: &Case, settings: &Settings, particles: usize) -> Result<Vec<Row>, F
         row("limit", counts, counts),
         row("limit-edge", edges, edges),
     ];
-    for contestant in contest.contestants() {
-        if let Some(estimate) = contestant.estimate(&trace) {
-            let limit = if contestant.kind.needs.edge {
+    for candidate in evaluation.candidates() {
+        if let Some(estimate) = candidate.estimate(&trace) {
+            let limit = if candidate.kind.needs.edge {
                 edges
             } else {
                 counts
             };
-            rows.push(row(contestant.kind.name, rms(&estimate.velocity), limit));
+            rows.push(row(candidate.kind.name, rms(&estimate.velocity), limit));
         }
     }
     Ok(rows)

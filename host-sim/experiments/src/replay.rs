@@ -1,4 +1,4 @@
-//! Recordings through the estimators.
+//! Replay of recordings through the estimators.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -12,28 +12,28 @@ use catalogue::estimators::{Kind, available};
 use catalogue::parameters::{Parameters, PlantKind};
 use recordings::health;
 use recordings::recording::{BoardColumns, Recording};
-use scoring::contest::{Contest, Contestant, Estimate, Heading, Row};
+use scoring::evaluation::{Candidate, Estimate, Evaluation, Heading, Row};
 use scoring::score::{Field, Score, Wanted};
 use simulation::device::Device;
 use terminal::failure::Failure;
 
-/// What came of a recording.
+/// Results of a replay.
 #[derive(Clone, Debug)]
 pub struct Replay {
-    /// One an estimator, in the order asked for.
+    /// One estimate per estimator, in the requested order.
     pub estimates: Vec<Estimate>,
-    /// The scores, where the recording has `true_omega`.
+    /// The scores, empty without column `true_omega`.
     pub rows: Vec<Row>,
-    /// Estimators left out, and the column each lacks.
+    /// Estimators left out, each with the missing column.
     pub left_out: Vec<(&'static str, &'static str)>,
-    /// Parameters that were tuned for another encoder or rate, a line each.
-    pub far: Vec<String>,
+    /// One line per estimator whose parameters were tuned for another encoder or rate.
+    pub mismatched_presets: Vec<String>,
 }
 
-/// Runs `kinds` over a recording called `name`; `done` is called as each ends.
+/// Runs the estimators `kinds` on a recording called `name` and calls `done` after each.
 ///
 /// # Errors
-/// [`Failure::Input`] where an estimator cannot be built.
+/// [`Failure::Input`] if an estimator cannot be built.
 pub fn replay(
     recording: &Recording,
     name: &str,
@@ -47,13 +47,13 @@ pub fn replay(
         .iter()
         .partition(|kind| kind.needs.within(available(trace)));
     let setup = Setup::of(device, trace.rate_hz);
-    let contest = Contest::new(&able, parameters, &setup, PlantKind::Friction)?;
-    let estimate = |contestant: &Contestant| {
-        let estimate = contestant.estimate(trace);
+    let evaluation = Evaluation::new(&able, parameters, &setup, PlantKind::Friction)?;
+    let estimate = |candidate: &Candidate| {
+        let estimate = candidate.estimate(trace);
         done();
         estimate
     };
-    let estimates: Vec<_> = (contest.contestants().par_iter())
+    let estimates: Vec<_> = (evaluation.candidates().par_iter())
         .filter_map(estimate)
         .collect();
     let heading = Heading {
@@ -62,8 +62,8 @@ pub fn replay(
         plant: PlantKind::Friction,
         seed: 0,
     };
-    let rows = contest.rows(&heading, trace, &estimates, interval(device), Wanted::ALL)?;
-    let lacking = |kind: &&'static Kind| {
+    let rows = evaluation.rows(&heading, trace, &estimates, interval(device), Wanted::ALL)?;
+    let missing = |kind: &&'static Kind| {
         let has = available(trace);
         let column = match kind.needs {
             needs if needs.current && !has.current => "current",
@@ -75,12 +75,12 @@ pub fn replay(
     Ok(Replay {
         estimates,
         rows,
-        left_out: unable.iter().map(lacking).collect(),
-        far: parameters.used_far_away(&able, &setup, PlantKind::Friction),
+        left_out: unable.iter().map(missing).collect(),
+        mismatched_presets: parameters.used_far_away(&able, &setup, PlantKind::Friction),
     })
 }
 
-/// What was replayed, with which encoder and parameters, in a line.
+/// One line on the recording's length and rate, the encoder and the parameters.
 #[must_use]
 pub fn header(
     recording: &Recording,
@@ -97,8 +97,8 @@ pub fn header(
     )
 }
 
-/// Scores that tell what a hand feels through the coupler.
-const FELT: [&str; 6] = [
+/// Scores of the force through the coupler.
+const COUPLER_SCORES: [&str; 6] = [
     "distance_rad_s",
     "distance_pct",
     "distance_transient_rad_s",
@@ -107,22 +107,22 @@ const FELT: [&str; 6] = [
     "force_mn",
 ];
 
-/// The usual scores in lines of `width` characters, those of the coupler only where there is one.
+/// The usual scores in lines of `width` characters; those of the coupler only `with_coupler`.
 #[must_use]
 pub fn table(rows: &[Row], with_coupler: bool, width: usize) -> String {
     let shown = |field: &&Field<Score>| {
         let known = rows.iter().any(|row| (field.of)(&row.score).is_some());
-        field.usual && known && (with_coupler || !FELT.contains(&field.name))
+        field.usual && known && (with_coupler || !COUPLER_SCORES.contains(&field.name))
     };
     let fields: Vec<_> = Score::FIELDS.iter().filter(shown).collect();
     table::details(rows, &fields, width)
 }
 
-/// What there is to say of the board that made the recording: how often the truth was within two of
-/// the standard deviations that it claimed, and what it learned against `device`.
+/// Summary of the board's own estimates in a recording, one line each: the share of samples whose
+/// error is within two of its standard deviations, and its estimated parameters relative to `device`.
 #[must_use]
-pub fn of_the_board(recording: &Recording, board: &BoardColumns, device: &Device) -> Vec<String> {
-    let mut said = Vec::new();
+pub fn board_summary(recording: &Recording, board: &BoardColumns, device: &Device) -> Vec<String> {
+    let mut lines = Vec::new();
     let trace = &recording.trace;
     if let (Some(omega), Some(velocity), Some(sigma)) = (
         &trace.true_omega,
@@ -135,28 +135,31 @@ pub fn of_the_board(recording: &Recording, board: &BoardColumns, device: &Device
             deviation: Some(sigma.iter().map(|s| *s as f32).collect()),
         };
         let share = own.within_2_sigma(omega, trace.rate_hz);
-        said.extend(share.map(|share| {
+        lines.extend(share.map(|share| {
             let percent = 100.0 * share;
-            format!("the board's own velocity is within two of its sigma_large in {percent:.1} %")
+            format!(
+                "the error of the board's velocity_large is within two sigma_large in {percent:.1} % \
+                 of the samples"
+            )
         }));
     }
     if let Some(learned) = &board.learned {
-        said.extend(health::lines(learned, device));
+        lines.extend(health::lines(learned, device));
     }
-    said
+    lines
 }
 
-/// The name a recording goes by: its file's.
+/// Name of a recording: that of its file.
 #[must_use]
 pub fn name(path: &Path) -> String {
     path.file_name()
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
-/// Writes `t` and one column an estimator, rad/s, as CSV.
+/// Writes `t` and one column per estimator, rad/s, as CSV.
 ///
 /// # Errors
-/// Those of `out`.
+/// The errors of `out`.
 pub fn csv(out: &mut dyn Write, t: &[f64], estimates: &[Estimate]) -> io::Result<()> {
     write!(out, "t")?;
     for estimate in estimates {
@@ -178,7 +181,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_lacks_a_column_is_left_out_by_name() {
+    fn estimator_without_its_column_is_left_out_and_reported() {
         let text = "t,counts_large,true_omega\n0,0,0\n0.001,1,1.5\n0.002,2,1.5\n";
         let recording = Recording::parse(text.as_bytes(), "r").unwrap();
         let kinds: Vec<_> = Kind::all().iter().collect();

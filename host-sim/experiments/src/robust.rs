@@ -15,7 +15,7 @@ use haptic_control::{LoopPoles, SceneKind};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::closed_loop::{Eye, Loop, named, usual};
+use crate::closed_loop::{FeedbackEncoder, Loop, named, usual};
 use catalogue::estimators::Setup;
 use catalogue::estimators::{Estimator, Kind};
 use catalogue::parameters::{Parameters, PlantKind};
@@ -167,7 +167,7 @@ impl Experiment {
             seed,
             large: self.large.clone(),
             handle: self.handle.clone(),
-            eye: Eye::Large,
+            encoder: FeedbackEncoder::Own,
             poles: self.poles,
             late_ticks: variation.late_ticks + self.late_ticks,
         };

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use scoring::contest::Row;
+use scoring::evaluation::Row;
 use scoring::score::{Field, Over, Score};
 
 pub mod layout;

@@ -2,29 +2,53 @@
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind};
-use experiments::closed_loop::{Eye, Hand, Loop, Press, estimator, usual};
-use experiments::felt::{Case, Fingertip, Parasitic, Settings, bandwidth_hz, compare, sweep};
+use experiments::closed_loop::{FeedbackEncoder, Hand, Loop, Press, estimator, usual};
+use experiments::compare::Settings;
+use experiments::transparency::{
+    Fingertip, LoopCase, LoopSettings, Parasitic, bandwidth_hz, compare, sweep,
+};
 use haptic_control::{AnyScene, Inertia, LoopPoles, SceneKind};
 use scoring::score::Wanted;
 use simulation::device::Device;
 use std::f64::consts::TAU;
 
-fn settings(names: &[&str]) -> Settings {
-    Settings {
-        device: Device::default(),
-        estimators: names
-            .iter()
-            .map(|name| Kind::named(name).unwrap())
-            .collect(),
+fn settings(names: &[&str]) -> LoopSettings {
+    LoopSettings {
+        common: Settings {
+            device: Device::default(),
+            estimators: names
+                .iter()
+                .map(|name| Kind::named(name).unwrap())
+                .collect(),
+            parameters: Parameters::default(),
+            wanted: Wanted::ALL,
+        },
         handle: Kind::named("kalman-triple-steady").unwrap(),
-        parameters: Parameters::default(),
-        wanted: Wanted::ALL,
+    }
+}
+
+/// A run of `scene` with the steady Kalman filter for both velocities.
+fn with_kalman(scene: AnyScene, device: &Device, hand: Hand, rate_hz: f64) -> Loop {
+    let kind = Kind::named("kalman-triple-steady").unwrap();
+    let on = |counts| estimator(kind, device, counts, rate_hz, &Parameters::default()).unwrap();
+    Loop {
+        device: device.clone(),
+        believed: device.stages,
+        scene,
+        hand,
+        rate_hz,
+        seed: 1,
+        large: on(device.stages.large.counts_per_rev),
+        handle: on(device.stages.small.counts_per_rev),
+        encoder: FeedbackEncoder::Own,
+        poles: LoopPoles::DEFAULT,
+        late_ticks: 0,
     }
 }
 
 #[test]
 fn parasitic_is_felt_less_wanted_at_the_fingertip() {
-    let case = Case {
+    let case = LoopCase {
         scene: SceneKind::Wall,
         rate_hz: 1000.0,
         plant: PlantKind::Friction,
@@ -51,23 +75,10 @@ fn parasitic_is_felt_less_wanted_at_the_fingertip() {
 
 #[test]
 fn off_has_no_current_and_only_scenes_with_a_loop_know_the_large_motor_s_velocity() {
-    let (device, parameters, rate_hz) = (Device::default(), Parameters::default(), 1000.0);
-    let kind = Kind::named("kalman-triple-steady").unwrap();
-    let on = |counts| estimator(kind, &device, counts, rate_hz, &parameters).unwrap();
+    let (device, rate_hz) = (Device::default(), 1000.0);
     for scene in SceneKind::environments() {
-        let run = Loop {
-            device: device.clone(),
-            scene: usual(scene, &device.stages, rate_hz).unwrap(),
-            believed: device.stages,
-            hand: Hand::Moving,
-            rate_hz,
-            seed: 1,
-            large: on(device.stages.large.counts_per_rev),
-            handle: on(device.stages.small.counts_per_rev),
-            eye: Eye::Large,
-            poles: LoopPoles::DEFAULT,
-            late_ticks: 0,
-        };
+        let scene_parameters = usual(scene, &device.stages, rate_hz).unwrap();
+        let run = with_kalman(scene_parameters, &device, Hand::Moving, rate_hz);
         let (mut driven, mut known, mut counted) = (false, false, false);
         run.run(500, |moment| {
             let currents = moment.action.currents;
@@ -84,29 +95,17 @@ fn off_has_no_current_and_only_scenes_with_a_loop_know_the_large_motor_s_velocit
 
 #[test]
 fn a_hard_press_does_not_stop_a_scene() {
-    let (device, parameters, rate_hz) = (Device::default(), Parameters::default(), 1000.0);
-    let kind = Kind::named("kalman-triple-steady").unwrap();
-    let on = |counts| estimator(kind, &device, counts, rate_hz, &parameters).unwrap();
+    let (device, rate_hz) = (Device::default(), 1000.0);
     // 0.5 N.m/rad: 10 N at 35 mm on a handle that stays where it is, and twice as far.
     for angle in [0.7, 1.4] {
         for scene in SceneKind::environments() {
-            let run = Loop {
-                device: device.clone(),
-                scene: usual(scene, &device.stages, rate_hz).unwrap(),
-                believed: device.stages,
-                hand: Hand::Pressing(Press {
-                    angle: 0.1 + angle,
-                    moving_s: 0.4,
-                    rest_s: 0.3,
-                }),
-                rate_hz,
-                seed: 1,
-                large: on(device.stages.large.counts_per_rev),
-                handle: on(device.stages.small.counts_per_rev),
-                eye: Eye::Large,
-                poles: LoopPoles::DEFAULT,
-                late_ticks: 0,
-            };
+            let hand = Hand::Pressing(Press {
+                angle: 0.1 + angle,
+                moving_s: 0.4,
+                rest_s: 0.3,
+            });
+            let scene_parameters = usual(scene, &device.stages, rate_hz).unwrap();
+            let run = with_kalman(scene_parameters, &device, hand, rate_hz);
             let mut stopped = None;
             run.run(1300, |moment| stopped = moment.stopped).unwrap();
             assert_eq!(stopped, None, "{scene}, {angle} rad");
@@ -138,30 +137,17 @@ fn torque_is_rendered_flat_up_to_the_amplifiers() {
     let bandwidth = bandwidth_hz(responses).unwrap();
     assert!((1400.0..2100.0).contains(&bandwidth), "{bandwidth}");
     let (_, difference) = &swept.runs[0];
-    let least =
-        |of: &[experiments::felt::Response]| of.iter().map(|r| r.coherence).fold(1.0, f64::min);
+    let least = |of: &[experiments::transparency::Response]| {
+        of.iter().map(|r| r.coherence).fold(1.0, f64::min)
+    };
     assert!(least(difference) < least(responses));
 }
 
 /// The inertia that a hand feels: felt torque against the handle's acceleration, least squares, over
 /// the whole motion and with both through the same four poles at 1 Hz.
 fn felt_inertia(scene: impl Into<AnyScene>, device: &Device) -> [f64; 2] {
-    let (parameters, rate_hz) = (Parameters::default(), 10e3);
-    let kind = Kind::named("kalman-triple-steady").unwrap();
-    let on = |counts| estimator(kind, device, counts, rate_hz, &parameters).unwrap();
-    let run = Loop {
-        device: device.clone(),
-        believed: device.stages,
-        scene: scene.into(),
-        hand: Hand::Moving,
-        rate_hz,
-        seed: 1,
-        large: on(device.stages.large.counts_per_rev),
-        handle: on(device.stages.small.counts_per_rev),
-        eye: Eye::Large,
-        poles: LoopPoles::DEFAULT,
-        late_ticks: 0,
-    };
+    let rate_hz = 10e3;
+    let run = with_kalman(scene.into(), device, Hand::Moving, rate_hz);
     let slow = |poles: &mut [f64; 4], input: f64| {
         poles.iter_mut().fold(input, |input, pole| {
             *pole += TAU / rate_hz * (input - *pole);

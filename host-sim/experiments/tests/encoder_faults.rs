@@ -2,7 +2,7 @@
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::closed_loop::{Eye, Fault, Hand, Loop, estimator, usual};
+use experiments::closed_loop::{Fault, FeedbackEncoder, Hand, Loop, estimator, usual};
 use haptic_control::{LoopPoles, SceneKind, SimulatedHand, Stop};
 use simulation::device::Device;
 
@@ -25,7 +25,7 @@ fn closed(scene: SceneKind, rate_hz: f64, seed: u64) -> Loop {
         },
         rate_hz,
         seed,
-        eye: Eye::Large,
+        encoder: FeedbackEncoder::Own,
         poles: LoopPoles::DEFAULT,
         late_ticks: 0,
     }

@@ -3,7 +3,7 @@
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::closed_loop::{Eye, Hand, Loop, estimator, usual};
+use experiments::closed_loop::{FeedbackEncoder, Hand, Loop, estimator, usual};
 use experiments::identify::{Identification, Known, identify};
 use haptic_control::{LoopPoles, SceneKind};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -47,7 +47,7 @@ fn record(device: &Device, hand: Hand, seed: u64, every: usize) -> Recording {
         seed,
         large: estimator(device.stages.large.counts_per_rev),
         handle: estimator(device.stages.small.counts_per_rev),
-        eye: Eye::Large,
+        encoder: FeedbackEncoder::Own,
         poles: LoopPoles::DEFAULT,
         late_ticks: 0,
     };

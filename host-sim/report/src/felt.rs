@@ -14,7 +14,7 @@ use super::palette::Palette;
 use super::sections::{Section, framed, words};
 use super::text::{number, plant, rate, share};
 use catalogue::parameters::PlantKind;
-use experiments::felt::{Design, Outcome, REFERENCE, Run, Swept};
+use experiments::transparency::{Design, Outcome, REFERENCE, Run, Swept};
 use haptic_control::SceneKind;
 
 /// What was run with the loop closed.

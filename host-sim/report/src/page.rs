@@ -114,7 +114,8 @@ fn facts(report: &ReportInput) -> Vec<(&'static str, String)> {
     let plants: Vec<&str> = [false, true]
         .into_iter()
         .filter(|&friction| {
-            let closed_with = |case: &experiments::felt::Case| case.plant == PlantKind::Friction;
+            let closed_with =
+                |case: &experiments::transparency::LoopCase| case.plant == PlantKind::Friction;
             report.cases.iter().any(|case| case.friction == friction)
                 || closed().any(|case| closed_with(case) == friction)
         })

@@ -1,7 +1,7 @@
 //! One colour and dash for each estimator, the same in every figure.
 
 use estimator_catalogue::{Colour, Dash, ROWS};
-use experiments::felt::REFERENCE;
+use experiments::transparency::REFERENCE;
 use plotters::style::RGBColor;
 
 use super::ReportInput;

@@ -13,7 +13,7 @@ use super::canvas::{Anchor, Key, TITLE, WIDTH, figure, legend_height};
 use super::palette::{INK, Palette, TRUTH};
 use super::plot::{Axis, Plot};
 use recordings::recording::{BoardColumns, Recording};
-use scoring::contest::Estimate;
+use scoring::evaluation::Estimate;
 use scoring::score::Interval;
 
 /// Sizes, px.

@@ -1,6 +1,6 @@
 //! Scores of a velocity estimate against the true velocity: error, delay, transients, and the force
 //! that a hand would feel.
 
-pub mod contest;
+pub mod evaluation;
 pub mod score;
 pub mod spectrum;

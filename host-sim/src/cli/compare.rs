@@ -12,7 +12,7 @@ use experiments::table::layout::terminal_width;
 use haptic_control::SceneKind;
 use report::measured;
 use report::{self, CaseReport, DeviceFacts, ReportInput, Traces};
-use scoring::contest::Row;
+use scoring::evaluation::Row;
 use scoring::score::{Field, SKIP_S, Score, Wanted};
 use simulation::device::Device;
 use simulation::scenario::{Role, ScenarioName};
@@ -21,9 +21,9 @@ use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds, rates, scenarios};
-use super::beside::{Beside, beside};
-use super::felt;
+use super::closed_loop;
 use super::page::{self, progress};
+use super::report_extras::{ReportExtras, report_extras};
 
 /// Default folder of the report.
 const REPORT: &str = "target/report";
@@ -134,12 +134,12 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
         .collect();
     let mut index = None;
     if let Some(folder) = report {
-        let (closed, remark) = felt::beside(options);
-        let Beside {
+        let (closed, remark) = closed_loop::for_report(options);
+        let ReportExtras {
             limits,
             beliefs,
             warming,
-        } = beside(options, &settings, &cases)?;
+        } = report_extras(options, &settings, &cases)?;
         let input = ReportInput {
             command: command_line.to_owned(),
             device: facts(&settings.device, &options.device.name()),
@@ -154,7 +154,7 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
         let mut files = Folder::new(folder);
         files.add("scores.json", rows::json(&rows)?);
         files.add("scores.csv", rows::csv(&rows)?);
-        index = Some(felt::write(files, input, closed)?);
+        index = Some(closed_loop::write(files, input, closed)?);
     }
     let width = terminal_width();
     let mut text = match asked {

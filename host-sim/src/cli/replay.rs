@@ -87,7 +87,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         note(format_args!("{name}: {line}"));
     }
     note_about(&name, &recording, &replayed);
-    for line in replay::of_the_board(&recording, &board, &device) {
+    for line in replay::board_summary(&recording, &board, &device) {
         note(format_args!("{name}: {line}"));
     }
     let device_name = match options.device.is_given() {
@@ -131,7 +131,7 @@ pub(super) fn note_about(name: &str, recording: &Recording, replayed: &replay::R
             "{name}: no column {column}; estimators left out: {names}"
         ));
     }
-    for line in &replayed.far {
+    for line in &replayed.mismatched_presets {
         note(format_args!("{name}: {line}"));
     }
     // The estimators assume a constant period.

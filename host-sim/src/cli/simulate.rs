@@ -7,7 +7,7 @@ use haptic_control::{LoopPoles, SceneKind};
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::closed_loop::{Eye, Hand, Loop, estimator, named, usual};
+use experiments::closed_loop::{FeedbackEncoder, Hand, Loop, estimator, named, usual};
 use recordings::recording::Recording;
 use simulation::scenario::ScenarioName;
 use simulation::simulate::{simulate, ticks};
@@ -126,7 +126,7 @@ fn of_scene(options: &Simulate) -> Result<Recording, Failure> {
         seed: options.seed,
         large: estimator(device.stages.large.counts_per_rev)?,
         handle: estimator(device.stages.small.counts_per_rev)?,
-        eye: Eye::Large,
+        encoder: FeedbackEncoder::Own,
         poles: LoopPoles::DEFAULT,
         late_ticks: 0,
         device,

@@ -9,7 +9,7 @@ use catalogue::parameters::{Parameters, PlantKind};
 use experiments::compare::{Case, Outcome, Settings, compare};
 use experiments::sensitivity::{self, sensitivity};
 use experiments::table::pooled_pct;
-use scoring::contest::Row;
+use scoring::evaluation::Row;
 use scoring::score::Wanted;
 use simulation::device::{Device, Disc};
 use simulation::scenario::ScenarioName;

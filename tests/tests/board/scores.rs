@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use estimator_core::Amps;
-use experiments::closed_loop::{Bench, Eye, Hand};
+use experiments::closed_loop::{Bench, FeedbackEncoder, Hand};
 use experiments::compare::interval;
 use firmware_app::scene::Core;
 use scoring::score::{Score, Truth, Wanted};
@@ -143,7 +143,7 @@ fn the_scores_of_a_run_are_those_of_their_definitions() {
 /// The image's control core in the loop of `host-sim`: no processor, no DAC, no lateness.
 fn on_host(scene: u8, hand: Hand, seconds: f64) -> Scores {
     let (device, step) = (Device::default(), 10e-6);
-    let mut bench = Bench::new(&device, hand, Eye::Large, RATE_HZ, 1, step);
+    let mut bench = Bench::new(&device, hand, FeedbackEncoder::Own, RATE_HZ, 1, step);
     let mut motion = hand.motion(1.0 / RATE_HZ, 1);
     let mut sample = bench.sample(Amps::ZERO);
     let mut core = Core::start(&sample);

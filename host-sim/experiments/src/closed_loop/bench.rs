@@ -1,4 +1,4 @@
-//! Plant and encoders, without whoever controls them.
+//! Plant and encoders without a controller.
 
 use std::f64::consts::TAU;
 
@@ -6,29 +6,36 @@ use estimator_core::{Amps, Count, Sample};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
-use super::{Eye, Hand};
+use super::{FeedbackEncoder, Hand};
 use simulation::device::Device;
 use simulation::encoder::{DiscErrors, EdgeObserver, Encoder};
 use simulation::plant::{Grip, Plant, Pose};
 use simulation::scenario::draw;
 
-/// The device on the bench: its shafts, and the encoders that look at them.
+/// The simulated device: plant and encoders.
 pub struct Bench {
-    /// Shafts and amplifiers.
+    /// Shafts, coupler and amplifiers.
     pub plant: Plant,
-    /// The encoder that the controller reads as the large motor's.
+    /// The encoder of the large motor that the controller reads.
     pub large: Encoder,
-    /// The device's own encoder of the large motor, where the controller reads another.
+    /// The device's own encoder of the large motor, if the controller reads the reference encoder.
     pub own: Option<Encoder>,
     /// The handle's encoder.
     pub small: Encoder,
 }
 
 impl Bench {
-    /// The device in `hand`, at rest: `seed` draws where the large motor stands and the encoders'
-    /// phases, `rate_hz` is the rate of the hand's motion and `step` the plant's step, s.
+    /// The device at rest, held by `hand`. `seed` draws the large motor's angle and the encoders'
+    /// phases, `rate_hz` is the sample rate of the hand's motion, and `step` is the plant's step, s.
     #[must_use]
-    pub fn new(device: &Device, hand: Hand, eye: Eye, rate_hz: f64, seed: u64, step: f64) -> Self {
+    pub fn new(
+        device: &Device,
+        hand: Hand,
+        feedback: FeedbackEncoder,
+        rate_hz: f64,
+        seed: u64,
+        step: f64,
+    ) -> Self {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(seed.rotate_left(17) ^ 0xC105_ED00);
         let mut plant = Plant::new(device, step);
         let start = Pose {
@@ -42,7 +49,7 @@ impl Bench {
             Encoder::new(counts_per_rev, first, phase, angle, disc)
         };
         let disc = DiscErrors::new(&device.disc, device.stages.large.counts_per_rev, seed);
-        // The reference encoder is drawn last, so that it changes none of the others.
+        // The reference encoder is drawn last, so that the other draws do not depend on it.
         let own = encoder(device.stages.large.counts_per_rev, start.angle, disc);
         let angle = plant.small().angle;
         let small = encoder(
@@ -50,9 +57,9 @@ impl Bench {
             angle,
             DiscErrors::none(),
         );
-        let (large, own) = match eye {
-            Eye::Large => (own, None),
-            Eye::Reference => {
+        let (large, own) = match feedback {
+            FeedbackEncoder::Own => (own, None),
+            FeedbackEncoder::Reference => {
                 let counts_per_rev = device.reference.counts_per_rev;
                 let reference = encoder(counts_per_rev, start.angle, DiscErrors::none());
                 (reference, Some(own))
@@ -66,7 +73,7 @@ impl Bench {
         }
     }
 
-    /// One step of the plant, `since` s into the tick; each encoder tells its edges to its observer.
+    /// One step of the plant, `since` s after the tick; the encoders report edges to the observers.
     pub fn step(
         &mut self,
         grip: &Grip,
@@ -86,7 +93,7 @@ impl Bench {
             .follow(old_small, self.plant.small(), step, small);
     }
 
-    /// What the controller sees now, with the large motor's `current`.
+    /// The controller's input: the present counts and the large motor's `current`.
     #[must_use]
     pub fn sample(&self, current: Amps) -> Sample {
         Sample::new(Count(self.large.count()))

@@ -2,16 +2,16 @@
 
 use estimator_core::Count;
 
-/// What happens to the encoder that the loop is closed with.
+/// Fault of the encoder that closes the loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Phase A stays what it is: B alone moves the count to and fro by one.
+    /// Phase A is stuck; edges of phase B move the count up and down by one.
     StuckA,
-    /// Phase B stays what it is.
+    /// Phase B is stuck.
     StuckB,
-    /// Both stay what they are.
+    /// Both phases are stuck.
     StuckBoth,
-    /// The phases are exchanged: the count runs backwards.
+    /// The phases are exchanged; the count runs backwards.
     Swapped,
 }
 
@@ -19,13 +19,13 @@ impl Fault {
     /// Every fault.
     pub const ALL: [Self; 4] = [Self::StuckA, Self::StuckB, Self::StuckBoth, Self::Swapped];
 
-    /// What is counted at `count`, of an encoder that has been faulty since `since`.
+    /// The faulty count. `count` is the correct count, `since` the count when the fault began.
     #[must_use]
     pub fn counted(self, count: Count, since: Count) -> Count {
-        // Phases of a count, in Gray's order.
+        // Phases of a count, in Gray code.
         let a = |count: Count| count.0.wrapping_add(1) / 2 % 2;
         let b = |count: Count| count.0 / 2 % 2;
-        // With one phase still, its level says which way the other one's edges count.
+        // The level of the stuck phase decides the direction in which edges of the other one count.
         let edge = |still: u32, from: u32, to: u32| {
             let way = if still == from { 1 } else { -1 };
             since.0.wrapping_add_signed(way * i32::from(from != to))
@@ -44,12 +44,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_stuck_phase_counts_the_other_ones_edges_to_and_fro() {
+    fn stuck_phase_counts_edges_of_the_other_up_and_down() {
         for since in 40..44 {
             for fault in [Fault::StuckA, Fault::StuckB] {
                 let at = |count| fault.counted(Count(count), Count(since)).0;
                 assert_eq!(at(since), since);
-                // The phase that still moves has its edge on one side, and counts it as before.
+                // The other phase has an edge on one side of the count, which is counted correctly.
                 let right = [at(since - 1) == since - 1, at(since + 1) == since + 1];
                 assert_eq!(
                     right.iter().filter(|right| **right).count(),

@@ -14,17 +14,17 @@ use super::tracking::Tracking;
 pub enum Hand {
     /// Moves at 0.3 to 4 Hz and trembles, as in the open-loop scenario free-air.
     Moving,
-    /// Swings into the angle of the wall and back, and trembles.
+    /// Moves to beyond the wall's position and back, and trembles.
     Pushing,
     /// Moves as the slip of the open-loop scenario track does: chirps and reversals.
     Tracking,
-    /// Means to keep the handle still and trembles.
+    /// Holds the handle still and trembles.
     Still,
     /// No hand: the handle starts with this velocity, rad/s.
     Gone(f64),
-    /// Presses and lets go, without tremor.
+    /// Presses and releases, without tremor.
     Pressing(Press),
-    /// Not a hand: a clamp.
+    /// A clamp instead of a hand.
     Clamp,
 }
 
@@ -50,7 +50,7 @@ enum Mover {
 }
 
 impl Motion {
-    /// What holds the handle during tick `k`, which follows the one asked for before.
+    /// The grip on the handle during tick `k`. Ticks are requested in order.
     pub fn grip(&mut self, k: u64) -> Grip {
         match &mut self.0 {
             Mover::Intent(intent) => intent.grip(k),
@@ -80,7 +80,7 @@ impl Hand {
         })
     }
 
-    /// Where the handle is at first.
+    /// Initial angle and velocity of the handle.
     #[must_use]
     pub fn start(self, period_s: f64, seed: u64) -> Pose {
         match (self.intent(period_s, seed), self) {

@@ -1,20 +1,20 @@
-//! A hand that presses on something and lets go.
+//! A hand that presses against the scene and releases.
 
 use simulation::plant::{Grip, HandMotion, Pose};
 
-/// Moves from 0 to `angle` along a curve of least jerk, rests there, and comes back the same way.
+/// Motion from 0 to `angle` along a minimum-jerk curve, a rest there, and the same way back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Press {
-    /// Where to, rad.
+    /// Target, rad.
     pub angle: f64,
-    /// Duration of each way, s.
+    /// Duration of the motion in each direction, s.
     pub moving_s: f64,
-    /// Duration of the rest between them, s.
+    /// Duration of the rest, s.
     pub rest_s: f64,
 }
 
 impl Press {
-    /// What the hand intends `t` seconds after the start.
+    /// Intended angle and velocity `t` seconds after the start.
     #[must_use]
     pub fn at(&self, t: f64) -> Pose {
         let back = self.moving_s + self.rest_s;
@@ -31,7 +31,7 @@ impl Press {
         }
     }
 
-    /// The hand during tick `k`.
+    /// The grip on the handle during tick `k`.
     pub(super) fn grip(&self, k: u64, period_s: f64) -> Grip {
         let at = |k: u64| self.at(k as f64 * period_s);
         Grip::Hand(HandMotion::between(at(k), at(k + 1), period_s))
@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_press_goes_there_and_back_at_the_velocity_that_it_says() {
+    fn velocity_of_a_press_is_the_slope_of_its_angle() {
         let press = Press {
             angle: 0.2,
             moving_s: 0.1,

@@ -5,8 +5,8 @@ use recordings::recording::Recording;
 use simulation::trace::Trace;
 
 impl Loop {
-    /// Records `ticks`, each `every`-th of them, as telemetry would: counts at the tick, currents
-    /// from it on, and the truth.
+    /// Runs for `ticks` and records every `every`-th tick as telemetry does: counts at the tick,
+    /// currents from the tick on, and true values.
     ///
     /// # Errors
     /// As [`Loop::run`].

@@ -5,7 +5,7 @@ use estimator_core::Hertz;
 use haptic_control::{AnyScene, DualStage, Scene, SceneKind, Senses, scenes};
 use terminal::wording::unknown;
 
-/// An operation on a scene of any type.
+/// Operation that is generic over the type of the scene.
 pub trait Visit {
     /// Performs the operation.
     fn visit<S: Scene<Acceleration: Senses<Estimator>>>(self, scene: S);
@@ -13,7 +13,7 @@ pub trait Visit {
 
 macro_rules! visit {
     ($($number:literal, $name:literal, $scene:ident, $facts:tt;)+) => {
-        /// Shows the scene, as its type, to a visitor.
+        /// Calls `visit` with the scene as its own type.
         pub(super) fn visit(scene: &AnyScene, visit: impl Visit) {
             match *scene {
                 $(AnyScene::$scene(scene) => visit.visit(scene),)+
@@ -23,16 +23,16 @@ macro_rules! visit {
 }
 scenes!(visit);
 
-/// The scene with its usual parameters.
+/// The scene with its default parameters.
 ///
 /// # Errors
-/// One line if the device or the control rate cannot render it.
+/// One line if the scene cannot be rendered with the device or at the control rate.
 pub fn usual(scene: SceneKind, believed: &DualStage, rate_hz: f64) -> Result<AnyScene, String> {
     let usual = scene.usual(believed, Hertz(rate_hz));
     usual.map_err(|error| format!("scene {scene}: {error}"))
 }
 
-/// The scene called `name`, if it is one of `scenes`.
+/// The scene called `name` among `scenes`.
 ///
 /// # Errors
 /// One line with the names of `scenes`.
@@ -44,8 +44,8 @@ pub fn named(
     found.ok_or_else(|| unknown("scene", name, scenes.map(SceneKind::name)))
 }
 
-/// The virtual environments that an estimator of the handle can serve: not every estimator gives an
-/// acceleration.
+/// The virtual environments that are possible with this estimator of the handle. Some need an
+/// acceleration, which not every estimator provides.
 pub fn environments_with(handle: &Kind) -> impl Iterator<Item = SceneKind> {
     let gives = handle.gives_acceleration();
     SceneKind::environments().filter(move |scene| gives || !scene.facts().needs.acceleration)

@@ -1,4 +1,4 @@
-//! A hand that moves as the slip of the scenario `track` does.
+//! A hand that moves with the slip velocity of scenario `track`.
 
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
@@ -6,11 +6,11 @@ use rand_xoshiro::rand_core::SeedableRng;
 use simulation::plant::{Grip, HandMotion, Pose};
 use simulation::scenario::{ScenarioName, Track};
 
-/// The motion's integral, tick by tick.
+/// Integral of the slip velocity, tick by tick.
 pub(super) struct Tracking {
     track: Track,
     period_s: f64,
-    /// Where the hand means to be at the beginning of the tick to come.
+    /// Intended angle and velocity at the beginning of the next tick.
     pose: Pose,
 }
 
@@ -24,7 +24,7 @@ impl Tracking {
         }
     }
 
-    /// The hand during tick `k`, which follows the one before.
+    /// The grip on the handle during tick `k`. Ticks are requested in order.
     pub(super) fn grip(&mut self, k: u64) -> Grip {
         let omega = self.track.omega((k + 1) as f64 * self.period_s);
         let to = Pose {
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_hand_chirps_and_reverses_without_a_jump() {
+    fn motion_has_chirp_and_reversals_and_is_continuous() {
         let mut hand = Tracking::new(1e-3, 5);
         let (mut last, mut fastest, mut reversals) = (Pose::default(), 0.0_f64, 0);
         for k in 0..10_000 {

@@ -5,7 +5,7 @@ use std::fmt;
 use haptic_control::{AnyScene, LoopPoles, Radians, Viscous, Wall};
 
 use super::criterion::{Fault, Observer, Seen};
-use crate::closed_loop::{Eye, Hand, Loop, Press, estimator};
+use crate::closed_loop::{FeedbackEncoder, Hand, Loop, Press, estimator};
 use catalogue::estimators::{Estimator, Kind};
 use catalogue::parameters::Parameters;
 use simulation::device::Device;
@@ -145,7 +145,7 @@ impl Probe {
             seed: self.seed,
             large: self.large.clone(),
             handle: self.handle.clone(),
-            eye: Eye::Large,
+            encoder: FeedbackEncoder::Own,
             poles: LoopPoles::DEFAULT,
             late_ticks: 0,
         };

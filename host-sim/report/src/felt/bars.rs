@@ -7,7 +7,7 @@ use super::super::palette::{GRID, INK, MUTED, Palette};
 use super::super::plot::{Axis, Plot};
 use super::super::text::{rate, share};
 use super::{ClosedLoop, find, has_loop};
-use experiments::felt::Outcome;
+use experiments::transparency::Outcome;
 
 /// Sizes, px.
 const BAR: f64 = 6.5;

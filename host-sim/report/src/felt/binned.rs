@@ -8,7 +8,7 @@ use super::super::text::{plant, rate};
 use super::charts::{Curve, Green, Panel, panels};
 use super::{ClosedLoop, find};
 use catalogue::parameters::PlantKind;
-use experiments::felt::{Outcome, Signals};
+use experiments::transparency::{Outcome, Signals};
 use scoring::score::SKIP_S;
 
 /// Bins across each axis, and the least share of the ticks that a bin needs to be drawn.

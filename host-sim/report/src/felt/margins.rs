@@ -9,7 +9,7 @@ use super::super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure};
 use super::super::palette::{BAND, GRID, INK, MUTED, TRUTH};
 use super::super::plot::{Axis, Plot};
 use super::super::text::{number, rate};
-use experiments::felt::Design;
+use experiments::transparency::Design;
 
 /// A colour a rate, and again from the first.
 const COLOURS: [RGBColor; 4] = [

@@ -9,7 +9,7 @@ use super::super::text::{number, plant, rate};
 use super::charts::{Curve, Green, Panel, panels};
 use super::{ClosedLoop, best, find, has_loop};
 use catalogue::parameters::PlantKind;
-use experiments::felt::{Outcome, REFERENCE, Run, Signals};
+use experiments::transparency::{Outcome, REFERENCE, Run, Signals};
 use scoring::score::SKIP_S;
 
 /// One figure for each scene but `off`, in the order of the scenes.

@@ -8,8 +8,8 @@ use super::super::sections::words;
 use super::super::text::{escape, plant, rate};
 use super::{ClosedLoop, has_loop};
 use catalogue::parameters::PlantKind;
-use experiments::felt::table::velocity_fields;
-use experiments::felt::{Outcome, Parasitic, Run};
+use experiments::transparency::table::velocity_fields;
+use experiments::transparency::{Outcome, Parasitic, Run};
 
 const SCORES: &str = "The best estimator of each scene is bold on green; the reference encoder \
     does not compete. Force is the parasitic force at the fingertip: RMS, the force that is exceeded \
@@ -56,7 +56,7 @@ fn block(outcome: &Outcome, palette: &Palette) -> String {
         Parasitic::FIELDS.len() + velocity_fields(&[]).count() + 1,
         escape(outcome.case.scene.name())
     );
-    let competes = |run: &&Run| run.controlled_by != experiments::felt::REFERENCE;
+    let competes = |run: &&Run| run.controlled_by != experiments::transparency::REFERENCE;
     for run in &outcome.runs {
         let mut name = if has_loop(outcome) {
             label(run.controlled_by, palette)

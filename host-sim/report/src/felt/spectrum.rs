@@ -8,7 +8,7 @@ use super::super::text::{plant, rate};
 use super::charts::{Curve, Green, Panel, panels};
 use super::{ClosedLoop, find};
 use catalogue::parameters::PlantKind;
-use experiments::felt::Signals;
+use experiments::transparency::Signals;
 use scoring::score::{SKIP_S, TACTILE_BAND_HZ};
 use scoring::spectrum::Welch;
 

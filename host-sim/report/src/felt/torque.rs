@@ -10,7 +10,7 @@ use super::super::text::{number, plant, rate};
 use super::ClosedLoop;
 use super::charts::{Curve, Green, Panel, panels};
 use catalogue::parameters::PlantKind;
-use experiments::felt::{Response, Swept, bandwidth_hz};
+use experiments::transparency::{Response, Swept, bandwidth_hz};
 use scoring::score::TACTILE_BAND_HZ;
 
 /// What a row of panels shows: its axis covers this range, and in steps of the last number as

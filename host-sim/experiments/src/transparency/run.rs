@@ -1,60 +1,64 @@
-//! One run of a case: the loop, what was seen of it, its scores.
+//! One run of a closed-loop case: the loop, its recorded signals, its scores.
 
 use std::time::{Duration, Instant};
 
 use haptic_control::{DualStage, LoopPoles, Stop};
 
-use super::compare::{Case, Run, Settings, Signals, USUAL, device};
-use super::{FeltRow, Fingertip, Parasitic, REFERENCE};
-use crate::closed_loop::{Eye, Loop, Moment, usual};
+use super::compare::{DEFAULT_ESTIMATOR, LoopCase, LoopSettings, Run, Signals, device};
+use super::{ClosedLoopRow, Fingertip, Parasitic, REFERENCE};
+use crate::closed_loop::{FeedbackEncoder, Loop, Moment, usual};
 use crate::compare::{Cost, interval};
 use catalogue::estimators::Setup;
 use catalogue::estimators::{Estimator, Kind};
 use catalogue::parameters::PlantKind;
-use scoring::contest::{Contest, Estimate, Heading, Row};
+use scoring::evaluation::{Estimate, Evaluation, Heading, Row};
 use scoring::score::Score;
 use simulation::device::Device;
 use simulation::simulate::{plant_steps, ticks};
 use simulation::trace::Trace;
 use terminal::failure::Failure;
 
-/// Who closes a loop.
+/// Source of the large motor's velocity in the loop.
 #[derive(Clone, Copy)]
-pub(super) enum By {
-    /// The estimator of this number.
-    Contestant(usize),
+pub(super) enum Feedback {
+    /// The estimator with this index.
+    Candidate(usize),
+    /// The reference encoder.
     Reference,
-    /// No estimator: the scene has no loop around the large motor.
-    Nobody,
+    /// None: the scene has no velocity loop around the large motor.
+    Unused,
 }
 
-/// A case with everything built that its runs share.
+/// A case with the parts that all its runs share.
 pub(super) struct Prepared<'a> {
-    pub(super) case: &'a Case,
-    settings: &'a Settings,
+    pub(super) case: &'a LoopCase,
+    settings: &'a LoopSettings,
     device: Device,
     believed: DualStage,
-    contest: Contest,
+    evaluation: Evaluation,
     handle: Estimator,
     reference: Estimator,
     ticks: usize,
 }
 
-/// The estimator `kind` with its parameters, on an encoder with so many counts.
+/// The estimator `kind` with its parameters, for an encoder of `counts_per_rev`.
 pub(super) fn estimator(
     kind: &Kind,
-    settings: &Settings,
+    settings: &LoopSettings,
     counts_per_rev: u32,
     rate_hz: f64,
     plant: PlantKind,
 ) -> Result<Estimator, Failure> {
-    let mut setup = Setup::of(&settings.device, rate_hz);
+    let mut setup = Setup::of(&settings.common.device, rate_hz);
     setup.stages.large.counts_per_rev = counts_per_rev;
-    kind.build(&setup, &settings.parameters.values(kind, &setup, plant))
+    kind.build(
+        &setup,
+        &settings.common.parameters.values(kind, &setup, plant),
+    )
 }
 
 impl<'a> Prepared<'a> {
-    pub(super) fn new(case: &'a Case, settings: &'a Settings) -> Result<Self, Failure> {
+    pub(super) fn new(case: &'a LoopCase, settings: &'a LoopSettings) -> Result<Self, Failure> {
         let device = device(settings, case.plant);
         let on = |kind: &Kind, counts_per_rev| {
             estimator(kind, settings, counts_per_rev, case.rate_hz, case.plant)
@@ -63,33 +67,43 @@ impl<'a> Prepared<'a> {
             case,
             settings,
             believed: device.stages,
-            contest: Contest::new(
-                &settings.estimators,
-                &settings.parameters,
+            evaluation: Evaluation::new(
+                &settings.common.estimators,
+                &settings.common.parameters,
                 &Setup::of(&device, case.rate_hz),
                 case.plant,
             )?,
             handle: on(settings.handle, device.stages.small.counts_per_rev)?,
-            reference: on(Kind::named(USUAL)?, device.reference.counts_per_rev)?,
+            reference: on(
+                Kind::named(DEFAULT_ESTIMATOR)?,
+                device.reference.counts_per_rev,
+            )?,
             ticks: ticks(case.rate_hz, case.seconds)?,
             device,
         })
     }
 
-    pub(super) fn closers(&self) -> Vec<By> {
+    /// Velocity sources of the case's runs, in the order of the runs.
+    pub(super) fn loops(&self) -> Vec<Feedback> {
         if !self.case.scene.facts().needs.continuous {
-            return vec![By::Nobody];
+            return vec![Feedback::Unused];
         }
-        let contestants = (0..self.settings.estimators.len()).map(By::Contestant);
-        contestants.chain([By::Reference]).collect()
+        let candidates = (0..self.settings.common.estimators.len()).map(Feedback::Candidate);
+        candidates.chain([Feedback::Reference]).collect()
     }
 
-    pub(super) fn run(&self, by: By) -> Result<(Run, Vec<FeltRow>, Cost), Failure> {
+    pub(super) fn run(
+        &self,
+        feedback: Feedback,
+    ) -> Result<(Run, Vec<ClosedLoopRow>, Cost), Failure> {
         let begin = Instant::now();
-        let (large, eye) = match by {
-            By::Contestant(i) => (self.contest.contestants()[i].estimator(), Eye::Large),
-            By::Reference => (&self.reference, Eye::Reference),
-            By::Nobody => (&self.handle, Eye::Large),
+        let (large, encoder) = match feedback {
+            Feedback::Candidate(i) => (
+                self.evaluation.candidates()[i].estimator(),
+                FeedbackEncoder::Own,
+            ),
+            Feedback::Reference => (&self.reference, FeedbackEncoder::Reference),
+            Feedback::Unused => (&self.handle, FeedbackEncoder::Own),
         };
         let case = self.case;
         let run = Loop {
@@ -101,26 +115,26 @@ impl<'a> Prepared<'a> {
             seed: case.seed,
             large: large.clone(),
             handle: self.handle.clone(),
-            eye,
+            encoder,
             poles: LoopPoles::DEFAULT,
             late_ticks: 0,
         };
-        let mut seen = Seen::new(self);
-        run.run(self.ticks, |moment| seen.push(moment))?;
+        let mut recorder = Recorder::new(self);
+        run.run(self.ticks, |moment| recorder.push(moment))?;
         let simulated = Instant::now();
 
-        let parasitic = Parasitic::of(&seen.parasitic_mn, case.rate_hz, &seen.fingertip);
-        let (rows, velocity) = self.rows(by, &mut seen, parasitic)?;
+        let parasitic = Parasitic::of(&recorder.parasitic_mn, case.rate_hz, &recorder.fingertip);
+        let (rows, velocity) = self.rows(feedback, &mut recorder, parasitic)?;
         let run = Run {
-            controlled_by: match by {
-                By::Contestant(i) => self.settings.estimators[i].name,
-                By::Reference => REFERENCE,
-                By::Nobody => "any",
+            controlled_by: match feedback {
+                Feedback::Candidate(i) => self.settings.common.estimators[i].name,
+                Feedback::Reference => REFERENCE,
+                Feedback::Unused => "any",
             },
             parasitic,
             velocity,
-            stopped: seen.stopped,
-            signals: seen.signals,
+            stopped: recorder.stopped,
+            signals: recorder.signals,
         };
         let cost = Cost {
             plant_steps: plant_steps(case.rate_hz, case.seconds)?,
@@ -131,13 +145,13 @@ impl<'a> Prepared<'a> {
         Ok((run, rows, cost))
     }
 
-    /// The rows of a run, and the RMS error of the velocity that its loop used.
+    /// The rows of a run, and the scores of the velocity that its loop used.
     fn rows(
         &self,
-        by: By,
-        seen: &mut Seen,
+        feedback: Feedback,
+        recorder: &mut Recorder,
         parasitic: Parasitic,
-    ) -> Result<(Vec<FeltRow>, Option<Score>), Failure> {
+    ) -> Result<(Vec<ClosedLoopRow>, Option<Score>), Failure> {
         let case = self.case;
         let heading = Heading {
             scenario: case.scene.name().to_owned(),
@@ -146,43 +160,43 @@ impl<'a> Prepared<'a> {
             seed: case.seed,
         };
         let used = Estimate {
-            estimator: match by {
-                By::Contestant(i) => self.settings.estimators[i].name,
-                By::Reference | By::Nobody => REFERENCE,
+            estimator: match feedback {
+                Feedback::Candidate(i) => self.settings.common.estimators[i].name,
+                Feedback::Reference | Feedback::Unused => REFERENCE,
             },
-            velocity: std::mem::take(&mut seen.used),
+            velocity: std::mem::take(&mut recorder.used),
             deviation: None,
         };
         let score = |estimates: &[Estimate]| {
-            let (interval, wanted) = (interval(&self.device), self.settings.wanted);
-            self.contest
-                .rows(&heading, &seen.trace, estimates, interval, wanted)
+            let (interval, wanted) = (interval(&self.device), self.settings.common.wanted);
+            self.evaluation
+                .rows(&heading, &recorder.trace, estimates, interval, wanted)
         };
-        let felt = |row: Row, controlled_by| FeltRow {
+        let felt = |row: Row, controlled_by| ClosedLoopRow {
             row,
             controlled_by,
             handle_estimator: self.settings.handle.name,
             parasitic,
-            stopped: seen.stopped,
+            stopped: recorder.stopped,
         };
         let itself = |row: Row| {
             let name = row.estimator;
             felt(row, name)
         };
-        let watched = || score(&self.contest.estimates(&seen.trace));
+        let watched = || score(&self.evaluation.estimates(&recorder.trace));
         let closed = |rows: &[Row]| rows.first().map(|row| row.score);
-        Ok(match by {
-            By::Contestant(_) => {
+        Ok(match feedback {
+            Feedback::Candidate(_) => {
                 let rows = score(&[used])?;
                 let velocity = closed(&rows);
                 (rows.into_iter().map(itself).collect(), velocity)
             }
-            By::Reference => {
+            Feedback::Reference => {
                 let velocity = closed(&score(&[used])?);
                 let rows = watched()?.into_iter().map(|row| felt(row, REFERENCE));
                 (rows.collect(), velocity)
             }
-            By::Nobody => {
+            Feedback::Unused => {
                 let rows = watched()?;
                 let reference = rows.iter().map(|row| felt(row.clone(), REFERENCE));
                 let reference: Vec<_> = reference.collect();
@@ -195,10 +209,10 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// What was seen of a run.
-struct Seen {
+/// Signals recorded in a run.
+struct Recorder {
     fingertip: Fingertip,
-    /// What an estimator on the device's own encoder could know, and the truth.
+    /// Signals of the device's own encoders and the true velocity.
     trace: Trace,
     /// Velocity of the large motor that the controller used, rad/s.
     used: Vec<f32>,
@@ -207,7 +221,7 @@ struct Seen {
     stopped: Option<&'static str>,
 }
 
-impl Seen {
+impl Recorder {
     fn new(prepared: &Prepared) -> Self {
         Self {
             fingertip: Fingertip::new(&prepared.device),

@@ -1,10 +1,11 @@
-//! How fast torque is rendered: many sines at once into a clamped handle.
+//! Frequency response from commanded torque to rendered torque, measured with a multisine on a
+//! clamped handle.
 //!
-//! The scene asks for a constant torque, so that the large motor never turns round, plus sines
-//! of rising frequency, whole multiples of [`1 / PERIOD_S`](PERIOD_S). What is felt is sampled at
-//! every step of the plant, between ticks too. Gain and phase are those of the mean over
-//! [`PERIODS`] periods, against the sines as intended; coherence is the part of the power at that
-//! frequency that repeats from period to period: what is left is noise.
+//! The scene commands a constant torque, so that the large motor never reverses, plus sines whose
+//! frequencies are multiples of [`1 / PERIOD_S`](PERIOD_S). The torque on the hand is sampled at
+//! every step of the plant, also between ticks. Gain and phase are those of the mean over
+//! [`PERIODS`] periods, relative to the commanded sines. Coherence is the share of the power at a
+//! frequency that repeats from period to period; the rest is noise.
 
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
@@ -14,7 +15,7 @@ use rayon::prelude::*;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
-use super::compare::{Settings, device};
+use super::compare::{LoopSettings, device};
 use super::run::estimator;
 use super::{Fingertip, REFERENCE};
 use catalogue::estimators::{Estimator, Kind};
@@ -26,14 +27,16 @@ use terminal::failure::Failure;
 
 /// Length of a period, s; the lowest frequency is its inverse.
 pub const PERIOD_S: f64 = 0.5;
-/// Periods that are averaged, after four to settle in.
+/// Number of averaged periods.
 pub const PERIODS: usize = 8;
+/// Number of periods before the averaged ones.
 const SETTLE: usize = 4;
-/// How fast the constant torque turns the large motor, turns/s: what repeats once a turn falls
-/// between the sines and averages out over the periods.
+/// Speed of the large motor under the constant torque, turns/s. Errors that repeat once a turn have
+/// frequencies between the sines and average out over the periods.
 const TURNS_PER_S: f64 = 1.5;
-/// Sines a decade, and the highest as part of the rate and in Hz.
+/// Sines per decade.
 const PER_DECADE: f64 = 13.0;
+/// Highest frequency of a sine, as a fraction of the rate and in Hz: the lower one holds.
 const HIGHEST: (f64, f64) = (0.45, 3000.0);
 
 /// Response at one frequency.
@@ -41,11 +44,11 @@ const HIGHEST: (f64, f64) = (0.45, 3000.0);
 pub struct Response {
     /// Frequency, Hz.
     pub hz: f64,
-    /// Torque felt over torque wanted.
+    /// Torque on the hand over commanded torque.
     pub gain: f64,
-    /// Phase, degrees, continuous from the lowest frequency on; negative lags.
+    /// Phase, degrees, unwrapped from the lowest frequency on; a lag is negative.
     pub phase_deg: f64,
-    /// Part of the power that repeats, 0 to 1.
+    /// Share of the power that repeats from period to period, 0 to 1.
     pub coherence: f64,
 }
 
@@ -56,11 +59,11 @@ pub struct Swept {
     pub rate_hz: f64,
     /// Plant.
     pub plant: PlantKind,
-    /// Who closed the loop, and the response at each frequency, rising.
+    /// Estimator that closed the loop, and its responses in order of frequency.
     pub runs: Vec<(&'static str, Vec<Response>)>,
 }
 
-/// Lowest frequency at which the gain has fallen by 3 dB, Hz; `None` if it does nowhere.
+/// Lowest frequency at which the gain has fallen by 3 dB, Hz; `None` if it never falls so far.
 #[must_use]
 pub fn bandwidth_hz(responses: &[Response]) -> Option<f64> {
     let pair = responses
@@ -70,26 +73,26 @@ pub fn bandwidth_hz(responses: &[Response]) -> Option<f64> {
     Some(pair[0].hz * (pair[1].hz / pair[0].hz).powf(part))
 }
 
-/// Every estimator in the loop, then the reference.
+/// Measures the response with every estimator in the loop, then with the reference encoder.
 ///
 /// # Errors
 /// [`Failure::Input`] where estimator or loop cannot be built.
-pub fn sweep(settings: &Settings, rate_hz: f64, plant: PlantKind) -> Result<Swept, Failure> {
+pub fn sweep(settings: &LoopSettings, rate_hz: f64, plant: PlantKind) -> Result<Swept, Failure> {
     let device = device(settings, plant);
     let build = |kind: &Kind, counts| estimator(kind, settings, counts, rate_hz, plant);
     let handle = build(settings.handle, device.stages.small.counts_per_rev)?;
-    let mut contestants = Vec::new();
-    for kind in &settings.estimators {
+    let mut candidates = Vec::new();
+    for kind in &settings.common.estimators {
         let counts = device.stages.large.counts_per_rev;
-        contestants.push((kind.name, build(kind, counts)?, counts));
+        candidates.push((kind.name, build(kind, counts)?, counts));
     }
     let counts = device.reference.counts_per_rev;
-    let usual = Kind::named(super::compare::USUAL)?;
-    contestants.push((REFERENCE, build(usual, counts)?, counts));
-    let bench = Bench::new(&device, rate_hz);
-    let runs = contestants
+    let usual = Kind::named(super::compare::DEFAULT_ESTIMATOR)?;
+    candidates.push((REFERENCE, build(usual, counts)?, counts));
+    let rig = SweepRig::new(&device, rate_hz);
+    let runs = candidates
         .par_iter()
-        .map(|(name, large, counts)| Ok((*name, bench.run(large, &handle, *counts)?)))
+        .map(|(name, large, counts)| Ok((*name, rig.run(large, &handle, *counts)?)))
         .collect::<Result<_, Failure>>()?;
     Ok(Swept {
         rate_hz,
@@ -98,7 +101,7 @@ pub fn sweep(settings: &Settings, rate_hz: f64, plant: PlantKind) -> Result<Swep
     })
 }
 
-/// The torque of one period, tick by tick, again and again.
+/// Scene that repeats the torques of one period, one per tick.
 struct Sweep(Vec<f32>);
 
 impl Scene for Sweep {
@@ -106,7 +109,7 @@ impl Scene for Sweep {
     type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
-    /// Tick.
+    /// Number of the tick.
     type State = usize;
 
     fn start(&self, _: Radians) -> usize {
@@ -120,17 +123,18 @@ impl Scene for Sweep {
     }
 }
 
-struct Bench<'a> {
+/// Plant, controller and multisine of one sweep.
+struct SweepRig<'a> {
     device: &'a Device,
     rate_hz: f64,
-    /// Ticks a period.
+    /// Ticks per period.
     ticks: usize,
-    /// Sines a period, and their amplitudes with phase, N.m.
+    /// For each sine its cycles per period and its amplitude with phase, N.m.
     lines: Vec<(usize, Complex<f64>)>,
     bias: f64,
 }
 
-impl<'a> Bench<'a> {
+impl<'a> SweepRig<'a> {
     fn new(device: &'a Device, rate_hz: f64) -> Self {
         let ticks = (PERIOD_S * rate_hz).round() as usize;
         let base_hz = rate_hz / ticks as f64;
@@ -142,9 +146,10 @@ impl<'a> Bench<'a> {
             .collect();
         numbers.dedup();
         let fingertip = Fingertip::new(device);
-        // Together as strong, RMS, as a fingertip just notices; Schroeder's phases keep peaks low.
-        let together = fingertip.threshold_mn / fingertip.mn_per_nm;
-        let amplitude = together * (2.0 / numbers.len() as f64).sqrt();
+        // The RMS of all sines together is the fingertip's threshold. Schroeder phases keep the
+        // peaks low.
+        let rms = fingertip.threshold_mn / fingertip.mn_per_nm;
+        let amplitude = rms * (2.0 / numbers.len() as f64).sqrt();
         let phase = |i: usize| -std::f64::consts::PI * (i * i) as f64 / numbers.len() as f64;
         Self {
             device,

@@ -1,14 +1,14 @@
-//! The parasitic force of a run: what the hand feels and should not.
+//! Parasitic force: force on the hand that the scene did not command.
 //!
 //! ```text
 //! parasitic force = 2 (torque felt - torque wanted) / D        at the fingertip, mN
 //! ```
-//! Torque felt is what the handle exerts on the hand, `Kt_S i_S + b slip - J_S dw_S/dt -
-//! friction_S`. So everything counts that the scene did not ask for: errors of the velocities in
-//! both stages, the delay from sample to torque, friction of either motor that its feed-forward
-//! misses, ripple, and the handle's own inertia and friction, which no estimator can take away.
-//! Torque wanted is what the scene computed at the same tick, from the position and velocity that
-//! the controller saw; what it computes from a wrong position is not counted.
+//! Torque felt is the torque of the handle on the hand, `Kt_S i_S + b slip - J_S dw_S/dt -
+//! friction_S`. The parasitic force therefore contains errors of the velocities in both stages, the
+//! delay from sample to torque, friction of both motors that the feed-forward does not cancel,
+//! ripple, and the handle's own inertia and friction, which no estimator can cancel. Torque wanted
+//! is the scene's torque at the same tick, from the position and velocity of the controller. The
+//! effect of a wrong position on the scene's torque is not parasitic by this definition.
 
 use serde::Serialize;
 
@@ -17,21 +17,21 @@ use scoring::score_fields;
 use scoring::spectrum::Welch;
 use simulation::device::Device;
 
-/// What torque is worth at the fingertip.
+/// Conversion of torque to force at the fingertip, and the fingertip's threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fingertip {
     /// Force of a torque of 1 N.m, mN: 2000 / D.
     pub mn_per_nm: f64,
-    /// Smallest force that it notices, F_shd, mN.
+    /// Smallest force that a fingertip notices, F_shd, mN.
     pub threshold_mn: f64,
 }
 
 impl Fingertip {
-    /// On this device's handle.
+    /// The conversion for the device's handle.
     ///
     /// ```
     /// use simulation::device::Device;
-    /// use experiments::felt::Fingertip;
+    /// use experiments::transparency::Fingertip;
     /// let fingertip = Fingertip::new(&Device::default());
     /// // 1 mN.m on a handle of 70 mm.
     /// assert!((1e-3 * fingertip.mn_per_nm - 28.57).abs() < 0.01);
@@ -47,16 +47,17 @@ impl Fingertip {
 }
 
 score_fields! {
-    /// Scores of a parasitic force, over everything after the first [`SKIP_S`] seconds; `None` where
-    /// nothing is left. A force that is not finite is infinite and never below the threshold.
+    /// Scores of a parasitic force after the first [`SKIP_S`] seconds; `None` for a shorter series.
+    /// A force that is not finite counts as infinite.
     pub struct Parasitic {
         /// Root mean square, mN.
         parasitic_mn_rms: "force", "rms, mN", Number, Mean, Smaller, true;
-        /// Magnitude that 99 % of the ticks stay at or below, mN.
+        /// 99th percentile of the magnitude over the ticks, mN.
         parasitic_mn_p99: "force", "99 %, mN", Number, Mean, Smaller, true;
-        /// RMS of the part from 50 to 500 Hz, which is felt as roughness, mN; `None` below 0.25 s.
+        /// RMS of the components from 50 to 500 Hz, which are felt as roughness, mN; `None` for less
+        /// than 0.25 s.
         parasitic_mn_tactile: "50-500 Hz", "rms, mN", Number, Mean, Smaller, true;
-        /// Share of time in which the magnitude is below the fingertip's threshold, 0 to 1.
+        /// Share of the ticks whose magnitude is below the fingertip's threshold, 0 to 1.
         below_threshold: "unnoticed", "% of time", Share, Mean, Larger, true;
     }
 }
@@ -66,9 +67,9 @@ impl Parasitic {
     ///
     /// ```
     /// use simulation::device::Device;
-    /// use experiments::felt::{Fingertip, Parasitic};
+    /// use experiments::transparency::{Fingertip, Parasitic};
     /// let fingertip = Fingertip::new(&Device::default());
-    /// // 0.1 s of anything, then 6 and 14 mN in turn.
+    /// // 0.1 s that is not scored, then 6 and 14 mN in turn.
     /// let force: Vec<f64> = (0..1100).map(|k| match k {
     ///     0..100 => 1e6,
     ///     _ if k % 2 == 0 => 6.0,
@@ -108,7 +109,7 @@ impl Parasitic {
     }
 }
 
-/// The magnitude that this share of `values` does not exceed (nearest rank); `values` not empty.
+/// The quantile of the sorted, non-empty `values` at `share` (nearest rank).
 fn percentile(values: &[f64], share: f64) -> f64 {
     let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
     let rank = (share * sizes.len() as f64).ceil() as usize;
@@ -127,7 +128,7 @@ mod tests {
     };
 
     #[test]
-    fn a_percentile_is_the_value_at_its_rank() {
+    fn percentile_is_the_value_at_its_rank() {
         let values: Vec<f64> = (1..=200)
             .map(|i| f64::from(if i % 2 == 0 { i } else { -i }))
             .collect();
@@ -138,7 +139,7 @@ mod tests {
 
     #[test]
     fn one_of_100_ticks_exceeds_p99() {
-        // 0.1 s that is not scored, then 1 to 100 mN in an order of no meaning.
+        // 0.1 s that is not scored, then 1 to 100 mN in a scrambled order.
         let scored = (0..100).map(|k| f64::from((37 * k) % 100 + 1));
         let force: Vec<f64> = std::iter::repeat_n(500.0, 100).chain(scored).collect();
         let score = Parasitic::of(&force, 1e3, &FINGERTIP);
@@ -148,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_vibrates_from_50_to_500_hz_is_tactile() {
+    fn tactile_score_has_only_frequencies_from_50_to_500_hz() {
         let sine = |hz: f64| -> Vec<f64> {
             let at = |k: i32| 8.0 * (TAU * hz * f64::from(k) / 10e3).sin();
             (0..20_000).map(at).collect()
@@ -166,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn the_threshold_itself_is_noticed_and_a_broken_force_too() {
+    fn force_at_the_threshold_or_not_finite_is_not_below_it() {
         let share = |force: f64| Parasitic::of(&[force; 400], 1e3, &FINGERTIP).below_threshold;
         assert_eq!([share(9.99), share(-10.0)], [Some(1.0), Some(0.0)]);
         let mut force = vec![1.0; 200];

@@ -1,4 +1,5 @@
-//! What the report of `compare` shows beside the scores: limits, wrong beliefs, a warming coupler.
+//! Further experiments of the report of `compare`: lower bounds of the error, errors of the device's
+//! constants, a warming coupler.
 
 use catalogue::parameters::PlantKind;
 use experiments::compare::{Case, Settings, compare};
@@ -11,25 +12,25 @@ use terminal::failure::Failure;
 use super::arguments::rates;
 use super::compare::{Compare, case_report};
 
-/// Particles of the limit: `host-sim limit` with its 2000 finds 0.2 to 1.0 % less (scenario stochastic,
-/// 1 kHz, seeds 1 and 2).
+/// Number of particles for the lower bound. With the 2000 particles of `host-sim limit` the bound is
+/// 0.2 to 1.0 % lower (scenario stochastic, 1 kHz, seeds 1 and 2).
 const PARTICLES: usize = 500;
 
-/// What is run beside the cases that were asked for.
+/// Results that the report shows beside the requested cases.
 #[derive(Default)]
-pub(super) struct Beside {
+pub(super) struct ReportExtras {
     pub(super) limits: Vec<limit::Row>,
     pub(super) beliefs: Vec<sensitivity::Row>,
     pub(super) warming: Vec<CaseReport>,
 }
 
-/// Runs what belongs to a report of everything, at the lowest rate asked for: a report of chosen
-/// scenarios has none of it but the limit of those that it is run on.
-pub(super) fn beside(
+/// Runs the further experiments at the lowest requested rate. If scenarios were named, only the lower
+/// bounds are computed.
+pub(super) fn report_extras(
     options: &Compare,
     settings: &Settings,
     cases: &[Case],
-) -> Result<Beside, Failure> {
+) -> Result<ReportExtras, Failure> {
     let rate_hz = rates(&options.rates, &[1e3])
         .into_iter()
         .fold(f64::INFINITY, f64::min);
@@ -42,24 +43,24 @@ pub(super) fn beside(
         keep: false,
     };
     if options.frictionless {
-        return Ok(Beside::default());
+        return Ok(ReportExtras::default());
     }
-    let seen: Vec<Case> = cases
+    let bounded: Vec<Case> = cases
         .iter()
         .filter(|case| limit::SCENARIOS.contains(&case.scenario) && case.rate_hz == rate_hz)
         .filter(|case| case.plant == PlantKind::Friction)
         .cloned()
         .collect();
-    let limits = limit(&seen, settings, PARTICLES, || ())?;
+    let limits = limit(&bounded, settings, PARTICLES, || ())?;
     if !options.scenarios.is_empty() {
-        return Ok(Beside {
+        return Ok(ReportExtras {
             limits,
-            ..Beside::default()
+            ..ReportExtras::default()
         });
     }
     let moving = [ScenarioName::Step, ScenarioName::Track].map(of);
     let warming = compare(&[of(ScenarioName::Heating)], settings, || ())?;
-    Ok(Beside {
+    Ok(ReportExtras {
         limits,
         beliefs: sensitivity(&moving, settings, || ())?,
         warming: warming.iter().map(case_report).collect(),

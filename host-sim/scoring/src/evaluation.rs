@@ -47,7 +47,7 @@ pub struct Heading {
 }
 
 /// An estimator ready to run.
-pub struct Contestant {
+pub struct Candidate {
     /// What it is.
     pub kind: &'static Kind,
     /// Values of its parameters.
@@ -82,7 +82,7 @@ impl Estimate {
     }
 }
 
-impl Contestant {
+impl Candidate {
     fn new(
         kind: &'static Kind,
         parameters: &Parameters,
@@ -124,13 +124,13 @@ impl Contestant {
 }
 
 /// Estimators built for one rate and plant, and the finite difference they are measured by.
-pub struct Contest {
-    contestants: Vec<Contestant>,
-    difference: Contestant,
+pub struct Evaluation {
+    candidates: Vec<Candidate>,
+    difference: Candidate,
     believed_damping: f64,
 }
 
-impl Contest {
+impl Evaluation {
     /// Builds the estimators `kinds` with `parameters`.
     ///
     /// # Errors
@@ -141,9 +141,9 @@ impl Contest {
         setup: &Setup,
         plant: PlantKind,
     ) -> Result<Self, Failure> {
-        let new = |kind| Contestant::new(kind, parameters, setup, plant);
+        let new = |kind| Candidate::new(kind, parameters, setup, plant);
         Ok(Self {
-            contestants: kinds
+            candidates: kinds
                 .iter()
                 .map(|&kind| new(kind))
                 .collect::<Result<_, _>>()?,
@@ -154,14 +154,14 @@ impl Contest {
 
     /// The estimators.
     #[must_use]
-    pub fn contestants(&self) -> &[Contestant] {
-        &self.contestants
+    pub fn candidates(&self) -> &[Candidate] {
+        &self.candidates
     }
 
     /// The estimates of all that can run on `trace`.
     #[must_use]
     pub fn estimates(&self, trace: &Trace) -> Vec<Estimate> {
-        self.contestants
+        self.candidates
             .iter()
             .filter_map(|c| c.estimate(trace))
             .collect()
@@ -193,11 +193,11 @@ impl Contest {
                 |i| scores[i],
             );
         let row = |(estimate, score): (&Estimate, &Score)| {
-            let contestant = self
-                .contestants
+            let candidate = self
+                .candidates
                 .iter()
                 .find(|c| c.kind.name == estimate.estimator);
-            let damping = contestant
+            let damping = candidate
                 .filter(|_| wanted.learned)
                 .and_then(|c| self.learned_damping(c, trace));
             Row {
@@ -214,16 +214,16 @@ impl Contest {
                     learned_damping_pct: damping.as_deref().and_then(|b| damping_error(b, trace)),
                     ..score.relative_to(&reference)
                 },
-                parameters: contestant.map(Contestant::named_values).unwrap_or_default(),
+                parameters: candidate.map(Candidate::named_values).unwrap_or_default(),
             }
         };
         Ok(estimates.iter().zip(&scores).map(row).collect())
     }
 
-    /// Damping b at each tick of `trace`, N.m.s/rad, as `contestant` learns it.
+    /// Damping b at each tick of `trace`, N.m.s/rad, as `candidate` learns it.
     #[must_use]
-    pub fn learned_damping(&self, contestant: &Contestant, trace: &Trace) -> Option<Vec<f64>> {
-        let ratios = contestant.estimator.damping_ratio(trace)?;
+    pub fn learned_damping(&self, candidate: &Candidate, trace: &Trace) -> Option<Vec<f64>> {
+        let ratios = candidate.estimator.damping_ratio(trace)?;
         let believed = self.believed_damping;
         Some(ratios.iter().map(|&b| believed * f64::from(b)).collect())
     }

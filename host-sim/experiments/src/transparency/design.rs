@@ -1,4 +1,4 @@
-//! The designed velocity loop as a frequency response, with its margins.
+//! Frequency response and margins of the designed velocity loop.
 
 use std::f64::consts::TAU;
 
@@ -8,21 +8,21 @@ use rustfft::num_complex::Complex;
 
 use terminal::failure::Failure;
 
-/// Points of the response a decade, and how far below half the rate it begins, decades.
+/// Points of the response per decade, and its range below half the rate, decades.
 const PER_DECADE: f64 = 80.0;
 const DECADES: f64 = 5.0;
 
-/// The velocity loop of one rate.
+/// The velocity loop at one rate.
 #[derive(Clone, Debug)]
 pub struct Design {
     /// Control rate, Hz.
     pub rate_hz: f64,
     /// Margins, as the controller's design computed them.
     pub margins: Margins,
-    /// Delay that the loop bears beside the modelled lags: the estimator's, s.
+    /// Delay of the estimator that the design accounts for besides the modelled lags, s.
     pub estimator_delay_s: f64,
-    /// Frequency, Hz, rising to half the rate, and the open loop `L = B R / (A S)` there,
-    /// delayed by the estimator.
+    /// Frequency, Hz, rising to half the rate, and the open-loop response `L = B R / (A S)` with
+    /// the estimator's delay.
     pub open_loop: Vec<(f64, Complex<f64>)>,
 }
 
@@ -31,7 +31,7 @@ impl Design {
     ///
     /// ```
     /// use haptic_control::{DualStage, LoopPoles};
-    /// use experiments::felt::Design;
+    /// use experiments::transparency::Design;
     /// let design = Design::new(&DualStage::DEFAULT, 1000.0, LoopPoles::DEFAULT).unwrap();
     /// assert!(design.margins.modulus > 0.7);
     /// assert!(Design::new(&DualStage::DEFAULT, 100.0, LoopPoles::DEFAULT).is_err());
@@ -56,7 +56,7 @@ impl Design {
     }
 }
 
-/// `B R / (A S)` at `z = e^(j 2 pi f T)`, late by `delay_s`.
+/// `B R / (A S)` at `z = e^(j 2 pi f T)`, delayed by `delay_s`.
 fn open_loop(design: &RstDesign, rate_hz: f64, delay_s: f64, hz: f64) -> Complex<f64> {
     let back = Complex::from_polar(1.0, -TAU * hz / rate_hz);
     let at = |c: &[f64; 3]| (back * c[2] + c[1]) * back + c[0];
@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_response_has_the_margins_that_the_design_claims() {
+    fn response_has_the_margins_of_the_design() {
         for rate_hz in [1e3, 10e3, 11.6e3] {
             let design = Design::new(&DualStage::DEFAULT, rate_hz, LoopPoles::DEFAULT).unwrap();
             let open = || design.open_loop.iter().map(|(_, open)| open);

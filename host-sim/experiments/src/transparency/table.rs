@@ -1,4 +1,4 @@
-//! The closed loop's scores for a terminal.
+//! The closed-loop scores as text for a terminal.
 
 use std::fmt::Write as _;
 
@@ -7,11 +7,11 @@ use crate::table::layout::{Column, table};
 use crate::table::{columns, number};
 use scoring::score::{Field, Score};
 
-/// The velocity score that is shown where none is asked for.
+/// Velocity score that is shown by default.
 const VELOCITY: &str = "rms_rad_s";
 
-/// One part a case, one line a run, in lines of `width` characters: parasitic forces, then the
-/// scores `asked` of the velocity that the loop used.
+/// One table per case with one line per run, in lines of `width` characters: parasitic forces, then
+/// the scores `asked` of the velocity that the loop used.
 #[must_use]
 pub fn details(outcomes: &[Outcome], asked: &[&Field<Score>], width: usize) -> String {
     let mut text = String::new();
@@ -23,7 +23,7 @@ pub fn details(outcomes: &[Outcome], asked: &[&Field<Score>], width: usize) -> S
             "{scene} at {rate_hz} Hz, plant {plant}, loop closed; unnoticed: below {} mN",
             outcome.fingertip.threshold_mn
         );
-        let closers = outcome.runs.iter().map(|run| run.controlled_by.to_owned());
+        let loops = outcome.runs.iter().map(|run| run.controlled_by.to_owned());
         let forces = || outcome.runs.iter().map(|run| &run.parasitic);
         let mut all: Vec<_> = columns(Parasitic::FIELDS, &[], forces()).collect();
         all.extend(velocity_fields(asked).map(|field| {
@@ -36,7 +36,7 @@ pub fn details(outcomes: &[Outcome], asked: &[&Field<Score>], width: usize) -> S
             let causes = outcome.runs.iter().map(|run| run.stopped.unwrap_or("-"));
             all.push(Column::text("", "stopped", causes.map(str::to_owned)));
         }
-        text += &table(&Column::text("", "controlled by", closers), &all, width);
+        text += &table(&Column::text("", "controlled by", loops), &all, width);
     }
     text
 }

@@ -7,11 +7,13 @@ use haptic_control::LoopPoles;
 use catalogue::estimators::Kind;
 use catalogue::parameters::PlantKind;
 use experiments::closed_loop::{environments_with, named};
-use experiments::compare::Cost;
-use experiments::felt::compare::USUAL;
-use experiments::felt::{self, Case, Design, FeltRow, Outcome, Settings, compare};
+use experiments::compare::{Cost, Settings};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
+use experiments::transparency::compare::DEFAULT_ESTIMATOR;
+use experiments::transparency::{
+    self, ClosedLoopRow, Design, LoopCase, LoopSettings, Outcome, compare,
+};
 use haptic_control::SceneKind;
 use report;
 use report::{ClosedLoop, ReportInput};
@@ -24,7 +26,7 @@ use super::arguments::{kinds, rates};
 use super::compare::{Compare, facts, longer_than_skipped, report_folder, timing, wanted};
 use super::page::{self, progress};
 
-/// Length of a run unless told otherwise, s.
+/// Default duration of a run, s.
 const SECONDS: f64 = 10.0;
 
 pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> {
@@ -40,7 +42,7 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
     let bar = progress(
         cases
             .iter()
-            .map(|case| felt::compare::runs(case, &settings))
+            .map(|case| transparency::compare::runs(case, &settings))
             .sum(),
         "closing loops",
     );
@@ -51,12 +53,12 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
         let cost: Cost = outcomes.iter().map(|outcome| outcome.cost).sum();
         note(timing(cost));
     }
-    let scores: Vec<FeltRow> = outcomes.iter().flat_map(|o| o.rows.clone()).collect();
-    let mut text = felt::table::details(&outcomes, &asked, terminal_width());
+    let scores: Vec<ClosedLoopRow> = outcomes.iter().flat_map(|o| o.rows.clone()).collect();
+    let mut text = transparency::table::details(&outcomes, &asked, terminal_width());
     if let Some(folder) = folder {
         let input = ReportInput {
             command: command_line.to_owned(),
-            device: facts(&settings.device, &options.device.name()),
+            device: facts(&settings.common.device, &options.device.name()),
             ..ReportInput::default()
         };
         let index = write(
@@ -69,9 +71,9 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
     page::print(options.json.as_deref(), &rows::json(&scores)?, &text)
 }
 
-/// The closed loop for the report of a comparison of everything: nothing if scenarios were
-/// named, and a remark where no loop can be closed, which is no reason not to compare.
-pub(super) fn beside(options: &Compare) -> (ClosedLoop, Option<String>) {
+/// The closed-loop section for the report of an open-loop comparison; empty if scenarios were named.
+/// If the loop cannot be closed, the section is empty and the returned remark has the reason.
+pub(super) fn for_report(options: &Compare) -> (ClosedLoop, Option<String>) {
     if !options.scenarios.is_empty() {
         return (ClosedLoop::default(), None);
     }
@@ -84,13 +86,13 @@ pub(super) fn beside(options: &Compare) -> (ClosedLoop, Option<String>) {
         Ok(closed) => (closed, None),
         Err(error) => (
             ClosedLoop::default(),
-            Some(format!("The loop was not closed: {error}.")),
+            Some(format!("The closed loop was not simulated: {error}.")),
         ),
     }
 }
 
-/// What the report shows of these outcomes: sweeps and designs of their rates beside them.
-fn closed_loop(outcomes: Vec<Outcome>, settings: &Settings) -> Result<ClosedLoop, Failure> {
+/// Input of the report: the outcomes, and sweep and design of the velocity loop at their rates.
+fn closed_loop(outcomes: Vec<Outcome>, settings: &LoopSettings) -> Result<ClosedLoop, Failure> {
     let mut rates: Vec<(f64, PlantKind)> = Vec::new();
     for Outcome { case, .. } in &outcomes {
         if !rates.contains(&(case.rate_hz, case.plant)) {
@@ -101,28 +103,29 @@ fn closed_loop(outcomes: Vec<Outcome>, settings: &Settings) -> Result<ClosedLoop
     Ok(ClosedLoop {
         outcomes,
         swept: each()
-            .map(|(rate_hz, plant)| felt::sweep(settings, rate_hz, plant))
+            .map(|(rate_hz, plant)| transparency::sweep(settings, rate_hz, plant))
             .collect::<Result<_, _>>()?,
         designs: each()
             .map(|(rate_hz, plant)| design(settings, rate_hz, plant))
             .collect::<Result<_, _>>()?,
-        handle_inertia: settings.device.stages.small.inertia,
+        handle_inertia: settings.common.device.stages.small.inertia,
     })
 }
 
-fn design(settings: &Settings, rate_hz: f64, plant: PlantKind) -> Result<Design, Failure> {
-    let believed = felt::compare::device(settings, plant).stages;
+fn design(settings: &LoopSettings, rate_hz: f64, plant: PlantKind) -> Result<Design, Failure> {
+    let believed = transparency::compare::device(settings, plant).stages;
     Design::new(&believed, rate_hz, LoopPoles::DEFAULT)
 }
 
-/// Writes the page, with the closed loop's scores beside it if there are any; gives its path.
+/// Writes the page and, if there are any, the closed loop's scores as JSON and CSV; returns the
+/// page's path.
 pub(super) fn write(
     mut folder: Folder,
     mut input: ReportInput,
     closed: ClosedLoop,
 ) -> Result<PathBuf, Failure> {
     if !closed.outcomes.is_empty() {
-        let rows: Vec<FeltRow> = (closed.outcomes.iter())
+        let rows: Vec<ClosedLoopRow> = (closed.outcomes.iter())
             .flat_map(|o| o.rows.clone())
             .collect();
         folder.add("closed-loop.json", rows::json(&rows)?);
@@ -133,8 +136,13 @@ pub(super) fn write(
 }
 
 /// What all runs have in common.
-pub(super) fn settings(options: &Compare) -> Result<Settings, Failure> {
-    let handle = Kind::named(options.handle_estimator.as_deref().unwrap_or(USUAL))?;
+pub(super) fn settings(options: &Compare) -> Result<LoopSettings, Failure> {
+    let handle = Kind::named(
+        options
+            .handle_estimator
+            .as_deref()
+            .unwrap_or(DEFAULT_ESTIMATOR),
+    )?;
     if handle.needs.current {
         return Err(Failure::Input(format!(
             "--handle-estimator {}: models the large motor, not the handle; take another",
@@ -155,17 +163,19 @@ pub(super) fn settings(options: &Compare) -> Result<Settings, Failure> {
             kind.name
         )));
     }
-    Ok(Settings {
-        device: options.device.load()?,
-        estimators,
+    Ok(LoopSettings {
+        common: Settings {
+            device: options.device.load()?,
+            estimators,
+            parameters: options.parameters.load()?,
+            wanted: wanted(&options.scores)?.0,
+        },
         handle,
-        parameters: options.parameters.load()?,
-        wanted: wanted(&options.scores)?.0,
     })
 }
 
-/// The scenes of these names, each once. Without a name, all environments that this estimator of the
-/// handle can serve.
+/// The scenes of these names without duplicates. Without a name, all environments that this
+/// estimator of the handle supports.
 fn scenes(names: &[String], handle: &Kind) -> Result<Vec<SceneKind>, Failure> {
     if names.is_empty() {
         return Ok(environments_with(handle).collect());
@@ -191,7 +201,7 @@ pub(super) fn cases(
     scenes: &[SceneKind],
     seconds: f64,
     keep: bool,
-) -> Result<Vec<Case>, Failure> {
+) -> Result<Vec<LoopCase>, Failure> {
     let plant = match options.frictionless {
         true => PlantKind::Frictionless,
         false => PlantKind::Friction,
@@ -201,7 +211,7 @@ pub(super) fn cases(
     for rate_hz in rates(&options.rates, &[1e3, 11.6e3]) {
         simulate::ticks(rate_hz, seconds)?;
         longer_than_skipped(seconds)?;
-        cases.extend(scenes.iter().map(|&scene| Case {
+        cases.extend(scenes.iter().map(|&scene| LoopCase {
             scene,
             rate_hz,
             plant,
