@@ -1,5 +1,5 @@
-//! Measured tables. The data of a table is the file `measured/NAME.csv`. A page of docs/ shows it
-//! between two comments:
+//! Measured tables. The data of a table is the file `measured/NAME.csv`, which the command that
+//! measures writes. A page shows it as a block between two comments:
 //!
 //! ```text
 //! <!-- measured: NAME -->
@@ -7,15 +7,30 @@
 //! <!-- end of NAME -->
 //! ```
 //!
-//! With `UPDATE_GOLDEN=1` in the environment, [`Table::check`] writes both. Otherwise it compares: the
-//! file with what was measured now, within a slack, and the page with the file, to the letter. No
-//! program reads a table out of a page.
+//! [`tables`] lists the tables with their pages, headings and commands. With `UPDATE_GOLDEN=1` in the
+//! environment, [`Table::check`] writes file and block. Otherwise it compares the file with the new
+//! measurement, within the tolerance of the caller. A test of this package compares every block of
+//! every page with what its file gives, to the letter. No program reads a figure out of a page.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`tables`] | the list of the tables |
+//! | [`block`] | blocks of pages, Markdown |
+//! | [`digits`] | figures with so many significant digits |
+
+pub mod block;
+pub mod digits;
+mod row;
+pub mod tables;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
 
-/// A column: its name in the CSV file and its heading on the page.
+pub use row::Row;
+
+use block::Block;
+
+/// A column: its name in the CSV file, with the unit, and its heading on the page.
 pub type Column = (&'static str, &'static str);
 
 /// A measured table.
@@ -23,19 +38,20 @@ pub type Column = (&'static str, &'static str);
 pub struct Table {
     /// Name of the CSV file and of the block.
     pub name: &'static str,
-    /// The page below docs/ that shows it.
+    /// The page that shows it, from the top of the repository.
     pub page: &'static str,
-    /// Its columns; the first one names the row.
+    /// The first columns, of which the first one names the row. The file may have more, which the
+    /// command adds and which the page heads by their names.
     pub columns: &'static [Column],
-    /// The command that measures it.
+    /// Significant digits of a number on the page; the text of the file if there is none.
+    pub digits: Option<usize>,
+    /// The command that measures it, a line of `.ci/measure`.
     pub command: &'static str,
 }
 
-/// The file of a table could not be read, or a measurement is not what the file says.
+/// What differs between a file, a measurement and a page, or what cannot be read or written: one line
+/// for each.
 pub type Difference = String;
-
-/// Tests run side by side, and several write the same page.
-static WRITING: Mutex<()> = Mutex::new(());
 
 /// Whether `UPDATE_GOLDEN=1` asks for new files.
 #[must_use]
@@ -43,159 +59,174 @@ pub fn update() -> bool {
     std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1")
 }
 
-fn root() -> &'static Path {
+/// The top of the repository.
+pub(crate) fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
 }
 
 impl Table {
-    fn file(&self) -> PathBuf {
-        root()
-            .join("measured")
-            .join(self.name)
-            .with_extension("csv")
+    fn path(&self) -> PathBuf {
+        root().join(format!("measured/{}.csv", self.name))
     }
 
-    fn page(&self) -> PathBuf {
-        root().join("docs").join(self.page)
+    fn wrong(&self, what: impl std::fmt::Display) -> Difference {
+        format!("measured/{}.csv: {what}", self.name)
     }
 
-    /// The cells of the file, row by row.
+    fn block(&self) -> Block {
+        Block {
+            kind: "measured",
+            name: self.name,
+            page: self.page,
+        }
+    }
+
+    /// Names of all columns: those of the table, then `more`.
+    fn names<'a>(&self, more: &[&'a str]) -> Vec<&'a str> {
+        let own = self.columns.iter().map(|(name, _)| *name);
+        own.chain(more.iter().copied()).collect()
+    }
+
+    /// The rows of the file.
     ///
     /// # Errors
-    /// One line that names the file if it cannot be read or has other columns.
-    pub fn read(&self) -> Result<Vec<Vec<String>>, Difference> {
-        let wrong = |what: &dyn std::fmt::Display| format!("measured/{}.csv: {what}", self.name);
-        let mut reader = csv::Reader::from_path(self.file()).map_err(|error| wrong(&error))?;
-        let head = reader.headers().map_err(|error| wrong(&error))?;
-        if !head.iter().eq(self.columns.iter().map(|(name, _)| *name)) {
-            return Err(wrong(&"other columns than those of its command"));
+    /// One line that names the file if it cannot be read or does not begin with the table's columns.
+    pub fn read(&self) -> Result<Vec<Row>, Difference> {
+        let mut reader = csv::Reader::from_path(self.path()).map_err(|error| self.wrong(error))?;
+        let head = reader.headers().map_err(|error| self.wrong(error))?.clone();
+        let own = head.iter().take(self.columns.len());
+        if !own.eq(self.names(&[])) {
+            return Err(self.wrong("other columns than those of its command"));
         }
-        let cells = |row: csv::StringRecord| row.iter().map(str::to_owned).collect();
-        let rows = reader.records().map(|row| row.map(cells));
+        let row = |cells: csv::StringRecord| {
+            let named = head.iter().zip(&cells);
+            Row::new(
+                self.name,
+                named.map(|(name, cell)| (name.into(), cell.into())),
+            )
+        };
+        let rows = reader.records().map(|cells| cells.map(row));
         rows.collect::<Result<_, _>>()
-            .map_err(|error| wrong(&error))
+            .map_err(|error| self.wrong(error))
     }
 
-    /// The rows as a Markdown table.
+    /// What a page shows of these rows. `more` names the columns after those of the table.
     #[must_use]
-    pub fn markdown(&self, rows: &[Vec<String>]) -> String {
-        let line = |cells: Vec<&str>| format!("| {} |\n", cells.join(" | "));
-        let mut table = line(self.columns.iter().map(|(_, heading)| *heading).collect());
-        table += &format!("|{}\n", "---|".repeat(self.columns.len()));
-        for row in rows {
-            table += &line(row.iter().map(String::as_str).collect());
-        }
-        table
+    pub fn markdown(&self, more: &[&str], rows: &[Vec<String>]) -> String {
+        let headings = self.columns.iter().map(|(_, heading)| *heading);
+        let head: Vec<_> = headings.chain(more.iter().copied()).collect();
+        let shown = |cell: &String| match self.digits {
+            Some(digits) => digits::shown(cell, digits),
+            None => cell.clone(),
+        };
+        let rows = rows.iter().map(|row| row.iter().map(shown).collect());
+        block::markdown(&head, &rows.collect::<Vec<_>>())
     }
 
-    fn parts(&self, page: &str) -> Result<[String; 3], Difference> {
-        let begin = format!("<!-- measured: {} -->", self.name);
-        let end = format!("<!-- end of {} -->", self.name);
-        let missing = |comment: &str| format!("docs/{}: no '{comment}'", self.page);
-        let (before, rest) = page.split_once(&begin).ok_or_else(|| missing(&begin))?;
-        let (block, after) = rest.split_once(&end).ok_or_else(|| missing(&end))?;
-        Ok([
-            format!("{before}{begin}"),
-            block.to_owned(),
-            format!("{end}{after}"),
-        ])
+    /// What the page has to show: the content of the file.
+    fn content(&self) -> Result<String, Difference> {
+        let rows = self.read()?;
+        let names = rows.first().map(Row::names).into_iter().flatten();
+        let more: Vec<_> = names.skip(self.columns.len()).collect();
+        let cells = |row: &Row| row.cells().map(str::to_owned).collect();
+        let cells: Vec<_> = rows.iter().map(cells).collect();
+        Ok(self.markdown(&more, &cells))
     }
 
-    /// Writes file and page.
+    /// Writes file and page. `more` names the columns after those of the table.
     ///
     /// # Errors
     /// One line that names what cannot be written.
-    pub fn write(&self, rows: &[Vec<String>]) -> Result<(), Difference> {
-        let _guard = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
-        let io =
-            |path: &Path, error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-        let file = self.file();
-        let mut writer = csv::Writer::from_path(&file).map_err(|error| io(&file, &error))?;
-        let head = self.columns.iter().map(|(name, _)| *name);
-        writer
-            .write_record(head)
-            .map_err(|error| io(&file, &error))?;
+    pub fn write(&self, more: &[&str], rows: &[Vec<String>]) -> Result<(), Difference> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let mut put = |cells: &mut dyn Iterator<Item = &str>| {
+            let written = writer.write_record(cells);
+            written.map_err(|error| self.wrong(error))
+        };
+        put(&mut self.names(more).into_iter())?;
         for row in rows {
-            writer
-                .write_record(row)
-                .map_err(|error| io(&file, &error))?;
+            put(&mut row.iter().map(String::as_str))?;
         }
-        writer.flush().map_err(|error| io(&file, &error))?;
-        let page = self.page();
-        let text = fs::read_to_string(&page).map_err(|error| io(&page, &error))?;
-        let [before, _, after] = self.parts(&text)?;
-        let text = format!("{before}\n\n{}\n{after}", self.markdown(rows));
-        fs::write(&page, text).map_err(|error| io(&page, &error))
+        let bytes = writer.into_inner().map_err(|error| self.wrong(error))?;
+        fs::write(self.path(), bytes).map_err(|error| self.wrong(error))?;
+        self.block().write(&self.content()?)
     }
 
-    /// Rows of `measured` that differ from the file: text to the letter, numbers by more than
-    /// `slack`, which takes the name of a column and the number in the file. Rows are compared in
-    /// their order.
+    /// Rows of the measurement that differ from the file. `same` takes the name of a column, the
+    /// number in the file and the measured one. Text has to be equal, and rows are compared in their
+    /// order.
     ///
     /// # Errors
-    /// One line if the file cannot be read or has another number of rows.
+    /// One line if the file cannot be read, or has other columns or another number of rows.
     pub fn moved(
         &self,
-        measured: &[Vec<String>],
-        slack: impl Fn(&str, f64) -> f64,
-    ) -> Result<Vec<String>, Difference> {
+        more: &[&str],
+        rows: &[Vec<String>],
+        same: impl Fn(&str, f64, f64) -> bool,
+    ) -> Result<Vec<Difference>, Difference> {
         let file = self.read()?;
-        if file.len() != measured.len() {
-            let (then, now) = (file.len(), measured.len());
-            return Err(format!(
-                "measured/{}.csv: {then} rows, {now} measured",
-                self.name
-            ));
+        if file.len() != rows.len() {
+            let (then, now) = (file.len(), rows.len());
+            return Err(self.wrong(format!("{then} rows, {now} measured")));
         }
-        let same = |((then, now), (name, _)): ((&String, &String), &Column)| match (
-            then.parse::<f64>(),
-            now.parse::<f64>(),
-        ) {
-            (Ok(then), Ok(now)) => (then - now).abs() <= slack(name, then),
-            _ => then == now,
-        };
-        let rows = file.iter().zip(measured);
-        let moved = rows.filter(|(then, now)| !then.iter().zip(*now).zip(self.columns).all(same));
-        Ok(moved
-            .map(|(then, now)| format!("{}\nbecame {}", then.join(", "), now.join(", ")))
-            .collect())
+        let names = self.names(more);
+        let mut moved = Vec::new();
+        for (then, now) in file.iter().zip(rows) {
+            if !then.names().eq(names.iter().copied()) || names.len() != now.len() {
+                return Err(self.wrong("other columns than those measured"));
+            }
+            let cells = names.iter().zip(then.cells()).zip(now);
+            let cells = cells.filter(|((name, then), now)| {
+                match (then.parse::<f64>(), now.parse::<f64>()) {
+                    (Ok(then), Ok(now)) => !same(name, then, now),
+                    _ => then != now,
+                }
+            });
+            let cells = cells.map(|((name, then), now)| format!("{name} {then} became {now}"));
+            let cells: Vec<_> = cells.collect();
+            if !cells.is_empty() {
+                moved.push(format!("{}: {}", now[0], cells.join(", ")));
+            }
+        }
+        Ok(moved)
     }
 
-    /// Writes file and page with `UPDATE_GOLDEN=1`; compares otherwise, as [`Table::moved`], and the
-    /// page with the file.
+    /// Writes file and page with `UPDATE_GOLDEN=1`, and compares otherwise, as [`Table::moved`].
     ///
     /// # Errors
     /// What differs, and the command that writes the table anew.
     pub fn check(
         &self,
-        measured: &[Vec<String>],
-        slack: impl Fn(&str, f64) -> f64,
+        more: &[&str],
+        rows: &[Vec<String>],
+        same: impl Fn(&str, f64, f64) -> bool,
     ) -> Result<(), Difference> {
         if update() {
-            return self.write(measured);
+            return self.write(more, rows);
         }
-        let moved = self.moved(measured, slack)?;
         let anew = format!(
             "if that is meant, UPDATE_GOLDEN=1 {} writes it anew",
             self.command
         );
-        if !moved.is_empty() {
-            return Err(format!(
-                "measured/{}.csv\n{}\n{anew}",
-                self.name,
-                moved.join("\n")
-            ));
+        let moved = self.moved(more, rows, same);
+        match moved.map_err(|error| format!("{error}; {anew}"))? {
+            moved if moved.is_empty() => Ok(()),
+            moved => Err(self.wrong(format!("\n{}\n{anew}", moved.join("\n")))),
         }
-        let page =
-            fs::read_to_string(self.page()).map_err(|error| format!("{}: {error}", self.page))?;
-        let [_, block, _] = self.parts(&page)?;
-        match block.trim() == self.markdown(&self.read()?).trim() {
-            true => Ok(()),
-            false => Err(format!(
-                "docs/{} is not measured/{}.csv; {anew}",
-                self.page, self.name
-            )),
+    }
+
+    /// Compares the block of the page with the file.
+    ///
+    /// # Errors
+    /// One line that names the page and says what writes the block.
+    pub fn check_page(&self) -> Result<(), Difference> {
+        if self.block().read()?.trim() == self.content()?.trim() {
+            return Ok(());
         }
+        Err(format!(
+            "{}: the block is not measured/{}.csv; UPDATE_GOLDEN=1 {} writes both",
+            self.page, self.name, self.command
+        ))
     }
 }
 
@@ -205,26 +236,18 @@ mod tests {
 
     const TABLE: Table = Table {
         name: "x",
-        page: "NAME.md",
+        page: "docs/x.md",
         columns: &[("name", "name"), ("mean_3", "mean, `3`")],
+        digits: Some(2),
         command: "cargo x",
     };
 
     #[test]
-    fn markdown_has_headings_and_rows() {
-        let rows = [vec!["a, n = 1".to_owned(), "2.5".to_owned()]];
+    fn markdown_has_headings_digits_and_further_columns() {
+        let rows = [["a, n = 1", "2.5499", "0"].map(str::to_owned).to_vec()];
         assert_eq!(
-            TABLE.markdown(&rows),
-            "| name | mean, `3` |\n|---|---|\n| a, n = 1 | 2.5 |\n"
+            TABLE.markdown(&["hold"], &rows),
+            "| name | mean, `3` | hold |\n|---|---|---|\n| a, n = 1 | 2.5 | 0 |\n"
         );
-    }
-
-    #[test]
-    fn block_without_its_comments_is_refused_by_name() {
-        let error = TABLE.parts("<!-- measured: x -->").unwrap_err();
-        assert_eq!(error, "docs/NAME.md: no '<!-- end of x -->'");
-        let text = "a <!-- measured: x -->b<!-- end of x --> c";
-        let [before, block, after] = TABLE.parts(text).unwrap();
-        assert_eq!([&*before, &*block, &*after].concat(), text);
     }
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use clap::{Parser, Subcommand};
 use measured::Table;
+use measured::tables::{CONTROL, PARETO};
 use terminal::failure::Failure;
 use terminal::output::{print_bytes, write_whole};
 
@@ -49,7 +50,7 @@ fn everything() -> Result<(), Failure> {
     control::rate(&mut rows, &tasks);
     let estimators = Report {
         name: "pareto",
-        table: &table::TABLE,
+        table: &PARETO,
         cells: table::cells(&rows),
         csv: table::csv(&rows),
         json: json(&rows)?,
@@ -57,13 +58,13 @@ fn everything() -> Result<(), Failure> {
     };
     let control = Report {
         name: "control-rate",
-        table: &control::table::TABLE,
+        table: &CONTROL,
         cells: control::table::cells(&tasks),
         csv: control::table::csv(&tasks),
         json: json(&tasks)?,
         plot: control::plot::svg(&tasks)?,
     };
-    let shown = [&estimators, &control].map(|one| one.table.markdown(&one.cells));
+    let shown = [&estimators, &control].map(|one| one.table.markdown(&[], &one.cells));
     print_bytes(shown.join("\n").as_bytes())?;
     estimators.write()?;
     control.write()
@@ -99,7 +100,7 @@ impl Report {
             write_whole(&file, text.as_bytes())?;
         }
         if measured::update() {
-            self.table.write(&self.cells).map_err(Failure::Input)?;
+            self.table.write(&[], &self.cells).map_err(Failure::Input)?;
             let plot = root.join("docs").join(self.name).with_extension("svg");
             write_whole(&plot, self.plot.as_bytes())?;
         }

@@ -2,36 +2,12 @@
 
 use std::fmt::Write;
 
-use measured::Table;
-
 use crate::measure::Row;
-
-/// Run time against error of every estimator.
-pub const TABLE: Table = Table {
-    name: "pareto",
-    page: "benchmarks.md",
-    columns: &[
-        ("estimator", "estimator"),
-        ("mean_3", "mean, `3`"),
-        ("most_3", "most, `3`"),
-        ("at_rest_3", "at rest, `3`"),
-        ("mean_s", "mean, `s`"),
-        ("most_s", "most, `s`"),
-        ("cycles_3", "cycles, `3`"),
-        ("code_3", "code, `3`"),
-        ("state", "state"),
-        ("rms_1khz_rad_s", "RMS, 1 kHz"),
-        ("rms_10khz_rad_s", "RMS, 10 kHz"),
-        ("front", "front"),
-        ("rate_khz", "kHz"),
-    ],
-    command: "cargo pareto",
-};
 
 /// A count may move by a tenth or by 3; an error is small and the same everywhere.
 #[must_use]
-pub fn slack(_column: &str, then: f64) -> f64 {
-    (0.1 * then).max(if then < 3.0 { 0.0 } else { 3.0 })
+pub fn same(_column: &str, then: f64, now: f64) -> bool {
+    (then - now).abs() <= (0.1 * then).max(if then < 3.0 { 0.0 } else { 3.0 })
 }
 
 /// The cells of the table.

@@ -2,28 +2,7 @@
 
 use std::fmt::Write as _;
 
-use measured::Table;
-
 use super::Task;
-
-/// The control task in every scene.
-pub const TABLE: Table = Table {
-    name: "control",
-    page: "benchmarks.md",
-    columns: &[
-        ("scene", "scene"),
-        ("estimator", "large motor by"),
-        ("instructions_mean", "instructions, mean"),
-        ("instructions_most", "most"),
-        ("cycles_mean", "cycles, mean"),
-        ("cycles_most", "most"),
-        ("khz_instructions_mean", "kHz, instructions, mean"),
-        ("khz_instructions_most", "most"),
-        ("khz_cycles_mean", "kHz, cycles, mean"),
-        ("khz_cycles_most", "most"),
-    ],
-    command: "cargo pareto",
-};
 
 /// The cells of the table.
 #[must_use]

@@ -1,16 +1,18 @@
 //! Instructions of the control task, and when it begins.
 
-use haptic_control::{Mode, SceneKind, Stop};
 use std::sync::OnceLock;
 
+use haptic_control::{Mode, SceneKind, Stop};
+use measured::tables::{SCENE_INSTRUCTIONS, TICK_INSTRUCTIONS};
 use virtual_board::run::{Outcome, Setup, Tick};
 use virtual_board::score::Range;
 
-use crate::golden::Golden;
 use crate::image::{FIRST_S, SETTLED_S, free_air, run_image, run_one, tour};
 
-/// Instructions may move by this part of what is written.
-const SLACK: f64 = 0.1;
+/// Instructions may move by a tenth.
+fn same(_column: &str, then: f64, now: f64) -> bool {
+    (then - now).abs() <= 0.1 * then
+}
 
 /// A run of the image of one scene alone.
 pub(crate) struct Alone {
@@ -82,17 +84,16 @@ fn figures(range: Range) -> [u64; 2] {
 #[test]
 fn a_scene_alone_costs_the_instructions_that_the_table_says() {
     let all = between(tour(), FIRST_S, f64::INFINITY);
-    let mut rows = vec![("all", figures(all))];
-    for Alone { scene, run } in alone() {
-        let range = between(run, SETTLED_S, f64::INFINITY);
-        rows.push((scene.name(), figures(range)));
-    }
-    let table = Golden {
-        file: "benchmarks.md",
-        name: "scenes",
+    let row = |name: &str, range: Range| {
+        let [mean, most] = figures(range).map(|figure| figure.to_string());
+        vec![name.to_owned(), mean, most]
     };
-    let begin = "<!-- scenes: written by the test scene_images -->";
-    table.check_last(begin, "<!-- end of scenes -->", &rows, SLACK);
+    let alone = alone().iter();
+    let alone =
+        alone.map(|Alone { scene, run }| row(scene.name(), between(run, SETTLED_S, f64::INFINITY)));
+    let rows: Vec<_> = alone.chain([row("all", all)]).collect();
+    let checked = SCENE_INSTRUCTIONS.check(&[], &rows, same);
+    checked.unwrap_or_else(|error| panic!("{error}"));
 }
 
 #[test]
@@ -110,20 +111,8 @@ fn every_scene_and_estimator_costs_what_the_table_says() {
                 .collect()
         })
         .collect();
-    let table = Golden {
-        file: "benchmarks.md",
-        name: "instructions",
-    };
-    let head = [
-        "scene",
-        "FOAW, least",
-        "mean",
-        "most",
-        "Kalman, least",
-        "mean",
-        "most",
-    ];
-    table.check(&head, &rows, |_, golden| SLACK * golden);
+    let checked = TICK_INSTRUCTIONS.check(&[], &rows, same);
+    checked.unwrap_or_else(|error| panic!("{error}"));
 }
 
 /// What a scene does not need it does not pay for. Differences, because every scene pays for the

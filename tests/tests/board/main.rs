@@ -4,7 +4,6 @@ mod choice;
 mod cost;
 mod edges;
 mod faults;
-mod golden;
 mod hardware;
 mod healthy;
 mod identify;

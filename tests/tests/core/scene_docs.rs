@@ -1,22 +1,15 @@
 //! The tables of scenes in docs/, made from the catalogue.
 //!
-//! `UPDATE_GOLDEN=1 cargo test --release --package acceptance --test core scene_docs` writes them.
-
-use std::fmt::Write as _;
-use std::path::Path;
+//! `UPDATE_GOLDEN=1 cargo test --release --package acceptance --test core scene` writes them.
 
 use firmware_app::config::{DEVICE, RATE};
 use firmware_app::scene::BOUNDS;
 use haptic_control::SceneKind;
+use measured::block::{Block, markdown};
 
-/// The rows of scenes: number, name, what it is, torque and needs.
+/// The table of scenes: number, name, what it is, torque and needs.
 fn scenes() -> String {
-    let mut table = "\
-| number | scene | what it renders | torque | handle velocity | acceleration | continuous | transient |
-|---|---|---|---|---|---|---|---|
-"
-    .to_owned();
-    for kind in SceneKind::ALL {
+    let row = |kind: SceneKind| {
         let facts = kind.facts();
         let needs = facts.needs;
         let yes = |needed| if needed { "yes" } else { "no" };
@@ -25,29 +18,28 @@ fn scenes() -> String {
             (false, true) => "for the slip",
             (false, false) => "no",
         };
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            table,
-            "| {} | {} | {} | {} | {velocity} | {} | {} | {} |",
-            facts.number,
-            facts.name,
-            facts.summary,
-            facts.torque,
-            yes(needs.acceleration),
-            yes(needs.continuous),
-            yes(needs.transient),
-        );
-    }
-    table
+        let number = facts.number.to_string();
+        let words = [&*number, facts.name, facts.summary, facts.torque, velocity];
+        let needs = [needs.acceleration, needs.continuous, needs.transient].map(yes);
+        words.into_iter().chain(needs).map(str::to_owned).collect()
+    };
+    let head = [
+        "number",
+        "scene",
+        "what it renders",
+        "torque",
+        "handle velocity",
+        "acceleration",
+        "continuous",
+        "transient",
+    ];
+    let rows: Vec<_> = SceneKind::ALL.into_iter().map(row).collect();
+    markdown(&head, &rows)
 }
 
-/// The rows of parameters: scene, number, name, unit, bounds and usual value.
+/// The table of parameters: scene, number, name, unit, bounds and usual value.
 fn parameters() -> String {
-    let mut table = "\
-| scene | parameter | unit | from | to | usual |
-|---|---|---|---|---|---|
-"
-    .to_owned();
+    let mut rows = Vec::new();
     for kind in SceneKind::ALL {
         let usual = kind.usual(&DEVICE, RATE).expect("the default device");
         for (number, parameter) in (0..).zip(kind.facts().parameters) {
@@ -57,16 +49,19 @@ fn parameters() -> String {
                 "" => "-",
                 unit => unit,
             };
-            let [least, most, value] = [*range.start(), *range.end(), value].map(short);
-            let _ = writeln!(
-                table,
-                "| {} {kind} | {number} {} | {unit} | {least} | {most} | {value} |",
-                kind.number(),
-                parameter.name,
-            );
+            let names = [
+                format!("{} {kind}", kind.number()),
+                format!("{number} {}", parameter.name),
+                unit.to_owned(),
+            ];
+            let values = [*range.start(), *range.end(), value].map(short);
+            rows.push([names, values].concat());
         }
     }
-    table
+    markdown(
+        &["scene", "parameter", "unit", "from", "to", "usual"],
+        &rows,
+    )
 }
 
 /// A number as it is written by hand: 0.04125, but -2.5e-6.
@@ -78,33 +73,22 @@ fn short(value: f32) -> String {
     }
 }
 
-fn check(file: &str, name: &str, table: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../docs")
-        .join(file);
-    let text = std::fs::read_to_string(&path).expect(file);
-    let begin = format!("<!-- {name}: written by the test scene_docs -->");
-    let end = format!("<!-- end of {name} -->");
-    let (before, rest) = text.split_once(&begin).expect("the table's beginning");
-    let (written, after) = rest.split_once(&end).expect("the table's end");
-    if std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1") {
-        let text = format!("{before}{begin}\n\n{table}\n{end}{after}");
-        std::fs::write(&path, text).expect("docs can be written");
-    } else {
-        assert_eq!(
-            written.trim(),
-            table.trim(),
-            "docs/{file} differs from the catalogue: UPDATE_GOLDEN=1 writes the table anew"
-        );
-    }
+fn check(page: &'static str, name: &'static str, table: &str) {
+    let block = Block {
+        kind: "catalogue",
+        name,
+        page,
+    };
+    let checked = block.check(table);
+    checked.unwrap_or_else(|error| panic!("{error}"));
 }
 
 #[test]
 fn every_scene_is_in_the_table_of_scenes() {
-    check("theory/scenes.md", "list of scenes", &scenes());
+    check("docs/theory/scenes.md", "scenes", &scenes());
 }
 
 #[test]
 fn every_parameter_is_in_the_table_of_commands() {
-    check("telemetry.md", "scene parameters", &parameters());
+    check("docs/telemetry.md", "scene parameters", &parameters());
 }

@@ -1,13 +1,10 @@
 //! What a scene costs on the board: code and memory of the controller of each scene alone, read
 //! from the libraries that the package `scene-images` builds.
-//!
-//! `UPDATE_GOLDEN=1 cargo test --release --package acceptance scene_images` writes the table in
-//! docs/benchmarks.md anew.
 
-use std::path::Path;
 use std::sync::LazyLock;
 
 use haptic_control::{Role, SceneKind};
+use measured::tables::SCENE_SIZES;
 
 use crate::image::{Image, Reached, build};
 
@@ -145,69 +142,24 @@ impl Cost {
     }
 }
 
-const BEGIN: &str = "<!-- scenes: written by the test scene_images -->";
-const END: &str = "<!-- end of scenes -->";
-
-const HEAD: &str = "\
-| scene | text, `3` | text, `s` | controller | state | instructions, mean | instructions, most |
-|---|---|---|---|---|---|---|
-";
-
-/// The cells of a row.
-fn cells(row: &str) -> Vec<&str> {
-    let cells = row.trim_matches('|').split('|');
-    cells.map(str::trim).collect()
-}
-
 #[test]
 fn a_scene_costs_what_the_table_says() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/benchmarks.md");
-    let text = std::fs::read_to_string(&path).expect("docs/benchmarks.md");
-    let (before, rest) = text.split_once(BEGIN).expect("the table's beginning");
-    let (table, after) = rest.split_once(END).expect("the table's end");
-    let rows: Vec<Vec<&str>> = table.lines().map(cells).collect();
-    let row = |scene: &str| rows.iter().find(|cells| cells[0] == scene);
-
-    if std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1") {
-        let mut table = HEAD.to_owned();
-        for (scene, module, _) in SCENES.iter() {
-            let figures = Cost::of(module).figures().map(|bytes| bytes.to_string());
-            // Instructions are counted elsewhere.
-            let instructions = match row(scene).and_then(|cells| cells.get(5..)) {
-                Some([mean, most]) => [mean, most].map(|cell| (*cell).to_owned()),
-                _ => ["later", "later"].map(String::from),
-            };
-            let cells = [&[(*scene).to_owned()], &figures[..], &instructions].concat();
-            table += &format!("| {} |\n", cells.join(" | "));
-        }
-        let text = format!("{before}{BEGIN}\n\n{table}\n{END}{after}");
-        std::fs::write(&path, text).expect("docs/benchmarks.md can be written");
-        return;
-    }
-
-    assert!(table.contains(HEAD), "not the head of the table");
-    let written = rows.iter().filter(|cells| cells.len() > 1).count();
-    assert_eq!(written, SCENES.len() + 2, "head and a row for each scene");
-    let mut moved = Vec::new();
-    for (scene, module, _) in SCENES.iter() {
-        let cells = row(scene).unwrap_or_else(|| panic!("no row for {scene}"));
+    let row = |(scene, module, _): &(&str, String, Needs)| {
+        let figures = Cost::of(module).figures().map(|bytes| bytes.to_string());
+        [&[(*scene).to_owned()], &figures[..]].concat()
+    };
+    let rows: Vec<_> = SCENES.iter().map(row).collect();
+    let same = |column: &str, then: f64, now: f64| {
         // Code may move a little with what has nothing to do with the scene, memory by two words.
-        let slack = [32, 32, 8, 8];
-        for ((cell, bytes), slack) in cells[1..5]
-            .iter()
-            .zip(Cost::of(module).figures())
-            .zip(slack)
-        {
-            let golden: u64 = cell.parse().expect("bytes");
-            if bytes.abs_diff(golden) > slack.max(golden / 10) {
-                moved.push(format!("{scene}: {golden} became {bytes}"));
-            }
-        }
-    }
-    assert!(
-        moved.is_empty(),
-        "{moved:#?}\nif that is meant, UPDATE_GOLDEN=1 writes the table anew"
-    );
+        let slack = if column.starts_with("text") {
+            32.0
+        } else {
+            8.0
+        };
+        (then - now).abs() <= (then / 10.0).floor().max(slack)
+    };
+    let checked = SCENE_SIZES.check(&[], &rows, same);
+    checked.unwrap_or_else(|error| panic!("{error}"));
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use bench_image::{SUBJECTS, Subject};
 use estimator_core::{Counts, Sample};
-use measured::Table;
+use measured::tables::BOUNDS;
 use pareto::board::{Job, on_board};
 use pareto::image::{Image, Level};
 use pareto::{bound, traces};
@@ -127,19 +127,6 @@ fn measure() -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-const TABLE: Table = Table {
-    name: "bounds",
-    page: "benchmarks.md",
-    columns: &[
-        ("estimator", "estimator"),
-        ("bound_3", "bound, `3`"),
-        ("most_3", "most seen, `3`"),
-        ("bound_s", "bound, `s`"),
-        ("most_s", "most seen, `s`"),
-    ],
-    command: "cargo test --release -p acceptance --test pareto bound",
-};
-
 fn cells(rows: &[Row]) -> Vec<Vec<String>> {
     let row = |Row { name, found }: &Row| {
         let figures = found.iter().flat_map(|found| [found.bound, found.most]);
@@ -190,6 +177,7 @@ fn no_update_takes_more_instructions_than_its_code_allows() {
 
     as_told_of_windows(&rows);
 
-    let checked = TABLE.check(&cells(&rows), |_, then| (0.1 * then).max(3.0));
+    let same = |_: &str, then: f64, now: f64| (then - now).abs() <= (0.1 * then).max(3.0);
+    let checked = BOUNDS.check(&[], &cells(&rows), same);
     checked.unwrap_or_else(|error| panic!("{error}"));
 }

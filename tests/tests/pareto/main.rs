@@ -6,6 +6,7 @@ mod bound;
 
 use bench_image::SUBJECTS;
 use estimator_catalogue::ROWS;
+use measured::tables::{CONTROL, PARETO};
 use pareto::control::{self, Task};
 use pareto::measure::{self, Row};
 use pareto::table;
@@ -16,11 +17,11 @@ fn run_time_error_and_control_rate_are_what_the_tables_say() {
     let mut rows = measure::measure().unwrap();
     let tasks = control::measure().unwrap();
     control::rate(&mut rows, &tasks);
-    let estimators = (table::TABLE, table::cells(&rows));
-    let control = (control::table::TABLE, control::table::cells(&tasks));
+    let estimators = (PARETO, table::cells(&rows));
+    let control = (CONTROL, control::table::cells(&tasks));
     for (table, cells) in [&estimators, &control] {
         table
-            .check(cells, table::slack)
+            .check(&[], cells, table::same)
             .unwrap_or_else(|error| panic!("{error}"));
     }
     claims_of_estimators(&rows);
@@ -30,11 +31,11 @@ fn run_time_error_and_control_rate_are_what_the_tables_say() {
     for factor in [0.8, 1.25] {
         let mut broken = rows.clone();
         broken[2].cost[0].mean *= factor;
-        let moved = table::TABLE.moved(&table::cells(&broken), table::slack);
+        let moved = PARETO.moved(&[], &table::cells(&broken), table::same);
         assert_eq!(moved.unwrap().len(), 1);
         let mut broken = tasks.clone();
         broken[2].cycles.0 *= factor;
-        let moved = control::table::TABLE.moved(&control::table::cells(&broken), table::slack);
+        let moved = CONTROL.moved(&[], &control::table::cells(&broken), table::same);
         assert_eq!(moved.unwrap().len(), 1);
     }
 }
