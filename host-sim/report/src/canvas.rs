@@ -3,6 +3,7 @@
 //! The SVG backend rounds to whole units, so a figure is drawn at [`FINE`] units a pixel and
 //! shown at that much less.
 
+use maud::{Markup, PreEscaped, Render, html};
 use plotters::backend::SVGBackend;
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, IntoDrawingArea};
@@ -12,7 +13,6 @@ use plotters::style::{Color, FontTransform, IntoFont, RGBColor, TextStyle, WHITE
 
 use super::palette::{BAND, INK};
 use super::style::{Strokes as _, Style};
-use super::text::escape;
 
 /// Width of every figure, px.
 pub(super) const WIDTH: f64 = 900.0;
@@ -53,12 +53,23 @@ pub(super) fn text_width(text: &str, size: f64) -> f64 {
     0.58 * size * text.chars().count() as f64
 }
 
-/// An SVG image of [`WIDTH`] by `height` px; `title` is read out to who cannot see it.
+/// An SVG image that [`figure`] made.
+#[derive(Debug)]
+pub(super) struct Svg(pub(super) String);
+
+impl Render for Svg {
+    fn render(&self) -> Markup {
+        // An image is markup already: its own texts were escaped when it was drawn.
+        html! { figure { (PreEscaped(&self.0)) } }
+    }
+}
+
+/// An SVG image of [`WIDTH`] by `height` px; screen readers read `title` out.
 pub(super) fn figure(
     height: f64,
     title: &str,
     draw: impl FnOnce(&Canvas) -> Result<(), String>,
-) -> Result<String, String> {
+) -> Result<Svg, String> {
     let mut svg = String::new();
     let (width, fine_height) = fine((WIDTH, height));
     {
@@ -76,7 +87,8 @@ pub(super) fn figure(
         "font-family=\"sans-serif\"",
         "font-family=\"system-ui, sans-serif\"",
     );
-    Ok(svg.replacen(">\n", &format!(">\n<title>{}</title>\n", escape(title)), 1))
+    let title = html! { title { (title) } }.into_string();
+    Ok(Svg(svg.replacen(">\n", &format!(">\n{title}\n"), 1)))
 }
 
 impl Canvas<'_> {
@@ -203,7 +215,8 @@ mod tests {
             canvas.text("<x> & \"y\"", (10.0, 10.0), Anchor::Left, LABEL, INK)?;
             canvas.line(&[(0.0, 0.0), (0.25, 30.0)], INK, 1.0)
         })
-        .unwrap();
+        .unwrap()
+        .0;
         assert!(svg.starts_with(
             "<svg width=\"900\" height=\"120\" role=\"img\" viewBox=\"0 0 3600 480\""
         ));

@@ -1,6 +1,6 @@
 //! Run time against error: a panel a scenario.
 
-use super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure, legend_height};
+use super::canvas::{Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height};
 use super::grid::{Group, Scenario};
 use super::palette::{INK, MUTED, Palette};
 use super::plot::{Axis, Plot};
@@ -23,7 +23,7 @@ pub(super) fn panels(
     group: &Group,
     limits: &[limit::Row],
     palette: &Palette,
-) -> Result<Option<String>, String> {
+) -> Result<Option<Svg>, String> {
     let shown: Vec<&Scenario> = group
         .scenarios
         .iter()
@@ -210,11 +210,11 @@ mod tests {
         });
         let groups = groups(&report);
         let palette = Palette::new(&report);
-        let svg = panels(&groups[0], &limits, &palette).unwrap().unwrap();
+        let svg = panels(&groups[0], &limits, &palette).unwrap().unwrap().0;
         assert_eq!(svg.matches("instructions an update").count(), 2);
         assert!(svg.contains("particle filter: counts") && !svg.contains("unmeasured"));
         // Of the particle filter on another plant or at another rate, nothing.
-        let svg = panels(&groups[0], &[], &palette).unwrap().unwrap();
+        let svg = panels(&groups[0], &[], &palette).unwrap().unwrap().0;
         assert!(!svg.contains("particle filter: counts"));
     }
 }

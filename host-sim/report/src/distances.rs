@@ -1,6 +1,8 @@
 //! Mean distance outside the interval, every scenario and estimator, plants side by side.
 
-use super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure, legend_height, text_width};
+use super::canvas::{
+    Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height, text_width,
+};
 use super::grid::Group;
 use super::palette::{GRID, INK, MUTED, Palette};
 use super::plot::{Axis, Plot};
@@ -19,7 +21,7 @@ pub(super) fn bars(
     title: &str,
     groups: &[&Group],
     palette: &Palette,
-) -> Result<Option<String>, String> {
+) -> Result<Option<Svg>, String> {
     let names: Vec<&str> = palette.names().collect();
     let mut scenarios: Vec<&str> = Vec::new();
     let (mut low, mut high) = (f64::INFINITY, 0.0_f64);

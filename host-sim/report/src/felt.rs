@@ -11,11 +11,12 @@ mod torque;
 
 use super::ReportInput;
 use super::palette::Palette;
-use super::sections::{Section, framed, words};
+use super::section::{Section, explained, explanation, joined};
 use super::text::{number, plant, rate, share};
 use catalogue::parameters::PlantKind;
 use experiments::transparency::{Design, Outcome, REFERENCE, Run, Swept};
 use haptic_control::SceneKind;
+use maud::html;
 
 /// What was run with the loop closed.
 #[derive(Clone, Debug, Default)]
@@ -140,53 +141,36 @@ pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Se
     if closed.outcomes.is_empty() {
         return Ok(Vec::new());
     }
-    let section = |id, title, body| Section { id, title, body };
-    let mut overview = words(FELT);
-    if let Some(text) = in_words(closed) {
-        overview = format!("<p class=\"verdict\">{text}</p>\n{overview}");
-    }
     let threshold_mn = 1e3 * report.device.threshold_n;
-    overview += &framed(&bars::below(closed, palette)?);
-    overview += &words(BARS);
-    let margins = margins::table(&closed.designs);
-    Ok(vec![
-        section("felt", "What the hand feels", overview),
-        section(
-            "transparency",
-            "Transparency",
-            figures(binned::figures(closed, palette, threshold_mn)?, SPEED)
-                + &figures(spectrum::figure(closed, palette)?, SPECTRUM),
-        ),
-        section(
-            "rendered",
-            "Wanted and felt",
-            figures(render::figures(closed, palette, threshold_mn)?, RENDERED),
-        ),
-        section(
-            "torque",
-            "Torque bandwidth",
-            figures(torque::figures(closed, palette)?, TORQUE) + &torque::table(closed, palette),
-        ),
-        section(
-            "margins",
-            "Velocity loop",
-            figures(margins::figure_or_none(&closed.designs)?, MARGINS) + &margins,
-        ),
-        section(
-            "felt-scores",
-            "Closed-loop scores",
-            score_table::tables(closed, palette),
-        ),
-    ])
-}
-
-fn figures(svgs: impl IntoIterator<Item = String>, look: &str) -> String {
-    let html: String = svgs.into_iter().map(|svg| framed(&svg)).collect();
-    if html.is_empty() {
-        html
-    } else {
-        html + &words(look)
-    }
+    let overview = html! {
+        @if let Some(text) = in_words(closed) { p.verdict { (text) } }
+        (explanation(FELT))
+        (bars::below(closed, palette)?)
+        (explanation(BARS))
+    };
+    let transparency = [
+        explained(binned::figures(closed, palette, threshold_mn)?, SPEED),
+        explained(spectrum::figure(closed, palette)?, SPECTRUM),
+    ];
+    let rendered = explained(render::figures(closed, palette, threshold_mn)?, RENDERED);
+    let torque = [
+        explained(torque::figures(closed, palette)?, TORQUE),
+        torque::table(closed, palette),
+    ];
+    let margins = [
+        explained(margins::figure_or_none(&closed.designs)?, MARGINS),
+        margins::table(&closed.designs),
+    ];
+    let scores = score_table::tables(closed, palette);
+    let sections = [
+        Section::new("felt", "What the hand feels", Some(overview)),
+        Section::new("transparency", "Transparency", joined(transparency)),
+        Section::new("rendered", "Wanted and felt", rendered),
+        Section::new("torque", "Torque bandwidth", joined(torque)),
+        Section::new("margins", "Velocity loop", joined(margins)),
+        Section::new("felt-scores", "Closed-loop scores", Some(scores)),
+    ];
+    Ok(sections.into_iter().flatten().collect())
 }
 
 /// The gist, from free air or else from the first scene with a loop.

@@ -1,7 +1,7 @@
 //! Damping over time, true and learned.
 
 use super::CaseReport;
-use super::canvas::{Anchor, Key, LABEL, TITLE, WIDTH, figure, legend_height};
+use super::canvas::{Anchor, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height};
 use super::palette::{INK, Palette};
 use super::plot::{Axis, Plot};
 use super::text::{plant, rate};
@@ -16,7 +16,7 @@ pub(super) fn chart(
     case: &CaseReport,
     damping: &Damping,
     palette: &Palette,
-) -> Result<String, String> {
+) -> Result<Svg, String> {
     let mut keys = vec![Key::Line(INK.into(), "true")];
     let names = damping.learned.iter().map(|(name, _)| *name);
     keys.extend(names.map(|name| Key::Line(palette.style(name), name)));
@@ -72,7 +72,7 @@ mod tests {
             learned: vec![("adaptive", vec![1e-3, 0.95e-3, 0.8e-3])],
         };
         let palette = Palette::of(std::iter::once("adaptive"));
-        let svg = chart(&CaseReport::default(), &damping, &palette).unwrap();
+        let svg = chart(&CaseReport::default(), &damping, &palette).unwrap().0;
         assert!(svg.contains("true") && svg.contains("adaptive"));
         assert!(svg.matches("<polyline").count() >= 2, "{svg}");
     }

@@ -1,8 +1,8 @@
 //! The page of `identify`: the identified motor beside the measured one, what is left over, and how
 //! sure each constant is.
 
-use super::canvas::{Anchor, Key, LABEL, TITLE, WIDTH, figure, legend_height};
-use super::page::{Document, printed};
+use super::canvas::{Anchor, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height};
+use super::page::Printout;
 use super::palette::{BAND, INK, MUTED, TRUTH};
 use super::plot::{Axis, Plot};
 use experiments::identify::{Beside, Identification, Quantity, SPAN_S};
@@ -19,7 +19,7 @@ const NAMES: f64 = 230.0;
 
 const MODEL: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
 
-/// The page: a figure a recording, one of the constants, then the `table` as it was printed.
+/// The page: a figure a recording, one of the constants, then the printed table.
 /// `count_rad_s` is what one count is worth over [`SPAN_S`].
 ///
 /// # Errors
@@ -27,34 +27,25 @@ const MODEL: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
 pub fn identify(
     found: &Identification,
     count_rad_s: f64,
-    table: &str,
-    command: &str,
+    printout: &Printout,
 ) -> Result<String, String> {
-    let mut figures = String::new();
-    for beside in &found.beside {
-        figures += &format!("<figure>{}</figure>\n", motion(beside, count_rad_s)?);
-    }
-    figures += &format!("<figure>{}</figure>\n", constants(&found.quantities)?);
+    let motions = found.beside.iter();
+    let motions = motions.map(|beside| motion(beside, count_rad_s));
+    let figures: Vec<Svg> = motions
+        .chain([constants(&found.quantities)])
+        .collect::<Result<_, _>>()?;
     let intro = format!(
-        "<p>The identified motor ran beside the measured one: it \
-         saw the current and the handle, never the motor. Both velocities are displacements over \
-         {:.0} ms; the green band is one count of that. What repeats once a turn is fitted but not \
-         modelled here, so it stays in the residual.</p>\n",
+        "The identified motor ran beside the measured one: it saw the current and the handle, \
+         never the motor. Both velocities are displacements over {:.0} ms; the green band is one \
+         count of that. What repeats once a turn is fitted but not modelled here, so it stays in \
+         the residual.",
         1e3 * SPAN_S
     );
-    Ok(Document {
-        title: "Identification",
-        intro,
-        facts: vec![("command", command.to_owned())],
-        notes: String::new(),
-        contents: String::new(),
-        body: figures + &printed(table),
-    }
-    .html())
+    Ok(printout.page("Identification", &intro, &figures))
 }
 
 /// Velocities, and below them their difference.
-fn motion(beside: &Beside, count_rad_s: f64) -> Result<String, String> {
+fn motion(beside: &Beside, count_rad_s: f64) -> Result<Svg, String> {
     let residual: Vec<f64> = beside
         .measured
         .iter()
@@ -123,7 +114,7 @@ fn motion(beside: &Beside, count_rad_s: f64) -> Result<String, String> {
 }
 
 /// Each constant as part of the device file's value, with its 95 % interval.
-fn constants(quantities: &[Quantity]) -> Result<String, String> {
+fn constants(quantities: &[Quantity]) -> Result<Svg, String> {
     let parts: Vec<(&Quantity, f64, f64)> = quantities
         .iter()
         .filter(|quantity| quantity.file != 0.0)

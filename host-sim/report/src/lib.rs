@@ -19,6 +19,8 @@ mod grid;
 mod heating;
 mod identify;
 pub mod measured;
+mod over_time;
+mod overview;
 mod page;
 mod palette;
 mod plot;
@@ -26,6 +28,7 @@ mod problem;
 mod recording;
 mod robust;
 mod score_tables;
+mod section;
 mod sections;
 mod sensitivity;
 mod spectra;
@@ -43,6 +46,8 @@ pub use sensitivity::sensitivity;
 pub use identify::identify;
 
 pub use zwidth::zwidth;
+
+pub use page::Printout;
 
 pub use felt::ClosedLoop;
 
@@ -184,7 +189,7 @@ pub fn html(report: &ReportInput) -> Result<String, String> {
             }
         }
     }
-    page::page(report)
+    overview::page(report)
 }
 
 /// The figures of a page made by [`html`], in order, each an SVG document.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::canvas::{Anchor, Key, LABEL, TITLE, WIDTH, figure, legend_height};
+use super::canvas::{Anchor, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height};
 use super::palette::{INK, Palette, TRUTH};
 use super::plot::{Axis, Plot};
 use super::{Traces, velocity};
@@ -18,7 +18,7 @@ pub(super) fn figure_one(
     estimator: usize,
     interval: &Interval,
     palette: &Palette,
-) -> Result<String, String> {
+) -> Result<Svg, String> {
     let (name, estimate) = &traces.estimates[estimator];
     let keys = [
         Key::Line(palette.style(name), name),

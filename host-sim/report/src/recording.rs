@@ -81,6 +81,7 @@ pub fn recording(view: &RecordingView) -> Result<String, String> {
         }
         Ok(())
     })
+    .map(|svg| svg.0)
 }
 
 fn keys<'a>(panel: &Panel, names: &'a [String]) -> Vec<Key<'a>> {

@@ -2,11 +2,9 @@
 
 use plotters::style::RGBColor;
 
-use super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure};
-use super::page::{Document, printed};
+use super::canvas::{Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure};
+use super::page::Printout;
 use super::palette::{GRID, INK, MUTED};
-use super::sections::framed;
-use super::text::escape;
 use experiments::robust::judge::{FELT_NM, HANDLE_RAD_S};
 use experiments::robust::summary::{SceneSummary, Spread};
 
@@ -65,36 +63,25 @@ const PANELS: [Panel; 4] = [
     },
 ];
 
-/// The page: the figure, then the `table` as it was printed.
+/// The page: the figure, then the printed table.
 ///
 /// # Errors
 /// If the figure cannot be drawn.
 pub fn robust(
     heading: &str,
     scenes: &[SceneSummary],
-    table: &str,
-    command: &str,
+    printout: &Printout,
 ) -> Result<String, String> {
-    let svg = chart(scenes)?;
     let intro = format!(
-        "<p>{}. The controller believes the nominal \
-         device; each run has another one. Of each run the largest speed, torque and force, and \
-         the oscillation that stays. Bars reach from 5 % to 95 % of the devices, the line in them \
-         is the median, the dot the largest; red lines are limits.</p>\n",
-        escape(heading)
+        "{heading}. The controller believes the nominal device; each run has another one. Of each \
+         run the largest speed, torque and force, and the oscillation that stays. Bars reach from \
+         5 % to 95 % of the devices, the line in them is the median, the dot the largest; red \
+         lines are limits."
     );
-    Ok(Document {
-        title: "Robustness of the loop",
-        intro,
-        facts: vec![("command", command.to_owned())],
-        notes: String::new(),
-        contents: String::new(),
-        body: framed(&svg) + &printed(table),
-    }
-    .html())
+    Ok(printout.page("Robustness of the loop", &intro, &[chart(scenes)?]))
 }
 
-fn chart(scenes: &[SceneSummary]) -> Result<String, String> {
+fn chart(scenes: &[SceneSummary]) -> Result<Svg, String> {
     let title = "Devices that differ from the one believed in";
     let bottom = TOP + ROW * scenes.len() as f64;
     let share = (WIDTH - LEFT - 20.0 + GAP) / (PANELS.len() + 1) as f64;

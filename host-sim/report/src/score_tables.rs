@@ -1,81 +1,95 @@
 //! The scores in numbers, the best of each column marked.
 
-use std::fmt::Write as _;
+use maud::{Markup, html};
 
 use super::grid::{Group, Scenario};
 use super::palette::Palette;
-use super::text::{escape, number, plant, rate, share};
+use super::text::{number, plant, rate, share};
 use scoring::score::{Better, Field, Form, Score};
 
 /// Share of samples inside the interval: estimators down, rate and plant across.
 ///
-/// Empty if no case says.
-pub(super) fn inside(groups: &[Group], palette: &Palette) -> String {
-    let groups: Vec<&Group> = groups
+/// `None` if no case says.
+pub(super) fn inside(groups: &[Group], palette: &Palette) -> Option<Markup> {
+    let inside_of = |group: &Group| -> Vec<Option<f64>> {
+        let inside = palette.names().map(|name| group.inside(name));
+        inside
+            .map(|found| found.map(|(inside, _)| inside))
+            .collect()
+    };
+    let columns: Vec<(&Group, Vec<Option<f64>>)> = groups
         .iter()
-        .filter(|group| palette.names().any(|name| group.inside(name).is_some()))
+        .map(|group| (group, inside_of(group)))
+        .filter(|(_, shares)| shares.iter().any(Option::is_some))
         .collect();
-    if groups.is_empty() {
-        return String::new();
-    }
-    let mut html = String::from(
-        "<div class=\"scroll\"><table class=\"scores\"><caption>Time inside the haptic interval, \
-         mean over scenarios</caption>\n<thead><tr><th>estimator</th>",
-    );
-    for group in &groups {
-        let (rate, plant) = (rate(group.rate_hz), plant(group.friction));
-        let _ = write!(html, "<th>{rate}<small>{plant}</small></th>");
-    }
-    html += "</tr></thead><tbody>\n";
-    let best = groups.iter().map(|group| {
-        let inside = palette.names().filter_map(|name| group.inside(name));
-        inside.map(|(inside, _)| inside).reduce(f64::max)
-    });
-    let best: Vec<_> = best.collect();
-    for name in palette.names() {
-        let _ = write!(html, "<tr><th scope=\"row\">{}</th>", label(name, palette));
-        for (group, best) in groups.iter().zip(&best) {
-            html += &match group.inside(name) {
-                Some((inside, _)) => cell(&share(inside), inside, Some(inside) == *best),
-                None => "<td></td>".into(),
-            };
+    let best = |shares: &[Option<f64>]| shares.iter().copied().flatten().reduce(f64::max);
+    (!columns.is_empty()).then(|| html! {
+        div.scroll {
+            table.scores {
+                caption { "Time inside the haptic interval, mean over scenarios" }
+                thead {
+                    tr {
+                        th { "estimator" }
+                        @for (group, _) in &columns {
+                            th { (rate(group.rate_hz)) small { (plant(group.friction)) } }
+                        }
+                    }
+                }
+                tbody {
+                    @for (i, name) in palette.names().enumerate() {
+                        tr {
+                            th scope="row" { (label(name, palette)) }
+                            @for (_, shares) in &columns {
+                                @match shares[i] {
+                                    Some(inside) => {
+                                        (cell(&share(inside), inside, Some(inside) == best(shares)))
+                                    }
+                                    None => { td {} }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
         }
-        html += "</tr>\n";
-    }
-    html + "</tbody></table></div>\n"
+    })
 }
 
 /// One table for a rate and plant, scenarios as its blocks.
-pub(super) fn scores(group: &Group, palette: &Palette) -> String {
-    let mut html = format!(
-        "<div class=\"scroll\"><table class=\"scores sortable\"><caption>{}, plant {}</caption>\n\
-         <thead><tr><th>estimator</th>",
-        rate(group.rate_hz),
-        plant(group.friction)
-    );
+pub(super) fn scores(group: &Group, palette: &Palette) -> Markup {
     let rows = || group.scenarios.iter().flat_map(|scenario| &scenario.rows);
     let shown: Vec<&Field<Score>> = Score::FIELDS
         .iter()
         .filter(|field| rows().any(|row| (field.of)(&row.score).is_some()))
         .collect();
-    for field in &shown {
-        html += &head(field);
+    html! {
+        div.scroll {
+            table.scores.sortable {
+                caption { (rate(group.rate_hz)) ", plant " (plant(group.friction)) }
+                thead {
+                    tr {
+                        th { "estimator" }
+                        @for field in &shown { (head(field)) }
+                    }
+                }
+                @for scenario in &group.scenarios { (block(scenario, &shown, palette)) }
+            }
+        }
     }
-    html += "</tr></thead>\n";
-    for scenario in &group.scenarios {
-        html += &block(scenario, &shown, palette);
-    }
-    html + "</table></div>\n"
 }
 
 /// The heading of a column that can be sorted by.
-pub(super) fn head<T>(field: &Field<T>) -> String {
-    format!(
-        "<th aria-sort=\"none\" title=\"{}\"><button type=\"button\">{}<small>{}</small></button></th>",
-        escape(&field.sentence()),
-        field.head,
-        field.unit
-    )
+pub(super) fn head<T>(field: &Field<T>) -> Markup {
+    html! {
+        th aria-sort="none" title=(field.sentence()) {
+            button type="button" { (field.head) small { (field.unit) } }
+        }
+    }
+}
+
+/// The heading of a block, over a column of names and `columns` of values.
+pub(super) fn block_head(name: &str, columns: usize) -> Markup {
+    html! { tr.scenario { th colspan=(columns + 1) scope="rowgroup" { (name) } } }
 }
 
 /// The cell of a value, marked where it is the best of `competing`: with one value alone, or all
@@ -85,9 +99,9 @@ pub(super) fn score_cell<T>(
     value: Option<f64>,
     competing: impl Iterator<Item = f64> + Clone,
     competes: bool,
-) -> String {
+) -> Markup {
     let Some(value) = value else {
-        return "<td class=\"none\">\u{2013}</td>".into();
+        return no_value();
     };
     let rank = |value: f64| match field.better {
         Better::Smaller => Some(value.abs()),
@@ -108,48 +122,50 @@ pub(super) fn score_cell<T>(
     )
 }
 
-fn block(scenario: &Scenario, shown: &[&Field<Score>], palette: &Palette) -> String {
-    let mut html = format!(
-        "<tbody><tr class=\"scenario\"><th colspan=\"{}\" scope=\"rowgroup\">{}</th></tr>\n",
-        shown.len() + 1,
-        escape(scenario.name)
-    );
-    for row in &scenario.rows {
-        let mut name = label(&row.estimator, palette);
-        if row.score.non_finite > 0 {
-            let n = row.score.non_finite;
-            let _ = write!(name, " <em class=\"bad\">{n} samples not finite</em>");
+fn block(scenario: &Scenario, shown: &[&Field<Score>], palette: &Palette) -> Markup {
+    let rows = &scenario.rows;
+    html! {
+        tbody {
+            (block_head(scenario.name, shown.len()))
+            @for row in rows {
+                tr {
+                    th scope="row" {
+                        (label(&row.estimator, palette))
+                        @if row.score.non_finite > 0 {
+                            " " em.bad { (row.score.non_finite) " samples not finite" }
+                        }
+                    }
+                    @for field in shown {
+                        @let competing = rows.iter().filter_map(|row| (field.of)(&row.score));
+                        (score_cell(field, (field.of)(&row.score), competing, true))
+                    }
+                }
+            }
         }
-        let _ = write!(html, "<tr><th scope=\"row\">{name}</th>");
-        for field in shown {
-            let competing = scenario
-                .rows
-                .iter()
-                .filter_map(|row| (field.of)(&row.score));
-            html += &score_cell(field, (field.of)(&row.score), competing, true);
-        }
-        html += "</tr>\n";
     }
-    html + "</tbody>\n"
 }
 
-pub(super) fn cell(text: &str, sort_by: f64, best: bool) -> String {
-    let best = if best { " class=\"best\"" } else { "" };
+/// The cell of a value that the page's script sorts by.
+pub(super) fn cell(text: &str, sort_by: f64, best: bool) -> Markup {
     // An infinity sorts last in JavaScript as well.
-    let sort_by = if sort_by.is_finite() {
-        format!("{sort_by:e}")
-    } else {
-        "Infinity".into()
+    let sort_by = match sort_by.is_finite() {
+        true => format!("{sort_by:e}"),
+        false => "Infinity".to_owned(),
     };
-    format!("<td{best} data-v=\"{sort_by}\">{text}</td>")
+    html! { td class=[best.then_some("best")] data-v=(sort_by) { (text) } }
 }
 
-pub(super) fn label(estimator: &str, palette: &Palette) -> String {
-    format!(
-        "<i style=\"background:{}\"></i>{}",
-        palette.style(estimator).css(),
-        escape(estimator)
-    )
+/// The cell of a value that was not computed.
+pub(super) fn no_value() -> Markup {
+    html! { td.none { "\u{2013}" } }
+}
+
+/// Swatch and name of an estimator.
+pub(super) fn label(estimator: &str, palette: &Palette) -> Markup {
+    html! {
+        i style={ "background:" (palette.style(estimator).css()) } {}
+        (estimator)
+    }
 }
 
 #[cfg(test)]
@@ -172,7 +188,7 @@ mod tests {
             }],
             ..ReportInput::default()
         };
-        scores(&grid::groups(&report)[0], &Palette::new(&report))
+        scores(&grid::groups(&report)[0], &Palette::new(&report)).into_string()
     }
 
     fn delay(ms: f64) -> Score {

@@ -1,32 +1,22 @@
-//! What the page shows, in order: each section a heading, its figures and what to look for.
+//! What the page of a comparison shows, in order: each section a heading, its figures and what to
+//! look for.
 
 use std::f64::consts::TAU;
-use std::ops::Range;
 
+use maud::{Markup, html};
+
+use super::canvas::Svg;
 use super::grid::{Group, groups};
+use super::over_time::{PERMANENT, STEP_RESPONSE, drawn};
 use super::palette::Palette;
+use super::section::{Section, explained, explanation};
 use super::text::{number, plant, rate};
 use super::{
-    CaseReport, ReportInput, Traces, cost, distances, felt, heating, problem, score_tables,
-    sensitivity, spectra, tables, velocity, windows,
+    ReportInput, cost, distances, felt, heating, problem, score_tables, sensitivity, spectra,
+    tables, windows,
 };
 use experiments::sensitivity::table::rows_by_rate;
 
-/// One part of the page; without a body it is left out.
-pub(super) struct Section {
-    /// Anchor, for the navigation.
-    pub(super) id: &'static str,
-    pub(super) title: &'static str,
-    /// HTML.
-    pub(super) body: String,
-}
-
-const STEP: &str = "One step of the large motor\u{2019}s current, the handle held. A good colour \
-    stays inside the green: trailing behind the step is delay, jumping out of the green where \
-    the truth is smooth is noise. \u{201c}Off scale\u{201d} says how many of the panel\u{2019}s \
-    samples lie beyond its axis.";
-const STEADY: &str = "Constant speed: whatever moves here is noise, and whatever sits beside the \
-    black line is bias. A good estimate is a flat line inside the green.";
 const DISTANCE: &str = "How far, on average over all samples after the first 0.1 s, the estimate \
     lies outside the interval; 0 (no bar) means that a fingertip would never notice. The axis is \
     logarithmic and begins at an arbitrary value: compare where bars end, one gridline is a \
@@ -58,132 +48,80 @@ const DEVICE: &str = "The constants that the scores depend on. The paper's Table
 /// Every section that has something to show.
 pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Section>, String> {
     let groups = groups(report);
-    let section = |id, title, body| Section { id, title, body };
-    let all = [
-        section(
+    let compared = [
+        Section::new(
             "inside",
             "Who stays inside",
             score_tables::inside(&groups, palette),
         ),
-        section("problem", "The problem", the_problem(report, palette)?),
-        section(
+        Section::new("problem", "The problem", the_problem(report, palette)?),
+        Section::new(
             "step",
             "Step response",
-            time(report, palette, &STEP_RESPONSE)?,
+            STEP_RESPONSE.section(report, palette)?,
         ),
-        section(
+        Section::new(
             "steady",
             "Permanent regime",
-            time(report, palette, &PERMANENT)?,
+            PERMANENT.section(report, palette)?,
         ),
-        section(
+        Section::new(
             "distance",
             "Distance from the interval",
             distance(&groups, palette)?,
         ),
-        section("spectra", "Error spectra", errors(report, palette)?),
-        section(
+        Section::new("spectra", "Error spectra", errors(report, palette)?),
+        Section::new(
             "cost",
             "Run time and error",
             costs(report, &groups, palette)?,
         ),
-        section("beliefs", "Wrong beliefs", beliefs(report, palette)?),
-        section(
+        Section::new("beliefs", "Wrong beliefs", beliefs(report, palette)?),
+        Section::new(
             "heating",
             "A coupler that warms up",
             warming(report, palette)?,
         ),
-        section("scores", "Scores", scores(&groups, palette)),
+        Section::new("scores", "Scores", scores(&groups, palette)),
     ];
-    let device = [section(
-        "device",
-        "Device",
-        format!(
-            "<div class=\"side\">{}{}</div>{}",
-            tables::constants(&report.device),
-            tables::count_worth(&report.device),
-            words(DEVICE)
-        ),
-    )];
-    let felt = felt::sections(report, palette)?;
-    Ok(all
-        .into_iter()
-        .chain(felt)
-        .chain(device)
-        .filter(|section| !section.body.is_empty())
-        .collect())
+    let compared = compared.into_iter().flatten();
+    let device = Section::new("device", "Device", Some(device(report)));
+    let closed_loop = felt::sections(report, palette)?;
+    Ok(compared.chain(closed_loop).chain(device).collect())
 }
 
-fn costs(report: &ReportInput, groups: &[Group], palette: &Palette) -> Result<String, String> {
-    let mut html = String::new();
-    for group in groups.iter().filter(|group| group.friction) {
-        let svg = cost::panels(group, &report.limits, palette)?;
-        html += &svg.map(|svg| framed(&svg)).unwrap_or_default();
-    }
-    if !html.is_empty() {
-        html += &words(COST);
-    }
-    Ok(html)
+fn costs(
+    report: &ReportInput,
+    groups: &[Group],
+    palette: &Palette,
+) -> Result<Option<Markup>, String> {
+    let with_friction = groups.iter().filter(|group| group.friction);
+    let figures = with_friction.map(|group| cost::panels(group, &report.limits, palette));
+    let figures: Vec<Option<Svg>> = figures.collect::<Result<_, _>>()?;
+    Ok(explained(figures.into_iter().flatten(), COST))
 }
 
-fn beliefs(report: &ReportInput, palette: &Palette) -> Result<String, String> {
-    let mut html = String::new();
-    for rows in rows_by_rate(&report.beliefs) {
-        html += &framed(&sensitivity::chart(&rows, palette)?);
-    }
-    if !html.is_empty() {
-        html += &words(BELIEFS);
-    }
-    Ok(html)
+fn beliefs(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>, String> {
+    let rates = rows_by_rate(&report.beliefs);
+    let figures = rates.iter().map(|rows| sensitivity::chart(rows, palette));
+    let figures: Vec<Svg> = figures.collect::<Result<_, _>>()?;
+    Ok(explained(figures, BELIEFS))
 }
 
-fn warming(report: &ReportInput, palette: &Palette) -> Result<String, String> {
-    let mut body = String::new();
+fn warming(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>, String> {
+    let mut figures = Vec::new();
     for case in report.cases.iter().chain(&report.warming) {
         let Some(damping) = &case.damping else {
             continue;
         };
         if !damping.learned.is_empty() {
-            body += &framed(&heating::chart(case, damping, palette)?);
+            figures.push(heating::chart(case, damping, palette)?);
         }
     }
-    if !body.is_empty() {
-        body += &words(HEATING);
-    }
-    Ok(body)
+    Ok(explained(figures, HEATING))
 }
 
-pub(super) fn words(text: &str) -> String {
-    format!("<p class=\"look\">{text}</p>\n")
-}
-
-pub(super) fn framed(svg: &str) -> String {
-    format!("<figure>{svg}</figure>\n")
-}
-
-/// The cases of one scenario that have signals: with friction if there are any, the first seed,
-/// by rising rate; of more than two rates the lowest and the highest.
-fn drawn<'a>(report: &'a ReportInput, scenario: &str) -> Vec<&'a CaseReport> {
-    let of = |friction| {
-        let cases = report.cases.iter().filter(move |case| {
-            case.scenario == scenario && case.friction == friction && case.traces.is_some()
-        });
-        let mut cases: Vec<_> = cases.collect();
-        cases.sort_by(|a, b| a.rate_hz.total_cmp(&b.rate_hz));
-        cases.dedup_by(|a, b| a.rate_hz == b.rate_hz);
-        cases
-    };
-    let mut cases = of(true);
-    if cases.is_empty() {
-        cases = of(false);
-    }
-    if cases.len() > 2 {
-        cases.drain(1..cases.len() - 1);
-    }
-    cases
-}
-
-fn the_problem(report: &ReportInput, palette: &Palette) -> Result<String, String> {
+fn the_problem(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>, String> {
     for scenario in ["step", "track"] {
         let cases = drawn(report, scenario);
         let Some(case) = cases.first() else { continue };
@@ -205,9 +143,9 @@ fn the_problem(report: &ReportInput, palette: &Palette) -> Result<String, String
         );
         let interval = report.device.interval();
         let svg = problem::figure_one(&title, traces, window, at, &interval, palette)?;
-        return Ok(framed(&svg) + &words(&count_in_words(report, case.rate_hz)));
+        return Ok(explained([svg], &count_in_words(report, case.rate_hz)));
     }
-    Ok(String::new())
+    Ok(None)
 }
 
 /// What one count is to a finite difference, and to a fingertip.
@@ -227,113 +165,51 @@ fn count_in_words(report: &ReportInput, rate_hz: f64) -> String {
     )
 }
 
-/// Samples to show, and the one at which time is 0.
-type Window = (Range<usize>, usize);
-
-/// A figure over time.
-struct OverTime {
-    number: u32,
-    what: &'static str,
-    scenario: &'static str,
-    words: &'static str,
-    window: fn(&Traces) -> Option<Window>,
-}
-
-const STEP_RESPONSE: OverTime = OverTime {
-    number: 6,
-    what: "Step response",
-    scenario: "step",
-    words: STEP,
-    window: |traces| {
-        let before = (0.06 * traces.rate_hz).round() as usize;
-        let window = windows::around_step(traces, 0.06, 0.06)?;
-        let origin = window.start + before;
-        Some((window, origin))
-    },
-};
-
-const PERMANENT: OverTime = OverTime {
-    number: 7,
-    what: "Permanent regime",
-    scenario: "permanent",
-    words: STEADY,
-    window: |traces| {
-        let window = windows::steady(traces, 0.1)?;
-        let origin = window.start;
-        Some((window, origin))
-    },
-};
-
-fn time(report: &ReportInput, palette: &Palette, shown: &OverTime) -> Result<String, String> {
-    let mut html = String::new();
-    for case in drawn(report, shown.scenario) {
-        let Some(traces) = &case.traces else { continue };
-        let Some((window, origin)) = (shown.window)(traces) else {
-            continue;
-        };
-        if traces.estimates.is_empty() {
-            continue;
-        }
-        let title = format!(
-            "{} at {}, plant {} (the paper's figure {})",
-            shown.what,
-            rate(case.rate_hz),
-            plant(case.friction),
-            shown.number
-        );
-        let origin_s = traces.time(origin);
-        let interval = report.device.interval();
-        html += &framed(&velocity::panels(
-            &title, traces, window, origin_s, &interval, palette,
-        )?);
-    }
-    if !html.is_empty() {
-        html += &words(shown.words);
-    }
-    Ok(html)
-}
-
-fn distance(groups: &[Group], palette: &Palette) -> Result<String, String> {
-    let mut html = String::new();
+fn distance(groups: &[Group], palette: &Palette) -> Result<Option<Markup>, String> {
+    let mut figures = Vec::new();
     for of_rate in groups.chunk_by(|a, b| a.rate_hz == b.rate_hz) {
         let title = format!(
             "Mean distance outside the haptic interval at {} (the paper's figure 8)",
             rate(of_rate[0].rate_hz)
         );
         let of_rate: Vec<&Group> = of_rate.iter().collect();
-        if let Some(svg) = distances::bars(&title, &of_rate, palette)? {
-            html += &framed(&svg);
-        }
+        figures.extend(distances::bars(&title, &of_rate, palette)?);
     }
-    if !html.is_empty() {
-        html += &words(DISTANCE);
-    }
-    Ok(html)
+    Ok(explained(figures, DISTANCE))
 }
 
-fn errors(report: &ReportInput, palette: &Palette) -> Result<String, String> {
+fn errors(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>, String> {
     for scenario in ["track", "free-air", "step", "permanent"] {
         let cases = drawn(report, scenario);
         let Some(first) = cases.first() else { continue };
         let plant = plant(first.friction);
         let title = format!("Spectrum of the velocity error, scenario {scenario}, plant {plant}");
         if let Some(svg) = spectra::spectra(&title, &cases, palette)? {
-            return Ok(framed(&svg) + &words(SPECTRA));
+            return Ok(explained([svg], SPECTRA));
         }
     }
-    Ok(String::new())
+    Ok(None)
 }
 
-fn scores(groups: &[Group], palette: &Palette) -> String {
-    let with_rows = groups
+fn scores(groups: &[Group], palette: &Palette) -> Option<Markup> {
+    let with_rows: Vec<&Group> = groups
         .iter()
-        .filter(|group| group.scenarios.iter().any(|s| !s.rows.is_empty()));
-    let html: String = with_rows
-        .map(|group| score_tables::scores(group, palette))
+        .filter(|group| group.scenarios.iter().any(|s| !s.rows.is_empty()))
         .collect();
-    if html.is_empty() {
-        html
-    } else {
-        words(SCORES) + &html
+    (!with_rows.is_empty()).then(|| {
+        html! {
+            (explanation(SCORES))
+            @for group in with_rows { (score_tables::scores(group, palette)) }
+        }
+    })
+}
+
+fn device(report: &ReportInput) -> Markup {
+    html! {
+        div.side {
+            (tables::constants(&report.device))
+            (tables::count_worth(&report.device))
+        }
+        (explanation(DEVICE))
     }
 }

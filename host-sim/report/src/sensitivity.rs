@@ -1,7 +1,7 @@
 //! The page of `sensitivity`: what a wrong belief costs each estimator.
 
-use super::canvas::{Anchor, Key, LABEL, TITLE, WIDTH, figure, legend_height};
-use super::page::{Document, printed};
+use super::canvas::{Anchor, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height};
+use super::page::Printout;
 use super::palette::{INK, Palette};
 use super::plot::{Axis, Plot};
 use super::text::rate;
@@ -14,38 +14,19 @@ const PANEL: f64 = 230.0;
 const LEFT: f64 = 62.0;
 const GAP: f64 = 52.0;
 
-/// The page: a figure a rate, a panel a constant, then the `table` as it was printed.
+/// The page: a figure a rate, a panel a constant, then the printed table.
 ///
 /// # Errors
 /// If a figure cannot be drawn.
-pub fn sensitivity(
-    rows: &[Row],
-    table: &str,
-    device: &str,
-    command: &str,
-) -> Result<String, String> {
+pub fn sensitivity(rows: &[Row], printout: &Printout) -> Result<String, String> {
     let palette = Palette::of(rows.iter().map(|row| row.estimator));
-    let mut figures = String::new();
-    for at_rate in rows_by_rate(rows) {
-        let svg = chart(&at_rate, &palette)?;
-        figures += &format!("<figure>{svg}</figure>\n");
-    }
-    let intro = "<p>What it costs to believe in a wrong constant of the \
-         device: RMS error of the velocity, mean of the scenarios in which the motor moves. \
-         Estimators without a model of the motor are flat.</p>\n"
-        .to_owned();
-    Ok(Document {
-        title: "Wrong beliefs",
-        intro,
-        facts: vec![
-            ("command", command.to_owned()),
-            ("device", device.to_owned()),
-        ],
-        notes: String::new(),
-        contents: String::new(),
-        body: figures + &printed(table),
-    }
-    .html())
+    let charts = rows_by_rate(rows);
+    let charts = charts.iter().map(|at_rate| chart(at_rate, &palette));
+    let figures: Vec<Svg> = charts.collect::<Result<_, _>>()?;
+    let intro = "What it costs to believe in a wrong constant of the device: RMS error of the \
+        velocity, mean of the scenarios in which the motor moves. Estimators without a model of \
+        the motor are flat.";
+    Ok(printout.page("Wrong beliefs", intro, &figures))
 }
 
 /// Error of the belief and of the velocity, %.
@@ -73,7 +54,7 @@ fn curve(rows: &[&Row], name: &str, constant: Constant) -> Curve {
 }
 
 /// A panel a constant, of rows at one rate.
-pub(super) fn chart(rows: &[&Row], palette: &Palette) -> Result<String, String> {
+pub(super) fn chart(rows: &[&Row], palette: &Palette) -> Result<Svg, String> {
     let names = names(rows);
     let keys: Vec<Key> = names
         .iter()
@@ -163,7 +144,12 @@ mod tests {
         let all: Vec<&Row> = rows.iter().collect();
         let points = curve(&all, "pll", Constant::Damping);
         assert_eq!(points, [(-30.0, 40.0), (0.0, 50.0), (30.0, 60.0)]);
-        let page = sensitivity(&rows, "K < B", "a & b", "host-sim sensitivity").unwrap();
+        let printout = Printout {
+            command: "host-sim sensitivity",
+            device: "a & b",
+            table: "K < B",
+        };
+        let page = sensitivity(&rows, &printout).unwrap();
         assert_eq!(super::super::figures(&page).count(), 1);
         for constant in Constant::ALL {
             let title = format!("error of {}, %", constant.as_str());

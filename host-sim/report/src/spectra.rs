@@ -1,6 +1,6 @@
 //! At which frequencies the errors lie.
 
-use super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure, legend_height};
+use super::canvas::{Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height};
 use super::palette::{BAND, INK, MUTED, Palette};
 use super::plot::{Axis, Plot};
 use super::text::rate;
@@ -25,7 +25,7 @@ pub(super) fn spectra(
     title: &str,
     cases: &[&CaseReport],
     palette: &Palette,
-) -> Result<Option<String>, String> {
+) -> Result<Option<Svg>, String> {
     let panels: Vec<(f64, Vec<Curve>)> = cases
         .iter()
         .filter_map(|case| Some((case.rate_hz, curves(case.traces.as_ref()?))))

@@ -1,10 +1,10 @@
 //! The paper's tables: the device's constants, and what one count is worth.
 
+use maud::{Markup, html};
 use std::f64::consts::TAU;
-use std::fmt::Write as _;
 
 use super::DeviceFacts;
-use super::text::{escape, number, rate};
+use super::text::{number, rate};
 
 /// Lines a revolution and rates of the paper's Table II, Hz.
 const LINES: [u32; 2] = [1024, 5000];
@@ -17,80 +17,82 @@ pub(super) fn velocity_step(lines: u32, edges_per_line: u32, rate_hz: f64) -> f6
 }
 
 /// Table I.
-pub(super) fn constants(device: &DeviceFacts) -> String {
+pub(super) fn constants(device: &DeviceFacts) -> Markup {
     let interval = device.interval();
-    let mut rows = vec![
+    let threshold = html! { "F" sub { "shd" } };
+    let rows = [
         (
-            "coupler damping b".into(),
+            html! { "coupler damping b" },
             format!("{} mN\u{b7}m\u{b7}s/rad", round(1e3 * device.damping)),
         ),
         (
-            "handle diameter D".into(),
+            html! { "handle diameter D" },
             format!("{} mm", round(1e3 * device.diameter_m)),
         ),
         (
-            "smallest force a fingertip notices, F<sub>shd</sub>".into(),
+            html! { "smallest force a fingertip notices, " (threshold) },
             format!("{} mN", round(1e3 * device.threshold_n)),
         ),
         (
-            "Weber fraction k".into(),
+            html! { "Weber fraction k" },
             format!("{}\u{a0}%", round(100.0 * device.weber)),
         ),
         (
-            "encoder of the large motor".into(),
+            html! { "encoder of the large motor" },
             format!("{} counts a revolution", device.counts_per_rev),
         ),
         (
-            "haptic interval at rest, F<sub>shd</sub> D / 2b".into(),
+            html! { "haptic interval at rest, " (threshold) " D / 2b" },
             format!("\u{b1}{} rad/s", number(interval.floor_rad_s)),
         ),
         (
-            "force at the fingertip for an error of 1 rad/s, 2b / D".into(),
+            html! { "force at the fingertip for an error of 1 rad/s, 2b / D" },
             format!("{} mN", number(interval.force_mn_per_rad_s)),
         ),
     ];
     let more = device.more.iter();
-    rows.extend(more.map(|(what, value)| (escape(what), escape(value))));
-    let mut html = format!(
-        "<table class=\"facts\"><caption>Table I: {}</caption><tbody>\n",
-        escape(&device.name)
-    );
-    for (what, value) in rows {
-        let _ = writeln!(
-            html,
-            "<tr><th scope=\"row\">{what}</th><td>{value}</td></tr>"
-        );
+    let more = more.map(|(what, value)| (html! { (what) }, value.clone()));
+    html! {
+        table.facts {
+            caption { "Table I: " (device.name) }
+            tbody {
+                @for (what, value) in rows.into_iter().chain(more) {
+                    tr { th scope="row" { (what) } td { (value) } }
+                }
+            }
+        }
     }
-    html + "</tbody></table>\n"
 }
 
 /// Table II in both readings.
-pub(super) fn count_worth(device: &DeviceFacts) -> String {
+pub(super) fn count_worth(device: &DeviceFacts) -> Markup {
     let force = device.interval().force_mn_per_rad_s;
-    let mut html = String::from(
-        "<table class=\"facts\"><caption>Table II: what one count is worth to a finite \
-         difference</caption>\n<thead><tr><th rowspan=\"2\">encoder</th>\
-         <th rowspan=\"2\">sample rate</th>\
-         <th colspan=\"2\">4 counts a line: 2\u{3c0} / 4NT</th>\
-         <th colspan=\"2\">1 count a line: 2\u{3c0} / NT</th></tr>\n\
-         <tr><th>rad/s</th><th>mN</th><th>rad/s</th><th>mN</th></tr></thead><tbody>\n",
-    );
-    for lines in LINES {
-        for rate_hz in RATES_HZ {
-            let _ = write!(
-                html,
-                "<tr><th scope=\"row\">{lines} lines</th><td>{}</td>",
-                rate(rate_hz)
-            );
-            for edges in [4, 1] {
-                let step = velocity_step(lines, edges, rate_hz);
-                let cells = [step, step * force].map(number);
-                let _ = write!(html, "<td>{}</td><td>{}</td>", cells[0], cells[1]);
+    html! {
+        table.facts {
+            caption { "Table II: what one count is worth to a finite difference" }
+            thead {
+                tr {
+                    th rowspan="2" { "encoder" }
+                    th rowspan="2" { "sample rate" }
+                    th colspan="2" { "4 counts a line: 2\u{3c0} / 4NT" }
+                    th colspan="2" { "1 count a line: 2\u{3c0} / NT" }
+                }
+                tr { th { "rad/s" } th { "mN" } th { "rad/s" } th { "mN" } }
             }
-            html += "</tr>\n";
+            tbody {
+                @for (lines, rate_hz) in LINES.into_iter().flat_map(|n| RATES_HZ.map(|hz| (n, hz))) {
+                    tr {
+                        th scope="row" { (lines) " lines" }
+                        td { (rate(rate_hz)) }
+                        @for step in [4, 1].map(|edges| velocity_step(lines, edges, rate_hz)) {
+                            td { (number(step)) }
+                            td { (number(step * force)) }
+                        }
+                    }
+                }
+            }
         }
     }
-    html + "</tbody></table>\n"
 }
 
 /// Without the noise of a decimal factor: 0.96, not 0.9600000000000001.
@@ -112,7 +114,7 @@ mod tests {
 
     #[test]
     fn table_two_has_both_readings_of_every_row() {
-        let html = count_worth(&DeviceFacts::default());
+        let html = count_worth(&DeviceFacts::default()).into_string();
         for row in [
             "1024 lines</th><td>1 kHz</td><td>1.53</td><td>42.1</td><td>6.14</td><td>168</td>",
             "1024 lines</th><td>11.6 kHz</td><td>17.8</td><td>488</td><td>71.2</td><td>1952</td>",
@@ -128,7 +130,8 @@ mod tests {
         let html = constants(&DeviceFacts {
             more: vec![("J <large>".into(), "115 g\u{b7}cm\u{b2}".into())],
             ..DeviceFacts::default()
-        });
+        })
+        .into_string();
         for value in [
             "0.96 mN",
             "70 mm",

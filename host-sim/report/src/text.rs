@@ -2,22 +2,6 @@
 
 use catalogue::parameters::PlantKind;
 
-/// `text` with the characters that mean something to HTML and SVG replaced.
-pub(super) fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            c => escaped.push(c),
-        }
-    }
-    escaped
-}
-
 /// About three significant digits, no exponent above 0.001; infinity as its sign.
 pub(super) fn number(value: f64) -> String {
     let size = value.abs();
@@ -72,14 +56,6 @@ pub(super) fn plant(friction: bool) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn escapes_what_could_end_an_attribute_or_start_an_element() {
-        assert_eq!(
-            escape("a<b> & \"c\" 'd'"),
-            "a&lt;b&gt; &amp; &quot;c&quot; &#39;d&#39;"
-        );
-    }
 
     #[test]
     fn numbers_have_three_digits_and_round_across_their_limits() {

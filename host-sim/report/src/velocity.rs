@@ -3,7 +3,9 @@
 use std::ops::Range;
 
 use super::Traces;
-use super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure, legend_height, text_width};
+use super::canvas::{
+    Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height, text_width,
+};
 use super::palette::{BAND, BAND_EDGE, INK, MUTED, Palette, TRUTH};
 use super::plot::{Axis, Plot};
 use super::text::share;
@@ -30,7 +32,7 @@ pub(super) fn panels(
     origin_s: f64,
     interval: &Interval,
     palette: &Palette,
-) -> Result<String, String> {
+) -> Result<Svg, String> {
     let drawn = traces.estimates.len();
     let (columns, rows) = (COLUMNS.min(drawn.max(1)), drawn.div_ceil(COLUMNS).max(1));
     let keys = [

@@ -1,7 +1,7 @@
 //! The page of `zwidth`: stiffness against damping, the chart of Colgate and Brown.
 
-use super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure, legend_height};
-use super::page::{Document, printed};
+use super::canvas::{Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height};
+use super::page::Printout;
 use super::palette::{INK, Palette};
 use super::plot::{Axis, Plot};
 use super::style::Style;
@@ -13,35 +13,22 @@ const PANEL: f64 = 260.0;
 const LEFT: f64 = 62.0;
 const GAP: f64 = 52.0;
 
-/// The page of bounds: a figure an encoder, then the `table` as it was printed.
+/// The page of bounds: a figure an encoder, then the printed table.
 ///
 /// # Errors
 /// If a figure cannot be drawn.
-pub fn zwidth(rows: &[Row], table: &str, device: &str, command: &str) -> Result<String, String> {
+pub fn zwidth(rows: &[Row], printout: &Printout) -> Result<String, String> {
     let palette = Palette::of(rows.iter().map(|row| row.estimator));
-    let mut figures = String::new();
+    let mut figures = Vec::new();
     for lines in distinct(rows.iter().map(|row| row.lines)) {
         let of: Vec<&Row> = rows.iter().filter(|row| row.lines == lines).collect();
-        let svg = chart(&of, lines, &palette)?;
-        figures += &format!("<figure>{svg}</figure>\n");
+        figures.push(chart(&of, lines, &palette)?);
     }
-    let intro = "<p>Below its curve, a wall of that stiffness and damping is \
-         passive and free of limit cycles in simulation, to a light grip, to a hand and to a \
-         handle that is thrown at it. Each curve ends on the right at the strongest damping \
-         without a wall. Panels have their own scales.</p>\n"
-        .to_owned();
-    Ok(Document {
-        title: "Z-width",
-        intro,
-        facts: vec![
-            ("command", command.to_owned()),
-            ("device", device.to_owned()),
-        ],
-        notes: String::new(),
-        contents: String::new(),
-        body: figures + &printed(table),
-    }
-    .html())
+    let intro = "Below its curve, a wall of that stiffness and damping is passive and free of \
+        limit cycles in simulation, to a light grip, to a hand and to a handle that is thrown at \
+        it. Each curve ends on the right at the strongest damping without a wall. Panels have \
+        their own scales.";
+    Ok(printout.page("Z-width", intro, &figures))
 }
 
 /// The values, once each, in order of appearance.
@@ -55,7 +42,7 @@ fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
     found
 }
 
-fn chart(rows: &[&Row], lines: u32, palette: &Palette) -> Result<String, String> {
+fn chart(rows: &[&Row], lines: u32, palette: &Palette) -> Result<Svg, String> {
     let rates = distinct(rows.iter().map(|row| row.rate_hz));
     let names = distinct(rows.iter().map(|row| row.estimator));
     let keys: Vec<Key> = names
@@ -149,13 +136,18 @@ mod tests {
             rows.push(row(lines, rate_hz, 0.0, 0.3));
             rows.push(row(lines, rate_hz, 1e-3, 0.0));
         }
-        let page = zwidth(&rows, "K < B", "a & b", "host-sim zwidth").unwrap();
+        let printout = Printout {
+            command: "host-sim zwidth",
+            device: "a & b",
+            table: "K < B",
+        };
+        let page = zwidth(&rows, &printout).unwrap();
         let figures: Vec<_> = super::super::figures(&page).collect();
         assert_eq!(figures.len(), 2);
         let panels = |svg: &str| svg.matches("damping B,").count();
         assert_eq!((panels(figures[0]), panels(figures[1])), (2, 1));
         assert!(page.contains("K &lt; B") && page.contains("a &amp; b"));
         // Nothing to draw is an empty frame, not an error.
-        assert!(zwidth(&[row(256, 1e3, 0.0, 0.0)], "", "", "").is_ok());
+        assert!(zwidth(&[row(256, 1e3, 0.0, 0.0)], &Printout::default()).is_ok());
     }
 }

@@ -7,7 +7,7 @@ use clap::Args;
 
 use experiments::identify::{self, Known};
 use recordings::recording::Recording;
-use report;
+use report::{self, Printout};
 use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, note, print_bytes, write_whole};
 
@@ -78,8 +78,12 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
     if let Some(folder) = &options.report {
         let counts = f64::from(device.stages.large.counts_per_rev);
         let count_rad_s = TAU / counts / identify::SPAN_S;
-        let table = identify::text(&found);
-        let page = report::identify(&found, count_rad_s, &table, command_line)?;
+        let printout = Printout {
+            command: command_line,
+            table: &identify::text(&found),
+            ..Printout::default()
+        };
+        let page = report::identify(&found, count_rad_s, &printout)?;
         let mut files = Folder::new(folder);
         files.add("index.html", page);
         files.write()?;

@@ -13,7 +13,7 @@ use experiments::robust::{Experiment, Settings, shard, summary};
 use experiments::rows;
 use experiments::table::layout::{NARROW, terminal_width};
 use haptic_control::SceneKind;
-use report;
+use report::{self, Printout};
 use terminal::failure::Failure;
 use terminal::output::{Folder, print_bytes, write_whole};
 
@@ -167,12 +167,12 @@ fn finish(
     let scenes = summary::summaries(rows)?;
     let mut text = summary::table(settings, &scenes, terminal_width());
     if let Some(folder) = folder {
-        let page = report::robust(
-            &summary::heading(settings),
-            &scenes,
-            &summary::table(settings, &scenes, NARROW),
-            &summary::command(settings),
-        )?;
+        let printout = Printout {
+            command: &summary::command(settings),
+            table: &summary::table(settings, &scenes, NARROW),
+            ..Printout::default()
+        };
+        let page = report::robust(&summary::heading(settings), &scenes, &printout)?;
         let mut files = Folder::new(folder);
         files.add("robust.csv", rows::csv(rows)?);
         files.add("robust.json", json.as_slice());

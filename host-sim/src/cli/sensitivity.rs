@@ -9,7 +9,7 @@ use experiments::compare::{Case, Settings};
 use experiments::rows;
 use experiments::sensitivity::{sensitivity, table::table};
 use experiments::table::layout::{NARROW, terminal_width};
-use report;
+use report::{self, Printout};
 use scoring::score::Wanted;
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
@@ -68,12 +68,12 @@ pub(super) fn run(options: &Sensitivity, command_line: &str) -> Result<(), Failu
     let json = rows::json(&rows)?;
     let mut text = table(&rows, terminal_width());
     if let Some(folder) = folder {
-        let page = report::sensitivity(
-            &rows,
-            &table(&rows, NARROW),
-            &options.device.name(),
-            command_line,
-        )?;
+        let printout = Printout {
+            command: command_line,
+            device: &options.device.name(),
+            table: &table(&rows, NARROW),
+        };
+        let page = report::sensitivity(&rows, &printout)?;
         let mut files = Folder::new(folder);
         files.add("sensitivity.json", json.as_slice());
         files.add("sensitivity.csv", rows::csv(&rows)?);

@@ -8,7 +8,7 @@ use catalogue::estimators::Kind;
 use experiments::rows::{csv, json};
 use experiments::table::layout::{NARROW, terminal_width};
 use experiments::zwidth::{BOUNDS_A_CASE, Case, Settings, boundaries, rows, table};
-use report;
+use report::{self, Printout};
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
@@ -66,13 +66,12 @@ pub(super) fn run(options: &Zwidth, command_line: &str) -> Result<(), Failure> {
     let json = json(&rows)?;
     let mut text = table::table(&cases, &boundaries, terminal_width());
     if let Some(folder) = folder {
-        let device = options.device.name();
-        let page = report::zwidth(
-            &rows,
-            &table::table(&cases, &boundaries, NARROW),
-            &device,
-            command_line,
-        )?;
+        let printout = Printout {
+            command: command_line,
+            device: &options.device.name(),
+            table: &table::table(&cases, &boundaries, NARROW),
+        };
+        let page = report::zwidth(&rows, &printout)?;
         let mut files = Folder::new(folder);
         files.add("zwidth.json", json.as_slice());
         files.add("zwidth.csv", csv(&rows)?);

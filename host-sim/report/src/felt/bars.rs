@@ -1,7 +1,7 @@
 //! Share of time below the threshold: every scene and closer, rates side by side.
 
 use super::super::canvas::{
-    Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure, legend_height, text_width,
+    Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height, text_width,
 };
 use super::super::palette::{GRID, INK, MUTED, Palette};
 use super::super::plot::{Axis, Plot};
@@ -16,7 +16,7 @@ const LONE: f64 = 22.0;
 const GAP: f64 = 44.0;
 
 /// Horizontal bars, one panel a rate.
-pub(super) fn below(closed: &ClosedLoop, palette: &Palette) -> Result<String, String> {
+pub(super) fn below(closed: &ClosedLoop, palette: &Palette) -> Result<Svg, String> {
     let title = "Time in which the parasitic force is below the fingertip\u{2019}s threshold";
     let names = closed.closers();
     let keys: Vec<Key> = (names.iter())

@@ -1,6 +1,6 @@
 //! Parasitic force in free air against the handle's velocity and acceleration.
 
-use super::super::canvas::Key;
+use super::super::canvas::{Key, Svg};
 use super::super::palette::{INK, Palette, TRUTH};
 use super::super::plot::Axis;
 use super::super::style::{Dash, Style};
@@ -24,7 +24,7 @@ pub(super) fn figures(
     closed: &ClosedLoop,
     palette: &Palette,
     threshold_mn: f64,
-) -> Result<Option<String>, String> {
+) -> Result<Option<Svg>, String> {
     let outcomes = closed.of("free-air");
     let names = closed.drawn();
     let Some(first) = outcomes.first() else {

@@ -1,6 +1,6 @@
 //! A figure of several panels, each with curves on its own axes.
 
-use super::super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure, legend_height};
+use super::super::canvas::{Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height};
 use super::super::palette::{BAND, INK, MUTED};
 use super::super::plot::{Axis, Plot};
 use super::super::style::Style;
@@ -58,7 +58,7 @@ pub(super) fn panels(
     columns: usize,
     height: f64,
     panels: &[Panel],
-) -> Result<String, String> {
+) -> Result<Svg, String> {
     let rows = panels.len().div_ceil(columns);
     let head = 34.0 + legend_height(keys, LEFT);
     let row_height = HEADING + height + BELOW;

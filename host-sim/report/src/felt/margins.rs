@@ -1,11 +1,11 @@
 //! The designed velocity loop: Nyquist and Bode plots, and its margins.
 
 use std::f64::consts::TAU;
-use std::fmt::Write as _;
 
+use maud::{Markup, html};
 use plotters::style::RGBColor;
 
-use super::super::canvas::{Anchor, Canvas, Key, LABEL, TITLE, WIDTH, figure};
+use super::super::canvas::{Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure};
 use super::super::palette::{BAND, GRID, INK, MUTED, TRUTH};
 use super::super::plot::{Axis, Plot};
 use super::super::text::{number, rate};
@@ -24,7 +24,7 @@ const TOP: f64 = 84.0;
 const SIDE: f64 = 400.0;
 
 /// One figure, if there is a design.
-fn drawn(designs: &[Design]) -> Result<String, String> {
+fn drawn(designs: &[Design]) -> Result<Svg, String> {
     let title = "Open loop of the large motor\u{2019}s velocity, as designed";
     let names: Vec<String> = designs.iter().map(|design| rate(design.rate_hz)).collect();
     let colours = || COLOURS.iter().copied().cycle();
@@ -96,7 +96,7 @@ fn drawn(designs: &[Design]) -> Result<String, String> {
 }
 
 /// As [`drawn`]; none without a design.
-pub(super) fn figure_or_none(designs: &[Design]) -> Result<Option<String>, String> {
+pub(super) fn figure_or_none(designs: &[Design]) -> Result<Option<Svg>, String> {
     (!designs.is_empty()).then(|| drawn(designs)).transpose()
 }
 
@@ -143,31 +143,45 @@ fn nyquist_curve(
     Ok(())
 }
 
-/// The margins in numbers; empty without a design.
-pub(super) fn table(designs: &[Design]) -> String {
-    if designs.is_empty() {
-        return String::new();
-    }
-    let mut html = String::from(
-        "<div class=\"scroll\"><table class=\"scores\"><caption>Margins of the velocity loop</caption>\n\
-         <thead><tr><th>rate</th><th>modulus</th><th>gain<small>factor</small></th>\
-         <th>phase<small>degrees</small></th><th>delay<small>ms</small></th>\
-         <th>crossover<small>Hz</small></th><th>estimator late by<small>ms</small></th></tr></thead><tbody>\n",
-    );
-    for design in designs {
+/// The margins in numbers; `None` without a design.
+pub(super) fn table(designs: &[Design]) -> Option<Markup> {
+    let row = |design: &Design| {
         let margins = &design.margins;
-        let _ = write!(html, "<tr><th scope=\"row\">{}</th>", rate(design.rate_hz));
-        for value in [
+        [
             margins.modulus,
             margins.gain,
             margins.phase_deg(),
             1e3 * margins.delay_s,
             margins.crossover_hz,
             1e3 * design.estimator_delay_s,
-        ] {
-            let _ = write!(html, "<td>{}</td>", number(value));
+        ]
+    };
+    (!designs.is_empty()).then(|| {
+        html! {
+            div.scroll {
+                table.scores {
+                    caption { "Margins of the velocity loop" }
+                    thead {
+                        tr {
+                            th { "rate" }
+                            th { "modulus" }
+                            th { "gain" small { "factor" } }
+                            th { "phase" small { "degrees" } }
+                            th { "delay" small { "ms" } }
+                            th { "crossover" small { "Hz" } }
+                            th { "estimator late by" small { "ms" } }
+                        }
+                    }
+                    tbody {
+                        @for design in designs {
+                            tr {
+                                th scope="row" { (rate(design.rate_hz)) }
+                                @for value in row(design) { td { (number(value)) } }
+                            }
+                        }
+                    }
+                }
+            }
         }
-        html += "</tr>\n";
-    }
-    html + "</tbody></table></div>\n"
+    })
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::super::canvas::Key;
+use super::super::canvas::{Key, Svg};
 use super::super::palette::{MUTED, Palette, TRUTH};
 use super::super::plot::Axis;
 use super::super::text::{number, plant, rate};
@@ -17,7 +17,7 @@ pub(super) fn figures(
     closed: &ClosedLoop,
     palette: &Palette,
     threshold_mn: f64,
-) -> Result<Vec<String>, String> {
+) -> Result<Vec<Svg>, String> {
     let mut scenes: Vec<&str> = Vec::new();
     for outcome in &closed.outcomes {
         let scene = outcome.case.scene.name();
@@ -37,7 +37,7 @@ fn figure(
     outcomes: &[&Outcome],
     palette: &Palette,
     threshold_mn: f64,
-) -> Result<Option<String>, String> {
+) -> Result<Option<Svg>, String> {
     let shown: Vec<(f64, Vec<&Run>)> = (outcomes.iter())
         .map(|outcome| (outcome.case.rate_hz, chosen(outcome)))
         .filter(|(_, runs)| !runs.is_empty())

@@ -1,6 +1,6 @@
 //! At which frequencies the parasitic force in free air lies.
 
-use super::super::canvas::Key;
+use super::super::canvas::{Key, Svg};
 use super::super::palette::{Palette, TRUTH};
 use super::super::plot::Axis;
 use super::super::spectra::average;
@@ -13,7 +13,7 @@ use scoring::score::{SKIP_S, TACTILE_BAND_HZ};
 use scoring::spectrum::Welch;
 
 /// Amplitude density of each closer's parasitic force, rates side by side; none without free air.
-pub(super) fn figure(closed: &ClosedLoop, palette: &Palette) -> Result<Option<String>, String> {
+pub(super) fn figure(closed: &ClosedLoop, palette: &Palette) -> Result<Option<Svg>, String> {
     let outcomes = closed.of("free-air");
     let names = closed.drawn();
     let Some(first) = outcomes.first() else {

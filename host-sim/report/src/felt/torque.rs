@@ -1,11 +1,11 @@
 //! How fast torque is rendered: gain, phase and coherence against frequency.
 
-use std::fmt::Write as _;
+use maud::{Markup, html};
 
-use super::super::canvas::Key;
+use super::super::canvas::{Key, Svg};
 use super::super::palette::Palette;
 use super::super::plot::Axis;
-use super::super::score_tables::{cell, label};
+use super::super::score_tables::{cell, label, no_value};
 use super::super::text::{number, plant, rate};
 use super::ClosedLoop;
 use super::charts::{Curve, Green, Panel, panels};
@@ -44,7 +44,7 @@ fn shown(closed: &ClosedLoop) -> Vec<&Swept> {
 }
 
 /// One figure, if there is a sweep.
-pub(super) fn figures(closed: &ClosedLoop, palette: &Palette) -> Result<Option<String>, String> {
+pub(super) fn figures(closed: &ClosedLoop, palette: &Palette) -> Result<Option<Svg>, String> {
     let swept = shown(closed);
     let names = closed.drawn();
     let Some(first) = swept.first() else {
@@ -92,52 +92,63 @@ pub(super) fn figures(closed: &ClosedLoop, palette: &Palette) -> Result<Option<S
     panels(&title, &keys, swept.len(), 150.0, &all).map(Some)
 }
 
-/// Bandwidth, largest deviation of gain and least coherence in the tactile band.
-pub(super) fn table(closed: &ClosedLoop, palette: &Palette) -> String {
+/// Bandwidth, largest deviation of gain and least coherence in the tactile band; `None` without a
+/// sweep.
+pub(super) fn table(closed: &ClosedLoop, palette: &Palette) -> Option<Markup> {
     let swept = shown(closed);
-    if swept.is_empty() {
-        return String::new();
-    }
-    let mut html = String::from(
-        "<div class=\"scroll\"><table class=\"scores\"><caption>Torque rendered into a clamped \
-         handle</caption>\n<thead><tr><th>controlled by</th>",
-    );
-    for swept in &swept {
-        let rate = rate(swept.rate_hz);
-        for (what, unit) in [
-            ("\u{2212}3 dB", "Hz"),
-            ("worst gain", "50\u{2013}500 Hz, dB"),
-            ("least coherence", "50\u{2013}500 Hz"),
-        ] {
-            let _ = write!(html, "<th>{what}<small>{rate}, {unit}</small></th>");
+    let heads = [
+        ("\u{2212}3 dB", "Hz"),
+        ("worst gain", "50\u{2013}500 Hz, dB"),
+        ("least coherence", "50\u{2013}500 Hz"),
+    ];
+    (!swept.is_empty()).then(|| {
+        html! {
+            div.scroll {
+                table.scores {
+                    caption { "Torque rendered into a clamped handle" }
+                    thead {
+                        tr {
+                            th { "controlled by" }
+                            @for swept in &swept {
+                                @for (what, unit) in heads {
+                                    th { (what) small { (rate(swept.rate_hz)) ", " (unit) } }
+                                }
+                            }
+                        }
+                    }
+                    tbody {
+                        @for name in closed.closers() {
+                            tr {
+                                th scope="row" { (label(name, palette)) }
+                                @for swept in &swept {
+                                    @match swept.runs.iter().find(|(n, _)| *n == name) {
+                                        Some((_, responses)) => (cells(responses)),
+                                        None => { td {} td {} td {} }
+                                    }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
         }
-    }
-    html += "</tr></thead><tbody>\n";
-    for name in closed.closers() {
-        let _ = write!(html, "<tr><th scope=\"row\">{}</th>", label(name, palette));
-        for swept in &swept {
-            let run = swept.runs.iter().find(|(n, _)| *n == name);
-            html += &run.map_or_else(|| "<td></td>".repeat(3), |(_, r)| cells(r));
-        }
-        html += "</tr>\n";
-    }
-    html + "</tbody></table></div>\n"
+    })
 }
 
-fn cells(responses: &[Response]) -> String {
+fn cells(responses: &[Response]) -> Markup {
     let last = responses.last().map_or(0.0, |r| r.hz);
-    let bandwidth = bandwidth_hz(responses).map_or_else(
-        || cell(&format!("above {}", number(last)), f64::INFINITY, false),
-        |hz| cell(&number(hz), hz, false),
-    );
     let [low, high] = TACTILE_BAND_HZ;
     let tactile = || responses.iter().filter(|r| (low..=high).contains(&r.hz));
     let gains = tactile().map(|r| 20.0 * r.gain.log10());
     let worst = gains.max_by(|a, b| a.abs().total_cmp(&b.abs()));
     let coherence = tactile().map(|r| r.coherence).reduce(f64::min);
-    let shown = |value: Option<f64>| {
-        let none = || "<td class=\"none\">\u{2013}</td>".to_owned();
-        value.map_or_else(none, |v| cell(&number(v), v, false))
-    };
-    bandwidth + &shown(worst) + &shown(coherence)
+    html! {
+        @match bandwidth_hz(responses) {
+            Some(hz) => (cell(&number(hz), hz, false)),
+            None => (cell(&format!("above {}", number(last)), f64::INFINITY, false)),
+        }
+        @for value in [worst, coherence] {
+            (value.map_or_else(no_value, |value| cell(&number(value), value, false)))
+        }
+    }
 }

@@ -1,0 +1,108 @@
+//! Sections with velocities over time: step response and permanent regime.
+
+use std::ops::Range;
+
+use maud::Markup;
+
+use super::palette::Palette;
+use super::section::explained;
+use super::text::{plant, rate};
+use super::{CaseReport, ReportInput, Traces, velocity, windows};
+
+const STEP: &str = "One step of the large motor\u{2019}s current, the handle held. A good colour \
+    stays inside the green: trailing behind the step is delay, jumping out of the green where \
+    the truth is smooth is noise. \u{201c}Off scale\u{201d} says how many of the panel\u{2019}s \
+    samples lie beyond its axis.";
+const STEADY: &str = "Constant speed: whatever moves here is noise, and whatever sits beside the \
+    black line is bias. A good estimate is a flat line inside the green.";
+/// The cases of one scenario that have signals: with friction if there are any, the first seed,
+/// by rising rate; of more than two rates the lowest and the highest.
+pub(super) fn drawn<'a>(report: &'a ReportInput, scenario: &str) -> Vec<&'a CaseReport> {
+    let of = |friction| {
+        let cases = report.cases.iter().filter(move |case| {
+            case.scenario == scenario && case.friction == friction && case.traces.is_some()
+        });
+        let mut cases: Vec<_> = cases.collect();
+        cases.sort_by(|a, b| a.rate_hz.total_cmp(&b.rate_hz));
+        cases.dedup_by(|a, b| a.rate_hz == b.rate_hz);
+        cases
+    };
+    let mut cases = of(true);
+    if cases.is_empty() {
+        cases = of(false);
+    }
+    if cases.len() > 2 {
+        cases.drain(1..cases.len() - 1);
+    }
+    cases
+}
+
+/// Samples to show, and the one at which time is 0.
+type Window = (Range<usize>, usize);
+
+/// A figure over time.
+pub(super) struct OverTime {
+    number: u32,
+    what: &'static str,
+    scenario: &'static str,
+    words: &'static str,
+    window: fn(&Traces) -> Option<Window>,
+}
+
+pub(super) const STEP_RESPONSE: OverTime = OverTime {
+    number: 6,
+    what: "Step response",
+    scenario: "step",
+    words: STEP,
+    window: |traces| {
+        let before = (0.06 * traces.rate_hz).round() as usize;
+        let window = windows::around_step(traces, 0.06, 0.06)?;
+        let origin = window.start + before;
+        Some((window, origin))
+    },
+};
+
+pub(super) const PERMANENT: OverTime = OverTime {
+    number: 7,
+    what: "Permanent regime",
+    scenario: "permanent",
+    words: STEADY,
+    window: |traces| {
+        let window = windows::steady(traces, 0.1)?;
+        let origin = window.start;
+        Some((window, origin))
+    },
+};
+
+impl OverTime {
+    /// A figure a rate; `None` where no case of the scenario has signals.
+    pub(super) fn section(
+        &self,
+        report: &ReportInput,
+        palette: &Palette,
+    ) -> Result<Option<Markup>, String> {
+        let mut figures = Vec::new();
+        for case in drawn(report, self.scenario) {
+            let Some(traces) = &case.traces else { continue };
+            let Some((window, origin)) = (self.window)(traces) else {
+                continue;
+            };
+            if traces.estimates.is_empty() {
+                continue;
+            }
+            let title = format!(
+                "{} at {}, plant {} (the paper's figure {})",
+                self.what,
+                rate(case.rate_hz),
+                plant(case.friction),
+                self.number
+            );
+            let origin_s = traces.time(origin);
+            let interval = report.device.interval();
+            figures.push(velocity::panels(
+                &title, traces, window, origin_s, &interval, palette,
+            )?);
+        }
+        Ok(explained(figures, self.words))
+    }
+}
