@@ -1,8 +1,7 @@
-//! Every estimator that reads counts and a current at most, with what is known about it, so that one
-//! test can try them all. The others, observers and M/T, have a list in `observer`; the module
-//! `complete` compares both lists with the source of the core.
-
-use std::any::type_name;
+//! Estimators that read counts and a current at most, each with its ramp, memory and largest output, so
+//! that one test can try them all. Observers and M/T have a list in `observer`. An estimator that is in
+//! neither list has the general invariants, which the package `acceptance` tries on every row of the
+//! catalogue.
 
 use estimator_core::{
     AlphaBetaGamma, BestFit, CountsPerTick, EndFit, FiniteDifference, Fit, Foaw, Handover, Hertz,
@@ -33,8 +32,6 @@ pub(crate) enum Ramp {
 /// An estimator under test.
 pub(crate) struct Case {
     pub(crate) name: String,
-    /// The estimator's type.
-    pub(crate) kind: &'static str,
     pub(crate) ramp: Ramp,
     /// Ticks after which less than 1e-6 of any earlier state is left.
     pub(crate) memory: usize,
@@ -96,7 +93,6 @@ where
 {
     Case {
         name: format!("{name} at {rate} Hz"),
-        kind: type_name::<E>(),
         ramp,
         memory,
         per_count: 1.0,

@@ -7,7 +7,6 @@
 //! | `ramps` | constant velocity and rest |
 //! | `endurance` | long runs: covariance, bad currents, huge jumps |
 //! | `distance` | counts beyond the exact range of f32, long ramps |
-//! | `complete` | the lists that these tests iterate over, against the source of the core |
 //! | `foaw_definition` | the O(n²) definition of FOAW in exact fractions |
 //! | `kalman_reference` | the textbook filter in f64, absolute positions, the current as a state |
 //! | `acceleration` | a constant acceleration |
@@ -31,7 +30,6 @@
 
 mod acceleration;
 mod calibration;
-mod complete;
 mod confidence;
 mod distance;
 mod endurance;

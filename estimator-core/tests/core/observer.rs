@@ -15,7 +15,6 @@ use estimator_core::{
 };
 use proptest::prelude::*;
 
-pub(crate) use cases::kinds;
 use cases::{Case, at, bits, case, dressed, everywhere};
 
 use crate::motion::{Draws, any_motion, medley};

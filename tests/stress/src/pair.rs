@@ -22,6 +22,12 @@ pub trait Pair {
 
     /// Length of the window last used, where there is one.
     fn window(&self) -> Option<usize>;
+
+    /// Signals that the estimator of the core reads.
+    fn needs(&self) -> core::Signals;
+
+    /// Type of the estimator of the core.
+    fn kind(&self) -> &'static str;
 }
 
 /// A state of the core and its estimator, to check the invariant of the state.
@@ -177,6 +183,14 @@ where
     fn window(&self) -> Option<usize> {
         let (core, _) = self.states.as_ref()?;
         (self.asks.window)(&self.core, core)
+    }
+
+    fn needs(&self) -> core::Signals {
+        C::NEEDS
+    }
+
+    fn kind(&self) -> &'static str {
+        std::any::type_name::<C>()
     }
 }
 

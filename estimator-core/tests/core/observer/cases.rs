@@ -12,8 +12,6 @@ type Runner = Box<dyn Fn(&[Sample]) -> Vec<f32> + Send + Sync>;
 
 pub(super) struct Case {
     pub(super) name: String,
-    /// The estimator's type.
-    pub(super) kind: &'static str,
     pub(super) needs: Signals,
     pub(super) run: Runner,
 }
@@ -24,7 +22,6 @@ where
 {
     Case {
         name: format!("{name} at {rate} Hz"),
-        kind: std::any::type_name::<E>(),
         needs: E::NEEDS,
         run: Box::new(move |samples| {
             let mut state = estimator.start(&samples[0]);
@@ -66,11 +63,6 @@ pub(super) fn at(rate: f64) -> Vec<Case> {
             edges.adaptive(4096, hertz).expect("valid"),
         ),
     ]
-}
-
-/// Their types.
-pub(crate) fn kinds() -> impl Iterator<Item = &'static str> {
-    at(RATES[0]).into_iter().map(|case| case.kind)
 }
 
 pub(super) fn everywhere() -> Vec<Case> {
