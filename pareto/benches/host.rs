@@ -10,7 +10,7 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box, black_box_drop};
 use estimator_core::Sample;
 use haptic_control::SceneKind;
-use pareto::traces::{self, Ground};
+use pareto::traces::{self, BenchTrace};
 use simulation::device::Device;
 use simulation::scenario::ScenarioName;
 use simulation::simulate::simulate;
@@ -24,10 +24,10 @@ fn main() {
 
 /// What chirps and reverses.
 fn track(rate_hz: u32) -> &'static [Sample] {
-    static GROUNDS: OnceLock<Vec<Ground>> = OnceLock::new();
-    let grounds = GROUNDS.get_or_init(|| traces::all().expect("traces"));
-    let mut fitting = grounds.iter().filter(|ground| ground.rate_hz == rate_hz);
-    let track = fitting.find(|ground| ground.name == "chirp and reversals");
+    static TRACES: OnceLock<Vec<BenchTrace>> = OnceLock::new();
+    let traces = TRACES.get_or_init(|| traces::all().expect("traces"));
+    let mut fitting = traces.iter().filter(|trace| trace.rate_hz == rate_hz);
+    let track = fitting.find(|trace| trace.name == "chirp and reversals");
     &track.expect("a trace").samples
 }
 

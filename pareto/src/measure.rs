@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::board::{Job, Ran, on_board};
 use crate::image::{Image, Level};
-use crate::traces::{self, Ground, RATES_HZ};
+use crate::traces::{self, BenchTrace, RATES_HZ};
 
 /// Updates that are followed instruction by instruction, at the end of each trace.
 const FOLLOWED: usize = 40;
@@ -73,11 +73,11 @@ impl Row {
 /// # Errors
 /// One line if an image does not build or run, or differs from the host in any bit.
 pub fn measure() -> Result<Vec<Row>, String> {
-    let grounds = traces::all()?;
+    let traces = traces::all()?;
     let images: Result<Vec<_>, String> = Level::ALL.into_iter().map(Image::build).collect();
     let images = images?;
     let hostile = RATES_HZ.map(|rate_hz| (rate_hz, traces::hostile(rate_hz)));
-    let run = |image| run(image, &grounds, &hostile);
+    let run = |image| run(image, &traces, &hostile);
     let runs: Result<Vec<_>, String> = images.par_iter().map(run).collect();
     let mut rows: Vec<Row> = Vec::new();
     for (level, (image, (counted, followed))) in images.iter().zip(runs?).enumerate() {
@@ -101,7 +101,7 @@ pub fn measure() -> Result<Vec<Row>, String> {
             let cost = &mut row.cost[level];
             *cost = worst(*cost, cost_of(image, subject, &own, &slow)?);
             if level == 0 {
-                errors(row, &grounds, &own);
+                errors(row, &traces, &own);
             }
         }
     }
@@ -123,7 +123,7 @@ type Runs<'a> = Vec<(Job<'a>, Ran)>;
 /// only to compare.
 fn run<'a>(
     image: &Image,
-    grounds: &'a [Ground],
+    traces: &'a [BenchTrace],
     hostile: &'a [(u32, Vec<Sample>)],
 ) -> Result<(Runs<'a>, Runs<'a>), String> {
     let jobs_of = |traces: &[(u32, &'a [Sample])]| -> Vec<Job<'a>> {
@@ -138,7 +138,7 @@ fn run<'a>(
             })
             .collect()
     };
-    let counted = grounds.iter().map(|one| (one.rate_hz, &one.samples[..]));
+    let counted = traces.iter().map(|one| (one.rate_hz, &one.samples[..]));
     let jobs = jobs_of(&counted.collect::<Vec<_>>());
     let compared = hostile
         .iter()
@@ -225,27 +225,27 @@ fn worst(a: Cost, b: Cost) -> Cost {
     }
 }
 
-fn errors(row: &mut Row, grounds: &[Ground], own: &[&(Job<'_>, Ran)]) {
+fn errors(row: &mut Row, traces: &[BenchTrace], own: &[&(Job<'_>, Ran)]) {
     let mut squares = [0.0; 2];
     let mut samples = [0.0; 2];
     for (job, ran) in own {
-        let ground = grounds
+        let trace = traces
             .iter()
-            .find(|ground| std::ptr::eq(&ground.samples[..], job.samples))
+            .find(|trace| std::ptr::eq(&trace.samples[..], job.samples))
             .expect("a job of these traces");
         let settled = &ran.instructions[SKIPPED..];
         row.traces.insert(
-            format!("{}, {} Hz", ground.name, ground.rate_hz),
+            format!("{}, {} Hz", trace.name, trace.rate_hz),
             (
                 mean_count(settled),
                 settled.iter().copied().max().unwrap_or(0),
             ),
         );
-        let Some(truth) = &ground.truth else { continue };
-        let rate = usize::from(ground.rate_hz != RATES_HZ[0]);
+        let Some(truth) = &trace.truth else { continue };
+        let rate = usize::from(trace.rate_hz != RATES_HZ[0]);
         // The first sample has no velocity.
         for (estimate, truth) in ran.velocities.iter().zip(&truth[1..]).skip(SKIPPED) {
-            squares[rate] += ((f64::from(*estimate) - truth) * ground.scale).powi(2);
+            squares[rate] += ((f64::from(*estimate) - truth) * trace.scale).powi(2);
             samples[rate] += 1.0;
         }
     }

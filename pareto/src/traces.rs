@@ -40,7 +40,7 @@ pub const RATES_HZ: [u32; 2] = [1000, 10_000];
 
 /// A trace and what is true of it.
 #[derive(Clone, Debug)]
-pub struct Ground {
+pub struct BenchTrace {
     /// What it is.
     pub name: &'static str,
     /// Its rate, Hz.
@@ -57,12 +57,12 @@ pub struct Ground {
 ///
 /// # Errors
 /// One line on a recording that cannot be read.
-pub fn all() -> Result<Vec<Ground>, String> {
+pub fn all() -> Result<Vec<BenchTrace>, String> {
     let device = Device::default();
-    let mut grounds = Vec::new();
+    let mut traces = Vec::new();
     for rate_hz in RATES_HZ {
         let rate = f64::from(rate_hz);
-        grounds.push(Ground {
+        traces.push(BenchTrace {
             name: "still",
             rate_hz,
             samples: vec![Sample::new(Count(12_345)); SAMPLES],
@@ -79,7 +79,7 @@ pub fn all() -> Result<Vec<Ground>, String> {
             let first = (FROM_S * rate) as usize;
             let seconds = (first + SAMPLES) as f64 / rate;
             let trace = simulate(&device, scenario, rate, SEED, seconds, COLUMNS)?;
-            grounds.push(ground(name, rate_hz, &trace, first, COUNTS_PER_REV));
+            traces.push(bench_trace(name, rate_hz, &trace, first, COUNTS_PER_REV));
         }
     }
     // Hall states of a motor: their edges are too coarse for a truth.
@@ -88,9 +88,9 @@ pub fn all() -> Result<Vec<Ground>, String> {
         "/../tests/data/back-and-forth.csv"
     );
     let recording = Recording::read(path.as_ref()).map_err(|error| error.to_string())?;
-    grounds.push(ground("recording", 1000, &recording.trace, 0, 90));
-    grounds.last_mut().expect("just pushed").truth = None;
-    Ok(grounds)
+    traces.push(bench_trace("recording", 1000, &recording.trace, 0, 90));
+    traces.last_mut().expect("just pushed").truth = None;
+    Ok(traces)
 }
 
 /// What nobody counts but every bit has to hold in: rest, top speed, ties of the quantiser, wraps of
@@ -122,17 +122,17 @@ pub(crate) fn counts_per_tick(counts_per_rev: u32, rate_hz: f64) -> f64 {
     std::f64::consts::TAU * rate_hz / f64::from(counts_per_rev)
 }
 
-fn ground(
+fn bench_trace(
     name: &'static str,
     rate_hz: u32,
     trace: &Trace,
     first: usize,
     counts_per_rev: u32,
-) -> Ground {
+) -> BenchTrace {
     let range = first..trace.len().min(first + SAMPLES);
     let scale = counts_per_tick(counts_per_rev, f64::from(rate_hz));
     let truth = trace.true_omega.as_ref();
-    Ground {
+    BenchTrace {
         name,
         rate_hz,
         samples: range

@@ -20,7 +20,7 @@ use simulation::device::Device;
 use simulation::plant::{Pose, steps_per_tick};
 
 pub use bench::Bench;
-pub use fault::Fault;
+pub use fault::EncoderFault;
 pub use hand::{Hand, Motion};
 pub use press::Press;
 pub use scene::{Visit, environments_with, named, usual};
@@ -102,7 +102,7 @@ impl Loop {
     pub fn run_with(
         &self,
         ticks: usize,
-        fault: Option<(usize, Fault)>,
+        fault: Option<(usize, EncoderFault)>,
         observe: impl FnMut(&Moment),
     ) -> Result<(), String> {
         self.device.validate()?;
@@ -142,7 +142,7 @@ struct Running<'a, F> {
     run: &'a Loop,
     rig: &'a Rig,
     ticks: usize,
-    fault: Option<(usize, Fault)>,
+    fault: Option<(usize, EncoderFault)>,
     observe: F,
 }
 

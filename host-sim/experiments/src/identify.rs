@@ -1,8 +1,8 @@
-//! Identification: what the device is, from a recording of it under excitation.
+//! Identification of the device's constants from recordings under excitation.
 //!
-//! The equation of motion times a smooth test function, integrated by parts over each of many
-//! windows, is linear in `Kt/J`, `b/J` and `friction/J` and needs counts only, never a derivative
-//! of them; `docs/theory/identification.md` has the derivation.
+//! The equation of motion is multiplied by a smooth test function and integrated by parts over each
+//! of many windows. The result is linear in `Kt/J`, `b/J` and `friction/J` and contains counts but no
+//! derivative of them; `docs/theory/identification.md` has the derivation.
 
 mod device_file;
 mod equations;
@@ -24,39 +24,39 @@ use motion::Motion;
 
 pub use device_file::updated;
 pub use fit::Estimate;
-pub use model::{Beside, SPAN_S};
+pub use model::{ModelComparison, SPAN_S};
 pub use quantity::{Known, Quantity, Unit};
 pub use table::{json, text};
 
-/// What came of it.
+/// Result of the identification.
 #[derive(Clone, Debug)]
 pub struct Identification {
-    /// Every quantity that the columns speak of, whether it can be told or not.
+    /// All quantities for which the recordings have the columns, with the reason of each rejection.
     pub quantities: Vec<Quantity>,
-    /// What was taken for granted, a sentence each.
+    /// Assumptions, one sentence each.
     pub assumed: Vec<String>,
-    /// Windows used, and windows there are.
+    /// Number of used windows, and number of all windows.
     pub windows: (usize, usize),
-    /// Torque on the large shaft that the model does not explain, as part of the motor's, RMS.
+    /// RMS of the torque on the large shaft that the model does not contain, relative to the motor's.
     pub unexplained: f64,
-    /// The identified motor run beside each recording.
-    pub beside: Vec<Beside>,
+    /// Measured and modelled velocity of each recording.
+    pub comparisons: Vec<ModelComparison>,
 }
 
-/// Part of the motor's torque that may stay unexplained.
+/// Largest allowed share of the motor's torque that the model does not contain.
 const MOST_UNEXPLAINED: f64 = 0.10;
 /// Length of a window, s.
 const WINDOW_S: f64 = 0.04;
-/// Uneven steps in a window, on average, from which the clock is to blame for a lack of windows.
+/// Mean number of uneven steps per window from which the error of too few windows names the clock.
 const UNEVEN_WINDOWS: f64 = 0.5;
-/// Slowest rate at which a row is taken for a control tick, so that the lag means something, Hz.
+/// Slowest rate at which a row is assumed to be a control tick, Hz; below it the lag is rejected.
 const LAG_RATE_HZ: f64 = 5000.0;
 
-/// Identifies from recordings of one device, each with its name in messages. `clamped` says that the
-/// handle was, in those that do not show where it was.
+/// Identifies a device from its recordings, each with its name for messages. `clamped` states that
+/// the handle was clamped in recordings without `counts_small`.
 ///
 /// # Errors
-/// [`Failure::Input`] where the recordings cannot tell: what is missing, and how to record it.
+/// [`Failure::Input`] if the recordings are not sufficient: what is missing, and how to record it.
 pub fn identify(
     recordings: &[(String, Recording)],
     device: &Device,
@@ -76,14 +76,18 @@ pub fn identify(
     })?;
     let mut quantities = quantity::of_large(&fit, device, known, gathered.largest_current);
     for quantity in &mut quantities {
-        if let Some(why) = gathered.hides(quantity.key) {
-            quantity.untold = Some(why);
+        if let Some(reason) = gathered.rejects(quantity.key) {
+            quantity.rejected = Some(reason);
         }
     }
-    if quantities.iter().all(|quantity| quantity.untold.is_some()) {
+    if quantities
+        .iter()
+        .all(|quantity| quantity.rejected.is_some())
+    {
         let widths: Vec<_> = quantities.iter().map(Quantity::short).collect();
         return Err(Failure::Input(format!(
-            "{}: cannot tell anything within 2 % ({}); record all of scene excite, or several times",
+            "{}: no constant is identified within 2 % ({}); record the whole scene excite, or several \
+             recordings",
             recordings[0].0,
             widths.join(", ")
         )));
@@ -92,36 +96,36 @@ pub fn identify(
     let handle = handle::quantities(&gathered.free, turns, &fit, device, known);
     quantities.extend(handle.into_iter().flatten());
     let mut assumed = assumptions(known, gathered.unseen);
-    assumed.append(&mut gathered.silent);
+    assumed.append(&mut gathered.without_handle);
     Ok(Identification {
         quantities,
         assumed,
         windows: (gathered.large.usable.len(), gathered.large.windows),
         unexplained: fit.unexplained / fit.driven,
-        beside: model::beside(recordings, device, &fit),
+        comparisons: model::compare(recordings, device, &fit),
     })
 }
 
-/// The equations of all recordings, and what else they show.
+/// The equations of all recordings, and properties of the recordings for messages.
 #[derive(Default)]
 struct Gathered {
     large: Equations,
-    /// The handle's, where nobody holds it.
+    /// Equations of a free handle.
     free: Vec<Equation>,
-    /// Why a recording says nothing of the handle.
-    silent: Vec<String>,
+    /// Reasons for which recordings do not identify the handle.
+    without_handle: Vec<String>,
     /// The longest travel of each shaft, rad.
     travel: [f64; 2],
     largest_current: f64,
     slowest_hz: Option<f64>,
-    /// Whether there is a recording without the handle's counts.
+    /// Whether a recording has no counts of the handle.
     unseen: bool,
-    /// How uneven the first clock is that leaves few windows without uneven steps.
+    /// Description of the first clock that leaves too few windows without uneven steps.
     uneven: Option<String>,
 }
 
 impl Gathered {
-    /// Adds a recording, which is the first of these two numbers among the second.
+    /// Adds a recording; `place` is its index and the number of recordings.
     fn add(
         &mut self,
         name: &str,
@@ -133,8 +137,8 @@ impl Gathered {
         let period_s = trace.period_s();
         let Some(current) = &trace.current else {
             return Err(Failure::Input(format!(
-                "{name}: line 1: no column current; counts alone tell no torque: record scene \
-                 excite with the large motor's current"
+                "{name}: line 1: no column current; torques cannot be identified from counts alone: \
+                 record scene excite with the large motor's current"
             )));
         };
         let motion = |counts: &[u32], counts_per_rev| Motion::new(counts, counts_per_rev, period_s);
@@ -165,7 +169,7 @@ impl Gathered {
             return Ok(());
         };
         let free = match &recording.current_small {
-            None => Err("has no column current_small"),
+            None => Err("no column current_small"),
             Some(current) => {
                 let mut small = Equations::default();
                 let shaft = Shaft {
@@ -186,14 +190,17 @@ impl Gathered {
                 self.travel[1] = self.travel[1].max(handle.travel());
             }
             Err(why) => {
-                let silent = format!("{name}: nothing said of the handle, which {why}");
-                self.silent.push(silent);
+                self.without_handle
+                    .push(format!("{name}: the handle is not identified: {why}"));
             }
         }
         Ok(())
     }
 
-    /// Fits the large shaft's equation, or says why that means nothing.
+    /// Fits the large shaft's equation.
+    ///
+    /// # Errors
+    /// One line on currents, windows, or a model that does not fit.
     fn fit(&self, device: &Device) -> Result<Fit, String> {
         if self.largest_current == 0.0 {
             return Err("column current is zero throughout; record scene excite".to_owned());
@@ -201,108 +208,109 @@ impl Gathered {
         let Some(fit) = Fit::new(&self.large.usable) else {
             return Err(match &self.uneven {
                 Some(uneven) => format!(
-                    "{uneven}, so that only {} of {} windows of 40 ms are free of uneven steps and turn \
-                     one way; where the rows are even and only t is not, write t as row / rate, else \
-                     record with a timer",
+                    "{uneven}; only {} of {} windows of 40 ms have even steps and turn one way; if only \
+                     column t is uneven, write t as row / rate, else record with a timer",
                     self.large.usable.len(),
                     self.large.windows
                 ),
                 None => format!(
-                    "the large motor turns one way for 40 ms on end in only {} of {} windows; record \
-                     all of scene excite, with the handle held",
+                    "the large motor turns one way throughout only {} of {} windows of 40 ms; record \
+                     the whole scene excite, with the handle held",
                     self.large.usable.len(),
                     self.large.windows
                 ),
             });
         };
         let unexplained = fit.unexplained / fit.driven;
-        // Not a number is not explained either.
+        // NaN is an error too.
         if unexplained.is_nan() || unexplained >= MOST_UNEXPLAINED {
             return Err(format!(
-                "{:.0} % of the motor's torque goes where the model knows nothing; is column \
-                 current in A, large.counts_per_rev = {} right, {}?",
+                "the model leaves {:.0} % of the motor's torque unexplained (limit {:.0} %); check that \
+                 column current is in A, that large.counts_per_rev = {} is correct, and that {}",
                 100.0 * unexplained,
+                100.0 * MOST_UNEXPLAINED,
                 device.stages.large.counts_per_rev,
                 match self.unseen {
-                    true => "and was the handle clamped",
-                    false => "and did nothing else touch the shafts",
+                    true => "the handle was clamped",
+                    false => "nothing else touched the shafts",
                 }
             ));
         }
         let drive = fit.estimate(|ratios, _| ratios[0]);
         if drive.value < -drive.half {
             return Err(
-                "positive current turns the large motor backward; swap its phases or its \
-                 encoder's"
+                "positive current turns the large motor backward; swap two phases of the motor or \
+                 the phases of its encoder"
                     .to_owned(),
             );
         }
         Ok(fit)
     }
 
-    /// Why this key cannot be told, however narrow its interval.
-    fn hides(&self, key: &str) -> Option<String> {
+    /// Reason for which the recordings cannot identify this key, whatever its interval.
+    fn rejects(&self, key: &str) -> Option<String> {
         let usable = self.large.usable.len();
         let rarer_way = self.large.forward.min(usable - self.large.forward);
         match (key, self.slowest_hz) {
             (quantity::BANDWIDTH, Some(rate_hz)) if rate_hz < LAG_RATE_HZ => Some(format!(
-                "rows {} ms apart may be frames of a faster loop; record every control tick",
+                "rows {} ms apart may be frames of a faster control loop; record every control tick",
                 1000.0 / rate_hz
             )),
             (quantity::FRICTION, _) if 20 * rarer_way < usable => {
-                Some("turns one way only; record both".to_owned())
+                Some("the large motor turns one way only; record both directions".to_owned())
             }
             (quantity::FRICTION, _) if self.travel[0] < TURNS => {
-                Some("varies over a turn, and it made fewer than three".to_owned())
+                Some("friction varies over a turn; record at least three turns".to_owned())
             }
             _ => None,
         }
     }
 }
 
-/// A hand gives way: with `b w_S = (b^2 / K) dw_L/dt` it takes `b^2 / K` off the inertia, and no
-/// column of the large motor tells that apart.
+/// Error for a recording without the handle's counts. The handle yields under a hand of stiffness K,
+/// with `b w_S = (b^2 / K) dw_L/dt`, which reduces the identified inertia by `b^2 / K`.
 fn unseen(name: &str, device: &Device) -> Failure {
     let b = device.stages.damping;
     let part = b * b / device.hand.stiffness_nm_per_rad / device.stages.large.inertia;
     Failure::Input(format!(
-        "{name}: line 1: no column counts_small, and a hand of {} N.m/rad that gives way unseen takes \
-         {:.0} % off the inertia; record it, or clamp the handle and say --clamped",
+        "{name}: line 1: no column counts_small; the motion of a handle in a hand of {} N.m/rad would \
+         make the identified inertia {:.0} % too small; record the column, or clamp the handle and \
+         give --clamped",
         device.hand.stiffness_nm_per_rad,
         100.0 * part
     ))
 }
 
-/// What is assumed of the encoders where no device file says what they are.
+/// The assumption on the encoders without a device file.
 #[must_use]
 pub fn default_counts(device: &Device) -> String {
     format!(
-        "large.counts_per_rev = {} and small.counts_per_rev = {}, those of the default device, because \
-         no --device is given; with other encoders every value is wrong",
+        "large.counts_per_rev = {} and small.counts_per_rev = {} of the default device, because no \
+         --device is given; with other encoders every value is wrong",
         device.stages.large.counts_per_rev, device.stages.small.counts_per_rev
     )
 }
 
 fn assumptions(known: Known, held: bool) -> Vec<String> {
     let mut assumed = vec![format!(
-        "{known} taken as exact: counts and current tell ratios only, so its error is everybody's"
+        "{known} is exact: counts and current give ratios only, so its relative error is in all values"
     )];
     if held {
-        assumed.push("no column counts_small: the handle taken as clamped".to_owned());
+        assumed.push("the handle was clamped, because there is no column counts_small".to_owned());
     }
-    assumed.push("viscous friction of the large motor's bearings counts as damping".to_owned());
+    assumed.push("the damping includes viscous friction of the large motor's bearings".to_owned());
     assumed
 }
 
-/// Steps before each sample that are not of the median length.
+/// Number of steps before each sample that differ from the median length.
 fn breaks(t: &[f64], period_s: f64) -> Vec<usize> {
-    let mut seen = 0;
+    let mut number = 0;
     let first = std::iter::once(0);
     let steps = t.windows(2).map(|pair| pair[1] - pair[0]);
     first
         .chain(steps.map(|step| {
-            seen += usize::from((step - period_s).abs() > 0.1 * period_s);
-            seen
+            number += usize::from((step - period_s).abs() > 0.1 * period_s);
+            number
         }))
         .collect()
 }

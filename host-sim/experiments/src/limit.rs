@@ -1,10 +1,9 @@
-//! How well velocity can be known at all: a particle filter with the true model and the exact
+//! Lower bound of the velocity error: a particle filter with the true model and the exact
 //! likelihood of a count.
 //!
-//! It is no estimator for a controller: thousands of copies of the motor, each with its own
-//! noise, of which those live on that the encoder does not contradict. What the model does not
-//! know of the plant (the ripple of friction and torque) is a slow random torque here as in the
-//! observers.
+//! The filter simulates thousands of copies of the motor, each with its own noise, and keeps those
+//! that agree with the encoder; it is too expensive for a controller. Effects that the model does
+//! not contain (ripple of friction and torque) are a slow random torque, as in the observers.
 
 mod filter;
 pub mod table;
@@ -21,7 +20,7 @@ use terminal::failure::Failure;
 
 pub use filter::{Noise, velocities};
 
-/// One estimator, or the limit, on one run.
+/// Error of one estimator, or of the particle filter, in one run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// Estimator; `limit` and `limit-edge` are the particle filter.
@@ -34,42 +33,42 @@ pub struct Row {
     pub seed: u64,
     /// RMS error of the velocity, rad/s.
     pub rms_rad_s: f64,
-    /// The same in % of finite difference on the same samples.
+    /// RMS error in % of that of finite difference on the same samples.
     pub rms_pct: f64,
-    /// The same over that of the limit with the same signals.
+    /// RMS error over that of the particle filter with the same signals.
     pub over_limit: f64,
 }
 
-/// Scenarios that it is run on unless others are asked for.
+/// Default scenarios.
 pub const SCENARIOS: [ScenarioName; 5] = {
     use ScenarioName::{FreeAir, Step, Stochastic, Texture, Track};
     [Stochastic, Step, Track, FreeAir, Texture]
 };
 
-/// What the model does not know in `scenario`.
+/// Noise of the particles in `scenario`.
 fn noise(scenario: ScenarioName) -> Noise {
     if scenario.linear_plant() {
-        // The plant's own noise, and nothing else.
+        // The noise of the simulated plant.
         Noise {
             torque_noise: TORQUE_INTENSITY_NM2_S.sqrt(),
-            load: 0.0,
-            load_time: 1.0,
-            rub: 0.0,
+            disturbance: 0.0,
+            disturbance_time: 1.0,
+            friction_error: 0.0,
         }
     } else {
         Noise {
             torque_noise: 6e-6,
-            load: 2.5e-4,
-            load_time: 0.02,
-            rub: 3e-4,
+            disturbance: 2.5e-4,
+            disturbance_time: 0.02,
+            friction_error: 3e-4,
         }
     }
 }
 
-/// Runs all cases in parallel with `particles` particles each; `done` is called as each ends.
+/// Runs all cases in parallel with `particles` particles each and calls `done` after each case.
 ///
 /// # Errors
-/// [`Failure::Input`] of the first case, in order, that could not be run.
+/// [`Failure::Input`] of the first case, in order, that cannot be run.
 pub fn limit(
     cases: &[Case],
     settings: &Settings,
@@ -88,7 +87,7 @@ pub fn limit(
 }
 
 fn run(case: &Case, settings: &Settings, particles: usize) -> Result<Vec<Row>, Failure> {
-    // The limit reads everything that there is.
+    // The particle filter uses all signals.
     let all: Vec<&Kind> = Kind::all().iter().collect();
     let trace = trace(case, &settings.device, &all)?;
     let setup = setup_of(case, &settings.device);

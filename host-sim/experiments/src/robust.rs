@@ -1,7 +1,7 @@
-//! Robustness of the closed loop: devices that differ from what the controller believes.
+//! Robustness of the closed loop: devices whose constants differ from the controller's.
 //!
-//! Each scene runs with every corner of the tolerances and with drawn devices. Each run is judged:
-//! stable, stopped by the monitor in time, or violated.
+//! Each scene runs with every corner of the tolerances and with randomly drawn devices. The verdict
+//! of a run is: stable, stopped by the monitor in time, or violation of a limit.
 
 pub mod corners;
 mod high_pass;
@@ -26,7 +26,7 @@ use simulation::simulate;
 use terminal::failure::Failure;
 use variation::Subject;
 
-/// Everything that the rows depend on.
+/// All inputs that the rows depend on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
@@ -40,17 +40,17 @@ pub struct Settings {
     pub estimator: String,
     /// Values of its parameters, in their order.
     pub values: Vec<f64>,
-    /// Drawn devices a scene.
+    /// Number of drawn devices per scene.
     pub devices: u64,
-    /// Seed of everything random.
+    /// Seed of all random numbers.
     pub seed: u64,
     /// Duration of each run, s.
     pub seconds: f64,
-    /// The device that the controller believes in.
+    /// The nominal device, with which the controller is designed.
     pub device: Device,
 }
 
-/// What runs the devices of [`Settings`].
+/// The experiment with everything built that all its runs share.
 #[derive(Clone)]
 pub struct Experiment {
     settings: Settings,
@@ -59,15 +59,15 @@ pub struct Experiment {
     handle: Estimator,
     /// Poles of the velocity loop.
     pub poles: LoopPoles,
-    /// Further ticks by which the currents act late.
+    /// Additional delay of the currents, ticks.
     pub late_ticks: usize,
 }
 
-/// One run to be done.
+/// One run: scene and device.
 pub type Job = (SceneKind, Subject);
 
 impl Settings {
-    /// Settings of a run with these values of the estimator's parameters.
+    /// Values of the estimator's parameters, in their order.
     #[must_use]
     pub fn values(kind: &Kind, device: &Device, rate_hz: f64, parameters: &Parameters) -> Vec<f64> {
         let setup = Setup::of(device, rate_hz);
@@ -101,10 +101,10 @@ impl Settings {
 }
 
 impl Experiment {
-    /// What runs these settings.
+    /// Prepares the experiment.
     ///
     /// # Errors
-    /// [`Failure::Input`] that names what cannot be used.
+    /// [`Failure::Input`] that names the invalid setting.
     pub fn new(settings: &Settings) -> Result<Self, Failure> {
         let kind = Kind::named(&settings.estimator)?;
         if kind.needs.edge || kind.needs.coupled || kind.needs.current {
@@ -133,10 +133,10 @@ impl Experiment {
         })
     }
 
-    /// Runs the jobs in parallel; `done` is called as each ends. Rows come in the jobs' order.
+    /// Runs the jobs in parallel and calls `done` after each. The rows have the order of the jobs.
     ///
     /// # Errors
-    /// [`Failure::Input`] of the first job, in order, that could not be run.
+    /// [`Failure::Input`] of the first job, in order, that cannot be run.
     pub fn rows(&self, jobs: &[Job], done: impl Fn() + Sync) -> Result<Vec<Row>, Failure> {
         jobs.par_iter()
             .map(|&job| {
@@ -150,7 +150,7 @@ impl Experiment {
     /// Runs one device.
     ///
     /// # Errors
-    /// [`Failure::Input`] on a device or a loop that cannot be.
+    /// [`Failure::Input`] on an invalid device or a loop that cannot be designed.
     pub fn row(&self, (scene, subject): Job) -> Result<Row, Failure> {
         let settings = &self.settings;
         let (variation, seed) = subject.variation(settings.seed, scene);
@@ -179,7 +179,8 @@ impl Experiment {
                 handle_rad_s: now.handle.omega,
                 large_rad_s: now.large.omega,
                 felt_nm: now.felt,
-                // Its own friction included: the same whether somebody holds it or not.
+                // The friction of the handle is included, so that the torque is the same with and
+                // without a hand.
                 rendered_nm: now.felt + inertia * now.handle_acceleration,
                 wanted_nm: f64::from(now.action.torque.0),
                 stopped: now.stopped.is_some(),
@@ -218,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_depend_neither_on_order_nor_on_company() {
+    fn row_does_not_depend_on_order_or_number_of_jobs() {
         let settings = settings(&["hold", "wall"], 6);
         let experiment = Experiment::new(&settings).unwrap();
         let jobs = settings.jobs().unwrap();
@@ -233,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nominal_device_is_stable_in_every_scene() {
+    fn nominal_device_is_stable_in_every_scene() {
         let names: Vec<_> = SceneKind::environments().map(SceneKind::name).collect();
         let settings = settings(&names, 0);
         let experiment = Experiment::new(&settings).unwrap();
@@ -245,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn a_loop_that_acts_far_too_late_is_never_called_stable() {
+    fn loop_with_long_delay_is_not_stable() {
         let names = ["free-air", "wall", "spring-damper", "viscous", "hold"];
         let settings = Settings {
             seconds: 3.0,
@@ -257,8 +258,8 @@ mod tests {
             let row = experiment.row((scene, Subject::Corner(0))).unwrap();
             assert_ne!(row.verdict, Verdict::Stable, "{row:?}");
         }
-        // A wall that pushes 22 ms late: its limit cycle is neither fast nor strong, and the large
-        // motor's share of it just too weak for the monitor, which ends a later one.
+        // A wall with a delay of 22 ms: its limit cycle is slow and weak, and the large motor's
+        // current in it is just too small for the monitor, which stops one with a longer delay.
         experiment.late_ticks = 44;
         let late_wall = |experiment: &Experiment| {
             experiment
@@ -271,10 +272,10 @@ mod tests {
     }
 
     #[test]
-    fn a_loop_whose_poles_are_far_too_fast_is_never_called_stable() {
+    fn loop_with_too_fast_poles_is_not_stable() {
         let settings = settings(&["free-air", "viscous"], 0);
         let mut experiment = Experiment::new(&settings).unwrap();
-        // The design does not know of the 3 ms, so that it lets such poles pass.
+        // The design does not account for the delay of 3 ms and accepts these poles.
         experiment.poles = LoopPoles {
             regulation: estimator_core::Hertz(150.0),
             tracking: estimator_core::Hertz(150.0),

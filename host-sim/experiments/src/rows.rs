@@ -5,13 +5,13 @@ use serde_json::{Map, Value};
 
 use terminal::failure::Failure;
 
-/// The field whose own fields differ from row to row: one cell of the CSV.
+/// The field whose keys differ between rows; it is a single cell of the CSV.
 const PARAMETERS: &str = "parameters";
 
-/// An array of objects, one a line; what is not defined is `null`.
+/// JSON array with one object per line; an undefined value is `null`.
 ///
 /// # Errors
-/// [`Failure::Input`]; none is known to happen.
+/// [`Failure::Input`] if a row cannot be serialised.
 pub fn json<T: Serialize>(rows: &[T]) -> Result<Vec<u8>, Failure> {
     let mut text = b"[".to_vec();
     for (i, row) in rows.iter().enumerate() {
@@ -22,11 +22,11 @@ pub fn json<T: Serialize>(rows: &[T]) -> Result<Vec<u8>, Failure> {
     Ok(text)
 }
 
-/// The fields of the same objects, in their order, as CSV. What is not defined is empty; an object
-/// among the fields adds its fields as columns, but parameters are one cell `a=1;b=2`.
+/// CSV with the fields of the same objects, in their order. An undefined value is an empty cell. The
+/// fields of a nested object are columns, except the parameters, which are one cell `a=1;b=2`.
 ///
 /// # Errors
-/// [`Failure::Input`]; none is known to happen.
+/// [`Failure::Input`] if a row cannot be serialised.
 pub fn csv<T: Serialize>(rows: &[T]) -> Result<Vec<u8>, Failure> {
     let failed = |error: csv::Error| Failure::Input(error.to_string());
     let mut writer = csv::Writer::from_writer(Vec::new());

@@ -1,8 +1,7 @@
-//! How much an estimator loses by what it believes wrongly of the device.
+//! Sensitivity of the estimators to errors in the device's constants.
 //!
-//! Each run of the plant is estimated over and over, each time by estimators that believe in one
-//! wrong constant: see [`Belief`]. The plant and its loop stay the same, and so does the finite
-//! difference that the errors are compared to.
+//! Each run of the plant is estimated several times, each time by estimators with one wrong
+//! constant: see [`Belief`]. Plant, loop and the finite difference as reference stay unchanged.
 
 pub mod table;
 
@@ -15,10 +14,10 @@ use catalogue::estimators::{Kind, available};
 use scoring::score::{Truth, Wanted};
 use terminal::failure::Failure;
 
-/// Parts of the largest error that are tried, besides none.
+/// Errors of a constant, as fractions of its largest error. The correct constants are run too.
 pub const PARTS: [f64; 4] = [-1.0, -0.5, 0.5, 1.0];
 
-/// One estimator with one belief on one run.
+/// Error of one estimator with one wrong constant, or none, in one run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// Estimator.
@@ -29,22 +28,22 @@ pub struct Row {
     pub rate_hz: f64,
     /// Seed.
     pub seed: u64,
-    /// Constant that is believed wrongly; `null` for none.
+    /// The wrong constant; `null` if all are correct.
     pub constant: Option<&'static str>,
-    /// By how much, as a part of it.
+    /// Relative error of the constant.
     pub error: f64,
     /// RMS error of the velocity, rad/s.
     pub rms_rad_s: f64,
-    /// The same in % of finite difference on the same samples.
+    /// RMS error in % of that of finite difference on the same samples.
     pub rms_pct: f64,
-    /// Part of the samples outside the haptic interval.
+    /// Share of the samples outside the haptic interval, 0 to 1.
     pub outside: f64,
 }
 
-/// Runs all cases in parallel; `done` is called as each ends.
+/// Runs all cases in parallel and calls `done` after each.
 ///
 /// # Errors
-/// [`Failure::Input`] of the first case, in order, that could not be run.
+/// [`Failure::Input`] of the first case, in order, that cannot be run.
 pub fn sensitivity(
     cases: &[Case],
     settings: &Settings,
@@ -73,7 +72,7 @@ fn run(case: &Case, settings: &Settings) -> Result<Vec<Row>, Failure> {
         .map_err(|error| Failure::Input(format!("{}: {error}", case.scenario)))?;
     let setup = setup_of(case, &settings.device);
     let score = |kind: &Kind, belief: Option<&Belief>| {
-        // Parameters stay as tuned: they are not a belief.
+        // The tuned parameters stay unchanged.
         let values = settings.parameters.values(kind, &setup, case.plant);
         let believed = belief.map_or(setup, |belief| belief.of(&setup));
         let estimator = kind.build(&believed, &values)?;

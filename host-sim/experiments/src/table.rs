@@ -9,8 +9,8 @@ pub mod layout;
 
 use layout::{Column, table};
 
-/// The scores `asked` of every row, or all usual ones that a row has where none is asked for; one
-/// part a rate, plant and scenario, in lines of `width` characters.
+/// Table of the scores `asked`, by default of all usual scores that a row has: one table per rate,
+/// plant and scenario, in lines of `width` characters.
 #[must_use]
 pub fn details(rows: &[Row], asked: &[&Field<Score>], width: usize) -> String {
     let mut text = String::new();
@@ -29,7 +29,7 @@ pub fn details(rows: &[Row], asked: &[&Field<Score>], width: usize) -> String {
     text
 }
 
-/// The columns of the `fields` that are asked for, or of all usual ones that a row has.
+/// The columns of the requested `fields`, by default of all usual ones that a row has.
 pub fn columns<'a, T: Default + 'a>(
     fields: &'static [Field<T>],
     asked: &'a [&Field<T>],
@@ -48,10 +48,10 @@ pub fn columns<'a, T: Default + 'a>(
     })
 }
 
-/// The scores `asked`, or the mean distance outside the haptic interval in % of finite difference:
-/// estimators against scenarios, one part a rate, plant and score. The last column is over all
-/// scenarios shown: their mean or largest value; of the distance in % the mean of distances over
-/// the mean of finite difference's.
+/// Table of the scores `asked`, by default of the mean distance outside the haptic interval in % of
+/// finite difference: one table per rate, plant and score, with one line per estimator and one column
+/// per scenario. The last column is the mean or the largest value over the scenarios. For the
+/// distance in % it is the ratio of the mean distance to that of finite difference.
 #[must_use]
 pub fn overview(rows: &[Row], asked: &[&'static Field<Score>], width: usize) -> String {
     let usual: Vec<_> = Score::FIELDS
@@ -118,13 +118,13 @@ fn estimators(rows: &[Row]) -> Column {
     Column::text("", "estimator", names)
 }
 
-/// Distance of one estimator over several cases of equal length, % of finite difference's.
+/// Mean distance of one estimator over several cases of equal length, in % of finite difference.
 #[must_use]
 pub fn pooled_pct<'a>(scores: impl Iterator<Item = &'a Score>) -> Option<f64> {
     let (mut of, mut whole) = (0.0, 0.0);
     for score in scores {
         of += score.distance_rad_s?;
-        // A percentage is missing where finite difference never leaves the interval: it adds 0.
+        // The percentage is missing if finite difference never leaves the interval: its distance is 0.
         whole += score.difference_distance_rad_s.unwrap_or(0.0);
     }
     (whole > 0.0).then(|| 100.0 * of / whole)
@@ -134,7 +134,7 @@ fn same_case(a: &Row, b: &Row) -> bool {
     a.scenario == b.scenario && a.rate_hz == b.rate_hz && a.plant == b.plant && a.seed == b.seed
 }
 
-/// Three digits, or a dash where there is no number.
+/// About three significant digits, or a dash without a value.
 pub fn number(value: Option<f64>) -> String {
     match value {
         None => "-".to_owned(),

@@ -1,7 +1,7 @@
-//! Search of the estimators' parameters on seeds that nothing is scored on.
+//! Search of the estimators' parameters on seeds that are not used for scores.
 //!
 //! The search minimises the cost on the tuning seeds. The result and the shipped parameters are then
-//! compared on one more seed, and the shipped ones stay where they are at least as good there.
+//! compared on one further seed; the shipped parameters are kept if they are at least as good there.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -18,11 +18,11 @@ use simulation::scenario::ScenarioName;
 use simulation::trace::Trace;
 use terminal::failure::Failure;
 
-/// First seed that tuning may use; seeds below it are for scoring.
+/// First tuning seed; seeds below it are for scores.
 pub const FIRST_SEED: u64 = 1 << 32;
 
-/// Weight of the RMS error beside the mean distance: it decides between parameters that never
-/// leave the interval.
+/// Weight of the RMS error relative to the mean distance. It discriminates between parameters whose
+/// error never leaves the haptic interval.
 pub const RMS_WEIGHT: f64 = 0.01;
 
 /// Points of a search's first grid.
@@ -34,50 +34,51 @@ const DEFAULT_INERTIA: f64 = estimator_core::MotorModel::DCX35L.inertia;
 /// Rounds of refinement between the neighbours of the best point.
 const REFINEMENTS: usize = 3;
 
-/// What to tune on.
+/// The tuning set: device, scenarios, seeds, and errors of the constants.
 #[derive(Clone, Debug)]
-pub struct Ground {
+pub struct TuningSet {
     /// The device.
     pub device: Device,
-    /// Scenarios, pooled.
+    /// Scenarios, over which the cost is averaged.
     pub scenarios: Vec<ScenarioName>,
-    /// How many tuning seeds.
+    /// Number of tuning seeds.
     pub seeds: u64,
     /// Duration of each run, s.
     pub seconds: f64,
-    /// What the estimators believe wrongly, in turn, besides being right.
+    /// Errors of the constants, over which the cost is averaged together with the correct constants.
     pub beliefs: Vec<Belief>,
 }
 
-/// What tuning found at one rate on one plant.
+/// Result of tuning at one rate on one plant.
 #[derive(Clone, Debug)]
 pub struct Tuned {
     /// The parameters.
     pub preset: Preset,
-    /// One line for each parameter at an end of its range, and for each estimator whose shipped
-    /// parameters stay.
+    /// One line for each parameter at a limit of its range, and for each estimator whose shipped
+    /// parameters are kept.
     pub notes: Vec<String>,
 }
 
-/// Tunes `kinds`, all of them tunable, at one rate on one plant.
+/// Tunes the estimators `kinds` at one rate on one plant and calls `done` after each. All of them
+/// must have parameters.
 ///
-/// Minimises the mean distance outside the haptic interval plus a hundredth of the RMS error,
-/// averaged over scenarios and seeds: a grid over all parameters at once, then finer grids around
-/// the best. On the seed after the tuning seeds the result is compared with the shipped parameters;
-/// the better ones are returned. `done` is called as each estimator ends.
+/// The cost is the mean distance outside the haptic interval plus a hundredth of the RMS error,
+/// averaged over scenarios and seeds. It is minimised on a grid over all parameters, then on finer
+/// grids around the best point. The result is compared with the shipped parameters on the seed after
+/// the tuning seeds; the better ones are returned.
 ///
 /// # Errors
-/// [`Failure::Input`] where a case cannot be simulated or an estimator needs what the
-/// simulation does not have.
+/// [`Failure::Input`] if a case cannot be simulated or an estimator needs a signal that the
+/// simulation does not provide.
 pub fn tune(
-    ground: &Ground,
+    set: &TuningSet,
     kinds: &[&'static Kind],
     rate_hz: f64,
     plant: PlantKind,
     done: impl Fn() + Sync,
 ) -> Result<Tuned, Failure> {
     let traces = |seeds: Range<u64>| {
-        let cases: Vec<_> = ground
+        let cases: Vec<_> = set
             .scenarios
             .iter()
             .flat_map(|&scenario| seeds.clone().map(move |i| (scenario, FIRST_SEED + i)))
@@ -86,29 +87,24 @@ pub fn tune(
                 rate_hz,
                 plant,
                 seed,
-                seconds: ground.seconds,
+                seconds: set.seconds,
                 keep: false,
             })
             .collect();
-        let traces = cases
-            .par_iter()
-            .map(|case| trace(case, &ground.device, kinds));
+        let traces = cases.par_iter().map(|case| trace(case, &set.device, kinds));
         traces.collect::<Result<Vec<_>, _>>()
     };
-    let traces = [
-        traces(0..ground.seeds)?,
-        traces(ground.seeds..ground.seeds + 1)?,
-    ];
+    let traces = [traces(0..set.seeds)?, traces(set.seeds..set.seeds + 1)?];
     let [seen, unseen] = [
-        tracks(&traces[0], rate_hz, &ground.device)?,
-        tracks(&traces[1], rate_hz, &ground.device)?,
+        tracks(&traces[0], rate_hz, &set.device)?,
+        tracks(&traces[1], rate_hz, &set.device)?,
     ];
 
     let setup = match plant {
-        PlantKind::Friction => Setup::of(&ground.device, rate_hz),
-        PlantKind::Frictionless => Setup::of(&ground.device, rate_hz).frictionless(),
+        PlantKind::Friction => Setup::of(&set.device, rate_hz),
+        PlantKind::Frictionless => Setup::of(&set.device, rate_hz).frictionless(),
     };
-    let wrong = ground.beliefs.iter().map(|belief| belief.of(&setup));
+    let wrong = set.beliefs.iter().map(|belief| belief.of(&setup));
     let setups: Vec<_> = std::iter::once(setup).chain(wrong).collect();
     let shipped = Parameters::default();
     let mut notes = Vec::new();
@@ -120,7 +116,7 @@ pub fn tune(
         let best = if cost(&before) <= cost(&found) {
             if before != found {
                 notes.push(format!(
-                    "{}: the shipped parameters stay; they are better on a seed that was not tuned on",
+                    "{}: the shipped parameters are kept; they are better on a seed outside the tuning set",
                     kind.name
                 ));
             }
@@ -137,14 +133,14 @@ pub fn tune(
         preset: Preset {
             rate_hz,
             plant,
-            counts_per_rev: Some(ground.device.stages.large.counts_per_rev),
+            counts_per_rev: Some(set.device.stages.large.counts_per_rev),
             estimators,
         },
         notes,
     })
 }
 
-/// A recording and its truth.
+/// A simulated trace and the scores' reference.
 type Track<'a> = (&'a Trace, Truth<'a>);
 
 fn tracks<'a>(
@@ -165,7 +161,7 @@ fn tracks<'a>(
     traces.iter().map(track).collect()
 }
 
-/// A line for each value that is an end of the range which was searched.
+/// One line for each value at a limit of the searched range.
 fn ends_of_ranges(kind: &Kind, setup: &Setup, values: &Values) -> Vec<String> {
     let searched = kind.parameters.iter().zip(values);
     searched
@@ -180,7 +176,7 @@ fn ends_of_ranges(kind: &Kind, setup: &Setup, values: &Values) -> Vec<String> {
                 _ => return None,
             };
             Some(format!(
-                "{}.{} = {value} {} is the {at} end of the range searched; a value beyond it may be better: try --set",
+                "{}.{} = {value} {} is the {at} limit of the searched range; a value beyond it may be better: try --set",
                 kind.name, parameter.name, parameter.unit
             ))
         })
@@ -203,7 +199,7 @@ fn best_values(kind: &Kind, setups: &[Setup], tracks: &[Track]) -> Values {
     best
 }
 
-/// The best point of the grid spanned by `axes`.
+/// The point of the grid spanned by `axes` with the smallest cost.
 fn evaluate(kind: &Kind, setups: &[Setup], tracks: &[Track], axes: &[Vec<f64>]) -> Values {
     let mut points = vec![Vec::new()];
     for axis in axes {
@@ -218,7 +214,7 @@ fn evaluate(kind: &Kind, setups: &[Setup], tracks: &[Track], axes: &[Vec<f64>]) 
     points
         .into_par_iter()
         .map(|point| (mean_cost(kind, setups, tracks, &point), point))
-        // Equal costs go to the earlier point, so that the result does not depend on threads.
+        // Of equal costs the earlier point wins, so that the result does not depend on threads.
         .min_by(|(a, p), (b, q)| a.total_cmp(b).then_with(|| compare_points(p, q)))
         .map(|(_, point)| point)
         .unwrap_or_default()
@@ -237,7 +233,7 @@ fn mean_cost(kind: &Kind, setups: &[Setup], tracks: &[Track], values: &Values) -
     costs.sum::<f64>() / setups.len() as f64
 }
 
-/// Infinite for parameters that the design refuses.
+/// Cost of the parameters; infinite if the estimator's design refuses them.
 fn cost(kind: &Kind, setup: &Setup, tracks: &[Track], values: &Values) -> f64 {
     let Ok(estimator) = kind.build(setup, values) else {
         return f64::INFINITY;
@@ -254,7 +250,7 @@ fn first_grid(parameter: &Parameter, setup: &Setup) -> Vec<f64> {
     match parameter.search {
         Search::Fixed(value) => vec![value],
         Search::Log(low, high) => {
-            // A torque moves the motor by its ratio to the inertia.
+            // The motion depends on the ratio of torque to inertia.
             let scale = match parameter.is_torque() {
                 true => setup.stages.large.inertia / DEFAULT_INERTIA,
                 false => 1.0,
@@ -283,7 +279,7 @@ fn finer(parameter: &Parameter, axis: &[f64], best: f64) -> Vec<f64> {
     match parameter.search {
         Search::Fixed(_) => vec![best],
         Search::Log(..) => {
-            // Three digits are what a tuned value can mean.
+            // More than three digits of a tuned value are not significant.
             logarithmic(low, high, 9)
                 .into_iter()
                 .map(three_digits)
@@ -323,7 +319,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn grids_keep_their_ends_and_their_best() {
+    fn grid_contains_its_limits_and_the_best_point() {
         let grid = logarithmic(1.0, 100.0, 5);
         assert!((grid[2] - 10.0).abs() < 1e-9 && (grid[4] - 100.0).abs() < 1e-9);
         assert_eq!(whole(vec![1.2, 0.9, 3.0]), [1.0, 3.0]);

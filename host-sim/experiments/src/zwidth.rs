@@ -1,7 +1,8 @@
-//! Z-width: which virtual walls and dampings stay passive and free of limit cycles.
+//! Z-width: the virtual walls and dampings that are passive and free of limit cycles.
 //!
-//! For an estimator, a rate and an encoder, the largest stiffness at each of several dampings and
-//! the largest damping of a viscous field, found in simulation by [`criterion`] and bisection.
+//! For an estimator, a rate and an encoder, a bisection over simulations finds the largest stiffness
+//! at each of several dampings and the largest damping of a viscous field. [`criterion`] decides
+//! whether a simulation passes.
 
 pub mod criterion;
 pub mod probe;
@@ -16,17 +17,17 @@ use probe::{Finding, Probe};
 use simulation::device::Device;
 use terminal::failure::Failure;
 
-/// Smallest and largest stiffness that is tried, N.m/rad. A softer wall presses a fingertip with
-/// less than 0.1 N; there a coarse encoder shows its counts one by one, whatever the wall is.
+/// Smallest and largest stiffness of the search, N.m/rad. A softer wall has a force below 0.1 N at
+/// the fingertip, where single counts of a coarse encoder dominate.
 pub const STIFFNESS: (f64, f64) = (0.04, 81.92);
-/// Smallest and largest damping that is tried, N.m.s/rad.
+/// Smallest and largest damping of the search, N.m.s/rad.
 pub const DAMPING: (f64, f64) = (1e-5, 0.08192);
-/// Dampings of the walls, as parts of the largest one.
+/// Dampings of the walls, as fractions of the largest damping without a wall.
 pub const PARTS: [f64; 5] = [0.0, 0.125, 0.25, 0.5, 0.75];
-/// The bound and the first value that failed differ by no more than this factor.
+/// Largest ratio of the first failing value to the bound.
 pub const RESOLUTION: f64 = 1.03;
 
-/// What a boundary is found for.
+/// Estimators, rate and encoder of one boundary.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     /// Estimator of the large motor's velocity.
@@ -35,14 +36,14 @@ pub struct Case {
     pub handle: &'static Kind,
     /// Control rate, Hz.
     pub rate_hz: f64,
-    /// Lines of the large encoder; a quarter of its counts a revolution.
+    /// Lines of the large encoder, a quarter of its counts per revolution.
     pub lines: u32,
 }
 
 /// What all cases have in common.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// The device, but for the lines of its large encoder.
+    /// The device; the lines of its large encoder are replaced.
     pub device: Device,
     /// Parameters of the estimators.
     pub parameters: Parameters,
@@ -50,19 +51,19 @@ pub struct Settings {
     pub seed: u64,
 }
 
-/// The largest value that was found good.
+/// The largest value that passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bound {
-    /// That value; 0 if the smallest one that is tried fails.
+    /// The value; 0 if the smallest value of the search fails.
     pub value: f64,
-    /// What fails beyond it; `None` if the largest one that is tried is good.
+    /// The failure beyond it; `None` if the largest value of the search passes.
     pub beyond: Option<Finding>,
 }
 
 /// The boundary of one case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Boundary {
-    /// Damping (N.m.s/rad) and the largest stiffness (N.m/rad) at that damping; dampings rise.
+    /// Damping (N.m.s/rad) and largest stiffness (N.m/rad) at that damping, in order of damping.
     pub walls: Vec<(f64, Bound)>,
     /// Largest damping without a wall, N.m.s/rad.
     pub viscous: Bound,
@@ -72,17 +73,17 @@ impl Boundary {
     /// The stiffest wall and its damping, N.m/rad and N.m.s/rad.
     #[must_use]
     pub fn stiffest(&self) -> Option<(f64, Bound)> {
-        // Of equals, the one with the least damping.
+        // Of equal stiffnesses the one with the smallest damping.
         let walls = self.walls.iter().rev().copied();
         walls.max_by(|a, b| a.1.value.total_cmp(&b.1.value))
     }
 }
 
-/// How many bounds a case takes, at most.
+/// Largest number of bounds of a case.
 pub const BOUNDS_A_CASE: usize = PARTS.len() + 1;
 
-/// The boundaries of all cases, in their order; `done` is called as each of their
-/// [`BOUNDS_A_CASE`] bounds is found.
+/// The boundaries of all cases, in their order; calls `done` after each of their [`BOUNDS_A_CASE`]
+/// bounds.
 ///
 /// # Errors
 /// [`Failure::Input`] of the first case, in order, that cannot be run.
@@ -110,7 +111,7 @@ pub fn boundaries(
         .par_iter()
         .map(|&(i, part)| {
             let damping = part * viscous[i].value;
-            // Without a largest damping there is but one wall, the one that has none.
+            // If the largest damping is zero, only the wall without damping is searched.
             let wall = if part > 0.0 && damping == 0.0 {
                 Ok(None)
             } else {
@@ -146,12 +147,12 @@ pub fn probe(case: &Case, settings: &Settings) -> Result<Probe, Failure> {
     )
 }
 
-/// The largest value from `low` to `high` below which nothing fails: doubled from `low` until
-/// something does, then bisected on a logarithmic scale. So a range of good values beyond the
-/// first bad one is not mistaken for the bound, if the bad range is wider than a factor of 2.
+/// The largest value from `low` to `high` below which no value fails. The value is doubled from `low`
+/// until one fails, then bisected on a logarithmic scale. Passing values beyond a failing range do
+/// not count, if the failing range is wider than a factor of 2.
 ///
 /// # Errors
-/// Those of `fault`.
+/// The errors of `fault`.
 pub fn bound(
     (low, high): (f64, f64),
     fault: impl Fn(f64) -> Result<Option<Finding>, Failure>,
@@ -186,7 +187,7 @@ pub fn bound(
 
 #[cfg(test)]
 mod tests {
-    use super::criterion::Fault;
+    use super::criterion::Violation;
     use super::probe::Touch;
     use super::*;
 
@@ -194,14 +195,14 @@ mod tests {
         bound((0.01, 100.0), |x| {
             Ok((x > limit).then_some(Finding {
                 touch: Touch::Hand,
-                fault: Fault::Energy,
+                fault: Violation::Energy,
             }))
         })
         .unwrap()
     }
 
     #[test]
-    fn a_bound_is_good_and_within_the_resolution() {
+    fn bound_passes_and_is_within_the_resolution() {
         for limit in [0.0101, 0.3, 7.0, 99.0] {
             let value = found(limit).value;
             assert!(
@@ -212,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_good_is_zero_and_nothing_bad_is_the_cap() {
+    fn bound_is_zero_if_all_values_fail_and_the_largest_if_none_fails() {
         assert_eq!(found(0.001).value, 0.0);
         assert!(found(0.001).beyond.is_some());
         let all = found(1e9);

@@ -2,7 +2,7 @@
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::closed_loop::{Fault, FeedbackEncoder, Hand, Loop, estimator, usual};
+use experiments::closed_loop::{EncoderFault, FeedbackEncoder, Hand, Loop, estimator, usual};
 use haptic_control::{LoopPoles, SceneKind, SimulatedHand, Stop};
 use simulation::device::Device;
 
@@ -38,7 +38,7 @@ struct Ended {
     spurious_nm: f64,
 }
 
-fn with(run: &Loop, fault: Fault, seconds: f64) -> Ended {
+fn with(run: &Loop, fault: EncoderFault, seconds: f64) -> Ended {
     let ticks = (seconds * run.rate_hz) as usize;
     let from = (FAULT_S * run.rate_hz) as usize;
     let mut healthy = Vec::with_capacity(ticks);
@@ -61,7 +61,7 @@ fn with(run: &Loop, fault: Fault, seconds: f64) -> Ended {
 
 /// Largest time until the stop and largest spurious torque over seeds, and whether each cause was
 /// one of `causes`.
-fn worst(scene: SceneKind, rate_hz: f64, fault: Fault, causes: &[Stop]) -> (f64, f64) {
+fn worst(scene: SceneKind, rate_hz: f64, fault: EncoderFault, causes: &[Stop]) -> (f64, f64) {
     let mut worst = (0.0_f64, 0.0_f64);
     for seed in 1..=6 {
         let ended = with(&closed(scene, rate_hz, seed), fault, 1.5);
@@ -89,7 +89,11 @@ fn springs(scene: SceneKind) -> bool {
 #[test]
 fn a_stuck_encoder_is_stopped_before_it_hurts() {
     for scene in with_large_motor() {
-        for fault in [Fault::StuckA, Fault::StuckB, Fault::StuckBoth] {
+        for fault in [
+            EncoderFault::StuckA,
+            EncoderFault::StuckB,
+            EncoderFault::StuckBoth,
+        ] {
             let causes = [Stop::Stall, Stop::RunawayDirection];
             let (stop_s, spurious_nm) = worst(scene, 2e3, fault, &causes);
             println!("{scene}, {fault:?}: {stop_s} s, {spurious_nm} N.m");
@@ -104,7 +108,8 @@ fn a_stuck_encoder_is_stopped_before_it_hurts() {
 #[test]
 fn exchanged_phases_are_stopped_at_the_first_motion() {
     for scene in with_large_motor() {
-        let (stop_s, spurious_nm) = worst(scene, 2e3, Fault::Swapped, &[Stop::RunawayDirection]);
+        let (stop_s, spurious_nm) =
+            worst(scene, 2e3, EncoderFault::Swapped, &[Stop::RunawayDirection]);
         println!("{scene}: {stop_s} s, {spurious_nm} N.m");
         assert!(stop_s < 0.2, "{scene}: {stop_s} s");
         // The estimate turns round at once, and with it half of what the coupler brings.

@@ -89,7 +89,7 @@ struct Tally {
 
 impl Tally {
     fn add(&mut self, device: &Device, found: &Identification) {
-        for quantity in found.quantities.iter().filter(|q| q.untold.is_none()) {
+        for quantity in found.quantities.iter().filter(|q| q.rejected.is_none()) {
             let truth = truth(device, quantity.key);
             let error = (quantity.estimate.value - truth).abs();
             assert!(error < 0.03 * truth, "{quantity:?} is {truth}");
@@ -205,7 +205,7 @@ fn whatever_is_known_the_ratios_are_the_same() {
     let with = |known| {
         let found = found(vec![recording.clone()], known).unwrap();
         let told = found.quantities.into_iter();
-        let told = told.filter(|quantity| quantity.untold.is_none());
+        let told = told.filter(|quantity| quantity.rejected.is_none());
         told.map(|quantity| (quantity.key, quantity.estimate.value))
             .collect::<Vec<_>>()
     };
@@ -231,7 +231,7 @@ fn whatever_is_known_the_ratios_are_the_same() {
 }
 
 #[test]
-fn what_cannot_tell_is_refused_with_what_to_do() {
+fn insufficient_recording_is_refused_with_a_remedy() {
     let device = Device::default();
     let known = torque_constant(&device);
     let good = record(&device, Hand::Clamp, 1, 10);
@@ -264,7 +264,7 @@ fn what_cannot_tell_is_refused_with_what_to_do() {
     // Currents of something else: shuffled in time by a second.
     let error = refused(&|r| r.trace.current.as_mut().unwrap().rotate_right(1000));
     assert!(
-        error.contains("knows nothing") || error.contains("cannot tell"),
+        error.contains("unexplained") || error.contains("no constant is identified"),
         "{error}"
     );
     // A clock that stumbles all the time.
@@ -284,7 +284,7 @@ fn motion_without_steps_is_not_enough_for_the_inertia() {
     recording.trace.current.as_mut().unwrap().fill(0.9);
     let error = found(vec![recording], torque_constant(&device)).unwrap_err();
     assert!(
-        error.contains("cannot tell") || error.contains("knows nothing"),
+        error.contains("no constant is identified") || error.contains("unexplained"),
         "{error}"
     );
 }

@@ -5,7 +5,7 @@ use super::canvas::{Anchor, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height
 use super::page::Printout;
 use super::palette::{BAND, INK, MUTED, TRUTH};
 use super::plot::{Axis, Plot};
-use experiments::identify::{Beside, Identification, Quantity, SPAN_S};
+use experiments::identify::{Identification, ModelComparison, Quantity, SPAN_S};
 use plotters::style::RGBColor;
 
 const LEFT: f64 = 70.0;
@@ -29,7 +29,7 @@ pub fn identify(
     count_rad_s: f64,
     printout: &Printout,
 ) -> Result<String, String> {
-    let motions = found.beside.iter();
+    let motions = found.comparisons.iter();
     let motions = motions.map(|beside| motion(beside, count_rad_s));
     let figures: Vec<Svg> = motions
         .chain([constants(&found.quantities)])
@@ -120,7 +120,7 @@ fn constants(quantities: &[Quantity]) -> Result<Svg, String> {
         .filter(|quantity| quantity.file != 0.0)
         .map(|q| (q, q.estimate.value / q.file, q.estimate.half / q.file.abs()))
         .collect();
-    let told = || parts.iter().filter(|(q, ..)| q.untold.is_none());
+    let told = || parts.iter().filter(|(q, ..)| q.rejected.is_none());
     let reach = told().map(|(_, part, half)| (part - 1.0).abs() + half);
     let span = (1.15 * reach.fold(0.05, f64::max)).min(1.0);
     let height = TOP + ROW * parts.len() as f64;
@@ -143,7 +143,7 @@ fn constants(quantities: &[Quantity]) -> Result<Svg, String> {
         )?;
         for (i, (quantity, part, half)) in parts.iter().enumerate() {
             let y = TOP + ROW * (i as f64 + 0.5);
-            let colour = if quantity.untold.is_some() {
+            let colour = if quantity.rejected.is_some() {
                 MUTED
             } else {
                 INK
@@ -155,7 +155,7 @@ fn constants(quantities: &[Quantity]) -> Result<Svg, String> {
                 LABEL,
                 colour,
             )?;
-            if quantity.untold.is_some() {
+            if quantity.rejected.is_some() {
                 let (x, _) = plot.at((1.0 - 0.95 * span, 0.0));
                 canvas.text(
                     "cannot be told, see below",

@@ -8,7 +8,7 @@ use clap::Args;
 use catalogue::belief::Belief;
 use catalogue::estimators::Kind;
 use catalogue::parameters::{PlantKind, Preset, Presets};
-use experiments::tune::{FIRST_SEED, Ground, tune};
+use experiments::tune::{FIRST_SEED, TuningSet, tune};
 use simulation::scenario::{Role, ScenarioName};
 use simulation::simulate;
 use terminal::failure::Failure;
@@ -78,9 +78,9 @@ pub(super) struct Tune {
 }
 
 impl Tune {
-    fn ground(&self, recipe: &Recipe) -> Result<Ground, Failure> {
+    fn tuning_set(&self, recipe: &Recipe) -> Result<TuningSet, Failure> {
         let perturbed = self.perturbed || recipe.perturbed && self.scenarios.is_empty();
-        Ok(Ground {
+        Ok(TuningSet {
             device: self.device.load()?,
             scenarios: scenarios(&self.scenarios, &ScenarioName::of(recipe.roles))?,
             seeds: self.seeds.unwrap_or(recipe.seeds),
@@ -109,12 +109,12 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
     let groups: Vec<_> = [(others, Recipe::PLAIN), (observers, Recipe::OBSERVER)]
         .into_iter()
         .filter(|(kinds, _)| !kinds.is_empty())
-        .map(|(kinds, recipe)| Ok((kinds, options.ground(&recipe)?)))
+        .map(|(kinds, recipe)| Ok((kinds, options.tuning_set(&recipe)?)))
         .collect::<Result<_, Failure>>()?;
     let rates = rates(&options.rates, &[1e3, 10e3, 11.6e3]);
-    for (_, ground) in &groups {
+    for (_, set) in &groups {
         for &rate in &rates {
-            simulate::ticks(rate, ground.seconds)?;
+            simulate::ticks(rate, set.seconds)?;
         }
     }
     let plants: &[_] = match options.frictionless {
@@ -131,11 +131,11 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
                 plant,
                 counts_per_rev: groups
                     .first()
-                    .map(|(_, ground)| ground.device.stages.large.counts_per_rev),
+                    .map(|(_, set)| set.device.stages.large.counts_per_rev),
                 estimators: BTreeMap::new(),
             };
-            for (kinds, ground) in &groups {
-                let tuned = tune(ground, kinds, rate, plant, || bar.inc(1))?;
+            for (kinds, set) in &groups {
+                let tuned = tune(set, kinds, rate, plant, || bar.inc(1))?;
                 preset.estimators.extend(tuned.preset.estimators);
                 let at = format!("{rate} Hz, {}", plant.name());
                 notes.extend(tuned.notes.iter().map(|note| format!("{at}: {note}")));
@@ -145,8 +145,8 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
     }
     bar.finish_and_clear();
     let mut text = format!("# {command_line}\n");
-    for (kinds, ground) in &groups {
-        text += &tuned_on(kinds, ground);
+    for (kinds, set) in &groups {
+        text += &tuned_on(kinds, set);
     }
     for note in &notes {
         terminal::output::note(format_args!("note: {note}"));
@@ -161,14 +161,14 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
 }
 
 /// Comment line of the presets file: the tuning set of these estimators.
-fn tuned_on(kinds: &[&Kind], ground: &Ground) -> String {
+fn tuned_on(kinds: &[&Kind], set: &TuningSet) -> String {
     let names: Vec<_> = kinds.iter().map(|kind| kind.name).collect();
-    let scenarios: Vec<_> = ground
+    let scenarios: Vec<_> = set
         .scenarios
         .iter()
         .map(|scenario| scenario.as_str())
         .collect();
-    let constants = match ground.beliefs.is_empty() {
+    let constants = match set.beliefs.is_empty() {
         true => "right constants",
         false => "right and wrong constants",
     };
@@ -176,7 +176,7 @@ fn tuned_on(kinds: &[&Kind], ground: &Ground) -> String {
         "# {}: tuned on {}, {} s each, {constants}, seeds {FIRST_SEED} to {}.\n",
         names.join(", "),
         scenarios.join(", "),
-        ground.seconds,
-        FIRST_SEED + ground.seeds - 1,
+        set.seconds,
+        FIRST_SEED + set.seeds - 1,
     )
 }

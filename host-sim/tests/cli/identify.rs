@@ -49,10 +49,10 @@ fn the_command_writes_a_device_file_with_only_what_it_knows_replaced() {
     }
     for said in [
         "health: coupler.damping_nms_per_rad: 0.833 of the file's 0.9600 mN.m.s/rad, -16.7 %, outside \
-         its interval: coupler hot",
-        "assumed: large.torque_constant_nm_per_a = 0.0468 taken as exact",
+         its interval: the coupler is hot",
+        "assumed: large.torque_constant_nm_per_a = 0.0468 is exact",
         "amplifier.bandwidth_hz - Hz",
-        "not told: amplifier.bandwidth_hz: rows 1 ms apart",
+        "not identified: amplifier.bandwidth_hz: rows 1 ms apart",
     ] {
         assert!(table.contains(said), "{said}\n{table}");
     }

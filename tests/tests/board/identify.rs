@@ -41,7 +41,7 @@ fn the_image_excites_a_device_and_its_recording_tells_what_it_is() {
     ] {
         let quantity = found.quantities.iter().find(|q| q.key == key);
         let quantity = quantity.unwrap_or_else(|| panic!("{key} among what is known"));
-        assert_eq!(quantity.untold, None, "{key}");
+        assert_eq!(quantity.rejected, None, "{key}");
         let off = quantity.estimate.value / truth - 1.0;
         println!("{key}: {:.2} % off", 100.0 * off);
         assert!(off.abs() < 0.03, "{key} {off}");

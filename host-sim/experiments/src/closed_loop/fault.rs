@@ -2,9 +2,9 @@
 
 use estimator_core::Count;
 
-/// Fault of the encoder that closes the loop.
+/// EncoderFault of the encoder that closes the loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
+pub enum EncoderFault {
     /// Phase A is stuck; edges of phase B move the count up and down by one.
     StuckA,
     /// Phase B is stuck.
@@ -15,7 +15,7 @@ pub enum Fault {
     Swapped,
 }
 
-impl Fault {
+impl EncoderFault {
     /// Every fault.
     pub const ALL: [Self; 4] = [Self::StuckA, Self::StuckB, Self::StuckBoth, Self::Swapped];
 
@@ -46,7 +46,7 @@ mod tests {
     #[test]
     fn stuck_phase_counts_edges_of_the_other_up_and_down() {
         for since in 40..44 {
-            for fault in [Fault::StuckA, Fault::StuckB] {
+            for fault in [EncoderFault::StuckA, EncoderFault::StuckB] {
                 let at = |count| fault.counted(Count(count), Count(since)).0;
                 assert_eq!(at(since), since);
                 // The other phase has an edge on one side of the count, which is counted correctly.
@@ -66,7 +66,7 @@ mod tests {
 
     #[test]
     fn exchanged_phases_count_backwards_over_the_wrap() {
-        let at = |count| Fault::Swapped.counted(Count(count), Count(3)).0;
+        let at = |count| EncoderFault::Swapped.counted(Count(count), Count(3)).0;
         assert_eq!([at(3), at(13), at(u32::MAX)], [3, u32::MAX - 6, 7]);
     }
 }

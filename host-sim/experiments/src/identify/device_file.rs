@@ -1,16 +1,16 @@
-//! The device file with what was identified in it.
+//! The device file with the identified values.
 
 use toml_edit::{DocumentMut, Item, Table, Value};
 
 use super::quantity::{Known, Quantity};
 use simulation::device::Device;
 
-/// `text` with the told quantities' values replaced or added, everything else as it was. A comment
-/// beside each value says how sure it is and what it rests on; `known` is written where it was given
-/// beside the file, because the others rest on it.
+/// `text` with the identified values replaced or added; everything else is unchanged. A comment
+/// beside each value has its interval and its source. `known` is written if it was `given` on the
+/// command line, because the other values depend on it.
 ///
 /// # Errors
-/// One line, where `text` is no device file or would not be one.
+/// One line if `text` or the result is not a device file.
 pub fn updated(
     text: &str,
     quantities: &[Quantity],
@@ -21,13 +21,13 @@ pub fn updated(
     let mut document: DocumentMut = text.parse().map_err(|error| format!("{error}"))?;
     if given {
         let (key, value) = known.entry();
-        put(&mut document, key, value, "taken as known")?;
+        put(&mut document, key, value, "given as known")?;
     }
-    for quantity in quantities.iter().filter(|q| q.untold.is_none()) {
-        // Friction may come out as less than nothing.
+    for quantity in quantities.iter().filter(|q| q.rejected.is_none()) {
+        // The estimate of a small friction can be negative.
         let value = quantity.estimate.value.max(0.0);
         let comment = format!(
-            "identified from {source} within {} (95 %), {known} taken as exact",
+            "identified from {source} within {} (95 %), with {known} as exact",
             quantity.half_text(),
         );
         put(&mut document, quantity.key, value, &comment)?;
@@ -37,7 +37,7 @@ pub fn updated(
     Ok(text)
 }
 
-/// Sets `section.name`, whether its section stands there as a table, inline, or not yet.
+/// Sets `section.name`. Its section can be a table, an inline table, or missing.
 fn put(document: &mut DocumentMut, key: &str, value: f64, comment: &str) -> Result<(), String> {
     let (section, name) = key.split_once('.').unwrap_or(("", key));
     let digits = format!("{value:.5e}");
@@ -48,7 +48,7 @@ fn put(document: &mut DocumentMut, key: &str, value: f64, comment: &str) -> Resu
         .or_insert_with(|| Item::Table(Table::new()));
     match section {
         Item::Value(Value::InlineTable(table)) => {
-            // No place for a comment inside a line.
+            // An inline table has no place for a comment.
             table.insert(name, value);
         }
         Item::Table(table) => {
@@ -64,7 +64,7 @@ fn put(document: &mut DocumentMut, key: &str, value: f64, comment: &str) -> Resu
                 }
             }
         }
-        _ => return Err(format!("{key}: its section is not one")),
+        _ => return Err(format!("{key}: {section} must be a table: [{section}]")),
     }
     Ok(())
 }
@@ -84,12 +84,12 @@ mod tests {
             },
             file: value,
             unit: super::super::quantity::MILLI_NM,
-            untold: None,
+            rejected: None,
         }
     }
 
     #[test]
-    fn only_what_is_known_is_replaced() {
+    fn only_identified_values_are_replaced() {
         let text = "# mine\n[large]\ncounts_per_rev = 2000 # coarse\ninertia_kg_m2 = 1e-5 # old\n\n[hand]\nstiffness_nm_per_rad = 0.4\n";
         let quantities = [quantity(INERTIA, 1.234567e-5), quantity(DAMPING, 0.9e-3)];
         let known = Known::TorqueConstant(0.05);
@@ -121,9 +121,9 @@ mod tests {
     #[test]
     fn an_inline_section_and_an_untold_value_are_left_in_their_form() {
         let text = "large = { inertia_kg_m2 = 1e-5 }\n";
-        let mut untold = quantity(DAMPING, 1.0);
-        untold.untold = Some("vague".to_owned());
-        let quantities = [quantity(INERTIA, 2e-5), untold];
+        let mut rejected = quantity(DAMPING, 1.0);
+        rejected.rejected = Some("vague".to_owned());
+        let quantities = [quantity(INERTIA, 2e-5), rejected];
         let known = Known::TorqueConstant(0.05);
         let new = updated(text, &quantities, known, false, "a.csv").unwrap();
         assert_eq!(new, "large = { inertia_kg_m2 = 0.00002 }\n");

@@ -1,4 +1,4 @@
-//! One equation a window: the weak form of one shaft's equation of motion.
+//! One equation per window: the weak form of one shaft's equation of motion.
 
 use std::f64::consts::TAU;
 
@@ -9,57 +9,58 @@ use super::test_function::TestFunction;
 /// Half of a window, s, and the fewest samples in it.
 const HALF_S: f64 = 20e-3;
 const FEWEST: usize = 8;
-/// Windows begin this part of their half apart.
+/// Distance between the beginnings of windows, relative to half a window.
 const HOPS: usize = 3;
-/// Travel from which what repeats once a turn can be told from what is constant, rad.
+/// Travel from which effects with one period per turn are separable from constant ones, rad.
 pub(super) const TURNS: f64 = 3.0 * TAU;
-/// Travel from which friction and torque are taken to vary at all, rad.
+/// Travel from which friction and torque are assumed to vary with the angle, rad.
 const VARIES: f64 = 0.5;
 
-/// One shaft over one recording.
+/// Signals of one shaft in one recording.
 pub(super) struct Shaft<'a> {
     pub(super) period_s: f64,
     pub(super) own: &'a Motion,
-    /// The other shaft, or a handle that is held fast.
+    /// Motion of the other shaft; `None` for a clamped handle.
     pub(super) other: Option<&'a Motion>,
     pub(super) current: &'a [f64],
-    /// Periods of the torque's ripple a turn.
+    /// Periods of the torque ripple per turn.
     pub(super) ripple_per_rev: f64,
-    /// Bad steps of the clock before each sample.
+    /// Number of uneven steps of the clock before each sample.
     pub(super) breaks: &'a [usize],
-    /// Whether to ask for a hand: a spring and a damper to the ground.
+    /// Whether to include a hand: spring and damper to the ground.
     pub(super) hand: bool,
 }
 
-/// Columns that every recording shares: slip, friction, offset, and those of the hand.
+/// Columns common to all recordings: slip, friction, offset, and those of the hand.
 pub(super) const SLIP: usize = 1;
 pub(super) const FRICTION: usize = 2;
 pub(super) const OFFSET: usize = 3;
 pub(super) const HAND: usize = 4;
 
-/// Columns of what repeats: friction and the disc's eccentricity once a turn, torque more often.
+/// Columns of effects that are periodic in the angle: friction and eccentricity of the disc with one
+/// period per turn, torque with several.
 const RIPPLES: usize = 8;
-/// The first of the disc's among them.
+/// Index of the disc's first column among them.
 const DISC: usize = 4;
 
-/// Windows that there are, and those of them whose equation can be used.
+/// Number of windows, and the equations of the usable ones.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Equations {
     pub(super) usable: Vec<Equation>,
     pub(super) windows: usize,
-    /// Among the usable: those that turn forward for the most part.
+    /// Number of usable windows with mainly forward motion.
     pub(super) forward: usize,
 }
 
 impl Equations {
-    /// Adds those of recording `index` of `recordings`; each has ripple columns of its own, because
-    /// its angles have an origin of their own.
+    /// Adds the equations of recording `index` of `recordings`. Each recording has its own ripple
+    /// columns, because it has its own origin of the angles.
     pub(super) fn add(&mut self, shaft: &Shaft<'_>, index: usize, recordings: usize) {
         let half = ((HALF_S / shaft.period_s).round() as usize).max(FEWEST);
         let phi = TestFunction::new(half, shaft.period_s);
         let hop = (half / HOPS).max(1);
         let samples = shaft.own.angle.len();
-        // Over less than a turn a disc's error looks like motion.
+        // Over less than a turn an error of the disc is not separable from motion.
         let ripples = match shaft.own.travel() {
             travel if travel > TURNS => RIPPLES,
             travel if travel > VARIES => DISC,
@@ -94,7 +95,7 @@ struct Window {
 }
 
 impl Shaft<'_> {
-    /// `None` where the clock is uneven or the shaft does not turn one way all the time.
+    /// The equation; `None` if the clock is uneven or the shaft reverses in the window.
     fn window(&self, phi: &TestFunction, start: usize) -> Option<Window> {
         let end = start + 2 * phi.half;
         if self.breaks[end] != self.breaks[start] {
@@ -102,15 +103,15 @@ impl Shaft<'_> {
         }
         let angle = &self.own.angle[start..=end];
         let current = &self.current[start..end];
-        // Where in a reversal friction changes its sign is not known well enough: even 0.1 ms
-        // would cost 0.1 % of the inertia.
+        // The time at which friction changes its sign in a reversal is too uncertain: an error of
+        // 0.1 ms causes an error of 0.1 % of the inertia.
         let way = self.own.direction[start];
         let one_way = self.own.direction[start..=end].iter().all(|d| *d == way);
         if way == 0 || !one_way {
             return None;
         }
         let way = f64::from(way);
-        // Displacements inside the window, so that long recordings lose nothing.
+        // Displacements relative to the window, which do not lose precision in long recordings.
         let (origin, other_origin) = (angle[0], self.other.map_or(0.0, |o| o.angle[start]));
         let slip = |j: usize| {
             let other = self
@@ -137,7 +138,7 @@ impl Shaft<'_> {
                 -sum(&phi.weight, &|j| way * angle[j].cos()),
                 sum(&phi.increments[0], &|j| current[j] * middle(j).sin()),
                 sum(&phi.increments[0], &|j| current[j] * middle(j).cos()),
-                // The disc's error is in the response and in the slip.
+                // The disc's error is part of the response and of the slip.
                 sum(&phi.second, &|j| angle[j].sin()),
                 sum(&phi.second, &|j| angle[j].cos()),
                 sum(&phi.first, &|j| angle[j].sin()),

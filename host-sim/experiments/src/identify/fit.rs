@@ -1,4 +1,4 @@
-//! Least squares with a lag in one column, and intervals that honour correlated residuals.
+//! Least squares with a lag in one column, and confidence intervals for correlated residuals.
 
 use super::test_function::LAG_TERMS;
 
@@ -11,14 +11,14 @@ pub(super) struct Equation {
     pub(super) others: Vec<f64>,
 }
 
-/// Coefficients, the same with each block of equations left out, and what is left over.
+/// Coefficients, coefficients without each block of equations, and the residual.
 #[derive(Clone, Debug)]
 pub(super) struct Fit {
-    /// Of the drive, then of the others.
+    /// Coefficient of the drive, then those of the others.
     pub(super) coefficients: Vec<f64>,
-    /// Lag of the drive, s; negative where the current acts before the recording says.
+    /// Lag of the drive, s; negative if the current acts before its time in the recording.
     pub(super) lag_s: f64,
-    /// RMS of what the equation does not explain, in the response's unit.
+    /// RMS of the residual, in the response's unit.
     pub(super) unexplained: f64,
     /// RMS of the drive's part of the response.
     pub(super) driven: f64,
@@ -34,13 +34,13 @@ pub struct Estimate {
     pub half: f64,
 }
 
-/// Blocks that are left out one at a time.
+/// Number of blocks of the jackknife.
 const BLOCKS: usize = 14;
-/// Steps of Gauss and Newton.
+/// Gauss-Newton iterations.
 const STEPS: usize = 8;
 
 impl Fit {
-    /// Fits; `None` where there are too few equations to tell how sure the fit is.
+    /// Fits the equations; `None` if they are too few for confidence intervals.
     pub(super) fn new(equations: &[Equation]) -> Option<Self> {
         let columns = equations.first()?.others.len() + 2;
         if equations.len() < 2 * BLOCKS.max(columns) {
@@ -53,7 +53,7 @@ impl Fit {
             drive = solution[0];
             lag_s += solution[1];
         }
-        // Neighbours share their residuals, so whole blocks are left out together.
+        // Neighbouring windows have correlated residuals, so whole blocks are left out.
         let blocks: Vec<Normal> = (0..BLOCKS)
             .map(|b| {
                 let bounds = [b, b + 1].map(|b| b * equations.len() / BLOCKS);
@@ -92,8 +92,8 @@ impl Fit {
         })
     }
 
-    /// Something computed from coefficients and lag, with its interval: the jackknife over blocks,
-    /// with Student's factor for as many blocks.
+    /// A function of coefficients and lag with its interval: jackknife over the blocks with the factor
+    /// of Student's distribution.
     pub(super) fn estimate(&self, f: impl Fn(&[f64], f64) -> f64) -> Estimate {
         let count = self.without.len() as f64;
         let values = self.without.iter().map(|(c, lag)| f(c, *lag));
@@ -107,8 +107,8 @@ impl Fit {
     }
 }
 
-/// The drive at a lag and its derivative. A first-order lag is `1 + s + s^2 + ...` in powers of the
-/// lag times d/dt; a lead is a shift in time.
+/// The drive at a lag, and its derivative with respect to the lag. A first-order lag is the series
+/// `1 + s + s^2 + ...` in powers of the lag times d/dt; a lead is a shift in time.
 fn lagged(terms: &[f64; LAG_TERMS], lag_s: f64) -> (f64, f64) {
     let (mut value, mut slope, mut power, mut factorial) = (terms[0], 0.0, 1.0, 1.0);
     for (m, term) in terms.iter().enumerate().skip(1) {
@@ -122,8 +122,8 @@ fn lagged(terms: &[f64; LAG_TERMS], lag_s: f64) -> (f64, f64) {
     (value, slope)
 }
 
-/// The 97.5 % point of Student's distribution (expansion about the normal one's; 4 digits from 10
-/// degrees of freedom on).
+/// The 97.5 % quantile of Student's distribution (expansion about that of the normal distribution; 4
+/// digits from 10 degrees of freedom on).
 fn student(freedom: f64) -> f64 {
     let z: f64 = 1.959_964;
     let first = (z.powi(3) + z) / 4.0;
@@ -148,7 +148,7 @@ impl Normal {
         }
     }
 
-    /// Linear about this lag: the second column is the lag's.
+    /// Linearised about this lag; the second column belongs to the lag.
     fn of(equations: &[Equation], lag_s: f64, drive: f64) -> Self {
         let size = equations.first().map_or(0, |e| e.others.len() + 2);
         let mut normal = Self::new(size);
@@ -156,7 +156,7 @@ impl Normal {
         for equation in equations {
             let (value, slope) = lagged(&equation.drive, lag_s);
             row[0] = value;
-            // Before the drive's coefficient is known, the lag stays where it is.
+            // The lag is kept until the drive's coefficient is known.
             row[1] = drive * slope;
             row[2..].copy_from_slice(&equation.others);
             for (i, x) in row.iter().enumerate() {
@@ -175,8 +175,8 @@ impl Normal {
         pairs.for_each(|(mine, theirs)| *mine += sign * theirs);
     }
 
-    /// By Cholesky's factors of the matrix scaled to a diagonal of ones. A column that the others
-    /// explain gets a coefficient of no meaning, and leaving blocks out shows it.
+    /// Solution by Cholesky factors of the matrix, scaled to a unit diagonal. The coefficient of a
+    /// linearly dependent column is arbitrary; the jackknife then gives it a wide interval.
     fn solve(&self) -> Vec<f64> {
         let n = self.size;
         let scale: Vec<f64> = (0..n)

@@ -1,14 +1,17 @@
-//! The handle, where nobody holds it.
+//! Identification of a free handle.
 
 use super::equations::{Equations, FRICTION, HAND, SLIP};
 use super::fit::{Equation, Estimate, Fit};
 use super::quantity::{GRAM_CM2, Known, MILLI_NM, MILLI_NM_PER_A, Quantity};
 use simulation::device::Device;
 
-/// The equations of a recording in which nobody holds the handle, or why they say nothing.
+/// The equations of a recording with a free handle.
+///
+/// # Errors
+/// The reason for which the recording does not identify the handle.
 pub(super) fn free(equations: Equations) -> Result<Vec<Equation>, &'static str> {
     let Some(fit) = Fit::new(&equations.usable) else {
-        return Err("hardly moves");
+        return Err("it hardly moves");
     };
     let pulls = |column: usize| {
         let pull = fit.estimate(|ratios, _| ratios[column]);
@@ -16,18 +19,19 @@ pub(super) fn free(equations: Equations) -> Result<Vec<Equation>, &'static str> 
     };
     let explained = fit.unexplained < super::MOST_UNEXPLAINED * fit.driven;
     if pulls(HAND) || pulls(HAND + 1) || !explained {
-        return Err("is held");
+        return Err("it is held");
     }
     let mut usable = equations.usable;
     for equation in &mut usable {
-        // The damper stays: an eccentric disc stretches the short arc of the large motor, and with it
-        // b/J from that motor's velocity. From the handle's own it is the sum of both columns.
+        // The damper's column stays: an eccentric disc distorts the short arc of the large motor, and
+        // with it b/J from that motor's velocity. The sum of both columns is b/J from the handle's
+        // velocity.
         equation.others.remove(HAND - 1);
     }
     Ok(usable)
 }
 
-/// What the free handle's equations tell. Their scale is the damping that the large shaft's found.
+/// The constants of a free handle. Their scale is the damping identified from the large shaft.
 pub(super) fn quantities(
     free: &[Equation],
     turns: bool,
@@ -51,11 +55,12 @@ pub(super) fn quantities(
         device.stages.small.coulomb_friction,
         scaled(&|ratios| ratios[FRICTION]),
         0.0,
-        "needs slow motion both ways",
+        "record slow motion in both directions",
     );
     if !turns {
-        friction.untold =
-            Some("varies over a turn, and the handle made fewer than three".to_owned());
+        friction.rejected = Some(
+            "friction varies over a turn; record at least three turns of the handle".to_owned(),
+        );
     }
     Some(vec![
         Quantity::new(
@@ -64,7 +69,7 @@ pub(super) fn quantities(
             device.stages.small.torque_constant,
             scaled(&|ratios| ratios[0]),
             0.0,
-            "needs more strokes of the small motor",
+            "record more strokes of the small motor",
         ),
         Quantity::new(
             "small.inertia_kg_m2",
@@ -72,7 +77,7 @@ pub(super) fn quantities(
             device.stages.small.inertia,
             scaled(&|_| 1.0),
             0.0,
-            "needs more strokes of either motor",
+            "record more strokes of both motors",
         ),
         friction,
     ])

@@ -1,4 +1,4 @@
-//! The identified motor run beside the recording: what its velocity should have been.
+//! Comparison of the identified model with the recordings.
 
 use super::equations::{FRICTION, OFFSET, SLIP};
 use super::fit::Fit;
@@ -6,35 +6,35 @@ use super::motion::Motion;
 use recordings::recording::Recording;
 use simulation::device::Device;
 
-/// Velocity of the large motor over one recording, measured and by the model, rad/s.
+/// Measured and modelled velocity of the large motor over one recording, rad/s.
 #[derive(Clone, Debug)]
-pub struct Beside {
-    /// The recording's name.
+pub struct ModelComparison {
+    /// Name of the recording.
     pub name: String,
     /// Time of each value, s.
     pub t: Vec<f64>,
-    /// Displacement over [`SPAN_S`] by the counts, over that time.
+    /// Measured velocity: displacement of the counts over [`SPAN_S`], divided by that time.
     pub measured: Vec<f64>,
-    /// The same of the model, which sees current and handle alone.
+    /// Velocity of the model over the same time; its inputs are current and handle.
     pub model: Vec<f64>,
 }
 
-/// Time over which displacements are taken for velocities, s: a count of 4096 is 0.2 rad/s.
+/// Time over which velocities are averaged, s: a count of 4096 is 0.2 rad/s.
 pub const SPAN_S: f64 = 8e-3;
 
-/// Rows a second that are kept, for pictures.
+/// Rows per second that are kept for figures.
 const KEPT_HZ: f64 = 1000.0;
 
-/// Runs the model over each recording from the first sample on; where the clock jumps, from the
-/// measured velocity.
+/// Runs the model over each recording from the first sample on. After an uneven step of the clock it
+/// restarts with the measured velocity.
 ///
-/// What repeats once a turn is in the fit's columns and not here: it is in the residual, as it is
-/// in the motor.
-pub(super) fn beside(
+/// The model does not contain the effects that are periodic in the angle; they are part of the
+/// difference.
+pub(super) fn compare(
     recordings: &[(String, Recording)],
     device: &Device,
     fit: &Fit,
-) -> Vec<Beside> {
+) -> Vec<ModelComparison> {
     let one = |(name, recording): &(String, Recording)| {
         let trace = &recording.trace;
         let period_s = trace.period_s();
@@ -76,7 +76,7 @@ pub(super) fn beside(
         }
         let every = (trace.rate_hz / KEPT_HZ).round().max(1.0) as usize;
         let kept = || (side..angle.len().saturating_sub(side)).step_by(every);
-        Beside {
+        ModelComparison {
             name: name.clone(),
             t: kept().map(|k| recording.t[k]).collect(),
             measured: kept().map(|k| velocity(&large.angle, k)).collect(),
@@ -86,8 +86,8 @@ pub(super) fn beside(
     recordings.iter().map(one).collect()
 }
 
-/// `dω/dt = drive - damping ω - friction sign ω` over one period, exactly between the zeros of ω,
-/// where the rotor stops if the drive is not above friction.
+/// Exact solution of `dω/dt = drive - damping ω - friction sign ω` over one period, piecewise between
+/// the zeros of ω, where the rotor stops if the drive is not above friction.
 fn step(omega: f64, drive: f64, damping: f64, friction: f64, period_s: f64) -> f64 {
     let way = if omega != 0.0 { omega } else { drive };
     let net = drive - friction.abs().copysign(way);
@@ -103,7 +103,7 @@ fn step(omega: f64, drive: f64, damping: f64, friction: f64, period_s: f64) -> f
     if end * omega >= 0.0 {
         return end;
     }
-    // It passed zero; what is left of the period begins there, at rest.
+    // The velocity passed zero; the rest of the period starts from rest.
     let left = end / (end - omega) * period_s;
     step(0.0, drive, damping, friction, left)
 }
@@ -113,12 +113,12 @@ mod tests {
     use super::step;
 
     #[test]
-    fn friction_stops_and_holds_and_lets_go() {
+    fn friction_stops_the_rotor_holds_it_and_is_overcome() {
         assert_eq!(step(0.0, 2.0, 1.0, 2.0, 1e-3), 0.0);
         assert_eq!(step(1e-4, 0.0, 1.0, 2.0, 1e-3), 0.0);
         let left = step(0.0, -3.0, 0.0, 2.0, 1e-3);
         assert!((left + 1e-3).abs() < 1e-12, "{left}");
-        // To the velocity at which damping and friction balance the drive.
+        // Converges to the velocity at which damping and friction balance the drive.
         let settled = (0..20_000).fold(0.0, |omega, _| step(omega, 10.0, 4.0, 2.0, 1e-3));
         assert!((settled - 2.0).abs() < 1e-9, "{settled}");
         // A reversal: 0.5 ms to stop at 5 a second, the rest at 1 a second.

@@ -1,23 +1,23 @@
-//! What the counts of one shaft say: its angle, and which way it turns.
+//! Angle and direction of a shaft from its counts.
 
 use std::f64::consts::TAU;
 
-/// Time over which the direction of motion is judged, s.
+/// Time over which the direction of motion is determined, s.
 const DIRECTION_S: f64 = 8e-3;
-/// Displacement in that time from which the direction is sure, counts.
+/// Smallest displacement in [`DIRECTION_S`] with a certain direction, counts.
 const SURE_COUNTS: f64 = 1.5;
 
-/// One shaft over a recording.
+/// Motion of one shaft over a recording.
 #[derive(Clone, Debug)]
 pub(super) struct Motion {
     /// Angle from the first sample, rad.
     pub(super) angle: Vec<f64>,
-    /// Direction: -1 or 1, or 0 where it is not sure.
+    /// Direction: -1 or 1, or 0 if it is uncertain.
     pub(super) direction: Vec<i8>,
 }
 
 impl Motion {
-    /// From a modular counter.
+    /// The motion from counts of a modular counter.
     pub(super) fn new(counts: &[u32], counts_per_rev: u32, period_s: f64) -> Self {
         let rad_per_count = TAU / f64::from(counts_per_rev);
         let mut place = 0_i64;
@@ -44,7 +44,7 @@ impl Motion {
                 let (back, forth) = steps.fold((false, false), |(back, forth), step| {
                     (back | (step < 0.0), forth | (step > 0.0))
                 });
-                // A reversal there and back within the slope's samples would leave it sure.
+                // Two reversals within the samples of the slope do not make the direction uncertain.
                 if back && forth {
                     return 0;
                 }
@@ -57,7 +57,7 @@ impl Motion {
         Self { angle, direction }
     }
 
-    /// Largest angle less the smallest, rad.
+    /// Largest minus smallest angle, rad.
     pub(super) fn travel(&self) -> f64 {
         let low = self.angle.iter().copied().fold(f64::INFINITY, f64::min);
         let high = self.angle.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_shaft_that_wraps_turns_one_way_and_one_that_rests_neither() {
+    fn direction_is_constant_over_a_wrap_and_zero_at_rest() {
         let counts: Vec<u32> = (0..100_u32)
             .map(|k| (k.min(50) * 3).wrapping_sub(60))
             .collect();

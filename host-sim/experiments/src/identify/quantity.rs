@@ -1,4 +1,4 @@
-//! From ratios to what the device file calls them.
+//! Conversion of the identified ratios to the quantities of the device file.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -14,7 +14,7 @@ pub(super) const FRICTION: &str = "large.coulomb_nm";
 pub(super) const DAMPING: &str = "coupler.damping_nms_per_rad";
 pub(super) const BANDWIDTH: &str = "amplifier.bandwidth_hz";
 
-/// What has to be known, because counts and current tell ratios only.
+/// The constant whose value is given, because counts and current determine ratios only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Known {
     /// Torque constant of the large motor, N.m/A.
@@ -26,10 +26,10 @@ pub enum Known {
 }
 
 impl Known {
-    /// From `KEY=VALUE` with a key of the device file.
+    /// Parses `KEY=VALUE` with a key of the device file.
     ///
     /// # Errors
-    /// One line that names the keys there are, or the value.
+    /// One line that names the possible keys, or the value.
     pub fn parse(text: &str) -> Result<Self, String> {
         let (key, value) = text
             .split_once('=')
@@ -59,7 +59,7 @@ impl Known {
         }
     }
 
-    /// Its key in the device file, and its value.
+    /// Key in the device file, and value.
     pub(super) fn entry(self) -> (&'static str, f64) {
         match self {
             Self::TorqueConstant(value) => (TORQUE_CONSTANT, value),
@@ -81,28 +81,28 @@ impl fmt::Display for Known {
 pub struct Quantity {
     /// Key of the device file.
     pub key: &'static str,
-    /// In SI units, as in the device file.
+    /// Value and interval in SI units, as in the device file.
     pub estimate: Estimate,
-    /// What the device file says.
+    /// Value in the device file.
     pub file: f64,
-    /// Unit to show.
+    /// Unit for tables.
     pub unit: Unit,
-    /// Why it cannot be told, if so.
-    pub untold: Option<String>,
+    /// Reason for which the value is rejected; `None` for an identified value.
+    pub rejected: Option<String>,
 }
 
-/// Largest half-width of the 95 % interval of what counts as told, as part of the value: then 3 % are
-/// three standard deviations.
-const TOLD: f64 = 0.02;
+/// Largest half-width of the 95 % interval of an identified value, relative to the value: 3 % are
+/// then three standard deviations.
+const IDENTIFIED: f64 = 0.02;
 
-/// A unit to show beside that of the device file.
+/// Unit for tables, with its relation to the unit of the device file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
-    /// Its name.
+    /// Name of the unit.
     pub name: &'static str,
-    /// How many of it are one of SI.
+    /// Factor from the SI unit.
     pub per_si: f64,
-    /// The unit of the device file, SI.
+    /// Unit of the device file, SI.
     pub si: &'static str,
 }
 
@@ -119,7 +119,8 @@ const MILLI_NMS: Unit = Unit::new("mN.m.s/rad", 1e3, "N.m.s/rad");
 const HERTZ: Unit = Unit::new("Hz", 1.0, "Hz");
 
 impl Quantity {
-    /// `least` is a value whose `TOLD` part is close enough to nothing.
+    /// A quantity, rejected with `remedy` if its interval is wider than [`IDENTIFIED`] relative to the
+    /// larger of its value and `least`.
     pub(super) fn new(
         key: &'static str,
         unit: Unit,
@@ -129,23 +130,26 @@ impl Quantity {
         remedy: &str,
     ) -> Self {
         let width = estimate.half / estimate.value.abs().max(least);
-        let vague = (width.is_nan() || width > TOLD).then(|| match 100.0 * width {
-            percent if percent < 1000.0 => format!("+-{percent:.1} % is too vague; {remedy}"),
-            _ => format!("does not show; {remedy}"),
+        let vague = (width.is_nan() || width > IDENTIFIED).then(|| match 100.0 * width {
+            percent if percent < 1000.0 => {
+                format!("an interval of +-{percent:.1} % is too wide; {remedy}")
+            }
+            _ => format!("no effect in the recording; {remedy}"),
         });
-        // Friction may come out as a little less than none; nothing else may.
+        // The estimate of a small friction can be negative, that of other quantities cannot.
         let negative = least == 0.0 && estimate.value <= 0.0;
         Self {
             key,
             estimate,
             file,
             unit,
-            untold: vague
-                .or(negative.then(|| "comes out negative; is it the excitation?".to_owned())),
+            rejected: vague.or(negative.then(|| {
+                "the estimate is negative; check that the recording is of scene excite".to_owned()
+            })),
         }
     }
 
-    /// The interval's half-width, relative where that says something.
+    /// Half-width of the interval as text, in % of the value if it is below 10 %.
     pub(super) fn half_text(&self) -> String {
         let Estimate { value, half } = self.estimate;
         if half < 0.1 * value.abs() {
@@ -160,7 +164,7 @@ impl Quantity {
         format!("{} +-{percent:.0} %", self.key)
     }
 
-    /// How far from the device file's value, and whether by more than the interval.
+    /// Ratio to the device file's value, and whether that value is inside the interval.
     #[must_use]
     pub fn health(&self) -> (f64, bool) {
         let away = self.estimate.value - self.file;
@@ -171,7 +175,7 @@ impl Quantity {
     }
 }
 
-/// What the large shaft's equation tells.
+/// The quantities of the large shaft's equation.
 pub(super) fn of_large(fit: &Fit, device: &Device, known: Known, current: f64) -> Vec<Quantity> {
     let scaled = |k: usize| fit.estimate(|ratios, _| ratios[k] * known.inertia(ratios));
     let torque = scaled(0).value * current;
@@ -182,7 +186,7 @@ pub(super) fn of_large(fit: &Fit, device: &Device, known: Known, current: f64) -
             device.stages.large.torque_constant,
             scaled(0),
             0.0,
-            "needs steps of current",
+            "record steps of current",
         ),
         (
             INERTIA,
@@ -190,7 +194,7 @@ pub(super) fn of_large(fit: &Fit, device: &Device, known: Known, current: f64) -
             device.stages.large.inertia,
             fit.estimate(|ratios, _| known.inertia(ratios)),
             0.0,
-            "needs steps of current",
+            "record steps of current",
         ),
         (
             DAMPING,
@@ -198,7 +202,7 @@ pub(super) fn of_large(fit: &Fit, device: &Device, known: Known, current: f64) -
             device.stages.damping,
             scaled(SLIP),
             0.0,
-            "needs slip of 10 rad/s and more, at several speeds",
+            "record slip of 10 rad/s and more, at several speeds",
         ),
         (
             FRICTION,
@@ -206,7 +210,7 @@ pub(super) fn of_large(fit: &Fit, device: &Device, known: Known, current: f64) -
             device.stages.large.coulomb_friction,
             scaled(FRICTION_COLUMN),
             0.1 * torque,
-            "needs slow and fast motion both ways",
+            "record slow and fast motion in both directions",
         ),
         (
             BANDWIDTH,
@@ -214,7 +218,7 @@ pub(super) fn of_large(fit: &Fit, device: &Device, known: Known, current: f64) -
             device.stages.amplifier_bandwidth.0,
             fit.estimate(|_, lag_s| 1.0 / (TAU * lag_s)),
             0.0,
-            "needs steps of current and a longer recording",
+            "record steps of current for a longer time",
         ),
     ];
     rows.into_iter()

@@ -1,4 +1,4 @@
-//! What was identified, for people and for programs.
+//! Result of the identification as text and as JSON.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use super::fit::Estimate;
 use super::quantity::{DAMPING, Quantity, Unit};
 use terminal::wording::wrapped;
 
-/// The table: values with units and intervals, what was assumed, and the health lines.
+/// The result as text: values with units and intervals, health lines, assumptions.
 #[must_use]
 pub fn text(found: &Identification) -> String {
     let mut text = String::new();
@@ -19,13 +19,17 @@ pub fn text(found: &Identification) -> String {
         "{:<32}{:>10}  {:<11}{:<12}95 %",
         "", "value", "unit", "in the file"
     );
-    let mut untold = String::new();
+    let mut rejected = String::new();
     for quantity in &found.quantities {
         let Unit { name, per_si, .. } = quantity.unit;
         let key = quantity.key;
-        if let Some(why) = &quantity.untold {
+        if let Some(why) = &quantity.rejected {
             let _ = writeln!(text, "{key:<32}{:>10}  {name:<11}", "-");
-            let _ = writeln!(untold, "{}", wrapped(&format!("not told: {key}: {why}"), 4));
+            let _ = writeln!(
+                rejected,
+                "{}",
+                wrapped(&format!("not identified: {key}: {why}"), 4)
+            );
             continue;
         }
         let Estimate { value, .. } = quantity.estimate;
@@ -39,9 +43,9 @@ pub fn text(found: &Identification) -> String {
     }
     let _ = write!(
         text,
-        "The keys are those of the device file, whose values are in SI units.\n\n{untold}"
+        "The keys are those of the device file, whose values are in SI units.\n\n{rejected}"
     );
-    for quantity in found.quantities.iter().filter(|q| q.untold.is_none()) {
+    for quantity in found.quantities.iter().filter(|q| q.rejected.is_none()) {
         let _ = writeln!(
             text,
             "{}",
@@ -61,15 +65,15 @@ pub fn text(found: &Identification) -> String {
     text
 }
 
-/// How far a value is from the device file's, in terms of its interval.
+/// Comparison of a value with that of the device file, relative to its interval.
 fn health(quantity: &Quantity) -> String {
     let (part, inside) = quantity.health();
     let Unit { name, per_si, .. } = quantity.unit;
     let verdict = match (inside, quantity.key) {
         (true, _) => "inside its interval",
         _ if (part - 1.0).abs() < 0.01 => "outside its interval, but by less than 1 %",
-        (false, DAMPING) => "outside its interval: coupler hot, or the file wrong",
-        (false, _) => "outside its interval: the file is wrong, or what was assumed",
+        (false, DAMPING) => "outside its interval: the coupler is hot, or the file is wrong",
+        (false, _) => "outside its interval: the file or an assumption is wrong",
     };
     let file = per_si * quantity.file;
     if quantity.file == 0.0 {
@@ -82,21 +86,22 @@ fn health(quantity: &Quantity) -> String {
     )
 }
 
-/// One object a quantity, told or not, in the SI unit that it names.
+/// The result as JSON: one object per quantity, in the SI unit that it names. `untold` is the reason
+/// of a rejection.
 #[must_use]
 pub fn json(found: &Identification) -> Value {
     let row = |quantity: &Quantity| {
         let (part, inside) = quantity.health();
-        let told = quantity.untold.is_none();
+        let identified = quantity.rejected.is_none();
         json!({
             "key": quantity.key,
             "unit": quantity.unit.si,
-            "value": told.then_some(quantity.estimate.value),
-            "half_width_95": told.then_some(quantity.estimate.half),
-            "untold": quantity.untold,
+            "value": identified.then_some(quantity.estimate.value),
+            "half_width_95": identified.then_some(quantity.estimate.half),
+            "untold": quantity.rejected,
             "file": quantity.file,
-            "of_file": told.then_some(part).filter(|part| part.is_finite()),
-            "file_inside": told.then_some(inside),
+            "of_file": identified.then_some(part).filter(|part| part.is_finite()),
+            "file_inside": identified.then_some(inside),
         })
     };
     json!({

@@ -20,13 +20,13 @@ pub(super) struct TestFunction {
     pub(super) weight: Vec<f64>,
     pub(super) first: Vec<f64>,
     pub(super) second: Vec<f64>,
-    /// `increments[m][j]`: what the (m-1)-th derivative of phi grows by from sample j to j + 1,
-    /// where the (-1)-th is the antiderivative.
+    /// `increments[m][j]`: increment of the (m-1)-th derivative of phi from sample j to j + 1; the
+    /// (-1)-th derivative is the antiderivative.
     pub(super) increments: [Vec<f64>; LAG_TERMS],
 }
 
 impl TestFunction {
-    /// Over `2 half` sampling periods of `period_s`.
+    /// The test function over `2 half` sampling periods of `period_s`.
     pub(super) fn new(half: usize, period_s: f64) -> Self {
         let samples = 2 * half + 1;
         let scale = half as f64 * period_s;
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn derivatives_are_those_of_the_signal() {
+    fn weighted_sums_are_integrals_by_parts() {
         let phi = TestFunction::new(30, 1e-3);
         assert!((sum(&phi.weight, |_| 1.0) - 1.0).abs() < 1e-9);
         // The ends' sixth derivative is all that is left: by Euler and Maclaurin 2e-7 in the
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn the_series_is_that_of_a_lagged_current() {
+    fn series_is_the_response_of_a_lag() {
         let phi = TestFunction::new(30, 1e-3);
         // A step of current in the middle, and the exact response of a lag of 0.5 ms to it.
         let lag = 0.5e-3_f64;

@@ -8,41 +8,42 @@ use catalogue::estimators::Setup;
 use simulation::scenario::draw;
 use simulation::trace::Trace;
 
-/// What the model does not know. SI units.
+/// Noise of the particles. SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
     /// White torque, N.m/sqrt(Hz).
     pub torque_noise: f64,
-    /// Standard deviation of a slow torque, N.m.
-    pub load: f64,
-    /// Correlation time of the slow torque, s.
-    pub load_time: f64,
-    /// Standard deviation of a slow error of friction, N.m; its correlation time is ten times
-    /// that of the load.
-    pub rub: f64,
+    /// Standard deviation of the slow disturbance torque, N.m.
+    pub disturbance: f64,
+    /// Correlation time of the slow disturbance torque, s.
+    pub disturbance_time: f64,
+    /// Standard deviation of a slow friction error, N.m; its correlation time is ten times that of
+    /// the disturbance torque.
+    pub friction_error: f64,
 }
 
-/// One copy of the motor: position in counts from the newest count's lower boundary, velocity in
-/// counts a tick, slow torque and error of friction in counts a tick².
+/// One copy of the motor: position in counts from the lower boundary of the newest count, velocity
+/// in counts per tick, disturbance torque and friction error in counts per tick².
 #[derive(Clone, Copy, Debug, Default)]
 struct Particle {
     x: f64,
     v: f64,
-    load: f64,
-    rub: f64,
+    disturbance: f64,
+    friction_error: f64,
 }
 
-/// How far outside its cell a particle may be, counts: what rounding and a finite number of
-/// particles need.
+/// Tolerance of a particle's position beyond the quantisation interval, counts, for rounding and the
+/// finite number of particles.
 const BLUR: f64 = 0.01;
 
-/// Error of a stamped edge, counts: the same, and the path between two ticks.
+/// Tolerance of a particle's position at a time-stamped edge, counts; it includes the interpolation
+/// between two ticks.
 const EDGE_BLUR: f64 = 0.015;
 
-/// Part of a cloud's spread by which its copies are moved apart.
+/// Standard deviation of the jitter after resampling, relative to that of the particles.
 const JITTER: f64 = 0.08;
 
-/// Constants of one tick, counts and ticks.
+/// Constants of the model in counts and ticks.
 struct Model {
     phi0: f64,
     phi1: f64,
@@ -53,8 +54,8 @@ struct Model {
     lag: f64,
     ratio: f64,
     white: f64,
-    load: (f64, f64),
-    rub: (f64, f64),
+    disturbance: (f64, f64),
+    friction_error: (f64, f64),
 }
 
 impl Model {
@@ -78,19 +79,20 @@ impl Model {
             lag: setup.stages.coupled_motor().amplifier_lag / t,
             ratio: f64::from(device.counts_per_rev) / f64::from(setup.stages.small.counts_per_rev),
             white: per_torque * noise.torque_noise / t.sqrt(),
-            load: slow(noise.load, noise.load_time),
-            rub: slow(noise.rub, 10.0 * noise.load_time),
+            disturbance: slow(noise.disturbance, noise.disturbance_time),
+            friction_error: slow(noise.friction_error, 10.0 * noise.disturbance_time),
         }
     }
 
-    /// One tick of one particle under a push of the current and the handle.
-    fn step(&self, p: &mut Particle, push: f64, random: &mut Xoshiro256PlusPlus) {
+    /// One tick of one particle; `drive` is the acceleration by the current and the handle.
+    fn step(&self, p: &mut Particle, drive: f64, random: &mut Xoshiro256PlusPlus) {
         let mut normal = || -> f64 { StandardNormal.sample(random) };
         let (kick, bend) = (self.white * normal(), self.white * normal() / 12_f64.sqrt());
-        p.load = self.load.0 * p.load + self.load.1 * normal();
-        p.rub = self.rub.0 * p.rub + self.rub.1 * normal();
-        let drive = push + p.load + kick;
-        let friction = (self.friction + p.rub).max(0.0);
+        p.disturbance = self.disturbance.0 * p.disturbance + self.disturbance.1 * normal();
+        p.friction_error =
+            self.friction_error.0 * p.friction_error + self.friction_error.1 * normal();
+        let drive = drive + p.disturbance + kick;
+        let friction = (self.friction + p.friction_error).max(0.0);
         let leaving = if drive.abs() > friction {
             drive.signum()
         } else {
@@ -148,7 +150,7 @@ pub fn velocities(
         let handle = trace.counts_small.as_ref().map_or(0.0, |column| {
             f64::from(column[k].wrapping_sub(column[k - 1]) as i32) * model.ratio
         });
-        let push = model.per_amp * (command - mean * missing) + model.coupling * handle;
+        let drive = model.per_amp * (command - mean * missing) + model.coupling * handle;
         let behind = model.per_amp * missing * (model.lag * (1.0 - mean) - 0.5 * mean);
         let counts =
             f64::from(trace.counts_large[k].wrapping_sub(trace.counts_large[k - 1]) as i32);
@@ -157,7 +159,7 @@ pub fn velocities(
         let stamp = stamp.filter(|stamp| edges && age(stamp.age_s) < 1.0);
         for ((p, weight), before) in cloud.iter_mut().zip(&mut weights).zip(&mut befores) {
             *before = (p.x - counts, p.v);
-            model.step(p, push, &mut random);
+            model.step(p, drive, &mut random);
             p.x -= counts + behind;
             let outside = (-p.x).max(p.x - 1.0).max(0.0) / BLUR;
             let mut doubt = 0.5 * outside * outside;
@@ -173,7 +175,7 @@ pub fn velocities(
         }
         let mut total: f64 = weights.iter().sum();
         if total < 1e-200 {
-            // Nobody foresaw this: begin again as fast as the counts say.
+            // No particle agrees with the count: restart with the velocity of the counts.
             for (i, (p, weight)) in cloud.iter_mut().zip(&mut weights).enumerate() {
                 p.x = (i as f64 + 0.5) / particles as f64;
                 p.v = counts + draw(&mut random, -1.0, 1.0);
@@ -196,8 +198,8 @@ pub fn velocities(
             let spreads = [
                 spread(&|p| p.x),
                 spread(&|p| p.v),
-                spread(&|p| p.load),
-                spread(&|p| p.rub),
+                spread(&|p| p.disturbance),
+                spread(&|p| p.friction_error),
             ];
             cloud = resampled(&cloud, &weights, total, spreads, &mut random);
             weights.fill(1.0);
@@ -206,7 +208,7 @@ pub fn velocities(
     velocities
 }
 
-/// As many particles again, each as often as it weighs, moved apart a little.
+/// Resampling: the same number of particles, drawn by their weights, with a small jitter.
 fn resampled(
     cloud: &[Particle],
     weights: &[f64],
@@ -238,8 +240,8 @@ fn resampled(
             } else {
                 p.v + normal(spreads[1])
             },
-            load: p.load + normal(spreads[2]),
-            rub: p.rub + normal(spreads[3]),
+            disturbance: p.disturbance + normal(spreads[2]),
+            friction_error: p.friction_error + normal(spreads[3]),
         });
     }
     next
@@ -253,21 +255,21 @@ mod tests {
 
     const QUIET: Noise = Noise {
         torque_noise: 0.0,
-        load: 0.0,
-        load_time: 1.0,
-        rub: 0.0,
+        disturbance: 0.0,
+        disturbance_time: 1.0,
+        friction_error: 0.0,
     };
 
     #[test]
-    fn a_particle_is_braked_by_known_and_unknown_friction() {
+    fn friction_and_friction_error_brake_a_particle() {
         let setup = Setup::of(&Device::default(), 1e3);
         let model = Model::new(&setup, &QUIET);
         let unknown = 0.3 * model.friction;
         let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
-        for way in [1.0, -1.0] {
+        for direction in [1.0, -1.0] {
             let mut p = Particle {
-                v: way * 50.0,
-                rub: unknown,
+                v: direction * 50.0,
+                friction_error: unknown,
                 ..Particle::default()
             };
             model.step(&mut p, 0.0, &mut random);
@@ -275,13 +277,13 @@ mod tests {
             let beta = setup.stages.damping * 1e-3 / setup.stages.large.inertia;
             let brake = model.friction + unknown * (-1e-4_f64).exp();
             let end = 50.0 * (-beta).exp() - brake * (1.0 - (-beta).exp()) / beta;
-            assert!((p.v - way * end).abs() < 1e-9, "{} {end}", p.v);
+            assert!((p.v - direction * end).abs() < 1e-9, "{} {end}", p.v);
         }
     }
 
     #[test]
-    fn a_current_that_lags_is_followed_without_a_drift() {
-        // An amplifier of one tick, no friction, no damping: the motion has a formula.
+    fn lagging_current_causes_no_drift() {
+        // An amplifier lag of one tick, no friction, no damping: the motion has a closed form.
         let mut setup = Setup::of(&Device::default(), 1e3).frictionless();
         setup.stages.amplifier_bandwidth.0 = 1e3 / TAU;
         setup.stages.damping = 0.0;
@@ -321,7 +323,7 @@ mod tests {
         let squares = found.iter().zip(&truth).skip(20);
         let squares = squares.map(|(found, truth)| (f64::from(*found) - truth).powi(2));
         let rms = (squares.sum::<f64>() / f64::from(ticks - 20)).sqrt();
-        // The other sign of the lag is wrong by 0.16 of the slope's counts a tick.
+        // The opposite sign of the lag causes an error of 0.16 of the slope in counts per tick.
         let wrong = 0.16 * per_amp * 0.5 * TAU * 1e3 / f64::from(setup.stages.large.counts_per_rev);
         assert!(rms < 0.2 * wrong, "{rms} rad/s, of {wrong}");
     }

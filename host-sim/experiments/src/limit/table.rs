@@ -1,12 +1,12 @@
-//! The rows of `limit` as a table: estimators down, scenarios across.
+//! Table of the rows of `limit`: one line per estimator, one column per scenario.
 
 use std::fmt::Write as _;
 
 use super::Row;
 use crate::table::layout::{self, Column};
 
-/// RMS error in % of finite difference, and in brackets over the limit with the same signals;
-/// means over the seeds. One part a rate, in lines of `width` characters.
+/// RMS error in % of finite difference, and in brackets relative to the particle filter with the
+/// same signals; means over the seeds. One table per rate, in lines of `width` characters.
 #[must_use]
 pub fn table(rows: &[Row], width: usize) -> String {
     let mut text = String::new();

@@ -1,12 +1,13 @@
-//! Devices at the ends of the tolerances.
+//! Devices at the limits of the tolerances.
 
 use super::variation::{
     AMPLIFIER, CONSTANT, DAMPING, DISC, FRICTION, GONE_RAD_S, HAND, INERTIA, NOMINAL, Variation,
 };
 
-/// Names and devices: each value alone at its end, then the worst together.
+/// Names and devices: one value at a limit at a time, then the worst combinations.
 ///
-/// *agile* answers most to a current, *sluggish* least; *thin* has the weakest coupler.
+/// *agile* has the largest acceleration per current, *sluggish* the smallest, *thin* the weakest
+/// coupler.
 #[must_use]
 pub fn corners() -> Vec<(&'static str, Variation)> {
     let with = |mut base: Variation, change: fn(&mut Variation)| {
@@ -105,7 +106,7 @@ mod tests {
     use simulation::device::Device;
 
     #[test]
-    fn corners_reach_every_end_and_are_devices() {
+    fn corners_reach_every_limit_and_are_valid_devices() {
         let corners = corners();
         assert_eq!(corners[0], ("nominal", NOMINAL));
         for (i, (name, variation)) in corners.iter().enumerate() {

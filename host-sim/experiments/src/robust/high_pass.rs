@@ -1,4 +1,4 @@
-//! What is left of a signal above a frequency.
+//! High-pass filter.
 
 use std::f64::consts::{SQRT_2, TAU};
 

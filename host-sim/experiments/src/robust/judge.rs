@@ -1,4 +1,4 @@
-//! What a run came to, and whether that is safe.
+//! Limits of a safe run, and the verdict on a run.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,29 +6,29 @@ use haptic_control::AnyScene;
 
 use super::high_pass::HighPass;
 
-/// Largest speed of the handle that is allowed, rad/s: 2.1 m/s at the fingertip of the default
-/// handle, whose energy is then 9 mJ, that of a small coin dropped from 15 cm. It is twice what
-/// the monitor allows over its window of 5 ms, because a stop comes up to a window late.
+/// Largest allowed speed of the handle, rad/s: 2.1 m/s at the fingertip of the default handle, with
+/// an energy of 9 mJ, that of a small coin dropped from 15 cm. It is twice the monitor's limit over
+/// its window of 5 ms, because a stop is up to one window late.
 pub const HANDLE_RAD_S: f64 = 60.0;
-/// Largest torque that a hand may feel, N.m: 4.3 N at the fingertip, which a hand holds against. A
-/// scene's spring asks a stiff hand for 0.13 N.m at most; the device is good for 0.2 N.m (1.5 A in
-/// the small motor, and 150 rad/s of slip, where the monitor stops), so that it can be passed.
+/// Largest allowed torque on the hand, N.m: 4.3 N at the fingertip, which a hand can resist. The
+/// spring of a scene produces at most 0.13 N.m on a stiff hand. The device can produce 0.2 N.m
+/// (1.5 A in the small motor, and a slip of 150 rad/s, where the monitor stops).
 pub const FELT_NM: f64 = 0.150;
-/// Largest residual oscillation beyond what a scene itself excites, N.m RMS: 29 mN at the
-/// fingertip, three times what it can feel; reversals of friction under a hand leave half of it.
+/// Largest allowed residual oscillation besides that of the scene itself, N.m RMS: 29 mN at the
+/// fingertip, three times its threshold. Friction at reversals of a hand's motion causes half of it.
 pub const OSCILLATION_NM: f64 = 1e-3;
-/// Below this a torque is the hand's motion and tremor rather than the loop's, Hz.
+/// Lowest frequency of an oscillation of the loop, Hz; below it are the hand's motion and tremor.
 pub const OSCILLATION_HZ: f64 = 20.0;
-/// What a vibration may come to on a motor whose torque constant is 20 % too high.
-const STRONGEST: f64 = 1.2;
+/// Largest factor of the torque constant, and so of a scene's vibration.
+const LARGEST_FACTOR: f64 = 1.2;
 
-/// Largest residual oscillation of a scene, N.m RMS.
+/// Largest allowed residual oscillation of a scene, N.m RMS.
 ///
-/// A texture is a vibration, and detents are one under a hand that drags the handle over them.
+/// A texture is a vibration. Detents cause one if a hand moves the handle across them.
 #[must_use]
 pub fn oscillation_limit_nm(scene: &AnyScene) -> f64 {
     let own = f64::from(scene.vibration().0);
-    OSCILLATION_NM + STRONGEST * own / std::f64::consts::SQRT_2
+    OSCILLATION_NM + LARGEST_FACTOR * own / std::f64::consts::SQRT_2
 }
 
 /// One instant of a run.
@@ -38,17 +38,17 @@ pub struct Instant {
     pub handle_rad_s: f64,
     /// Velocity of the large motor, rad/s.
     pub large_rad_s: f64,
-    /// Torque that the hand feels, N.m.
+    /// Torque on the hand, N.m.
     pub felt_nm: f64,
-    /// Torque that the device puts on the handle, N.m.
+    /// Torque of the device on the handle, N.m.
     pub rendered_nm: f64,
-    /// Torque that the scene asks for, N.m.
+    /// Torque of the scene, N.m.
     pub wanted_nm: f64,
     /// Whether the monitor has stopped the device.
     pub stopped: bool,
 }
 
-/// Largest magnitudes.
+/// Largest magnitudes in a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peaks {
     /// Velocity of the handle, rad/s.
@@ -57,48 +57,48 @@ pub struct Peaks {
     pub large_rad_s: f64,
     /// Torque that the hand feels, N.m.
     pub felt_nm: f64,
-    /// Torque on the handle that the scene did not ask for, N.m.
+    /// Torque on the handle that the scene did not command, N.m.
     pub parasitic_nm: f64,
 }
 
-/// How a run ended.
+/// Verdict on a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// Never stopped, within every limit.
+    /// Not stopped, within all limits.
     Stable,
-    /// Stopped by the monitor before it passed a limit, and it passed none afterwards.
+    /// Stopped by the monitor, within all limits before and after the stop.
     Stopped,
-    /// It passed a limit.
+    /// Beyond a limit.
     Violated,
 }
 
-/// Which limit was passed.
+/// The limit that a run exceeded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reason {
-    /// The handle passed [`HANDLE_RAD_S`] while the device was running.
+    /// The handle was faster than [`HANDLE_RAD_S`] before a stop.
     Speed,
-    /// The hand felt more than [`FELT_NM`] while the device was running.
+    /// The torque on the hand was above [`FELT_NM`] before a stop.
     Torque,
-    /// The handle passed [`HANDLE_RAD_S`] after the monitor's stop.
+    /// The handle was faster than [`HANDLE_RAD_S`] after the monitor's stop.
     SpeedAfterStop,
-    /// The hand felt more than [`FELT_NM`] after the monitor's stop.
+    /// The torque on the hand was above [`FELT_NM`] after the monitor's stop.
     TorqueAfterStop,
-    /// It kept oscillating, see [`oscillation_limit_nm`].
+    /// The residual oscillation was above [`oscillation_limit_nm`].
     Oscillation,
-    /// Something was not a number.
+    /// A signal was not a number.
     NotFinite,
 }
 
-/// A run as far as it has come.
+/// Evaluates a run tick by tick.
 #[derive(Clone, Debug)]
 pub struct Judge {
-    /// While the device ran.
+    /// Peaks before a stop.
     pub before: Peaks,
-    /// Once it was stopped.
+    /// Peaks after the stop.
     pub after: Peaks,
-    /// Instant of the stop, ticks.
+    /// Tick of the stop.
     pub stopped: Option<usize>,
     limit_nm: f64,
     not_finite: bool,
@@ -109,8 +109,8 @@ pub struct Judge {
 }
 
 impl Judge {
-    /// A judge of a run of `scene` for `ticks` at `rate_hz`: oscillation is what is left in the
-    /// last quarter.
+    /// A judge for a run of `scene` with `ticks` ticks at `rate_hz`. The residual oscillation is that
+    /// of the last quarter.
     #[must_use]
     pub fn new(scene: &AnyScene, rate_hz: f64, ticks: usize) -> Self {
         Self {
@@ -126,7 +126,7 @@ impl Judge {
         }
     }
 
-    /// The next tick.
+    /// Evaluates the next tick.
     pub fn see(&mut self, now: &Instant) {
         let stopped = self.stopped.is_some() || now.stopped;
         if stopped && self.stopped.is_none() {
@@ -153,14 +153,14 @@ impl Judge {
         self.ticks += 1;
     }
 
-    /// Residual oscillation, N.m RMS; of a run that was stopped there is none.
+    /// Residual oscillation, N.m RMS; `None` for a stopped run.
     #[must_use]
     pub fn oscillation_nm(&self) -> Option<f64> {
         let over = self.ticks.saturating_sub(self.settled);
         (self.stopped.is_none() && over > 0).then(|| (self.squares / over as f64).sqrt())
     }
 
-    /// Whether that is safe, and why not.
+    /// The verdict, and the exceeded limit of a violation.
     #[must_use]
     pub fn verdict(&self) -> (Verdict, Option<Reason>) {
         let reason = if self.not_finite {
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn quiet_motion_is_stable_whatever_the_hand_does() {
+    fn motion_of_the_hand_alone_is_stable() {
         let judge = judged(2000, |_, t| Instant {
             handle_rad_s: sine(20.0, 1.0, t),
             felt_nm: sine(0.1, 4.0, t),
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn an_oscillation_that_stays_violates_and_one_that_decays_does_not() {
+    fn sustained_oscillation_violates_and_decaying_one_does_not() {
         let stays = |amplitude: f64| {
             judged(2000, move |_, t| Instant {
                 rendered_nm: sine(amplitude, 80.0, t),
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn oscillation_is_that_of_the_last_quarter() {
+    fn residual_oscillation_is_that_of_the_last_quarter() {
         let burst = |from: usize, to: usize| {
             let judge = judged(2000, move |k, t| Instant {
                 rendered_nm: match (from..to).contains(&k) {
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stop_counts_only_before_and_after_a_limit() {
+    fn stopped_run_violates_if_a_limit_is_exceeded_before_or_after_the_stop() {
         let runs_away = |stop: usize, coast: f64| {
             judged(100, move |k, _| Instant {
                 handle_rad_s: if k < stop { k as f64 } else { coast },
@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn torque_and_what_is_not_a_number_violate() {
+    fn large_torque_and_nan_violate() {
         let felt = |nm: f64, stopped| {
             judged(10, move |_, _| Instant {
                 felt_nm: nm,

@@ -1,4 +1,4 @@
-//! One run as a row of a table.
+//! Row of one run, for CSV and JSON.
 
 use haptic_control::Stop;
 use serde::{Deserialize, Serialize};
@@ -14,31 +14,31 @@ pub struct Row {
     pub scene: String,
     /// Index of the drawn device, or the corner's name.
     pub device: String,
-    /// Whether it was safe.
+    /// Verdict.
     pub verdict: Verdict,
-    /// Which limit was passed.
+    /// The exceeded limit of a violation.
     pub reason: Option<Reason>,
-    /// Why the monitor stopped it.
+    /// Reason of the monitor's stop.
     pub stop: Option<String>,
-    /// When, s.
+    /// Time of the stop, s.
     pub stop_s: Option<f64>,
-    /// Largest speed of the handle while the device ran, rad/s.
+    /// Largest speed of the handle before a stop, rad/s.
     pub handle_rad_s: f64,
     /// Largest speed of the large motor, rad/s.
     pub large_rad_s: f64,
-    /// Largest torque felt, N.m.
+    /// Largest torque on the hand before a stop, N.m.
     pub felt_nm: f64,
-    /// Largest force felt at the fingertip, N.
+    /// Largest force at the fingertip before a stop, N.
     pub felt_n: f64,
     /// Largest parasitic force at the fingertip, N.
     pub parasitic_n: f64,
-    /// Residual oscillation, N.m RMS; none of a run that was stopped.
+    /// Residual oscillation, N.m RMS; `None` for a stopped run.
     pub oscillation_nm: Option<f64>,
     /// Largest speed of the handle after the stop, rad/s.
     pub after_handle_rad_s: Option<f64>,
-    /// Largest torque felt after the stop, N.m.
+    /// Largest torque on the hand after the stop, N.m.
     pub after_felt_nm: Option<f64>,
-    /// How the device differs from what the controller believes.
+    /// Deviations of the device from the nominal one.
     pub variation: Variation,
 }
 
@@ -73,7 +73,7 @@ impl Row {
     }
 }
 
-/// Six significant digits; what is not a number is the largest one.
+/// `value` with six significant digits; the largest f64 if it is not finite.
 fn digits(value: f64) -> f64 {
     if !value.is_finite() {
         return f64::MAX;
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_reads_back_to_the_last_bit() {
+    fn row_is_unchanged_after_writing_and_reading() {
         for i in 0..200 {
             let (variation, _) = Subject::Drawn(i).variation(1, SceneKind::Off);
             let row = Row { variation, ..row() };

@@ -1,4 +1,4 @@
-//! Shards: the rows of a part of the devices, and how parts become a whole again.
+//! Shards: files with the rows of a part of the devices, and their merging.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -10,17 +10,17 @@ use super::row::Row;
 use super::{Job, Settings};
 use terminal::failure::Failure;
 
-/// Part `k` of `n`, from 1 on.
+/// Part `k` of `n`; the first part is 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
-    /// Which one, 1 to `n`.
+    /// Number of the part, 1 to `n`.
     pub k: usize,
-    /// Of how many.
+    /// Number of parts.
     pub n: usize,
 }
 
-/// First line of a shard file; the rows follow, one a line.
+/// First line of a shard file; the rows follow, one per line.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Heading {
@@ -29,7 +29,7 @@ struct Heading {
 }
 
 impl Part {
-    /// The jobs of this part: each `n`th from the `k`th on, counted within a scene.
+    /// The jobs of this part: within each scene every `n`th job from the `k`th on.
     #[must_use]
     pub fn of(self, jobs: &[Job]) -> Vec<Job> {
         let scenes = jobs.chunk_by(|a, b| a.0 == b.0);
@@ -38,7 +38,7 @@ impl Part {
             .collect()
     }
 
-    /// Name of its file.
+    /// Name of the part's file.
     #[must_use]
     pub fn file_name(self) -> String {
         format!("shard-{}-of-{}.jsonl", self.k, self.n)
@@ -63,10 +63,10 @@ impl FromStr for Part {
     }
 }
 
-/// The file of a part.
+/// The content of a part's file.
 ///
 /// # Errors
-/// [`Failure::Input`]; none is known to happen.
+/// [`Failure::Input`] if the rows cannot be serialised.
 pub fn write(settings: &Settings, part: Part, rows: &[Row]) -> Result<Vec<u8>, Failure> {
     let failed = |error: serde_json::Error| Failure::Input(error.to_string());
     let heading = Heading {
@@ -82,11 +82,11 @@ pub fn write(settings: &Settings, part: Part, rows: &[Row]) -> Result<Vec<u8>, F
     Ok(text)
 }
 
-/// Joins the shards in these files, given in any order.
+/// Merges the shards in these files, given in any order.
 ///
 /// # Errors
-/// [`Failure::Input`] that names the file that is not a shard, not whole, not of the same settings
-/// or there twice, or the shard that is not there.
+/// [`Failure::Input`] that names a file that is not a shard, is incomplete, has other settings or is
+/// a duplicate, or that names a missing shard.
 pub fn merge(paths: &[PathBuf]) -> Result<(Settings, Vec<Row>), Failure> {
     let mut settings: Option<(&Path, Settings)> = None;
     let mut parts: Vec<(&Path, Part, Vec<Row>)> = Vec::new();
@@ -113,7 +113,7 @@ pub fn merge(paths: &[PathBuf]) -> Result<(Settings, Vec<Row>), Failure> {
             }
             if known.k == part.k {
                 return Err(Failure::Input(format!(
-                    "{name}: shard {part} again, after {}; name each once",
+                    "{name}: shard {part} is already given by {}; give each shard once",
                     other.display()
                 )));
             }
@@ -121,13 +121,15 @@ pub fn merge(paths: &[PathBuf]) -> Result<(Settings, Vec<Row>), Failure> {
         parts.push((path, part, rows));
     }
     let (Some((_, settings)), Some((_, Part { n, .. }, _))) = (settings, parts.first()) else {
-        return Err(Failure::Input("no shard to merge; name them".to_owned()));
+        return Err(Failure::Input(
+            "no shard to merge; give the files of host-sim robust --shard".to_owned(),
+        ));
     };
     let n = *n;
     if let Some(k) = (1..=n).find(|k| parts.iter().all(|(_, part, _)| part.k != *k)) {
         let missing = Part { k, n };
         return Err(Failure::Input(format!(
-            "shard {missing} is missing; run it with --shard {missing} and name its {} too",
+            "shard {missing} is missing; run host-sim robust --shard {missing} and add its {}",
             missing.file_name()
         )));
     }
@@ -164,7 +166,7 @@ fn read(path: &Path) -> Result<(Heading, Vec<Row>), Failure> {
     Ok((heading, rows.collect::<Result<_, _>>()?))
 }
 
-/// Whether these are the rows of those jobs.
+/// Checks that the rows are those of the jobs.
 fn check(path: &Path, jobs: &[Job], rows: &[Row]) -> Result<(), Failure> {
     let name = path.display();
     let is = |job: &Job, row: &Row| row.scene == job.0.name() && row.device == job.1.to_string();
@@ -176,7 +178,7 @@ fn check(path: &Path, jobs: &[Job], rows: &[Row]) -> Result<(), Failure> {
             "{name}: line {}: scene {scene}, device {device} is missing{}; run this shard again",
             at + 2,
             found.map_or(String::new(), |row| format!(
-                ", here is {}, device {}",
+                ", found {}, device {}",
                 row.scene, row.device
             )),
         ))),
@@ -196,7 +198,7 @@ mod tests {
     use crate::robust::tests::settings;
 
     #[test]
-    fn every_job_is_in_one_part() {
+    fn every_job_is_in_exactly_one_part() {
         let jobs = settings(&["off", "wall"], 10).jobs().unwrap();
         for n in [1, 2, 3, 7, 100] {
             let mut all: Vec<Job> = (1..=n).flat_map(|k| Part { k, n }.of(&jobs)).collect();
@@ -208,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_read_back_and_nonsense_does_not() {
+    fn part_is_parsed_from_its_text_and_invalid_text_is_refused() {
         let part: Part = "2/8".parse().unwrap();
         assert_eq!(
             (part, part.to_string()),

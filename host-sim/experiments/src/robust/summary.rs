@@ -1,4 +1,4 @@
-//! What all rows of a scene came to.
+//! Statistics of the rows of each scene.
 
 use std::fmt::Write as _;
 
@@ -11,42 +11,42 @@ use super::{Settings, corners};
 use crate::closed_loop::{named, usual};
 use crate::table::layout::{self, Column};
 
-/// A distribution.
+/// Quantiles of a distribution.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// Half are below.
+    /// Median.
     pub median: f64,
-    /// 95 % are not above.
+    /// 95 % quantile.
     pub high: f64,
-    /// None is above.
+    /// Largest value.
     pub largest: f64,
-    /// 5 % are below.
+    /// 5 % quantile.
     pub low: f64,
 }
 
-/// One scene.
+/// Statistics of one scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneSummary {
-    /// Its name.
+    /// Name of the scene.
     pub scene: String,
-    /// Largest residual oscillation that is allowed, N.m RMS.
+    /// Largest allowed residual oscillation, N.m RMS.
     pub oscillation_limit_nm: f64,
-    /// How many were stable, stopped in time, violated.
+    /// Numbers of stable runs, runs stopped in time, and violations.
     pub counts: [usize; 3],
     /// Largest speed of the handle, before and after a stop, rad/s.
     pub handle_rad_s: Spread,
     /// Largest speed of the large motor, rad/s.
     pub large_rad_s: Spread,
-    /// Largest torque felt, before and after a stop, N.m.
+    /// Largest torque on the hand, before and after a stop, N.m.
     pub felt_nm: Spread,
     /// Largest parasitic force at the fingertip, N.
     pub parasitic_n: Spread,
-    /// Residual oscillation of those that were not stopped, N.m RMS; `None` if all were.
+    /// Residual oscillation of the runs without a stop, N.m RMS; `None` if all runs were stopped.
     pub oscillation_nm: Option<Spread>,
 }
 
 impl Spread {
-    /// The distribution of some values, by nearest rank; `None` of none.
+    /// Quantiles of the values by nearest rank; `None` without values.
     #[must_use]
     pub fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
         let mut values: Vec<f64> = values.collect();
@@ -62,10 +62,10 @@ impl Spread {
     }
 }
 
-/// The scenes in the order of their rows.
+/// Statistics of the scenes in the order of their rows.
 ///
 /// # Errors
-/// One line that names a scene that there is not.
+/// One line that names an unknown scene.
 pub fn summaries(rows: &[Row]) -> Result<Vec<SceneSummary>, String> {
     let scenes = rows.chunk_by(|a, b| a.scene == b.scene);
     scenes.map(summary).collect()
@@ -73,7 +73,7 @@ pub fn summaries(rows: &[Row]) -> Result<Vec<SceneSummary>, String> {
 
 fn summary(rows: &[Row]) -> Result<SceneSummary, String> {
     let scene = named(&rows[0].scene, SceneKind::environments())?;
-    // The amplitude of its own vibration is that of every device and rate.
+    // The amplitude of a scene's vibration does not depend on device or rate.
     let nominal = usual(scene, &DualStage::DEFAULT, 10e3)?;
     let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
     let spread = |of: fn(&Row) -> f64| Spread::of(rows.iter().map(of)).unwrap_or_default();
@@ -89,11 +89,11 @@ fn summary(rows: &[Row]) -> Result<SceneSummary, String> {
     })
 }
 
-/// What was run, in a line.
+/// One line on the settings of the experiment.
 #[must_use]
 pub fn heading(settings: &Settings) -> String {
     format!(
-        "{} Hz, {}, {} s, seed {}: {} corners and {} drawn devices a scene",
+        "{} Hz, {}, {} s, seed {}: {} corners and {} drawn devices per scene",
         settings.rate_hz,
         settings.estimator,
         settings.seconds,
@@ -103,7 +103,7 @@ pub fn heading(settings: &Settings) -> String {
     )
 }
 
-/// The command that makes the same rows, but for a device file and parameters.
+/// The command line of these settings, without device file and parameters.
 #[must_use]
 pub fn command(settings: &Settings) -> String {
     let scenes: String = (settings.scenes.iter())
@@ -115,8 +115,8 @@ pub fn command(settings: &Settings) -> String {
     )
 }
 
-/// Counts and distributions, median, 95 % and largest, a line a scene, in lines of `width`
-/// characters, limits below.
+/// Table with one line per scene, in lines of `width` characters: numbers of the verdicts, then
+/// median, 95 % quantile and largest value of each quantity. The limits follow below it.
 #[must_use]
 pub fn table(settings: &Settings, scenes: &[SceneSummary], width: usize) -> String {
     let mut text = heading(settings).replacen(": ", ":\n", 1) + "\n";
@@ -175,7 +175,8 @@ fn three_digits(value: f64) -> String {
     }
 }
 
-/// The first violation and how to see it alone, or `None`.
+/// Message with the number of violations, the first one, and the command that repeats it; `None`
+/// without a violation.
 #[must_use]
 pub fn complaint(settings: &Settings, rows: &[Row]) -> Option<String> {
     let violated = || rows.iter().filter(|row| row.verdict == Verdict::Violated);
@@ -185,7 +186,7 @@ pub fn complaint(settings: &Settings, rows: &[Row]) -> Option<String> {
         name.as_str().unwrap_or_default().to_owned()
     });
     Some(format!(
-        "{} of {} runs violated; the first is scene {}, device {}, seed {}: {reason}; alone with \
+        "{} of {} runs violated a limit; the first is scene {}, device {}, seed {}: {reason}; repeat it with \
          host-sim robust --scene {} --rate {} --estimator {} --seconds {} --seed {} --only {} and \
          the same --device, --set, --presets",
         violated().count(),
@@ -208,7 +209,7 @@ mod tests {
     use crate::robust::variation::Subject;
 
     #[test]
-    fn a_summary_takes_each_column_and_the_larger_of_before_and_after_a_stop() {
+    fn summary_has_the_larger_value_of_before_and_after_a_stop() {
         let (variation, _) = Subject::Drawn(3).variation(7, SceneKind::FreeAir);
         let stable = Row {
             scene: "free-air".into(),
@@ -263,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn ranks_are_of_values_that_are_there() {
+    fn quantiles_ignore_missing_values() {
         let spread = Spread::of((1..=100).rev().map(f64::from)).unwrap();
         assert_eq!(
             (spread.low, spread.median, spread.high, spread.largest),

@@ -1,4 +1,4 @@
-//! How a device differs from the one that the controller believes in.
+//! Deviations of a device from the nominal one, with which the controller is designed.
 
 use std::fmt;
 use std::str::FromStr;
@@ -14,14 +14,14 @@ use crate::closed_loop::Hand;
 use simulation::device::Device;
 use simulation::scenario::{draw, draw_sign};
 
-/// Factors of the believed values, and what the controller does not know of at all.
+/// Factors of the nominal values, and effects that the controller does not model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Variation {
     /// Factor of the coupler's damping b.
     pub damping: f64,
     /// Factor of the large motor's inertia.
     pub large_inertia: f64,
-    /// Factor of the small motor's inertia, the handle with it.
+    /// Factor of the small motor's inertia, including the handle.
     pub small_inertia: f64,
     /// Factor of the large motor's torque constant.
     pub large_constant: f64,
@@ -33,11 +33,11 @@ pub struct Variation {
     pub small_friction: f64,
     /// Factor of the amplifiers' bandwidth.
     pub amplifier: f64,
-    /// Ticks by which the currents act late.
+    /// Delay of the currents, ticks.
     pub late_ticks: usize,
     /// Factor of the hand's stiffness and damping.
     pub hand: f64,
-    /// Velocity of a handle that nobody holds, rad/s.
+    /// Initial velocity of a free handle, rad/s.
     pub gone_rad_s: Option<f64>,
     /// Phase error of the large encoder's disc, counts.
     pub disc_phase: f64,
@@ -47,7 +47,7 @@ pub struct Variation {
     pub disc_random: f64,
 }
 
-/// The device that the controller believes in.
+/// The nominal device.
 pub const NOMINAL: Variation = Variation {
     damping: 1.0,
     large_inertia: 1.0,
@@ -65,7 +65,7 @@ pub const NOMINAL: Variation = Variation {
     disc_random: 0.0,
 };
 
-/// What is drawn uniformly between these: ends of the ranges; friction is known least.
+/// Ranges of the uniform draws. Friction has the widest one, because it is known least.
 pub(super) const DAMPING: (f64, f64) = (0.6, 1.05);
 pub(super) const INERTIA: (f64, f64) = (0.7, 1.3);
 pub(super) const CONSTANT: (f64, f64) = (0.8, 1.2);
@@ -73,22 +73,22 @@ pub(super) const FRICTION: (f64, f64) = (0.6, 1.5);
 pub(super) const AMPLIFIER: (f64, f64) = (0.5, 1.0);
 pub(super) const HAND: (f64, f64) = (1.0, 4.0);
 pub(super) const DISC: (f64, f64, f64) = (0.06, 0.25, 0.02);
-/// Part of the devices that nobody holds, and how fast their handle is then, rad/s.
+/// Share of the devices with a free handle, and the handle's initial speed, rad/s.
 const GONE: f64 = 0.2;
 pub(super) const GONE_RAD_S: (f64, f64) = (0.5, 3.0);
 
-/// A device of a scene: a corner, or one that is drawn.
+/// A device: a corner, or a drawn one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Subject {
-    /// A corner, by its place in [`corners`].
+    /// A corner, by its index in [`corners`].
     Corner(usize),
     /// A drawn device, by its index.
     Drawn(u64),
 }
 
 impl Subject {
-    /// The device, and the seed of the hand's motion, the encoders' phases and the disc: they
-    /// depend on `seed`, scene and subject alone.
+    /// The device, and the seed of the hand's motion, the encoders' phases and the disc. Both are a
+    /// function of `seed`, scene and subject.
     #[must_use]
     pub fn variation(self, seed: u64, scene: SceneKind) -> (Variation, u64) {
         let mut random = self.random(seed, scene);
@@ -98,14 +98,14 @@ impl Subject {
             Self::Drawn(_) => drawn(&mut random),
         };
         if let (Some(omega), SceneKind::Wall) = (&mut variation.gone_rad_s, scene) {
-            // Away from the wall there is nothing to hit.
+            // A free handle that moves away from the wall does not reach it.
             *omega = omega.abs();
         }
         (variation, run_seed)
     }
 
     fn random(self, seed: u64, scene: SceneKind) -> Xoshiro256PlusPlus {
-        // FNV-1a of everything that a device is drawn from.
+        // FNV-1a hash of all inputs of the draw.
         let hash = |state: u64, byte: u8| (state ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
         let state = seed
             .to_le_bytes()
@@ -171,7 +171,7 @@ fn drawn(random: &mut Xoshiro256PlusPlus) -> Variation {
 }
 
 impl Variation {
-    /// `nominal`, varied.
+    /// `nominal` with these deviations.
     #[must_use]
     pub fn of(&self, nominal: &Device) -> Device {
         let mut device = nominal.clone();
@@ -191,7 +191,7 @@ impl Variation {
         device
     }
 
-    /// The hand that tries `scene`.
+    /// The hand for `scene`.
     #[must_use]
     pub fn hand(&self, scene: SceneKind) -> Hand {
         match self.gone_rad_s {
@@ -206,7 +206,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_device_depends_on_seed_scene_and_index_alone() {
+    fn device_is_a_function_of_seed_scene_and_index() {
         let (wall, hold) = (SceneKind::Wall, SceneKind::Hold);
         let of = |i, seed, scene| Subject::Drawn(i).variation(seed, scene);
         let forwards: Vec<_> = (0..50).map(|i| of(i, 1, wall)).collect();
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn draws_fill_their_ranges_and_a_fifth_is_not_held() {
+    fn draws_fill_their_ranges_and_a_fifth_has_a_free_handle() {
         let scene = SceneKind::FreeAir;
         let draws: Vec<_> = (0..2000)
             .map(|i| Subject::Drawn(i).variation(1, scene).0)

@@ -1,4 +1,4 @@
-//! The rows of `sensitivity` as a table: estimators down, beliefs across.
+//! Table of the rows of `sensitivity`: one line per estimator, one column per wrong constant.
 
 use std::fmt::Write as _;
 
@@ -6,13 +6,15 @@ use super::Row;
 use crate::table::layout::{self, Column};
 use catalogue::belief::Belief;
 
-/// Scenarios in which the motor moves: at rest and in creep there is nothing to learn from.
+/// Scenarios in which the motor moves. Rest and creep do not excite the parameters.
 pub const MOVING: [&str; 6] = ["step", "permanent", "track", "free-air", "wall", "texture"];
 
-/// Mean RMS error in % of finite difference, one line an estimator, at each rate: with the believed
-/// constants right, over all scenarios and over those that move; and over those that move with each
-/// constant wrong by the most that is tried. Last the share of samples of moving scenarios outside
-/// the haptic interval, with the constants right and at the worst. Lines of `width` characters.
+/// Mean RMS error in % of finite difference: one table per rate, one line per estimator, in lines of
+/// `width` characters.
+///
+/// Columns: correct constants over all scenarios and over the moving ones ([`MOVING`]); each constant
+/// with its largest error, over the moving scenarios; the largest of these; the share of samples
+/// outside the haptic interval in moving scenarios with correct constants and in the worst case.
 #[must_use]
 pub fn table(rows: &[Row], width: usize) -> String {
     let mut text = String::new();
@@ -58,11 +60,11 @@ pub fn table(rows: &[Row], width: usize) -> String {
     text
 }
 
-/// The errors of one estimator, %; NaN where there is no row.
+/// The errors of one estimator, %; NaN without a row.
 struct Errors {
     right: f64,
     moving: f64,
-    /// With each of [`Belief::extremes`].
+    /// Error for each of [`Belief::extremes`].
     wrong: Vec<f64>,
     worst: f64,
     outside: f64,
@@ -107,7 +109,7 @@ fn number(value: f64) -> String {
     }
 }
 
-/// NaN where there is no row.
+/// Mean over the rows; NaN without a row.
 fn mean(rows: &[&Row], only: impl Fn(&Row) -> bool, value: impl Fn(&Row) -> f64) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for row in rows.iter().filter(|row| only(row)) {

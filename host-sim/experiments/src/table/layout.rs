@@ -1,12 +1,12 @@
 //! Columns of text within the width of a terminal.
 
-/// Width where standard output is no terminal, and in files.
+/// Width if standard output is not a terminal, and in files.
 pub const NARROW: usize = 80;
 
-/// Between two columns.
+/// Spaces between two columns.
 const GAP: usize = 2;
 
-/// Width of the terminal that standard output is, else [`NARROW`].
+/// Width of the terminal on standard output, else [`NARROW`].
 #[must_use]
 pub fn terminal_width() -> usize {
     terminal_size::terminal_size_of(std::io::stdout())
@@ -18,7 +18,7 @@ pub fn terminal_width() -> usize {
 pub struct Column {
     head: [String; 2],
     cells: Vec<String>,
-    /// Text begins at the left, numbers end at the right.
+    /// Text is left-aligned, numbers are right-aligned.
     is_text: bool,
 }
 
@@ -46,8 +46,8 @@ impl Column {
     }
 }
 
-/// The columns side by side after the column `first`. Columns that go beyond `width` follow in
-/// further blocks, each with `first` again.
+/// The column `first` and the others side by side. Columns beyond `width` follow in further blocks,
+/// each with `first` repeated.
 #[must_use]
 pub fn table(first: &Column, columns: &[Column], width: usize) -> String {
     let mut text = String::new();
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_beyond_the_width_follow_in_a_block_of_their_own() {
+    fn columns_beyond_the_width_follow_in_another_block() {
         let first = Column::text("", "name", texts(&["a", "long one"]));
         let columns = [
             Column::numbers("rms", "rad/s", texts(&["1.5", "-"])),

@@ -1,31 +1,31 @@
-//! When a rendered scene counts as passive and free of limit cycles.
+//! Criterion of a rendered scene that is passive and free of limit cycles.
 //!
-//! Two observers watch the handle. Both measure against one torque: what a fingertip notices,
-//! `F_shd D / 2`, 0.35 mN.m on the default device.
+//! Both parts of the criterion use the threshold torque of a fingertip, `F_shd D / 2`, 0.35 mN.m on
+//! the default device.
 //!
-//! - **Limit cycle**: while the hand rests, the felt torque oscillates with an amplitude
-//!   (`√2` RMS about its mean) above that torque in the second half of the rest, and with at least
-//!   half the amplitude of the first: what dies out is no limit cycle. With 1024 lines the encoders
-//!   make less than half of it in a stable wall, so that nothing is allowed for quantisation.
-//! - **Energy**: in contact, the device gives the handle and the hand
-//!   `E = ∫ felt ω dt + Δ(J_S ω² / 2)`, summed over all contacts so far. Whenever the handle has
-//!   left the scene, and at the end, a passive device has given nothing: E is not above zero. Here
-//!   it may be up to that torque times the way turned in contact: a surplus that is, on average, a
-//!   torque nobody notices. (Inside, E is not judged: a blip of the coupler's torque while the
-//!   wall is entered is an estimator's noise, not energy that the wall makes.)
+//! - **Limit cycle**: while the hand rests, the torque on it oscillates with an amplitude (`√2` RMS
+//!   about its mean) above the threshold in the second half of the rest, and with at least half of
+//!   the amplitude of the first half. A decaying oscillation is no limit cycle. In a stable wall the
+//!   quantisation of encoders with 1024 lines causes less than half of the threshold, so the
+//!   criterion has no allowance for it.
+//! - **Energy**: in contact, the device transfers to handle and hand the energy
+//!   `E = ∫ felt ω dt + Δ(J_S ω² / 2)`, summed over all contacts. When the handle has left the
+//!   scene, and at the end, `E <= 0` for a passive device. The criterion allows the threshold torque
+//!   times the angle turned in contact, which corresponds to a mean torque below the threshold. `E`
+//!   is not checked during contact, where it contains torque errors of the estimator.
 
-/// Why a scene does not count.
+/// Reason for which a scene fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
-    /// The torque on a resting hand goes on oscillating.
+pub enum Violation {
+    /// The torque on a resting hand has a sustained oscillation.
     LimitCycle,
-    /// The scene gave energy.
+    /// The scene transferred energy to the hand.
     Energy,
     /// The monitor stopped the device.
     Stopped,
 }
 
-impl Fault {
+impl Violation {
     /// Name in tables and files.
     #[must_use]
     pub const fn as_str(self) -> &'static str {
@@ -37,22 +37,22 @@ impl Fault {
     }
 }
 
-/// An oscillation is sustained if its second half has at least this part of the first half's
-/// amplitude.
+/// Smallest ratio of the amplitude in the second half to that in the first half of a sustained
+/// oscillation.
 const SUSTAINED: f64 = 0.5;
 
-/// A way that is granted to every contact, rad: ten counts of the default handle, worth 1 µJ
-/// there, a tenth of what a handle thrown at 2 rad/s carries.
-const LEAST_WAY: f64 = 3e-3;
+/// Smallest angle that the energy criterion assumes for a contact, rad: ten counts of the default
+/// handle. It allows 1 µJ, a tenth of the kinetic energy of a handle at 2 rad/s.
+const LEAST_ANGLE: f64 = 3e-3;
 
-/// One tick of a run.
+/// Input of the criterion at one tick.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
-    /// Whether the hand has come to rest on the scene and means to stay.
+pub struct ProbeTick {
+    /// Whether the hand rests on the scene.
     pub resting: bool,
-    /// Whether the scene may act on the handle.
+    /// Whether the handle is in contact with the scene.
     pub contact: bool,
-    /// Torque felt on the handle, N.m.
+    /// Torque on the hand, N.m.
     pub felt: f64,
     /// Velocity of the handle, rad/s.
     pub omega: f64,
@@ -60,23 +60,23 @@ pub struct Seen {
     pub stopped: bool,
 }
 
-/// Watches a run tick by tick.
+/// Evaluates the criterion tick by tick.
 #[derive(Clone, Debug)]
 pub struct Observer {
     threshold: f64,
     period: f64,
     inertia: f64,
-    last: Option<Seen>,
+    last: Option<ProbeTick>,
     energy: f64,
-    way: f64,
+    angle: f64,
     gave: bool,
     stopped: bool,
     rest: Vec<f64>,
 }
 
 impl Observer {
-    /// An observer to whom torques below `threshold` (N.m) do not matter; ticks last `period_s`,
-    /// the handle's inertia is `inertia` (kg.m2).
+    /// A criterion with the torque threshold `threshold` (N.m), for ticks of `period_s` and a handle
+    /// of `inertia` (kg.m2).
     #[must_use]
     pub fn new(threshold: f64, period_s: f64, inertia: f64) -> Self {
         Self {
@@ -85,15 +85,15 @@ impl Observer {
             inertia,
             last: None,
             energy: 0.0,
-            way: 0.0,
+            angle: 0.0,
             gave: false,
             stopped: false,
             rest: Vec::new(),
         }
     }
 
-    /// Takes in one tick.
-    pub fn see(&mut self, now: Seen) {
+    /// Evaluates one tick.
+    pub fn see(&mut self, now: ProbeTick) {
         self.stopped |= now.stopped;
         if now.resting {
             self.rest.push(now.felt);
@@ -104,29 +104,29 @@ impl Observer {
             let work = 0.5 * self.period * (last.felt * last.omega + now.felt * now.omega);
             let kinetic = 0.5 * self.inertia * (now.omega * now.omega - last.omega * last.omega);
             self.energy += work + kinetic;
-            self.way += 0.5 * self.period * (last.omega + now.omega).abs();
+            self.angle += 0.5 * self.period * (last.omega + now.omega).abs();
             self.gave |= !now.contact && self.is_active();
         }
     }
 
     fn is_active(&self) -> bool {
-        self.energy > self.threshold * self.way.max(LEAST_WAY)
+        self.energy > self.threshold * self.angle.max(LEAST_ANGLE)
     }
 
-    /// What was wrong, if anything.
+    /// The failure, `None` if the run passes.
     #[must_use]
-    pub fn fault(&self) -> Option<Fault> {
+    pub fn fault(&self) -> Option<Violation> {
         if self.stopped {
-            Some(Fault::Stopped)
+            Some(Violation::Stopped)
         } else if is_limit_cycle(&self.rest, self.threshold) {
-            Some(Fault::LimitCycle)
+            Some(Violation::LimitCycle)
         } else {
-            (self.gave || self.is_active()).then_some(Fault::Energy)
+            (self.gave || self.is_active()).then_some(Violation::Energy)
         }
     }
 }
 
-/// Whether a torque (N.m, evenly sampled) goes on oscillating with more than `threshold`.
+/// Whether a torque (N.m, evenly sampled) has a sustained oscillation above `threshold`.
 #[must_use]
 pub fn is_limit_cycle(felt: &[f64], threshold: f64) -> bool {
     let (first, second) = felt.split_at(felt.len() / 2);
@@ -134,7 +134,7 @@ pub fn is_limit_cycle(felt: &[f64], threshold: f64) -> bool {
     second > threshold && second >= SUSTAINED * first
 }
 
-/// Amplitude of the sine with the same RMS about the mean.
+/// Amplitude of a sine with the signal's RMS about its mean.
 fn amplitude(signal: &[f64]) -> f64 {
     if signal.is_empty() {
         return 0.0;
@@ -157,14 +157,14 @@ mod tests {
     }
 
     #[test]
-    fn a_sustained_or_growing_oscillation_is_a_limit_cycle_a_decaying_one_is_not() {
+    fn sustained_or_growing_oscillation_is_a_limit_cycle_and_a_decaying_one_is_not() {
         let ring = |size: f64, per_s: f64| {
             signal(move |t| 0.03 + size * (per_s * t).exp() * (TAU * 80.0 * t).sin())
         };
         assert!(is_limit_cycle(&ring(1.1 * THRESHOLD, 0.0), THRESHOLD));
         assert!(!is_limit_cycle(&ring(0.9 * THRESHOLD, 0.0), THRESHOLD));
         assert!(is_limit_cycle(&ring(0.1 * THRESHOLD, 15.0), THRESHOLD));
-        // Still ten times the threshold in its second half, and yet dying out.
+        // The second half is ten times the threshold, but decays.
         let decaying = ring(100.0 * THRESHOLD, -10.0);
         assert!(amplitude(&decaying[200..]) > 5.0 * THRESHOLD);
         assert!(!is_limit_cycle(&decaying, THRESHOLD));
@@ -172,12 +172,12 @@ mod tests {
     }
 
     /// A hand that turns the handle 0.2 rad into a spring that acts `late_s` late, and back.
-    fn push(late_s: f64) -> Option<Fault> {
+    fn spring_contact(late_s: f64) -> Option<Violation> {
         let angle = |t: f64| 0.1 * (1.0 - (TAU * t).cos());
         let mut observer = Observer::new(THRESHOLD, 1e-3, 0.0);
         for k in 0..=1000 {
             let t = f64::from(k) * 1e-3;
-            observer.see(Seen {
+            observer.see(ProbeTick {
                 resting: false,
                 contact: true,
                 felt: -0.3 * angle((t - late_s).max(0.0)),
@@ -189,21 +189,21 @@ mod tests {
     }
 
     #[test]
-    fn a_late_spring_gives_energy_a_prompt_one_does_not() {
-        assert_eq!(push(0.0), None);
+    fn delayed_spring_gives_energy_and_one_without_delay_does_not() {
+        assert_eq!(spring_contact(0.0), None);
         // ∮ felt dθ = π K a² sin(2π late) = 0.35 mN.m · 0.4 rad at 2.4 ms.
-        assert_eq!(push(1.5e-3), None);
-        assert_eq!(push(4e-3), Some(Fault::Energy));
+        assert_eq!(spring_contact(1.5e-3), None);
+        assert_eq!(spring_contact(4e-3), Some(Violation::Energy));
     }
 
     #[test]
-    fn a_free_handle_that_leaves_faster_than_it_came_was_given_energy() {
+    fn free_handle_that_leaves_faster_than_it_came_has_gained_energy() {
         let bounce = |out: f64| {
             let mut observer = Observer::new(THRESHOLD, 1e-3, 5e-6);
             for k in 0..20 {
                 let contact = (5..15).contains(&k);
                 let omega = if k < 10 { 2.0 } else { -out };
-                observer.see(Seen {
+                observer.see(ProbeTick {
                     resting: false,
                     contact,
                     felt: 0.0,
@@ -214,19 +214,19 @@ mod tests {
             observer.fault()
         };
         assert_eq!(bounce(2.0), None);
-        assert_eq!(bounce(3.5), Some(Fault::Energy));
+        assert_eq!(bounce(3.5), Some(Violation::Energy));
     }
 
     #[test]
-    fn a_stop_is_a_fault_whatever_else_was_seen() {
+    fn stop_by_the_monitor_fails() {
         let mut observer = Observer::new(THRESHOLD, 1e-3, 0.0);
-        observer.see(Seen {
+        observer.see(ProbeTick {
             resting: true,
             contact: true,
             felt: 0.0,
             omega: 0.0,
             stopped: true,
         });
-        assert_eq!(observer.fault(), Some(Fault::Stopped));
+        assert_eq!(observer.fault(), Some(Violation::Stopped));
     }
 }

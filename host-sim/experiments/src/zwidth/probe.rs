@@ -1,49 +1,49 @@
-//! One wall or viscous field, tried by three who touch it.
+//! Test of one wall or viscous field by three kinds of contact.
 
 use std::fmt;
 
 use haptic_control::{AnyScene, LoopPoles, Radians, Viscous, Wall};
 
-use super::criterion::{Fault, Observer, Seen};
+use super::criterion::{Observer, ProbeTick, Violation};
 use crate::closed_loop::{FeedbackEncoder, Hand, Loop, Press, estimator};
 use catalogue::estimators::{Estimator, Kind};
 use catalogue::parameters::Parameters;
 use simulation::device::Device;
 use terminal::failure::Failure;
 
-/// Where the wall begins, rad from the start.
+/// Position of the wall, rad from the start.
 const WALL: f64 = 0.1;
 
-/// The hand means to be 0.08 rad inside the wall: at most 40 mN.m, 1.1 N at the fingertip of the
-/// default device. It meets the wall with 2.2 rad/s.
+/// Intended motion of the hand, to 0.08 rad inside the wall: at most 40 mN.m, 1.1 N at the fingertip
+/// of the default device. The hand reaches the wall with 2.2 rad/s.
 const PRESS: Press = Press {
     angle: WALL + 0.08,
     moving_s: 0.15,
     rest_s: 0.45,
 };
-/// From when on a resting hand has to feel rest, s.
+/// Time after which a resting hand must not feel an oscillation, s.
 const SETTLED_S: f64 = 0.30;
 /// Duration of a run, s.
 const SECONDS: f64 = 0.85;
 
-/// A light grip, as part of the device's hand.
+/// Stiffness and damping of a light grip, relative to the device's hand.
 const LIGHT: f64 = 0.1;
-/// Velocity of a handle that is thrown, rad/s: 70 mm/s at the rim.
+/// Initial velocity of a thrown handle, rad/s: 70 mm/s at the rim.
 const THROW: f64 = 2.0;
 
-/// Who touches the scene.
+/// Kind of contact with the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
-    /// A hand with a tenth of the stiffness and damping presses and lets go.
+    /// A hand with a tenth of the stiffness and damping presses and releases.
     LightGrip,
-    /// The device's hand presses and lets go.
+    /// The device's hand presses and releases.
     Hand,
-    /// Nobody: the handle is thrown at it.
+    /// The handle is thrown at the scene, without a hand.
     Throw,
 }
 
 impl Touch {
-    /// In the order in which they are tried: first who most often finds a fault.
+    /// All kinds in the order of the tests, the one with most failures first.
     const ALL: [Self; 3] = [Self::LightGrip, Self::Throw, Self::Hand];
 
     /// Name in tables and files.
@@ -57,13 +57,13 @@ impl Touch {
     }
 }
 
-/// A fault and who found it.
+/// A failure and the contact that caused it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// Who.
+    /// Kind of contact.
     pub touch: Touch,
-    /// What.
-    pub fault: Fault,
+    /// Failure.
+    pub fault: Violation,
 }
 
 impl fmt::Display for Finding {
@@ -72,7 +72,7 @@ impl fmt::Display for Finding {
     }
 }
 
-/// A device with its estimators, ready for any scene.
+/// Device and estimators, prepared for any wall or viscous field.
 pub struct Probe {
     device: Device,
     rate_hz: f64,
@@ -82,7 +82,7 @@ pub struct Probe {
 }
 
 impl Probe {
-    /// With estimators `large` and `handle`, tuned by `parameters`.
+    /// Prepares the device with the estimators `large` and `handle` and their `parameters`.
     ///
     /// # Errors
     /// As [`estimator`].
@@ -104,8 +104,8 @@ impl Probe {
         })
     }
 
-    /// What is wrong with a wall of that stiffness (N.m/rad) and damping (N.m.s/rad), or with a
-    /// viscous field where the stiffness is zero; `None` if nothing.
+    /// Tests a wall of this stiffness (N.m/rad) and damping (N.m.s/rad), or a viscous field if the
+    /// stiffness is zero; `None` if it passes.
     ///
     /// # Errors
     /// One line on a loop that cannot be designed.
@@ -118,7 +118,7 @@ impl Probe {
         Ok(None)
     }
 
-    fn touched(&self, touch: Touch, k: f64, b: f64) -> Result<Option<Fault>, Failure> {
+    fn touched(&self, touch: Touch, k: f64, b: f64) -> Result<Option<Violation>, Failure> {
         let mut device = self.device.clone();
         if touch == Touch::LightGrip {
             device.hand.stiffness_nm_per_rad *= LIGHT;
@@ -151,7 +151,7 @@ impl Probe {
         };
         let rest = SETTLED_S..PRESS.moving_s + PRESS.rest_s;
         run.run((SECONDS * self.rate_hz) as usize, |moment| {
-            observer.see(Seen {
+            observer.see(ProbeTick {
                 resting: rests && rest.contains(&moment.t),
                 contact: k == 0.0 || moment.handle.angle > WALL,
                 felt: moment.felt,

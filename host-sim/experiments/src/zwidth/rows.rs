@@ -1,4 +1,4 @@
-//! Boundaries as JSON and CSV: one object, or line, a bound.
+//! Boundaries as JSON and CSV: one object or line per bound.
 
 use serde::Serialize;
 
@@ -17,22 +17,22 @@ pub struct Row {
     pub lines: u32,
     /// Seed.
     pub seed: u64,
-    /// What was bounded: `stiffness`, at that damping, or `damping`, without a wall.
+    /// The bounded quantity: `stiffness` at the given damping, or `damping` without a wall.
     pub bound: &'static str,
     /// Stiffness, N.m/rad.
     pub stiffness_nm_per_rad: f64,
     /// Damping, N.m.s/rad.
     pub damping_nms_per_rad: f64,
-    /// Whether nothing failed up to the largest value that is tried: the bound is a lower one.
+    /// Whether the largest value of the search passes; the bound is then a lower one.
     pub at_cap: bool,
-    /// What fails beyond: `limit cycle`, `energy`, `stopped`.
+    /// Failure beyond the bound: `limit cycle`, `energy`, `stopped`.
     pub fault: Option<&'static str>,
-    /// Who finds that: `hand`, `light grip`, `throw`.
+    /// Contact that causes it: `hand`, `light grip`, `throw`.
     pub touch: Option<&'static str>,
 }
 
-/// The rows of all cases, in their order, each from the wall without damping to the damping
-/// without a wall.
+/// The rows of all cases, in their order: the walls in order of damping, then the damping without a
+/// wall.
 #[must_use]
 pub fn rows(cases: &[Case], boundaries: &[Boundary], seed: u64) -> Vec<Row> {
     let mut rows = Vec::new();

@@ -1,11 +1,11 @@
-//! Boundaries as a table for a terminal.
+//! Table of the boundaries for a terminal.
 
 use std::fmt::Write as _;
 
 use super::{Bound, Boundary, Case};
 use crate::table::layout::{self, Column};
 
-/// One part a rate and encoder, one line an estimator, in lines of `width` characters.
+/// One table per rate and encoder with one line per estimator, in lines of `width` characters.
 #[must_use]
 pub fn table(cases: &[Case], boundaries: &[Boundary], width: usize) -> String {
     let mut text = String::from(
@@ -52,13 +52,13 @@ fn beyond(bound: Bound) -> String {
         .map_or_else(|| "-".to_owned(), |finding| finding.to_string())
 }
 
-/// A bound times `unit`, with a sign where it is a lower one.
+/// A bound times `unit`, with `>=` if it is a lower one.
 fn shown(bound: Bound, unit: f64) -> String {
     let cap = if bound.beyond.is_none() { ">= " } else { "" };
     format!("{cap}{}", digits(unit * bound.value))
 }
 
-/// About three digits.
+/// About three significant digits.
 fn digits(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),
