@@ -90,7 +90,7 @@ fn a_log_is_recorded_replayed_and_drawn() {
         "{said}"
     );
     assert!(
-        said.contains("1 piece not readable, the first: half a line"),
+        said.contains("1 piece of the stream not readable, the first: incomplete line"),
         "{said}"
     );
     fs::write(folder.0.join("run.log"), &log).unwrap();
@@ -200,7 +200,7 @@ fn what_cannot_be_recorded_or_drawn_is_refused_in_a_line() {
         (&[], "\u{0}\u{a5}\n", "standard input: no telemetry frame"),
         (&["nowhere.log"], "", "nowhere.log: cannot read"),
         (&["--image", "nowhere"], &whole, "nowhere: cannot read"),
-        (&[], &one, "only one telemetry frame"),
+        (&[], &one, "has only one telemetry frame"),
         (
             &[],
             &middle,

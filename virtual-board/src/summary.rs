@@ -94,7 +94,11 @@ pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> Str
         line("missed control ticks", last.overruns.to_string());
         line("lost frames", last.drops.to_string());
     }
-    if let Some(learned) = frames.iter().rev().find_map(|frame| frame.beside.learned) {
+    if let Some(learned) = frames
+        .iter()
+        .rev()
+        .find_map(|frame| frame.side_lines.learned)
+    {
         line(
             "learned",
             format!(

@@ -1,8 +1,8 @@
-//! What an estimator believes of the device, right or wrong.
+//! Errors of the device constants that an estimator uses.
 
 use crate::estimators::Setup;
 
-/// A constant of the device that estimators believe in.
+/// A constant of the device that estimators use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Constant {
     /// Damping b of the coupler.
@@ -16,7 +16,7 @@ pub enum Constant {
 }
 
 impl Constant {
-    /// All of them, in the order of tables.
+    /// All constants, in the order of tables.
     pub const ALL: [Self; 4] = [
         Self::Damping,
         Self::Inertia,
@@ -24,7 +24,7 @@ impl Constant {
         Self::Friction,
     ];
 
-    /// The name in tables and files.
+    /// Name in tables and files.
     #[must_use]
     pub const fn as_str(self) -> &'static str {
         match self {
@@ -35,7 +35,7 @@ impl Constant {
         }
     }
 
-    /// The largest error that a belief is tried with: friction is known worst.
+    /// Largest relative error in sensitivity experiments. Friction is the least known constant.
     #[must_use]
     pub const fn largest_error(self) -> f64 {
         match self {
@@ -45,23 +45,23 @@ impl Constant {
     }
 }
 
-/// One constant believed to be larger than it is by a part of it: 0.3 is 30 % too large.
+/// One wrong constant: an error of 0.3 means that its value is 30 % too large.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Belief {
-    /// Which one.
+    /// The constant.
     pub constant: Constant,
-    /// Its relative error.
+    /// Relative error.
     pub error: f64,
 }
 
 impl Belief {
-    /// Every constant at its largest error, both ways.
+    /// Every constant with its largest positive and negative error.
     #[must_use]
     pub fn extremes() -> Vec<Self> {
         Self::at(&[-1.0, 1.0])
     }
 
-    /// Every constant at these parts of its largest error.
+    /// Every constant with these fractions of its largest error.
     #[must_use]
     pub fn at(parts: &[f64]) -> Vec<Self> {
         let of = |constant: Constant| {
@@ -73,7 +73,7 @@ impl Belief {
         Constant::ALL.into_iter().flat_map(of).collect()
     }
 
-    /// What is then believed of the device that `setup` describes.
+    /// `setup` with the wrong constant.
     #[must_use]
     pub fn of(&self, setup: &Setup) -> Setup {
         let mut believed = *setup;
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_belief_changes_its_constant_and_no_other() {
+    fn belief_changes_only_its_constant() {
         let device = simulation::device::Device::default();
         let setup = Setup::of(&device, 1000.0);
         let all = Belief::extremes();

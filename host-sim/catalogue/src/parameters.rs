@@ -1,4 +1,4 @@
-//! Which parameter values an estimator runs with: tuned presets, a file, the command line.
+//! Parameter values of the estimators: from tuned presets, a file, the command line.
 
 mod tuned;
 
@@ -9,10 +9,10 @@ pub use device_files::presets::{PlantKind, Preset, Presets};
 use crate::estimators::{Kind, Search, Setup, Values, check};
 use terminal::failure::Failure;
 
-/// Reads a presets file, and checks its estimators and their parameters.
+/// Reads a presets file and checks its estimators and their parameters.
 ///
 /// # Errors
-/// [`Failure::Input`] that names the file and what is wrong in it.
+/// [`Failure::Input`] that names the file and the wrong entry.
 pub fn read(path: &Path) -> Result<Presets, Failure> {
     let name = path.display().to_string();
     let text = std::fs::read_to_string(path)
@@ -33,7 +33,7 @@ fn checked(presets: Presets) -> Result<Presets, Failure> {
     Ok(presets)
 }
 
-/// Where parameter values come from, the strongest last: shipped presets, a presets file, values
+/// Sources of parameter values in order of rising priority: shipped presets, a presets file, values
 /// set by name.
 #[derive(Clone, Debug)]
 pub struct Parameters {
@@ -58,15 +58,15 @@ impl Default for Parameters {
 }
 
 impl Parameters {
-    /// Puts a presets file over what there is.
+    /// Adds a presets file with priority over the present values.
     pub fn layer(&mut self, presets: Presets) {
         self.layers.push(presets);
     }
 
-    /// Takes a `NAME.PARAM=VALUE`.
+    /// Sets a value from `NAME.PARAM=VALUE`.
     ///
     /// # Errors
-    /// [`Failure::Input`] that says what is not right about it.
+    /// [`Failure::Input`] that names the wrong part and the possible ones.
     pub fn set(&mut self, text: &str) -> Result<(), Failure> {
         let form = || {
             Failure::Input(format!(
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_rate_counts_by_ratio_and_a_set_value_wins() {
+    fn preset_of_the_nearest_rate_is_used_and_a_set_value_has_priority() {
         let file = "[[preset]]\nrate_hz = 1000\nplant = 'friction'\nestimators = { pll = { bandwidth_hz = 10 } }\n\
                     [[preset]]\nrate_hz = 10000\nplant = 'friction'\nestimators = { pll = { bandwidth_hz = 20 } }";
         let mut parameters = Parameters::default();
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_values_are_refused_by_name() {
+    fn invalid_values_are_refused_by_name() {
         let mut parameters = Parameters::default();
         for (text, said) in [
             ("pll", "NAME.PARAM=VALUE"),

@@ -15,9 +15,8 @@ mod sections;
 /// Longest step of the plant, s. It must be short against every time constant of a device.
 pub const LONGEST_STEP_S: f64 = 10e-6;
 
-/// The whole device: the constants that controllers and estimators are designed from, and around
-/// them what only a simulation needs. `Device::default()` is the design's; a TOML file overrides any
-/// of it.
+/// The device: constants for the design of controllers and estimators, and constants that only a
+/// simulation needs. `Device::default()` is the default device; a TOML file can override any value.
 ///
 /// ```
 /// use device_files::device::Device;
@@ -36,13 +35,13 @@ pub struct Device {
     pub large_ripple: Ripple,
     /// Ripple of the small motor.
     pub small_ripple: Ripple,
-    /// Part of the coupler's damping lost after 60 s of scenario `heating`, 0 to 1.
+    /// Share of the coupler's damping lost after 60 s of scenario `heating`, 0 to 1.
     pub fall_at_60_s: f64,
     /// The hand that holds the handle.
     pub hand: Hand,
     /// The handle.
     pub handle: Handle,
-    /// The interval of differences that a hand does not feel.
+    /// The haptic interval: differences of force that a hand does not feel.
     pub interval: Interval,
     /// Errors of the large encoder's disc.
     pub disc: Disc,
@@ -50,18 +49,19 @@ pub struct Device {
     pub reference: Reference,
 }
 
-/// What varies with a motor's angle.
+/// Ripple: periodic variation of friction and torque constant with a motor's angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ripple {
-    /// Part of the Coulomb friction that swings once a revolution, 0 to 1.
+    /// Relative amplitude of the Coulomb friction's variation, one period per revolution, 0 to 1.
     pub friction: f64,
-    /// Part of the torque constant that swings `per_rev` times a revolution, 0 to 1.
+    /// Relative amplitude of the torque constant's variation, `per_rev` periods per revolution, 0 to
+    /// 1.
     pub torque: f64,
-    /// Periods of the torque ripple a revolution.
+    /// Periods of the torque ripple per revolution.
     pub per_rev: f64,
 }
 
-/// The hand: a spring and a damper to the motion that it intends.
+/// The hand: a spring and a damper between the handle and the intended motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Hand {
@@ -79,7 +79,7 @@ pub struct Handle {
     pub diameter_m: f64,
 }
 
-/// Differences of force that pass unnoticed: a threshold plus a fraction of the force.
+/// Differences of force that a hand does not notice: a threshold plus a fraction of the force.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Interval {
@@ -89,14 +89,14 @@ pub struct Interval {
     pub weber: f64,
 }
 
-/// Errors of the large encoder's disc, in counts; their sum is below 0.45, so that boundaries
-/// keep their order. The disc itself is drawn from the run's seed.
+/// Errors of the large encoder's disc, in counts. Their sum is below 0.45, so that boundaries keep
+/// their order. The errors of the boundaries are drawn from the run's seed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Disc {
     /// Largest error of the four phases of a line (duty and quadrature), counts.
     pub phase_counts: f64,
-    /// Amplitude of the once-a-turn error (eccentricity), counts.
+    /// Amplitude of the error with one period per revolution (eccentricity), counts.
     pub line_counts: f64,
     /// Largest random error of a single boundary (uniform), counts.
     pub random_counts: f64,
@@ -106,7 +106,7 @@ pub struct Disc {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Reference {
-    /// Counts a revolution: four times its lines.
+    /// Counts per revolution: four times the number of lines.
     pub counts_per_rev: u32,
 }
 
@@ -170,10 +170,10 @@ impl Default for Reference {
 }
 
 impl Device {
-    /// Reads a device from TOML text: what the text leaves out keeps its default.
+    /// Reads a device from TOML text. A missing key has its default.
     ///
     /// # Errors
-    /// One line that names the line and the key, or the impossible value, and what would be right.
+    /// One line that names the line and the key, or the invalid value, and the valid ones.
     pub fn from_toml_str(text: &str) -> Result<Self, String> {
         let device: Self = toml::from_str(text).map_err(|error| check::one_line(text, &error))?;
         device.validate()?;
@@ -183,13 +183,13 @@ impl Device {
     /// Reads a device file.
     ///
     /// # Errors
-    /// As [`Self::from_toml_str`], with the file's name first; also for a path that is no file.
+    /// As [`Self::from_toml_str`], with the file's name first; also for a path that is not a file.
     pub fn read(path: &Path) -> Result<Self, String> {
         let text = crate::text(path)?;
         Self::from_toml_str(&text).map_err(|error| format!("{}: {error}", path.display()))
     }
 
-    /// Refuses values that no device can have, or that the plant's step cannot follow.
+    /// Checks that every value is possible, and that the plant's step is short enough for it.
     ///
     /// # Errors
     /// One line, for example `large.inertia_kg_m2 = -1: must be above 0 kg.m2`.
@@ -197,7 +197,7 @@ impl Device {
         check::validate(self)
     }
 
-    /// The same device without the Coulomb friction of both motors; torque ripple stays.
+    /// The device without the Coulomb friction of both motors, but with torque ripple.
     #[must_use]
     pub fn frictionless(&self) -> Self {
         let mut device = self.clone();

@@ -9,7 +9,7 @@ mod read;
 
 pub use read::text;
 
-/// A number in as few digits as it needs, with an exponent where there would be many zeros.
+/// A number with as few digits as necessary, with an exponent instead of many zeros.
 #[must_use]
 pub fn decimal(x: f64) -> String {
     if x == 0.0 || (1e-4..1e10).contains(&x.abs()) {
@@ -21,7 +21,7 @@ pub fn decimal(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn numbers_have_an_exponent_instead_of_many_zeros() {
+    fn exponent_replaces_many_zeros() {
         let shown = [1e-300, 0.0, -0.5, 1e6, 1e12, f64::NAN].map(super::decimal);
         assert_eq!(shown, ["1e-300", "0", "-0.5", "1000000", "1e12", "NaN"]);
     }

@@ -1,4 +1,4 @@
-//! Tuned parameters of the estimators: what `host-sim tune` writes.
+//! Tuned parameters of the estimators, as `host-sim tune` writes them.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -11,14 +11,14 @@ use crate::decimal;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PlantKind {
-    /// As the device says.
+    /// With the Coulomb friction of the device.
     Friction,
-    /// The same device without Coulomb friction: the plant of the paper's model.
+    /// Without Coulomb friction: the plant of the paper's model.
     Frictionless,
 }
 
 impl PlantKind {
-    /// The name in tables and files.
+    /// Name in tables and files.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -27,7 +27,7 @@ impl PlantKind {
         }
     }
 
-    /// The kind after the word "plant".
+    /// Text that follows the word "plant".
     #[must_use]
     pub fn phrase(self) -> &'static str {
         match self {
@@ -44,14 +44,14 @@ pub type Estimators = BTreeMap<String, BTreeMap<String, f64>>;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Presets {
-    /// One entry for each rate and plant tuned for.
+    /// One entry for each tuned rate and plant.
     #[serde(default)]
     pub preset: Vec<Preset>,
     /// Values chosen for the control loop of a flash image, by motor: `large` or `handle`. They
     /// replace those of [`Self::preset`] there. `tune` does not write them.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub image: BTreeMap<String, Estimators>,
-    /// The file that they come from, as messages name it.
+    /// Name of the file in messages.
     #[serde(skip)]
     pub source: String,
 }
@@ -64,7 +64,7 @@ pub struct Preset {
     pub rate_hz: f64,
     /// Plant.
     pub plant: PlantKind,
-    /// Counts per revolution of the large encoder; `None` in files that do not say.
+    /// Counts per revolution of the large encoder; `None` in files without this key.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub counts_per_rev: Option<u32>,
     /// The values.
@@ -79,18 +79,18 @@ impl Presets {
             .expect("the shipped presets are tested")
     }
 
-    /// Reads a presets file. It is not checked whether its estimators exist.
+    /// Reads a presets file. The names of its estimators are not checked.
     ///
     /// # Errors
-    /// One line that names the file and what is wrong in it.
+    /// One line that names the file and the wrong entry.
     pub fn read(path: &Path) -> Result<Self, String> {
         Self::parse(&crate::text(path)?, &path.display().to_string())
     }
 
-    /// The file's text.
+    /// The presets as text of a file.
     ///
     /// # Errors
-    /// One line; no case is known.
+    /// One line if the values cannot be serialised.
     pub fn to_toml(&self) -> Result<String, String> {
         toml::to_string(self).map_err(|error| error.to_string())
     }
@@ -119,7 +119,7 @@ impl Presets {
         Ok(presets)
     }
 
-    /// The preset tuned for `estimator` at the nearest rate (by ratio) on that plant.
+    /// The preset with values of `estimator` on this plant at the nearest rate (by ratio).
     #[must_use]
     pub fn nearest(&self, estimator: &str, rate_hz: f64, plant: PlantKind) -> Option<&Preset> {
         let far = |preset: &Preset| (preset.rate_hz / rate_hz).ln().abs();

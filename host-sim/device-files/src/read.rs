@@ -5,7 +5,7 @@ use std::path::Path;
 /// The text of a regular file.
 ///
 /// # Errors
-/// One line that names the path, for anything but a readable file of UTF-8 text.
+/// One line that names the path, if it is not a readable file of UTF-8 text.
 pub fn text(path: &Path) -> Result<String, String> {
     let named = |what: &dyn std::fmt::Display| format!("{}: {what}", path.display());
     let metadata = std::fs::metadata(path).map_err(|error| named(&error))?;

@@ -1,18 +1,18 @@
-//! What a board has learned of its device against what was identified.
+//! Comparison of the parameters that a board has learned with the identified ones.
 
 use haptic_control::{DualStage, Motor};
 
 use crate::telemetry::LearnedLine;
 use simulation::device::Device;
 
-/// Further apart than this, something is no longer as it was.
+/// Largest relative difference of unchanged parameters.
 const TOLERANCE: f64 = 0.1;
 
-/// A line for each constant: what the image of the default device has learned it to be, what
-/// `device` says, and whether the two agree within a tenth.
+/// One line per constant: the learned value of an image for the default device, the value of
+/// `device`, and whether they agree within a tenth.
 ///
-/// An image learns constants per inertia; the coupler's damping itself is told by the quotient of
-/// two, from which the inertia cancels.
+/// An image learns constants per inertia. The coupler's damping is the quotient of two of them, in
+/// which the inertia cancels.
 #[must_use]
 pub fn lines(learned: &LearnedLine, device: &Device) -> Vec<String> {
     let DualStage { large, damping, .. } = &DualStage::DEFAULT;
@@ -52,7 +52,7 @@ pub fn lines(learned: &LearnedLine, device: &Device) -> Vec<String> {
         let off = learned / identified - 1.0;
         let verdict = match off.abs() <= TOLERANCE {
             true => "",
-            false => ": no longer what it was",
+            false => ": changed since the identification",
         };
         format!(
             "health: {name}: learned {learned:.4e}, identified {identified:.4e}, {:+.1} %{verdict}",
@@ -67,32 +67,32 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_learned_is_compared_with_what_was_identified() {
+    fn learned_parameters_are_compared_with_identified_ones() {
         let learned = LearnedLine {
             damping: -0.2,
             friction: 0.05,
             torque_constant: 0.0,
         };
         let said = lines(&learned, &Device::default());
-        assert!(said[0].contains("-20.0 %: no longer"), "{said:?}");
+        assert!(said[0].contains("-20.0 %: changed"), "{said:?}");
         assert!(
             said[2].ends_with("+5.0 %") && said[3].ends_with("+0.0 %"),
             "{said:?}"
         );
-        // A device identified to be just that is in health.
+        // No difference from the device with the learned constants.
         let mut found = Device::default();
         found.stages.damping *= 0.8;
         found.stages.large.coulomb_friction *= 1.05;
         assert!(
             lines(&learned, &found)
                 .iter()
-                .all(|line| !line.contains("no longer"))
+                .all(|line| !line.contains("changed"))
         );
-        // An inertia that is off shows in what is per inertia, and not in b.
+        // An error of the inertia changes the constants per inertia, but not b.
         found.stages.large.inertia *= 1.3;
         let said = lines(&learned, &found);
         assert!(
-            said[0].ends_with("+0.0 %") && said[1].contains("+30.0 %: no"),
+            said[0].ends_with("+0.0 %") && said[1].contains("+30.0 %: changed"),
             "{said:?}"
         );
     }

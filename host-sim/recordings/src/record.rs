@@ -1,4 +1,4 @@
-//! Telemetry as a recording.
+//! Conversion of telemetry to a recording.
 
 use std::fmt::Write as _;
 
@@ -6,20 +6,24 @@ use crate::telemetry::{COLUMNS, Column, Frame, LearnedLine, Run, Telemetry};
 use simulation::trace::EDGE_CLOCK_HZ;
 use terminal::failure::Failure;
 
-/// The columns of what was learned.
+/// The columns of the learned parameters.
 const LEARNED: &str = ",learned_damping,learned_friction,learned_torque_constant";
 
-/// A run as CSV: one row a frame, `t` from its first frame, by its ticks and the control rate.
+/// A run as CSV with one row per frame. `t` starts at the first frame and follows from ticks and
+/// control rate.
 ///
-/// Fields of the frame follow as far as every frame has them, `edge_tick` and `edge_bound` where the
-/// firmware stamped edges; a frame without a stamp leaves them empty. The three columns of what was
-/// learned are there if any frame has them, and empty in the other rows. `true_omega` is a last
-/// column, if every frame has one.
+/// The fields of a frame that every frame has are columns. `edge_tick` and `edge_bound` are present
+/// if the firmware stamps edges, and empty for a frame without a stamp. The three `learned_*` columns
+/// are present if any frame has them, and empty in the other rows. `true_omega` is the last column,
+/// if every frame has one.
 #[must_use]
 pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) -> String {
     let truth: Option<Vec<f64>> = run.frames.iter().map(|(_, f)| true_omega(f)).collect();
-    let edges = run.frames.iter().any(|(_, f)| f.beside.edge.is_some());
-    let learned = run.frames.iter().any(|(_, f)| f.beside.learned.is_some());
+    let edges = run.frames.iter().any(|(_, f)| f.side_lines.edge.is_some());
+    let learned = run
+        .frames
+        .iter()
+        .any(|(_, f)| f.side_lines.learned.is_some());
     let known = |(_, value): &&Column| run.frames.iter().all(|(_, frame)| value(frame).is_some());
     let columns: Vec<_> = COLUMNS.iter().filter(known).collect();
     let mut text = "t".to_owned();
@@ -45,7 +49,7 @@ pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) 
             text += &value(frame).unwrap_or_default();
         }
         if edges {
-            let _ = match frame.beside.edge {
+            let _ = match frame.side_lines.edge {
                 None => write!(text, ",,"),
                 Some(edge) => {
                     let now = (t * EDGE_CLOCK_HZ).round() as i64;
@@ -54,7 +58,7 @@ pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) 
             };
         }
         if learned {
-            let _ = match frame.beside.learned {
+            let _ = match frame.side_lines.learned {
                 None => write!(text, ",,,"),
                 Some(LearnedLine {
                     damping,
@@ -71,10 +75,10 @@ pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) 
     text
 }
 
-/// Which run to record, 1 is the first; without a number the longest.
+/// The run to record: that of the given number, of which 1 is the first, by default the longest.
 ///
 /// # Errors
-/// [`Failure::Input`] where there is none, or none of two frames.
+/// [`Failure::Input`] if the run does not exist or has fewer than two frames.
 pub fn choose<'a, 'b>(runs: &'b [Run<'a>], number: Option<usize>) -> Result<&'b Run<'a>, Failure> {
     let run = match number {
         None => runs.iter().rev().max_by_key(|run| run.frames.len()),
@@ -82,17 +86,19 @@ pub fn choose<'a, 'b>(runs: &'b [Run<'a>], number: Option<usize>) -> Result<&'b 
     };
     let run = run.ok_or_else(|| {
         let (number, runs) = (number.unwrap_or_default(), runs.len());
-        Failure::Input(format!("--run {number}: there are {runs} runs, from 1"))
+        Failure::Input(format!(
+            "--run {number}: the stream has {runs} runs; give 1 to {runs}"
+        ))
     })?;
     if run.frames.len() < 2 {
         return Err(Failure::Input(
-            "only one telemetry frame in a run; a recording needs two at least".to_owned(),
+            "the run has only one telemetry frame; a recording needs at least two".to_owned(),
         ));
     }
     Ok(run)
 }
 
-/// What was lost of a run, and what is not in its recording, in lines.
+/// Lines on the recorded run: missing frames, other runs, unreadable pieces, late ticks.
 #[must_use]
 pub fn report(telemetry: &Telemetry, runs: &[Run], run: &Run) -> Vec<String> {
     let mut lines = Vec::new();
@@ -118,24 +124,30 @@ pub fn report(telemetry: &Telemetry, runs: &[Run], run: &Run) -> Vec<String> {
     let left: Vec<_> = runs.iter().filter(others).map(|r| r.frames.len()).collect();
     if !left.is_empty() {
         lines.push(format!(
-            "the firmware began {} times; left out: runs of {left:?} frames (--run N takes another)",
+            "the firmware started {} times; left out: runs of {left:?} frames (--run N selects another)",
             runs.len(),
         ));
     }
     let strays: u64 = runs.iter().map(|run| run.gaps.strays).sum();
     if strays > 0 {
         let strays = plural(strays, "damaged frame");
-        lines.push(format!("{strays} left out: numbers that fit nowhere"));
+        lines.push(format!(
+            "{strays} left out: seq and tick do not fit the neighbours"
+        ));
     }
     if let Some(first) = telemetry.malformed.first() {
         let malformed = plural(telemetry.malformed.len() as u64, "piece");
-        lines.push(format!("{malformed} not readable, the first: {first}"));
+        lines.push(format!(
+            "{malformed} of the stream not readable, the first: {first}"
+        ));
     }
     if let [(_, first), .., (_, last)] = run.frames.as_slice() {
         let late = last.overruns.wrapping_sub(first.overruns);
         if late > 0 {
             let late = plural(u64::from(late), "control tick");
-            lines.push(format!("{late} missed or late: t is that much short"));
+            lines.push(format!(
+                "{late} missed or late: t is too short by that number of periods"
+            ));
         }
     }
     lines
@@ -162,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_log_becomes_a_recording_that_replay_reads() {
+    fn log_is_converted_to_a_recording_that_can_be_read() {
         let telemetry = Telemetry::text(log(0..4).as_bytes());
         let runs = telemetry.runs();
         let run = choose(&runs, None).unwrap();
@@ -184,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn overruns_before_the_first_frame_are_not_counted() {
+    fn overruns_before_the_first_frame_are_ignored() {
         let text = log(0..4).replace("overruns=0", "overruns=5");
         let telemetry = Telemetry::text(text.as_bytes());
         let runs = telemetry.runs();
@@ -204,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn stamps_are_columns_that_replay_reads() {
+    fn edge_stamps_are_columns_of_the_recording() {
         let log = log(0..3) + "edge seq=2 bound=1 age=21000\n";
         let telemetry = Telemetry::text(log.as_bytes());
         let text = csv(&telemetry.runs()[0], 1e4, |_| Some(1.0));
@@ -224,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_from_before_the_recording_has_a_negative_tick() {
+    fn edge_before_the_first_frame_has_a_negative_tick() {
         let (first, second) = (log(0..1), log(1..2));
         let second = second.split_once('\n').unwrap().1;
         let log = first + "edge seq=0 bound=0 age=84\n" + second;
@@ -234,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn the_longest_run_is_recorded_and_the_others_are_told() {
+    fn longest_run_is_recorded_and_the_others_are_reported() {
         let text = log(3..8) + &log(0..3) + "frame seq=";
         let telemetry = Telemetry::text((text + "\n").as_bytes());
         let runs = telemetry.runs();
@@ -243,7 +255,7 @@ mod tests {
         assert_eq!(second.frames.len(), 3);
         let said = report(&telemetry, &runs, second);
         assert!(
-            said[1].contains("began 2 times; left out: runs of [5]"),
+            said[1].contains("started 2 times; left out: runs of [5]"),
             "{said:?}"
         );
         assert!(said[2].contains("1 piece not readable"), "{said:?}");

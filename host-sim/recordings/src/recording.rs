@@ -1,4 +1,4 @@
-//! Recordings of a motor: CSV in.
+//! Recordings of a motor, read from CSV.
 
 mod absolute;
 mod board;
@@ -17,20 +17,20 @@ pub use board::BoardColumns;
 use simulation::trace::{EDGE_CLOCK_HZ, EdgeStamp, Trace};
 use terminal::failure::Failure;
 
-/// A recording: its time column and everything else as a trace.
+/// A recording: its time column, and the other columns as a trace.
 #[derive(Clone, Debug)]
 pub struct Recording {
     /// Column `t`, s.
     pub t: Vec<f64>,
-    /// The columns as a trace; its rate is that of the steps of `t` near their median.
+    /// The columns as a trace; its rate follows from the steps of `t` near their median.
     pub trace: Trace,
     /// The small motor's commanded current, applied from this tick to the next, A.
     pub current_small: Option<Vec<f64>>,
-    /// How many steps of `t` differ from the period by more than a tenth of it.
+    /// Number of steps of `t` that differ from the period by more than a tenth of it.
     pub uneven_steps: usize,
 }
 
-/// The columns this reads; others are ignored.
+/// The columns that are read; others are ignored.
 const COLUMNS: [&str; 8] = [
     "t",
     "counts_large",
@@ -91,7 +91,7 @@ impl Recording {
     }
 }
 
-/// Where each column stands in a row.
+/// Index of each column in a row.
 struct Places {
     t: usize,
     counts_large: usize,
@@ -111,7 +111,10 @@ impl Places {
                 continue;
             };
             if places[column].replace(i).is_some() {
-                let message = format!("{name}: line 1: column {} twice", COLUMNS[column]);
+                let message = format!(
+                    "{name}: line 1: two columns {}; rename or remove one",
+                    COLUMNS[column]
+                );
                 return Err(Failure::Input(message));
             }
         }
@@ -126,7 +129,7 @@ impl Places {
             true_omega,
         ] = places;
         let needed = |place: Option<usize>, column: &str| {
-            place.ok_or_else(|| header::lacks(column, header, name))
+            place.ok_or_else(|| header::missing(column, header, name))
         };
         Ok(Self {
             t: needed(t, "t")?,
@@ -179,7 +182,7 @@ impl Row<'_> {
         if let Ok(count) = text.parse::<i64>() {
             return Ok(count as u32);
         }
-        // Tools that know only floats write 12.0.
+        // Some tools write integers as floats: 12.0.
         match text.parse::<f64>() {
             Ok(number) if number.fract() == 0.0 && number.abs() < 9e15 => Ok(number as i64 as u32),
             Ok(number) if number.is_finite() => {
@@ -190,7 +193,7 @@ impl Row<'_> {
     }
 }
 
-/// A field as it may stand in a message: short, without control characters.
+/// A field for a message: shortened, without control characters.
 fn quoted(text: &str) -> String {
     let short: String = text.chars().take(20).flat_map(char::escape_debug).collect();
     format!("'{short}'")
@@ -220,7 +223,7 @@ struct Columns {
 }
 
 impl Columns {
-    /// Takes everything but `t`, which is there already.
+    /// Adds the fields of a row except `t`.
     fn take(&mut self, row: &Row, at: &Places) -> Result<(), Failure> {
         self.counts_large
             .push(row.count("counts_large", at.counts_large)?);
@@ -242,7 +245,7 @@ impl Columns {
         Ok(())
     }
 
-    /// The latest edge; both fields empty means that there was none yet.
+    /// The latest edge; `None` if both fields are empty, before the first edge.
     fn edge(&self, row: &Row, tick: usize, bound: usize) -> Result<Option<EdgeStamp>, Failure> {
         if row.text("edge_tick", tick)?.is_empty() && row.text("edge_bound", bound)?.is_empty() {
             return Ok(None);
@@ -250,7 +253,7 @@ impl Columns {
         let now = self.t.last().copied().unwrap_or_default();
         let age_s = now - row.number("edge_tick", tick)? / EDGE_CLOCK_HZ;
         Ok(Some(EdgeStamp {
-            // `t` has fewer digits than the stamp, so an edge at the tick may seem to follow it.
+            // `t` has fewer digits than the stamp, so an edge at the tick can appear after it.
             age_s: age_s.max(0.0),
             boundary: row.count("edge_bound", bound)?,
         }))
@@ -284,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_go_by_name() {
+    fn columns_are_found_by_name_in_any_order() {
         let text =
             "note,counts_large, t ,true_omega\nx,-1,0.0,1.5\ny,4294967296,0.001,2\nz,2,0.002,3\n";
         let recording = parse(text).unwrap();
@@ -314,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_is_its_age() {
+    fn edge_columns_are_converted_to_ages() {
         let text =
             "t,counts_large,edge_tick,edge_bound\n0,0,,\n0.001,0,42000,-3\n0.002,1,168001,1\n";
         let edges = parse(text).unwrap().trace.edges.unwrap();
@@ -326,14 +329,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_named_by_line_and_column() {
+    fn invalid_field_is_reported_by_line_and_column() {
         for (text, said) in [
             ("", "r.csv: line 1: no column t;"),
             (
                 "t,counts_small\n0,0\n",
                 "r.csv: line 1: no column counts_large;",
             ),
-            ("t,counts_large,t\n", "r.csv: line 1: column t twice"),
+            ("t,counts_large,t\n", "r.csv: line 1: two columns t;"),
             (
                 "t,counts_large,edge_tick\n0,0,0\n",
                 "r.csv: line 1: no column edge_bound;",
@@ -362,10 +365,10 @@ mod tests {
                 "t,counts_large\n0,0\n0.1\n",
                 "r.csv: line 3: 1 fields where the first line has 2",
             ),
-            ("t,counts_large\n0,0\n", "r.csv: needs two rows"),
+            ("t,counts_large\n0,0\n", "r.csv: fewer than two rows"),
             (
                 "t,counts_large\n1,0\n1,0\n1,0\n",
-                "r.csv: column t: stands still",
+                "r.csv: column t: does not increase",
             ),
             (
                 "t,counts_large,current\n0,0,inf\n",

@@ -1,47 +1,47 @@
-//! What the firmware says, from a board or from the emulated one: frames, boots, the rest.
+//! Telemetry of the firmware, from a board or an emulated one: frames, boot lines, other lines.
 
-mod beside;
 mod frame;
 #[cfg(feature = "rtt")]
 mod rtt;
 mod run;
+mod side_lines;
 mod text;
 
 use haptic_control::Fingerprint;
 
-pub use beside::{Beside, EdgeLine, LearnedLine};
 pub(crate) use frame::{COLUMNS, Column};
 pub use frame::{Frame, NOBODY};
 pub use run::{Gaps, Run};
+pub use side_lines::{EdgeLine, LearnedLine, SideLines};
 
 /// A decoded stream.
 #[derive(Clone, Debug, Default)]
 pub struct Telemetry {
-    /// Frames in order, each with what was said beside it.
+    /// Frames in order, each with its side lines.
     pub frames: Vec<Frame>,
     /// Starts of the firmware.
     pub boots: Vec<Boot>,
-    /// Everything else that the firmware said, boot lines among it.
+    /// All other lines of the firmware, including boot lines.
     pub log: Vec<String>,
-    /// Pieces that could not be decoded, and frames that could not be read.
+    /// Pieces of the stream that could not be decoded, and frames that could not be parsed.
     pub malformed: Vec<String>,
 }
 
-/// A start of the firmware, as its boot line tells it.
+/// A start of the firmware, from its boot line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Boot {
-    /// How many frames came before it.
+    /// Number of frames before it.
     pub after: usize,
     /// Control rate, Hz.
     pub rate_hz: f64,
-    /// Hash of the device that the image was built for; `None` if the line does not tell it.
+    /// Hash of the device that the image was built for; `None` if the line has none.
     pub device: Option<Fingerprint>,
-    /// Hash of the tuned parameters of the image; `None` if the line does not tell it.
+    /// Hash of the tuned parameters of the image; `None` if the line has none.
     pub presets: Option<Fingerprint>,
 }
 
 impl Telemetry {
-    /// Takes one message of the firmware.
+    /// Adds one message of the firmware.
     fn line(&mut self, line: &str) {
         if line.starts_with(frame::START) {
             match line.parse() {
@@ -50,7 +50,10 @@ impl Telemetry {
             }
             return;
         }
-        if beside::STARTS.iter().any(|start| line.starts_with(start)) {
+        if side_lines::STARTS
+            .iter()
+            .any(|start| line.starts_with(start))
+        {
             let taken = self.frames.last_mut().map(|frame| frame.take(line));
             self.malformed.extend(taken.and_then(Result::err));
             return;
@@ -74,7 +77,7 @@ fn boot_rate(line: &str) -> Option<f64> {
     (rate > 0).then(|| f64::from(rate))
 }
 
-/// The hash behind `key` in a boot line: eight hexadecimal digits.
+/// The hash after `key` in a boot line: eight hexadecimal digits.
 fn fingerprint(line: &str, key: &str) -> Option<Fingerprint> {
     let mut words = line.split_whitespace();
     let digits = words.find_map(|word| word.strip_prefix(key))?;
@@ -86,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn boot_line_tells_rate_and_hashes() {
+    fn boot_line_has_rate_and_hashes() {
         let line =
             "boot rate=10000 cause=0 brown-out-reset=true device=0012abcd presets=ffffffff\n";
         let boot = Telemetry::text(line.as_bytes()).boots[0];

@@ -1,4 +1,4 @@
-//! Estimators over one trace, and how each did.
+//! Evaluation of estimators on one trace.
 
 use std::collections::BTreeMap;
 
@@ -26,11 +26,11 @@ pub struct Row {
     /// Scores.
     #[serde(flatten)]
     pub score: Score,
-    /// Parameters it ran with.
+    /// Parameters of the estimator.
     pub parameters: BTreeMap<&'static str, f64>,
 }
 
-/// Start of a run that no score of the learned damping looks at, s.
+/// Start of a run that the score of the learned damping ignores, s.
 pub const LEARNING_S: f64 = 3.0;
 
 /// What the rows of one trace have in common.
@@ -48,7 +48,7 @@ pub struct Heading {
 
 /// An estimator ready to run.
 pub struct Candidate {
-    /// What it is.
+    /// Kind of the estimator.
     pub kind: &'static Kind,
     /// Values of its parameters.
     pub values: Vec<f64>,
@@ -60,10 +60,10 @@ pub struct Candidate {
 pub struct Estimate {
     /// Estimator.
     pub estimator: &'static str,
-    /// One velocity a tick.
+    /// One velocity per tick.
     pub velocity: Vec<f32>,
-    /// The standard deviation that the estimator believes each to have, rad/s; `None` from one that
-    /// believes nothing.
+    /// Standard deviation of each velocity as reported by the estimator, rad/s; `None` if it reports
+    /// none.
     pub deviation: Option<Vec<f32>>,
 }
 
@@ -98,7 +98,7 @@ impl Candidate {
         })
     }
 
-    /// The estimate over `trace`, or `None` if the trace lacks a signal that it needs.
+    /// The estimate over `trace`; `None` if the trace has not all needed signals.
     #[must_use]
     pub fn estimate(&self, trace: &Trace) -> Option<Estimate> {
         self.kind.needs.within(available(trace)).then(|| {
@@ -111,7 +111,7 @@ impl Candidate {
         })
     }
 
-    /// The estimator itself.
+    /// The estimator.
     #[must_use]
     pub fn estimator(&self) -> &Estimator {
         &self.estimator
@@ -123,7 +123,7 @@ impl Candidate {
     }
 }
 
-/// Estimators built for one rate and plant, and the finite difference they are measured by.
+/// Estimators built for one rate and plant, and finite difference as their reference.
 pub struct Evaluation {
     candidates: Vec<Candidate>,
     difference: Candidate,
@@ -158,7 +158,7 @@ impl Evaluation {
         &self.candidates
     }
 
-    /// The estimates of all that can run on `trace`.
+    /// The estimates of all estimators whose needed signals `trace` has.
     #[must_use]
     pub fn estimates(&self, trace: &Trace) -> Vec<Estimate> {
         self.candidates
@@ -167,10 +167,10 @@ impl Evaluation {
             .collect()
     }
 
-    /// Scores `estimates` of `trace` against its truth; none if the trace has no truth.
+    /// Scores the `estimates` of `trace` against its true velocity; empty if the trace has none.
     ///
     /// # Errors
-    /// [`Failure::Input`] where the truth is not finite.
+    /// [`Failure::Input`] if the true velocity is not finite.
     pub fn rows(
         &self,
         heading: &Heading,
@@ -220,7 +220,7 @@ impl Evaluation {
         Ok(estimates.iter().zip(&scores).map(row).collect())
     }
 
-    /// Damping b at each tick of `trace`, N.m.s/rad, as `candidate` learns it.
+    /// Damping b that `candidate` has learned at each tick of `trace`, N.m.s/rad.
     #[must_use]
     pub fn learned_damping(&self, candidate: &Candidate, trace: &Trace) -> Option<Vec<f64>> {
         let ratios = candidate.estimator.damping_ratio(trace)?;
@@ -234,7 +234,7 @@ fn last_tenth(values: &[f64]) -> f64 {
     last.iter().sum::<f64>() / last.len() as f64
 }
 
-/// RMS error in % of the true damping; `None` where that is not known or the run too short.
+/// RMS error in % of the true damping; `None` if that is unknown or the run is too short.
 fn damping_error(learned: &[f64], trace: &Trace) -> Option<f64> {
     let truth = trace.true_damping.as_ref()?;
     let skip = (LEARNING_S * trace.rate_hz) as usize;
@@ -253,7 +253,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn samples_within_two_deviations_are_counted_after_the_start() {
+    fn within_2_sigma_is_the_share_after_the_start() {
         let estimate = Estimate {
             estimator: "pll",
             velocity: vec![9.0, 1.0, 1.0, 1.0, 1.0],

@@ -1,9 +1,9 @@
 //! Power spectral density by Welch's method, and the power of a signal within a band.
 //!
-//! Segments of [`SEGMENT_S`], so that bins are 4 Hz wide at every sample rate, overlap by half
-//! and wear a Hann window; powers are corrected for the window's, so that the density sums to
-//! the signal's mean square. Unlike one window over the whole record, a train of segments gives
-//! every moment of the trace the same weight. A tail shorter than half a segment is left out.
+//! Segments of [`SEGMENT_S`] overlap by half and have a Hann window; bins are 4 Hz wide at every
+//! sample rate. The density is normalised by the window's power, so that its sum is the signal's mean
+//! square. With overlapping segments every part of the trace has the same weight, unlike with one
+//! window over the whole trace. A tail shorter than half a segment is left out.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -24,10 +24,10 @@ pub struct Density {
 }
 
 impl Density {
-    /// RMS of the part of the signal that lies within `band_hz`, in the signal's unit; `None` if
-    /// the band begins above half the sample rate.
+    /// RMS of the signal's components within `band_hz`, in the signal's unit; `None` if the band
+    /// begins above half the sample rate.
     ///
-    /// A bin that the band's edge cuts counts in proportion.
+    /// A bin at the limit of the band has the weight of its part inside.
     #[must_use]
     pub fn rms_within(&self, [low, high]: [f64; 2]) -> Option<f64> {
         let nyquist = self.bin_hz * (self.power_per_hz.len() - 1) as f64;
@@ -48,8 +48,7 @@ impl Density {
     }
 }
 
-/// Welch's method for one sample rate: the plan and the window, made once, used for any number
-/// of signals.
+/// Welch's method for one sample rate, with the prepared transform and window.
 pub struct Welch {
     rate_hz: f64,
     window: Vec<f64>,
@@ -57,10 +56,10 @@ pub struct Welch {
 }
 
 impl Welch {
-    /// For signals sampled at `rate_hz`.
+    /// Prepares the method for signals sampled at `rate_hz`.
     #[must_use]
     pub fn new(rate_hz: f64) -> Self {
-        // Even, so that half the rate has a bin of its own.
+        // An even length has a bin at half the rate.
         let segment = 2 * ((0.5 * SEGMENT_S * rate_hz).round() as usize).max(4);
         Self {
             rate_hz,
@@ -71,11 +70,11 @@ impl Welch {
         }
     }
 
-    /// The density of `signal`; `None` if that is shorter than one segment.
+    /// The density of `signal`; `None` if it is shorter than one segment.
     ///
-    /// Two real segments ride in one complex transform, one as its real and one as its imaginary
-    /// part: the sum of their powers at a frequency is half of what the transform holds at that
-    /// frequency and its negative, with no need to separate the two.
+    /// Two real segments are the real and the imaginary part of one complex transform. The sum of
+    /// their powers at a frequency is half of the transform's power at this frequency and its
+    /// negative.
     #[must_use]
     pub fn density(&self, signal: &[f64]) -> Option<Density> {
         let segment = self.window.len();
@@ -107,8 +106,8 @@ impl Welch {
                 powers[k] += 0.5 * (buffer[k].norm_sqr() + buffer[segment - k].norm_sqr());
             }
         }
-        // One-sided: everything twice. The first and last bin are half as wide, so that their
-        // density is twice as well.
+        // A one-sided density has a factor of 2. The first and last bin are half as wide, so that
+        // the factor holds for them too.
         let window_power: f64 = self.window.iter().map(|w| w * w).sum();
         let scale = 2.0 / (count as f64 * window_power * self.rate_hz);
         Some(Density {
@@ -132,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sine_has_its_power_at_its_frequency_whatever_the_rate() {
+    fn sine_has_its_power_at_its_frequency_at_every_rate() {
         for rate_hz in [1000.0, 10_000.0, 11_600.0] {
             let welch = Welch::new(rate_hz);
             let density = welch
@@ -160,7 +159,7 @@ mod tests {
             })
             .collect();
         let density = Welch::new(rate_hz).density(&noise).unwrap();
-        // 1600 half-overlapping segments: each bin good to about 3 %.
+        // 1600 half-overlapping segments: the error of a bin is about 3 %.
         for (i, power) in density.power_per_hz.iter().enumerate().skip(1) {
             let relative = power / (2.0 * 9.0 / rate_hz);
             let spread = if i == density.power_per_hz.len() - 1 {
@@ -175,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn an_odd_number_of_segments_counts_the_last_alone() {
+    fn last_of_an_odd_number_of_segments_is_included() {
         let (rate_hz, hz) = (1000.0, 100.0);
         for n in [250, 374, 375, 500, 625] {
             let density = Welch::new(rate_hz).density(&sine(rate_hz, hz, n)).unwrap();
@@ -185,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn too_short_or_too_slow_is_none() {
+    fn density_is_none_if_the_signal_is_too_short_or_the_rate_too_low() {
         assert_eq!(Welch::new(1000.0).density(&[0.0; 249]), None);
         let slow = Welch::new(100.0).density(&[0.0; 1000]).unwrap();
         assert_eq!(slow.rms_within([50.0, 500.0]), None);

@@ -1,4 +1,4 @@
-//! A quadrature encoder: integer counts of an angle, with the instants of its edges if wanted.
+//! A quadrature encoder: integer counts of an angle, and optionally the times of its edges.
 
 mod disc;
 
@@ -7,10 +7,10 @@ pub use disc::DiscErrors;
 use crate::plant::Pose;
 use std::f64::consts::TAU;
 
-/// Whoever wants to know about each edge. `()` wants nothing, and then nothing is computed.
+/// Receiver of edges. With `()` no times of edges are computed.
 pub trait EdgeObserver {
     /// Boundary `boundary` (modulo 2^32; boundary `e` lies between counts `e - 1` and `e`) was
-    /// crossed; `part` computes when, as part of the step, 0 to 1.
+    /// crossed; `part` computes the time as a fraction of the step, 0 to 1.
     fn edge(&mut self, boundary: u32, part: impl FnOnce() -> f64);
 }
 
@@ -22,14 +22,13 @@ impl EdgeObserver for () {
 /// An encoder on a shaft: `count = floor(angle / (2 pi) * counts_per_rev)`, generalised to a disc
 /// whose boundary `e` lies at `e + error[e mod counts_per_rev]` counts.
 ///
-/// It keeps the angles of the two boundaries around the shaft: a step without an edge costs two
-/// comparisons. Angles are measured from the start, in counts relative to the first, so that no
-/// precision is lost on a count near 2^32. A shaft that crosses a boundary and comes back within
-/// one step (10 us) is not seen.
+/// It stores the angles of the two boundaries around the shaft, so that a step without an edge needs
+/// two comparisons. Angles are in counts relative to the first count, which keeps the precision for
+/// counts near 2^32. Two crossings of a boundary within one step (10 us) are not detected.
 #[derive(Clone, Debug)]
 pub struct Encoder {
     rad_per_count: f64,
-    /// Angle at which an ideal boundary of number `first` would lie, rad.
+    /// Angle of the ideal boundary `first`, rad.
     origin: f64,
     first: i64,
     count: i64,
@@ -39,8 +38,8 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    /// An encoder that reads `first` at `angle` (rad), at `phase` (0 to 1) of the way from that
-    /// count's lower boundary to its upper one on an ideal disc.
+    /// An encoder with the count `first` at `angle` (rad). `phase` (0 to 1) is the position between
+    /// the lower and the upper boundary of this count on an ideal disc.
     #[must_use]
     pub fn new(counts_per_rev: u32, first: u32, phase: f64, angle: f64, disc: DiscErrors) -> Self {
         let rad_per_count = TAU / f64::from(counts_per_rev);
@@ -54,7 +53,7 @@ impl Encoder {
             disc,
         };
         encoder.place();
-        // A disc error may have moved a boundary past the shaft.
+        // A disc error can have moved a boundary beyond the shaft.
         if angle < encoder.lower {
             encoder.count -= 1;
         } else if angle >= encoder.upper {
@@ -80,7 +79,7 @@ impl Encoder {
         self.upper = self.boundary(self.count + 1);
     }
 
-    /// Follows the shaft over a step of `step_s` that ended in `to`.
+    /// Updates the count over a step of `step_s` that ended at `to`.
     #[inline]
     pub fn follow(&mut self, from: Pose, to: Pose, step_s: f64, observer: &mut impl EdgeObserver) {
         if to.angle >= self.lower && to.angle < self.upper {
@@ -106,7 +105,7 @@ impl Encoder {
     }
 }
 
-/// Where in the step the cubic through both poses passes `angle`, 0 to 1.
+/// Time at which the cubic through both poses passes `angle`, as a fraction of the step, 0 to 1.
 fn part(from: Pose, to: Pose, step_s: f64, angle: f64) -> f64 {
     let span = to.angle - from.angle;
     if span == 0.0 {
@@ -144,7 +143,7 @@ mod tests {
     use super::*;
     use crate::device::Disc;
 
-    /// Instants of edges, s, and their boundaries.
+    /// Times of edges, s, and their boundaries.
     struct Log {
         start: f64,
         step: f64,
@@ -196,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_wrap_and_keep_their_steps() {
+    fn counts_wrap_without_a_jump() {
         let (mut near, mut far) = (
             Encoder::new(4096, 1000, 0.5, 0.0, DiscErrors::none()),
             Encoder::new(4096, u32::MAX - 3, 0.5, 0.0, DiscErrors::none()),
@@ -216,8 +215,8 @@ mod tests {
     }
 
     #[test]
-    fn edge_instants_are_those_of_the_motion() {
-        // A step a hundred times too long shows that the cubic is one.
+    fn edge_times_are_those_of_the_motion() {
+        // A step a hundred times longer checks the cubic interpolation.
         for (step, bound) in [(10e-6, 1e-10), (1e-3, 1e-8)] {
             let mut encoder = Encoder::new(4096, 0, 0.5, 0.0, DiscErrors::none());
             let edges = run(&mut encoder, step, (1.0 / step) as u32, swing, |_, _| {});
@@ -235,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn edges_alternate_with_counts_even_when_several_fall_into_one_step() {
+    fn several_edges_of_one_step_are_reported_in_order() {
         let mut encoder = Encoder::new(4_000_000, 100, 0.5, 0.0, DiscErrors::none());
         let mut counts = vec![encoder.count()];
         let mut most = 0;
@@ -261,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn a_disc_moves_each_boundary_by_its_error_and_repeats_every_turn() {
+    fn disc_error_moves_each_boundary_and_repeats_every_turn() {
         let errors = Disc {
             phase_counts: 0.2,
             line_counts: 0.1,

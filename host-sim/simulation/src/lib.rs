@@ -1,7 +1,7 @@
 //! The dual-stage device in f64: the plant, its encoders, the scenarios that move it, and the trace
 //! of samples that a control board would see.
 //!
-//! The true position and velocity are in the trace too. Only scores read them.
+//! The trace also has the true velocity, which only scores read.
 
 pub use device_files::device;
 

@@ -4,9 +4,10 @@
 //! J_L dw_L/dt = Kt_L i_L - b (w_L - w_S) - friction_L(w_L)
 //! J_S dw_S/dt = Kt_S i_S + b (w_L - w_S) - friction_S(w_S) + hand torque
 //! ```
-//! The coupler's torque acts on slip. Each amplifier is a first-order lag, solved exactly over
-//! the step; the shafts take the midpoint rule (second order). Coulomb friction stops a shaft
-//! inside the step and holds it at exactly zero velocity as long as everything else pushes less.
+//! The coupler's torque is proportional to slip velocity. Each amplifier is a first-order lag, solved
+//! exactly over the step; the shafts are integrated with the midpoint rule (second order). Coulomb
+//! friction stops a shaft inside the step and holds it at exactly zero velocity as long as the other
+//! torques are smaller.
 
 mod axis;
 mod hand;
@@ -21,7 +22,7 @@ use std::f64::consts::TAU;
 /// Number of steps of at most [`LONGEST_STEP_S`] that divide a tick of `period_s` exactly.
 #[must_use]
 pub fn steps_per_tick(period_s: f64) -> u32 {
-    // The subtrahend keeps a period of 1e-3 at 100 steps, whatever its last bit.
+    // The subtrahend compensates rounding: a period of 1e-3 has 100 steps.
     (period_s / LONGEST_STEP_S - 1e-9).ceil().max(1.0) as u32
 }
 
@@ -63,7 +64,7 @@ impl Plant {
         }
     }
 
-    /// Puts both shafts somewhere else.
+    /// Sets angle and velocity of both shafts.
     pub fn place(&mut self, large: Pose, small: Pose) {
         for (axis, pose) in [(&mut self.large, large), (&mut self.small, small)] {
             axis.angle = pose.angle;
@@ -71,7 +72,7 @@ impl Plant {
         }
     }
 
-    /// Commands both currents, A, from now on; each saturates at its limit.
+    /// Commands both currents, A; each saturates at its limit.
     pub fn command(&mut self, large_a: f64, small_a: f64) {
         self.large.command(large_a);
         self.small.command(small_a);
@@ -118,11 +119,10 @@ impl Plant {
             + self.hand_damping * (intended.omega - small.omega)
     }
 
-    /// Torque that the handle exerts on whoever holds it, N.m, `t` seconds into the tick.
+    /// Torque of the handle on the hand, N.m, `t` seconds after the tick.
     ///
-    /// `Kt_S i_S + b slip - J_S dw_S/dt - friction_S`; by the second equation of motion this is
-    /// what the hand exerts, turned round, and that is how it is computed. A clamp is taken to
-    /// carry no friction torque.
+    /// It is `Kt_S i_S + b slip - J_S dw_S/dt - friction_S`, which by the second equation of motion is
+    /// the negative torque of the hand. A clamp is assumed to carry no friction torque.
     #[must_use]
     pub fn handle_torque(&self, grip: &Grip, t: f64) -> f64 {
         match grip {
@@ -134,7 +134,7 @@ impl Plant {
         }
     }
 
-    /// One step; `t` is its start, s into the tick, and `disturbance_nm` acts on the large shaft.
+    /// One step that begins `t` s after the tick; `disturbance_nm` acts on the large shaft.
     #[inline]
     pub fn step(&mut self, grip: &Grip, t: f64, disturbance_nm: f64) {
         match grip {
@@ -174,7 +174,8 @@ impl Plant {
             .finish(self.step, middle, end, direction, drive.coulomb, || other);
     }
 
-    /// `hand(since, angle, omega)`: its torque on a handle there, `since` seconds into the step.
+    /// `hand(since, angle, omega)` is the torque of the hand on the handle, `since` seconds after the
+    /// beginning of the step.
     #[inline]
     fn step_both(&mut self, disturbance: f64, hand: impl Fn(f64, f64, f64) -> f64) {
         let (step, half, damping) = (self.step, 0.5 * self.step, self.damping);

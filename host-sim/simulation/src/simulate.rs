@@ -1,4 +1,4 @@
-//! One run: a scenario on a device at a rate, sampled into a [`Trace`].
+//! Simulation of a scenario on a device at a control rate, sampled as a [`Trace`].
 
 use crate::device::{Device, Disc, LONGEST_STEP_S};
 use crate::encoder::{DiscErrors, EdgeObserver, Encoder};
@@ -19,7 +19,7 @@ pub const RATES_HZ: (f64, f64) = (100.0, 100_000.0);
 /// Longest run, ticks.
 const MOST_TICKS: f64 = 1e8;
 
-/// Ticks of a run.
+/// Number of ticks of a run.
 ///
 /// # Errors
 /// One line that names a rate or a duration out of range, and the range.
@@ -44,7 +44,7 @@ pub fn ticks(rate_hz: f64, seconds: f64) -> Result<usize, String> {
     Ok(ticks as usize)
 }
 
-/// Plant steps that a run takes, for statistics.
+/// Number of plant steps of a run, for statistics.
 ///
 /// # Errors
 /// As [`ticks`].
@@ -55,11 +55,11 @@ pub fn plant_steps(rate_hz: f64, seconds: f64) -> Result<u64, String> {
 
 /// Runs a scenario for `seconds` at `rate_hz`.
 ///
-/// At each tick the encoders are sampled first; then the scenario decides, and its currents are
-/// applied at once. `current` is the large motor's command after saturation, from its tick to
-/// the next; `true_omega` the large motor's true velocity at the tick, rad/s. Counts start
-/// anywhere, by the seed. An edge's age is the difference of two readings of one clock of
-/// [`EDGE_CLOCK_HZ`], the edge's and the tick's, each rounded down, as a capture unit reads them.
+/// At each tick the encoders are sampled first. Then the scenario computes its currents, which are
+/// applied at once. `current` is the large motor's command after saturation, from its tick to the
+/// next; `true_omega` is the large motor's true velocity at the tick, rad/s. The seed draws the first
+/// counts. The age of an edge is the difference of two readings of a clock of [`EDGE_CLOCK_HZ`], one
+/// at the edge and one at the tick, each rounded down, as in a capture unit.
 ///
 /// ```
 /// use simulation::device::Device;
@@ -74,7 +74,7 @@ pub fn plant_steps(rate_hz: f64, seconds: f64) -> Result<u64, String> {
 /// ```
 ///
 /// # Errors
-/// One line on an impossible device, or a rate or a duration out of range.
+/// One line on an invalid device, or on a rate or a duration out of range.
 pub fn simulate(
     device: &Device,
     scenario: ScenarioName,
@@ -93,13 +93,13 @@ pub fn simulate(
     })
 }
 
-/// What keeps the latest edge for the trace, or nothing.
+/// Recorder of the latest edge for the trace; `()` records none.
 trait Stamps: EdgeObserver {
-    /// Column of the trace, if there is one.
+    /// Column of the trace; `None` if no edges are recorded.
     fn column(ticks: usize) -> Option<Vec<Option<EdgeStamp>>>;
-    /// A step of `step_s` begins at `t`, s.
+    /// Called before a step of `step_s` that begins at `t`, s.
     fn step(&mut self, t: f64, step_s: f64);
-    /// What is known at a tick at `t`, s.
+    /// Records the edge known at a tick at `t`, s.
     fn read(&self, t: f64) -> Option<EdgeStamp>;
 }
 
@@ -113,7 +113,7 @@ impl Stamps for () {
     }
 }
 
-/// The latest edge, by the clock of the time stamps.
+/// The latest edge in periods of the edge clock.
 #[derive(Default)]
 struct LastEdge {
     t: f64,
@@ -144,7 +144,7 @@ impl Stamps for LastEdge {
     }
 }
 
-/// Everything that moves.
+/// State of the simulation.
 struct Run {
     rate_hz: f64,
     period: f64,
@@ -172,7 +172,7 @@ impl Run {
         let step = period / f64::from(steps);
         debug_assert!(step <= LONGEST_STEP_S * 1.000_001);
 
-        // Apart from the scenario's own draws, which come from the unshifted seed.
+        // The shifted seed is independent of the scenario's own draws.
         let mut random = Xoshiro256PlusPlus::seed_from_u64(name.mix(seed).rotate_left(32));
         let scenario = build(name, &device, period, seed);
         let start = Pose {
@@ -192,7 +192,7 @@ impl Run {
             let phase = draw(&mut random, 0.0, 1.0);
             Encoder::new(counts_per_rev, first, phase, angle, disc)
         };
-        // All three are drawn, read or not, so that no column changes another.
+        // All three are always drawn, so that no column depends on the presence of another.
         let large = encoder(device.stages.large.counts_per_rev, start.angle, disc);
         let handle = plant.small().angle;
         let small = encoder(
@@ -252,7 +252,7 @@ impl Run {
         }
     }
 
-    /// What the scenario's loop reads now.
+    /// Input of the scenario's loop.
     fn seen(&self) -> Seen {
         let count = |encoder: &Option<Encoder>| encoder.as_ref().map_or(0, Encoder::count);
         Seen {
@@ -261,7 +261,7 @@ impl Run {
         }
     }
 
-    /// From one tick, at `t`, to the next; returns what the scenario decided.
+    /// Simulates from the tick at `t` to the next one; returns the scenario's decision.
     fn tick<S: Stamps>(&mut self, k: u64, seen: Seen, t: f64, stamps: &mut S) -> Drive {
         let drive = self.scenario.tick(k, seen);
         self.plant.command(drive.large_a, drive.small_a);

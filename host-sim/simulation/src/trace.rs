@@ -1,4 +1,4 @@
-//! What one run of the plant, or one recording of a real motor, leaves behind.
+//! Sampled signals of a simulated run, or of a recording of a real motor.
 
 /// Rate of the clock that stamps encoder edges, Hz: a timer at half the board's 168 MHz.
 pub const EDGE_CLOCK_HZ: f64 = 84e6;
@@ -12,9 +12,9 @@ pub struct EdgeStamp {
     pub boundary: u32,
 }
 
-/// A sampled run, one entry a tick in every column that is there.
+/// A sampled run, with one entry per tick in every present column.
 ///
-/// A column that nobody asked for is `None`: it was not simulated, or the recording lacks it.
+/// A missing column is `None`: it was not simulated, or it is not in the recording.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
     /// Control rate, Hz.
@@ -40,7 +40,7 @@ impl Trace {
         self.counts_large.len()
     }
 
-    /// Whether there is no tick at all.
+    /// Whether the trace has no tick.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.counts_large.is_empty()
@@ -53,7 +53,7 @@ impl Trace {
     }
 }
 
-/// Which optional columns a simulation has to produce; what nobody reads is not simulated.
+/// Optional columns that a simulation produces. Other encoders are not simulated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Columns {
     /// The small encoder.

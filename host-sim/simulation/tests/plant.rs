@@ -1,4 +1,4 @@
-//! The plant against closed forms, against itself at half the step, and against its energy.
+//! Tests of the plant against closed forms, half the step, and the energy balance.
 
 use simulation::device::Device;
 use simulation::plant::{Grip, HandMotion, Plant, Pose, steps_per_tick};
@@ -25,7 +25,7 @@ fn run(plant: &mut Plant, grip: &Grip, steps: u32, step_s: f64) {
 }
 
 #[test]
-fn free_decay_on_the_coupler_is_the_closed_form() {
+fn free_decay_agrees_with_the_closed_form() {
     let device = smooth();
     let (b, jl, js) = (
         device.stages.damping,
@@ -57,7 +57,7 @@ fn free_decay_on_the_coupler_is_the_closed_form() {
 }
 
 #[test]
-fn the_amplifier_is_an_exact_lag_and_saturates() {
+fn amplifier_is_an_exact_lag_and_saturates() {
     let device = Device::default();
     let mut plant = Plant::new(&device, STEP_S);
     plant.command(100.0, -100.0);
@@ -88,7 +88,7 @@ fn constant_current_settles_where_friction_and_coupler_balance_it() {
 }
 
 #[test]
-fn below_its_friction_a_motor_does_not_move_at_all() {
+fn motor_does_not_move_below_its_friction() {
     let device = Device::default();
     // The ripple of friction takes 10 % at most, that of torque adds 1.5 %.
     let holds = 0.88 * device.stages.large.coulomb_friction / device.stages.large.torque_constant;
@@ -111,7 +111,7 @@ fn below_its_friction_a_motor_does_not_move_at_all() {
 }
 
 #[test]
-fn friction_stops_a_free_shaft_where_the_closed_form_does_and_for_good() {
+fn friction_stops_a_free_shaft_at_the_closed_forms_time() {
     let mut device = Device::default();
     device.large_ripple.friction = 0.0;
     let (b, j, c) = (
@@ -135,7 +135,7 @@ fn friction_stops_a_free_shaft_where_the_closed_form_does_and_for_good() {
 }
 
 #[test]
-fn a_shaft_driven_through_rest_turns_inside_the_step() {
+fn reversal_inside_a_step_agrees_with_the_closed_form() {
     let mut device = Device::default();
     device.large_ripple.friction = 0.0;
     device.large_ripple.torque = 0.0;
@@ -184,7 +184,7 @@ fn moving_run(device: &Device, step_s: f64, shrink: u32) -> [f64; 4] {
 }
 
 #[test]
-fn half_the_step_is_four_times_as_close_while_nothing_sticks() {
+fn integration_is_of_second_order_without_sticking() {
     // With friction and all ripple: second order has to survive them.
     let device = Device::default();
     let runs = [1, 2, 4].map(|shrink| moving_run(&device, STEP_S / f64::from(shrink), shrink));
@@ -239,7 +239,7 @@ fn energy_never_grows_without_input() {
 }
 
 #[test]
-fn what_the_hand_feels_is_the_balance_of_the_small_shaft() {
+fn torque_on_the_hand_is_the_balance_of_the_small_shaft() {
     let mut device = smooth();
     device.hand.damping_nms_per_rad = 4e-3;
     let mut plant = Plant::new(&device, STEP_S);
@@ -265,7 +265,7 @@ fn what_the_hand_feels_is_the_balance_of_the_small_shaft() {
 }
 
 #[test]
-fn the_step_divides_every_tick() {
+fn step_divides_every_tick() {
     for rate in [100.0, 1000.0, 7777.7, 10_000.0, 11_600.0, 100_000.0] {
         let steps = f64::from(steps_per_tick(1.0 / rate));
         let step = 1.0 / rate / steps;

@@ -40,7 +40,7 @@ fn absolute_encoder_is_continued_over_its_wrap_with_a_note() {
         "plot as5600.csv --out p.svg",
     ] {
         let said = notes(&folder, command);
-        let note = "as5600.csv: counts_large wraps at 4096 and is continued: a revolution of an \
+        let note = "as5600.csv: counts_large wraps at 4096 and is unwrapped: a revolution of an \
                     absolute encoder";
         assert!(said.contains(note), "{said}");
     }
@@ -63,7 +63,7 @@ fn presets_for_another_encoder_or_rate_are_reported() {
     let estimators = "--estimator pll --estimator finite-difference";
     let said = notes(&folder, &format!("{replay} {estimators}"));
     let warning = "back-and-forth.csv: parameters tuned in the shipped presets for 4096 counts/rev at \
-                   1000 Hz are used for 90 counts/rev at 1000 Hz, which is far from that: pll; tune them \
+                   1000 Hz are used for 90 counts/rev at 1000 Hz, which differs too much: pll; tune them \
                    with host-sim tune --rate 1000 --device FILE.toml";
     assert!(said.contains(warning), "{said}");
     let said: Vec<_> = said.split_whitespace().collect();

@@ -105,7 +105,7 @@ fn bad_recordings_are_refused_by_file_line_and_column() {
         (
             "one.csv",
             b"t,counts_large\n0,0\n",
-            "one.csv: needs two rows",
+            "one.csv: fewer than two rows",
         ),
     ] {
         folder.write(name, text);

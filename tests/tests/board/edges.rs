@@ -40,7 +40,7 @@ fn generated(hz: f64, seconds: f64) -> (Outcome, Vec<Stamp>) {
 }
 
 fn stamp(run: &Outcome, frame: &Frame) -> Option<Stamp> {
-    let edge = frame.beside.edge?;
+    let edge = frame.side_lines.edge?;
     let tick = run.tick(frame).expect("its tick");
     let read_ns = tick.stamp_clock_read_ns.expect("a reading") - tick.at_ns;
     Some(Stamp {

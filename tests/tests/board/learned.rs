@@ -13,7 +13,7 @@ use crate::image::{of_scene, run, run_image};
 /// The last line of what was learned.
 fn last_learned(run: &Outcome) -> Option<LearnedLine> {
     let frames = run.telemetry.frames.iter().rev();
-    frames.filter_map(|frame| frame.beside.learned).next()
+    frames.filter_map(|frame| frame.side_lines.learned).next()
 }
 
 /// A coupler that has warmed up: a quarter of its damping is gone, and the image says so. A wall lets

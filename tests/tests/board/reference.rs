@@ -17,7 +17,10 @@ fn the_reference_encoder_is_logged_and_right() {
     let mut first = None;
     let (mut worst, mut furthest) = (0.0_f64, 0.0_f64);
     for frame in &run.telemetry.frames {
-        let count = frame.beside.reference.expect("a line beside every frame");
+        let count = frame
+            .side_lines
+            .reference
+            .expect("a line beside every frame");
         let angle = run.tick(frame).expect("a tick").large.angle;
         let (first_count, first_angle) = *first.get_or_insert((count, angle));
         let counts = f64::from(count.wrapping_sub(first_count).cast_signed());
@@ -38,6 +41,6 @@ fn an_image_without_it_says_nothing_of_it() {
             .telemetry
             .frames
             .iter()
-            .all(|frame| frame.beside.reference.is_none())
+            .all(|frame| frame.side_lines.reference.is_none())
     );
 }

@@ -9,8 +9,8 @@ use super::{Setup, Values};
 
 pub(super) type Build = fn(&Setup, &Values) -> Result<Estimator, DesignError>;
 
-/// Length of the host's gain table, ticks: enough for the presets at 100 kHz. Firmware takes as many
-/// as it needs.
+/// Length of the host's gain table, ticks: sufficient for the presets at 100 kHz. The firmware has
+/// shorter tables.
 const TABLE: usize = 4096;
 
 /// Length of the window or of the gain table of a row.

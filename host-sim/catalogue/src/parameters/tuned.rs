@@ -1,15 +1,16 @@
-//! What parameter values were tuned for.
+//! Rate and encoder for which parameter values were tuned.
 
 use std::collections::BTreeMap;
 
 use super::{Override, Parameters, PlantKind, Preset, Presets};
 use crate::estimators::{Kind, Search, Setup};
 
-/// Ratio of rates, or of counts per revolution, up to which tuned values still serve.
+/// Largest ratio of rates, or of counts per revolution, at which tuned values are used without a
+/// note.
 const FAR: f64 = 1.5;
 
 impl Parameters {
-    /// Where the values come from, the strongest first.
+    /// Sources of the values in order of falling priority, for messages.
     #[must_use]
     pub fn sources(&self) -> String {
         let set = (!self.overrides.is_empty()).then_some("--set");
@@ -18,8 +19,8 @@ impl Parameters {
         sources.join(", then ")
     }
 
-    /// A line for each preset whose values are used at a rate or with an encoder that is far from
-    /// what they were tuned for: the estimators concerned, both cases, and the remedy.
+    /// One line for each preset whose values are used at a rate or with an encoder that is far from
+    /// the tuned one: the estimators, both rates and encoders, and the remedy.
     #[must_use]
     pub fn used_far_away(&self, kinds: &[&Kind], setup: &Setup, plant: PlantKind) -> Vec<String> {
         let mut far: BTreeMap<String, Vec<&str>> = BTreeMap::new();
@@ -47,8 +48,8 @@ impl Parameters {
         );
         let line = |(tuned, names): (String, Vec<&str>)| {
             format!(
-                "parameters tuned in {tuned} are used for {here}, which is far from that: {}; tune them \
-                 with host-sim tune --rate {} --device FILE.toml and give its file as --presets, or give \
+                "parameters tuned in {tuned} are used for {here}, which differs too much: {}; tune them \
+                 with host-sim tune --rate {} --device FILE.toml and give its file as --presets, or set \
                  values with --set",
                 names.join(", "),
                 setup.rate.0
@@ -57,8 +58,8 @@ impl Parameters {
         far.into_iter().map(line).collect()
     }
 
-    /// The preset that gives `kind` its values, and the name of its file; `None` where nothing is
-    /// tuned, or everything set by name.
+    /// The preset with the values of `kind`, and the name of its file; `None` if no value is tuned, or
+    /// all are set by name.
     fn tuned(&self, kind: &Kind, setup: &Setup, plant: PlantKind) -> Option<(&str, &Preset)> {
         let set = |index: usize| {
             let of = |change: &Override| change.kind == kind.name && change.index == index;
@@ -91,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn presets_far_from_their_rate_or_encoder_are_named() {
+    fn preset_used_far_from_its_rate_or_encoder_is_reported() {
         let shipped = Parameters::default();
         let kinds = ["finite-difference", "pll", "foaw-end-fit"];
         for (rate_hz, counts) in [
@@ -116,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn presets_file_and_values_set_by_name_count() {
+    fn presets_file_and_values_set_by_name_are_considered() {
         let file = "[[preset]]\nrate_hz = 1000\nplant = 'friction'\ncounts_per_rev = 90\n\
                     estimators = { pll = { bandwidth_hz = 10 } }";
         let mut parameters = Parameters::default();

@@ -1,4 +1,4 @@
-//! What a device may be, and how a file that says otherwise is told so in one line.
+//! Allowed values of a device, and the error messages of a device file.
 
 use haptic_control::Motor;
 
@@ -8,8 +8,8 @@ use crate::decimal;
 /// Allowed range of one value.
 enum Range {
     Above0,
-    /// Above 0 and at most this; a larger value is probably in the unit of that name, of which one
-    /// is ten to this power.
+    /// Above 0 and at most the first value. A larger value is probably in the unit of the given name,
+    /// which is ten to the given power in SI units.
     Most(f64, &'static str, i32),
     From0,
     /// A share: from 0 to below 1.
@@ -39,7 +39,7 @@ fn check(key: &str, value: f64, unit: &str, range: &Range) -> Result<(), String>
     Ok(())
 }
 
-/// What to write for a value that is too large, if it is right in the usual unit.
+/// Hint for a value that is too large: the value in SI units, if the given one is in the usual unit.
 fn in_usual_unit(value: f64, range: &Range) -> String {
     let Range::Most(most, usual, power) = *range else {
         return String::new();
@@ -56,7 +56,7 @@ fn check_counts(key: &str, counts: u32) -> Result<(), String> {
         return Ok(());
     }
     Err(format!(
-        "{key} = {counts}: must be from 16 to 4000000 counts a revolution"
+        "{key} = {counts}: must be from 16 to 4000000 counts per revolution"
     ))
 }
 
@@ -90,7 +90,7 @@ fn check_motor(name: &str, motor: &Motor, ripple: &Ripple) -> Result<(), String>
     check_counts(&format!("{name}.counts_per_rev"), motor.counts_per_rev)
 }
 
-/// Largest rate of the plant, as part of one over the longest step, that it still follows well.
+/// Largest rate of the plant, relative to one over the longest step, that the integration allows.
 const FASTEST: f64 = 0.1;
 
 /// The plant's fixed step must be short against every time constant that it integrates.
@@ -101,8 +101,8 @@ fn check_rates(device: &Device) -> Result<(), String> {
             return Ok(());
         }
         Err(format!(
-            "{key} = {}: too small for its dampers and springs, they would settle in {:.1e} s; \
-             must be {:.0e} s or more",
+            "{key} = {}: too small: its dampers and springs settle in {:.1e} s, but the simulation needs \
+             {:.0e} s or more; give a larger inertia, or smaller damping and stiffness",
             decimal(inertia),
             1.0 / rate,
             LONGEST_STEP_S / FASTEST
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn a_device_survives_toml_both_ways() {
+    fn device_is_unchanged_after_writing_and_reading() {
         let mut device = Device::default();
         device.stages.small.inertia = 61.25e-7;
         device.disc.phase_counts = 0.1;
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_file_leaves_out_keeps_its_own_default() {
+    fn missing_keys_keep_the_default_of_their_motor() {
         assert_eq!(Device::from_toml_str("").unwrap(), Device::default());
         let device = Device::from_toml_str("[small]\ncoulomb_nm = 1").unwrap();
         let mut expected = Device::default();
@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_key_is_named_with_its_line_and_the_right_ones() {
+    fn unknown_key_is_reported_with_its_line_and_the_known_keys() {
         let error = refused("[large]\n\ninertia = 1e-5\n");
         assert!(error.starts_with("line 3, inertia: "), "{error}");
         assert!(error.contains("inertia_kg_m2"), "{error}");
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_type_is_named_with_its_line() {
+    fn wrong_type_is_reported_with_its_line() {
         let error = refused("[hand]\nstiffness_nm_per_rad = 'firm'");
         assert!(
             error.starts_with("line 2, stiffness_nm_per_rad: "),
@@ -279,11 +279,11 @@ mod tests {
             ),
             (
                 "large.counts_per_rev = 0",
-                "large.counts_per_rev = 0: must be from 16 to 4000000 counts a revolution",
+                "large.counts_per_rev = 0: must be from 16 to 4000000 counts per revolution",
             ),
             (
                 "reference.counts_per_rev = 4000001",
-                "reference.counts_per_rev = 4000001: must be from 16 to 4000000 counts a revolution",
+                "reference.counts_per_rev = 4000001: must be from 16 to 4000000 counts per revolution",
             ),
             (
                 "coupler.damping_nms_per_rad = nan",
@@ -309,8 +309,9 @@ mod tests {
             ),
             (
                 "large.inertia_kg_m2 = 1e-300",
-                "large.inertia_kg_m2 = 1e-300: too small for its dampers and springs, they would settle \
-                 in 1.0e-297 s; must be 1e-4 s or more",
+                "large.inertia_kg_m2 = 1e-300: too small: its dampers and springs settle in \
+                 1.0e-297 s, but the simulation needs 1e-4 s or more; give a larger inertia, or \
+                 smaller damping and stiffness",
             ),
             (
                 "small.current_limit_a = 0",
@@ -334,14 +335,14 @@ mod tests {
     }
 
     #[test]
-    fn an_inertia_too_small_for_the_step_is_refused() {
+    fn inertia_too_small_for_the_step_is_refused() {
         let error = refused("small.inertia_kg_m2 = 1e-9");
         assert!(error.starts_with("small.inertia_kg_m2 = "), "{error}");
         assert!(error.contains("too small"), "{error}");
     }
 
     #[test]
-    fn frictionless_takes_the_coulomb_friction_of_both_motors_and_nothing_else() {
+    fn frictionless_removes_only_the_coulomb_friction_of_both_motors() {
         let device = Device::default();
         let mut expected = device.clone();
         expected.stages.large.coulomb_friction = 0.0;

@@ -39,7 +39,7 @@ struct MotorSection {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Coupler {
-    /// Cold.
+    /// Damping of the cold coupler, N.m.s/rad.
     damping_nms_per_rad: f64,
     fall_at_60_s: f64,
 }
@@ -48,7 +48,7 @@ struct Coupler {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Amplifier {
-    /// At -3 dB.
+    /// Frequency at -3 dB, Hz.
     bandwidth_hz: f64,
 }
 
@@ -66,7 +66,7 @@ impl MotorSection {
         }
     }
 
-    /// This section's values in place of the defaults.
+    /// Replaces the defaults by the values of this section.
     fn over(self, motor: &Motor, ripple: &Ripple) -> (Motor, Ripple) {
         let motor = Motor {
             inertia: self.inertia_kg_m2.unwrap_or(motor.inertia),

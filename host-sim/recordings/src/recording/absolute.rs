@@ -1,4 +1,4 @@
-//! Absolute encoders: counts that begin again each revolution.
+//! Absolute encoders and short counters: counts that wrap at a revolution or at 16 bits.
 
 use super::Recording;
 use simulation::device::Device;
@@ -8,9 +8,9 @@ use simulation::trace::EdgeStamp;
 const SHORT: u32 = 1 << 16;
 
 impl Recording {
-    /// Continues counts that wrap at a revolution or at 16 bits, so that they go on modulo 2^32.
-    /// Gives a line on each column that was changed, or that looks as if its encoder had other
-    /// counts per revolution than `device` says.
+    /// Unwraps counts that wrap at a revolution or at 16 bits to counts modulo 2^32. Returns one line
+    /// per changed column, and per column whose jumps do not fit the counts per revolution of
+    /// `device`.
     #[must_use]
     pub fn unwrap_counts(&mut self, device: &Device) -> Vec<String> {
         let trace = &mut self.trace;
@@ -21,7 +21,7 @@ impl Recording {
         said.extend(
             found
                 .as_ref()
-                .map(|found| found.told("counts_large", "large", per_rev)),
+                .map(|found| found.note("counts_large", "large", per_rev)),
         );
         if let Some(Found::Wraps(modulus)) = found {
             let raw = unwrap(&mut trace.counts_large, modulus);
@@ -38,7 +38,7 @@ impl Recording {
             said.extend(
                 found
                     .as_ref()
-                    .map(|found| found.told("counts_small", "small", per_rev)),
+                    .map(|found| found.note("counts_small", "small", per_rev)),
             );
             if let Some(Found::Wraps(modulus)) = found {
                 unwrap(counts, modulus);
@@ -48,20 +48,20 @@ impl Recording {
     }
 }
 
-/// What is remarkable about a column of counts.
+/// Property of a column of counts that is worth a note.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Found {
-    /// It wraps at this modulus.
+    /// The counts wrap at this modulus.
     Wraps(u32),
-    /// It makes a jump that no shaft makes, and spans so many counts.
+    /// The counts have an impossible jump, the first number, and span the second number of counts.
     Jumps(i64, i64),
 }
 
 impl Found {
-    fn told(self, column: &str, motor: &str, per_rev: u32) -> String {
+    fn note(self, column: &str, motor: &str, per_rev: u32) -> String {
         match self {
             Self::Wraps(modulus) => format!(
-                "{column} wraps at {modulus} and is continued: a {}",
+                "{column} wraps at {modulus} and is unwrapped: a {}",
                 match modulus == per_rev {
                     true => "revolution of an absolute encoder",
                     false => "counter of 16 bits",
@@ -69,8 +69,8 @@ impl Found {
             ),
             Self::Jumps(jump, span) => format!(
                 "{column} jumps by {jump} from one row to the next and spans {span} counts, with {per_rev} \
-                 counts a revolution: if the encoder is absolute, give its counts as \
-                 {motor}.counts_per_rev with --device"
+                 counts per revolution: if the encoder is absolute, give its counts as \
+                 {motor}.counts_per_rev in the file of --device"
             ),
         }
     }
@@ -87,7 +87,7 @@ fn look(counts: &[u32], t: &[f64], longest: f64, per_rev: u32) -> Option<Found> 
     let span = values().max()? - values().min()?;
     let wraps = |modulus: &u32| {
         let modulus = i64::from(*modulus);
-        // A shaft that turns does less than a quarter of a revolution from row to row.
+        // A shaft turns less than a quarter of a revolution from row to row.
         span < modulus && 4 * jump.abs() >= 3 * modulus
     };
     let wraps = [per_rev, SHORT].into_iter().find(wraps);
@@ -97,7 +97,7 @@ fn look(counts: &[u32], t: &[f64], longest: f64, per_rev: u32) -> Option<Found> 
         .or(far.then_some(Found::Jumps(jump, span + 1)))
 }
 
-/// Continues `counts` over each wrap; gives them as they were.
+/// Unwraps `counts` and returns the original ones.
 fn unwrap(counts: &mut [u32], modulus: u32) -> Vec<i64> {
     let raw: Vec<_> = counts
         .iter()
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn absolute_encoders_are_continued_over_the_wrap() {
+    fn counts_of_an_absolute_encoder_are_unwrapped() {
         for (counts, step, least) in [
             (4096, 3, 0),
             (4096, -700, 0),
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn short_counter_is_continued_too() {
+    fn counts_of_a_16_bit_counter_are_unwrapped() {
         let (mut recording, truth) = recording(100, 65_536, 0);
         let said = recording.unwrap_counts(&device(4096));
         assert_eq!(recording.trace.counts_large, truth);
@@ -178,12 +178,12 @@ mod tests {
     }
 
     #[test]
-    fn other_encoder_than_the_device_says_is_reported_and_left_alone() {
+    fn encoder_that_differs_from_the_device_is_reported_and_not_unwrapped() {
         let (mut recording, _) = recording(11, 16_384, 0);
         let before = recording.trace.counts_large.clone();
         let said = recording.unwrap_counts(&device(4096));
-        let words = "counts, with 4096 counts a revolution: if the encoder is absolute, give its counts \
-                     as large.counts_per_rev with --device";
+        let words = "counts, with 4096 counts per revolution: if the encoder is absolute, give its counts \
+                     as large.counts_per_rev in the file of --device";
         assert!(said[0].contains(words), "{said:?}");
         assert!(
             said[0].starts_with("counts_large jumps by -16373 "),
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn incremental_counts_are_left_alone() {
+    fn incremental_counts_are_not_changed() {
         // Over the wrap of 32 bits, and with a gap in which the shaft turns nearly a revolution.
         let text = "t,counts_large\n0,-2\n0.001,-1\n0.002,1\n0.003,2\n0.1,4000\n0.101,4001\n";
         let mut recording = Recording::parse(text.as_bytes(), "r").unwrap();

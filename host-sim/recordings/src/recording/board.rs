@@ -1,4 +1,4 @@
-//! What the board made of its samples, in the same file: for figures alone.
+//! Columns of a recording with the board's own estimates, for figures.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -13,7 +13,7 @@ use terminal::failure::Failure;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BoardColumns {
     columns: BTreeMap<&'static str, Vec<f64>>,
-    /// `learned_damping`, `learned_friction`, `learned_torque_constant`: what it had learned last.
+    /// `learned_damping`, `learned_friction`, `learned_torque_constant` of the last row that has them.
     pub learned: Option<LearnedLine>,
 }
 
@@ -25,7 +25,7 @@ const LEARNED: [&str; 3] = [
 ];
 
 impl BoardColumns {
-    /// Whether this CSV text is a recording of a board that says how sure it is, or what it learned.
+    /// Whether this CSV text has the board's columns of standard deviations or learned parameters.
     #[must_use]
     pub fn are_in(text: &[u8]) -> bool {
         let header = text.split(|byte| *byte == b'\n').next().unwrap_or_default();
@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn columns_that_are_there_are_read_and_a_bad_field_is_named() {
+    fn present_columns_are_read_and_an_invalid_field_is_reported() {
         let text = "t,torque,counts_large,state\n0,0.5,1,2\n1,-0.25,1,3\n";
         let board = BoardColumns::parse(text.as_bytes(), "r.csv").unwrap();
         assert_eq!(board.column("torque"), Some(&[0.5, -0.25][..]));

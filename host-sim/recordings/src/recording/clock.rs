@@ -1,33 +1,35 @@
-//! How long a row of a recording lasts, and how even its rows are.
+//! Period of a recording's rows, and its uneven steps.
 
 use super::Recording;
 use terminal::failure::Failure;
 
-/// Part of a period by which an even step may differ from it.
+/// Largest relative difference of an even step from the period.
 const EVEN: f64 = 0.1;
 
-/// Part of the median step by which a step may differ that counts for the rate: a missing row does
-/// not, digits that are rounded away do.
+/// Largest relative difference from the median step of the steps that determine the rate. Steps with
+/// rounded digits are included, steps over a missing row are not.
 const REGULAR: f64 = 0.5;
 
-/// Slowest recording that can be of a motor's velocity, Hz.
+/// Slowest rate of a recording, Hz.
 const SLOWEST_HZ: f64 = 10.0;
 
-/// Rate of the rows of `t`, Hz, and how many steps are uneven.
+/// Rate of the rows of `t`, Hz, and the number of uneven steps.
 ///
-/// The rate is one over the mean of the steps near the median: the median alone is as coarse as the
-/// digits of `t`.
+/// The rate is one over the mean of the steps near the median, because the resolution of the median
+/// alone is that of the digits of `t`.
 pub(super) fn rate(t: &[f64], name: &str) -> Result<(f64, usize), Failure> {
     let mut steps: Vec<_> = t.windows(2).map(|t| t[1] - t[0]).collect();
     if steps.is_empty() {
-        return Err(Failure::Input(format!("{name}: needs two rows at least")));
+        return Err(Failure::Input(format!(
+            "{name}: fewer than two rows of data; a recording needs at least two"
+        )));
     }
     steps.sort_unstable_by(f64::total_cmp);
     let median = steps[steps.len() / 2];
     if median <= 0.0 {
         return Err(Failure::Input(format!(
-            "{name}: column t: stands still in most rows; it must be in seconds, with digits enough \
-             to tell rows apart"
+            "{name}: column t: does not increase in most rows; write it in seconds with enough digits to \
+             distinguish rows"
         )));
     }
     let regular = steps
@@ -35,12 +37,12 @@ pub(super) fn rate(t: &[f64], name: &str) -> Result<(f64, usize), Failure> {
         .filter(|step| differs(**step, median) <= REGULAR);
     let (sum, number) = regular.fold((0.0, 0.0), |(sum, number), step| (sum + step, number + 1.0));
     let period = sum / number;
-    // Decimal time steps are a few digits short of the rate they mean.
+    // Decimal digits of `t` are rounded, so the rate is rounded too.
     let rate_hz = to_digits(1.0 / period, 7);
     if rate_hz < SLOWEST_HZ {
         return Err(Failure::Input(format!(
             "{name}: column t: rows {period} s apart are {rate_hz} Hz, which is below {SLOWEST_HZ} Hz; \
-             t must be in seconds: is it in ms or us?"
+             t must be in seconds, check that it is not in ms or us"
         )));
     }
     let uneven = steps.iter().filter(|step| differs(**step, period) > EVEN);
@@ -48,7 +50,7 @@ pub(super) fn rate(t: &[f64], name: &str) -> Result<(f64, usize), Failure> {
 }
 
 impl Recording {
-    /// How uneven the steps of `t` are, in words; `None` where they are even.
+    /// Description of the uneven steps of `t`; `None` if there are none.
     #[must_use]
     pub fn unevenness(&self) -> Option<String> {
         let period = self.trace.period_s();
@@ -66,7 +68,7 @@ impl Recording {
         })
     }
 
-    /// Part of the steps of `t` that are uneven, 0 to 1.
+    /// Share of uneven steps of `t`, 0 to 1.
     #[must_use]
     pub fn uneven_share(&self) -> f64 {
         self.uneven_steps as f64 / (self.t.len() - 1) as f64
@@ -77,7 +79,7 @@ fn differs(step: f64, period: f64) -> f64 {
     (step - period).abs() / period
 }
 
-/// `x` to so many significant digits.
+/// `x` with `digits` significant digits.
 fn to_digits(x: f64, digits: usize) -> f64 {
     format!("{x:.0$e}", digits - 1).parse().unwrap_or(x)
 }
@@ -98,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn rate_is_right_whatever_the_digits_of_t() {
+    fn rate_does_not_depend_on_the_digits_of_t() {
         let (exact, uneven) = rate(&stamps(|t| t.to_string()), "r").unwrap();
         assert_eq!((exact, uneven), (11_600.0, 0));
         for t in [stamps(|t| format!("{t:.6}")), stamps(six_digits)] {

@@ -1,4 +1,4 @@
-//! Why a header lacks a column.
+//! Error message for a header with a missing column.
 
 use csv::ByteRecord;
 
@@ -7,13 +7,13 @@ use terminal::failure::Failure;
 /// Characters of a header that a message shows.
 const SHOWN: usize = 60;
 
-/// A header field without the byte order mark, which is part of the first one as the file has it.
+/// A header field without the byte order mark, which can precede the first field.
 pub(super) fn field(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)
 }
 
-/// The header lacks `column`: what it has instead, and what may be wrong with it.
-pub(super) fn lacks(column: &str, header: &ByteRecord, name: &str) -> Failure {
+/// Error for a header without `column`, with the header and a hint at the probable cause.
+pub(super) fn missing(column: &str, header: &ByteRecord, name: &str) -> Failure {
     let fields = header
         .iter()
         .map(|bytes| String::from_utf8_lossy(field(bytes)));
@@ -21,8 +21,8 @@ pub(super) fn lacks(column: &str, header: &ByteRecord, name: &str) -> Failure {
     let line: String = fields.join(",").chars().take(SHOWN).collect();
     let hint = hint(column, &fields).map_or_else(String::new, |hint| format!(" ({hint})"));
     Failure::Input(format!(
-        "{name}: line 1: no column {column}; it is '{}'{hint}; the first line must name the columns, t \
-         and counts_large among them, separated by commas",
+        "{name}: line 1: no column {column}; the line is '{}'{hint}; it must have the names of the \
+         columns, t and counts_large among them, separated by commas",
         line.escape_debug()
     ))
 }
@@ -70,7 +70,7 @@ mod tests {
     use super::super::Recording;
 
     #[test]
-    fn header_is_shown_with_what_may_be_wrong() {
+    fn error_shows_the_header_and_a_hint() {
         for (text, said) in [
             (
                 "t;counts_large\n0;1\n",

@@ -1,4 +1,4 @@
-//! Recordings: CSV out.
+//! Recordings written as CSV.
 
 use std::fmt::Write as _;
 
@@ -6,7 +6,7 @@ use super::Recording;
 use simulation::trace::EDGE_CLOCK_HZ;
 
 impl Recording {
-    /// As CSV with the columns that are there, which [`Recording::read`] reads back.
+    /// The recording as CSV with its present columns, which [`Recording::read`] can read.
     #[must_use]
     pub fn to_csv(&self) -> Vec<u8> {
         let trace = &self.trace;

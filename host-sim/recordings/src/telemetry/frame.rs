@@ -4,12 +4,12 @@ use std::str::FromStr;
 
 use haptic_control::{Mode, Stop};
 
-use super::beside::Beside;
+use super::side_lines::SideLines;
 
-/// How the line of a frame begins.
+/// Begin of a frame's line.
 pub(super) const START: &str = "frame seq=";
 
-/// The number of no estimator.
+/// Code of a missing estimator.
 pub const NOBODY: u8 = u8::MAX;
 
 /// A column of recordings: its name, and the value of a frame as text, if the frame has one.
@@ -22,19 +22,19 @@ macro_rules! frame {
         pub struct Frame {
             $($(#[$doc])* pub $name: $type,)+
             /// Lines that the firmware logs beside the frame.
-            pub beside: Beside,
+            pub side_lines: SideLines,
         }
 
         impl FromStr for Frame {
             type Err = String;
 
-            /// By names, in any order; names that are not known, and what a log puts behind, are
+            /// Reads the fields by name, in any order. Unknown names and text that a log appends are
             /// skipped.
             fn from_str(line: &str) -> Result<Self, String> {
                 let fields = Fields(line);
                 Ok(Self {
                     $($name: Field::read(&fields, stringify!($name), $old)?,)+
-                    beside: Beside::default(),
+                    side_lines: SideLines::default(),
                 })
             }
         }
@@ -69,12 +69,12 @@ macro_rules! frame {
 
 drivers::frame_fields!(frame, frame, lost);
 
-/// Whether the word of a row says that its field is a column.
+/// Whether the field of a row is a column of recordings, by the word in the row.
 const fn is_csv(word: &str) -> bool {
     matches!(word.as_bytes(), b"csv")
 }
 
-/// A value in a frame's line and in a recording.
+/// A value of a frame's line and of a recording.
 trait Field: Sized {
     /// The value under either name.
     fn read(fields: &Fields<'_>, name: &str, old: &str) -> Result<Self, String>;
@@ -141,7 +141,8 @@ impl<'a> Fields<'a> {
         found.ok_or_else(|| format!("no {name} in '{}'", self.0))
     }
 
-    /// The one of a field's two names that the line has; the new one if it has neither.
+    /// The name of a field that the line has, the present or the old one; the present one if it has
+    /// neither.
     fn name_of<'n>(&self, name: &'n str, old: &'n str) -> &'n str {
         match self.text(name) {
             Err(_) if self.text(old).is_ok() => old,
@@ -152,7 +153,7 @@ impl<'a> Fields<'a> {
     pub(super) fn number<T: FromStr>(&self, name: &str) -> Result<T, String> {
         let value = self.text(name)?;
         let number = value.parse();
-        number.map_err(|_| format!("'{name}={value}' is no number in '{}'", self.0))
+        number.map_err(|_| format!("'{name}={value}' is not a valid number in '{}'", self.0))
     }
 }
 
@@ -164,7 +165,7 @@ pub(super) mod tests {
         ws=0.25 torque=0.0 il=0.1 is=-0.2 state=2 cause=0 overruns=0 drops=1 cycles=900";
 
     #[test]
-    fn a_frame_is_read_by_names() {
+    fn frame_is_read_by_field_names() {
         let frame: Frame = LINE.parse().unwrap();
         assert_eq!(
             (frame.tick, frame.counts_large, frame.drops),
@@ -189,7 +190,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn names_of_older_logs_and_of_today_give_the_same_frame() {
+    fn old_and_present_field_names_give_the_same_frame() {
         let today = [
             (" large=", " counts_large="),
             (" small=", " counts_small="),
@@ -207,7 +208,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn state_and_cause_without_meaning_are_refused() {
+    fn unknown_state_or_cause_is_refused() {
         let wrong = LINE.replace("state=2", "state=9");
         assert!(
             wrong
@@ -225,7 +226,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn recording_has_these_columns_of_a_frame() {
+    fn columns_of_a_recording_are_these_fields_of_a_frame() {
         let names: Vec<_> = COLUMNS.iter().map(|(name, _)| *name).collect();
         assert_eq!(
             names,
@@ -245,7 +246,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn a_frame_that_lacks_something_is_refused_with_a_reason() {
+    fn frame_with_a_missing_or_invalid_field_is_refused_with_a_reason() {
         let without = LINE.replace("drops=1 ", "");
         assert!(without.parse::<Frame>().unwrap_err().contains("no drops"));
         let wrong = LINE.replace("wl=-1.5", "wl=x");

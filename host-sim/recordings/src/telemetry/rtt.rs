@@ -5,17 +5,17 @@ use defmt_decoder::{DecodeError, Table};
 use super::Telemetry;
 
 impl Telemetry {
-    /// Decodes what came out of up channel 0 of the image `elf`.
+    /// Decodes bytes from up channel 0 of the image `elf`.
     ///
     /// # Errors
-    /// One line on an image without defmt, or with another version's.
+    /// One line on an image without defmt or with another version of it.
     pub fn decode(elf: &[u8], bytes: &[u8]) -> Result<Self, String> {
         let table = Table::parse(elf)
             .map_err(|error| format!("defmt: {error}"))?
             .ok_or("the image has no defmt table")?;
         let mut decoder = table.new_stream_decoder();
         let mut telemetry = Self::default();
-        // In pieces: the decoder shifts its buffer for each frame.
+        // The bytes are given in pieces, because the decoder shifts its buffer for each frame.
         for piece in bytes.chunks(256) {
             decoder.received(piece);
             loop {

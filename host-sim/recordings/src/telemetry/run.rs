@@ -1,34 +1,34 @@
-//! Frames of one start of the firmware, in time.
+//! Frames of one start of the firmware.
 
 use super::{Frame, Telemetry};
 
-/// What the firmware said between two resets.
+/// The frames between two resets.
 #[derive(Clone, Debug)]
 pub struct Run<'a> {
-    /// Control rate by its boot line, Hz; `None` where the stream begins after that.
+    /// Control rate from the boot line, Hz; `None` if the stream begins after that line.
     pub rate_hz: Option<f64>,
     /// Frames, with their ticks from the first.
     pub frames: Vec<(u64, &'a Frame)>,
-    /// What is missing.
+    /// Missing frames.
     pub gaps: Gaps,
 }
 
-/// What a run lacks.
+/// Missing and damaged frames of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Gaps {
-    /// Places at which frames are missing.
+    /// Number of places with missing frames.
     pub places: u64,
-    /// Frames missing there, by the sequence numbers.
+    /// Number of missing frames, from the sequence numbers.
     pub frames: u64,
-    /// Frames that were there and fit nowhere: their numbers are wrong.
+    /// Number of damaged frames, whose sequence number or tick does not fit their neighbours.
     pub strays: u64,
 }
 
 impl Telemetry {
     /// The runs, in order.
     ///
-    /// A run ends at a boot line, or where sequence and tick begin again. A frame whose numbers fit
-    /// neither the one before nor the one after it is a stray of damaged bytes, and left out.
+    /// A run ends at a boot line, or where sequence number and tick restart. A frame whose numbers
+    /// fit neither its predecessor nor its successor is damaged and left out.
     #[must_use]
     pub fn runs(&self) -> Vec<Run<'_>> {
         let decimation = self.decimation();
@@ -53,7 +53,7 @@ impl Telemetry {
                     continue;
                 }
             }
-            // Without a boot line the image is still the same.
+            // Without a boot line the image has not changed.
             let rate_hz = booted.or_else(|| runs.last().and_then(|run| run.rate_hz));
             runs.push(Run {
                 rate_hz,
@@ -64,7 +64,7 @@ impl Telemetry {
         runs
     }
 
-    /// Control ticks from frame to frame: what most neighbours are apart.
+    /// Control ticks from frame to frame: the most frequent difference.
     fn decimation(&self) -> u32 {
         let neighbours = self.frames.windows(2).filter_map(|pair| {
             let [ticks, frames] = steps(&pair[0], &pair[1])?;
@@ -78,7 +78,7 @@ impl Telemetry {
 }
 
 impl<'a> Run<'a> {
-    /// Takes the next frame, if it is of this run.
+    /// Adds the next frame if it belongs to this run.
     fn take(&mut self, frame: &'a Frame, decimation: u32) -> bool {
         let Some((tick, last)) = self.frames.last().copied() else {
             return false;
@@ -96,15 +96,15 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Ticks and frames from `a` to `b`, which came later; both numbers wrap.
+/// Differences of tick and sequence number from `a` to the later `b`; both numbers wrap.
 fn steps(a: &Frame, b: &Frame) -> Option<[u32; 2]> {
     let by = [b.tick.wrapping_sub(a.tick), b.seq.wrapping_sub(a.seq)];
     let forward = by.iter().all(|by| (1..=i32::MAX as u32).contains(by));
     forward.then_some(by)
 }
 
-/// Whether `b` can come after `a`: as many periods as frames, of which the wrap of the tick cuts
-/// one short.
+/// Whether `b` can follow `a`: the number of periods is that of the frames, except that a wrap of
+/// the tick shortens one period.
 fn follows(a: &Frame, b: &Frame, decimation: u32) -> bool {
     steps(a, b).is_some_and(|by| {
         let [ticks, frames, decimation] = [by[0], by[1], decimation].map(u64::from);
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn gaps_are_counted_and_keep_their_time() {
+    fn gaps_are_counted_and_time_continues_over_them() {
         let telemetry = frames(&[[7, 70], [8, 80], [11, 110], [12, 120], [14, 140]]);
         let runs = telemetry.runs();
         assert_eq!(runs.len(), 1);
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_wrap() {
+    fn sequence_number_and_tick_wrap() {
         let max = u32::MAX;
         let telemetry = frames(&[
             [max - 1, max - 15],
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reset_begins_a_run_with_and_without_its_boot_line() {
+    fn reset_starts_a_run_with_and_without_a_boot_line() {
         let mut telemetry = frames(&[[5, 50], [6, 60], [0, 0], [1, 10], [0, 0], [1, 10], [2, 20]]);
         telemetry.boots = vec![Boot {
             after: 4,
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_frame_is_a_stray_and_no_reset() {
+    fn damaged_frame_is_left_out_and_starts_no_run() {
         for wrong in [
             [9, 4_000_000_000],
             [3, 20],

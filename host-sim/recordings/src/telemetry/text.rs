@@ -1,13 +1,11 @@
-//! The log as a tool prints it.
+//! Telemetry from the log that a tool prints.
 
-use super::{Telemetry, beside, frame};
+use super::{Telemetry, frame, side_lines};
 
 impl Telemetry {
-    /// Reads a log: messages stand anywhere in their lines, behind time stamps and levels, with or
-    /// without colours.
+    /// Reads a log. A message can follow a time stamp and a level, and can have colours.
     ///
-    /// Of a line in which two frames run into each other the last counts. A last line without its
-    /// end is half a line.
+    /// Of two frames in one line the last one is used. A last line without a line end is incomplete.
     #[must_use]
     pub fn text(log: &[u8]) -> Self {
         let mut telemetry = Self::default();
@@ -21,21 +19,23 @@ impl Telemetry {
         }
         if !half.is_empty() {
             let half = plain(half);
-            telemetry.malformed.push(format!("half a line: '{half}'"));
+            telemetry
+                .malformed
+                .push(format!("incomplete line: '{half}'"));
         }
         telemetry
     }
 }
 
-/// The message in a line: what a tool puts before it goes.
+/// The message of a line, without the text that a tool puts before it.
 fn message(line: &str) -> &str {
     let starts = [frame::START, "boot rate="].into_iter();
-    let starts = starts.chain(beside::STARTS);
+    let starts = starts.chain(side_lines::STARTS);
     let at = starts.filter_map(|start| line.rfind(start)).max();
     &line[at.unwrap_or(0)..]
 }
 
-/// The text of a line without escape sequences and what is no text.
+/// The text of a line without escape sequences and control characters.
 fn plain(line: &[u8]) -> String {
     let line = String::from_utf8_lossy(line);
     let mut pieces = line.split('\u{1b}');
@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn messages_are_found_in_what_tools_print() {
+    fn messages_are_found_behind_time_stamps_and_colours() {
         let log = format!(
             "      Erasing ✔ 100%\r\n\
              0.000000 [INFO ] boot rate=10000 cause=0 (firmware src/main.rs:50)\r\n\
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn half_lines_and_garbage_are_counted_and_cost_themselves() {
+    fn incomplete_lines_and_garbage_are_counted_and_other_lines_are_read() {
         let torn = &LINE[..40];
         let log = format!("large=1 small=2\n{torn}{LINE}\n{torn}\n{LINE}\n{LINE}");
         let mut log = log.into_bytes();
@@ -81,6 +81,6 @@ mod tests {
         let telemetry = Telemetry::text(&log);
         assert_eq!(telemetry.frames.len(), 2);
         assert_eq!(telemetry.malformed.len(), 2, "{:?}", telemetry.malformed);
-        assert!(telemetry.malformed[1].starts_with("half a line"));
+        assert!(telemetry.malformed[1].starts_with("incomplete line"));
     }
 }

@@ -1,4 +1,4 @@
-//! Errors of an encoder's disc: where its boundaries really are.
+//! Errors of an encoder's disc.
 
 use crate::device::Disc;
 use crate::scenario::draw;
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn the_same_seed_is_the_same_disc() {
+    fn disc_is_a_function_of_the_seed() {
         assert_eq!(parts(0.1, 0.1, 0.1), parts(0.1, 0.1, 0.1));
     }
 }

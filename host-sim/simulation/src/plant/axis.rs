@@ -4,7 +4,7 @@ use crate::device;
 use haptic_control::Motor;
 use std::f64::consts::TAU;
 
-/// The one place that saturates a commanded current: to the limit, and NaN to zero.
+/// Saturates a commanded current to the limit; NaN becomes zero.
 #[must_use]
 pub fn saturate(current_a: f64, limit_a: f64) -> f64 {
     if current_a.is_nan() {
@@ -26,9 +26,9 @@ pub(super) struct Axis {
     coulomb: f64,
     pub(super) inertia: f64,
     per_inertia: f64,
-    /// What is left of a difference between current and command after a step.
+    /// Factor by which a difference between current and command decays in a step.
     left: f64,
-    /// The mean of that difference over the step, as part of what it was at its start.
+    /// Mean of this difference over the step, relative to its initial value.
     mean_left: f64,
     ripple: Ripple,
 }
@@ -62,7 +62,7 @@ impl Axis {
         self.command = saturate(current_a, self.limit);
     }
 
-    /// Lets the amplifier run for a step; the shaft's torques are those half-way through.
+    /// Advances the amplifier by a step; the shaft's torques are those in the middle of the step.
     #[inline]
     pub(super) fn drive(&mut self, half_step: f64) -> Drive {
         let missing = self.current - self.command;
@@ -81,7 +81,8 @@ impl Axis {
         self.torque_constant * ripple.factors(self.angle).1 * self.current
     }
 
-    /// Which way friction pushes against: the motion, or what is about to move it, or nothing (0).
+    /// Direction that friction opposes: that of the motion, at rest that of the other torques if they
+    /// exceed friction, else 0.
     #[inline]
     pub(super) fn direction(&self, push: f64, coulomb: f64) -> f64 {
         if self.omega != 0.0 {
@@ -101,9 +102,9 @@ impl Axis {
         (push - direction * coulomb) * self.per_inertia
     }
 
-    /// Ends a step that the midpoint rule computed, unless friction stopped the shaft inside it:
-    /// then it stays where it stopped, or goes on from there the other way. `push` is what acts
-    /// on the shaft at rest at the step's end.
+    /// Completes a step of the midpoint rule. If friction stopped the shaft inside the step, the shaft
+    /// stays there or continues in the other direction. `push` is the torque on the shaft at rest at
+    /// the end of the step.
     #[inline]
     pub(super) fn finish(
         &mut self,
@@ -130,10 +131,10 @@ impl Axis {
     }
 }
 
-/// Position-dependent factors of friction (once a revolution) and torque (several times).
+/// Position-dependent factors of friction (one period per revolution) and torque (several periods).
 ///
-/// Sine and cosine are computed at an anchor; near it a short series is exact to 2e-8 of the
-/// ripple, so that most steps cost no trigonometry, and a motor without ripple none at all.
+/// Sine and cosine are computed at an anchor. Near it a short series has an error of 2e-8 of the
+/// ripple, so that most steps need no trigonometric function.
 #[derive(Clone, Copy, Debug)]
 struct Ripple {
     friction: f64,
@@ -210,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn the_series_follows_the_sines() {
+    fn series_agrees_with_the_sines() {
         let exact = device::Ripple::default();
         let mut ripple = Ripple::new(&DualStage::DEFAULT.large, &exact);
         let (mut worst_friction, mut worst_torque) = (0.0_f64, 0.0_f64);

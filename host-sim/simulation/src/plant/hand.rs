@@ -1,18 +1,18 @@
-//! What holds the handle.
+//! Grip on the handle.
 
 /// Condition of the handle during one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Grip {
-    /// Held in a vice: its velocity is zero, exactly.
+    /// Clamped: the velocity is exactly zero.
     Clamped,
-    /// Nobody holds it.
+    /// Free.
     Free,
-    /// A hand holds it and intends this motion.
+    /// Held by a hand with this intended motion.
     Hand(HandMotion),
 }
 
-/// The motion a hand intends during one tick: a cubic through angle and velocity at both ends,
-/// so that both are continuous from tick to tick.
+/// Intended motion of a hand during one tick: a cubic through angle and velocity at both ends, which
+/// are therefore continuous from tick to tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandMotion {
     angle: f64,
@@ -21,7 +21,7 @@ pub struct HandMotion {
     third: f64,
 }
 
-/// Angle and velocity at one instant, rad and rad/s.
+/// Angle and velocity at one time, rad and rad/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
     /// Angle, rad.
@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_cubic_meets_both_poses() {
+    fn cubic_passes_through_both_poses() {
         let from = Pose {
             angle: 0.3,
             omega: -2.0,

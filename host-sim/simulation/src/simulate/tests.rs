@@ -1,4 +1,4 @@
-//! A run as such: repeatable, complete, its counts and stamps those of the motion.
+//! Tests of a run: reproducibility, ranges, and counts and time stamps against the true motion.
 
 mod promises;
 
@@ -28,7 +28,7 @@ fn rms(values: impl IntoIterator<Item = f64>) -> f64 {
 }
 
 #[test]
-fn the_same_arguments_are_the_same_trace_and_other_seeds_another() {
+fn trace_is_a_function_of_the_arguments_and_depends_on_the_seed() {
     for name in ScenarioName::ALL {
         let run = |seed| simulate(&Device::default(), name, 1000.0, seed, 2.0, ALL).unwrap();
         let (first, again, other) = (run(5), run(5), run(6));
@@ -40,7 +40,7 @@ fn the_same_arguments_are_the_same_trace_and_other_seeds_another() {
 }
 
 #[test]
-fn a_column_asked_for_changes_no_other() {
+fn columns_do_not_depend_on_the_presence_of_others() {
     for name in ScenarioName::ALL {
         let device = Device::default();
         let run = |columns| simulate(&device, name, 1000.0, 3, 1.0, columns).unwrap();
@@ -53,7 +53,7 @@ fn a_column_asked_for_changes_no_other() {
 }
 
 #[test]
-fn an_encoder_nobody_reads_is_not_simulated() {
+fn unread_encoder_is_not_simulated() {
     for name in ScenarioName::ALL {
         let run = Run::new(&Device::default(), name, 1000.0, 1, Columns::default());
         assert_eq!(run.small.is_some(), name.reads_small());
@@ -62,7 +62,7 @@ fn an_encoder_nobody_reads_is_not_simulated() {
 }
 
 #[test]
-fn rates_and_durations_out_of_range_are_named() {
+fn rate_or_duration_out_of_range_is_reported_with_the_range() {
     let run = |rate_hz, seconds| {
         let device = Device::default();
         simulate(&device, ScenarioName::Step, rate_hz, 1, seconds, ALL).unwrap_err()
@@ -77,7 +77,7 @@ fn rates_and_durations_out_of_range_are_named() {
 }
 
 #[test]
-fn counts_and_edges_belong_to_the_true_motion() {
+fn counts_and_edges_agree_with_the_true_motion() {
     for name in ScenarioName::ALL {
         for rate in RATES {
             let trace = trace(name, rate, 2);
@@ -132,7 +132,7 @@ fn counts_and_edges_belong_to_the_true_motion() {
 }
 
 #[test]
-fn a_bad_disc_moves_counts_by_one_at_most() {
+fn disc_errors_change_counts_by_at_most_one() {
     let mut device = Device::default();
     let good = simulate(&device, ScenarioName::Step, 1000.0, 1, 5.0, ALL).unwrap();
     device.disc = Disc {
@@ -151,7 +151,7 @@ fn a_bad_disc_moves_counts_by_one_at_most() {
 }
 
 #[test]
-fn one_seed_intends_the_same_motion_at_every_rate() {
+fn intended_motion_of_a_seed_is_the_same_at_every_rate() {
     for name in ScenarioName::ALL {
         // One draws its current every tick, the other's motor sticks and slips anew each time.
         if matches!(name, ScenarioName::Stochastic | ScenarioName::Hold) {

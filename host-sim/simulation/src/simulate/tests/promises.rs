@@ -1,10 +1,10 @@
-//! Every scenario at a low and a high rate, against what it promises.
+//! Tests of every scenario's description at a low and a high rate.
 
 use super::*;
 use crate::plant::Grip;
 use rustfft::{FftPlanner, num_complex::Complex};
 
-/// Plant as each tick finds it, and what was decided there.
+/// State of the plant at each tick, and the scenario's decision.
 fn watch(
     device: &Device,
     name: ScenarioName,
@@ -39,7 +39,7 @@ fn bounds(name: ScenarioName) -> [f64; 4] {
 }
 
 #[test]
-fn speeds_and_currents_are_sane() {
+fn speeds_and_currents_are_within_their_ranges() {
     for name in ScenarioName::ALL {
         for (rate, seed) in [(1000.0, 1), (1000.0, 2), (11_600.0, 3), (11_600.0, 4)] {
             let trace = trace(name, rate, seed);
@@ -145,7 +145,7 @@ fn texture_shakes_the_motor_between_50_and_300_hz() {
 }
 
 #[test]
-fn the_wall_is_entered_left_and_felt() {
+fn wall_is_entered_and_left_and_its_torque_acts_on_the_hand() {
     let device = Device::default();
     for rate in RATES {
         let (mut deepest, mut farthest, mut entries) = (0.0_f64, 0.0_f64, 0);
@@ -178,7 +178,7 @@ fn the_wall_is_entered_left_and_felt() {
 }
 
 #[test]
-fn a_hand_that_should_feel_nothing_feels_little() {
+fn hand_feels_little_torque_if_none_is_wanted() {
     let device = Device::default();
     for rate in RATES {
         for name in [ScenarioName::FreeAir, ScenarioName::Hold] {
@@ -216,7 +216,7 @@ fn heating_takes_30_percent_in_60_s_and_no_more() {
 }
 
 #[test]
-fn stochastic_is_the_model_that_its_doc_states() {
+fn stochastic_obeys_the_equations_of_its_documentation() {
     let device = Device::default();
     let (b, j) = (device.stages.damping, device.stages.large.inertia);
     let (kt, lag) = (

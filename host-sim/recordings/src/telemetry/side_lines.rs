@@ -1,10 +1,10 @@
-//! Lines that the firmware says beside a frame, each with the frame's sequence number.
+//! Side lines: lines that the firmware logs beside a frame, with the frame's sequence number.
 
 use super::frame::{Fields, Frame};
 
-/// What was said beside a frame; an image says of these what it has.
+/// The side lines of a frame. An image logs those that it has.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Beside {
+pub struct SideLines {
     /// `edge`: the latest edge of the large encoder.
     pub edge: Option<EdgeLine>,
     /// `learned`: parameters that the large motor's estimator has learned.
@@ -22,7 +22,7 @@ pub struct EdgeLine {
     pub age: u32,
 }
 
-/// Relative deviations from what the image believes of the large motor, each per inertia.
+/// Learned parameters of the large motor per inertia, as relative errors of the image's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LearnedLine {
     /// Damping of the coupler.
@@ -33,33 +33,33 @@ pub struct LearnedLine {
     pub torque_constant: f64,
 }
 
-/// How such lines begin.
+/// Begins of side lines.
 pub(super) const STARTS: [&str; 3] = ["edge seq=", "learned seq=", "reference seq="];
 
 impl Frame {
-    /// Takes a line that begins as one of [`STARTS`]; one beside another frame, which was lost, is
-    /// lost with it.
+    /// Reads a line that begins with one of [`STARTS`]. A side line of another frame, which is
+    /// missing, is ignored.
     pub(super) fn take(&mut self, line: &str) -> Result<(), String> {
         let fields = Fields(line);
         if fields.number::<u32>("seq")? != self.seq {
             return Ok(());
         }
-        let beside = &mut self.beside;
+        let lines = &mut self.side_lines;
         match line.split(' ').next() {
             Some("edge") => {
-                beside.edge = Some(EdgeLine {
+                lines.edge = Some(EdgeLine {
                     boundary: fields.number("bound")?,
                     age: fields.number("age")?,
                 });
             }
             Some("learned") => {
-                beside.learned = Some(LearnedLine {
+                lines.learned = Some(LearnedLine {
                     damping: fields.number("damping")?,
                     friction: fields.number("friction")?,
                     torque_constant: fields.number("torque_constant")?,
                 });
             }
-            _ => beside.reference = Some(fields.number("count")?),
+            _ => lines.reference = Some(fields.number("count")?),
         }
         Ok(())
     }
@@ -72,7 +72,7 @@ mod tests {
     use crate::telemetry::frame::tests::LINE;
 
     #[test]
-    fn lines_are_put_beside_their_frame() {
+    fn side_lines_belong_to_the_frame_of_their_sequence_number() {
         let log = format!(
             "{LINE}\n[INFO ] edge seq=3 bound=4294967295 age=42 (firmware src/telemetry.rs:99)\n\
              learned seq=3 damping=0.1 friction=-0.2 torque_constant=0\nreference seq=3 count=9\n\
@@ -82,7 +82,7 @@ mod tests {
         let [first, second] = &telemetry.frames[..] else {
             panic!("two frames");
         };
-        let expected = Beside {
+        let expected = SideLines {
             edge: Some(EdgeLine {
                 boundary: u32::MAX,
                 age: 42,
@@ -94,8 +94,8 @@ mod tests {
             }),
             reference: Some(9),
         };
-        assert_eq!(first.beside, expected);
-        assert_eq!(second.beside, Beside::default());
+        assert_eq!(first.side_lines, expected);
+        assert_eq!(second.side_lines, SideLines::default());
         assert_eq!(telemetry.malformed.len(), 2, "{:?}", telemetry.malformed);
         assert_eq!(telemetry.log, [""; 0]);
     }
