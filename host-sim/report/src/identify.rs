@@ -30,7 +30,7 @@ pub fn identify(
     printout: &Printout,
 ) -> Result<String, String> {
     let motions = found.comparisons.iter();
-    let motions = motions.map(|beside| motion(beside, count_rad_s));
+    let motions = motions.map(|comparison| motion(comparison, count_rad_s));
     let figures: Vec<Svg> = motions
         .chain([constants(&found.quantities)])
         .collect::<Result<_, _>>()?;
@@ -45,11 +45,11 @@ pub fn identify(
 }
 
 /// Velocities, and below them their difference.
-fn motion(beside: &Beside, count_rad_s: f64) -> Result<Svg, String> {
-    let residual: Vec<f64> = beside
+fn motion(comparison: &ModelComparison, count_rad_s: f64) -> Result<Svg, String> {
+    let residual: Vec<f64> = comparison
         .measured
         .iter()
-        .zip(&beside.model)
+        .zip(&comparison.model)
         .map(|(measured, model)| measured - model)
         .collect();
     let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
@@ -64,19 +64,19 @@ fn motion(beside: &Beside, count_rad_s: f64) -> Result<Svg, String> {
     let height = bottom + 50.0 + legend_height(&keys, LEFT);
     let title = format!(
         "{}: velocity of the large motor; residual {rms:.2} rad/s RMS",
-        beside.name
+        comparison.name
     );
     let ends = [
-        &beside.t[..1],
-        &beside.t[beside.t.len().saturating_sub(1)..],
+        &comparison.t[..1],
+        &comparison.t[comparison.t.len().saturating_sub(1)..],
     ]
     .concat();
     let [first, last] = ends[..] else {
-        return Err(format!("{}: nothing to draw", beside.name));
+        return Err(format!("{}: nothing to draw", comparison.name));
     };
     figure(height, &title, |canvas| {
         canvas.text(&title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
-        let span = 1.05 * largest(&beside.measured).max(largest(&beside.model));
+        let span = 1.05 * largest(&comparison.measured).max(largest(&comparison.model));
         let plot = |top, height, span: f64| Plot {
             left: LEFT,
             top,
@@ -86,7 +86,7 @@ fn motion(beside: &Beside, count_rad_s: f64) -> Result<Svg, String> {
             y: Axis::linear([-span, span]),
         };
         let at = |values: &[f64]| -> Vec<(f64, f64)> {
-            beside
+            comparison
                 .t
                 .iter()
                 .copied()
@@ -95,12 +95,12 @@ fn motion(beside: &Beside, count_rad_s: f64) -> Result<Svg, String> {
         };
         let upper = plot(TOP, PANEL, span);
         upper.grid(canvas, 6, 6)?;
-        upper.curve(canvas, at(&beside.measured).into_iter(), TRUTH, 2.0)?;
-        upper.curve(canvas, at(&beside.model).into_iter(), MODEL, 1.2)?;
+        upper.curve(canvas, at(&comparison.measured).into_iter(), TRUTH, 2.0)?;
+        upper.curve(canvas, at(&comparison.model).into_iter(), MODEL, 1.2)?;
         upper.edges(canvas)?;
         let lower = plot(below, RESIDUAL, 1.05 * largest(&residual).max(count_rad_s));
         lower.grid(canvas, 6, 4)?;
-        let band = beside.t.iter().map(|t| (*t, -count_rad_s, count_rad_s));
+        let band = comparison.t.iter().map(|t| (*t, -count_rad_s, count_rad_s));
         lower.band(canvas, band, BAND)?;
         lower.curve(canvas, at(&residual).into_iter(), INK, 1.0)?;
         lower.edges(canvas)?;
