@@ -2,8 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use super::{CaseReport, DeviceFacts, ReportInput, Row, Traces};
+use super::{CaseReport, ReportInput, Row, Traces};
+use experiments::compare::interval;
 use scoring::score::{Truth, Wanted};
+use simulation::device::Device;
 
 const STEP_S: f64 = 0.5;
 
@@ -17,7 +19,7 @@ fn average(counts: &[f64], rate_hz: f64, span_s: f64) -> Vec<f32> {
 }
 
 fn case(
-    report: &DeviceFacts,
+    device: &Device,
     scenario: &str,
     rate_hz: f64,
     friction: bool,
@@ -65,7 +67,7 @@ fn case(
         .chain(more)
         .map(|(name, span)| (name.to_string(), average(&counts, rate_hz, span)))
         .collect();
-    let prepared = Truth::new(&truth, rate_hz, report.interval(), Wanted::ALL).unwrap();
+    let prepared = Truth::new(&truth, rate_hz, interval(device), Wanted::ALL).unwrap();
     let reference = prepared.score(&estimates[0].1);
     let rows = estimates
         .iter()
@@ -83,7 +85,6 @@ fn case(
         seed: 1,
         rows,
         traces: Some(Traces {
-            t0: 0.0,
             rate_hz,
             truth,
             estimates,
@@ -94,7 +95,7 @@ fn case(
 
 /// Four scenarios, two rates, both plants, and estimators of the names `extra` besides the usual.
 pub(super) fn report(extra: &[&str]) -> ReportInput {
-    let device = DeviceFacts::default();
+    let device = Device::default();
     let mut cases = Vec::new();
     for friction in [false, true] {
         for rate_hz in [1000.0, 11_600.0] {
@@ -105,6 +106,7 @@ pub(super) fn report(extra: &[&str]) -> ReportInput {
     }
     ReportInput {
         command: "host-sim compare --seed 1".into(),
+        device_name: "default device".into(),
         device,
         notes: vec!["Made-up signals: this page shows what a report looks like.".into()],
         cases,

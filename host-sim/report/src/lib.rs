@@ -6,17 +6,18 @@
 use experiments::compare::Damping;
 use experiments::limit;
 use experiments::sensitivity as belief;
-use scoring::score::{Interval, Score};
+use scoring::score::Score;
+use simulation::device::Device;
 
 mod canvas;
+mod closed_loop;
 mod cost;
 mod curve;
+mod damping;
 #[cfg(test)]
 mod demo;
 mod distances;
-mod felt;
 mod grid;
-mod heating;
 mod identify;
 pub mod measured;
 mod over_time;
@@ -24,7 +25,7 @@ mod overview;
 mod page;
 mod palette;
 mod plot;
-mod problem;
+mod quantisation;
 mod recording;
 mod robust;
 mod score_tables;
@@ -49,7 +50,7 @@ pub use zwidth::zwidth;
 
 pub use page::Printout;
 
-pub use felt::ClosedLoop;
+pub use closed_loop::ClosedLoop;
 
 pub use robust::robust;
 
@@ -60,8 +61,10 @@ pub use recording::{RecordingView, recording};
 pub struct ReportInput {
     /// The command line that produced it.
     pub command: String,
+    /// Name of the device: its file, or that it is the default one.
+    pub device_name: String,
     /// The device that was simulated.
-    pub device: DeviceFacts,
+    pub device: Device,
     /// Remarks printed below the heading, plain text, one paragraph each.
     pub notes: Vec<String>,
     /// One entry for each scenario, rate, plant and seed that was run; their order is the
@@ -75,48 +78,6 @@ pub struct ReportInput {
     pub warming: Vec<CaseReport>,
     /// The loop closed on each estimator, where that was run.
     pub closed_loop: ClosedLoop,
-}
-
-/// The constants of the device that its scores depend on.
-#[derive(Clone, Debug)]
-pub struct DeviceFacts {
-    /// What the device calls itself.
-    pub name: String,
-    /// Coupler damping b, N.m.s/rad.
-    pub damping: f64,
-    /// Diameter D of the handle, m.
-    pub diameter_m: f64,
-    /// Smallest force that a fingertip notices, F_shd, N.
-    pub threshold_n: f64,
-    /// Weber fraction k, without unit.
-    pub weber: f64,
-    /// Counts a revolution of the large motor's encoder, four times its lines.
-    pub counts_per_rev: u32,
-    /// Further constants to print: what it is, its value with unit.
-    pub more: Vec<(String, String)>,
-}
-
-impl Default for DeviceFacts {
-    /// The paper's device.
-    fn default() -> Self {
-        Self {
-            name: "default device".into(),
-            damping: 0.96e-3,
-            diameter_m: 0.070,
-            threshold_n: 0.010,
-            weber: 0.05,
-            counts_per_rev: 4096,
-            more: Vec::new(),
-        }
-    }
-}
-
-impl DeviceFacts {
-    /// What a hand cannot tell on this device.
-    #[must_use]
-    pub fn interval(&self) -> Interval {
-        Interval::new(self.weber, self.threshold_n, self.diameter_m, self.damping)
-    }
 }
 
 /// One scenario at one rate on one plant, and how every estimator did.
@@ -152,8 +113,6 @@ pub struct Row {
 /// The signals of one case.
 #[derive(Clone, Debug, Default)]
 pub struct Traces {
-    /// Time of the first sample, s.
-    pub t0: f64,
     /// Sample rate, Hz.
     pub rate_hz: f64,
     /// True velocity, rad/s.
@@ -163,8 +122,9 @@ pub struct Traces {
 }
 
 impl Traces {
+    /// Time since the first sample, s.
     fn time(&self, sample: usize) -> f64 {
-        self.t0 + sample as f64 / self.rate_hz
+        sample as f64 / self.rate_hz
     }
 }
 

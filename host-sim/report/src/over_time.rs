@@ -7,6 +7,8 @@ use maud::Markup;
 use super::palette::Palette;
 use super::section::explained;
 use super::text::{plant, rate};
+use experiments::compare::interval;
+
 use super::{CaseReport, ReportInput, Traces, velocity, windows};
 
 const STEP: &str = "One step of the large motor\u{2019}s current, the handle held. A good colour \
@@ -98,7 +100,7 @@ impl OverTime {
                 self.number
             );
             let origin_s = traces.time(origin);
-            let interval = report.device.interval();
+            let interval = interval(&report.device);
             figures.push(velocity::panels(
                 &title, traces, window, origin_s, &interval, palette,
             )?);

@@ -54,7 +54,7 @@ fn facts(report: &ReportInput) -> Vec<(&'static str, String)> {
         .collect();
     let list = |items: Vec<String>| items.join(", ");
     vec![
-        ("device", report.device.name.clone()),
+        ("device", report.device_name.clone()),
         ("plant", plants.join(" and ")),
         (
             "sample rates",

@@ -12,9 +12,10 @@ use super::palette::Palette;
 use super::section::{Section, explained, explanation};
 use super::text::{number, plant, rate};
 use super::{
-    ReportInput, cost, distances, felt, heating, problem, score_tables, sensitivity, spectra,
-    tables, windows,
+    ReportInput, closed_loop, cost, damping, distances, quantisation, score_tables, sensitivity,
+    spectra, tables, windows,
 };
+use experiments::compare::interval;
 use experiments::sensitivity::table::rows_by_rate;
 
 const DISTANCE: &str = "How far, on average over all samples after the first 0.1 s, the estimate \
@@ -86,7 +87,7 @@ pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Se
     ];
     let compared = compared.into_iter().flatten();
     let device = Section::new("device", "Device", Some(device(report)));
-    let closed_loop = felt::sections(report, palette)?;
+    let closed_loop = closed_loop::sections(report, palette)?;
     Ok(compared.chain(closed_loop).chain(device).collect())
 }
 
@@ -115,7 +116,7 @@ fn warming(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>, St
             continue;
         };
         if !damping.learned.is_empty() {
-            figures.push(heating::chart(case, damping, palette)?);
+            figures.push(damping::chart(case, damping, palette)?);
         }
     }
     Ok(explained(figures, HEATING))
@@ -141,8 +142,8 @@ fn the_problem(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>
             rate(case.rate_hz),
             plant(case.friction)
         );
-        let interval = report.device.interval();
-        let svg = problem::figure_one(&title, traces, window, at, &interval, palette)?;
+        let interval = interval(&report.device);
+        let svg = quantisation::figure_one(&title, traces, window, at, &interval, palette)?;
         return Ok(explained([svg], &count_in_words(report, case.rate_hz)));
     }
     Ok(None)
@@ -151,8 +152,8 @@ fn the_problem(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>
 /// What one count is to a finite difference, and to a fingertip.
 fn count_in_words(report: &ReportInput, rate_hz: f64) -> String {
     let device = &report.device;
-    let interval = device.interval();
-    let step = TAU * rate_hz / f64::from(device.counts_per_rev.max(1));
+    let interval = interval(device);
+    let step = TAU * rate_hz / f64::from(device.stages.large.counts_per_rev);
     format!(
         "The large motor\u{2019}s encoder moves in whole counts. At {} one count more or less \
          within a tick is {}\u{a0}rad/s to a finite difference, or {}\u{a0}mN at the fingertip, which \
@@ -161,7 +162,7 @@ fn count_in_words(report: &ReportInput, rate_hz: f64) -> String {
         rate(rate_hz),
         number(step),
         number(step * interval.force_mn_per_rad_s),
-        number(1e3 * device.threshold_n),
+        number(1e3 * device.interval.threshold_n),
     )
 }
 
@@ -207,7 +208,7 @@ fn scores(groups: &[Group], palette: &Palette) -> Option<Markup> {
 fn device(report: &ReportInput) -> Markup {
     html! {
         div.side {
-            (tables::constants(&report.device))
+            (tables::constants(&report.device_name, &report.device))
             (tables::count_worth(&report.device))
         }
         (explanation(DEVICE))

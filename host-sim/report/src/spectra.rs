@@ -116,7 +116,7 @@ fn panel(canvas: &Canvas, plot: &Plot, curves: &[Curve], palette: &Palette) -> R
 
 fn curves(traces: &Traces) -> Vec<Curve> {
     let welch = Welch::new(traces.rate_hz);
-    let skip = ((SKIP_S - traces.t0) * traces.rate_hz).round().max(0.0) as usize;
+    let skip = (SKIP_S * traces.rate_hz).round() as usize;
     let skip = skip.min(traces.truth.len());
     let curve = |(name, estimate): &(String, Vec<f32>)| {
         let pairs = estimate[skip..].iter().zip(&traces.truth[skip..]);
@@ -162,7 +162,6 @@ mod tests {
     #[test]
     fn an_estimate_that_is_not_finite_has_no_curve() {
         let traces = Traces {
-            t0: 0.0,
             rate_hz: 1000.0,
             truth: vec![0.0; 1000],
             estimates: vec![

@@ -3,8 +3,9 @@
 use maud::{Markup, html};
 use std::f64::consts::TAU;
 
-use super::DeviceFacts;
 use super::text::{number, rate};
+use experiments::compare::interval;
+use simulation::device::Device;
 
 /// Lines a revolution and rates of the paper's Table II, Hz.
 const LINES: [u32; 2] = [1024, 5000];
@@ -17,46 +18,47 @@ pub(super) fn velocity_step(lines: u32, edges_per_line: u32, rate_hz: f64) -> f6
 }
 
 /// Table I.
-pub(super) fn constants(device: &DeviceFacts) -> Markup {
-    let interval = device.interval();
+pub(super) fn constants(name: &str, device: &Device) -> Markup {
+    let haptic = interval(device);
     let threshold = html! { "F" sub { "shd" } };
     let rows = [
         (
             html! { "coupler damping b" },
-            format!("{} mN\u{b7}m\u{b7}s/rad", round(1e3 * device.damping)),
+            format!(
+                "{} mN\u{b7}m\u{b7}s/rad",
+                round(1e3 * device.stages.damping)
+            ),
         ),
         (
             html! { "handle diameter D" },
-            format!("{} mm", round(1e3 * device.diameter_m)),
+            format!("{} mm", round(1e3 * device.handle.diameter_m)),
         ),
         (
             html! { "smallest force a fingertip notices, " (threshold) },
-            format!("{} mN", round(1e3 * device.threshold_n)),
+            format!("{} mN", round(1e3 * device.interval.threshold_n)),
         ),
         (
             html! { "Weber fraction k" },
-            format!("{}\u{a0}%", round(100.0 * device.weber)),
+            format!("{}\u{a0}%", round(100.0 * device.interval.weber)),
         ),
         (
             html! { "encoder of the large motor" },
-            format!("{} counts a revolution", device.counts_per_rev),
+            format!("{} counts a revolution", device.stages.large.counts_per_rev),
         ),
         (
             html! { "haptic interval at rest, " (threshold) " D / 2b" },
-            format!("\u{b1}{} rad/s", number(interval.floor_rad_s)),
+            format!("\u{b1}{} rad/s", number(haptic.floor_rad_s)),
         ),
         (
             html! { "force at the fingertip for an error of 1 rad/s, 2b / D" },
-            format!("{} mN", number(interval.force_mn_per_rad_s)),
+            format!("{} mN", number(haptic.force_mn_per_rad_s)),
         ),
     ];
-    let more = device.more.iter();
-    let more = more.map(|(what, value)| (html! { (what) }, value.clone()));
     html! {
         table.facts {
-            caption { "Table I: " (device.name) }
+            caption { "Table I: " (name) }
             tbody {
-                @for (what, value) in rows.into_iter().chain(more) {
+                @for (what, value) in rows {
                     tr { th scope="row" { (what) } td { (value) } }
                 }
             }
@@ -65,8 +67,8 @@ pub(super) fn constants(device: &DeviceFacts) -> Markup {
 }
 
 /// Table II in both readings.
-pub(super) fn count_worth(device: &DeviceFacts) -> Markup {
-    let force = device.interval().force_mn_per_rad_s;
+pub(super) fn count_worth(device: &Device) -> Markup {
+    let force = interval(device).force_mn_per_rad_s;
     html! {
         table.facts {
             caption { "Table II: what one count is worth to a finite difference" }
@@ -108,13 +110,13 @@ mod tests {
     fn one_count_of_the_cheap_encoder_is_worth_42_mn() {
         let step = velocity_step(1024, 4, 1000.0);
         assert!((step - 1.53).abs() < 0.005, "{step}");
-        let force = step * DeviceFacts::default().interval().force_mn_per_rad_s;
+        let force = step * interval(&Device::default()).force_mn_per_rad_s;
         assert!((force - 42.0).abs() < 0.1, "{force}");
     }
 
     #[test]
     fn table_two_has_both_readings_of_every_row() {
-        let html = count_worth(&DeviceFacts::default()).into_string();
+        let html = count_worth(&Device::default()).into_string();
         for row in [
             "1024 lines</th><td>1 kHz</td><td>1.53</td><td>42.1</td><td>6.14</td><td>168</td>",
             "1024 lines</th><td>11.6 kHz</td><td>17.8</td><td>488</td><td>71.2</td><td>1952</td>",
@@ -126,12 +128,8 @@ mod tests {
     }
 
     #[test]
-    fn table_one_is_the_paper_s_and_escapes_what_is_added() {
-        let html = constants(&DeviceFacts {
-            more: vec![("J <large>".into(), "115 g\u{b7}cm\u{b2}".into())],
-            ..DeviceFacts::default()
-        })
-        .into_string();
+    fn table_one_has_the_paper_s_values_and_an_escaped_name() {
+        let html = constants("J <large>", &Device::default()).into_string();
         for value in [
             "0.96 mN",
             "70 mm",

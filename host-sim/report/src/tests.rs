@@ -76,7 +76,7 @@ fn the_page_loads_nothing() {
 fn names_cannot_break_out_of_the_page() {
     let mut report = demo::report(&["<script>alert(\"1\")</script> & co"]);
     report.command = "host-sim --device \"<b>.toml\"".into();
-    report.device.name = "<i>device</i>".into();
+    report.device_name = "<i>device</i>".into();
     report.notes = vec!["<u>note</u>".into()];
     for case in &mut report.cases {
         if case.scenario == "hold" {

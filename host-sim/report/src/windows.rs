@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use super::Traces;
+use scoring::score::SKIP_S;
 
 /// Samples that no figure looks at, as no score does.
 fn start(traces: &Traces) -> usize {
-    let skip = ((scoring::score::SKIP_S - traces.t0) * traces.rate_hz).round();
-    skip.max(0.0) as usize
+    (SKIP_S * traces.rate_hz).round() as usize
 }
 
 /// From `before_s` before to `after_s` after the moment at which the largest rise or fall within
@@ -69,11 +69,10 @@ pub(super) fn steady(traces: &Traces, span_s: f64) -> Option<Range<usize>> {
 mod tests {
     use super::*;
 
-    fn traces(n: usize, t0: f64, of_time: impl Fn(f64) -> f64) -> Traces {
+    fn traces(n: usize, of_time: impl Fn(f64) -> f64) -> Traces {
         Traces {
-            t0,
             rate_hz: 1000.0,
-            truth: (0..n).map(|i| of_time(t0 + i as f64 / 1000.0)).collect(),
+            truth: (0..n).map(|i| of_time(i as f64 / 1000.0)).collect(),
             estimates: Vec::new(),
         }
     }
@@ -88,35 +87,31 @@ mod tests {
         };
         // The first 4 ms to hold all of the step at 0.8 s begin at 0.796 s.
         assert_eq!(
-            around_step(&traces(1000, 0.0, steps), 0.06, 0.06),
+            around_step(&traces(1000, steps), 0.06, 0.06),
             Some(736..857)
         );
-        assert_eq!(around_step(&traces(100, 0.0, steps), 0.06, 0.06), None);
-        assert_eq!(around_step(&traces(1000, 0.0, |_| 3.0), 0.06, 0.06), None);
+        assert_eq!(around_step(&traces(100, steps), 0.06, 0.06), None);
+        assert_eq!(around_step(&traces(1000, |_| 3.0), 0.06, 0.06), None);
     }
 
     #[test]
     fn a_motor_s_step_begins_where_it_begins_to_move() {
         let rise = |t: f64| 20.0 * (1.0 - (-(t - 0.5).max(0.0) / 0.012).exp());
-        assert_eq!(
-            around_step(&traces(1000, 0.0, rise), 0.06, 0.06),
-            Some(440..561)
-        );
+        assert_eq!(around_step(&traces(1000, rise), 0.06, 0.06), Some(440..561));
     }
 
     #[test]
     fn steady_is_where_speed_is_high_and_constant() {
         let profile = |t: f64| if t < 1.0 { -20.0 * t } else { -18.0 };
-        let found = steady(&traces(2000, 0.0, profile), 0.1).unwrap();
+        let found = steady(&traces(2000, profile), 0.1).unwrap();
         assert!(found.start >= 1200 && found.len() == 101, "{found:?}");
-        assert_eq!(steady(&traces(2000, 0.0, |_| 0.0), 0.1), None);
-        assert_eq!(steady(&traces(400, 0.0, |_| 4.0), 0.1), None);
-        assert_eq!(steady(&traces(401, 0.0, |_| 4.0), 0.1), Some(300..401));
+        assert_eq!(steady(&traces(2000, |_| 0.0), 0.1), None);
+        assert_eq!(steady(&traces(400, |_| 4.0), 0.1), None);
+        assert_eq!(steady(&traces(401, |_| 4.0), 0.1), Some(300..401));
     }
 
     #[test]
-    fn a_trace_that_begins_late_has_no_start_to_skip() {
-        assert_eq!(start(&traces(10, 5.0, |_| 0.0)), 0);
-        assert_eq!(start(&traces(10, 0.03, |_| 0.0)), 70);
+    fn samples_that_no_score_uses_are_skipped() {
+        assert_eq!(start(&traces(1000, |_| 0.0)), 100);
     }
 }

@@ -23,7 +23,7 @@ use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 
 use super::arguments::{kinds, rates};
-use super::compare::{Compare, facts, longer_than_skipped, report_folder, timing, wanted};
+use super::compare::{Compare, longer_than_skipped, report_folder, timing, wanted};
 use super::page::{self, progress};
 
 /// Default duration of a run, s.
@@ -58,7 +58,8 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
     if let Some(folder) = folder {
         let input = ReportInput {
             command: command_line.to_owned(),
-            device: facts(&settings.common.device, &options.device.name()),
+            device_name: options.device.name(),
+            device: settings.common.device.clone(),
             ..ReportInput::default()
         };
         let index = write(
@@ -108,7 +109,6 @@ fn closed_loop(outcomes: Vec<Outcome>, settings: &LoopSettings) -> Result<Closed
         designs: each()
             .map(|(rate_hz, plant)| design(settings, rate_hz, plant))
             .collect::<Result<_, _>>()?,
-        handle_inertia: settings.common.device.stages.small.inertia,
     })
 }
 

@@ -11,10 +11,9 @@ use experiments::table;
 use experiments::table::layout::terminal_width;
 use haptic_control::SceneKind;
 use report::measured;
-use report::{self, CaseReport, DeviceFacts, ReportInput, Traces};
+use report::{self, CaseReport, ReportInput, Traces};
 use scoring::evaluation::Row;
 use scoring::score::{Field, SKIP_S, Score, Wanted};
-use simulation::device::Device;
 use simulation::scenario::{Role, ScenarioName};
 use simulation::simulate;
 use terminal::failure::Failure;
@@ -142,7 +141,8 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
         } = report_extras(options, &settings, &cases)?;
         let input = ReportInput {
             command: command_line.to_owned(),
-            device: facts(&settings.device, &options.device.name()),
+            device_name: options.device.name(),
+            device: settings.device.clone(),
             notes: remark.into_iter().collect(),
             cases: outcomes.iter().map(case_report).collect(),
             limits,
@@ -243,19 +243,6 @@ pub(super) fn timing(cost: Cost) -> String {
     )
 }
 
-/// The constants of the device that the report shows.
-pub(super) fn facts(device: &Device, name: &str) -> DeviceFacts {
-    DeviceFacts {
-        name: name.to_owned(),
-        damping: device.stages.damping,
-        diameter_m: device.handle.diameter_m,
-        threshold_n: device.interval.threshold_n,
-        weber: device.interval.weber,
-        counts_per_rev: device.stages.large.counts_per_rev,
-        more: Vec::new(),
-    }
-}
-
 /// Converts an outcome to the input of the report.
 pub(super) fn case_report(outcome: &Outcome) -> CaseReport {
     let row = |row: &Row| report::Row {
@@ -264,7 +251,6 @@ pub(super) fn case_report(outcome: &Outcome) -> CaseReport {
         instructions: measured::instructions(row.estimator, &row.parameters),
     };
     let traces = outcome.signals.as_ref().map(|(trace, estimates)| Traces {
-        t0: 0.0,
         rate_hz: trace.rate_hz,
         truth: trace.true_omega.clone().unwrap_or_default(),
         estimates: estimates

@@ -1,13 +1,13 @@
 //! The closed loop on the page: what the hand feels.
 
-mod bars;
-mod binned;
 mod charts;
+mod force_by_motion;
 mod margins;
-mod render;
+mod rendered_force;
 mod score_table;
 mod spectrum;
-mod torque;
+mod torque_response;
+mod unnoticed_share;
 
 use super::ReportInput;
 use super::palette::Palette;
@@ -27,8 +27,6 @@ pub struct ClosedLoop {
     pub swept: Vec<Swept>,
     /// The designed velocity loop, one a rate.
     pub designs: Vec<Design>,
-    /// Inertia of the handle and all that turns with it, kg.m2.
-    pub handle_inertia: f64,
 }
 
 const FELT: &str = "From here on the loop is closed: the controller moves both motors, with each \
@@ -141,21 +139,27 @@ pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Se
     if closed.outcomes.is_empty() {
         return Ok(Vec::new());
     }
-    let threshold_mn = 1e3 * report.device.threshold_n;
+    let threshold_mn = 1e3 * report.device.interval.threshold_n;
     let overview = html! {
         @if let Some(text) = in_words(closed) { p.verdict { (text) } }
         (explanation(FELT))
-        (bars::below(closed, palette)?)
+        (unnoticed_share::shares(closed, palette)?)
         (explanation(BARS))
     };
     let transparency = [
-        explained(binned::figures(closed, palette, threshold_mn)?, SPEED),
+        explained(
+            force_by_motion::figures(closed, palette, &report.device)?,
+            SPEED,
+        ),
         explained(spectrum::figure(closed, palette)?, SPECTRUM),
     ];
-    let rendered = explained(render::figures(closed, palette, threshold_mn)?, RENDERED);
+    let rendered = explained(
+        rendered_force::figures(closed, palette, threshold_mn)?,
+        RENDERED,
+    );
     let torque = [
-        explained(torque::figures(closed, palette)?, TORQUE),
-        torque::table(closed, palette),
+        explained(torque_response::figures(closed, palette)?, TORQUE),
+        torque_response::table(closed, palette),
     ];
     let margins = [
         explained(margins::figure_or_none(&closed.designs)?, MARGINS),

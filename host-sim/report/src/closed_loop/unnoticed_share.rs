@@ -16,7 +16,7 @@ const LONE: f64 = 22.0;
 const GAP: f64 = 44.0;
 
 /// Horizontal bars, one panel a rate.
-pub(super) fn below(closed: &ClosedLoop, palette: &Palette) -> Result<Svg, String> {
+pub(super) fn shares(closed: &ClosedLoop, palette: &Palette) -> Result<Svg, String> {
     let title = "Time in which the parasitic force is below the fingertip\u{2019}s threshold";
     let names = closed.closers();
     let keys: Vec<Key> = (names.iter())

@@ -10,6 +10,7 @@ use super::{ClosedLoop, find};
 use catalogue::parameters::PlantKind;
 use experiments::transparency::{Outcome, Signals};
 use scoring::score::SKIP_S;
+use simulation::device::Device;
 
 /// Bins across each axis, and the least share of the ticks that a bin needs to be drawn.
 const BINS: usize = 32;
@@ -23,7 +24,7 @@ const HALF_SPAN_S: f64 = 0.002;
 pub(super) fn figures(
     closed: &ClosedLoop,
     palette: &Palette,
-    threshold_mn: f64,
+    device: &Device,
 ) -> Result<Option<Svg>, String> {
     let outcomes = closed.of("free-air");
     let names = closed.drawn();
@@ -38,7 +39,7 @@ pub(super) fn figures(
         let mut runs = runs.filter(|o| o.case.rate_hz == outcome.case.rate_hz);
         runs.next().and_then(|o| o.runs.first()?.signals.as_ref())
     };
-    let mn_per_rad_s2 = first.fingertip.mn_per_nm * closed.handle_inertia;
+    let mn_per_rad_s2 = first.fingertip.mn_per_nm * device.stages.small.inertia;
     let mut all = Vec::new();
     for (what, x_title) in [
         (
@@ -101,7 +102,7 @@ pub(super) fn figures(
                 ticks: [7, 0],
                 x_title,
                 y_title: "parasitic force, rms, mN",
-                green: Green::Up([LOWEST_MN, threshold_mn]),
+                green: Green::Up([LOWEST_MN, 1e3 * device.interval.threshold_n]),
                 curves,
             });
         }
