@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use estimator_core::{CountsPerTick, Sample, VelocityEstimator};
+use estimator_core::{Sample, VelocityEstimator};
 
 /// As much of an estimator as is measured: peers' states need be nothing but theirs.
 pub trait Measured {
@@ -16,7 +16,7 @@ pub trait Measured {
     fn update(&self, state: &mut Self::State, sample: &Sample) -> f32;
 }
 
-impl<E: VelocityEstimator<Output = CountsPerTick>> Measured for E {
+impl<E: VelocityEstimator> Measured for E {
     type State = <E as VelocityEstimator>::State;
 
     fn start(&self, first: &Sample) -> Self::State {

@@ -9,8 +9,8 @@
 //! of every estimator.
 
 use estimator_core::{
-    Amps, Count, CountsPerTick, CoupledMotor, DesignError, Hertz, Kalman, Model, Observer, Sample,
-    Scale, Uncertainty, VelocityEstimator,
+    Amps, Count, CoupledMotor, DesignError, Hertz, Kalman, Model, ObserverDesign, Sample, Scale,
+    Uncertainty, VelocityEstimator,
 };
 
 const RATE: Hertz = Hertz(1000.0);
@@ -57,7 +57,7 @@ fn simulated() -> Vec<(Sample, f64)> {
 /// RMS error of an estimator, rad/s, over the second half of the samples.
 fn rms_error<E>(estimator: &E, samples: &[(Sample, f64)]) -> f64
 where
-    E: VelocityEstimator<Output = CountsPerTick>,
+    E: VelocityEstimator,
 {
     let scale = Scale::new(DEVICE.motor.counts_per_rev, RATE).expect("valid parameters");
     let mut state = estimator.start(&samples[0].0);
@@ -75,11 +75,14 @@ fn main() -> Result<(), DesignError> {
     let counts = DEVICE.motor.counts_per_rev;
     let triple = Kalman::new(&Model::triple_integrator(counts, RATE, 1e4)?)?;
     let motor = Kalman::new(&Model::motor(&DEVICE.motor, RATE, 0.1)?)?;
-    let observer = Observer::new(&DEVICE, RATE, &UNCERTAINTY)?.held();
+    let observer = ObserverDesign::new(&DEVICE, RATE, &UNCERTAINTY)
+        .held()
+        .build()?;
     let mut nominal = DEVICE;
     nominal.motor.damping *= 1.3;
-    let wrong = Observer::new(&nominal, RATE, &UNCERTAINTY)?.held();
-    let adaptive = wrong.adaptive(counts, RATE)?;
+    let wrong = ObserverDesign::new(&nominal, RATE, &UNCERTAINTY).held();
+    let adaptive = wrong.adaptive().build()?;
+    let wrong = wrong.build()?;
 
     println!("estimator                              RMS error, rad/s");
     let mut errors = Vec::new();

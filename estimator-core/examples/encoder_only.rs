@@ -7,8 +7,8 @@
 use std::f64::consts::TAU;
 
 use estimator_core::{
-    Count, CountsPerTick, EndFit, FiniteDifference, Foaw, Hertz, Kalman, LowPass, Model, Pll,
-    Sample, Scale, VelocityEstimator, preset,
+    Count, EndFit, FiniteDifference, Foaw, Hertz, Kalman, LowPass, Model, Pll, Sample, Scale,
+    VelocityEstimator, preset,
 };
 
 const COUNTS_PER_REV: u32 = 4096;
@@ -26,7 +26,7 @@ fn motion(t: f64) -> (f64, f64) {
 }
 
 /// RMS error of an estimator, rad/s, without the first tenth of the motion.
-fn rms_error<E: VelocityEstimator<Output = CountsPerTick>>(estimator: &E) -> f64 {
+fn rms_error<E: VelocityEstimator>(estimator: &E) -> f64 {
     let sample = |tick: u32| {
         let (angle, _) = motion(f64::from(tick) * RATE.period_s());
         Sample::new(Count((angle / TAU * f64::from(COUNTS_PER_REV)) as u32))

@@ -30,7 +30,6 @@
 //! | observer with truncated-Gaussian update | [`QuantisedObserver`] | 9 floats | counts, current, coupled count |
 //! | observer with parameter adaptation | [`AdaptiveObserver`] | 23 floats | counts, current, coupled count |
 //! | two estimators, exchanged while they run | [`Handover`] | as the selected one | as both |
-//! | no estimator | [`Skip`] | none | nothing |
 //!
 //! ```
 //! use estimator_core::{Count, EndFit, Foaw, Hertz, Sample, Scale, VelocityEstimator, preset};
@@ -77,8 +76,8 @@ pub use observer::{
     Adaptation, Adaptive, AdaptiveEdgeObserver, AdaptiveObserver, AdaptiveQuantisedObserver,
     AdaptiveState, AmplifierCurrent, Correction, CountObserver, CountUpdate, CoupledEncoder,
     Covariance, CurrentSource, EdgeObserver, EdgeUpdate, EdgeUpdateState, Fixed, Gain, HeldShaft,
-    NoCurrent, Observer, ObserverState, ParameterErrors, QuantisedObserver, QuantisedUpdate,
-    QuantisedUpdateState, SlipSource, Uncertainty,
+    NoCurrent, Observer, ObserverDesign, ObserverState, ParameterErrors, QuantisedObserver,
+    QuantisedUpdate, QuantisedUpdateState, SlipSource, Uncertainty,
 };
 pub use sample::{Edge, Sample, Signals};
 pub use units::{

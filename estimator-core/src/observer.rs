@@ -14,6 +14,7 @@ mod innovation;
 mod inputs;
 mod motion;
 mod moving_start;
+mod plan;
 mod quantised_update;
 mod sensitivity;
 mod uncertainty;
@@ -23,6 +24,7 @@ pub use adaptive::{Adaptive, AdaptiveState};
 pub use correction::Correction;
 pub use count_update::CountUpdate;
 pub use covariance::Covariance;
+pub use design::ObserverDesign;
 pub use edge_update::{EdgeUpdate, EdgeUpdateState};
 pub use gain::Gain;
 pub use inputs::{
@@ -93,9 +95,7 @@ const LARGEST_FRICTION_ERROR: f32 = 0.5;
 /// The type parameters leave out what a device does not measure: the current source C
 /// ([`AmplifierCurrent`], [`NoCurrent`]), the slip source S ([`CoupledEncoder`], [`HeldShaft`]), the
 /// correction M ([`CountUpdate`], [`QuantisedUpdate`], [`EdgeUpdate`]) and the adaptation L
-/// ([`Fixed`], [`Adaptive`]). [`new`](Self::new), [`quantised`](Self::quantised) and
-/// [`blind`](Self::blind) construct an observer; [`held`](Self::held),
-/// [`with_edges`](Self::with_edges) and [`adaptive`](Self::adaptive) exchange one part of it.
+/// ([`Fixed`], [`Adaptive`]). An [`ObserverDesign`] constructs an observer of any parts.
 ///
 /// Valid for innovations up to 65536 counts; beyond, the position follows and the velocity is
 /// corrected by 65536. A displacement beyond ±2^24 counts/tick is rounded.
@@ -191,7 +191,6 @@ where
     L: Adaptation,
 {
     type State = ObserverState<C::State, S::State, M::State, L::State>;
-    type Output = CountsPerTick;
     const NEEDS: Signals = C::NEEDS.or(S::NEEDS).or(M::NEEDS);
 
     fn start(&self, first: &Sample) -> Self::State {

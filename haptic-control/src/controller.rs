@@ -1,6 +1,6 @@
 //! A controller of one scene: what that scene does not need is not there.
 
-use estimator_core::{Count, CountsPerTick, Sample, Scale, VelocityEstimator};
+use estimator_core::{Count, Sample, Scale, VelocityEstimator};
 
 use crate::need::{Need, Senses};
 use crate::rig::{AccelerationScale, AngleScale, Rig};
@@ -98,8 +98,8 @@ impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> PartialEq for Control
 impl<S, L, H> Controller<S, L, H>
 where
     S: Scene<Acceleration: Senses<H>>,
-    L: VelocityEstimator<Output = CountsPerTick>,
-    H: VelocityEstimator<Output = CountsPerTick>,
+    L: VelocityEstimator,
+    H: VelocityEstimator,
 {
     /// A controller for `scene` on `rig`, with those of the estimators that the scene needs.
     pub fn new(scene: S, large: L, handle: H, rig: &Rig) -> Self {

@@ -1,8 +1,6 @@
 //! A controller of all scenes, one of which is on.
 
-use estimator_core::{
-    AccelerationEstimator, Amps, Count, CountsPerTick, Hertz, Sample, VelocityEstimator,
-};
+use estimator_core::{AccelerationEstimator, Amps, Count, Hertz, Sample, VelocityEstimator};
 
 use crate::limits::{Currents, within};
 use crate::need::{Need, Senses};
@@ -41,8 +39,8 @@ macro_rules! active_scene {
 
         impl<L, H> Switchboard<L, H>
         where
-            L: VelocityEstimator<Output = CountsPerTick>,
-            H: AccelerationEstimator<Output = CountsPerTick>,
+            L: VelocityEstimator,
+            H: AccelerationEstimator,
         {
             /// One tick of the scene that is on.
             fn run_active(
@@ -127,8 +125,8 @@ impl<L: VelocityEstimator, H: VelocityEstimator> SwitchboardState<L, H> {
 
 impl<L, H> Switchboard<L, H>
 where
-    L: VelocityEstimator<Output = CountsPerTick>,
-    H: AccelerationEstimator<Output = CountsPerTick>,
+    L: VelocityEstimator,
+    H: AccelerationEstimator,
 {
     /// A controller on `rig`, which was designed for `rate`.
     pub const fn new(large: L, handle: H, rig: Rig, rate: Hertz) -> Self {

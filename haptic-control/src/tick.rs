@@ -1,6 +1,6 @@
 //! The control step of any scene, which controller and switchboard share.
 
-use estimator_core::{CountsPerTick, Sample, Scale, VelocityEstimator};
+use estimator_core::{Sample, Scale, VelocityEstimator};
 
 use crate::limits::Currents;
 use crate::need::{Need, Senses};
@@ -23,7 +23,7 @@ pub(crate) struct Estimated<'a, E: VelocityEstimator> {
     pub(crate) scale: Scale,
 }
 
-impl<E: VelocityEstimator<Output = CountsPerTick>> Estimated<'_, E> {
+impl<E: VelocityEstimator> Estimated<'_, E> {
     fn velocity(&mut self, sample: &Sample) -> RadPerS {
         RadPerS(
             self.estimator
@@ -78,8 +78,8 @@ pub(crate) fn tick<S, L, H>(
 ) -> Action
 where
     S: Scene<Acceleration: Senses<H>>,
-    L: VelocityEstimator<Output = CountsPerTick>,
-    H: VelocityEstimator<Output = CountsPerTick>,
+    L: VelocityEstimator,
+    H: VelocityEstimator,
 {
     let mut acceleration = S::Acceleration::make(RadPerS2::default);
     let velocity = HandleNeed::<S>::map(parts.handle, |mut handle| {

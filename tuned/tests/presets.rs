@@ -3,8 +3,7 @@
 use catalogue::estimators::{Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
 use estimator_core::{
-    Amps, Count, CountObserver, DesignError, Edge, Hertz, Observer, Sample, Uncertainty,
-    VelocityEstimator,
+    Amps, Count, Edge, Hertz, ObserverDesign, Sample, Uncertainty, VelocityEstimator,
 };
 use firmware_app::config::{DEVICE, RATE, TIMERS};
 use firmware_app::large::{ADAPTIVE, ADAPTIVE_EDGE, Adaptive, AdaptiveEdge};
@@ -49,7 +48,7 @@ fn the_build_script_reads_presets_as_host_sim_does() {
 }
 
 /// The design of an observer of the image, with the values that host-sim uses for this plant.
-fn designed(name: &str, plant: PlantKind) -> Result<CountObserver, DesignError> {
+fn designed(name: &str, plant: PlantKind) -> ObserverDesign {
     let kind = Kind::named(name).unwrap();
     let values = Parameters::default().values(kind, &setup(RATE), plant);
     let value = |name: &str| values[kind.parameter(name).unwrap()];
@@ -60,11 +59,11 @@ fn designed(name: &str, plant: PlantKind) -> Result<CountObserver, DesignError> 
         friction_share: value("friction_share"),
         boundary_noise: value("boundary_noise"),
     };
-    Observer::new(&DEVICE.coupled_motor(), RATE, &unsure)
+    ObserverDesign::new(&DEVICE.coupled_motor(), RATE, &unsure)
 }
 
 /// Velocities of a motor that is driven back and forth, with a stamped edge where the count moves.
-fn velocities<E: VelocityEstimator<Output = estimator_core::CountsPerTick>>(e: &E) -> Vec<u32> {
+fn velocities<E: VelocityEstimator>(e: &E) -> Vec<u32> {
     let mut state = e.start(&Sample::new(Count(0)));
     let (mut count, mut edge) = (0_i32, None);
     let ticks = (0..4000).map(|k| {
@@ -87,15 +86,10 @@ fn velocities<E: VelocityEstimator<Output = estimator_core::CountsPerTick>>(e: &
 
 #[test]
 fn the_adaptive_images_are_tuned_for_the_plant_with_friction() {
-    let counts_per_rev = DEVICE.large.counts_per_rev;
-    let counts = |plant| -> Adaptive {
-        let observer = designed("adaptive", plant).unwrap();
-        observer.adaptive(counts_per_rev, RATE).unwrap()
-    };
+    let counts = |plant| -> Adaptive { designed("adaptive", plant).adaptive().build().unwrap() };
     let edges = |plant| -> AdaptiveEdge {
-        let observer = designed("adaptive-edge", plant).unwrap();
-        let observer = observer.with_edges(TIMERS, RATE).unwrap();
-        observer.adaptive(counts_per_rev, RATE).unwrap()
+        let observer = designed("adaptive-edge", plant);
+        observer.with_edges(TIMERS).adaptive().build().unwrap()
     };
     let [rough, smooth] = [PlantKind::Friction, PlantKind::Frictionless];
     assert_eq!(velocities(&ADAPTIVE), velocities(&counts(rough)));

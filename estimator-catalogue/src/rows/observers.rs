@@ -45,7 +45,7 @@ macro_rules! observer_rows {
                 goals: &[Goal { capacity: 0, mean: 130.0, longest: f64::INFINITY }],
             },
             |c, motor, rate, clock, p, N| c::EdgeObserver =>
-                $crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.with_edges(clock, rate));
+                c::ObserverDesign::new(motor, rate, &$crate::uncertainty!(c, p)).with_edges(clock).build();
             adaptive, "adaptive", Damping,
             ($($uncertainty)*, boundary_noise: BOUNDARY_NOISE),
             $rates,
@@ -58,7 +58,7 @@ macro_rules! observer_rows {
                 goals: &[],
             },
             |c, motor, rate, clock, p, N| c::AdaptiveObserver =>
-                $crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.adaptive(motor.motor.counts_per_rev, rate));
+                c::ObserverDesign::new(motor, rate, &$crate::uncertainty!(c, p)).adaptive().build();
             adaptive_edge, "adaptive-edge", Damping,
             ($($uncertainty)*, boundary_noise: DISC_NOISE),
             $rates,
@@ -71,7 +71,7 @@ macro_rules! observer_rows {
                 goals: &[Goal { capacity: 0, mean: 300.0, longest: f64::INFINITY }],
             },
             |c, motor, rate, clock, p, N| c::AdaptiveEdgeObserver =>
-                $crate::then!($crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.with_edges(clock, rate)), |known| known.adaptive(motor.motor.counts_per_rev, rate));
+                c::ObserverDesign::new(motor, rate, &$crate::uncertainty!(c, p)).with_edges(clock).adaptive().build();
             observer_soft, "observer-soft", Deviation,
             ($($uncertainty)*, boundary_noise: BOUNDARY_NOISE),
             $rates,
@@ -84,7 +84,7 @@ macro_rules! observer_rows {
                 goals: &[Goal { capacity: 0, mean: 200.0, longest: f64::INFINITY }],
             },
             |c, motor, rate, clock, p, N| c::QuantisedObserver =>
-                c::Observer::quantised(motor, rate, &$crate::uncertainty!(c, p));
+                c::ObserverDesign::quantised(motor, rate, &$crate::uncertainty!(c, p)).build();
             adaptive_soft, "adaptive-soft", Damping,
             ($($uncertainty)*, boundary_noise: BOUNDARY_NOISE),
             $rates,
@@ -97,7 +97,7 @@ macro_rules! observer_rows {
                 goals: &[Goal { capacity: 0, mean: 300.0, longest: f64::INFINITY }],
             },
             |c, motor, rate, clock, p, N| c::AdaptiveQuantisedObserver =>
-                $crate::then!(c::Observer::quantised(motor, rate, &$crate::uncertainty!(c, p)), |known| known.adaptive(motor.motor.counts_per_rev, rate));
+                c::ObserverDesign::quantised(motor, rate, &$crate::uncertainty!(c, p)).adaptive().build();
             observer_held, "observer-held", Deviation,
             ($($uncertainty)*, boundary_noise: BOUNDARY_NOISE),
             $rates,
@@ -110,7 +110,7 @@ macro_rules! observer_rows {
                 goals: &[],
             },
             |c, motor, rate, clock, p, N| c::Observer<c::AmplifierCurrent, c::HeldShaft, c::CountUpdate, c::Fixed> =>
-                $crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| Ok(known.held()));
+                c::ObserverDesign::new(motor, rate, &$crate::uncertainty!(c, p)).held().build();
             observer_edge_held, "observer-edge-held", Deviation,
             ($($uncertainty)*, boundary_noise: DISC_NOISE),
             $rates,
@@ -123,7 +123,7 @@ macro_rules! observer_rows {
                 goals: &[],
             },
             |c, motor, rate, clock, p, N| c::Observer<c::AmplifierCurrent, c::HeldShaft, c::EdgeUpdate, c::Fixed> =>
-                $crate::then!($crate::then!(c::Observer::new(motor, rate, &$crate::uncertainty!(c, p)), |known| known.with_edges(clock, rate)), |known| Ok(known.held()));
+                c::ObserverDesign::new(motor, rate, &$crate::uncertainty!(c, p)).with_edges(clock).held().build();
             observer_edge_blind, "observer-edge-blind", Deviation,
             (torque_noise: TORQUE_NOISE, load: DISTURBANCE_AND_MOTOR, load_time: DISTURBANCE_TIME,
              boundary_noise: DISC_NOISE),
@@ -137,13 +137,13 @@ macro_rules! observer_rows {
                 goals: &[],
             },
             |c, motor, rate, clock, p, N| c::Observer<c::NoCurrent, c::HeldShaft, c::EdgeUpdate, c::Fixed> =>
-                c::Observer::blind(motor, rate, clock, &c::Uncertainty {
+                c::ObserverDesign::blind(motor, rate, clock, &c::Uncertainty {
                     torque_noise: p.torque_noise,
                     disturbance: p.load,
                     disturbance_time: p.load_time,
                     friction_share: 0.0,
                     boundary_noise: p.boundary_noise,
-                });
+                }).build();
         ] $($families)* }
     };
 }

@@ -73,7 +73,6 @@ pub struct AlphaBetaGammaState {
 
 impl VelocityEstimator for AlphaBetaGamma {
     type State = AlphaBetaGammaState;
-    type Output = CountsPerTick;
     const NEEDS: Signals = Signals::COUNT;
 
     fn start(&self, first: &Sample) -> AlphaBetaGammaState {

@@ -20,7 +20,6 @@ pub struct FiniteDifference;
 
 impl VelocityEstimator for FiniteDifference {
     type State = Count;
-    type Output = CountsPerTick;
     const NEEDS: Signals = Signals::COUNT;
 
     fn start(&self, first: &Sample) -> Count {

@@ -104,7 +104,6 @@ impl<const N: usize> FoawState<N> {
 
 impl<const N: usize, F: Fit> VelocityEstimator for Foaw<N, F> {
     type State = FoawState<N>;
-    type Output = CountsPerTick;
     const NEEDS: Signals = Signals::COUNT;
 
     fn start(&self, first: &Sample) -> FoawState<N> {

@@ -112,11 +112,10 @@ impl<A, B> HandoverState<A, B> {
 
 impl<A, B> VelocityEstimator for Handover<A, B>
 where
-    A: VelocityEstimator<Output = CountsPerTick>,
-    B: VelocityEstimator<Output = CountsPerTick>,
+    A: VelocityEstimator,
+    B: VelocityEstimator,
 {
     type State = HandoverState<A::State, B::State>;
-    type Output = CountsPerTick;
     const NEEDS: Signals = A::NEEDS.or(B::NEEDS);
 
     fn start(&self, first: &Sample) -> Self::State {
@@ -184,8 +183,8 @@ where
 
 impl<A, B> Confidence for Handover<A, B>
 where
-    A: Confidence<Output = CountsPerTick>,
-    B: Confidence<Output = CountsPerTick>,
+    A: Confidence,
+    B: Confidence,
 {
     fn variance(&self, state: &Self::State) -> Variance {
         match &state.running {

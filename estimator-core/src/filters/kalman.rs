@@ -110,7 +110,6 @@ impl<const S: usize, U: Input<S>> Kalman<S, U> {
 
 impl<const S: usize, U: Input<S>> VelocityEstimator for Kalman<S, U> {
     type State = KalmanState<S>;
-    type Output = CountsPerTick;
     const NEEDS: Signals = U::NEEDS;
 
     fn start(&self, first: &Sample) -> KalmanState<S> {

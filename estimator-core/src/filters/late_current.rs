@@ -2,7 +2,7 @@
 
 use crate::estimator::VelocityEstimator;
 use crate::sample::{Sample, Signals};
-use crate::units::Amps;
+use crate::units::{Amps, CountsPerTick};
 
 /// An estimator that receives the current one tick late.
 ///
@@ -39,7 +39,6 @@ impl<S> LateCurrentState<S> {
 
 impl<E: VelocityEstimator> VelocityEstimator for LateCurrent<E> {
     type State = LateCurrentState<E::State>;
-    type Output = E::Output;
     const NEEDS: Signals = E::NEEDS;
 
     fn start(&self, first: &Sample) -> Self::State {
@@ -50,7 +49,7 @@ impl<E: VelocityEstimator> VelocityEstimator for LateCurrent<E> {
     }
 
     #[inline(always)]
-    fn update(&self, state: &mut Self::State, sample: &Sample) -> E::Output {
+    fn update(&self, state: &mut Self::State, sample: &Sample) -> CountsPerTick {
         let late = sample.with_current(state.withheld);
         state.withheld = sample.current;
         self.0.update(&mut state.inner, &late)

@@ -53,10 +53,9 @@ pub struct LowPassState<S> {
 
 impl<E> VelocityEstimator for LowPass<E>
 where
-    E: VelocityEstimator<Output = CountsPerTick>,
+    E: VelocityEstimator,
 {
     type State = LowPassState<E::State>;
-    type Output = CountsPerTick;
     const NEEDS: Signals = E::NEEDS;
 
     fn start(&self, first: &Sample) -> Self::State {

@@ -58,7 +58,6 @@ pub struct MOverTState {
 
 impl VelocityEstimator for MOverT {
     type State = MOverTState;
-    type Output = CountsPerTick;
     const NEEDS: Signals = Signals {
         edge: true,
         ..Signals::COUNT

@@ -64,7 +64,6 @@ pub struct PllState {
 
 impl VelocityEstimator for Pll {
     type State = PllState;
-    type Output = CountsPerTick;
     const NEEDS: Signals = Signals::COUNT;
 
     fn start(&self, first: &Sample) -> PllState {

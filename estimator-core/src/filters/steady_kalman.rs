@@ -74,7 +74,6 @@ pub struct SteadyKalmanState<const S: usize> {
 
 impl<const S: usize, U: Input<S>> VelocityEstimator for SteadyKalman<S, U> {
     type State = SteadyKalmanState<S>;
-    type Output = CountsPerTick;
     const NEEDS: Signals = U::NEEDS;
 
     fn start(&self, first: &Sample) -> SteadyKalmanState<S> {

@@ -125,7 +125,6 @@ pub struct TableKalmanState<const S: usize> {
 
 impl<const S: usize, const N: usize, U: Input<S>> VelocityEstimator for TableKalman<S, N, U> {
     type State = TableKalmanState<S>;
-    type Output = CountsPerTick;
     const NEEDS: Signals = U::NEEDS;
 
     fn start(&self, first: &Sample) -> TableKalmanState<S> {

@@ -9,7 +9,6 @@ use super::motion::Motion;
 use super::moving_start::MovingStart;
 use super::sensitivity::{Sensitivity, Tick, Update};
 use crate::branch::unlikely;
-use crate::design::DesignError;
 use crate::design::const_math::limited;
 use crate::sealed::Sealed;
 use crate::units::Hertz;
@@ -102,13 +101,8 @@ const SPACING: f64 = 3.5e-3;
 const DENSE_CAUTION: f32 = 2.0;
 
 impl Adaptive {
-    pub(super) const fn new(counts_per_rev: u32, rate: Hertz) -> Result<Self, DesignError> {
-        if !rate.is_positive() {
-            return Err(DesignError::RATE);
-        }
-        if counts_per_rev == 0 {
-            return Err(DesignError::COUNTS_PER_REV);
-        }
+    /// The adaptation for an encoder of `counts_per_rev` at this control rate; both are above 0.
+    pub(super) const fn new(counts_per_rev: u32, rate: Hertz) -> Self {
         let per_rad = counts_per_rev as f64 / (2.0 * core::f64::consts::PI);
         let mut walk = [0.0; 3];
         let mut i = 0;
@@ -117,11 +111,11 @@ impl Adaptive {
             walk[i] = (step * step / rate.0) as f32;
             i += 1;
         }
-        Ok(Self {
+        Self {
             slowest: (SLOWEST * per_rad / rate.0) as f32,
             walk,
             spacing: (SPACING * rate.0) as f32,
-        })
+        }
     }
 }
 

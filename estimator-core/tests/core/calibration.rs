@@ -2,8 +2,8 @@
 //! are told: simulated in steps far shorter than a tick, in SI units, without a matrix.
 
 use estimator_core::{
-    Amps, ClockTicks, Confidence, Count, CountsPerTick, CoupledMotor, Edge, Hertz, Kalman, Model,
-    MotorModel, Observer, Sample, SteadyKalman, Uncertainty, VelocityEstimator,
+    Amps, ClockTicks, Confidence, Count, CoupledMotor, Edge, Hertz, Kalman, Model, MotorModel,
+    Observer, ObserverDesign, Sample, SteadyKalman, Uncertainty,
 };
 use std::f64::consts::TAU;
 
@@ -125,7 +125,7 @@ impl Drive for Motor {
 /// observer's variance is that before the correction which is due.
 fn ratio<E>(estimator: &E, samples: &[(Sample, f64)]) -> f64
 where
-    E: VelocityEstimator<Output = CountsPerTick> + Confidence,
+    E: Confidence,
 {
     let mut state = estimator.start(&samples[0].0);
     let (mut sum, mut terms) = (0.0, 0u32);
@@ -241,8 +241,8 @@ fn observers_err_by_their_deviation_where_the_motor_is_as_random_as_they_are_tol
     for counts_per_rev in [40, 100, 400] {
         let device = device(counts_per_rev);
         let edges = |unsure| {
-            let counts = Observer::new(&device, RATE, unsure).expect("valid");
-            counts.with_edges(CLOCK, RATE).expect("valid")
+            let edges = ObserverDesign::new(&device, RATE, unsure).with_edges(CLOCK);
+            edges.build().expect("valid")
         };
         let samples = motor(counts_per_rev, UNSURE);
         let what = |name: &str| format!("{name}, {counts_per_rev} counts");
@@ -258,7 +258,8 @@ fn observers_err_by_their_deviation_where_the_motor_is_as_random_as_they_are_tol
         };
         let samples = motor(counts_per_rev, unsure);
         let counts = Observer::new(&device, RATE, &unsure).expect("valid");
-        let quantised = Observer::quantised(&device, RATE, &unsure).expect("valid");
+        let quantised = ObserverDesign::quantised(&device, RATE, &unsure);
+        let quantised = quantised.build().expect("valid");
         assert_calibrated(ratio(&edges(&unsure), &samples), &what("edges"));
         assert_calibrated(ratio(&counts, &samples), &what("counts"));
         assert_calibrated(ratio(&quantised, &samples), &what("quantised"));

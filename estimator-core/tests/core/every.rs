@@ -4,9 +4,9 @@
 //! catalogue.
 
 use estimator_core::{
-    AlphaBetaGamma, BestFit, CountsPerTick, EndFit, FiniteDifference, Fit, Foaw, Handover, Hertz,
-    Kalman, LateCurrent, LowPass, Model, MotorModel, Pll, Sample, Signals, SteadyKalman,
-    TableKalmanMotor, TableKalmanTriple, VelocityEstimator,
+    AlphaBetaGamma, BestFit, EndFit, FiniteDifference, Fit, Foaw, Handover, Hertz, Kalman,
+    LateCurrent, LowPass, Model, MotorModel, Pll, Sample, Signals, SteadyKalman, TableKalmanMotor,
+    TableKalmanTriple, VelocityEstimator,
 };
 
 use crate::reference::{self, Reference, Vector};
@@ -74,7 +74,7 @@ struct Running<E: VelocityEstimator> {
     state: Option<E::State>,
 }
 
-impl<E: VelocityEstimator<Output = CountsPerTick>> Run for Running<E> {
+impl<E: VelocityEstimator> Run for Running<E> {
     fn start(&mut self, first: &Sample) {
         self.state = Some(self.estimator.start(first));
     }
@@ -89,7 +89,7 @@ impl<E: VelocityEstimator<Output = CountsPerTick>> Run for Running<E> {
 /// the largest displacement.
 fn averaging<E>(name: &str, rate: f64, ramp: Ramp, memory: usize, estimator: E) -> Case
 where
-    E: VelocityEstimator<Output = CountsPerTick> + Copy + Send + Sync + 'static,
+    E: VelocityEstimator + Copy + Send + Sync + 'static,
 {
     Case {
         name: format!("{name} at {rate} Hz"),
@@ -117,7 +117,7 @@ fn kalman<E, const S: usize>(
     steady: bool,
 ) -> Case
 where
-    E: VelocityEstimator<Output = CountsPerTick> + Copy + Send + Sync + 'static,
+    E: VelocityEstimator + Copy + Send + Sync + 'static,
 {
     let limit = model.steady_gain();
     let slowest = model.spectral_radius(&limit);

@@ -25,7 +25,7 @@ fn both() -> Both {
 /// Velocity of an estimator at each sample but the first.
 fn run<E>(estimator: &E, samples: &[Sample], mut each: impl FnMut(usize, &mut E::State)) -> Vec<f32>
 where
-    E: VelocityEstimator<Output = estimator_core::CountsPerTick>,
+    E: VelocityEstimator,
 {
     let mut state = estimator.start(&samples[0]);
     samples[1..]

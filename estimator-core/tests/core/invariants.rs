@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use estimator_core::{Amps, ClockTicks, Count, Edge, Sample, Signals, Skip, VelocityEstimator};
+use estimator_core::{Amps, ClockTicks, Count, Edge, Sample, Signals};
 use proptest::prelude::*;
 
 use crate::every::{Case, everywhere};
@@ -173,19 +173,6 @@ fn first_step_is_seen_from_the_first_sample() {
             );
         }
     }
-}
-
-#[test]
-fn skip_keeps_nothing_and_yields_nothing() {
-    fn state_size<E: VelocityEstimator>(_: &E) -> usize {
-        size_of::<E::State>()
-    }
-    for sample in medley().samples(9) {
-        Skip.start(&sample);
-        Skip.update(&mut (), &sample);
-    }
-    assert_eq!((state_size(&Skip), size_of::<Skip>()), (0, 0));
-    assert_eq!(Skip::NEEDS, Signals::COUNT);
 }
 
 /// The medley is what it claims, so that the tests above try what they say.

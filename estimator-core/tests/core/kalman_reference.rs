@@ -75,10 +75,7 @@ fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
     differences.fold(0.0, f64::max)
 }
 
-fn run<E: VelocityEstimator<Output = CountsPerTick>>(
-    estimator: &E,
-    samples: &[Sample],
-) -> Vec<f64> {
+fn run<E: VelocityEstimator>(estimator: &E, samples: &[Sample]) -> Vec<f64> {
     let mut state = estimator.start(&samples[0]);
     let update = |sample| f64::from(estimator.update(&mut state, sample).0);
     samples[1..].iter().map(update).collect()

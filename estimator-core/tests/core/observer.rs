@@ -11,7 +11,7 @@ mod definition;
 mod modelled;
 
 use estimator_core::{
-    Amps, ClockTicks, Count, Counts, CoupledMotor, Edge, Hertz, Observer, Sample, Uncertainty,
+    Amps, ClockTicks, Count, Counts, CoupledMotor, Edge, Hertz, ObserverDesign, Sample, Uncertainty,
 };
 use proptest::prelude::*;
 
@@ -216,8 +216,9 @@ fn quantised_observer_finds_a_velocity_that_jumps() {
             ..UNSURE
         };
         let device = CoupledMotor::DCX35L;
-        let quantised = Observer::quantised(&device, hertz, &unsure).expect("valid");
-        let learning = quantised.adaptive(4096, hertz).expect("valid");
+        let design = ObserverDesign::quantised(&device, hertz, &unsure);
+        let quantised = design.build().expect("valid");
+        let learning = design.adaptive().build().expect("valid");
         let friction = (device.coulomb_friction / device.motor.torque_constant) as f32;
         for step in 0..60 {
             let turns = 0.2 * 1.08f64.powi(step);

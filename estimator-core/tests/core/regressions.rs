@@ -27,7 +27,7 @@ fn at(count: u32) -> Sample {
 }
 
 /// Velocities at all counts but the first.
-fn run<E: VelocityEstimator<Output = CountsPerTick>>(estimator: &E, counts: &[u32]) -> Vec<f32> {
+fn run<E: VelocityEstimator>(estimator: &E, counts: &[u32]) -> Vec<f32> {
     let mut state = estimator.start(&at(counts[0]));
     let update = |count: &u32| estimator.update(&mut state, &at(*count)).0;
     counts[1..].iter().map(update).collect()

@@ -3,9 +3,9 @@
 use core::convert::Infallible;
 
 use estimator_core::{
-    AdaptiveEdgeObserver, AdaptiveObserver, Confidence, CountObserver, DesignError, EndFit, Foaw,
-    Handover, HandoverState, Model, NoInput, Observer, ParameterErrors, Side, Skip, SteadyKalman,
-    SteadyKalmanTriple, preset,
+    AdaptiveEdgeObserver, AdaptiveObserver, Confidence, EndFit, Foaw, Handover, HandoverState,
+    Model, NoInput, ObserverDesign, ParameterErrors, Side, Skip, SteadyKalman, SteadyKalmanTriple,
+    preset,
 };
 
 use crate::config::{DEVICE, RATE, TIMERS};
@@ -38,23 +38,24 @@ const TICKS: u16 = (RATE.0 / 50.0) as u16;
 /// The parameters of [`Both`].
 pub const BOTH: Both = preset!(Handover::new(WINDOW, FILTER, TICKS, TICKS));
 
-const fn observer(tuned_as: &str) -> Result<CountObserver, DesignError> {
-    let unsure = tuned::uncertainty(tuned_as, RATE);
-    Observer::new(&DEVICE.coupled_motor(), RATE, &unsure)
+const fn observer(tuned_as: &str) -> ObserverDesign {
+    let uncertainty = tuned::uncertainty(tuned_as, RATE);
+    ObserverDesign::new(&DEVICE.coupled_motor(), RATE, &uncertainty)
 }
 
 /// An observer that learns damping, friction and torque constant from counts.
 pub type Adaptive = AdaptiveObserver;
 /// The parameters of [`Adaptive`], as tuned for the plant with friction.
-pub const ADAPTIVE: Adaptive =
-    preset!(preset!(observer("adaptive")).adaptive(DEVICE.large.counts_per_rev, RATE));
+pub const ADAPTIVE: Adaptive = preset!(observer("adaptive").adaptive().build());
 
 /// An observer that learns damping, friction and torque constant from stamped edges.
 pub type AdaptiveEdge = AdaptiveEdgeObserver;
 /// The parameters of [`AdaptiveEdge`], as tuned for the plant with friction.
 pub const ADAPTIVE_EDGE: AdaptiveEdge = preset!(
-    preset!(preset!(observer("adaptive-edge")).with_edges(TIMERS, RATE))
-        .adaptive(DEVICE.large.counts_per_rev, RATE)
+    observer("adaptive-edge")
+        .with_edges(TIMERS)
+        .adaptive()
+        .build()
 );
 
 #[cfg(all(feature = "large-adaptive", not(feature = "edge-capture")))]

@@ -4,9 +4,9 @@
 #![no_std]
 
 use estimator_core::{
-    Adaptive, AmplifierCurrent, BestFit, CountObserver, CountsPerTick, CoupledMotor, EdgeUpdate,
-    EndFit, Foaw, Handover, HeldShaft, Hertz, KalmanTriple, LateCurrent, LowPass, MOverT, Model,
-    MotorModel, Observer, Sample, Skip, SteadyKalman, SteadyKalmanMotor, TableKalman,
+    Adaptive, AmplifierCurrent, BestFit, CountsPerTick, CoupledMotor, EdgeUpdate, EndFit, Foaw,
+    Handover, HeldShaft, Hertz, KalmanTriple, LateCurrent, LowPass, MOverT, Model, MotorModel,
+    Observer, ObserverDesign, Sample, SteadyKalman, SteadyKalmanMotor, TableKalman,
     TableKalmanMotor, Uncertainty, VelocityEstimator, preset,
 };
 
@@ -21,8 +21,6 @@ const UNSURE: Uncertainty = Uncertainty {
     friction_share: 0.7,
     boundary_noise: 0.03,
 };
-
-const COUNTS: CountObserver = preset!(Observer::new(&CoupledMotor::DCX35L, RATE, &UNSURE));
 
 macro_rules! probes {
     ($($start:ident, $update:ident: $type:ty = $value:expr;)*) => {
@@ -39,7 +37,7 @@ macro_rules! probes {
             pub fn $update(
                 state: &mut <$type as VelocityEstimator>::State,
                 sample: &Sample,
-            ) -> <$type as VelocityEstimator>::Output {
+            ) -> CountsPerTick {
                 const ESTIMATOR: $type = $value;
                 ESTIMATOR.update(state, sample)
             }
@@ -102,7 +100,7 @@ macro_rules! rows {
                             pub fn update(
                                 state: &mut <$type as VelocityEstimator>::State,
                                 sample: &Sample,
-                            ) -> <$type as VelocityEstimator>::Output {
+                            ) -> estimator_core::CountsPerTick {
                                 ESTIMATOR.update(state, sample)
                             }
                         }
@@ -131,7 +129,6 @@ const fn value(estimator: &str, rate: Hertz, parameter: &str, capacity: usize) -
 
 // What no row has: other sizes, wrappers and parts.
 probes! {
-    start_skip, update_skip: Skip = Skip;
     start_low_pass_foaw, update_low_pass_foaw: LowPass<Foaw<15, EndFit>> =
         preset!(LowPass::new(preset!(Foaw::new(15, 1)), Hertz(120.0), RATE));
     start_foaw_1, update_foaw_1: Foaw<1, EndFit> = preset!(Foaw::new(1, 1));
@@ -144,7 +141,13 @@ probes! {
         LateCurrent(preset!(SteadyKalman::new(&preset!(Model::motor(&MotorModel::DCX35L, RATE, 0.1)))));
     start_adaptive_edge_held, update_adaptive_edge_held:
         Observer<AmplifierCurrent, HeldShaft, EdgeUpdate, Adaptive> =
-        preset!(preset!(COUNTS.with_edges(CLOCK, RATE)).adaptive(4096, RATE)).held();
+        preset!(
+            ObserverDesign::new(&CoupledMotor::DCX35L, RATE, &UNSURE)
+                .with_edges(CLOCK)
+                .adaptive()
+                .held()
+                .build()
+        );
     start_handover, update_handover: Handover<MOverT, Foaw<15, EndFit>> = preset!(Handover::new(
         preset!(MOverT::new(CLOCK, RATE)),
         preset!(Foaw::new(15, 1)),
@@ -152,10 +155,6 @@ probes! {
         100
     ));
 }
-
-/// Does nothing, for comparison.
-#[inline(never)]
-pub fn empty(_: &Sample) {}
 
 /// Updates a window whose parameters are known at run time only, as after a change of settings.
 #[inline(never)]
@@ -216,11 +215,5 @@ pub mod planted {
     #[inline(never)]
     pub fn planted_wide_division(sample: &Sample) -> i64 {
         i64::from(sample.count.0 as i32) * 0x1_0000_0001 / i64::from(sample.coupled.0 | 1)
-    }
-
-    /// Reads a part of the sample that it should not: large where it should be empty.
-    #[inline(never)]
-    pub fn planted_not_empty(sample: &Sample) -> f32 {
-        sample.current.get()
     }
 }

@@ -77,7 +77,6 @@ pub fn handle_update(
 
 impl VelocityEstimator for Large {
     type State = <LargeEstimator as VelocityEstimator>::State;
-    type Output = CountsPerTick;
     const NEEDS: Signals = LargeEstimator::NEEDS;
 
     #[inline]
@@ -100,7 +99,6 @@ impl AccelerationEstimator for OfHandle {
 
 impl VelocityEstimator for OfHandle {
     type State = <HandleEstimator as VelocityEstimator>::State;
-    type Output = CountsPerTick;
     const NEEDS: Signals = HandleEstimator::NEEDS;
 
     #[inline]

@@ -159,8 +159,8 @@ pub(crate) struct Both<C: core::VelocityEstimator, T: twin::VelocityEstimator> {
 
 impl<C, T> Pair for Both<C, T>
 where
-    C: core::VelocityEstimator<Output = core::CountsPerTick>,
-    T: twin::VelocityEstimator<Output = twin::CountsPerTick>,
+    C: core::VelocityEstimator,
+    T: twin::VelocityEstimator,
 {
     fn start(&mut self, first: &Shown) {
         self.states = Some((

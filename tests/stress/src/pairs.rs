@@ -76,8 +76,8 @@ pub(crate) fn both<C, T>(
     asks: Asks<C>,
 ) -> Refusable
 where
-    C: core::VelocityEstimator<Output = core::CountsPerTick> + 'static,
-    T: twin::VelocityEstimator<Output = twin::CountsPerTick> + 'static,
+    C: core::VelocityEstimator + 'static,
+    T: twin::VelocityEstimator + 'static,
 {
     match (core, twin) {
         (Ok(core), Ok(twin)) => Ok(Box::new(Both {

@@ -1,6 +1,6 @@
 //! The same control on the host, fed with what the image read: the same bits.
 
-use estimator_core::{Amps, Count, CountsPerTick, Sample, VelocityEstimator};
+use estimator_core::{Amps, Count, Sample, VelocityEstimator};
 use experiments::closed_loop::Hand;
 use firmware_app::config::RATE;
 use firmware_app::control::{Control, Inputs, Message, SETTLE};
@@ -236,7 +236,7 @@ fn codes_are_the_hosts(run: &Outcome, host: &[(Option<Currents>, Record)]) -> us
 /// `firmware_app` has one choice.
 fn mirrored_with<L>(large: L, run: &Outcome) -> Vec<Action>
 where
-    L: VelocityEstimator<Output = CountsPerTick>,
+    L: VelocityEstimator,
 {
     let switchboard = Switchboard::new(large, HANDLE, RIG, RATE);
     let (mut samples, first) = Samples::new(run);

@@ -1,8 +1,8 @@
 //! The ranges of a motor's constants and of an observer's uncertainty.
 
 use estimator_core::{
-    Amps, Count, CoupledMotor, DesignError, Hertz, Model, MotorModel, Observer, Sample,
-    Uncertainty, VelocityEstimator,
+    Amps, Count, CoupledMotor, DesignError, Hertz, Model, MotorModel, Observer, ObserverDesign,
+    Sample, Uncertainty, VelocityEstimator,
 };
 
 use super::{RATE, assert_range};
@@ -74,7 +74,7 @@ fn quantised_observer_has_a_range_of_white_torque() {
             disturbance: 10.0 * counts / counts_per_torque,
             ..UNSURE
         };
-        Observer::quantised(&CoupledMotor::DCX35L, RATE, &unsure)
+        ObserverDesign::quantised(&CoupledMotor::DCX35L, RATE, &unsure).build()
     };
     let refused = |counts| spread(counts).err() == Some(DesignError::TORQUE_NOISE_FOR_QUANTISED);
     assert!(refused(0.999e-9) && !refused(1.001e-9));

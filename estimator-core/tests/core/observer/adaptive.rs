@@ -2,7 +2,7 @@
 
 use estimator_core::{
     Adaptive, AmplifierCurrent, Amps, Correction, Count, CoupledEncoder, CoupledMotor, Hertz,
-    Observer, Sample, Uncertainty, VelocityEstimator,
+    Observer, ObserverDesign, Sample, Uncertainty, VelocityEstimator,
 };
 
 use super::modelled::{modelled, rms};
@@ -19,15 +19,14 @@ fn wrong_parameters_are_estimated() {
         device.motor.inertia *= inertia;
         device.coulomb_friction *= friction;
         let (samples, truth) = modelled(rate.0, 12.0, 0.3, device);
-        let counts = Observer::new(&believed, rate, &UNSURE).expect("valid");
-        let edges = counts.with_edges(CLOCK, rate).expect("valid");
+        let edges = ObserverDesign::new(&believed, rate, &UNSURE).with_edges(CLOCK);
         let fixed = at(rate.0);
         let fixed = fixed
             .iter()
             .find(|case| case.name.starts_with("observer, edges at"));
         let fixed = rms(&(fixed.expect("there").run)(&samples), &truth, 6000);
 
-        let estimator = edges.adaptive(4096, rate).expect("valid");
+        let estimator = edges.adaptive().build().expect("valid");
         let mut state = estimator.start(&samples[0]);
         let mut velocities = Vec::new();
         for sample in &samples[1..] {
@@ -54,15 +53,11 @@ fn moving_start_changes_no_parameter() {
         boundary_noise: 0.0625,
         ..UNSURE
     };
-    let counts = Observer::new(&CoupledMotor::DCX35L, rate, &sure).expect("valid");
-    moving_start(&counts.adaptive(4096, rate).expect("valid"), rate, 0.003);
-    let quantised = Observer::quantised(&CoupledMotor::DCX35L, rate, &sure).expect("valid");
+    let counts = ObserverDesign::new(&CoupledMotor::DCX35L, rate, &sure);
+    moving_start(&counts.adaptive().build().expect("valid"), rate, 0.003);
+    let quantised = ObserverDesign::quantised(&CoupledMotor::DCX35L, rate, &sure);
     // With one count in every tick a count has least information.
-    moving_start(
-        &quantised.adaptive(4096, rate).expect("valid"),
-        rate,
-        0.0045,
-    );
+    moving_start(&quantised.adaptive().build().expect("valid"), rate, 0.0045);
 }
 
 fn moving_start<M: Correction>(
@@ -98,8 +93,8 @@ fn moving_start<M: Correction>(
 #[test]
 fn creep_changes_no_parameter() {
     let rate = Hertz(1000.0);
-    let counts = Observer::new(&CoupledMotor::DCX35L, rate, &UNSURE).expect("valid");
-    let estimator = counts.adaptive(4096, rate).expect("valid");
+    let counts = ObserverDesign::new(&CoupledMotor::DCX35L, rate, &UNSURE);
+    let estimator = counts.adaptive().build().expect("valid");
     let mut state = estimator.start(&Sample::new(Count(7)));
     let fresh = estimator.parameter_errors(&state);
     let mut fastest = 0.0f32;
@@ -120,9 +115,9 @@ fn edges_update_parameters_once_in_3_5_ms() {
         let hertz = Hertz(rate);
         let seconds = 2.0;
         let (samples, truth) = modelled(rate, seconds, 0.4, CoupledMotor::DCX35L);
-        let counts = Observer::new(&CoupledMotor::DCX35L, hertz, &UNSURE).expect("valid");
-        let edges = counts.with_edges(CLOCK, hertz).expect("valid");
-        let edges = edges.adaptive(4096, hertz).expect("valid");
+        let counts = ObserverDesign::new(&CoupledMotor::DCX35L, hertz, &UNSURE);
+        let edges = counts.with_edges(CLOCK).adaptive();
+        let edges = edges.build().expect("valid");
         let mut state = edges.start(&samples[0]);
         let (mut updates, mut before) = (0, *state.adaptation().diagonal());
         for sample in &samples[1..] {

@@ -2,7 +2,8 @@
 
 use estimator_core::{
     Adaptive, AmplifierCurrent, Amps, ClockTicks, Correction, Count, Counts, CoupledEncoder,
-    CoupledMotor, Edge, Hertz, MotorModel, Observer, Sample, Uncertainty, VelocityEstimator,
+    CoupledMotor, Edge, Hertz, MotorModel, Observer, ObserverDesign, Sample, Uncertainty,
+    VelocityEstimator,
 };
 
 use super::modelled::modelled;
@@ -55,9 +56,9 @@ fn covariance_is_sound_at_ticks_of_many_time_constants() {
                 };
                 let rate = Hertz(rate);
                 let what = format!("{rate:?}, {counts_per_rev} counts, {torque_noise:e}");
-                let counts = Observer::new(&device, rate, &unsure).expect("valid");
-                let counts = counts.adaptive(counts_per_rev, rate).expect("valid");
-                let edges = counts.with_edges(CLOCK, rate).expect("valid");
+                let counts = ObserverDesign::new(&device, rate, &unsure).adaptive();
+                let edges = counts.with_edges(CLOCK).build().expect("valid");
+                let counts = counts.build().expect("valid");
                 let noise = || {
                     let mut draws = Draws(u64::from(counts_per_rev));
                     (0..300).map(move |_| {
@@ -101,9 +102,8 @@ fn covariance_is_sound_with_edges_that_contradict_the_counts() {
         boundary_noise: 430.0,
     };
     let rate = Hertz(34.3);
-    let counts = Observer::new(&device, rate, &unsure).expect("valid");
-    let edges = counts.with_edges(CLOCK, rate).expect("valid");
-    let edges = edges.adaptive(3, rate).expect("valid");
+    let edges = ObserverDesign::new(&device, rate, &unsure).with_edges(CLOCK);
+    let edges = edges.adaptive().build().expect("valid");
     let mut draws = Draws(3);
     let mut jumps = 0;
     let samples = (0..3000u32).map(|tick| {
@@ -128,9 +128,9 @@ fn covariance_is_sound_with_edges_that_contradict_the_counts() {
 #[test]
 fn covariance_of_the_parameters_stays_positive() {
     let rate = Hertz(1000.0);
-    let counts = Observer::new(&CoupledMotor::DCX35L, rate, &UNSURE).expect("valid");
-    let counts = counts.adaptive(4096, rate).expect("valid");
-    let edges = counts.with_edges(CLOCK, rate).expect("valid");
+    let counts = ObserverDesign::new(&CoupledMotor::DCX35L, rate, &UNSURE).adaptive();
+    let edges = counts.with_edges(CLOCK).build().expect("valid");
+    let counts = counts.build().expect("valid");
     let mut draws = Draws(11);
     let (mut state, mut stamped) = (
         counts.start(&Sample::default()),
@@ -177,8 +177,8 @@ fn variances_of_the_parameters_at_rest_stay_below_the_prior() {
     // At 100 Hz 1e5 ticks are 1000 s; the walk of a tenth of the prior in √s would make 3 of it.
     let rate = Hertz(100.0);
     let prior = [0.35f32, 0.6, 0.35].map(|deviation| deviation * deviation);
-    let counts = Observer::new(&CoupledMotor::DCX35L, rate, &UNSURE).expect("valid");
-    let counts = counts.adaptive(4096, rate).expect("valid");
+    let counts = ObserverDesign::new(&CoupledMotor::DCX35L, rate, &UNSURE).adaptive();
+    let counts = counts.build().expect("valid");
     let mut state = counts.start(&Sample::default());
     assert_eq!(*state.adaptation().diagonal(), prior);
     // 0.3 A over 0.4 s: the parameters believed in are nearly right.

@@ -2,7 +2,7 @@
 
 use estimator_core::{
     Adaptation, Amps, Confidence, Correction, Counts, CoupledMotor, CurrentSource, Edge, Hertz,
-    MotorModel, Observer, Sample, SlipSource, Uncertainty, VelocityEstimator,
+    MotorModel, Observer, ObserverDesign, Sample, SlipSource, Uncertainty, VelocityEstimator,
 };
 
 use super::definition::{Definition, Kind, factors};
@@ -150,15 +150,17 @@ fn observers_are_their_definition() {
         let hertz = Hertz(rate);
         let device = other_device();
         let belief = believed(&device);
-        let n = belief.motor.counts_per_rev;
-        let counts = Observer::new(&belief, hertz, &SURE).expect("valid");
-        let quantised = Observer::quantised(&belief, hertz, &SURE).expect("valid");
-        let edges = counts.with_edges(CLOCK, hertz).expect("valid");
+        let counts = ObserverDesign::new(&belief, hertz, &SURE);
+        let quantised = ObserverDesign::quantised(&belief, hertz, &SURE);
+        let edges = counts.with_edges(CLOCK);
         let learns = (
-            counts.adaptive(n, hertz).expect("valid"),
-            quantised.adaptive(n, hertz).expect("valid"),
-            edges.adaptive(n, hertz).expect("valid"),
+            counts.adaptive().build().expect("valid"),
+            quantised.adaptive().build().expect("valid"),
+            edges.adaptive().build().expect("valid"),
         );
+        let counts = counts.build().expect("valid");
+        let quantised = quantised.build().expect("valid");
+        let edges = edges.build().expect("valid");
         for (name, samples) in samples(rate, &device) {
             let new =
                 |kind, learns| Definition::new(kind, learns, &belief, rate, &SURE, &samples[0]);
@@ -224,18 +226,21 @@ fn observers_without_an_input_are_their_definition() {
             coulomb_friction: 0.0,
             ..device
         };
-        let counts = Observer::new(&device, hertz, &SURE).expect("valid");
+        let held = |device| {
+            let held = ObserverDesign::new(device, hertz, &SURE).held();
+            held.build().expect("valid")
+        };
         // A motor without friction knows no share of it, whatever it is asked for.
         let smooth = CoupledMotor {
             coulomb_friction: 0.0,
             ..device
         };
-        let smooth_counts = Observer::new(&smooth, hertz, &SURE).expect("valid");
         let wide = Uncertainty {
             disturbance: 2e-2,
             ..SURE
         };
-        let blind = Observer::blind(&device, hertz, CLOCK, &wide).expect("valid");
+        let blind = ObserverDesign::blind(&device, hertz, CLOCK, &wide);
+        let blind = blind.build().expect("valid");
         for (name, samples) in samples(rate, &device) {
             let new = |kind, device, unsure| {
                 let mut definition =
@@ -245,13 +250,13 @@ fn observers_without_an_input_are_their_definition() {
             };
             let what = format!("held at {rate} Hz");
             let off = largest_difference(
-                &counts.held(),
+                &held(&device),
                 &mut new(Kind::CountUpdate, &device, &SURE),
                 &samples,
             );
             assert_rounding(off, name, &what);
             let mut definition = new(Kind::CountUpdate, &smooth, &SURE);
-            let off = largest_difference(&smooth_counts.held(), &mut definition, &samples);
+            let off = largest_difference(&held(&smooth), &mut definition, &samples);
             assert_rounding(off, name, &format!("without friction at {rate} Hz"));
             let mut definition = new(Kind::EdgeUpdate, &unknown, &wide);
             definition.per_amp = 0.0;
@@ -298,10 +303,8 @@ fn covariances_are_those_of_the_definition() {
     let rate = 1000.0;
     let hertz = Hertz(rate);
     let belief = believed(&other_device());
-    let quantised = Observer::quantised(&belief, hertz, &SURE).expect("valid");
-    let learns = quantised
-        .adaptive(belief.motor.counts_per_rev, hertz)
-        .expect("valid");
+    let quantised = ObserverDesign::quantised(&belief, hertz, &SURE);
+    let learns = quantised.adaptive().build().expect("valid");
     let (_, samples) = samples(rate, &other_device()).swap_remove(0);
     let mut definition = Definition::new(Kind::Quantised, true, &belief, rate, &SURE, &samples[0]);
     let mut state = learns.start(&samples[0]);

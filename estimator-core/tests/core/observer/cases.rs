@@ -1,8 +1,8 @@
 //! Every type of observer and the M/T method, and the samples that they are tried with.
 
 use estimator_core::{
-    Amps, ClockTicks, Count, CountsPerTick, CoupledMotor, Edge, Hertz, MOverT, Observer, Sample,
-    Signals, VelocityEstimator,
+    Amps, ClockTicks, Count, CoupledMotor, Edge, Hertz, MOverT, ObserverDesign, Sample, Signals,
+    VelocityEstimator,
 };
 
 use super::{CLOCK, RATES, UNSURE};
@@ -18,7 +18,7 @@ pub(super) struct Case {
 
 pub(super) fn case<E>(name: &str, rate: f64, estimator: E) -> Case
 where
-    E: VelocityEstimator<Output = CountsPerTick> + Send + Sync + 'static,
+    E: VelocityEstimator + Send + Sync + 'static,
 {
     Case {
         name: format!("{name} at {rate} Hz"),
@@ -35,32 +35,44 @@ where
 pub(super) fn at(rate: f64) -> Vec<Case> {
     let hertz = Hertz(rate);
     let device = CoupledMotor::DCX35L;
-    let counts = Observer::new(&device, hertz, &UNSURE).expect("valid");
-    let quantised = Observer::quantised(&device, hertz, &UNSURE).expect("valid");
-    let edges = counts.with_edges(CLOCK, hertz).expect("valid");
-    let blind = Observer::blind(&device, hertz, CLOCK, &UNSURE).expect("valid");
+    let counts = ObserverDesign::new(&device, hertz, &UNSURE);
+    let quantised = ObserverDesign::quantised(&device, hertz, &UNSURE);
+    let edges = counts.with_edges(CLOCK);
+    let blind = ObserverDesign::blind(&device, hertz, CLOCK, &UNSURE);
     vec![
         case("M/T", rate, MOverT::new(CLOCK, hertz).expect("valid")),
-        case("observer", rate, counts),
-        case("observer, held", rate, counts.held()),
-        case("observer, quantised", rate, quantised),
+        case("observer", rate, counts.build().expect("valid")),
+        case(
+            "observer, held",
+            rate,
+            counts.held().build().expect("valid"),
+        ),
+        case(
+            "observer, quantised",
+            rate,
+            quantised.build().expect("valid"),
+        ),
         case(
             "adaptive, quantised",
             rate,
-            quantised.adaptive(4096, hertz).expect("valid"),
+            quantised.adaptive().build().expect("valid"),
         ),
-        case("observer, edges", rate, edges),
-        case("observer, edges, held", rate, edges.held()),
-        case("observer, edges, blind", rate, blind),
+        case("observer, edges", rate, edges.build().expect("valid")),
         case(
-            "adaptive",
+            "observer, edges, held",
             rate,
-            counts.adaptive(4096, hertz).expect("valid"),
+            edges.held().build().expect("valid"),
         ),
+        case(
+            "observer, edges, blind",
+            rate,
+            blind.build().expect("valid"),
+        ),
+        case("adaptive", rate, counts.adaptive().build().expect("valid")),
         case(
             "adaptive, edges",
             rate,
-            edges.adaptive(4096, hertz).expect("valid"),
+            edges.adaptive().build().expect("valid"),
         ),
     ]
 }

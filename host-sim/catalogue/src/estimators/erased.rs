@@ -41,7 +41,6 @@ impl Estimator {
 /// A tick at a time: the type that a control loop takes.
 impl VelocityEstimator for Estimator {
     type State = State;
-    type Output = CountsPerTick;
     const NEEDS: Signals = Signals {
         current: true,
         coupled: true,
@@ -151,7 +150,7 @@ impl<E: VelocityEstimator> Says<E> {
     };
 }
 
-impl<E: Confidence<Output = CountsPerTick>> Says<E> {
+impl<E: Confidence> Says<E> {
     const DEVIATION: Self = Self {
         deviation: Some(|estimator, state| estimator.variance(state).std_dev()),
         ..Self::NOTHING
@@ -160,7 +159,7 @@ impl<E: Confidence<Output = CountsPerTick>> Says<E> {
 
 impl<E> Erased for Scaled<E>
 where
-    E: VelocityEstimator<Output = CountsPerTick, State: Send + 'static> + Send + Sync,
+    E: VelocityEstimator<State: Send + 'static> + Send + Sync,
 {
     fn run(&self, trace: &Trace) -> Vec<f32> {
         velocities(&self.estimator, trace, &self.scale)
@@ -209,7 +208,7 @@ where
 /// Forgets an estimator's type; a trace still runs with one dynamic call, not one a tick.
 pub(super) fn erased<E>(estimator: E, scale: Scale) -> Estimator
 where
-    E: VelocityEstimator<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
+    E: VelocityEstimator<State: Send + 'static> + Send + Sync + 'static,
 {
     saying(estimator, scale, Says::NOTHING)
 }
@@ -217,7 +216,7 @@ where
 /// The same for one that says how far off it may be.
 pub(super) fn confident<E>(estimator: E, scale: Scale) -> Estimator
 where
-    E: Confidence<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
+    E: Confidence<State: Send + 'static> + Send + Sync + 'static,
 {
     saying(estimator, scale, Says::DEVIATION)
 }
@@ -225,7 +224,7 @@ where
 /// The same for one that learns the coupler's damping.
 pub(super) fn learner<E>(estimator: E, scale: Scale, damping_ratio: DampingRatio<E>) -> Estimator
 where
-    E: Confidence<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
+    E: Confidence<State: Send + 'static> + Send + Sync + 'static,
 {
     let says = Says {
         damping_ratio: Some(damping_ratio),
@@ -237,11 +236,7 @@ where
 /// The same for one whose model has an acceleration.
 pub(super) fn accelerating<E>(estimator: E, scale: Scale) -> Estimator
 where
-    E: AccelerationEstimator
-        + Confidence<Output = CountsPerTick, State: Send + 'static>
-        + Send
-        + Sync
-        + 'static,
+    E: AccelerationEstimator + Confidence<State: Send + 'static> + Send + Sync + 'static,
 {
     let says = Says {
         acceleration: Some(E::acceleration),
@@ -252,7 +247,7 @@ where
 
 fn saying<E>(estimator: E, scale: Scale, says: Says<E>) -> Estimator
 where
-    E: VelocityEstimator<Output = CountsPerTick, State: Send + 'static> + Send + Sync + 'static,
+    E: VelocityEstimator<State: Send + 'static> + Send + Sync + 'static,
 {
     Estimator(Arc::new(Scaled {
         estimator,

@@ -19,7 +19,7 @@ pub fn available(trace: &Trace) -> Signals {
 /// The velocity at each tick, rad/s.
 pub(super) fn velocities<E>(estimator: &E, trace: &Trace, scale: &Scale) -> Vec<f32>
 where
-    E: VelocityEstimator<Output = CountsPerTick>,
+    E: VelocityEstimator,
 {
     run(estimator, trace, 0.0, |_, velocity| {
         velocity.rad_per_s(scale)
@@ -34,7 +34,7 @@ pub(super) fn run<E, T>(
     read: impl Fn(&E::State, CountsPerTick) -> T,
 ) -> Vec<T>
 where
-    E: VelocityEstimator<Output = CountsPerTick>,
+    E: VelocityEstimator,
     T: Clone,
 {
     let mut values = vec![first; trace.len()];
@@ -87,7 +87,6 @@ mod tests {
 
     impl VelocityEstimator for Spy {
         type State = ();
-        type Output = CountsPerTick;
         const NEEDS: Signals = Signals {
             current: true,
             coupled: true,
