@@ -3,263 +3,37 @@
 //! The environment variables DEVICE and PRESETS name the files. Without DEVICE the device is
 //! `DualStage::DEFAULT`. The presets file lies over the shipped one, as in host-sim.
 
-use std::collections::BTreeSet;
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use device_files::decimal;
-use device_files::device::Device;
-use device_files::presets::{Estimators, PlantKind, Preset, Presets};
-use estimator_catalogue::ROWS;
-use haptic_control::{DualStage, Fingerprint, Motor};
-
-/// Ratio of counts per revolution up to which tuned values still serve.
-const FAR: f64 = 1.5;
+use device_files::constants::{constants, named_file};
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    match constants() {
-        Ok(text) => {
-            let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
-            fs::write(out.join("constants.rs"), text).expect("OUT_DIR is writable");
-        }
-        Err(error) => println!("cargo::error={error}"),
+    if let Err(error) = write() {
+        println!("cargo::error={error}");
     }
 }
 
-/// The constants as Rust text.
-fn constants() -> Result<String, String> {
-    let device = match named_file("DEVICE")? {
-        Some(path) => Device::read(&path).map_err(|error| format!("DEVICE: {error}"))?,
-        None => Device::default(),
-    };
-    let mut layers = vec![Presets::shipped()];
-    if let Some(path) = named_file("PRESETS")? {
-        let presets = Presets::read(&path).map_err(|error| format!("PRESETS: {error}"))?;
-        known(&presets, &layers[0])
-            .map_err(|error| format!("PRESETS: {}: {error}", path.display()))?;
-        layers.insert(0, presets);
+fn write() -> Result<(), String> {
+    let (device, presets) = (named("DEVICE")?, named("PRESETS")?);
+    let constants = constants(device.as_deref(), presets.as_deref())?;
+    if let Some(warning) = constants.warning {
+        println!("cargo::warning={warning}");
     }
-    warn_of_far_presets(&layers[0], device.stages.large.counts_per_rev);
-    let mut text = device_text(&device.stages);
-    let _ = writeln!(
-        text,
-        "const PRESETS: Fingerprint = {:?};",
-        fingerprint(&layers)
-    );
-    text += "static LAYERS: &[Layer] = &[\n";
-    for layer in &layers {
-        text += &layer_text(layer);
-    }
-    text += "];\n";
-    Ok(text)
+    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
+    fs::write(out.join("constants.rs"), constants.text).expect("OUT_DIR is writable");
+    Ok(())
 }
 
 /// The file that an environment variable names.
-fn named_file(variable: &str) -> Result<Option<PathBuf>, String> {
+fn named(variable: &str) -> Result<Option<PathBuf>, String> {
     println!("cargo::rerun-if-env-changed={variable}");
-    let Some(path) = env::var_os(variable) else {
+    let Some(value) = env::var_os(variable) else {
         return Ok(None);
     };
-    if path.is_empty() {
-        return Err(format!(
-            "{variable} is empty: name a TOML file, or unset it"
-        ));
-    }
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent();
-    let path = root.expect("a parent").join(path);
+    let path = named_file(variable, &value, root.expect("a parent"))?;
     println!("cargo::rerun-if-changed={}", path.display());
-    if !path.exists() {
-        return Err(format!(
-            "{variable}: no file {}; a relative path starts at the top of the repository",
-            path.display()
-        ));
-    }
     Ok(Some(path))
-}
-
-/// Refuses estimators, parameters and values that the catalogue does not have, and in the section of
-/// the image those that no image reads, which are not in the shipped file.
-fn known(presets: &Presets, shipped: &Presets) -> Result<(), String> {
-    for preset in &presets.preset {
-        check(&preset.estimators)
-            .map_err(|error| format!("preset at {} Hz: {error}", preset.rate_hz))?;
-    }
-    for (motor, estimators) in &presets.image {
-        let Some(read) = shipped.image.get(motor) else {
-            return Err(format!(
-                "image.{motor}: no such motor; there are large and handle"
-            ));
-        };
-        check(estimators).map_err(|error| format!("image.{motor}: {error}"))?;
-        if let Some(estimator) = estimators.keys().find(|name| !read.contains_key(*name)) {
-            let names: Vec<_> = read.keys().map(String::as_str).collect();
-            return Err(format!(
-                "image.{motor}.{estimator}: no image reads it; there are {}",
-                names.join(", ")
-            ));
-        }
-    }
-    Ok(())
-}
-
-fn check(estimators: &Estimators) -> Result<(), String> {
-    for (estimator, parameters) in estimators {
-        let Some(row) = ROWS.iter().find(|row| row.name == estimator) else {
-            return Err(format!(
-                "no estimator '{estimator}'; host-sim estimators lists them"
-            ));
-        };
-        for (name, &value) in parameters {
-            let Some(parameter) = row.parameters.iter().find(|p| p.name == name) else {
-                let names: Vec<_> = row.parameters.iter().map(|p| p.name).collect();
-                return Err(format!(
-                    "{estimator} has no parameter '{name}'; there are {}",
-                    names.join(", ")
-                ));
-            };
-            let range = parameter.lowest..=parameter.highest;
-            if !range.contains(&value) || parameter.whole && value.fract() != 0.0 {
-                return Err(format!(
-                    "{estimator}.{name} = {}: must be a {}number from {} to {}",
-                    decimal(value),
-                    if parameter.whole { "whole " } else { "" },
-                    decimal(parameter.lowest),
-                    decimal(parameter.highest),
-                ));
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Warns where all of the strongest presets were tuned for an encoder that is far from the device's.
-fn warn_of_far_presets(presets: &Presets, counts_per_rev: u32) {
-    let tuned = presets
-        .preset
-        .iter()
-        .filter_map(|preset| preset.counts_per_rev);
-    let far = |tuned: &u32| {
-        let ratio = f64::from(*tuned) / f64::from(counts_per_rev);
-        !(1.0 / FAR..=FAR).contains(&ratio)
-    };
-    let counts: BTreeSet<_> = tuned.collect();
-    if !counts.is_empty() && counts.iter().all(far) {
-        let counts: Vec<_> = counts.iter().map(u32::to_string).collect();
-        println!(
-            "cargo::warning={}: parameters tuned for {} counts/rev are used for {counts_per_rev}; tune them \
-             with host-sim tune --device FILE.toml --out tuned.toml and build with PRESETS=tuned.toml",
-            presets.source,
-            counts.join(", "),
-        );
-    }
-}
-
-/// Presets that images use: those for the plant with friction.
-fn of_images(layer: &Presets) -> impl Iterator<Item = &Preset> {
-    let tuned = layer.preset.iter();
-    tuned.filter(|preset| preset.plant == PlantKind::Friction)
-}
-
-/// Hash of the values that images find: at every rate tuned for, and those of the image alone. It is
-/// the same for the shipped presets and for a file that repeats them.
-fn fingerprint(layers: &[Presets]) -> Fingerprint {
-    let all = || layers.iter().flat_map(of_images);
-    let mut hash = Fingerprint::EMPTY;
-    let mut rates: Vec<_> = all().map(|preset| preset.rate_hz).collect();
-    rates.sort_by(f64::total_cmp);
-    rates.dedup();
-    let names: BTreeSet<_> = all()
-        .flat_map(|preset| &preset.estimators)
-        .flat_map(|(estimator, values)| values.keys().map(move |name| (estimator, name)))
-        .collect();
-    for rate_hz in rates {
-        for (estimator, name) in &names {
-            let tuned = layers.iter().find_map(|layer| {
-                let preset = layer.nearest(estimator, rate_hz, PlantKind::Friction)?;
-                preset.estimators[*estimator].get(*name)
-            });
-            let tuned = *tuned.expect("it is in one of the layers");
-            hash = hash
-                .number(rate_hz)
-                .text(estimator)
-                .text(name)
-                .number(tuned);
-        }
-    }
-    let mut image = BTreeSet::new();
-    for (motor, estimators) in layers.iter().flat_map(|layer| &layer.image) {
-        for (estimator, values) in estimators {
-            image.extend(values.keys().map(|name| (motor, estimator, name)));
-        }
-    }
-    for (motor, estimator, name) in image {
-        let value = layers
-            .iter()
-            .find_map(|layer| of_the_image(layer, motor, estimator, name));
-        // A tuned value is hashed above.
-        if let Some(Value::Image(value)) = value {
-            hash = hash.text(motor).text(estimator).text(name).number(value);
-        }
-    }
-    hash
-}
-
-/// What an image takes from a file, as `tuned::image` does.
-enum Value {
-    /// A value of the section of the image.
-    Image(f64),
-    /// A value tuned for the large motor.
-    Tuned,
-}
-
-fn of_the_image(layer: &Presets, motor: &str, estimator: &str, name: &str) -> Option<Value> {
-    let image = || layer.image.get(motor)?.get(estimator)?.get(name);
-    let tuned = || of_images(layer).find(|preset| preset.estimators.contains_key(estimator));
-    match image() {
-        Some(value) => Some(Value::Image(*value)),
-        None if motor == "large" => tuned().map(|_| Value::Tuned),
-        None => None,
-    }
-}
-
-fn device_text(device: &DualStage) -> String {
-    let motor = |motor: &Motor| format!("{motor:?}");
-    // Debug of a float has all the digits that distinguish it.
-    format!(
-        "/// The device that images are built for.\npub const DEVICE: DualStage = DualStage {{ large: {}, \
-         small: {}, damping: {:?}, amplifier_bandwidth: {:?} }};\n",
-        motor(&device.large),
-        motor(&device.small),
-        device.damping,
-        device.amplifier_bandwidth,
-    )
-}
-
-fn layer_text(layer: &Presets) -> String {
-    let mut text = "Layer { image: &[".to_owned();
-    for (motor, estimators) in &layer.image {
-        for (estimator, values) in estimators {
-            for (name, value) in values {
-                let _ = write!(
-                    text,
-                    "({motor:?}, {estimator:?}, {name:?}, {value:?}),\n    "
-                );
-            }
-        }
-    }
-    text += "], tuned: &[\n    ";
-    for preset in of_images(layer) {
-        for (estimator, values) in &preset.estimators {
-            for (name, value) in values {
-                let rate = preset.rate_hz;
-                let _ = write!(
-                    text,
-                    "({rate:?}, {estimator:?}, {name:?}, {value:?}),\n    "
-                );
-            }
-        }
-    }
-    text + "] },\n"
 }

@@ -208,7 +208,7 @@ mod tests {
         assert!(
             unknown
                 .to_string()
-                .starts_with("f.toml: line 3: unknown field `plan`"),
+                .starts_with("f.toml: line 3, plan: unknown field `plan`"),
             "{unknown}"
         );
     }

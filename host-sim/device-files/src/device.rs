@@ -9,6 +9,8 @@ use std::path::Path;
 use haptic_control::DualStage;
 use serde::{Deserialize, Serialize};
 
+use crate::read::one_line;
+
 mod check;
 mod sections;
 
@@ -175,7 +177,7 @@ impl Device {
     /// # Errors
     /// One line that names the line and the key, or the invalid value, and the valid ones.
     pub fn from_toml_str(text: &str) -> Result<Self, String> {
-        let device: Self = toml::from_str(text).map_err(|error| check::one_line(text, &error))?;
+        let device: Self = toml::from_str(text).map_err(|error| one_line(text, &error))?;
         device.validate()?;
         Ok(device)
     }

@@ -3,6 +3,7 @@
 //!
 //! The simulation, the virtual board and the build of a flash image read them with the same code.
 
+pub mod constants;
 pub mod device;
 pub mod presets;
 mod read;

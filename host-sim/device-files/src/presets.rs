@@ -6,6 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::decimal;
+use crate::read::one_line;
 
 /// Whether the plant has Coulomb friction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -100,12 +101,8 @@ impl Presets {
     /// # Errors
     /// As [`Self::read`].
     pub fn parse(text: &str, name: &str) -> Result<Self, String> {
-        let mut presets: Self = toml::from_str(text).map_err(|error| {
-            let line = error
-                .span()
-                .map_or(1, |span| 1 + text[..span.start].matches('\n').count());
-            format!("{name}: line {line}: {}", error.message())
-        })?;
+        let mut presets: Self =
+            toml::from_str(text).map_err(|error| format!("{name}: {}", one_line(text, &error)))?;
         presets.source = name.to_owned();
         for preset in &presets.preset {
             let rate = preset.rate_hz;

@@ -195,27 +195,6 @@ pub(super) fn validate(device: &Device) -> Result<(), String> {
     check_rates(device)
 }
 
-/// The parser's error in one line, with the line's number and its key.
-pub(super) fn one_line(text: &str, error: &toml::de::Error) -> String {
-    let what = error
-        .message()
-        .trim()
-        .replace('\n', ", ")
-        .replace("expected f64", "expected a number")
-        .replace("expected u32", "expected a whole number from 0");
-    let Some(span) = error.span() else {
-        return what;
-    };
-    let before = &text.as_bytes()[..span.start.min(text.len())];
-    let number = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
-    let line = text.lines().nth(number - 1).unwrap_or("");
-    let key = line.split(['=', '#']).next().unwrap_or("").trim();
-    if key.is_empty() {
-        return format!("line {number}: {what}");
-    }
-    format!("line {number}, {key}: {what}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,0 +1,263 @@
+//! The device file and the presets files as Rust constants, from which flash images are built.
+
+use std::collections::BTreeSet;
+use std::ffi::OsStr;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use estimator_catalogue::ROWS;
+use haptic_control::{DualStage, Fingerprint, Motor};
+
+use crate::decimal;
+use crate::device::Device;
+use crate::presets::{Estimators, PlantKind, Preset, Presets};
+
+/// Ratio of counts per revolution up to which tuned values still serve.
+const FAR: f64 = 1.5;
+
+/// The constants of a build.
+#[derive(Clone, Debug)]
+pub struct Constants {
+    /// Rust text that the package `tuned` includes.
+    pub text: String,
+    /// What the build should warn of.
+    pub warning: Option<String>,
+}
+
+/// The file that the environment variable `name` with this value names. A relative path starts at
+/// `root`.
+///
+/// # Errors
+/// One line that names the variable, if it is empty or names no file.
+pub fn named_file(name: &str, value: &OsStr, root: &Path) -> Result<PathBuf, String> {
+    if value.is_empty() {
+        return Err(format!("{name} is empty: name a TOML file, or unset it"));
+    }
+    let path = root.join(value);
+    if !path.exists() {
+        return Err(format!(
+            "{name}: no file {}; a relative path starts at the top of the repository",
+            path.display()
+        ));
+    }
+    Ok(path)
+}
+
+/// The constants for the files that DEVICE and PRESETS name. Without a device file the device is
+/// `DualStage::DEFAULT`; the presets file lies over the shipped one.
+///
+/// # Errors
+/// One line that names the variable, the file and what is wrong in it.
+pub fn constants(device: Option<&Path>, presets: Option<&Path>) -> Result<Constants, String> {
+    let device = match device {
+        Some(path) => Device::read(path).map_err(|error| format!("DEVICE: {error}"))?,
+        None => Device::default(),
+    };
+    let mut layers = vec![Presets::shipped()];
+    if let Some(path) = presets {
+        let presets = Presets::read(path).map_err(|error| format!("PRESETS: {error}"))?;
+        known(&presets, &layers[0])
+            .map_err(|error| format!("PRESETS: {}: {error}", path.display()))?;
+        layers.insert(0, presets);
+    }
+    let warning = far_presets(&layers[0], device.stages.large.counts_per_rev);
+    let mut text = device_text(&device.stages);
+    let _ = writeln!(
+        text,
+        "const PRESETS: Fingerprint = {:?};",
+        fingerprint(&layers)
+    );
+    text += "static LAYERS: &[Layer] = &[\n";
+    for layer in &layers {
+        text += &layer_text(layer);
+    }
+    text += "];\n";
+    Ok(Constants { text, warning })
+}
+
+/// Refuses estimators, parameters and values that the catalogue does not have, and in the section of
+/// the image those that no image reads, which are not in the shipped file.
+fn known(presets: &Presets, shipped: &Presets) -> Result<(), String> {
+    for preset in &presets.preset {
+        check(&preset.estimators)
+            .map_err(|error| format!("preset at {} Hz: {error}", preset.rate_hz))?;
+    }
+    for (motor, estimators) in &presets.image {
+        let Some(read) = shipped.image.get(motor) else {
+            return Err(format!(
+                "image.{motor}: no such motor; there are large and handle"
+            ));
+        };
+        check(estimators).map_err(|error| format!("image.{motor}: {error}"))?;
+        if let Some(estimator) = estimators.keys().find(|name| !read.contains_key(*name)) {
+            let names: Vec<_> = read.keys().map(String::as_str).collect();
+            return Err(format!(
+                "image.{motor}.{estimator}: no image reads it; there are {}",
+                names.join(", ")
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn check(estimators: &Estimators) -> Result<(), String> {
+    for (estimator, parameters) in estimators {
+        let Some(row) = ROWS.iter().find(|row| row.name == estimator) else {
+            return Err(format!(
+                "no estimator '{estimator}'; host-sim estimators lists them"
+            ));
+        };
+        for (name, &value) in parameters {
+            let Some(parameter) = row.parameters.iter().find(|p| p.name == name) else {
+                let names: Vec<_> = row.parameters.iter().map(|p| p.name).collect();
+                return Err(format!(
+                    "{estimator} has no parameter '{name}'; there are {}",
+                    names.join(", ")
+                ));
+            };
+            let range = parameter.lowest..=parameter.highest;
+            if !range.contains(&value) || parameter.whole && value.fract() != 0.0 {
+                return Err(format!(
+                    "{estimator}.{name} = {}: must be a {}number from {} to {}",
+                    decimal(value),
+                    if parameter.whole { "whole " } else { "" },
+                    decimal(parameter.lowest),
+                    decimal(parameter.highest),
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The warning where all of the strongest presets were tuned for an encoder that is far from the
+/// device's.
+fn far_presets(presets: &Presets, counts_per_rev: u32) -> Option<String> {
+    let tuned = presets
+        .preset
+        .iter()
+        .filter_map(|preset| preset.counts_per_rev);
+    let far = |tuned: &u32| {
+        let ratio = f64::from(*tuned) / f64::from(counts_per_rev);
+        !(1.0 / FAR..=FAR).contains(&ratio)
+    };
+    let counts: BTreeSet<_> = tuned.collect();
+    if !counts.is_empty() && counts.iter().all(far) {
+        let counts: Vec<_> = counts.iter().map(u32::to_string).collect();
+        return Some(format!(
+            "{}: parameters tuned for {} counts/rev are used for {counts_per_rev}; tune them \
+             with host-sim tune --device FILE.toml --out tuned.toml and build with PRESETS=tuned.toml",
+            presets.source,
+            counts.join(", "),
+        ));
+    }
+    None
+}
+
+/// Presets that images use: those for the plant with friction.
+fn of_images(layer: &Presets) -> impl Iterator<Item = &Preset> {
+    let tuned = layer.preset.iter();
+    tuned.filter(|preset| preset.plant == PlantKind::Friction)
+}
+
+/// Hash of the values that images find: at every rate tuned for, and those of the image alone. It is
+/// the same for the shipped presets and for a file that repeats them.
+fn fingerprint(layers: &[Presets]) -> Fingerprint {
+    let all = || layers.iter().flat_map(of_images);
+    let mut hash = Fingerprint::EMPTY;
+    let mut rates: Vec<_> = all().map(|preset| preset.rate_hz).collect();
+    rates.sort_by(f64::total_cmp);
+    rates.dedup();
+    let names: BTreeSet<_> = all()
+        .flat_map(|preset| &preset.estimators)
+        .flat_map(|(estimator, values)| values.keys().map(move |name| (estimator, name)))
+        .collect();
+    for rate_hz in rates {
+        for (estimator, name) in &names {
+            let tuned = layers.iter().find_map(|layer| {
+                let preset = layer.nearest(estimator, rate_hz, PlantKind::Friction)?;
+                preset.estimators[*estimator].get(*name)
+            });
+            let tuned = *tuned.expect("it is in one of the layers");
+            hash = hash
+                .number(rate_hz)
+                .text(estimator)
+                .text(name)
+                .number(tuned);
+        }
+    }
+    let mut image = BTreeSet::new();
+    for (motor, estimators) in layers.iter().flat_map(|layer| &layer.image) {
+        for (estimator, values) in estimators {
+            image.extend(values.keys().map(|name| (motor, estimator, name)));
+        }
+    }
+    for (motor, estimator, name) in image {
+        let value = layers
+            .iter()
+            .find_map(|layer| of_the_image(layer, motor, estimator, name));
+        // A tuned value is hashed above.
+        if let Some(Value::Image(value)) = value {
+            hash = hash.text(motor).text(estimator).text(name).number(value);
+        }
+    }
+    hash
+}
+
+/// What an image takes from a file, as `tuned::image` does.
+enum Value {
+    /// A value of the section of the image.
+    Image(f64),
+    /// A value tuned for the large motor.
+    Tuned,
+}
+
+fn of_the_image(layer: &Presets, motor: &str, estimator: &str, name: &str) -> Option<Value> {
+    let image = || layer.image.get(motor)?.get(estimator)?.get(name);
+    let tuned = || of_images(layer).find(|preset| preset.estimators.contains_key(estimator));
+    match image() {
+        Some(value) => Some(Value::Image(*value)),
+        None if motor == "large" => tuned().map(|_| Value::Tuned),
+        None => None,
+    }
+}
+
+fn device_text(device: &DualStage) -> String {
+    let motor = |motor: &Motor| format!("{motor:?}");
+    // Debug of a float has all the digits that distinguish it.
+    format!(
+        "/// The device that images are built for.\npub const DEVICE: DualStage = DualStage {{ large: {}, \
+         small: {}, damping: {:?}, amplifier_bandwidth: {:?} }};\n",
+        motor(&device.large),
+        motor(&device.small),
+        device.damping,
+        device.amplifier_bandwidth,
+    )
+}
+
+fn layer_text(layer: &Presets) -> String {
+    let mut text = "Layer { image: &[".to_owned();
+    for (motor, estimators) in &layer.image {
+        for (estimator, values) in estimators {
+            for (name, value) in values {
+                let _ = write!(
+                    text,
+                    "({motor:?}, {estimator:?}, {name:?}, {value:?}),\n    "
+                );
+            }
+        }
+    }
+    text += "], tuned: &[\n    ";
+    for preset in of_images(layer) {
+        for (estimator, values) in &preset.estimators {
+            for (name, value) in values {
+                let rate = preset.rate_hz;
+                let _ = write!(
+                    text,
+                    "({rate:?}, {estimator:?}, {name:?}, {value:?}),\n    "
+                );
+            }
+        }
+    }
+    text + "] },\n"
+}

@@ -1,0 +1,210 @@
+//! The constants of a flash image's build, and its errors: each is one line that names the variable,
+//! the file and the key, and says what would be right.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use device_files::constants::{constants, named_file};
+
+/// A file of this test's own.
+fn file(name: &str, text: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("constants");
+    fs::create_dir_all(&folder).unwrap();
+    let path = folder.join(name);
+    fs::write(&path, text).unwrap();
+    path
+}
+
+/// The shipped presets.
+const SHIPPED: &str = include_str!("../../presets.toml");
+
+fn assert_line(error: &str, parts: &[&str]) {
+    assert!(!error.contains('\n'), "one line: {error}");
+    for part in parts {
+        assert!(error.contains(part), "{error:?} lacks {part:?}");
+    }
+}
+
+#[test]
+fn missing_files_are_reported_with_their_variable() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let named = |value: &str| named_file("DEVICE", OsStr::new(value), root);
+    assert_eq!(named("Cargo.toml"), Ok(root.join("Cargo.toml")));
+    assert_line(
+        &named("nowhere.toml").unwrap_err(),
+        &[
+            "DEVICE: no file ",
+            "device-files/nowhere.toml",
+            "a relative path starts at the top of the repository",
+        ],
+    );
+    assert_line(
+        &named("").unwrap_err(),
+        &["DEVICE is empty: name a TOML file, or unset it"],
+    );
+    for (device, presets, variable) in [
+        (Some(root), None, "DEVICE: "),
+        (None, Some(root), "PRESETS: "),
+    ] {
+        let error = constants(device, presets).unwrap_err();
+        assert_line(
+            &error,
+            &[
+                variable,
+                "device-files: not a regular file; give a TOML file",
+            ],
+        );
+    }
+}
+
+#[test]
+fn errors_of_a_device_file_name_line_or_key_and_remedy() {
+    for (text, parts) in [
+        (
+            "[large]\ninertia = 1e-5\n",
+            &[
+                "line 2, inertia: unknown field `inertia`, expected one of",
+                "`inertia_kg_m2`",
+            ][..],
+        ),
+        (
+            "[large]\n\ninertia_kg_m2 = \"heavy\"\n",
+            &["line 3, inertia_kg_m2: ", "expected a number"],
+        ),
+        (
+            "[large]\ninertia_kg_m2 = 111\n",
+            &[
+                "large.inertia_kg_m2 = 111: must be at most 0.1 kg.m2; did you mean 111e-7, which is 111 g.cm2?",
+            ],
+        ),
+        (
+            "[small]\ntorque_constant_nm_per_a = 46.2\n",
+            &[
+                "small.torque_constant_nm_per_a = 46.2: must be at most 10 N.m/A; did you mean 46.2e-3",
+            ],
+        ),
+        (
+            "[coupler]\ndamping_nms_per_rad = -1\n",
+            &["coupler.damping_nms_per_rad = -1: must be above 0"],
+        ),
+        (
+            "[large]\ncounts_per_rev = 3\n",
+            &["large.counts_per_rev = 3: must be from 16 to 4000000"],
+        ),
+        ("[amplifier\n", &["line 1, [amplifier: "]),
+    ] {
+        let path = file("device.toml", text);
+        let error = constants(Some(&path), None).unwrap_err();
+        let start = format!("DEVICE: {}: ", path.display());
+        assert_line(&error, &[&[start.as_str()], parts].concat());
+    }
+}
+
+#[test]
+fn errors_of_a_presets_file_name_line_or_key_and_remedy() {
+    let preset = |more: &str| format!("[[preset]]\nrate_hz = 1e3\nplant = \"friction\"\n{more}\n");
+    for (text, parts) in [
+        (
+            preset("rate = 1"),
+            &["line 4, rate: unknown field `rate`, expected one of"][..],
+        ),
+        (
+            preset("counts_per_rev = -1"),
+            &["line 4, counts_per_rev: ", "expected a whole number from 0"],
+        ),
+        (
+            preset("[preset.estimators.pll]\nbandwidth_hz = \"1\""),
+            &["line 5, bandwidth_hz: ", "expected a number"],
+        ),
+        (
+            "[[preset]]\nrate_hz = 0\nplant = \"friction\"\nestimators = {}\n".into(),
+            &["rate_hz = 0: must be above 0 Hz"],
+        ),
+        (
+            preset("[preset.estimators.pl]\nbandwidth_hz = 1"),
+            &["preset at 1000 Hz: no estimator 'pl'; host-sim estimators lists them"],
+        ),
+        (
+            preset("[preset.estimators.pll]\nbandwidth = 1"),
+            &["preset at 1000 Hz: pll has no parameter 'bandwidth'; there are bandwidth_hz"],
+        ),
+        (
+            preset("[preset.estimators.pll]\nbandwidth_hz = -1"),
+            &["preset at 1000 Hz: pll.bandwidth_hz = -1: must be a number from 0.001 to 1000000"],
+        ),
+        (
+            preset("[preset.estimators.foaw-end-fit]\nn = 2.5"),
+            &["foaw-end-fit.n = 2.5: must be a whole number from 1 to 128"],
+        ),
+        (
+            "[image.middle.foaw-end-fit]\nn = 2\n".into(),
+            &["image.middle: no such motor; there are large and handle"],
+        ),
+        (
+            "[image.handle.pll]\nbandwidth_hz = 10\n".into(),
+            &["image.handle.pll: no image reads it; there are kalman-triple-steady"],
+        ),
+        (
+            "[image.handle.kalman-triple-steady]\njerk = nan\n".into(),
+            &["image.handle: kalman-triple-steady.jerk = NaN: must be a number from "],
+        ),
+    ] {
+        let path = file("presets.toml", &text);
+        let error = constants(None, Some(&path)).unwrap_err();
+        let start = format!("PRESETS: {}: ", path.display());
+        assert_line(&error, &[&[start.as_str()], parts].concat());
+    }
+}
+
+/// A file that repeats the shipped presets changes no constant of the device and no fingerprint.
+#[test]
+fn files_reach_the_constants() {
+    let text = |device: Option<&Path>, presets: Option<&Path>| constants(device, presets).unwrap();
+    let line = |text: &str, start: &str| {
+        let line = text.lines().find(|line| line.starts_with(start));
+        line.unwrap_or_else(|| panic!("no {start} in {text}"))
+            .to_owned()
+    };
+    let shipped = text(None, None);
+    assert_eq!(shipped.warning, None);
+    let repeated = text(None, Some(&file("shipped.toml", SHIPPED)));
+    for start in ["pub const DEVICE", "const PRESETS"] {
+        assert_eq!(line(&repeated.text, start), line(&shipped.text, start));
+    }
+    let jerk = "[image.handle.kalman-triple-steady]\njerk = 4321.5\n";
+    let other = text(None, Some(&file("other.toml", jerk)));
+    assert_ne!(
+        line(&other.text, "const PRESETS"),
+        line(&shipped.text, "const PRESETS")
+    );
+    assert!(other.text.contains("4321.5") && !shipped.text.contains("4321.5"));
+    // An encoder far from that of the presets.
+    let device = file(
+        "fine.toml",
+        "[large]\ncounts_per_rev = 20000\ninertia_kg_m2 = 1.25e-5\n",
+    );
+    let fine = text(Some(&device), None);
+    assert!(
+        line(&fine.text, "pub const DEVICE").contains("inertia: 1.25e-5"),
+        "{}",
+        fine.text
+    );
+    let warning = fine.warning.expect("a warning");
+    assert_line(
+        &warning,
+        &[
+            "tuned for 4096 counts/rev are used for 20000",
+            "host-sim tune --device",
+        ],
+    );
+    // One preset for such an encoder is enough.
+    let presets = ["4096", "20000"].map(|counts| {
+        format!(
+            "[[preset]]\nrate_hz = 1e3\nplant = \"friction\"\ncounts_per_rev = {counts}\n\
+             [preset.estimators.pll]\nbandwidth_hz = 100\n"
+        )
+    });
+    let presets = file("both.toml", &presets.concat());
+    assert_eq!(text(Some(&device), Some(&presets)).warning, None);
+}
