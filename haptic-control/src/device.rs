@@ -56,8 +56,14 @@ impl DualStage {
             current_limit: 1.5,
         },
         damping: CoupledMotor::DCX35L.motor.damping,
-        amplifier_bandwidth: Hertz(2000.0),
+        amplifier_bandwidth: Hertz(1.0 / (2.0 * PI * CoupledMotor::DCX35L.amplifier_lag)),
     };
+
+    /// Time constant of both current amplifiers, s.
+    #[must_use]
+    pub const fn amplifier_lag(&self) -> f64 {
+        1.0 / (2.0 * PI * self.amplifier_bandwidth.0)
+    }
 
     /// The large motor and what acts on it, for an observer.
     #[must_use]
@@ -70,7 +76,7 @@ impl DualStage {
                 torque_constant: self.large.torque_constant,
             },
             coulomb_friction: self.large.coulomb_friction,
-            amplifier_lag: 1.0 / (2.0 * PI * self.amplifier_bandwidth.0),
+            amplifier_lag: self.amplifier_lag(),
             coupled_counts_per_rev: self.small.counts_per_rev,
         }
     }

@@ -98,7 +98,7 @@ impl RstDesign {
         let tau = 2.0 * core::f64::consts::PI;
         let t = rate.period_s();
         let mechanical = device.large.inertia / device.damping;
-        let electrical = 1.0 / (tau * device.amplifier_bandwidth.0);
+        let electrical = device.amplifier_lag();
         let gain = device.large.torque_constant / device.damping;
         let pm = exp(-t / mechanical);
         let pa = exp(-t / electrical);

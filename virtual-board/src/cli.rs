@@ -181,13 +181,13 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     let device = arguments
         .device
         .as_deref()
-        .map_or_else(|| Ok(Device::default()), Device::read);
+        .map_or_else(|| Ok(Device::default()), Device::read)?;
     let setup = Setup {
-        device: device?,
         hand: match arguments.hand {
             Holder::Hand(hand) => hand,
-            Holder::Pressing => scene::press(scene),
+            Holder::Pressing => scene::press(scene, &device),
         },
+        device,
         seed: arguments.seed,
         seconds: arguments.seconds,
         faults: arguments.fault.clone(),

@@ -15,14 +15,14 @@ pub fn named(name: &str) -> Result<SceneKind, String> {
     closed_loop::named(name, SceneKind::ALL.into_iter())
 }
 
-/// A finger that presses with 10 N, if the scene resists: it moves into the scene as far as the
-/// scene's stiffness asks for, and further by the compliance of the hand.
+/// A finger that presses on the handle of this device with 10 N, if the scene resists: it moves into
+/// the scene as far as the scene's stiffness asks for, and further by the compliance of the hand.
 #[must_use]
-pub fn press(scene: SceneKind) -> Hand {
-    let device = Device::default();
+pub fn press(scene: SceneKind, device: &Device) -> Hand {
     let torque = 10.0 * 0.5 * device.handle.diameter_m;
     // A scene without a stiffness is pressed as far as the wall.
-    let stiffness = stiffness(scene).or_else(|| stiffness(SceneKind::Wall));
+    let of = |scene| stiffness(scene, &device.stages);
+    let stiffness = of(scene).or_else(|| of(SceneKind::Wall));
     let stiffness = f64::from(stiffness.expect("a wall has a stiffness"));
     let compliance = torque / stiffness + torque / device.hand.stiffness_nm_per_rad;
     Hand::Pressing(Press {
@@ -33,11 +33,11 @@ pub fn press(scene: SceneKind) -> Hand {
     })
 }
 
-/// The usual stiffness of a scene, N·m/rad, if it has one.
+/// The usual stiffness of a scene on this device, N·m/rad, if it has one.
 #[must_use]
-pub fn stiffness(scene: SceneKind) -> Option<f32> {
+pub fn stiffness(scene: SceneKind, device: &DualStage) -> Option<f32> {
     const RATE: Hertz = Hertz(10e3);
-    let usual = scene.usual(&DualStage::DEFAULT, RATE).ok()?;
+    let usual = scene.usual(device, RATE).ok()?;
     usual.value(scene.parameter("stiffness")?, RATE)
 }
 
@@ -94,6 +94,20 @@ mod tests {
         }
         let off = tune(SceneKind::Off, "torque=1").unwrap_err();
         assert!(off.ends_with("off has no parameters"), "{off}");
+    }
+
+    #[test]
+    fn press_is_as_far_as_the_device_and_its_hand_yield() {
+        let angle = |device: &Device| match press(SceneKind::Wall, device) {
+            Hand::Pressing(press) => press.angle - 0.1,
+            hand => panic!("{hand:?}"),
+        };
+        // 10 N at a radius of 35 mm into a wall of 0.3 N.m/rad and a hand of 0.5 N.m/rad.
+        let mut device = Device::default();
+        assert!((angle(&device) - (0.35 / 0.3 + 0.35 / 0.5)).abs() < 1e-6);
+        device.handle.diameter_m = 0.1;
+        device.hand.stiffness_nm_per_rad = 1.0;
+        assert!((angle(&device) - (0.5 / 0.3 + 0.5 / 1.0)).abs() < 1e-6);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use estimator_core::Hertz;
+use estimator_core::{CoupledMotor, Hertz};
 use haptic_control::{DesignError, DualStage, LEAST_MODULUS, LoopPoles, Rig, RstDesign};
 
 pub(crate) const RATES: [f64; 5] = [800.0, 1e3, 10e3, 11.6e3, 20e3];
@@ -19,6 +19,14 @@ pub(crate) fn product(x: &[f64], y: &[f64]) -> Vec<f64> {
         }
     }
     z
+}
+
+/// The core states the motor and its amplifier; its bandwidth comes back to the last bit.
+#[test]
+fn default_device_has_the_motor_of_the_core() {
+    let device = DualStage::DEFAULT;
+    assert_eq!(device.coupled_motor(), CoupledMotor::DCX35L);
+    assert_eq!(device.amplifier_bandwidth, Hertz(2000.0));
 }
 
 #[test]

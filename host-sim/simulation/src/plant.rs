@@ -17,7 +17,6 @@ pub use hand::{Grip, HandMotion, Pose};
 
 use crate::device::{Device, LONGEST_STEP_S};
 use axis::Axis;
-use std::f64::consts::TAU;
 
 /// Number of steps of at most [`LONGEST_STEP_S`] that divide a tick of `period_s` exactly.
 #[must_use]
@@ -53,7 +52,7 @@ impl Plant {
     /// The device at rest at angle zero, without current; `step_s` is fixed, s.
     #[must_use]
     pub fn new(device: &Device, step_s: f64) -> Self {
-        let lag = 1.0 / (TAU * device.stages.amplifier_bandwidth.0);
+        let lag = device.stages.amplifier_lag();
         Self {
             large: Axis::new(&device.stages.large, &device.large_ripple, lag, step_s),
             small: Axis::new(&device.stages.small, &device.small_ripple, lag, step_s),

@@ -81,7 +81,7 @@ fn largest_force(run: &Outcome) -> f64 {
 #[test]
 fn a_press_of_10_n_switches_no_scene_off() {
     for scene in SceneKind::environments() {
-        let run = run(&of_scene(scene, press(scene), 2.4));
+        let run = run(&of_scene(scene, press(scene, &Device::default()), 2.4));
         let last = run.telemetry.frames.last().expect("frames");
         let state = if scene == SceneKind::Off {
             Mode::Armed
@@ -91,7 +91,7 @@ fn a_press_of_10_n_switches_no_scene_off() {
         assert_eq!((last.state, last.cause), (state, Stop::None), "{scene}");
         let force = largest_force(&run);
         println!("{scene}: {force} N");
-        if stiffness(scene).is_some() {
+        if stiffness(scene, &Device::default().stages).is_some() {
             // What the coupler transmits at the limit of its slip is 4.1 N, so it is near that.
             assert!(force > 3.0, "{scene}: {force} N");
         }
