@@ -3,6 +3,7 @@
 mod estimators;
 mod in_the_loop;
 mod pages;
+mod theory;
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind};
