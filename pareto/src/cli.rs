@@ -8,24 +8,31 @@ use measured::Table;
 use measured::tables::{CONTROL, PARETO};
 use terminal::failure::Failure;
 use terminal::output::{print_bytes, write_whole};
+use terminal::wording::WIDTH;
 
 use crate::{control, measure, peer_tuning, plot, table};
 
-/// Counts on the emulated board what every estimator costs and sets it against its error, and what
-/// the control task costs in every scene: tables here, CSV, JSON and plots in target/pareto.
+/// Measures the run time and the error of every estimator on the emulated board, and the run time of
+/// the control task in every scene.
 ///
-/// With UPDATE_GOLDEN=1 in the environment measured/*.csv, and tables and plots of docs/ are written
-/// anew.
+/// Prints the tables and writes them as CSV, JSON and plots to target/pareto. With UPDATE_GOLDEN=1 in
+/// the environment, also writes measured/*.csv and the tables and plots of docs/.
 #[derive(Debug, Parser)]
-#[command(name = "cargo pareto", bin_name = "cargo pareto", version)]
+#[command(
+    name = "cargo pareto",
+    bin_name = "cargo pareto",
+    version,
+    max_term_width = WIDTH,
+    after_help = "Examples:\n  cargo pareto\n  cargo pareto tune-peers"
+)]
 struct Arguments {
     #[command(subcommand)]
-    what: Option<What>,
+    command: Option<Command>,
 }
 
 #[derive(Clone, Copy, Debug, Subcommand)]
-enum What {
-    /// Tunes the peers' own parameters on tuning seeds, and prints them
+enum Command {
+    /// Tune the parameters of other libraries' filters on tuning seeds and print them
     TunePeers,
 }
 
@@ -38,9 +45,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Ok(arguments) => arguments,
         Err(error) => return terminal::explain(&error, "cargo pareto"),
     };
-    match arguments.what {
+    match arguments.command {
         None => everything(),
-        Some(What::TunePeers) => print_bytes(peer_tuning::report()?.as_bytes()),
+        Some(Command::TunePeers) => print_bytes(peer_tuning::report()?.as_bytes()),
     }
 }
 
@@ -74,9 +81,9 @@ fn json(rows: &impl serde::Serialize) -> Result<String, Failure> {
     serde_json::to_string_pretty(rows).map_err(|error| Failure::Check(error.to_string()))
 }
 
-/// What a command leaves behind.
+/// Results of a measurement.
 struct Report {
-    /// Of its files.
+    /// Name of the files, without extension.
     name: &'static str,
     table: &'static Table,
     cells: Vec<Vec<String>>,
@@ -86,7 +93,7 @@ struct Report {
 }
 
 impl Report {
-    /// Writes files to target/pareto, and table and plot to docs/ if asked for.
+    /// Writes the files to target/pareto, and with UPDATE_GOLDEN=1 table and plot to docs/.
     fn write(&self) -> Result<(), Failure> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
         let folder = root.join("target/pareto");

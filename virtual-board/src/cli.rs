@@ -11,6 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use simulation::device::Device;
 use terminal::failure::Failure;
 use terminal::output::{print_bytes, write_whole};
+use terminal::wording::WIDTH;
 
 use crate::budget;
 use crate::command::Command;
@@ -26,61 +27,69 @@ const IMAGE: &str = concat!(
     "/../target/thumbv7em-none-eabihf/firmware/firmware"
 );
 
-/// Runs the firmware image on an emulated board, in closed loop with the simulated device, and
-/// prints what the image logged, what its control task costs, and the force that the hand feels and
-/// the scene does not ask for. Exit status: 0; 1 if the control task never ran or if the image did
-/// what the emulator does not model; 2 if the input cannot be used.
+/// Runs the firmware image on an emulated board in closed loop with the simulated device. Prints the
+/// log of the image, the cost of its control task, and the parasitic force on the hand.
+///
+/// Exit status: 0; 1 if the control task never ran or the image used hardware that the emulator does
+/// not model; 2 if the input cannot be used.
 #[derive(Debug, Parser)]
-#[command(name = "cargo board", bin_name = "cargo board", version, after_help = after_help())]
+#[command(
+    name = "cargo board",
+    bin_name = "cargo board",
+    version,
+    max_term_width = WIDTH,
+    after_help = after_help()
+)]
 struct Arguments {
-    /// Scene that the image is told to render
-    #[arg(long, default_value = "free-air", value_parser = scene::named)]
+    /// Scene to select
+    #[arg(long, value_name = "NAME", default_value = "free-air", value_parser = scene::named)]
     scene: SceneKind,
-    /// Sets a parameter of the scene at S seconds, as stiffness=0.2@1.5; the set-point of the scene
-    /// torque is torque=0.01@1; may be given more than once
+    /// Set a parameter of the scene at S seconds, for example stiffness=0.2@1.5, or the set-point of
+    /// scene torque: torque=0.01@1; repeatable
     #[arg(long, value_name = "NAME=VALUE@S", value_parser = timed::<String>)]
     tune: Vec<(f64, String)>,
-    /// Gives the large motor another estimator, by its number, at S seconds, as 1@1.5; may be given
-    /// more than once
+    /// Select the large motor's estimator by its number, 0 to 255, at S seconds, for example 1@1.5;
+    /// repeatable
     #[arg(long, value_name = "NUMBER@S", value_parser = timed::<Number>)]
     estimator: Vec<(f64, Number)>,
-    /// Hand on the handle: moving; pushing, into the wall and back; still; tracking, chirps and
-    /// reversals; pressing, once with 10 N
-    #[arg(long, default_value = "moving", value_parser = holder)]
-    hand: Holder,
-    /// Virtual seconds, more than 0, at most 3600
-    #[arg(long, default_value_t = 3.0)]
+    /// Hand on the handle: moving; pushing (into the wall and back); still; tracking (chirps and
+    /// reversals); pressing (once with 10 N)
+    #[arg(long, value_name = "NAME", default_value = "moving", value_parser = holder)]
+    hand: HandChoice,
+    /// Virtual duration, above 0, at most 3600 s
+    #[arg(long, value_name = "S", default_value_t = 3.0)]
     seconds: f64,
-    /// Seed of the hand's motion and the encoders' phases
-    #[arg(long, default_value_t = 1)]
+    /// Seed of the hand's motion and of the encoders' phases
+    #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Codes that both DAC outputs are too high by, -100 to 100
+    /// Offset of both DAC outputs, -100 to 100 codes
     #[arg(long, value_name = "CODES", default_value_t = 0, allow_negative_numbers = true,
         value_parser = clap::value_parser!(i16).range(-100..=100))]
     dac_offset: i16,
-    /// A fault of the list below that begins at S seconds, as stuck-a@0.5; may be given more than
-    /// once
+    /// Inject a fault of the list below at S seconds, for example stuck-a@0.5; repeatable
     #[arg(long, value_name = "NAME@S", value_parser = timed::<Fault>)]
     fault: Vec<(f64, Fault)>,
-    /// Device file, as host-sim identify writes it: the device that the image drives
+    /// Device file of the simulated device, as host-sim identify writes it [default: the default
+    /// device]
     #[arg(long, value_name = "FILE.toml")]
     device: Option<PathBuf>,
-    /// ELF file of the image [default: the one that the command below builds]
-    #[arg(long)]
+    /// ELF file of the image [default: the file that the build command below writes]
+    #[arg(long, value_name = "ELF")]
     image: Option<PathBuf>,
-    /// Writes the image's telemetry as a recording for `cargo sim replay`
+    /// Write the image's telemetry as a recording for cargo sim replay
     #[arg(long, value_name = "FILE.csv")]
     record: Option<PathBuf>,
-    /// Writes the bytes that the debug probe took from RTT channel 0, for `cargo sim record --image`
+    /// Write the bytes of RTT channel 0, for cargo sim record --image
     #[arg(long, value_name = "FILE")]
     rtt: Option<PathBuf>,
-    /// Prints what a control tick costs in every scene instead, each run for --seconds, at most 1:
-    /// instructions, estimated cycles, and the control rate at which ticks take half of the core
+    /// Print only the cost of a control tick in every scene, each run for --seconds, at most 1 s:
+    /// instructions, estimated cycles, and the control rate at which the ticks use half of the
+    /// processor's time
     #[arg(long, conflicts_with_all = ["device", "scene", "hand", "fault", "record", "rtt", "tune", "estimator", "dac_offset"])]
     budget: bool,
 }
 
-/// The faults, and examples.
+/// The list of faults, the build command, and examples.
 fn after_help() -> String {
     let mut text = "Faults:\n".to_owned();
     for fault in Fault::all() {
@@ -96,23 +105,23 @@ fn after_help() -> String {
     )
 }
 
-/// A hand on the handle; how far a press goes depends on the scene.
+/// Hand on the handle. The depth of a press depends on the scene.
 #[derive(Clone, Copy, Debug)]
-enum Holder {
+enum HandChoice {
     Hand(Hand),
     Pressing,
 }
 
-fn holder(name: &str) -> Result<Holder, String> {
+fn holder(name: &str) -> Result<HandChoice, String> {
     Ok(match name {
-        "moving" => Holder::Hand(Hand::Moving),
-        "pushing" => Holder::Hand(Hand::Pushing),
-        "still" => Holder::Hand(Hand::Still),
-        "tracking" => Holder::Hand(Hand::Tracking),
-        "pressing" => Holder::Pressing,
+        "moving" => HandChoice::Hand(Hand::Moving),
+        "pushing" => HandChoice::Hand(Hand::Pushing),
+        "still" => HandChoice::Hand(Hand::Still),
+        "tracking" => HandChoice::Hand(Hand::Tracking),
+        "pressing" => HandChoice::Pressing,
         _ => {
             return Err(format!(
-                "no hand '{name}'; there are moving, pushing, still, tracking, pressing"
+                "no hand '{name}'; choose moving, pushing, still, tracking or pressing"
             ));
         }
     })
@@ -127,19 +136,19 @@ impl std::str::FromStr for Number {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let number = text.parse().map(Self);
-        number.map_err(|_| format!("'{text}' is no number of an estimator, 0 to 255"))
+        number.map_err(|_| format!("'{text}' is not the number of an estimator; give 0 to 255"))
     }
 }
 
-/// What is to happen, and when, s.
+/// Parses `VALUE@S` to the time in s and the value.
 fn timed<T: std::str::FromStr<Err: std::fmt::Display>>(text: &str) -> Result<(f64, T), String> {
     let (what, at) = text
         .rsplit_once('@')
-        .ok_or("the instant is missing: @ and seconds at the end, as @1.5")?;
+        .ok_or("no time; append @ and the time in seconds, for example @1.5")?;
     let what = what.parse().map_err(|error: T::Err| error.to_string())?;
     match at.parse() {
         Ok(at) if (0.0..=3600.0).contains(&at) => Ok((at, what)),
-        _ => Err(format!("'{at}' is no instant in seconds, 0 to 3600")),
+        _ => Err(format!("'{at}' is not a time; give 0 to 3600 s")),
     }
 }
 
@@ -154,7 +163,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     };
     if !(arguments.seconds > 0.0 && arguments.seconds <= 3600.0) {
         let message = format!(
-            "--seconds {}: give more than 0, at most 3600",
+            "--seconds {}: must be above 0 and at most 3600 s",
             arguments.seconds
         );
         return Err(Failure::Input(message));
@@ -184,8 +193,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         .map_or_else(|| Ok(Device::default()), Device::read)?;
     let setup = Setup {
         hand: match arguments.hand {
-            Holder::Hand(hand) => hand,
-            Holder::Pressing => scene::press(scene, &device),
+            HandChoice::Hand(hand) => hand,
+            HandChoice::Pressing => scene::press(scene, &device),
         },
         device,
         seed: arguments.seed,
@@ -209,7 +218,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     outcome.check()
 }
 
-/// Refuses what would happen behind the end of the run.
+/// Refuses events after the end of the run.
 fn in_time(arguments: &Arguments) -> Result<(), Failure> {
     let end = arguments.seconds;
     let faults = arguments.fault.iter();
@@ -224,7 +233,7 @@ fn in_time(arguments: &Arguments) -> Result<(), Failure> {
         .find(|(_, at, _)| *at > end);
     late.map_or(Ok(()), |(option, at, what)| {
         let what = format!("--{option} {what}@{at}: the run ends at {end} s");
-        Err(Failure::Input(format!("{what}; give --seconds more")))
+        Err(Failure::Input(format!("{what}; give a longer --seconds")))
     })
 }
 

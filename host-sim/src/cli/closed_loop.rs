@@ -145,7 +145,7 @@ pub(super) fn settings(options: &Compare) -> Result<LoopSettings, Failure> {
     )?;
     if handle.needs.current {
         return Err(Failure::Input(format!(
-            "--handle-estimator {}: models the large motor, not the handle; take another",
+            "--handle-estimator {}: it models the large motor, not the handle; choose one without current",
             handle.name
         )));
     }
@@ -159,7 +159,7 @@ pub(super) fn settings(options: &Compare) -> Result<LoopSettings, Failure> {
         .find(|kind| kind.needs.edge)
     {
         return Err(Failure::Input(format!(
-            "{}: needs edge time stamps, which the closed loop does not have; take another",
+            "{}: needs edge time stamps, which the closed loop does not have; choose another estimator",
             kind.name
         )));
     }

@@ -31,8 +31,8 @@ pub(super) struct Identify {
     /// State that the handle was clamped in recordings without column counts_small
     #[arg(long)]
     clamped: bool,
-    /// Write the device file to FILE with the identified constants; other keys and comments of
-    /// --device are kept; may be the file of --device; - is standard output
+    /// Write a device file with the identified constants; it keeps the other keys and comments of
+    /// the given device file, which may be the same; - is standard output
     #[arg(long, value_name = "FILE.toml")]
     out: Option<PathBuf>,
     /// Write index.html to DIR: model and measurement, residuals and confidence intervals

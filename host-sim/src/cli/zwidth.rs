@@ -90,7 +90,7 @@ fn cases(options: &Zwidth) -> Result<Vec<Case>, Failure> {
     }
     if let Some(kind) = estimators.iter().find(|kind| kind.needs.edge) {
         return Err(Failure::Input(format!(
-            "{}: needs edge time stamps, which the closed loop does not have; take another",
+            "{}: needs edge time stamps, which the closed loop does not have; choose another estimator",
             kind.name
         )));
     }

@@ -180,7 +180,7 @@ fn bad_words_are_refused_with_one_line() {
                 "--handle-estimator",
                 "pll",
             ],
-            "gives no acceleration",
+            "provides no acceleration",
         ),
         (
             &["--closed-loop", "--handle-estimator", "kalman-motor"],
@@ -268,6 +268,6 @@ fn a_whole_comparison_closes_the_loop_beside_and_a_named_scenario_does_not() {
         &folder,
         &["--rate", "200", "--seconds", "1", "--estimator", "pll"],
     );
-    assert!(slow.contains("The loop was not closed: control at 200 Hz"));
+    assert!(slow.contains("The closed loop was not simulated: control at 200 Hz"));
     assert!(slow.contains("figure 8)") && !slow.contains(FIGURES[0]));
 }

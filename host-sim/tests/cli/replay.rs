@@ -22,7 +22,7 @@ fn a_recording_of_a_real_motor_replays() {
         "v.csv",
         "--json",
         "v.json",
-        // 90 counts a revolution want a longer window than the presets' 4096.
+        // 90 counts per revolution need a longer window than the presets' 4096.
         "--set",
         "foaw-best-fit.n=64",
     ];
@@ -30,7 +30,7 @@ fn a_recording_of_a_real_motor_replays() {
     assert_eq!(output.status.code(), Some(0));
     let notes = String::from_utf8(output.stderr).unwrap();
     assert!(
-        notes.contains("no column current; left out: kalman-motor,"),
+        notes.contains("no column current; estimators left out: kalman-motor,"),
         "{notes}"
     );
 

@@ -62,7 +62,7 @@ fn end_of_a_range_is_reported() {
     ]);
     assert_eq!(output.status.code(), Some(0));
     let errors = String::from_utf8(output.stderr).unwrap();
-    let note = "low-pass.cutoff_hz = 500 Hz is the upper end of the range searched";
+    let note = "low-pass.cutoff_hz = 500 Hz is the upper limit of the searched range";
     assert!(errors.contains(note), "{errors}");
     let text = fs::read_to_string(folder.0.join("tuned.toml")).unwrap();
     assert!(text.contains(note), "{text}");

@@ -10,42 +10,51 @@ use rayon::prelude::*;
 use terminal::explain;
 use terminal::failure::{Failure, ended};
 use terminal::output::{print_bytes, write_whole};
+use terminal::wording::WIDTH;
 
 use stress::contestants::{Contestant, at};
 use stress::parts::Plan;
 use stress::{sensitivity, signals, table};
 
-/// Run every estimator over a long, hostile course, in f32 beside its generated f64 twin.
+/// Runs every estimator over a long course of extreme motions, in f32 beside its generated f64 twin.
 ///
-/// Rest, top speed, ties of the quantiser, creep with 64 ticks between edges, an edge at every
-/// tick, any 32 bits, currents that are no numbers, over wraps of both counter widths. Compared at
-/// every tick: f32 with f64, the 16-bit counter with the 32-bit one, the covariance with what it
-/// has to be; now and then the window with its definition in exact fractions; after every stretch
-/// the time until the output is at rest. Then signals that a device gives, and parameters at the
-/// ends of their ranges. With `UPDATE_GOLDEN=1` the tables go into docs/benchmarks.md. Exit status
-/// 1 if anything did not hold.
+/// The course has rest, top speed, ties of the quantiser, creep with 64 ticks between edges, an edge
+/// at every tick, random 32-bit counts, currents that are not numbers, and wraps of both counter
+/// widths. Every tick compares f32 with f64, the 16-bit counter with the 32-bit one, and the
+/// covariance with its invariants. Some ticks compare the window with its definition in exact
+/// fractions. After every stretch the time until the output is at rest is measured.
+///
+/// Further runs use signals of a simulated device, and parameters at the limits of their ranges.
+/// Exit status 1 if a check fails. With UPDATE_GOLDEN=1 in the environment the documented tables are
+/// written.
 #[derive(Debug, Parser)]
-#[command(name = "stress", bin_name = "cargo stress", version)]
+#[command(
+    name = "stress",
+    bin_name = "cargo stress",
+    version,
+    max_term_width = WIDTH,
+    after_help = "Example:\n  cargo stress --ticks 1e6 --rate 1000 --estimator foaw"
+)]
 struct Arguments {
-    /// Ticks per estimator and rate; 1e9 takes 20 minutes on two cores that are free
+    /// Ticks per estimator and rate, 1 to 1e15; 1e9 takes 20 minutes on two free cores
     #[arg(long, value_name = "N", default_value = "1e9", value_parser = ticks)]
     ticks: u64,
-    /// Control rate, Hz; may be given again
+    /// Control rate, 100 to 100000 Hz; repeatable
     #[arg(long = "rate", value_name = "HZ", default_values_t = RATES_HZ, value_parser = rate)]
     rates: Vec<f64>,
-    /// Only estimators whose name begins so
+    /// Run only estimators whose name begins with NAME [default: all]
     #[arg(long, value_name = "NAME")]
     estimator: Option<String>,
     /// Seed of the course
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Keep finished parts in this file, and do not run again what this very program did before
+    /// Save finished parts in FILE, and skip parts that the same program has saved there
     #[arg(long, value_name = "FILE")]
     resume: Option<PathBuf>,
-    /// Write the findings as JSON too
+    /// Write the findings as JSON to FILE
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Print a markdown table
+    /// Print the tables as Markdown
     #[arg(long)]
     markdown: bool,
 }
