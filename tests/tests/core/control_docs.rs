@@ -2,43 +2,31 @@
 
 use estimator_core::Hertz;
 use haptic_control::{DualStage, LoopPoles, Mode, RstDesign};
+use measured::digits::rounded;
+use measured::tables::VELOCITY_LOOP;
 
-const VELOCITY_LOOP: &str = include_str!("../../../docs/theory/velocity-loop.md");
 const BOARD: &str = include_str!("../../../docs/board.md");
 
 #[test]
 fn margins_of_the_velocity_loop_are_those_of_the_table() {
-    let rows: Vec<Vec<f64>> = VELOCITY_LOOP
-        .lines()
-        .skip_while(|line| !line.starts_with("| rate, kHz |"))
-        .skip(2)
-        .take_while(|line| line.starts_with('|'))
-        .map(|line| {
-            line.trim_matches('|')
-                .split('|')
-                .map(|c| c.trim().parse().unwrap())
-                .collect()
-        })
-        .collect();
-    assert_eq!(rows.len(), 4);
-    for row in rows {
-        let rate = Hertz(1e3 * row[0]);
+    let row = |khz: f64| {
+        let rate = Hertz(1e3 * khz);
         let design = RstDesign::new(&DualStage::DEFAULT, rate, LoopPoles::DEFAULT).unwrap();
-        let m = design.margins;
-        let computed = [
-            m.modulus,
-            m.gain,
-            m.phase_deg(),
-            1e3 * m.delay_s,
-            m.crossover_hz,
+        let margins = design.margins;
+        let figures = [
+            margins.modulus,
+            margins.gain,
+            margins.phase_deg(),
+            1e3 * margins.delay_s,
+            margins.crossover_hz,
         ];
-        for (written, computed) in row[1..].iter().zip(computed) {
-            assert!(
-                (written / computed - 1.0).abs() < 0.02,
-                "{row:?}: {computed}"
-            );
-        }
-    }
+        let figures = figures.map(|figure| rounded(figure, 6));
+        [&[khz.to_string()], &figures[..]].concat()
+    };
+    let rows = [1.0, 10.0, 11.6, 20.0].map(row);
+    let same = |_: &str, then: f64, now: f64| (then / now - 1.0).abs() < 0.02;
+    let checked = VELOCITY_LOOP.check(&[], &rows, same);
+    checked.unwrap_or_else(|error| panic!("{error}"));
 }
 
 #[test]
