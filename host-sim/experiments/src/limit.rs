@@ -15,7 +15,7 @@ use crate::compare::{Case, Settings, interval, setup_of, trace};
 use catalogue::estimators::Kind;
 use scoring::evaluation::Evaluation;
 use scoring::score::{Truth, Wanted};
-use simulation::scenario::{ScenarioName, TORQUE_INTENSITY_NM2_S};
+use simulation::scenario::{Role, ScenarioName, TORQUE_INTENSITY_NM2_S};
 use terminal::failure::Failure;
 
 pub use filter::{Noise, velocities};
@@ -47,7 +47,7 @@ pub const SCENARIOS: [ScenarioName; 5] = {
 
 /// Noise of the particles in `scenario`.
 fn noise(scenario: ScenarioName) -> Noise {
-    if scenario.linear_plant() {
+    if scenario.role() == Role::Linear {
         // The noise of the simulated plant.
         Noise {
             torque_noise: TORQUE_INTENSITY_NM2_S.sqrt(),

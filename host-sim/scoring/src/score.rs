@@ -11,11 +11,13 @@
 //! their first samples say nothing about them.
 
 mod delay;
-pub mod fields;
+mod field;
+mod fields;
 mod transient;
 mod truth;
 
-pub use fields::{Better, Field, Form, Over, Score};
+pub use field::{Better, Field, Form, Over};
+pub use fields::{Score, Wanted};
 pub use truth::Truth;
 
 /// Start of every trace that no score looks at, s.
@@ -58,63 +60,6 @@ impl Interval {
     #[must_use]
     pub fn tolerance(&self, omega: f64) -> f64 {
         self.weber * omega.abs() + self.floor_rad_s
-    }
-}
-
-/// Which scores to compute; the others are `None` and take no time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wanted {
-    /// [`Score::rms_rad_s`].
-    pub rms: bool,
-    /// [`Score::max_rad_s`].
-    pub max: bool,
-    /// [`Score::distance_rad_s`].
-    pub distance: bool,
-    /// [`Score::distance_transient_rad_s`].
-    pub distance_transient: bool,
-    /// [`Score::outside`].
-    pub outside: bool,
-    /// [`Score::delay_ms`].
-    pub delay: bool,
-    /// [`Score::noise_rad_s`].
-    pub noise: bool,
-    /// [`Score::chatter_rad_s`].
-    pub chatter: bool,
-    /// [`Score::force_mn`].
-    pub force: bool,
-    /// [`Score::within_2_sigma`].
-    pub within: bool,
-    /// [`Score::learned_damping_nms_per_rad`] and its error.
-    pub learned: bool,
-}
-
-impl Wanted {
-    /// Every score.
-    pub const ALL: Self = Self::every(true);
-
-    /// No score: the start for `Wanted { rms: true, ..Wanted::NONE }`.
-    pub const NONE: Self = Self::every(false);
-
-    const fn every(wanted: bool) -> Self {
-        Self {
-            rms: wanted,
-            max: wanted,
-            distance: wanted,
-            distance_transient: wanted,
-            outside: wanted,
-            delay: wanted,
-            noise: wanted,
-            chatter: wanted,
-            force: wanted,
-            within: wanted,
-            learned: wanted,
-        }
-    }
-}
-
-impl Default for Wanted {
-    fn default() -> Self {
-        Self::ALL
     }
 }
 

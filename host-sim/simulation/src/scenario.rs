@@ -36,10 +36,28 @@ pub enum Role {
     Tuning,
     /// Motion with friction that no preset of a plain filter is tuned on.
     Judging,
-    /// The linear plant without friction or ripple, whatever the device: the model of the filters.
+    /// The model of the filters: a plant without friction under known white noise.
     Linear,
-    /// A device that changes during the run.
+    /// A device that changes during the run. It runs when it is named.
     Warming,
+    /// Motion for one question. It runs when it is named, so that figures over all compared
+    /// scenarios keep their meaning.
+    Special,
+}
+
+/// Speeds of a run of 10 s on the default device, rad/s: each between two bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Speeds {
+    /// Largest speed.
+    pub largest: [f64; 2],
+    /// Root mean square of the speed.
+    pub rms: [f64; 2],
+}
+
+impl Speeds {
+    const fn within(largest: [f64; 2], rms: [f64; 2]) -> Self {
+        Self { largest, rms }
+    }
 }
 
 /// The row of a scenario.
@@ -51,6 +69,10 @@ struct Row {
     role: Role,
     /// Length of a run unless told otherwise, s.
     seconds: f64,
+    /// Speeds that its motion has to have.
+    speeds: Speeds,
+    /// Whether the plant has friction and ripple, as the device says; if not, it has neither.
+    friction: bool,
     /// Whether its own loop reads the reference encoder; if not, that encoder is not simulated.
     reads_reference: bool,
     /// Whether its own loop reads the small encoder; if not, only a trace that wants it has it.
@@ -66,6 +88,8 @@ impl Row {
         description: "",
         role: Role::Judging,
         seconds: 10.0,
+        speeds: Speeds::within([0.0, f64::INFINITY], [0.0, f64::INFINITY]),
+        friction: true,
         reads_reference: true,
         reads_small: false,
         build: |_, _, random| Box::new(stochastic::Stochastic::new(random)),
@@ -95,6 +119,8 @@ scenarios! {
     Step {
         name: "step",
         description: "current on at 0.15 to 0.9 A and off each 0.25 s, open loop, handle clamped",
+        // On half of the time: sqrt(1/2) of 24 rad/s, the RMS of its levels, less the rise.
+        speeds: Speeds::within([30.0, 42.0], [11.0, 20.0]),
         role: Role::Tuning,
         reads_reference: false,
         build: |_, period_s, random| Box::new(step::Step::new(period_s, random)),
@@ -103,6 +129,7 @@ scenarios! {
     Permanent {
         name: "permanent",
         description: "constant slip of 2 to 20 rad/s, 1 s each, handle clamped",
+        speeds: Speeds::within([18.0, 20.5], [11.5, 12.7]),
         role: Role::Tuning,
         build: |device, period_s, random| {
             Box::new(clamped::follow(permanent::Permanent::new(random), device, period_s))
@@ -112,6 +139,7 @@ scenarios! {
     Track {
         name: "track",
         description: "slip chirp of 0.5 to 20 Hz and triangular reversals, handle clamped",
+        speeds: Speeds::within([9.5, 15.6], [5.5, 10.0]),
         role: Role::Tuning,
         build: |device, period_s, random| {
             Box::new(clamped::follow(Track::new(random), device, period_s))
@@ -121,6 +149,7 @@ scenarios! {
     FreeAir {
         name: "free-air",
         description: "hand moves at 0.3 to 4 Hz and trembles, zero torque wanted",
+        speeds: Speeds::within([1.5, 6.5], [0.7, 3.0]),
         reads_small: true,
         build: |device, period_s, random| Box::new(hand::free_air(device, period_s, random)),
     }
@@ -128,6 +157,7 @@ scenarios! {
     Wall {
         name: "wall",
         description: "hand pushes into a wall of 0.30 N.m/rad at 0.10 rad",
+        speeds: Speeds::within([12.0, 40.0], [5.0, 20.0]),
         reads_small: true,
         build: |device, period_s, random| Box::new(wall::Wall::new(device, period_s, random)),
     }
@@ -135,6 +165,7 @@ scenarios! {
     Texture {
         name: "texture",
         description: "vibration of 6 mN.m from 50 to 300 Hz over slow motion of the hand",
+        speeds: Speeds::within([6.0, 10.0], [2.7, 3.7]),
         reads_small: true,
         build: |device, period_s, random| {
             Box::new(texture::Texture::new(device, period_s, random))
@@ -144,6 +175,7 @@ scenarios! {
     Creep {
         name: "creep",
         description: "0.05 rad/s both ways, handle clamped",
+        speeds: Speeds::within([0.05, 0.3], [0.045, 0.065]),
         build: |device, period_s, random| {
             Box::new(clamped::follow(creep::Creep::new(random), device, period_s))
         },
@@ -152,6 +184,7 @@ scenarios! {
     Hold {
         name: "hold",
         description: "a hand trembling at 8 to 12 Hz holds still, zero torque wanted",
+        speeds: Speeds::within([0.2, 1.0], [0.05, 0.45]),
         reads_small: true,
         build: |device, period_s, random| Box::new(hand::hold(device, period_s, random)),
     }
@@ -159,13 +192,16 @@ scenarios! {
     Stochastic {
         name: "stochastic",
         description: "linear frictionless plant under known white noise, handle clamped",
+        speeds: Speeds::within([2.0, 16.0], [0.8, 3.3]),
         role: Role::Linear,
+        friction: false,
         reads_reference: false,
     }
     /// A coupler that warms up.
     Heating {
         name: "heating",
         description: "the motion of track while the coupler loses damping, 30 % in 60 s",
+        speeds: Speeds::within([9.5, 15.6], [5.5, 10.0]),
         role: Role::Warming,
         seconds: 60.0,
         build: |device, period_s, random| {
@@ -185,6 +221,12 @@ impl ScenarioName {
     pub fn of(roles: &[Role]) -> Vec<Self> {
         let has_role = |scenario: &Self| roles.contains(&scenario.role());
         Self::ALL.into_iter().filter(has_role).collect()
+    }
+
+    /// The scenarios that are compared unless others are named.
+    #[must_use]
+    pub fn compared() -> Vec<Self> {
+        Self::of(&[Role::Tuning, Role::Judging, Role::Linear])
     }
 
     /// The scenarios whose plant has friction and whose device stays as it is.
@@ -217,6 +259,12 @@ impl ScenarioName {
         self.row().seconds
     }
 
+    /// Speeds that its motion has to have.
+    #[must_use]
+    pub const fn speeds(self) -> Speeds {
+        self.row().speeds
+    }
+
     /// Whether its loop reads the reference encoder; if not, that encoder is not simulated.
     #[must_use]
     pub const fn reads_reference(self) -> bool {
@@ -232,7 +280,7 @@ impl ScenarioName {
     /// Whether it takes the linear plant, without friction or ripple, whatever the device.
     #[must_use]
     pub const fn linear_plant(self) -> bool {
-        matches!(self.role(), Role::Linear)
+        !self.row().friction
     }
 
     /// Seed of everything drawn for this scenario.
@@ -364,7 +412,7 @@ mod tests {
             .collect();
         seeds.sort_unstable();
         seeds.dedup();
-        assert_eq!(seeds.len(), 1000);
+        assert_eq!(seeds.len(), 100 * ScenarioName::ALL.len());
     }
 
     #[test]

@@ -33,9 +33,14 @@ const DRAWN: Role = Role::Tuning;
 /// Help text of `--scenario`, with the names of the scenes.
 fn scenario_help() -> String {
     let scenes: Vec<_> = SceneKind::environments().map(SceneKind::name).collect();
+    let compared = ScenarioName::compared();
+    let others = ScenarioName::ALL.into_iter();
+    let others = others.filter(|scenario| !compared.contains(scenario));
+    let others: Vec<_> = others.map(ScenarioName::as_str).collect();
     format!(
-        "Scenario to run, see host-sim scenarios; repeatable [default: all except heating]. With \
+        "Scenario to run, see host-sim scenarios; repeatable [default: all except {}]. With \
          --closed-loop, scene to run: {} [default: all]",
+        others.join(", "),
         scenes.join(", ")
     )
 }
@@ -178,8 +183,7 @@ pub(super) fn report_folder(options: &Compare) -> Result<Option<&Path>, Failure>
 /// The cases to run, and the number of requested cases among them. The requested cases come first.
 /// The others simulate the plant without friction for the report.
 fn cases(options: &Compare, with_report: bool) -> Result<(Vec<Case>, usize), Failure> {
-    let all_but_heating = ScenarioName::of(&[Role::Tuning, Role::Judging, Role::Linear]);
-    let scenarios = scenarios(&options.scenarios, &all_but_heating)?;
+    let scenarios = scenarios(&options.scenarios, &ScenarioName::compared())?;
     let plants: &[_] = match (options.frictionless, with_report) {
         (true, _) => &[PlantKind::Frictionless],
         (false, false) => &[PlantKind::Friction],

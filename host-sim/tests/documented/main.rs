@@ -6,9 +6,9 @@ mod constants;
 mod distances;
 mod forces;
 mod in_the_loop;
+mod lists;
 mod pages;
 mod runs;
-mod theory;
 
 use measured::Table;
 use measured::digits::{rounded, within_a_tenth};

@@ -3,7 +3,7 @@
 use catalogue::estimators::sample;
 use serde::Serialize;
 use simulation::device::Device;
-use simulation::scenario::ScenarioName;
+use simulation::scenario::{Role, ScenarioName};
 use simulation::simulate::simulate;
 use simulation::trace::Columns;
 
@@ -39,7 +39,9 @@ pub fn at(rate_hz: f64, seed: u64) -> Vec<Scenario> {
         edges: true,
     };
     let device = Device::default();
-    let scenarios = ScenarioName::ALL.into_iter();
+    // A scenario of the role Special is for one question.
+    let pooled = |scenario: &ScenarioName| scenario.role() != Role::Special;
+    let scenarios = ScenarioName::ALL.into_iter().filter(pooled);
     let traces = scenarios.map(|scenario| {
         let trace = simulate(&device, scenario, rate_hz, seed, SECONDS, columns);
         let trace = trace.expect("the default device is possible");

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::plant::Grip;
+use crate::scenario::Speeds;
 use rustfft::{FftPlanner, num_complex::Complex};
 
 /// State of the plant at each tick, and the scenario's decision.
@@ -22,22 +23,6 @@ fn watch(
     }
 }
 
-/// Largest speed (low, high) and RMS speed (low, high) of each scenario, rad/s.
-fn bounds(name: ScenarioName) -> [f64; 4] {
-    match name {
-        // On half of the time: sqrt(1/2) of 24 rad/s, the RMS of its levels, less the rise.
-        ScenarioName::Step => [30.0, 42.0, 11.0, 20.0],
-        ScenarioName::Permanent => [18.0, 20.5, 11.5, 12.7],
-        ScenarioName::Track | ScenarioName::Heating => [9.5, 15.6, 5.5, 10.0],
-        ScenarioName::FreeAir => [1.5, 6.5, 0.7, 3.0],
-        ScenarioName::Wall => [12.0, 40.0, 5.0, 20.0],
-        ScenarioName::Texture => [6.0, 10.0, 2.7, 3.7],
-        ScenarioName::Creep => [0.05, 0.3, 0.045, 0.065],
-        ScenarioName::Hold => [0.2, 1.0, 0.05, 0.45],
-        ScenarioName::Stochastic => [2.0, 16.0, 0.8, 3.3],
-    }
-}
-
 #[test]
 fn speeds_and_currents_are_within_their_ranges() {
     for name in ScenarioName::ALL {
@@ -48,7 +33,11 @@ fn speeds_and_currents_are_within_their_ranges() {
             assert!(omega.iter().all(|w| w.is_finite()));
             let largest = omega.iter().fold(0.0_f64, |a, w| a.max(w.abs()));
             let rms_speed = rms(omega.iter().copied());
-            let [low, high, low_rms, high_rms] = bounds(name);
+            let Speeds {
+                largest: [low, high],
+                rms: [low_rms, high_rms],
+            } = name.speeds();
+            assert!(high.is_finite(), "{name} has no bounds of its speed");
             assert!((low..high).contains(&largest), "{name}: largest {largest}");
             assert!(
                 (low_rms..high_rms).contains(&rms_speed),

@@ -1,12 +1,17 @@
-//! The lists of estimators' theory pages, in docs/theory.md and docs/SUMMARY.md, made from the pages.
+//! Lists in docs/ that nobody writes by hand: the pages of estimators, from the pages themselves; the
+//! scenarios and the scores, from their rows.
 //!
-//! `UPDATE_GOLDEN=1 cargo test --release --package host-sim --test documented theory` writes them.
-//! The page of an estimator has a table with the heading row [`HEAD`].
+//! `UPDATE_GOLDEN=1 cargo test --release --package host-sim --test documented lists` writes them. The
+//! page of an estimator has a table with the heading row [`HEAD`].
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use catalogue::estimators::Kind;
+use measured::block::{Block, markdown};
+use measured::update;
+use scoring::score::Score;
+use simulation::scenario::ScenarioName;
 
 /// Heading row of the table of an estimator's page, and of the list of all of them.
 const HEAD: &str = "| estimator | example | g | RMS | delay | operations | state, bytes |";
@@ -75,51 +80,45 @@ fn listed(row: &str, file: &str) -> String {
     format!("| [{name}](theory/{file}) | {rest}")
 }
 
-/// Writes the lines between two marks of a page of docs/, or compares them.
-fn check(file: &str, begin: &str, end: &str, lines: &str) {
-    let path = docs(file);
-    let text = fs::read_to_string(&path).expect(file);
-    let (before, rest) = text.split_once(begin).expect("the beginning of the list");
-    let (written, after) = rest.split_once(end).expect("the end of the list");
-    if std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1") {
-        fs::write(&path, format!("{before}{begin}{lines}{end}{after}"))
-            .expect("docs can be written");
-    } else {
-        assert_eq!(
-            written, lines,
-            "docs/{file} differs from the pages: UPDATE_GOLDEN=1 writes the list anew"
-        );
-    }
+/// Writes or compares a block of a page.
+fn check(page: &'static str, name: &'static str, content: &str) {
+    let block = Block {
+        kind: "catalogue",
+        name,
+        page,
+    };
+    let checked = block.check(content);
+    checked.unwrap_or_else(|error| panic!("{error}"));
 }
 
 #[test]
 fn every_page_of_an_estimator_is_in_the_overview() {
     let rows: Vec<_> = pages().into_iter().flat_map(|page| page.rows).collect();
     assert!(rows.len() >= Kind::all().len() / 2, "{rows:#?}");
-    let columns = HEAD.matches('|').count() - 1;
-    let table = format!(
-        "\n\n{HEAD}\n{}|\n{}\n\n",
-        "|---".repeat(columns),
-        rows.join("\n")
-    );
-    check(
-        "theory.md",
-        "<!-- estimators: written by the test documented -->",
-        "<!-- end of estimators -->",
-        &table,
-    );
+    let rule = "|---".repeat(HEAD.matches('|').count() - 1);
+    let table = format!("{HEAD}\n{rule}|\n{}", rows.join("\n"));
+    check("docs/theory.md", "estimators", &table);
 }
 
+/// The table of contents of the book has no room for comments, so its list lies between two lines.
 #[test]
 fn every_page_of_an_estimator_is_in_the_contents() {
     let line = |page: &Page| format!("  - [{}](theory/{})\n", page.title, page.file);
     let lines: String = pages().iter().map(line).collect();
-    check(
-        "SUMMARY.md",
-        "- [Estimators]()\n",
-        "- [Gains at compile time]",
-        &lines,
-    );
+    let (begin, end) = ("- [Estimators]()\n", "- [Gains at compile time]");
+    let path = docs("SUMMARY.md");
+    let text = fs::read_to_string(&path).expect("docs/SUMMARY.md");
+    let (before, rest) = text.split_once(begin).expect("the beginning of the list");
+    let (written, after) = rest.split_once(end).expect("the end of the list");
+    if update() {
+        let text = format!("{before}{begin}{lines}{end}{after}");
+        fs::write(&path, text).expect("docs/SUMMARY.md can be written");
+    } else {
+        assert_eq!(
+            written, lines,
+            "docs/SUMMARY.md differs from the pages: UPDATE_GOLDEN=1 writes the list anew"
+        );
+    }
 }
 
 #[test]
@@ -133,4 +132,46 @@ fn every_estimator_is_on_a_page_with_its_figures() {
         });
         assert!(is_there, "no page with figures names {}", kind.name);
     }
+}
+
+#[test]
+fn every_scenario_is_in_the_table_of_scenarios() {
+    let compared = ScenarioName::compared();
+    let row = |scenario: ScenarioName| {
+        vec![
+            format!("`{scenario}`"),
+            scenario.description().to_owned(),
+            if scenario.linear_plant() {
+                "linear"
+            } else {
+                "friction"
+            }
+            .to_owned(),
+            scenario.default_seconds().to_string(),
+            if compared.contains(&scenario) {
+                "yes"
+            } else {
+                "when named"
+            }
+            .to_owned(),
+        ]
+    };
+    let rows: Vec<_> = ScenarioName::ALL.into_iter().map(row).collect();
+    let head = ["name", "motion", "plant", "length, s", "compared"];
+    let table = markdown(&head, &rows);
+    check("docs/theory/scenarios.md", "scenarios", &table);
+}
+
+#[test]
+fn every_score_is_in_the_table_of_scores() {
+    let rows: Vec<_> = Score::FIELDS
+        .iter()
+        .map(|field| {
+            let about = field.about.join("").trim().trim_end_matches('.').to_owned();
+            let about = about.replace('|', "\\|").replace("`None`", "none");
+            vec![format!("`{}`", field.name), about]
+        })
+        .collect();
+    let table = markdown(&["name in JSON, CSV and options", "definition"], &rows);
+    check("docs/theory/scores.md", "scores", &table);
 }
