@@ -155,7 +155,7 @@ fn decode(kind: u8, payload: [u8; BODY - 1]) -> Option<Command> {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn the_checksum_is_that_of_the_catalogue() {
+    fn checksum_agrees_with_the_published_check_value() {
         assert_eq!(super::crc8(b"123456789"), 0xF4);
     }
 }

@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_current_is_mid_scale_and_what_is_too_much_saturates() {
+    fn invalid_current_is_mid_scale_and_large_current_saturates() {
         let full = Amps::new(6.0);
         assert_eq!(DacCode::new(Amps::new(f32::INFINITY), full), DacCode::ZERO);
         assert_eq!(DacCode::new(Amps::new(1.0), Amps::ZERO), DacCode::ZERO);

@@ -42,7 +42,7 @@ impl OutputPin for Journal<'_> {
 }
 
 #[test]
-fn the_command_comes_before_the_enable_and_the_disable_before_the_command() {
+fn command_precedes_enable_and_disable_precedes_command() {
     use Event::{Command, Enable};
     let journal = RefCell::new(Vec::new());
     let mut fault = Pin::new(&[]);
@@ -61,7 +61,7 @@ fn the_command_comes_before_the_enable_and_the_disable_before_the_command() {
 }
 
 #[test]
-fn an_enable_that_failed_is_tried_again() {
+fn failed_enable_is_repeated() {
     let refused = On::set(State::High).with_error(embedded_hal_mock::eh1::MockError::Io(
         std::io::ErrorKind::Other,
     ));
@@ -76,7 +76,7 @@ fn an_enable_that_failed_is_tried_again() {
 }
 
 #[test]
-fn low_or_unreadable_is_a_fault() {
+fn low_or_unreadable_fault_input_is_a_fault() {
     let unreadable = On::get(State::High).with_error(embedded_hal_mock::eh1::MockError::Io(
         std::io::ErrorKind::Other,
     ));
@@ -104,7 +104,7 @@ fn duties(top: u16, full_scale: f32, commands: &[(f32, u16)]) {
 }
 
 #[test]
-fn a_pwm_command_is_half_duty_at_no_current_and_10_and_90_percent_at_full_scale() {
+fn pwm_duty_is_half_at_zero_current_and_10_and_90_percent_at_full_scale() {
     duties(
         1000,
         6.0,
@@ -116,11 +116,11 @@ fn a_pwm_command_is_half_duty_at_no_current_and_10_and_90_percent_at_full_scale(
 }
 
 #[test]
-fn a_pwm_command_beyond_full_scale_saturates() {
+fn pwm_duty_saturates_beyond_full_scale() {
     duties(1000, 6.0, &[(600.0, 900), (-600.0, 100), (f32::MAX, 900)]);
 }
 
 #[test]
-fn a_pwm_command_without_a_full_scale_is_half_duty() {
+fn pwm_duty_is_half_without_a_full_scale() {
     duties(1000, 0.0, &[(0.0, 500), (1.0, 500), (-1.0, 500)]);
 }

@@ -38,7 +38,7 @@ fn parse(parser: &mut Parser, bytes: &[u8]) -> Vec<Command> {
 }
 
 #[test]
-fn what_is_encoded_is_found_with_nothing_lost() {
+fn encoded_frames_are_decoded_without_loss() {
     let mut parser = Parser::default();
     for command in COMMANDS {
         assert_eq!(parse(&mut parser, &encode(command)), [command]);
@@ -49,7 +49,7 @@ fn what_is_encoded_is_found_with_nothing_lost() {
 /// An eight-bit checksum takes one of 256 torn frames for another; among these there is none such
 /// (one begins as `Estimator(1)` and ends in the middle of `Tune`).
 #[test]
-fn a_frame_is_found_behind_any_beginning_of_another() {
+fn frame_is_found_after_an_incomplete_frame() {
     for command in COMMANDS {
         for other in COMMANDS {
             for cut in 0..11 {
@@ -71,7 +71,7 @@ fn a_frame_is_found_behind_any_beginning_of_another() {
 
 /// Six bytes of one frame and the first five of the next, with the right CRC.
 #[test]
-fn a_torn_frame_whose_crc_is_right_by_chance_is_none() {
+fn torn_frame_with_a_valid_crc_is_rejected() {
     let torn = encode(Command::Estimator(1));
     let next = encode(COMMANDS[7]);
     let mut bytes = [torn[0], torn[1], torn[2], 0, 0, 0, 0, 0, 0, 0, 0];
@@ -95,7 +95,7 @@ fn every_single_bit_error_is_garbage() {
 }
 
 #[test]
-fn unknown_kinds_are_counted_and_ignored() {
+fn unknown_kinds_of_frames_are_counted_and_ignored() {
     let mut parser = Parser::default();
     let mut bytes = [0xA5, 9, 0, 0, 0, 0, 0, 0, 0, 0, 0];
     bytes[10] = crc8(&bytes[1..10]);
@@ -104,7 +104,7 @@ fn unknown_kinds_are_counted_and_ignored() {
 }
 
 #[test]
-fn a_flood_of_noise_is_bounded_and_mostly_garbage() {
+fn noise_is_counted_as_garbage_with_few_valid_frames() {
     let mut parser = Parser::default();
     let mut x = 0x1234_5678_u32;
     let mut found = 0;
@@ -120,7 +120,7 @@ fn a_flood_of_noise_is_bounded_and_mostly_garbage() {
 }
 
 #[test]
-fn frames_within_noise_are_all_found() {
+fn all_frames_within_noise_are_found() {
     let mut parser = Parser::default();
     let mut x = 0x2545_F491_u32;
     let (mut bytes, mut sent) = (Vec::new(), Vec::new());
@@ -141,7 +141,7 @@ fn frames_within_noise_are_all_found() {
 }
 
 #[test]
-fn any_value_comes_through_bit_for_bit_for_others_to_judge() {
+fn values_are_transmitted_bit_for_bit_without_a_range_check() {
     for bits in [0, 0x7FC0_0001, 0x7F80_0000, 0xFF80_0000, 1, 0x3F80_0000] {
         let mut parser = Parser::default();
         let tune = Command::Tune {

@@ -83,7 +83,7 @@ mod tests {
     extern crate std;
 
     #[test]
-    fn the_circle_agrees_with_the_standard_library() {
+    fn sine_and_cosine_agree_with_the_standard_library() {
         for i in 0..=1000 {
             let x = f64::from(i) * core::f64::consts::PI / 1000.0;
             let (cos, sin) = cos_sin(x);
@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn a_solution_solves_and_a_singular_matrix_has_none() {
+    fn solution_satisfies_the_equations_and_a_singular_matrix_has_none() {
         let m = [
             [0.0, 2.0, 0.0, 1.0],
             [1.0, 0.0, 3.0, 0.0],
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn polynomials_multiply() {
+    fn product_of_polynomials_has_the_convolved_coefficients() {
         assert_eq!(
             multiply([1.0, 2.0, 3.0], [4.0, 5.0, 6.0]),
             [4.0, 13.0, 28.0, 27.0, 18.0]

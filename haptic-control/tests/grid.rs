@@ -22,7 +22,7 @@ fn begin(start: u32, after: &[u64]) -> Vec<u32> {
 }
 
 #[test]
-fn a_tick_that_begins_in_its_period_misses_none() {
+fn tick_within_its_period_misses_none() {
     for start in STARTS {
         let after = [0, 1, 20, 0, u64::from(PERIOD) - 1, 0, 8000];
         assert_eq!(begin(start, &after), [0; 7], "from {start}");
@@ -46,7 +46,7 @@ fn a_halt_of_n_periods_counts_n_missed_ticks() {
 /// A tick of 1.2 periods delays the next by 0.2 of one, that one by 0.4, and the sixth begins a
 /// whole period late.
 #[test]
-fn ticks_longer_than_the_period_all_count() {
+fn every_tick_longer_than_the_period_is_counted() {
     for start in STARTS {
         let mut grid = Grid::<PERIOD>::new(start);
         let mut now = start.wrapping_add(PERIOD);
@@ -61,7 +61,7 @@ fn ticks_longer_than_the_period_all_count() {
 }
 
 #[test]
-fn a_tick_just_inside_its_period_is_no_overrun() {
+fn tick_just_inside_its_period_is_no_overrun() {
     for (spent, counted) in [(PERIOD - 1, 0), (PERIOD, 1), (PERIOD + 1, 1)] {
         for start in STARTS {
             let mut grid = Grid::<PERIOD>::new(start);
@@ -75,7 +75,7 @@ fn a_tick_just_inside_its_period_is_no_overrun() {
 }
 
 #[test]
-fn the_longest_tick_is_kept_until_it_is_taken() {
+fn longest_tick_is_kept_until_it_is_read() {
     for start in STARTS {
         let mut grid = Grid::<PERIOD>::new(start);
         for (latency, spent) in [(4, 3000), (9, 5000), (4, 2000)] {

@@ -81,7 +81,7 @@ fn log(frames: impl Iterator<Item = u32>, boots: bool) -> String {
 }
 
 #[test]
-fn a_log_is_recorded_replayed_and_drawn() {
+fn log_is_converted_replayed_and_drawn() {
     let folder = Folder::new("record");
     let log = log((0..200).filter(|k| !(50..60).contains(k)), true) + "frame seq=200 tick=2000 la";
     let [_, said] = folder.good(&["record", "--out", "run.csv"], log.as_bytes());
@@ -129,7 +129,7 @@ fn a_log_is_recorded_replayed_and_drawn() {
 
 /// Stamps and what the board learned go from the log to the recording, and replay tells of both.
 #[test]
-fn lines_beside_frames_are_columns_and_health() {
+fn side_lines_are_columns_and_health_lines() {
     let folder = Folder::new("record-beside");
     let mut text = String::new();
     for (k, line) in log(0..200, true).lines().enumerate() {
@@ -186,7 +186,7 @@ fn lines_beside_frames_are_columns_and_health() {
 }
 
 #[test]
-fn what_cannot_be_recorded_or_drawn_is_refused_in_a_line() {
+fn streams_that_cannot_be_recorded_or_drawn_are_refused_with_one_line() {
     let folder = Folder::new("record-refused");
     let whole = log(0..3, true);
     let middle = log(7..20, false);

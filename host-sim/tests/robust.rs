@@ -61,7 +61,7 @@ impl Drop for Folder {
 const SHORT: &str = "robust --scene hold --scene wall --rate 1000 --seconds 0.2 --devices 20";
 
 #[test]
-fn three_shards_merge_to_the_bytes_of_one_run() {
+fn merged_shards_equal_a_single_run() {
     let folder = Folder::new("robust-merge");
     let (whole, _) = folder.ends(0, &format!("{SHORT} --out whole --json whole.json"));
     for k in 1..=3 {
@@ -93,7 +93,7 @@ fn three_shards_merge_to_the_bytes_of_one_run() {
 }
 
 #[test]
-fn shards_that_do_not_fit_are_refused_by_name() {
+fn shards_of_different_runs_are_refused_by_name() {
     let folder = Folder::new("robust-refused");
     let tiny = "robust --scene off --rate 1000 --seconds 0.05 --devices 3 --out .";
     for k in 1..=3 {
@@ -153,7 +153,7 @@ fn shards_that_do_not_fit_are_refused_by_name() {
 }
 
 #[test]
-fn one_device_runs_again_alone() {
+fn single_device_is_repeated_with_only() {
     let folder = Folder::new("robust-only");
     let (all, _) = folder.ends(0, &format!("{SHORT} --json -"));
     assert!(
@@ -174,7 +174,7 @@ fn one_device_runs_again_alone() {
 }
 
 #[test]
-fn a_violation_is_a_check_that_failed_and_says_how_to_see_it() {
+fn violation_has_exit_status_1_and_the_command_that_repeats_it() {
     let folder = Folder::new("robust-violated");
     // A handle so heavy that a hand that moves it feels more than the limit.
     fs::write(
@@ -199,7 +199,7 @@ fn a_violation_is_a_check_that_failed_and_says_how_to_see_it() {
 }
 
 #[test]
-fn bad_words_are_refused_with_what_to_do() {
+fn invalid_arguments_are_refused_with_a_remedy() {
     let folder = Folder::new("robust-words");
     for (arguments, said) in [
         (

@@ -31,7 +31,7 @@ fn found(cases: &[Case]) -> Vec<Boundary> {
 }
 
 #[test]
-fn a_slow_rate_and_a_coarse_encoder_narrow_the_z_width() {
+fn z_width_is_smaller_at_a_slow_rate_and_with_a_coarse_encoder() {
     let [fine, slow, coarse] = [
         case("pll", 10e3, 1024),
         case("pll", 1e3, 1024),
@@ -47,7 +47,7 @@ fn a_slow_rate_and_a_coarse_encoder_narrow_the_z_width() {
 }
 
 #[test]
-fn damping_makes_stiffer_walls_possible_until_it_is_too_much() {
+fn largest_stiffness_rises_and_falls_with_damping() {
     let boundary = &found(&[case("foaw-best-fit", 10e3, 1024)])[0];
     let plain = boundary.walls[0].1.value;
     let (damping, best) = boundary.stiffest().unwrap();
@@ -59,7 +59,7 @@ fn damping_makes_stiffer_walls_possible_until_it_is_too_much() {
 /// to the bound that is not quite so: chance decides what the encoders' phases make of it. Far
 /// beyond and far below it is.
 #[test]
-fn beyond_a_bound_nothing_is_good_and_below_it_everything_is() {
+fn values_below_a_bound_pass_and_values_beyond_fail() {
     let (mut tried, mut strange) = (0, Vec::new());
     for (name, rate_hz) in [("kalman-triple", 1e3), ("pll", 10e3)] {
         let case = case(name, rate_hz, 1024);
@@ -120,7 +120,7 @@ const SHORT: [&str; 6] = [
 ];
 
 #[test]
-fn json_alone_on_standard_output_and_the_same_bytes_again() {
+fn json_is_alone_on_standard_output_and_reproducible() {
     let folder = Folder::new("json");
     let mut arguments = SHORT.to_vec();
     arguments.extend(["--json", "-"]);
@@ -161,7 +161,7 @@ fn json_alone_on_standard_output_and_the_same_bytes_again() {
 }
 
 #[test]
-fn the_page_its_figures_and_the_table() {
+fn page_has_figures_and_table() {
     let folder = Folder::new("page");
     let mut arguments = SHORT.to_vec();
     arguments.extend(["--out", "z"]);
@@ -185,7 +185,7 @@ fn the_page_its_figures_and_the_table() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_in_one_line_and_nothing_is_written() {
+fn invalid_arguments_are_refused_in_one_line_and_write_nothing() {
     let folder = Folder::new("bad");
     for (arguments, said) in [
         (&["--estimator", "kalmann"][..], "no estimator 'kalmann'"),

@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn instructions_lead_where_the_manual_says() {
+    fn control_flow_of_instructions_agrees_with_the_manual() {
         // From the listing of an image: instruction, address, halves.
         for (what, at, first, second, flow) in [
             ("bne +0x24", 0x8000C94, 0xD112, 0, Flow::Perhaps(0x8000CBC)),
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn a_return_that_depends_leaves_two_ways_and_literals_are_no_code() {
+    fn conditional_return_has_two_successors_and_literals_are_not_code() {
         // it eq; bxeq lr; movs r0, #1; bx lr; literal that would be a jump
         let halves: [u16; 5] = [0xBF08, 0x4770, 0x2001, 0x4770, 0xE000];
         let code: Vec<u8> = halves.iter().flat_map(|half| half.to_le_bytes()).collect();

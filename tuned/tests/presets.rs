@@ -17,7 +17,7 @@ fn setup(rate: Hertz) -> Setup {
 }
 
 #[test]
-fn the_build_script_reads_presets_as_host_sim_does() {
+fn build_script_reads_presets_like_host_sim() {
     let shipped = Parameters::default();
     let mut compared = 0;
     for rate in [500.0, 1000.0, 4000.0, 10_000.0, 20_000.0].map(Hertz) {

@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_checksum_is_crc_8() {
+    fn checksum_is_crc_8() {
         assert_eq!(crc8(b"123456789"), 0xF4);
     }
 
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_little_endian_where_the_table_says() {
+    fn numbers_are_little_endian_at_their_offsets() {
         let torque = Command::Torque(0.5).encode();
         assert_eq!(torque[..10], [0xA5, 4, 0, 0, 0, 0x3F, 0, 0, 0, 0]);
         let tune = Command::Tune {

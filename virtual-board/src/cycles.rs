@@ -53,7 +53,7 @@ mod tests {
     use super::of;
 
     #[test]
-    fn costs_are_those_of_the_manual() {
+    fn costs_agree_with_the_manual() {
         // From the listing of an image: instruction, halves, cycles.
         for (what, first, second, cycles) in [
             ("adds r0, #1", 0x3001, 0, 1),

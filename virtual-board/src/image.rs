@@ -256,7 +256,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_of_another_kind_is_refused_with_what_to_do() {
+    fn file_that_is_not_an_image_is_refused_with_a_remedy() {
         let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
         let Err(said) = Image::read(path) else {
             panic!("taken for an image");

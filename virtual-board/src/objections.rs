@@ -111,12 +111,12 @@ mod tests {
     const AHB2_CLOCKS: (u32, u32) = (0x4002_3834, 1 << 6);
 
     #[test]
-    fn an_access_to_a_modelled_register_is_no_objection() {
+    fn access_to_a_modelled_register_is_accepted() {
         assert_eq!(objections(&[AHB1_CLOCKS, (0x4002_1000, 1)]), [""; 0]);
     }
 
     #[test]
-    fn accesses_that_the_chip_answers_otherwise_are_reported() {
+    fn unmodelled_accesses_are_reported() {
         for (writes, kind, named) in [
             // Between two blocks.
             (&[(0x4008_0000, 0)][..], "unmapped", "0x40080000"),
@@ -137,7 +137,7 @@ mod tests {
 
     /// 96 MHz from the internal oscillator, and no wait state of the flash.
     #[test]
-    fn a_core_too_fast_for_its_flash_is_reported() {
+    fn core_clock_above_the_flash_limit_is_reported() {
         let pll_on = (0x4002_3800, 0x0100_0083);
         let found = objections(&[pll_on, pll_on, pll_on, pll_on, pll_on, (0x4002_3808, 2)]);
         assert_eq!(found.len(), 1, "{found:?}");

@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_line_changes_at_a_time_and_a_leads_upwards() {
+    fn one_line_changes_at_a_time_and_a_leads_in_upward_counting() {
         for count in [0, 1, 2, 3, 7, u32::MAX] {
             let (now, next) = (levels(count), levels(count.wrapping_add(1)));
             let changed = usize::from(now[0] != next[0]) + usize::from(now[1] != next[1]);

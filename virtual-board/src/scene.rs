@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn text_becomes_a_command_or_an_error() {
+    fn parameter_text_is_parsed_to_a_command_or_refused() {
         let wall = named("wall").unwrap();
         let command = Command::Tune {
             scene: 2,
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn every_scene_is_known_by_its_name_and_named_in_the_error() {
+    fn every_scene_is_found_by_name_and_listed_in_the_error() {
         let error = named("tarpit").unwrap_err();
         for scene in SceneKind::ALL {
             assert_eq!(named(scene.name()), Ok(scene));

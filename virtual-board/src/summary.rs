@@ -135,7 +135,7 @@ mod tests {
     use haptic_control::{Mode, Stop};
 
     #[test]
-    fn numbers_of_telemetry_have_names() {
+    fn codes_of_telemetry_have_names() {
         let mode = |mode: Mode| numbered(mode.as_str(), mode as u8);
         assert_eq!(mode(Mode::Safe), "safe (3)");
         assert_eq!(mode(Mode::Settling), "settling (4)");

@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn calls_are_followed_both_ways_and_nothing_else_is_a_call() {
+    fn calls_are_decoded_in_both_directions() {
         // push {r7, lr}; bl forwards by 0x2C40; bl to itself; beq.w; movw r0, #0x4780; blx r3
         let code = code(&[
             0xB580, 0xF002, 0xFE20, 0xF7FF, 0xFFFE, 0xF000, 0x8000, 0xF244, 0x7080, 0x4798,

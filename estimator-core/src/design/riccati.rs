@@ -222,7 +222,7 @@ mod tests {
     use super::{settled, shrinks};
 
     #[test]
-    fn settled_is_a_change_of_1e_12_of_the_diagonal() {
+    fn settled_means_a_change_below_1e_12_of_the_diagonal() {
         let old = [[4.0, 0.0], [0.0, 1e-10]];
         let moved = |i: usize, j: usize, by: f64| {
             let mut new = old;
@@ -238,13 +238,13 @@ mod tests {
     }
 
     #[test]
-    fn a_nan_is_never_stable() {
+    fn nan_is_not_stable() {
         let m = [[f64::NAN, 0.0], [0.0, 0.1]];
         assert!(!shrinks(m) && !shrinks([[0.1, 0.0], [0.0, f64::NAN]]));
     }
 
     #[test]
-    fn only_a_spectral_radius_below_one_shrinks() {
+    fn powers_shrink_only_below_a_spectral_radius_of_one() {
         // A large norm with small eigenvalues grows first and shrinks then.
         assert!(shrinks([[0.9, 100.0], [0.0, 0.9]]));
         assert!(!shrinks([[1.0, 0.0], [0.0, 0.5]]));

@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_the_textbook_update() {
+    fn bierman_update_agrees_with_the_textbook() {
         let (mut upper, mut diagonal) = ([0.3, -0.7, 0.2], [0.5, 0.1, 2.0]);
         for (h, r) in [
             ([1.0, 0.0, 0.0], 0.1),

@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn propagation_is_the_textbook_recursion() {
+    fn propagation_agrees_with_the_textbook() {
         let propagation = Propagation::new(0.08, WHITE);
         let (left, moved) = ((-0.08f64).exp(), (1.0 - (-0.08f64).exp()) / 0.08);
         for (p, g, s) in [

@@ -123,7 +123,7 @@ mod tests {
     use super::{GainTable, Noise, one_tick, product, riccati};
 
     #[test]
-    fn gap_takes_the_longest_row_that_is_not_longer() {
+    fn gap_selects_the_longest_row_that_is_not_longer() {
         let noise = Noise {
             white: 1e-6,
             disturbance: 1e-8,

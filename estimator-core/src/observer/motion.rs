@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn reversal_pays_friction_of_both_directions() {
+    fn reversal_has_friction_in_both_directions() {
         // From 2.5 under -3: stops after half a tick at 5 a tick², leaves at 1 a tick².
         let turned = step(2.5, -3.0);
         assert_eq!((turned.moved, turned.velocity), (0.625 - 0.125, -0.5));

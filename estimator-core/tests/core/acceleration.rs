@@ -32,7 +32,7 @@ where
 }
 
 #[test]
-fn constant_acceleration_is_found() {
+fn constant_acceleration_is_estimated() {
     let model = Model::triple_integrator(4096, Hertz(1000.0), 2e4).unwrap();
     assert_exact(&Kalman::new(&model).unwrap());
     assert_exact(&TableKalmanTriple::<512>::new(&model).unwrap());

@@ -236,7 +236,7 @@ fn assert_calibrated(found: f64, what: &str) {
 }
 
 #[test]
-fn observers_err_by_their_deviation_where_the_motor_is_as_random_as_they_are_told() {
+fn errors_of_observers_have_their_standard_deviation_with_matching_noise() {
     // 0.1, 0.3 and 1.3 counts a tick.
     for counts_per_rev in [40, 100, 400] {
         let device = device(counts_per_rev);
@@ -267,7 +267,7 @@ fn observers_err_by_their_deviation_where_the_motor_is_as_random_as_they_are_tol
 }
 
 #[test]
-fn filters_err_by_their_deviation_where_the_motor_is_their_model() {
+fn errors_of_filters_have_their_standard_deviation_with_a_matching_model() {
     let device = MotorModel::DCX35L;
     for noise in [0.1, 1.0] {
         let mean = device.damping * OMEGA / device.torque_constant;

@@ -9,7 +9,7 @@ const RATE: Hertz = Hertz(1000.0);
 
 /// The full filter's variance falls to the limit that the steady one was given at compile time.
 #[test]
-fn the_full_filter_settles_to_the_steady_ones_variance() {
+fn full_filter_settles_to_the_variance_of_the_steady_filter() {
     for jerk in [1e2, 1e4, 1e5] {
         let model = Model::triple_integrator(4096, RATE, jerk).unwrap();
         let (full, steady) = (
@@ -33,7 +33,7 @@ fn the_full_filter_settles_to_the_steady_ones_variance() {
 
 /// Nothing is heard of a motor between two counts, and the observer is ever less sure.
 #[test]
-fn an_observer_is_less_sure_the_longer_it_heard_nothing() {
+fn variance_of_an_observer_grows_without_counts() {
     let unsure = Uncertainty {
         torque_noise: 5e-6,
         disturbance: 1e-4,
@@ -67,7 +67,7 @@ fn an_observer_is_less_sure_the_longer_it_heard_nothing() {
 }
 
 #[test]
-fn while_one_takes_over_the_less_sure_of_the_two_is_believed() {
+fn handover_reports_the_larger_variance_of_the_two() {
     let window = Foaw::<8, EndFit>::new(8, 1).unwrap();
     let both = Handover::new(window, FiniteDifference, 4, 4).unwrap();
     let mut state = both.start(&Sample::new(Count(0)));

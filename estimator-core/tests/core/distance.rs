@@ -14,7 +14,7 @@ static EVERY: LazyLock<Vec<Case>> = LazyLock::new(everywhere);
 
 /// An estimator that went a billion counts behaves as one that starts there.
 #[test]
-fn nothing_is_lost_beyond_a_billion_counts() {
+fn velocity_is_exact_beyond_a_billion_counts() {
     let motion = medley();
     for case in EVERY.iter() {
         // There at high speed, then rest until the journey is forgotten.

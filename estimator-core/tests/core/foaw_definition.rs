@@ -209,7 +209,7 @@ fn windows_and_velocities_are_those_of_the_definition() {
 /// Whatever the slopes, at the ends of what is allowed.
 #[test]
 fn no_window_reaches_beyond_the_first_sample() {
-    fn at_the_ends<const N: usize>(tally: &mut Tally) {
+    fn at_the_limits<const N: usize>(tally: &mut Tally) {
         let mut draws = Draws(N as u64);
         for kind in 0..KINDS {
             for d in [0, 1, 1 << 14] {
@@ -225,10 +225,10 @@ fn no_window_reaches_beyond_the_first_sample() {
         updates: 0,
         longest: 0,
     };
-    at_the_ends::<1>(&mut tally);
-    at_the_ends::<2>(&mut tally);
-    at_the_ends::<3>(&mut tally);
-    at_the_ends::<128>(&mut tally);
+    at_the_limits::<1>(&mut tally);
+    at_the_limits::<2>(&mut tally);
+    at_the_limits::<3>(&mut tally);
+    at_the_limits::<128>(&mut tally);
     assert_eq!(tally.longest, 128);
 }
 

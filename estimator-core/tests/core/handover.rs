@@ -39,7 +39,7 @@ where
 }
 
 #[test]
-fn a_constant_velocity_shows_nothing_of_the_change() {
+fn change_of_estimator_does_not_alter_a_constant_velocity() {
     let samples: Vec<Sample> = (0..1000).map(|k| Sample::new(Count(7 * k))).collect();
     let estimator = both();
     let mut in_charge = Vec::new();
@@ -64,7 +64,7 @@ proptest! {
     /// Whenever and however often somebody changes his mind: from tick to tick the output moves
     /// by no more than the two estimators do and the fade allows.
     #[test]
-    fn no_step_is_larger_than_the_two_and_the_fade(
+    fn steps_during_a_fade_are_bounded_by_the_estimators_and_the_fade(
         motion in any_motion(),
         changes in proptest::collection::vec((0usize..600, any::<bool>()), 0..8),
     ) {
@@ -119,7 +119,7 @@ proptest! {
 
 /// With estimators whose difference is known, the fade is a straight line, turned where it is.
 #[test]
-fn the_fade_is_a_line_that_turns_where_it_is() {
+fn reversed_fade_continues_from_its_current_weight() {
     // At half a count a tick finite difference says 0 and 1 in turn; its window of two says 1/2.
     let estimator = Handover::new(
         FiniteDifference,
@@ -155,7 +155,7 @@ fn the_fade_is_a_line_that_turns_where_it_is() {
 }
 
 #[test]
-fn impossible_fades_are_refused() {
+fn invalid_fades_are_refused() {
     for (settle, fade) in [(0, 0), (0, u16::MAX), (u16::MAX, 1)] {
         assert!(Handover::new(FiniteDifference, FiniteDifference, settle, fade).is_err());
     }

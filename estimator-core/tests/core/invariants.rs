@@ -123,7 +123,7 @@ proptest! {
 }
 
 #[test]
-fn wrap_at_any_moment_leaves_no_trace() {
+fn wrap_at_any_tick_does_not_change_the_velocity() {
     let motion = medley();
     for case in EVERY.iter() {
         let far_from_any_wrap = case.run(&motion.samples(1 << 30));
@@ -139,7 +139,7 @@ fn wrap_at_any_moment_leaves_no_trace() {
 }
 
 #[test]
-fn start_at_rest_anywhere_is_silent() {
+fn velocity_is_zero_after_a_start_at_rest_at_any_count() {
     let mut draws = Draws(5);
     let counts = [0, 1, 0x7FFF_FFFF, 0x8000_0000, u32::MAX, 1_000_000_000];
     let counts = counts
@@ -158,7 +158,7 @@ fn start_at_rest_anywhere_is_silent() {
 }
 
 #[test]
-fn first_step_is_seen_from_the_first_sample() {
+fn first_step_is_relative_to_the_first_sample() {
     for case in EVERY.iter() {
         for start in [0u32, 12_345_678, 1 << 31, u32::MAX] {
             let samples = [
@@ -177,7 +177,7 @@ fn first_step_is_seen_from_the_first_sample() {
 
 /// The medley is what it claims, so that the tests above try what they say.
 #[test]
-fn medley_covers_rest_creep_and_speed() {
+fn test_signal_has_rest_creep_and_speed() {
     let motion = medley();
     assert!(motion.fastest() >= 2900 && motion.fastest() < 1 << 15);
     assert!(motion.counts.windows(50).any(|w| w[0] == w[49]));

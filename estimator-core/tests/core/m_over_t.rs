@@ -96,7 +96,7 @@ fn stamped_and_unstamped_counts_are_mixed() {
 /// A stamp that is older than a tick, or of a boundary that does not touch the count's cell, is
 /// none, bit for bit.
 #[test]
-fn stamp_of_another_cell_or_tick_is_none() {
+fn stamp_of_another_interval_or_tick_is_not_used() {
     let estimator = MOverT::new(Hertz(100_000.0), Hertz(1000.0)).expect("valid");
     let run = |edge: Option<(i32, u32)>| {
         let mut state = estimator.start(&Sample::new(Count(9)));

@@ -97,7 +97,7 @@ proptest! {
 }
 
 #[test]
-fn wrap_of_either_counter_leaves_no_trace() {
+fn wrap_of_either_counter_does_not_change_the_velocity() {
     let motion = medley();
     for case in everywhere() {
         let far = (case.run)(&dressed(&motion, 1 << 30, 1000.0, 1));
@@ -112,7 +112,7 @@ fn wrap_of_either_counter_leaves_no_trace() {
 }
 
 #[test]
-fn rest_is_silent_anywhere_and_below_friction() {
+fn velocity_is_zero_at_rest_at_any_count_and_below_friction() {
     let mut draws = Draws(5);
     for _ in 0..20 {
         let still =

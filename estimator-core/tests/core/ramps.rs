@@ -72,7 +72,7 @@ fn velocity_returns_to_zero_at_rest() {
 }
 
 #[test]
-fn slow_motion_is_not_hidden() {
+fn slow_motion_has_the_correct_mean_velocity() {
     for case in EVERY.iter() {
         for direction in [1.0, -1.0] {
             let slow = direction / 50.0;

@@ -2,12 +2,12 @@
 //!
 //! | defect | where else it is held off |
 //! |---|---|
-//! | first sample differenced against a buffer of zeros, or against memory before the buffer | `invariants::start_at_rest_anywhere_is_silent`, `first_step_is_seen_from_the_first_sample` |
+//! | first sample differenced against a buffer of zeros, or against memory before the buffer | `invariants::velocity_is_zero_after_a_start_at_rest_at_any_count`, `first_step_is_relative_to_the_first_sample` |
 //! | reset that forgets the ring's index | `invariants::restart_is_a_fresh_start` |
 //! | velocity that never returns to zero at rest | `invariants::velocity_returns_to_zero_at_rest` |
-//! | dead zone that hides slow motion | `invariants::slow_motion_is_not_hidden` |
-//! | low-pass that sees the wrap | `invariants::wrap_at_any_moment_leaves_no_trace` |
-//! | f32 position that loses counts after a few million | `endurance::nothing_is_lost_beyond_a_billion_counts`, `long_ramps_do_not_drift` |
+//! | dead zone that hides slow motion | `invariants::slow_motion_has_the_correct_mean_velocity` |
+//! | low-pass that sees the wrap | `invariants::wrap_at_any_tick_does_not_change_the_velocity` |
+//! | f32 position that loses counts after a few million | `endurance::velocity_is_exact_beyond_a_billion_counts`, `long_ramps_do_not_drift` |
 //! | window rule decided by rounding at the band's edge | `foaw_definition` |
 //! | innovation covariance taken from the posterior | `kalman_reference` |
 //! | covariance that loses symmetry | `endurance::covariance_stays_symmetric_and_positive` |
@@ -143,7 +143,7 @@ fn velocity_returns_to_zero_at_rest() {
 }
 
 #[test]
-fn no_dead_zone_hides_slow_motion() {
+fn slow_motion_is_not_suppressed_by_a_dead_zone() {
     // One count in 50 ticks is no standstill.
     let counts: Vec<u32> = (0..2001).map(|tick| tick / 50).collect();
     let sum = |velocities: Vec<f32>| velocities.iter().copied().map(f64::from).sum::<f64>();
@@ -157,7 +157,7 @@ fn no_dead_zone_hides_slow_motion() {
 }
 
 #[test]
-fn low_pass_does_not_see_the_wrap() {
+fn low_pass_is_not_disturbed_by_the_wrap() {
     // 3 counts a tick through 2^32: a filter of the position would swing by 2^32 counts.
     let counts: Vec<u32> = (0..60u32).map(|tick| (3 * tick).wrapping_sub(90)).collect();
     let velocities = run(&low_pass(), &counts);
@@ -209,7 +209,7 @@ fn position_keeps_every_count_beyond_a_few_million() {
 }
 
 #[test]
-fn window_at_the_edge_of_the_band_is_not_decided_by_rounding() {
+fn window_at_the_limit_of_the_band_is_not_decided_by_rounding() {
     // Samples next to a line through both ends, with one between them moved: d counts off the
     // line it is inside, one count more and it is not. With slopes that are no whole number, and
     // with large ones, a product or a quotient in f32 decides many of these wrongly.

@@ -118,7 +118,7 @@ fn settles<const S: usize, U: Input<S>>(model: &Model<S, U>, what: &str) {
 /// Noise of which f64 cannot hold the variance is none: of 1e-162 A that of the position is below
 /// 5e-324, and that of the velocity still is not.
 #[test]
-fn noise_whose_square_is_nothing_is_refused() {
+fn noise_whose_square_underflows_is_refused() {
     for noise in [1e-162, 1e-170] {
         let motor = Model::motor(&MotorModel::DCX35L, Hertz(1000.0), noise);
         assert_eq!(motor.err(), Some(DesignError::CURRENT_NOISE), "{noise} A");

@@ -22,7 +22,7 @@ fn counts_are_modulo_two_to_the_32() {
 
 /// A 16-bit counter that moves by less than 2^15 between two readings is followed.
 #[test]
-fn sixteen_bits_are_extended_by_the_shorter_way() {
+fn sixteen_bit_counts_are_extended_by_the_smaller_difference() {
     for count in [0u32, 0x1_FFFF, 0x2_0002, 0x7FFF_FFFF, u32::MAX, 12_345_678] {
         for moved in [-32_768i32, -32_767, -1, 0, 1, 3, 255, 32_767] {
             let now = count.wrapping_add_signed(moved);

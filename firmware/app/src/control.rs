@@ -176,7 +176,7 @@ mod tests {
     use haptic_control::{NewtonMetres, RadPerS};
 
     #[test]
-    fn an_action_with_one_number_that_is_not_finite_is_found() {
+    fn action_with_one_non_finite_number_is_detected() {
         assert!(is_finite(&Action::default()));
         let zero = Action::default;
         for number in [f32::NAN, f32::INFINITY] {

@@ -24,7 +24,7 @@ fn open_loop(polynomials: &[[f64; 3]; 4], angle: f64, delay: f64) -> (f64, f64) 
 
 /// The definition on the grid of the design, for loops of any shape, stable or not.
 #[test]
-fn margins_are_their_definition_on_the_grid() {
+fn margins_agree_with_their_definition_on_a_grid() {
     let mut seed = 1_u32;
     let mut draw = |low: f64, high: f64| {
         seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

@@ -106,7 +106,7 @@ mod tests {
 
     /// A passive element: it takes power at every velocity, and never more than its damping does.
     #[test]
-    fn power_is_taken_and_the_slope_is_at_most_the_damping() {
+    fn friction_dissipates_power_with_a_slope_of_at_most_the_damping() {
         let scene = Friction::new(4e-3, 3e-3).unwrap();
         for k in -4000..4000_i16 {
             let [omega, next] = [k, k + 1].map(|k| f32::from(k) * 1e-3);
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn zero_torque_or_zero_damping_is_no_torque() {
+    fn zero_friction_or_zero_damping_gives_zero_torque() {
         for (most, damping) in [(0.0, 3e-3), (4e-3, 0.0)] {
             let scene = Friction::new(most, damping).unwrap();
             for omega in [-1e6, -1.0, 0.0, 1.0, 1e6] {

@@ -50,7 +50,7 @@ where
 }
 
 #[test]
-fn every_scene_restarts_and_copies() {
+fn restarted_and_copied_states_are_equal_in_every_scene() {
     use a_restart_is_a_start_and_copies_are_equal_until_they_move_apart as check;
     macro_rules! check_all {
         ($($number:literal, $name:literal, $scene:ident, $facts:tt;)+) => {
@@ -62,7 +62,7 @@ fn every_scene_restarts_and_copies() {
 
 /// Which of two states' parts is looked at: a part that differs alone makes them differ.
 #[test]
-fn states_differ_where_one_part_differs() {
+fn states_with_one_different_part_are_different() {
     let start = |controller: &Of<Viscous>, at: u32| controller.start(&sample(at));
     let viscous = Controller::new(Viscous::new(2e-3).unwrap(), LARGE, HANDLE, &RIG);
     let (origin, other) = (Sample::default(), Sample::default().with_coupled(Count(1)));
@@ -96,7 +96,7 @@ type Both = Handover<FiniteDifference, Large>;
 const BOTH: Both = preset!(Handover::new(FiniteDifference, LARGE, 10, 10));
 
 #[test]
-fn the_large_estimator_is_there_where_the_scene_needs_it() {
+fn large_estimator_runs_if_the_scene_needs_it() {
     let here = Sample::default();
     let viscous = Controller::new(Viscous::new(2e-3).unwrap(), BOTH, HANDLE, &RIG);
     let mut state = viscous.start(&here);
@@ -130,7 +130,7 @@ fn retuned_parameters_act_at_the_next_tick_and_the_state_goes_on() {
 
 /// In free air the small motor takes half of the slip's torque off, and feeds its friction forward.
 #[test]
-fn the_slip_is_the_large_motors_velocity_less_the_handles() {
+fn slip_is_the_large_motors_velocity_minus_the_handles() {
     let free = Controller::new(FreeAir, FiniteDifference, FiniteDifference, &RIG);
     for (large, handle) in [(1, 3), (1, -3), (-2, 10), (0, 5), (2, 0)] {
         let at = |k: i32| {

@@ -30,7 +30,7 @@ fn default_device_has_the_motor_of_the_core() {
 }
 
 #[test]
-fn the_plant_is_the_motor_behind_its_amplifier() {
+fn plant_model_is_motor_with_amplifier_lag() {
     // Independent of the closed form: the differential equations in tiny steps over one tick.
     let device = DualStage::DEFAULT;
     for rate in RATES {
@@ -66,7 +66,7 @@ fn the_plant_is_the_motor_behind_its_amplifier() {
 }
 
 #[test]
-fn the_closed_loop_has_the_poles_it_was_given() {
+fn closed_loop_has_the_requested_poles() {
     for rate in RATES {
         let d = design(rate);
         let closed: Vec<_> = product(&d.a, &d.s)
@@ -85,7 +85,7 @@ fn the_closed_loop_has_the_poles_it_was_given() {
 }
 
 #[test]
-fn rates_and_bandwidths_are_refused_beyond_their_range_and_taken_at_its_ends() {
+fn rates_and_bandwidths_are_accepted_at_the_limits_and_refused_beyond() {
     let with = |rate, poles| RstDesign::new(&DualStage::DEFAULT, Hertz(rate), poles).err();
     // Low enough for every rate; a loop that slow may miss its margins.
     let poles = LoopPoles {
@@ -122,7 +122,7 @@ fn rates_and_bandwidths_are_refused_beyond_their_range_and_taken_at_its_ends() {
 }
 
 #[test]
-fn a_loop_is_refused_below_its_least_modulus_margin() {
+fn loop_below_the_least_modulus_margin_is_refused() {
     // Regulation up to where the margin ends: refused above it, within 1 % of it below.
     let modulus = |hz| {
         let poles = LoopPoles {
@@ -152,7 +152,7 @@ fn a_loop_is_refused_below_its_least_modulus_margin() {
 }
 
 #[test]
-fn what_cannot_work_is_refused() {
+fn impossible_designs_are_refused() {
     let late = LoopPoles {
         estimator_delay_s: 0.05,
         ..LoopPoles::DEFAULT
@@ -166,7 +166,7 @@ fn what_cannot_work_is_refused() {
 }
 
 #[test]
-fn errors_say_what_is_wrong() {
+fn messages_name_parameter_and_requirement() {
     for (error, words) in [
         (DesignError::Rate, "100 Hz to 100 kHz"),
         (DesignError::Device, "device constants"),

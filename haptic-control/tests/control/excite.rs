@@ -61,7 +61,7 @@ fn currents_are_bounded_balanced_and_held_over_whole_milliseconds() {
 }
 
 #[test]
-fn it_ends_by_itself_at_zero_and_stays_there() {
+fn excitation_ends_at_zero_current_and_stays_there() {
     let currents = run(1e3, 60_000, |_| 0);
     let last = currents.iter().rposition(|c| !is_off(c)).unwrap();
     assert!((15_000..17_000).contains(&last), "{last} ms");
@@ -69,7 +69,7 @@ fn it_ends_by_itself_at_zero_and_stays_there() {
 
 /// Two sections, strokes and levels, each four times with alternating sign.
 #[test]
-fn the_pattern_is_two_sections_of_four_passes() {
+fn pattern_has_two_sections_of_four_passes() {
     let currents = run(1e3, 20_000, |_| 0);
     let at = |ms: usize| [currents[ms].large, currents[ms].small].map(Amps::get);
     let mut begin = 0;
@@ -129,7 +129,7 @@ fn strokes_come_in_mirrored_groups() {
 }
 
 #[test]
-fn a_pass_of_levels_is_400_ms_negative_and_2490_ms_positive() {
+fn pass_of_levels_has_400_ms_negative_and_2490_ms_positive_current() {
     let currents = run(1e3, 20_000, |_| 0);
     let pass = &currents[4 * STROKES_MS..4 * STROKES_MS + LEVELS_MS];
     let [negative, positive] = [-1.0, 1.0].map(|sign| {
@@ -147,7 +147,7 @@ fn ended(currents: &[Currents]) -> usize {
 
 /// 20 000 counts a turn: 2 rad are 6366.2 counts, 25 rad/s are 79.6 counts a millisecond.
 #[test]
-fn a_handle_that_goes_too_far_either_way_ends_it_within_a_millisecond() {
+fn handle_beyond_the_angle_limit_ends_the_excitation_within_a_millisecond() {
     for sign in [1, -1] {
         // Half a count a millisecond reaches 6367 at 12 734 ms. A current of zero comes before.
         let end = ended(&run(1e3, 17_000, |k| sign * (k / 2) as i32));
@@ -164,7 +164,7 @@ fn a_handle_that_goes_too_far_either_way_ends_it_within_a_millisecond() {
 }
 
 #[test]
-fn a_handle_that_is_too_fast_either_way_ends_it_within_a_millisecond() {
+fn handle_above_the_speed_limit_ends_the_excitation_within_a_millisecond() {
     for sign in [1, -1] {
         let spin = |speed: i32| move |k: u32| sign * speed * k.saturating_sub(2000) as i32;
         let end = ended(&run(1e3, 17_000, spin(80)));
@@ -180,7 +180,7 @@ fn a_handle_that_is_too_fast_either_way_ends_it_within_a_millisecond() {
 }
 
 #[test]
-fn angles_count_from_where_it_began() {
+fn angle_limit_is_relative_to_the_start() {
     let rig = Rig::new(&DEVICE, Hertz(1e3), LoopPoles::DEFAULT).unwrap();
     let excite = Excite::new(&DEVICE, Hertz(1e3)).unwrap();
     let controller = Controller::new(excite, FiniteDifference, FiniteDifference, &rig);
@@ -193,7 +193,7 @@ fn angles_count_from_where_it_began() {
 }
 
 #[test]
-fn the_switchboard_commands_the_same() {
+fn excitation_is_the_same_alone_and_in_the_switchboard() {
     const RATE: Hertz = Hertz(10e3);
     const RIG: Rig = preset!(Rig::new(&DEVICE, RATE, LoopPoles::DEFAULT));
     const EXCITE: Excite = preset!(Excite::new(&DEVICE, RATE));
@@ -215,7 +215,7 @@ fn the_switchboard_commands_the_same() {
 }
 
 #[test]
-fn devices_and_rates_beyond_its_limits_are_refused_and_those_at_them_are_not() {
+fn devices_and_rates_are_accepted_at_the_limits_and_refused_beyond() {
     let taken = |device: &DualStage, rate_hz| Excite::new(device, Hertz(rate_hz)).is_ok();
     for (rate_hz, is_taken) in [
         (999.9, false),
@@ -245,7 +245,7 @@ fn devices_and_rates_beyond_its_limits_are_refused_and_those_at_them_are_not() {
 }
 
 #[test]
-fn at_rates_between_whole_kilohertz_the_pattern_takes_as_long() {
+fn duration_does_not_depend_on_the_rate() {
     // 11.6 ticks a millisecond, and a rate that is rounded to whole hertz.
     for (rate_hz, hertz) in [(11.6e3, 11_600), (11_999.6, 12_000)] {
         let ticks = 4 * (STROKES_MS + LEVELS_MS) * hertz / 1000 + 100;
@@ -260,7 +260,7 @@ fn at_rates_between_whole_kilohertz_the_pattern_takes_as_long() {
 }
 
 #[test]
-fn selected_on_a_handle_that_was_turned_the_bounds_count_from_there() {
+fn limits_are_relative_to_the_angle_at_selection() {
     const RATE: Hertz = Hertz(1e3);
     const RIG: Rig = preset!(Rig::new(&DEVICE, RATE, LoopPoles::DEFAULT));
     const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(20_000, RATE, 4e3));

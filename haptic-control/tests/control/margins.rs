@@ -32,7 +32,7 @@ fn open_loop(d: &RstDesign, delay: f64, angle: f64) -> (f64, f64) {
 }
 
 #[test]
-fn margins_are_those_of_the_frequency_response() {
+fn margins_agree_with_the_frequency_response() {
     let mut heavy = DualStage::DEFAULT;
     heavy.large.inertia *= 4.0;
     heavy.damping *= 0.5;

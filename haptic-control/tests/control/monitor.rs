@@ -31,7 +31,7 @@ fn sample(large: u32, small: u32, amps: f32) -> Sample {
 }
 
 #[test]
-fn ordinary_motion_over_the_wrap_is_left_alone() {
+fn ordinary_motion_over_the_wrap_causes_no_stop() {
     let start = u32::MAX - 20_000;
     // Both at their limits, in both directions, with current.
     let there = |k: u32| sample(start.wrapping_add(10 * k), start.wrapping_add(8 * k), 3.0);
@@ -41,7 +41,7 @@ fn ordinary_motion_over_the_wrap_is_left_alone() {
 }
 
 #[test]
-fn each_cause_is_found_within_its_time() {
+fn each_cause_is_detected_within_its_time() {
     let runaway = first(1000, |k| {
         sample(0, if k < 200 { 0 } else { 9 * (k - 200) }, 0.0)
     });
@@ -65,7 +65,7 @@ fn each_cause_is_found_within_its_time() {
 }
 
 #[test]
-fn motion_or_a_rest_from_current_clears_the_stall() {
+fn motion_or_zero_current_clears_the_stall() {
     assert_eq!(first(20_000, |k| sample(k / 600, 0, 2.0)), None);
     assert_eq!(
         first(20_000, |k| sample(
@@ -92,7 +92,7 @@ fn the_first_cause_is_latched() {
 }
 
 #[test]
-fn limits_hold_for_every_input() {
+fn outputs_are_within_the_limits_for_every_input() {
     let limits = CurrentLimits {
         largest: 1.5,
         slew: 0.06,
@@ -122,7 +122,7 @@ fn limits_hold_for_every_input() {
 }
 
 #[test]
-fn a_dithering_phase_is_a_stall() {
+fn alternating_counts_are_a_stall() {
     let stall = first(5000, |k| sample(7 + k % 3, 0, 2.0));
     assert!(
         matches!(stall, Some((2000..=2010, Stop::Stall))),
@@ -131,7 +131,7 @@ fn a_dithering_phase_is_a_stall() {
 }
 
 #[test]
-fn speeding_up_against_the_current_is_found_and_slowing_down_is_not() {
+fn acceleration_against_the_current_is_detected_and_deceleration_is_not() {
     // 1 A on the default device: 4000 rad/s², 0.026 counts a tick each tick.
     let moved = |k: u32| (0.013 * f64::from(k) * f64::from(k)) as u32;
     let away = first(1000, |k| sample(0_u32.wrapping_sub(moved(k)), 0, 1.0));
@@ -151,7 +151,7 @@ fn speeding_up_against_the_current_is_found_and_slowing_down_is_not() {
 }
 
 #[test]
-fn a_push_that_the_handle_holds_against_may_stand_still() {
+fn current_balanced_by_the_handle_is_no_stall() {
     // 550 mA, of which the handle's motion takes 70 off: 1 mA for a count in a slot.
     let held = |k: u32| sample(9, 0_u32.wrapping_sub(7 * k), 0.55);
     assert_eq!(first(20_000, held), None);
@@ -166,7 +166,7 @@ fn a_push_that_the_handle_holds_against_may_stand_still() {
 }
 
 #[test]
-fn a_push_that_changes_its_way_is_no_proof() {
+fn reversing_current_is_no_runaway() {
     // It has just been driven the other way, and slows down late.
     let moved = |k: u32| (0.013 * f64::from(k) * f64::from(k)) as u32;
     let turned = |k: u32| sample(moved(k), 0, if k % 60 < 30 { 1.0 } else { -1.0 });
@@ -174,7 +174,7 @@ fn a_push_that_changes_its_way_is_no_proof() {
 }
 
 #[test]
-fn speed_is_seen_wherever_it_begins() {
+fn overspeed_is_detected_at_every_phase_of_the_window() {
     for begin in 200..260 {
         let runaway = first(1000, |k| sample(0, 9 * k.saturating_sub(begin), 0.0));
         let (tick, cause) = runaway.expect("a stop");

@@ -32,7 +32,7 @@ fn first(ticks: i32, motion: impl Fn(i32) -> Sample) -> Option<(i32, Stop)> {
 }
 
 #[test]
-fn a_jump_is_more_than_its_limit_in_a_tick_by_either_encoder_either_way() {
+fn jump_is_detected_beyond_its_limit_on_both_encoders_in_both_directions() {
     for sign in [1, -1] {
         for (counts, stops) in [(1000, false), (1001, true)] {
             // In the middle of a slot; back by as much, so that no window is too long.
@@ -45,7 +45,7 @@ fn a_jump_is_more_than_its_limit_in_a_tick_by_either_encoder_either_way() {
 }
 
 #[test]
-fn a_speed_is_more_than_its_limit_over_five_slots_either_way() {
+fn overspeed_is_detected_beyond_its_limit_over_five_slots_in_both_directions() {
     for sign in [1, -1] {
         // All of it in one tick, within the limit of a jump, or evenly.
         for (counts, stops) in [(400, false), (401, true)] {
@@ -72,7 +72,7 @@ fn a_speed_is_more_than_its_limit_over_five_slots_either_way() {
 }
 
 #[test]
-fn a_rest_under_a_push_is_more_than_its_limits_of_current_and_time() {
+fn stall_is_detected_beyond_its_limits_of_current_and_time() {
     for sign in [1, -1] {
         let push = |milliamps: i32| sign as f32 * milliamps as f32;
         for (milliamps, stops) in [(500, false), (502, true)] {
@@ -129,7 +129,7 @@ fn two_windows(before: i32, after: i32) -> impl Fn(i32) -> i32 {
 }
 
 #[test]
-fn against_is_a_motion_against_the_push_that_is_ever_faster() {
+fn runaway_is_an_accelerating_motion_against_the_current() {
     for sign in [1, -1] {
         let run = |milliamps: f32, before: i32, after: i32| {
             let path = two_windows(before, after);
@@ -154,7 +154,7 @@ fn against_is_a_motion_against_the_push_that_is_ever_faster() {
 }
 
 #[test]
-fn against_takes_a_push_of_eleven_slots() {
+fn runaway_needs_eleven_slots_of_current() {
     for (slots, stops) in [(10, false), (11, true)] {
         // The push ends with the tick that ends slot 25; before it is none.
         let begin = 250 - 10 * slots;
@@ -168,7 +168,7 @@ fn against_takes_a_push_of_eleven_slots() {
 }
 
 #[test]
-fn the_push_is_the_weaker_of_the_current_and_both_together() {
+fn drive_is_the_smaller_of_the_current_and_the_sum() {
     // 256 of 256 mA for a count of the handle in a slot; 30 counts a slot.
     for sign in [1, -1] {
         let rest = |milliamps: f32, per_tick: i32| {
@@ -202,7 +202,7 @@ fn the_push_is_the_weaker_of_the_current_and_both_together() {
 }
 
 #[test]
-fn limits_of_a_device_are_those_of_the_formulas() {
+fn limits_of_a_device_agree_with_the_formulas() {
     let fine = DualStage::DEFAULT;
     let mut heavy = fine;
     heavy.large.coulomb_friction = 9e-3;

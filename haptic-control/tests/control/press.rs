@@ -171,7 +171,7 @@ fn a_press_of_10_n_stops_no_scene() {
 }
 
 #[test]
-fn a_press_on_a_device_that_is_not_as_believed_stops_no_scene() {
+fn press_on_a_device_with_other_constants_stops_no_scene() {
     // Torque constant, damping and inertia of the large motor and its coupler, as factors.
     for [constant, damping, inertia] in [[1.2, 1.0, 1.0], [1.2, 0.7, 0.85], [0.8, 1.3, 1.15]] {
         let mut device = DEVICE;
@@ -188,7 +188,7 @@ fn a_press_on_a_device_that_is_not_as_believed_stops_no_scene() {
 }
 
 #[test]
-fn a_spring_pushes_back_with_all_that_both_motors_bring_within_the_speed_limit() {
+fn spring_renders_the_largest_torque_within_the_speed_limit() {
     // 85 % of the speed at which the monitor stops the large motor, and all of the small motor's
     // current.
     let coupler = 0.85 * 150.0 * DEVICE.damping;

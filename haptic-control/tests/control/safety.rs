@@ -120,7 +120,7 @@ fn every_cause_disables_in_its_tick_and_stays_until_rearmed() {
 }
 
 #[test]
-fn of_two_causes_the_first_in_the_list_is_reported() {
+fn first_cause_of_the_list_is_reported() {
     let wrongs = wrongs();
     for (i, (first, stop)) in wrongs.iter().enumerate() {
         for (second, _) in &wrongs[i..] {
@@ -132,7 +132,7 @@ fn of_two_causes_the_first_in_the_list_is_reported() {
 }
 
 #[test]
-fn a_cause_comes_before_a_request_of_the_same_tick() {
+fn cause_has_priority_over_a_request_of_the_same_tick() {
     for (findings, stop) in wrongs() {
         for request in [Request::Select(1), Request::Disarm, Request::Arm] {
             for before in [settling(), armed(), running()] {
@@ -145,7 +145,7 @@ fn a_cause_comes_before_a_request_of_the_same_tick() {
 }
 
 #[test]
-fn arming_is_refused_by_what_is_wrong_now_and_not_by_what_is_over() {
+fn present_cause_refuses_arming_and_a_past_one_does_not() {
     let refused = Order {
         enable: false,
         restart: true,
@@ -170,7 +170,7 @@ fn arming_is_refused_by_what_is_wrong_now_and_not_by_what_is_over() {
 }
 
 #[test]
-fn ticks_missed_before_arming_neither_refuse_it_nor_stop_the_device() {
+fn ticks_missed_before_arming_are_ignored() {
     for before in [0, 500, u32::MAX] {
         let mut state = SAFETY.start(Stop::None);
         let missed = |missed| Findings { missed, ..WELL };
@@ -214,7 +214,7 @@ fn debug_settings_refuse_arming_and_do_not_stop_an_armed_device() {
 }
 
 #[test]
-fn a_reset_with_a_cause_boots_safe() {
+fn reset_with_a_cause_boots_in_state_safe() {
     for stop in (1..=16).map(|code| Stop::from_code(code).unwrap()) {
         let mut state = SAFETY.start(stop);
         assert!(!tick(&mut state, WELL, None).enable);
@@ -226,7 +226,7 @@ fn a_reset_with_a_cause_boots_safe() {
 }
 
 #[test]
-fn a_scene_chosen_in_boot_comes_on_with_arm_once() {
+fn scene_selected_during_boot_starts_at_the_first_arm() {
     let mut state = SAFETY.start(Stop::None);
     assert!(!tick(&mut state, WELL, Some(Request::Select(3))).enable);
     // There are eight scenes.
@@ -244,7 +244,7 @@ fn a_scene_chosen_in_boot_comes_on_with_arm_once() {
 }
 
 #[test]
-fn disarm_forgets_the_scene_and_the_cause_and_restarts() {
+fn disarm_clears_scene_and_cause_and_restarts() {
     let mut chosen = SAFETY.start(Stop::None);
     tick(&mut chosen, WELL, Some(Request::Select(3)));
     for before in [
@@ -271,7 +271,7 @@ fn disarm_forgets_the_scene_and_the_cause_and_restarts() {
 }
 
 #[test]
-fn selecting_puts_a_scene_on_off_or_changes_it() {
+fn selection_starts_stops_or_changes_a_scene() {
     let mut state = armed();
     for (scene, mode) in [
         (7, Mode::Running),

@@ -40,7 +40,7 @@ fn running() -> SafetyState {
 /// A scene selected before arming, in the first and in the last tick of settling starts at the end
 /// of it, from rest; 0 is no scene.
 #[test]
-fn a_scene_starts_at_rest_at_the_end_of_settling() {
+fn scene_starts_at_rest_after_settling() {
     for at in [None, Some(1), Some(20)] {
         for scene in [0, 5] {
             let mut state = SAFETY.start(Stop::None);
@@ -78,7 +78,7 @@ fn a_scene_starts_at_rest_at_the_end_of_settling() {
 }
 
 #[test]
-fn settling_takes_no_unknown_scene_and_arm_does_not_prolong_it() {
+fn settling_refuses_an_unknown_scene_and_is_not_prolonged_by_arm() {
     let mut state = SAFETY.start(Stop::None);
     ask(&mut state, Request::Arm);
     for k in 1..20 {
@@ -95,7 +95,7 @@ fn settling_takes_no_unknown_scene_and_arm_does_not_prolong_it() {
 }
 
 #[test]
-fn settling_is_whole_after_every_arm() {
+fn settling_has_its_full_duration_after_every_arm() {
     let mut state = running();
     ask(&mut state, Request::Disarm);
     ask(&mut state, Request::Arm);
@@ -108,7 +108,7 @@ fn settling_is_whole_after_every_arm() {
 }
 
 #[test]
-fn silence_puts_the_scene_off_and_a_scene_puts_it_on_again() {
+fn command_timeout_stops_the_scene_and_a_selection_starts_it_again() {
     let mut state = running();
     for _ in 0..100 {
         assert_eq!(silent(&mut state).select, None);
@@ -126,7 +126,7 @@ fn silence_puts_the_scene_off_and_a_scene_puts_it_on_again() {
 }
 
 #[test]
-fn a_long_silence_disarms() {
+fn long_command_timeout_disarms() {
     let disarmed = Order {
         enable: false,
         restart: true,
@@ -155,7 +155,7 @@ fn a_long_silence_disarms() {
 }
 
 #[test]
-fn every_request_is_a_sign_of_life() {
+fn every_request_counts_as_keep_alive() {
     // What is not taken, too.
     for request in [Request::KeepAlive, Request::Arm, Request::Select(8)] {
         for (before, longest) in [(running(), 100), (armed(), 300)] {
@@ -173,7 +173,7 @@ fn every_request_is_a_sign_of_life() {
 }
 
 #[test]
-fn without_a_limit_silence_changes_nothing() {
+fn no_command_timeout_without_a_limit() {
     let patient = Safety {
         silence: None,
         disarm: None,
@@ -199,7 +199,7 @@ fn without_a_limit_silence_changes_nothing() {
 }
 
 #[test]
-fn as_many_missed_ticks_at_once_as_the_limit_stop_and_one_fewer_does_not() {
+fn missed_ticks_at_the_limit_stop_and_one_fewer_does_not() {
     for (missed, mode) in [(3, Mode::Running), (4, Mode::Safe), (u32::MAX, Mode::Safe)] {
         let mut state = running();
         SAFETY.tick(&mut state, &Findings { missed, ..WELL }, None);
@@ -218,7 +218,7 @@ fn as_many_missed_ticks_at_once_as_the_limit_stop_and_one_fewer_does_not() {
 }
 
 #[test]
-fn one_missed_tick_in_16_is_forgiven_and_more_are_not() {
+fn one_missed_tick_in_16_is_tolerated_and_more_are_not() {
     // One in 16 weighs as much as the ticks that came; one in 15 adds 1 / 16 of a tick each time.
     for (every, stops) in [(16, false), (15, true), (8, true)] {
         let mut state = running();
@@ -236,7 +236,7 @@ fn one_missed_tick_in_16_is_forgiven_and_more_are_not() {
 }
 
 #[test]
-fn every_number_is_that_of_its_stop_or_mode() {
+fn codes_of_stops_and_modes_are_unique_and_reversible() {
     for code in 0..=16 {
         assert_eq!(Stop::from_code(code).map(|stop| stop as u8), Some(code));
     }

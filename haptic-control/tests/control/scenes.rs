@@ -37,7 +37,7 @@ fn torque_at(
 const ANGLE: f32 = 0.314_159_27;
 
 #[test]
-fn scenes_at_rest_want_what_their_formula_says() {
+fn torques_at_rest_agree_with_the_formulas() {
     let near =
         |torque: f32, wanted: f32| assert!((torque - wanted).abs() < 1e-6, "{torque} {wanted}");
     for sign in [1, -1] {
@@ -67,7 +67,7 @@ fn a_wall_never_pulls() {
 }
 
 #[test]
-fn detents_rest_at_every_nth_of_a_turn() {
+fn detents_are_evenly_spaced_over_a_turn() {
     // 24 a turn of 20000 counts: 833.3 counts from one rest to the next.
     for turn in [-3.0, 0.0, 2.0, 40.0] {
         let at = |part: f64| {
@@ -113,7 +113,7 @@ fn of<S: Scene<State = ()>>(scene: &S, handle: &Seen<S>) -> f32 {
 }
 
 #[test]
-fn torques_are_those_of_the_formulas() {
+fn torques_agree_with_the_formulas() {
     let (angle, velocity) = (Radians(0.3), RadPerS(-4.0));
     let moving = Handle {
         angle,
@@ -149,7 +149,7 @@ fn torques_are_those_of_the_formulas() {
 }
 
 #[test]
-fn a_wall_begins_at_its_position_and_neither_pulls_nor_damps_before() {
+fn wall_has_no_torque_before_its_position() {
     let at = |angle, velocity| {
         let handle = Handle {
             angle: Radians(angle),
@@ -167,7 +167,7 @@ fn a_wall_begins_at_its_position_and_neither_pulls_nor_damps_before() {
 }
 
 #[test]
-fn a_texture_is_its_sine_from_the_first_tick() {
+fn texture_is_a_sine_from_the_first_tick() {
     for (frequency, rate) in [(50.0, 1e3), (150.0, 10e3), (300.0, 100e3)] {
         let texture = Texture::new(6e-3, Hertz(frequency), Hertz(rate)).unwrap();
         let mut phase = texture.start(Radians(0.3));
@@ -189,7 +189,7 @@ fn a_texture_is_its_sine_from_the_first_tick() {
 }
 
 #[test]
-fn parameters_are_refused_beyond_their_range_and_taken_at_its_ends() {
+fn parameters_are_accepted_at_the_limits_and_refused_beyond() {
     let scene = DesignError::Scene;
     let gains = [f32::NAN, f32::INFINITY, -1e-9, f32::NEG_INFINITY];
     for bad in gains {

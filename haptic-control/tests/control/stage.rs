@@ -22,7 +22,7 @@ fn near(value: f32, wanted: f64, tolerance: f64) {
 
 /// What the continuous stage asks of its loop, and what it adds to that, with the loop beside it.
 #[test]
-fn a_wanted_torque_is_a_wanted_velocity_with_friction_and_pull_fed_forward() {
+fn wanted_velocity_and_feed_forward_follow_from_the_wanted_torque() {
     let mut device = DEVICE;
     // No limit in the way.
     device.large.current_limit = 1e3;
@@ -50,7 +50,7 @@ fn a_wanted_torque_is_a_wanted_velocity_with_friction_and_pull_fed_forward() {
 }
 
 #[test]
-fn the_wanted_velocity_ends_at_85_percent_of_the_monitors_limit() {
+fn wanted_velocity_saturates_at_85_percent_of_the_monitors_limit() {
     let stage = ContinuousStage::new(&DEVICE, &design(), WIDE);
     let limit = 0.85 * 150.0;
     for sign in [1.0, -1.0] {
@@ -79,7 +79,7 @@ fn the_wanted_velocity_ends_at_85_percent_of_the_monitors_limit() {
 }
 
 #[test]
-fn the_torque_of_the_coupler_is_half_measured_and_half_asked_for() {
+fn coupler_torque_is_the_mean_of_measured_and_commanded() {
     let stage = ContinuousStage::new(&DEVICE, &design(), WIDE);
     let mut state = stage.start(RadPerS(0.0));
     let gain = 1.0 - (-std::f64::consts::TAU * 60.0 / RATE.0).exp();
@@ -99,7 +99,7 @@ fn the_torque_of_the_coupler_is_half_measured_and_half_asked_for() {
 }
 
 #[test]
-fn the_small_motor_makes_the_torque_and_four_fifths_of_its_friction() {
+fn small_current_has_the_torque_and_four_fifths_of_the_friction() {
     let mut device = DEVICE;
     device.small.current_limit = 1e3;
     let stage = TransientStage::new(&device, WIDE);
@@ -155,7 +155,7 @@ fn currents_are_limited_in_size_and_slew() {
 }
 
 #[test]
-fn limits_let_pass_what_is_within_and_stop_exactly_there() {
+fn values_within_the_limits_are_unchanged_and_others_are_limited() {
     let limits = CurrentLimits {
         largest: 2.0,
         slew: 0.5,
@@ -219,7 +219,7 @@ const CONSTANTS: [fn(&mut DualStage, f64); 10] = [
 ];
 
 #[test]
-fn a_device_has_finite_constants_above_zero_and_friction_of_at_least_zero() {
+fn device_constants_must_be_finite_and_positive_and_friction_not_negative() {
     assert_eq!(DEVICE.checked(), Ok(DEVICE));
     let refused = Err(DesignError::Device);
     for (i, set) in CONSTANTS.iter().enumerate() {
@@ -244,7 +244,7 @@ fn a_device_has_finite_constants_above_zero_and_friction_of_at_least_zero() {
 }
 
 #[test]
-fn the_observer_is_told_of_the_same_device() {
+fn observer_uses_the_same_device() {
     let motor = DEVICE.coupled_motor();
     assert_eq!(motor.motor.counts_per_rev, DEVICE.large.counts_per_rev);
     assert_eq!(motor.motor.inertia, DEVICE.large.inertia);

@@ -110,7 +110,7 @@ fn swapping_scenes_does_not_make_the_currents_jump() {
 }
 
 #[test]
-fn after_a_swap_the_scene_is_as_if_it_had_been_on_all_along() {
+fn scene_after_a_change_equals_one_that_was_always_active() {
     let board = board();
     for from in SCENES {
         let mut swapped = board.start(&motion(0));
@@ -163,7 +163,7 @@ fn first_after_off(scene: AnyScene, before: Option<AnyScene>) -> Action {
 }
 
 #[test]
-fn an_estimator_that_was_not_needed_starts_at_rest() {
+fn estimator_that_was_not_needed_starts_at_rest() {
     // The same whatever ran before, and no velocity from the counts of a second.
     for scene in [
         usual(SceneKind::FreeAir),
@@ -191,7 +191,7 @@ fn an_estimator_that_was_not_needed_starts_at_rest() {
 }
 
 #[test]
-fn an_estimator_that_both_scenes_need_goes_on() {
+fn estimator_that_both_scenes_need_continues() {
     let board = board();
     let (mut swapped, mut kept) = (board.start(&far(0)), board.start(&far(0)));
     for state in [&mut swapped, &mut kept] {
@@ -215,7 +215,7 @@ fn an_estimator_that_both_scenes_need_goes_on() {
 }
 
 #[test]
-fn a_restart_is_a_start_and_estimates_tell_whether_they_run() {
+fn restart_equals_a_start_and_unneeded_estimates_are_absent() {
     let board = board();
     for scene in SCENES {
         let mut restarted = board.start(&far(0));
@@ -250,7 +250,7 @@ fn run(board: &Board, state: &mut State, sample: &Sample, ticks: u32) -> Action 
 }
 
 #[test]
-fn a_hold_holds_where_it_was_selected() {
+fn hold_position_is_that_of_the_selection() {
     let board = board();
     const HOLD: Hold = preset!(Hold::new(0.2, 0.0));
     const ANGLE: f32 = 0.314_159_27;
@@ -299,7 +299,7 @@ fn swaps_of_saturated_scenes_stay_within_the_limits() {
 }
 
 #[test]
-fn what_a_swap_would_jump_by_fades_with_20_ms() {
+fn jump_of_a_change_decays_with_20_ms() {
     // Off is no current at all: what is left is the difference.
     let board = board();
     let mut state = board.start(&at(0));
@@ -319,7 +319,7 @@ fn what_a_swap_would_jump_by_fades_with_20_ms() {
 }
 
 #[test]
-fn settings_of_another_scene_are_not_taken() {
+fn parameters_of_another_scene_are_refused() {
     let board = board();
     let stiff = AnyScene::Viscous(Viscous::new(5e-3).unwrap());
     let mut state = board.start(&at(0));

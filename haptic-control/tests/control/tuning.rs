@@ -27,7 +27,7 @@ fn scenes_keep_their_numbers_and_names() {
 }
 
 #[test]
-fn every_scene_is_at_its_number_and_has_a_name_of_its_own() {
+fn scenes_have_consecutive_numbers_and_unique_names() {
     for (number, kind) in SceneKind::ALL.into_iter().enumerate() {
         assert_eq!(usize::from(kind.number()), number, "{kind}");
         assert_eq!(kind.facts().number, kind.number(), "{kind}");
@@ -40,7 +40,7 @@ fn every_scene_is_at_its_number_and_has_a_name_of_its_own() {
 
 /// As the types of the scenes say; the handle's estimator runs for the slip of the coupler, too.
 #[test]
-fn needs_are_those_of_the_types() {
+fn needs_agree_with_the_types() {
     let needs = |kind: SceneKind| {
         let needs = kind.facts().needs;
         [
@@ -69,7 +69,7 @@ fn ranges(scene: &AnyScene) -> impl Iterator<Item = (u8, [f32; 2])> {
 }
 
 #[test]
-fn every_parameter_has_a_value_that_leaves_its_scene_as_it_is() {
+fn setting_a_parameter_to_its_value_changes_nothing() {
     for scene in SCENES {
         let mut parameters = 0;
         for (number, [least, most]) in ranges(&scene) {
@@ -86,7 +86,7 @@ fn every_parameter_has_a_value_that_leaves_its_scene_as_it_is() {
 }
 
 #[test]
-fn every_parameter_is_set_alone_and_by_its_name() {
+fn every_parameter_is_set_by_its_name() {
     for scene in SCENES {
         let values = |scene: &AnyScene| -> Vec<f32> {
             (0..)
@@ -112,7 +112,7 @@ fn every_parameter_is_set_alone_and_by_its_name() {
 }
 
 #[test]
-fn every_parameter_ends_at_its_bounds() {
+fn every_parameter_is_refused_beyond_its_bounds() {
     for scene in SCENES {
         for (number, [least, most]) in ranges(&scene) {
             let beyond = 1e-6 * (most - least);
@@ -129,7 +129,7 @@ fn every_parameter_ends_at_its_bounds() {
 }
 
 #[test]
-fn a_parameter_set_is_that_parameter_and_no_other() {
+fn setting_a_parameter_changes_no_other() {
     let wall = |position, stiffness, damping| {
         AnyScene::Wall(Wall::new(Radians(position), stiffness, damping).unwrap())
     };
@@ -149,7 +149,7 @@ fn a_parameter_set_is_that_parameter_and_no_other() {
 }
 
 #[test]
-fn what_the_device_cannot_render_is_refused() {
+fn parameters_beyond_the_device_are_refused() {
     let gain = [-1e-9, 1e9];
     for (scene, parameter, just_above) in [
         (2, 0, 6.001),
@@ -185,7 +185,7 @@ fn what_the_device_cannot_render_is_refused() {
 }
 
 #[test]
-fn what_is_at_a_bound_is_taken() {
+fn parameters_at_a_bound_are_accepted() {
     for (scene, parameter, values) in [
         (2, 0, vec![6.0, -6.0]),
         (2, 1, vec![0.0, 0.5]),
@@ -245,7 +245,7 @@ fn parameters_keep_their_numbers_and_names() {
 }
 
 #[test]
-fn every_parameter_refuses_what_is_no_number_and_others_are_unknown() {
+fn nan_is_refused_and_unknown_parameters_are_reported() {
     let mut parameters = 0;
     for scene in SCENES {
         for parameter in 0..=u8::MAX {

@@ -59,7 +59,7 @@ impl Bench {
 }
 
 #[test]
-fn a_wanted_velocity_is_followed_as_the_tracking_filter_says() {
+fn velocity_follows_the_tracking_filter() {
     for rate in RATES {
         let mut bench = Bench::new(rate);
         let gain = 1.0 - bench.design.tracking_pole;
@@ -79,7 +79,7 @@ fn a_wanted_velocity_is_followed_as_the_tracking_filter_says() {
 }
 
 #[test]
-fn a_constant_disturbance_is_given_up_in_a_tenth_of_a_second() {
+fn constant_disturbance_is_rejected_within_a_tenth_of_a_second() {
     for rate in RATES {
         let mut bench = Bench::new(rate);
         let mut largest = 0.0_f64;
@@ -115,7 +115,7 @@ fn saturation_does_not_wind_the_integrator_up() {
 }
 
 #[test]
-fn a_step_under_a_slew_limit_goes_the_right_way_without_overshoot() {
+fn step_under_a_slew_limit_has_the_right_sign_and_no_overshoot() {
     for rate in RATES {
         let mut bench = Bench::new(rate);
         let (slew, mut before) = (1200.0 / rate, 0.0_f64);
@@ -137,7 +137,7 @@ fn a_step_under_a_slew_limit_goes_the_right_way_without_overshoot() {
 /// `S c = R e + (Q - S) d` and `u = A ω_f / B(1) + c` as they are written, in f64, with the
 /// poles of Q at the regulation bandwidth and d the current applied less the current asked for.
 #[test]
-fn the_law_under_a_limit_is_its_difference_equation() {
+fn limited_law_agrees_with_its_difference_equation() {
     for rate in RATES {
         let d = design(rate);
         let rst = Rst::new(&d);

@@ -24,7 +24,7 @@ fn turned(saturated: u32) -> Vec<f32> {
 
 /// The loop is told of the limit, so that the time spent at it leaves nothing behind.
 #[test]
-fn time_at_the_limit_is_not_remembered() {
+fn time_at_the_limit_does_not_wind_up() {
     let [short, long] = [300, 6000].map(turned);
     for (tick, (short, long)) in short.iter().zip(&long).enumerate() {
         assert!((short - long).abs() < 1e-3, "{tick}: {short} A, {long} A");

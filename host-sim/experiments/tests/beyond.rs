@@ -83,7 +83,7 @@ fn assert_within(what: &str, value: f64, [low, high]: [f64; 2]) {
 }
 
 #[test]
-fn right_beliefs_leave_a_tenth_and_wrong_ones_are_learned() {
+fn correct_constants_leave_a_tenth_of_the_error_and_wrong_ones_are_learned() {
     let names = ["observer", "observer-edge", "adaptive", "adaptive-edge"];
     let settings = settings(Device::default(), &names);
     let rows = sensitivity(&cases(&EIGHT, 1e3, &[21, 22]), &settings, || ()).unwrap();
@@ -193,7 +193,7 @@ fn creep_is_followed_at_a_fast_rate() {
 
 /// With the plant's own noise, against the particle filter with the true model.
 #[test]
-fn soft_ends_reach_the_limit() {
+fn quantised_observer_reaches_the_bound_of_the_particle_filter() {
     let mut settings = settings(Device::default(), &["observer", "observer-soft"]);
     for text in [
         "observer.torque_noise=3.16e-5",
@@ -220,7 +220,7 @@ fn soft_ends_reach_the_limit() {
 }
 
 #[test]
-fn a_real_disc_costs_little() {
+fn disc_errors_increase_the_error_little() {
     let disc = Disc {
         phase_counts: 0.06,
         line_counts: 0.25,
@@ -244,7 +244,7 @@ fn a_real_disc_costs_little() {
 }
 
 #[test]
-fn the_damping_of_a_coupler_that_warms_up_is_learned() {
+fn damping_of_a_warming_coupler_is_learned() {
     let settings = settings(Device::default(), &["adaptive", "adaptive-edge", "pll"]);
     let outcomes = compare(
         &cases(&[ScenarioName::Heating], 1e3, &[21]),

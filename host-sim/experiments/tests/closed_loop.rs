@@ -47,7 +47,7 @@ fn with_kalman(scene: AnyScene, device: &Device, hand: Hand, rate_hz: f64) -> Lo
 }
 
 #[test]
-fn parasitic_is_felt_less_wanted_at_the_fingertip() {
+fn parasitic_force_is_felt_minus_wanted_force() {
     let case = LoopCase {
         scene: SceneKind::Wall,
         rate_hz: 1000.0,
@@ -74,7 +74,7 @@ fn parasitic_is_felt_less_wanted_at_the_fingertip() {
 }
 
 #[test]
-fn off_has_no_current_and_only_scenes_with_a_loop_know_the_large_motor_s_velocity() {
+fn scene_off_has_no_current_and_only_scenes_with_a_loop_use_the_large_velocity() {
     let (device, rate_hz) = (Device::default(), 1000.0);
     for scene in SceneKind::environments() {
         let scene_parameters = usual(scene, &device.stages, rate_hz).unwrap();
@@ -180,7 +180,7 @@ fn inertia(part: f32, device: &Device) -> Inertia {
 }
 
 #[test]
-fn a_virtual_inertia_is_felt_and_a_negative_one_lightens_the_handle() {
+fn virtual_inertia_adds_to_that_of_the_handle() {
     let device = Device::default();
     let plain = felt_inertia(inertia(0.0, &device), &device)[0];
     assert!((plain - 1.0).abs() < 0.1, "{plain}");

@@ -60,7 +60,7 @@ const BOUNDS: [(&str, f64, [f64; 2]); 10] = [
 ];
 
 #[test]
-fn what_they_believe_holds_and_says_something() {
+fn standard_deviations_are_valid_and_informative() {
     for (name, least, [low, high]) in BOUNDS {
         let kind = Kind::named(name).unwrap();
         for rate_hz in [1e3, 10e3] {
@@ -114,7 +114,7 @@ fn standard_deviations_against_errors_are_those_of_the_table() {
 /// An observer is built to doubt its parameters: with one of them wrong by 30 % it errs by what it
 /// then said.
 #[test]
-fn the_observers_caution_is_for_wrong_parameters() {
+fn standard_deviation_of_observers_covers_wrong_parameters() {
     for (name, [low, high]) in [("observer", [1.0, 9.0]), ("observer-edge", [3.0, 20.0])] {
         let kind = Kind::named(name).unwrap();
         for error in [-0.3, 0.3] {
@@ -137,7 +137,7 @@ fn the_observers_caution_is_for_wrong_parameters() {
 
 /// A model that lacks what moves the motor does not know what it does not know.
 #[test]
-fn a_model_without_the_motion_believes_too_much() {
+fn model_without_the_motion_underestimates_its_error() {
     for (name, most) in [("kalman-triple", 0.6), ("foaw-end-fit", 0.95)] {
         let kind = Kind::named(name).unwrap();
         for scenario in [Texture, Stochastic] {

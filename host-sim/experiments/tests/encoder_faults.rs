@@ -87,7 +87,7 @@ fn springs(scene: SceneKind) -> bool {
 }
 
 #[test]
-fn a_stuck_encoder_is_stopped_before_it_hurts() {
+fn stuck_encoder_is_stopped_before_the_limits_are_exceeded() {
     for scene in with_large_motor() {
         for fault in [
             EncoderFault::StuckA,

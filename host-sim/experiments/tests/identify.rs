@@ -121,7 +121,7 @@ impl Tally {
 }
 
 #[test]
-fn a_held_handle_tells_the_large_motor_the_coupler_and_the_amplifier() {
+fn recording_with_a_held_handle_identifies_large_motor_coupler_and_amplifier() {
     let mut tally = Tally::default();
     for seed in 1..=16 {
         let device = device(seed);
@@ -145,7 +145,7 @@ fn a_held_handle_tells_the_large_motor_the_coupler_and_the_amplifier() {
 }
 
 #[test]
-fn frames_of_1_khz_tell_all_but_the_amplifier_whichever_tick_they_begin_at() {
+fn frames_of_1_khz_identify_all_except_the_amplifier_at_every_phase() {
     let mut tally = Tally::default();
     for seed in 1..=8 {
         let device = device(seed);
@@ -178,7 +178,7 @@ fn every_tenth(all: &Recording, first: usize) -> Recording {
 }
 
 #[test]
-fn a_free_handle_tells_itself_beside_a_recording_of_a_held_one() {
+fn recordings_with_held_and_free_handle_identify_the_handle() {
     let mut tally = Tally::default();
     for seed in 1..=12 {
         let device = device(seed);
@@ -199,7 +199,7 @@ fn a_free_handle_tells_itself_beside_a_recording_of_a_held_one() {
 }
 
 #[test]
-fn whatever_is_known_the_ratios_are_the_same() {
+fn ratios_do_not_depend_on_the_known_constant() {
     let device = device(3);
     let recording = record(&device, Hand::Clamp, 3, 10);
     let with = |known| {

@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tolerance_is_the_floor_at_rest_and_grows_with_either_direction() {
+    fn tolerance_is_constant_plus_a_fraction_of_the_speed() {
         let interval = Interval::new(0.05, 0.010, 0.070, 0.96e-3);
         assert!((interval.tolerance(0.0) - 0.364_583_3).abs() < 1e-6);
         assert!((interval.tolerance(10.0) - 0.864_583_3).abs() < 1e-6);
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn percent_is_of_the_reference_and_none_without_one() {
+    fn percentages_are_relative_to_the_reference_and_none_without_it() {
         let score = Score {
             rms_rad_s: Some(0.5),
             distance_rad_s: Some(0.1),
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn seeds_become_their_mean_or_their_largest() {
+    fn scores_of_seeds_are_merged_to_mean_or_maximum() {
         let row = |value: f64| {
             let mut row = Score::default();
             for field in Score::FIELDS {

@@ -393,7 +393,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_read_back_and_an_unknown_one_lists_them() {
+    fn names_are_parsed_and_an_unknown_one_lists_them() {
         for name in ScenarioName::ALL {
             assert_eq!(name.to_string().parse(), Ok(name));
         }
@@ -405,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn no_two_scenarios_or_seeds_share_their_draws() {
+    fn draws_differ_between_scenarios_and_seeds() {
         let mut seeds: Vec<u64> = ScenarioName::ALL
             .iter()
             .flat_map(|name| (0..100).map(|seed| name.mix(seed)))
@@ -416,7 +416,7 @@ mod tests {
     }
 
     #[test]
-    fn draws_fill_their_range() {
+    fn draws_are_uniform_over_their_range() {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
         let draws: Vec<f64> = (0..10_000).map(|_| draw(&mut random, -2.0, 6.0)).collect();
         assert!(draws.iter().all(|x| (-2.0..6.0).contains(x)));

@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn similar_name_is_offered_and_a_foreign_one_is_not() {
+    fn similar_name_is_suggested_and_a_different_one_is_not() {
         let known = ["wall", "free-air", "excite"];
         let said = unknown("scene", "exite", known);
         assert!(said.starts_with("no scene 'exite'; did you mean excite? there are wall,"));

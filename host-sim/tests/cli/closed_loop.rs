@@ -41,7 +41,7 @@ const TWO: [&str; 8] = [
 ];
 
 #[test]
-fn json_is_the_contract_and_the_reference_closes_another_loop() {
+fn json_has_the_contracts_fields_and_the_reference_loop_differs() {
     let mut arguments = TWO.to_vec();
     arguments.extend(["--scene", "free-air"]);
     let rows = rows(&arguments);
@@ -96,7 +96,7 @@ fn json_is_the_contract_and_the_reference_closes_another_loop() {
 }
 
 #[test]
-fn the_same_command_gives_the_same_bytes_and_seed_handle_and_friction_count() {
+fn output_is_reproducible_and_depends_on_seed_handle_and_friction() {
     let mut arguments = vec!["compare", "--closed-loop", "--json", "-"];
     arguments.extend(TWO);
     arguments.extend(["--scenario", "wall"]);
@@ -115,7 +115,7 @@ fn the_same_command_gives_the_same_bytes_and_seed_handle_and_friction_count() {
 }
 
 #[test]
-fn every_scene_runs_and_those_of_the_small_motor_alone_are_the_same_for_all() {
+fn every_scene_runs_and_scenes_without_the_large_motor_do_not_depend_on_the_estimator() {
     let rows = rows(&TWO);
     for scene in SceneKind::environments() {
         let of_scene = rows.iter().filter(|row| row["scenario"] == scene.name());
@@ -129,7 +129,7 @@ fn every_scene_runs_and_those_of_the_small_motor_alone_are_the_same_for_all() {
 }
 
 #[test]
-fn better_velocity_is_less_force_at_a_high_rate() {
+fn better_velocity_gives_less_parasitic_force_at_a_high_rate() {
     let mut arguments = TWO[..4].to_vec();
     arguments.extend(["--rate", "11600", "--seconds", "2"]);
     arguments.extend(["--scene", "free-air", "--scene", "wall"]);
@@ -153,7 +153,7 @@ fn better_velocity_is_less_force_at_a_high_rate() {
 }
 
 #[test]
-fn bad_words_are_refused_with_one_line() {
+fn invalid_arguments_are_refused_with_one_line() {
     let folder = Folder::new("loop-words");
     for (arguments, said) in [
         (
@@ -223,7 +223,7 @@ fn assert_sound(page: &str) {
 }
 
 #[test]
-fn the_report_has_the_figures_and_no_broken_number() {
+fn report_has_all_figures_and_only_finite_numbers() {
     let folder = Folder::new("loop-report");
     let mut arguments = TWO.to_vec();
     arguments.push("--closed-loop");
@@ -256,7 +256,7 @@ fn the_report_has_the_figures_and_no_broken_number() {
 }
 
 #[test]
-fn a_whole_comparison_closes_the_loop_beside_and_a_named_scenario_does_not() {
+fn full_comparison_includes_the_closed_loop_and_one_of_a_scenario_does_not() {
     let folder = Folder::new("loop-beside");
     let page = page_of(&folder, &TWO);
     assert!(page.contains("figure 8)") && page.contains(FIGURES[1]));

@@ -14,7 +14,7 @@ const REPORTED: [&str; 3] = [
 ];
 
 #[test]
-fn json_on_standard_output_is_the_contract() {
+fn json_on_standard_output_has_the_contracts_fields() {
     let folder = Folder::new("json");
     let rows = json(&folder.good(&SHORT));
     let names: Vec<_> = rows
@@ -60,7 +60,7 @@ fn json_on_standard_output_is_the_contract() {
 }
 
 #[test]
-fn the_same_command_gives_the_same_bytes_and_another_seed_others() {
+fn output_is_reproducible_and_depends_on_the_seed() {
     let folder = Folder::new("same");
     let report = |out| {
         let mut arguments = SHORT[..7].to_vec();
@@ -82,7 +82,7 @@ fn the_same_command_gives_the_same_bytes_and_another_seed_others() {
 }
 
 #[test]
-fn the_plant_without_friction_is_another_plant() {
+fn frictionless_plant_gives_other_scores() {
     let folder = Folder::new("frictionless");
     let mut arguments = SHORT.to_vec();
     arguments.push("--frictionless");
@@ -95,7 +95,7 @@ fn the_plant_without_friction_is_another_plant() {
 }
 
 #[test]
-fn what_is_not_wanted_is_not_computed() {
+fn scores_that_are_not_requested_are_null() {
     let folder = Folder::new("wanted");
     let mut arguments = SHORT.to_vec();
     arguments.extend(["--estimator", "pll", "--score", "rms_rad_s"]);
@@ -105,7 +105,7 @@ fn what_is_not_wanted_is_not_computed() {
 }
 
 #[test]
-fn a_set_parameter_counts() {
+fn set_parameter_changes_the_scores() {
     let folder = Folder::new("set");
     let rms = |set| {
         let mut arguments = SHORT.to_vec();

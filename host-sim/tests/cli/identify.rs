@@ -11,7 +11,7 @@ fn words(arguments: &str) -> Vec<&str> {
 }
 
 #[test]
-fn the_command_writes_a_device_file_with_only_what_it_knows_replaced() {
+fn identify_replaces_only_the_identified_values_of_the_device_file() {
     let folder = Folder::new("identify");
     let good = |arguments: &str| folder.good(&words(arguments));
     let truth = "[large]\ninertia_kg_m2 = 1.3e-5\n[coupler]\ndamping_nms_per_rad = 0.8e-3\n";

@@ -47,7 +47,7 @@ fn good_sh(folder: &Folder, script: &str) -> String {
 }
 
 #[test]
-fn link_stays_and_its_target_is_replaced() {
+fn symbolic_link_is_kept_and_its_target_is_replaced() {
     let folder = folder("links");
     let path = |name: &str| folder.0.join(name);
     fs::create_dir(path("deep")).unwrap();

@@ -16,7 +16,7 @@ fn notes(folder: &Folder, arguments: &str) -> String {
 }
 
 #[test]
-fn absolute_encoder_is_continued_over_its_wrap_with_a_note() {
+fn absolute_encoder_is_unwrapped_with_a_note() {
     let folder = Folder::new("absolute");
     let mut text = String::from("t,counts_large,true_omega\n");
     let per_count = std::f64::consts::TAU / 4096.0;

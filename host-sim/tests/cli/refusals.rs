@@ -3,7 +3,7 @@
 use crate::Folder;
 
 #[test]
-fn bad_words_are_refused_with_what_to_do() {
+fn invalid_arguments_are_refused_with_a_remedy() {
     let folder = Folder::new("words");
     folder.write("device.toml", "[large]\ninertia = 1\n");
     folder.write("negative.toml", "[large]\ninertia_kg_m2 = -1\n");

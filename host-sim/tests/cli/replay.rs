@@ -9,7 +9,7 @@ use crate::{Folder, json};
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
 
 #[test]
-fn a_recording_of_a_real_motor_replays() {
+fn recording_of_a_real_motor_is_replayed() {
     let folder = Folder::new("replay");
     let recording = format!("{DATA}/back-and-forth.csv");
     let device = format!("{DATA}/hall-90.toml");
@@ -68,7 +68,7 @@ fn a_recording_of_a_real_motor_replays() {
 }
 
 #[test]
-fn bad_recordings_are_refused_by_file_line_and_column() {
+fn invalid_recordings_are_refused_by_file_line_and_column() {
     let folder = Folder::new("bad");
     for (name, text, said) in [
         ("empty.csv", &b""[..], "empty.csv: line 1: no column t"),
@@ -130,7 +130,7 @@ fn bad_recordings_are_refused_by_file_line_and_column() {
 }
 
 #[test]
-fn a_hundred_megabytes_are_read_to_the_line_that_is_wrong() {
+fn error_at_the_end_of_a_hundred_megabytes_is_reported_with_its_line() {
     let folder = Folder::new("large");
     let mut text = b"t,counts_large\n".to_vec();
     let mut row = 0_u32;
@@ -156,7 +156,7 @@ fn a_hundred_megabytes_are_read_to_the_line_that_is_wrong() {
 }
 
 #[test]
-fn notes_that_nobody_reads_stop_nothing() {
+fn closed_standard_error_does_not_end_the_command() {
     let folder = Folder::new("notes");
     folder.write("r.csv", "t,counts_large\n0,1\n0.001,2\n");
     let mut replay = Command::new(env!("CARGO_BIN_EXE_host-sim"));

@@ -31,7 +31,7 @@ fn cells<'a>(text: &'a str, estimator: &str) -> Vec<&'a str> {
 }
 
 #[test]
-fn every_score_can_be_asked_for_and_shows_a_number() {
+fn every_score_can_be_requested_and_has_a_number() {
     let folder = Folder::new("scores");
     for field in Score::FIELDS {
         for scenarios in [&["step"][..], &["step", "track", "stochastic"]] {

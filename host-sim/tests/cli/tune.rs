@@ -5,7 +5,7 @@ use std::fs;
 use crate::{Folder, SHORT, json};
 
 #[test]
-fn tuned_parameters_are_written_and_taken() {
+fn tuned_parameters_are_written_and_used() {
     let folder = Folder::new("tune");
     let tune = [
         "tune",

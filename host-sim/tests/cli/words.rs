@@ -3,7 +3,7 @@
 use crate::Folder;
 
 #[test]
-fn nearly_right_names_are_answered_with_the_right_one() {
+fn misspelled_names_are_answered_with_a_suggestion() {
     let folder = Folder::new("nearly");
     for (arguments, said) in [
         (
@@ -67,7 +67,7 @@ fn lists_fit_80_columns_and_name_tuned_values() {
 }
 
 #[test]
-fn extreme_numbers_are_short() {
+fn extreme_numbers_are_printed_with_few_digits() {
     let folder = Folder::new("extreme");
     folder.write("tiny.toml", "large.inertia_kg_m2 = 1e-300\n");
     folder.write("grams.toml", "large.inertia_kg_m2 = 115\n");

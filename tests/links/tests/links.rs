@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use links::{Link, Page, Repository, anchor};
 
 #[test]
-fn every_link_of_the_repository_leads_somewhere() {
+fn every_link_of_the_repository_has_a_target() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let faults = Repository::read(&root).unwrap().faults();
     assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
@@ -91,7 +91,7 @@ fn page_missing_in_the_contents_is_reported() {
 }
 
 #[test]
-fn page_that_only_the_contents_lead_to_is_reported() {
+fn page_linked_only_from_the_contents_is_reported() {
     let tree = Tree::new("orphan");
     tree.write("docs/a.md", "# A\n\n## Two words\n");
     let orphan = "docs/sub/b.md: no link leads here from README.md";

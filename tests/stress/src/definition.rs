@@ -88,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_corner_ends_the_window() {
+    fn change_of_velocity_ends_the_window() {
         let definition = Definition {
             n: 8,
             d: 1,

@@ -143,7 +143,7 @@ mod tests {
     use crate::contestants::at;
 
     #[test]
-    fn parts_make_the_whole() {
+    fn parts_have_all_ticks_of_the_course() {
         let plan = |ticks| Plan { seed: 7, ticks };
         assert_eq!(plan(5).parts().collect::<Vec<_>>(), [(7, 5)]);
         let parts: Vec<_> = plan(2 * PART + 1).parts().collect();
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_is_not_run_again_and_nothing_else_is_taken_for_it() {
+    fn saved_parts_are_skipped_and_others_are_run() {
         let directory = std::env::temp_dir().join(format!("stress-{}", std::process::id()));
         fs::create_dir_all(&directory).unwrap();
         let path = directory.join("kept.jsonl");

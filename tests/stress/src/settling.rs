@@ -100,14 +100,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_pole_falls_by_its_radius() {
+    fn one_pole_decays_by_its_radius() {
         // After 31 ticks 1 of 2^31 is left, after 32 a half.
         assert_eq!(poles(0.5, 1, 0.9), 32);
         assert!(poles(0.5, 2, 0.9) > 32);
     }
 
     #[test]
-    fn the_radius_is_that_of_the_slowest_pole() {
+    fn radius_is_that_of_the_slowest_pole() {
         // The tracking loop of docs/theory/pll.md: both poles at p.
         let p = 0.7f64;
         let k = [(1.0 - p * p) as f32, ((1.0 - p) * (1.0 - p)) as f32];

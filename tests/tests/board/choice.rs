@@ -43,7 +43,7 @@ fn runs() -> &'static [Outcome; 2] {
 }
 
 #[test]
-fn telemetry_tells_who_is_in_charge() {
+fn telemetry_has_the_number_of_the_active_estimator() {
     for run in runs() {
         let told: Vec<_> = run.telemetry.frames.iter().collect();
         let mut told: Vec<_> = told.iter().map(|frame| frame.estimator.unwrap()).collect();
@@ -81,7 +81,7 @@ fn telemetry_tells_who_is_in_charge() {
 /// What the image says is what the host computes, to the bit; and at every tick of a change the
 /// velocity moves by no more than the two estimators do and the fade allows.
 #[test]
-fn a_change_is_no_step_in_the_velocity() {
+fn change_of_estimator_causes_no_step_of_the_velocity() {
     for run in runs() {
         let host = mirrored(run);
         same_bits(run, &host);
@@ -138,7 +138,7 @@ fn jump_mn(run: &Outcome, range: std::ops::Range<usize>) -> f64 {
 /// A fingertip feels 10 mN. A pushing hand shakes on the wall by more than that each millisecond, so
 /// what counts is what a change adds to what was there before.
 #[test]
-fn a_change_is_not_felt() {
+fn change_of_estimator_causes_no_noticeable_force() {
     for run in runs() {
         for at in CHANGES_S {
             let first = (at * 1e4) as usize;
@@ -160,7 +160,7 @@ fn a_change_is_not_felt() {
 /// What each says of itself holds: nearly all velocities are within two of its standard deviations,
 /// and these are not so large that they say nothing.
 #[test]
-fn the_confidence_in_telemetry_holds() {
+fn standard_deviation_in_telemetry_is_valid() {
     let [air, _] = runs();
     let frames = |number: u8| {
         let inside = move |frame: &&Frame| frame.tick > 10_000 && frame.estimator == Some(number);
@@ -190,7 +190,7 @@ fn the_confidence_in_telemetry_holds() {
 }
 
 #[test]
-fn an_estimator_that_is_not_there_is_refused() {
+fn unknown_estimator_is_refused() {
     let mut setup = of_scene(SceneKind::FreeAir, Hand::Moving, 1.0);
     setup.commands.push((0.5, Command::Estimator(2)));
     let refused = |run: &Outcome| {
@@ -211,7 +211,7 @@ fn an_estimator_that_is_not_there_is_refused() {
 
 /// A choice lasts: over a change of scene that needs no estimator, and over disarm.
 #[test]
-fn a_choice_lasts() {
+fn selected_estimator_persists() {
     let air = Command::Scene(SceneKind::FreeAir);
     let run = run(&Setup {
         commands: vec![

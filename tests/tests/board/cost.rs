@@ -82,7 +82,7 @@ fn figures(range: Range) -> [u64; 2] {
 }
 
 #[test]
-fn a_scene_alone_costs_the_instructions_that_the_table_says() {
+fn instructions_of_a_single_scene_agree_with_the_table() {
     let all = between(tour(), FIRST_S, f64::INFINITY);
     let row = |name: &str, range: Range| {
         let [mean, most] = figures(range).map(|figure| figure.to_string());
@@ -97,7 +97,7 @@ fn a_scene_alone_costs_the_instructions_that_the_table_says() {
 }
 
 #[test]
-fn every_scene_and_estimator_costs_what_the_table_says() {
+fn costs_of_scenes_and_estimators_agree_with_the_table() {
     let [foaw, kalman] = of_both();
     let rows: Vec<Vec<String>> = foaw
         .iter()
@@ -120,7 +120,7 @@ fn every_scene_and_estimator_costs_what_the_table_says() {
 /// a table or a phase and no estimator; the others for the whole loop, a wall or a spring being
 /// little of it.
 #[test]
-fn scenes_pay_only_for_what_they_need() {
+fn estimator_costs_nothing_in_scenes_without_the_large_velocity() {
     let [foaw, kalman] = of_both();
     for ((scene, foaw), (_, kalman)) in foaw.iter().zip(kalman) {
         if scene.facts().needs.continuous {
@@ -165,7 +165,7 @@ fn scenes_pay_only_for_what_they_need() {
 /// Every tick wakes the processor, so nothing delays one: zero instructions off the grid. At work
 /// it would be late by whatever cannot be interrupted, and the test would have to say by how much.
 #[test]
-fn the_control_task_begins_on_the_grid() {
+fn control_task_starts_on_the_tick() {
     let ticks = &free_air().ticks;
     let first_ns = ticks[0].at_ns;
     for (k, tick) in ticks.iter().enumerate() {

@@ -70,7 +70,7 @@ fn lost(run: &Outcome, hz: f64) -> i32 {
 /// Edges at every phase to the reading, moved on by 4 ns a frame at one a microsecond: each stamp is
 /// that of its boundary.
 #[test]
-fn every_stamp_is_its_edges_instant() {
+fn every_stamp_is_the_time_of_its_edge() {
     for (hz, seconds) in [
         (1_000_003.7, 0.35),
         (-1_000_003.7, 0.35),
@@ -117,7 +117,7 @@ fn every_stamp_is_its_edges_instant() {
 
 /// Where no edge comes, the last one grows old, and before the first there is none.
 #[test]
-fn an_edge_grows_old() {
+fn age_of_an_edge_increases_without_edges() {
     let (_, stamps) = generated(4.0, 0.9);
     assert!(stamps.iter().all(|stamp| stamp.tick_s > 0.25));
     let oldest = stamps.iter().map(|stamp| stamp.age_s).fold(0.0, f64::max);

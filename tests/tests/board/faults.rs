@@ -102,7 +102,7 @@ impl Bound {
 }
 
 #[test]
-fn every_fault_ends_as_it_has_to() {
+fn every_fault_has_its_documented_outcome() {
     for fault in Fault::all() {
         let rows = MATRIX.iter().filter(|bound| bound.fault == fault);
         assert!(rows.count() > 0, "{} has no bound", fault.as_str());
@@ -167,7 +167,7 @@ fn changes_nothing(run: &Outcome) {
 }
 
 #[test]
-fn telemetry_that_nobody_drains_changes_nothing_in_control() {
+fn full_telemetry_buffer_does_not_change_control() {
     let run = run(&Setup {
         seconds: 1.0,
         faults: vec![(FAULT_S, Fault::NobodyDrains)],
@@ -179,7 +179,7 @@ fn telemetry_that_nobody_drains_changes_nothing_in_control() {
 }
 
 #[test]
-fn a_flood_of_garbage_changes_nothing_in_control() {
+fn garbage_on_the_command_channel_does_not_change_control() {
     let run = run(&Setup {
         seconds: 1.0,
         faults: vec![(FAULT_S, Fault::CommandFlood)],

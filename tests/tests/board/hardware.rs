@@ -136,7 +136,7 @@ fn a_panic_disables_the_amplifiers_and_is_reported_after_the_reset() {
 /// A core so slow that the control task interrupts the log: a fault of the control task drops the
 /// frame that is being written, not its own.
 #[test]
-fn a_fault_in_the_midst_of_a_frame_is_logged() {
+fn fault_during_a_frame_is_logged() {
     let slow = |faults| {
         run(&Setup {
             seconds: 0.3,
@@ -194,7 +194,7 @@ fn cycles_are_those_of_the_longest_task_since_the_last_frame() {
 }
 
 #[test]
-fn a_crystal_that_starts_within_half_a_second_is_waited_for() {
+fn image_waits_half_a_second_for_the_crystal() {
     let run = run(&Setup {
         seconds: 1.0,
         crystal_from_s: 0.45,
@@ -210,7 +210,7 @@ fn a_crystal_that_starts_within_half_a_second_is_waited_for() {
 /// Without its crystal the board is safe and cannot be armed. Once the crystal has run for 0.1 s, the
 /// board restarts, is safe still, and can be armed.
 #[test]
-fn a_crystal_that_starts_later_restarts_the_board() {
+fn crystal_that_starts_later_restarts_the_board() {
     let until = |seconds| {
         run(&Setup {
             seconds,
@@ -248,7 +248,7 @@ const RESET: (u32, u32) = (0xE000_ED0C, 0x05FA_0004);
 
 /// From the factory the detector is off.
 #[test]
-fn the_boot_line_says_whether_the_chip_is_reset_below_2_7_volts() {
+fn boot_line_has_the_brown_out_level() {
     let stores = [
         (OPTION_KEYS, 0x0819_2A3B),
         (OPTION_KEYS, 0x4C5D_6E7F),

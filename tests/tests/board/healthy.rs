@@ -45,7 +45,7 @@ fn the_image_boots_and_closes_the_loop_at_10_khz() {
 }
 
 #[test]
-fn nothing_flows_before_the_amplifiers_are_enabled() {
+fn currents_are_zero_before_the_amplifiers_are_enabled() {
     let run = free_air();
     let first = run.enables.iter().find(|(_, on)| on.contains(&true));
     let (armed_ns, _) = *first.expect("it is armed");
@@ -101,7 +101,7 @@ fn a_press_of_10_n_switches_no_scene_off() {
 /// Twelve codes is what the datasheet allows the DAC; a little more. The small motor makes its part
 /// of it felt, and nothing stops.
 #[test]
-fn an_offset_of_the_dac_is_felt_and_stops_nothing() {
+fn dac_offset_causes_a_force_and_no_stop() {
     let mean = |dac_offset: i16| {
         let run = run(&Setup {
             dac_offset,

@@ -13,7 +13,7 @@ use crate::image::{of_scene, run};
 /// A device that is not the one that the image believes in, excited by the image's own scene while
 /// a hand holds it: its constants come out of the frames.
 #[test]
-fn the_image_excites_a_device_and_its_recording_tells_what_it_is() {
+fn device_is_identified_from_the_images_excitation() {
     let mut device = Device::default();
     device.stages.large.inertia *= 1.2;
     device.stages.large.coulomb_friction *= 1.3;

@@ -19,7 +19,7 @@ fn last_learned(run: &Outcome) -> Option<LearnedLine> {
 /// A coupler that has warmed up: a quarter of its damping is gone, and the image says so. A wall lets
 /// the coupler slip; in free air it hardly does, and nothing can be learned of it.
 #[test]
-fn a_coupler_with_less_damping_is_told_in_telemetry() {
+fn smaller_damping_is_learned_and_logged() {
     let setup = |part: f64| {
         let mut device = Device::default();
         device.stages.damping *= part;

@@ -160,7 +160,7 @@ fn same_action(frame: &Frame, action: &Action) {
 }
 
 #[test]
-fn free_air_is_what_the_host_computes_bit_for_bit() {
+fn scene_free_air_agrees_with_the_host_bit_for_bit() {
     let run = free_air();
     let moving = same_bits(run, &mirrored(run));
     assert!(moving > 8000, "{moving} frames of a moving device");
@@ -168,7 +168,7 @@ fn free_air_is_what_the_host_computes_bit_for_bit() {
 
 /// A minute of chirps and reversals, over wraps of both counters.
 #[test]
-fn track_is_what_the_host_computes_bit_for_bit_for_a_minute_and_over_wraps() {
+fn tracking_agrees_with_the_host_bit_for_bit_for_a_minute_and_over_wraps() {
     let run = soak();
     assert!(run.ticks.len() > 601_000, "{} ticks", run.ticks.len());
     assert_eq!((run.unclosed, run.restarts.len()), (0, 0));
@@ -192,7 +192,7 @@ fn track_is_what_the_host_computes_bit_for_bit_for_a_minute_and_over_wraps() {
 }
 
 #[test]
-fn every_change_of_scene_is_what_the_host_computes_bit_for_bit() {
+fn changes_of_scene_agree_with_the_host_bit_for_bit() {
     let run = tour();
     let host = mirrored(run);
     same_bits(run, &host);
@@ -209,7 +209,7 @@ fn every_change_of_scene_is_what_the_host_computes_bit_for_bit() {
 }
 
 #[test]
-fn every_dac_code_is_the_hosts_current() {
+fn every_dac_code_agrees_with_the_hosts_current() {
     let run = free_air();
     let moved = codes_are_the_hosts(run, &mirrored(run));
     assert!(moved > 90_000, "{moved}");
@@ -275,14 +275,14 @@ fn same_frames(run: &Outcome, host: &[Action]) {
 }
 
 #[test]
-fn the_kalman_image_is_what_the_host_computes_bit_for_bit() {
+fn kalman_image_agrees_with_the_host_bit_for_bit() {
     for run in [kalman_free_air(), kalman_track()] {
         same_frames(run, &mirrored_with(large::FILTER, run));
     }
 }
 
 #[test]
-fn the_adaptive_image_is_what_the_host_computes_bit_for_bit() {
+fn adaptive_image_agrees_with_the_host_bit_for_bit() {
     let run = adaptive_free_air();
     same_frames(run, &mirrored_with(large::ADAPTIVE, run));
 }
@@ -305,7 +305,7 @@ fn velocity_error(run: &Outcome) -> f64 {
 /// In the loop the error of the observer is a tenth of FOAW's in free air. Against a wall, where the
 /// motor turns faster, it is a half, and a quarter of that with stamped edges.
 #[test]
-fn the_observers_see_more_on_the_board_too() {
+fn observers_on_the_board_have_smaller_errors() {
     let [foaw, counts] = [free_air(), adaptive_free_air()].map(velocity_error);
     println!("free air: FOAW {foaw}, adaptive {counts} rad/s");
     assert!(counts < 0.1 * foaw, "{counts} {foaw}");

@@ -29,7 +29,7 @@ fn parse(text: &str) -> Recording {
 }
 
 #[test]
-fn the_bytes_of_the_probe_make_the_recording_that_the_run_makes() {
+fn recording_from_rtt_bytes_equals_that_of_the_run() {
     let run = free_air();
     let direct = parse(&run.csv().unwrap());
     let text = recorded(&run.rtt, None);
@@ -67,7 +67,7 @@ fn the_bytes_of_the_probe_make_the_recording_that_the_run_makes() {
 /// What `host-sim record --image` writes of an image that stamps edges, and what `replay` makes of
 /// it: the observer with stamps is by far the better of the two.
 #[test]
-fn stamps_of_the_board_are_recorded_and_replayed() {
+fn edge_stamps_of_the_board_are_recorded_and_replayed() {
     const IMAGE: &str = "edge-capture";
     let run = run_image(IMAGE, &of_scene(SceneKind::FreeAir, Hand::Moving, 3.0));
     let telemetry = Telemetry::decode(image(IMAGE).elf(), &run.rtt).unwrap();
@@ -90,7 +90,7 @@ fn stamps_of_the_board_are_recorded_and_replayed() {
 }
 
 #[test]
-fn a_stream_from_the_middle_on_and_with_a_hole_loses_only_what_is_missing() {
+fn incomplete_stream_loses_only_the_missing_frames() {
     let run = free_air();
     let whole = parse(&run.csv().unwrap());
     let (from, hole, end) = (run.rtt.len() / 3, run.rtt.len() / 2, run.rtt.len());
@@ -122,7 +122,7 @@ fn refusals(run: &Outcome) -> Option<&str> {
 }
 
 #[test]
-fn a_torque_set_point_is_felt_bounded_and_gone_when_nobody_speaks() {
+fn torque_set_point_is_rendered_bounded_and_ends_after_the_command_timeout() {
     let torque = |at, torque| (at, Command::Torque(torque));
     let run = run(&Setup {
         seconds: 2.2,
@@ -161,7 +161,7 @@ fn a_torque_set_point_is_felt_bounded_and_gone_when_nobody_speaks() {
 }
 
 #[test]
-fn a_wall_is_tuned_while_it_pushes_and_the_torque_does_not_jump() {
+fn tuning_a_wall_in_contact_causes_no_jump_of_the_torque() {
     let tune = |at, parameter, value| {
         let command = Command::Tune {
             scene: 2,
@@ -213,7 +213,7 @@ fn missing(run: &Outcome) -> [u32; 2] {
 /// The queue holds 31 frames, and 40 ms make 40. A watchdog at its nominal frequency would end that
 /// with a reset, so its oscillator is the slowest that silicon may have.
 #[test]
-fn frames_that_find_no_place_in_the_queue_are_numbered_and_counted() {
+fn frames_dropped_by_the_queue_are_numbered_and_counted() {
     let run = run(&Setup {
         faults: vec![(0.0, Fault::SlowWatchdog), (0.5, Fault::StarvedIdle)],
         ..of_scene(SceneKind::FreeAir, Hand::Moving, 1.0)
@@ -226,7 +226,7 @@ fn frames_that_find_no_place_in_the_queue_are_numbered_and_counted() {
 
 /// RTT holds 4096 bytes, and 300 ms make 300 frames of 40 bytes and more.
 #[test]
-fn frames_that_find_no_place_in_rtt_are_counted() {
+fn frames_dropped_by_rtt_are_counted() {
     let run = run(&Setup {
         faults: vec![(0.5, Fault::DrainPause)],
         ..of_scene(SceneKind::FreeAir, Hand::Moving, 1.0)

@@ -5,7 +5,7 @@ use recordings::recording::Recording;
 use crate::image::free_air;
 
 #[test]
-fn frames_of_the_image_are_a_recording_that_replay_reads() {
+fn frames_of_the_image_are_converted_and_replayed() {
     let run = free_air();
     let recording = Recording::parse(run.csv().unwrap().as_bytes(), "board").unwrap();
     let trace = &recording.trace;

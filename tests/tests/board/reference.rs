@@ -9,7 +9,7 @@ use simulation::device::Device;
 use crate::image::{free_air, of_scene, run_image};
 
 #[test]
-fn the_reference_encoder_is_logged_and_right() {
+fn reference_encoder_is_logged_with_the_true_counts() {
     let setup = of_scene(SceneKind::FreeAir, Hand::Moving, 2.0);
     let run = run_image("reference", &setup);
     assert_eq!(run.complaints, [""; 0], "pins");
@@ -35,7 +35,7 @@ fn the_reference_encoder_is_logged_and_right() {
 }
 
 #[test]
-fn an_image_without_it_says_nothing_of_it() {
+fn image_without_the_reference_encoder_does_not_log_it() {
     assert!(
         free_air()
             .telemetry

@@ -115,7 +115,7 @@ fn tactile(signal: &[f64]) -> f64 {
 
 /// What the telemetry of a run says of the velocity, against the plant.
 #[test]
-fn the_scores_of_a_run_are_those_of_their_definitions() {
+fn scores_of_a_run_agree_with_their_definitions() {
     for run in [free_air(), wall()] {
         let rows = rows(run);
         let Scores { open, closed } = scores(&rows);
@@ -198,13 +198,13 @@ fn agree(board: &Scores, host: &Scores, open: f64, closed: f64) {
 }
 
 #[test]
-fn free_air_scores_as_in_the_host_simulation() {
+fn scores_of_free_air_agree_with_the_host_simulation() {
     let host = on_host(1, Hand::Moving, 10.0);
     agree(&scores(&rows(free_air())), &host, 0.03, 0.02);
 }
 
 #[test]
-fn the_wall_scores_as_in_the_host_simulation() {
+fn scores_of_the_wall_agree_with_the_host_simulation() {
     let host = on_host(2, Hand::Pushing, 10.0);
     agree(&scores(&rows(wall())), &host, 0.03, 0.02);
 }

@@ -33,7 +33,7 @@ fn images() -> Vec<(String, Size, u64)> {
 }
 
 #[test]
-fn every_image_takes_what_the_table_says() {
+fn sizes_of_images_agree_with_the_table() {
     let rows: Vec<Vec<String>> = images()
         .into_iter()
         .map(|(name, size, stack)| {
@@ -58,7 +58,7 @@ fn every_image_takes_what_the_table_says() {
 /// What an image of one estimator cannot choose it does not pay for: neither the other's code nor a
 /// second state. The Kalman filter's code is there for the handle anyway.
 #[test]
-fn an_estimator_alone_is_smaller_than_two() {
+fn image_with_one_estimator_is_smaller_than_with_two() {
     let both = image("").size;
     for (alone, saved) in [("large-foaw", 64), ("large-kalman", 128)] {
         let size = image(alone).size;
@@ -69,7 +69,7 @@ fn an_estimator_alone_is_smaller_than_two() {
 }
 
 #[test]
-fn a_scene_alone_is_smaller_than_all_of_them() {
+fn image_with_one_scene_is_smaller_than_with_all() {
     let whole = image("").size;
     for Alone { scene, run } in alone() {
         let size = image_of_one(*scene).size;

@@ -30,7 +30,7 @@ fn margins_of_the_velocity_loop_are_those_of_the_table() {
 }
 
 #[test]
-fn modes_have_the_numbers_and_names_of_the_board_page() {
+fn numbers_and_names_of_modes_agree_with_the_page() {
     let named: Vec<_> = (0..=4)
         .map(|code| format!("{code} {}", Mode::from_code(code).unwrap().as_str()))
         .collect();

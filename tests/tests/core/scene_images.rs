@@ -143,7 +143,7 @@ impl Cost {
 }
 
 #[test]
-fn a_scene_costs_what_the_table_says() {
+fn costs_of_a_scene_agree_with_the_table() {
     let row = |(scene, module, _): &(&str, String, Needs)| {
         let figures = Cost::of(module).figures().map(|bytes| bytes.to_string());
         [&[(*scene).to_owned()], &figures[..]].concat()
@@ -240,7 +240,7 @@ fn a_scene_that_needs_less_costs_less() {
 }
 
 #[test]
-fn off_costs_next_to_nothing_and_a_position_little() {
+fn scene_off_costs_almost_nothing_and_a_position_little() {
     let off = Cost::of("Off");
     assert!(off.text.iter().all(|&bytes| bytes <= 128), "{off:?}");
     assert!(off.controller <= 8 && off.state <= 8, "{off:?}");

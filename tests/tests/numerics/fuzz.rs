@@ -115,17 +115,17 @@ proptest! {
     #![proptest_config(cases(200))]
 
     #[test]
-    fn any_samples_leave_every_estimator_sound(data in any_bytes(4000)) {
+    fn estimators_stay_finite_for_any_samples(data in any_bytes(4000)) {
         CONTESTANTS.with(|all| samples::run(all, &data));
     }
 
     #[test]
-    fn any_bits_are_refused_or_a_design(data in any_bytes(400)) {
+    fn designs_from_any_bits_are_valid_or_refused(data in any_bytes(400)) {
         designs::run(&data);
     }
 
     #[test]
-    fn any_parameters_are_refused_or_a_design(
+    fn designs_from_any_parameters_are_valid_or_refused(
         kind: u8,
         rate in -1.0..6.0f64,
         counts in 0.0..9.6f64,
@@ -136,7 +136,7 @@ proptest! {
 
     /// Ticks of up to eight time constants of the motor, the longest that a design may have.
     #[test]
-    fn slow_designs_that_learn_are_refused_or_sound(
+    fn slow_adaptive_designs_are_stable_or_refused(
         kind in proptest::sample::select(kinds_that_learn()),
         rate in 8.0..40.0f64,
         counts in 0.0..5.0f64,
@@ -146,7 +146,7 @@ proptest! {
     }
 
     #[test]
-    fn any_inputs_leave_the_outputs_safe(data in any_bytes(8000)) {
+    fn outputs_are_within_the_limits_for_any_inputs(data in any_bytes(8000)) {
         control::run(&data);
     }
 }
@@ -155,12 +155,12 @@ proptest! {
     #![proptest_config(cases(2000))]
 
     #[test]
-    fn any_bytes_are_accounted_for(data in prop_oneof![any_bytes(200), command_bytes()]) {
+    fn command_bytes_are_all_accounted_for(data in prop_oneof![any_bytes(200), command_bytes()]) {
         commands::run(&data);
     }
 
     #[test]
-    fn any_file_is_read_or_refused(data in prop_oneof![any_bytes(300), csv_text(), toml_text()]) {
+    fn any_file_is_read_or_refused_with_one_line(data in prop_oneof![any_bytes(300), csv_text(), toml_text()]) {
         texts::run(&data);
     }
 }

@@ -15,7 +15,7 @@ fn run(contestants: &[Contestant], seed: u64) -> Vec<Findings> {
 }
 
 #[test]
-fn every_estimator_holds_over_a_hostile_course() {
+fn every_estimator_passes_the_stress_course() {
     for (rate, seed) in [(1000.0, 11), (10_000.0, 12)] {
         let found = run(&at(rate), seed);
         assert!(
@@ -32,7 +32,7 @@ fn every_estimator_holds_over_a_hostile_course() {
 /// The table in the docs has every estimator, none failed, and no figure of a run as short as this
 /// is far beyond what it says of a longer one.
 #[test]
-fn the_documented_figures_are_those_of_these_estimators() {
+fn documented_figures_agree_with_these_estimators() {
     let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/benchmarks.md");
     let docs = std::fs::read_to_string(docs).expect("docs/benchmarks.md");
     let (_, rest) = docs.split_once("<!-- stress: ").expect("a table");
@@ -89,7 +89,7 @@ fn extreme_parameters_are_stable_or_refused_by_name() {
 
 /// On what a device can show f32 is as good as f64: the same error against the truth.
 #[test]
-fn f32_costs_nothing_on_the_signals_of_a_device() {
+fn f32_error_is_negligible_on_the_signals_of_a_device() {
     for (rate, seed) in [(1000.0, 14), (10_000.0, 15)] {
         let scenarios = signals::at(rate, seed);
         for contestant in at(rate) {
@@ -113,7 +113,7 @@ fn f32_costs_nothing_on_the_signals_of_a_device() {
 
 /// The twin is what it says: the same results, but not the same rounding.
 #[test]
-fn the_twin_computes_in_f64() {
+fn twin_computes_in_f64() {
     let found = run(&at(1000.0), 13);
     for one in found
         .iter()

@@ -160,7 +160,7 @@ fn as_told_of_windows(rows: &[Row]) {
 }
 
 #[test]
-fn no_update_takes_more_instructions_than_its_code_allows() {
+fn measured_instructions_are_below_the_bounds() {
     let rows = measure().unwrap();
     let all = rows
         .iter()

@@ -12,7 +12,7 @@ use pareto::measure::{self, Row};
 use pareto::table;
 
 #[test]
-fn run_time_error_and_control_rate_are_what_the_tables_say() {
+fn run_time_error_and_control_rate_agree_with_the_tables() {
     // Also fails where the board and the host differ in a bit of any velocity, at either level.
     let mut rows = measure::measure().unwrap();
     let tasks = control::measure().unwrap();

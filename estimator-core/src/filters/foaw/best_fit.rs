@@ -90,7 +90,7 @@ mod tests {
 
     /// `(|step| + d) (n + 2)^4 / 3` is to be below 2^31.
     #[test]
-    fn windows_whose_products_fit_take_32_bits() {
+    fn windows_with_small_products_use_32_bits() {
         for (n, steepest) in [(128, 22), (64, 339), (32, 4820), (18, 40_265)] {
             for d in [0, 1, 5] {
                 for sign in [1, -1] {

@@ -73,7 +73,7 @@ fn table_that_ends_too_early_is_refused() {
 
 /// What a table believes of its velocity is the textbook's P_11, from before the first tick on.
 #[test]
-fn tables_know_the_variance_of_their_velocity() {
+fn tables_report_the_variance_of_the_velocity() {
     for rate in RATES {
         let model = reference::triple(4096, rate, JERK);
         let ours = Model::triple_integrator(4096, Hertz(rate), JERK).unwrap();

@@ -144,7 +144,7 @@ fn assert_rounding(off: [f64; 3], samples: &str, what: &str) {
 }
 
 #[test]
-fn observers_are_their_definition() {
+fn observers_agree_with_their_definition() {
     let mut found = Vec::new();
     for rate in [1000.0, 8000.0] {
         let hertz = Hertz(rate);
@@ -214,7 +214,7 @@ fn observers_are_their_definition() {
 
 /// Without the small encoder, and without current, friction and damping: the same equations.
 #[test]
-fn observers_without_an_input_are_their_definition() {
+fn observers_without_an_input_agree_with_their_definition() {
     for rate in [1000.0, 8000.0] {
         let hertz = Hertz(rate);
         let device = other_device();
@@ -269,7 +269,7 @@ fn observers_without_an_input_are_their_definition() {
 
 /// Gains by the gap, as far as the table goes and beyond.
 #[test]
-fn gains_are_those_of_the_filter_corrected_once_in_so_many_ticks() {
+fn gains_agree_with_a_filter_corrected_every_n_ticks() {
     for rate in [1000.0, 8000.0] {
         let device = other_device();
         let observer = Observer::new(&device, Hertz(rate), &SURE).expect("valid");
@@ -299,7 +299,7 @@ fn gains_are_those_of_the_filter_corrected_once_in_so_many_ticks() {
 
 /// The factors of both covariances that are kept at run time.
 #[test]
-fn covariances_are_those_of_the_definition() {
+fn covariances_agree_with_the_definition() {
     let rate = 1000.0;
     let hertz = Hertz(rate);
     let belief = believed(&other_device());

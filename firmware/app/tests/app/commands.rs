@@ -23,7 +23,7 @@ fn rejected(bytes: &[u8]) -> Option<[Rejected; 2]> {
 }
 
 #[test]
-fn a_request_becomes_a_message() {
+fn request_is_converted_to_a_message() {
     // As docs/telemetry.md has the frame: select scene 2.
     let [Message::Request(request)] = messages(&[[0xA5, 3, 2, 0, 0, 0, 0, 0, 0, 0, 0xAD]])[..]
     else {
@@ -33,7 +33,7 @@ fn a_request_becomes_a_message() {
 }
 
 #[test]
-fn a_look_takes_no_more_than_64_bytes_and_none_that_find_no_place() {
+fn poll_reads_at_most_64_bytes_and_only_if_the_queue_has_room() {
     let arm = encode(Command::Request(Request::Arm));
     let mut queue = Messages::new();
     let (producer, mut consumer) = queue.split();
@@ -57,7 +57,7 @@ fn a_look_takes_no_more_than_64_bytes_and_none_that_find_no_place() {
 }
 
 #[test]
-fn what_is_rejected_is_counted_by_its_reason() {
+fn rejected_commands_are_counted_by_reason() {
     let tune = |scene, value| {
         encode(Command::Tune {
             scene,
@@ -102,7 +102,7 @@ fn what_is_rejected_is_counted_by_its_reason() {
 }
 
 #[test]
-fn a_count_is_reported_once() {
+fn counts_are_reported_once() {
     let mut queue = Messages::new();
     let (producer, _consumer) = queue.split();
     let mut commands = Commands::new(producer);

@@ -16,7 +16,7 @@ fn the_first_record_is_of_tick_0() {
 }
 
 #[test]
-fn a_record_tells_of_the_sample_and_the_action_of_its_tick() {
+fn record_has_the_sample_and_the_action_of_its_tick() {
     let mut bench = Bench::start(FIRST);
     bench.large = 1.0;
     let currents = bench.request(Request::KeepAlive).expect("enabled");
@@ -50,7 +50,7 @@ fn amplifiers_are_enabled_from_arm_to_disarm() {
 }
 
 #[test]
-fn what_is_wrong_disables_the_amplifiers_in_the_same_tick() {
+fn any_fault_disables_the_amplifiers_in_the_same_tick() {
     let calm = || Inputs { ..CALM };
     let faults = [
         (
@@ -104,7 +104,7 @@ fn debug_settings_refuse_to_arm() {
 }
 
 #[test]
-fn a_reset_with_a_cause_starts_in_safe() {
+fn reset_with_a_cause_starts_in_state_safe() {
     let mut bench = Bench::after(Stop::Watchdog, true);
     bench.wait(ticks(0.3));
     assert_eq!(bench.state(), (Mode::Safe, Stop::Watchdog));
@@ -120,7 +120,7 @@ fn missed_ticks_add_up_to_overruns() {
 }
 
 #[test]
-fn a_scene_goes_off_after_half_a_second_of_silence_unless_the_image_arms_by_itself() {
+fn scene_is_switched_off_after_half_a_second_without_commands_except_with_auto_arm() {
     if FIRST == 0 {
         return;
     }
@@ -143,7 +143,7 @@ fn a_scene_goes_off_after_half_a_second_of_silence_unless_the_image_arms_by_itse
 
 /// The supply's dips look like power-on where no brown-out reset is programmed.
 #[test]
-fn an_image_that_arms_by_itself_does_so_only_with_brown_out_reset() {
+fn auto_arm_requires_brown_out_reset() {
     for (brown_out_reset, reset, arms) in [
         (true, Stop::None, AUTO_ARM),
         (false, Stop::None, false),
@@ -163,7 +163,7 @@ fn an_image_that_arms_by_itself_does_so_only_with_brown_out_reset() {
 }
 
 #[test]
-fn settings_are_a_sign_of_life_and_take_effect() {
+fn parameter_commands_take_effect_and_count_as_keep_alive() {
     let mut bench = Bench::new();
     let request = |message| bench.control.accept(message);
     let mut requests: Vec<_> = messages(&[

@@ -5,7 +5,7 @@ use firmware_app::large::{
 };
 
 #[test]
-fn both_are_exchanged_by_number_in_40_ms() {
+fn handover_by_number_takes_40_ms() {
     let first = Sample::new(Count(0));
     let mut state = BOTH.start(&first);
     assert_eq!(Both::in_charge(&state), Some(0));
@@ -41,7 +41,7 @@ fn alone<E: LargeEstimator>(estimator: &E, learns: bool) {
 }
 
 #[test]
-fn an_estimator_alone_is_number_0_and_leaves_no_choice() {
+fn single_estimator_is_number_0_and_cannot_be_changed() {
     alone::<Window>(&WINDOW, false);
     alone::<Filter>(&FILTER, false);
     alone::<Adaptive>(&ADAPTIVE, true);
@@ -49,7 +49,7 @@ fn an_estimator_alone_is_number_0_and_leaves_no_choice() {
 }
 
 #[test]
-fn what_is_learned_is_what_the_estimator_says() {
+fn learned_parameters_are_those_of_the_estimator() {
     let mut state = ADAPTIVE.start(&Sample::new(Count(0)));
     // A motor that turns ever faster without a current fits no believed damping.
     for k in 0..20_000_u32 {

@@ -48,7 +48,7 @@ fn near(is: f64, should: f64, within: f64) {
 // A count of the handle is 0.3 mrad, so 0.3 N.m/rad make 0.1 mN.m of it.
 
 #[test]
-fn scenes_1_to_7_and_9_are_those_of_the_host_simulation() {
+fn torques_of_scenes_1_to_7_and_9_agree_with_the_host_simulation() {
     let mut wall = Bench::start(2);
     rest(&mut wall, 0.15);
     near(wall.torque_mnm(), -300.0 * 0.05, 0.2);
@@ -104,7 +104,7 @@ fn free_air_estimates_and_off_does_not() {
 }
 
 #[test]
-fn a_scene_without_a_number_changes_nothing() {
+fn unknown_scene_number_changes_nothing() {
     let mut bench = Bench::start(3);
     rest(&mut bench, 0.15);
     bench.request(Request::Select(SCENES));
@@ -113,7 +113,7 @@ fn a_scene_without_a_number_changes_nothing() {
 }
 
 #[test]
-fn a_set_point_counts_once_its_scene_is_on() {
+fn set_point_acts_only_while_its_scene_is_on() {
     let mut bench = Bench::new();
     send(&mut bench, Command::Torque(0.003));
     bench.request(Request::Select(8));
@@ -132,7 +132,7 @@ fn a_set_point_counts_once_its_scene_is_on() {
 }
 
 #[test]
-fn settings_act_on_the_scene_that_is_on_and_last_over_disarm() {
+fn parameters_act_on_the_active_scene_and_persist_over_disarm() {
     let mut bench = Bench::start(3);
     rest(&mut bench, 0.1);
     let stiffness = |scene, value| Command::Tune {
@@ -160,7 +160,7 @@ fn settings_act_on_the_scene_that_is_on_and_last_over_disarm() {
 }
 
 #[test]
-fn a_choice_of_estimator_lasts_over_restarts() {
+fn selected_estimator_persists_over_restarts() {
     let number = |bench: &Bench| bench.record().estimation.number;
     let mut bench = Bench::start(1);
     if number(&bench) != Some(0) || messages(&[encode(Command::Estimator(1))]).is_empty() {
@@ -178,7 +178,7 @@ fn a_choice_of_estimator_lasts_over_restarts() {
 }
 
 #[test]
-fn a_record_tells_what_was_learned() {
+fn record_has_the_learned_parameters() {
     // A wall lets the coupler slip.
     let mut bench = Bench::start(2);
     for to in [0.2, 0.25, 0.2, 0.3].into_iter().cycle().take(40) {

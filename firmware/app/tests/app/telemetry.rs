@@ -28,7 +28,7 @@ fn frame(record: Record, before: u32) -> Frame {
 }
 
 #[test]
-fn frames_come_a_thousand_times_a_second_from_the_first_tick_on() {
+fn frames_are_sent_at_1_khz_from_the_first_tick_on() {
     let mut queue = Frames::new();
     let (producer, _consumer) = queue.split();
     let mut sender = Sender::new(producer);
@@ -38,7 +38,7 @@ fn frames_come_a_thousand_times_a_second_from_the_first_tick_on() {
 }
 
 #[test]
-fn a_frame_without_a_place_leaves_a_gap_in_seq_as_large_as_drops() {
+fn dropped_frames_leave_a_gap_in_seq_equal_to_drops() {
     let mut queue = Frames::new();
     let (producer, mut consumer) = queue.split();
     let mut sender = Sender::new(producer);
@@ -60,7 +60,7 @@ fn a_frame_without_a_place_leaves_a_gap_in_seq_as_large_as_drops() {
 }
 
 #[test]
-fn a_frame_carries_what_was_sent() {
+fn frame_has_the_values_of_its_record() {
     let record = record();
     let frame = frame(record, 3);
     assert_eq!((frame.seq, frame.cycles), (3, 321));
@@ -69,7 +69,7 @@ fn a_frame_carries_what_was_sent() {
 }
 
 #[test]
-fn sigma_is_in_rad_per_s_and_nobody_is_255() {
+fn sigma_is_in_rad_per_s_and_a_missing_estimator_is_255() {
     let mut record = record();
     let of = |number, variance| Estimation {
         variance: Variance(variance),
@@ -86,7 +86,7 @@ fn sigma_is_in_rad_per_s_and_nobody_is_255() {
 }
 
 #[test]
-fn an_edge_is_told_by_images_that_stamp_edges() {
+fn edge_line_is_sent_by_images_with_edge_stamps() {
     let edge = Edge {
         boundary: Count(9),
         age: ClockTicks(100),
@@ -99,7 +99,7 @@ fn an_edge_is_told_by_images_that_stamp_edges() {
 }
 
 #[test]
-fn one_frame_of_128_tells_what_was_learned() {
+fn learned_line_is_sent_with_one_frame_of_128() {
     let record = record();
     let learned = record.learned.deviations();
     assert_eq!(learned.is_some(), cfg!(feature = "large-adaptive"));

@@ -106,10 +106,10 @@ mod tests {
         let said = far(&shipped, &kinds, 1000.0, 90);
         assert_eq!(said.len(), 1, "{said:?}");
         let words = "the shipped presets for 4096 counts/rev at 1000 Hz are used for 90 counts/rev at \
-                     1000 Hz, which is far from that: pll, foaw-end-fit; tune them with host-sim tune \
+                     1000 Hz, which differs too much: pll, foaw-end-fit; tune them with host-sim tune \
                      --rate 1000 --device FILE.toml";
         assert!(said[0].contains(words), "{said:?}");
-        assert!(far(&shipped, &kinds, 300.0, 4096)[0].contains("at 300 Hz, which is far"));
+        assert!(far(&shipped, &kinds, 300.0, 4096)[0].contains("at 300 Hz, which differs"));
         assert_eq!(
             far(&shipped, &["finite-difference"], 1000.0, 90),
             Vec::<String>::new()

@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ramp_late_by_one_and_a_half_samples_says_so() {
+    fn delay_of_a_ramp_by_one_and_a_half_samples_is_found() {
         let (truth, late): (Vec<f64>, Vec<f32>) = (0..1003)
             .map(|i| (0.5 * f64::from(i), (0.5 * (f64::from(i) - 1.5)) as f32))
             .unzip();
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_on_the_estimate_does_not_move_it_far() {
+    fn noise_changes_the_delay_little() {
         let (truth, mut estimate) = lagging(4.0, 4000);
         for (i, value) in estimate.iter_mut().enumerate() {
             *value += if (i * 7919) % 13 > 6 { 1.0 } else { -1.0 };
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn no_motion_no_room_or_no_minimum_is_none() {
+    fn delay_is_none_without_motion_room_or_minimum() {
         let (truth, estimate) = lagging(1.0, 4000);
         let still = vec![2.0; 4000];
         assert_eq!(samples(&still, &estimate, 100), None);

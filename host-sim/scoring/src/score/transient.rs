@@ -39,7 +39,7 @@ mod tests {
 
     /// At 1 kHz the central difference spans 4 samples, the hold 20.
     #[test]
-    fn a_step_is_seen_from_two_ms_before_to_twenty_ms_after_the_last_sight_of_it() {
+    fn transient_lasts_from_2_ms_before_to_20_ms_after_a_step() {
         let mut truth = vec![0.0; 1000];
         truth[500..].fill(1.0);
         // |w[i+2] - w[i-2]| = 1 for i + 2 >= 500 and i - 2 < 500: i = 498..=501.
@@ -49,7 +49,7 @@ mod tests {
     }
 
     #[test]
-    fn near_steps_merge_and_far_ones_do_not() {
+    fn transients_of_near_steps_merge() {
         let mut truth = vec![0.0; 1000];
         truth[300..].fill(1.0);
         truth[310..].fill(2.0);
@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn the_threshold_is_an_acceleration_at_any_rate() {
+    fn threshold_is_the_same_acceleration_at_every_rate() {
         for rate in [1000.0, 10_000.0, 11_600.0] {
             let ramp = |slope: f64| -> Vec<f64> {
                 (0..2000).map(|i| slope * f64::from(i) / rate).collect()
@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn a_trace_shorter_than_the_difference_has_none() {
+    fn short_trace_has_no_transient() {
         assert!(ranges(&[0.0, 100.0, 0.0], 1000.0, 0).is_empty());
     }
 }

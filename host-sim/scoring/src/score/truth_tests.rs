@@ -31,7 +31,7 @@ fn near(found: Option<f64>, expected: f64, within: f64) {
 }
 
 #[test]
-fn a_constant_offset_outside_the_interval_is_the_distance_to_its_edge() {
+fn distance_of_a_constant_offset_is_measured_from_the_interval() {
     // tolerance(10) = 0.5 + 0.36458; 1.5 above it is 0.63542 outside.
     let s = score(&vec![10.0; 2000], &vec![11.5; 2000]);
     near(s.distance_rad_s, 0.635_416_7, 1e-6);
@@ -44,7 +44,7 @@ fn a_constant_offset_outside_the_interval_is_the_distance_to_its_edge() {
 }
 
 #[test]
-fn the_same_offset_inside_costs_no_distance_but_an_error() {
+fn offset_inside_the_interval_has_no_distance_but_an_rms_error() {
     let s = score(&vec![-10.0; 2000], &vec![-10.8; 2000]);
     near(s.distance_rad_s, 0.0, 0.0);
     near(s.outside, 0.0, 0.0);
@@ -52,7 +52,7 @@ fn the_same_offset_inside_costs_no_distance_but_an_error() {
 }
 
 #[test]
-fn outside_is_a_share_of_samples_and_the_start_is_skipped() {
+fn outside_is_the_share_of_samples_after_the_start() {
     let mut guess = vec![0.0; 1100];
     guess[..100].fill(50.0);
     guess[1000..].fill(-0.364_583_3 - 0.2);
@@ -63,7 +63,7 @@ fn outside_is_a_share_of_samples_and_the_start_is_skipped() {
 }
 
 #[test]
-fn force_is_of_the_rms_error_and_not_of_the_largest() {
+fn force_follows_from_the_rms_error() {
     // One of 1000 scored samples is wrong by 3 rad/s.
     let mut guess = vec![0.0; 1100];
     guess[600] = 3.0;
@@ -76,7 +76,7 @@ fn force_is_of_the_rms_error_and_not_of_the_largest() {
 }
 
 #[test]
-fn a_late_ramp_has_its_delay_in_ms() {
+fn delay_of_a_ramp_is_in_ms() {
     let truth = signal(2000, |t| 8.0 * t);
     near(
         score(&truth, &estimate(2000, |t| 8.0 * (t - 0.0015))).delay_ms,
@@ -92,7 +92,7 @@ fn a_late_ramp_has_its_delay_in_ms() {
 
 /// At a rate at which a sample is not a millisecond.
 #[test]
-fn a_late_wave_has_its_delay_in_ms() {
+fn delay_of_a_sine_is_in_ms() {
     let rate_hz = 8000.0;
     let wave = |t: f64| 3.0 * (TAU * 7.0 * t).sin() + 2.0 * (TAU * 2.9 * t).cos();
     let at = |i: usize| i as f64 / rate_hz;
@@ -107,7 +107,7 @@ fn a_late_wave_has_its_delay_in_ms() {
 }
 
 #[test]
-fn noise_is_the_rms_of_what_lies_in_the_tactile_band() {
+fn noise_is_the_rms_in_the_tactile_band() {
     // The truth moves inside the band: that is motion, and no noise.
     let motion = |t: f64| 5.0 * t + 2.0 * (TAU * 120.0 * t).sin();
     let truth = signal(4000, motion);
@@ -133,13 +133,13 @@ fn noise_is_the_rms_of_what_lies_in_the_tactile_band() {
 }
 
 #[test]
-fn an_offset_or_a_slow_drift_is_no_noise() {
+fn offset_and_slow_drift_are_not_noise() {
     let s = score(&vec![0.0; 4000], &estimate(4000, |t| 4.0 + 3.0 * t));
     near(s.noise_rad_s, 0.0, 0.01);
 }
 
 #[test]
-fn chatter_counts_what_a_saw_moves_beyond_the_truth() {
+fn chatter_of_a_sawtooth_is_its_total_variation() {
     // Truth climbs 0.01 a sample; the estimate repeats +1, -1 around it.
     let truth = signal(1100, |t| 10.0 * t);
     let saw = estimate(1100, |t| 10.0 * t + ((t * RATE_HZ).round() % 2.0));
@@ -155,7 +155,7 @@ fn chatter_counts_what_a_saw_moves_beyond_the_truth() {
 
 /// A sine of amplitude A and frequency f travels 4 A f in a second, there and back.
 #[test]
-fn chatter_is_travel_beyond_that_of_a_truth_that_turns_round() {
+fn chatter_excludes_the_total_variation_of_the_truth() {
     let sine = |amplitude: f64| move |t: f64| amplitude * (TAU * 5.0 * t).sin();
     // 2 s behind the start.
     let truth = signal(2100, sine(3.0));
@@ -188,7 +188,7 @@ fn transient_distance_averages_over_the_transient_alone() {
 }
 
 #[test]
-fn one_bad_sample_makes_the_score_infinite_and_is_counted() {
+fn non_finite_sample_makes_the_scores_infinite_and_is_counted() {
     let truth = signal(1000, |t| if t < 0.4995 { 0.0 } else { 2.0 });
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         let mut guess = estimate(1000, |t| if t < 0.4995 { 0.0 } else { 2.0 });
@@ -215,7 +215,7 @@ fn one_bad_sample_makes_the_score_infinite_and_is_counted() {
 }
 
 #[test]
-fn only_what_is_wanted_is_there_and_it_is_the_same() {
+fn only_requested_scores_are_computed_with_unchanged_values() {
     let truth = signal(2000, |t| {
         4.0 * (TAU * 3.0 * t).sin() + if t < 1.0 { 0.0 } else { 3.0 }
     });
@@ -255,7 +255,7 @@ fn only_what_is_wanted_is_there_and_it_is_the_same() {
 }
 
 #[test]
-fn a_trace_that_is_all_start_has_no_score() {
+fn trace_shorter_than_the_skipped_start_has_no_scores() {
     assert_eq!(score(&[0.0; 100], &[9.0; 100]), Score::default());
     assert!(score(&[0.0; 101], &[9.0; 101]).rms_rad_s.is_some());
 }

@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn each_error_has_its_size_and_period() {
+    fn disc_errors_have_their_amplitude_and_period() {
         let phase = parts(0.2, 0.0, 0.0);
         assert!((largest(&phase) - 0.2).abs() < 1e-12);
         assert!(phase[..4].iter().sum::<f64>().abs() < 1e-12);

@@ -62,7 +62,7 @@ mod tests {
     use rand_xoshiro::rand_core::SeedableRng;
 
     #[test]
-    fn each_second_holds_one_level_and_ten_of_them_cover_the_range() {
+    fn levels_last_a_second_and_ten_cover_the_range() {
         let mut profile = Permanent::new(Xoshiro256PlusPlus::seed_from_u64(4));
         let mut seen = Vec::new();
         for second in 0..10 {

@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn files_of_an_earlier_run_are_removed_and_foreign_ones_stay() {
+    fn files_of_an_earlier_run_are_removed_and_others_are_kept() {
         let path = folder("two-runs");
         let old = [
             ("index.html", "1"),
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn manifest_that_leads_out_of_the_folder_removes_nothing() {
+    fn manifest_with_a_path_outside_the_folder_removes_nothing() {
         let path = folder("manifest");
         let inside = path.join("in");
         fs::create_dir_all(&inside).unwrap();
