@@ -2,5 +2,8 @@
 //! that a hand would feel.
 
 pub mod evaluation;
+mod percentile;
 pub mod score;
 pub mod spectrum;
+
+pub use percentile::percentile;

@@ -71,9 +71,11 @@ fn tuned(presets: &Presets, kind: &str, parameter: &str) -> Vec<String> {
 /// Names and descriptions of the scenarios.
 pub(super) fn scenarios() -> Result<(), Failure> {
     let mut text = String::new();
+    let names = ScenarioName::ALL.map(ScenarioName::as_str);
+    let width = 2 + names.map(str::len).into_iter().max().unwrap_or(0);
     for scenario in ScenarioName::ALL {
-        let line = format!("{:<12}{}", scenario.as_str(), scenario.description());
-        let _ = writeln!(text, "{}", wrapped(&line, 12));
+        let line = format!("{scenario:<width$}{}", scenario.description());
+        let _ = writeln!(text, "{}", wrapped(&line, width));
     }
     print_bytes(text.as_bytes())
 }

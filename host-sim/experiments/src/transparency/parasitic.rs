@@ -12,6 +12,7 @@
 
 use serde::Serialize;
 
+use scoring::percentile;
 use scoring::score::{SKIP_S, TACTILE_BAND_HZ};
 use scoring::score_fields;
 use scoring::spectrum::Welch;
@@ -102,19 +103,11 @@ impl Parasitic {
         let tactile = Welch::new(rate_hz).density(scored);
         Self {
             parasitic_mn_rms: Some((square / n).sqrt()),
-            parasitic_mn_p99: Some(percentile(scored, 0.99)),
+            parasitic_mn_p99: Some(percentile(scored.iter().copied(), 0.99)),
             parasitic_mn_tactile: tactile.and_then(|d| d.rms_within(TACTILE_BAND_HZ)),
             below_threshold,
         }
     }
-}
-
-/// The quantile of the sorted, non-empty `values` at `share` (nearest rank).
-fn percentile(values: &[f64], share: f64) -> f64 {
-    let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
-    let rank = (share * sizes.len() as f64).ceil() as usize;
-    let at = rank.clamp(1, sizes.len()) - 1;
-    *sizes.select_nth_unstable_by(at, f64::total_cmp).1
 }
 
 #[cfg(test)]
@@ -126,16 +119,6 @@ mod tests {
         mn_per_nm: 2e3 / 0.07,
         threshold_mn: 10.0,
     };
-
-    #[test]
-    fn percentile_is_the_value_at_its_rank() {
-        let values: Vec<f64> = (1..=200)
-            .map(|i| f64::from(if i % 2 == 0 { i } else { -i }))
-            .collect();
-        assert_eq!(percentile(&values, 0.99), 198.0);
-        assert_eq!(percentile(&values, 1.0), 200.0);
-        assert_eq!(percentile(&[-3.0], 0.99), 3.0);
-    }
 
     #[test]
     fn one_of_100_ticks_exceeds_p99() {
