@@ -9,6 +9,7 @@
 mod clamped;
 mod creep;
 mod hand;
+mod micro_reversals;
 mod permanent;
 mod servo;
 mod step;
@@ -207,6 +208,18 @@ scenarios! {
         build: |device, period_s, random| {
             let motion = clamped::follow(Track::new(random), device, period_s);
             Box::new(motion.heating(device.fall_at_60_s))
+        },
+    }
+    /// Reversals within a few counts.
+    MicroReversals {
+        name: "micro-reversals",
+        description: "reversals 1 to 8 counts apart at 2 to 8 Hz, no friction, open loop, handle clamped",
+        speeds: Speeds::within([0.05, 0.35], [0.03, 0.2]),
+        role: Role::Special,
+        friction: false,
+        reads_reference: false,
+        build: |device, period_s, random| {
+            Box::new(micro_reversals::MicroReversals::new(device, period_s, random))
         },
     }
 }
