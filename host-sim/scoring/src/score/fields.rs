@@ -28,7 +28,7 @@ macro_rules! wanted {
 }
 
 wanted! {
-    rms, max, distance, distance_transient, outside, delay, noise, chatter, force, within, learned,
+    rms, max, p99, distance, distance_transient, outside, delay, noise, chatter, force, within, learned,
 }
 
 impl Default for Wanted {
@@ -48,6 +48,8 @@ score_fields! {
         rms_rad_s: "rms", "rad/s", Number, Mean, Smaller, true, rms;
         /// Largest magnitude of the error, rad/s.
         max_rad_s: "largest", "rad/s", Number, Largest, Smaller, true, max;
+        /// 99th percentile of the error's magnitude, rad/s: 1 % of the samples exceed it.
+        p99_rad_s: "99 %", "rad/s", Number, Mean, Smaller, false, p99;
         /// Mean distance outside the haptic interval, rad/s: mean over all samples of
         /// `max(0, |error| - tolerance)`.
         distance_rad_s: "distance", "rad/s", Number, Mean, Smaller, true, distance;

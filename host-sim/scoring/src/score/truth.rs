@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::{Interval, SKIP_S, Score, TACTILE_BAND_HZ, Wanted, delay, transient};
+use crate::percentile;
 use crate::spectrum::Welch;
 
 /// A truth, and everything the scores need that depends on it alone.
@@ -104,6 +105,7 @@ impl<'a> Truth<'a> {
         Score {
             rms_rad_s: wanted.rms.then_some(rms),
             max_rad_s: wanted.max.then_some(max),
+            p99_rad_s: (wanted.p99).then(|| percentile(self.errors(scored), 0.99)),
             distance_rad_s: wanted.distance.then_some(distance),
             distance_transient_rad_s: self.distance_in_transients(scored),
             outside: wanted.outside.then_some(outside),
@@ -131,6 +133,7 @@ impl<'a> Truth<'a> {
         Score {
             rms_rad_s: worst(wanted.rms),
             max_rad_s: worst(wanted.max),
+            p99_rad_s: worst(wanted.p99),
             distance_rad_s: worst(wanted.distance),
             distance_transient_rad_s: worst(!self.transients.is_empty()),
             outside: wanted.outside.then(outside),

@@ -271,3 +271,19 @@ fn a_truth_that_is_not_finite_or_has_no_rate_is_refused() {
     assert!(refuse(&[0.0], 0.0).unwrap().contains("0 Hz"));
     assert!(refuse(&[0.0], f64::NAN).is_some());
 }
+
+#[test]
+fn one_of_100_samples_exceeds_p99() {
+    // 0.1 s that is not scored, then errors of 0.01 to 10 rad/s of either sign in a scrambled order.
+    let truth = signal(1100, |_| 3.0);
+    let error = |k: usize| match k {
+        0..100 => 500.0,
+        _ => 0.01 * ((37 * (k - 100)) % 1000 + 1) as f32 * if k % 2 == 0 { 1.0 } else { -1.0 },
+    };
+    let guess: Vec<f32> = (0..1100).map(|k| 3.0 + error(k)).collect();
+    near(score(&truth, &guess).p99_rad_s, 9.9, 1e-5);
+    let broken: Vec<f32> = (0..1100)
+        .map(|k| if k == 900 { f32::NAN } else { 3.0 })
+        .collect();
+    assert_eq!(score(&truth, &broken).p99_rad_s, Some(f64::INFINITY));
+}
