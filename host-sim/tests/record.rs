@@ -118,7 +118,7 @@ fn log_is_converted_replayed_and_drawn() {
     for word in [
         "angle, rad",
         "current, A",
-        "torque, mN.m",
+        "torque, mN\u{b7}m",
         "the board",
         "running",
     ] {

@@ -1,4 +1,4 @@
-//! Drawing surface of a figure: sizes in CSS pixels, text that knows about how wide it is.
+//! Drawing surface of a figure: sizes in CSS pixels, lines, areas, text and legends.
 //!
 //! The SVG backend rounds to whole units, so a figure is drawn at [`FINE`] units a pixel and
 //! shown at that much less.
@@ -18,7 +18,7 @@ use super::style::{Strokes as _, Style};
 pub(super) const WIDTH: f64 = 900.0;
 /// SVG units a pixel.
 const FINE: f64 = 4.0;
-/// The backend makes fonts this much smaller than asked for.
+/// Factor by which the backend shrinks fonts.
 const FONT_SHRINK: f64 = 1.24;
 
 /// Font sizes, px.
@@ -41,14 +41,14 @@ pub(super) enum Key<'a> {
     Band(&'a str),
 }
 
-/// What a figure is drawn on.
+/// Drawing surface of a figure.
 pub(super) struct Canvas<'a>(DrawingArea<SVGBackend<'a>, Shift>);
 
 fn fine((x, y): (f64, f64)) -> (i32, i32) {
     ((x * FINE).round() as i32, (y * FINE).round() as i32)
 }
 
-/// A guess at the width of a text, px; a little too wide for most fonts.
+/// Estimated width of a text, px; slightly too wide for most fonts.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
     0.58 * size * text.chars().count() as f64
 }
@@ -210,7 +210,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_figure_has_its_size_its_title_and_escaped_text() {
+    fn figure_has_its_size_its_title_and_escaped_text() {
         let svg = figure(120.0, "a < b", |canvas| {
             canvas.text("<x> & \"y\"", (10.0, 10.0), Anchor::Left, LABEL, INK)?;
             canvas.line(&[(0.0, 0.0), (0.25, 30.0)], INK, 1.0)
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn a_long_legend_breaks_before_the_edge() {
+    fn long_legend_breaks_before_the_edge() {
         let names: Vec<String> = (0..20).map(|i| format!("estimator-{i}")).collect();
         let keys: Vec<Key> = names
             .iter()

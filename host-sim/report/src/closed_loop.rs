@@ -1,4 +1,4 @@
-//! The closed loop on the page: what the hand feels.
+//! Sections of the closed loop: parasitic force, rendered force and torque, margins.
 
 mod charts;
 mod force_by_motion;
@@ -18,59 +18,65 @@ use experiments::transparency::{Design, Outcome, REFERENCE, Run, Swept};
 use haptic_control::SceneKind;
 use maud::html;
 
-/// What was run with the loop closed.
+/// Results of the closed loop.
 #[derive(Clone, Debug, Default)]
 pub struct ClosedLoop {
-    /// Scenes and rates; figures need their signals.
+    /// Results of each scene at each rate; the figures need their signals.
     pub outcomes: Vec<Outcome>,
-    /// Torque rendered into a clamped handle, one a rate.
+    /// Frequency responses of the torque at a clamped handle, one for each rate.
     pub swept: Vec<Swept>,
-    /// The designed velocity loop, one a rate.
+    /// Designs of the velocity loop, one for each rate.
     pub designs: Vec<Design>,
 }
 
-const FELT: &str = "From here on the loop is closed: the controller moves both motors, with each \
-    estimator in turn as its only knowledge of the large motor\u{2019}s velocity. \u{201c}reference\u{201d} \
-    closes it on the reference encoder, as the paper did: what a finer encoder would bring. \
-    Parasitic force is the torque felt minus the torque that the scene wanted, at the \
-    fingertip. It includes the inertia and the friction of the handle itself, which no estimator \
-    takes away. \u{201c}any\u{201d}: the scene does not ask for the large motor\u{2019}s velocity.";
-const BARS: &str = "Share of time in which the parasitic force is smaller than a fingertip notices; \
-    longer is better.";
-const SPEED: &str = "An ideal device adds no force. Parasitic force against the velocity of the \
-    handle (top) and against its acceleration (bottom). In the green area the force is below the \
-    threshold of a fingertip. The peak at rest is the friction of the handle: its feed-forward fades \
-    out where the direction of motion is uncertain. The solid black line is the device with both motors \
-    off. The dashed black line is the inertia of the handle, which is not compensated. Kalman filters \
-    with a preset steady gain lie on those with full covariance and are not drawn.";
-const SPECTRUM: &str = "Where in frequency the parasitic force lies, hand moving in free air. In \
-    the green band it is felt as roughness; left of it lie friction and inertia, right of it \
-    what no finger feels but the motors still suffer.";
-const RENDERED: &str = "Force wanted by the scene (black), give or take what a fingertip notices \
-    (green), and force felt (coloured), in the part of the run in which most happens. For each \
-    rate finite difference, the other estimator with the least parasitic force in this scene, and \
-    the reference encoder; the number is that force, RMS over the run. Delay shows as a shift, friction as steps at each reversal, a bad velocity \
-    as a coloured band. Where a count is worth more than the slew limit lets through within a \
-    tick, as for finite difference at high rates, its spikes are clipped on one side and their \
-    mean is lost with them: an offset, not a band.";
-const TORQUE: &str = "Many sines at once, together (RMS) as strong as a fingertip just notices, on a \
-    constant torque, into a clamped handle. Gain and phase of the torque felt against the torque wanted; \
-    the large motor brings the low frequencies, the small motor what is missing, so their sum is \
-    flat until the amplifiers, the tick and half a tick of holding end it. Where the velocity is \
-    late or noisy the sum is uneven and coherence, the part of the power that repeats, falls. A \
-    point of low coherence is itself uncertain.";
-const MARGINS: &str = "The velocity loop as it was designed, an estimator late by the delay below \
-    included: the further its curve passes from \u{2212}1 the better. Modulus margin is that distance \
-    (the circle), gain margin the factor that the gain may grow, phase and delay margin what may \
-    be lost at the crossover.";
+const OVERVIEW: &str = "In this and the following sections the loop is closed: the controller \
+    drives both motors, and each estimator in turn is its only source of the large \
+    motor\u{2019}s velocity. \u{201c}reference\u{201d} uses the reference encoder instead, as \
+    the paper did: it shows the effect of a finer encoder. The parasitic force is the force \
+    that the hand feels minus the force that the scene commands, at the fingertip. It includes \
+    the inertia and the friction of the handle, which no estimator can remove. \
+    \u{201c}any\u{201d} stands for all estimators where the scene does not use the velocity of \
+    the large motor.";
+const SHARES: &str = "Share of time in which the parasitic force is below the threshold of a \
+    fingertip. Longer bars are better.";
+const MOTION: &str = "An ideal device adds no force. The figure shows the parasitic force \
+    against the velocity (top) and the acceleration (bottom) of the handle. In the green area \
+    the force is below the threshold of a fingertip. The peak at rest is the friction of the \
+    handle: its feed-forward compensation fades out where the direction of motion is uncertain. \
+    The solid black line is the device with both motors off. The dashed black line is the \
+    inertia of the handle, which is not compensated. Kalman filters with a preset steady gain \
+    coincide with those with full covariance and are not drawn.";
+const SPECTRUM: &str = "Amplitude spectral density of the parasitic force while the hand moves \
+    in free air. Force in the green band is felt as roughness. Friction and inertia lie below \
+    the band. Force above the band is not felt but loads the motors.";
+const RENDERED: &str = "Force that the scene commands (black) with the threshold of a fingertip \
+    around it (green), and force that the hand feels (coloured), in the part of the run where \
+    the command varies most. Each rate shows finite difference, the other estimator with the \
+    smallest parasitic force in this scene, and the reference encoder. The number is the RMS \
+    parasitic force of the run. Delay appears as a shift, friction as steps at each reversal, \
+    velocity noise as a coloured band. If one count exceeds the slew limit of a tick, as for \
+    finite difference at high rates, the spikes are clipped on one side: an offset replaces the \
+    band.";
+const TORQUE: &str = "A multisine torque is added to a constant torque while the handle is \
+    clamped; its RMS is the threshold of a fingertip. Gain and phase are those of the torque at \
+    the handle relative to the commanded torque. The large motor provides the low frequencies \
+    and the small motor the remainder, so their sum is flat up to the limits of the amplifiers, \
+    of the tick and of half a tick of hold. A late or noisy velocity makes the sum uneven and \
+    reduces the coherence, the part of the power that repeats. Gain and phase are uncertain \
+    where the coherence is low.";
+const MARGINS: &str = "Open loop of the velocity controller as designed, including an estimator \
+    with the delay given in the table. The loop is more robust the further its curve stays from \
+    \u{2212}1. The modulus margin is the smallest distance from \u{2212}1 (the circle), the \
+    gain margin the factor by which the gain may grow. The phase and delay margins are the \
+    additional phase lag and delay that the loop tolerates at the crossover frequency.";
 
 impl ClosedLoop {
-    /// Everybody who closes a loop, in order of appearance.
-    pub(super) fn closers(&self) -> Vec<&str> {
+    /// Estimators and encoders that provide the velocity of a closed loop, in order of appearance.
+    pub(super) fn velocity_sources(&self) -> Vec<&str> {
         let runs = self
             .outcomes
             .iter()
-            .filter(|o| has_loop(o))
+            .filter(|o| uses_velocity(o))
             .flat_map(|o| &o.runs);
         let swept = self.swept.iter().flat_map(|swept| &swept.runs);
         let mut names: Vec<&str> = Vec::new();
@@ -85,9 +91,10 @@ impl ClosedLoop {
         names
     }
 
-    /// The same for figures full of curves: without those that lie on others.
-    fn drawn(&self) -> Vec<&str> {
-        let mut names = self.closers();
+    /// Velocity sources of figures with many curves: without the steady-state filters, whose curves
+    /// coincide with those of the filters with full covariance.
+    fn drawn_sources(&self) -> Vec<&str> {
+        let mut names = self.velocity_sources();
         let all = names.clone();
         names.retain(|name| {
             let full = name.strip_suffix("-steady");
@@ -96,7 +103,7 @@ impl ClosedLoop {
         names
     }
 
-    /// The outcomes of a scene, lowest and highest rate.
+    /// The outcomes of a scene at the lowest and at the highest rate.
     fn of(&self, scene: &str) -> Vec<&Outcome> {
         let of_scene = self
             .outcomes
@@ -112,7 +119,7 @@ impl ClosedLoop {
     }
 }
 
-fn has_loop(outcome: &Outcome) -> bool {
+fn uses_velocity(outcome: &Outcome) -> bool {
     outcome.case.scene.facts().needs.continuous
 }
 
@@ -123,17 +130,18 @@ fn find<'a>(outcome: &'a Outcome, controlled_by: &str) -> Option<&'a Run> {
         .find(|run| run.controlled_by == controlled_by)
 }
 
-/// The estimator of an outcome with the least parasitic force, among those that count.
-fn best(outcome: &Outcome, counts: impl Fn(&str) -> bool) -> Option<&Run> {
+/// The run of the estimator with the smallest RMS parasitic force, among those that `competes`
+/// accepts.
+fn best(outcome: &Outcome, competes: impl Fn(&str) -> bool) -> Option<&Run> {
     let runs = outcome
         .runs
         .iter()
-        .filter(|run| run.controlled_by != REFERENCE && counts(run.controlled_by));
+        .filter(|run| run.controlled_by != REFERENCE && competes(run.controlled_by));
     let rms = |run: &Run| run.parasitic.parasitic_mn_rms.unwrap_or(f64::INFINITY);
     runs.min_by(|a, b| rms(a).total_cmp(&rms(b)))
 }
 
-/// Every section that has something to show.
+/// The sections that have content.
 pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Section>, String> {
     let closed = &report.closed_loop;
     if closed.outcomes.is_empty() {
@@ -142,14 +150,14 @@ pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Se
     let threshold_mn = 1e3 * report.device.interval.threshold_n;
     let overview = html! {
         @if let Some(text) = in_words(closed) { p.verdict { (text) } }
-        (explanation(FELT))
+        (explanation(OVERVIEW))
         (unnoticed_share::shares(closed, palette)?)
-        (explanation(BARS))
+        (explanation(SHARES))
     };
     let transparency = [
         explained(
             force_by_motion::figures(closed, palette, &report.device)?,
-            SPEED,
+            MOTION,
         ),
         explained(spectrum::figure(closed, palette)?, SPECTRUM),
     ];
@@ -167,19 +175,19 @@ pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Se
     ];
     let scores = score_table::tables(closed, palette);
     let sections = [
-        Section::new("felt", "What the hand feels", Some(overview)),
+        Section::new("closed-loop", "Closed loop", Some(overview)),
         Section::new("transparency", "Transparency", joined(transparency)),
-        Section::new("rendered", "Wanted and felt", rendered),
+        Section::new("rendered", "Rendered force", rendered),
         Section::new("torque", "Torque bandwidth", joined(torque)),
         Section::new("margins", "Velocity loop", joined(margins)),
-        Section::new("felt-scores", "Closed-loop scores", Some(scores)),
+        Section::new("closed-loop-scores", "Closed-loop scores", Some(scores)),
     ];
     Ok(sections.into_iter().flatten().collect())
 }
 
-/// The gist, from free air or else from the first scene with a loop.
+/// Summary of the parasitic force in free air, or else in the first scene that uses the velocity.
 fn in_words(closed: &ClosedLoop) -> Option<String> {
-    let with_loop = closed.outcomes.iter().find(|o| has_loop(o))?;
+    let with_loop = closed.outcomes.iter().find(|o| uses_velocity(o))?;
     let scene = closed
         .outcomes
         .iter()
@@ -187,23 +195,27 @@ fn in_words(closed: &ClosedLoop) -> Option<String> {
     let scene = scene.unwrap_or(with_loop).case.scene.name();
     let clauses: Vec<String> = (closed.of(scene).into_iter())
         .filter_map(|outcome| {
-            let says = |run: &Run| run.parasitic.parasitic_mn_rms.map(number);
+            let force = |run: &Run| {
+                run.parasitic
+                    .parasitic_mn_rms
+                    .map(|mn| format!("{}\u{a0}mN", number(mn)))
+            };
             let best = best(outcome, |_| true)?;
             let mut text = format!(
-                "at {} {}\u{a0}mN with {}, below the threshold {} of the time",
+                "at {} {} with {}, below the threshold of a fingertip {} of the time",
                 rate(outcome.case.rate_hz),
-                says(best)?,
+                force(best)?,
                 best.controlled_by,
                 share(best.parasitic.below_threshold?),
             );
             let others = [
                 ("finite-difference", "finite difference"),
-                (REFERENCE, "the reference encoder"),
+                (REFERENCE, "reference encoder"),
             ];
             let others: Vec<String> = (others.into_iter())
                 .filter(|(name, _)| *name != best.controlled_by)
                 .filter_map(|(name, shown)| {
-                    Some(format!("{shown} {}", says(find(outcome, name)?)?))
+                    Some(format!("{shown}: {}", force(find(outcome, name)?)?))
                 })
                 .collect();
             if !others.is_empty() {

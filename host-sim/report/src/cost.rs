@@ -1,4 +1,4 @@
-//! Run time against error: a panel a scenario.
+//! Error against run time, a panel for each scenario.
 
 use super::canvas::{Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height};
 use super::grid::{Group, Scenario};
@@ -17,8 +17,8 @@ const ACROSS: usize = 3;
 /// Half the side of a mark, px.
 const MARK: f64 = 3.5;
 
-/// The panels of one rate and plant; `None` where nothing has a cost. `limits` are the particle
-/// filter's on the plant with friction.
+/// The panels of one rate and plant; `None` if no estimator has a measured cost. `limits` are the
+/// errors of the particle filter on the plant with friction.
 pub(super) fn panels(
     group: &Group,
     limits: &[limit::Row],
@@ -53,7 +53,7 @@ pub(super) fn panels(
     if shown.iter().any(|scenario| limit_of(scenario)[0].is_some()) {
         keys.push(Key::Line(
             INK.into(),
-            "particle filter: counts above, time stamps below",
+            "particle filter: counts (upper line), edge time stamps (lower line)",
         ));
     }
     let rows = shown.len().div_ceil(ACROSS);
@@ -82,7 +82,7 @@ pub(super) fn panels(
     svg.map(Some)
 }
 
-/// Name, instructions and error of those that have both.
+/// Name, instructions and RMS error of the estimators that have both.
 fn points<'a>(scenario: &'a Scenario) -> impl Iterator<Item = (&'a str, f64, f64)> {
     scenario.rows.iter().filter_map(|row| {
         let error = row.score.rms_rad_s.filter(|e| *e > 0.0 && e.is_finite())?;
@@ -90,7 +90,7 @@ fn points<'a>(scenario: &'a Scenario) -> impl Iterator<Item = (&'a str, f64, f64
     })
 }
 
-/// Those of `points` that no other beats in both, by rising cost.
+/// The points (cost, error) that no other point beats in both, by rising cost.
 fn front(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let mut best = f64::INFINITY;
@@ -127,12 +127,12 @@ fn panel(
     };
     canvas.text(scenario.name, (left, top - 12.0), Anchor::Left, LABEL, INK)?;
     plot.grid(canvas, 4, 4)?;
-    plot.x_title(canvas, "instructions an update")?;
+    plot.x_title(canvas, "instructions per update")?;
     for limit in limits() {
         let line = [(plot.x.low, limit), (plot.x.high, limit)].map(|point| plot.at(point));
         canvas.line(&line, INK, 1.5)?;
     }
-    // From corner to corner: on the way nothing better is had.
+    // Steps: between two estimators no better one exists.
     let mut steps: Vec<(f64, f64)> = Vec::new();
     for point in front(points(scenario).map(|(_, c, e)| (c, e)).collect()) {
         let (x, y) = plot.at(point);
@@ -157,7 +157,7 @@ mod tests {
     use scoring::score::Score;
 
     #[test]
-    fn the_front_is_what_nothing_beats() {
+    fn front_has_the_points_that_no_other_beats() {
         let points = vec![
             (9.0, 3.0),
             (20.0, 4.0),
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn a_panel_a_scenario_and_the_particle_filter_where_it_ran() {
+    fn each_scenario_has_a_panel_and_the_particle_filter_if_it_ran() {
         let row = |name: &str, instructions, rms| Row {
             estimator: name.to_owned(),
             instructions,
@@ -211,9 +211,9 @@ mod tests {
         let groups = groups(&report);
         let palette = Palette::new(&report);
         let svg = panels(&groups[0], &limits, &palette).unwrap().unwrap().0;
-        assert_eq!(svg.matches("instructions an update").count(), 2);
+        assert_eq!(svg.matches("instructions per update").count(), 2);
         assert!(svg.contains("particle filter: counts") && !svg.contains("unmeasured"));
-        // Of the particle filter on another plant or at another rate, nothing.
+        // Results of another plant or rate are not drawn.
         let svg = panels(&groups[0], &[], &palette).unwrap().unwrap().0;
         assert!(!svg.contains("particle filter: counts"));
     }

@@ -1,7 +1,7 @@
-//! Curves made small enough to draw and cut to the axes.
+//! Curves: reduced to the visible points and cut at the axes.
 
 /// At most two points in each of `columns` equal parts of `x`: the lowest and the highest, in
-/// the order in which they came; what is not finite is dropped. Points must come in order of x.
+/// their order; values that are not finite are dropped. Points must come in order of x.
 pub(super) fn reduce(
     points: impl Iterator<Item = (f64, f64)>,
     [left, right]: [f64; 2],
@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn a_short_curve_keeps_its_points_but_not_its_gaps() {
+    fn short_curve_keeps_its_finite_points() {
         let points = [
             (0.0, 1.0),
             (1.0, f64::NAN),
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn a_curve_that_leaves_is_cut_where_it_leaves() {
+    fn curve_is_cut_where_it_leaves_the_axes() {
         let saw = [
             (0.0, 0.0),
             (1.0, 4.0),
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn a_jump_across_both_ends_leaves_its_middle_and_what_is_outside_nothing() {
+    fn jump_across_both_ends_keeps_its_middle_and_outside_is_dropped() {
         assert_eq!(
             clip(&[(0.0, -3.0), (1.0, 3.0)], [-1.5, 1.5]),
             [vec![(0.25, -1.5), (0.75, 1.5)]]

@@ -1,4 +1,4 @@
-//! Damping over time, true and learned.
+//! Damping of the coupler over time, true and identified.
 
 use super::CaseReport;
 use super::canvas::{Anchor, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height};
@@ -11,7 +11,7 @@ const LEFT: f64 = 62.0;
 const TOP: f64 = 46.0;
 const PANEL: f64 = 240.0;
 
-/// One panel: the truth in black, an estimator a colour.
+/// One panel: the truth in black, each estimator in its colour.
 pub(super) fn chart(
     case: &CaseReport,
     damping: &Damping,
@@ -43,7 +43,7 @@ pub(super) fn chart(
         plot.grid(canvas, 6, 6)?;
         plot.x_title(canvas, "time, s")?;
         let at = (16.0, 0.5 * (TOP + bottom));
-        let unit = "b, mN\u{b7}m\u{b7}s/rad";
+        let unit = "damping b, mN\u{b7}m\u{b7}s/rad";
         canvas.text(unit, at, Anchor::Upwards, LABEL, INK)?;
         let curve = |values: &[f64]| {
             let points = values.iter().enumerate();
@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn truth_and_learned_are_drawn_and_named() {
+    fn true_and_identified_damping_are_drawn_and_named() {
         let damping = Damping {
             truth: vec![1e-3, 0.9e-3, 0.8e-3],
             learned: vec![("adaptive", vec![1e-3, 0.95e-3, 0.8e-3])],

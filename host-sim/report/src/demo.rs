@@ -1,4 +1,4 @@
-//! A made-up comparison: quantised motion, estimators that are filters of it.
+//! Artificial comparison: quantised motion and moving averages in place of estimators.
 
 use std::f64::consts::TAU;
 

@@ -1,4 +1,5 @@
-//! Mean distance outside the interval, every scenario and estimator, plants side by side.
+//! Mean distance outside the haptic interval: a bar for each scenario and estimator, plants side by
+//! side.
 
 use super::canvas::{
     Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height, text_width,
@@ -8,13 +9,13 @@ use super::palette::{GRID, INK, MUTED, Palette};
 use super::plot::{Axis, Plot};
 use super::text::{number, plant};
 
-/// Below this nobody can care, rad/s: the axis begins here at the latest.
+/// Smallest lower end of the axis, rad/s; shorter distances do not matter.
 const FLOOR_RAD_S: f64 = 1e-4;
 /// Sizes, px.
 const BAR: f64 = 6.5;
 const BETWEEN: f64 = 12.0;
 
-/// Horizontal bars on a log axis, one panel a plant; `groups` are those of one rate.
+/// Horizontal bars on a log axis, one panel for each plant; all `groups` have the same rate.
 ///
 /// `None` if no case has a distance.
 pub(super) fn bars(

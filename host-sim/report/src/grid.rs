@@ -1,9 +1,9 @@
-//! Cases in groups: the same rate and plant, all scenarios, all estimators.
+//! Cases in groups of equal rate and plant, with all scenarios and estimators.
 
 use super::{CaseReport, ReportInput, Row};
 use scoring::score::Score;
 
-/// What was run at one rate on one plant.
+/// The cases of one rate and plant.
 pub(super) struct Group<'a> {
     pub(super) rate_hz: f64,
     pub(super) friction: bool,
@@ -11,16 +11,16 @@ pub(super) struct Group<'a> {
     pub(super) scenarios: Vec<Scenario<'a>>,
 }
 
-/// One scenario; where it ran with several seeds, rows hold the mean over them (largest errors
-/// the largest, counts the sum).
+/// One scenario. Rows of several seeds are merged into their mean, largest errors into the largest,
+/// counts into the sum.
 pub(super) struct Scenario<'a> {
     pub(super) name: &'a str,
     pub(super) rows: Vec<Row>,
 }
 
 impl Group<'_> {
-    /// Share of samples inside the interval, mean over the scenarios that have it, and how many
-    /// those are.
+    /// Share of samples inside the haptic interval, mean over the scenarios that have this score, and
+    /// their number.
     pub(super) fn inside(&self, estimator: &str) -> Option<(f64, usize)> {
         let outside: Vec<f64> = self
             .scenarios
@@ -68,7 +68,7 @@ fn scenarios<'a>(cases: &[&'a CaseReport]) -> Vec<Scenario<'a>> {
         .collect()
 }
 
-/// One row an estimator, in order of appearance.
+/// One row for each estimator, in order of appearance.
 fn merge(rows: &[&Row]) -> Vec<Row> {
     let mut names: Vec<&str> = Vec::new();
     for row in rows {
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn rates_rise_frictionless_comes_first_and_scenarios_keep_their_order() {
+    fn groups_are_sorted_by_rate_and_plant_and_scenarios_keep_their_order() {
         let report = ReportInput {
             cases: vec![
                 case("step", 11_600.0, true, &[]),
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn seeds_are_averaged_but_the_worst_stays_the_worst() {
+    fn seeds_are_averaged_and_largest_errors_stay_the_largest() {
         let report = ReportInput {
             cases: vec![
                 case("step", 1000.0, true, &[("pll", 1.0), ("foaw", 5.0)]),

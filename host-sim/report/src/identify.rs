@@ -1,5 +1,5 @@
-//! The page of `identify`: the identified motor beside the measured one, what is left over, and how
-//! sure each constant is.
+//! The page of `identify`: measured and simulated velocity, residual, and the confidence interval of
+//! each constant.
 
 use super::canvas::{Anchor, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height};
 use super::page::Printout;
@@ -19,8 +19,8 @@ const NAMES: f64 = 230.0;
 
 const MODEL: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
 
-/// The page: a figure a recording, one of the constants, then the printed table.
-/// `count_rad_s` is what one count is worth over [`SPAN_S`].
+/// The page: a figure for each recording, one of the constants, then the printed table.
+/// `count_rad_s` is one count over [`SPAN_S`], rad/s.
 ///
 /// # Errors
 /// If a figure cannot be drawn.
@@ -35,10 +35,10 @@ pub fn identify(
         .chain([constants(&found.quantities)])
         .collect::<Result<_, _>>()?;
     let intro = format!(
-        "The identified motor ran beside the measured one: it saw the current and the handle, \
-         never the motor. Both velocities are displacements over {:.0} ms; the green band is one \
-         count of that. What repeats once a turn is fitted but not modelled here, so it stays in \
-         the residual.",
+        "The identified model of the motor is simulated with the measured current and handle position, \
+         without the measured motor position. Both velocities are displacements over {:.0} ms, \
+         divided by that time; the green band is one count over that time. The components that repeat once a \
+         turn are fitted, but this model does not contain them: they remain in the residual.",
         1e3 * SPAN_S
     );
     Ok(printout.page("Identification", &intro, &figures))
@@ -72,7 +72,10 @@ fn motion(comparison: &ModelComparison, count_rad_s: f64) -> Result<Svg, String>
     ]
     .concat();
     let [first, last] = ends[..] else {
-        return Err(format!("{}: nothing to draw", comparison.name));
+        return Err(format!(
+            "{}: the recording has no samples to draw",
+            comparison.name
+        ));
     };
     figure(height, &title, |canvas| {
         canvas.text(&title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
@@ -113,18 +116,18 @@ fn motion(comparison: &ModelComparison, count_rad_s: f64) -> Result<Svg, String>
     })
 }
 
-/// Each constant as part of the device file's value, with its 95 % interval.
+/// Each constant relative to its value in the device file, with its 95 % interval.
 fn constants(quantities: &[Quantity]) -> Result<Svg, String> {
     let parts: Vec<(&Quantity, f64, f64)> = quantities
         .iter()
         .filter(|quantity| quantity.file != 0.0)
         .map(|q| (q, q.estimate.value / q.file, q.estimate.half / q.file.abs()))
         .collect();
-    let told = || parts.iter().filter(|(q, ..)| q.rejected.is_none());
-    let reach = told().map(|(_, part, half)| (part - 1.0).abs() + half);
+    let accepted = || parts.iter().filter(|(q, ..)| q.rejected.is_none());
+    let reach = accepted().map(|(_, part, half)| (part - 1.0).abs() + half);
     let span = (1.15 * reach.fold(0.05, f64::max)).min(1.0);
     let height = TOP + ROW * parts.len() as f64;
-    let title = "Identified over the device file, with 95 % intervals";
+    let title = "Identified value relative to the device file, with 95 % intervals";
     figure(height + 50.0, title, |canvas| {
         canvas.text(title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
         let plot = Plot {
@@ -158,7 +161,7 @@ fn constants(quantities: &[Quantity]) -> Result<Svg, String> {
             if quantity.rejected.is_some() {
                 let (x, _) = plot.at((1.0 - 0.95 * span, 0.0));
                 canvas.text(
-                    "cannot be told, see below",
+                    "not identifiable, see below",
                     (x, y),
                     Anchor::Left,
                     LABEL,
@@ -175,6 +178,6 @@ fn constants(quantities: &[Quantity]) -> Result<Svg, String> {
             canvas.line(&[(at, y - 8.0), (at, y + 8.0)], INK, 2.5)?;
         }
         plot.edges(canvas)?;
-        plot.x_title(canvas, "part of the device file\u{2019}s value")
+        plot.x_title(canvas, "identified value / value of the device file")
     })
 }

@@ -1,11 +1,11 @@
-//! One self-contained page that shows a comparison: figures, tables, and what to look for.
+//! Self-contained HTML pages of the experiments: figures, tables and their explanation.
 //!
-//! Plain data in, text out: nothing here simulates, reads or writes a file. A figure whose data
-//! is not there is left out.
+//! The functions turn results into text; they neither simulate nor read or write files. A figure
+//! without data is left out.
 
 use experiments::compare::Damping;
 use experiments::limit;
-use experiments::sensitivity as belief;
+use experiments::sensitivity as sensitivity_rows;
 use scoring::score::Score;
 use simulation::device::Device;
 
@@ -56,10 +56,10 @@ pub use robust::robust;
 
 pub use recording::{RecordingView, recording};
 
-/// Everything that the page shows.
+/// Content of the page of a comparison.
 #[derive(Clone, Debug, Default)]
 pub struct ReportInput {
-    /// The command line that produced it.
+    /// The command line that produced the page.
     pub command: String,
     /// Name of the device: its file, or that it is the default one.
     pub device_name: String,
@@ -67,20 +67,19 @@ pub struct ReportInput {
     pub device: Device,
     /// Remarks printed below the heading, plain text, one paragraph each.
     pub notes: Vec<String>,
-    /// One entry for each scenario, rate, plant and seed that was run; their order is the
-    /// tables' order.
+    /// One entry for each scenario, rate, plant and seed; the tables have the same order.
     pub cases: Vec<CaseReport>,
-    /// The best that can be had, by particle filter.
+    /// Errors of the particle filter.
     pub limits: Vec<limit::Row>,
-    /// Errors of estimators that believe in wrong constants.
-    pub beliefs: Vec<belief::Row>,
-    /// Runs of a coupler that warms up, for their damping alone.
-    pub warming: Vec<CaseReport>,
-    /// The loop closed on each estimator, where that was run.
+    /// Errors of estimators whose model has one wrong constant.
+    pub parameter_errors: Vec<sensitivity_rows::Row>,
+    /// Runs of scenario `heating`, shown by their damping alone.
+    pub heating: Vec<CaseReport>,
+    /// Results of the closed loop, if it was run.
     pub closed_loop: ClosedLoop,
 }
 
-/// One scenario at one rate on one plant, and how every estimator did.
+/// Results of one scenario at one rate on one plant.
 #[derive(Clone, Debug, Default)]
 pub struct CaseReport {
     /// Name of the scenario.
@@ -89,13 +88,14 @@ pub struct CaseReport {
     pub rate_hz: f64,
     /// Whether the plant has Coulomb friction.
     pub friction: bool,
-    /// Seed of its random draws.
+    /// Seed of the random numbers.
     pub seed: u64,
-    /// One for each estimator, in the order of the tables.
+    /// One row for each estimator, in the order of the tables.
     pub rows: Vec<Row>,
-    /// The signals, where a figure may want them. Needed by figures 1, 6, 7 and the spectrum.
+    /// The signals, if figures show this case: encoder quantisation, step response, permanent regime
+    /// and spectrum.
     pub traces: Option<Traces>,
-    /// Damping, true and learned, where the coupler warms up.
+    /// True and identified damping, if the coupler heats up.
     pub damping: Option<Damping>,
 }
 
@@ -106,7 +106,7 @@ pub struct Row {
     pub estimator: String,
     /// Its scores.
     pub score: Score,
-    /// Instructions an update on the board, where they were measured.
+    /// Instructions per update on the board, if they were measured.
     pub instructions: Option<f64>,
 }
 
@@ -117,7 +117,7 @@ pub struct Traces {
     pub rate_hz: f64,
     /// True velocity, rad/s.
     pub truth: Vec<f64>,
-    /// Name and velocity (rad/s) of each estimator, as many samples as the truth.
+    /// Name and velocity (rad/s) of each estimator, with as many samples as the truth.
     pub estimates: Vec<(String, Vec<f32>)>,
 }
 
@@ -128,7 +128,7 @@ impl Traces {
     }
 }
 
-/// The whole page as HTML that loads nothing from anywhere.
+/// The page of a comparison as HTML that loads no other file.
 ///
 /// # Errors
 /// If signals differ in length or have no rate, or a figure cannot be drawn.
@@ -152,7 +152,7 @@ pub fn html(report: &ReportInput) -> Result<String, String> {
     overview::page(report)
 }
 
-/// The figures of a page made by [`html`], in order, each an SVG document.
+/// The figures of a page in order, each an SVG document.
 pub fn figures(page: &str) -> impl Iterator<Item = &str> {
     page.split("<figure>")
         .skip(1)

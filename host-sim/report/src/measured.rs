@@ -1,12 +1,13 @@
-//! What an update costs on the board: the table that `cargo pareto` measured.
+//! Instructions per update on the board, from the table of `cargo pareto`.
 
 use std::collections::BTreeMap;
 
 /// The table that `cargo pareto` measured.
 const MEASURED: &str = include_str!("../../../measured/pareto.csv");
 
-/// Instructions an update on a Cortex-M4F, mean of the traces, at `opt-level` 3; `None` of what was
-/// not measured. FOAW costs as its window is long: the row whose n is nearest to `n`.
+/// Instructions per update on a Cortex-M4F, mean of the traces, at `opt-level` 3; `None` for an
+/// estimator that was not measured. The cost of FOAW depends on its window n: the row with the
+/// nearest n counts.
 #[must_use]
 pub fn instructions(estimator: &str, parameters: &BTreeMap<&'static str, f64>) -> Option<f64> {
     let n = parameters.get("n").copied().unwrap_or(1.0);

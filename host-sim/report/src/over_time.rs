@@ -11,12 +11,13 @@ use experiments::compare::interval;
 
 use super::{CaseReport, ReportInput, Traces, velocity, windows};
 
-const STEP: &str = "One step of the large motor\u{2019}s current, the handle held. A good colour \
-    stays inside the green: trailing behind the step is delay, jumping out of the green where \
-    the truth is smooth is noise. \u{201c}Off scale\u{201d} says how many of the panel\u{2019}s \
-    samples lie beyond its axis.";
-const STEADY: &str = "Constant speed: whatever moves here is noise, and whatever sits beside the \
-    black line is bias. A good estimate is a flat line inside the green.";
+const STEP: &str = "Response to one step of the large motor\u{2019}s current while the handle \
+    is held. A good estimate (coloured) stays inside the haptic interval (green). A shift \
+    behind the step is delay; a jump out of the green while the truth is smooth is noise. \
+    \u{201c}Off scale\u{201d} is the share of the panel\u{2019}s samples beyond its axis.";
+const STEADY: &str = "Velocity at constant speed: variation of the estimate is noise, an offset \
+    from the black line is bias. A good estimate is a flat line inside the haptic interval \
+    (green).";
 /// The cases of one scenario that have signals: with friction if there are any, the first seed,
 /// by rising rate; of more than two rates the lowest and the highest.
 pub(super) fn drawn<'a>(report: &'a ReportInput, scenario: &str) -> Vec<&'a CaseReport> {

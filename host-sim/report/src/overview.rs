@@ -31,7 +31,7 @@ pub(super) fn page(report: &ReportInput) -> Result<String, String> {
     .html())
 }
 
-/// What was run.
+/// Plants, rates and seeds of the runs.
 fn facts(report: &ReportInput) -> Vec<(&'static str, String)> {
     let closed = || report.closed_loop.outcomes.iter().map(|o| &o.case);
     let compared = report.cases.iter().map(|case| case.rate_hz);

@@ -5,7 +5,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::canvas::Svg;
 use super::version::VERSION;
 
-/// A page that loads nothing from anywhere.
+/// A page that loads no other file.
 pub(super) struct Document<'a> {
     pub(super) title: &'a str,
     /// Below the title.

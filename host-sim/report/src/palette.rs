@@ -27,10 +27,10 @@ fn known(name: &str) -> Option<Style> {
     Some(Style { colour, dash })
 }
 
-/// Names in order of appearance.
+/// Estimators of a page in order of appearance, and their styles.
 pub(super) struct Palette {
-    seen: Vec<String>,
-    /// How many of them are in the open-loop comparison.
+    names: Vec<String>,
+    /// Number of names in the open-loop comparison; they come first.
     compared: usize,
 }
 
@@ -41,7 +41,7 @@ impl Palette {
             let rows = case.rows.iter().map(|row| &row.estimator);
             rows.chain(drawn.map(|(name, _)| name)).map(String::as_str)
         });
-        let closed = report.closed_loop.closers().into_iter();
+        let closed = report.closed_loop.velocity_sources().into_iter();
         Self::named(
             names
                 .map(|name| (name, true))
@@ -55,15 +55,18 @@ impl Palette {
 
     /// Names by order of appearance, and whether each is in the open-loop comparison.
     fn named<'a>(names: impl Iterator<Item = (&'a str, bool)>) -> Self {
-        let mut seen: Vec<String> = Vec::new();
+        let mut all: Vec<String> = Vec::new();
         let mut compared = 0;
         for (name, is_compared) in names {
-            if !seen.iter().any(|known| known == name) {
+            if !all.iter().any(|known| known == name) {
                 compared += usize::from(is_compared);
-                seen.push(name.to_owned());
+                all.push(name.to_owned());
             }
         }
-        Self { seen, compared }
+        Self {
+            names: all,
+            compared,
+        }
     }
 
     /// Style of an estimator; ink for a name that is no estimator's.
@@ -73,7 +76,7 @@ impl Palette {
 
     /// Every estimator of the open-loop comparison, in order of first appearance.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
-        self.seen[..self.compared].iter().map(String::as_str)
+        self.names[..self.compared].iter().map(String::as_str)
     }
 }
 
@@ -82,11 +85,11 @@ mod tests {
     use super::*;
     use catalogue::estimators::Kind;
 
-    /// Least distance of two colours with the same dash, in OKLab, where 0.02 can just be seen side
-    /// by side.
+    /// Smallest accepted distance of two colours with the same dash, in OKLab; a distance of 0.02 is
+    /// just visible side by side.
     const LEAST: f64 = 0.06;
 
-    /// Linear RGB as people with normal, protanopic and deuteranopic vision see it: Machado,
+    /// Linear RGB as seen with normal, protanopic and deuteranopic vision: Machado,
     /// Oliveira and Fernandes (2009), severity 1.
     const VISIONS: [[[f64; 3]; 3]; 3] = [
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
@@ -126,7 +129,7 @@ mod tests {
         )
     }
 
-    /// The distance of two colours to whom it is smallest.
+    /// Smallest distance of two colours over the kinds of vision.
     fn distance(a: RGBColor, b: RGBColor) -> f64 {
         let linear = |RGBColor(r, g, b): RGBColor| {
             [r, g, b].map(|part| {
@@ -149,15 +152,15 @@ mod tests {
     }
 
     #[test]
-    fn the_distance_is_that_of_the_least_vision() {
+    fn colour_distance_is_the_smallest_over_the_kinds_of_vision() {
         let [black, white] = [RGBColor(0, 0, 0), RGBColor(255, 255, 255)];
         assert!((distance(black, white) - 1.0).abs() < 1e-3);
-        // A red and a green of one lightness: alike only to who cannot see their hue.
+        // A red and a green of equal lightness: similar with a colour vision deficiency alone.
         assert!(distance(RGBColor(163, 60, 0), RGBColor(84, 100, 0)) < 0.08);
     }
 
     #[test]
-    fn every_estimator_has_a_style_that_no_other_can_be_taken_for() {
+    fn styles_of_estimators_can_be_told_apart() {
         let mut names: Vec<&str> = Kind::all().iter().map(|kind| kind.name).collect();
         names.push(REFERENCE);
         let palette = Palette::of(names.iter().copied());
@@ -177,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_that_is_no_estimator_is_drawn_in_ink() {
+    fn unknown_name_is_drawn_in_ink() {
         assert_eq!(Palette::of(["mine"].into_iter()).style("mine"), INK.into());
     }
 }

@@ -1,4 +1,4 @@
-//! Axes: where a value lies in a frame, and the frame's grid and labels.
+//! Axes: position of a value in a frame, grid and labels.
 
 use super::canvas::{Anchor, Canvas, LABEL};
 use super::curve;
@@ -38,7 +38,7 @@ impl Axis {
         }
     }
 
-    /// A log axis that ends exactly where it is told.
+    /// A log axis with exactly these ends.
     pub(super) fn log_exact([low, high]: [f64; 2]) -> Self {
         Self {
             low,
@@ -47,12 +47,13 @@ impl Axis {
         }
     }
 
-    /// Whether it is logarithmic.
+    /// Whether the axis is logarithmic.
     pub(super) fn is_log(&self) -> bool {
         self.log
     }
 
-    /// 0 at the low end, 1 at the high one; on a log axis what is not positive is far below.
+    /// Position of a value: 0 at the low end, 1 at the high end; far below 0 for a value on a log axis
+    /// that is not positive.
     pub(super) fn part(&self, value: f64) -> f64 {
         if self.log {
             let span = (self.high / self.low).ln();
@@ -62,7 +63,7 @@ impl Axis {
         }
     }
 
-    /// About `wanted` round values within the axis, none if none are wanted; on a log axis the decades.
+    /// About `wanted` round values within the axis, none for 0; the decades on a log axis.
     pub(super) fn ticks(&self, wanted: usize) -> Vec<f64> {
         if self.log {
             let first = (self.low.log10() - 1e-9).ceil() as i32;
@@ -82,7 +83,7 @@ impl Axis {
             .unwrap_or_default()
     }
 
-    /// The ends, and what is round between them.
+    /// The ends, and the round values between them.
     fn within_a_decade(&self) -> Vec<f64> {
         let decade = 10_f64.powf(self.low.log10().floor());
         let round = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0].map(|m| m * decade);
@@ -147,7 +148,7 @@ pub(super) struct Plot {
 }
 
 impl Plot {
-    /// Place of a value, px.
+    /// Position of a value, px.
     pub(super) fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         (
             self.left + self.x.part(x) * (self.right - self.left),
@@ -193,7 +194,7 @@ impl Plot {
         canvas.line(&edge, MUTED, 1.0)
     }
 
-    /// What the x axis measures, below its labels.
+    /// Title of the x axis, below its labels.
     pub(super) fn x_title(&self, canvas: &Canvas, title: &str) -> Result<(), String> {
         let middle = 0.5 * (self.left + self.right);
         canvas.text(
@@ -205,7 +206,7 @@ impl Plot {
         )
     }
 
-    /// A curve (x rising), reduced to what can be seen and cut at the frame.
+    /// A curve with rising x, reduced to its visible points and cut at the frame.
     pub(super) fn curve(
         &self,
         canvas: &Canvas,
@@ -247,7 +248,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ticks_are_round_and_inside() {
+    fn ticks_are_round_and_inside_the_axis() {
         assert_eq!(Axis::linear([-0.3, 10.2]).ticks(5), [0.0, 5.0, 10.0]);
         assert_eq!(
             Axis::linear([-40.0, 60.0]).ticks(5),
@@ -261,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn an_axis_has_two_labels_at_least() {
+    fn axis_has_at_least_two_labels() {
         for low in (-40..=40).map(|i| 0.05 * f64::from(i)) {
             for span in (1..=60).map(|i| 0.03 * f64::from(i)) {
                 let axis = Axis::linear([low, low + span]);
@@ -278,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn labels_show_what_a_tick_is() {
+    fn labels_have_the_digits_of_their_ticks() {
         let axis = Axis::linear([-1.0, 1.0]);
         assert_eq!(axis.label(-0.25), "\u{2212}0.25");
         assert_eq!(axis.label(-0.0), "0");
@@ -291,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ends_of_the_axes_are_the_edges_of_the_frame() {
+    fn ends_of_the_axes_are_the_edges_of_the_frame() {
         let plot = Plot {
             left: 50.0,
             top: 10.0,

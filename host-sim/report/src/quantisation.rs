@@ -1,4 +1,4 @@
-//! The problem itself: what a finite difference makes of an encoder's counts.
+//! Effect of the encoder's quantisation on finite difference.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use scoring::score::Interval;
 
 const LEFT: f64 = 62.0;
 
-/// Truth, interval and one estimate over `window`, one wide panel that shows all of both.
+/// Truth, haptic interval and one estimate over `window` in one wide panel without values off scale.
 pub(super) fn figure_one(
     title: &str,
     traces: &Traces,

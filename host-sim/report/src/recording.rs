@@ -1,5 +1,5 @@
-//! A recording as one picture: position, velocity, what the velocity is off by, currents, torque,
-//! over one time axis.
+//! A recording as one figure: position, velocity, velocity error, currents and torque over one time
+//! axis.
 
 mod changes;
 mod panel;
@@ -26,29 +26,29 @@ const LARGE: RGBColor = RGBColor(0x00, 0x72, 0xb2);
 const SMALL: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
 const BOARD: RGBColor = RGBColor(0xb0, 0x00, 0x20);
 
-/// What a picture shows.
+/// Content of the figure of a recording.
 #[derive(Clone, Copy, Debug)]
 pub struct RecordingView<'a> {
-    /// What it goes by.
+    /// Title of the figure.
     pub name: &'a str,
     /// The recording.
     pub recording: &'a Recording,
-    /// What the board made of it.
+    /// Columns that the board wrote into the recording.
     pub board: &'a BoardColumns,
     /// Estimates of the large motor's velocity.
     pub estimates: &'a [Estimate],
-    /// Counts a revolution, large and small.
+    /// Counts per revolution of the large motor's and of the handle's encoder.
     pub counts_per_rev: [u32; 2],
-    /// What a fingertip cannot tell from the truth.
+    /// Haptic interval: velocity errors that a fingertip does not feel.
     pub interval: Interval,
     /// Time shown, s.
     pub window: [f64; 2],
 }
 
-/// The picture as SVG.
+/// The figure as SVG.
 ///
 /// # Errors
-/// If it cannot be drawn.
+/// If the figure cannot be drawn.
 pub fn recording(view: &RecordingView) -> Result<String, String> {
     let panels = panels(view);
     let ranges: Vec<_> = panels.iter().map(|panel| range(panel, view)).collect();
@@ -88,7 +88,7 @@ fn keys<'a>(panel: &Panel, names: &'a [String]) -> Vec<Key<'a>> {
     let lines = panel.curves.iter().zip(names);
     let mut keys: Vec<_> = lines.map(|(c, name)| Key::Line(c.style, name)).collect();
     if panel.band.is_some() {
-        keys.push(Key::Band("what a fingertip cannot tell"));
+        keys.push(Key::Band("haptic interval"));
     }
     keys
 }
@@ -119,7 +119,7 @@ fn panels(view: &RecordingView) -> Vec<Panel> {
     let velocities = velocities(view);
     let errors = trace.true_omega.as_ref().map(|truth| {
         let error = |curve: &Curve| Curve {
-            name: format!("{} less the truth", curve.name),
+            name: format!("{} minus truth", curve.name),
             values: curve.values.iter().zip(truth).map(|(e, w)| e - w).collect(),
             ..*curve
         };
@@ -147,13 +147,13 @@ fn panels(view: &RecordingView) -> Vec<Panel> {
     add("current, A", there.collect(), None);
     let torque = board.column("torque").into_iter().map(|torque| {
         let torque: Vec<_> = torque.iter().map(|torque| 1e3 * torque).collect();
-        Curve::new("wanted on the handle", INK, &torque)
+        Curve::new("commanded at the handle", INK, &torque)
     });
-    add("torque, mN.m", torque.collect(), None);
+    add("torque, mN\u{b7}m", torque.collect(), None);
     panels
 }
 
-/// Estimates, then the board's own, of which only those that are there.
+/// Estimates, then the estimate of the board if the recording has it.
 fn velocities(view: &RecordingView) -> Vec<Curve> {
     let palette = Palette::of(view.estimates.iter().map(|estimate| estimate.estimator));
     let mut curves: Vec<_> = view
@@ -163,13 +163,13 @@ fn velocities(view: &RecordingView) -> Vec<Curve> {
             let values: Vec<_> = estimate.velocity.iter().map(|w| f64::from(*w)).collect();
             let colour = palette.style(estimate.estimator);
             let mut curve = Curve::new(estimate.estimator, colour, &values);
-            // Its quantisation would hide what the others differ by.
+            // The axis follows the other estimates: quantisation of this one would hide their differences.
             curve.sizes = estimate.estimator != "finite-difference";
             curve
         })
         .collect();
     if let Some(own) = view.board.column("velocity_large") {
-        curves.push(Curve::new("the board's own", BOARD, own));
+        curves.push(Curve::new("estimate of the board", BOARD, own));
     }
     if curves.iter().all(|curve| !curve.sizes) {
         curves.iter_mut().for_each(|curve| curve.sizes = true);
@@ -208,7 +208,7 @@ mod tests {
         0.005,5,2,0\n0.006,6,3,5\n";
 
     #[test]
-    fn curves_stop_at_gaps_and_counts_run_over_their_wrap() {
+    fn curves_end_at_gaps_and_counts_continue_over_their_wrap() {
         let recording = Recording::parse(TEXT.as_bytes(), "r").unwrap();
         let board = BoardColumns::parse(TEXT.as_bytes(), "r").unwrap();
         let view = view(&recording, &board);
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_has_no_panel() {
+    fn missing_signals_have_no_panel() {
         let text = "t,counts_large\n0,0\n0.001,1\n";
         let recording = Recording::parse(text.as_bytes(), "r").unwrap();
         let board = BoardColumns::default();
@@ -262,10 +262,10 @@ mod tests {
             ]
         );
         assert_eq!(panels[2].curves[0].values, [-0.5, 0.5]);
-        assert_eq!(panels[2].names(&view, [-1.0, 1.0]), ["pll less the truth"]);
+        assert_eq!(panels[2].names(&view, [-1.0, 1.0]), ["pll minus truth"]);
         assert_eq!(
             panels[2].names(&view, [-1.0, 0.0]),
-            ["pll less the truth, 50\u{a0}% off scale"]
+            ["pll minus truth, 50\u{a0}% off scale"]
         );
     }
 }

@@ -1,4 +1,4 @@
-//! The page of `robust`: how far devices came from the limits, scene by scene.
+//! The page of `robust`: verdicts, and distributions of the results against their limits.
 
 use plotters::style::RGBColor;
 
@@ -41,7 +41,7 @@ const PANELS: [Panel; 4] = [
         axis: [0.1, 100.0],
     },
     Panel {
-        title: "torque felt, mN.m",
+        title: "torque felt, mN\u{b7}m",
         of: |scene| Some(scene.felt_nm),
         limit: |_| Some(FELT_NM),
         factor: 1e3,
@@ -55,7 +55,7 @@ const PANELS: [Panel; 4] = [
         axis: [0.01, 10.0],
     },
     Panel {
-        title: "oscillation, mN.m RMS",
+        title: "oscillation, RMS, mN\u{b7}m",
         of: |scene| scene.oscillation_nm,
         limit: |scene| Some(scene.oscillation_limit_nm),
         factor: 1e3,
@@ -73,16 +73,17 @@ pub fn robust(
     printout: &Printout,
 ) -> Result<String, String> {
     let intro = format!(
-        "{heading}. The controller believes the nominal device; each run has another one. Of each \
-         run the largest speed, torque and force, and the oscillation that stays. Bars reach from \
-         5 % to 95 % of the devices, the line in them is the median, the dot the largest; red \
-         lines are limits."
+        "{heading}. The controller is designed for the nominal device; each run simulates a device \
+         that differs from it. The figure shows the verdicts and, over the runs, the largest speed, \
+         torque and parasitic force and the remaining oscillation. A bar reaches from the 5th to the \
+         95th percentile, its line is the median, the dot is the maximum. Red lines are limits. The \
+         numbers below the verdicts count stable, stopped and violated runs."
     );
     Ok(printout.page("Robustness of the loop", &intro, &[chart(scenes)?]))
 }
 
 fn chart(scenes: &[SceneSummary]) -> Result<Svg, String> {
-    let title = "Devices that differ from the one believed in";
+    let title = "Closed loop on devices that differ from the nominal one";
     let bottom = TOP + ROW * scenes.len() as f64;
     let share = (WIDTH - LEFT - 20.0 + GAP) / (PANELS.len() + 1) as f64;
     figure(bottom + 34.0, title, |canvas| {
@@ -106,7 +107,7 @@ fn middle(i: usize) -> f64 {
     TOP + ROW * (i as f64 + 0.5)
 }
 
-/// Shares of the verdicts as bars, with the counts of what was not stable.
+/// Shares of the verdicts as bars, with their counts.
 fn verdicts(
     canvas: &Canvas,
     scenes: &[SceneSummary],
@@ -116,7 +117,7 @@ fn verdicts(
     for (i, scene) in scenes.iter().enumerate() {
         let whole = scene.counts.iter().sum::<usize>().max(1) as f64;
         let y = middle(i) - 4.0;
-        // From the right, each at least to be seen; what is stable takes the rest.
+        // Drawn from the right; each verdict has a visible width, and stable takes the remainder.
         let mut x = right;
         for (count, (colour, _)) in scene.counts.iter().zip(VERDICTS).rev() {
             let width = ((right - left) * *count as f64 / whole).max(2.0);

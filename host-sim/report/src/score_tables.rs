@@ -1,4 +1,4 @@
-//! The scores in numbers, the best of each column marked.
+//! Tables of the scores; the best value of each column is marked.
 
 use maud::{Markup, html};
 
@@ -9,7 +9,7 @@ use scoring::score::{Better, Field, Form, Score};
 
 /// Share of samples inside the interval: estimators down, rate and plant across.
 ///
-/// `None` if no case says.
+/// `None` if no case has this score.
 pub(super) fn inside(groups: &[Group], palette: &Palette) -> Option<Markup> {
     let inside_of = |group: &Group| -> Vec<Option<f64>> {
         let inside = palette.names().map(|name| group.inside(name));
@@ -26,7 +26,7 @@ pub(super) fn inside(groups: &[Group], palette: &Palette) -> Option<Markup> {
     (!columns.is_empty()).then(|| html! {
         div.scroll {
             table.scores {
-                caption { "Time inside the haptic interval, mean over scenarios" }
+                caption { "Share of samples inside the haptic interval, mean over scenarios" }
                 thead {
                     tr {
                         th { "estimator" }
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn the_best_is_the_smallest_in_size_and_only_columns_with_scores_are_there() {
+    fn smallest_magnitude_is_best_and_empty_columns_are_left_out() {
         let html = table(&[("a", delay(-0.5)), ("b", delay(0.25)), ("c", delay(-0.2))]);
         assert_eq!(html.matches("class=\"best\"").count(), 1);
         assert!(
@@ -210,13 +210,13 @@ mod tests {
     }
 
     #[test]
-    fn alone_or_all_alike_nobody_is_best() {
+    fn single_or_equal_values_have_no_best() {
         assert!(!table(&[("a", delay(0.5))]).contains("best"));
         assert!(!table(&[("a", delay(0.5)), ("b", delay(0.5))]).contains("best"));
     }
 
     #[test]
-    fn an_estimate_that_is_not_finite_says_so_and_is_not_best() {
+    fn non_finite_estimate_is_reported_and_not_best() {
         let bad = Score {
             rms_rad_s: Some(f64::INFINITY),
             non_finite: 7,

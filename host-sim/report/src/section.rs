@@ -28,7 +28,7 @@ impl Section {
     }
 }
 
-/// What to look for in the figures or tables beside it.
+/// Explanation of figures or tables.
 pub(super) fn explanation(text: &str) -> Markup {
     html! { p.look { (text) } }
 }

@@ -1,5 +1,4 @@
-//! What the page of a comparison shows, in order: each section a heading, its figures and what to
-//! look for.
+//! Sections of the page of a comparison, in order: figures and their explanation.
 
 use std::f64::consts::TAU;
 
@@ -10,7 +9,7 @@ use super::grid::{Group, groups};
 use super::over_time::{PERMANENT, STEP_RESPONSE, drawn};
 use super::palette::Palette;
 use super::section::{Section, explained, explanation};
-use super::text::{number, plant, rate};
+use super::text::{number, plant, rate, share};
 use super::{
     ReportInput, closed_loop, cost, damping, distances, quantisation, score_tables, sensitivity,
     spectra, tables, windows,
@@ -18,33 +17,35 @@ use super::{
 use experiments::compare::interval;
 use experiments::sensitivity::table::rows_by_rate;
 
-const DISTANCE: &str = "How far, on average over all samples after the first 0.1 s, the estimate \
-    lies outside the interval; 0 (no bar) means that a fingertip would never notice. The axis is \
-    logarithmic and begins at an arbitrary value: compare where bars end, one gridline is a \
-    factor of ten.";
-const SPECTRA: &str = "Where in frequency each estimator is wrong. To the left lie delay and \
-    bias, to the right quantisation noise; what lies in the green band is felt as vibration and \
-    as roughness. Lower is better.";
-const COST: &str = "Down and to the left is better; the grey line joins those that nothing beats in \
-    both. Instructions are the means that cargo pareto counted on the emulated board (benchmarks.md; \
-    FOAW: that of the window nearest to the one used here); estimators without a measured cost are \
-    not shown. The black lines are a particle filter with the exact likelihood of a count. In \
-    stochastic it has the true model: what lies on it cannot be improved. Elsewhere it takes the \
-    ripple of friction and torque for noise, and is no bound.";
-const BELIEFS: &str = "RMS error in scenarios step and track of estimators that believe in one wrong \
-    constant of the device, against how wrong it is. Those without a model of the motor are flat; \
-    those that learn stay low. All scenarios: host-sim sensitivity.";
-const HEATING: &str = "Damping of the coupler while it loses 30 % in 60 s, black, and what the \
-    estimators that learn it take it for, from current and counts alone.";
-const SCORES: &str = "The best of each scenario is bold on green: the smallest value, of the delay \
-    the smallest in size. \u{201c}% of FD\u{201d} is relative to finite difference on the same \
-    samples. Distance is outside the haptic interval, force is the RMS error felt at the fingertip, a \
-    negative delay leads. Within is the share of samples whose error is below two of the standard \
-    deviations that the estimator reports; about 95 % is right, and no value is the best. A click on \
-    a heading sorts each scenario by that column.";
-const DEVICE: &str = "The constants that the scores depend on. The paper's Table II omits the \
-    four counts a line in its first two rows and has them in the others, so both readings stand \
-    here; this device counts all four edges.";
+const DISTANCE: &str = "Mean distance of the estimate outside the haptic interval, over all \
+    samples after the first 0.1 s. A distance of 0 (no bar) means that a fingertip never feels \
+    the error. The axis is logarithmic and begins at an arbitrary value: compare the ends of \
+    the bars. One grid line is a factor of ten.";
+const SPECTRA: &str = "Amplitude spectral density of the velocity error. Delay and bias lie at \
+    low frequencies, quantisation noise at high frequencies. An error in the green band is felt \
+    as vibration and roughness. Lower is better.";
+const COST: &str = "RMS error against instructions per update. Lower and further to the left is \
+    better. The grey line joins the estimators that no other estimator beats in both. cargo \
+    pareto counted the instructions on the emulated board (mean of its traces; for FOAW, the \
+    measured window nearest to the one used here). Estimators without a measured cost are not \
+    shown. The black lines are the error of a particle filter with the exact likelihood of a \
+    count. In scenario stochastic the filter has the true model: its error is the lower bound. \
+    In the other scenarios it treats the ripple of friction and torque as noise, and its error \
+    is no bound.";
+const SENSITIVITY: &str = "RMS error of estimators whose model has one wrong constant, against \
+    the error of that constant; mean of scenarios step and track. The error of estimators \
+    without a motor model does not depend on it. Adaptive estimators identify constants during \
+    the run and stay low. host-sim sensitivity shows all scenarios.";
+const SCORES: &str = "Bold on green marks the best value of a scenario: the smallest one, for \
+    the delay the one of smallest magnitude. \u{201c}% of FD\u{201d} is relative to finite \
+    difference on the same samples. Distance is the distance outside the haptic interval. Force \
+    is the RMS error as force at the fingertip. A negative delay means that the estimate leads. \
+    Within is the share of samples whose error is below two of the standard deviations that the \
+    estimator reports; about 95\u{a0}% is correct, so no value is marked. Click a heading to \
+    sort each scenario by that column.";
+const DEVICE: &str = "Constants that the scores depend on. The first two rows of the \
+    paper\u{2019}s Table II assume one count per encoder line, its other rows four. Both are \
+    given here. This device counts all four edges of a line.";
 
 /// Every section that has something to show.
 pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Section>, String> {
@@ -52,10 +53,14 @@ pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Se
     let compared = [
         Section::new(
             "inside",
-            "Who stays inside",
+            "Inside the interval",
             score_tables::inside(&groups, palette),
         ),
-        Section::new("problem", "The problem", the_problem(report, palette)?),
+        Section::new(
+            "quantisation",
+            "Encoder quantisation",
+            quantisation_figure(report, palette)?,
+        ),
         Section::new(
             "step",
             "Step response",
@@ -68,20 +73,24 @@ pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Se
         ),
         Section::new(
             "distance",
-            "Distance from the interval",
+            "Distance outside the interval",
             distance(&groups, palette)?,
         ),
-        Section::new("spectra", "Error spectra", errors(report, palette)?),
+        Section::new("spectra", "Error spectra", spectrum(report, palette)?),
         Section::new(
             "cost",
             "Run time and error",
             costs(report, &groups, palette)?,
         ),
-        Section::new("beliefs", "Wrong beliefs", beliefs(report, palette)?),
         Section::new(
-            "heating",
-            "A coupler that warms up",
-            warming(report, palette)?,
+            "sensitivity",
+            "Parameter errors",
+            parameter_errors(report, palette)?,
+        ),
+        Section::new(
+            "damping",
+            "Identified damping",
+            identified_damping(report, palette)?,
         ),
         Section::new("scores", "Scores", scores(&groups, palette)),
     ];
@@ -102,16 +111,16 @@ fn costs(
     Ok(explained(figures.into_iter().flatten(), COST))
 }
 
-fn beliefs(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>, String> {
-    let rates = rows_by_rate(&report.beliefs);
+fn parameter_errors(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>, String> {
+    let rates = rows_by_rate(&report.parameter_errors);
     let figures = rates.iter().map(|rows| sensitivity::chart(rows, palette));
     let figures: Vec<Svg> = figures.collect::<Result<_, _>>()?;
-    Ok(explained(figures, BELIEFS))
+    Ok(explained(figures, SENSITIVITY))
 }
 
-fn warming(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>, String> {
+fn identified_damping(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>, String> {
     let mut figures = Vec::new();
-    for case in report.cases.iter().chain(&report.warming) {
+    for case in report.cases.iter().chain(&report.heating) {
         let Some(damping) = &case.damping else {
             continue;
         };
@@ -119,10 +128,15 @@ fn warming(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>, St
             figures.push(damping::chart(case, damping, palette)?);
         }
     }
-    Ok(explained(figures, HEATING))
+    let text = format!(
+        "Damping of the coupler while it loses {} in 60 s: true value (black) and values that the \
+         adaptive estimators identify from current and counts.",
+        share(report.device.fall_at_60_s)
+    );
+    Ok(explained(figures, &text))
 }
 
-fn the_problem(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>, String> {
+fn quantisation_figure(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>, String> {
     for scenario in ["step", "track"] {
         let cases = drawn(report, scenario);
         let Some(case) = cases.first() else { continue };
@@ -144,24 +158,28 @@ fn the_problem(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>
         );
         let interval = interval(&report.device);
         let svg = quantisation::figure_one(&title, traces, window, at, &interval, palette)?;
-        return Ok(explained([svg], &count_in_words(report, case.rate_hz)));
+        return Ok(explained(
+            [svg],
+            &quantisation_in_words(report, case.rate_hz),
+        ));
     }
     Ok(None)
 }
 
-/// What one count is to a finite difference, and to a fingertip.
-fn count_in_words(report: &ReportInput, rate_hz: f64) -> String {
+/// One count per tick as velocity and as force, and the effect on the estimate.
+fn quantisation_in_words(report: &ReportInput, rate_hz: f64) -> String {
     let device = &report.device;
-    let interval = interval(device);
+    let haptic = interval(device);
     let step = TAU * rate_hz / f64::from(device.stages.large.counts_per_rev);
     format!(
-        "The large motor\u{2019}s encoder moves in whole counts. At {} one count more or less \
-         within a tick is {}\u{a0}rad/s to a finite difference, or {}\u{a0}mN at the fingertip, which \
-         notices {}\u{a0}mN. So the estimate (grey) jumps while the motion (black) is smooth; what \
-         leaves the haptic interval (green) is torque on the handle that should not be there.",
+        "The encoder of the large motor measures whole counts. At {} one count per tick is \
+         {}\u{a0}rad/s for a finite difference, or {}\u{a0}mN at the fingertip. The threshold of a \
+         fingertip is {}\u{a0}mN. The estimate (grey) therefore jumps while the motion (black) is \
+         smooth. An estimate outside the haptic interval (green) causes a torque on the handle that \
+         can be felt.",
         rate(rate_hz),
         number(step),
-        number(step * interval.force_mn_per_rad_s),
+        number(step * haptic.force_mn_per_rad_s),
         number(1e3 * device.interval.threshold_n),
     )
 }
@@ -179,7 +197,7 @@ fn distance(groups: &[Group], palette: &Palette) -> Result<Option<Markup>, Strin
     Ok(explained(figures, DISTANCE))
 }
 
-fn errors(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>, String> {
+fn spectrum(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>, String> {
     for scenario in ["track", "free-air", "step", "permanent"] {
         let cases = drawn(report, scenario);
         let Some(first) = cases.first() else { continue };

@@ -1,4 +1,4 @@
-//! The page of `sensitivity`: what a wrong belief costs each estimator.
+//! The page of `sensitivity`: velocity error against errors of the model's constants.
 
 use super::canvas::{Anchor, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height};
 use super::page::Printout;
@@ -14,7 +14,7 @@ const PANEL: f64 = 230.0;
 const LEFT: f64 = 62.0;
 const GAP: f64 = 52.0;
 
-/// The page: a figure a rate, a panel a constant, then the printed table.
+/// The page: a figure for each rate with a panel for each constant, then the printed table.
 ///
 /// # Errors
 /// If a figure cannot be drawn.
@@ -23,16 +23,17 @@ pub fn sensitivity(rows: &[Row], printout: &Printout) -> Result<String, String> 
     let charts = rows_by_rate(rows);
     let charts = charts.iter().map(|at_rate| chart(at_rate, &palette));
     let figures: Vec<Svg> = charts.collect::<Result<_, _>>()?;
-    let intro = "What it costs to believe in a wrong constant of the device: RMS error of the \
-        velocity, mean of the scenarios in which the motor moves. Estimators without a model of \
-        the motor are flat.";
-    Ok(printout.page("Wrong beliefs", intro, &figures))
+    let intro = "RMS velocity error of estimators whose model has one wrong constant, in % of the error \
+        of finite difference; mean of the scenarios in which the motor moves. The error of \
+        estimators without a motor model does not depend on it.";
+    Ok(printout.page("Sensitivity to parameter errors", intro, &figures))
 }
 
-/// Error of the belief and of the velocity, %.
+/// Error of the constant and RMS error of the velocity, %.
 type Curve = Vec<(f64, f64)>;
 
-/// Mean over the moving scenarios at each error of `constant`, in order of the error.
+/// Mean over the scenarios in which the motor moves, at each error of `constant`, in order of the
+/// error.
 fn curve(rows: &[&Row], name: &str, constant: Constant) -> Curve {
     let mut points: Vec<(f64, f64, f64)> = Vec::new();
     for row in rows {
@@ -53,7 +54,7 @@ fn curve(rows: &[&Row], name: &str, constant: Constant) -> Curve {
         .collect()
 }
 
-/// A panel a constant, of rows at one rate.
+/// A panel for each constant, from rows of one rate.
 pub(super) fn chart(rows: &[&Row], palette: &Palette) -> Result<Svg, String> {
     let names = names(rows);
     let keys: Vec<Key> = names
@@ -79,7 +80,10 @@ pub(super) fn chart(rows: &[&Row], palette: &Palette) -> Result<Svg, String> {
     let row_height = PANEL + 66.0;
     let bottom = TOP + 2.0 * row_height;
     let height = bottom + legend_height(&keys, LEFT);
-    let title = format!("Wrong beliefs at {}", rate(rows[0].rate_hz));
+    let title = format!(
+        "Sensitivity to parameter errors at {}",
+        rate(rows[0].rate_hz)
+    );
     figure(height, &title, |canvas| {
         canvas.text(&title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
         for (i, (constant, curves)) in curves.iter().enumerate() {
@@ -99,7 +103,7 @@ pub(super) fn chart(rows: &[&Row], palette: &Palette) -> Result<Svg, String> {
             if i % 2 == 0 {
                 let at = (16.0, top + 0.5 * PANEL);
                 canvas.text(
-                    "RMS, % of finite difference",
+                    "RMS error, % of finite difference",
                     at,
                     Anchor::Upwards,
                     LABEL,
@@ -134,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_panel_a_constant_and_curves_through_what_is_right() {
+    fn each_constant_has_a_panel_and_curves_include_the_true_value() {
         let rows = [
             row("pll", None, 0.0, 50.0),
             row("pll", Some("damping"), 0.3, 60.0),

@@ -1,4 +1,4 @@
-//! At which frequencies the errors lie.
+//! Spectra of the velocity errors.
 
 use super::canvas::{Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height};
 use super::palette::{BAND, INK, MUTED, Palette};
@@ -18,7 +18,7 @@ struct Curve {
     points: Vec<(f64, f64)>,
 }
 
-/// Amplitude spectral density of every estimator's error, one panel a case.
+/// Amplitude spectral density of every estimator's error, one panel for each case.
 ///
 /// `None` if no case has signals long enough.
 pub(super) fn spectra(
@@ -41,7 +41,7 @@ pub(super) fn spectra(
     if high <= 0.0 {
         return Ok(None);
     }
-    // Whatever is a hundred thousand times smaller than the largest is out of sight anyway.
+    // Values below 1e-5 of the largest would only stretch the axis.
     let positive = all().map(|p| p.1).filter(|power| *power > 1e-5 * high);
     let y = Axis::log([positive.fold(high, f64::min), high]);
     let keys: Vec<Key> = palette
@@ -97,7 +97,7 @@ fn panel(canvas: &Canvas, plot: &Plot, curves: &[Curve], palette: &Palette) -> R
         plot.curve(canvas, points, palette.style(&curve.name), 1.5)?;
     }
     plot.edges(canvas)?;
-    // The axis begins and ends between decades: name its ends where there is room.
+    // The axis begins and ends between decades: its ends are labelled if there is room.
     let ends = [plot.x.low, plot.x.high];
     for end in ends {
         let (x, _) = plot.at((end, plot.y.low));
@@ -152,7 +152,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn averaging_keeps_a_flat_density_flat_and_thins_only_the_top() {
+    fn averaging_keeps_a_flat_density_and_all_low_frequencies() {
         let points = average(4.0, &[9.0; 1451]);
         assert!(points.len() < 160, "{}", points.len());
         assert!(points.iter().all(|p| (p.1 - 3.0).abs() < 1e-12));
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn an_estimate_that_is_not_finite_has_no_curve() {
+    fn non_finite_estimate_has_no_curve() {
         let traces = Traces {
             rate_hz: 1000.0,
             truth: vec![0.0; 1000],

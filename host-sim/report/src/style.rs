@@ -1,4 +1,4 @@
-//! How a line, a bar or a mark of a figure is drawn: a colour and a dash.
+//! Style of a line, a bar or a mark: a colour and a dash.
 
 pub(super) use estimator_catalogue::Dash;
 use plotters::style::RGBColor;
@@ -21,7 +21,7 @@ impl From<RGBColor> for Style {
 
 /// The strokes of a dashed line, or of the stripes across a bar.
 pub(super) trait Strokes {
-    /// Lengths drawn and left out in turn, px; empty for a solid line.
+    /// Lengths of strokes and gaps in turn, px; empty for a solid line.
     fn pattern(self) -> &'static [f64];
 
     /// The drawn pieces of a polyline.
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn dashes_follow_the_line_round_its_corners() {
+    fn dashes_continue_around_corners() {
         let corner = [(0.0, 0.0), (30.0, 40.0), (30.0, 90.0)];
         assert_eq!(Dash::Solid.pieces(&corner), [corner.to_vec()]);
         // 100 px are ten times 7 drawn and 3 left out.
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_swatch_shows_colour_and_dash() {
+    fn swatch_has_colour_and_dash() {
         let style = Style::from(RGBColor(0x12, 0xab, 0));
         assert_eq!(style.css(), "#12ab00");
         let dash = Dash::Dashed;

@@ -1,4 +1,4 @@
-//! The paper's tables: the device's constants, and what one count is worth.
+//! The paper's tables: constants of the device, and velocity and force of one count.
 
 use maud::{Markup, html};
 use std::f64::consts::TAU;
@@ -11,8 +11,8 @@ use simulation::device::Device;
 const LINES: [u32; 2] = [1024, 5000];
 const RATES_HZ: [f64; 2] = [1000.0, 11_600.0];
 
-/// Velocity that one count more within one tick stands for, rad/s; `edges_per_line` is 4 where
-/// every edge of both channels counts.
+/// Velocity of one count per tick, rad/s; `edges_per_line` is 4 if every edge of both channels
+/// counts.
 pub(super) fn velocity_step(lines: u32, edges_per_line: u32, rate_hz: f64) -> f64 {
     TAU * rate_hz / f64::from(lines * edges_per_line)
 }
@@ -34,7 +34,7 @@ pub(super) fn constants(name: &str, device: &Device) -> Markup {
             format!("{} mm", round(1e3 * device.handle.diameter_m)),
         ),
         (
-            html! { "smallest force a fingertip notices, " (threshold) },
+            html! { "force threshold of a fingertip, " (threshold) },
             format!("{} mN", round(1e3 * device.interval.threshold_n)),
         ),
         (
@@ -43,7 +43,10 @@ pub(super) fn constants(name: &str, device: &Device) -> Markup {
         ),
         (
             html! { "encoder of the large motor" },
-            format!("{} counts a revolution", device.stages.large.counts_per_rev),
+            format!(
+                "{} counts per revolution",
+                device.stages.large.counts_per_rev
+            ),
         ),
         (
             html! { "haptic interval at rest, " (threshold) " D / 2b" },
@@ -56,7 +59,7 @@ pub(super) fn constants(name: &str, device: &Device) -> Markup {
     ];
     html! {
         table.facts {
-            caption { "Table I: " (name) }
+            caption { "Table I: constants of " (name) }
             tbody {
                 @for (what, value) in rows {
                     tr { th scope="row" { (what) } td { (value) } }
@@ -66,18 +69,18 @@ pub(super) fn constants(name: &str, device: &Device) -> Markup {
     }
 }
 
-/// Table II in both readings.
+/// Table II with four counts and with one count per line.
 pub(super) fn count_worth(device: &Device) -> Markup {
     let force = interval(device).force_mn_per_rad_s;
     html! {
         table.facts {
-            caption { "Table II: what one count is worth to a finite difference" }
+            caption { "Table II: one count per tick with finite difference" }
             thead {
                 tr {
                     th rowspan="2" { "encoder" }
                     th rowspan="2" { "sample rate" }
-                    th colspan="2" { "4 counts a line: 2\u{3c0} / 4NT" }
-                    th colspan="2" { "1 count a line: 2\u{3c0} / NT" }
+                    th colspan="2" { "4 counts per line: 2\u{3c0} / 4NT" }
+                    th colspan="2" { "1 count per line: 2\u{3c0} / NT" }
                 }
                 tr { th { "rad/s" } th { "mN" } th { "rad/s" } th { "mN" } }
             }
@@ -107,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_count_of_the_cheap_encoder_is_worth_42_mn() {
+    fn one_count_of_1024_lines_is_42_mn() {
         let step = velocity_step(1024, 4, 1000.0);
         assert!((step - 1.53).abs() < 0.005, "{step}");
         let force = step * interval(&Device::default()).force_mn_per_rad_s;
@@ -115,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn table_two_has_both_readings_of_every_row() {
+    fn table_two_has_four_counts_and_one_count_per_line() {
         let html = count_worth(&Device::default()).into_string();
         for row in [
             "1024 lines</th><td>1 kHz</td><td>1.53</td><td>42.1</td><td>6.14</td><td>168</td>",

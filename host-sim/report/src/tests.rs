@@ -7,9 +7,9 @@ fn without_traces(mut report: ReportInput) -> ReportInput {
     report
 }
 
-/// Where the environment names a file `DEMO_REPORT`, the page goes there, to look at.
+/// The environment variable `DEMO_REPORT` names a file to which the page is written.
 #[test]
-fn a_full_report_has_every_figure_and_no_broken_number() {
+fn full_report_has_every_figure_and_no_broken_number() {
     let page = html(&demo::report(&[])).unwrap();
     if let Some(file) = std::env::var_os("DEMO_REPORT") {
         std::fs::write(file, &page).unwrap();
@@ -34,7 +34,7 @@ fn a_full_report_has_every_figure_and_no_broken_number() {
         "frequency, Hz",
         "class=\"verdict\"",
         "host-sim compare --seed 1",
-        "is 1.53\u{a0}rad/s to a finite difference, or 42.1\u{a0}mN at the fingertip",
+        "is 1.53\u{a0}rad/s for a finite difference, or 42.1\u{a0}mN at the fingertip",
     ] {
         assert!(page.contains(text), "{text}");
     }
@@ -47,7 +47,7 @@ fn a_full_report_has_every_figure_and_no_broken_number() {
 }
 
 #[test]
-fn every_link_of_the_navigation_has_its_section() {
+fn each_link_of_the_navigation_has_its_section() {
     for report in [demo::report(&[]), ReportInput::default()] {
         let page = html(&report).unwrap();
         let links: Vec<&str> = page
@@ -64,7 +64,7 @@ fn every_link_of_the_navigation_has_its_section() {
 }
 
 #[test]
-fn the_page_loads_nothing() {
+fn page_loads_no_other_file() {
     let page = html(&demo::report(&[])).unwrap();
     let page = page.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
     for load in ["http:", "https:", "src=", "@import", "url(", "<link"] {
@@ -73,7 +73,7 @@ fn the_page_loads_nothing() {
 }
 
 #[test]
-fn names_cannot_break_out_of_the_page() {
+fn markup_in_names_is_escaped() {
     let mut report = demo::report(&["<script>alert(\"1\")</script> & co"]);
     report.command = "host-sim --device \"<b>.toml\"".into();
     report.device_name = "<i>device</i>".into();
@@ -98,7 +98,7 @@ fn names_cannot_break_out_of_the_page() {
 }
 
 #[test]
-fn what_was_not_computed_is_left_out() {
+fn sections_without_data_are_left_out() {
     let page = html(&without_traces(demo::report(&[]))).unwrap();
     assert!(page.contains("figure 8)") && page.contains("Scores"));
     for missing in ["figure 1)", "figure 6)", "figure 7)", "Spectrum of"] {
@@ -109,7 +109,7 @@ fn what_was_not_computed_is_left_out() {
 }
 
 #[test]
-fn one_case_alone_is_a_page_too() {
+fn single_case_makes_a_page() {
     let mut report = demo::report(&[]);
     report
         .cases
@@ -120,7 +120,7 @@ fn one_case_alone_is_a_page_too() {
 }
 
 #[test]
-fn an_estimate_with_bad_samples_is_drawn_without_them() {
+fn non_finite_samples_are_not_drawn() {
     let mut report = demo::report(&[]);
     for case in &mut report.cases {
         let traces = case.traces.as_mut().unwrap();
@@ -134,7 +134,7 @@ fn an_estimate_with_bad_samples_is_drawn_without_them() {
 }
 
 #[test]
-fn signals_that_do_not_fit_are_an_error() {
+fn inconsistent_signals_are_an_error() {
     let mut report = demo::report(&[]);
     report.cases[0].traces.as_mut().unwrap().estimates[2]
         .1

@@ -2,7 +2,7 @@
 
 use catalogue::parameters::PlantKind;
 
-/// About three significant digits, no exponent above 0.001; infinity as its sign.
+/// Three significant digits, without exponent from 0.001 on; infinity as its sign.
 pub(super) fn number(value: f64) -> String {
     let size = value.abs();
     let text = match size {
@@ -33,7 +33,7 @@ pub(super) fn rate(hz: f64) -> String {
     }
 }
 
-/// A share of 1 as whole %, with a decimal where it is near either end.
+/// A share, 0 to 1, in whole %, with a decimal near either end.
 pub(super) fn share(part: f64) -> String {
     let percent = 100.0 * part;
     let near_an_end = percent.min(100.0 - percent) < 9.5;
@@ -44,7 +44,7 @@ pub(super) fn share(part: f64) -> String {
     }
 }
 
-/// Which plant.
+/// Name of the plant in a sentence.
 pub(super) fn plant(friction: bool) -> &'static str {
     let kind = match friction {
         true => PlantKind::Friction,

@@ -1,4 +1,4 @@
-//! Velocity over time: one panel an estimator, each with the truth and its interval.
+//! Velocity over time: a panel for each estimator, with the truth and its haptic interval.
 
 use std::ops::Range;
 
@@ -18,13 +18,13 @@ const GAP: f64 = 38.0;
 const PANEL: f64 = 150.0;
 const PANEL_TITLE: f64 = 24.0;
 const BELOW: f64 = 22.0;
-/// Share of samples off scale from which the truth is drawn over the estimate, not under it.
+/// Above this share of samples off scale, the truth is drawn over the estimate instead of under it.
 const HIDES_TRUTH: f64 = 0.05;
 
-/// Small multiples of `window`: the same axes in each panel, all estimators that are there.
+/// One panel for each estimator over `window`, all with the same axes.
 ///
-/// Time is counted from `origin_s` and in ms. What leaves the axes is cut, and the panel says
-/// how many of its samples that are.
+/// Time is in ms from `origin_s`. Curves are cut at the axes, and the heading of a panel gives the
+/// share of samples off scale.
 pub(super) fn panels(
     title: &str,
     traces: &Traces,
@@ -37,7 +37,7 @@ pub(super) fn panels(
     let (columns, rows) = (COLUMNS.min(drawn.max(1)), drawn.div_ceil(COLUMNS).max(1));
     let keys = [
         Key::Line(TRUTH.into(), "true velocity"),
-        Key::Band("haptic interval: what a fingertip cannot tell from it"),
+        Key::Band("haptic interval: differences that a fingertip does not feel"),
     ];
     let head = 34.0 + legend_height(&keys, LEFT) + 4.0;
     let row_height = PANEL_TITLE + PANEL + BELOW;
@@ -91,7 +91,7 @@ pub(super) fn panels(
     })
 }
 
-/// Interval and truth of a window; time in ms from `origin_s`.
+/// Haptic interval and truth of a window; time in ms from `origin_s`.
 pub(super) fn truth(
     canvas: &Canvas,
     plot: &Plot,
@@ -118,7 +118,8 @@ pub(super) fn truth(
     plot.curve(canvas, points, TRUTH, 1.6)
 }
 
-/// The interval in full, and as much again or a quarter of the motion beyond it.
+/// Range of the axis: the haptic interval, and beyond it three times its half width at rest or a
+/// quarter of its range.
 fn vertical(truth: &[f64], interval: &Interval) -> [f64; 2] {
     let ends = truth
         .iter()
@@ -130,7 +131,7 @@ fn vertical(truth: &[f64], interval: &Interval) -> [f64; 2] {
     [ends[0] - pad, ends[1] + pad]
 }
 
-/// Share of estimates that the axis does not show, 0 to 1.
+/// Share of estimates outside the axis, 0 to 1.
 fn off_scale(estimates: &[f32], [low, high]: [f64; 2]) -> f64 {
     let off = estimates
         .iter()
@@ -138,7 +139,7 @@ fn off_scale(estimates: &[f32], [low, high]: [f64; 2]) -> f64 {
     off.count() as f64 / estimates.len().max(1) as f64
 }
 
-/// The estimator's name in its colour, and what the panel hides.
+/// The estimator's name beside its colour, and the share of samples off scale.
 fn heading(
     canvas: &Canvas,
     plot: &Plot,
@@ -168,7 +169,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_axis_shows_the_whole_interval() {
+    fn axis_includes_the_whole_interval() {
         let interval = Interval::new(0.05, 0.010, 0.070, 0.96e-3);
         let [low, high] = vertical(&[-2.0, 20.0], &interval);
         assert!(low < -2.0 - interval.tolerance(2.0) - 1.0);
@@ -176,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_off_scale_is_counted_and_nan_is_off() {
+    fn samples_off_scale_include_nan() {
         assert!((off_scale(&[0.0, 1.0, 2.5, f32::NAN], [-1.0, 2.0]) - 0.5).abs() < 1e-12);
     }
 }

@@ -1,13 +1,14 @@
-//! One sentence for who reads no further.
+//! One sentence that summarises the comparison.
 
 use super::ReportInput;
 use super::grid::{Group, groups};
 use super::palette::Palette;
 use super::text::{plant, rate, share};
 
-/// Who is inside the haptic interval how often, as plain text; `None` where no case says.
+/// The best estimator of each rate by its time inside the haptic interval; `None` if no case has this
+/// score.
 ///
-/// It speaks of the plant with friction where that was run: it is the harder and the real one.
+/// The summary is about the plant with friction if it was run: it is the harder and the real one.
 pub(super) fn verdict(report: &ReportInput, palette: &Palette) -> Option<String> {
     let groups = groups(report);
     let friction = groups.iter().any(|group| group.friction);
@@ -19,7 +20,7 @@ pub(super) fn verdict(report: &ReportInput, palette: &Palette) -> Option<String>
     (!clauses.is_empty()).then(|| {
         let plant = plant(friction);
         let clauses = clauses.join("; ");
-        format!("Inside the haptic interval on the plant {plant}: {clauses}.")
+        format!("Best estimator by time inside the haptic interval, plant {plant}: {clauses}.")
     })
 }
 
@@ -37,7 +38,7 @@ fn clause(group: &Group, palette: &Palette) -> Option<String> {
         n => format!("on average over {n} scenarios"),
     };
     let mut text = format!(
-        "at {}, {best} {} of the time {over}",
+        "at {} {best} with {} {over}",
         rate(group.rate_hz),
         share(often)
     );
@@ -46,7 +47,7 @@ fn clause(group: &Group, palette: &Palette) -> Option<String> {
         .iter()
         .find(|r| r.0 == reference && best != reference)
     {
-        text += &format!(" (finite difference {})", share(*often));
+        text += &format!(" (finite difference: {})", share(*often));
     }
     Some(text)
 }
@@ -84,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn it_names_the_best_the_reference_and_how_many_scenarios() {
+    fn best_and_finite_difference_are_named_with_the_number_of_scenarios() {
         let said = of(vec![
             case("step", false, &[("finite-difference", 0.0), ("pll", 0.9)]),
             case("step", true, &[("finite-difference", 0.6), ("pll", 0.1)]),
@@ -92,13 +93,13 @@ mod tests {
         ]);
         assert_eq!(
             said.unwrap(),
-            "Inside the haptic interval on the plant with friction: at 1 kHz, pll 80\u{a0}% of \
-             the time on average over 2 scenarios (finite difference 50\u{a0}%)."
+            "Best estimator by time inside the haptic interval, plant with friction: at 1 kHz pll \
+             with 80\u{a0}% on average over 2 scenarios (finite difference: 50\u{a0}%)."
         );
     }
 
     #[test]
-    fn a_reference_that_wins_is_said_once_and_nothing_is_not_praised() {
+    fn winning_finite_difference_is_named_once_and_no_score_has_no_verdict() {
         let said = of(vec![case(
             "step",
             false,

@@ -1,19 +1,19 @@
-//! Which part of a trace a figure shows.
+//! Windows of a trace that figures show.
 
 use std::ops::Range;
 
 use super::Traces;
 use scoring::score::SKIP_S;
 
-/// Samples that no figure looks at, as no score does.
+/// Samples at the start of a trace that figures and scores leave out.
 fn start(traces: &Traces) -> usize {
     (SKIP_S * traces.rate_hz).round() as usize
 }
 
-/// From `before_s` before to `after_s` after the moment at which the largest rise or fall within
-/// 4 ms begins.
+/// Window from `before_s` before to `after_s` after the start of the largest change of velocity
+/// within 4 ms.
 ///
-/// Of several equal ones the first; `None` if the trace is shorter or never moves.
+/// Of several equal changes the first; `None` if the trace is shorter or its velocity is constant.
 pub(super) fn around_step(traces: &Traces, before_s: f64, after_s: f64) -> Option<Range<usize>> {
     let half = ((0.002 * traces.rate_hz).round() as usize).max(1);
     let before = (before_s * traces.rate_hz).round() as usize;
@@ -24,7 +24,7 @@ pub(super) fn around_step(traces: &Traces, before_s: f64, after_s: f64) -> Optio
     let mut best = (None, 0.0);
     for at in first..=last {
         let rise = (truth[at + half] - truth[at - half]).abs();
-        // A hundredth more, so that rounding does not choose among equal steps.
+        // 1 % larger, so that rounding does not choose among equal steps.
         if rise > 1.01 * best.1 {
             best = (Some(at), rise);
         }
@@ -34,10 +34,10 @@ pub(super) fn around_step(traces: &Traces, before_s: f64, after_s: f64) -> Optio
     Some(onset - before..onset + after + 1)
 }
 
-/// The window of `span_s` in which a moving truth changes least for its speed, and has done so
-/// for twice as long before, so that estimators have settled.
+/// The window of `span_s` with the smallest relative change of the true velocity, in it and in the
+/// time `2 span_s` before it, so that estimators have settled.
 ///
-/// Moving is half of its largest speed or more; `None` if there is no such window.
+/// The speed is at least half of the largest one; `None` if there is no such window.
 pub(super) fn steady(traces: &Traces, span_s: f64) -> Option<Range<usize>> {
     let span = (span_s * traces.rate_hz).round() as usize;
     let settle = 2 * span;
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn the_window_is_around_the_largest_step_after_the_start() {
+    fn window_surrounds_the_largest_step_after_the_start() {
         let steps = |t: f64| match t {
             _ if t < 0.0495 => 0.0,
             _ if t < 0.3995 => 50.0,
@@ -95,13 +95,13 @@ mod tests {
     }
 
     #[test]
-    fn a_motor_s_step_begins_where_it_begins_to_move() {
+    fn step_of_a_motor_begins_where_it_begins_to_move() {
         let rise = |t: f64| 20.0 * (1.0 - (-(t - 0.5).max(0.0) / 0.012).exp());
         assert_eq!(around_step(&traces(1000, rise), 0.06, 0.06), Some(440..561));
     }
 
     #[test]
-    fn steady_is_where_speed_is_high_and_constant() {
+    fn steady_window_has_a_high_and_constant_speed() {
         let profile = |t: f64| if t < 1.0 { -20.0 * t } else { -18.0 };
         let found = steady(&traces(2000, profile), 0.1).unwrap();
         assert!(found.start >= 1200 && found.len() == 101, "{found:?}");

@@ -13,7 +13,7 @@ const PANEL: f64 = 260.0;
 const LEFT: f64 = 62.0;
 const GAP: f64 = 52.0;
 
-/// The page of bounds: a figure an encoder, then the printed table.
+/// The page of bounds: a figure for each encoder, then the printed table.
 ///
 /// # Errors
 /// If a figure cannot be drawn.
@@ -24,10 +24,10 @@ pub fn zwidth(rows: &[Row], printout: &Printout) -> Result<String, String> {
         let of: Vec<&Row> = rows.iter().filter(|row| row.lines == lines).collect();
         figures.push(chart(&of, lines, &palette)?);
     }
-    let intro = "Below its curve, a wall of that stiffness and damping is passive and free of \
-        limit cycles in simulation, to a light grip, to a hand and to a handle that is thrown at \
-        it. Each curve ends on the right at the strongest damping without a wall. Panels have \
-        their own scales.";
+    let intro = "A virtual wall whose stiffness and damping lie below the curve is passive and free of \
+        limit cycles in simulation, with a light grip, with a hand and with a handle thrown at it. \
+        The right end of a curve is the strongest damping without stiffness. Each panel has its own \
+        scales.";
     Ok(printout.page("Z-width", intro, &figures))
 }
 
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_an_encoder_a_panel_a_rate_and_the_table_as_it_was() {
+    fn each_encoder_has_a_figure_and_each_rate_a_panel() {
         let mut rows = Vec::new();
         for (lines, rate_hz) in [(256, 1e3), (256, 1e4), (1024, 1e3)] {
             rows.push(row(lines, rate_hz, 0.0, 0.3));
@@ -147,7 +147,7 @@ mod tests {
         let panels = |svg: &str| svg.matches("damping B,").count();
         assert_eq!((panels(figures[0]), panels(figures[1])), (2, 1));
         assert!(page.contains("K &lt; B") && page.contains("a &amp; b"));
-        // Nothing to draw is an empty frame, not an error.
+        // Without a bound the frame is empty, which is not an error.
         assert!(zwidth(&[row(256, 1e3, 0.0, 0.0)], &Printout::default()).is_ok());
     }
 }

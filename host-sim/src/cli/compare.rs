@@ -151,8 +151,8 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
             notes: remark.into_iter().collect(),
             cases: outcomes.iter().map(case_report).collect(),
             limits,
-            beliefs,
-            warming,
+            parameter_errors: beliefs,
+            heating: warming,
             ..ReportInput::default()
         };
         let rows: Vec<Row> = outcomes.iter().flat_map(|o| o.rows.clone()).collect();

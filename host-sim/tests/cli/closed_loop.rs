@@ -202,11 +202,11 @@ fn invalid_arguments_are_refused_with_one_line() {
 
 const FIGURES: [&str; 12] = [
     "Time in which the parasitic force is below",
-    "What is felt of the device in free air",
+    "Parasitic force in free air by motion of the handle",
     "Spectrum of the parasitic force in free air",
-    "Force wanted and felt at the fingertip, scene wall",
-    "Force wanted and felt at the fingertip, scene texture",
-    "Torque felt over torque wanted",
+    "Commanded and felt force at the fingertip, scene wall",
+    "Commanded and felt force at the fingertip, scene texture",
+    "Frequency response of the rendered torque",
     "Open loop of the large motor",
     "RMS parasitic force in closed loop, scene free-air",
     "Margins of the velocity loop",

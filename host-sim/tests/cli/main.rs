@@ -2,6 +2,7 @@
 
 mod closed_loop;
 mod compare;
+mod escaping;
 mod identify;
 mod output;
 mod recordings;

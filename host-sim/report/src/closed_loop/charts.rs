@@ -28,7 +28,7 @@ impl Curve {
     }
 }
 
-/// What is green in a panel.
+/// Green area of a panel.
 pub(super) enum Green {
     /// From one x to another.
     Across([f64; 2]),

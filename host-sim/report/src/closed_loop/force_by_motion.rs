@@ -20,14 +20,14 @@ const LOWEST_MN: f64 = 1.0;
 /// Half of the span over which acceleration is taken, s: that of the transient score.
 const HALF_SPAN_S: f64 = 0.002;
 
-/// One figure, velocity above acceleration, rates side by side; none without free air.
+/// One figure, velocity above acceleration, rates side by side; `None` without scene `free-air`.
 pub(super) fn figures(
     closed: &ClosedLoop,
     palette: &Palette,
     device: &Device,
 ) -> Result<Option<Svg>, String> {
     let outcomes = closed.of("free-air");
-    let names = closed.drawn();
+    let names = closed.drawn_sources();
     let Some(first) = outcomes.first() else {
         return Ok(None);
     };
@@ -101,7 +101,7 @@ pub(super) fn figures(
                 y: Axis::log_exact([LOWEST_MN, 10.0 * LOWEST_MN]),
                 ticks: [7, 0],
                 x_title,
-                y_title: "parasitic force, rms, mN",
+                y_title: "parasitic force, RMS, mN",
                 green: Green::Up([LOWEST_MN, 1e3 * device.interval.threshold_n]),
                 curves,
             });
@@ -117,10 +117,10 @@ pub(super) fn figures(
     let keys: Vec<Key> = (names.iter())
         .map(|name| Key::Line(palette.style(name), name))
         .chain(has_off.then_some(Key::Line(TRUTH.into(), "motors off")))
-        .chain([Key::Band("a fingertip notices nothing")])
+        .chain([Key::Band("below the threshold of a fingertip")])
         .collect();
     let plant = plant(first.case.plant == PlantKind::Friction);
-    let title = format!("What is felt of the device in free air, plant {plant}");
+    let title = format!("Parasitic force in free air by motion of the handle, plant {plant}");
     panels(&title, &keys, outcomes.len(), 190.0, &all).map(Some)
 }
 

@@ -11,7 +11,7 @@ use super::super::plot::{Axis, Plot};
 use super::super::text::{number, rate};
 use experiments::transparency::Design;
 
-/// A colour a rate, and again from the first.
+/// Colours of the rates; they repeat after the last.
 const COLOURS: [RGBColor; 4] = [
     RGBColor(0x00, 0x72, 0xb2),
     RGBColor(0xd5, 0x5e, 0x00),
@@ -143,7 +143,7 @@ fn nyquist_curve(
     Ok(())
 }
 
-/// The margins in numbers; `None` without a design.
+/// Table of the margins; `None` without a design.
 pub(super) fn table(designs: &[Design]) -> Option<Markup> {
     let row = |design: &Design| {
         let margins = &design.margins;
@@ -163,13 +163,13 @@ pub(super) fn table(designs: &[Design]) -> Option<Markup> {
                     caption { "Margins of the velocity loop" }
                     thead {
                         tr {
-                            th { "rate" }
-                            th { "modulus" }
-                            th { "gain" small { "factor" } }
-                            th { "phase" small { "degrees" } }
-                            th { "delay" small { "ms" } }
+                            th { "sample rate" }
+                            th { "modulus margin" small { "distance from \u{2212}1" } }
+                            th { "gain margin" small { "factor" } }
+                            th { "phase margin" small { "degrees" } }
+                            th { "delay margin" small { "ms" } }
                             th { "crossover" small { "Hz" } }
-                            th { "estimator late by" small { "ms" } }
+                            th { "estimator delay" small { "ms" } }
                         }
                     }
                     tbody {

@@ -1,4 +1,4 @@
-//! Force wanted and force felt over time, a figure a scene.
+//! Commanded force and force at the fingertip over time, a figure for each scene.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use super::super::palette::{MUTED, Palette, TRUTH};
 use super::super::plot::Axis;
 use super::super::text::{number, plant, rate};
 use super::charts::{Curve, Green, Panel, panels};
-use super::{ClosedLoop, best, find, has_loop};
+use super::{ClosedLoop, best, find, uses_velocity};
 use catalogue::parameters::PlantKind;
 use experiments::transparency::{Outcome, REFERENCE, Run, Signals};
 use scoring::score::SKIP_S;
@@ -51,7 +51,7 @@ fn figure(
     let Some(at_s) = signals.and_then(|signals| busiest(signals, *first_hz, span_s)) else {
         return Ok(None);
     };
-    let columns = if has_loop(outcomes[0]) {
+    let columns = if uses_velocity(outcomes[0]) {
         runs.len()
     } else {
         shown.len()
@@ -93,16 +93,16 @@ fn figure(
         }
     }
     let keys = [
-        Key::Line(TRUTH.into(), "wanted"),
-        Key::Band("what a fingertip cannot tell from it"),
-        Key::Line(MUTED.into(), "felt, in the colour of who closes the loop"),
+        Key::Line(TRUTH.into(), "commanded"),
+        Key::Band("threshold of a fingertip"),
+        Key::Line(MUTED.into(), "felt, in the colour of the velocity source"),
     ];
     let plant = plant(outcomes[0].case.plant == PlantKind::Friction);
-    let title = format!("Force wanted and felt at the fingertip, scene {scene}, plant {plant}");
+    let title = format!("Commanded and felt force at the fingertip, scene {scene}, plant {plant}");
     panels(&title, &keys, columns, 150.0, &all).map(Some)
 }
 
-/// Finite difference, the best of the others, the reference: those that are there and have signals.
+/// Runs with signals of finite difference, of the best other estimator and of the reference encoder.
 fn chosen(outcome: &Outcome) -> Vec<&Run> {
     let difference = find(outcome, "finite-difference");
     let best = best(outcome, |name| name != "finite-difference");
@@ -118,7 +118,7 @@ fn chosen(outcome: &Outcome) -> Vec<&Run> {
     runs
 }
 
-/// The beginning, s, of the window in which the wanted force covers the widest range.
+/// Start of the window in which the commanded force covers the widest range, s.
 fn busiest(signals: &Signals, rate_hz: f64, span_s: f64) -> Option<f64> {
     let span = (span_s * rate_hz).round() as usize;
     let first = (SKIP_S * rate_hz).round() as usize;

@@ -1,4 +1,4 @@
-//! The closed loop's scores in numbers.
+//! Tables of the closed-loop scores.
 
 use maud::{Markup, html};
 
@@ -6,16 +6,16 @@ use super::super::palette::Palette;
 use super::super::score_tables::{block_head, head, label, score_cell};
 use super::super::section::explanation;
 use super::super::text::{plant, rate};
-use super::{ClosedLoop, has_loop};
+use super::{ClosedLoop, uses_velocity};
 use catalogue::parameters::PlantKind;
 use experiments::transparency::table::velocity_fields;
 use experiments::transparency::{Outcome, Parasitic, REFERENCE, Run};
 
-const SCORES: &str = "The best estimator of each scene is bold on green; the reference encoder \
-    does not compete. Force is the parasitic force at the fingertip: RMS, the force that is exceeded \
-    for 1\u{a0}% of the time, and the RMS from 50 to 500 Hz. Unnoticed is the share of time in which \
-    it is below the fingertip\u{2019}s threshold. The last column is the RMS error of the velocity \
-    that the loop used.";
+const SCORES: &str = "Bold on green marks the best estimator of each scene; the reference \
+    encoder does not compete. Force is the parasitic force at the fingertip: RMS, 99th \
+    percentile, and RMS from 50 to 500 Hz. Unnoticed is the share of time in which it is below \
+    the threshold of a fingertip. The last column is the RMS error of the velocity that the \
+    loop used.";
 
 /// One table a rate, scenes as its blocks.
 pub(super) fn tables(closed: &ClosedLoop, palette: &Palette) -> Markup {
@@ -58,7 +58,7 @@ fn block(outcome: &Outcome, palette: &Palette) -> Markup {
             @for run in &outcome.runs {
                 tr {
                     th scope="row" {
-                        @if has_loop(outcome) {
+                        @if uses_velocity(outcome) {
                             (label(run.controlled_by, palette))
                         } @else {
                             (run.controlled_by)

@@ -1,4 +1,4 @@
-//! At which frequencies the parasitic force in free air lies.
+//! Spectrum of the parasitic force in free air.
 
 use super::super::canvas::{Key, Svg};
 use super::super::palette::{Palette, TRUTH};
@@ -12,10 +12,11 @@ use experiments::transparency::Signals;
 use scoring::score::{SKIP_S, TACTILE_BAND_HZ};
 use scoring::spectrum::Welch;
 
-/// Amplitude density of each closer's parasitic force, rates side by side; none without free air.
+/// Amplitude spectral density for each velocity source, rates side by side; `None` without scene
+/// `free-air`.
 pub(super) fn figure(closed: &ClosedLoop, palette: &Palette) -> Result<Option<Svg>, String> {
     let outcomes = closed.of("free-air");
-    let names = closed.drawn();
+    let names = closed.drawn_sources();
     let Some(first) = outcomes.first() else {
         return Ok(None);
     };

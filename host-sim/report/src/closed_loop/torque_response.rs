@@ -1,4 +1,4 @@
-//! How fast torque is rendered: gain, phase and coherence against frequency.
+//! Frequency response of the rendered torque: gain, phase and coherence.
 
 use maud::{Markup, html};
 
@@ -13,8 +13,8 @@ use catalogue::parameters::PlantKind;
 use experiments::transparency::{Response, Swept, bandwidth_hz};
 use scoring::score::TACTILE_BAND_HZ;
 
-/// What a row of panels shows: its axis covers this range, and in steps of the last number as
-/// much more below as there is.
+/// A row of panels: title, value, range of the axis, and step by which the axis is extended
+/// downwards to the smallest value.
 type Shown = (&'static str, fn(&Response) -> f64, [f64; 2], f64);
 
 const SHOWN: [Shown; 3] = [
@@ -46,7 +46,7 @@ fn shown(closed: &ClosedLoop) -> Vec<&Swept> {
 /// One figure, if there is a sweep.
 pub(super) fn figures(closed: &ClosedLoop, palette: &Palette) -> Result<Option<Svg>, String> {
     let swept = shown(closed);
-    let names = closed.drawn();
+    let names = closed.drawn_sources();
     let Some(first) = swept.first() else {
         return Ok(None);
     };
@@ -88,7 +88,7 @@ pub(super) fn figures(closed: &ClosedLoop, palette: &Palette) -> Result<Option<S
         .chain([Key::Band("felt as roughness, 50 to 500 Hz")])
         .collect();
     let plant = plant(first.plant == PlantKind::Friction);
-    let title = format!("Torque felt over torque wanted, handle clamped, plant {plant}");
+    let title = format!("Frequency response of the rendered torque, handle clamped, plant {plant}");
     panels(&title, &keys, swept.len(), 150.0, &all).map(Some)
 }
 
@@ -97,9 +97,9 @@ pub(super) fn figures(closed: &ClosedLoop, palette: &Palette) -> Result<Option<S
 pub(super) fn table(closed: &ClosedLoop, palette: &Palette) -> Option<Markup> {
     let swept = shown(closed);
     let heads = [
-        ("\u{2212}3 dB", "Hz"),
-        ("worst gain", "50\u{2013}500 Hz, dB"),
-        ("least coherence", "50\u{2013}500 Hz"),
+        ("bandwidth", "\u{2212}3 dB, Hz"),
+        ("largest gain error", "50\u{2013}500 Hz, dB"),
+        ("lowest coherence", "50\u{2013}500 Hz"),
     ];
     (!swept.is_empty()).then(|| {
         html! {
@@ -117,7 +117,7 @@ pub(super) fn table(closed: &ClosedLoop, palette: &Palette) -> Option<Markup> {
                         }
                     }
                     tbody {
-                        @for name in closed.closers() {
+                        @for name in closed.velocity_sources() {
                             tr {
                                 th scope="row" { (label(name, palette)) }
                                 @for swept in &swept {

@@ -1,4 +1,5 @@
-//! Share of time below the threshold: every scene and closer, rates side by side.
+//! Share of time with a parasitic force below the threshold of a fingertip: a bar for each scene
+//! and velocity source, rates side by side.
 
 use super::super::canvas::{
     Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height, text_width,
@@ -6,7 +7,7 @@ use super::super::canvas::{
 use super::super::palette::{GRID, INK, MUTED, Palette};
 use super::super::plot::{Axis, Plot};
 use super::super::text::{rate, share};
-use super::{ClosedLoop, find, has_loop};
+use super::{ClosedLoop, find, uses_velocity};
 use experiments::transparency::Outcome;
 
 /// Sizes, px.
@@ -15,10 +16,10 @@ const BETWEEN: f64 = 12.0;
 const LONE: f64 = 22.0;
 const GAP: f64 = 44.0;
 
-/// Horizontal bars, one panel a rate.
+/// Horizontal bars, one panel for each rate.
 pub(super) fn shares(closed: &ClosedLoop, palette: &Palette) -> Result<Svg, String> {
     let title = "Time in which the parasitic force is below the fingertip\u{2019}s threshold";
-    let names = closed.closers();
+    let names = closed.velocity_sources();
     let keys: Vec<Key> = (names.iter())
         .map(|name| Key::Line(palette.style(name), name))
         .chain([Key::Line(MUTED.into(), "any")])
@@ -29,7 +30,7 @@ pub(super) fn shares(closed: &ClosedLoop, palette: &Palette) -> Result<Svg, Stri
         let scene = outcome.case.scene.name();
         if !scenes.iter().any(|(known, _)| *known == scene) {
             let bars = BAR * names.len() as f64 + BETWEEN;
-            scenes.push((scene, if has_loop(outcome) { bars } else { LONE }));
+            scenes.push((scene, if uses_velocity(outcome) { bars } else { LONE }));
         }
         if !rates.contains(&outcome.case.rate_hz) {
             rates.push(outcome.case.rate_hz);
@@ -89,7 +90,7 @@ fn bars(
     names: &[&str],
     palette: &Palette,
 ) -> Result<(), String> {
-    if !has_loop(outcome) {
+    if !uses_velocity(outcome) {
         let below = outcome
             .runs
             .first()

@@ -1,4 +1,4 @@
-//! Where the safety machine changes its state.
+//! Changes of the safety state over time.
 
 use haptic_control::Mode;
 
@@ -7,10 +7,11 @@ use crate::canvas::{Anchor, Canvas, LABEL, text_width};
 use crate::palette::MUTED;
 use crate::plot::Plot;
 
-/// Changes of state that have a label each.
+/// Largest number of changes with labels.
 const LABELS: usize = 12;
 
-/// A line where the safety machine changes its state, and over the first panel what it becomes.
+/// A vertical line at each change of the safety state, labelled with the new state above the first
+/// panel.
 pub(super) fn states(
     canvas: &Canvas,
     plot: &Plot,
@@ -18,7 +19,7 @@ pub(super) fn states(
     labelled: bool,
 ) -> Result<(), String> {
     let changes = changes(view);
-    // Many changes are a band of ink: the lines without words say as much.
+    // The labels of many changes would overlap.
     let labelled = labelled && changes.len() <= LABELS;
     let mut free = plot.left;
     for (t, what) in changes {
@@ -32,13 +33,13 @@ pub(super) fn states(
     Ok(())
 }
 
-/// Instants in the window at which state or cause are others than before, and what they are.
+/// Times in the window at which state or cause change, s, and the new state.
 pub(super) fn changes(view: &RecordingView) -> Vec<(f64, String)> {
     let (t, board) = (&view.recording.t, view.board);
     let Some(state) = board.column("state") else {
         return Vec::new();
     };
-    let told = |row: usize| {
+    let code = |row: usize| {
         (
             state[row],
             board.column("cause").map_or(0.0, |cause| cause[row]),
@@ -46,13 +47,13 @@ pub(super) fn changes(view: &RecordingView) -> Vec<(f64, String)> {
     };
     let inside = |row: &usize| (view.window[0]..=view.window[1]).contains(&t[*row]);
     (1..t.len())
-        .filter(|&row| told(row) != told(row - 1))
+        .filter(|&row| code(row) != code(row - 1))
         .filter(inside)
-        .map(|row| (t[row], words(told(row))))
+        .map(|row| (t[row], label(code(row))))
         .collect()
 }
 
-fn words((state, cause): (f64, f64)) -> String {
+fn label((state, cause): (f64, f64)) -> String {
     let known = (0..=u8::MAX)
         .map_while(Mode::from_code)
         .find(|mode| f64::from(*mode as u8) == state);

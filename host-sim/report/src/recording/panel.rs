@@ -1,4 +1,4 @@
-//! One panel of the picture: curves over time, and a band behind them.
+//! One panel of the figure: curves over time, and a band behind them.
 
 use std::ops::Range;
 
@@ -9,16 +9,16 @@ use crate::plot::Plot;
 use crate::style::Style;
 use crate::text::share;
 
-/// A step of `t` this many times the period is a gap, over which nothing is drawn.
+/// A step of `t` above this many periods is a gap, over which no curve is drawn.
 const GAP_STEPS: f64 = 1.5;
 
-/// One curve of a panel, a value a row.
+/// One curve of a panel: a value for each row of the recording.
 pub(super) struct Curve {
     pub(super) name: String,
     pub(super) style: Style,
     pub(super) values: Vec<f64>,
     pub(super) width: f64,
-    /// Whether the axis has to show all of it.
+    /// Whether the range of the axis includes all its values.
     pub(super) sizes: bool,
 }
 
@@ -79,8 +79,7 @@ impl Panel {
         canvas.text(self.unit, (14.0, middle), Anchor::Upwards, LABEL, INK)
     }
 
-    /// Name of each curve for the legend, and how much of it lies beyond the axis from `low` to
-    /// `high`.
+    /// Name of each curve for the legend, with the share of its samples outside `low` to `high`.
     pub(super) fn names(&self, view: &RecordingView, [low, high]: [f64; 2]) -> Vec<String> {
         let rows: Vec<usize> = segments(view).into_iter().flatten().collect();
         let name = |curve: &Curve| {
@@ -98,7 +97,7 @@ impl Panel {
     }
 }
 
-/// From the lowest to the highest value in the window, and a little more.
+/// Lowest and highest value in the window, with a margin.
 pub(super) fn range(panel: &Panel, view: &RecordingView) -> [f64; 2] {
     let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
     let mut see = |y: f64| ends = [ends[0].min(y), ends[1].max(y)];
@@ -112,13 +111,13 @@ pub(super) fn range(panel: &Panel, view: &RecordingView) -> [f64; 2] {
             see(-1.5 * half);
         }
     }
-    // What does not move at all gets an axis with short labels.
+    // A constant value gets an axis with short labels.
     let span = ends[1] - ends[0];
     let pad = if span > 0.0 { 0.06 * span } else { 0.5 };
     [ends[0] - pad, ends[1] + pad]
 }
 
-/// Rows in the window, apart at gaps.
+/// Rows in the window, split at gaps.
 pub(super) fn segments(view: &RecordingView) -> Vec<Range<usize>> {
     let t = &view.recording.t;
     let first = t.partition_point(|t| *t < view.window[0]);
