@@ -3,6 +3,8 @@
 //! The search minimises the cost on the tuning seeds. The result and the shipped parameters are then
 //! compared on one further seed; the shipped parameters are kept if they are at least as good there.
 
+mod image_section;
+
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -17,6 +19,8 @@ use simulation::device::Device;
 use simulation::scenario::ScenarioName;
 use simulation::trace::Trace;
 use terminal::failure::Failure;
+
+pub use image_section::image_section;
 
 /// First tuning seed; seeds below it are for scores.
 pub const FIRST_SEED: u64 = 1 << 32;

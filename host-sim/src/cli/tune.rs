@@ -8,7 +8,7 @@ use clap::Args;
 use catalogue::belief::Belief;
 use catalogue::estimators::Kind;
 use catalogue::parameters::{PlantKind, Preset, Presets};
-use experiments::tune::{FIRST_SEED, TuningSet, tune};
+use experiments::tune::{FIRST_SEED, TuningSet, image_section, tune};
 use simulation::scenario::{Role, ScenarioName};
 use simulation::simulate;
 use terminal::failure::Failure;
@@ -72,7 +72,8 @@ pub(super) struct Tune {
     pub(super) frictionless: bool,
     #[command(flatten)]
     pub(super) device: DeviceFile,
-    /// Write the parameters to FILE, for option --presets of other commands; - is standard output
+    /// Write the parameters to FILE, for option --presets of other commands; - is standard output.
+    /// The section [image] of an existing FILE stays
     #[arg(long, value_name = "FILE.toml", default_value = "target/presets.toml")]
     pub(super) out: PathBuf,
 }
@@ -121,6 +122,10 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
         true => &[PlantKind::Frictionless],
         false => &[PlantKind::Friction, PlantKind::Frictionless],
     };
+    let kept = match is_stdout(&options.out) {
+        true => String::new(),
+        false => image_section(&options.out).map_err(Failure::Input)?,
+    };
     let bar = progress(rates.len() * plants.len() * kinds.len(), "tuning");
     let mut presets = Presets::default();
     let mut notes = Vec::new();
@@ -153,6 +158,9 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
         text += &format!("# {note}\n");
     }
     text += &format!("\n{}", presets.to_toml().map_err(Failure::Input)?);
+    if !kept.is_empty() {
+        text += &format!("\n{kept}");
+    }
     write_whole(&options.out, text.as_bytes())?;
     if is_stdout(&options.out) {
         return Ok(());

@@ -41,6 +41,62 @@ fn tuned_parameters_are_written_and_used() {
     assert_ne!(tuned, rms(&["--set", "pll.bandwidth_hz=100"]));
 }
 
+/// Tunes one estimator quickly and writes `tuned.toml`.
+const QUICK: [&str; 13] = [
+    "tune",
+    "--estimator",
+    "pll",
+    "--rate",
+    "1000",
+    "--seconds",
+    "1",
+    "--seeds",
+    "1",
+    "--scenario",
+    "step",
+    "--out",
+    "tuned.toml",
+];
+
+#[test]
+fn section_image_of_an_existing_file_stays_with_its_comments() {
+    let folder = Folder::new("tune-image");
+    let shipped = include_str!("../../presets.toml");
+    let image = &shipped[shipped.find("# Values of the flash image").unwrap()..];
+    // The section stands last in the shipped file, and first in this one.
+    let (tuned, image_first) = (&shipped[..shipped.len() - image.len()], image.len());
+    for file in [shipped.to_owned(), format!("{image}\n{tuned}")] {
+        folder.write("tuned.toml", file);
+        folder.good(&QUICK);
+        let text = fs::read_to_string(folder.0.join("tuned.toml")).unwrap();
+        assert!(text.trim_end().ends_with(image.trim_end()), "{text}");
+        // The tuned presets are those of this run alone.
+        let before = &text[..text.len() - image_first];
+        assert_eq!(before.matches("[[preset]]").count(), 2, "{text}");
+        assert!(!before.contains("kalman-triple"), "{text}");
+        folder.good(&[&crate::SHORT[..], &["--presets", "tuned.toml"]].concat());
+    }
+}
+
+#[test]
+fn file_that_is_no_presets_file_is_not_overwritten() {
+    let folder = Folder::new("tune-foreign");
+    for (text, expected) in [
+        ("[image.large\n", "tuned.toml: line 1, [image.large: "),
+        (
+            "[device]\nname = 1\n",
+            "tuned.toml: line 1, [device]: unknown field `device`",
+        ),
+    ] {
+        folder.write("tuned.toml", text);
+        let error = folder.refused(&QUICK);
+        assert!(error.contains(expected), "{error}");
+        assert!(error.contains("correct or remove the file"), "{error}");
+        let after = fs::read_to_string(folder.0.join("tuned.toml")).unwrap();
+        assert_eq!(after, text);
+    }
+}
+
 /// The search ends at half the rate, where a low-pass filter loses least on fast vibration.
 #[test]
 fn end_of_a_range_is_reported() {
