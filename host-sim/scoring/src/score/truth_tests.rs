@@ -278,7 +278,10 @@ fn one_of_100_samples_exceeds_p99() {
     let truth = signal(1100, |_| 3.0);
     let error = |k: usize| match k {
         0..100 => 500.0,
-        _ => 0.01 * ((37 * (k - 100)) % 1000 + 1) as f32 * if k % 2 == 0 { 1.0 } else { -1.0 },
+        _ => {
+            0.01 * ((37 * (k - 100)) % 1000 + 1) as f32
+                * if k.is_multiple_of(2) { 1.0 } else { -1.0 }
+        }
     };
     let guess: Vec<f32> = (0..1100).map(|k| 3.0 + error(k)).collect();
     near(score(&truth, &guess).p99_rad_s, 9.9, 1e-5);
