@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-use crate::{Difference, root, update};
+use crate::{Difference, replace, root, update};
 
 /// A part of a page between `<!-- KIND: NAME -->` and `<!-- end of NAME -->`.
 #[derive(Clone, Copy, Debug)]
@@ -76,7 +76,7 @@ impl Block {
         let _guard = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
         let [before, _, after] = self.parts(&self.text()?)?;
         let text = format!("{before}\n\n{}\n\n{after}", content.trim());
-        fs::write(self.path(), text).map_err(|error| self.wrong(error))
+        replace(&self.path(), text.as_bytes()).map_err(|error| self.wrong(error))
     }
 
     /// Writes the content with `UPDATE_GOLDEN=1`, and compares otherwise.

@@ -64,6 +64,13 @@ pub(crate) fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
 }
 
+/// Replaces a file as a whole: a reader beside it sees the old or the new content.
+pub(crate) fn replace(path: &Path, content: &[u8]) -> std::io::Result<()> {
+    let new = path.with_extension("new");
+    fs::write(&new, content)?;
+    fs::rename(new, path)
+}
+
 impl Table {
     fn path(&self) -> PathBuf {
         root().join(format!("measured/{}.csv", self.name))
@@ -148,7 +155,7 @@ impl Table {
             put(&mut row.iter().map(String::as_str))?;
         }
         let bytes = writer.into_inner().map_err(|error| self.wrong(error))?;
-        fs::write(self.path(), bytes).map_err(|error| self.wrong(error))?;
+        replace(&self.path(), &bytes).map_err(|error| self.wrong(error))?;
         self.block().write(&self.content()?)
     }
 

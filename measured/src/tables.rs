@@ -3,12 +3,14 @@
 mod board;
 mod closed_loop;
 mod estimators;
+mod stress;
 
 use crate::Table;
 
 pub use board::*;
 pub use closed_loop::*;
 pub use estimators::*;
+pub use stress::*;
 
 /// The command of the tables of the host simulation.
 const DOCUMENTED: &str = "cargo test --release --package host-sim --test documented";
@@ -40,6 +42,9 @@ pub const ALL: &[Table] = &[
     PARAMETER_BOUNDS,
     CONFIDENCE,
     VELOCITY_LOOP,
+    STRESS,
+    STRESS_SIGNALS,
+    STRESS_PARAMETERS,
 ];
 
 /// Files that no page shows: the hashes of all velocities.

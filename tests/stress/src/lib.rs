@@ -13,7 +13,7 @@
 //! | [`sensitivity`] | parameters at the ends of their ranges |
 //! | [`signals`] | what f32 costs on signals that a device can give |
 //! | [`definition`] | FOAW by its O(n²) definition, in exact fractions |
-//! | [`table`] | the findings as text, markdown and JSON |
+//! | [`table`] | the findings as text, and as cells of the measured tables |
 
 pub mod contestants;
 pub mod course;

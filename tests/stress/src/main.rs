@@ -1,11 +1,11 @@
 //! `cargo stress`: every estimator over a long and hostile course, beside its f64 twin.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
+use measured::tables::{STRESS, STRESS_PARAMETERS, STRESS_SIGNALS};
 use rayon::prelude::*;
 use terminal::explain;
 use terminal::failure::{Failure, ended};
@@ -87,7 +87,7 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let golden = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
+    let golden = measured::update();
     if golden && (arguments.estimator.is_some() || arguments.rates != RATES_HZ) {
         return Err(Failure::Input("UPDATE_GOLDEN=1 writes all estimators at 1 and 10 kHz: leave out --estimator and --rate".to_owned()));
     }
@@ -105,20 +105,24 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     bar.finish_and_clear();
     let device: Vec<_> = differences(&contestants, arguments);
     let extremes = sensitivity::all();
+    let tables = [
+        (STRESS, table::cells(&all)),
+        (STRESS_SIGNALS, table::signals(&device)),
+        (STRESS_PARAMETERS, table::sensitivity(&extremes)),
+    ];
+    let [found, signals, ends] = tables
+        .each_ref()
+        .map(|(table, rows)| table.markdown(&[], rows));
     let found = if arguments.markdown {
-        table::markdown(&all)
+        found
     } else {
         table::text(&all)
     };
-    let (signals, ends) = (table::signals(&device), table::sensitivity(&extremes));
     print_bytes(format!("{found}\n{signals}\n{ends}").as_bytes())?;
     if golden {
-        let tables = [
-            ("stress", table::markdown(&all)),
-            ("signals", signals),
-            ("ends", ends),
-        ];
-        write_docs(&tables)?;
+        for (table, rows) in &tables {
+            table.write(&[], rows).map_err(Failure::Input)?;
+        }
     }
     if let Some(path) = &arguments.json {
         let json = serde_json::to_vec_pretty(&all);
@@ -131,19 +135,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::Check(format!("{failed} rows above did not hold")));
     }
     Ok(())
-}
-
-/// Puts the tables into docs/benchmarks.md.
-fn write_docs(tables: &[(&str, String)]) -> Result<(), Failure> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/benchmarks.md");
-    let problem = |error: &dyn std::fmt::Display| {
-        Failure::Input(format!("docs/benchmarks.md: {error}; restore it"))
-    };
-    let mut text = fs::read_to_string(&path).map_err(|error| problem(&error))?;
-    for (name, table) in tables {
-        text = table::placed(&text, name, table).map_err(|error| problem(&error))?;
-    }
-    write_whole(&path, text.as_bytes())
 }
 
 /// What f32 costs each on a device's signals.

@@ -58,94 +58,57 @@ pub fn text(all: &[Findings]) -> String {
     text
 }
 
-/// The same as a markdown table.
+/// The cells of [`measured::tables::STRESS`].
 #[must_use]
-pub fn markdown(all: &[Findings]) -> String {
-    let mut text = String::from(
-        "| estimator | rate, Hz | ticks | wraps of 2^32 | f32 against f64, rad/s | soon after a start | of the fastest velocity \
-         | at rest after, ticks | by design | windows compared | faults |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
-    );
-    for found in all {
-        let _ = writeln!(
-            text,
-            "| {} | {} | {:.1e} | {} | {:.1e} | {:.1e} | {:.1e} | {} | {} | {} | {} |",
-            found.estimator,
-            found.rate_hz,
-            found.ticks as f64,
-            found.wraps,
-            found.deviation_rad_s,
-            found.start_deviation_rad_s,
-            found.relative_deviation,
-            found.recovery_ticks,
-            found.bounds.settles_ticks,
-            found.windows_compared,
-            found.fault_count,
-        );
-    }
-    text
+pub fn cells(all: &[Findings]) -> Vec<Vec<String>> {
+    let row = |found: &Findings| {
+        vec![
+            found.estimator.clone(),
+            found.rate_hz.to_string(),
+            format!("{:.1e}", found.ticks as f64),
+            found.wraps.to_string(),
+            format!("{:.1e}", found.deviation_rad_s),
+            format!("{:.1e}", found.start_deviation_rad_s),
+            format!("{:.1e}", found.relative_deviation),
+            found.recovery_ticks.to_string(),
+            found.bounds.settles_ticks.to_string(),
+            found.windows_compared.to_string(),
+            found.fault_count.to_string(),
+        ]
+    };
+    all.iter().map(row).collect()
 }
 
-/// What f32 costs on a device's signals.
+/// The cells of [`measured::tables::STRESS_SIGNALS`]: what f32 costs on a device's signals.
 #[must_use]
-pub fn signals(all: &[Difference]) -> String {
-    let mut text = String::from(
-        "| estimator | rate, Hz | largest, rad/s | RMS, rad/s | RMS error, rad/s | f32 adds |\n\
-         |---|---:|---:|---:|---:|---:|\n",
-    );
-    for found in all {
-        let _ = writeln!(
-            text,
-            "| {} | {} | {:.1e} | {:.1e} | {:.3} | {:.1e} |",
-            found.estimator,
-            found.rate_hz,
-            found.largest_rad_s,
-            found.rms_rad_s,
-            found.error_rad_s[0],
-            found.added_error(),
-        );
-    }
-    text
+pub fn signals(all: &[Difference]) -> Vec<Vec<String>> {
+    let row = |found: &Difference| {
+        vec![
+            found.estimator.clone(),
+            found.rate_hz.to_string(),
+            format!("{:.1e}", found.largest_rad_s),
+            format!("{:.1e}", found.rms_rad_s),
+            format!("{:.3}", found.error_rad_s[0]),
+            format!("{:.1e}", found.added_error()),
+        ]
+    };
+    all.iter().map(row).collect()
 }
 
-/// What came of the parameters at the ends of their ranges.
+/// The cells of [`measured::tables::STRESS_PARAMETERS`]: what came of the parameters at the ends of
+/// their ranges.
 #[must_use]
-pub fn sensitivity(all: &[Outcome]) -> String {
-    let mut text = String::from(
-        "| estimator | designs | refused, by error | f32 against f64, of the fastest velocity | broken |\n\
-         |---|---:|---|---:|---:|\n",
-    );
-    for outcome in all {
-        let refused: Vec<String> = outcome
-            .refused
-            .iter()
-            .map(|(error, count)| format!("{error} {count}"))
-            .collect();
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} | {:.1e} | {} |",
-            outcome.estimator,
-            outcome.tried,
-            refused.join(", "),
-            outcome.relative_deviation,
-            outcome.broken.len(),
-        );
-    }
-    text
-}
-
-/// `text` with `table` between the markers of this name.
-///
-/// # Errors
-/// One line if the markers are not there.
-pub fn placed(text: &str, name: &str, table: &str) -> Result<String, String> {
-    let begin = format!("<!-- {name}: written by cargo stress -->");
-    let end = format!("<!-- end of {name} -->");
-    let (before, rest) = text
-        .split_once(&begin)
-        .ok_or_else(|| format!("no \"{begin}\""))?;
-    let (_, after) = rest
-        .split_once(&end)
-        .ok_or_else(|| format!("no \"{end}\""))?;
-    Ok(format!("{before}{begin}\n\n{table}\n{end}{after}"))
+pub fn sensitivity(all: &[Outcome]) -> Vec<Vec<String>> {
+    let row = |outcome: &Outcome| {
+        let refused = outcome.refused.iter();
+        let refused = refused.map(|(parameter, count)| format!("{parameter} {count}"));
+        vec![
+            outcome.estimator.clone(),
+            outcome.tried.to_string(),
+            refused.collect::<Vec<_>>().join(", "),
+            format!("{:.1e}", outcome.relative_deviation),
+            outcome.broken.len().to_string(),
+        ]
+    };
+    all.iter().map(row).collect()
 }
