@@ -105,7 +105,7 @@ mod tests {
     const BLOCK: Block = Block {
         kind: "measured",
         name: "x",
-        page: "docs/x.md",
+        page: "NAME.md",
     };
 
     #[test]
@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn block_without_its_comments_is_refused_by_name() {
         let error = BLOCK.parts("<!-- measured: x -->").unwrap_err();
-        assert_eq!(error, "docs/x.md: no '<!-- end of x -->'");
+        assert_eq!(error, "NAME.md: no '<!-- end of x -->'");
         let text = "a <!-- measured: x -->b<!-- end of x --> c";
         let [before, content, after] = BLOCK.parts(text).unwrap();
         assert_eq!([&*before, &*content, &*after].concat(), text);

@@ -246,7 +246,7 @@ mod tests {
 
     const TABLE: Table = Table {
         name: "x",
-        page: "docs/x.md",
+        page: "NAME.md",
         columns: &[("name", "name"), ("mean_3", "mean, `3`")],
         digits: Some(2),
         command: "cargo x",
