@@ -16,11 +16,8 @@ use super::{
 };
 use experiments::compare::interval;
 use experiments::sensitivity::table::rows_by_rate;
+use scoring::score::SKIP_S;
 
-const DISTANCE: &str = "Mean distance of the estimate outside the haptic interval, over all \
-    samples after the first 0.1 s. A distance of 0 (no bar) means that a fingertip never feels \
-    the error. The axis is logarithmic and begins at an arbitrary value: compare the ends of \
-    the bars. One grid line is a factor of ten.";
 const SPECTRA: &str = "Amplitude spectral density of the velocity error. Delay and bias lie at \
     low frequencies, quantisation noise at high frequencies. An error in the green band is felt \
     as vibration and roughness. Lower is better.";
@@ -43,9 +40,10 @@ const SCORES: &str = "Bold on green marks the best value of a scenario: the smal
     Within is the share of samples whose error is below two of the standard deviations that the \
     estimator reports; about 95\u{a0}% is correct, so no value is marked. Click a heading to \
     sort each scenario by that column.";
-const DEVICE: &str = "Constants that the scores depend on. The first two rows of the \
-    paper\u{2019}s Table II assume one count per encoder line, its other rows four. Both are \
-    given here. This device counts all four edges of a line.";
+const DEVICE: &str = "Constants that the scores depend on. In Table II, N is the number of lines per \
+    revolution and T the sample time. The first two rows of the paper\u{2019}s Table II assume one \
+    count per encoder line, its other rows four; both are given here. This device counts all four \
+    edges of a line.";
 
 /// Every section that has something to show.
 pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Section>, String> {
@@ -194,7 +192,13 @@ fn distance(groups: &[Group], palette: &Palette) -> Result<Option<Markup>, Strin
         let of_rate: Vec<&Group> = of_rate.iter().collect();
         figures.extend(distances::bars(&title, &of_rate, palette)?);
     }
-    Ok(explained(figures, DISTANCE))
+    let text = format!(
+        "Mean distance of the estimate outside the haptic interval, over all samples after the first \
+         {SKIP_S} s. A distance of 0 (no bar) means that a fingertip never feels the error. The axis \
+         is logarithmic and begins at an arbitrary value: compare the ends of the bars. One grid line \
+         is a factor of ten."
+    );
+    Ok(explained(figures, &text))
 }
 
 fn spectrum(report: &ReportInput, palette: &Palette) -> Result<Option<Markup>, String> {

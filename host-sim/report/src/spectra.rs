@@ -3,7 +3,7 @@
 use super::canvas::{Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height};
 use super::palette::{BAND, INK, MUTED, Palette};
 use super::plot::{Axis, Plot};
-use super::text::rate;
+use super::text::{rate, tactile_band};
 use super::{CaseReport, Traces};
 use scoring::score::{SKIP_S, TACTILE_BAND_HZ};
 use scoring::spectrum::Welch;
@@ -44,6 +44,7 @@ pub(super) fn spectra(
     // Values below 1e-5 of the largest would only stretch the axis.
     let positive = all().map(|p| p.1).filter(|power| *power > 1e-5 * high);
     let y = Axis::log([positive.fold(high, f64::min), high]);
+    let band = format!("felt as roughness, {}", tactile_band());
     let keys: Vec<Key> = palette
         .names()
         .filter(|name| {
@@ -52,9 +53,7 @@ pub(super) fn spectra(
                 .any(|(_, curves)| curves.iter().any(|c| c.name == *name))
         })
         .map(|name| Key::Line(palette.style(name), name))
-        .chain([Key::Band(
-            "where a fingertip is most sensitive, 50 to 500 Hz",
-        )])
+        .chain([Key::Band(&band)])
         .collect();
     let top = 34.0 + legend_height(&keys, LEFT) + 26.0;
     let gap = 56.0;

@@ -59,7 +59,7 @@ pub(super) fn constants(name: &str, device: &Device) -> Markup {
     ];
     html! {
         table.facts {
-            caption { "Table I: constants of " (name) }
+            caption { "Table I: device constants (" (name) ")" }
             tbody {
                 @for (what, value) in rows {
                     tr { th scope="row" { (what) } td { (value) } }

@@ -1,6 +1,7 @@
 //! Numbers and names as text.
 
 use catalogue::parameters::PlantKind;
+use scoring::score::TACTILE_BAND_HZ;
 
 /// Three significant digits, without exponent from 0.001 on; infinity as its sign.
 pub(super) fn number(value: f64) -> String {
@@ -42,6 +43,12 @@ pub(super) fn share(part: f64) -> String {
     } else {
         format!("{percent:.0}\u{a0}%")
     }
+}
+
+/// The frequencies at which a fingertip feels roughness.
+pub(super) fn tactile_band() -> String {
+    let [low, high] = TACTILE_BAND_HZ;
+    format!("{low} to {high} Hz")
 }
 
 /// Name of the plant in a sentence.

@@ -93,7 +93,7 @@ fn figure(
         }
     }
     let keys = [
-        Key::Line(TRUTH.into(), "commanded"),
+        Key::Line(TRUTH.into(), "commanded force"),
         Key::Band("threshold of a fingertip"),
         Key::Line(MUTED.into(), "felt, in the colour of the velocity source"),
     ];

@@ -13,7 +13,7 @@ use experiments::transparency::{Outcome, Parasitic, REFERENCE, Run};
 
 const SCORES: &str = "Bold on green marks the best estimator of each scene; the reference \
     encoder does not compete. Force is the parasitic force at the fingertip: RMS, 99th \
-    percentile, and RMS from 50 to 500 Hz. Unnoticed is the share of time in which it is below \
+    percentile, and RMS of the part that is felt as roughness. Unnoticed is the share of time in which it is below \
     the threshold of a fingertip. The last column is the RMS error of the velocity that the \
     loop used.";
 

@@ -4,7 +4,7 @@ use super::super::canvas::{Key, Svg};
 use super::super::palette::{Palette, TRUTH};
 use super::super::plot::Axis;
 use super::super::spectra::average;
-use super::super::text::{plant, rate};
+use super::super::text::{plant, rate, tactile_band};
 use super::charts::{Curve, Green, Panel, panels};
 use super::{ClosedLoop, find};
 use catalogue::parameters::PlantKind;
@@ -61,10 +61,11 @@ pub(super) fn figure(closed: &ClosedLoop, palette: &Palette) -> Result<Option<Sv
         panel.y = Axis::log([1e-4 * highest, highest]);
     }
     let has_off = !closed.of("off").is_empty();
+    let band = format!("felt as roughness, {}", tactile_band());
     let keys: Vec<Key> = (names.iter())
         .map(|name| Key::Line(palette.style(name), name))
         .chain(has_off.then_some(Key::Line(TRUTH.into(), "motors off")))
-        .chain([Key::Band("felt as roughness, 50 to 500 Hz")])
+        .chain([Key::Band(&band)])
         .collect();
     let plant = plant(first.case.plant == PlantKind::Friction);
     let title = format!("Spectrum of the parasitic force in free air, plant {plant}");

@@ -6,7 +6,7 @@ use super::super::canvas::{Key, Svg};
 use super::super::palette::Palette;
 use super::super::plot::Axis;
 use super::super::score_tables::{cell, label, no_value};
-use super::super::text::{number, plant, rate};
+use super::super::text::{number, plant, rate, tactile_band};
 use super::ClosedLoop;
 use super::charts::{Curve, Green, Panel, panels};
 use catalogue::parameters::PlantKind;
@@ -83,9 +83,10 @@ pub(super) fn figures(closed: &ClosedLoop, palette: &Palette) -> Result<Option<S
             });
         }
     }
+    let band = format!("felt as roughness, {}", tactile_band());
     let keys: Vec<Key> = (names.iter())
         .map(|name| Key::Line(palette.style(name), name))
-        .chain([Key::Band("felt as roughness, 50 to 500 Hz")])
+        .chain([Key::Band(&band)])
         .collect();
     let plant = plant(first.plant == PlantKind::Friction);
     let title = format!("Frequency response of the rendered torque, handle clamped, plant {plant}");
@@ -97,9 +98,9 @@ pub(super) fn figures(closed: &ClosedLoop, palette: &Palette) -> Result<Option<S
 pub(super) fn table(closed: &ClosedLoop, palette: &Palette) -> Option<Markup> {
     let swept = shown(closed);
     let heads = [
-        ("bandwidth", "\u{2212}3 dB, Hz"),
-        ("largest gain error", "50\u{2013}500 Hz, dB"),
-        ("lowest coherence", "50\u{2013}500 Hz"),
+        ("bandwidth", "\u{2212}3 dB, Hz".to_owned()),
+        ("largest gain error", format!("{}, dB", tactile_band())),
+        ("lowest coherence", tactile_band()),
     ];
     (!swept.is_empty()).then(|| {
         html! {
@@ -110,7 +111,7 @@ pub(super) fn table(closed: &ClosedLoop, palette: &Palette) -> Option<Markup> {
                         tr {
                             th { "controlled by" }
                             @for swept in &swept {
-                                @for (what, unit) in heads {
+                                @for (what, unit) in &heads {
                                     th { (what) small { (rate(swept.rate_hz)) ", " (unit) } }
                                 }
                             }
