@@ -12,16 +12,6 @@ const FAST: Hertz = Hertz(10_000.0);
 /// The clock that stamps edges.
 pub const CLOCK: Hertz = Hertz(84e6);
 
-/// The value of a parameter: of a window the capacity and a noise bound of one count, else what
-/// `host-sim tune` wrote.
-const fn value(estimator: &str, rate: Hertz, capacity: usize, parameter: &str) -> f64 {
-    match parameter.as_bytes() {
-        b"n" => capacity as f64,
-        b"d" => 1.0,
-        _ => tuned::value(estimator, rate, parameter),
-    }
-}
-
 const fn triple(rate: Hertz) -> Result<Model<3, NoInput>, DesignError> {
     let jerk = tuned::value("kalman-triple", rate, "jerk");
     Model::triple_integrator(4096, rate, jerk)
@@ -42,7 +32,7 @@ macro_rules! rows {
                 #[allow(unused_variables, reason = "a row may have no parameter")]
                 const fn parameters(rate: Hertz, capacity: usize) -> design::$id::Parameters {
                     design::$id::Parameters {
-                        $($parameter: value($name, rate, capacity, stringify!($parameter)),)*
+                        $($parameter: tuned::value_for($name, rate, capacity, stringify!($parameter)),)*
                     }
                 }
 

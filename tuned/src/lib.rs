@@ -91,6 +91,20 @@ pub const fn value(estimator: &str, rate: Hertz, parameter: &str) -> f64 {
     find(estimator, rate, parameter).expect("a parameter in host-sim/presets.toml")
 }
 
+/// The value of a parameter of a design that is measured with a window of `capacity` intervals: the
+/// window `n` is as long, the noise bound `d` is one count, and every other parameter is tuned.
+///
+/// # Panics
+/// As [`value`].
+#[must_use]
+pub const fn value_for(estimator: &str, rate: Hertz, capacity: usize, parameter: &str) -> f64 {
+    match parameter.as_bytes() {
+        b"n" => capacity as f64,
+        b"d" => 1.0,
+        _ => value(estimator, rate, parameter),
+    }
+}
+
 /// The value of a parameter in the control loop of an image: the `[image]` section's for that motor,
 /// `large` or `handle`; for the large motor else the tuned value. The file that PRESETS names comes
 /// before the shipped one.

@@ -64,7 +64,7 @@ macro_rules! rows {
                     #[allow(unused_variables, reason = "a row may have no parameter")]
                     const fn parameters(rate: Hertz, capacity: usize) -> design::$id::Parameters {
                         design::$id::Parameters {
-                            $($parameter: crate::value($name, rate, stringify!($parameter), capacity),)*
+                            $($parameter: tuned::value_for($name, rate, capacity, stringify!($parameter)),)*
                         }
                     }
 
@@ -116,15 +116,6 @@ estimator_catalogue::estimators!(rows);
 /// The rate of a variant; [`RATE`] for one that suits every rate.
 const fn rate(hertz: f64) -> Hertz {
     if hertz > 0.0 { Hertz(hertz) } else { RATE }
-}
-
-/// Tuned parameters; of a window the capacity and a noise bound of one count.
-const fn value(estimator: &str, rate: Hertz, parameter: &str, capacity: usize) -> f64 {
-    match parameter.as_bytes() {
-        b"n" => capacity as f64,
-        b"d" => 1.0,
-        _ => tuned::value(estimator, rate, parameter),
-    }
 }
 
 // What no row has: other sizes, wrappers and parts.
