@@ -26,7 +26,7 @@ pub struct Job<'a> {
     pub follow: bool,
 }
 
-/// What a job showed.
+/// Results of a job.
 #[derive(Clone, Debug, Default)]
 pub struct Ran {
     /// Instructions of each update, from its first to its return.
@@ -37,7 +37,7 @@ pub struct Ran {
     pub velocities: Vec<f32>,
 }
 
-/// Where a subject's update begins, and where it comes back to.
+/// Entry and return addresses of a subject's update.
 struct Places {
     entry: u64,
     returns: Vec<u64>,
@@ -63,7 +63,7 @@ impl Places {
     }
 }
 
-/// A job as the board takes it.
+/// A job in the format of the board.
 struct Order {
     subject: usize,
     follow: bool,
@@ -78,7 +78,7 @@ struct Bench {
     job: u64,
     trace: u64,
     velocities: u64,
-    /// The job that runs, and what it showed so far.
+    /// The running job, and its results so far.
     running: Option<(Order, Ran)>,
     /// Instruction count at the update's entry.
     since: Option<u64>,
@@ -153,7 +153,7 @@ impl Bench {
                 ran.cycles.push(self.cycles);
             }
             self.since = None;
-            // The other calls of the loop are not of interest any more.
+            // The other calls of the loop are ignored.
             for other in places.returns.iter().filter(|other| **other != hit.address) {
                 host.unwatch(Watch::Instruction(*other));
             }
@@ -183,7 +183,7 @@ impl Driver<ControllerBoard> for Bench {
         stop: Stop,
         _: &mut dyn Host,
     ) -> Option<VirtualNanos> {
-        // Nothing happens at a stop but the question whether to go on.
+        // A stop only decides whether the run continues.
         (!self.finished).then_some(VirtualNanos(stop.at.0 + 1_000_000))
     }
 }
@@ -191,7 +191,7 @@ impl Driver<ControllerBoard> for Bench {
 /// Runs the jobs on the image, in order.
 ///
 /// # Errors
-/// One line on an image that lacks something, or an emulator that gave up.
+/// One line on an image with a missing symbol, or an error of the emulator.
 pub fn on_board(image: &Image, jobs: &[Job<'_>]) -> Result<Vec<Ran>, String> {
     let emulator = |error: &dyn std::fmt::Display| format!("emulator: {error}");
     let rate = NonZeroU64::new(CORE_HZ).expect("not zero");

@@ -21,10 +21,10 @@ const IMAGES: [(&str, &str); 4] = [
     ("adaptive-edge", "large-adaptive,edge-capture"),
 ];
 
-/// The estimator whose every update takes the same.
+/// The estimator with the same cost of every update.
 const STEADY: &str = "kalman-triple-steady";
 
-/// Of a scene that asks for no velocity.
+/// Name of the estimator in a scene that uses no velocity.
 pub const NONE: &str = "none";
 
 /// Virtual time in each scene, s.
@@ -35,11 +35,11 @@ const SECONDS: f64 = 1.0;
 pub struct Task {
     /// Name of the scene.
     pub scene: String,
-    /// Estimator on the large motor, [`NONE`] where the scene does without.
+    /// Estimator on the large motor; [`NONE`] if the scene needs none.
     pub estimator: &'static str,
-    /// Instructions: mean and most.
+    /// Instructions: mean and largest number.
     pub instructions: (f64, u64),
-    /// Estimated cycles: mean and most.
+    /// Estimated cycles: mean and largest number.
     pub cycles: (f64, u32),
 }
 
@@ -89,8 +89,8 @@ pub fn measure() -> Result<Vec<Task>, String> {
     jobs.into_par_iter().map(task).collect()
 }
 
-/// Says of every estimator which control rate the whole task with it on the large motor sustains:
-/// the longest task of the steady Kalman filter, its update exchanged for the other's longest.
+/// Estimates the highest control rate with each estimator on the large motor: the longest task of the
+/// image with the steady Kalman filter, with its update replaced by the longest one of the estimator.
 pub fn rate(rows: &mut [Row], tasks: &[Task]) {
     let steady = tasks.iter().filter(|task| task.estimator == STEADY);
     let longest = steady.map(|task| task.cycles.1).max();

@@ -1,29 +1,29 @@
-//! Where an instruction leads: as much of the Thumb-2 encoding as a control-flow graph needs.
+//! Control flow of an instruction: the part of the Thumb-2 encoding that a control-flow graph needs.
 
 use std::collections::BTreeMap;
 
 use virtual_board::thumb;
 
-/// Where control goes after an instruction.
+/// Successor of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Flow {
-    /// To the next instruction.
+    /// The next instruction.
     On,
-    /// There, or to the next one.
+    /// A target address, or the next instruction.
     Perhaps(u64),
-    /// There.
+    /// A target address.
     Jump(u64),
-    /// To that function and, when it returns, to the next instruction.
+    /// A called function and, after its return, the next instruction.
     Call(u64),
-    /// Back to the caller.
+    /// Return to the caller.
     Return,
-    /// Back to the caller, or to the next instruction.
+    /// Return to the caller, or the next instruction.
     PerhapsReturn,
-    /// Where a register or a table says.
+    /// An address from a register or a table.
     Unknown,
 }
 
-/// An instruction: where control goes, and the address behind it.
+/// An instruction: its successor, and the address after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Instruction {
     pub(crate) flow: Flow,

@@ -1,4 +1,4 @@
-//! The bench image: built for the board, and where in it things are.
+//! The bench image: build for the board, and addresses of its functions and data.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ impl Level {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Speed, Self::Size];
 
-    /// As cargo calls it.
+    /// Name in cargo's settings.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

@@ -14,7 +14,7 @@ use crate::traces::{self, BenchTrace, RATES_HZ};
 /// Updates that are followed instruction by instruction, at the end of each trace.
 const FOLLOWED: usize = 40;
 
-/// Start of each trace that no error looks at, updates.
+/// Updates at the start of each trace that the errors ignore.
 const SKIPPED: usize = 200;
 
 /// Figures at one optimisation level.
@@ -37,7 +37,7 @@ pub struct Cost {
 pub struct Row {
     /// Its name.
     pub name: String,
-    /// Whether it is somebody else's.
+    /// Whether it is a filter of another library.
     pub peer: bool,
     /// Costs by [`Level::ALL`].
     pub cost: [Cost; 2],
@@ -45,7 +45,7 @@ pub struct Row {
     pub state: usize,
     /// RMS error by [`traces::RATES_HZ`], the simulated moving traces pooled, rad/s.
     pub rms_rad_s: [f64; 2],
-    /// Whether nothing costs and errs less, by rate.
+    /// Whether it is Pareto-optimal in run time and error, by rate.
     pub front: [bool; 2],
     /// Highest control rate of the whole task with it on the large motor at half load, by the most
     /// cycles, Hz.
@@ -119,8 +119,8 @@ pub fn measure() -> Result<Vec<Row>, String> {
 
 type Runs<'a> = Vec<(Job<'a>, Ran)>;
 
-/// Runs every subject over the traces of its rate: whole ones to count, ends to follow; hostile ones
-/// only to compare.
+/// Runs every subject over the traces of its rate: whole traces to count instructions, their ends to
+/// follow instructions, and stress traces only to compare with the host.
 fn run<'a>(
     image: &Image,
     traces: &'a [BenchTrace],
@@ -168,7 +168,7 @@ fn run<'a>(
         if !same || ran.instructions.len() != job.samples.len() - 1 {
             let level = image.level.name();
             return Err(format!(
-                "{subject} at {} Hz and opt-level {level}: the board and the host differ",
+                "{subject} at {} Hz and opt-level {level}: velocities of board and host differ",
                 subject.rate_hz
             ));
         }

@@ -1,5 +1,5 @@
-//! The peers' own parameters, found as `host-sim tune` finds ours: same scenarios, same seeds, same
-//! cost. Filters of a model that ours has too take its parameters instead.
+//! Tuning of the other libraries' filters like `host-sim tune`: same scenarios, seeds and cost. A
+//! filter with the model of an estimator of the catalogue uses the parameters of that estimator.
 
 use std::fmt::Write as _;
 
@@ -20,11 +20,11 @@ use crate::traces::{COUNTS_PER_REV, RATES_HZ, counts_per_tick};
 const SEEDS: u64 = 3;
 const SECONDS: f64 = 10.0;
 
-/// Points of a grid, and how many grids there are, each between the neighbours of the best.
+/// Points of a grid, and number of grids, each between the neighbours of the best point.
 const GRID: usize = 25;
 const ROUNDS: usize = 3;
 
-/// A trace and its truth.
+/// A simulated trace and the scores' reference.
 type Track<'a> = (&'a Trace, Truth<'a>);
 
 fn traces(device: &Device, rate_hz: f64) -> Result<Vec<Trace>, String> {
@@ -47,7 +47,7 @@ fn truth<'a>(device: &Device, trace: &'a Trace) -> Result<Truth<'a>, String> {
     Truth::new(omega, trace.rate_hz, interval(device), wanted)
 }
 
-/// What `host-sim tune` minimises.
+/// The cost that `host-sim tune` minimises.
 fn cost(estimator: &impl Measured, scale: f64, tracks: &[Track<'_>]) -> f64 {
     let of = |(trace, truth): &Track<'_>| {
         let sample = |k| sample(Signals::COUNT, trace, k);
@@ -63,7 +63,7 @@ fn cost(estimator: &impl Measured, scale: f64, tracks: &[Track<'_>]) -> f64 {
     tracks.iter().map(of).sum::<f64>() / tracks.len() as f64
 }
 
-/// The frequency with the least cost between two parts of the rate, Hz, to three digits.
+/// The frequency with the smallest cost between two fractions of the rate, Hz, with three digits.
 fn best<E: Measured>(
     make: fn(Hertz, Hertz) -> E,
     [mut low, mut high]: [f64; 2],
@@ -87,7 +87,7 @@ fn best<E: Measured>(
     format!("{hertz:.2e}").parse().unwrap_or(hertz)
 }
 
-/// A line a rate: what `bench-image/src/estimators.rs` is to say.
+/// One line per rate with the parameters for `bench-image/src/estimators.rs`.
 ///
 /// # Errors
 /// One line on a trace that cannot be simulated.

@@ -1,15 +1,15 @@
-//! Run time against error as a picture.
+//! Plot of run time against error.
 
 use plotters::prelude::*;
 
 use crate::measure::Row;
 use crate::traces::RATES_HZ;
 
-/// Both rates side by side: instructions an update against RMS error, both logarithmic; the front
-/// joined by a line, peers hollow.
+/// Both rates side by side: instructions per update against RMS error, both logarithmic. A line joins
+/// the Pareto front; other libraries' filters have hollow marks.
 ///
 /// # Errors
-/// One line if the picture cannot be drawn.
+/// One line if the plot cannot be drawn.
 pub fn svg(rows: &[Row]) -> Result<String, String> {
     let mut text = String::new();
     draw(&mut text, rows).map_err(|error| format!("plot: {error}"))?;
@@ -76,7 +76,7 @@ impl Labels {
         Self(marks.iter().map(mark).collect())
     }
 
-    /// Where beside its mark a name fits, nearest first.
+    /// Positions of a name beside its mark, the nearest first.
     fn place(&mut self, (x, y): (i32, i32), name: &str) -> (i32, i32) {
         let (left, right) = (x + 7, x + 7 + LETTER * name.len() as i32);
         let free = |offset: &i32| {

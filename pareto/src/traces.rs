@@ -1,4 +1,4 @@
-//! The traces that everything runs over.
+//! The traces of the measurement.
 
 use catalogue::estimators::sample;
 use estimator_core::{Amps, ClockTicks, Count, Edge, Sample, Signals};
@@ -12,16 +12,16 @@ use stress::course::Course;
 /// Samples of each trace.
 const SAMPLES: usize = 2500;
 
-/// Ticks between two stretches of a hostile course.
+/// Ticks between two stretches of a stress course.
 const STRETCH: usize = 128;
 
 /// Simulated traces begin here, s: scenarios have settled.
 const FROM_S: f64 = 1.0;
 
-/// Not a seed that presets are tuned on.
+/// A seed that is not used for tuning.
 const SEED: u64 = 7;
 
-/// What some estimator reads.
+/// All signals that estimators read.
 const EVERYTHING: Signals = Signals {
     current: true,
     coupled: true,
@@ -32,28 +32,28 @@ const COLUMNS: Columns = Columns {
     edges: true,
 };
 
-/// Of the large encoder.
+/// Counts per revolution of the large encoder.
 pub(crate) const COUNTS_PER_REV: u32 = 4096;
 
 /// Control rates, Hz.
 pub const RATES_HZ: [u32; 2] = [1000, 10_000];
 
-/// A trace and what is true of it.
+/// A trace with its true velocity.
 #[derive(Clone, Debug)]
 pub struct BenchTrace {
-    /// What it is.
+    /// Name of the trace.
     pub name: &'static str,
     /// Its rate, Hz.
     pub rate_hz: u32,
-    /// What an estimator sees.
+    /// Input of the estimators.
     pub samples: Vec<Sample>,
-    /// Velocity at each sample, counts a tick; none where errors say nothing.
+    /// True velocity at each sample, counts per tick; `None` if errors are not computed.
     pub truth: Option<Vec<f64>>,
     /// rad/s of one count a tick.
     pub scale: f64,
 }
 
-/// All of them.
+/// All traces.
 ///
 /// # Errors
 /// One line on a recording that cannot be read.
@@ -93,8 +93,8 @@ pub fn all() -> Result<Vec<BenchTrace>, String> {
     Ok(traces)
 }
 
-/// What nobody counts but every bit has to hold in: rest, top speed, ties of the quantiser, wraps of
-/// the counter, any 32 bits, currents that are no numbers.
+/// Traces in which only the bits are compared: rest, top speed, ties of the quantiser, wraps of the
+/// counter, random 32-bit counts, currents that are not numbers.
 pub(crate) fn hostile(rate_hz: u32) -> Vec<Sample> {
     let mut course = Course::new(SEED, f64::from(rate_hz));
     let mut samples = Vec::with_capacity(bench_image::mailbox::SAMPLES);

@@ -22,12 +22,12 @@ const NAME: &str = "limpid";
 /// Core clock, Hz.
 pub const CORE_HZ: u64 = 168_000_000;
 
-/// The emulated part with a model in the DAC's slot, which it otherwise lacks.
+/// The emulated microcontroller with a model of the DAC, which the emulator does not have.
 #[derive(Debug)]
 pub struct Part {
-    /// Everything but the DAC.
+    /// The emulator's model of the other peripherals.
     pub stm32: Stm32f427,
-    /// The next reset is the brown-out detector's, which the emulator has not.
+    /// Whether the next reset is one of the brown-out detector, which the emulator does not model.
     pub(crate) brown_out: bool,
     dac: Dac,
     dac_slot: usize,
@@ -43,7 +43,7 @@ impl Part {
 }
 
 impl Part {
-    /// Starts the crystal, which was dead until now, at this frequency.
+    /// Starts a dead crystal at this frequency.
     pub(crate) fn start_crystal(&mut self, hz: u64) {
         self.stm32.rcc.attach_crystals(hz, 0);
         let (_, registers) = self.stm32.clocks();
@@ -78,7 +78,7 @@ impl Mcu for Part {
 
     fn split(&mut self, slot: usize) -> (&mut Bus, Option<&mut dyn ErasedDevice>) {
         if slot == self.rcc_slot && self.stm32.rcc.crystals().0 == 0 {
-            // The emulator lets an oscillator without a crystal get ready.
+            // The emulator reports an oscillator without a crystal as ready.
             let (_, registers) = self.stm32.clocks();
             registers.restore(Register::Cr, HSERDY.mask(), 0);
         }
@@ -89,7 +89,7 @@ impl Mcu for Part {
     }
 }
 
-/// The board. It has no snapshots: every run starts from reset.
+/// The board. Snapshots are not supported: every run starts from reset.
 #[derive(Debug)]
 pub struct ControllerBoard {
     /// The microcontroller.
@@ -104,7 +104,7 @@ impl ControllerBoard {
     /// `instructions_per_second` of virtual time.
     ///
     /// # Errors
-    /// The emulator's, on a part that does not assemble.
+    /// The emulator's error on a microcontroller that cannot be assembled.
     pub fn new(crystal_hz: u64, instructions_per_second: NonZeroU64) -> Result<Self, Error> {
         let mut stm32 = Stm32f427::new()?;
         stm32.rcc.attach_crystals(crystal_hz, 0);

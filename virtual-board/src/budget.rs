@@ -1,5 +1,4 @@
-//! The budget of the control task: what a tick costs in a scene, and the highest control rate that
-//! it leaves room for.
+//! The budget of the control task: cost of a tick in a scene, and highest possible control rate.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -12,13 +11,13 @@ use crate::image::Image;
 use crate::run::{Outcome, RATE_HZ, Setup, Tick, on_board};
 use crate::score::Range;
 
-/// Part of the core's cycles that the control task may take.
+/// Share of the processor's cycles that the control task may use.
 pub const LOAD: f64 = 0.5;
 
-/// Cycles of a control period, and as many instructions if each took one.
+/// Cycles of a control period; also its instructions at one cycle each.
 const PERIOD: f64 = CORE_HZ as f64 / RATE_HZ;
 
-/// Before this the image boots, is armed and settles, s.
+/// Time for boot, arming and settling, s.
 const SETTLED_S: f64 = 0.4;
 
 /// Ticks whose cycles are estimated: the longest by instructions, and some spread over the run, in
@@ -27,18 +26,19 @@ const LONGEST: usize = 2;
 const ROWS: usize = 2;
 const ROW: usize = 10;
 
-/// What the control task costs in a scene.
+/// Cost of the control task in a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Instructions, from the first of the handler to its return.
     pub instructions: Range,
     /// Estimated cycles, from the interrupt to the interrupted instruction: mean.
     pub cycles_mean: f64,
-    /// Most of the ticks that were followed, which are the longest and some others.
+    /// Largest number of estimated cycles of the followed ticks, which are the longest and some
+    /// others.
     pub cycles_most: u32,
 }
 
-/// The highest control rate at which ticks of this many cycles take [`LOAD`] of the core, Hz.
+/// Control rate at which ticks of this many cycles use [`LOAD`] of the processor, Hz.
 #[must_use]
 pub fn highest_rate_hz(cycles: f64) -> f64 {
     LOAD * CORE_HZ as f64 / cycles
@@ -62,7 +62,7 @@ pub fn measure(image: &Image, setup: &Setup) -> Result<Budget, Failure> {
     let ticks: Vec<_> = settled(&first).collect();
     let counts = ticks.iter().map(|(_, tick)| u64::from(tick.instructions));
     let instructions = Range::of(counts).ok_or_else(|| {
-        format!("the amplifiers are not enabled after {SETTLED_S} s; give --seconds more")
+        format!("the amplifiers are not enabled after {SETTLED_S} s; give a longer --seconds")
     })?;
     let every = ticks.chunks(ticks.len().div_ceil(ROWS));
     let rows = every.flat_map(|part| &part[..ROW.min(part.len())]);
@@ -100,13 +100,13 @@ pub fn measure(image: &Image, setup: &Setup) -> Result<Budget, Failure> {
     })
 }
 
-/// Mean and largest share of a period.
+/// Mean and largest share of a period as text.
 pub(crate) fn share(cost: Range) -> String {
     let [mean, most] = [cost.mean, cost.max as f64].map(|n| 100.0 * n / PERIOD);
     format!("{mean:.1} % in the mean, {most:.1} % at most, at one cycle an instruction")
 }
 
-/// One line per scene, each run for `seconds` with the hand that tries it.
+/// Table with one line per scene, each run for `seconds` with the scene's hand.
 ///
 /// # Errors
 /// As [`measure`].

@@ -21,7 +21,7 @@ use crate::run::{Setup, on_board};
 use crate::scene;
 use crate::summary::summary;
 
-/// Where cargo puts the image.
+/// Path of the image that the documented build command writes.
 const IMAGE: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../target/thumbv7em-none-eabihf/firmware/firmware"

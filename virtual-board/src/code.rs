@@ -1,4 +1,4 @@
-//! The functions of an ELF file, and which of them one reaches.
+//! The functions of an ELF file, and their calls.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,10 +11,10 @@ use crate::thumb::{branches, instructions};
 pub struct Code(BTreeMap<u64, Vec<u8>>);
 
 impl Code {
-    /// Of a file.
+    /// The functions of a file.
     ///
     /// # Errors
-    /// The reader's.
+    /// The errors of the ELF reader.
     pub fn of(file: &object::File<'_>) -> Result<Self, object::Error> {
         let mut functions = BTreeMap::new();
         for symbol in file.symbols() {
@@ -38,7 +38,7 @@ impl Code {
         self.0.get(&address).map_or(&[], Vec::as_slice)
     }
 
-    /// The function at `address` and all that it calls by name.
+    /// The function at `address` and all functions that it calls directly.
     #[must_use]
     pub fn reached(&self, address: u64) -> BTreeSet<u64> {
         let mut found = BTreeSet::new();

@@ -13,7 +13,7 @@ pub enum Command {
     Scene(SceneKind),
     /// A torque set-point, N.m.
     Torque(f32),
-    /// The host is still connected.
+    /// Keep-alive: the host is still connected.
     KeepAlive,
     /// Set a parameter of a scene, both by their numbers.
     Tune {
@@ -24,13 +24,13 @@ pub enum Command {
         /// Value.
         value: f32,
     },
-    /// Put an estimator in charge of the large motor, by its number.
+    /// Select the estimator of the large motor by its number.
     Estimator(u8),
 }
 
 impl Command {
-    /// Start byte, kind, payload and checksum by docs/telemetry.md. The firmware has its own
-    /// implementation, so that each checks the other.
+    /// The frame with start byte, kind, payload and checksum, as in docs/telemetry.md. It is
+    /// implemented independently of the firmware, so that each checks the other.
     #[must_use]
     pub fn encode(self) -> [u8; 11] {
         let mut bytes = [0; 11];

@@ -1,14 +1,14 @@
-//! Cycles of a Cortex-M4 by instruction, after its Technical Reference Manual, table 3-1, and the
-//! table of the FPU: an estimate. Flash has no wait states here, and no instruction waits for a result.
+//! Estimated cycles of Cortex-M4 instructions, from the Technical Reference Manual, table 3-1, and
+//! the table of the FPU. The estimate has no flash wait states and no waits for results.
 
 /// A taken branch refills the pipeline: one to three cycles, here two.
 const REFILL: u32 = 2;
 
-/// Taking an interrupt and returning from it, which no instruction does: 12 and 10, and 17 more each
-/// for the registers of an interrupted task that computes in floats.
+/// Cycles of interrupt entry and return: 12 and 10, and 17 more each for the registers of an
+/// interrupted task that uses the FPU.
 pub const INTERRUPT: u32 = 12 + 10 + 2 * 17;
 
-/// Cycles of the instruction of these halves; `taken` if the next one is not the one after it.
+/// Cycles of the instruction of these halves; `taken` if it branches.
 #[must_use]
 pub fn of(first: u16, second: u16, taken: bool) -> u32 {
     let refill = if taken { REFILL } else { 0 };

@@ -1,10 +1,10 @@
-//! The two-channel DAC: what the firmware writes becomes a code on the pin.
+//! Model of the two-channel DAC.
 
 use rigless::device::{Device, DeviceContext, RegisterFile};
 use rigless::soc::stm32f427::generated::dac::Register;
 
-/// The converter without triggers, waves or DMA, which this firmware does not use: a code written
-/// to a holding register is on the pin at once if its channel is enabled.
+/// The converter without triggers, waveforms and DMA, which the firmware does not use. A code written
+/// to a holding register is at once on the pin if its channel is enabled.
 #[derive(Debug, Default)]
 pub struct Dac;
 
@@ -12,7 +12,7 @@ pub struct Dac;
 const ENABLES: [u64; 2] = [1, 1 << 16];
 
 impl Dac {
-    /// Codes on PA4 and PA5; `None` where the channel is off and the pin floats.
+    /// Codes on PA4 and PA5; `None` if the channel is off and the pin floats.
     #[must_use]
     pub fn codes(registers: &RegisterFile) -> [Option<u16>; 2] {
         let outputs = [Register::Dor1, Register::Dor2].map(|dor| registers.get(dor) as u16);

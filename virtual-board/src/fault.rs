@@ -1,59 +1,59 @@
-//! What can go wrong.
+//! Faults that a run can inject.
 
-/// A fault, from its instant on.
+/// A fault that begins at a given time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Line A of the large motor's encoder stays where it is.
+    /// Line A of the large motor's encoder is stuck.
     StuckA,
-    /// Line B of the large motor's encoder stays where it is.
+    /// Line B of the large motor's encoder is stuck.
     StuckB,
-    /// Both lines of the large motor's encoder stay where they are.
+    /// Both lines of the large motor's encoder are stuck.
     StuckBoth,
-    /// Lines A and B of the large motor's encoder change places: it counts backwards.
+    /// Lines A and B of the large motor's encoder are exchanged: it counts backwards.
     Swapped,
-    /// Of 64 edges of the large motor's encoder the last four do not arrive.
+    /// The last four of every 64 edges of the large motor's encoder are lost.
     LostCounts,
-    /// The large motor's amplifier reports a fault. It goes on driving, so that only the firmware
+    /// The large motor's amplifier reports a fault. It continues to drive, so that only the firmware
     /// can stop it.
     AmplifierFault,
-    /// The small motor's amplifier reports a fault, and goes on driving.
+    /// The small motor's amplifier reports a fault and continues to drive.
     SmallAmplifierFault,
-    /// The core stops: no task runs any more, until the watchdog resets it.
+    /// The core stops until the watchdog resets it.
     HungCore,
-    /// A debugger halts the core for so many ms, or until a reset: timers and watchdog run on, the
-    /// outputs stay as they are, and the cycle counter stands.
+    /// A debugger halts the core for this number of ms, or until a reset. Timers and watchdog
+    /// continue, the outputs keep their state, and the cycle counter stops.
     Halt(u16),
-    /// For 10 ms every control task takes 1.2 periods: the core stands in the middle of it.
+    /// For 10 ms every control task takes 1.2 periods, because the core stops in the middle of it.
     LongTasks,
-    /// The control tick stops coming, while everything else runs on.
+    /// The timer of the control tick stops; all other parts continue.
     HungControl,
-    /// The task of lowest priority loops for ever, while the control task runs on.
+    /// The task of lowest priority loops forever; the control task continues.
     HungIdle,
     /// The task of lowest priority loops for 40 ms.
     StarvedIdle,
-    /// The oscillator behind the watchdog is as slow as it may be, whatever the instant.
+    /// The watchdog's oscillator has its lowest frequency, from the start on.
     SlowWatchdog,
-    /// The oscillator behind the watchdog is as fast as it may be, whatever the instant.
+    /// The watchdog's oscillator has its highest frequency, from the start on.
     FastWatchdog,
-    /// The next read of the large motor's counter is answered with a bus error.
+    /// The next read of the large motor's counter causes a bus error.
     BusError,
     /// An assertion fails in the task of lowest priority.
     Panic,
-    /// The crystal never runs, from power-up on whatever the instant.
+    /// The crystal does not run, from power-up on.
     DeadCrystal,
     /// The crystal stops.
     CrystalFails,
-    /// Nobody drains the telemetry any more.
+    /// Telemetry is not read any more.
     NobodyDrains,
-    /// Nobody drains the telemetry for 300 ms.
+    /// Telemetry is not read for 300 ms.
     DrainPause,
-    /// The command channel is kept full: garbage, and a keep-alive now and then.
+    /// The command channel is kept full with garbage and occasional keep-alives.
     CommandFlood,
-    /// The supply sags for a moment: a reset by the brown-out detector.
+    /// The supply voltage drops shortly: the brown-out detector resets the processor.
     BrownOut,
 }
 
-/// Each fault with its name on the command line and what it is.
+/// Each fault with its name on the command line and its description.
 const NAMES: [(Fault, &str, &str); 27] = [
     (Fault::StuckA, "stuck-a", "large encoder's line A stuck"),
     (Fault::StuckB, "stuck-b", "large encoder's line B stuck"),
@@ -181,12 +181,12 @@ const NAMES: [(Fault, &str, &str); 27] = [
 ];
 
 impl Fault {
-    /// All of them.
+    /// All faults.
     pub fn all() -> impl Iterator<Item = Self> {
         NAMES.iter().map(|(fault, ..)| *fault)
     }
 
-    /// Its name on the command line, and what it is in a few words.
+    /// Name on the command line, and description.
     fn words(self) -> (&'static str, &'static str) {
         let found = NAMES.iter().find(|(fault, ..)| *fault == self);
         found.map_or(("", ""), |(_, name, what)| (name, what))
@@ -198,7 +198,7 @@ impl Fault {
         self.words().0
     }
 
-    /// What it is, in a few words.
+    /// Description in a few words.
     #[must_use]
     pub fn description(self) -> &'static str {
         self.words().1

@@ -1,4 +1,4 @@
-//! The flash image: its bytes, and where in it the things are that a probe needs to know.
+//! The flash image: its bytes, and the addresses that the virtual board needs.
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -37,24 +37,24 @@ pub struct Image {
     pub size: Size,
 }
 
-/// What an image takes, bytes.
+/// Sizes of an image, bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
     /// Code, constants and vectors, without the initial values of data.
     pub text: u64,
-    /// Data with initial values, which are in flash too.
+    /// Data with initial values, which are also stored in flash.
     pub data: u64,
-    /// Data that starts as zero or as anything.
+    /// Data that starts as zero or uninitialised.
     pub bss: u64,
 }
 
 /// The control tick's interrupt handler.
 const CONTROL: &str = "TIM5";
 
-/// In the name of the task of lowest priority.
+/// Part of the symbol of the task of lowest priority.
 const IDLE: &str = "3app4idle";
 
-/// In the name of the function that an emergency ends in.
+/// Part of the symbol of the function in which an emergency ends.
 const EMERGENCY: &str = "9emergency4stop";
 
 /// What a failed assertion of the firmware calls: it takes nothing and panics.
@@ -66,13 +66,13 @@ const WFI: u16 = 0xBF30;
 /// Branch to itself.
 const LOOP: u16 = 0xE7FE;
 
-/// How to build the image, said where it is missing.
+/// Command that builds the image, for messages.
 pub const HOW_TO_BUILD: &str =
     "cargo build --profile firmware --package firmware --target thumbv7em-none-eabihf";
 
 impl Image {
-    /// Builds the firmware of this tree with these features, separated by commas, in a target
-    /// directory of its own, so that no other build waits for it, and reads it.
+    /// Builds the firmware of this repository with these features, separated by commas, and reads
+    /// it. The build has its own target directory, so that other builds do not wait for it.
     ///
     /// # Errors
     /// One line if cargo cannot build it.
@@ -80,7 +80,7 @@ impl Image {
         Self::build_with(features, &[])
     }
 
-    /// Builds and reads the image of one scene alone.
+    /// Builds and reads an image with one scene.
     ///
     /// # Errors
     /// As [`Self::build`].
@@ -120,7 +120,7 @@ impl Image {
     /// Reads an ELF file.
     ///
     /// # Errors
-    /// One line, with what to do, on a file that is not there or not a firmware image of ours.
+    /// One line with a remedy, if the file is missing or is not an image of this firmware.
     pub fn read(path: &Path) -> Result<Self, String> {
         let elf = std::fs::read(path).map_err(|error| {
             format!(
@@ -130,13 +130,13 @@ impl Image {
         })?;
         Self::parse(path, elf).map_err(|error| {
             format!(
-                "{}: no image of this firmware: {error}; build it with `{HOW_TO_BUILD}`",
+                "{}: not an image of this firmware: {error}; build one with `{HOW_TO_BUILD}`",
                 path.display()
             )
         })
     }
 
-    /// The file.
+    /// The bytes of the file.
     #[must_use]
     pub fn elf(&self) -> &[u8] {
         &self.elf

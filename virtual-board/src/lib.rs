@@ -1,8 +1,8 @@
 //! The flash image on an emulated STM32F427, in lockstep with the plant of `host-sim`.
 //!
-//! Quadrature edges go into the timers' pins at their instants, the DAC and the enable lines drive
-//! the amplifiers, RTT is drained and fed as a probe does, and the image runs unmodified. There is
-//! no model of cycles: a virtual second is a constant number of instructions.
+//! The timers' pins receive the quadrature edges at their times, the DAC and the enable lines drive
+//! the amplifiers, and RTT is read and written as by a debug probe. The image runs unmodified. Cycles
+//! are not modelled: a virtual second is a constant number of instructions.
 
 pub mod board;
 pub mod budget;

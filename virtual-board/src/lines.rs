@@ -8,7 +8,7 @@ use crate::board::Part;
 use crate::pins::{self, Wire};
 use crate::quadrature::{LARGE, REFERENCE, SMALL, levels};
 
-/// Edges of which the last ones are lost, and how many those are.
+/// Number of edges of which the last ones are lost, and number of lost edges.
 const LOSSY: (u32, u32) = (64, 4);
 
 /// A timer by its number in the emulator's lists: TIM2, TIM3, TIM4, TIM5, and TIM1, TIM8.
@@ -18,7 +18,7 @@ enum Timer {
     Advanced(usize),
 }
 
-/// A timer that two lines go to: its pins, and the encoder that is on them.
+/// A timer with two input pins, and the encoder on these pins.
 struct Port(Timer, &'static [Wire; 2], usize);
 
 const PORTS: [Port; 4] = [
@@ -31,9 +31,9 @@ const PORTS: [Port; 4] = [
 /// The lines of the encoders as they are driven.
 #[derive(Debug, Default)]
 pub(crate) struct Lines {
-    /// Counts that the shafts have reached.
+    /// Present counts of the shafts.
     counts: [u32; 3],
-    /// Levels that the large encoder's lines are stuck at.
+    /// Levels of stuck lines of the large encoder.
     pub(crate) stuck: [Option<bool>; 2],
     /// Whether the large encoder's lines have changed places.
     pub(crate) swapped: bool,

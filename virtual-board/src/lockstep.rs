@@ -1,5 +1,5 @@
-//! Board and plant in lockstep: the plant runs one step of 10 us ahead of the processor, and its
-//! edges reach the pins at their instants.
+//! Board and plant in lockstep: the plant is one step of 10 us ahead of the processor, and its edges
+//! reach the pins at their times.
 
 mod core_access;
 mod follow;
@@ -32,7 +32,7 @@ use inject::Stalls;
 
 const STEP_NS: u64 = 10_000;
 const STEP_S: f64 = 10e-6;
-/// Steps of the plant in a tick of the hand, and between two looks of the probe.
+/// Steps of the plant per tick of the hand, and per poll of the debug probe.
 const STEPS_PER_TICK: u64 = 10;
 const STEPS_PER_LOOK: u64 = 100;
 
@@ -42,7 +42,7 @@ const COUNTERS: [u64; 2] = [0x4000_0824, 0x4000_0424];
 /// Counter of TIM2, which stamps the large encoder's edges.
 const STAMP_CLOCK: u64 = 0x4000_0024;
 
-/// What a run has shown.
+/// Recorded signals and events of a run.
 #[derive(Debug, Default)]
 pub(crate) struct Seen {
     pub(crate) ticks: Vec<Tick>,
@@ -51,7 +51,7 @@ pub(crate) struct Seen {
     pub(crate) enables: Vec<(u64, [bool; 2])>,
     pub(crate) complaints: Vec<String>,
     pub(crate) unclosed: u32,
-    /// Bytes of stack in use at most.
+    /// Largest number of bytes of stack in use.
     pub(crate) stack: u64,
 }
 
@@ -71,7 +71,7 @@ pub(crate) struct Lockstep {
     end_ns: u64,
     currents: [f64; 2],
     faults: VecDeque<(u64, Fault)>,
-    /// When the crystal starts, ns, and its frequency, if it has not run from the beginning.
+    /// Start of the crystal, ns, and its frequency; `None` if it has run from the beginning.
     crystal: Option<(u64, u64)>,
     pub(crate) probe: Probe,
     stack: Stack,
@@ -150,14 +150,14 @@ impl Lockstep {
         }
     }
 
-    /// Asks to be told about the control task.
+    /// Sets the watchpoints of the control task.
     pub(crate) fn watch(&self, session: &mut Session<ControllerBoard>) {
         for &address in self.exits.iter().chain([&self.entry, &self.wait]) {
             session.watch(Watch::Instruction(address));
         }
     }
 
-    /// The instant that the plant has reached.
+    /// Present time of the plant.
     fn plant_ns(&self) -> u64 {
         self.steps * STEP_NS
     }
@@ -167,7 +167,7 @@ impl Lockstep {
         (self.steps % STEPS_PER_TICK) as f64 * STEP_S
     }
 
-    /// What a restart leaves on the pins: the board's pull-downs, healthy amplifiers, no lines.
+    /// Levels of the pins after a restart: pull-downs of the board, amplifiers without a fault.
     fn restart(&mut self, board: &mut ControllerBoard, at: VirtualNanos) {
         for pin in pins::ENABLES {
             pins::drive(&mut board.part, at, pin, false);

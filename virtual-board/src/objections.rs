@@ -1,15 +1,15 @@
-//! What the emulator holds against a run: accesses that it cannot answer as the chip does, and what
-//! its models report of clocks and flash.
+//! Objections of the emulator to a run: accesses that it does not model, and conditions that its
+//! models of clocks and flash report.
 
 use rigless::session::Session;
 use terminal::failure::Failure;
 
 use crate::board::ControllerBoard;
 
-/// One line for each access that no register covers, that a closed clock gate or a model refuses,
-/// that only a register file answers or nothing answers, for each interrupt without a line, and for
-/// each condition that a model reports. No objection is allowed: the DAC, which the emulator lacks,
-/// has a model here.
+/// One line for each access without a register, each access that a closed clock gate or a model
+/// refuses, each access to a register without a model, each interrupt without a line, and each
+/// condition that a model reports. No objection is allowed. The DAC, which the emulator does not
+/// have, has a model in this crate.
 pub(crate) fn of(session: &Session<ControllerBoard>) -> Vec<String> {
     let unmapped = session.unmapped().into_iter().map(|one| {
         format!(
@@ -49,7 +49,7 @@ pub(crate) fn of(session: &Session<ControllerBoard>) -> Vec<String> {
         .collect()
 }
 
-/// Fails a run that the emulator objects to.
+/// Fails if the emulator has an objection.
 pub(crate) fn verdict(objections: &[String]) -> Result<(), Failure> {
     if objections.is_empty() {
         return Ok(());

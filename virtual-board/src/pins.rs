@@ -1,4 +1,4 @@
-//! What the firmware has made of the pins that this board wires.
+//! Check of the pins' configuration by the firmware.
 
 use rigless::device::Level;
 use rigless::mcu::Operate;
@@ -8,7 +8,7 @@ use rigless::time::VirtualNanos;
 
 use crate::board::Part;
 
-/// What a pin has to be.
+/// Mode of a pin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// Digital input.
@@ -21,7 +21,7 @@ pub enum Mode {
     Analog,
 }
 
-/// A wired pin: port letter, number, its mode and what hangs on it.
+/// A wired pin: port letter, number, mode, and the connected signal.
 pub type Wire = (char, u8, Mode, &'static str);
 
 /// The large motor's encoder.
@@ -30,7 +30,7 @@ pub const LARGE: [Wire; 2] = [
     ('D', 13, Mode::Function(2), "large encoder B, TIM4_CH2"),
 ];
 
-/// The large motor's encoder once more, for the instants of its edges.
+/// The large motor's encoder on the timer that stamps its edges.
 pub const CAPTURE: [Wire; 2] = [
     ('A', 15, Mode::Function(1), "large encoder A, TIM2_CH1"),
     ('B', 3, Mode::Function(1), "large encoder B, TIM2_CH2"),
@@ -58,14 +58,14 @@ pub const AMPLIFIERS: [Wire; 6] = [
     ('E', 6, Mode::Input, "small fault"),
 ];
 
-/// Enable lines, high to enable; a pull-down holds them while nobody drives them.
+/// Enable lines, high to enable; a pull-down holds an undriven line low.
 pub(crate) const ENABLES: [u8; 2] = [4, 5];
 /// Fault lines, low on a fault.
 pub(crate) const FAULTS: [u8; 2] = [2, 6];
 /// Port of enable and fault lines.
 pub(crate) const AMPLIFIER_PORT: usize = 4;
 
-/// The pin's mode as the firmware has set it up.
+/// The pin's mode as configured by the firmware.
 fn mode(part: &mut Part, port: char, pin: u8) -> Mode {
     let base = 0x4002_0000 + 0x400 * (u64::from(u32::from(port)) - u64::from(u32::from('A')));
     let mut read = |offset: u64| {
@@ -80,7 +80,7 @@ fn mode(part: &mut Part, port: char, pin: u8) -> Mode {
     }
 }
 
-/// Whether all of `wires` are multiplexed as they have to be.
+/// Whether all pins of `wires` have their required mode.
 #[must_use]
 pub fn wired(part: &mut Part, wires: &[Wire]) -> bool {
     wires
@@ -88,7 +88,7 @@ pub fn wired(part: &mut Part, wires: &[Wire]) -> bool {
         .all(|&(port, pin, wanted, _)| mode(part, port, pin) == wanted)
 }
 
-/// What is wrong with the multiplexing, one line a pin.
+/// One line for each pin with a wrong mode.
 #[must_use]
 pub fn complaints(part: &mut Part) -> Vec<String> {
     let wires = LARGE.iter().chain(&SMALL).chain(&AMPLIFIERS);

@@ -1,4 +1,4 @@
-//! The debug probe, and whoever sits at its keyboard.
+//! The debug probe: reads telemetry and sends the commands of a run.
 
 use std::collections::VecDeque;
 
@@ -10,18 +10,18 @@ use crate::run::Setup;
 
 const KEEP_ALIVE_NS: u64 = 50_000_000;
 
-/// Looks at the target every now and then: takes its telemetry, gives it what is due.
+/// Polls the target: reads its telemetry and sends the commands that are due.
 #[derive(Debug)]
 pub(crate) struct Probe {
-    /// What came out of up channel 0.
+    /// Bytes from up channel 0.
     pub(crate) stream: Vec<u8>,
-    /// From when on anything is taken, ns.
+    /// Time from which telemetry is read, ns.
     pub(crate) drains_from: u64,
-    /// Whether the command channel is kept full.
+    /// Whether the command channel is kept full with garbage.
     pub(crate) floods: bool,
-    /// Bytes of the first in line that the channel has taken.
+    /// Bytes of the first pending command that the channel has accepted.
     taken: usize,
-    /// What went down, when its last byte did, ns.
+    /// Sent bytes, each with the time of the last byte, ns.
     pub(crate) sent: Vec<(u64, Vec<u8>)>,
     noise: u32,
     rtt: Rtt,
@@ -29,7 +29,7 @@ pub(crate) struct Probe {
     next_keep_alive: Option<u64>,
 }
 
-/// What happens when, in order, ns.
+/// Events in order of time, ns.
 pub(crate) fn schedule<T>(list: impl Iterator<Item = (f64, T)>) -> VecDeque<(u64, T)> {
     let mut list: Vec<_> = list.map(|(at, what)| ((at * 1e9) as u64, what)).collect();
     list.sort_by_key(|(at, _)| *at);

@@ -1,19 +1,19 @@
-//! Quadrature: what an encoder's count looks like on its two lines, and when it changes.
+//! Quadrature: levels of an encoder's two lines for a count, and times of its edges.
 
 use simulation::encoder::EdgeObserver;
 
-/// Levels of A and B at a count. Upwards A leads, as an STM32 timer counts up.
+/// Levels of A and B at a count. A leads in upward counting, as for an STM32 timer.
 pub(crate) fn levels(count: u32) -> [bool; 2] {
     let phase = count & 3;
     [phase == 1 || phase == 2, phase >= 2]
 }
 
-/// Encoders by number.
+/// Indices of the encoders.
 pub(crate) const LARGE: usize = 0;
 pub(crate) const SMALL: usize = 1;
 pub(crate) const REFERENCE: usize = 2;
 
-/// A count about to be reached.
+/// An edge to the next count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Edge {
     pub(crate) at_ns: u64,
@@ -21,7 +21,7 @@ pub(crate) struct Edge {
     pub(crate) count: u32,
 }
 
-/// Notes the edges of one encoder in one step of the plant.
+/// Records the edges of one encoder in one step of the plant.
 pub(crate) struct Edges<'a> {
     pub(crate) into: &'a mut Vec<Edge>,
     pub(crate) encoder: usize,
@@ -47,8 +47,8 @@ impl EdgeObserver for Edges<'_> {
     }
 }
 
-/// A signal generator in place of the large encoder: edges at a constant rate from time zero,
-/// downwards if it is negative.
+/// A signal generator instead of the large encoder: edges at a constant rate from time zero, counting
+/// down if the rate is negative.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Generator {
     hz: f64,
@@ -60,7 +60,7 @@ impl Generator {
         Self { hz, made: 0 }
     }
 
-    /// The edges up to an instant.
+    /// The edges up to a time.
     pub(crate) fn run(&mut self, until_ns: u64, into: &mut Vec<Edge>) {
         loop {
             let at_ns = (f64::from(self.made + 1) / self.hz.abs() * 1e9) as u64;

@@ -5,10 +5,10 @@ use recordings::record::{choose, csv};
 use crate::run::{Outcome, RATE_HZ};
 
 impl Outcome {
-    /// What `host-sim record` makes of the telemetry, and the plant's velocity as `true_omega`.
+    /// The telemetry as converted by `host-sim record`, with the plant's velocity as `true_omega`.
     ///
     /// # Errors
-    /// One line where the firmware sent no two frames.
+    /// One line if the firmware sent fewer than two frames.
     pub fn csv(&self) -> Result<String, String> {
         let runs = self.telemetry.runs();
         let run = choose(&runs, None).map_err(|failure| failure.to_string())?;

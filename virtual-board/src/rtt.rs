@@ -1,4 +1,4 @@
-//! RTT as a debug probe does it: through the target's memory.
+//! RTT access through the target's memory, as by a debug probe.
 
 use rigless::emulator::Memory;
 use rigless::soc::Width;
@@ -27,7 +27,7 @@ impl Rtt {
         memory.read(address, Width::W32).unwrap_or(0)
     }
 
-    /// Takes what is in up channel 0.
+    /// Reads the bytes in up channel 0.
     pub(crate) fn drain(self, memory: &mut dyn Memory, into: &mut Vec<u8>) {
         if !self.ready(memory) || Self::word(memory, self.0 + 16) == 0 {
             return;
@@ -42,11 +42,11 @@ impl Rtt {
             into.push(memory.read(buffer + read, Width::W8).unwrap_or(0) as u8);
             read = (read + 1) % size;
         }
-        // The memory is RAM: a probe's write cannot be refused.
+        // A write to RAM cannot fail.
         let _ = memory.write(channel + READ, Width::W32, read);
     }
 
-    /// Puts as many of `bytes` as fit into down channel 0, and says how many.
+    /// Writes as many of `bytes` to down channel 0 as fit, and returns their number.
     pub(crate) fn feed(self, memory: &mut dyn Memory, bytes: &[u8]) -> usize {
         if !self.ready(memory) || Self::word(memory, self.0 + 20) == 0 {
             return 0;

@@ -1,4 +1,4 @@
-//! One run of an image on the board, and what it leaves behind.
+//! One run of an image on the board, and its results.
 
 use std::collections::BTreeSet;
 use std::num::NonZeroU64;
@@ -28,38 +28,39 @@ pub const RATE_HZ: f64 = 10e3;
 /// Current per DAC code from mid-scale, A: large motor, small motor.
 pub const AMPS_PER_CODE: [f64; 2] = [6.0 / 2047.0, 1.5 / 2047.0];
 
-/// What the image is to meet.
+/// Conditions of a run.
 #[derive(Clone, Debug)]
 pub struct Setup {
-    /// The device as it is.
+    /// The simulated device.
     pub device: Device,
-    /// Who holds the handle.
+    /// The hand on the handle.
     pub hand: Hand,
     /// Seed of the hand's motion, the encoders' phases and the disc.
     pub seed: u64,
     /// Virtual time, s.
     pub seconds: f64,
-    /// Faults and their instants, s.
+    /// Faults and their times, s.
     pub faults: Vec<(f64, Fault)>,
-    /// Commands and their instants, s.
+    /// Commands and their times, s.
     pub commands: Vec<(f64, Command)>,
-    /// Bytes to send that are no command, and their instants, s.
+    /// Bytes that are not a command, and their times, s.
     pub garbage: Vec<(f64, Vec<u8>)>,
     /// Whether to send a keep-alive every 50 ms.
     pub keep_alive: bool,
-    /// Edges a second of a signal generator in place of the large encoder, downwards if negative.
+    /// Edges per second of a signal generator instead of the large encoder, counting down if
+    /// negative.
     pub generator_hz: Option<f64>,
     /// Frequency of the crystal, Hz; 0 is a dead one.
     pub crystal_hz: u64,
-    /// When the crystal starts, s.
+    /// Start of the crystal, s.
     pub crystal_from_s: f64,
-    /// What both DAC outputs are off by, codes; on silicon up to 12.
+    /// Offset of both DAC outputs, codes; up to 12 on a real chip.
     pub dac_offset: i16,
-    /// Loads and stores that the core makes beside the image's, and their instants, s.
+    /// Additional loads and stores of the core, and their times, s.
     pub accesses: Vec<(f64, CoreAccess)>,
-    /// Instructions in a second of virtual time.
+    /// Instructions per second of virtual time.
     pub instructions_per_second: NonZeroU64,
-    /// Ticks, by their place in [`Outcome::ticks`], to follow instruction by instruction; slow.
+    /// Indices in [`Outcome::ticks`] of ticks to follow instruction by instruction, which is slow.
     pub follow: BTreeSet<usize>,
 }
 
@@ -89,7 +90,7 @@ impl Default for Setup {
 }
 
 impl Setup {
-    /// A scene, selected and armed in the first 0.1 s, with the hand that tries it.
+    /// A scene, selected and armed in the first 0.1 s, with the scene's hand.
     #[must_use]
     pub fn playing(scene: SceneKind, seconds: f64) -> Self {
         Self {
@@ -101,20 +102,20 @@ impl Setup {
     }
 }
 
-/// One call of the control task, and the truth at its start.
+/// One call of the control task, and the true state at its start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tick {
-    /// When it began, ns.
+    /// Start of the call, ns.
     pub at_ns: u64,
-    /// Whether it woke the processor; otherwise it preempted something.
+    /// Whether it woke the processor; otherwise it preempted another task.
     pub asleep: bool,
     /// Instructions from its first to its return.
     pub instructions: u32,
     /// Estimated cycles from the interrupt to its end, if the tick was followed.
     pub cycles: Option<u32>,
-    /// What it read from the large and the small encoder's counter.
+    /// Values read from the counters of the large and the small encoder.
     pub counts: [Option<u16>; 2],
-    /// When it last read the clock that stamps the large encoder's edges, ns.
+    /// Time of its last read of the edge clock, ns.
     pub stamp_clock_read_ns: Option<u64>,
     /// DAC codes at its end.
     pub codes: [Option<u16>; 2],
@@ -124,16 +125,16 @@ pub struct Tick {
     pub large: Pose,
     /// Handle.
     pub handle: Pose,
-    /// Torque felt on the handle, N.m.
+    /// Torque on the hand, N.m.
     pub felt: f64,
 }
 
 /// The plant at a multiple of 100 us.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
-    /// Torque felt on the handle, N.m.
+    /// Torque on the hand, N.m.
     pub felt: f64,
-    /// Currents that the amplifiers are told to drive, A.
+    /// Commanded currents, A.
     pub currents: [f64; 2],
     /// Velocity of the large motor, rad/s.
     pub large_omega: f64,
@@ -142,50 +143,50 @@ pub struct Moment {
 /// A restart of the processor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Restart {
-    /// When, s.
+    /// Time, s.
     pub at_s: f64,
-    /// Why, in the emulator's words.
+    /// Cause, as the emulator names it.
     pub cause: String,
 }
 
-/// What a run leaves behind.
+/// Results of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// Every call of the control task.
     pub ticks: Vec<Tick>,
     /// The plant, every 100 us.
     pub moments: Vec<Moment>,
-    /// What the image read from both counters before its first tick.
+    /// Values that the image read from both counters before its first tick.
     pub first_counts: [Option<u16>; 2],
-    /// What the probe took from up channel 0.
+    /// Bytes that the probe read from up channel 0.
     pub rtt: Vec<u8>,
-    /// What the firmware said.
+    /// Decoded telemetry of the firmware.
     pub telemetry: Telemetry,
-    /// Each change of the amplifiers' enables, with its instant in ns.
+    /// Each change of the amplifiers' enables, with its time in ns.
     pub enables: Vec<(u64, [bool; 2])>,
     /// Restarts.
     pub restarts: Vec<Restart>,
-    /// Pins that are not what their wires need, when control began.
+    /// Pins with a wrong mode at the start of control, one line each.
     pub complaints: Vec<String>,
-    /// Calls of the control task that were not seen to return.
+    /// Number of calls of the control task without a return.
     pub unclosed: u32,
-    /// What the emulator holds against the run, one line each: accesses that it cannot answer as
-    /// the chip does, and what its models report of clocks and flash. None is allowed.
+    /// Objections of the emulator, one line each: accesses that it does not model, and conditions of
+    /// clocks and flash. No objection is allowed.
     pub objections: Vec<String>,
-    /// What the core stored and read for [`Setup::accesses`], in their order.
+    /// Values stored and read for [`Setup::accesses`], in their order.
     pub values: Vec<u32>,
-    /// Bytes of stack in use at most, of those that a start leaves for it.
+    /// Largest number of bytes of stack in use.
     pub stack: u64,
-    /// What went down the command channel, and when its last byte did, ns.
+    /// Bytes sent on the command channel, each with the time of the last byte, ns.
     pub sent: Vec<(u64, Vec<u8>)>,
-    /// Time that the run took.
+    /// Run time of the emulation.
     pub wall: Duration,
-    /// The firmware's number of the first of `ticks`.
+    /// Number of the first of `ticks` in telemetry.
     first_tick: Option<u32>,
 }
 
 impl Outcome {
-    /// Whether the emulator answered all that the image did as the chip does.
+    /// Checks that the emulator has no objection.
     ///
     /// # Errors
     /// [`Failure::Check`] with all of [`Self::objections`].
@@ -193,24 +194,24 @@ impl Outcome {
         objections::verdict(&self.objections)
     }
 
-    /// Which of `ticks` a frame tells of.
+    /// Index in `ticks` of the tick of a frame.
     #[must_use]
     pub fn tick_index(&self, frame: &Frame) -> Option<usize> {
         let index = frame.tick.wrapping_sub(self.first_tick?) as usize;
         (index < self.ticks.len()).then_some(index)
     }
 
-    /// The control tick that a frame tells of.
+    /// The control tick of a frame.
     #[must_use]
     pub fn tick(&self, frame: &Frame) -> Option<&Tick> {
         self.ticks.get(self.tick_index(frame)?)
     }
 }
 
-/// Runs `image`; `progress` hears the virtual time in s now and then.
+/// Runs `image` and calls `progress` from time to time with the virtual time in s.
 ///
 /// # Errors
-/// One line on an impossible device, an image that is none, or an emulator that gave up.
+/// One line on an invalid device, an invalid image, or an error of the emulator.
 pub fn on_board(
     image: &Image,
     setup: &Setup,
@@ -248,7 +249,7 @@ pub fn on_board(
     })
 }
 
-/// The run itself: the board and the plant as it leaves them, and the time that it took.
+/// The run: final state of board and plant, and the run time.
 pub(crate) fn emulate(
     image: &Image,
     setup: &Setup,
@@ -285,8 +286,8 @@ pub(crate) fn emulate(
     Ok((session, finished.driver, wall))
 }
 
-/// Where the firmware began to count its ticks: the start that makes every frame agree with what
-/// its tick read.
+/// Number of the first tick in telemetry: the one with which the counts of every frame agree with
+/// those that its tick read.
 fn first_tick(frames: &[Frame], ticks: &[Tick]) -> Option<u32> {
     (0..4).find(|first| {
         frames.iter().all(|frame| {

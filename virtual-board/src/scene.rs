@@ -1,4 +1,4 @@
-//! Scenes of the image: the hand that tries them, and the commands that set their parameters.
+//! Scenes of the image: their simulated hands, and the commands that set their parameters.
 
 use estimator_core::Hertz;
 use experiments::closed_loop::{self, Hand, Press};
@@ -15,12 +15,12 @@ pub fn named(name: &str) -> Result<SceneKind, String> {
     closed_loop::named(name, SceneKind::ALL.into_iter())
 }
 
-/// A finger that presses on the handle of this device with 10 N, if the scene resists: it moves into
-/// the scene as far as the scene's stiffness asks for, and further by the compliance of the hand.
+/// A finger that presses on the handle of this device with 10 N against a scene that resists. Its
+/// target is the deflection of the scene's stiffness plus that of the hand's compliance.
 #[must_use]
 pub fn press(scene: SceneKind, device: &Device) -> Hand {
     let torque = 10.0 * 0.5 * device.handle.diameter_m;
-    // A scene without a stiffness is pressed as far as the wall.
+    // A scene without a stiffness is pressed to the position of the wall.
     let of = |scene| stiffness(scene, &device.stages);
     let stiffness = of(scene).or_else(|| of(SceneKind::Wall));
     let stiffness = f64::from(stiffness.expect("a wall has a stiffness"));
@@ -33,7 +33,7 @@ pub fn press(scene: SceneKind, device: &Device) -> Hand {
     })
 }
 
-/// The usual stiffness of a scene on this device, N·m/rad, if it has one.
+/// The default stiffness of a scene on this device, N·m/rad, if it has one.
 #[must_use]
 pub fn stiffness(scene: SceneKind, device: &DualStage) -> Option<f32> {
     const RATE: Hertz = Hertz(10e3);
@@ -41,15 +41,15 @@ pub fn stiffness(scene: SceneKind, device: &DualStage) -> Option<f32> {
     usual.value(scene.parameter("stiffness")?, RATE)
 }
 
-/// The command that sets a parameter, from text as `stiffness=0.2`. The image checks whether the
-/// value is in bounds.
+/// Parses `stiffness=0.2` to the command that sets the parameter. The image checks the value's
+/// bounds.
 ///
 /// # Errors
-/// One line on another text, or a name that is not one of the scene's parameters.
+/// One line on another text, or on a name that is not a parameter of the scene.
 pub fn tune(scene: SceneKind, text: &str) -> Result<Command, String> {
-    let (name, value) = text
-        .split_once('=')
-        .ok_or_else(|| format!("--tune {text}: give it as stiffness=0.2@1.5"))?;
+    let (name, value) = text.split_once('=').ok_or_else(|| {
+        format!("--tune {text}: must be NAME=VALUE@S, for example stiffness=0.2@1.5")
+    })?;
     let parameters: Vec<_> = (scene.facts().parameters.iter())
         .map(|parameter| parameter.name)
         .collect();
@@ -59,7 +59,7 @@ pub fn tune(scene: SceneKind, text: &str) -> Result<Command, String> {
     })?;
     let value = value
         .parse()
-        .map_err(|_| format!("--tune {text}: '{value}' is no number"))?;
+        .map_err(|_| format!("--tune {text}: '{value}' is not a number"))?;
     Ok(match scene {
         SceneKind::Torque => Command::Torque(value),
         _ => Command::Tune {
@@ -88,7 +88,7 @@ mod tests {
         for (text, said) in [
             ("stiffness", "give it as"),
             ("softness=1", "wall has position, stiffness, damping"),
-            ("stiffness=soft", "'soft' is no number"),
+            ("stiffness=soft", "'soft' is not a number"),
         ] {
             assert!(tune(wall, text).unwrap_err().contains(said), "{text}");
         }

@@ -1,20 +1,20 @@
-//! What a run comes to: felt torque against wanted torque, and the cost of the control task.
+//! Scores of a run: parasitic force, and cost of the control task.
 
 use crate::run::{Outcome, Tick};
 
-/// Torque that the hand felt and nobody wanted, at the fingertip.
+/// Parasitic force at the fingertip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parasitic {
     /// Root mean square, mN.
     pub rms_mn: f64,
     /// Largest, mN.
     pub max_mn: f64,
-    /// Samples that it was taken over.
+    /// Number of samples.
     pub samples: usize,
 }
 
 impl Parasitic {
-    /// Of pairs of felt and wanted torque, N.m, on a handle of `diameter_m`.
+    /// The scores of pairs of felt and wanted torque, N.m, on a handle of `diameter_m`.
     #[must_use]
     pub fn of(pairs: impl Iterator<Item = (f64, f64)>, diameter_m: f64) -> Option<Self> {
         let (mut sum, mut max_mn, mut samples) = (0.0, 0.0_f64, 0);
@@ -44,7 +44,7 @@ pub struct Range {
 }
 
 impl Range {
-    /// Of `numbers`, unless there are none.
+    /// The statistics of `numbers`; `None` without a number.
     #[must_use]
     pub fn of(numbers: impl Iterator<Item = u64>) -> Option<Self> {
         let (mut min, mut max, mut sum, mut n) = (u64::MAX, 0, 0, 0_u64);
@@ -60,7 +60,7 @@ impl Range {
 }
 
 impl Outcome {
-    /// Parasitic force after `from_s`, by the torque that the frames say is wanted.
+    /// Parasitic force after `from_s`, relative to the wanted torque in the frames.
     #[must_use]
     pub fn parasitic(&self, from_s: f64, diameter_m: f64) -> Option<Parasitic> {
         let pairs = self.telemetry.frames.iter().filter_map(|frame| {
@@ -85,15 +85,15 @@ impl Outcome {
         Range::of(self.ticks.windows(2).map(period))
     }
 
-    /// Time from `since_s` until both amplifiers are off for good, s; `None` if they are not.
+    /// Time from `since_s` until both amplifiers stay off, s; `None` if they do not.
     #[must_use]
     pub fn off_after(&self, since_s: f64) -> Option<f64> {
         let (at_ns, last) = self.enables.last()?;
         (*last == [false; 2]).then(|| (*at_ns as f64 * 1e-9 - since_s).max(0.0))
     }
 
-    /// Largest difference of felt torque from that of a `healthy` run of the same seed, from
-    /// `since_s` to `until_s`, mN at the fingertip.
+    /// Largest difference of the force on the hand from that of a `healthy` run with the same seed,
+    /// from `since_s` to `until_s`, mN at the fingertip.
     #[must_use]
     pub fn spurious_mn(&self, healthy: &Self, since_s: f64, until_s: f64, diameter_m: f64) -> f64 {
         let moments = self.moments.iter().zip(&healthy.moments).enumerate();

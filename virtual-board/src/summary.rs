@@ -1,4 +1,4 @@
-//! What `cargo board` prints of a run.
+//! Summary of a run, as `cargo board` prints it.
 
 use std::fmt::Write as _;
 
@@ -9,15 +9,15 @@ use crate::budget;
 use crate::run::{Outcome, Setup};
 use crate::score::Range;
 
-/// Before this the image boots and arms itself, s.
+/// Time for boot and arming, s.
 const SETTLED_S: f64 = 0.4;
 
-/// A state or a cause in words, with its number in telemetry.
+/// Name of a state or a cause with its code in telemetry.
 fn numbered(name: &str, number: u8) -> String {
     format!("{} ({number})", name.replace('-', " "))
 }
 
-/// What a run of `scene` came to, a line each.
+/// The summary of a run of `scene`, one line per quantity.
 pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> String {
     let mut out = String::new();
     let mut line = |name: &str, text: String| {

@@ -1,4 +1,4 @@
-//! As much of the Thumb-2 encoding as is needed to follow calls and to cost instructions.
+//! The part of the Thumb-2 encoding that is needed to follow calls and to estimate cycles.
 
 /// Whether an instruction that begins with this half is four bytes long.
 #[must_use]
@@ -6,8 +6,8 @@ pub const fn is_wide(half: u16) -> bool {
     half >> 11 >= 0b1_1101
 }
 
-/// Addresses and both halves of the instructions in `code`; literals among them are taken for
-/// instructions, too.
+/// Addresses and both halves of the instructions in `code`; literals in it are decoded as
+/// instructions too.
 pub fn instructions(base: u64, code: &[u8]) -> impl Iterator<Item = (u64, [u16; 2])> + use<> {
     let halves: Vec<u16> = code
         .as_chunks()

@@ -258,7 +258,10 @@ mod tests {
             said[1].contains("started 2 times; left out: runs of [5]"),
             "{said:?}"
         );
-        assert!(said[2].contains("1 piece not readable"), "{said:?}");
+        assert!(
+            said[2].contains("1 piece of the stream not readable"),
+            "{said:?}"
+        );
         assert!(choose(&runs, Some(3)).is_err() && choose(&runs, Some(0)).is_err());
         let one = Telemetry::text(log(0..1).as_bytes());
         assert!(choose(&one.runs(), None).is_err());

@@ -72,8 +72,8 @@ pub(super) struct Tune {
     pub(super) frictionless: bool,
     #[command(flatten)]
     pub(super) device: DeviceFile,
-    /// Write the parameters to FILE, for option --presets of other commands; - is standard output.
-    /// The section [image] of an existing FILE stays
+    /// Write the parameters to FILE, a presets file for other commands; - is standard output. The
+    /// section [image] of an existing FILE is kept
     #[arg(long, value_name = "FILE.toml", default_value = "target/presets.toml")]
     pub(super) out: PathBuf,
 }

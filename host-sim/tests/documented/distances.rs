@@ -98,7 +98,7 @@ const INDEPENDENT: [(&str, [f64; 3]); 5] = [
 ];
 
 #[test]
-fn distances_of_the_papers_experiment() {
+fn documented_distances_of_the_papers_experiment_are_reproduced() {
     let runs = [&SCORED[0], &SCORED[1], &*FRICTIONLESS];
     let row = |(name, independent): &(&str, [f64; 3])| {
         let figures = runs.iter().zip(independent);
@@ -114,7 +114,7 @@ fn distances_of_the_papers_experiment() {
 const INDEPENDENT_RAD_S: [(&str, f64); 3] = [("step", 0.48), ("track", 0.65), ("texture", 1.2)];
 
 #[test]
-fn errors_of_finite_difference() {
+fn documented_errors_of_finite_difference_are_reproduced() {
     let row = |(scenario, independent): &(&str, f64)| {
         let is = |row: &&Value| {
             text(row, "estimator") == "finite-difference" && text(row, "scenario") == *scenario
@@ -130,7 +130,7 @@ fn errors_of_finite_difference() {
 /// The motor model has no friction: on a plant without friction it is exact while the handle is
 /// clamped or still, and worse than the finite difference when the handle moves.
 #[test]
-fn motor_model_without_friction() {
+fn documented_errors_of_the_motor_model_are_reproduced_without_friction() {
     let figure = |scenario: &str| pooled(&FRICTIONLESS, "kalman-motor-steady", &[scenario]);
     for still in ["step", "permanent", "track", "creep", "hold"] {
         assert!(figure(still) < 0.005, "{still}: {}", figure(still));

@@ -71,7 +71,7 @@ fn write_robustness() {
 
 /// The corners and the first drawn devices of the documented run, which it contains.
 #[test]
-fn robustness_of_the_loop() {
+fn documented_robustness_is_reproduced() {
     if measured::update() {
         write_robustness();
     }
@@ -144,7 +144,7 @@ const Z_WIDTH_COMMAND: [&str; 3] = ["zwidth", "--lines", "1024"];
 
 /// Two estimators at 1 kHz, of all in the table. The step of the search is 3 %.
 #[test]
-fn z_width_of_two_estimators() {
+fn documented_z_width_is_reproduced() {
     if measured::update() {
         let found = json(&[&Z_WIDTH_COMMAND[..], &["--rate", "1000", "--rate", "11600"]].concat());
         let row = |name: &str| {
@@ -175,7 +175,7 @@ fn z_width_of_two_estimators() {
 /// What parameters of scenes may be set to on the board is inside what is passive with either of the
 /// image's estimators.
 #[test]
-fn bounds_of_the_boards_parameters() {
+fn bounds_of_the_boards_parameters_are_within_the_z_width() {
     let images: [([&str; 2], &[&str]); 2] = [
         (
             ["foaw-end-fit", "kalman-triple-steady"],

@@ -1,14 +1,15 @@
-//! The highest control rates as a picture.
+//! Plot of the highest control rates.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::{IMAGES, NONE, Task};
 
-/// A row a scene, a mark an estimator: filled by the longest task, a line to the mean.
+/// One row per scene with one mark per estimator at the rate of the longest task, and a line to the
+/// rate of the mean.
 ///
 /// # Errors
-/// One line if the picture cannot be drawn.
+/// One line if the plot cannot be drawn.
 pub fn svg(tasks: &[Task]) -> Result<String, String> {
     let mut text = String::new();
     draw(&mut text, tasks).map_err(|error| format!("plot: {error}"))?;
@@ -18,7 +19,7 @@ pub fn svg(tasks: &[Task]) -> Result<String, String> {
 /// Control rate of the firmware as it is, kHz.
 const NOW_KHZ: f64 = 10.0;
 
-/// Of the images, then of none: apart for every eye.
+/// Colours of the images, then of no estimator, distinguishable with colour-vision deficiencies.
 const COLOURS: [RGBColor; IMAGES.len() + 1] = [
     RGBColor(213, 94, 0),
     RGBColor(0, 114, 178),

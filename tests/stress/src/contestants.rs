@@ -1,4 +1,4 @@
-//! Every estimator of the core, beside its twin.
+//! Every estimator of the core with its twin, and the bounds of its test.
 
 use catalogue::parameters::middle;
 use estimator_catalogue::{Row, Settling};
@@ -16,11 +16,11 @@ pub struct Contestant {
     pub name: String,
     /// Control rate, Hz.
     pub rate_hz: f64,
-    /// What it has to give exactly, if it is a window.
+    /// Definition in exact fractions, of a window.
     pub definition: Option<Definition>,
-    /// What is asked of it.
+    /// Bounds that it must meet.
     pub bounds: Bounds,
-    /// Below this an output at rest is at rest, rad/s.
+    /// Largest output at rest, rad/s.
     pub at_rest_rad_s: f64,
     make: Box<dyn Fn() -> Box<dyn Pair> + Send + Sync>,
 }
@@ -67,26 +67,26 @@ impl Contestant {
         self
     }
 
-    /// At rest after so many ticks.
+    /// At rest after this number of ticks.
     fn settles(mut self, ticks: u32) -> Self {
         self.bounds.settles_ticks = ticks;
         self
     }
 
-    /// At rest after so many ticks more.
+    /// At rest after this number of further ticks.
     fn also(self, ticks: u32) -> Self {
         let before = self.bounds.settles_ticks;
         self.settles(before + ticks)
     }
 
-    /// At rest once so many poles within this radius have forgotten the fastest motion there is.
+    /// At rest when this number of poles within the radius have decayed from the fastest motion.
     fn poles(self, radius: f64, order: i32) -> Self {
         let quiet = self.at_rest_rad_s / self.rad_per_count();
         self.settles(settling::poles(radius, order, quiet))
     }
 
-    /// At rest once one count over the time since is below 0.05 rad/s: it would take two minutes
-    /// and a half to come below 1e-5.
+    /// At rest when one count over the time since the last edge is below 0.05 rad/s; below 1e-5 rad/s
+    /// would take two and a half minutes.
     fn one_count_over_time(mut self) -> Self {
         self.at_rest_rad_s = 0.05;
         let ticks = self.rad_per_count() / self.at_rest_rad_s;
@@ -94,7 +94,7 @@ impl Contestant {
     }
 }
 
-/// The project's goal for what f32 may cost, rad/s.
+/// Goal for the largest error by f32, rad/s.
 pub const DEVIATION_RAD_S: f64 = 1e-5;
 
 /// Below this an output at rest is at rest, rad/s.
@@ -111,15 +111,15 @@ const JERK: f64 = 2e4;
 /// Error of the current that the motor model expects, A.
 const CURRENT_NOISE: f64 = 0.1;
 
-/// Time constant of the torque that the observers know nothing of, s.
+/// Correlation time of the observers' disturbance torque, s.
 const LOAD_TIME_S: f64 = 0.1;
 
 /// Disturbance torque of the observers: white, N·m/√Hz, and slow, N·m.
 const TORQUE_NOISE: f64 = 7e-5;
 const DISTURBANCE_NM: f64 = 7.5e-4;
 
-/// Uncertainty of the observer by its edges alone, whose disturbance torque holds damping, friction
-/// and the motor's torque too.
+/// Uncertainty of the observer that uses edges only: its disturbance torque includes damping,
+/// friction and the motor's torque.
 const ALONE: core::Uncertainty = core::Uncertainty {
     torque_noise: 5e-4,
     disturbance: 1e-4,
@@ -243,7 +243,7 @@ impl Laws {
             Settling::EqualPoles(order) => {
                 let mut one = one.poles(pole(BANDWIDTH_HZ), order.into());
                 if self.rate_hz > 5000.0 {
-                    // Poles in series add up their memories.
+                    // The settling times of poles in series add up.
                     one.bounds.deviation_rad_s = SLOW_DEVIATION_RAD_S * f64::from(order) / 2.0;
                 }
                 one

@@ -1,13 +1,13 @@
-//! What the encoders show during a stress run.
+//! Input of a stress run: counts, currents and edges.
 
 use estimator_core::{Amps, ClockTicks, Count, Edge, Sample};
 
-/// A random generator small enough to read (SplitMix64): the same draws on every machine.
+/// Random generator (SplitMix64) with the same draws on every machine.
 #[derive(Clone, Debug)]
 pub struct Draws(u64);
 
 impl Draws {
-    /// A sequence of its own for every seed.
+    /// The generator of a seed.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self(seed)
@@ -36,24 +36,24 @@ impl Draws {
 
 pub use simulation::trace::EDGE_CLOCK_HZ;
 
-/// Largest displacement in a tick that the estimators take for motion, counts.
+/// Largest displacement in a tick that the estimators treat as motion, counts.
 pub const TOP_STEP: i32 = (1 << 15) - 1;
 
-/// What one tick shows, in plain numbers: both precisions make their samples of it.
+/// Input of one tick as plain numbers, from which both precisions make their samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown {
     /// Large encoder, modulo 2^32.
     pub large: u32,
     /// Small encoder, modulo 2^32.
     pub small: u32,
-    /// Current over the period that ends here, A, or what a broken caller hands over.
+    /// Current over the period that ends at this tick, A; it can be invalid.
     pub amps: f32,
     /// Latest edge: boundary and age in ticks of the edge clock.
     pub edge: Option<(u32, u32)>,
 }
 
 impl Shown {
-    /// What this sample shows.
+    /// The input as a sample.
     #[must_use]
     pub fn of(sample: &Sample) -> Self {
         Self {
@@ -64,7 +64,7 @@ impl Shown {
         }
     }
 
-    /// As the core takes it.
+    /// The sample of the core.
     #[must_use]
     pub fn sample(&self) -> Sample {
         Sample {
@@ -84,24 +84,24 @@ impl Shown {
 pub enum Stretch {
     /// No motion and no current.
     Rest,
-    /// As fast as the estimators allow, one way.
+    /// The largest velocity that the estimators allow, in one direction.
     Top(i32),
-    /// A constant velocity, in counts per tick; fractions like 1/2 keep lines on the band's edge.
+    /// A constant velocity, in counts per tick; fractions like 1/2 keep lines on the limit of the band.
     Slope(f64),
-    /// One count every so many ticks.
+    /// One count in this number of ticks.
     Creep(u16, i32),
-    /// To and fro over one boundary at every tick.
+    /// Alternation over one boundary at every tick.
     Chatter,
-    /// Random steps of at most so many counts.
+    /// Random steps of at most this number of counts.
     Walk(i32),
     /// A sine of this amplitude, counts, and period, ticks.
     Sine(f64, f64),
-    /// Any 32 bits, and currents that are no numbers.
+    /// Random 32-bit counts, and currents that are not numbers.
     Noise,
 }
 
 impl Stretch {
-    /// Any of them.
+    /// Draws any stretch.
     fn any(draws: &mut Draws) -> Self {
         let sign = draws.within(1) | 1;
         match draws.bits() % 12 {
@@ -138,7 +138,7 @@ impl Stretch {
     }
 }
 
-/// Currents that a broken caller may hand over.
+/// Invalid currents.
 const BAD_AMPS: [f32; 8] = [
     f32::NAN,
     f32::INFINITY,
@@ -150,7 +150,7 @@ const BAD_AMPS: [f32; 8] = [
     -0.0,
 ];
 
-/// A course without end, the same for the same seed.
+/// An endless course, determined by its seed.
 #[derive(Clone, Debug)]
 pub struct Course {
     draws: Draws,
@@ -165,7 +165,7 @@ pub struct Course {
 }
 
 impl Course {
-    /// Begins at a count drawn near a wrap of either counter width.
+    /// Starts at a random count near a wrap of either counter width.
     #[must_use]
     pub fn new(seed: u64, rate_hz: f64) -> Self {
         let mut draws = Draws::new(seed);
@@ -192,18 +192,18 @@ impl Course {
         }
     }
 
-    /// What it shows now.
+    /// Present input.
     #[must_use]
     pub const fn shown(&self) -> Shown {
         self.shown
     }
 
-    /// Goes over to rest, from now on.
+    /// Continues with rest.
     pub const fn rest(&mut self) {
         self.go(Stretch::Rest, u32::MAX);
     }
 
-    /// Goes over to another stretch of motion.
+    /// Continues with another stretch of motion.
     pub fn move_on(&mut self) -> Stretch {
         let stretch = Stretch::any(&mut self.draws);
         let length = 200 + (self.draws.bits() % 4000) as u32;
@@ -211,7 +211,7 @@ impl Course {
         stretch
     }
 
-    /// Goes over to a constant velocity, counts per tick, for so many ticks.
+    /// Continues with a constant velocity, counts per tick, for this number of ticks.
     pub const fn slope(&mut self, velocity: f64, length: u32) {
         self.go(Stretch::Slope(velocity), length);
     }

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-/// Which line is fitted.
+/// The fitted line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Line {
     /// Through the newest and the oldest sample.

@@ -1,4 +1,4 @@
-//! Estimators by parameters that may be refused.
+//! Designs whose parameters can be refused.
 
 use estimator_catalogue::ROWS;
 
@@ -19,9 +19,9 @@ pub fn kinds() -> Vec<&'static str> {
     rows.map(|row| row.name).chain([MOTOR_TABLE]).collect()
 }
 
-/// Values for the first parameter of `kind`, over its range and beyond: parts of the rate for a
-/// frequency and for the edge clock of a row without parameters, window lengths, 24 decades for a
-/// noise.
+/// Values for the first parameter of `kind` within and beyond its range: fractions of the rate for a
+/// frequency and for the edge clock of a row without parameters, window lengths, and 24 decades for
+/// a noise.
 #[must_use]
 pub fn parameters(kind: &str, rate: f64) -> Vec<f64> {
     let first = Entry::named(kind).map(|entry| entry.row.parameters.first());
@@ -34,15 +34,15 @@ pub fn parameters(kind: &str, rate: f64) -> Vec<f64> {
     parts.iter().map(|part| part * rate).collect()
 }
 
-/// `kind` with these parameters. `parameter` is the value of the first one; the noise bound of a
-/// window is as many counts as the window has intervals, so that both ends of both are tried, and
-/// the slow disturbance torque, N·m, is ten times the white one, N·m/√Hz.
+/// The design `kind` with `parameter` as its first parameter. The noise bound of a window in counts
+/// equals its number of intervals, so that both limits of both are tested. The slow disturbance
+/// torque, N·m, is ten times the white one, N·m/√Hz.
 ///
 /// # Errors
 /// The name of the design error, if core and twin agree in it.
 ///
 /// # Panics
-/// If only one of them refuses the design, or `kind` is none of [`kinds`].
+/// If only one of them refuses the design, or `kind` is not in [`kinds`].
 pub fn design(kind: &str, rate: f64, counts_per_rev: u32, parameter: f64) -> Refusable {
     let value = |name: &str| match name {
         "load" => 10.0 * parameter,

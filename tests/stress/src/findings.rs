@@ -1,25 +1,25 @@
-//! What was found of one estimator.
+//! Findings on one estimator.
 
 use serde::{Deserialize, Serialize};
 
-/// What rounding may add while a filter that started in motion settles, rad/s: a thirtieth of
-/// the haptic tolerance at rest.
+/// Largest error by rounding while a filter settles after a start in motion, rad/s: a thirtieth of the
+/// haptic tolerance at rest.
 const START_BOUND_RAD_S: f64 = 1e-2;
 
-/// More faults than this are counted and not told.
+/// Number of faults that are reported in words; further ones are only counted.
 const FAULTS_TOLD: usize = 5;
 
-/// What may be asked of an estimator.
+/// Bounds of an estimator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
-    /// What rounding may add to a velocity inside the haptic range, rad/s; infinite where it may
-    /// turn a decision.
+    /// Largest error by rounding of a velocity inside the haptic range, rad/s; infinite if rounding
+    /// can change a decision.
     pub deviation_rad_s: f64,
-    /// Longest time to come to rest, ticks.
+    /// Longest time until the output is at rest, ticks.
     pub settles_ticks: u32,
 }
 
-/// What was found.
+/// Findings of a run.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Findings {
     /// Name and parameters.
@@ -32,28 +32,28 @@ pub struct Findings {
     pub wraps: u64,
     /// Largest |f32 - f64| while no velocity since the last rest was above 20 rad/s, rad/s.
     pub deviation_rad_s: f64,
-    /// Largest |f32 - f64| within the first ticks after a start in motion, rad/s, at up to
-    /// 20 rad/s: a covariance comes down from its prior, and cancels digits as it does.
+    /// Largest |f32 - f64| within the first ticks after a start in motion at up to 20 rad/s, rad/s,
+    /// while the covariance decreases from its prior with a loss of digits.
     pub start_deviation_rad_s: f64,
     /// Largest |f32 - f64| over the largest velocity since the last rest, from a count a tick on.
     pub relative_deviation: f64,
-    /// Longest rest until the output stayed at rest, ticks.
+    /// Longest time until the output stayed at rest, ticks.
     pub recovery_ticks: u32,
-    /// How long the twin took at most.
+    /// Longest time of the twin, ticks.
     pub twin_recovery_ticks: u32,
-    /// Windows that were compared with their definition.
+    /// Number of windows compared with their definition.
     pub windows_compared: u64,
-    /// What went wrong.
+    /// The first faults, in words.
     pub faults: Vec<String>,
-    /// How often.
+    /// Number of faults.
     pub fault_count: u64,
-    /// What it is held against.
+    /// Bounds of the estimator.
     #[serde(skip)]
     pub bounds: Bounds,
 }
 
 impl Findings {
-    /// Whether everything held.
+    /// Whether all checks passed.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.fault_count == 0
@@ -80,7 +80,7 @@ impl Findings {
         }
     }
 
-    /// Takes in what was found of the same estimator on another course.
+    /// Adds the findings on the same estimator from another course.
     pub(crate) fn join(&mut self, other: Self) {
         self.ticks += other.ticks;
         self.wraps += other.wraps;

@@ -1,17 +1,17 @@
-//! Stress of the estimators: long, hostile courses, each tick computed in f32 by
+//! Stress test of the estimators: long courses of extreme motions, each tick computed in f32 by
 //! `estimator-core` and in f64 by its generated twin.
 //!
-//! | module | what |
+//! | module | content |
 //! |---|---|
-//! | [`course`] | what the encoders show: rest, top speed, ties, creep, jumps, wraps |
+//! | [`course`] | counts, currents and edges: rest, top speed, ties, creep, jumps, wraps |
 //! | [`pair`] | an estimator of the core beside its twin |
-//! | [`contestants`] | all of them |
+//! | [`contestants`] | all pairs, with their bounds |
 //! | [`trial`] | one estimator over one course |
-//! | [`findings`] | what was found, and what it is held against |
+//! | [`findings`] | results and bounds |
 //! | [`parts`] | all estimators over long courses, in parts |
-//! | [`designs`] | estimators by parameters that may be refused |
-//! | [`sensitivity`] | parameters at the ends of their ranges |
-//! | [`signals`] | what f32 costs on signals that a device can give |
+//! | [`designs`] | designs whose parameters can be refused |
+//! | [`sensitivity`] | parameters at the limits of their ranges |
+//! | [`signals`] | error by f32 on signals of a simulated device |
 //! | [`definition`] | FOAW by its O(n²) definition, in exact fractions |
 //! | [`table`] | the findings as text, and as cells of the measured tables |
 

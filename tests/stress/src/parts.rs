@@ -1,5 +1,5 @@
-//! A long run in parts: each a course of its own, so that every core works to the end and what is
-//! done can be kept.
+//! A long run in parts. Each part has its own course, so that all processor cores are used and
+//! finished parts can be saved.
 
 use std::collections::hash_map::DefaultHasher;
 use std::fs::{self, File, OpenOptions};
@@ -28,7 +28,7 @@ struct Done {
     found: Findings,
 }
 
-/// What to run.
+/// Settings of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
     /// Seed of the first part's course; those of the others follow.

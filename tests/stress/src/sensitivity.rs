@@ -1,4 +1,4 @@
-//! Parameters at the ends of their ranges: stable, or refused by name.
+//! Parameters at the limits of their ranges: a design is stable or refused by name.
 
 use serde::Serialize;
 
@@ -12,21 +12,21 @@ const RATES: [f64; 4] = [1e2, 1e3, 1e4, 1e5];
 /// Counts per turn: 16 lines to a million.
 const COUNTS_PER_REV: [u32; 4] = [64, 4096, 65_536, 4_000_000];
 
-/// Ticks each accepted design is tried for.
+/// Ticks of the test of each accepted design.
 const TICKS: u64 = 4000;
 
-/// What came of one kind of estimator over the whole grid.
+/// Results of one kind of estimator over the whole grid.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Outcome {
     /// Name.
     pub estimator: String,
-    /// Designs tried.
+    /// Number of designs.
     pub tried: u32,
-    /// Of these, refused, by the parameter that the error names.
+    /// Numbers of refused designs by the parameter that the error names.
     pub refused: std::collections::BTreeMap<String, u32>,
-    /// Largest |f32 - f64| of an accepted design, in parts of the fastest velocity.
+    /// Largest |f32 - f64| of an accepted design, relative to the largest velocity.
     pub relative_deviation: f64,
-    /// Designs that were accepted and broke: what, with which parameters.
+    /// Failures of accepted designs, with their parameters.
     pub broken: Vec<String>,
 }
 

@@ -1,23 +1,23 @@
-//! How long an estimator may take to come to rest after anything, from its design.
+//! Longest settling time of an estimator after any motion, derived from its design.
 
 use estimator_core::{CountObserver, CoupledMotor};
 
-/// A correction moves an observer by no more counts than these.
+/// Largest correction of an observer, counts.
 const LARGEST_INNOVATION: f64 = 65_536.0;
 
-/// The largest velocity that a count can show, counts a tick: any 32 bits.
+/// Largest velocity of random 32-bit counts, counts per tick.
 const FASTEST: f64 = (1u64 << 31) as f64;
 
-/// Ticks until [`FASTEST`] has fallen below `quiet`, counts a tick, through `order` poles within
+/// Ticks until [`FASTEST`] has decayed below `quiet`, counts per tick, with `order` poles within
 /// `radius` of zero: the least k with `(1 + x)^(order - 1) exp(-x) FASTEST < quiet`,
-/// `x = -k ln(radius)`, which is the slowest that so many poles can be.
+/// `x = -k ln(radius)`, which is the slowest possible decay.
 pub(crate) fn poles(radius: f64, order: i32, quiet: f64) -> u32 {
     let rate = -radius.ln();
     let left = |ticks: u32| {
         let x = f64::from(ticks) * rate;
         (1.0 + x).powi(order - 1) * (-x).exp() * FASTEST
     };
-    // It rises at first, and falls from `x = order - 2` on.
+    // The function rises at first and falls from `x = order - 2` on.
     let mut ticks = (f64::from(order) / rate) as u32;
     while left(ticks) >= quiet {
         ticks += 1;
@@ -30,8 +30,8 @@ pub(crate) fn pole(cutoff_hz: f64, rate_hz: f64) -> f64 {
     (-std::f64::consts::TAU * cutoff_hz / rate_hz).exp()
 }
 
-/// Spectral radius of the error of a filter with transition `a` and gain `k` of the position,
-/// `(I - K H) A`: what the norm of its power grows by in a tick.
+/// Spectral radius of `(I - K H) A`, the error's transition of a filter with transition `a` and gain
+/// `k` of the position: the growth of the norm of its powers per tick.
 pub(crate) fn radius<const S: usize>(a: &[[f64; S]; S], k: &[f32; S]) -> f64 {
     let mut m = *a;
     for (row, k) in m.iter_mut().zip(k) {
@@ -39,7 +39,7 @@ pub(crate) fn radius<const S: usize>(a: &[[f64; S]; S], k: &[f32; S]) -> f64 {
             *element -= f64::from(*k) * first;
         }
     }
-    // The logarithm of the norm of M^(2^i), by squaring; scaled, so that it stays in range.
+    // The logarithm of the norm of M^(2^i) by repeated squaring, scaled to stay in range.
     let (mut logarithm, mut power) = (0.0, 1.0);
     for _ in 0..30 {
         let norm = m.iter().flatten().fold(0.0f64, |norm, x| norm.max(x.abs()));
@@ -59,21 +59,21 @@ pub(crate) fn radius<const S: usize>(a: &[[f64; S]; S], k: &[f32; S]) -> f64 {
     f64::exp(logarithm)
 }
 
-/// The largest gain of the unknown torque in the table.
+/// Largest gain of the disturbance torque in the table.
 pub(crate) fn largest_gain(observer: &CountObserver) -> f64 {
     let gains = (1..=64).map(|ticks| f64::from(observer.gain(ticks).disturbance));
     gains.fold(0.0, f64::max)
 }
 
-/// The same with soft ends: that of the velocity is at most 3/2, and they have a fixed ratio.
+/// Largest gain of the disturbance torque with the truncated-Gaussian update: the gain of the velocity
+/// is at most 3/2, and the ratio of both is fixed.
 pub(crate) fn largest_soft_gain(observer: &CountObserver) -> f64 {
     let every_tick = observer.gain(1);
     1.5 * f64::from(every_tick.disturbance / every_tick.velocity)
 }
 
-/// Ticks until the unknown torque that the largest correction leaves, at its largest `gain`, has
-/// decayed below what always holds a rotor: half of the friction believed in, as the other half may
-/// have been taken for wrong.
+/// Ticks until the disturbance torque after the largest correction with the largest `gain` has decayed
+/// below half of the design's friction. The other half can be compensated by the friction correction.
 pub(crate) fn unknown_torque(gain: f64, load_time: f64, rate_hz: f64) -> u32 {
     let CoupledMotor {
         motor,
@@ -87,9 +87,9 @@ pub(crate) fn unknown_torque(gain: f64, load_time: f64, rate_hz: f64) -> u32 {
     (load_time * rate_hz * (left / holds).ln()).ceil() as u32
 }
 
-/// Ticks until the unknown torque that the largest correction leaves, at its largest `gain`, no longer
-/// brings about a count per its own time: then the walls of the cell hold a rotor that no friction
-/// holds.
+/// Ticks until the disturbance torque after the largest correction with the largest `gain` moves the
+/// rotor by less than a count per its correlation time. Without friction, the quantisation interval
+/// then keeps the rotor at rest.
 pub(crate) fn unknown_torque_alone(gain: f64, load_time: f64, rate_hz: f64) -> u32 {
     let time = load_time * rate_hz;
     (time * (gain * LARGEST_INNOVATION * time * time).ln()).ceil() as u32

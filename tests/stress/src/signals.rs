@@ -1,4 +1,4 @@
-//! What f32 costs on signals that a device can give: every scenario of the simulated one.
+//! Error by f32 on signals of a device: every scenario of the simulated device.
 
 use catalogue::estimators::sample;
 use serde::Serialize;
@@ -13,20 +13,20 @@ use crate::course::Shown;
 /// Length of each scenario, s.
 const SECONDS: f64 = 10.0;
 
-/// Start that is not looked at, s: it has a figure of its own.
+/// Start that is skipped, s; the deviation after a start is measured separately.
 const SETTLED_S: f64 = 0.5;
 
-/// A list of what is shown, and the true velocity at each, rad/s.
+/// Inputs of the estimators, and the true velocity at each, rad/s.
 #[derive(Clone, Debug)]
 pub struct Scenario {
     shown: Vec<Shown>,
     truth: Vec<f64>,
 }
 
-/// All that a device shows at one rate.
+/// The signals of every scenario at one rate.
 ///
 /// # Panics
-/// If the default device does not simulate, at an impossible rate.
+/// If the default device cannot be simulated at the rate.
 #[must_use]
 pub fn at(rate_hz: f64, seed: u64) -> Vec<Scenario> {
     let everything = estimator_core::Signals {
@@ -54,7 +54,7 @@ pub fn at(rate_hz: f64, seed: u64) -> Vec<Scenario> {
     traces.collect()
 }
 
-/// What f32 and f64 differ by, over all of them.
+/// Difference of f32 and f64 over all signals.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Difference {
     /// Name and parameters.
@@ -70,7 +70,7 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// What f32 adds to the error, as a part of it; below zero it happens to be better.
+    /// Relative increase of the error by f32; negative if the error happens to be smaller.
     #[must_use]
     pub fn added_error(&self) -> f64 {
         let [narrow, wide] = self.error_rad_s;
@@ -78,7 +78,7 @@ impl Difference {
     }
 }
 
-/// Runs `contestant` over all of them in both precisions.
+/// Runs `contestant` over all signals in both precisions.
 #[must_use]
 pub fn difference(contestant: &Contestant, scenarios: &[Scenario]) -> Difference {
     let mut found = Difference {

@@ -6,25 +6,25 @@ use crate::definition::Definition;
 use crate::findings::Findings;
 use crate::pair::Pair;
 
-/// Fastest slip of the paper's constant-velocity experiment. Up to it a deviation is counted in
-/// rad/s, beyond it in parts of the velocity.
+/// Fastest slip of the paper's constant-velocity experiment. A deviation is absolute (rad/s) up to it
+/// and relative to the velocity beyond.
 const HAPTIC_RAD_S: f64 = 20.0;
 
-/// Starts tried, and ticks of each.
+/// Number of starts, and ticks of each.
 const STARTS: u64 = 200;
 const START_TICKS: u32 = 300;
 
-/// A window is tried against its definition once in so many ticks.
+/// Ticks between comparisons of a window with its definition.
 const DEFINITION_EVERY: u64 = 61;
 
-/// Counts that are kept for it: many more than a window, so that they are seldom moved.
+/// Number of counts kept for the definition: many more than a window, so that they are moved rarely.
 const HISTORY: usize = 4096;
 
-/// Runs `contestant` for `ticks` ticks; `progress` hears of every 2^20.
+/// Runs `contestant` for `ticks` ticks and calls `progress` after every 2^20.
 pub fn run(contestant: &Contestant, seed: u64, ticks: u64, progress: impl Fn(u64)) -> Findings {
     let mut trial = Trial::new(contestant, seed);
     let mut told = 0;
-    // What follows is a filter that has settled; starts have a figure of their own.
+    // The following ticks test the settled filter; starts are measured separately.
     trial.recover();
     while trial.found.ticks < ticks {
         trial.stretch();
@@ -38,7 +38,7 @@ pub fn run(contestant: &Contestant, seed: u64, ticks: u64, progress: impl Fn(u64
     trial.found
 }
 
-/// The largest deviation soon after starts in motion, rad/s.
+/// Largest deviation shortly after starts in motion, rad/s.
 fn start_deviation(contestant: &Contestant, seed: u64) -> f64 {
     let rad_per_count = contestant.rad_per_count();
     let mut draws = Draws::new(!seed);
@@ -103,13 +103,13 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// Rest, until both precisions have come to it.
+    /// Rest, until the outputs of both precisions are at rest.
     fn recover(&mut self) {
         self.course.rest();
         let (mut narrow_last, mut wide_last) = (0, 0);
         let mut tick = 0u32;
         let limit = 2_000_000;
-        // Quiet for as long again as it took, and a window's length: it stays at rest.
+        // The output must stay at rest for the same time again plus the length of a window.
         while tick < 2 * narrow_last.max(wide_last) + 130 && tick < limit {
             tick += 1;
             let (narrow, wide) = self.tick(false);
@@ -184,7 +184,7 @@ impl<'a> Trial<'a> {
         let last = self.history.last().copied().unwrap_or(shown.large);
         let step = shown.large.wrapping_sub(last) as i32;
         if step.unsigned_abs() > TOP_STEP.unsigned_abs() {
-            // Out of range: the window starts again here.
+            // The displacement is out of range: the window restarts.
             self.history.clear();
             self.history.push(shown.large);
         } else {

@@ -8,7 +8,7 @@ use measured::tables::VELOCITY_LOOP;
 const BOARD: &str = include_str!("../../../docs/board.md");
 
 #[test]
-fn margins_of_the_velocity_loop_are_those_of_the_table() {
+fn margins_of_the_velocity_loop_agree_with_the_table() {
     let row = |khz: f64| {
         let rate = Hertz(1e3 * khz);
         let design = RstDesign::new(&DualStage::DEFAULT, rate, LoopPoles::DEFAULT).unwrap();

@@ -1,5 +1,5 @@
-//! Loads and stores that the core makes for a test: a bus master does not reach the registers in
-//! the core itself.
+//! Loads and stores by the core for a test. A bus master cannot access the registers inside the
+//! core.
 
 use std::collections::VecDeque;
 
@@ -35,7 +35,7 @@ const SEARCHED: usize = 256;
 pub(crate) struct CoreAccesses {
     due: VecDeque<(u64, CoreAccess)>,
     stack: Stack,
-    /// What has been stored and read, in the order of time.
+    /// Stored and read values, in order of time.
     pub(crate) values: Vec<u32>,
     placed: bool,
 }
@@ -53,7 +53,7 @@ impl CoreAccesses {
     /// The control task has just woken the processor, which waited for an interrupt in the
     /// instruction before `behind`: it returns to the code of the access that is due.
     pub(crate) fn wake(&mut self, now_ns: u64, behind: u64, host: &mut dyn Host) {
-        // The stack does not come down to its lowest words.
+        // The stack does not reach its lowest words.
         let Some(code) = self.stack.words().next() else {
             return;
         };
@@ -72,7 +72,7 @@ impl CoreAccesses {
         self.due.pop_front();
         self.placed = true;
         place(access, code, behind, host);
-        // It is RAM: the write cannot be refused.
+        // A write to RAM cannot fail.
         let _ = host.write(frame, Width::W32, code);
     }
 }

@@ -1,4 +1,4 @@
-//! Some calls of the control task, instruction by instruction.
+//! Selected calls of the control task, followed instruction by instruction.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -15,14 +15,14 @@ pub(super) struct Follow {
     ticks: BTreeSet<usize>,
     /// Both halves of every instruction that the control task reaches, by address.
     code: Arc<BTreeMap<u64, [u16; 2]>>,
-    /// Those among them that are watched anyway.
+    /// The instructions among them that are watched anyway.
     watched: BTreeSet<u64>,
     watching: bool,
     /// The tick that is followed.
     now: Option<Path>,
 }
 
-/// The way so far.
+/// The followed part of a tick.
 #[derive(Default)]
 struct Path {
     /// The latest instruction, which has not been counted.
@@ -47,7 +47,7 @@ impl Follow {
         others.map(|at| Watch::Instruction(*at))
     }
 
-    /// A tick begins. Watching takes longer than being told: ticks in a row are watched at once.
+    /// A tick begins. Setting watchpoints takes long, so those of consecutive ticks stay set.
     pub(super) fn enter(&mut self, tick: usize, host: &mut dyn Host) {
         let wanted = self.ticks.contains(&tick);
         self.now = wanted.then(Path::default);
@@ -82,7 +82,7 @@ impl Follow {
     pub(super) fn leave(&mut self, instructions: u32) -> Option<u32> {
         let path = self.now.take()?;
         let [first, second] = path.at.and_then(|at| self.code.get(&at))?;
-        // What is behind the return is part of what the interrupt takes.
+        // Instructions after the return are part of the interrupt's cycles.
         let last = cycles::of(*first, *second, false);
         (path.instructions == instructions).then_some(path.cycles + last + cycles::INTERRUPT)
     }

@@ -26,7 +26,7 @@ impl Lockstep {
         } else if self.exits.contains(&hit.address)
             && let Some((mut tick, start)) = self.running.take()
         {
-            // The return itself is still to run.
+            // The return instruction has not run yet.
             tick.instructions = (hit.instruction_count - start + 1) as u32;
             tick.cycles = self.follow.leave(tick.instructions);
             let part = &mut session.board_mut().part;

@@ -1,4 +1,4 @@
-//! Faults done to the running board.
+//! Injection of faults into the running board.
 
 use rigless::emulator::{Host, Stop};
 use rigless::mcu::Operate;
@@ -18,29 +18,29 @@ const TICK_CONTROL: u64 = 0x4000_0C00;
 /// Control register of the cycle counter; bit 0 enables it.
 const CYCLES_CONTROL: u64 = 0xE000_1000;
 
-/// How long a control task is that is too long, ns.
+/// Duration of a control task that is too long, ns.
 const LONG_TASK_NS: u64 = (1.2e9 / RATE_HZ) as u64;
-/// How long control tasks are too long.
+/// Time for which control tasks are too long.
 const LONG_TASKS_NS: u64 = 10_000_000;
-/// How long the task of lowest priority starves.
+/// Time for which the task of lowest priority loops.
 const STARVED_NS: u64 = 40_000_000;
-/// How long nobody drains the telemetry in a pause.
+/// Time for which telemetry is not read.
 const PAUSE_NS: u64 = 300_000_000;
 
-/// What faults do to the core for a time; a restart ends all of it. Instants in ns.
+/// Temporary faults of the core, which a restart ends. Times in ns.
 #[derive(Debug, Default)]
 pub(super) struct Stalls {
-    /// When the core that is held is let go.
+    /// Time at which a halted core continues.
     pub(super) release: Option<u64>,
     /// The cycle counter's control register before a debugger halted the core.
     cycles_control: Option<u64>,
-    /// Until then every control task is too long.
+    /// Time until which every control task is too long.
     long_tasks: u64,
-    /// How long the task of lowest priority is to hang from its next wake on.
+    /// Time for which the task of lowest priority shall loop from its next wake on.
     hang: Option<u64>,
-    /// When the task of lowest priority is to go on.
+    /// Time at which the task of lowest priority continues.
     hung: Option<u64>,
-    /// Whether the task of lowest priority is to panic from its next wake on.
+    /// Whether the task of lowest priority shall panic at its next wake.
     panics: bool,
 }
 
@@ -70,7 +70,7 @@ impl Lockstep {
             }
             Fault::LongTasks => self.stalls.long_tasks = at.0 + LONG_TASKS_NS,
             Fault::HungControl => {
-                // The timer is there: the write cannot be refused.
+                // A write to an existing timer cannot fail.
                 let _ = part.write(at, TICK_CONTROL, Width::W32, 0);
             }
             Fault::HungIdle => self.stalls.hang = Some(u64::MAX),
@@ -92,7 +92,7 @@ impl Lockstep {
         }
     }
 
-    /// Lets the core go if its time has come.
+    /// Continues a halted core at the end of its halt.
     pub(super) fn release(
         &mut self,
         session: &mut Session<ControllerBoard>,
@@ -103,15 +103,15 @@ impl Lockstep {
             self.stalls.release = None;
             host.hold(false);
             if let Some(control) = self.stalls.cycles_control.take() {
-                // The counter is there: the write cannot be refused.
+                // A write to the existing counter cannot fail.
                 let part = &mut session.board_mut().part;
                 let _ = part.write(at, CYCLES_CONTROL, Width::W32, control);
             }
         }
     }
 
-    /// The control task has read the large counter: where its tasks are too long, the core stands
-    /// until only the rest of the task is left of that time.
+    /// Called when the control task has read the large counter. While its tasks shall be too long,
+    /// the core stops here, so that the task takes the wanted time.
     pub(super) fn lengthen(&mut self, at: VirtualNanos, host: &mut dyn Host) {
         let (Some((tick, _)), Some(last)) = (&self.running, self.seen.ticks.last()) else {
             return;
@@ -123,9 +123,9 @@ impl Lockstep {
         }
     }
 
-    /// The control task begins. If it has woken the processor and the task of lowest priority is to
-    /// hang, it returns not behind the instruction that waits, but into a loop without end, which
-    /// the exception's frame on the stack says; and back when the time is over. If the task is to
+    /// Called when the control task begins. If it has woken the processor and the task of lowest
+    /// priority shall loop, the return address in the exception frame is changed to an endless loop,
+    /// and changed back at the end of that time. If the task is to
     /// panic, it returns to where a failed assertion ends.
     pub(super) fn hang(&mut self, at: VirtualNanos, host: &mut dyn Host) {
         let (behind, for_ever) = (self.wait + 2, self.for_ever);
@@ -142,21 +142,21 @@ impl Lockstep {
         }
     }
 
-    /// Exchanges a word on the stack for another wherever it is.
+    /// Replaces every occurrence of a word on the stack by another.
     fn exchange(&self, old: u64, new: u64, host: &mut dyn Host) {
         for at in self.stack.words() {
             if host.read(at, Width::W32).ok() == Some(old) {
-                // It is RAM: the write cannot be refused.
+                // A write to RAM cannot fail.
                 let _ = host.write(at, Width::W32, new);
             }
         }
     }
 }
 
-/// Stops the cycle counter, as the debug state does; what its control register was.
+/// Stops the cycle counter, as the debug state does, and returns its control register.
 fn stop_cycles(part: &mut Part, at: VirtualNanos) -> u64 {
     let control = part.peek(at, CYCLES_CONTROL, Width::W32).unwrap_or(0);
-    // The counter is there: the write cannot be refused.
+    // A write to the existing counter cannot fail.
     let _ = part.write(at, CYCLES_CONTROL, Width::W32, control & !1);
     control
 }

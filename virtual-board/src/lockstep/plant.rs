@@ -7,7 +7,7 @@ use crate::quadrature::{Edge, Edges, LARGE, REFERENCE, SMALL};
 use crate::run::{AMPS_PER_CODE, Moment};
 
 impl Lockstep {
-    /// One step of the plant with what the amplifiers are told now.
+    /// One step of the plant with the present commands of the amplifiers.
     pub(super) fn step(&mut self, board: &mut ControllerBoard) {
         let enabled = pins::enabled(&mut board.part);
         if self
@@ -20,7 +20,7 @@ impl Lockstep {
         }
         let codes = board.part.dac_codes();
         for n in [LARGE, SMALL] {
-            // A pin that floats reads as mid-scale.
+            // A floating pin is assumed at mid-scale.
             let code = codes[n].map_or(0, |code| code as i16 - 2048 + self.dac_offset);
             self.currents[n] = if enabled[n] {
                 f64::from(code) * AMPS_PER_CODE[n]
@@ -43,7 +43,7 @@ impl Lockstep {
         self.steps += 1;
     }
 
-    /// Turns the shafts by one step, and the encoders with them.
+    /// Advances shafts and encoders by one step.
     fn turn(&mut self) {
         fn observer(
             into: &mut Vec<Edge>,

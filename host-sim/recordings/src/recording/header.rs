@@ -74,9 +74,9 @@ mod tests {
         for (text, said) in [
             (
                 "t;counts_large\n0;1\n",
-                "it is 't;counts_large' (separated by ';'?)",
+                "the line is 't;counts_large' (separated by ';'?)",
             ),
-            ("", "it is '' (empty)"),
+            ("", "the line is '' (empty)"),
             ("t\tcounts_large\n0\t1\n", r"separated by '\t'?"),
             ("# my log\nt,counts_large\n", "remove the comment"),
             ("T,counts_large\n0,1\n", "'T' must be in lower case"),
