@@ -1,4 +1,4 @@
-//! The memory that the image shares with whoever emulates it.
+//! The memory that the image shares with the emulator.
 //!
 //! The image says that it is ready by calling `ready`; the emulator answers by writing here. All
 //! words are atomic, so that no access is optimised away and none needs `unsafe`.

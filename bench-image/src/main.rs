@@ -5,7 +5,7 @@
 use cortex_m_rt::entry;
 use panic_halt as _;
 
-/// The emulator is told when this is called.
+/// The emulator stops at a call of this function.
 #[inline(never)]
 fn ready() {
     core::hint::black_box(());

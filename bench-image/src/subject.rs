@@ -6,7 +6,7 @@ use estimator_core::{Sample, VelocityEstimator};
 
 /// As much of an estimator as is measured: peers' states need be nothing but theirs.
 pub trait Measured {
-    /// What is carried from tick to tick.
+    /// State from tick to tick.
     type State;
 
     /// The state at rest at the first sample.
@@ -49,7 +49,7 @@ pub struct Subject {
     pub run: Run,
 }
 
-/// What the table calls it.
+/// Name in the table.
 impl fmt::Display for Subject {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name)?;
@@ -61,7 +61,7 @@ impl fmt::Display for Subject {
 }
 
 impl Subject {
-    /// Whether it is somebody else's.
+    /// Whether it is a filter of another library.
     #[must_use]
     pub fn is_peer(&self) -> bool {
         self.path[0].starts_with("peer_")

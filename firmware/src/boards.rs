@@ -1,4 +1,4 @@
-//! What the tasks need of a board, and the board of this image.
+//! Interface of a board for the tasks, and the board of this image.
 //!
 //! A board is one folder beside `nucleo_f429zi`. It binds the two tasks to its interrupts and
 //! implements [`Board`]; pins, timers, clocks, encoders and amplifiers are named nowhere else. To
@@ -50,7 +50,7 @@ pub(crate) trait Watchdog {
     fn feed(&mut self);
 }
 
-/// What a board knows when its tick runs.
+/// Inputs of a board at its tick.
 pub(crate) struct Start<W> {
     pub(crate) watchdog: W,
     /// Cause of the last reset.

@@ -22,7 +22,7 @@ pub enum DesignError {
 }
 
 impl DesignError {
-    /// What is wrong, and with what.
+    /// The parameter and its requirement.
     #[must_use]
     pub const fn message(self) -> &'static str {
         match self {

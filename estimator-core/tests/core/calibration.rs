@@ -1,5 +1,5 @@
-//! What estimators believe of their error, against their error on a motor that is as random as they
-//! are told: simulated in steps far shorter than a tick, in SI units, without a matrix.
+//! Reported variances of the estimators against their errors on a motor with the noise of their
+//! design, simulated in steps far shorter than a tick, in SI units, without a matrix.
 
 use estimator_core::{
     Amps, ClockTicks, Confidence, Count, CoupledMotor, Edge, Hertz, Kalman, Model, MotorModel,

@@ -1,4 +1,4 @@
-//! What estimators believe of their error: by theory, and together.
+//! Reported variances of the estimators against theory and against each other.
 
 use estimator_core::{
     Amps, Confidence, Count, CountObserver, CoupledMotor, EndFit, FiniteDifference, Foaw, Handover,

@@ -100,7 +100,7 @@ fn assert_no_drift<E: VelocityEstimator>(estimator: &E, ticks: u64) {
         let output = f64::from(estimator.update(&mut state, &Sample::new(count)).0);
         let error = (output - truth).abs();
         if tick >= span {
-            // What was counted and what was estimated stay together.
+            // The integral of the estimate stays equal to the counts.
             travelled += output - counted;
         }
         if (span..2 * span).contains(&tick) {

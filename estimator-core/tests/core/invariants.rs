@@ -1,4 +1,4 @@
-//! What must be true of any velocity estimator, tried on all of them at once.
+//! Invariants of every velocity estimator.
 
 use std::sync::LazyLock;
 

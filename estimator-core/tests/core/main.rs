@@ -13,7 +13,7 @@
 //! | `m_over_t` | ramps and stamps, of which the M/T method knows the result |
 //! | `observer` | invariants of the observers, which read more than counts; a motor that obeys their model; adaptation |
 //! | `confidence` | the variances that estimators claim, against errors and theory |
-//! | `calibration` | the same variances, on a motor that is as random as its estimator is told |
+//! | `calibration` | reported variances on a motor with the noise of the design |
 //! | `handover` | two estimators that are exchanged while they run |
 //! | `limits` | the range of each parameter |
 //! | `steady_gain` | the plain recursion run until it stops changing |

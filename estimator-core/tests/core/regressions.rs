@@ -179,8 +179,8 @@ fn low_pass_is_not_disturbed_by_the_wrap() {
 
 #[test]
 fn position_keeps_every_count_beyond_a_few_million() {
-    // An f32 position steps by 64 counts at 1e9; one count must stay one count, for whoever
-    // started there and for whoever travelled there.
+    // An f32 position has steps of 64 counts at 1e9. One count must stay one count, for estimators
+    // that started there and for those that moved there.
     let model = Model::triple_integrator(4096, Hertz(1000.0), 2e4).unwrap();
     let kalman = Kalman::new(&model).unwrap();
     let steady = SteadyKalman::new(&model).unwrap();

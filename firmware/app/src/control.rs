@@ -56,7 +56,7 @@ pub struct Control {
     core: Core,
     monitor: MonitorState,
     safety: SafetyState,
-    /// What the latest tick came to.
+    /// Action of the latest tick.
     action: Action,
     /// Ticks so far, modulo 2^32.
     ticks: u32,
@@ -133,8 +133,8 @@ impl Control {
         order.enable.then_some(action.currents)
     }
 
-    /// What the latest tick, with this sample, came to. Most ticks are never told of, so it is not
-    /// made by [`Self::step`].
+    /// Telemetry record of the latest tick, whose sample is given. It is built on demand, because most
+    /// ticks are not reported.
     pub fn record(&self, sample: &Sample) -> Record {
         Record {
             tick: self.ticks.wrapping_sub(1),

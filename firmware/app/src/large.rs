@@ -101,7 +101,7 @@ pub trait LargeEstimator: Confidence {
     /// Number of the estimator in charge; `None` while one takes over.
     fn in_charge(state: &Self::State) -> Option<u8>;
 
-    /// What was learned so far.
+    /// The learned parameters.
     fn learned(&self, state: &Self::State) -> Self::Learned;
 }
 

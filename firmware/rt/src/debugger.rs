@@ -1,4 +1,4 @@
-//! What a debugger sets and leaves set that holds the outputs while the core is halted.
+//! Debugger settings that persist and keep the outputs while the core is halted.
 
 use cortex_m::peripheral::DCB;
 use stm32f4xx_hal::pac;

@@ -1,7 +1,7 @@
 //! RTT: the log goes up channel 0, commands come down channel 0.
 //!
 //! `defmt-rtt` has no down channel and `rtt-target` masks interrupts for every frame; here a frame
-//! is staged whole and published by one store, and whoever interrupts a frame loses its own. When
+//! is staged whole and published by one store; a task that interrupts a frame loses its own. When
 //! the buffer is full the frame is dropped and counted, never waited for.
 
 use core::cell::UnsafeCell;
@@ -14,7 +14,7 @@ use cortex_m::peripheral::SCB;
 const UP: usize = 4096;
 /// Bytes of commands that wait, and that one look takes at most.
 const DOWN: usize = 64;
-/// Nobody is writing a frame.
+/// Owner while no frame is being written.
 const NOBODY: u32 = u32::MAX;
 
 /// A channel as the probe reads it; references have the layout of its pointers.
@@ -25,7 +25,7 @@ struct Channel<const N: usize> {
     size: u32,
     write: AtomicU32,
     read: AtomicU32,
-    /// Bits 0 and 1: what to do when full. The probe may ask to block; nobody here looks.
+    /// Bits 0 and 1: mode of a full buffer. The probe can request blocking, which is ignored.
     flags: AtomicU32,
 }
 
@@ -90,8 +90,8 @@ pub fn lost() -> u32 {
     LOST.load(Ordering::Relaxed)
 }
 
-/// Frees the stage, whoever owns it, for a caller after which nobody else runs. A frame that is
-/// being written is dropped: its bytes were not published.
+/// Frees the stage from any owner, for a caller after which no other task runs. A frame that is being
+/// written is dropped: its bytes were not published.
 pub(crate) fn take_over() {
     if OWNER.swap(NOBODY, Ordering::Relaxed) != NOBODY {
         LOST.fetch_add(1, Ordering::Relaxed);
@@ -101,7 +101,7 @@ pub(crate) fn take_over() {
 }
 
 static LOST: AtomicU32 = AtomicU32::new(0);
-/// The exception number of whoever writes a frame.
+/// Exception number of the task that writes a frame.
 static OWNER: AtomicU32 = AtomicU32::new(NOBODY);
 static STAGE: Stage = Stage(UnsafeCell::new(Staged {
     encoder: defmt::Encoder::new(),

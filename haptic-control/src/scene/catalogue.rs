@@ -11,7 +11,7 @@ use crate::tick::HandleNeed;
 use crate::tuning::{Bounds, Parameter, Refusal, Tunable};
 use crate::units::{NewtonMetres, Radians};
 
-/// What a scene is for.
+/// Purpose of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Renders a virtual environment. Comparisons and robustness runs try every environment.
@@ -72,7 +72,7 @@ pub struct SceneFacts {
     pub summary: &'static str,
     /// The torque on the handle, as a formula.
     pub torque: &'static str,
-    /// What the scene is for.
+    /// Purpose of the scene.
     pub role: Role,
     /// The simulated hand that tries the scene.
     pub hand: SimulatedHand,

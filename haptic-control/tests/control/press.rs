@@ -114,7 +114,7 @@ impl Hand {
     }
 }
 
-/// What a press led to.
+/// Result of a press.
 #[derive(Debug, Default)]
 struct Pressed {
     stopped: Option<Stop>,

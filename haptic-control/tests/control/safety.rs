@@ -44,7 +44,7 @@ fn settling() -> SafetyState {
     state
 }
 
-/// What stops a device, the first to be reported first.
+/// Causes of a stop in order of their priority.
 fn wrongs() -> [(Findings, Stop); 9] {
     let of = |cause| Findings {
         monitor: Some(cause),
@@ -111,7 +111,7 @@ fn every_cause_disables_in_its_tick_and_stays_until_rearmed() {
                 assert!(!tick(&mut state, WELL, request).enable);
                 assert_eq!((state.mode(), state.stop()), (Mode::Safe, stop));
             }
-            // What was selected before the stop does not come back.
+            // The scene selected before the stop does not start again.
             let order = tick(&mut state, WELL, Some(Request::Arm));
             assert!(order.enable && order.select.is_none());
             assert_eq!((state.mode(), state.stop()), (Mode::Armed, Stop::None));

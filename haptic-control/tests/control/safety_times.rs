@@ -37,8 +37,8 @@ fn running() -> SafetyState {
     state
 }
 
-/// A scene selected before arming, in the first and in the last tick of settling starts at the end
-/// of it, from rest; 0 is no scene.
+/// A scene selected before arming, or in the first or the last tick of settling, starts from rest at
+/// the end of settling; 0 is no scene.
 #[test]
 fn scene_starts_at_rest_after_settling() {
     for at in [None, Some(1), Some(20)] {

@@ -17,7 +17,7 @@ const DETENTS: Detents = preset!(Detents::new(8e-3, 24));
 const TEXTURE: Texture = preset!(Texture::new(6e-3, Hertz(200.0), RATE));
 const HOLD: Hold = preset!(Hold::new(0.2, 1e-3));
 
-/// What the handle feels at rest, `counts` from where it started.
+/// Torque on the handle at rest, `counts` from its start.
 fn torque_at(
     scene: impl Scene<Acceleration: Senses<estimator_core::SteadyKalmanTriple>>,
     counts: i32,

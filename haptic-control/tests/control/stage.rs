@@ -20,7 +20,7 @@ fn near(value: f32, wanted: f64, tolerance: f64) {
     assert!(off <= tolerance, "{value} {wanted}");
 }
 
-/// What the continuous stage asks of its loop, and what it adds to that, with the loop beside it.
+/// The continuous stage's command to its loop and its feed-forward, against the loop alone.
 #[test]
 fn wanted_velocity_and_feed_forward_follow_from_the_wanted_torque() {
     let mut device = DEVICE;

@@ -1,4 +1,4 @@
-//! Saturation of the large motor's current, and what the velocity loop remembers of it.
+//! Saturation of the large motor's current, and its effect on the state of the velocity loop.
 
 use estimator_core::Hertz;
 use haptic_control::{ContinuousStage, DualStage, LoopPoles, NewtonMetres, RadPerS, RstDesign};
@@ -22,7 +22,7 @@ fn turned(saturated: u32) -> Vec<f32> {
     (0..200).map(|_| current(-0.1)).collect()
 }
 
-/// The loop is told of the limit, so that the time spent at it leaves nothing behind.
+/// The loop is given the limited current, so that time at the limit does not change its state.
 #[test]
 fn time_at_the_limit_does_not_wind_up() {
     let [short, long] = [300, 6000].map(turned);

@@ -1,5 +1,5 @@
-//! What the observers are for: the goals of docs/benchmarks.md, "Beyond the paper", on seeds that
-//! nothing was tuned on. Bounded on both sides: a score far below its bound is a broken score.
+//! Goals of the observers in docs/benchmarks.md, "Beyond the paper", on seeds outside the tuning set.
+//! The bounds are two-sided, because a score far below its bound indicates an error of the score.
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind};
@@ -103,7 +103,7 @@ fn correct_constants_leave_a_tenth_of_the_error_and_wrong_ones_are_learned() {
         worst(&rows, "adaptive-edge"),
         [0.5, 5.5],
     );
-    // What does not learn is far worse off.
+    // Without adaptation the error is far larger.
     assert!(worst(&rows, "observer") > 2.0 * worst(&rows, "adaptive"));
     // Creep and hold.
     for name in names {
@@ -155,7 +155,7 @@ fn correct_constants_leave_a_tenth_of_the_error_and_wrong_ones_are_learned() {
         let outside = worst_of(rows, name, |row| row.outside);
         assert!(outside <= bound, "{name}: {outside}");
     }
-    // What the docs call the weak side of time stamps.
+    // The documented weakness of time stamps.
     let weak = |row: &Row| {
         row.estimator == "adaptive-edge"
             && row.scenario == "creep"

@@ -1,4 +1,4 @@
-//! What the closed loop's scores promise.
+//! Tests of the closed loop and its scores.
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind};

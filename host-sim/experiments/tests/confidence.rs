@@ -1,4 +1,5 @@
-//! What estimators believe of their own error, against the error. On seeds that nothing is tuned on.
+//! Reported standard deviations of the estimators against their errors, on seeds outside the tuning
+//! set.
 
 use catalogue::belief::{Belief, Constant};
 use catalogue::estimators::Kind;

@@ -79,7 +79,7 @@ fn truth(device: &Device, key: &str) -> f64 {
     }
 }
 
-/// Errors of what is told, as part of the truth, and how many of them lie inside their intervals.
+/// Relative errors of the identified values, and the number of values inside their intervals.
 #[derive(Default)]
 struct Tally {
     told: Vec<&'static str>,

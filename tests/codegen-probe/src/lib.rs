@@ -118,7 +118,7 @@ const fn rate(hertz: f64) -> Hertz {
     if hertz > 0.0 { Hertz(hertz) } else { RATE }
 }
 
-// What no row has: other sizes, wrappers and parts.
+// Cases without a row in the catalogue: other sizes, wrappers and parts.
 probes! {
     start_low_pass_foaw, update_low_pass_foaw: LowPass<Foaw<15, EndFit>> =
         preset!(LowPass::new(preset!(Foaw::new(15, 1)), Hertz(120.0), RATE));

@@ -1,4 +1,4 @@
-//! What must hold for any bytes at all.
+//! Properties that must hold for any input bytes.
 //!
 //! Each function here is the body of one fuzz target (`tests/fuzz/targets`) and of one bounded
 //! run in the tests. A panic is a finding. No loop is longer than its bytes.

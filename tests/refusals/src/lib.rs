@@ -1,1 +1,1 @@
-//! What must not compile, and with which words; the cases stand in `tests/cases`.
+//! Designs that must not compile, and the compiler's messages; the cases are in `tests/cases`.

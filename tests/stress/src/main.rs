@@ -137,7 +137,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What f32 costs each on a device's signals.
+/// Error by f32 of each estimator on a device's signals.
 fn differences(contestants: &[Contestant], arguments: &Arguments) -> Vec<signals::Difference> {
     let mut all = Vec::new();
     for rate in &arguments.rates {

@@ -17,7 +17,7 @@ pub trait Pair {
     /// One tick of both: velocities in counts per tick.
     fn update(&mut self, shown: &Shown) -> (f32, f64);
 
-    /// What is wrong with the f32 state, if anything is.
+    /// Fault of the f32 state; `None` if it is valid.
     fn fault(&self) -> Option<&'static str>;
 
     /// Length of the window last used, where there is one.

@@ -10,7 +10,7 @@ use crate::pair::{Asks, Both, Pair, asks};
 /// A pair, or the name of the error with which both precisions refuse the design.
 pub type Refusable = Result<Box<dyn Pair>, String>;
 
-/// What a design is made for.
+/// Inputs of a design.
 pub(crate) struct Request<'a> {
     /// Control rate, Hz.
     pub(crate) rate_hz: f64,

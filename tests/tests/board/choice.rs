@@ -49,8 +49,8 @@ fn telemetry_has_the_number_of_the_active_estimator() {
         let mut told: Vec<_> = told.iter().map(|frame| frame.estimator.unwrap()).collect();
         let taking_over = told.iter().filter(|number| **number == NOBODY).count();
         told.dedup();
-        // Nobody before the scene is on, 100 ms until arming and 20 of settling, and while one takes
-        // over: 40 ms each.
+        // No estimator is active before the scene starts (100 ms until arming, 20 ms of settling) and
+        // during a handover (40 ms each).
         assert_eq!(told, [NOBODY, 0, NOBODY, 1, NOBODY, 0]);
         assert!(
             (120 + 78..=125 + 82).contains(&taking_over),
@@ -78,8 +78,8 @@ fn telemetry_has_the_number_of_the_active_estimator() {
     }
 }
 
-/// What the image says is what the host computes, to the bit; and at every tick of a change the
-/// velocity moves by no more than the two estimators do and the fade allows.
+/// Telemetry agrees with the host bit for bit. At every tick of a change the step of the velocity is
+/// bounded by the steps of both estimators and the fade.
 #[test]
 fn change_of_estimator_causes_no_step_of_the_velocity() {
     for run in runs() {
@@ -157,8 +157,8 @@ fn change_of_estimator_causes_no_noticeable_force() {
     }
 }
 
-/// What each says of itself holds: nearly all velocities are within two of its standard deviations,
-/// and these are not so large that they say nothing.
+/// Nearly all velocities are within two of the reported standard deviations, and these are small enough
+/// to be informative.
 #[test]
 fn standard_deviation_in_telemetry_is_valid() {
     let [air, _] = runs();

@@ -14,7 +14,7 @@ use virtual_board::run::{Outcome, Setup};
 use crate::image::{free_air, of_scene, run};
 use matrix::{Bound, End, FAULT_S, MATRIX, START_S};
 
-/// What a fault did.
+/// Outcome of a fault.
 struct Found {
     off_ms: Option<f64>,
     never_on: bool,

@@ -1,4 +1,4 @@
-//! What the image does about its chip: debugger, watchdog, tick, reset and exceptions.
+//! The image and its chip: debugger, watchdog, tick, reset and exceptions.
 
 use haptic_control::{Mode, Stop};
 use std::num::NonZeroU64;

@@ -1,4 +1,4 @@
-//! The device identified from what the image recorded of it.
+//! Identification of the device from a recording of the image.
 
 use experiments::closed_loop::Hand;
 use experiments::identify::{Known, identify};

@@ -1,4 +1,4 @@
-//! What the image learns of a device that it believes to be another.
+//! Parameters that an image learns from a device with other constants than its own.
 
 use experiments::closed_loop::Hand;
 use haptic_control::SceneKind;
@@ -48,7 +48,7 @@ fn smaller_damping_is_learned_and_logged() {
             "{part}"
         );
     }
-    // An image that learns nothing says nothing of it.
+    // An image without adaptation logs no learned parameters.
     let short = Setup {
         seconds: 0.5,
         ..setup(0.75)

@@ -90,8 +90,8 @@ pub(crate) fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
     run.ticks.iter().enumerate().map(step).collect()
 }
 
-/// Fails unless every frame says what the host's core computed at its tick. Returns how many
-/// frames told of a moving device.
+/// Fails unless every frame has the values that the host's core computed at its tick. Returns the
+/// number of frames of a moving device.
 pub(crate) fn same_bits(run: &Outcome, host: &[(Option<Currents>, Record)]) -> usize {
     let mut moving = 0;
     assert_eq!(run.telemetry.malformed, [""; 0]);

@@ -1,4 +1,4 @@
-//! What the hand feels and how well the velocity is known: on the board as in the host simulation.
+//! Parasitic force and error of the velocity: the board against the host simulation.
 
 use std::f64::consts::TAU;
 
@@ -16,7 +16,7 @@ use crate::image::{SETTLED_S, free_air, wall};
 /// Frames a second, at which both are scored.
 const FRAMES_HZ: f64 = 1e3;
 
-/// What a run comes to: the velocity's score, and the force that nobody wanted.
+/// Scores of a run: the velocity's error, and the parasitic force.
 #[derive(Debug)]
 struct Scores {
     open: Score,
@@ -113,7 +113,7 @@ fn tactile(signal: &[f64]) -> f64 {
     f64::sqrt(parts.sum())
 }
 
-/// What the telemetry of a run says of the velocity, against the plant.
+/// Scores of the velocity in the telemetry of a run against the plant.
 #[test]
 fn scores_of_a_run_agree_with_their_definitions() {
     for run in [free_air(), wall()] {

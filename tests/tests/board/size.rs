@@ -1,4 +1,4 @@
-//! What each image takes, and how deep its stack gets.
+//! Memory and stack depth of each image.
 
 use measured::tables::IMAGE_SIZES;
 use virtual_board::image::Size;
@@ -55,8 +55,8 @@ fn sizes_of_images_agree_with_the_table() {
     checked.unwrap_or_else(|error| panic!("{error}"));
 }
 
-/// What an image of one estimator cannot choose it does not pay for: neither the other's code nor a
-/// second state. The Kalman filter's code is there for the handle anyway.
+/// An image with one estimator has neither the other one's code nor a second state. The Kalman
+/// filter's code is always present, for the handle.
 #[test]
 fn image_with_one_estimator_is_smaller_than_with_two() {
     let both = image("").size;

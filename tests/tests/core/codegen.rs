@@ -1,4 +1,4 @@
-//! What the compiler makes of the estimators for the board: every call that is left, read from
+//! Object code of the estimators for the board: every remaining call, read from
 //! the object code of the package `codegen-probe`.
 
 use estimator_catalogue::ROWS;

@@ -1,5 +1,5 @@
-//! Object code of the board: what a function refers to, directly or not, as a linker that drops
-//! what nobody refers to would follow it.
+//! Object code of the board: the symbols that a function refers to directly or indirectly, as a
+//! linker that drops unreferenced symbols follows them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -47,7 +47,7 @@ pub(crate) struct Image {
     defined: BTreeMap<String, usize>,
 }
 
-/// What is reached from some functions.
+/// Symbols reached from a set of functions.
 pub(crate) struct Reached<'a> {
     image: &'a Image,
     sections: BTreeSet<usize>,
@@ -174,7 +174,7 @@ impl<'a> Reached<'a> {
         self.sections().map(|section| section.size).sum()
     }
 
-    /// What the image does not define and is not allowed.
+    /// Undefined symbols that are not allowed.
     pub(crate) fn foreign(&self) -> BTreeSet<&'a str> {
         let mut foreign = self.undefined.clone();
         foreign.retain(|symbol| !is_allowed(symbol));

@@ -1,4 +1,4 @@
-//! What the compiler makes of `estimator-core` and `haptic-control` for the board, and what both have
+//! Object code of `estimator-core` and `haptic-control` for the board, and what both have
 //! to agree in.
 //!
 //! | module | checks |

@@ -1,4 +1,4 @@
-//! What a scene costs on the board: code and memory of the controller of each scene alone, read
+//! Costs of a scene on the board: code and memory of the controller of each scene alone, read
 //! from the libraries that the package `scene-images` builds.
 
 use std::sync::LazyLock;
@@ -8,7 +8,7 @@ use measured::tables::SCENE_SIZES;
 
 use crate::image::{Image, Reached, build};
 
-/// What a scene needs, by the catalogue.
+/// Needs of a scene, from the catalogue.
 #[derive(Clone, Copy, PartialEq)]
 struct Needs {
     /// Parts: the handle's velocity, its acceleration, the large and the small motor, and currents

@@ -71,7 +71,7 @@ fn table_that_ends_too_early_is_refused() {
     assert!(TableKalmanTriple::<0>::new(&model).is_err());
 }
 
-/// What a table believes of its velocity is the textbook's P_11, from before the first tick on.
+/// The velocity's variance of a table is the textbook's P_11, from before the first tick on.
 #[test]
 fn tables_report_the_variance_of_the_velocity() {
     for rate in RATES {

@@ -42,7 +42,7 @@ fn wrong_parameters_are_estimated() {
     }
 }
 
-/// Who starts in motion has the velocity to find, not parameters: those believed in are right.
+/// After a moving start only the velocity is unknown: the parameters of the design are correct.
 #[test]
 fn moving_start_changes_no_parameter() {
     let rate = Hertz(10_000.0);

@@ -40,7 +40,7 @@ pub(super) struct Definition {
     pub(super) decay: f64,
     pub(super) white: f64,
     pub(super) boundary: f64,
-    /// What a gap that no edge ends counts more, ticks.
+    /// Ticks added to a gap that does not end with an edge.
     pub(super) unstamped: f64,
     pub(super) a: Matrix3<f64>,
     pub(super) q: Matrix3<f64>,

@@ -188,7 +188,7 @@ fn record_has_the_learned_parameters() {
     // Nothing by an estimator that does not learn.
     let learned = bench.record().learned.deviations();
     assert_eq!(learned.is_some(), cfg!(feature = "large-adaptive"));
-    // Nor from edges, which nobody stamps here.
+    // An image with edge capture learns nothing here, because no edge is stamped.
     assert_eq!(
         learned == Some(ParameterErrors::default()),
         learned.is_some() && EDGES

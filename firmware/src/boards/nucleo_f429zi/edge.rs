@@ -25,7 +25,7 @@ const SETTLED: u32 = 16;
 /// The pins of channels 1 and 2; the debug port's after a reset.
 pub(super) type Pins = (PA15<Debugger>, PB3<Debugger>);
 
-/// What stamps the edges of the large encoder: [`Capture`], or nothing.
+/// Stamps the edges of the large encoder: [`Capture`], or no stamps.
 pub(super) trait Stamps: Sized {
     /// Takes timer and pins.
     fn new(timer: TIM2, pins: Pins, rcc: &mut Rcc) -> Self;
@@ -56,7 +56,7 @@ pub(super) struct Capture {
     timer: TIM2,
     /// The clock at the last reading.
     now: u32,
-    /// What was captured then.
+    /// The captured value.
     instant: u32,
     latest: Option<Edge>,
 }

@@ -1,4 +1,4 @@
-//! What each fault may cost, and how it has to end.
+//! Allowed effect and required outcome of each fault.
 
 use haptic_control::Stop;
 use virtual_board::fault::Fault;
@@ -17,8 +17,8 @@ const WATCHDOG_MS: f64 = 28.0;
 const FED_MS: f64 = 1.1;
 const STEP_MS: f64 = 0.05;
 
-/// What a fingertip notices, mN. Where the currents stay as they were while the hand moves on, the
-/// difference has to stay below it.
+/// Threshold of a fingertip, mN. If the currents stay constant while the hand continues to move, the
+/// difference must stay below it.
 const NOTICED_MN: f64 = 10.0;
 
 /// How a fault has to end.
@@ -32,7 +32,7 @@ pub(super) enum End {
     On,
 }
 
-/// What a fault may cost.
+/// Allowed effect of a fault.
 pub(super) struct Bound {
     pub(super) fault: Fault,
     /// When it happens, s.

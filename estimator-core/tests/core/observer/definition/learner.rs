@@ -1,8 +1,8 @@
-//! What is learned of the parameters.
+//! Adaptation of the parameters, by definition.
 
 use nalgebra::{Matrix3, Vector3};
 
-/// What [`Definition`] learns.
+/// Adapted parameters of a [`Definition`].
 pub(in super::super) struct Learner {
     pub(in super::super) parameters: Vector3<f64>,
     /// A column each for damping, friction and torque constant.
