@@ -1,10 +1,18 @@
-//! Every row of the catalogue of estimators is in every list that is made from it.
+//! Every row of the catalogues is in every list that is made from them. The lists that are not here:
+//! every row has functions of the code probe (`codegen`), colours that differ (`report`), a page, and
+//! scenarios and scores a row of documentation (`host-sim`, test `documented`).
 
 use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
 
 use bench_image::SUBJECTS;
 use catalogue::estimators::Kind;
 use estimator_catalogue::{Parameter, ROWS, Search};
+use fuzz_bodies::samples;
+use haptic_control::SceneKind;
+use measured::tables;
+use simulation::scenario::ScenarioName;
 use stress::contestants::at;
 use stress::designs;
 
@@ -51,6 +59,63 @@ fn every_row_is_on_the_command_line_stressed_and_measured() {
     for row in ROWS {
         let designed = kinds.contains(&row.name);
         assert_eq!(designed, row.name != "finite-difference", "{}", row.name);
+    }
+}
+
+/// Names in the first column of a measured table.
+fn measured_names(table: &measured::Table) -> Vec<String> {
+    let (first, _) = table.columns[0];
+    let rows = table.read().unwrap_or_else(|error| panic!("{error}"));
+    let name = |row: &measured::Row| row.text(first).expect("the first column").to_owned();
+    rows.iter().map(name).collect()
+}
+
+#[test]
+fn every_row_is_in_the_fuzz_target_of_samples() {
+    let contestants = samples::contestants();
+    let names = contestants.iter().map(|one| one.name.as_str());
+    assert_eq!(of_rows(names), rows());
+}
+
+#[test]
+fn every_row_is_in_the_measured_tables() {
+    for table in [
+        tables::PARETO,
+        tables::BOUNDS,
+        tables::ESTIMATORS,
+        tables::SCENARIOS_1000HZ,
+        tables::SCENARIOS_11600HZ,
+        tables::WRONG_CONSTANTS,
+    ] {
+        let names = measured_names(&table);
+        let found = of_rows(names.iter().map(String::as_str));
+        assert_eq!(found, rows(), "measured/{}.csv", table.name);
+    }
+}
+
+#[test]
+fn every_scene_is_in_the_measured_tables() {
+    for table in [tables::SCENE_SIZES, tables::SCENE_INSTRUCTIONS] {
+        let names = measured_names(&table);
+        for scene in SceneKind::ALL {
+            let is_there = names.iter().any(|name| name == scene.name());
+            assert!(is_there, "measured/{}.csv lacks {scene}", table.name);
+        }
+    }
+}
+
+#[test]
+fn every_row_has_a_trace_of_every_scenario() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../measured/traces.csv");
+    let traces = fs::read_to_string(path).expect("measured/traces.csv");
+    for row in ROWS {
+        for rate_hz in [1000, 10_000] {
+            for scenario in ScenarioName::ALL {
+                let begin = format!("{},{rate_hz},{scenario},", row.name);
+                let is_there = traces.lines().any(|line| line.starts_with(&begin));
+                assert!(is_there, "measured/traces.csv has no row {begin}..");
+            }
+        }
     }
 }
 
