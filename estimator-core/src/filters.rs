@@ -10,6 +10,7 @@ mod low_pass;
 mod m_over_t;
 mod pll;
 mod pole;
+mod savitzky_golay;
 mod steady_kalman;
 mod table_kalman;
 
@@ -22,5 +23,6 @@ pub use late_current::{LateCurrent, LateCurrentState};
 pub use low_pass::{LowPass, LowPassState};
 pub use m_over_t::{MOverT, MOverTState};
 pub use pll::{Pll, PllState};
+pub use savitzky_golay::{SavitzkyGolay, SavitzkyGolayState};
 pub use steady_kalman::{SteadyKalman, SteadyKalmanMotor, SteadyKalmanState, SteadyKalmanTriple};
 pub use table_kalman::{TableKalman, TableKalmanMotor, TableKalmanState, TableKalmanTriple};

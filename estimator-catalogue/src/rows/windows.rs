@@ -70,6 +70,19 @@ macro_rules! window_rows {
             },
             |c, motor, rate, clock, p, N| c::Foaw<N, c::BestFit> =>
                 c::Foaw::new(p.n as usize, p.d as u16);
+            savitzky_golay, "savitzky-golay", Nothing,
+            (n: { meaning: "number of intervals in the window", ..Parameter::WINDOW }),
+            $windows,
+            {
+                summary: "slope at the newest count of the least-squares parabola through a fixed window",
+                needs: Signals::COUNT,
+                settling: Settling::Window,
+                colour: Colour::BLUE,
+                dash: Dash::Dashed,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::SavitzkyGolay<N> =>
+                c::SavitzkyGolay::new(p.n as usize);
         ] $($families)* }
     };
 }
