@@ -157,9 +157,9 @@ fn side_lines_are_columns_and_health_lines() {
     let [_, said] = folder.good(&["replay", "run.csv", "--estimator", "observer-edge"], b"");
     assert_eq!(said.matches("run.csv: health: ").count(), 4, "{said}");
     let damping =
-        "health: damping b, N.m.s/rad: learned 7.2000e-4, identified 9.6000e-4, -25.0 %: no";
+        "health: damping b, N.m.s/rad: learned 7.2000e-4, identified 9.6000e-4, -25.0 %: changed";
     assert!(said.contains(damping), "{said}");
-    // A device identified to be that is in health.
+    // A device with the learned damping has not changed.
     let device = "[coupler]\ndamping_nms_per_rad = 0.72e-3\n";
     fs::write(folder.0.join("found.toml"), device).unwrap();
     let found = [
@@ -172,7 +172,7 @@ fn side_lines_are_columns_and_health_lines() {
     ];
     let [_, said] = folder.good(&found, b"");
     assert!(
-        said.contains("+0.0 %") && !said.contains("no longer"),
+        said.contains("+0.0 %") && !said.contains("changed"),
         "{said}"
     );
     // Somebody else's columns of the same names are nobody's business.
@@ -204,11 +204,11 @@ fn streams_that_cannot_be_recorded_or_drawn_are_refused_with_one_line() {
         (
             &[],
             &middle,
-            "begins after the boot line, so say the control rate as --rate",
+            "begins after the boot line; give the control rate, for example --rate",
         ),
         (&["--rate", "1000"], &whole, "its boot line says rate=10000"),
         (&["--rate", "-1"], &middle, "a control rate of -1 Hz"),
-        (&["--run", "2"], &whole, "--run 2: there are 1 runs"),
+        (&["--run", "2"], &whole, "--run 2: no such run; give 1 to 1"),
     ];
     for (arguments, input, said) in cases {
         let arguments = [&["record", "--out", "run.csv"], arguments].concat();

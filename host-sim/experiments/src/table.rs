@@ -8,6 +8,7 @@ use scoring::score::{Field, Over, Score};
 pub mod layout;
 
 use layout::{Column, table};
+use terminal::wording::wrapped;
 
 /// Table of the scores `asked`, by default of all usual scores that a row has: one table per rate,
 /// plant and scenario, in lines of `width` characters.
@@ -72,7 +73,7 @@ pub fn overview(rows: &[Row], asked: &[&'static Field<Score>], width: usize) -> 
                 block[0].rate_hz,
                 block[0].plant.phrase(),
                 field.name,
-                field.sentence()
+                wrapped(&field.sentence(), 0)
             );
             let mut columns: Vec<_> = cases
                 .iter()

@@ -86,9 +86,7 @@ pub fn choose<'a, 'b>(runs: &'b [Run<'a>], number: Option<usize>) -> Result<&'b 
     };
     let run = run.ok_or_else(|| {
         let (number, runs) = (number.unwrap_or_default(), runs.len());
-        Failure::Input(format!(
-            "--run {number}: the stream has {runs} runs; give 1 to {runs}"
-        ))
+        Failure::Input(format!("--run {number}: no such run; give 1 to {runs}"))
     })?;
     if run.frames.len() < 2 {
         return Err(Failure::Input(

@@ -63,7 +63,8 @@ pub(super) fn run(options: &Record) -> Result<(), Failure> {
         }
         (Some(rate), _) | (None, Some(rate)) => rate,
         (None, None) => {
-            let said = "it begins after the boot line, so say the control rate as --rate 10000";
+            let said =
+                "it begins after the boot line; give the control rate, for example --rate 10000";
             return Err(failure(said));
         }
     };
