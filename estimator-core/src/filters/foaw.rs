@@ -116,8 +116,8 @@ impl<const N: usize, F: Fit> VelocityEstimator for Foaw<N, F> {
     // An image that uses one type twice contains one copy of this function, which takes the parameters
     // at run time: 148 instructions in the mean and 301 in the longest update (end-fit, n = 15) instead
     // of 136 and 279. With `inline(always)` here and a call to the search that both uses share, they are
-    // 139 and 284; but then an image with one use, the usual one, takes 3 and 5 instructions more, and
-    // with the best-fit at n = 64 up to 28 and 66.
+    // 139 and 284; but then a single use, the usual one, takes 3 and 5 instructions more (end-fit,
+    // n = 64), with the best-fit up to 28 and 66.
     #[inline]
     fn update(&self, state: &mut FoawState<N>, sample: &Sample) -> CountsPerTick {
         let recent = &mut state.recent;
