@@ -157,3 +157,33 @@ fn errors_name_parameters_of_the_api() {
         assert_eq!((error.parameter(), error.unit()), (parameter, unit));
     }
 }
+
+/// The text of every source file below a folder, but that of the errors.
+fn sources(folder: &std::path::Path) -> String {
+    let entries = std::fs::read_dir(folder).expect("readable");
+    let text = |path: std::path::PathBuf| match path.is_dir() {
+        true => sources(&path),
+        false if path.ends_with("design/error.rs") => String::new(),
+        false => std::fs::read_to_string(path).expect("readable"),
+    };
+    entries
+        .map(|entry| text(entry.expect("readable").path()))
+        .collect()
+}
+
+/// Every parameter that an error names is an argument, a field, a method or a constant of a type.
+#[test]
+fn parameters_of_errors_exist_in_the_sources() {
+    let sources = sources(&std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    for error in DesignError::ALL {
+        let name = error.parameter();
+        let declared = [
+            format!("({name}: "),
+            format!(" {name}: "),
+            format!("fn {name}("),
+            format!("const {name}: usize"),
+        ];
+        let is_declared = declared.iter().any(|text| sources.contains(text));
+        assert!(is_declared, "{name}: {}", error.message());
+    }
+}
