@@ -149,7 +149,9 @@ impl<const N: usize> VelocityEstimator for SavitzkyGolay<N> {
         state.first += to_first * newest - state.sum;
         state.sum += newest - if is_full { leaving } else { 0 };
 
-        let [b1, b2, b3] = self.weights.map(i64::from);
+        // Three statements: an array's `map` stays a loop where code is optimised for size.
+        let [b1, b2, b3] = self.weights;
+        let (b1, b2, b3) = (i64::from(b1), i64::from(b2), i64::from(b3));
         let numerator = b1 * i64::from(state.first) + b2 * state.second + b3 * state.third;
         // Below 2^49. Division and remainder truncate, so that mirrored motion is mirrored.
         let beyond = numerator - self.divisor * i64::from(newest);
