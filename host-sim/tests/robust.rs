@@ -74,7 +74,7 @@ fn merged_shards_equal_a_single_run() {
     );
     assert_eq!(whole.replace("whole", "merged"), merged);
     assert!(
-        whole.contains("27 corners and 20 drawn devices a scene"),
+        whole.contains("27 corners and 20 drawn devices per scene"),
         "{whole}"
     );
     assert_eq!(folder.read("whole.json"), folder.read("merged.json"));
@@ -108,7 +108,7 @@ fn shards_of_different_runs_are_refused_by_name() {
     );
     let said = merge("shard-1-of-3.jsonl ./shard-1-of-3.jsonl");
     assert!(
-        said.contains("./shard-1-of-3.jsonl: shard 1/3 again"),
+        said.contains("./shard-1-of-3.jsonl: shard 1/3 is already given by shard-1-of-3.jsonl"),
         "{said}"
     );
     let said = merge("shard-1-of-3.jsonl shard-1-of-2.jsonl");
