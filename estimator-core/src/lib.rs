@@ -15,21 +15,8 @@
 //!   implemented by any crate. The traits of an estimator's parts ([`Fit`], [`Input`],
 //!   [`CurrentSource`], [`SlipSource`], [`Correction`], [`Adaptation`]) are sealed.
 //!
-//! | estimator | type | state | reads |
-//! |---|---|---|---|
-//! | finite difference | [`FiniteDifference`] | 1 count | counts |
-//! | first-order low-pass over another estimator | [`LowPass`] | 1 float | as that estimator |
-//! | first-order adaptive windowing (FOAW), end-fit or best-fit | [`Foaw`] | a ring of counts | counts |
-//! | Kalman, full covariance | [`Kalman`] | x, P | counts; current with [`Model::motor`] |
-//! | Kalman, preset gain table | [`TableKalman`] | x, 1 index | as [`Kalman`] |
-//! | Kalman, preset steady gain | [`SteadyKalman`] | x | as [`Kalman`] |
-//! | alpha-beta-gamma filter with fading memory | [`AlphaBetaGamma`] | 3 floats | counts |
-//! | critically damped tracking loop | [`Pll`] | 2 floats | counts |
-//! | M/T from edge time stamps | [`MOverT`] | 1 edge | counts, edges |
-//! | observer with friction and slip | [`Observer`] | 4 floats | counts; by its parts: current, coupled count, edges |
-//! | observer with truncated-Gaussian update | [`QuantisedObserver`] | 9 floats | counts, current, coupled count |
-//! | observer with parameter adaptation | [`AdaptiveObserver`] | 23 floats | counts, current, coupled count |
-//! | two estimators, exchanged while they run | [`Handover`] | as the selected one | as both |
+//! The page of [`VelocityEstimator`] lists the estimators under its implementors. Each type documents its
+//! recurrence, units, valid range and errors; the README says which one to take for which signals.
 //!
 //! ```
 //! use estimator_core::{Count, EndFit, Foaw, Hertz, Sample, Scale, VelocityEstimator, preset};
