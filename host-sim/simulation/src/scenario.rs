@@ -1,15 +1,17 @@
-//! Scenarios: who commands which current, and who holds the handle how.
+//! Scenarios: the currents of both motors and the grip of the handle, tick by tick.
 //!
 //! A scenario is deterministic in its name, the seed and the rate. Amplitudes, frequencies,
-//! phases, order and start angle come from name and seed alone, so that the same seed intends
-//! the same motion at every rate. Those that need a wanted slip are closed by a plain
-//! evaluation loop on the reference encoder and the small encoder, as in the paper: no estimator
-//! under test takes part.
+//! phases, order and start angle follow from name and seed alone, so that one seed gives the same
+//! motion at every rate. A scenario that needs a certain slip closes a loop of its own on the
+//! reference encoder and the small encoder, as in the paper. No estimator under test takes part in
+//! that loop.
 
 mod clamped;
 mod creep;
+mod draw;
 mod hand;
 mod micro_reversals;
+mod motion;
 mod permanent;
 mod servo;
 mod step;
@@ -18,16 +20,14 @@ mod texture;
 mod track;
 mod wall;
 
+pub use draw::{draw, draw_sign};
 pub use hand::Intent;
+pub(crate) use motion::{Drive, EncoderCounts, Scenario};
 pub use stochastic::{CURRENT_STD_A, TORQUE_INTENSITY_NM2_S};
 pub use track::Track;
 
 use crate::device::Device;
-use crate::plant::{Grip, Pose};
-use rand_xoshiro::{
-    Xoshiro256PlusPlus,
-    rand_core::{Rng, SeedableRng},
-};
+use rand_xoshiro::{Xoshiro256PlusPlus, rand_core::SeedableRng};
 use std::{fmt, str::FromStr};
 
 /// What a scenario is for.
@@ -325,56 +325,6 @@ impl FromStr for ScenarioName {
     }
 }
 
-/// What a scenario's own loop may see at a tick; an encoder that it does not read stays at zero.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Seen {
-    /// Reference encoder on the large motor, counts modulo 2^32.
-    pub(crate) reference: u32,
-    /// Small encoder, counts modulo 2^32.
-    pub(crate) small: u32,
-}
-
-/// What a scenario decides for one tick.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Drive {
-    /// Command to the large motor, A.
-    pub(crate) large_a: f64,
-    /// Command to the small motor, A.
-    pub(crate) small_a: f64,
-    /// Who holds the handle.
-    pub(crate) grip: Grip,
-    /// Damping b as a part of the device's.
-    pub(crate) damping_part: f64,
-}
-
-impl Drive {
-    /// Currents with the handle clamped and the coupler cold.
-    pub(crate) const fn clamped(large_a: f64, small_a: f64) -> Self {
-        Self {
-            large_a,
-            small_a,
-            grip: Grip::Clamped,
-            damping_part: 1.0,
-        }
-    }
-}
-
-/// One scenario, running.
-pub(crate) trait Scenario {
-    /// Where the handle is at first.
-    fn start(&self) -> Pose {
-        Pose::default()
-    }
-
-    /// Intensity of a white torque on the large shaft, N^2.m^2.s (two-sided spectral density).
-    fn torque_intensity(&self) -> f64 {
-        0.0
-    }
-
-    /// Decides for tick `k` from what the encoders say at its start; ticks come in order.
-    fn tick(&mut self, k: u64, seen: Seen) -> Drive;
-}
-
 /// The scenario of this name on this device.
 pub(crate) fn build(
     name: ScenarioName,
@@ -384,21 +334,6 @@ pub(crate) fn build(
 ) -> Box<dyn Scenario> {
     let random = Xoshiro256PlusPlus::seed_from_u64(name.mix(seed));
     (name.row().build)(device, period_s, random)
-}
-
-/// Uniform in `low..high`.
-pub fn draw(random: &mut Xoshiro256PlusPlus, low: f64, high: f64) -> f64 {
-    let unit = (random.next_u64() >> 11) as f64 * (0.5_f64).powi(53);
-    low + (high - low) * unit
-}
-
-/// Either sign.
-pub fn draw_sign(random: &mut Xoshiro256PlusPlus) -> f64 {
-    if random.next_u64() >> 63 == 0 {
-        1.0
-    } else {
-        -1.0
-    }
 }
 
 #[cfg(test)]
@@ -426,15 +361,5 @@ mod tests {
         seeds.sort_unstable();
         seeds.dedup();
         assert_eq!(seeds.len(), 100 * ScenarioName::ALL.len());
-    }
-
-    #[test]
-    fn draws_are_uniform_over_their_range() {
-        let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
-        let draws: Vec<f64> = (0..10_000).map(|_| draw(&mut random, -2.0, 6.0)).collect();
-        assert!(draws.iter().all(|x| (-2.0..6.0).contains(x)));
-        let mean = draws.iter().sum::<f64>() / 10_000.0;
-        assert!((mean - 2.0).abs() < 0.1, "{mean}");
-        assert!(draws.iter().any(|&x| x < -1.98) && draws.iter().any(|&x| x > 5.98));
     }
 }

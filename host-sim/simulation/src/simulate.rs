@@ -3,7 +3,7 @@
 use crate::device::{Device, Disc, LONGEST_STEP_S};
 use crate::encoder::{DiscErrors, EdgeObserver, Encoder};
 use crate::plant::{Plant, Pose, steps_per_tick};
-use crate::scenario::{Drive, Scenario, ScenarioName, Seen, build, draw};
+use crate::scenario::{Drive, EncoderCounts, Scenario, ScenarioName, build, draw};
 use crate::trace::{Columns, EDGE_CLOCK_HZ, EdgeStamp, Trace};
 use device_files::decimal;
 use rand_distr::{Distribution, StandardNormal};
@@ -253,16 +253,16 @@ impl Run {
     }
 
     /// Input of the scenario's loop.
-    fn seen(&self) -> Seen {
+    fn seen(&self) -> EncoderCounts {
         let count = |encoder: &Option<Encoder>| encoder.as_ref().map_or(0, Encoder::count);
-        Seen {
+        EncoderCounts {
             reference: count(&self.reference),
             small: count(&self.small),
         }
     }
 
     /// Simulates from the tick at `t` to the next one; returns the scenario's decision.
-    fn tick<S: Stamps>(&mut self, k: u64, seen: Seen, t: f64, stamps: &mut S) -> Drive {
+    fn tick<S: Stamps>(&mut self, k: u64, seen: EncoderCounts, t: f64, stamps: &mut S) -> Drive {
         let drive = self.scenario.tick(k, seen);
         self.plant.command(drive.large_a, drive.small_a);
         self.plant.set_damping(self.damping * drive.damping_part);

@@ -1,7 +1,7 @@
 //! A wanted slip over time, followed by the loop while the handle is clamped.
 
 use super::{
-    Drive, Scenario, Seen,
+    Drive, EncoderCounts, Scenario,
     servo::{Servo, Tuning},
 };
 use crate::device::Device;
@@ -53,7 +53,7 @@ impl<P> Follow<P> {
 }
 
 impl<P: Profile> Scenario for Follow<P> {
-    fn tick(&mut self, k: u64, seen: Seen) -> Drive {
+    fn tick(&mut self, k: u64, seen: EncoderCounts) -> Drive {
         let next = self.profile.slip((k + 1) as f64 * self.period);
         let mean = 0.5 * (self.slip + next);
         let torque = self.damping_b * mean;

@@ -1,7 +1,7 @@
 //! Scenarios `free-air` and `hold`: a hand that should feel nothing; and hands' motions.
 
 use super::{
-    Drive, Scenario, Seen, draw,
+    Drive, EncoderCounts, Scenario, draw,
     servo::{Servo, Tuning},
 };
 use crate::device::Device;
@@ -152,7 +152,7 @@ impl Scenario for Nothing {
         self.intent.start()
     }
 
-    fn tick(&mut self, k: u64, seen: Seen) -> Drive {
+    fn tick(&mut self, k: u64, seen: EncoderCounts) -> Drive {
         let currents = self.servo.update(seen, 0.0, 0.0, 0.0);
         Drive {
             grip: self.intent.grip(k),

@@ -1,6 +1,6 @@
 //! Scenario `micro-reversals`: motion to and fro within a few counts.
 
-use super::{Drive, Scenario, Seen, draw};
+use super::{Drive, EncoderCounts, Scenario, draw};
 use crate::device::Device;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::f64::consts::TAU;
@@ -56,7 +56,7 @@ impl MicroReversals {
 }
 
 impl Scenario for MicroReversals {
-    fn tick(&mut self, k: u64, _: Seen) -> Drive {
+    fn tick(&mut self, k: u64, _: EncoderCounts) -> Drive {
         // The current is held over the tick: that of its middle.
         let t = (k as f64 + 0.5) * self.period;
         while t >= self.seconds as f64 {

@@ -5,7 +5,7 @@
 //! forward (coupler torque, inertia, Coulomb friction); the difference between wanted and
 //! measured slip, finite differences through a first-order low-pass, comes back in proportion.
 
-use super::Seen;
+use super::EncoderCounts;
 use crate::device::Device;
 use std::f64::consts::TAU;
 
@@ -36,7 +36,7 @@ pub(super) struct Servo {
     gain: f64,
     tuning: Tuning,
     share: f64,
-    last: Option<Seen>,
+    last: Option<EncoderCounts>,
     last_slip: f64,
     error: f64,
     lag_angle: f64,
@@ -75,7 +75,7 @@ impl Servo {
     /// One tick: slip wanted now and at the next tick (rad/s), torque wanted on the handle (N.m).
     pub(super) fn update(
         &mut self,
-        seen: Seen,
+        seen: EncoderCounts,
         slip: f64,
         next_slip: f64,
         torque: f64,
@@ -95,7 +95,7 @@ impl Servo {
         }
     }
 
-    fn measure(&mut self, seen: Seen, slip: f64) {
+    fn measure(&mut self, seen: EncoderCounts, slip: f64) {
         if let Some(last) = self.last {
             let large = displacement(seen.reference, last.reference) * self.rad_per_reference;
             let small = displacement(seen.small, last.small) * self.rad_per_small;

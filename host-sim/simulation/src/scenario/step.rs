@@ -1,6 +1,6 @@
 //! Scenario `step`: open-loop current steps from rest and back, the paper's figure 6.
 
-use super::{Drive, Scenario, Seen, draw, draw_sign};
+use super::{Drive, EncoderCounts, Scenario, draw, draw_sign};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Time between steps, s.
@@ -25,7 +25,7 @@ impl Step {
 }
 
 impl Scenario for Step {
-    fn tick(&mut self, k: u64, _: Seen) -> Drive {
+    fn tick(&mut self, k: u64, _: EncoderCounts) -> Drive {
         let due = (k as f64 * self.period / HOLD_S + 1e-9) as u64 + 1;
         while self.steps < due {
             self.steps += 1;

@@ -11,7 +11,7 @@
 //! the floor of the angle: to a filter, the middle of the count plus an error of variance 1/12
 //! count^2, near white as long as the motor moves a count or more a tick.
 
-use super::{Drive, Scenario, Seen};
+use super::{Drive, EncoderCounts, Scenario};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -36,7 +36,7 @@ impl Scenario for Stochastic {
         TORQUE_INTENSITY_NM2_S
     }
 
-    fn tick(&mut self, _: u64, _: Seen) -> Drive {
+    fn tick(&mut self, _: u64, _: EncoderCounts) -> Drive {
         let draw: f64 = StandardNormal.sample(&mut self.random);
         Drive::clamped(CURRENT_STD_A * draw, 0.0)
     }

@@ -1,7 +1,7 @@
 //! Scenario `texture`: a vibration over slow motion of the hand.
 
 use super::{
-    Drive, Scenario, Seen, draw,
+    Drive, EncoderCounts, Scenario, draw,
     hand::{Intent, TUNING},
     servo::{Servo, low_pass_share},
 };
@@ -65,7 +65,7 @@ impl Scenario for Texture {
         self.intent.start()
     }
 
-    fn tick(&mut self, k: u64, seen: Seen) -> Drive {
+    fn tick(&mut self, k: u64, seen: EncoderCounts) -> Drive {
         let next_torque = self.next_torque(k);
         let torque = 0.5 * (self.torque + next_torque);
         let next_slip = self.slip + self.share * (next_torque / self.damping - self.slip);

@@ -1,7 +1,7 @@
 //! Scenario `wall`: a hand pushes into a virtual wall and comes back.
 
 use super::{
-    Drive, Scenario, Seen, draw,
+    Drive, EncoderCounts, Scenario, draw,
     hand::{Intent, TUNING},
     servo::{Servo, displacement, low_pass_share},
 };
@@ -51,7 +51,7 @@ impl Scenario for Wall {
         self.intent.start()
     }
 
-    fn tick(&mut self, k: u64, seen: Seen) -> Drive {
+    fn tick(&mut self, k: u64, seen: EncoderCounts) -> Drive {
         // The device knows its angle: it was homed before the run.
         let home = *self.home.get_or_insert(seen.small);
         let angle = self.intent.start().angle + displacement(seen.small, home) * self.rad_per_count;
