@@ -1,5 +1,6 @@
 //! All estimators: a file per family, in the order in which the command line shows them.
 
+mod banks;
 mod kalman;
 mod observers;
 mod tracking;
@@ -41,7 +42,7 @@ macro_rules! estimators {
     ($each:ident) => {
         $crate::joined! {
             $each (at_1k: 1000.0, 0; at_10k: 10_000.0, 0;) []
-            window_rows kalman_rows tracking_rows observer_rows
+            window_rows kalman_rows tracking_rows bank_rows observer_rows
         }
     };
 }

@@ -42,6 +42,7 @@
     reason = "a NaN must fail these comparisons"
 )]
 
+mod bank;
 mod branch;
 mod confidence;
 mod design;
@@ -54,6 +55,7 @@ mod sample;
 mod sealed;
 mod units;
 
+pub use bank::{Imm, ImmEdge, ImmPair, ModelBank, ModelBankState, NoStamps, Stamped, Stamps};
 pub use confidence::{Confidence, Variance};
 pub use design::{DesignError, const_math};
 pub use estimator::{AccelerationEstimator, Skip, VelocityEstimator};

@@ -56,6 +56,7 @@ impl DesignError {
             above 0 and below 10^6, for a Kalman filter 2 pi 10^9 (counts/A)", "Hz";
         RATE_FOR_FRICTION: "rate", "must give counts_per_rev coulomb_friction / (inertia rate^2) \
             below 10^6 counts", "Hz";
+        RATE_OF_BANK: "rate", "must be between 100 and 1e5", "Hz";
         CLOCK: "clock", "must be finite and at least the rate", "Hz";
         CUTOFF: "cutoff", "must be between 1e-6 and 1/2 of the rate", "Hz";
         BANDWIDTH: "bandwidth", "must be between 1e-6 and 1/2 of the rate", "Hz";

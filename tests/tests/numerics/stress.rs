@@ -90,8 +90,8 @@ fn extreme_parameters_are_stable_or_refused_by_name() {
             "{name}: {outcome:?}"
         );
         // With a current that is all noise the motor filter's pole goes to -1, and the rounding of
-        // its gain shows; observers decide. Stable is all that they have to be there.
-        let stable = ["kalman-motor", "observer", "adaptive"];
+        // its gain shows; observers and banks decide. Stable is all that they have to be there.
+        let stable = ["kalman-motor", "observer", "adaptive", "imm"];
         if !stable.iter().any(|one| name.starts_with(one)) {
             assert!(outcome.relative_deviation < 1e-5, "{name}: {outcome:?}");
         }
@@ -107,10 +107,13 @@ fn f32_error_is_negligible_on_the_signals_of_a_device() {
             let found = signals::difference(&contestant, &scenarios);
             assert!(found.added_error().abs() < 1e-2, "{found:?}");
             // Without time stamps an observer decides at every count whether the prediction agrees;
-            // without the handle or the current it decides that between two edges too.
+            // without the handle or the current it decides that between two edges too. A bank decides
+            // at every tick which filters it runs.
             let decides = ROWS.iter().any(|row| {
                 let observer = row.parameters.iter().any(Parameter::is_torque);
-                row.name == found.estimator && observer && !(row.needs.edge && row.needs.coupled)
+                let bank = row.name.starts_with("imm");
+                let edges = row.needs.edge && row.needs.coupled;
+                row.name == found.estimator && (bank || observer && !edges)
             });
             if !decides {
                 assert!(found.rms_rad_s < 1e-5, "{found:?}");

@@ -1,0 +1,51 @@
+//! Banks of filters without a parameter of the device.
+
+/// The rows of this file, added to those before them: see [`estimators!`](crate::estimators).
+#[doc(hidden)]
+#[macro_export]
+macro_rules! bank_rows {
+    ($each:ident $rates:tt [$($before:tt)*] $($families:ident)*) => {
+        $crate::joined! { $each $rates [
+            $($before)*
+            imm, "imm", Acceleration,
+            (),
+            $rates,
+            {
+                summary: "bank of three filters that finds its own process noise",
+                needs: Signals::COUNT,
+                settling: Settling::Within(0.3),
+                colour: Colour::GREEN,
+                dash: Dash::Mixed,
+                goals: &[Goal { capacity: 0, mean: 250.0, longest: 400.0 }],
+            },
+            |c, motor, rate, clock, p, N| c::Imm =>
+                c::ModelBank::new(rate);
+            imm_edge, "imm-edge", Acceleration,
+            (),
+            $rates,
+            {
+                summary: "the same bank, which also uses edge time stamps",
+                needs: EDGE,
+                settling: Settling::Within(0.3),
+                colour: Colour::PINE,
+                dash: Dash::Mixed,
+                goals: &[Goal { capacity: 0, mean: 300.0, longest: 450.0 }],
+            },
+            |c, motor, rate, clock, p, N| c::ImmEdge =>
+                c::ModelBank::with_edges(clock, rate);
+            imm_pair, "imm-pair", Acceleration,
+            (),
+            $rates,
+            {
+                summary: "bank of two filters: the cheap one",
+                needs: Signals::COUNT,
+                settling: Settling::Within(0.3),
+                colour: Colour::GREEN,
+                dash: Dash::Dotted,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::ImmPair =>
+                c::ModelBank::new(rate);
+        ] $($families)* }
+    };
+}

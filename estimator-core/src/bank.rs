@@ -1,0 +1,186 @@
+//! A bank of Kalman filters that needs no parameters of the device.
+
+mod interval;
+mod ladder;
+mod member;
+mod stamps;
+mod state;
+
+use crate::confidence::{Confidence, Variance};
+use crate::design::DesignError;
+use crate::estimator::{AccelerationEstimator, VelocityEstimator};
+use crate::sample::{Sample, Signals};
+use crate::units::{CountsPerTick, CountsPerTickSquared, Hertz};
+
+use ladder::Ladder;
+pub use stamps::{NoStamps, Stamped, Stamps};
+pub use state::ModelBankState;
+
+/// The bank of three members on counts.
+pub type Imm = ModelBank<3, NoStamps>;
+
+/// The bank of two members on counts.
+pub type ImmPair = ModelBank<2, NoStamps>;
+
+/// The bank of three members on counts and edge time stamps.
+pub type ImmEdge = ModelBank<3, Stamped>;
+
+/// Multiple-model estimator: a moving bank of K Kalman filters. It has no parameter of the device; the
+/// control rate alone fixes it, for any number of counts per revolution.
+///
+/// Every member models the acceleration a as a process that decays with τ = 10 ms (Singer 1970), and
+/// a white acceleration besides:
+/// ```text
+/// dθ/dt = v      dv/dt = a + n      da/dt = -a / τ + m
+/// ```
+/// The spectral density of m is q counts²/s⁵, that of n is q τ² / 10. Members differ by q alone. The
+/// values of q are the rungs of a ladder of 18 decades from 10 counts²/s⁵; the members stand on K
+/// neighbouring rungs. One tick is
+/// ```text
+/// reset      a member with w < 0.01 takes state and covariance of the heaviest one, and w = 0.03
+/// move       w > 0.9 of the last member: the bank moves up by a rung; of the first: down. The new
+///            member takes state and covariance of its neighbour, and w = 0.2
+/// predict    x = F x       P = F P Fᵀ + Q(q)             F: transition of the model over one tick
+/// edge       H = [1, -t, t²/2], t the age of the edge    e = boundary - H x
+///            S = H P Hᵀ + R    K = P Hᵀ / S              x += K e    P -= K S Kᵀ
+/// no edge    the position lies in the quantisation interval of the count: mean and variance of the
+///            truncated Gaussian
+/// weights    w_i = (w_i + c) L_i / Σ    L: density of e, or the probability of the interval
+/// noise      R = R (1 - 0.05 ρ)         ρ = e e' / S within ±1, e' of the edge before; R within
+///            3e-4 and 0.1 counts²
+/// output     v = Σ w_i v_i      a = Σ w_i a_i      variance Σ w_i (P_11,i + (v_i - v)²)
+/// ```
+/// c is the probability that q changes, one a second. The density of e has the tails of a Student
+/// distribution, `S^-1/2 (1 + e² / 32 S)^-16`. The innovations of an optimal filter are white: if
+/// successive ones have opposite signs, R is too small.
+///
+/// Rest: 0.3 s after the last change of the count and the last edge, v and a become 0 exactly, and stay
+/// 0 until the next change or edge. A shaft slower than 3.3 counts per second is taken for one at rest.
+/// A count that alternates between two values is not at rest.
+///
+/// Units: counts and ticks. Valid for rates from 100 Hz to 100 kHz. The ladder covers encoders of 64 to
+/// 1e6 counts per revolution: q grows with the square of the counts, hence by 2.4e8 from one to the
+/// other.
+///
+/// Sources: interacting multiple models, Blom and Bar-Shalom, IEEE Transactions on Automatic Control
+/// 33(8), 1988; the moving bank, Maybeck and Hentz, Journal of Guidance, Control, and Dynamics 10(1),
+/// 1987; the acceleration, Singer, IEEE Transactions on Aerospace and Electronic Systems 6(4), 1970.
+/// The members do not mix their states at each tick; an improbable one is reset instead.
+///
+/// ```
+/// use estimator_core::*;
+/// const BANK: Imm = preset!(ModelBank::new(Hertz(1000.0)));
+/// let mut state = BANK.start(&Sample::new(Count(0)));
+/// let mut v = CountsPerTick(0.0);
+/// for tick in 1..400u32 {
+///     v = BANK.update(&mut state, &Sample::new(Count(tick * 7 / 2)));
+/// }
+/// assert!((v.0 - 3.5).abs() < 0.05);
+/// assert!(BANK.variance(&state).std_dev().0 < 0.1);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModelBank<const K: usize, S> {
+    ladder: Ladder,
+    stamps: S,
+    /// Ticks without a change after which the shaft is at rest.
+    rest: u32,
+    /// Probability that q changes in a tick, to one of the other members.
+    change: f32,
+}
+
+/// Time without a change after which the shaft is at rest, s.
+const REST: f64 = 0.3;
+
+/// Rate of changes of q, 1/s.
+const CHANGES: f64 = 1.0;
+
+/// Range of the control rate, Hz.
+const RATES: [f64; 2] = [100.0, 1e5];
+
+impl<const K: usize> ModelBank<K, NoStamps> {
+    /// The bank on counts, updated at `rate`.
+    ///
+    /// # Errors
+    /// [`DesignError::RATE`], [`DesignError::RATE_OF_BANK`].
+    pub const fn new(rate: Hertz) -> Result<Self, DesignError> {
+        Self::with_stamps(NoStamps, rate)
+    }
+}
+
+impl<const K: usize> ModelBank<K, Stamped> {
+    /// The bank on counts and edges, stamped by a clock of frequency `clock`.
+    ///
+    /// # Errors
+    /// [`DesignError::RATE`], [`DesignError::RATE_OF_BANK`], [`DesignError::CLOCK`].
+    pub const fn with_edges(clock: Hertz, rate: Hertz) -> Result<Self, DesignError> {
+        match Stamped::new(clock, rate) {
+            Ok(stamps) => Self::with_stamps(stamps, rate),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+impl<const K: usize, S: Copy> ModelBank<K, S> {
+    const fn with_stamps(stamps: S, rate: Hertz) -> Result<Self, DesignError> {
+        const { assert!(K >= 2 && K <= 8, "2 to 8 members") };
+        if !rate.is_positive() {
+            return Err(DesignError::RATE);
+        }
+        if !(rate.0 >= RATES[0] && rate.0 <= RATES[1]) {
+            return Err(DesignError::RATE_OF_BANK);
+        }
+        Ok(Self {
+            ladder: Ladder::new(rate.period_s()),
+            stamps,
+            rest: (REST * rate.0) as u32,
+            change: (CHANGES / rate.0 / (K as f64 - 1.0)) as f32,
+        })
+    }
+}
+
+impl<const K: usize, S: Stamps> VelocityEstimator for ModelBank<K, S> {
+    type State = ModelBankState<K>;
+    const NEEDS: Signals = S::NEEDS;
+
+    fn start(&self, first: &Sample) -> ModelBankState<K> {
+        ModelBankState::start(first.count)
+    }
+
+    fn update(&self, state: &mut ModelBankState<K>, sample: &Sample) -> CountsPerTick {
+        let displacement = sample.count - state.anchor;
+        state.anchor = sample.count;
+        let edge = self.stamps.fresh(sample);
+        if displacement.0 != 0 || edge.is_some() {
+            state.still = 0;
+        } else if state.resting {
+            return CountsPerTick(0.0);
+        } else {
+            state.still = state.still.saturating_add(1);
+        }
+        state.resting = false;
+        state.reset();
+        state.follow();
+        state.predict(&self.ladder, displacement.to_f32());
+        let likelihoods = match edge {
+            Some(edge) => state.correct_by_edge(&edge),
+            None => state.correct_by_interval(),
+        };
+        state.weigh(&likelihoods, self.change);
+        if state.still >= self.rest {
+            state.stop();
+        }
+        CountsPerTick(state.velocity())
+    }
+}
+
+impl<const K: usize, S: Stamps> AccelerationEstimator for ModelBank<K, S> {
+    fn acceleration(&self, state: &ModelBankState<K>) -> CountsPerTickSquared {
+        CountsPerTickSquared(state.acceleration())
+    }
+}
+
+impl<const K: usize, S: Stamps> Confidence for ModelBank<K, S> {
+    fn variance(&self, state: &ModelBankState<K>) -> Variance {
+        Variance(state.velocity_variance())
+    }
+}

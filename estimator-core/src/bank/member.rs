@@ -1,0 +1,100 @@
+//! One filter of the bank, and its corrections.
+
+use super::interval::truncate;
+use crate::edge_clock::FreshEdge;
+
+/// Least variance of a position, counts²: rounding cannot make it negative.
+const LEAST_VARIANCE: f32 = 1e-6;
+
+/// State and covariance of one filter, in counts and ticks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Member {
+    /// Position from the middle of the quantisation interval of the newest count.
+    pub(super) position: f32,
+    pub(super) velocity: f32,
+    pub(super) acceleration: f32,
+    /// P_00, P_01, P_02, P_11, P_12, P_22.
+    pub(super) covariance: [f32; 6],
+}
+
+/// Innovation of an edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Innovation {
+    /// e, counts.
+    pub(super) error: f32,
+    /// S, counts².
+    pub(super) variance: f32,
+    /// 1 / S.
+    pub(super) per_variance: f32,
+}
+
+impl Member {
+    /// Somewhere in the interval, with a standard deviation of 32 counts a tick and of 1 count a tick².
+    pub(super) const START: Self = Self {
+        position: 0.0,
+        velocity: 0.0,
+        acceleration: 0.0,
+        covariance: [1.0 / 12.0, 0.0, 0.0, 1024.0, 0.0, 1.0],
+    };
+
+    /// Variance of the velocity, (counts/tick)².
+    pub(super) const fn velocity_variance(&self) -> f32 {
+        self.covariance[3]
+    }
+
+    /// Corrects the state by `error` / `1/per_variance` times its covariances with a measurement, and
+    /// removes the part `removed` of what the measurement explains from P.
+    #[inline(always)]
+    fn correct(&mut self, covariances: [f32; 3], per_variance: f32, error: f32, removed: f32) {
+        let [c0, c1, c2] = covariances;
+        let step = error * per_variance;
+        self.position += c0 * step;
+        self.velocity += c1 * step;
+        self.acceleration += c2 * step;
+        let share = removed * per_variance;
+        let [k0, k1, k2] = [c0 * share, c1 * share, c2 * share];
+        let p = &mut self.covariance;
+        p[0] -= k0 * c0;
+        p[1] -= k0 * c1;
+        p[2] -= k0 * c2;
+        p[3] -= k1 * c1;
+        p[4] -= k1 * c2;
+        p[5] -= k2 * c2;
+    }
+
+    /// Corrects by the position of the shaft at the instant of an edge, known to the variance
+    /// `boundary`.
+    #[inline(always)]
+    pub(super) fn correct_by_edge(&mut self, edge: &FreshEdge, boundary: f32) -> Innovation {
+        let t = edge.age;
+        let half = 0.5 * t * t;
+        let [p00, p01, p02, p11, p12, p22] = self.covariance;
+        let c0 = p00 - t * p01 + half * p02;
+        let c1 = p01 - t * p11 + half * p12;
+        let c2 = p02 - t * p12 + half * p22;
+        let variance = c0 - t * c1 + half * c2 + boundary;
+        let per_variance = 1.0 / variance;
+        let error = edge.position - (self.position - t * self.velocity + half * self.acceleration);
+        self.correct([c0, c1, c2], per_variance, error, 1.0);
+        Innovation {
+            error,
+            variance,
+            per_variance,
+        }
+    }
+
+    /// Corrects by the knowledge that the position lies in its quantisation interval. Returns the
+    /// probability of the interval.
+    #[inline(always)]
+    pub(super) fn correct_by_interval(&mut self) -> f32 {
+        let [p00, p01, p02, ..] = self.covariance;
+        let variance = p00 + LEAST_VARIANCE;
+        let Some(truncated) = truncate(self.position, variance) else {
+            return 1.0;
+        };
+        let per_variance = 1.0 / variance;
+        let removed = 1.0 - truncated.kept;
+        self.correct([p00, p01, p02], per_variance, truncated.shift, removed);
+        truncated.probability
+    }
+}

@@ -1,0 +1,64 @@
+//! Whether a bank reads edge time stamps.
+
+use crate::design::DesignError;
+use crate::edge_clock::{EdgeClock, FreshEdge};
+use crate::sample::{Sample, Signals};
+use crate::sealed::Sealed;
+use crate::units::Hertz;
+
+/// Source of edges of a [`ModelBank`](crate::ModelBank).
+pub trait Stamps: Sealed + Copy + PartialEq {
+    /// The parts of a sample that are read.
+    const NEEDS: Signals;
+
+    /// The edge that came since the last sample.
+    #[doc(hidden)]
+    #[expect(private_interfaces, reason = "the trait is sealed")]
+    fn fresh(&self, sample: &Sample) -> Option<FreshEdge>;
+}
+
+/// Counts alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct NoStamps;
+
+impl Sealed for NoStamps {}
+
+impl Stamps for NoStamps {
+    const NEEDS: Signals = Signals::COUNT;
+
+    #[inline(always)]
+    #[expect(private_interfaces, reason = "the trait is sealed")]
+    fn fresh(&self, _: &Sample) -> Option<FreshEdge> {
+        None
+    }
+}
+
+/// Counts, and edges with time stamps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stamped {
+    clock: EdgeClock,
+}
+
+impl Stamped {
+    pub(super) const fn new(clock: Hertz, rate: Hertz) -> Result<Self, DesignError> {
+        match EdgeClock::new(clock, rate) {
+            Ok(clock) => Ok(Self { clock }),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+impl Sealed for Stamped {}
+
+impl Stamps for Stamped {
+    const NEEDS: Signals = Signals {
+        edge: true,
+        ..Signals::COUNT
+    };
+
+    #[inline(always)]
+    #[expect(private_interfaces, reason = "the trait is sealed")]
+    fn fresh(&self, sample: &Sample) -> Option<FreshEdge> {
+        self.clock.fresh(sample)
+    }
+}

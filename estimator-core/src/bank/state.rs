@@ -1,0 +1,209 @@
+//! State of the bank: members, weights, and where on the ladder they stand.
+
+use super::interval::density;
+use super::ladder::{FIRST_RUNG, Ladder, RUNGS};
+use super::member::Member;
+use crate::design::const_math::limited;
+use crate::edge_clock::FreshEdge;
+use crate::units::Count;
+
+/// State of a [`ModelBank`](crate::ModelBank).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModelBankState<const K: usize> {
+    pub(super) anchor: Count,
+    /// Ticks since the last change of the count and the last edge.
+    pub(super) still: u32,
+    /// Whether the shaft is at rest.
+    pub(super) resting: bool,
+    members: [Member; K],
+    /// Weights of the members; their sum is 1.
+    weights: [f32; K],
+    /// Rung of the first member.
+    rung: usize,
+    /// Variance R of the position of a boundary, counts².
+    boundary: f32,
+    /// Innovation of the edge before, counts.
+    innovation: f32,
+}
+
+/// A member with less weight is reset.
+const IMPROBABLE: f32 = 0.01;
+
+/// Weight of a member after its reset.
+const RESET_WEIGHT: f32 = 0.03;
+
+/// Weight of the outermost member above which the bank moves.
+const HEAVY: f32 = 0.9;
+
+/// Weight of a new member.
+const NEW_WEIGHT: f32 = 0.2;
+
+/// R at the start, and its range, counts².
+const BOUNDARY: f32 = 1e-3;
+const LEAST_BOUNDARY: f32 = 3e-4;
+const LARGEST_BOUNDARY: f32 = 0.1;
+
+/// Change of R by an edge.
+const BOUNDARY_GAIN: f32 = 0.05;
+
+impl<const K: usize> ModelBankState<K> {
+    pub(super) const fn start(anchor: Count) -> Self {
+        Self {
+            anchor,
+            still: 0,
+            resting: false,
+            members: [Member::START; K],
+            weights: [1.0 / K as f32; K],
+            rung: FIRST_RUNG,
+            boundary: BOUNDARY,
+            innovation: 0.0,
+        }
+    }
+
+    /// The variance R of the position of a boundary, counts², as estimated from the innovations of
+    /// edges.
+    #[must_use]
+    pub const fn boundary_variance(&self) -> f32 {
+        self.boundary
+    }
+
+    /// The weighted mean of `part` of each member.
+    #[inline(always)]
+    fn mean(&self, part: impl Fn(&Member) -> f32) -> f32 {
+        let mut sum = 0.0;
+        for i in 0..K {
+            sum += self.weights[i] * part(&self.members[i]);
+        }
+        sum
+    }
+
+    /// The mean velocity, counts/tick.
+    #[inline(always)]
+    pub(super) fn velocity(&self) -> f32 {
+        self.mean(|member| member.velocity)
+    }
+
+    /// The mean acceleration, counts/tick².
+    pub(super) fn acceleration(&self) -> f32 {
+        self.mean(|member| member.acceleration)
+    }
+
+    /// The variance of the velocity, (counts/tick)²: that of the mixture.
+    pub(super) fn velocity_variance(&self) -> f32 {
+        let velocity = self.velocity();
+        self.mean(|member| {
+            let off = member.velocity - velocity;
+            member.velocity_variance() + off * off
+        })
+    }
+
+    /// Sets velocity and acceleration to rest.
+    #[inline(always)]
+    pub(super) fn stop(&mut self) {
+        self.resting = true;
+        for member in &mut self.members {
+            member.velocity = 0.0;
+            member.acceleration = 0.0;
+        }
+    }
+
+    /// Predicts all members over one tick, relative to a count that moved by `displacement`.
+    #[inline(always)]
+    pub(super) fn predict(&mut self, ladder: &Ladder, displacement: f32) {
+        for i in 0..K {
+            ladder.predict(&mut self.members[i], self.rung + i, displacement);
+        }
+    }
+
+    /// Corrects all members by an edge, and R by the correlation of two innovations. Returns the
+    /// likelihoods, times the deviation of the first member's innovation.
+    #[inline(always)]
+    pub(super) fn correct_by_edge(&mut self, edge: &FreshEdge) -> [f32; K] {
+        let mut likelihoods = [0.0; K];
+        let (mut first, mut error, mut variance) = (0.0, 0.0, 0.0);
+        for i in 0..K {
+            let innovation = self.members[i].correct_by_edge(edge, self.boundary);
+            if i == 0 {
+                first = innovation.variance;
+            }
+            let squares = innovation.error * innovation.error * innovation.per_variance;
+            likelihoods[i] = root(first * innovation.per_variance) * density(0.5 * squares);
+            error += self.weights[i] * innovation.error;
+            variance += self.weights[i] * innovation.variance;
+        }
+        let correlation = limited(error * self.innovation / variance, 1.0);
+        let boundary = self.boundary * (1.0 - BOUNDARY_GAIN * correlation);
+        // Both ends are constants: the panic of `clamp` is removed.
+        self.boundary = boundary.clamp(LEAST_BOUNDARY, LARGEST_BOUNDARY);
+        self.innovation = error;
+        likelihoods
+    }
+
+    /// Corrects all members by the quantisation interval of the count. Returns its probabilities.
+    #[inline(always)]
+    pub(super) fn correct_by_interval(&mut self) -> [f32; K] {
+        let mut likelihoods = [0.0; K];
+        for i in 0..K {
+            likelihoods[i] = self.members[i].correct_by_interval();
+        }
+        likelihoods
+    }
+
+    /// Updates the weights by the likelihoods, with the probability `change` of a change of q.
+    #[inline(always)]
+    pub(super) fn weigh(&mut self, likelihoods: &[f32; K], change: f32) {
+        let mut sum = 0.0;
+        for i in 0..K {
+            self.weights[i] = (self.weights[i] + change) * likelihoods[i];
+            sum += self.weights[i];
+        }
+        let per_sum = 1.0 / sum;
+        for weight in &mut self.weights {
+            *weight *= per_sum;
+        }
+    }
+
+    /// Resets improbable members.
+    #[inline(always)]
+    pub(super) fn reset(&mut self) {
+        let mut heaviest = 0;
+        for i in 1..K {
+            if self.weights[i] > self.weights[heaviest % K] {
+                heaviest = i;
+            }
+        }
+        for i in 0..K {
+            if self.weights[i] < IMPROBABLE {
+                self.members[i] = self.members[heaviest % K];
+                self.weights[i] = RESET_WEIGHT;
+            }
+        }
+    }
+
+    /// Moves the bank by a rung if its outermost member is heavy.
+    #[inline(always)]
+    pub(super) fn follow(&mut self) {
+        if self.weights[K - 1] > HEAVY && self.rung + K < RUNGS {
+            self.rung += 1;
+            for i in 1..K {
+                self.members[i - 1] = self.members[i];
+                self.weights[i - 1] = self.weights[i];
+            }
+            self.weights[K - 1] = NEW_WEIGHT;
+        } else if self.weights[0] > HEAVY && self.rung > 0 {
+            self.rung -= 1;
+            for i in (1..K).rev() {
+                self.members[i] = self.members[i - 1];
+                self.weights[i] = self.weights[i - 1];
+            }
+            self.weights[0] = NEW_WEIGHT;
+        }
+    }
+}
+
+/// √x: the Padé approximant of order [2/2] at 1, to 3 % from 1/20 to 20.
+#[inline(always)]
+fn root(x: f32) -> f32 {
+    let square = x * x;
+    (1.0 + 10.0 * x + 5.0 * square) / (5.0 + 10.0 * x + square)
+}
