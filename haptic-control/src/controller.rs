@@ -1,4 +1,4 @@
-//! A controller of one scene: what that scene does not need is not there.
+//! A controller of one scene, with only the parts that the scene needs.
 
 use estimator_core::{Count, Sample, Scale, VelocityEstimator};
 
@@ -14,7 +14,8 @@ type Of<N, T> = <N as Need>::Of<T>;
 /// The controller of one scene `S`, with the estimators `L` of the large motor and `H` of the
 /// handle: counts in, currents out, one pure step a tick.
 ///
-/// Parameters here, state apart. A part that `S` does not need is `()`: no memory, no code.
+/// The controller has the parameters; its state is a [`ControllerState`]. A part that `S` does not
+/// need is `()`, which takes no memory and no code.
 ///
 /// ```
 /// use estimator_core::*;
@@ -26,12 +27,12 @@ type Of<N, T> = <N as Need>::Of<T>;
 ///
 /// let wall = Controller::new(WALL, LOOP, LOOP, &RIG);
 /// let mut state = wall.start(&Sample::default());
-/// // 1000 counts are 0.314 rad, 0.214 into the wall: it pushes back with 64 mN.m.
+/// // 1000 counts are 0.314 rad, which is 0.214 rad into the wall: the torque is -64 mN.m.
 /// let inside = Sample::default().with_coupled(Count(1000));
 /// let action = wall.step(&mut state, &inside);
 /// assert!((action.torque.0 + 0.0642).abs() < 1e-4 && action.currents.small.get() < 0.0);
 ///
-/// // Nothing is left of a scene that needs nothing.
+/// // The controller of a scene that needs no part has the position of the first sample as state.
 /// let off = Controller::new(Off, LOOP, LOOP, &RIG);
 /// assert_eq!(size_of_val(&off.start(&inside)), size_of::<Count>());
 /// ```
@@ -63,7 +64,7 @@ impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> ControllerState<S, L,
         S::Continuous::or(large, None)
     }
 
-    /// State of the large motor's estimator, to choose among estimators.
+    /// State of the large motor's estimator, to change the choice among several estimators.
     pub fn large_mut(&mut self) -> Option<&mut L::State> {
         let large =
             S::Continuous::map(S::Continuous::as_mut(&mut self.continuous), |(large, _)| {
@@ -101,7 +102,7 @@ where
     L: VelocityEstimator,
     H: VelocityEstimator,
 {
-    /// A controller for `scene` on `rig`, with those of the estimators that the scene needs.
+    /// A controller for `scene` on `rig`. An estimator that the scene does not need is left out.
     pub fn new(scene: S, large: L, handle: H, rig: &Rig) -> Self {
         Self {
             scene,
@@ -113,7 +114,7 @@ where
         }
     }
 
-    /// State at rest at the first sample; angles count from there.
+    /// State at rest at the first sample. Angles are relative to this sample.
     pub fn start(&self, first: &Sample) -> ControllerState<S, L, H> {
         let handle_sample = Sample::new(first.coupled);
         ControllerState {
@@ -130,8 +131,8 @@ where
         }
     }
 
-    /// Starts again at rest at this sample, from which angles count. The choice among estimators
-    /// stays.
+    /// Restarts at rest at this sample, to which angles are then relative. The choice among several
+    /// estimators does not change.
     pub fn restart(&self, state: &mut ControllerState<S, L, H>, first: &Sample) {
         let mut fresh = self.start(first);
         S::Continuous::zip(

@@ -1,9 +1,9 @@
-//! Why a controller was refused.
+//! The error of a controller that cannot be designed.
 
 use core::fmt;
 
-/// Why a controller was refused, at run time by `Err` or at compile time by
-/// [`preset!`](estimator_core::preset).
+/// Error of a controller that cannot be designed. A constructor returns it at run time, and
+/// [`preset!`](estimator_core::preset) reports it at compile time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DesignError {
@@ -15,7 +15,7 @@ pub enum DesignError {
     Bandwidth,
     /// The pole placement has no solution.
     Singular,
-    /// The loop is stable with too small a margin, or not at all.
+    /// The loop is unstable, or its stability margin is too small.
     Margins,
     /// A parameter of a scene is out of its range.
     Scene,

@@ -14,7 +14,7 @@ pub struct Motor {
     pub inertia: f64,
     /// Torque constant Kt, N·m/A.
     pub torque_constant: f64,
-    /// Coulomb friction Tc, N·m; what holds the shaft at rest is the same.
+    /// Coulomb friction Tc, N·m. Static friction has the same value.
     pub coulomb_friction: f64,
     /// Counts per revolution: four times the encoder's lines.
     pub counts_per_rev: u32,
@@ -22,7 +22,7 @@ pub struct Motor {
     pub current_limit: f64,
 }
 
-/// Both stages and what couples them. SI units.
+/// Both stages and the coupler between them. SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DualStage {
     /// Large motor, the continuous stage.
@@ -65,7 +65,7 @@ impl DualStage {
         1.0 / (2.0 * PI * self.amplifier_bandwidth.0)
     }
 
-    /// The large motor and what acts on it, for an observer.
+    /// The large motor with coupler and amplifier, the model of an observer.
     #[must_use]
     pub const fn coupled_motor(&self) -> CoupledMotor {
         CoupledMotor {
@@ -81,8 +81,8 @@ impl DualStage {
         }
     }
 
-    /// Hash of all constants: equal for equal devices on every machine. An image logs it at boot,
-    /// so that a recording tells which device the image was built for.
+    /// Hash of all constants, equal for equal devices on every machine. An image logs the hash at
+    /// boot, so that a recording identifies the device for which the image was built.
     #[must_use]
     pub const fn fingerprint(&self) -> Fingerprint {
         self.small

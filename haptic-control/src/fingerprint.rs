@@ -1,8 +1,8 @@
-//! The hash by which a recording names the constants of an image.
+//! The hash that identifies the constants of an image in a recording.
 
 use core::fmt;
 
-/// A hash of numbers and texts in their order: FNV-1a of 32 bits. It depends on nothing but them.
+/// A hash of a sequence of numbers and texts: FNV-1a of 32 bits, equal on every machine.
 ///
 /// ```
 /// use haptic_control::Fingerprint;
@@ -14,16 +14,16 @@ use core::fmt;
 pub struct Fingerprint(pub u32);
 
 impl Fingerprint {
-    /// The hash of nothing.
+    /// The hash of an empty sequence.
     pub const EMPTY: Self = Self(0x811C_9DC5);
 
-    /// With a number behind what is hashed already. The sign of zero does not count.
+    /// The hash of the sequence with a number appended. Both signs of zero have the same hash.
     #[must_use]
     pub const fn number(self, x: f64) -> Self {
         self.bytes(&(x + 0.0).to_bits().to_le_bytes())
     }
 
-    /// With a text behind what is hashed already.
+    /// The hash of the sequence with a text appended.
     #[must_use]
     pub const fn text(self, text: &str) -> Self {
         self.bytes(text.as_bytes())

@@ -1,6 +1,6 @@
 //! The instants at which control ticks are due, and missed ticks.
 
-/// The grid of control ticks, `PERIOD` counts apart, by a counter of 32 bits that wraps.
+/// The grid of control ticks, `PERIOD` counts apart, on a 32-bit counter that wraps.
 ///
 /// ```
 /// use haptic_control::Grid;
@@ -19,7 +19,7 @@ pub struct Grid<const PERIOD: u32> {
 }
 
 impl<const PERIOD: u32> Grid<PERIOD> {
-    /// A grid whose first tick is due a period after `now`.
+    /// A grid whose first tick is due one period after `now`.
     #[must_use]
     pub const fn new(now: u32) -> Self {
         const { assert!(PERIOD > 0) };
@@ -36,12 +36,12 @@ impl<const PERIOD: u32> Grid<PERIOD> {
         self.due
     }
 
-    /// A tick begins at the count `now`, not before it is due: the ticks missed since the last one,
-    /// or 1 if the last one overran.
+    /// Begins a tick at the count `now`, at which the tick is due or later. Returns the number of
+    /// ticks missed since the last tick, or 1 if the last tick overran.
     #[inline]
     pub fn begin(&mut self, now: u32) -> u32 {
         let late = now.wrapping_sub(self.due);
-        // A division only where it is needed: nearly every tick begins in its own period.
+        // Nearly every tick begins in its own period, and then the division is not executed.
         let missed = if late < PERIOD { 0 } else { late / PERIOD };
         self.due = self
             .due
@@ -49,7 +49,7 @@ impl<const PERIOD: u32> Grid<PERIOD> {
         missed.max(u32::from(self.overran))
     }
 
-    /// The tick that has begun ends at the count `now`.
+    /// Ends the present tick at the count `now`.
     #[inline]
     pub fn end(&mut self, now: u32) {
         let spent = now.wrapping_sub(self.due).wrapping_add(PERIOD);
@@ -57,8 +57,8 @@ impl<const PERIOD: u32> Grid<PERIOD> {
         self.longest = self.longest.max(spent);
     }
 
-    /// The longest tick that has ended since this was last asked for, in counts from the instant
-    /// at which it was due.
+    /// The longest time in counts from the instant at which a tick was due to its end, over the
+    /// ticks since the last call.
     pub fn take_longest(&mut self) -> u32 {
         core::mem::take(&mut self.longest)
     }

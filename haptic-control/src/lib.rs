@@ -1,14 +1,14 @@
 //! Dual-stage haptic control as one pure step: counts in, currents out, `no_std`.
 //!
-//! A [`Scene`] computes the torque that the handle should feel. Its types state what it needs, see
+//! A [`Scene`] computes the torque that the handle should feel. Its types state its needs, see
 //! [`Need`]; a [`Controller`] contains the scene and only the parts that the scene needs. A
-//! [`Switchboard`] contains all scenes of the catalogue ([`scenes!`]), one of which is on. The large
-//! motor renders the torque through the coupler, by a velocity loop designed at compile time
-//! ([`RstDesign`]); the small motor adds the torque that the large motor is too slow for. [`Monitor`]
-//! and [`Safety`] decide when the motors stop.
+//! [`Switchboard`] contains all scenes of the catalogue ([`scenes!`]), one of which is active. The
+//! large motor renders the torque through the coupler, by a velocity loop designed at compile time
+//! ([`RstDesign`]); the small motor adds the torque that the large motor is too slow for.
+//! [`Monitor`] and [`Safety`] decide when the motors stop.
 //!
-//! The crate uses f32 `+ - * /` and integers only, so its results are the same bits on every machine.
-//! It does not panic.
+//! The crate uses f32 `+ - * /` and integers only, so its results are the same bits on every
+//! machine. It does not panic.
 #![no_std]
 #![allow(
     clippy::neg_cmp_op_on_partial_ord,

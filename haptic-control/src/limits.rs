@@ -1,9 +1,9 @@
-//! Limits of the currents: the only place that saturates.
+//! Limits of the currents. Currents saturate only here.
 
 use estimator_core::Amps;
 
-/// Limits of one motor's current, applied last: NaN becomes zero, the magnitude saturates, and a tick
-/// changes the current by at most the slew limit.
+/// Limits of one motor's current, applied last: NaN becomes zero, the magnitude saturates, and a
+/// tick changes the current by at most the slew limit.
 ///
 /// ```
 /// use haptic_control::CurrentLimits;
@@ -21,7 +21,8 @@ pub struct CurrentLimits {
 }
 
 impl CurrentLimits {
-    /// The current to apply when `wanted` is asked for and `before` flowed in the last tick, A.
+    /// The current to apply for the commanded current `wanted`, if `before` was applied in the last
+    /// tick, A.
     #[must_use]
     pub fn applied(&self, wanted: f32, before: f32) -> f32 {
         if !wanted.is_finite() {

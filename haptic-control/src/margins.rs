@@ -11,7 +11,7 @@ pub struct Margins {
     /// Gain margin: the factor by which the gain may rise where the phase crosses -180°; infinite
     /// if it never does.
     pub gain: f64,
-    /// Phase margin at the crossover of gain 1, as the cosine of the angle left to -180°.
+    /// Phase margin at the crossover of gain 1, as the cosine of the angle to -180°.
     pub cos_phase: f64,
     /// Crossover of gain 1, Hz; the highest if there are several.
     pub crossover_hz: f64,
@@ -31,7 +31,7 @@ impl Margins {
 const HALVINGS: usize = 14;
 const PER_HALVING: usize = 16;
 
-/// Margins of the loop, with `delay_s` of delay beside the model.
+/// Margins of the loop with an additional delay of `delay_s`.
 ///
 /// The open loop is evaluated from the Nyquist frequency down through 14 octaves, 16 points each;
 /// below, integral action makes it large. Crossings are interpolated linearly.
@@ -56,7 +56,7 @@ pub(crate) const fn margins(
     while octave < HALVINGS {
         let mut i = 0;
         while i < PER_HALVING {
-            // Even steps within an octave need no root.
+            // Steps of constant size within an octave need no root.
             let angle = top * (1.0 - 0.5 * i as f64 / PER_HALVING as f64);
             let open = open_loop(a, b, r, s, angle, delay_s / period_s);
             let distance = Complex {
@@ -115,7 +115,7 @@ impl Complex {
         }
     }
 
-    /// Square root by Newton's method; zero and NaN come back as they are.
+    /// Square root by Newton's method. Zero and NaN are returned unchanged.
     const fn modulus(self) -> f64 {
         let square = self.re * self.re + self.im * self.im;
         if !(square > 0.0 && square < f64::INFINITY) {
@@ -135,7 +135,7 @@ impl Complex {
     }
 }
 
-/// `B R / (A S)` at `z = e^(j angle)`, delayed by so many periods.
+/// `B R / (A S)` at `z = e^(j angle)`, with an additional delay in periods.
 const fn open_loop(
     a: &[f64; 3],
     b: &[f64; 3],

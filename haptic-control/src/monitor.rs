@@ -15,13 +15,14 @@ const SLOTS: usize = 5;
 
 /// Limits of displacements, currents and times, in counts, mA and ticks.
 ///
-/// Positions are stored once per slot. A window is five slots, so a speed is the displacement over a
-/// sliding window, exact in integers.
+/// Positions are stored once per slot. A window is five slots, so a speed is the displacement over
+/// a sliding window, exact in integers.
 ///
-/// The drive of the large motor is its current plus the pull of the coupler, `b ω_S / Kt_L`, in mA of
-/// its current. The damping b is uncertain, so the drive of a slot is the smaller of the current alone
-/// and the sum of both, over all ticks of the slot: a weaker coupler does not reduce it. A motor does
-/// not accelerate against its drive, and a motor whose drive exceeds its friction does not rest.
+/// The drive of the large motor is its current plus the pull of the coupler, `b ω_S / Kt_L`, in mA
+/// of its current. The damping b is uncertain, so the drive of a slot is the smaller of the current
+/// alone and the sum of both, over all ticks of the slot: a weaker coupler does not reduce it. A
+/// motor does not accelerate against its drive, and a motor whose drive exceeds its friction does
+/// not rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Monitor {
     /// Ticks of a slot, at least 1.
@@ -46,9 +47,9 @@ pub struct Monitor {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MonitorState {
     last: [Count; 2],
-    /// Ticks of this slot.
+    /// Number of ticks of the present slot so far.
     ticks: u32,
-    /// Smallest and largest current of this slot, mA.
+    /// Smallest and largest current in the present slot, mA.
     currents: (i32, i32),
     /// Positions of the large motor at the ends of the slots of two windows, the latest first.
     large: [Count; 2 * SLOTS],
@@ -64,11 +65,11 @@ pub struct MonitorState {
 const NO_CURRENT: (i32, i32) = (i32::MAX, i32::MIN);
 
 impl Monitor {
-    /// Limits that no scene of `device` reaches while a hand holds the handle, at a control rate: the
-    /// handle 30 rad/s and the large motor 150 rad/s over 5 ms (the commanded velocity of the large
-    /// motor is at most 85 % of that); 50 ms without a count under 2.5 times the current of the large
-    /// motor's friction, at least 0.1 A. (A motor with 1.5 times the friction, 10 % ripple and a torque
-    /// constant 20 % lower moves at 2.1 times that current.)
+    /// Limits that no scene of `device` reaches while a hand holds the handle, at a control rate:
+    /// the handle 30 rad/s and the large motor 150 rad/s over 5 ms (the commanded velocity of the
+    /// large motor is at most 85 % of that); 50 ms without a count under 2.5 times the current of
+    /// the large motor's friction, at least 0.1 A. (A motor with 1.5 times the friction, 10 %
+    /// ripple and a torque constant 20 % lower moves at 2.1 times that current.)
     ///
     /// ```
     /// use estimator_core::Hertz;
@@ -122,7 +123,7 @@ impl Monitor {
         }
     }
 
-    /// One tick. The first cause stays.
+    /// One tick. The first cause is latched.
     pub fn check(&self, state: &mut MonitorState, sample: &Sample) -> Option<Stop> {
         let now = [sample.count, sample.coupled];
         let [large, small] = [0, 1].map(|i| distance(now[i] - state.last[i]));
@@ -174,7 +175,7 @@ impl Monitor {
         state.large.copy_within(..2 * SLOTS - 1, 1);
         state.large[0] = sample.count;
 
-        // Displacements along the drive: negative and decreasing is accelerating against it.
+        // Displacements along the drive. A negative, decreasing one is an acceleration against it.
         let [moved_along, before_along] =
             [moved, before].map(|displacement| displacement.0.saturating_mul(direction));
         let faster = before_along.saturating_sub(moved_along);
@@ -191,8 +192,8 @@ impl Monitor {
         }
     }
 
-    /// The smallest drive of the large motor in a slot with this displacement of the handle, mA; zero
-    /// if its direction changed.
+    /// The smallest drive of the large motor in a slot with this displacement of the handle, mA;
+    /// zero if its direction changed.
     fn push(&self, (low, high): (i32, i32), handled: Counts) -> i32 {
         let pull = handled.0.saturating_mul(self.pull) / 256;
         let forwards = low.min(low.saturating_add(pull));

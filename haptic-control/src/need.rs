@@ -18,9 +18,9 @@
 //!
 //! The methods of [`Need`] are those of an `Option` whose variant is a type: `make` and `map` build
 //! and use a part, `zip` joins two parts of the same need, `as_ref`, `as_mut` and `lend` borrow a
-//! part, `or` replaces an absent part by a value, and `narrow` takes a value of a combined need. The
-//! variant is known at compile time, so an absent part has neither state nor code: the controller of
-//! [`Off`](crate::Off) is 42 bytes of code.
+//! part, `or` replaces an absent part by a value, and `narrow` takes a value of a combined need.
+//! The variant is known at compile time, so an absent part has neither state nor code: the
+//! controller of [`Off`](crate::Off) is 42 bytes of code.
 
 use estimator_core::{AccelerationEstimator, CountsPerTickSquared, Skip, VelocityEstimator};
 
@@ -39,7 +39,7 @@ pub trait Need: Copy + 'static {
     fn map<T, R>(part: Self::Of<T>, f: impl FnOnce(T) -> R) -> Self::Of<R>;
     /// Copies the part.
     fn copy<T: Clone>(part: &Self::Of<T>) -> Self::Of<T>;
-    /// Whether two parts are equal; two absent parts are.
+    /// Whether two parts are equal. Two absent parts are equal.
     fn same<T: PartialEq>(a: &Self::Of<T>, b: &Self::Of<T>) -> bool;
     /// Applies `f` to two parts of one need, if they are present.
     fn zip<T, U, R>(a: Self::Of<T>, b: Self::Of<U>, f: impl FnOnce(T, U) -> R) -> Self::Of<R>;

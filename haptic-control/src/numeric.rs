@@ -36,7 +36,7 @@ pub(crate) const fn multiply(x: [f64; 3], y: [f64; 3]) -> [f64; 5] {
     z
 }
 
-/// Solves `m x = y` by elimination with partial pivoting; `None` if there is no one solution.
+/// Solves `m x = y` by elimination with partial pivoting; `None` if the solution is not unique.
 pub(crate) const fn solve(mut m: [[f64; 4]; 4], mut y: [f64; 4]) -> Option<[f64; 4]> {
     let mut column = 0;
     while column < 4 {

@@ -63,9 +63,9 @@ impl AngleScale {
     }
 }
 
-/// Fastest change of the large motor's current, A/s: full scale in 5 ms.
+/// Largest slope of the large motor's current, A/s: full scale in 5 ms.
 const LARGE_SLEW: f64 = 1200.0;
-/// Fastest change of the small motor's current, A/s: 300 Hz at 0.3 A passes.
+/// Largest slope of the small motor's current, A/s: above that of 300 Hz at 0.3 A.
 const SMALL_SLEW: f64 = 600.0;
 
 impl Rig {

@@ -11,23 +11,24 @@ use crate::units::RadPerS;
 /// u = A ω_f / B(1) + c          S c = R (B ω_f / B(1) - ω)
 /// ```
 /// In the printed form, T is a small difference of large coefficients (at 10 kHz its sum is 10⁻⁶ of
-/// them), below the resolution of f32. In this form every small quantity is a difference of signals.
-/// `A` is applied as `1 - e^(-T/τm) z⁻¹ = (1 - z⁻¹) + (1 - e^(-T/τm)) z⁻¹`. The integrator of S is
-/// exact as `c₁ - s1 (c₁ - c₂)`, and the rounding error of a sum is added to the next sum: at 11.6 kHz
-/// the integrator changes by 10⁻⁶ A per rad/s and tick, less than the resolution of an f32 at 1 A.
+/// them), below the resolution of f32. In this form every small quantity is a difference of
+/// signals. `A` is applied as `1 - e^(-T/τm) z⁻¹ = (1 - z⁻¹) + (1 - e^(-T/τm)) z⁻¹`. The integrator
+/// of S is exact as `c₁ - s1 (c₁ - c₂)`, and the rounding error of a sum is added to the next sum:
+/// at 11.6 kHz the integrator changes by 10⁻⁶ A per rad/s and tick, less than the resolution of an
+/// f32 at 1 A.
 ///
 /// Anti-windup: with `d` the applied current minus the commanded current, the regulator is
 /// `S c = R (B ω_f / B(1) - ω) + (Q - S) d`, which is `Q c = R (..) + (Q - S) (c + d)` with both
-/// poles of Q at the regulation bandwidth. A limit that lasts makes the regulator follow the limited
-/// current. A limit of a few ticks, as a slew limit, hardly changes the regulator. (With Q = 1 the
-/// regulator would integrate the current that a slew limit removes, and S, whose second pole is close
-/// to 1 at high rates, would extend it to a ramp: a step of the commanded velocity would first move
-/// the motor in the opposite direction.) Current in A, velocities in rad/s.
+/// poles of Q at the regulation bandwidth. A limit that lasts makes the regulator follow the
+/// limited current. A limit of a few ticks, as a slew limit, hardly changes the regulator. (With Q
+/// = 1 the regulator would integrate the current that a slew limit removes, and S, whose second
+/// pole is close to 1 at high rates, would extend it to a ramp: a step of the commanded velocity
+/// would first move the motor in the opposite direction.) Current in A, velocities in rad/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rst {
     r: [f32; 3],
     s1: f32,
-    /// B / B(1): weights of one and two ticks of delay.
+    /// B / B(1): weights of the values one and two ticks ago.
     share: [f32; 2],
     /// 1 - e^(-T/τm).
     mechanical_gain: f32,
@@ -132,7 +133,7 @@ impl RstState {
         RadPerS(self.wanted[0])
     }
 
-    /// Takes the current that was applied after all limits, A.
+    /// Updates the anti-windup by the current that was applied after all limits, A.
     pub fn limited(&mut self, current: f32) {
         self.cut[0] = current - (self.forward + self.regulated[0]);
     }

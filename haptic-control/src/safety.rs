@@ -14,8 +14,8 @@ use crate::stop::Stop;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum Mode {
-    /// Amplifiers disabled, no fault. The cause is [`Stop::CommandTimeout`] if a silence disarmed the
-    /// device, otherwise [`Stop::None`].
+    /// Amplifiers disabled, no fault. The cause is [`Stop::CommandTimeout`] if a silence disarmed
+    /// the device, otherwise [`Stop::None`].
     #[default]
     Boot = 0,
     /// Amplifiers enabled, no scene.
@@ -65,7 +65,7 @@ impl Mode {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Request {
-    /// Enable the amplifiers; the only way out of safe into armed.
+    /// Enable the amplifiers. Only this request changes the mode from safe to armed.
     Arm,
     /// Disable the amplifiers and clear the cause.
     Disarm,
@@ -132,12 +132,14 @@ pub struct Order {
 pub struct Safety {
     /// Time after enabling the amplifiers in which no current is commanded.
     pub settle: u32,
-    /// Longest silence while running, after which the scene goes off; `None` waits for ever.
+    /// Longest time without a command while running, after which the scene is switched off; `None`:
+    /// no limit.
     pub silence: Option<u32>,
-    /// Longest silence while armed, after which the amplifiers are disabled; `None` waits for
-    /// ever.
+    /// Longest time without a command while armed, after which the amplifiers are disabled; `None`:
+    /// no limit.
     pub disarm: Option<u32>,
-    /// Missed ticks that stop the device: this many at once, or more than one in 16 for long.
+    /// Number of missed ticks that stops the device if they are consecutive. A share of missed
+    /// ticks above 1 in 16 stops the device after some time.
     pub missed: u32,
     /// Number of scenes.
     pub scenes: u8,
@@ -149,9 +151,9 @@ pub struct SafetyState {
     mode: Mode,
     stop: Stop,
     silent: u32,
-    /// Ticks missed, times 16, less one for each tick that came.
+    /// Number of missed ticks times 16, less the number of ticks on time, at least 0.
     debt: u32,
-    /// Ticks left of settling.
+    /// Remaining ticks of settling.
     settling: u32,
     /// The scene to select when the device is armed.
     chosen: u8,
@@ -178,7 +180,7 @@ const RESTART: Order = Order {
     select: None,
 };
 
-/// Weight of a missed tick against ticks on time.
+/// Number of ticks on time that offset one missed tick.
 const MISSED_WEIGHT: u32 = 16;
 
 impl Safety {
@@ -238,7 +240,8 @@ impl Safety {
     }
 
     fn arm(&self, state: &mut SafetyState, findings: &Findings) -> Order {
-        // Arming clears what the monitor latched and the missed ticks. Present faults refuse it.
+        // Arming clears the cause that the monitor latched and the missed ticks. A present fault
+        // refuses it.
         state.debt = 0;
         let now = Findings {
             monitor: None,
@@ -276,7 +279,7 @@ impl Safety {
         }
     }
 
-    /// The end of settling: everything begins at rest here.
+    /// The end of settling. Controller and monitor begin at rest here.
     fn settled(state: &mut SafetyState) -> Order {
         let scene = core::mem::take(&mut state.chosen);
         let select = (scene != 0).then_some(scene);

@@ -1,6 +1,8 @@
-//! Virtual environments: the torque that the handle should feel, and what is needed to compute it.
+//! Virtual environments: the torque on the handle, and the quantities that are needed to compute
+//! it.
 //!
-//! This file lists the scenes: a module, an export and a row of [`scenes!`](crate::scenes!) each.
+//! This file lists the scenes. Each has a module, an export and a row of
+//! [`scenes!`](crate::scenes!).
 
 mod catalogue;
 mod detents;
@@ -21,7 +23,7 @@ mod wall;
 
 pub use catalogue::{AnyScene, Needs, Role, SceneFacts, SceneKind, SimulatedHand};
 pub use detents::Detents;
-pub use environment::{Handle, Scene, Seen};
+pub use environment::{Handle, HandleFor, Scene};
 pub use excite::{Excite, ExciteState};
 pub use free_air::FreeAir;
 pub use friction::Friction;

@@ -11,20 +11,21 @@ use crate::units::{NewtonMetres, RadPerS};
 
 /// The continuous stage: the large motor behind the coupler (fig. 3 of the paper).
 ///
-/// The torque on the handle is `b (ω_L - ω_S)`. A commanded torque therefore is a commanded velocity
-/// `ω_L = ω_S + torque / b`, which an [`Rst`] compensator tracks. The commanded velocity is limited to
-/// 85 % of the speed at which [`Monitor::new`](crate::Monitor::new) stops the large motor; the
-/// transient stage renders the missing torque. Two terms are fed forward: Coulomb friction in the
-/// direction of the commanded velocity, and the pull of the coupler on the large motor, `-b ω_S`.
+/// The torque on the handle is `b (ω_L - ω_S)`. A commanded torque therefore is a commanded
+/// velocity `ω_L = ω_S + torque / b`, which an [`Rst`] compensator tracks. The commanded velocity
+/// is limited to 85 % of the speed at which [`Monitor::new`](crate::Monitor::new) stops the large
+/// motor; the transient stage renders the missing torque. Two terms are fed forward: Coulomb
+/// friction in the direction of the commanded velocity, and the pull of the coupler on the large
+/// motor, `-b ω_S`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContinuousStage {
     rst: Rst,
     limits: CurrentLimits,
     rad_per_s_per_nm: f32,
     nm_per_rad_per_s: f32,
-    /// Fed forward for the handle's velocity, A per rad/s.
+    /// Current fed forward per velocity of the handle, A per rad/s.
     damping: f32,
-    /// Fed forward for friction, A.
+    /// Current fed forward for friction, A.
     friction: f32,
     /// Inverse of the velocity over which the friction is faded in, 1 / (rad/s).
     per_fade: f32,
@@ -53,8 +54,8 @@ const LARGEST_WANTED: f32 = (0.85 * LARGE_OVERSPEED) as f32;
 /// because its direction is uncertain, rad/s.
 const FADE: f64 = 0.5;
 
-/// Velocity of the handle below which the friction that is fed forward is reduced, rad/s. It is lower
-/// than that of the large motor, because the handle's encoder is finer.
+/// Velocity of the handle below which the friction that is fed forward is reduced, rad/s. It is
+/// lower than that of the large motor, because the handle's encoder is finer.
 const HANDLE_FADE: f64 = 0.12;
 
 /// Part of the small motor's friction that is fed forward. With all of it, a torque constant 20 %
@@ -66,8 +67,8 @@ const FRICTION_PART: f64 = 0.8;
 const LEAST_DAMPING: f64 = 0.6;
 const LARGEST_CONSTANT: f64 = 1.2;
 
-/// Part of the measured slip's torque that the small motor compensates. A larger part would drive the
-/// handle, if the small motor is stronger and the coupler weaker than in the description.
+/// Part of the measured slip's torque that the small motor compensates. A larger part would drive
+/// the handle, if the small motor is stronger and the coupler weaker than in the description.
 const MEASURED_PART: f64 = LEAST_DAMPING / LARGEST_CONSTANT;
 const EXPECTED_PART: f32 = (1.0 - MEASURED_PART) as f32;
 
@@ -151,9 +152,10 @@ impl ContinuousStage {
 
 /// The transient stage: the small motor on the handle.
 ///
-/// With a continuous stage it renders the torque that the coupler is assumed not to transmit, without
-/// delay (see [`ContinuousStage::coupled`]). Alone it renders the whole torque. Four fifths of its own
-/// Coulomb friction are fed forward in the direction of the handle's velocity, if that is estimated.
+/// With a continuous stage it renders the torque that the coupler is assumed not to transmit,
+/// without delay (see [`ContinuousStage::coupled`]). Alone it renders the whole torque. Four fifths
+/// of its own Coulomb friction are fed forward in the direction of the handle's velocity, if that
+/// is estimated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransientStage {
     limits: CurrentLimits,

@@ -44,7 +44,7 @@ stops! {
     LargeOverspeed = 2, "large-overspeed";
     /// A counter changed by more than any motion can cause in a tick.
     Jump = 3, "jump";
-    /// The large motor's current was high for long, and its encoder did not move.
+    /// The large motor's current was high for some time, and its encoder did not move.
     Stall = 4, "not-moving";
     /// An amplifier reports a fault.
     AmplifierFault = 5, "amplifier-fault";

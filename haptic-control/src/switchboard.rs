@@ -1,4 +1,4 @@
-//! A controller of all scenes, one of which is on.
+//! A controller of all scenes, one of which is active.
 
 use estimator_core::{AccelerationEstimator, Amps, Count, Hertz, Sample, VelocityEstimator};
 
@@ -13,21 +13,21 @@ use crate::units::{RadPerS, Radians};
 
 macro_rules! active_scene {
     ($($number:literal, $name:literal, $scene:ident, $facts:tt;)+) => {
-        /// The scene that is on, with its state.
+        /// The active scene and its state.
         #[derive(Clone)]
         enum Active {
             $($scene($scene, <$scene as Scene>::State),)+
         }
 
         impl Active {
-            /// `scene` from its start, when the handle is at `angle`.
+            /// `scene` with its initial state, for a handle at `angle`.
             fn start(scene: AnyScene, angle: Radians) -> Self {
                 match scene {
                     $(AnyScene::$scene(scene) => Self::$scene(scene, scene.start(angle)),)+
                 }
             }
 
-            /// Changes the parameters and keeps the state; `false` if another scene is on.
+            /// Changes the parameters and keeps the state; `false` if another scene is active.
             fn retune(&mut self, tuned: AnyScene) -> bool {
                 match (self, tuned) {
                     $((Self::$scene(scene, _), AnyScene::$scene(tuned)) => *scene = tuned,)+
@@ -42,7 +42,7 @@ macro_rules! active_scene {
             L: VelocityEstimator,
             H: AccelerationEstimator,
         {
-            /// One tick of the scene that is on.
+            /// One tick of the active scene.
             fn run_active(
                 &self,
                 active: &mut Active,
@@ -65,9 +65,9 @@ scenes!(active_scene);
 /// scene needs.
 ///
 /// The scene changes between two ticks. The difference of the currents before and after the change
-/// is added to the new currents and fades with a time constant of 20 ms, so that the torque does not
-/// jump. An estimator that both scenes need continues; one that the scene before did not need starts
-/// at rest.
+/// is added to the new currents and fades with a time constant of 20 ms, so that the torque does
+/// not jump. An estimator that both scenes need continues; one that the scene before did not need
+/// starts at rest.
 #[derive(Clone, Copy, Debug)]
 pub struct Switchboard<L, H> {
     large: L,
@@ -85,7 +85,8 @@ pub struct SwitchboardState<L: VelocityEstimator, H: VelocityEstimator> {
     origin: Count,
     /// Set by a swap until the next tick.
     swapped: bool,
-    /// Currents that are added, of the large and the small motor, A.
+    /// Currents that are added to those of the large and the small motor after a change of scenes,
+    /// A.
     added: [f32; 2],
     applied: Currents,
 }
@@ -111,7 +112,7 @@ impl<L: VelocityEstimator, H: VelocityEstimator> SwitchboardState<L, H> {
         &self.shared.large
     }
 
-    /// State of the large motor's estimator, to choose among estimators.
+    /// State of the large motor's estimator, to change the choice among several estimators.
     pub const fn large_mut(&mut self) -> &mut L::State {
         &mut self.shared.large
     }
@@ -138,7 +139,7 @@ where
         }
     }
 
-    /// State at the first sample, with [`Off`]; angles count from there.
+    /// State at the first sample, with the scene [`Off`]. Angles are relative to this sample.
     pub fn start(&self, first: &Sample) -> SwitchboardState<L, H> {
         SwitchboardState {
             active: Active::Off(Off, ()),
@@ -156,7 +157,8 @@ where
         }
     }
 
-    /// Starts again at this sample, as at the first. The choice among estimators stays.
+    /// Restarts at this sample, as at the first one. The choice among several estimators does not
+    /// change.
     pub fn restart(&self, state: &mut SwitchboardState<L, H>, first: &Sample) {
         let mut fresh = self.start(first);
         self.large.restart(&mut state.shared.large, first);
@@ -171,8 +173,8 @@ where
         state.swapped = true;
     }
 
-    /// Changes the parameters of the scene that is on, before the next tick. The scene's state
-    /// continues. If another scene is on, nothing changes.
+    /// Changes the parameters of the active scene before the next tick. The state of the scene
+    /// continues. If another scene is active, nothing changes.
     pub fn retune(&self, state: &mut SwitchboardState<L, H>, scene: AnyScene) {
         state.swapped |= state.active.retune(scene);
     }
@@ -185,7 +187,8 @@ where
         action
     }
 
-    /// The currents plus the rest of the difference at the last change of scenes, within the limits.
+    /// The currents plus the rest of the difference at the last change of scenes, within the
+    /// limits.
     fn faded(&self, state: &mut SwitchboardState<L, H>, wanted: Currents) -> Currents {
         let wanted = [wanted.large.get(), wanted.small.get()];
         let before = [state.applied.large.get(), state.applied.small.get()];

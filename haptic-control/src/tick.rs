@@ -12,8 +12,8 @@ use crate::units::{NewtonMetres, RadPerS, RadPerS2, Radians};
 /// The need for the large motor or for the handle's acceleration.
 type ForOthers<S> = <<S as Scene>::Continuous as Need>::Or<<S as Scene>::Acceleration>;
 
-/// Whether the handle's velocity is estimated: for the scene, for the slip of the coupler or with the
-/// acceleration.
+/// Whether the handle's velocity is estimated: for the scene, for the slip of the coupler or with
+/// the acceleration.
 pub(crate) type HandleNeed<S> = <<S as Scene>::Velocity as Need>::Or<ForOthers<S>>;
 
 /// An estimator, its state and its scale.
@@ -83,7 +83,7 @@ where
 {
     let mut acceleration = S::Acceleration::make(RadPerS2::default);
     let velocity = HandleNeed::<S>::map(parts.handle, |mut handle| {
-        // An estimator reads the large encoder's field of its sample: the handle's count goes there.
+        // An estimator reads the field `count` of a sample: here the count of the handle's encoder.
         let velocity = handle.velocity(&Sample::new(sample.coupled));
         let sensed = S::Acceleration::acceleration(handle.estimator, handle.state);
         acceleration = S::Acceleration::zip(sensed, parts.acceleration, |a, scale| scale.of(a));

@@ -1,4 +1,4 @@
-//! Parameters of scenes: names, quantities, bounds, and how one of them is changed.
+//! Parameters of scenes: names, quantities, bounds and changes.
 
 use core::ops::RangeInclusive;
 
@@ -30,7 +30,7 @@ pub struct Bounds {
     pub angle: f32,
     /// Largest torque and amplitude, N·m.
     pub torque: f32,
-    /// The handle's own inertia, kg·m², half of which may be added or taken away.
+    /// The handle's own inertia, kg·m². A virtual inertia has at most half of its magnitude.
     pub inertia: f32,
     /// Control rate.
     pub rate: Hertz,
@@ -53,7 +53,7 @@ pub enum Quantity {
     DetentsPerTurn,
     /// Frequency of a vibration.
     Frequency,
-    /// Inertia that is added to the handle's own or taken away.
+    /// Inertia that is added to the handle's own; negative if it is subtracted.
     Inertia,
 }
 
@@ -72,8 +72,8 @@ impl Quantity {
         }
     }
 
-    /// Smallest and largest value. A scene may refuse values in this range, for what they amount to
-    /// together with its other parameters.
+    /// Smallest and largest value. A scene may refuse a value in this range because of its other
+    /// parameters.
     #[must_use]
     pub fn range(self, bounds: &Bounds) -> RangeInclusive<f32> {
         let (least, most) = match self {
@@ -118,7 +118,7 @@ pub struct Parameter {
     pub quantity: Quantity,
 }
 
-/// Why a parameter was not set.
+/// The reason for which a parameter was not set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
     /// The value is not a finite number.
@@ -159,8 +159,8 @@ pub trait Tunable: Scene + Copy {
     fn with(&self, parameter: u8, value: f32, bounds: &Bounds) -> Option<Self>;
 }
 
-/// Implements [`Tunable`]: a line per parameter with its name, variable, quantity and value, and the
-/// scene of these variables.
+/// Implements [`Tunable`]: a line per parameter with its name, variable, quantity and value, and
+/// the scene of these variables.
 macro_rules! parameters {
     ($scene:ident) => {
         parameters! { $scene, |scene, bounds, rate| {} => Ok::<Self, ()>(*scene) }

@@ -22,7 +22,8 @@ fn open_loop(polynomials: &[[f64; 3]; 4], angle: f64, delay: f64) -> (f64, f64) 
     (size * phase.cos(), size * phase.sin())
 }
 
-/// The definition on the grid of the design, for loops of any shape, stable or not.
+/// Compares the margins with their definition on the same grid of frequencies, for stable and
+/// unstable loops.
 #[test]
 fn margins_agree_with_their_definition_on_a_grid() {
     let mut seed = 1_u32;
@@ -72,7 +73,7 @@ fn margins_agree_with_their_definition_on_a_grid() {
             .iter()
             .map(|re| -1.0 / re)
             .fold(f64::INFINITY, f64::min);
-        // Where rounding decides whether there is a crossing, at the Nyquist frequency.
+        // At the Nyquist frequency rounding decides whether there is a crossing.
         assert!(
             found.gain == gain || near(found.gain, gain),
             "{found:?} {gain}"
@@ -98,7 +99,7 @@ fn margins_agree_with_their_definition_on_a_grid() {
         );
         assert!(near(found.phase_deg(), phase.to_degrees()), "{found:?}");
     }
-    // The loops drawn are of every kind.
+    // The random loops include stable and unstable ones, with and without crossings.
     assert!(
         never > 20 && never < 280 && several > 20,
         "{never} {several}"

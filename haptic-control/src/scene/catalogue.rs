@@ -29,7 +29,7 @@ pub enum SimulatedHand {
     FreeMotion,
     /// Moves the handle into the angle of the wall and back.
     WallPress,
-    /// Keeps the handle where it is, apart from tremor.
+    /// Holds the handle at one angle, apart from tremor.
     HoldStill,
 }
 
@@ -68,7 +68,7 @@ pub struct SceneFacts {
     pub number: u8,
     /// Name on the command line and in tables.
     pub name: &'static str,
-    /// One line that says what the scene is.
+    /// Description of the scene, in one line.
     pub summary: &'static str,
     /// The torque on the handle, as a formula.
     pub torque: &'static str,
@@ -92,7 +92,7 @@ macro_rules! scene_types {
             usual: |$device:ident, $rate:ident| $usual:expr
         };
     )+) => {
-        /// A scene of the catalogue, without parameters.
+        /// The kind of a scene: an entry of the catalogue, without values of parameters.
         ///
         /// ```
         /// use haptic_control::SceneKind;
@@ -151,7 +151,7 @@ macro_rules! scene_types {
             }
         }
 
-        /// A scene of the catalogue, with its parameters.
+        /// A scene of the catalogue, with values of its parameters.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum AnyScene {
             $(

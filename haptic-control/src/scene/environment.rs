@@ -13,16 +13,16 @@ pub struct Handle<V, A = ()> {
     pub acceleration: A,
 }
 
-/// The handle's motion as the scene `S` reads it.
-pub type Seen<S> = Handle<
+/// The handle's motion with the quantities that the scene `S` reads.
+pub type HandleFor<S> = Handle<
     <<S as Scene>::Velocity as Need>::Of<RadPerS>,
     <<S as Scene>::Acceleration as Need>::Of<RadPerS2>,
 >;
 
 /// A virtual environment.
 ///
-/// Its associated types say what it needs, see [`Need`]. A part that is not needed has neither
-/// state nor code, and the scene cannot read a velocity that it did not ask for.
+/// The associated types state the parts that the scene needs, see [`Need`]. A part that is not
+/// needed has neither state nor code. The scene cannot read a quantity that is not among its needs.
 pub trait Scene {
     /// Whether the scene reads the handle's velocity.
     type Velocity: Need;
@@ -39,13 +39,12 @@ pub trait Scene {
     fn start(&self, angle: Radians) -> Self::State;
 
     /// One tick: the torque that the handle should feel.
-    fn torque(&self, state: &mut Self::State, handle: &Seen<Self>) -> NewtonMetres
+    fn torque(&self, state: &mut Self::State, handle: &HandleFor<Self>) -> NewtonMetres
     where
         Self: Sized;
 
-    /// Currents that the scene commands directly, past both stages, after [`Scene::torque`].
-    ///
-    /// Only an excitation commands currents: it renders no torque.
+    /// Currents that the scene commands directly, without both stages, after [`Scene::torque`].
+    /// Only an excitation commands currents; it renders no torque.
     #[inline]
     fn open_loop(_: &Self::State) -> Option<Currents> {
         None

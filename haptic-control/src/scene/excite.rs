@@ -13,22 +13,22 @@ use pattern::{LARGEST, SECTIONS, Segment};
 
 /// Excitation to identify the device from a recording: a fixed pattern of currents, open loop.
 ///
-/// The first section has short strokes of both motors to and fro, in which a free handle stays within
-/// its bounds. The other sections are for a clamped handle: steps between levels and slow sweeps of
-/// the large motor. Each section runs four times with alternating sign, 16 s in all. The pattern ends
-/// at zero current and does not repeat. Levels change at whole milliseconds, so that a recording at
-/// 1 kHz contains the exact currents.
+/// The first section has short strokes of both motors, in which a free handle stays within its
+/// bounds. The other sections are for a clamped handle: steps between levels and slow sweeps of
+/// the large motor. Each section runs four times with alternating sign, 16 s in all. The pattern
+/// ends at zero current and does not repeat. Levels change at whole milliseconds, so that a
+/// recording at 1 kHz contains the exact currents.
 ///
 /// The pattern bounds the currents (0.9 A large, 0.15 A small). The speed of the large motor is
-/// bounded by its largest current against the coupler of a held handle; the constructor checks it. The
-/// excitation ends when the handle is more than 2 rad from its angle at the start, or faster than
-/// 25 rad/s over a millisecond.
+/// bounded by its largest current against the coupler of a held handle; the constructor checks it.
+/// The excitation ends when the handle is more than 2 rad from its angle at the start, or faster
+/// than 25 rad/s over a millisecond.
 ///
 /// ```
 /// use estimator_core::Hertz;
 /// use haptic_control::{DualStage, Excite};
 /// assert!(Excite::new(&DualStage::DEFAULT, Hertz(10e3)).is_ok());
-/// // Half the damping: 0.9 A could reach 88 rad/s.
+/// // With half the damping, 0.9 A could drive the large motor at 88 rad/s.
 /// let weak = DualStage { damping: 0.48e-3, ..DualStage::DEFAULT };
 /// assert!(Excite::new(&weak, Hertz(10e3)).is_err());
 /// ```
@@ -69,8 +69,8 @@ impl Excite {
     /// The excitation of `device` by a controller that runs at `rate`.
     ///
     /// # Errors
-    /// [`DesignError::Scene`] unless the rate is 1 to 100 kHz, the device's current limits allow the
-    /// pattern, and the pattern's largest current cannot drive the large motor beyond 60 rad/s.
+    /// [`DesignError::Scene`] unless the rate is 1 to 100 kHz, the device's current limits allow
+    /// the pattern, and the pattern's largest current cannot drive the large motor beyond 60 rad/s.
     pub const fn new(device: &DualStage, rate: Hertz) -> Result<Self, DesignError> {
         let [large, small] = [LARGEST[0] as f64 / 1000.0, LARGEST[1] as f64 / 1000.0];
         let speed = device.large.torque_constant * large / device.damping;

@@ -10,9 +10,9 @@ use crate::units::{NewtonMetres, RadPerS, Radians};
 /// Coulomb friction: a constant torque T against the motion, with a linear transition of slope B
 /// around zero velocity, `torque = -max(-T, min(B ω, T))`.
 ///
-/// T in N·m, B in N·m·s/rad, both at least zero. The transition ends at the velocity `T / B`. Below it
-/// the scene is a [`Viscous`](super::Viscous) field of damping B, so B has the bound of a damping.
-/// There is no stiction: a constant torque below T moves the handle at its ratio to B.
+/// T in N·m, B in N·m·s/rad, both at least zero. The transition ends at the velocity `T / B`. Below
+/// it the scene is a [`Viscous`](super::Viscous) field of damping B, so B has the bound of a
+/// damping. There is no stiction: a constant torque below T moves the handle at its ratio to B.
 ///
 /// ```
 /// use haptic_control::{Friction, Handle, RadPerS, Radians, Scene};
@@ -84,7 +84,7 @@ mod tests {
         f64::from(scene.torque(&mut (), &handle).0)
     }
 
-    /// Against Coulomb's law beyond the transition and a damper inside it, both in f64.
+    /// The references, in f64, are Coulomb's law beyond the transition and a damper inside it.
     #[test]
     fn torque_is_coulomb_friction_beyond_the_transition_and_viscous_inside() {
         for (most, damping) in [(4e-3, 3e-3), (8e-3, 0.5e-3), (1e-3, 5e-3)] {
@@ -104,7 +104,8 @@ mod tests {
         }
     }
 
-    /// A passive element: it takes power at every velocity, and never more than its damping does.
+    /// The scene is passive: its power is negative at every velocity. The magnitude of its power is
+    /// at most that of its damping.
     #[test]
     fn friction_dissipates_power_with_a_slope_of_at_most_the_damping() {
         let scene = Friction::new(4e-3, 3e-3).unwrap();

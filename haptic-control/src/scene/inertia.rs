@@ -8,16 +8,17 @@ use crate::units::{NewtonMetres, RadPerS2};
 
 /// Virtual inertia: `torque = -M α`, with the handle's acceleration α.
 ///
-/// A negative M takes a part of the handle's own inertia away. The torque acts with a delay, so an
-/// inertia larger than the handle's own would be unstable: |M| is at most half of it.
+/// A negative M reduces the inertia that the hand feels. The torque acts with a delay, so an |M|
+/// above the handle's own inertia would be unstable. |M| is at most half of the handle's own
+/// inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inertia {
     inertia: f32,
 }
 
 impl Inertia {
-    /// Largest ratio of |M| to the handle's own inertia: with a torque constant 20 % high and an inertia
-    /// 30 % low the loop's gain stays below 1 at every frequency, if the estimator's does.
+    /// Largest ratio of |M| to the handle's own inertia: with a torque constant 20 % high and an
+    /// inertia 30 % low the loop's gain stays below 1 at every frequency, if the estimator's does.
     pub const LARGEST_PART: f32 = 0.5;
 
     /// An inertia M, kg·m², on a handle whose own is `handle`.

@@ -2,8 +2,8 @@
 
 use estimator_core::{Count, Hertz, Sample, preset};
 use haptic_control::{
-    Controller, DesignError, Detents, FreeAir, Handle, Hold, Inertia, Off, RadPerS, RadPerS2,
-    Radians, Scene, Seen, Senses, SpringDamper, Texture, Torque, Viscous, Wall,
+    Controller, DesignError, Detents, FreeAir, Handle, HandleFor, Hold, Inertia, Off, RadPerS,
+    RadPerS2, Radians, Scene, Senses, SpringDamper, Texture, Torque, Viscous, Wall,
 };
 
 use crate::bench::{HANDLE, LARGE, RATE, RIG, motion};
@@ -107,7 +107,7 @@ fn near(value: f32, wanted: f64) {
 }
 
 /// The torque of a scene without a state, for a handle as it says.
-fn of<S: Scene<State = ()>>(scene: &S, handle: &Seen<S>) -> f32 {
+fn of<S: Scene<State = ()>>(scene: &S, handle: &HandleFor<S>) -> f32 {
     scene.start(Radians(0.0));
     scene.torque(&mut (), handle).0
 }

@@ -11,7 +11,7 @@ pub(super) struct Segment {
     pub(super) small: i16,
     /// Number of levels.
     pub(super) steps: u8,
-    /// Duration of each, ms.
+    /// Duration of each level, ms.
     pub(super) hold_ms: u16,
 }
 
@@ -64,7 +64,7 @@ const fn larger(a: i16, b: i16) -> i16 {
     if a > b { a } else { b }
 }
 
-/// Strokes to and fro at a few currents, after which a free handle is back near its start.
+/// Strokes in both directions at a few currents. A free handle ends near its start.
 const STROKES: [Segment; 49] = [
     Segment::hold(0, 0, 40),
     Segment::hold(300, 0, 18),
