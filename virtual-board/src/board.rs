@@ -43,7 +43,7 @@ impl Part {
 }
 
 impl Part {
-    /// Starts a dead crystal at this frequency.
+    /// Starts a crystal that did not run, at this frequency.
     pub(crate) fn start_crystal(&mut self, hz: u64) {
         self.stm32.rcc.attach_crystals(hz, 0);
         let (_, registers) = self.stm32.clocks();
@@ -100,8 +100,8 @@ pub struct ControllerBoard {
 impl Store for ControllerBoard {}
 
 impl ControllerBoard {
-    /// A board whose crystal oscillates at `crystal_hz` (0: it is dead) and whose core retires
-    /// `instructions_per_second` of virtual time.
+    /// A board whose crystal oscillates at `crystal_hz` (0: the crystal does not run) and whose
+    /// core retires `instructions_per_second` of virtual time.
     ///
     /// # Errors
     /// The emulator's error on a microcontroller that cannot be assembled.

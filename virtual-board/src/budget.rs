@@ -8,7 +8,7 @@ use terminal::failure::Failure;
 
 use crate::board::CORE_HZ;
 use crate::image::Image;
-use crate::run::{Outcome, RATE_HZ, Setup, Tick, on_board};
+use crate::run::{ControlTick, Outcome, RATE_HZ, Setup, on_board};
 use crate::score::Range;
 
 /// Share of the processor's cycles that the control task may use.
@@ -20,8 +20,8 @@ const PERIOD: f64 = CORE_HZ as f64 / RATE_HZ;
 /// Time for boot, arming and settling, s.
 const SETTLED_S: f64 = 0.4;
 
-/// Ticks whose cycles are estimated: the longest by instructions, and some spread over the run, in
-/// rows as long as from one telemetry frame to the next.
+/// Numbers of ticks whose cycles are estimated: the longest by instructions, and groups of
+/// consecutive ticks spread over the run, each as long as the time between two telemetry frames.
 const LONGEST: usize = 2;
 const ROWS: usize = 2;
 const ROW: usize = 10;
@@ -33,8 +33,8 @@ pub struct Budget {
     pub instructions: Range,
     /// Estimated cycles, from the interrupt to the interrupted instruction: mean.
     pub cycles_mean: f64,
-    /// Largest number of estimated cycles of the followed ticks, which are the longest and some
-    /// others.
+    /// Largest number of estimated cycles, over the ticks that were followed instruction by
+    /// instruction. These ticks include the longest ones.
     pub cycles_most: u32,
 }
 
@@ -45,8 +45,8 @@ pub fn highest_rate_hz(cycles: f64) -> f64 {
 }
 
 /// Ticks with both amplifiers enabled, after the first ones in a scene.
-fn settled(outcome: &Outcome) -> impl Iterator<Item = (usize, &Tick)> {
-    let late = |tick: &Tick| tick.at_ns as f64 * 1e-9 >= SETTLED_S;
+fn settled(outcome: &Outcome) -> impl Iterator<Item = (usize, &ControlTick)> {
+    let late = |tick: &ControlTick| tick.at_ns as f64 * 1e-9 >= SETTLED_S;
     let ticks = outcome.ticks.iter().enumerate();
     ticks.filter(move |(_, tick)| late(tick) && tick.enabled == [true; 2])
 }
@@ -54,8 +54,8 @@ fn settled(outcome: &Outcome) -> impl Iterator<Item = (usize, &Tick)> {
 /// Runs `setup` twice, the second time following the instructions of some ticks.
 ///
 /// # Errors
-/// As [`on_board`] and [`Outcome::check`]; one line if the amplifiers are never enabled long enough, or a tick cannot be
-/// followed.
+/// As [`on_board`] and [`Outcome::check`]; one line if the amplifiers are never enabled long
+/// enough, or a tick cannot be followed.
 pub fn measure(image: &Image, setup: &Setup) -> Result<Budget, Failure> {
     let first = on_board(image, setup, |_| ())?;
     first.check()?;

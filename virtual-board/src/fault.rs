@@ -13,8 +13,8 @@ pub enum Fault {
     Swapped,
     /// The last four of every 64 edges of the large motor's encoder are lost.
     LostCounts,
-    /// The large motor's amplifier reports a fault. It continues to drive, so that only the firmware
-    /// can stop it.
+    /// The large motor's amplifier reports a fault. It continues to drive, so that only the
+    /// firmware can stop it.
     AmplifierFault,
     /// The small motor's amplifier reports a fault and continues to drive.
     SmallAmplifierFault,
@@ -43,13 +43,13 @@ pub enum Fault {
     DeadCrystal,
     /// The crystal stops.
     CrystalFails,
-    /// Telemetry is not read any more.
+    /// The host stops reading telemetry.
     NobodyDrains,
-    /// Telemetry is not read for 300 ms.
+    /// The host does not read telemetry for 300 ms.
     DrainPause,
-    /// The command channel is kept full with garbage and occasional keep-alives.
+    /// The command channel is kept full of random bytes with occasional keep-alives.
     CommandFlood,
-    /// The supply voltage drops shortly: the brown-out detector resets the processor.
+    /// The supply voltage drops for a short time, and the brown-out detector resets the processor.
     BrownOut,
 }
 
@@ -65,7 +65,7 @@ const NAMES: [(Fault, &str, &str); 27] = [
     (
         Fault::Swapped,
         "swapped",
-        "large encoder's phases change places",
+        "large encoder's lines A and B exchanged",
     ),
     (
         Fault::LostCounts,
@@ -75,14 +75,18 @@ const NAMES: [(Fault, &str, &str); 27] = [
     (
         Fault::AmplifierFault,
         "amplifier-fault",
-        "large amplifier reports a fault and drives on",
+        "large amplifier reports a fault and continues to drive",
     ),
     (
         Fault::SmallAmplifierFault,
         "small-amplifier-fault",
-        "small amplifier reports a fault and drives on",
+        "small amplifier reports a fault and continues to drive",
     ),
-    (Fault::HungCore, "hung-core", "the core stops"),
+    (
+        Fault::HungCore,
+        "hung-core",
+        "the core stops until the watchdog resets it",
+    ),
     (
         Fault::Halt(1),
         "halt-1ms",
@@ -116,12 +120,12 @@ const NAMES: [(Fault, &str, &str); 27] = [
     (
         Fault::HungControl,
         "hung-control",
-        "the control task runs no more",
+        "the timer of the control tick stops",
     ),
     (
         Fault::HungIdle,
         "hung-low-priority",
-        "the task of lowest priority loops for ever",
+        "the task of lowest priority loops forever",
     ),
     (
         Fault::StarvedIdle,
@@ -131,17 +135,17 @@ const NAMES: [(Fault, &str, &str); 27] = [
     (
         Fault::SlowWatchdog,
         "slow-watchdog",
-        "watchdog's oscillator at 17 kHz from power-up on, whatever S",
+        "watchdog's oscillator at 17 kHz from power-up, for any S",
     ),
     (
         Fault::FastWatchdog,
         "fast-watchdog",
-        "watchdog's oscillator at 47 kHz from power-up on, whatever S",
+        "watchdog's oscillator at 47 kHz from power-up, for any S",
     ),
     (
         Fault::BusError,
         "bus-error",
-        "a read of the large counter fails",
+        "a read of the large counter causes a bus error",
     ),
     (
         Fault::Panic,
@@ -151,7 +155,7 @@ const NAMES: [(Fault, &str, &str); 27] = [
     (
         Fault::DeadCrystal,
         "dead-crystal",
-        "no crystal from power-up on, whatever S",
+        "no crystal from power-up, for any S",
     ),
     (
         Fault::CrystalFails,
@@ -161,17 +165,17 @@ const NAMES: [(Fault, &str, &str); 27] = [
     (
         Fault::NobodyDrains,
         "nobody-drains",
-        "nobody drains the telemetry",
+        "the host stops reading telemetry",
     ),
     (
         Fault::DrainPause,
         "drain-pause",
-        "nobody drains the telemetry for 300 ms",
+        "the host does not read telemetry for 300 ms",
     ),
     (
         Fault::CommandFlood,
         "command-flood",
-        "garbage fills the command channel",
+        "random bytes fill the command channel",
     ),
     (
         Fault::BrownOut,

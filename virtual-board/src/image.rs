@@ -29,9 +29,9 @@ pub struct Image {
     pub(crate) wait: u64,
     /// An instruction that branches to itself.
     pub(crate) for_ever: u64,
-    /// First instruction of what a failed assertion of the firmware ends in: a panic.
+    /// First instruction of the function that a failed assertion calls and that panics.
     pub(crate) panic: u64,
-    /// Memory that the stack may take: its lowest address and the one behind its highest.
+    /// Memory of the stack: lowest address, and the address after its end.
     pub(crate) stack: [u64; 2],
     /// Code and data.
     pub size: Size,
@@ -57,7 +57,7 @@ const IDLE: &str = "3app4idle";
 /// Part of the symbol of the function in which an emergency ends.
 const EMERGENCY: &str = "9emergency4stop";
 
-/// What a failed assertion of the firmware calls: it takes nothing and panics.
+/// The function that a failed assertion of the firmware calls. It has no argument and panics.
 const PANIC: &str = "_defmt_panic";
 
 /// Wait for interrupt.
@@ -89,8 +89,8 @@ impl Image {
     }
 
     /// As [`Self::build`], with environment variables: `SCENE` names the one scene of the image,
-    /// `DEVICE` and `PRESETS` the files that it is built for. Two builds must not run at once in one
-    /// process, because they write the same file.
+    /// `DEVICE` and `PRESETS` the files that it is built for. Two builds must not run at once in
+    /// one process, because they write the same file.
     ///
     /// # Errors
     /// As [`Self::build`].

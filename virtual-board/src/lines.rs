@@ -28,18 +28,18 @@ const PORTS: [Port; 4] = [
     Port(Timer::General(0), &pins::CAPTURE, LARGE),
 ];
 
-/// The lines of the encoders as they are driven.
+/// Levels of the encoders' lines.
 #[derive(Debug, Default)]
 pub(crate) struct Lines {
     /// Present counts of the shafts.
     counts: [u32; 3],
     /// Levels of stuck lines of the large encoder.
     pub(crate) stuck: [Option<bool>; 2],
-    /// Whether the large encoder's lines have changed places.
+    /// Whether the lines A and B of the large encoder are exchanged.
     pub(crate) swapped: bool,
-    /// Edges of the large encoder since some of them are lost.
+    /// Number of edges of the large encoder since the fault of lost edges began; `None` without it.
     pub(crate) lossy: Option<u32>,
-    /// Levels on the pins; `None` before the first since a restart.
+    /// Levels on the pins; `None` until a level is set after a restart.
     driven: [[Option<bool>; 2]; PORTS.len()],
     wired: [bool; PORTS.len()],
 }
@@ -52,31 +52,31 @@ impl Lines {
         }
     }
 
-    /// Levels of the large encoder's lines now.
+    /// Present levels of the large encoder's lines.
     pub(crate) fn now(&self) -> [bool; 2] {
         self.driven[LARGE].map(Option::unwrap_or_default)
     }
 
-    /// The processor has restarted: its timers know no levels.
+    /// Resets the levels after a restart of the processor, whose timers have lost them.
     pub(crate) fn restart(&mut self) {
         self.driven = Default::default();
         self.wired = Default::default();
     }
 
-    /// Looks whether the pins are the timers', and drives them if so.
-    pub(crate) fn look(&mut self, part: &mut Part, at: VirtualNanos) {
+    /// Finds the pins that the firmware has connected to timers, and sets their levels.
+    pub(crate) fn connect(&mut self, part: &mut Part, at: VirtualNanos) {
         for (n, Port(_, wires, encoder)) in PORTS.iter().enumerate() {
             self.wired[n] = pins::wired(part, *wires);
             self.drive(part, at, *encoder);
         }
     }
 
-    /// Whether somebody reads the reference encoder.
+    /// Whether the firmware reads the reference encoder.
     pub(crate) fn reads_reference(&self) -> bool {
         self.wired[REFERENCE]
     }
 
-    /// The encoder has reached `count`: its lines follow, unless the edge is lost.
+    /// Sets the lines of an encoder to the levels of `count`, unless the edge is lost.
     pub(crate) fn reach(
         &mut self,
         part: &mut Part,
@@ -93,12 +93,12 @@ impl Lines {
         self.drive(part, at, encoder);
     }
 
-    /// The reference encoder's count, kept up with while nobody reads it.
+    /// Stores the count of the reference encoder while the firmware does not read it.
     pub(crate) fn pass(&mut self, count: u32) {
         self.counts[REFERENCE] = count;
     }
 
-    /// Puts the levels of the encoder's count on its pins.
+    /// Sets the pins of an encoder to the levels of its lines.
     fn drive(&mut self, part: &mut Part, at: VirtualNanos, encoder: usize) {
         let wanted = self.wanted(encoder);
         for (n, &Port(timer, _, on_it)) in PORTS.iter().enumerate() {
@@ -126,7 +126,7 @@ impl Lines {
         }
     }
 
-    /// Levels that the encoder's lines should have, with what has happened to them.
+    /// Levels of an encoder's lines for its count, with the injected faults.
     fn wanted(&self, encoder: usize) -> [bool; 2] {
         let mut wanted = levels(self.counts[encoder]);
         if encoder == LARGE {

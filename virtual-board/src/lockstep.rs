@@ -1,5 +1,5 @@
-//! Board and plant in lockstep: the plant is one step of 10 us ahead of the processor, and its edges
-//! reach the pins at their times.
+//! Board and plant in lockstep: the plant is one step of 10 us ahead of the processor, and its
+//! edges reach the pins at their times.
 
 mod core_access;
 mod follow;
@@ -21,9 +21,9 @@ use crate::fault::Fault;
 use crate::image::Image;
 use crate::lines::Lines;
 use crate::pins;
-use crate::probe::{Probe, schedule};
+use crate::probe::{DebugProbe, schedule};
 use crate::quadrature::{Edge, Generator, LARGE};
-use crate::run::{Moment, RATE_HZ, Setup, Tick};
+use crate::run::{ControlTick, PlantState, RATE_HZ, Setup};
 use crate::stack::Stack;
 pub use core_access::CoreAccess;
 use core_access::CoreAccesses;
@@ -44,10 +44,10 @@ const STAMP_CLOCK: u64 = 0x4000_0024;
 
 /// Recorded signals and events of a run.
 #[derive(Debug, Default)]
-pub(crate) struct Seen {
-    pub(crate) ticks: Vec<Tick>,
+pub(crate) struct Recorded {
+    pub(crate) ticks: Vec<ControlTick>,
     pub(crate) first_counts: [Option<u16>; 2],
-    pub(crate) moments: Vec<Moment>,
+    pub(crate) plant_states: Vec<PlantState>,
     pub(crate) enables: Vec<(u64, [bool; 2])>,
     pub(crate) complaints: Vec<String>,
     pub(crate) unclosed: u32,
@@ -56,7 +56,7 @@ pub(crate) struct Seen {
 }
 
 pub(crate) struct Lockstep {
-    pub(crate) seen: Seen,
+    pub(crate) recorded: Recorded,
     bench: Bench,
     reference: Encoder,
     motion: Motion,
@@ -73,7 +73,7 @@ pub(crate) struct Lockstep {
     faults: VecDeque<(u64, Fault)>,
     /// Start of the crystal, ns, and its frequency; `None` if it has run from the beginning.
     crystal: Option<(u64, u64)>,
-    pub(crate) probe: Probe,
+    pub(crate) probe: DebugProbe,
     stack: Stack,
     pub(crate) accesses: CoreAccesses,
     entry: u64,
@@ -84,7 +84,7 @@ pub(crate) struct Lockstep {
     /// Whether the processor waits for an interrupt, or is about to.
     asleep: bool,
     /// The call of the control task that is running, and the instruction count at its start.
-    running: Option<(Tick, u64)>,
+    running: Option<(ControlTick, u64)>,
     follow: Follow,
     stalls: Stalls,
     /// Virtual time that an instruction takes, ns.
@@ -116,7 +116,7 @@ impl Lockstep {
             counts[LARGE] = 0;
         }
         Self {
-            seen: Seen::default(),
+            recorded: Recorded::default(),
             lines: Lines::at(counts),
             bench,
             reference,
@@ -131,7 +131,7 @@ impl Lockstep {
             faults: schedule(setup.faults.iter().copied()),
             crystal: (setup.crystal_from_s > 0.0)
                 .then_some(((setup.crystal_from_s * 1e9) as u64, setup.crystal_hz)),
-            probe: Probe::new(image.rtt, setup),
+            probe: DebugProbe::new(image.rtt, setup),
             stack: Stack(image.stack),
             accesses: CoreAccesses::new(&setup.accesses, Stack(image.stack)),
             entry: image.entry,
@@ -204,8 +204,8 @@ impl Driver<ControllerBoard> for Lockstep {
                     let value = Some(value as u16);
                     match &mut self.running {
                         Some((tick, _)) => tick.counts[encoder] = value,
-                        None if self.seen.ticks.is_empty() => {
-                            self.seen.first_counts[encoder] = value;
+                        None if self.recorded.ticks.is_empty() => {
+                            self.recorded.first_counts[encoder] = value;
                         }
                         None => {}
                     }
@@ -252,12 +252,12 @@ impl Driver<ControllerBoard> for Lockstep {
                 break;
             }
             if self.steps.is_multiple_of(STEPS_PER_LOOK) {
-                self.probe.look(now_ns, host);
-                self.lines.look(&mut board.part, stop.at);
+                self.probe.poll(now_ns, host);
+                self.lines.connect(&mut board.part, stop.at);
                 (self.progress)(now_ns as f64 * 1e-9);
             }
             if now_ns >= self.end_ns {
-                self.seen.stack = self.stack.used(host);
+                self.recorded.stack = self.stack.used(host);
                 return None;
             }
             if let Some((_, hz)) = self.crystal.take_if(|(from_ns, _)| *from_ns <= now_ns) {

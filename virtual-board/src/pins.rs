@@ -94,7 +94,7 @@ pub fn complaints(part: &mut Part) -> Vec<String> {
     let wires = LARGE.iter().chain(&SMALL).chain(&AMPLIFIERS);
     let wrong = wires.filter_map(|&(port, pin, wanted, what)| {
         let is = mode(part, port, pin);
-        (is != wanted).then(|| format!("P{port}{pin} ({what}) is {is:?}, not {wanted:?}"))
+        (is != wanted).then(|| format!("P{port}{pin} ({what}) is {is:?}; it must be {wanted:?}"))
     });
     wrong.collect()
 }
@@ -108,7 +108,7 @@ pub(crate) fn enabled(part: &mut Part) -> [bool; 2] {
     })
 }
 
-/// Puts a level on a pin of the amplifiers' port from outside.
+/// Sets the level of an input of the amplifiers' port.
 pub(crate) fn drive(part: &mut Part, at: VirtualNanos, pin: u8, level: bool) {
     let pin = Pin::new(pin).expect("below 16");
     part.stm32

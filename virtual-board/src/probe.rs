@@ -12,12 +12,12 @@ const KEEP_ALIVE_NS: u64 = 50_000_000;
 
 /// Polls the target: reads its telemetry and sends the commands that are due.
 #[derive(Debug)]
-pub(crate) struct Probe {
+pub(crate) struct DebugProbe {
     /// Bytes from up channel 0.
     pub(crate) stream: Vec<u8>,
     /// Time from which telemetry is read, ns.
     pub(crate) drains_from: u64,
-    /// Whether the command channel is kept full with garbage.
+    /// Whether the command channel is kept full of random bytes.
     pub(crate) floods: bool,
     /// Bytes of the first pending command that the channel has accepted.
     taken: usize,
@@ -36,7 +36,7 @@ pub(crate) fn schedule<T>(list: impl Iterator<Item = (f64, T)>) -> VecDeque<(u64
     list.into()
 }
 
-impl Probe {
+impl DebugProbe {
     pub(crate) fn new(rtt: u64, setup: &Setup) -> Self {
         let commands = setup.commands.iter();
         let commands = commands.map(|(at, command)| (*at, command.encode().to_vec()));
@@ -53,7 +53,7 @@ impl Probe {
         }
     }
 
-    pub(crate) fn look(&mut self, now_ns: u64, memory: &mut dyn Memory) {
+    pub(crate) fn poll(&mut self, now_ns: u64, memory: &mut dyn Memory) {
         if now_ns >= self.drains_from {
             self.rtt.drain(memory, &mut self.stream);
         }

@@ -50,7 +50,7 @@ pub struct Setup {
     /// Edges per second of a signal generator instead of the large encoder, counting down if
     /// negative.
     pub generator_hz: Option<f64>,
-    /// Frequency of the crystal, Hz; 0 is a dead one.
+    /// Frequency of the crystal, Hz; 0 if the crystal does not run.
     pub crystal_hz: u64,
     /// Start of the crystal, s.
     pub crystal_from_s: f64,
@@ -104,22 +104,22 @@ impl Setup {
 
 /// One call of the control task, and the true state at its start.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tick {
+pub struct ControlTick {
     /// Start of the call, ns.
     pub at_ns: u64,
-    /// Whether it woke the processor; otherwise it preempted another task.
+    /// Whether the call woke the processor. Otherwise the call preempted another task.
     pub asleep: bool,
-    /// Instructions from its first to its return.
+    /// Number of instructions, from the first of the handler to its return.
     pub instructions: u32,
-    /// Estimated cycles from the interrupt to its end, if the tick was followed.
+    /// Estimated cycles from the interrupt to the end of the call, if the tick was followed.
     pub cycles: Option<u32>,
     /// Values read from the counters of the large and the small encoder.
     pub counts: [Option<u16>; 2],
-    /// Time of its last read of the edge clock, ns.
+    /// Time of the last read of the edge clock in the call, ns.
     pub stamp_clock_read_ns: Option<u64>,
-    /// DAC codes at its end.
+    /// DAC codes at the end of the call.
     pub codes: [Option<u16>; 2],
-    /// Amplifiers enabled at its end.
+    /// Whether each amplifier is enabled at the end of the call.
     pub enabled: [bool; 2],
     /// Large motor.
     pub large: Pose,
@@ -129,9 +129,9 @@ pub struct Tick {
     pub felt: f64,
 }
 
-/// The plant at a multiple of 100 us.
+/// State of the plant at a multiple of 100 us.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment {
+pub struct PlantState {
     /// Torque on the hand, N.m.
     pub felt: f64,
     /// Commanded currents, A.
@@ -153,12 +153,12 @@ pub struct Restart {
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// Every call of the control task.
-    pub ticks: Vec<Tick>,
-    /// The plant, every 100 us.
-    pub moments: Vec<Moment>,
+    pub ticks: Vec<ControlTick>,
+    /// State of the plant, every 100 us.
+    pub plant_states: Vec<PlantState>,
     /// Values that the image read from both counters before its first tick.
     pub first_counts: [Option<u16>; 2],
-    /// Bytes that the probe read from up channel 0.
+    /// Bytes that the debug probe read from up channel 0.
     pub rtt: Vec<u8>,
     /// Decoded telemetry of the firmware.
     pub telemetry: Telemetry,
@@ -170,8 +170,8 @@ pub struct Outcome {
     pub complaints: Vec<String>,
     /// Number of calls of the control task without a return.
     pub unclosed: u32,
-    /// Objections of the emulator, one line each: accesses that it does not model, and conditions of
-    /// clocks and flash. No objection is allowed.
+    /// Objections of the emulator, one line each: accesses that it does not model, and conditions
+    /// of clocks and flash. No objection is allowed.
     pub objections: Vec<String>,
     /// Values stored and read for [`Setup::accesses`], in their order.
     pub values: Vec<u32>,
@@ -203,7 +203,7 @@ impl Outcome {
 
     /// The control tick of a frame.
     #[must_use]
-    pub fn tick(&self, frame: &Frame) -> Option<&Tick> {
+    pub fn tick(&self, frame: &Frame) -> Option<&ControlTick> {
         self.ticks.get(self.tick_index(frame)?)
     }
 }
@@ -224,23 +224,23 @@ pub fn on_board(
     });
     let restarts = restarts.collect();
     let Lockstep {
-        seen,
+        recorded,
         probe,
         accesses,
         ..
     } = lockstep;
     let telemetry = Telemetry::decode(&image.elf, &probe.stream)?;
     Ok(Outcome {
-        first_tick: first_tick(&telemetry.frames, &seen.ticks),
+        first_tick: first_tick(&telemetry.frames, &recorded.ticks),
         rtt: probe.stream,
         telemetry,
-        ticks: seen.ticks,
-        first_counts: seen.first_counts,
-        moments: seen.moments,
-        enables: seen.enables,
-        complaints: seen.complaints,
-        unclosed: seen.unclosed,
-        stack: seen.stack,
+        ticks: recorded.ticks,
+        first_counts: recorded.first_counts,
+        plant_states: recorded.plant_states,
+        enables: recorded.enables,
+        complaints: recorded.complaints,
+        unclosed: recorded.unclosed,
+        stack: recorded.stack,
         values: accesses.values,
         sent: probe.sent,
         restarts,
@@ -288,7 +288,7 @@ pub(crate) fn emulate(
 
 /// Number of the first tick in telemetry: the one with which the counts of every frame agree with
 /// those that its tick read.
-fn first_tick(frames: &[Frame], ticks: &[Tick]) -> Option<u32> {
+fn first_tick(frames: &[Frame], ticks: &[ControlTick]) -> Option<u32> {
     (0..4).find(|first| {
         frames.iter().all(|frame| {
             let tick = ticks.get(frame.tick.wrapping_sub(*first) as usize);

@@ -1,6 +1,6 @@
 //! Scores of a run: parasitic force, and cost of the control task.
 
-use crate::run::{Outcome, Tick};
+use crate::run::{ControlTick, Outcome};
 
 /// Parasitic force at the fingertip.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,7 +14,8 @@ pub struct Parasitic {
 }
 
 impl Parasitic {
-    /// The scores of pairs of felt and wanted torque, N.m, on a handle of `diameter_m`.
+    /// The scores of pairs of torque on the hand and commanded torque, N.m, on a handle of
+    /// `diameter_m`.
     #[must_use]
     pub fn of(pairs: impl Iterator<Item = (f64, f64)>, diameter_m: f64) -> Option<Self> {
         let (mut sum, mut max_mn, mut samples) = (0.0, 0.0_f64, 0);
@@ -44,7 +45,7 @@ pub struct Range {
 }
 
 impl Range {
-    /// The statistics of `numbers`; `None` without a number.
+    /// The statistics of `numbers`; `None` if there are no numbers.
     #[must_use]
     pub fn of(numbers: impl Iterator<Item = u64>) -> Option<Self> {
         let (mut min, mut max, mut sum, mut n) = (u64::MAX, 0, 0, 0_u64);
@@ -60,7 +61,7 @@ impl Range {
 }
 
 impl Outcome {
-    /// Parasitic force after `from_s`, relative to the wanted torque in the frames.
+    /// Parasitic force after `from_s`: the force on the hand less that of the torque in the frames.
     #[must_use]
     pub fn parasitic(&self, from_s: f64, diameter_m: f64) -> Option<Parasitic> {
         let pairs = self.telemetry.frames.iter().filter_map(|frame| {
@@ -81,7 +82,7 @@ impl Outcome {
     /// Time from one start of the control task to the next, ns.
     #[must_use]
     pub fn periods(&self) -> Option<Range> {
-        let period = |pair: &[Tick]| pair[1].at_ns - pair[0].at_ns;
+        let period = |pair: &[ControlTick]| pair[1].at_ns - pair[0].at_ns;
         Range::of(self.ticks.windows(2).map(period))
     }
 
@@ -96,13 +97,17 @@ impl Outcome {
     /// from `since_s` to `until_s`, mN at the fingertip.
     #[must_use]
     pub fn spurious_mn(&self, healthy: &Self, since_s: f64, until_s: f64, diameter_m: f64) -> f64 {
-        let moments = self.moments.iter().zip(&healthy.moments).enumerate();
-        let inside = moments.filter(|(k, _)| {
+        let states = self
+            .plant_states
+            .iter()
+            .zip(&healthy.plant_states)
+            .enumerate();
+        let inside = states.filter(|(k, _)| {
             let t = *k as f64 * 1e-4;
             t >= since_s && t <= until_s
         });
         let difference =
-            |(_, (mine, other)): (usize, (&crate::run::Moment, &crate::run::Moment))| {
+            |(_, (mine, other)): (usize, (&crate::run::PlantState, &crate::run::PlantState))| {
                 2e3 * (mine.felt - other.felt).abs() / diameter_m
             };
         inside.map(difference).fold(0.0, f64::max)

@@ -123,7 +123,7 @@ pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> Str
         ),
         None => line(
             "parasitic force",
-            "unknown: no frame after the start".to_owned(),
+            "unknown, because no frame came after the start".to_owned(),
         ),
     }
     out

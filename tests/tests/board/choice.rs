@@ -10,7 +10,7 @@ use firmware_app::scene::RIG;
 use haptic_control::SceneKind;
 use recordings::telemetry::{Frame, NOBODY};
 use virtual_board::command::Command;
-use virtual_board::run::{Outcome, Setup, Tick};
+use virtual_board::run::{ControlTick, Outcome, Setup};
 
 use crate::image::{of_scene, run, run_image};
 use crate::mirror::{mirrored, same_bits};
@@ -49,8 +49,8 @@ fn telemetry_has_the_number_of_the_active_estimator() {
         let mut told: Vec<_> = told.iter().map(|frame| frame.estimator.unwrap()).collect();
         let taking_over = told.iter().filter(|number| **number == NOBODY).count();
         told.dedup();
-        // No estimator is active before the scene starts (100 ms until arming, 20 ms of settling) and
-        // during a handover (40 ms each).
+        // No estimator is active before the scene starts (100 ms until arming, 20 ms of settling)
+        // and during a handover (40 ms each).
         assert_eq!(told, [NOBODY, 0, NOBODY, 1, NOBODY, 0]);
         assert!(
             (120 + 78..=125 + 82).contains(&taking_over),
@@ -61,7 +61,7 @@ fn telemetry_has_the_number_of_the_active_estimator() {
         assert_eq!((last.overruns, last.drops), (0, 0));
         // While both run the task takes longer; less than a quarter of its period, at
         // one cycle an instruction.
-        let change = |tick: &&Tick| {
+        let change = |tick: &&ControlTick| {
             CHANGES_S.iter().any(|at| {
                 let since = tick.at_ns as f64 * 1e-9 - at;
                 (0.0..0.05).contains(&since)
@@ -78,8 +78,8 @@ fn telemetry_has_the_number_of_the_active_estimator() {
     }
 }
 
-/// Telemetry agrees with the host bit for bit. At every tick of a change the step of the velocity is
-/// bounded by the steps of both estimators and the fade.
+/// Telemetry agrees with the host bit for bit. At every tick of a change the step of the velocity
+/// is bounded by the steps of both estimators and the fade.
 #[test]
 fn change_of_estimator_causes_no_step_of_the_velocity() {
     for run in runs() {
@@ -135,8 +135,8 @@ fn jump_mn(run: &Outcome, range: std::ops::Range<usize>) -> f64 {
     changes.fold(0.0, f64::max) * 2e3 / diameter_m
 }
 
-/// A fingertip feels 10 mN. A pushing hand shakes on the wall by more than that each millisecond, so
-/// what counts is what a change adds to what was there before.
+/// A fingertip feels 10 mN. A pushing hand shakes on the wall by more than that each millisecond,
+/// so what counts is what a change adds to what was there before.
 #[test]
 fn change_of_estimator_causes_no_noticeable_force() {
     for run in runs() {
@@ -157,8 +157,8 @@ fn change_of_estimator_causes_no_noticeable_force() {
     }
 }
 
-/// Nearly all velocities are within two of the reported standard deviations, and these are small enough
-/// to be informative.
+/// Nearly all velocities are within two of the reported standard deviations, and these are small
+/// enough to be informative.
 #[test]
 fn standard_deviation_in_telemetry_is_valid() {
     let [air, _] = runs();

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use haptic_control::{Mode, SceneKind, Stop};
 use measured::tables::{SCENE_INSTRUCTIONS, TICK_INSTRUCTIONS};
-use virtual_board::run::{Outcome, Setup, Tick};
+use virtual_board::run::{ControlTick, Outcome, Setup};
 use virtual_board::score::Range;
 
 use crate::image::{FIRST_S, SETTLED_S, free_air, run_image, run_one, tour};
@@ -36,7 +36,7 @@ pub(crate) fn alone() -> &'static [Alone] {
 
 /// Instructions of the control task between two instants, s.
 fn between(run: &Outcome, from_s: f64, to_s: f64) -> Range {
-    let inside = |tick: &&Tick| {
+    let inside = |tick: &&ControlTick| {
         let t = tick.at_ns as f64 * 1e-9;
         t >= from_s && t < to_s
     };
@@ -116,9 +116,9 @@ fn costs_of_scenes_and_estimators_agree_with_the_table() {
 }
 
 /// What a scene does not need it does not pay for. Differences, because every scene pays for the
-/// task around the controller: off, the same whoever estimates, but for the choice; detents and texture, besides, for
-/// a table or a phase and no estimator; the others for the whole loop, a wall or a spring being
-/// little of it.
+/// task around the controller: off, the same whoever estimates, but for the choice; detents and
+/// texture, besides, for a table or a phase and no estimator; the others for the whole loop, a wall
+/// or a spring being little of it.
 #[test]
 fn estimator_costs_nothing_in_scenes_without_the_large_velocity() {
     let [foaw, kalman] = of_both();
@@ -127,8 +127,8 @@ fn estimator_costs_nothing_in_scenes_without_the_large_velocity() {
             let (foaw, kalman) = (foaw.max, kalman.max);
             assert!(kalman < foaw, "{scene}: {kalman}, {foaw}");
         } else {
-            // The image of two looks at which of them is in charge. The rest is laid out differently
-            // by the linker's optimisation, which moves single instructions.
+            // The image of two looks at which of them is in charge. The rest is laid out
+            // differently by the linker's optimisation, which moves single instructions.
             let more = foaw.mean - kalman.mean;
             assert!((-5.0..40.0).contains(&more), "{scene}: {more} more");
         }

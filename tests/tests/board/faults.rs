@@ -52,7 +52,7 @@ impl Bound {
         } else {
             (until * 1e4) as usize + 2
         };
-        let after = run.moments.iter().skip(from);
+        let after = run.plant_states.iter().skip(from);
         let last = run.telemetry.frames.last();
         let resets = run.restarts.iter();
         Found {

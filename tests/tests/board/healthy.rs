@@ -51,7 +51,7 @@ fn currents_are_zero_before_the_amplifiers_are_enabled() {
     let (armed_ns, _) = *first.expect("it is armed");
     assert_eq!(run.enables[0], (0, [false; 2]));
     assert!(armed_ns > 90_000_000, "armed after {armed_ns} ns");
-    for (k, moment) in run.moments.iter().enumerate() {
+    for (k, moment) in run.plant_states.iter().enumerate() {
         if (k as u64) * 100_000 < armed_ns {
             assert_eq!(moment.currents, [0.0; 2], "{k}");
         }
@@ -65,7 +65,7 @@ fn currents_are_zero_before_the_amplifiers_are_enabled() {
         assert_eq!(tick.codes, [Some(2048); 2], "at {} ns", tick.at_ns);
     }
     let flowing = run
-        .moments
+        .plant_states
         .iter()
         .filter(|moment| moment.currents[0] != 0.0);
     assert!(flowing.count() > 50_000);
@@ -73,7 +73,7 @@ fn currents_are_zero_before_the_amplifiers_are_enabled() {
 
 /// Largest force that the hand feels after the first 0.4 s, N.
 fn largest_force(run: &Outcome) -> f64 {
-    let felt = run.moments.iter().skip((SETTLED_S * 1e4) as usize);
+    let felt = run.plant_states.iter().skip((SETTLED_S * 1e4) as usize);
     let most = felt.map(|moment| moment.felt.abs()).fold(0.0, f64::max);
     2.0 * most / Device::default().handle.diameter_m
 }
@@ -109,7 +109,7 @@ fn dac_offset_causes_a_force_and_no_stop() {
         });
         let last = run.telemetry.frames.last().expect("frames");
         assert_eq!((last.state, last.cause), (Mode::Running, Stop::None));
-        let felt = run.moments.iter().skip((SETTLED_S * 1e4) as usize);
+        let felt = run.plant_states.iter().skip((SETTLED_S * 1e4) as usize);
         let n = felt.len() as f64;
         felt.map(|moment| moment.felt).sum::<f64>() / n
     };

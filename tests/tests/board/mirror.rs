@@ -11,7 +11,7 @@ use haptic_control::{
     Action, AnyScene, Currents, FreeAir, Mode, Request, SceneKind, Stop, Switchboard,
 };
 use recordings::telemetry::Frame;
-use virtual_board::run::{Outcome, Tick};
+use virtual_board::run::{ControlTick, Outcome};
 
 use crate::image::{
     adaptive_free_air, free_air, kalman_free_air, kalman_track, of_scene, run_image, soak, tour,
@@ -28,7 +28,7 @@ impl Samples {
         (Self(start), first)
     }
 
-    fn next(&mut self, tick: &Tick, current: Amps) -> Sample {
+    fn next(&mut self, tick: &ControlTick, current: Amps) -> Sample {
         for (count, read) in self.0.iter_mut().zip(tick.counts) {
             *count = count.extended(read.expect("each tick reads both encoders"));
         }
@@ -67,7 +67,7 @@ pub(crate) fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
     let (mut samples, first) = Samples::new(run);
     let mut control = Control::new(&first, Stop::None, true);
     let requests = requests(run);
-    let step = |(k, tick): (usize, &Tick)| {
+    let step = |(k, tick): (usize, &ControlTick)| {
         let sample = samples.next(tick, control.applied().large);
         let heard = requests.iter().find(|(at, _)| *at == k);
         let message = heard.map(|(_, heard)| match heard {
@@ -117,9 +117,9 @@ pub(crate) fn same_bits(run: &Outcome, host: &[(Option<Currents>, Record)]) -> u
     moving
 }
 
-/// Fails unless frames are numbered from 0, each tells of the tenth tick after the last, from tick 0
-/// on, and has the counts that the board's counters showed at that tick. The emulator saw those: no
-/// code of the firmware is on this side.
+/// Fails unless frames are numbered from 0, each tells of the tenth tick after the last, from tick
+/// 0 on, and has the counts that the board's counters showed at that tick. The emulator saw those:
+/// no code of the firmware is on this side.
 fn numbered_from_the_first_tick(run: &Outcome) {
     for (k, frame) in run.telemetry.frames.iter().enumerate() {
         assert_eq!(
@@ -247,7 +247,7 @@ where
         .iter()
         .find(|(_, heard)| *heard == Heard::Request(Request::Arm));
     let settled = armed.expect("the run arms").0 + SETTLE as usize;
-    let step = |(k, tick): (usize, &Tick)| {
+    let step = |(k, tick): (usize, &ControlTick)| {
         let sample = samples.next(tick, applied);
         let mut action = switchboard.step(&mut state, &sample);
         if k == settled {
@@ -302,8 +302,8 @@ fn velocity_error(run: &Outcome) -> f64 {
     (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
 }
 
-/// In the loop the error of the observer is a tenth of FOAW's in free air. Against a wall, where the
-/// motor turns faster, it is a half, and a quarter of that with stamped edges.
+/// In the loop the error of the observer is a tenth of FOAW's in free air. Against a wall, where
+/// the motor turns faster, it is a half, and a quarter of that with stamped edges.
 #[test]
 fn observers_on_the_board_have_smaller_errors() {
     let [foaw, counts] = [free_air(), adaptive_free_air()].map(velocity_error);

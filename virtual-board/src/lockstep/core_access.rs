@@ -50,8 +50,9 @@ impl CoreAccesses {
         }
     }
 
-    /// The control task has just woken the processor, which waited for an interrupt in the
-    /// instruction before `behind`: it returns to the code of the access that is due.
+    /// Redirects the return of the control task to the code of the access that is due. The control
+    /// task has just woken the processor, which waited for an interrupt in the instruction before
+    /// `behind`.
     pub(crate) fn wake(&mut self, now_ns: u64, behind: u64, host: &mut dyn Host) {
         // The stack does not reach its lowest words.
         let Some(code) = self.stack.words().next() else {
@@ -77,7 +78,7 @@ impl CoreAccesses {
     }
 }
 
-/// Writes the code of `access` at `code`, from where it goes on at `behind`.
+/// Writes the code of `access` at `code`. The code ends with a jump to `behind`.
 fn place(access: CoreAccess, code: u64, behind: u64, memory: &mut dyn Memory) {
     let (instruction, address, value) = match access {
         CoreAccess::Load(address) => (ACCESS[0], address, 0),

@@ -1,4 +1,4 @@
-//! Selected calls of the control task, followed instruction by instruction.
+//! Follows selected calls of the control task instruction by instruction.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -15,7 +15,7 @@ pub(super) struct Follow {
     ticks: BTreeSet<usize>,
     /// Both halves of every instruction that the control task reaches, by address.
     code: Arc<BTreeMap<u64, [u16; 2]>>,
-    /// The instructions among them that are watched anyway.
+    /// Addresses of `instructions` whose watchpoints are always set.
     watched: BTreeSet<u64>,
     watching: bool,
     /// The tick that is followed.
@@ -47,7 +47,7 @@ impl Follow {
         others.map(|at| Watch::Instruction(*at))
     }
 
-    /// A tick begins. Setting watchpoints takes long, so those of consecutive ticks stay set.
+    /// Begins a tick. Setting watchpoints takes long, so they stay set between consecutive ticks.
     pub(super) fn enter(&mut self, tick: usize, host: &mut dyn Host) {
         let wanted = self.ticks.contains(&tick);
         self.now = wanted.then(Path::default);
@@ -63,7 +63,7 @@ impl Follow {
         }
     }
 
-    /// The processor is at an instruction.
+    /// Counts the instruction at which the processor has stopped.
     pub(super) fn pass(&mut self, address: u64) {
         let Some(path) = &mut self.now else {
             return;
@@ -77,8 +77,8 @@ impl Follow {
         }
     }
 
-    /// The tick ends with the instruction just passed: cycles from the interrupt on, unless some
-    /// of its `instructions` were not seen.
+    /// Ends the tick with the latest instruction. Returns the cycles from the interrupt on; `None`
+    /// if some of the `instructions` of the tick were not observed.
     pub(super) fn leave(&mut self, instructions: u32) -> Option<u32> {
         let path = self.now.take()?;
         let [first, second] = path.at.and_then(|at| self.code.get(&at))?;

@@ -1,4 +1,4 @@
-//! The control task's beginnings and ends.
+//! Watchpoints at the start and the end of the control task.
 
 use rigless::emulator::{Hit, Host};
 use rigless::session::Session;
@@ -6,7 +6,7 @@ use rigless::session::Session;
 use super::Lockstep;
 use crate::board::ControllerBoard;
 use crate::pins;
-use crate::run::Tick;
+use crate::run::ControlTick;
 
 impl Lockstep {
     pub(super) fn hit(
@@ -16,7 +16,7 @@ impl Lockstep {
         hit: &Hit,
     ) {
         if hit.address == self.entry {
-            self.follow.enter(self.seen.ticks.len(), host);
+            self.follow.enter(self.recorded.ticks.len(), host);
         }
         self.follow.pass(hit.address);
         if hit.address == self.wait {
@@ -32,18 +32,18 @@ impl Lockstep {
             let part = &mut session.board_mut().part;
             tick.codes = part.dac_codes();
             tick.enabled = pins::enabled(part);
-            self.seen.ticks.push(tick);
+            self.recorded.ticks.push(tick);
             self.asleep = false;
         }
     }
 
     fn enter(&mut self, session: &mut Session<ControllerBoard>, hit: &Hit) {
-        if self.seen.ticks.is_empty() {
-            self.seen.complaints = pins::complaints(&mut session.board_mut().part);
+        if self.recorded.ticks.is_empty() {
+            self.recorded.complaints = pins::complaints(&mut session.board_mut().part);
         }
-        self.seen.unclosed += u32::from(self.running.is_some());
+        self.recorded.unclosed += u32::from(self.running.is_some());
         let since = self.since_tick();
-        let tick = Tick {
+        let tick = ControlTick {
             at_ns: hit.at.0,
             asleep: self.asleep,
             instructions: 0,

@@ -20,11 +20,11 @@ const CYCLES_CONTROL: u64 = 0xE000_1000;
 
 /// Duration of a control task that is too long, ns.
 const LONG_TASK_NS: u64 = (1.2e9 / RATE_HZ) as u64;
-/// Time for which control tasks are too long.
+/// Time in which every control task is too long, ns.
 const LONG_TASKS_NS: u64 = 10_000_000;
-/// Time for which the task of lowest priority loops.
+/// Time for which the task of lowest priority loops, ns.
 const STARVED_NS: u64 = 40_000_000;
-/// Time for which telemetry is not read.
+/// Time for which telemetry is not read, ns.
 const PAUSE_NS: u64 = 300_000_000;
 
 /// Temporary faults of the core, which a restart ends. Times in ns.
@@ -36,11 +36,11 @@ pub(super) struct Stalls {
     cycles_control: Option<u64>,
     /// Time until which every control task is too long.
     long_tasks: u64,
-    /// Time for which the task of lowest priority shall loop from its next wake on.
+    /// Time for which the task of lowest priority is to loop after its next wake.
     hang: Option<u64>,
     /// Time at which the task of lowest priority continues.
     hung: Option<u64>,
-    /// Whether the task of lowest priority shall panic at its next wake.
+    /// Whether the task of lowest priority is to panic at its next wake.
     panics: bool,
 }
 
@@ -77,7 +77,7 @@ impl Lockstep {
             Fault::StarvedIdle => self.stalls.hang = Some(STARVED_NS),
             Fault::Panic => self.stalls.panics = true,
             Fault::BusError => session.fail_next(COUNTERS[LARGE], COUNTERS[LARGE] + 4),
-            // The board was built so.
+            // The board is built with these parts.
             Fault::DeadCrystal | Fault::SlowWatchdog | Fault::FastWatchdog => {}
             Fault::CrystalFails => part.stm32.drive_clocks(at, |rcc, registers, context| {
                 rcc.fail_hse(registers, context);
@@ -110,10 +110,10 @@ impl Lockstep {
         }
     }
 
-    /// Called when the control task has read the large counter. While its tasks shall be too long,
-    /// the core stops here, so that the task takes the wanted time.
+    /// Called when the control task has read the large counter. If control tasks are to be too
+    /// long, the core stops here, so that the task has the duration of the fault.
     pub(super) fn lengthen(&mut self, at: VirtualNanos, host: &mut dyn Host) {
-        let (Some((tick, _)), Some(last)) = (&self.running, self.seen.ticks.last()) else {
+        let (Some((tick, _)), Some(last)) = (&self.running, self.recorded.ticks.last()) else {
             return;
         };
         if at.0 < self.stalls.long_tasks && self.stalls.release.is_none() {
@@ -123,10 +123,11 @@ impl Lockstep {
         }
     }
 
-    /// Called when the control task begins. If it has woken the processor and the task of lowest
-    /// priority shall loop, the return address in the exception frame is changed to an endless loop,
-    /// and changed back at the end of that time. If the task is to
-    /// panic, it returns to where a failed assertion ends.
+    /// Called when the control task begins. If the control task has woken the processor and the
+    /// task of lowest priority is to loop, the return address in the exception frame is changed to
+    /// an endless loop, and changed back at the end of the loop's time. If the task of lowest
+    /// priority is to panic, the return address is changed to the function that a failed assertion
+    /// calls.
     pub(super) fn hang(&mut self, at: VirtualNanos, host: &mut dyn Host) {
         let (behind, for_ever) = (self.wait + 2, self.for_ever);
         if self.asleep && std::mem::take(&mut self.stalls.panics) {

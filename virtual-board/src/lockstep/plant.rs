@@ -4,19 +4,19 @@ use super::{Lockstep, STEP_NS, STEP_S, STEPS_PER_TICK};
 use crate::board::ControllerBoard;
 use crate::pins;
 use crate::quadrature::{Edge, Edges, LARGE, REFERENCE, SMALL};
-use crate::run::{AMPS_PER_CODE, Moment};
+use crate::run::{AMPS_PER_CODE, PlantState};
 
 impl Lockstep {
     /// One step of the plant with the present commands of the amplifiers.
     pub(super) fn step(&mut self, board: &mut ControllerBoard) {
         let enabled = pins::enabled(&mut board.part);
         if self
-            .seen
+            .recorded
             .enables
             .last()
             .is_none_or(|(_, last)| *last != enabled)
         {
-            self.seen.enables.push((self.plant_ns(), enabled));
+            self.recorded.enables.push((self.plant_ns(), enabled));
         }
         let codes = board.part.dac_codes();
         for n in [LARGE, SMALL] {
@@ -33,7 +33,7 @@ impl Lockstep {
             .command(self.currents[LARGE], self.currents[SMALL]);
         if self.steps.is_multiple_of(STEPS_PER_TICK) {
             self.grip = self.motion.grip(self.steps / STEPS_PER_TICK);
-            self.seen.moments.push(Moment {
+            self.recorded.plant_states.push(PlantState {
                 felt: self.bench.plant.handle_torque(&self.grip, 0.0),
                 currents: self.currents,
                 large_omega: self.bench.plant.large().omega,
