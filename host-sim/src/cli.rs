@@ -26,7 +26,8 @@ use arguments::{Arguments, Command};
 use terminal::explain;
 use terminal::failure::Failure;
 
-/// Runs the command line `arguments`, the program's name first; no arguments are `compare`.
+/// Runs the command line `arguments`, whose first element is the program's name. Without a command,
+/// `compare` runs with its defaults.
 ///
 /// # Errors
 /// A [`Failure`] with its exit status.
@@ -60,7 +61,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     }
 }
 
-/// The program with the command that `arguments` name, whose --help has what they may be.
+/// The program and the command of `arguments`, for the hint to `--help` in an error.
 fn program(arguments: &[OsString]) -> String {
     let name = arguments.get(1).map(|name| name.to_string_lossy());
     let known = |name: &str| Arguments::command().find_subcommand(name).is_some();
@@ -70,7 +71,7 @@ fn program(arguments: &[OsString]) -> String {
     }
 }
 
-/// The command as somebody would type it again.
+/// The command line with quotes where a shell needs them.
 fn command_line(arguments: &[OsString]) -> String {
     let quoted = arguments.iter().skip(1).map(|argument| {
         let argument = argument.to_string_lossy();

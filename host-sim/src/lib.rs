@@ -1,6 +1,7 @@
 //! The command line of the host simulation.
 //!
-//! The work is done by the crates below this folder, lowest first: `terminal`, `simulation`,
-//! `recordings`, `catalogue`, `scoring`, `experiments`, `report`. Each uses only crates before it.
+//! The crates of this folder implement the commands. From the lowest layer to the highest they are
+//! `terminal`, `device-files`, `simulation`, `recordings`, `catalogue`, `scoring`, `experiments`
+//! and `report`. A crate imports only crates of lower layers.
 
 pub mod cli;

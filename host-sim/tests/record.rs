@@ -195,7 +195,7 @@ fn streams_that_cannot_be_recorded_or_drawn_are_refused_with_one_line() {
         (
             &[],
             "",
-            "standard input: no telemetry frame in it; it is read as the log",
+            "standard input: no telemetry frame; a log of cargo firmware is expected",
         ),
         (&[], "\u{0}\u{a5}\n", "standard input: no telemetry frame"),
         (&["nowhere.log"], "", "nowhere.log: cannot read"),

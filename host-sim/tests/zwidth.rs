@@ -5,12 +5,12 @@ use std::process::{Command, Output};
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::zwidth::{Boundary, Case, Settings, boundaries, probe};
+use experiments::zwidth::{Boundary, LoopSetup, Settings, boundaries, contact_test};
 use simulation::device::Device;
 
-fn case(name: &str, rate_hz: f64, lines: u32) -> Case {
+fn case(name: &str, rate_hz: f64, lines: u32) -> LoopSetup {
     let kind = Kind::named(name).unwrap();
-    Case {
+    LoopSetup {
         large: kind,
         handle: kind,
         rate_hz,
@@ -26,7 +26,7 @@ fn settings(seed: u64) -> Settings {
     }
 }
 
-fn found(cases: &[Case]) -> Vec<Boundary> {
+fn found(cases: &[LoopSetup]) -> Vec<Boundary> {
     boundaries(cases, &settings(1), || ()).unwrap()
 }
 
@@ -64,11 +64,14 @@ fn values_below_a_bound_pass_and_values_beyond_fail() {
     for (name, rate_hz) in [("kalman-triple", 1e3), ("pll", 10e3)] {
         let case = case(name, rate_hz, 1024);
         let boundary = &found(&[case])[0];
-        let probe = probe(&case, &settings(1)).unwrap();
+        let contact_test = contact_test(&case, &settings(1)).unwrap();
         for &(damping, wall) in &boundary.walls {
             assert!(wall.value > 0.0, "{boundary:?}");
             for part in [0.3, 0.5, 0.7, 0.9, 1.1, 1.3, 1.7, 2.5, 4.0, 8.0] {
-                let is_good = probe.fault(part * wall.value, damping).unwrap().is_none();
+                let is_good = contact_test
+                    .violation(part * wall.value, damping)
+                    .unwrap()
+                    .is_none();
                 tried += 1;
                 if is_good != (part < 1.0) {
                     assert!((0.6..2.0).contains(&part), "{name}: {part} of {wall:?}");

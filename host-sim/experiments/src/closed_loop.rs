@@ -63,7 +63,7 @@ pub struct Loop {
 
 /// State of the simulation at a tick, with the true values.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment {
+pub struct TickState {
     /// Time, s.
     pub t: f64,
     /// True angle and velocity of the large motor.
@@ -91,7 +91,7 @@ impl Loop {
     ///
     /// # Errors
     /// One line on an invalid device or a loop that cannot be designed.
-    pub fn run(&self, ticks: usize, observe: impl FnMut(&Moment)) -> Result<(), String> {
+    pub fn run(&self, ticks: usize, observe: impl FnMut(&TickState)) -> Result<(), String> {
         self.run_with(ticks, None, observe)
     }
 
@@ -103,7 +103,7 @@ impl Loop {
         &self,
         ticks: usize,
         fault: Option<(usize, EncoderFault)>,
-        observe: impl FnMut(&Moment),
+        observe: impl FnMut(&TickState),
     ) -> Result<(), String> {
         self.device.validate()?;
         let rate = Hertz(self.rate_hz);
@@ -146,7 +146,7 @@ struct Running<'a, F> {
     observe: F,
 }
 
-impl<F: FnMut(&Moment)> Visit for Running<'_, F> {
+impl<F: FnMut(&TickState)> Visit for Running<'_, F> {
     fn visit<S: Scene<Acceleration: Senses<Estimator>>>(mut self, scene: S) {
         let Loop {
             device,
@@ -191,7 +191,7 @@ impl<F: FnMut(&Moment)> Visit for Running<'_, F> {
             bench.plant.command(large_a, small_a);
             let grip = hand.grip(k as u64);
             let omega = bench.plant.small().omega;
-            (self.observe)(&Moment {
+            (self.observe)(&TickState {
                 t: k as f64 * period,
                 large: bench.plant.large(),
                 handle: bench.plant.small(),

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use catalogue::estimators::{Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
 use scoring::evaluation::{Estimate, Evaluation, Heading, Row};
-use scoring::score::{Interval, Wanted};
+use scoring::score::{HapticInterval, Wanted};
 use simulation::device::Device;
 use simulation::scenario::{Role, ScenarioName};
 use simulation::simulate::{plant_steps, simulate};
@@ -123,8 +123,8 @@ pub fn setup_of(case: &Case, device: &Device) -> Setup {
 
 /// The haptic interval of a device.
 #[must_use]
-pub fn interval(device: &Device) -> Interval {
-    Interval::new(
+pub fn interval(device: &Device) -> HapticInterval {
+    HapticInterval::new(
         device.interval.weber,
         device.interval.threshold_n,
         device.handle.diameter_m,
@@ -132,7 +132,8 @@ pub fn interval(device: &Device) -> Interval {
     )
 }
 
-/// Runs all cases in parallel and calls `done` after each. The outcomes have the order of the cases.
+/// Runs all cases in parallel and calls `done` after each. The outcomes have the order of the
+/// cases.
 ///
 /// # Errors
 /// [`Failure::Input`] of the first case, in order, that cannot be run.

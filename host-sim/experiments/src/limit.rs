@@ -22,7 +22,7 @@ pub use filter::{Noise, velocities};
 
 /// Error of one estimator, or of the particle filter, in one run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct LimitRow {
     /// Estimator; `limit` and `limit-edge` are the particle filter.
     pub estimator: &'static str,
     /// Scenario.
@@ -74,7 +74,7 @@ pub fn limit(
     settings: &Settings,
     particles: usize,
     done: impl Fn() + Sync,
-) -> Result<Vec<Row>, Failure> {
+) -> Result<Vec<LimitRow>, Failure> {
     let rows = cases
         .par_iter()
         .map(|case| {
@@ -86,7 +86,7 @@ pub fn limit(
     Ok(rows.into_iter().flatten().collect())
 }
 
-fn run(case: &Case, settings: &Settings, particles: usize) -> Result<Vec<Row>, Failure> {
+fn run(case: &Case, settings: &Settings, particles: usize) -> Result<Vec<LimitRow>, Failure> {
     // The particle filter uses all signals.
     let all: Vec<&Kind> = Kind::all().iter().collect();
     let trace = trace(case, &settings.device, &all)?;
@@ -114,7 +114,7 @@ fn run(case: &Case, settings: &Settings, particles: usize) -> Result<Vec<Row>, F
         ))
     };
     let (counts, edges) = (of(false), of(true));
-    let row = |estimator, rms_rad_s: f64, limit: f64| Row {
+    let row = |estimator, rms_rad_s: f64, limit: f64| LimitRow {
         estimator,
         scenario: case.scenario.as_str(),
         rate_hz: case.rate_hz,

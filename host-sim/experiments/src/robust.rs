@@ -20,7 +20,7 @@ use catalogue::estimators::Setup;
 use catalogue::estimators::{Estimator, Kind};
 use catalogue::parameters::{Parameters, PlantKind};
 use judge::{Instant, Judge};
-use row::Row;
+use row::RobustRow;
 use simulation::device::Device;
 use simulation::simulate;
 use terminal::failure::Failure;
@@ -137,7 +137,7 @@ impl Experiment {
     ///
     /// # Errors
     /// [`Failure::Input`] of the first job, in order, that cannot be run.
-    pub fn rows(&self, jobs: &[Job], done: impl Fn() + Sync) -> Result<Vec<Row>, Failure> {
+    pub fn rows(&self, jobs: &[Job], done: impl Fn() + Sync) -> Result<Vec<RobustRow>, Failure> {
         jobs.par_iter()
             .map(|&job| {
                 let row = self.row(job);
@@ -151,7 +151,7 @@ impl Experiment {
     ///
     /// # Errors
     /// [`Failure::Input`] on an invalid device or a loop that cannot be designed.
-    pub fn row(&self, (scene, subject): Job) -> Result<Row, Failure> {
+    pub fn row(&self, (scene, subject): Job) -> Result<RobustRow, Failure> {
         let settings = &self.settings;
         let (variation, seed) = subject.variation(settings.seed, scene);
         let device = variation.of(&settings.device);
@@ -187,7 +187,7 @@ impl Experiment {
             });
         })
         .map_err(|error| Failure::Input(format!("{scene}, device {subject}: {error}")))?;
-        Ok(Row::new(
+        Ok(RobustRow::new(
             settings,
             (scene, subject),
             variation,

@@ -19,7 +19,7 @@ pub const PARTS: [f64; 4] = [-1.0, -0.5, 0.5, 1.0];
 
 /// Error of one estimator with one wrong constant, or none, in one run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct SensitivityRow {
     /// Estimator.
     pub estimator: &'static str,
     /// Scenario.
@@ -48,7 +48,7 @@ pub fn sensitivity(
     cases: &[Case],
     settings: &Settings,
     done: impl Fn() + Sync,
-) -> Result<Vec<Row>, Failure> {
+) -> Result<Vec<SensitivityRow>, Failure> {
     let rows = cases
         .par_iter()
         .map(|case| {
@@ -60,7 +60,7 @@ pub fn sensitivity(
     Ok(rows.into_iter().flatten().collect())
 }
 
-fn run(case: &Case, settings: &Settings) -> Result<Vec<Row>, Failure> {
+fn run(case: &Case, settings: &Settings) -> Result<Vec<SensitivityRow>, Failure> {
     let trace = trace(case, &settings.device, &settings.estimators)?;
     let wanted = Wanted {
         rms: true,
@@ -92,7 +92,7 @@ fn run(case: &Case, settings: &Settings) -> Result<Vec<Row>, Failure> {
         }
         for belief in std::iter::once(None).chain(beliefs.iter().map(Some)) {
             let (rms_rad_s, outside) = score(kind, belief)?;
-            rows.push(Row {
+            rows.push(SensitivityRow {
                 estimator: kind.name,
                 scenario: case.scenario.as_str(),
                 rate_hz: case.rate_hz,

@@ -1,11 +1,11 @@
 //! Z-width: the virtual walls and dampings that are passive and free of limit cycles.
 //!
-//! For an estimator, a rate and an encoder, a bisection over simulations finds the largest stiffness
-//! at each of several dampings and the largest damping of a viscous field. [`criterion`] decides
-//! whether a simulation passes.
+//! For an estimator, a rate and an encoder, a bisection over simulations finds the largest
+//! stiffness at each of several dampings and the largest damping of a viscous field. [`criterion`]
+//! decides whether a simulation passes.
 
+pub mod contact;
 pub mod criterion;
-pub mod probe;
 pub mod rows;
 pub mod table;
 
@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use probe::{Finding, Probe};
+use contact::{ContactTest, Finding};
 use simulation::device::Device;
 use terminal::failure::Failure;
 
@@ -27,9 +27,9 @@ pub const PARTS: [f64; 5] = [0.0, 0.125, 0.25, 0.5, 0.75];
 /// Largest ratio of the first failing value to the bound.
 pub const RESOLUTION: f64 = 1.03;
 
-/// Estimators, rate and encoder of one boundary.
+/// Estimators, control rate and large encoder of one loop, for which a boundary is searched.
 #[derive(Clone, Copy, Debug)]
-pub struct Case {
+pub struct LoopSetup {
     /// Estimator of the large motor's velocity.
     pub large: &'static Kind,
     /// Estimator of the handle's velocity.
@@ -40,7 +40,7 @@ pub struct Case {
     pub lines: u32,
 }
 
-/// What all cases have in common.
+/// Settings that all loops share.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// The device; the lines of its large encoder are replaced.
@@ -60,7 +60,7 @@ pub struct Bound {
     pub beyond: Option<Finding>,
 }
 
-/// The boundary of one case.
+/// The boundary of one loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Boundary {
     /// Damping (N.m.s/rad) and largest stiffness (N.m/rad) at that damping, in order of damping.
@@ -82,24 +82,24 @@ impl Boundary {
 /// Largest number of bounds of a case.
 pub const BOUNDS_A_CASE: usize = PARTS.len() + 1;
 
-/// The boundaries of all cases, in their order; calls `done` after each of their [`BOUNDS_A_CASE`]
-/// bounds.
+/// The boundaries of all loops `cases`, in their order. `done` is called after each of the
+/// [`BOUNDS_A_CASE`] bounds of a loop.
 ///
 /// # Errors
-/// [`Failure::Input`] of the first case, in order, that cannot be run.
+/// [`Failure::Input`] of the first loop in this order that cannot be run.
 pub fn boundaries(
-    cases: &[Case],
+    cases: &[LoopSetup],
     settings: &Settings,
     done: impl Fn() + Sync,
 ) -> Result<Vec<Boundary>, Failure> {
-    let probes: Vec<Probe> = cases
+    let tests: Vec<ContactTest> = cases
         .iter()
-        .map(|case| probe(case, settings))
+        .map(|case| contact_test(case, settings))
         .collect::<Result<_, _>>()?;
-    let viscous: Vec<Bound> = probes
+    let viscous: Vec<Bound> = tests
         .par_iter()
-        .map(|probe| {
-            let bound = bound(DAMPING, |b| probe.fault(0.0, b));
+        .map(|contact_test| {
+            let bound = bound(DAMPING, |b| contact_test.violation(0.0, b));
             done();
             bound
         })
@@ -115,7 +115,7 @@ pub fn boundaries(
             let wall = if part > 0.0 && damping == 0.0 {
                 Ok(None)
             } else {
-                bound(STIFFNESS, |k| probes[i].fault(k, damping)).map(|k| Some((damping, k)))
+                bound(STIFFNESS, |k| tests[i].violation(k, damping)).map(|k| Some((damping, k)))
             };
             done();
             wall
@@ -131,14 +131,14 @@ pub fn boundaries(
         .collect())
 }
 
-/// The probe of one case.
+/// The test of one loop, which decides whether a wall or a viscous field passes.
 ///
 /// # Errors
-/// As [`Probe::new`].
-pub fn probe(case: &Case, settings: &Settings) -> Result<Probe, Failure> {
+/// As [`ContactTest::new`].
+pub fn contact_test(case: &LoopSetup, settings: &Settings) -> Result<ContactTest, Failure> {
     let mut device = settings.device.clone();
     device.stages.large.counts_per_rev = case.lines.saturating_mul(4);
-    Probe::new(
+    ContactTest::new(
         device,
         case.rate_hz,
         settings.seed,
@@ -147,20 +147,20 @@ pub fn probe(case: &Case, settings: &Settings) -> Result<Probe, Failure> {
     )
 }
 
-/// The largest value from `low` to `high` below which no value fails. The value is doubled from `low`
-/// until one fails, then bisected on a logarithmic scale. Passing values beyond a failing range do
-/// not count, if the failing range is wider than a factor of 2.
+/// The largest value from `low` to `high` below which no value fails. The value is doubled from
+/// `low` until one fails, then bisected on a logarithmic scale. Passing values beyond a failing
+/// range do not count, if the failing range is wider than a factor of 2.
 ///
 /// # Errors
-/// The errors of `fault`.
+/// The errors of `violation`.
 pub fn bound(
     (low, high): (f64, f64),
-    fault: impl Fn(f64) -> Result<Option<Finding>, Failure>,
+    violation: impl Fn(f64) -> Result<Option<Finding>, Failure>,
 ) -> Result<Bound, Failure> {
     let mut good = 0.0;
     let mut bad = low;
     let mut beyond = loop {
-        match fault(bad)? {
+        match violation(bad)? {
             Some(finding) => break finding,
             None => good = bad,
         }
@@ -174,7 +174,7 @@ pub fn bound(
     };
     while good > 0.0 && bad > RESOLUTION * good {
         let middle = (good * bad).sqrt();
-        match fault(middle)? {
+        match violation(middle)? {
             Some(finding) => (bad, beyond) = (middle, finding),
             None => good = middle,
         }
@@ -187,15 +187,15 @@ pub fn bound(
 
 #[cfg(test)]
 mod tests {
+    use super::contact::Contact;
     use super::criterion::Violation;
-    use super::probe::Touch;
     use super::*;
 
     fn found(limit: f64) -> Bound {
         bound((0.01, 100.0), |x| {
             Ok((x > limit).then_some(Finding {
-                touch: Touch::Hand,
-                fault: Violation::Energy,
+                contact: Contact::Hand,
+                violation: Violation::Energy,
             }))
         })
         .unwrap()

@@ -1,11 +1,12 @@
-//! Goals of the observers in docs/benchmarks.md, "Beyond the paper", on seeds outside the tuning set.
-//! The bounds are two-sided, because a score far below its bound indicates an error of the score.
+//! Goals of the observers in docs/benchmarks.md, "Beyond the paper", on seeds outside the tuning
+//! set. The bounds are two-sided, because a score far below its bound indicates an error of the
+//! score.
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind};
 use experiments::compare::{Case, Settings, compare};
 use experiments::limit::limit;
-use experiments::sensitivity::{Row, sensitivity, table::MOVING};
+use experiments::sensitivity::{SensitivityRow, sensitivity, table::MOVING};
 use scoring::score::Wanted;
 use simulation::device::{Device, Disc};
 use simulation::scenario::ScenarioName;
@@ -41,19 +42,27 @@ fn cases(scenarios: &[ScenarioName], rate_hz: f64, seeds: &[u64]) -> Vec<Case> {
     scenarios.iter().flat_map(of).collect()
 }
 
-fn mean(rows: &[Row], only: impl Fn(&Row) -> bool, value: impl Fn(&Row) -> f64) -> f64 {
+fn mean(
+    rows: &[SensitivityRow],
+    only: impl Fn(&SensitivityRow) -> bool,
+    value: impl Fn(&SensitivityRow) -> f64,
+) -> f64 {
     let values: Vec<f64> = rows.iter().filter(|row| only(row)).map(value).collect();
     assert!(!values.is_empty());
     values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Mean RMS of the moving scenarios at the worst belief of all, %.
-fn worst(rows: &[Row], estimator: &str) -> f64 {
+fn worst(rows: &[SensitivityRow], estimator: &str) -> f64 {
     worst_of(rows, estimator, |row| row.rms_pct)
 }
 
 /// The same of any value.
-fn worst_of(rows: &[Row], estimator: &str, value: impl Fn(&Row) -> f64 + Copy) -> f64 {
+fn worst_of(
+    rows: &[SensitivityRow],
+    estimator: &str,
+    value: impl Fn(&SensitivityRow) -> f64 + Copy,
+) -> f64 {
     let mut beliefs: Vec<(Option<&str>, f64)> = Vec::new();
     for row in rows {
         if !beliefs.contains(&(row.constant, row.error)) {
@@ -64,7 +73,7 @@ fn worst_of(rows: &[Row], estimator: &str, value: impl Fn(&Row) -> f64 + Copy) -
     beliefs
         .iter()
         .map(|belief| {
-            let is = |row: &Row| {
+            let is = |row: &SensitivityRow| {
                 row.estimator == estimator
                     && (row.constant, row.error) == *belief
                     && MOVING.contains(&row.scenario)
@@ -88,7 +97,7 @@ fn correct_constants_leave_a_tenth_of_the_error_and_wrong_ones_are_learned() {
     let settings = settings(Device::default(), &names);
     let rows = sensitivity(&cases(&EIGHT, 1e3, &[21, 22]), &settings, || ()).unwrap();
     let right = |name: &str| {
-        let is = |row: &Row| row.estimator == name && row.constant.is_none();
+        let is = |row: &SensitivityRow| row.estimator == name && row.constant.is_none();
         mean(&rows, is, |row| row.rms_pct)
     };
     // Counts only: at most 10; with time stamps about a third of that.
@@ -107,7 +116,7 @@ fn correct_constants_leave_a_tenth_of_the_error_and_wrong_ones_are_learned() {
     assert!(worst(&rows, "observer") > 2.0 * worst(&rows, "adaptive"));
     // Creep and hold.
     for name in names {
-        let slow = |row: &Row| {
+        let slow = |row: &SensitivityRow| {
             row.estimator == name
                 && row.constant.is_none()
                 && ["creep", "hold"].contains(&row.scenario)
@@ -121,7 +130,7 @@ fn correct_constants_leave_a_tenth_of_the_error_and_wrong_ones_are_learned() {
     );
     let soft = sensitivity(&cases(&EIGHT, 1e3, &[21, 22]), &soft, || ()).unwrap();
     let moving = |name: &str| {
-        let is = |row: &Row| {
+        let is = |row: &SensitivityRow| {
             row.estimator == name && row.constant.is_none() && MOVING.contains(&row.scenario)
         };
         mean(&soft, is, |row| row.rms_pct)
@@ -139,10 +148,10 @@ fn correct_constants_leave_a_tenth_of_the_error_and_wrong_ones_are_learned() {
     let ratio = worst(&soft, "adaptive-soft") / worst(&soft, "adaptive");
     assert_within("the same, worst", ratio, [0.7, 0.97]);
     for name in ["observer-soft", "adaptive-soft"] {
-        let all = |row: &Row| row.estimator == name && row.constant.is_none();
+        let all = |row: &SensitivityRow| row.estimator == name && row.constant.is_none();
         assert_within(name, mean(&soft, all, |row| row.rms_pct), [4.0, 8.0]);
         for slow in ["creep", "hold"] {
-            let slow = |row: &Row| all(row) && row.scenario == slow;
+            let slow = |row: &SensitivityRow| all(row) && row.scenario == slow;
             assert_within(name, mean(&soft, slow, |row| row.rms_pct), [1.0, 10.0]);
         }
     }
@@ -156,7 +165,7 @@ fn correct_constants_leave_a_tenth_of_the_error_and_wrong_ones_are_learned() {
         assert!(outside <= bound, "{name}: {outside}");
     }
     // The documented weakness of time stamps.
-    let weak = |row: &Row| {
+    let weak = |row: &SensitivityRow| {
         row.estimator == "adaptive-edge"
             && row.scenario == "creep"
             && (row.constant, row.error) == (Some("friction"), -0.5)
@@ -233,7 +242,7 @@ fn disc_errors_increase_the_error_little() {
     let settings = settings(device, &["observer-edge", "adaptive-edge"]);
     let rows = sensitivity(&cases(&EIGHT, 1e3, &[21, 22]), &settings, || ()).unwrap();
     for name in ["observer-edge", "adaptive-edge"] {
-        let is = |row: &Row| row.estimator == name && row.constant.is_none();
+        let is = |row: &SensitivityRow| row.estimator == name && row.constant.is_none();
         assert_within(name, mean(&rows, is, |row| row.rms_pct), [1.0, 5.5]);
     }
     assert_within(

@@ -21,7 +21,7 @@ const MARK: f64 = 3.5;
 /// errors of the particle filter on the plant with friction.
 pub(super) fn panels(
     group: &Group,
-    limits: &[limit::Row],
+    limits: &[limit::LimitRow],
     palette: &Palette,
 ) -> Result<Option<Svg>, String> {
     let shown: Vec<&Scenario> = group
@@ -151,7 +151,7 @@ fn panel(
 
 #[cfg(test)]
 mod tests {
-    use super::super::{CaseReport, ReportInput, Row};
+    use super::super::{CaseReport, EstimatorRow, ReportInput};
     use super::*;
     use crate::grid::groups;
     use scoring::score::Score;
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn each_scenario_has_a_panel_and_the_particle_filter_if_it_ran() {
-        let row = |name: &str, instructions, rms| Row {
+        let row = |name: &str, instructions, rms| EstimatorRow {
             estimator: name.to_owned(),
             instructions,
             score: Score {
@@ -199,7 +199,7 @@ mod tests {
             ],
             ..ReportInput::default()
         };
-        let limits = ["limit", "limit-edge"].map(|estimator| limit::Row {
+        let limits = ["limit", "limit-edge"].map(|estimator| limit::LimitRow {
             estimator,
             scenario: "stochastic",
             rate_hz: 1000.0,

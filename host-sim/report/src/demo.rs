@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{CaseReport, ReportInput, Row, Traces};
+use super::{CaseReport, EstimatorRow, ReportInput, Traces};
 use experiments::compare::interval;
 use scoring::score::{Truth, Wanted};
 use simulation::device::Device;
@@ -71,7 +71,7 @@ fn case(
     let reference = prepared.score(&estimates[0].1);
     let rows = estimates
         .iter()
-        .map(|(name, estimate)| Row {
+        .map(|(name, estimate)| EstimatorRow {
             estimator: name.clone(),
             score: prepared.score(estimate).relative_to(&reference),
             instructions: None,

@@ -1,6 +1,6 @@
 //! Cases in groups of equal rate and plant, with all scenarios and estimators.
 
-use super::{CaseReport, ReportInput, Row};
+use super::{CaseReport, EstimatorRow, ReportInput};
 use scoring::score::Score;
 
 /// The cases of one rate and plant.
@@ -15,12 +15,12 @@ pub(super) struct Group<'a> {
 /// counts into the sum.
 pub(super) struct Scenario<'a> {
     pub(super) name: &'a str,
-    pub(super) rows: Vec<Row>,
+    pub(super) rows: Vec<EstimatorRow>,
 }
 
 impl Group<'_> {
-    /// Share of samples inside the haptic interval, mean over the scenarios that have this score, and
-    /// their number.
+    /// Share of samples inside the haptic interval, mean over the scenarios that have this score,
+    /// and their number.
     pub(super) fn inside(&self, estimator: &str) -> Option<(f64, usize)> {
         let outside: Vec<f64> = self
             .scenarios
@@ -52,7 +52,7 @@ pub(super) fn groups(report: &ReportInput) -> Vec<Group<'_>> {
 }
 
 fn scenarios<'a>(cases: &[&'a CaseReport]) -> Vec<Scenario<'a>> {
-    let mut found: Vec<(&str, Vec<&Row>)> = Vec::new();
+    let mut found: Vec<(&str, Vec<&EstimatorRow>)> = Vec::new();
     for case in cases {
         match found.iter_mut().find(|(name, _)| *name == case.scenario) {
             Some((_, rows)) => rows.extend(&case.rows),
@@ -69,7 +69,7 @@ fn scenarios<'a>(cases: &[&'a CaseReport]) -> Vec<Scenario<'a>> {
 }
 
 /// One row for each estimator, in order of appearance.
-fn merge(rows: &[&Row]) -> Vec<Row> {
+fn merge(rows: &[&EstimatorRow]) -> Vec<EstimatorRow> {
     let mut names: Vec<&str> = Vec::new();
     for row in rows {
         if !names.contains(&row.estimator.as_str()) {
@@ -90,10 +90,10 @@ fn merge(rows: &[&Row]) -> Vec<Row> {
         .collect()
 }
 
-fn mean(name: &str, rows: &[&&Row]) -> Row {
+fn mean(name: &str, rows: &[&&EstimatorRow]) -> EstimatorRow {
     let instructions: Vec<f64> = rows.iter().filter_map(|row| row.instructions).collect();
     let n = instructions.len();
-    Row {
+    EstimatorRow {
         estimator: name.into(),
         score: Score::mean(rows.iter().map(|row| &row.score)),
         instructions: (n > 0).then(|| instructions.iter().sum::<f64>() / n as f64),
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     fn case(scenario: &str, rate_hz: f64, friction: bool, rms: &[(&str, f64)]) -> CaseReport {
-        let row = |&(name, rms): &(&str, f64)| Row {
+        let row = |&(name, rms): &(&str, f64)| EstimatorRow {
             estimator: name.into(),
             score: Score {
                 rms_rad_s: Some(rms),
@@ -113,7 +113,7 @@ mod tests {
                 outside: Some(rms / 10.0),
                 ..Score::default()
             },
-            ..Row::default()
+            ..EstimatorRow::default()
         };
         CaseReport {
             scenario: scenario.into(),

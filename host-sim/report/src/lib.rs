@@ -70,9 +70,9 @@ pub struct ReportInput {
     /// One entry for each scenario, rate, plant and seed; the tables have the same order.
     pub cases: Vec<CaseReport>,
     /// Errors of the particle filter.
-    pub limits: Vec<limit::Row>,
+    pub limits: Vec<limit::LimitRow>,
     /// Errors of estimators whose model has one wrong constant.
-    pub parameter_errors: Vec<sensitivity_rows::Row>,
+    pub parameter_errors: Vec<sensitivity_rows::SensitivityRow>,
     /// Runs of scenario `heating`, shown by their damping alone.
     pub heating: Vec<CaseReport>,
     /// Results of the closed loop, if it was run.
@@ -91,9 +91,9 @@ pub struct CaseReport {
     /// Seed of the random numbers.
     pub seed: u64,
     /// One row for each estimator, in the order of the tables.
-    pub rows: Vec<Row>,
-    /// The signals, if figures show this case: encoder quantisation, step response, permanent regime
-    /// and spectrum.
+    pub rows: Vec<EstimatorRow>,
+    /// The signals, if figures show this case: encoder quantisation, step response, permanent
+    /// regime and spectrum.
     pub traces: Option<Traces>,
     /// True and identified damping, if the coupler heats up.
     pub damping: Option<Damping>,
@@ -101,7 +101,7 @@ pub struct CaseReport {
 
 /// The scores of one estimator in one case.
 #[derive(Clone, Debug, Default)]
-pub struct Row {
+pub struct EstimatorRow {
     /// Name of the estimator.
     pub estimator: String,
     /// Its scores.

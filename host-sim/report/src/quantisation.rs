@@ -6,17 +6,18 @@ use super::canvas::{Anchor, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height
 use super::palette::{INK, Palette, TRUTH};
 use super::plot::{Axis, Plot};
 use super::{Traces, velocity};
-use scoring::score::Interval;
+use scoring::score::HapticInterval;
 
 const LEFT: f64 = 62.0;
 
-/// Truth, haptic interval and one estimate over `window` in one wide panel without values off scale.
+/// Truth, haptic interval and one estimate over `window` in one wide panel without values off
+/// scale.
 pub(super) fn figure_one(
     title: &str,
     traces: &Traces,
     window: Range<usize>,
     estimator: usize,
-    interval: &Interval,
+    interval: &HapticInterval,
     palette: &Palette,
 ) -> Result<Svg, String> {
     let (name, estimate) = &traces.estimates[estimator];

@@ -14,7 +14,7 @@ use super::palette::{INK, Palette, TRUTH};
 use super::plot::{Axis, Plot};
 use recordings::recording::{BoardColumns, Recording};
 use scoring::evaluation::Estimate;
-use scoring::score::Interval;
+use scoring::score::HapticInterval;
 
 /// Sizes, px.
 const LEFT: f64 = 70.0;
@@ -40,7 +40,7 @@ pub struct RecordingView<'a> {
     /// Counts per revolution of the large motor's and of the handle's encoder.
     pub counts_per_rev: [u32; 2],
     /// Haptic interval: velocity errors that a fingertip does not feel.
-    pub interval: Interval,
+    pub interval: HapticInterval,
     /// Time shown, s.
     pub window: [f64; 2],
 }
@@ -163,7 +163,8 @@ fn velocities(view: &RecordingView) -> Vec<Curve> {
             let values: Vec<_> = estimate.velocity.iter().map(|w| f64::from(*w)).collect();
             let colour = palette.style(estimate.estimator);
             let mut curve = Curve::new(estimate.estimator, colour, &values);
-            // The axis follows the other estimates: quantisation of this one would hide their differences.
+            // The axis follows the other estimates: quantisation of this one would hide their
+            // differences.
             curve.sizes = estimate.estimator != "finite-difference";
             curve
         })
@@ -199,7 +200,7 @@ mod tests {
             board,
             estimates: &[],
             counts_per_rev: [4096, 20_000],
-            interval: Interval::new(0.05, 0.010, 0.070, 0.96e-3),
+            interval: HapticInterval::new(0.05, 0.010, 0.070, 0.96e-3),
             window: [0.0, 0.006],
         }
     }

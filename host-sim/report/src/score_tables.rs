@@ -170,14 +170,14 @@ pub(super) fn label(estimator: &str, palette: &Palette) -> Markup {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{CaseReport, ReportInput, Row, grid};
+    use super::super::{CaseReport, EstimatorRow, ReportInput, grid};
     use super::*;
 
     fn table(rows: &[(&str, Score)]) -> String {
-        let rows = rows.iter().map(|(name, score)| Row {
+        let rows = rows.iter().map(|(name, score)| EstimatorRow {
             estimator: (*name).to_string(),
             score: *score,
-            ..Row::default()
+            ..EstimatorRow::default()
         });
         let report = ReportInput {
             cases: vec![CaseReport {

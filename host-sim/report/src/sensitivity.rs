@@ -6,7 +6,7 @@ use super::palette::{INK, Palette};
 use super::plot::{Axis, Plot};
 use super::text::rate;
 use catalogue::belief::Constant;
-use experiments::sensitivity::Row;
+use experiments::sensitivity::SensitivityRow;
 use experiments::sensitivity::table::{MOVING, names, rows_by_rate};
 
 const TOP: f64 = 58.0;
@@ -18,7 +18,7 @@ const GAP: f64 = 52.0;
 ///
 /// # Errors
 /// If a figure cannot be drawn.
-pub fn sensitivity(rows: &[Row], printout: &Printout) -> Result<String, String> {
+pub fn sensitivity(rows: &[SensitivityRow], printout: &Printout) -> Result<String, String> {
     let palette = Palette::of(rows.iter().map(|row| row.estimator));
     let charts = rows_by_rate(rows);
     let charts = charts.iter().map(|at_rate| chart(at_rate, &palette));
@@ -34,7 +34,7 @@ type Curve = Vec<(f64, f64)>;
 
 /// Mean over the scenarios in which the motor moves, at each error of `constant`, in order of the
 /// error.
-fn curve(rows: &[&Row], name: &str, constant: Constant) -> Curve {
+fn curve(rows: &[&SensitivityRow], name: &str, constant: Constant) -> Curve {
     let mut points: Vec<(f64, f64, f64)> = Vec::new();
     for row in rows {
         let shown = row.constant.is_none() || row.constant == Some(constant.as_str());
@@ -55,7 +55,7 @@ fn curve(rows: &[&Row], name: &str, constant: Constant) -> Curve {
 }
 
 /// A panel for each constant, from rows of one rate.
-pub(super) fn chart(rows: &[&Row], palette: &Palette) -> Result<Svg, String> {
+pub(super) fn chart(rows: &[&SensitivityRow], palette: &Palette) -> Result<Svg, String> {
     let names = names(rows);
     let keys: Vec<Key> = names
         .iter()
@@ -123,8 +123,13 @@ pub(super) fn chart(rows: &[&Row], palette: &Palette) -> Result<Svg, String> {
 mod tests {
     use super::*;
 
-    fn row(estimator: &'static str, constant: Option<&'static str>, error: f64, pct: f64) -> Row {
-        Row {
+    fn row(
+        estimator: &'static str,
+        constant: Option<&'static str>,
+        error: f64,
+        pct: f64,
+    ) -> SensitivityRow {
+        SensitivityRow {
             estimator,
             scenario: "step",
             rate_hz: 1000.0,
@@ -145,7 +150,7 @@ mod tests {
             row("pll", Some("damping"), -0.3, 40.0),
             row("pll", Some("friction"), 0.5, 70.0),
         ];
-        let all: Vec<&Row> = rows.iter().collect();
+        let all: Vec<&SensitivityRow> = rows.iter().collect();
         let points = curve(&all, "pll", Constant::Damping);
         assert_eq!(points, [(-30.0, 40.0), (0.0, 50.0), (30.0, 60.0)]);
         let printout = Printout {

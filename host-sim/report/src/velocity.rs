@@ -9,7 +9,7 @@ use super::canvas::{
 use super::palette::{BAND, BAND_EDGE, INK, MUTED, Palette, TRUTH};
 use super::plot::{Axis, Plot};
 use super::text::share;
-use scoring::score::Interval;
+use scoring::score::HapticInterval;
 
 const COLUMNS: usize = 3;
 /// Sizes, px.
@@ -30,7 +30,7 @@ pub(super) fn panels(
     traces: &Traces,
     window: Range<usize>,
     origin_s: f64,
-    interval: &Interval,
+    interval: &HapticInterval,
     palette: &Palette,
 ) -> Result<Svg, String> {
     let drawn = traces.estimates.len();
@@ -98,7 +98,7 @@ pub(super) fn truth(
     traces: &Traces,
     window: Range<usize>,
     origin_s: f64,
-    interval: &Interval,
+    interval: &HapticInterval,
 ) -> Result<(), String> {
     let time = |at: usize| 1e3 * (traces.time(at) - origin_s);
     let band = window.clone().map(|at| {
@@ -120,7 +120,7 @@ pub(super) fn truth(
 
 /// Range of the axis: the haptic interval, and beyond it three times its half width at rest or a
 /// quarter of its range.
-fn vertical(truth: &[f64], interval: &Interval) -> [f64; 2] {
+fn vertical(truth: &[f64], interval: &HapticInterval) -> [f64; 2] {
     let ends = truth
         .iter()
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &w| {
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn axis_includes_the_whole_interval() {
-        let interval = Interval::new(0.05, 0.010, 0.070, 0.96e-3);
+        let interval = HapticInterval::new(0.05, 0.010, 0.070, 0.96e-3);
         let [low, high] = vertical(&[-2.0, 20.0], &interval);
         assert!(low < -2.0 - interval.tolerance(2.0) - 1.0);
         assert!(high > 20.0 + interval.tolerance(20.0) + 1.0);

@@ -5,8 +5,8 @@ use super::grid::{Group, groups};
 use super::palette::Palette;
 use super::text::{plant, rate, share};
 
-/// The best estimator of each rate by its time inside the haptic interval; `None` if no case has this
-/// score.
+/// The best estimator of each rate by its time inside the haptic interval; `None` if no case has
+/// this score.
 ///
 /// The summary is about the plant with friction if it was run: it is the harder and the real one.
 pub(super) fn verdict(report: &ReportInput, palette: &Palette) -> Option<String> {
@@ -54,18 +54,18 @@ fn clause(group: &Group, palette: &Palette) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{CaseReport, Row};
+    use super::super::{CaseReport, EstimatorRow};
     use super::*;
     use scoring::score::Score;
 
     fn case(scenario: &str, friction: bool, outside: &[(&str, f64)]) -> CaseReport {
-        let row = |&(name, outside): &(&str, f64)| Row {
+        let row = |&(name, outside): &(&str, f64)| EstimatorRow {
             estimator: name.into(),
             score: Score {
                 outside: Some(outside),
                 ..Score::default()
             },
-            ..Row::default()
+            ..EstimatorRow::default()
         };
         CaseReport {
             scenario: scenario.into(),

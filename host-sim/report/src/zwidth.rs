@@ -6,7 +6,7 @@ use super::palette::{INK, Palette};
 use super::plot::{Axis, Plot};
 use super::style::Style;
 use super::text::rate;
-use experiments::zwidth::rows::Row;
+use experiments::zwidth::rows::ZwidthRow;
 
 const TOP: f64 = 58.0;
 const PANEL: f64 = 260.0;
@@ -17,11 +17,11 @@ const GAP: f64 = 52.0;
 ///
 /// # Errors
 /// If a figure cannot be drawn.
-pub fn zwidth(rows: &[Row], printout: &Printout) -> Result<String, String> {
+pub fn zwidth(rows: &[ZwidthRow], printout: &Printout) -> Result<String, String> {
     let palette = Palette::of(rows.iter().map(|row| row.estimator));
     let mut figures = Vec::new();
     for lines in distinct(rows.iter().map(|row| row.lines)) {
-        let of: Vec<&Row> = rows.iter().filter(|row| row.lines == lines).collect();
+        let of: Vec<&ZwidthRow> = rows.iter().filter(|row| row.lines == lines).collect();
         figures.push(chart(&of, lines, &palette)?);
     }
     let intro = "A virtual wall whose stiffness and damping lie below the curve is passive and free of \
@@ -42,7 +42,7 @@ fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
     found
 }
 
-fn chart(rows: &[&Row], lines: u32, palette: &Palette) -> Result<Svg, String> {
+fn chart(rows: &[&ZwidthRow], lines: u32, palette: &Palette) -> Result<Svg, String> {
     let rates = distinct(rows.iter().map(|row| row.rate_hz));
     let names = distinct(rows.iter().map(|row| row.estimator));
     let keys: Vec<Key> = names
@@ -62,7 +62,7 @@ fn chart(rows: &[&Row], lines: u32, palette: &Palette) -> Result<Svg, String> {
         for (i, &rate_hz) in rates.iter().enumerate() {
             let left = LEFT + (width + GAP) * (i % columns) as f64;
             let top = TOP + row_height * (i / columns) as f64;
-            let of: Vec<&Row> = rows
+            let of: Vec<&ZwidthRow> = rows
                 .iter()
                 .copied()
                 .filter(|row| row.rate_hz == rate_hz)
@@ -113,8 +113,8 @@ fn draw(canvas: &Canvas, plot: &Plot, points: &[(f64, f64)], style: Style) -> Re
 mod tests {
     use super::*;
 
-    fn row(lines: u32, rate_hz: f64, damping: f64, stiffness: f64) -> Row {
-        Row {
+    fn row(lines: u32, rate_hz: f64, damping: f64, stiffness: f64) -> ZwidthRow {
+        ZwidthRow {
             estimator: "pll",
             handle_estimator: "pll",
             rate_hz,

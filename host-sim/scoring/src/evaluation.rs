@@ -4,26 +4,27 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::score::{Interval, SKIP_S, Score, Truth, Wanted};
+use crate::score::{HapticInterval, SKIP_S, Score, Truth, Wanted};
 use catalogue::estimators::{Estimator, Kind, Setup, available};
 use catalogue::parameters::{Parameters, PlantKind};
 use simulation::trace::Trace;
 use terminal::failure::Failure;
 
-/// The scores of one estimator on one trace: an object of the JSON output, a row of the CSV.
+/// The scores of one estimator on one trace. It is an object of the JSON output and a row of the
+/// CSV.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// Scenario, or the recording's file name.
+    /// Name of the scenario, or file name of the recording.
     pub scenario: String,
     /// Control rate, Hz.
     pub rate_hz: f64,
-    /// Plant; a real motor has friction.
+    /// Whether the plant has friction. A real motor has.
     pub plant: PlantKind,
     /// Seed; 0 for a recording.
     pub seed: u64,
-    /// Estimator.
+    /// Name of the estimator.
     pub estimator: &'static str,
-    /// Scores.
+    /// Scores of the estimator.
     #[serde(flatten)]
     pub score: Score,
     /// Parameters of the estimator.
@@ -33,7 +34,7 @@ pub struct Row {
 /// Start of a run that the score of the learned damping ignores, s.
 pub const LEARNING_S: f64 = 3.0;
 
-/// What the rows of one trace have in common.
+/// The fields that all rows of one trace have in common.
 #[derive(Clone, Debug)]
 pub struct Heading {
     /// See [`Row::scenario`].
@@ -46,7 +47,7 @@ pub struct Heading {
     pub seed: u64,
 }
 
-/// An estimator ready to run.
+/// An estimator that is built for one device and one control rate.
 pub struct Candidate {
     /// Kind of the estimator.
     pub kind: &'static Kind,
@@ -55,15 +56,14 @@ pub struct Candidate {
     estimator: Estimator,
 }
 
-/// An estimator's velocities over a trace, rad/s.
+/// The velocities of an estimator over a trace, rad/s.
 #[derive(Clone, Debug)]
 pub struct Estimate {
-    /// Estimator.
+    /// Name of the estimator.
     pub estimator: &'static str,
     /// One velocity per tick.
     pub velocity: Vec<f32>,
-    /// Standard deviation of each velocity as reported by the estimator, rad/s; `None` if it reports
-    /// none.
+    /// Standard deviation of each velocity, rad/s; `None` if the estimator does not report it.
     pub deviation: Option<Vec<f32>>,
 }
 
@@ -98,7 +98,7 @@ impl Candidate {
         })
     }
 
-    /// The estimate over `trace`; `None` if the trace has not all needed signals.
+    /// The estimate over `trace`; `None` if the trace lacks a signal that the estimator needs.
     #[must_use]
     pub fn estimate(&self, trace: &Trace) -> Option<Estimate> {
         self.kind.needs.within(available(trace)).then(|| {
@@ -123,7 +123,7 @@ impl Candidate {
     }
 }
 
-/// Estimators built for one rate and plant, and finite difference as their reference.
+/// Estimators built for one rate and plant, with the finite difference as reference of the scores.
 pub struct Evaluation {
     candidates: Vec<Candidate>,
     difference: Candidate,
@@ -158,7 +158,7 @@ impl Evaluation {
         &self.candidates
     }
 
-    /// The estimates of all estimators whose needed signals `trace` has.
+    /// The estimates over `trace`, without those of estimators that need a signal it lacks.
     #[must_use]
     pub fn estimates(&self, trace: &Trace) -> Vec<Estimate> {
         self.candidates
@@ -167,7 +167,8 @@ impl Evaluation {
             .collect()
     }
 
-    /// Scores the `estimates` of `trace` against its true velocity; empty if the trace has none.
+    /// Scores the `estimates` of `trace` against its true velocity; empty if the true velocity is
+    /// unknown.
     ///
     /// # Errors
     /// [`Failure::Input`] if the true velocity is not finite.
@@ -176,7 +177,7 @@ impl Evaluation {
         heading: &Heading,
         trace: &Trace,
         estimates: &[Estimate],
-        interval: Interval,
+        interval: HapticInterval,
         wanted: Wanted,
     ) -> Result<Vec<Row>, Failure> {
         let Some(omega) = &trace.true_omega else {
@@ -220,7 +221,8 @@ impl Evaluation {
         Ok(estimates.iter().zip(&scores).map(row).collect())
     }
 
-    /// Damping b that `candidate` has learned at each tick of `trace`, N.m.s/rad.
+    /// Damping b that `candidate` has learned by each tick of `trace`, N.m.s/rad; `None` if the
+    /// estimator does not learn it.
     #[must_use]
     pub fn learned_damping(&self, candidate: &Candidate, trace: &Trace) -> Option<Vec<f64>> {
         let ratios = candidate.estimator.damping_ratio(trace)?;
@@ -234,7 +236,8 @@ fn last_tenth(values: &[f64]) -> f64 {
     last.iter().sum::<f64>() / last.len() as f64
 }
 
-/// RMS error in % of the true damping; `None` if that is unknown or the run is too short.
+/// RMS error of the learned damping, % of the true damping; `None` if the true damping is unknown
+/// or the run is not longer than [`LEARNING_S`].
 fn damping_error(learned: &[f64], trace: &Trace) -> Option<f64> {
     let truth = trace.true_damping.as_ref()?;
     let skip = (LEARNING_S * trace.rate_hz) as usize;
@@ -259,13 +262,13 @@ mod tests {
             velocity: vec![9.0, 1.0, 1.0, 1.0, 1.0],
             deviation: Some(vec![0.0, 0.5, 0.5, 0.4, 0.0]),
         };
-        // At 10 Hz the first sample is the start.
+        // At 10 Hz the first 0.1 s, which are not scored, are one sample.
         let truth = [0.0, 2.0, 2.1, 1.5, 1.0];
         assert_eq!(estimate.within_2_sigma(&truth, 10.0), Some(0.75));
-        let silent = Estimate {
+        let without_deviation = Estimate {
             deviation: None,
             ..estimate
         };
-        assert_eq!(silent.within_2_sigma(&truth, 10.0), None);
+        assert_eq!(without_deviation.within_2_sigma(&truth, 10.0), None);
     }
 }

@@ -1,10 +1,10 @@
 //! Percentiles of magnitudes.
 
-/// The smallest magnitude that the part `share` of the magnitudes of `values` does not exceed (nearest
-/// rank), for example 0.99.
+/// The percentile `share` (0 to 1) of the magnitudes of `values`, by nearest rank: the smallest
+/// magnitude that at least this share of the magnitudes does not exceed.
 ///
 /// # Panics
-/// If there is no value.
+/// If `values` is empty.
 ///
 /// ```
 /// let values = (1..=200).map(|i| f64::from(if i % 2 == 0 { i } else { -i }));

@@ -1,14 +1,12 @@
-//! How well an estimate follows the truth, in the terms of the hand that feels it.
-//!
-//! One definition, used by the table, the report, the JSON and the tests:
+//! Scores of an estimate against the true velocity. The distance is the error beyond the haptic
+//! interval, within which a fingertip does not notice it.
 //!
 //! ```text
-//! tolerance(w) = k |w| + F_shd D / (2 b)            what a fingertip cannot tell from w, rad/s
+//! tolerance(w) = k |w| + F_shd D / (2 b)            half width of the haptic interval, rad/s
 //! distance     = max(0, |estimate - w| - tolerance(w))
 //! ```
 //!
-//! Everything before the first [`SKIP_S`] seconds is ignored: estimators start from rest and
-//! their first samples say nothing about them.
+//! The first [`SKIP_S`] seconds of a trace are not scored, because every estimator begins at rest.
 
 mod delay;
 mod field;
@@ -20,16 +18,17 @@ pub use field::{Better, Field, Form, Over};
 pub use fields::{Score, Wanted};
 pub use truth::Truth;
 
-/// Start of every trace that no score looks at, s.
+/// Duration at the start of a trace that is not scored, s.
 pub const SKIP_S: f64 = 0.1;
 
-/// The band in which a fingertip is most sensitive to vibration, Hz.
+/// Frequencies at which a fingertip is most sensitive to vibration, Hz.
 pub const TACTILE_BAND_HZ: [f64; 2] = [50.0, 500.0];
 
-/// What a hand cannot tell from the true velocity, and what a velocity error is worth in force.
+/// The haptic interval around the true velocity, within which a fingertip notices no error, and the
+/// parasitic force that an error causes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
-    /// Weber fraction: the part of the velocity's size that goes unnoticed, without unit.
+pub struct HapticInterval {
+    /// Weber fraction: the largest unnoticed error as a fraction of the speed.
     pub weber: f64,
     /// Half width of the interval at zero velocity, rad/s.
     pub floor_rad_s: f64,
@@ -37,13 +36,14 @@ pub struct Interval {
     pub force_mn_per_rad_s: f64,
 }
 
-impl Interval {
-    /// From the Weber fraction `weber`, the force threshold at the fingertip `threshold_n` (N),
-    /// the handle's diameter `diameter_m` (m) and the coupler's damping (N.m.s/rad).
+impl HapticInterval {
+    /// The interval for the Weber fraction `weber`, the force threshold at the fingertip
+    /// `threshold_n` (N), the handle's diameter `diameter_m` (m) and the coupler's damping
+    /// (N.m.s/rad).
     ///
     /// ```
-    /// # use scoring::score::Interval;
-    /// let paper = Interval::new(0.05, 0.010, 0.070, 0.96e-3);
+    /// # use scoring::score::HapticInterval;
+    /// let paper = HapticInterval::new(0.05, 0.010, 0.070, 0.96e-3);
     /// assert!((paper.tolerance(0.0) - 0.3646).abs() < 1e-4);
     /// assert!((paper.force_mn_per_rad_s - 27.43).abs() < 1e-2);
     /// ```
@@ -69,11 +69,11 @@ mod tests {
 
     #[test]
     fn tolerance_is_constant_plus_a_fraction_of_the_speed() {
-        let interval = Interval::new(0.05, 0.010, 0.070, 0.96e-3);
+        let interval = HapticInterval::new(0.05, 0.010, 0.070, 0.96e-3);
         assert!((interval.tolerance(0.0) - 0.364_583_3).abs() < 1e-6);
         assert!((interval.tolerance(10.0) - 0.864_583_3).abs() < 1e-6);
         assert!((interval.tolerance(-10.0) - 0.864_583_3).abs() < 1e-6);
-        // An error of exactly the floor is the force threshold, 10 mN.
+        // An error of the half width at zero velocity causes the threshold force, 10 mN.
         assert!((interval.floor_rad_s * interval.force_mn_per_rad_s - 10.0).abs() < 1e-9);
     }
 
@@ -93,10 +93,13 @@ mod tests {
         let percent = score.relative_to(&reference);
         assert_eq!(percent.rms_pct, Some(25.0));
         assert_eq!(percent.distance_pct, None, "the reference is 0");
-        assert_eq!(percent.distance_transient_pct, None, "there is none");
+        assert_eq!(
+            percent.distance_transient_pct, None,
+            "the reference has no transient"
+        );
     }
 
-    /// Names of the output's contract: more may follow, none may go.
+    /// Names that the JSON and CSV output always has.
     const CONTRACT: [&str; 12] = [
         "rms_rad_s",
         "max_rad_s",

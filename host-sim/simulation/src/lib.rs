@@ -1,5 +1,5 @@
 //! The dual-stage device in f64: the plant, its encoders, the scenarios that move it, and the trace
-//! of samples that a control board would see.
+//! of samples as a control board reads them.
 //!
 //! The trace also has the true velocity, which only scores read.
 

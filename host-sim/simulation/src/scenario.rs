@@ -30,28 +30,28 @@ use crate::device::Device;
 use rand_xoshiro::{Xoshiro256PlusPlus, rand_core::SeedableRng};
 use std::{fmt, str::FromStr};
 
-/// What a scenario is for.
+/// Purpose of a scenario. It decides where the scenario is used by default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// The paper's experiment: presets are tuned on it, and the report's figures show it.
+    /// The paper's experiment. Presets are tuned on it, and the report's figures show it.
     Tuning,
     /// Motion with friction that no preset of a plain filter is tuned on.
     Judging,
-    /// The model of the filters: a plant without friction under known white noise.
+    /// The model of the Kalman filters: a plant without friction under known white noise.
     Linear,
-    /// A device that changes during the run. It runs when it is named.
+    /// A device that changes during the run. It is not compared by default.
     Warming,
-    /// Motion for one question. It runs when it is named, so that figures over all compared
-    /// scenarios keep their meaning.
+    /// Motion for one question. It is not compared by default, so that figures over all compared
+    /// scenarios stay comparable.
     Special,
 }
 
-/// Speeds of a run of 10 s on the default device, rad/s: each between two bounds.
+/// Bounds of the large motor's speed in a run of 10 s on the default device, rad/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Speeds {
-    /// Largest speed.
+    /// Bounds of the largest speed.
     pub largest: [f64; 2],
-    /// Root mean square of the speed.
+    /// Bounds of the root mean square of the speed.
     pub rms: [f64; 2],
 }
 
@@ -61,29 +61,31 @@ impl Speeds {
     }
 }
 
-/// The row of a scenario.
-struct Row {
+/// A row of the table of scenarios.
+struct ScenarioRow {
     /// Name on the command line and in reports.
     name: &'static str,
     /// Description, in one line.
     description: &'static str,
     role: Role,
-    /// Length of a run unless told otherwise, s.
+    /// Default duration of a run, s.
     seconds: f64,
-    /// Speeds that its motion has to have.
+    /// Bounds that the motion of the scenario keeps; a test checks them.
     speeds: Speeds,
-    /// Whether the plant has friction and ripple, as the device says; if not, it has neither.
+    /// Whether the plant has the friction and the ripple of the device. Otherwise it has neither.
     friction: bool,
-    /// Whether its own loop reads the reference encoder; if not, that encoder is not simulated.
+    /// Whether the scenario's own loop reads the reference encoder. That encoder is only simulated
+    /// if it is read.
     reads_reference: bool,
-    /// Whether its own loop reads the small encoder; if not, only a trace that wants it has it.
+    /// Whether the scenario's own loop reads the small encoder. An encoder that is not read is only
+    /// simulated for a trace with its column.
     reads_small: bool,
-    /// The scenario on a device, with its control period in s and its source of random numbers.
+    /// Builds the scenario for a device, a control period (s) and a source of random numbers.
     build: fn(&Device, f64, Xoshiro256PlusPlus) -> Box<dyn Scenario>,
 }
 
-impl Row {
-    /// What most rows have.
+impl ScenarioRow {
+    /// Defaults of the fields. A row of the table lists the fields that differ.
     const USUAL: Self = Self {
         name: "",
         description: "",
@@ -100,7 +102,7 @@ impl Row {
 /// The enumeration of the scenarios and their rows, from one list.
 macro_rules! scenarios {
     ($($(#[$about:meta])* $Name:ident { $($fact:tt)* })+) => {
-        /// Every scenario there is.
+        /// All scenarios.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum ScenarioName {
             $($(#[$about])* $Name,)+
@@ -110,7 +112,8 @@ macro_rules! scenarios {
             /// All scenarios, in the order of reports.
             pub const ALL: [Self; [$(stringify!($Name)),+].len()] = [$(Self::$Name),+];
 
-            const ROWS: [Row; Self::ALL.len()] = [$(Row { $($fact)* ..Row::USUAL }),+];
+            const ROWS: [ScenarioRow; Self::ALL.len()] =
+                [$(ScenarioRow { $($fact)* ..ScenarioRow::USUAL }),+];
         }
     };
 }
@@ -120,7 +123,8 @@ scenarios! {
     Step {
         name: "step",
         description: "current on at 0.15 to 0.9 A and off each 0.25 s, open loop, handle clamped",
-        // On half of the time: sqrt(1/2) of 24 rad/s, the RMS of its levels, less the rise.
+        // The current is on half of the time: sqrt(1/2) of 24 rad/s, the RMS of the levels, less
+        // the rise.
         speeds: Speeds::within([30.0, 42.0], [11.0, 20.0]),
         role: Role::Tuning,
         reads_reference: false,
@@ -225,7 +229,7 @@ scenarios! {
 }
 
 impl ScenarioName {
-    const fn row(self) -> &'static Row {
+    const fn row(self) -> &'static ScenarioRow {
         &Self::ROWS[self as usize]
     }
 
@@ -236,19 +240,19 @@ impl ScenarioName {
         Self::ALL.into_iter().filter(has_role).collect()
     }
 
-    /// The scenarios that are compared unless others are named.
+    /// The scenarios that are compared by default.
     #[must_use]
     pub fn compared() -> Vec<Self> {
         Self::of(&[Role::Tuning, Role::Judging, Role::Linear])
     }
 
-    /// The scenarios whose plant has friction and whose device stays as it is.
+    /// The scenarios with friction on a device that does not change during the run.
     #[must_use]
     pub fn with_friction() -> Vec<Self> {
         Self::of(&[Role::Tuning, Role::Judging])
     }
 
-    /// What it is for.
+    /// Purpose of the scenario.
     #[must_use]
     pub const fn role(self) -> Role {
         self.row().role
@@ -260,45 +264,47 @@ impl ScenarioName {
         self.row().name
     }
 
-    /// What happens, in one line.
+    /// Description, in one line.
     #[must_use]
     pub const fn description(self) -> &'static str {
         self.row().description
     }
 
-    /// Length of a run unless told otherwise, s.
+    /// Default duration of a run, s.
     #[must_use]
     pub const fn default_seconds(self) -> f64 {
         self.row().seconds
     }
 
-    /// Speeds that its motion has to have.
+    /// Bounds that the speed keeps in a run of 10 s on the default device.
     #[must_use]
     pub const fn speeds(self) -> Speeds {
         self.row().speeds
     }
 
-    /// Whether its loop reads the reference encoder; if not, that encoder is not simulated.
+    /// Whether the scenario's own loop reads the reference encoder. That encoder is only simulated
+    /// if it is read.
     #[must_use]
     pub const fn reads_reference(self) -> bool {
         self.row().reads_reference
     }
 
-    /// Whether its loop reads the small encoder; if not, only a trace that wants it has it.
+    /// Whether the scenario's own loop reads the small encoder. An encoder that is not read is only
+    /// simulated for a trace with its column.
     #[must_use]
     pub const fn reads_small(self) -> bool {
         self.row().reads_small
     }
 
-    /// Whether it takes the linear plant, without friction or ripple, whatever the device.
+    /// Whether the plant is linear: it has no friction and no ripple, even if the device has them.
     #[must_use]
     pub const fn linear_plant(self) -> bool {
         !self.row().friction
     }
 
-    /// Seed of everything drawn for this scenario.
+    /// Seed of all random numbers of this scenario, from the seed of the run.
     pub fn mix(self, seed: u64) -> u64 {
-        // FNV-1a of the name, so that two scenarios of one seed have nothing in common.
+        // FNV-1a of the name, so that two scenarios with one seed draw independent numbers.
         let hash = |state: u64, byte: u8| (state ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
         seed.to_le_bytes()
             .into_iter()
@@ -325,7 +331,7 @@ impl FromStr for ScenarioName {
     }
 }
 
-/// The scenario of this name on this device.
+/// Builds the scenario `name` for `device` and a control period, with random numbers from `seed`.
 pub(crate) fn build(
     name: ScenarioName,
     device: &Device,

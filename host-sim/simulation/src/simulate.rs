@@ -57,9 +57,9 @@ pub fn plant_steps(rate_hz: f64, seconds: f64) -> Result<u64, String> {
 ///
 /// At each tick the encoders are sampled first. Then the scenario computes its currents, which are
 /// applied at once. `current` is the large motor's command after saturation, from its tick to the
-/// next; `true_omega` is the large motor's true velocity at the tick, rad/s. The seed draws the first
-/// counts. The age of an edge is the difference of two readings of a clock of [`EDGE_CLOCK_HZ`], one
-/// at the edge and one at the tick, each rounded down, as in a capture unit.
+/// next; `true_omega` is the large motor's true velocity at the tick, rad/s. The seed draws the
+/// first counts. The age of an edge is the difference of two readings of a clock of
+/// [`EDGE_CLOCK_HZ`], one at the edge and one at the tick, each rounded down, as in a capture unit.
 ///
 /// ```
 /// use simulation::device::Device;
@@ -192,7 +192,8 @@ impl Run {
             let phase = draw(&mut random, 0.0, 1.0);
             Encoder::new(counts_per_rev, first, phase, angle, disc)
         };
-        // All three are always drawn, so that no column depends on the presence of another.
+        // All three are always drawn, so that the values of a column do not depend on which other
+        // columns exist.
         let large = encoder(device.stages.large.counts_per_rev, start.angle, disc);
         let handle = plant.small().angle;
         let small = encoder(
@@ -232,12 +233,12 @@ impl Run {
             counts.push(self.large.count());
             omega.push(self.plant.large().omega);
             if let Some(column) = &mut counts_small {
-                column.push(self.seen().small);
+                column.push(self.loop_counts().small);
             }
             if let Some(column) = &mut edges {
                 column.push(stamps.read(t));
             }
-            let drive = self.tick(k as u64, self.seen(), t, &mut stamps);
+            let drive = self.tick(k as u64, self.loop_counts(), t, &mut stamps);
             damping.push(self.damping * drive.damping_part);
             current.push(self.plant.commands().0);
         }
@@ -252,8 +253,8 @@ impl Run {
         }
     }
 
-    /// Input of the scenario's loop.
-    fn seen(&self) -> EncoderCounts {
+    /// Counts for the scenario's own loop.
+    fn loop_counts(&self) -> EncoderCounts {
         let count = |encoder: &Option<Encoder>| encoder.as_ref().map_or(0, Encoder::count);
         EncoderCounts {
             reference: count(&self.reference),
@@ -261,9 +262,10 @@ impl Run {
         }
     }
 
-    /// Simulates from the tick at `t` to the next one; returns the scenario's decision.
-    fn tick<S: Stamps>(&mut self, k: u64, seen: EncoderCounts, t: f64, stamps: &mut S) -> Drive {
-        let drive = self.scenario.tick(k, seen);
+    /// Simulates from the tick at `t` to the next one. Returns the inputs that the scenario
+    /// applied.
+    fn tick<S: Stamps>(&mut self, k: u64, counts: EncoderCounts, t: f64, stamps: &mut S) -> Drive {
+        let drive = self.scenario.tick(k, counts);
         self.plant.command(drive.large_a, drive.small_a);
         self.plant.set_damping(self.damping * drive.damping_part);
         let noise = (self.scenario.torque_intensity() / self.step).sqrt();
@@ -291,7 +293,7 @@ impl Run {
     }
 }
 
-/// The device without friction, ripple or errors of its disc.
+/// The device without friction, ripple and disc errors.
 fn linear(device: &Device) -> Device {
     let mut device = device.frictionless();
     device.large_ripple.torque = 0.0;

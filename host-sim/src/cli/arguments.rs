@@ -111,7 +111,7 @@ pub(super) struct ParameterOptions {
 }
 
 impl DeviceFile {
-    /// The text of the file, empty without a file.
+    /// The text of the device file; empty if no file is given.
     pub(super) fn text(&self) -> Result<String, Failure> {
         let Some(path) = &self.device else {
             return Ok(String::new());
@@ -120,7 +120,7 @@ impl DeviceFile {
             .map_err(|error| Failure::Input(format!("{}: cannot read: {error}", path.display())))
     }
 
-    /// The device of the file, or the default one.
+    /// The device of the file; the default device if no file is given.
     pub(super) fn load(&self) -> Result<Device, Failure> {
         let name = self.device.as_deref().unwrap_or(Path::new(""));
         Device::from_toml_str(&self.text()?)

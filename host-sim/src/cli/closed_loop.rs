@@ -72,8 +72,9 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
     page::print(options.json.as_deref(), &rows::json(&scores)?, &text)
 }
 
-/// The closed-loop section for the report of an open-loop comparison; empty if scenarios were named.
-/// If the loop cannot be closed, the section is empty and the returned remark has the reason.
+/// The closed-loop section for the report of an open-loop comparison; empty if scenarios were
+/// named. If the loop cannot be closed, the section is empty and the returned remark has the
+/// reason.
 pub(super) fn for_report(options: &Compare) -> (ClosedLoop, Option<String>) {
     if !options.scenarios.is_empty() {
         return (ClosedLoop::default(), None);
@@ -117,8 +118,8 @@ fn design(settings: &LoopSettings, rate_hz: f64, plant: PlantKind) -> Result<Des
     Design::new(&believed, rate_hz, LoopPoles::DEFAULT)
 }
 
-/// Writes the page and, if there are any, the closed loop's scores as JSON and CSV; returns the
-/// page's path.
+/// Writes the page, and the scores of the closed loop as JSON and CSV if there are scores. Returns
+/// the path of the page.
 pub(super) fn write(
     mut folder: Folder,
     mut input: ReportInput,
@@ -135,7 +136,7 @@ pub(super) fn write(
     page::write(folder, &report::html(&input)?)
 }
 
-/// What all runs have in common.
+/// Settings that all runs share.
 pub(super) fn settings(options: &Compare) -> Result<LoopSettings, Failure> {
     let handle = Kind::named(
         options

@@ -249,7 +249,7 @@ pub(super) fn timing(cost: Cost) -> String {
 
 /// Converts an outcome to the input of the report.
 pub(super) fn case_report(outcome: &Outcome) -> CaseReport {
-    let row = |row: &Row| report::Row {
+    let row = |row: &Row| report::EstimatorRow {
         estimator: row.estimator.to_owned(),
         score: row.score,
         instructions: measured::instructions(row.estimator, &row.parameters),

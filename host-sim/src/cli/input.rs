@@ -1,4 +1,4 @@
-//! Input files, among them standard input.
+//! Input files, one of which can be standard input.
 
 use std::io::Read as _;
 use std::path::Path;
@@ -13,7 +13,7 @@ pub(super) fn is_stdin(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// What messages call the file `path`.
+/// Name of the file `path` in messages.
 pub(super) fn called(path: &Path) -> String {
     match is_stdin(path) {
         true => STDIN.to_owned(),
@@ -21,7 +21,7 @@ pub(super) fn called(path: &Path) -> String {
     }
 }
 
-/// The name a recording goes by: its file's.
+/// Name of the recording in the file `path`: the file's name.
 pub(super) fn short_name(path: &Path) -> String {
     match is_stdin(path) {
         true => STDIN.to_owned(),
@@ -29,7 +29,7 @@ pub(super) fn short_name(path: &Path) -> String {
     }
 }
 
-/// Reads a file, or standard input where `path` is -.
+/// Reads a file, or standard input if `path` is -.
 ///
 /// # Errors
 /// [`Failure::Input`] that names the file.

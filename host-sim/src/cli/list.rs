@@ -1,4 +1,4 @@
-//! What there is to choose from.
+//! `host-sim estimators`, `scenarios` and `device`: lists of the possible values of options.
 
 use std::fmt::Write as _;
 
@@ -57,7 +57,7 @@ pub(super) fn estimators() -> Result<(), Failure> {
     print_bytes(text.as_bytes())
 }
 
-/// The values of a parameter in `presets`, each with the rate it is for, on the plant with friction.
+/// The values of a parameter in `presets` for the plant with friction, each with its control rate.
 fn tuned(presets: &Presets, kind: &str, parameter: &str) -> Vec<String> {
     let with_friction = |preset: &&Preset| preset.plant == PlantKind::Friction;
     let values = presets.preset.iter().filter(with_friction);
@@ -80,7 +80,7 @@ pub(super) fn scenarios() -> Result<(), Failure> {
     print_bytes(text.as_bytes())
 }
 
-/// A device with all its values.
+/// All values of a device.
 pub(super) fn device(file: &DeviceFile) -> Result<(), Failure> {
     let text = toml::to_string(&file.load()?)
         .map_err(|error| Failure::Input(format!("device: {error}")))?;

@@ -1,4 +1,4 @@
-//! What commands that score have in common: a bar while they work, a page, JSON, a table.
+//! Output that several commands share: progress bar, page, JSON and table.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use report;
 use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, print_bytes, write_whole};
 
-/// A progress bar on standard error, if that is a terminal.
+/// A progress bar on standard error. It is hidden if standard error is not a terminal.
 pub(super) fn progress(length: usize, doing: &'static str) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta}");
     ProgressBar::new(length as u64)
@@ -19,7 +19,7 @@ pub(super) fn progress(length: usize, doing: &'static str) -> ProgressBar {
 /// Folder of the page: `--out`, or `usual` unless the JSON goes to standard output.
 ///
 /// # Errors
-/// [`Failure::Input`] where `--out` is standard output.
+/// [`Failure::Input`] if `--out` is standard output.
 pub(super) fn folder<'a>(
     out: Option<&'a Path>,
     json: Option<&Path>,
@@ -46,7 +46,7 @@ pub(super) fn write(mut folder: Folder, page: &str) -> Result<PathBuf, Failure> 
     Ok(index)
 }
 
-/// The JSON to its file and `text` to standard output, or the JSON alone to standard output.
+/// Writes the JSON to its file and `text` to standard output, or only the JSON to standard output.
 pub(super) fn print(json_file: Option<&Path>, json: &[u8], text: &str) -> Result<(), Failure> {
     match json_file {
         Some(path) if is_stdout(path) => return print_bytes(json),
@@ -56,7 +56,7 @@ pub(super) fn print(json_file: Option<&Path>, json: &[u8], text: &str) -> Result
     print_bytes(text.as_bytes())
 }
 
-/// Refuses two files on standard output, each an option with its path.
+/// Refuses more than one file on standard output. A file is given by its option and its path.
 ///
 /// # Errors
 /// [`Failure::Input`] that names both options.

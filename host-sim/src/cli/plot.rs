@@ -27,7 +27,7 @@ pub(super) struct Plot {
     /// kalman-triple-steady]
     #[arg(long = "estimator", value_name = "NAME")]
     pub(super) estimators: Vec<String>,
-    /// Begin of the plot, s [default: begin of the recording]
+    /// Start of the plot, s [default: start of the recording]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(super) from: Option<f64>,
     /// End of the plot, s [default: end of the recording]
@@ -58,7 +58,7 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
     let wraps = recording.unwrap_counts(&device);
 
     let [first, .., last] = recording.t[..] else {
-        unreachable!("a recording has two rows at least");
+        unreachable!("a recording has at least two rows");
     };
     let window = [options.from.unwrap_or(first), options.to.unwrap_or(last)];
     let shown = recording

@@ -49,10 +49,10 @@ pub(super) fn run(options: &Record) -> Result<(), Failure> {
     };
     if telemetry.frames.is_empty() {
         let hint = match options.image {
-            None => "it is read as the log that cargo firmware prints; raw RTT bytes need --image",
-            Some(_) => "it is read as raw RTT bytes of --image; a log needs no --image",
+            None => "a log of cargo firmware is expected; give --image for raw RTT bytes",
+            Some(_) => "raw RTT bytes of --image are expected; leave out --image for a log",
         };
-        return Err(failure(&format!("no telemetry frame in it; {hint}")));
+        return Err(failure(&format!("no telemetry frame; {hint}")));
     }
     let runs = telemetry.runs();
     let run = choose(&runs, options.run).map_err(|error| failure(&error.to_string()))?;

@@ -1,5 +1,5 @@
-//! Further experiments of the report of `compare`: lower bounds of the error, errors of the device's
-//! constants, a warming coupler.
+//! Further experiments of the report of `compare`: lower bounds of the error, errors of the
+//! device's constants, a warming coupler.
 
 use catalogue::parameters::PlantKind;
 use experiments::compare::{Case, Settings, compare};
@@ -12,20 +12,20 @@ use terminal::failure::Failure;
 use super::arguments::rates;
 use super::compare::{Compare, case_report};
 
-/// Number of particles for the lower bound. With the 2000 particles of `host-sim limit` the bound is
-/// 0.2 to 1.0 % lower (scenario stochastic, 1 kHz, seeds 1 and 2).
+/// Number of particles for the lower bound. With the 2000 particles of `host-sim limit` the bound
+/// is 0.2 to 1.0 % lower (scenario stochastic, 1 kHz, seeds 1 and 2).
 const PARTICLES: usize = 500;
 
-/// Results that the report shows beside the requested cases.
+/// Results that the report shows in addition to the requested cases.
 #[derive(Default)]
 pub(super) struct ReportExtras {
-    pub(super) limits: Vec<limit::Row>,
-    pub(super) beliefs: Vec<sensitivity::Row>,
+    pub(super) limits: Vec<limit::LimitRow>,
+    pub(super) beliefs: Vec<sensitivity::SensitivityRow>,
     pub(super) warming: Vec<CaseReport>,
 }
 
-/// Runs the further experiments at the lowest requested rate. If scenarios were named, only the lower
-/// bounds are computed.
+/// Runs the further experiments at the lowest requested rate. If scenarios were named, only the
+/// lower bounds are computed.
 pub(super) fn report_extras(
     options: &Compare,
     settings: &Settings,

@@ -6,7 +6,7 @@ use clap::Args;
 
 use catalogue::estimators::Kind;
 use experiments::closed_loop::{environments_with, named};
-use experiments::robust::row::Row;
+use experiments::robust::row::RobustRow;
 use experiments::robust::shard::Part;
 use experiments::robust::variation::Subject;
 use experiments::robust::{Experiment, Settings, shard, summary};
@@ -159,7 +159,7 @@ fn settings(options: &Robust) -> Result<Settings, Failure> {
 /// Prints the table and writes report and JSON of all rows, whether they were run now or merged.
 fn finish(
     settings: &Settings,
-    rows: &[Row],
+    rows: &[RobustRow],
     folder: Option<&Path>,
     json_file: Option<&Path>,
 ) -> Result<(), Failure> {
@@ -189,6 +189,6 @@ fn finish(
 }
 
 /// Fails with exit status 1 if a row violates a criterion.
-fn judged(settings: &Settings, rows: &[Row]) -> Result<(), Failure> {
+fn judged(settings: &Settings, rows: &[RobustRow]) -> Result<(), Failure> {
     summary::complaint(settings, rows).map_or(Ok(()), |said| Err(Failure::Check(said)))
 }

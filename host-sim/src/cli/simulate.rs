@@ -98,7 +98,7 @@ fn of_scene(options: &Simulate) -> Result<Recording, Failure> {
     let device = options.device.load()?;
     let scene = match options.scene.as_deref() {
         None => SceneKind::Excite,
-        // The excitation, or an environment.
+        // Scenes that need commands of the host are not offered.
         Some(name) => named(
             name,
             [SceneKind::Excite]

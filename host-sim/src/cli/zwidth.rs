@@ -7,7 +7,7 @@ use clap::Args;
 use catalogue::estimators::Kind;
 use experiments::rows::{csv, json};
 use experiments::table::layout::{NARROW, terminal_width};
-use experiments::zwidth::{BOUNDS_A_CASE, Case, Settings, boundaries, rows, table};
+use experiments::zwidth::{BOUNDS_A_CASE, LoopSetup, Settings, boundaries, rows, table};
 use report::{self, Printout};
 use terminal::failure::Failure;
 use terminal::output::Folder;
@@ -81,11 +81,11 @@ pub(super) fn run(options: &Zwidth, command_line: &str) -> Result<(), Failure> {
     page::print(options.json.as_deref(), &json, &text)
 }
 
-/// Rates, encoders, estimators, in this order of the table's blocks.
-fn cases(options: &Zwidth) -> Result<Vec<Case>, Failure> {
+/// All combinations of rate, encoder and estimator, in the order of the table.
+fn cases(options: &Zwidth) -> Result<Vec<LoopSetup>, Failure> {
     let mut estimators = kinds(&options.estimators)?;
     if options.estimators.is_empty() {
-        // A steady gain is the same filter once it has settled.
+        // A filter with a steady gain is identical to the full filter once it has settled.
         estimators.retain(|kind| !kind.name.ends_with("-steady") && !kind.needs.edge);
     }
     if let Some(kind) = estimators.iter().find(|kind| kind.needs.edge) {
@@ -110,7 +110,7 @@ fn cases(options: &Zwidth) -> Result<Vec<Case>, Failure> {
     for rate_hz in rates(&options.rates, &[1e3, 10e3, 11.6e3]) {
         simulation::simulate::ticks(rate_hz, 1.0)?;
         for &lines in &lines {
-            cases.extend(estimators.iter().map(|&large| Case {
+            cases.extend(estimators.iter().map(|&large| LoopSetup {
                 large,
                 handle: handle.unwrap_or(if large.needs.current { triple } else { large }),
                 rate_hz,

@@ -4,10 +4,11 @@ use clap::error::ErrorKind;
 
 use crate::failure::Failure;
 
-/// Help and version go out; anything else becomes one line that names `program` for help.
+/// Prints help and version on standard output. Other errors of the parser become one line that
+/// refers to the help of `program`.
 ///
 /// # Errors
-/// [`Failure::Input`] with that line.
+/// [`Failure::Input`] with this line.
 pub fn explain(error: &clap::Error, program: &str) -> Result<(), Failure> {
     if let ErrorKind::DisplayHelp | ErrorKind::DisplayVersion = error.kind() {
         return crate::output::print_bytes(error.render().to_string().as_bytes());

@@ -1,14 +1,14 @@
-//! Why a command ends early, and with which exit status.
+//! Failure of a command, with its exit status.
 
 use std::fmt;
 use std::process::ExitCode;
 
 use crate::output::note;
 
-/// What ends a command early; the message is one line that says what to do.
+/// Failure of a command. The message is one line with a remedy.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Failure {
-    /// A check did not hold: exit status 1.
+    /// A check failed: exit status 1.
     Check(String),
     /// The input cannot be used, or the output cannot be written: exit status 2.
     Input(String),
@@ -25,7 +25,8 @@ impl Failure {
     }
 }
 
-/// The end of a program: what failed goes to standard error in one line.
+/// The exit code of a program that ends with `done`. A failure is printed on standard error in one
+/// line.
 #[must_use]
 pub fn ended(done: Result<(), Failure>) -> ExitCode {
     match done {
@@ -40,7 +41,7 @@ pub fn ended(done: Result<(), Failure>) -> ExitCode {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (Self::Check(message) | Self::Input(message)) = self;
-        // Whatever a library said, it stays one line.
+        // Messages of libraries may have several lines.
         for (i, line) in message
             .lines()
             .map(str::trim)
@@ -56,7 +57,7 @@ impl fmt::Display for Failure {
 
 impl std::error::Error for Failure {}
 
-/// Errors of the device, the scenarios and the plots are all about input.
+/// A text is an error of the input.
 impl From<String> for Failure {
     fn from(message: String) -> Self {
         Self::Input(message)

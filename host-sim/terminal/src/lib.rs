@@ -1,7 +1,7 @@
-//! What the command-line programs share: messages for people, exit statuses, output files that are
-//! written whole or not at all.
+//! Messages, exit statuses and output files of the command-line programs. An output file is written
+//! completely or not at all.
 //!
-//! No crate of the simulation prints or writes a file except through this crate.
+//! The crates of the simulation print and write files only through this crate.
 
 mod explain;
 pub mod failure;

@@ -1,7 +1,8 @@
-//! Output files: each is whole or absent, whatever ends the program.
+//! Output files. A file is complete or absent, even if the program is interrupted.
 //!
-//! A regular file is written beside its place and renamed. A symbolic link stays, its target is
-//! replaced. A device, a pipe or a socket is opened and written in place. `-` is standard output.
+//! A regular file is written under a temporary name in its folder and then renamed. The target of a
+//! symbolic link is replaced, and the link does not change. A device, a pipe or a socket is opened
+//! and written directly. `-` is standard output.
 
 mod folder;
 mod partial;
@@ -17,8 +18,8 @@ use partial::Partial;
 /// Longest chain of symbolic links that is followed, as in Linux.
 const MOST_LINKS: usize = 40;
 
-/// Whether `path` stands for standard output: `-`, a name that the system has for it, or a link to
-/// such a name.
+/// Whether `path` stands for standard output: `-`, a name of the system for it, or a link to such a
+/// name.
 #[must_use]
 pub fn is_stdout(path: &Path) -> bool {
     let names = ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
@@ -35,8 +36,8 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 
 /// Writes what `content` produces to `path`, creating its folder.
 ///
-/// A regular file appears complete or not at all, and an old file survives a failure or an
-/// interrupt; it keeps its permissions.
+/// A regular file appears completely or not at all. After a failure or an interrupt an old file is
+/// unchanged. A replaced file keeps its permissions.
 ///
 /// # Errors
 /// [`Failure::Input`] that names the file.
@@ -50,7 +51,7 @@ pub fn write_with(
     write_file(path, content).map_err(|error| cannot_write(path, &error))
 }
 
-/// Writes `bytes` to standard output; a reader that has gone away is not an error.
+/// Writes `bytes` to standard output. A pipe whose reader has closed it is not an error.
 ///
 /// # Errors
 /// [`Failure::Input`] on any other failure.
@@ -71,7 +72,7 @@ fn print_with(content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<
 fn cannot_write(path: &Path, error: &io::Error) -> Failure {
     let path = path.display();
     Failure::Input(format!(
-        "{path}: cannot write: {error}; choose another place"
+        "{path}: cannot write: {error}; choose another path"
     ))
 }
 
@@ -83,7 +84,7 @@ fn write_file(
     if old.as_ref().is_some_and(fs::Metadata::is_dir) {
         return Err(ErrorKind::IsADirectory.into());
     }
-    // Descriptors that this process has inherited are no files to be replaced.
+    // Inherited descriptors are written, not replaced.
     let inherited = ["/dev/fd/", "/dev/std", "/proc/"];
     let is_inherited = |path: PathBuf| {
         let path = path.to_string_lossy();
@@ -111,7 +112,7 @@ fn write_file(
     partial.rename_to(&path)
 }
 
-/// Writes through a buffer; a reader that has gone away is not an error.
+/// Writes through a buffer. A pipe whose reader has closed it is not an error.
 fn in_place(
     out: impl Write,
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -123,17 +124,17 @@ fn in_place(
     }
 }
 
-/// `path`, and where it leads to link by link.
+/// `path` and the targets of its chain of symbolic links.
 fn links(path: &Path) -> impl Iterator<Item = PathBuf> {
     let next = |path: &PathBuf| {
         let target = fs::read_link(path).ok()?;
-        // A relative target counts from the folder of its link.
+        // A relative target is relative to the folder of its link.
         Some(path.parent().unwrap_or(Path::new("")).join(target))
     };
     std::iter::successors(Some(path.to_owned()), next).take(MOST_LINKS + 1)
 }
 
-/// The file that `path` leads to through symbolic links, whether it exists or not.
+/// The last target of the symbolic links from `path`, which may not exist.
 fn link_target(path: &Path) -> io::Result<PathBuf> {
     let last = links(path).last().unwrap_or_default();
     match fs::read_link(&last) {

@@ -1,9 +1,10 @@
-//! Text that people read: lines of a terminal's width, names that are nearly right.
+//! Text for a terminal: wrapped lines, and the message about an unknown name.
 
-/// Columns of a terminal that is not known to be wider.
+/// Width of a terminal if the width is unknown, columns.
 pub const WIDTH: usize = 80;
 
-/// Similarity (Jaro and Winkler, 0 to 1) from which a name is offered in place of another.
+/// Least Jaro-Winkler similarity (0 to 1) of the name that the message about an unknown name
+/// suggests.
 const SIMILAR: f64 = 0.75;
 
 /// `text` in lines of at most [`WIDTH`] columns; all but the first begin with `indent` spaces.
@@ -13,7 +14,7 @@ pub fn wrapped(text: &str, indent: usize) -> String {
     let mut lines = String::new();
     let mut column = 0;
     let mut words = text.split(' ');
-    // Spaces that align the first line stay as they are.
+    // Leading spaces align the first line.
     if let Some(first) = words.next() {
         lines += first;
         column = first.chars().count();
@@ -35,7 +36,8 @@ pub fn wrapped(text: &str, indent: usize) -> String {
     lines
 }
 
-/// What to say of a `name` that is not among the `known` ones, `what` being for example a scene.
+/// Message about a `name` that is not one of the `known` names. `what` is the kind of thing that is
+/// named, for example "scene".
 #[must_use]
 pub fn unknown<'a>(what: &str, name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let known: Vec<_> = known.into_iter().collect();

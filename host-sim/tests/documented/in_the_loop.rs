@@ -3,7 +3,7 @@
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
 use experiments::robust;
-use experiments::robust::row::Row;
+use experiments::robust::row::RobustRow;
 use experiments::robust::summary::{self, Spread};
 use experiments::zwidth;
 use haptic_control::SceneKind;
@@ -16,7 +16,7 @@ use crate::runs::{json, number, text, values};
 use crate::{cell, check};
 
 /// A value of a run, in the unit of the table.
-type Quantity = fn(&Row) -> f64;
+type Quantity = fn(&RobustRow) -> f64;
 
 /// The quantities of the table, by the beginning of their columns' names.
 const QUANTITIES: [(&str, Quantity); 3] = [
@@ -30,7 +30,7 @@ const QUANTITIES: [(&str, Quantity); 3] = [
 ];
 
 /// Runs of every scene at this rate: the corners and so many drawn devices.
-fn robustness(rate_hz: f64, devices: u64) -> Vec<Row> {
+fn robustness(rate_hz: f64, devices: u64) -> Vec<RobustRow> {
     let device = Device::default();
     let kind = Kind::named("kalman-triple-steady").unwrap();
     let scenes = SceneKind::environments().map(|scene| scene.to_string());
@@ -172,8 +172,8 @@ fn documented_z_width_is_reproduced() {
     }
 }
 
-/// What parameters of scenes may be set to on the board is inside what is passive with either of the
-/// image's estimators.
+/// What parameters of scenes may be set to on the board is inside what is passive with either of
+/// the image's estimators.
 #[test]
 fn bounds_of_the_boards_parameters_are_within_the_z_width() {
     let images: [([&str; 2], &[&str]); 2] = [
@@ -197,7 +197,7 @@ fn bounds_of_the_boards_parameters_are_within_the_z_width() {
         for text in set {
             parameters.set(text).unwrap();
         }
-        let case = zwidth::Case {
+        let case = zwidth::LoopSetup {
             large: Kind::named(large).unwrap(),
             handle: Kind::named(handle).unwrap(),
             rate_hz: 1e4,

@@ -2,17 +2,17 @@
 
 use std::fmt::Write as _;
 
-use super::Row;
+use super::LimitRow;
 use crate::table::layout::{self, Column};
 
 /// RMS error in % of finite difference, and in brackets relative to the particle filter with the
 /// same signals; means over the seeds. One table per rate, in lines of `width` characters.
 #[must_use]
-pub fn table(rows: &[Row], width: usize) -> String {
+pub fn table(rows: &[LimitRow], width: usize) -> String {
     let mut text = String::new();
     for rate_hz in distinct(rows.iter().map(|row| row.rate_hz)) {
-        let of = |row: &&Row| row.rate_hz == rate_hz;
-        let block: Vec<&Row> = rows.iter().filter(of).collect();
+        let of = |row: &&LimitRow| row.rate_hz == rate_hz;
+        let block: Vec<&LimitRow> = rows.iter().filter(of).collect();
         let scenarios = distinct(block.iter().map(|row| row.scenario));
         // Writing to a string cannot fail.
         let _ = writeln!(
@@ -24,7 +24,8 @@ pub fn table(rows: &[Row], width: usize) -> String {
             .iter()
             .map(|scenario| {
                 let cells = estimators.iter().map(|estimator| {
-                    let of = |row: &&&Row| row.estimator == *estimator && row.scenario == *scenario;
+                    let of =
+                        |row: &&&LimitRow| row.estimator == *estimator && row.scenario == *scenario;
                     cell(block.iter().filter(of).copied())
                 });
                 Column::numbers(scenario, "", cells)
@@ -36,7 +37,7 @@ pub fn table(rows: &[Row], width: usize) -> String {
     text
 }
 
-fn cell<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
+fn cell<'a>(rows: impl Iterator<Item = &'a LimitRow>) -> String {
     let (mut pct, mut over, mut count) = (0.0, 0.0, 0.0);
     for row in rows {
         pct += row.rms_pct;
@@ -65,7 +66,7 @@ mod tests {
 
     #[test]
     fn seeds_are_averaged() {
-        let row = |seed, rms_pct| Row {
+        let row = |seed, rms_pct| LimitRow {
             estimator: "pll",
             scenario: "step",
             rate_hz: 1000.0,

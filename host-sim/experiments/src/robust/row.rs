@@ -7,10 +7,10 @@ use super::judge::{Judge, Reason, Verdict};
 use super::variation::Variation;
 use super::{Job, Settings};
 
-/// One run.
+/// Result of one run: a scene on one device.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Row {
-    /// Scene.
+pub struct RobustRow {
+    /// Name of the scene.
     pub scene: String,
     /// Index of the drawn device, or the corner's name.
     pub device: String,
@@ -42,7 +42,7 @@ pub struct Row {
     pub variation: Variation,
 }
 
-impl Row {
+impl RobustRow {
     pub(super) fn new(
         settings: &Settings,
         (scene, subject): Job,
@@ -87,9 +87,9 @@ mod tests {
     use crate::robust::variation::Subject;
     use haptic_control::SceneKind;
 
-    fn row() -> Row {
+    fn row() -> RobustRow {
         let (variation, _) = Subject::Drawn(3).variation(7, SceneKind::FreeAir);
-        Row {
+        RobustRow {
             scene: "free-air".into(),
             device: "3".into(),
             verdict: Verdict::Violated,
@@ -112,9 +112,13 @@ mod tests {
     fn row_is_unchanged_after_writing_and_reading() {
         for i in 0..200 {
             let (variation, _) = Subject::Drawn(i).variation(1, SceneKind::Off);
-            let row = Row { variation, ..row() };
+            let row = RobustRow { variation, ..row() };
             let text = serde_json::to_string(&row).unwrap();
-            assert_eq!(serde_json::from_str::<Row>(&text).unwrap(), row, "{text}");
+            assert_eq!(
+                serde_json::from_str::<RobustRow>(&text).unwrap(),
+                row,
+                "{text}"
+            );
         }
         assert_eq!(row().handle_rad_s, 0.333_333);
     }

@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use super::row::Row;
+use super::row::RobustRow;
 use super::{Job, Settings};
 use terminal::failure::Failure;
 
@@ -67,7 +67,7 @@ impl FromStr for Part {
 ///
 /// # Errors
 /// [`Failure::Input`] if the rows cannot be serialised.
-pub fn write(settings: &Settings, part: Part, rows: &[Row]) -> Result<Vec<u8>, Failure> {
+pub fn write(settings: &Settings, part: Part, rows: &[RobustRow]) -> Result<Vec<u8>, Failure> {
     let failed = |error: serde_json::Error| Failure::Input(error.to_string());
     let heading = Heading {
         robust_shard: part,
@@ -85,11 +85,11 @@ pub fn write(settings: &Settings, part: Part, rows: &[Row]) -> Result<Vec<u8>, F
 /// Merges the shards in these files, given in any order.
 ///
 /// # Errors
-/// [`Failure::Input`] that names a file that is not a shard, is incomplete, has other settings or is
-/// a duplicate, or that names a missing shard.
-pub fn merge(paths: &[PathBuf]) -> Result<(Settings, Vec<Row>), Failure> {
+/// [`Failure::Input`] that names a file that is not a shard, is incomplete, has other settings or
+/// is a duplicate, or that names a missing shard.
+pub fn merge(paths: &[PathBuf]) -> Result<(Settings, Vec<RobustRow>), Failure> {
     let mut settings: Option<(&Path, Settings)> = None;
-    let mut parts: Vec<(&Path, Part, Vec<Row>)> = Vec::new();
+    let mut parts: Vec<(&Path, Part, Vec<RobustRow>)> = Vec::new();
     for path in paths {
         let name = path.display();
         let (heading, rows) = read(path)?;
@@ -148,7 +148,7 @@ pub fn merge(paths: &[PathBuf]) -> Result<(Settings, Vec<Row>), Failure> {
     Ok((settings, rows))
 }
 
-fn read(path: &Path) -> Result<(Heading, Vec<Row>), Failure> {
+fn read(path: &Path) -> Result<(Heading, Vec<RobustRow>), Failure> {
     let name = path.display();
     let text = std::fs::read_to_string(path)
         .map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
@@ -167,9 +167,10 @@ fn read(path: &Path) -> Result<(Heading, Vec<Row>), Failure> {
 }
 
 /// Checks that the rows are those of the jobs.
-fn check(path: &Path, jobs: &[Job], rows: &[Row]) -> Result<(), Failure> {
+fn check(path: &Path, jobs: &[Job], rows: &[RobustRow]) -> Result<(), Failure> {
     let name = path.display();
-    let is = |job: &Job, row: &Row| row.scene == job.0.name() && row.device == job.1.to_string();
+    let is =
+        |job: &Job, row: &RobustRow| row.scene == job.0.name() && row.device == job.1.to_string();
     let wrong = jobs.iter().zip(rows).position(|(job, row)| !is(job, row));
     let at = wrong.unwrap_or(jobs.len().min(rows.len()));
     match (jobs.get(at), rows.get(at)) {

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use haptic_control::{DualStage, SceneKind};
 
 use super::judge::{FELT_NM, HANDLE_RAD_S, Verdict, oscillation_limit_nm};
-use super::row::Row;
+use super::row::RobustRow;
 use super::{Settings, corners};
 
 use crate::closed_loop::{named, usual};
@@ -66,17 +66,17 @@ impl Spread {
 ///
 /// # Errors
 /// One line that names an unknown scene.
-pub fn summaries(rows: &[Row]) -> Result<Vec<SceneSummary>, String> {
+pub fn summaries(rows: &[RobustRow]) -> Result<Vec<SceneSummary>, String> {
     let scenes = rows.chunk_by(|a, b| a.scene == b.scene);
     scenes.map(summary).collect()
 }
 
-fn summary(rows: &[Row]) -> Result<SceneSummary, String> {
+fn summary(rows: &[RobustRow]) -> Result<SceneSummary, String> {
     let scene = named(&rows[0].scene, SceneKind::environments())?;
     // The amplitude of a scene's vibration does not depend on device or rate.
     let nominal = usual(scene, &DualStage::DEFAULT, 10e3)?;
     let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
-    let spread = |of: fn(&Row) -> f64| Spread::of(rows.iter().map(of)).unwrap_or_default();
+    let spread = |of: fn(&RobustRow) -> f64| Spread::of(rows.iter().map(of)).unwrap_or_default();
     Ok(SceneSummary {
         scene: scene.to_string(),
         oscillation_limit_nm: oscillation_limit_nm(&nominal),
@@ -178,7 +178,7 @@ fn three_digits(value: f64) -> String {
 /// Message with the number of violations, the first one, and the command that repeats it; `None`
 /// without a violation.
 #[must_use]
-pub fn complaint(settings: &Settings, rows: &[Row]) -> Option<String> {
+pub fn complaint(settings: &Settings, rows: &[RobustRow]) -> Option<String> {
     let violated = || rows.iter().filter(|row| row.verdict == Verdict::Violated);
     let row = violated().next()?;
     let reason = row.reason.map_or_else(String::new, |reason| {
@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn summary_has_the_larger_value_of_before_and_after_a_stop() {
         let (variation, _) = Subject::Drawn(3).variation(7, SceneKind::FreeAir);
-        let stable = Row {
+        let stable = RobustRow {
             scene: "free-air".into(),
             device: "0".into(),
             verdict: Verdict::Stable,
@@ -228,7 +228,7 @@ mod tests {
             after_felt_nm: None,
             variation,
         };
-        let stopped = Row {
+        let stopped = RobustRow {
             verdict: Verdict::Stopped,
             handle_rad_s: 7.0,
             large_rad_s: 6.0,

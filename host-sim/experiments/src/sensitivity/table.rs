@@ -2,21 +2,22 @@
 
 use std::fmt::Write as _;
 
-use super::Row;
+use super::SensitivityRow;
 use crate::table::layout::{self, Column};
 use catalogue::belief::Belief;
 
 /// Scenarios in which the motor moves. Rest and creep do not excite the parameters.
 pub const MOVING: [&str; 6] = ["step", "permanent", "track", "free-air", "wall", "texture"];
 
-/// Mean RMS error in % of finite difference: one table per rate, one line per estimator, in lines of
-/// `width` characters.
+/// Mean RMS error in % of finite difference: one table per rate, one line per estimator, in lines
+/// of `width` characters.
 ///
-/// Columns: correct constants over all scenarios and over the moving ones ([`MOVING`]); each constant
-/// with its largest error, over the moving scenarios; the largest of these; the share of samples
-/// outside the haptic interval in moving scenarios with correct constants and in the worst case.
+/// Columns: correct constants over all scenarios and over the moving ones ([`MOVING`]); each
+/// constant with its largest error, over the moving scenarios; the largest of these; the share of
+/// samples outside the haptic interval in moving scenarios with correct constants and in the worst
+/// case.
 #[must_use]
-pub fn table(rows: &[Row], width: usize) -> String {
+pub fn table(rows: &[SensitivityRow], width: usize) -> String {
     let mut text = String::new();
     for (i, at_rate) in rows_by_rate(rows).iter().enumerate() {
         if i > 0 {
@@ -32,7 +33,7 @@ pub fn table(rows: &[Row], width: usize) -> String {
         let each: Vec<Errors> = names
             .iter()
             .map(|name| {
-                let of = |row: &&&Row| row.estimator == *name;
+                let of = |row: &&&SensitivityRow| row.estimator == *name;
                 Errors::of(&at_rate.iter().filter(of).copied().collect::<Vec<_>>())
             })
             .collect();
@@ -72,14 +73,16 @@ struct Errors {
 }
 
 impl Errors {
-    fn of(rows: &[&Row]) -> Self {
-        let moving: Vec<&Row> = rows
+    fn of(rows: &[&SensitivityRow]) -> Self {
+        let moving: Vec<&SensitivityRow> = rows
             .iter()
             .copied()
             .filter(|row| MOVING.contains(&row.scenario))
             .collect();
-        let right = |rows: &[&Row]| mean(rows, |row| row.constant.is_none(), |row| row.rms_pct);
-        let outside = |only: &dyn Fn(&Row) -> bool| 100.0 * mean(&moving, only, |row| row.outside);
+        let right =
+            |rows: &[&SensitivityRow]| mean(rows, |row| row.constant.is_none(), |row| row.rms_pct);
+        let outside =
+            |only: &dyn Fn(&SensitivityRow) -> bool| 100.0 * mean(&moving, only, |row| row.outside);
         let mut errors = Self {
             right: right(rows),
             moving: right(&moving),
@@ -89,7 +92,7 @@ impl Errors {
             outside_worst: outside(&|row| row.constant.is_none()),
         };
         for belief in Belief::extremes() {
-            let is = |row: &Row| {
+            let is = |row: &SensitivityRow| {
                 row.constant == Some(belief.constant.as_str()) && row.error == belief.error
             };
             let value = mean(&moving, is, |row| row.rms_pct);
@@ -110,7 +113,11 @@ fn number(value: f64) -> String {
 }
 
 /// Mean over the rows; NaN without a row.
-fn mean(rows: &[&Row], only: impl Fn(&Row) -> bool, value: impl Fn(&Row) -> f64) -> f64 {
+fn mean(
+    rows: &[&SensitivityRow],
+    only: impl Fn(&SensitivityRow) -> bool,
+    value: impl Fn(&SensitivityRow) -> f64,
+) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for row in rows.iter().filter(|row| only(row)) {
         sum += value(row);
@@ -130,7 +137,7 @@ fn short(constant: &str) -> &str {
 
 /// Names of the estimators, in order of appearance.
 #[must_use]
-pub fn names<'a>(rows: &[&'a Row]) -> Vec<&'a str> {
+pub fn names<'a>(rows: &[&'a SensitivityRow]) -> Vec<&'a str> {
     let mut names = Vec::new();
     for row in rows {
         if !names.contains(&row.estimator) {
@@ -142,8 +149,8 @@ pub fn names<'a>(rows: &[&'a Row]) -> Vec<&'a str> {
 
 /// The rows of each rate, in order of appearance.
 #[must_use]
-pub fn rows_by_rate(rows: &[Row]) -> Vec<Vec<&Row>> {
-    let mut rates: Vec<Vec<&Row>> = Vec::new();
+pub fn rows_by_rate(rows: &[SensitivityRow]) -> Vec<Vec<&SensitivityRow>> {
+    let mut rates: Vec<Vec<&SensitivityRow>> = Vec::new();
     for row in rows {
         match rates.iter_mut().find(|of| of[0].rate_hz == row.rate_hz) {
             Some(of) => of.push(row),
@@ -159,7 +166,7 @@ mod tests {
 
     #[test]
     fn the_worst_is_of_moving_scenarios_only() {
-        let row = |scenario, constant, error, rms_pct| Row {
+        let row = |scenario, constant, error, rms_pct| SensitivityRow {
             estimator: "pll",
             scenario,
             rate_hz: 1000.0,

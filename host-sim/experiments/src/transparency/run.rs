@@ -6,7 +6,7 @@ use haptic_control::{DualStage, LoopPoles, Stop};
 
 use super::compare::{DEFAULT_ESTIMATOR, LoopCase, LoopSettings, Run, Signals, device};
 use super::{ClosedLoopRow, Fingertip, Parasitic, REFERENCE};
-use crate::closed_loop::{FeedbackEncoder, Loop, Moment, usual};
+use crate::closed_loop::{FeedbackEncoder, Loop, TickState, usual};
 use crate::compare::{Cost, interval};
 use catalogue::estimators::Setup;
 use catalogue::estimators::{Estimator, Kind};
@@ -241,7 +241,7 @@ impl Recorder {
         }
     }
 
-    fn push(&mut self, moment: &Moment) {
+    fn push(&mut self, moment: &TickState) {
         let mn = self.fingertip.mn_per_nm;
         let wanted = f64::from(moment.action.torque.0);
         self.parasitic_mn.push(mn * (moment.felt - wanted));

@@ -47,7 +47,7 @@ const LEAST_ANGLE: f64 = 3e-3;
 
 /// Input of the criterion at one tick.
 #[derive(Clone, Copy, Debug)]
-pub struct ProbeTick {
+pub struct ContactTick {
     /// Whether the hand rests on the scene.
     pub resting: bool,
     /// Whether the handle is in contact with the scene.
@@ -62,11 +62,11 @@ pub struct ProbeTick {
 
 /// Evaluates the criterion tick by tick.
 #[derive(Clone, Debug)]
-pub struct Observer {
+pub struct Evaluator {
     threshold: f64,
     period: f64,
     inertia: f64,
-    last: Option<ProbeTick>,
+    last: Option<ContactTick>,
     energy: f64,
     angle: f64,
     gave: bool,
@@ -74,9 +74,9 @@ pub struct Observer {
     rest: Vec<f64>,
 }
 
-impl Observer {
-    /// A criterion with the torque threshold `threshold` (N.m), for ticks of `period_s` and a handle
-    /// of `inertia` (kg.m2).
+impl Evaluator {
+    /// A criterion with the torque threshold `threshold` (N.m), for ticks of `period_s` and a
+    /// handle of `inertia` (kg.m2).
     #[must_use]
     pub fn new(threshold: f64, period_s: f64, inertia: f64) -> Self {
         Self {
@@ -93,7 +93,7 @@ impl Observer {
     }
 
     /// Evaluates one tick.
-    pub fn see(&mut self, now: ProbeTick) {
+    pub fn update(&mut self, now: ContactTick) {
         self.stopped |= now.stopped;
         if now.resting {
             self.rest.push(now.felt);
@@ -115,7 +115,7 @@ impl Observer {
 
     /// The failure, `None` if the run passes.
     #[must_use]
-    pub fn fault(&self) -> Option<Violation> {
+    pub fn violation(&self) -> Option<Violation> {
         if self.stopped {
             Some(Violation::Stopped)
         } else if is_limit_cycle(&self.rest, self.threshold) {
@@ -174,10 +174,10 @@ mod tests {
     /// A hand that turns the handle 0.2 rad into a spring that acts `late_s` late, and back.
     fn spring_contact(late_s: f64) -> Option<Violation> {
         let angle = |t: f64| 0.1 * (1.0 - (TAU * t).cos());
-        let mut observer = Observer::new(THRESHOLD, 1e-3, 0.0);
+        let mut evaluator = Evaluator::new(THRESHOLD, 1e-3, 0.0);
         for k in 0..=1000 {
             let t = f64::from(k) * 1e-3;
-            observer.see(ProbeTick {
+            evaluator.update(ContactTick {
                 resting: false,
                 contact: true,
                 felt: -0.3 * angle((t - late_s).max(0.0)),
@@ -185,7 +185,7 @@ mod tests {
                 stopped: false,
             });
         }
-        observer.fault()
+        evaluator.violation()
     }
 
     #[test]
@@ -199,11 +199,11 @@ mod tests {
     #[test]
     fn free_handle_that_leaves_faster_than_it_came_has_gained_energy() {
         let bounce = |out: f64| {
-            let mut observer = Observer::new(THRESHOLD, 1e-3, 5e-6);
+            let mut evaluator = Evaluator::new(THRESHOLD, 1e-3, 5e-6);
             for k in 0..20 {
                 let contact = (5..15).contains(&k);
                 let omega = if k < 10 { 2.0 } else { -out };
-                observer.see(ProbeTick {
+                evaluator.update(ContactTick {
                     resting: false,
                     contact,
                     felt: 0.0,
@@ -211,7 +211,7 @@ mod tests {
                     stopped: false,
                 });
             }
-            observer.fault()
+            evaluator.violation()
         };
         assert_eq!(bounce(2.0), None);
         assert_eq!(bounce(3.5), Some(Violation::Energy));
@@ -219,14 +219,14 @@ mod tests {
 
     #[test]
     fn stop_by_the_monitor_fails() {
-        let mut observer = Observer::new(THRESHOLD, 1e-3, 0.0);
-        observer.see(ProbeTick {
+        let mut evaluator = Evaluator::new(THRESHOLD, 1e-3, 0.0);
+        evaluator.update(ContactTick {
             resting: true,
             contact: true,
             felt: 0.0,
             omega: 0.0,
             stopped: true,
         });
-        assert_eq!(observer.fault(), Some(Violation::Stopped));
+        assert_eq!(evaluator.violation(), Some(Violation::Stopped));
     }
 }

@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use super::{Bound, Boundary, Case};
+use super::{Bound, Boundary, LoopSetup};
 
 /// One bound of one case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct ZwidthRow {
     /// Estimator of the large motor.
     pub estimator: &'static str,
     /// Estimator of the handle.
@@ -34,10 +34,10 @@ pub struct Row {
 /// The rows of all cases, in their order: the walls in order of damping, then the damping without a
 /// wall.
 #[must_use]
-pub fn rows(cases: &[Case], boundaries: &[Boundary], seed: u64) -> Vec<Row> {
+pub fn rows(cases: &[LoopSetup], boundaries: &[Boundary], seed: u64) -> Vec<ZwidthRow> {
     let mut rows = Vec::new();
     for (case, boundary) in cases.iter().zip(boundaries) {
-        let row = |what, found: Bound, stiffness, damping| Row {
+        let row = |what, found: Bound, stiffness, damping| ZwidthRow {
             estimator: case.large.name,
             handle_estimator: case.handle.name,
             rate_hz: case.rate_hz,
@@ -47,8 +47,8 @@ pub fn rows(cases: &[Case], boundaries: &[Boundary], seed: u64) -> Vec<Row> {
             stiffness_nm_per_rad: stiffness,
             damping_nms_per_rad: damping,
             at_cap: found.beyond.is_none(),
-            fault: found.beyond.map(|finding| finding.fault.as_str()),
-            touch: found.beyond.map(|finding| finding.touch.as_str()),
+            fault: found.beyond.map(|finding| finding.violation.as_str()),
+            touch: found.beyond.map(|finding| finding.contact.as_str()),
         };
         for &(damping, wall) in &boundary.walls {
             rows.push(row("stiffness", wall, wall.value, damping));

@@ -2,20 +2,21 @@
 
 use std::fmt::Write as _;
 
-use super::{Bound, Boundary, Case};
+use super::{Bound, Boundary, LoopSetup};
 use crate::table::layout::{self, Column};
 
 /// One table per rate and encoder with one line per estimator, in lines of `width` characters.
 #[must_use]
-pub fn table(cases: &[Case], boundaries: &[Boundary], width: usize) -> String {
+pub fn table(cases: &[LoopSetup], boundaries: &[Boundary], width: usize) -> String {
     let mut text = String::from(
         "Z-width: stiffest wall (K) and strongest damping (B) that stay passive and free\n\
          of limit cycles. 'fails' is the fault just above the bound, and the hand that\n\
          finds it\n",
     );
     let all: Vec<_> = cases.iter().zip(boundaries).collect();
-    let block =
-        |a: &(&Case, _), b: &(&Case, _)| a.0.rate_hz == b.0.rate_hz && a.0.lines == b.0.lines;
+    let block = |a: &(&LoopSetup, _), b: &(&LoopSetup, _)| {
+        a.0.rate_hz == b.0.rate_hz && a.0.lines == b.0.lines
+    };
     for block in all.chunk_by(block) {
         let case = block[0].0;
         let _ = writeln!(

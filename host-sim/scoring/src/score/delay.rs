@@ -1,15 +1,15 @@
-//! By how much an estimate lags.
+//! The delay of an estimate against the true velocity.
 
-/// Peak-to-peak motion below which a truth does not move enough to have a delay, rad/s.
+/// Peak-to-peak value of the true velocity below which no delay is computed, rad/s.
 const MOVES_RAD_S: f64 = 1e-3;
 
-/// Samples that the estimate lags behind the truth (negative: leads), below one sample by
-/// parabolic interpolation of the mean square error.
+/// Delay of the estimate against the truth, samples; negative if the estimate leads. It is the
+/// shift with the least mean square error, refined below one sample by a parabola.
 ///
-/// The error is taken over the estimates `margin..len - margin` at every shift, so that shifts
-/// compare the same samples. The minimum is searched downhill from zero in strides that double,
-/// then between the last three; `None` where the truth does not move, the trace is shorter than
-/// three margins or the best shift is not below the margin.
+/// Every shift compares the estimates `margin..len - margin`. The search begins at zero, doubles
+/// the shift in the direction of the smaller error, and then halves the bracket of the minimum. The
+/// result is `None` if the truth does not move, if the trace is shorter than three margins or if
+/// the best shift is not below the margin.
 pub(super) fn samples(truth: &[f64], estimate: &[f32], margin: usize) -> Option<f64> {
     if margin < 2 || truth.len() < 3 * margin {
         return None;
@@ -39,7 +39,7 @@ pub(super) fn samples(truth: &[f64], estimate: &[f32], margin: usize) -> Option<
     } else {
         return Some(vertex(behind, at_zero, ahead));
     };
-    // Distances travelled in that direction; best[1] lies between two that are not better.
+    // Three shifts in that direction with their errors. The error at best[1] is the smallest.
     let side = |distance: isize| cost(direction * distance);
     let mut best = [
         (0, at_zero),
@@ -49,7 +49,8 @@ pub(super) fn samples(truth: &[f64], estimate: &[f32], margin: usize) -> Option<
     while best[2].1 < best[1].1 {
         let next = (2 * best[2].0).min(limit);
         if next == best[2].0 {
-            // At the limit and still going down: the minimum is just before it, or beyond.
+            // The error decreases up to the limit: the minimum is one step before the limit, or
+            // beyond.
             let inner = (limit - 1, side(limit - 1));
             if inner.1 >= best[2].1 {
                 return None;
@@ -79,7 +80,7 @@ pub(super) fn samples(truth: &[f64], estimate: &[f32], margin: usize) -> Option<
     Some(direction as f64 * distance)
 }
 
-/// Where the parabola through (-1, left), (0, middle), (1, right) is lowest.
+/// Abscissa of the minimum of the parabola through (-1, left), (0, middle), (1, right).
 fn vertex(left: f64, middle: f64, right: f64) -> f64 {
     let curvature = left - 2.0 * middle + right;
     if curvature > 0.0 {
@@ -89,7 +90,7 @@ fn vertex(left: f64, middle: f64, right: f64) -> f64 {
     }
 }
 
-/// Mean square difference, in lanes that the compiler can run side by side.
+/// Mean square difference. Independent sums let the compiler use vector instructions.
 fn mean_square_error(estimate: &[f32], truth: &[f64]) -> f64 {
     const LANES: usize = 8;
     let (estimates, estimate_rest) = estimate.as_chunks::<LANES>();

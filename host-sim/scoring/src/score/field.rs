@@ -1,33 +1,34 @@
-//! A column of a table of scores, and the macro that declares a structure of scores with its columns.
+//! A column of a table of scores, and the macro that declares a structure of scores with its
+//! columns.
 
 use super::Wanted;
 
-/// How a value is printed in a table.
+/// Format of a value in a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// With three digits, in the field's unit.
+    /// A number with three digits, in the field's unit.
     Number,
-    /// A share from 0 to 1, in %.
+    /// A share from 0 to 1, printed in %.
     Share,
 }
 
-/// How several seeds or scenarios become one value.
+/// Rule that merges the values of several seeds or scenarios into one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Over {
-    /// Their mean.
+    /// The mean of the values.
     Mean,
-    /// The largest.
+    /// The largest value.
     Largest,
 }
 
 /// Which value of a column is marked as the best.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Better {
-    /// The smallest in size.
+    /// The value of the smallest magnitude.
     Smaller,
-    /// The largest.
+    /// The largest value.
     Larger,
-    /// None: the value describes and does not rank.
+    /// No value is marked, because the score does not rank estimators.
     Neither,
 }
 
@@ -36,30 +37,30 @@ pub enum Better {
 pub struct Field<T> {
     /// Name in the JSON, the CSV and for `--score`.
     pub name: &'static str,
-    /// What the score is: the documentation of the structure's field, a line each.
+    /// Definition of the score: the lines of the field's documentation.
     pub about: &'static [&'static str],
     /// Heading of the column.
     pub head: &'static str,
     /// Unit, below the heading.
     pub unit: &'static str,
-    /// How a value is printed.
+    /// Format of a value.
     pub form: Form,
-    /// How several values become one.
+    /// Rule that merges several values.
     pub over: Over,
     /// Which value is the best.
     pub better: Better,
-    /// Whether tables show it without being asked to.
+    /// Whether tables show the column by default.
     pub usual: bool,
-    /// The value of a row.
+    /// Reads the value from a row.
     pub of: fn(&T) -> Option<f64>,
-    /// Puts a value into a row.
+    /// Writes the value into a row.
     pub set: fn(&mut T, Option<f64>),
-    /// The computation that the value takes, where that can be left out.
+    /// The flag of the computation that the value needs; `None` if it is always computed.
     pub takes: Option<fn(&mut Wanted) -> &mut bool>,
 }
 
 impl<T> Field<T> {
-    /// One value for several rows; `None` where no row has one.
+    /// The merged value of several rows; `None` if no row has a value.
     pub fn over<'a>(&self, rows: impl Iterator<Item = &'a T>) -> Option<f64>
     where
         T: 'a,
@@ -74,7 +75,7 @@ impl<T> Field<T> {
         }
     }
 
-    /// The first sentence of what the score is, up to a semicolon or a colon.
+    /// The first sentence of the definition, up to a semicolon or a colon.
     #[must_use]
     pub fn sentence(&self) -> String {
         let text = self.about.join("");
@@ -85,13 +86,13 @@ impl<T> Field<T> {
         text[..end].trim().replace('`', "")
     }
 
-    /// The value in the unit that a table prints: a share in %.
+    /// The value of a row in the unit of the table, in which a share is in %.
     #[must_use]
     pub fn shown(&self, row: &T) -> Option<f64> {
         (self.of)(row).map(|value| self.in_unit(value))
     }
 
-    /// A value of the JSON in the unit that a table prints.
+    /// Converts a value of the JSON to the unit of the table.
     #[must_use]
     pub fn in_unit(&self, value: f64) -> f64 {
         match self.form {
@@ -101,7 +102,7 @@ impl<T> Field<T> {
     }
 }
 
-/// Every field of `rows` made one.
+/// A row whose fields merge those of `rows`.
 pub(super) fn merged<'a, T: Default + 'a>(
     fields: &[Field<T>],
     rows: impl Iterator<Item = &'a T>,
@@ -114,9 +115,14 @@ pub(super) fn merged<'a, T: Default + 'a>(
     merged
 }
 
-/// Declares a structure of scores and its `FIELDS`: a line a score, with heading, unit, form, how
-/// several values become one, which value is the best, whether tables show it without being asked
-/// to, and the computation that can be left out. The caller needs `serde::Serialize` in scope.
+/// Declares a structure of scores and its columns `FIELDS`, one line per score. A line has the
+/// heading, the unit, the [`Form`], the rule [`Over`], the best value [`Better`], whether tables
+/// show the score by default, and the flag of an optional computation. The caller imports
+/// `serde::Serialize`.
+///
+/// [`Form`]: crate::score::Form
+/// [`Over`]: crate::score::Over
+/// [`Better`]: crate::score::Better
 #[macro_export]
 macro_rules! score_fields {
     (

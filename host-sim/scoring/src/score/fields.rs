@@ -1,16 +1,17 @@
-//! The scores of an estimate, declared once: structure, JSON, CSV, tables, `--score`, averages over
-//! seeds and the table of docs/theory/scores.md follow from the list below.
+//! The list of scores. The structure, JSON, CSV, tables, `--score`, averages over seeds and the
+//! table of docs/theory/scores.md follow from it.
 
 use serde::Serialize;
 
 use super::field::{Field, merged};
 use crate::score_fields;
+use terminal::wording::unknown;
 
-/// Declares which scores can be left out.
+/// Declares the flags of the computations that can be left out.
 macro_rules! wanted {
     ($($name:ident),+ $(,)?) => {
-        /// Which scores to compute; the others are `None` and take no time. A score names its flag
-        /// in the list of [`Score`].
+        /// Selection of the scores to compute. The other scores are `None` and take no time. The
+        /// list of [`Score`] names the flag of each score.
         #[allow(missing_docs, reason = "a flag is documented by the scores that name it")]
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub struct Wanted {
@@ -18,10 +19,10 @@ macro_rules! wanted {
         }
 
         impl Wanted {
-            /// Every score.
+            /// All scores.
             pub const ALL: Self = Self { $($name: true),+ };
 
-            /// No score: the start for `Wanted { rms: true, ..Wanted::NONE }`.
+            /// No score, the base of a selection such as `Wanted { rms: true, ..Wanted::NONE }`.
             pub const NONE: Self = Self { $($name: false),+ };
         }
     };
@@ -38,11 +39,12 @@ impl Default for Wanted {
 }
 
 score_fields! {
-    /// The scores of one estimate; `None` is not wanted or not defined on this trace.
+    /// The scores of one estimate. A score is `None` if it is not selected or not defined on this
+    /// trace.
     ///
-    /// An estimate that contains NaN or an infinity cannot be good: its errors, distances and force
-    /// are infinite, the bad samples count as outside, and delay, noise and chatter are `None`.
-    /// JSON has no infinity, so serde writes `null` there; `non_finite` says why.
+    /// If an estimate contains NaN or an infinity, its errors, distances and force are infinite,
+    /// the samples that are not finite count as outside, and delay, noise and chatter are `None`.
+    /// JSON has no infinity: serde writes `null`, and `non_finite` is above 0.
     pub struct Score {
         /// Root mean square of the error, rad/s.
         rms_rad_s: "rms", "rad/s", Number, Mean, Smaller, true, rms;
@@ -53,44 +55,45 @@ score_fields! {
         /// Mean distance outside the haptic interval, rad/s: mean over all samples of
         /// `max(0, |error| - tolerance)`.
         distance_rad_s: "distance", "rad/s", Number, Mean, Smaller, true, distance;
-        /// Mean distance over transient samples alone, rad/s: those within 20 ms after the magnitude
-        /// of the acceleration, a central difference over ±2 ms of the true velocity, passed
-        /// 100 rad/s²; `None` where there is no transient.
+        /// Mean distance over transient samples alone, rad/s. A transient lasts from an instant at
+        /// which the magnitude of the acceleration, a central difference over ±2 ms of the true
+        /// velocity, is above 100 rad/s², to 20 ms later. `None` if the trace has no transient.
         distance_transient_rad_s: "transient", "rad/s", Number, Mean, Smaller, false, distance_transient;
         /// Mean distance outside the haptic interval, % of that of finite difference on the same
         /// samples.
         distance_pct: "distance", "% of FD", Number, Mean, Smaller, true, distance;
-        /// Mean distance over transient samples, % of that of finite difference on the same samples.
+        /// Mean distance over transient samples, % of that of finite difference on the same
+        /// samples.
         distance_transient_pct: "transient", "% of FD", Number, Mean, Smaller, true, distance_transient;
         /// Root mean square of the error, % of that of finite difference on the same samples.
         rms_pct: "rms", "% of FD", Number, Mean, Smaller, true, rms;
         /// Share of samples outside the haptic interval, 0 to 1.
         outside: "outside", "%", Share, Mean, Smaller, true, outside;
-        /// Shift of the truth that minimises the RMS error, ms: refined below one sample by a
-        /// parabola; positive where the estimate lags, `None` where the truth does not move or no
-        /// shift below 0.1 s is best.
+        /// Shift of the truth that minimises the RMS error, ms, refined below one sample by a
+        /// parabola. The delay is positive if the estimate lags. `None` if the truth does not move
+        /// or if no shift below 0.1 s is best.
         delay_ms: "delay", "ms", Number, Mean, Smaller, true, delay;
-        /// RMS of the error from 50 to 500 Hz, rad/s: there the fingertip is most sensitive; `None`
-        /// below 0.25 s of samples.
+        /// RMS of the error from 50 to 500 Hz, rad/s. In this band the fingertip is most sensitive.
+        /// `None` if the trace is shorter than 0.25 s.
         noise_rad_s: "noise", "rad/s", Number, Mean, Smaller, true, noise;
-        /// Total variation beyond the truth's, per sample, rad/s; at least 0.
+        /// Total variation of the estimate less that of the truth, per sample, rad/s; at least 0.
         chatter_rad_s: "chatter", "rad/s", Number, Mean, Smaller, true, chatter;
         /// The RMS error as parasitic force at the fingertip, mN: `2 b RMS / D`.
         force_mn: "force", "mN", Number, Mean, Smaller, true, force;
         /// Share of samples whose error is within two of the standard deviations that the estimator
-        /// reports, 0 to 1: 0.95 for a correct deviation of a Gaussian error; `None` for an estimator
-        /// that reports none.
+        /// reports, 0 to 1: 0.95 if the standard deviation is correct and the error Gaussian.
+        /// `None` if the estimator reports no standard deviation.
         within_2_sigma: "within", "2 sd, %", Share, Mean, Neither, true, within;
         /// Mean distance of finite difference on the same samples, rad/s: the 100 % of
         /// `distance_pct`.
         difference_distance_rad_s: "FD dist.", "rad/s", Number, Mean, Neither, false, distance;
-        /// Damping b that the estimator learned, mean of the run's last tenth, N.m.s/rad; `None` for
-        /// an estimator that learns none.
+        /// Damping b that the estimator learned, mean of the run's last tenth, N.m.s/rad. `None` if
+        /// the estimator does not learn the damping.
         learned_damping_nms_per_rad: "learned b", "N.m.s/rad", Number, Mean, Neither, false, learned;
         /// RMS error of the learned damping after the first 3 s, % of the true damping.
         learned_damping_pct: "error of b", "%", Number, Mean, Smaller, false, learned;
         +
-        /// How many of the scored samples are NaN or infinite.
+        /// Number of scored samples that are NaN or infinite.
         non_finite: usize;
     }
 }
@@ -101,16 +104,13 @@ impl Score {
     /// # Errors
     /// If there is no field of that name; the message lists the names.
     pub fn field(name: &str) -> Result<&'static Field<Self>, String> {
-        Self::FIELDS
-            .iter()
-            .find(|field| field.name == name)
-            .ok_or_else(|| {
-                let names: Vec<_> = Self::FIELDS.iter().map(|field| field.name).collect();
-                format!("no score '{name}'; there are {}", names.join(", "))
-            })
+        let known = || Self::FIELDS.iter().map(|field| field.name);
+        let field = Self::FIELDS.iter().find(|field| field.name == name);
+        field.ok_or_else(|| unknown("score", name, known()))
     }
 
-    /// The mean over `rows` (largest error: the largest; samples that are not finite: their sum).
+    /// The scores of `rows`, merged: the mean of each score, the largest of the largest errors and
+    /// the sum of the samples that are not finite.
     #[must_use]
     pub fn mean<'a>(rows: impl Iterator<Item = &'a Self>) -> Self {
         let rows: Vec<_> = rows.collect();
@@ -120,8 +120,9 @@ impl Score {
         }
     }
 
-    /// Adds what is relative to the `reference`, by convention finite difference on the same trace.
-    /// A percentage is `None` where either score is missing or the reference is 0 or not finite.
+    /// Adds the scores relative to the `reference`, by convention the finite difference on the same
+    /// trace. A percentage is `None` if either score is missing or if the reference is 0 or not
+    /// finite.
     #[must_use]
     pub fn relative_to(mut self, reference: &Self) -> Self {
         let percent = |of: Option<f64>, whole: Option<f64>| match (of, whole) {
@@ -140,7 +141,7 @@ impl Score {
 }
 
 impl Wanted {
-    /// Wants the score called `name`, as in [`Score`] and the JSON.
+    /// Selects the score of this name, as in [`Score`] and the JSON.
     ///
     /// # Errors
     /// If there is no score of that name; the message lists them.

@@ -1,4 +1,4 @@
-//! Where a trace is in a transient.
+//! Transients of a trace.
 
 use std::ops::Range;
 
@@ -6,13 +6,13 @@ use std::ops::Range;
 const THRESHOLD_RAD_S2: f64 = 100.0;
 /// Half of the central difference that measures acceleration, s.
 const HALF_SPAN_S: f64 = 0.002;
-/// How long a transient lasts after the acceleration was last above the threshold, s.
+/// Duration of a transient after the acceleration was last above the threshold, s.
 const HOLD_S: f64 = 0.020;
 
-/// Ranges of samples within [`HOLD_S`] after the acceleration exceeded the threshold, in order,
-/// apart from each other, none before `from`.
+/// Ranges of samples within [`HOLD_S`] after the acceleration exceeded the threshold. The ranges
+/// are in order, do not touch and begin at `from` or later.
 ///
-/// A sample whose central difference would leave the trace starts no transient.
+/// A sample whose central difference extends beyond the trace does not start a transient.
 pub(super) fn ranges(truth: &[f64], rate_hz: f64, from: usize) -> Vec<Range<usize>> {
     let half = ((HALF_SPAN_S * rate_hz).round() as usize).max(1);
     let hold = (HOLD_S * rate_hz).round() as usize;

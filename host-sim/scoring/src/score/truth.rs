@@ -1,22 +1,23 @@
-//! The true velocity of one trace, prepared once for all the estimates it is compared with.
+//! The true velocity of one trace, prepared once for all estimates.
 
 use std::ops::Range;
 
-use super::{Interval, SKIP_S, Score, TACTILE_BAND_HZ, Wanted, delay, transient};
+use super::{HapticInterval, SKIP_S, Score, TACTILE_BAND_HZ, Wanted, delay, transient};
 use crate::percentile;
 use crate::spectrum::Welch;
 
-/// A truth, and everything the scores need that depends on it alone.
+/// A true velocity, and the quantities of the scores that depend on it alone.
 pub struct Truth<'a> {
     omega: &'a [f64],
     rate_hz: f64,
-    interval: Interval,
+    interval: HapticInterval,
     wanted: Wanted,
-    /// First sample that counts.
+    /// First sample that is scored.
     skip: usize,
-    /// [`Interval::tolerance`] of every sample from `skip` on; empty where nobody wants it.
+    /// [`HapticInterval::tolerance`] of every sample from `skip` on; empty if no selected score
+    /// needs it.
     tolerance: Vec<f64>,
-    /// Counted from the trace's start, none before `skip`.
+    /// Ranges of samples in a transient, counted from the start of the trace, from `skip` on.
     transients: Vec<Range<usize>>,
     variation: f64,
     welch: Option<Welch>,
@@ -30,14 +31,17 @@ impl<'a> Truth<'a> {
     pub fn new(
         omega: &'a [f64],
         rate_hz: f64,
-        interval: Interval,
+        interval: HapticInterval,
         wanted: Wanted,
     ) -> Result<Self, String> {
         if !(rate_hz > 0.0 && rate_hz.is_finite()) {
-            return Err(format!("sample rate is {rate_hz} Hz, must be positive"));
+            return Err(format!("sample rate {rate_hz} Hz: must be positive"));
         }
         if let Some(at) = omega.iter().position(|w| !w.is_finite()) {
-            return Err(format!("true velocity of sample {at} is {}", omega[at]));
+            let omega = omega[at];
+            return Err(format!(
+                "true velocity of sample {at} is {omega}: must be finite"
+            ));
         }
         let skip = ((SKIP_S * rate_hz).round() as usize).min(omega.len());
         let scored = &omega[skip..];
@@ -67,22 +71,21 @@ impl<'a> Truth<'a> {
         })
     }
 
-    /// Samples in a transient, as ranges from the start of the trace, none before
-    /// [`SKIP_S`]; empty unless the transient distance is wanted.
+    /// Ranges of samples in a transient, counted from the start of the trace, from [`SKIP_S`] on;
+    /// empty if the transient distance is not selected.
     #[must_use]
     pub fn transients(&self) -> &[Range<usize>] {
         &self.transients
     }
 
-    /// Scores an estimate (rad/s) of this truth.
-    ///
-    /// All are `None` if the trace is not longer than [`SKIP_S`].
+    /// Scores an estimate (rad/s) of this truth. All scores are `None` if the trace is not longer
+    /// than [`SKIP_S`].
     ///
     /// # Panics
-    /// If the estimate has not as many samples as the truth.
+    /// If the estimate and the truth differ in length.
     #[must_use]
     pub fn score(&self, estimate: &[f32]) -> Score {
-        assert_eq!(estimate.len(), self.omega.len(), "one estimate a sample");
+        assert_eq!(estimate.len(), self.omega.len(), "one estimate per sample");
         let scored = &estimate[self.skip..];
         if scored.is_empty() {
             return Score::default();
@@ -122,7 +125,7 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// What is left to say of an estimate with `non_finite` bad samples.
+    /// The scores of an estimate with `non_finite` samples that are NaN or infinite.
     fn not_finite(&self, scored: &[f32], non_finite: usize) -> Score {
         let wanted = &self.wanted;
         let worst = |wanted: bool| wanted.then_some(f64::INFINITY);
@@ -148,8 +151,8 @@ impl<'a> Truth<'a> {
         scored.iter().zip(truth).map(|(&e, w)| f64::from(e) - w)
     }
 
-    /// How far outside the interval each estimate lies, negative inside; `first` is the place of
-    /// `estimates[0]` after the skipped start.
+    /// Distance of each estimate from the haptic interval, rad/s; negative inside it. `first` is
+    /// the index of `estimates[0]` among the scored samples.
     fn distances(&self, first: usize, estimates: &[f32]) -> impl Iterator<Item = f64> {
         let truth = &self.omega[self.skip + first..];
         let tolerance = &self.tolerance[first..];

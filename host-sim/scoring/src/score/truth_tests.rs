@@ -4,8 +4,8 @@ use std::f64::consts::{SQRT_2, TAU};
 
 const RATE_HZ: f64 = 1000.0;
 
-fn interval() -> Interval {
-    Interval::new(0.05, 0.010, 0.070, 0.96e-3)
+fn interval() -> HapticInterval {
+    HapticInterval::new(0.05, 0.010, 0.070, 0.96e-3)
 }
 
 fn signal(n: usize, of_time: impl Fn(f64) -> f64) -> Vec<f64> {
@@ -90,7 +90,7 @@ fn delay_of_a_ramp_is_in_ms() {
     );
 }
 
-/// At a rate at which a sample is not a millisecond.
+/// The rate is not 1 kHz, so that samples and milliseconds differ.
 #[test]
 fn delay_of_a_sine_is_in_ms() {
     let rate_hz = 8000.0;
@@ -108,7 +108,7 @@ fn delay_of_a_sine_is_in_ms() {
 
 #[test]
 fn noise_is_the_rms_in_the_tactile_band() {
-    // The truth moves inside the band: that is motion, and no noise.
+    // Motion of the truth inside the band is not noise.
     let motion = |t: f64| 5.0 * t + 2.0 * (TAU * 120.0 * t).sin();
     let truth = signal(4000, motion);
     near(
@@ -140,7 +140,7 @@ fn offset_and_slow_drift_are_not_noise() {
 
 #[test]
 fn chatter_of_a_sawtooth_is_its_total_variation() {
-    // Truth climbs 0.01 a sample; the estimate repeats +1, -1 around it.
+    // The truth increases by 0.01 a sample. The estimate is alternately 0 and 1 above it.
     let truth = signal(1100, |t| 10.0 * t);
     let saw = estimate(1100, |t| 10.0 * t + ((t * RATE_HZ).round() % 2.0));
     let s = score(&truth, &saw);
@@ -153,24 +153,24 @@ fn chatter_of_a_sawtooth_is_its_total_variation() {
     );
 }
 
-/// A sine of amplitude A and frequency f travels 4 A f in a second, there and back.
+/// The total variation of a sine of amplitude A and frequency f is 4 A f in a second.
 #[test]
 fn chatter_excludes_the_total_variation_of_the_truth() {
     let sine = |amplitude: f64| move |t: f64| amplitude * (TAU * 5.0 * t).sin();
-    // 2 s behind the start.
+    // 2 s after the start, which is not scored.
     let truth = signal(2100, sine(3.0));
     let chatter =
         |of_time: &dyn Fn(f64) -> f64| score(&truth, &estimate(2100, of_time)).chatter_rad_s;
-    let travel = |amplitude: f64| 4.0 * amplitude * 5.0 / RATE_HZ;
-    near(chatter(&sine(4.5)), travel(4.5) - travel(3.0), 1e-4);
-    // As much travel the other way round is none more, and less is not less than none.
+    let variation = |amplitude: f64| 4.0 * amplitude * 5.0 / RATE_HZ;
+    near(chatter(&sine(4.5)), variation(4.5) - variation(3.0), 1e-4);
+    // An estimate of opposite sign has the same total variation. A smaller one gives 0.
     near(chatter(&sine(-3.0)), 0.0, 1e-5);
     near(chatter(&sine(2.0)), 0.0, 0.0);
-    // A faster ripple travels by itself: 25 Hz of amplitude 2 on a truth that is met otherwise.
+    // The total variation of an estimate that does not follow the truth counts as well.
     let rippled = |t: f64| 2.0 * (TAU * 25.0 * t).sin();
     near(
         chatter(&rippled),
-        4.0 * 2.0 * 25.0 / RATE_HZ - travel(3.0),
+        4.0 * 2.0 * 25.0 / RATE_HZ - variation(3.0),
         2e-3,
     );
 }
@@ -180,7 +180,7 @@ fn transient_distance_averages_over_the_transient_alone() {
     let truth = signal(1000, |t| if t < 0.4995 { 0.0 } else { 2.0 });
     let t = Truth::new(&truth, RATE_HZ, interval(), Wanted::ALL).unwrap();
     assert_eq!(t.transients(), std::slice::from_ref(&(498..522)));
-    // 12 of the 24 transient samples are off by 2, whose tolerance is 0.46458.
+    // 12 of the 24 transient samples have an error of 2, with a tolerance of 0.46458.
     let late = estimate(1000, |t| if t < 0.5115 { 0.0 } else { 2.0 });
     let s = t.score(&late);
     near(s.distance_transient_rad_s, 0.5 * (2.0 - 0.464_583_3), 1e-6);
@@ -250,7 +250,7 @@ fn only_requested_scores_are_computed_with_unchanged_values() {
         }
         compared += usize::from(all[field.name].is_number());
     }
-    // The others compare with finite difference or need what an estimator reports.
+    // The other scores are relative to the finite difference or come from the estimator.
     assert!(compared >= 9, "{compared} scores");
 }
 
@@ -274,7 +274,7 @@ fn a_truth_that_is_not_finite_or_has_no_rate_is_refused() {
 
 #[test]
 fn one_of_100_samples_exceeds_p99() {
-    // 0.1 s that is not scored, then errors of 0.01 to 10 rad/s of either sign in a scrambled order.
+    // 0.1 s that is not scored, then errors of 0.01 to 10 rad/s of both signs in scrambled order.
     let truth = signal(1100, |_| 3.0);
     let error = |k: usize| match k {
         0..100 => 500.0,

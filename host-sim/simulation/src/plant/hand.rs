@@ -1,6 +1,6 @@
 //! Grip on the handle.
 
-/// Condition of the handle during one tick.
+/// Grip on the handle during one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Grip {
     /// Clamped: the velocity is exactly zero.
@@ -11,8 +11,8 @@ pub enum Grip {
     Hand(HandMotion),
 }
 
-/// Intended motion of a hand during one tick: a cubic through angle and velocity at both ends, which
-/// are therefore continuous from tick to tick.
+/// Intended motion of a hand during one tick: a cubic through angle and velocity at both ends,
+/// which are therefore continuous from tick to tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandMotion {
     angle: f64,

@@ -1,4 +1,4 @@
-//! A wanted slip over time, followed by the loop while the handle is clamped.
+//! Scenarios with a clamped handle: the evaluation loop tracks a slip velocity over time.
 
 use super::{
     Drive, EncoderCounts, Scenario,
@@ -6,20 +6,20 @@ use super::{
 };
 use crate::device::Device;
 
-/// Slip wanted over time.
+/// A slip velocity over time, the reference of the evaluation loop.
 pub(super) trait Profile {
-    /// How the loop is tuned for it.
+    /// Parameters of the loop that tracks this profile.
     const TUNING: Tuning = Tuning {
         bandwidth_hz: 30.0,
         integral_per_s: 0.0,
         coulomb_at_rad_s: 0.02,
     };
 
-    /// Slip at `t`, rad/s; called with growing `t`.
+    /// Slip velocity at `t` (s), rad/s. Callers pass increasing `t`.
     fn slip(&mut self, t: f64) -> f64;
 }
 
-/// A profile with its loop.
+/// A slip profile and the loop that tracks it.
 pub(super) struct Follow<P> {
     profile: P,
     servo: Servo,
@@ -29,7 +29,7 @@ pub(super) struct Follow<P> {
     fall_per_s: f64,
 }
 
-/// Follows `profile` from rest.
+/// The scenario that tracks `profile` from rest.
 pub(super) fn follow<P: Profile>(profile: P, device: &Device, period_s: f64) -> Follow<P> {
     Follow {
         profile,
@@ -42,8 +42,8 @@ pub(super) fn follow<P: Profile>(profile: P, device: &Device, period_s: f64) -> 
 }
 
 impl<P> Follow<P> {
-    /// The coupler loses this part of its damping in 60 s, and then no more; the loop does not
-    /// know.
+    /// The same profile on a coupler whose damping falls linearly by `fall_at_60_s` of its initial
+    /// value within 60 s and is constant afterwards. The loop keeps the initial value.
     pub(super) fn heating(self, fall_at_60_s: f64) -> Self {
         Self {
             fall_per_s: fall_at_60_s / 60.0,

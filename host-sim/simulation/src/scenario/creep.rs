@@ -1,17 +1,17 @@
-//! Scenario `creep`: 0.05 rad/s both ways.
+//! Scenario `creep`: slip of 0.05 rad/s in both directions.
 
 use super::{clamped::Profile, draw, draw_sign, servo::Tuning};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Slip, rad/s.
 const OMEGA: f64 = 0.05;
-/// Time to turn round, s.
+/// Duration of a reversal, s.
 const TURN_S: f64 = 0.05;
 
-/// Trapezoids of slip; each way lasts 0.8 to 1.5 s.
+/// Trapezoids of the slip velocity. Each direction lasts 0.8 to 1.5 s.
 pub(super) struct Creep {
     random: Xoshiro256PlusPlus,
-    way: f64,
+    direction: f64,
     since: f64,
     until: f64,
     from: f64,
@@ -19,11 +19,11 @@ pub(super) struct Creep {
 
 impl Creep {
     pub(super) fn new(mut random: Xoshiro256PlusPlus) -> Self {
-        let way = draw_sign(&mut random);
+        let direction = draw_sign(&mut random);
         let until = draw(&mut random, 0.8, 1.5);
         Self {
             random,
-            way,
+            direction,
             since: 0.0,
             until,
             from: 0.0,
@@ -32,8 +32,8 @@ impl Creep {
 }
 
 impl Profile for Creep {
-    /// Stiffer than the others, with an integral: at this speed what is left of friction would
-    /// stop the motor.
+    /// A higher bandwidth than that of other profiles, and integral action: otherwise the error of
+    /// the friction that is fed forward would stop the motor at this speed.
     const TUNING: Tuning = Tuning {
         bandwidth_hz: 60.0,
         integral_per_s: 60.0,
@@ -42,12 +42,12 @@ impl Profile for Creep {
 
     fn slip(&mut self, t: f64) -> f64 {
         while t >= self.until {
-            self.from = self.way * OMEGA;
-            self.way = -self.way;
+            self.from = self.direction * OMEGA;
+            self.direction = -self.direction;
             self.since = self.until;
             self.until += draw(&mut self.random, 0.8, 1.5);
         }
         let turned = ((t - self.since) / TURN_S).min(1.0);
-        self.from + (self.way * OMEGA - self.from) * turned
+        self.from + (self.direction * OMEGA - self.from) * turned
     }
 }

@@ -1,14 +1,14 @@
-//! Draws of a scenario's constants.
+//! Random draws of the constants of a scenario.
 
 use rand_xoshiro::{Xoshiro256PlusPlus, rand_core::Rng};
 
-/// Uniform in `low..high`.
+/// A number uniform in `low..high`.
 pub fn draw(random: &mut Xoshiro256PlusPlus, low: f64, high: f64) -> f64 {
     let unit = (random.next_u64() >> 11) as f64 * (0.5_f64).powi(53);
     low + (high - low) * unit
 }
 
-/// Either sign.
+/// 1 or -1 with equal probability.
 pub fn draw_sign(random: &mut Xoshiro256PlusPlus) -> f64 {
     if random.next_u64() >> 63 == 0 {
         1.0

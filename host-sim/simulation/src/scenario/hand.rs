@@ -1,4 +1,4 @@
-//! Scenarios `free-air` and `hold`: a hand that should feel nothing; and hands' motions.
+//! Intended motions of hands, and the scenarios `free-air` and `hold` with zero desired torque.
 
 use super::{
     Drive, EncoderCounts, Scenario, draw,
@@ -9,21 +9,23 @@ use crate::plant::{Grip, HandMotion, Pose};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::f64::consts::TAU;
 
-/// The loop where a hand moves: friction is fed forward from a measured velocity.
+/// Parameters of the loop while a hand moves the handle. The friction that is fed forward takes its
+/// direction from a measured velocity, which is noisy near zero.
 pub(super) const TUNING: Tuning = Tuning {
     bandwidth_hz: 30.0,
     integral_per_s: 0.0,
     coulomb_at_rad_s: 0.3,
 };
 
-/// Amplitude of each of tremor's two sines, rad: 0.1 to 0.2 mm at the rim. The small motor's
-/// friction swallows 1.6 mrad of a hand's motion.
+/// Amplitude of each of the two sines of a tremor, rad: 0.1 to 0.2 mm at the rim. The friction of
+/// the small motor reduces the amplitude of the handle by 1.6 mrad.
 const TREMOR_RAD: (f64, f64) = (2.5e-3, 5e-3);
 
-/// A tremor is slow: with [`TUNING`], friction would hold the large motor at rest, rad/s.
+/// Velocity at which Coulomb friction is fed forward in full under a tremor alone, rad/s. With the
+/// higher value of [`TUNING`], friction would hold the large motor at rest.
 const HOLD_COULOMB_AT: f64 = 0.05;
 
-/// What a hand intends: a few sines about a centre.
+/// Intended motion of a hand: a sum of sines around a centre.
 #[derive(Clone, Debug)]
 pub struct Intent {
     period: f64,
@@ -40,7 +42,7 @@ struct Sine {
 }
 
 impl Intent {
-    /// A hand that rests at the angle `centre`, rad; control period in s.
+    /// A hand at rest at the angle `centre` (rad), for a control period in s.
     pub const fn about(centre: f64, period_s: f64) -> Self {
         Self {
             period: period_s,
@@ -50,7 +52,8 @@ impl Intent {
         }
     }
 
-    /// Adds a sine of drawn frequency (Hz), amplitude (rad) and phase.
+    /// Adds a sine of random frequency, amplitude and phase, with frequency (Hz) and amplitude
+    /// (rad) within bounds.
     pub fn sine(
         self,
         random: &mut Xoshiro256PlusPlus,
@@ -60,7 +63,7 @@ impl Intent {
         self.sine_from(random, hz, amplitude, (0.0, TAU))
     }
 
-    /// The same with a phase (rad) within bounds.
+    /// Adds a sine of random frequency (Hz), amplitude (rad) and phase (rad), all within bounds.
     pub fn sine_from(
         mut self,
         random: &mut Xoshiro256PlusPlus,
@@ -101,10 +104,10 @@ impl Intent {
         self.at(0.0)
     }
 
-    /// The hand during tick `k`.
+    /// Motion of the hand during tick `k`.
     pub fn grip(&mut self, k: u64) -> Grip {
         let at = |k: u64| self.at(k as f64 * self.period);
-        // One tick's end is the next one's beginning.
+        // The pose at the end of a tick is that at the start of the next one: computed once.
         let from = match self.reached {
             Some((tick, pose)) if tick == k => pose,
             _ => at(k),
@@ -115,39 +118,39 @@ impl Intent {
     }
 }
 
-/// A hand that should feel nothing: slip zero, torque zero.
-pub(super) struct Nothing {
+/// A hand in free air: the desired slip and the desired torque are zero.
+pub(super) struct FreeHand {
     intent: Intent,
     servo: Servo,
 }
 
 /// A hand that moves at 0.3 to 4 Hz.
-pub(super) fn free_air(device: &Device, period_s: f64, mut random: Xoshiro256PlusPlus) -> Nothing {
+pub(super) fn free_air(device: &Device, period_s: f64, mut random: Xoshiro256PlusPlus) -> FreeHand {
     let intent = Intent::about(draw(&mut random, -0.5, 0.5), period_s)
         .sine(&mut random, (0.3, 0.8), (0.3, 0.6))
         .sine(&mut random, (1.0, 2.0), (0.05, 0.15))
         .sine(&mut random, (2.5, 4.0), (0.02, 0.06))
         .tremor(&mut random);
-    Nothing {
+    FreeHand {
         intent,
         servo: Servo::new(device, period_s, TUNING),
     }
 }
 
-/// A hand that only trembles.
-pub(super) fn hold(device: &Device, period_s: f64, mut random: Xoshiro256PlusPlus) -> Nothing {
+/// A hand that keeps the handle at one angle, apart from tremor.
+pub(super) fn hold(device: &Device, period_s: f64, mut random: Xoshiro256PlusPlus) -> FreeHand {
     let intent = Intent::about(draw(&mut random, -0.5, 0.5), period_s).tremor(&mut random);
     let tuning = Tuning {
         coulomb_at_rad_s: HOLD_COULOMB_AT,
         ..TUNING
     };
-    Nothing {
+    FreeHand {
         intent,
         servo: Servo::new(device, period_s, tuning),
     }
 }
 
-impl Scenario for Nothing {
+impl Scenario for FreeHand {
     fn start(&self) -> Pose {
         self.intent.start()
     }

@@ -1,11 +1,11 @@
-//! Scenario `micro-reversals`: motion to and fro within a few counts.
+//! Scenario `micro-reversals`: reversals of the motion within a few counts.
 
 use super::{Drive, EncoderCounts, Scenario, draw};
 use crate::device::Device;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::f64::consts::TAU;
 
-/// Frequencies, Hz: whole ones, so that every second begins and ends at rest.
+/// Frequencies, Hz. They are whole numbers, so that every second begins and ends at rest.
 const FREQUENCIES_HZ: (u32, u32) = (2, 8);
 /// Distance between two reversals, counts of the large encoder.
 const SPAN_COUNTS: (f64, f64) = (1.0, 8.0);
@@ -57,7 +57,7 @@ impl MicroReversals {
 
 impl Scenario for MicroReversals {
     fn tick(&mut self, k: u64, _: EncoderCounts) -> Drive {
-        // The current is held over the tick: that of its middle.
+        // The current is constant over the tick: the value for its middle.
         let t = (k as f64 + 0.5) * self.period;
         while t >= self.seconds as f64 {
             self.next();

@@ -2,8 +2,8 @@
 
 use crate::plant::{Grip, Pose};
 
-/// The counts that a scenario's own loop reads at a tick. An encoder that it does not read stays at
-/// zero.
+/// The counts that a scenario's own loop reads at a tick. The count of an encoder that the loop
+/// does not read is zero.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct EncoderCounts {
     /// Reference encoder on the large motor, counts modulo 2^32.
@@ -19,14 +19,14 @@ pub(crate) struct Drive {
     pub(crate) large_a: f64,
     /// Command to the small motor, A.
     pub(crate) small_a: f64,
-    /// How the handle is held.
+    /// Grip of the hand or the clamp on the handle.
     pub(crate) grip: Grip,
     /// Damping b of the coupler, as a fraction of the device's.
     pub(crate) damping_part: f64,
 }
 
 impl Drive {
-    /// Currents with the handle clamped and the coupler cold.
+    /// Currents, with the handle clamped and the coupler's damping as the device has it.
     pub(crate) const fn clamped(large_a: f64, small_a: f64) -> Self {
         Self {
             large_a,
@@ -37,9 +37,9 @@ impl Drive {
     }
 }
 
-/// One scenario, running.
+/// State of one run of a scenario.
 pub(crate) trait Scenario {
-    /// Pose at the start.
+    /// Pose of the handle at the start.
     fn start(&self) -> Pose {
         Pose::default()
     }
@@ -49,6 +49,6 @@ pub(crate) trait Scenario {
         0.0
     }
 
-    /// The inputs over tick `k`, from the counts at its start. Ticks come in order.
+    /// The inputs over tick `k`, from the counts at its start. Callers pass `k` = 0, 1, 2, ...
     fn tick(&mut self, k: u64, counts: EncoderCounts) -> Drive;
 }

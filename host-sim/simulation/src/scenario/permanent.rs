@@ -8,7 +8,7 @@ const LEVELS: usize = 10;
 /// Slope from one level to the next, rad/s^2.
 const SLOPE: f64 = 400.0;
 
-/// One level from each tenth of 2 to 20 rad/s in seeded order, one sign for all ten.
+/// Ten levels in random order, one from each tenth of 2 to 20 rad/s. All ten have the same sign.
 pub(super) struct Permanent {
     random: Xoshiro256PlusPlus,
     levels: [f64; LEVELS],

@@ -1,9 +1,10 @@
-//! The evaluation loop: holds a wanted slip with the large motor, and lets the small motor add
-//! what the coupler does not deliver.
+//! The evaluation loop: the large motor tracks a desired slip velocity, and the small motor adds
+//! the desired torque that the coupler does not transmit.
 //!
-//! It reads the reference encoder (20000 counts) and the small encoder once a tick. Slip is fed
-//! forward (coupler torque, inertia, Coulomb friction); the difference between wanted and
-//! measured slip, finite differences through a first-order low-pass, comes back in proportion.
+//! The loop reads the reference encoder (20000 counts) and the small encoder once a tick. The feed
+//! forward consists of coupler torque, inertia and Coulomb friction. The feedback is proportional
+//! to the difference between the desired and the measured slip velocity. The measured velocities
+//! are finite differences through a first-order low-pass.
 
 use super::EncoderCounts;
 use crate::device::Device;
@@ -12,14 +13,14 @@ use std::f64::consts::TAU;
 /// Cut-off of the low-pass on measured velocities, Hz.
 const CUTOFF_HZ: f64 = 150.0;
 
-/// How a loop is tuned.
+/// Parameters of a loop.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tuning {
-    /// Bandwidth of the slip loop, Hz; well below [`CUTOFF_HZ`] and the rate.
+    /// Bandwidth of the slip loop, Hz. It is well below [`CUTOFF_HZ`] and the control rate.
     pub(super) bandwidth_hz: f64,
-    /// Rate at which an error of slip angle is taken back, 1/s.
+    /// Integral gain: rate at which an error of the slip angle decreases, 1/s.
     pub(super) integral_per_s: f64,
-    /// Velocity at which Coulomb friction is fed forward in full, rad/s.
+    /// Velocity from which Coulomb friction is fed forward in full, rad/s.
     pub(super) coulomb_at_rad_s: f64,
 }
 
@@ -72,7 +73,8 @@ impl Servo {
         }
     }
 
-    /// One tick: slip wanted now and at the next tick (rad/s), torque wanted on the handle (N.m).
+    /// One tick: the currents for the desired slip velocity at this tick and at the next one
+    /// (rad/s) and the desired torque on the handle (N.m).
     pub(super) fn update(
         &mut self,
         seen: EncoderCounts,
@@ -84,13 +86,13 @@ impl Servo {
         let mean = 0.5 * (slip + next_slip);
         let omega = self.small_omega + mean;
         let friction = self.coulomb * (omega / self.tuning.coulomb_at_rad_s).clamp(-1.0, 1.0);
-        let push = self.damping * mean
+        let drive = self.damping * mean
             + self.inertia * (next_slip - slip) / self.period
             + friction
             + self.gain * (self.error + self.tuning.integral_per_s * self.lag_angle);
         let delivered = self.damping * (mean - self.error);
         Currents {
-            large_a: push * self.amps_per_nm_large,
+            large_a: drive * self.amps_per_nm_large,
             small_a: (torque - delivered) * self.amps_per_nm_small,
         }
     }
@@ -109,12 +111,12 @@ impl Servo {
     }
 }
 
-/// Counts from `from` to `to`, modulo 2^32.
+/// Displacement from the count `from` to the count `to`, which wrap modulo 2^32.
 pub(super) fn displacement(to: u32, from: u32) -> f64 {
     f64::from(to.wrapping_sub(from) as i32)
 }
 
-/// Share of the new sample in a first-order low-pass.
+/// Weight of the newest sample in a first-order low-pass.
 pub(super) fn low_pass_share(cutoff_hz: f64, period_s: f64) -> f64 {
     -(-TAU * cutoff_hz * period_s).exp_m1()
 }

@@ -1,4 +1,4 @@
-//! Scenario `step`: open-loop current steps from rest and back, the paper's figure 6.
+//! Scenario `step`: open-loop current steps from zero and back to zero, the paper's figure 6.
 
 use super::{Drive, EncoderCounts, Scenario, draw, draw_sign};
 use rand_xoshiro::Xoshiro256PlusPlus;

@@ -1,21 +1,22 @@
 //! Scenario `stochastic`: a linear plant under known noise, for which an optimal filter exists.
 //!
-//! Handle clamped, no friction, no ripple, so that the large motor obeys, with `b`, `J`, `Kt` and
-//! `tau = 1 / (2 pi bandwidth)` of the device,
+//! The handle is clamped, and the plant has no friction and no ripple. The equations of the large
+//! motor, with `b`, `J`, `Kt` and `tau = 1 / (2 pi bandwidth)` of the device, are
 //! ```text
 //! J dw = (Kt i - b w) dt + dW        E[dW^2] = TORQUE_INTENSITY_NM2_S dt
 //! tau di/dt = u - i                  u held over each tick, N(0, CURRENT_STD_A^2), white
 //! ```
-//! `u` is the trace's column `current`, known to the estimator; `W` is known to nobody, drawn as
-//! one constant torque of variance `TORQUE_INTENSITY_NM2_S / h` each plant step `h`. The count is
-//! the floor of the angle: to a filter, the middle of the count plus an error of variance 1/12
-//! count^2, near white as long as the motor moves a count or more a tick.
+//! `u` is the column `current` of the trace, which an estimator reads. `dW / dt` is a random
+//! torque, constant over each plant step `h`, of variance `TORQUE_INTENSITY_NM2_S / h`; no
+//! estimator reads it. The count is the floor of the angle. Relative to the middle of the count,
+//! the angle has an error of variance 1/12 count^2, which is nearly white while the motor moves at
+//! least one count a tick.
 
 use super::{Drive, EncoderCounts, Scenario};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// Standard deviation of the commanded current, one draw a tick, A.
+/// Standard deviation of the commanded current, A. Each tick has an independent current.
 pub const CURRENT_STD_A: f64 = 0.3;
 
 /// Two-sided spectral density of the white torque on the large shaft, N^2.m^2.s (N^2.m^2/Hz).

@@ -1,4 +1,4 @@
-//! Scenario `texture`: a vibration over slow motion of the hand.
+//! Scenario `texture`: the device renders a vibration while the hand moves slowly.
 
 use super::{
     Drive, EncoderCounts, Scenario, draw,
@@ -14,10 +14,11 @@ use std::f64::consts::TAU;
 const TORQUE: f64 = 6e-3;
 const LOWEST_HZ: f64 = 50.0;
 const HIGHEST_HZ: f64 = 300.0;
-/// Above this the small motor carries most of the torque, Hz.
+/// Frequency above which the small motor renders most of the torque, Hz.
 const CROSSOVER_HZ: f64 = 100.0;
 
-/// Torque whose frequency swings between 50 and 300 Hz, in logarithm, once every 2 to 4 s.
+/// A sine torque whose frequency varies between 50 and 300 Hz. The logarithm of the frequency is a
+/// sine with a period of 2 to 4 s.
 pub(super) struct Texture {
     intent: Intent,
     servo: Servo,
@@ -50,7 +51,7 @@ impl Texture {
         }
     }
 
-    /// Torque at the end of tick `k`.
+    /// Desired torque at the end of tick `k`, N.m.
     fn next_torque(&mut self, k: u64) -> f64 {
         let middle = (k as f64 + 0.5) * self.period;
         let along = 0.5 + 0.5 * (self.sweep_rad_per_s * middle + self.sweep_phase).sin();

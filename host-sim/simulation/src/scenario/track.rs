@@ -1,26 +1,26 @@
-//! Scenario `track` (and the motion of `heating`): chirps of slip, then triangular reversals.
+//! Slip of the scenarios `track` and `heating`: chirps, and triangular reversals between them.
 
 use super::{clamped::Profile, draw, draw_sign};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::f64::consts::TAU;
 
-/// A chirp and some reversals, s.
+/// Duration of a cycle: a chirp, then reversals, s.
 const CYCLE_S: f64 = 5.0;
-/// The chirp's part of it, s.
+/// Duration of the chirp of a cycle, s.
 const CHIRP_S: f64 = 3.0;
-/// Each part fades in and out over this time, s.
+/// Time over which the amplitude of each part rises at its start and falls at its end, s.
 const FADE_S: f64 = 0.1;
 const LOWEST_HZ: f64 = 0.5;
 const HIGHEST_HZ: f64 = 20.0;
 
-/// The wanted slip velocity of scenario `track`.
+/// The desired slip velocity of the scenario `track`.
 pub struct Track {
     random: Xoshiro256PlusPlus,
     cycle: u64,
     draws: Draws,
 }
 
-/// What one cycle draws.
+/// Random constants of one cycle.
 struct Draws {
     /// Signed amplitude, rad/s.
     chirp: f64,
@@ -45,9 +45,9 @@ impl Draws {
     fn slip(&self, t: f64) -> f64 {
         if t < CHIRP_S {
             let along = if self.rising { t } else { CHIRP_S - t };
-            // Frequency grows exponentially; this is its integral.
-            let octaves = (HIGHEST_HZ / LOWEST_HZ).ln();
-            let turns = LOWEST_HZ * CHIRP_S / octaves * ((octaves * along / CHIRP_S).exp() - 1.0);
+            // The integral of a frequency that grows exponentially.
+            let growth = (HIGHEST_HZ / LOWEST_HZ).ln();
+            let turns = LOWEST_HZ * CHIRP_S / growth * ((growth * along / CHIRP_S).exp() - 1.0);
             return self.chirp * fade(t, CHIRP_S) * (self.phase + TAU * turns).sin();
         }
         let t = t - CHIRP_S;
@@ -57,13 +57,13 @@ impl Draws {
     }
 }
 
-/// From 0 at both ends of `length` to 1 between.
+/// Amplitude factor at `t` within a part of duration `length`: 0 at both ends, 1 in between, s.
 fn fade(t: f64, length: f64) -> f64 {
     (t.min(length - t) / FADE_S).clamp(0.0, 1.0)
 }
 
 impl Track {
-    /// Draws amplitudes, phases and directions of each cycle from `random`.
+    /// A slip whose cycles have amplitudes, phases and directions drawn from `random`.
     pub fn new(mut random: Xoshiro256PlusPlus) -> Self {
         let draws = Draws::new(&mut random);
         Self {
@@ -75,7 +75,7 @@ impl Track {
 }
 
 impl Track {
-    /// Velocity wanted at `t`, rad/s; called with growing `t`.
+    /// Desired slip velocity at `t` (s), rad/s. Callers pass increasing `t`.
     pub fn omega(&mut self, t: f64) -> f64 {
         while t >= (self.cycle + 1) as f64 * CYCLE_S {
             self.cycle += 1;
@@ -108,7 +108,7 @@ mod tests {
             last = slip;
         }
         assert!((10.0..=15.0).contains(&largest), "{largest}");
-        // 15 rad/s at 20 Hz, and the fades.
+        // 15 rad/s at 20 Hz is 1885 rad/s², and the fading adds up to 150 rad/s².
         assert!((1200.0..2100.0).contains(&steepest), "{steepest}");
         assert!(reversals > 60, "{reversals}");
     }

@@ -1,4 +1,4 @@
-//! Scenario `wall`: a hand pushes into a virtual wall and comes back.
+//! Scenario `wall`: a hand pushes into a virtual wall and leaves it again.
 
 use super::{
     Drive, EncoderCounts, Scenario, draw,
@@ -12,9 +12,9 @@ use std::f64::consts::TAU;
 
 /// Stiffness of the wall, N.m/rad.
 const STIFFNESS: f64 = 0.30;
-/// Where it begins, rad.
+/// Angle at which the wall begins, rad.
 const SURFACE: f64 = 0.10;
-/// Above this the small motor carries the torque, Hz.
+/// Frequency above which the small motor renders most of the torque, Hz.
 const CROSSOVER_HZ: f64 = 40.0;
 
 pub(super) struct Wall {
@@ -29,8 +29,8 @@ pub(super) struct Wall {
 
 impl Wall {
     pub(super) fn new(device: &Device, period_s: f64, mut random: Xoshiro256PlusPlus) -> Self {
-        // The hand starts back from the wall, swings about a point before it and intends to go
-        // well into it.
+        // The phase is that of a start away from the wall. The centre is before the wall, and the
+        // amplitude reaches into it.
         let intent = Intent::about(draw(&mut random, 0.05, 0.10), period_s)
             .sine_from(&mut random, (0.4, 1.2), (0.12, 0.18), (-2.2, -0.9))
             .tremor(&mut random);
@@ -52,7 +52,7 @@ impl Scenario for Wall {
     }
 
     fn tick(&mut self, k: u64, seen: EncoderCounts) -> Drive {
-        // The device knows its angle: it was homed before the run.
+        // The loop knows the initial angle, as a device that was homed before the run.
         let home = *self.home.get_or_insert(seen.small);
         let angle = self.intent.start().angle + displacement(seen.small, home) * self.rad_per_count;
         let torque = -STIFFNESS * (angle - SURFACE).max(0.0);

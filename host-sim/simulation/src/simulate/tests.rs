@@ -92,7 +92,8 @@ fn counts_and_edges_agree_with_the_true_motion() {
             for k in 1..trace.len() {
                 travelled += 0.5 * (omega[k] + omega[k - 1]) / rate;
                 let moved = f64::from(counts[k].wrapping_sub(counts[0]) as i32);
-                // A count either way, and the trapezoid's own error, which white torque lets grow.
+                // The quantisation of one count, and the error of the trapezoidal rule, which is
+                // larger under white torque.
                 let miss = moved - travelled / rad;
                 assert!(miss.abs() < bound, "{name} at {rate} Hz, tick {k}: {miss}");
             }
@@ -112,7 +113,7 @@ fn counts_and_edges_agree_with_the_true_motion() {
                 if k > 0 && counts[k] != counts[k - 1] {
                     assert!(edge.age_s <= 1.0 / rate + 1.0 / EDGE_CLOCK_HZ);
                 }
-                // Between two edges seen at neighbouring ticks, in steady motion, lies one slope.
+                // In steady motion, two edges seen at neighbouring ticks give the velocity.
                 if let Some((t, boundary)) = last {
                     let counts = f64::from(edge.boundary.wrapping_sub(boundary) as i32);
                     let steady = k > 5
@@ -153,14 +154,16 @@ fn disc_errors_change_counts_by_at_most_one() {
 #[test]
 fn intended_motion_of_a_seed_is_the_same_at_every_rate() {
     for name in ScenarioName::ALL {
-        // One draws its current every tick, the other's motor sticks and slips anew each time.
+        // The current of `stochastic` is drawn at each tick. The stick-slip motion of `hold`
+        // depends on the rate.
         if matches!(name, ScenarioName::Stochastic | ScenarioName::Hold) {
             continue;
         }
         let (slow, fast) = (trace(name, 1000.0, 4), trace(name, 10_000.0, 4));
         let fast = omega(&fast).iter().step_by(10);
         let apart = rms(omega(&slow).iter().zip(fast).map(|(a, b)| a - b));
-        // Creep sticks and slips in detail; texture is sampled coarsely at 1 kHz.
+        // The stick-slip motion of `creep` depends on the rate, and 1 kHz samples `texture`
+        // coarsely.
         let bound = match name {
             ScenarioName::Texture | ScenarioName::Creep => 0.8,
             _ => 0.05,

@@ -9,14 +9,14 @@ use super::partial::{Partial, uninterrupted};
 use super::{cannot_write, is_stdout};
 use crate::failure::Failure;
 
-/// Lists the files that the latest run wrote, so that the next run can remove them.
+/// Name of the manifest, which lists the files of the latest run. The next run removes them.
 const MANIFEST: &str = ".host-sim-files";
 
 /// First line of [`MANIFEST`].
 const HEADING: &str = "# Files of one run of host-sim: the next run in this folder removes them";
 
-/// The files of one run for one folder. They appear together, and the files of an earlier run go;
-/// files that this program did not write, or that were changed since, stay.
+/// The files of one run for one folder. They appear together, and the files of an earlier run are
+/// removed. Files that this program did not write and files that were changed afterwards are kept.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
@@ -24,7 +24,7 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// No files yet for the folder `path`; nothing is created before [`Folder::write`].
+    /// An empty list of files for the folder `path`. [`Folder::write`] creates the folder.
     #[must_use]
     pub fn new(path: &Path) -> Self {
         Self {
@@ -47,7 +47,7 @@ impl Folder {
         )))
     }
 
-    /// Adds a file; `name` may begin with subfolders.
+    /// Adds a file. `name` may contain subfolders.
     pub fn add(&mut self, name: impl Into<String>, bytes: impl Into<Vec<u8>>) {
         self.files.insert(name.into(), bytes.into());
     }
@@ -58,8 +58,8 @@ impl Folder {
         self.path.join(name)
     }
 
-    /// Writes all files aside, then puts them into their places. If a file cannot be written, the
-    /// folder stays as it was.
+    /// Writes all files to a temporary folder and then moves them to the folder. If a file cannot
+    /// be written, the folder does not change.
     ///
     /// # Errors
     /// [`Failure::Input`] that names the file.
@@ -99,7 +99,7 @@ impl Folder {
                 .iter()
                 .map(|(name, bytes)| (name.clone(), sum(bytes)));
             let new: BTreeMap<_, _> = new.collect();
-            // Until all is done, the manifest names the files of both runs.
+            // The manifest names the files of both runs until all files are moved.
             let mut both = old.clone();
             both.extend(new.clone());
             list(&mut file, &both).map_err(failed(MANIFEST))?;
@@ -114,8 +114,8 @@ impl Folder {
         })
     }
 
-    /// Removes the file `name` of an earlier run, unless somebody has changed it, and its folder if
-    /// that is empty then.
+    /// Removes the file `name` of an earlier run if it is unchanged, and then its folder if the
+    /// folder is empty.
     fn remove(&self, name: &str, written: u64) {
         let path = self.file(name);
         if fs::read(&path).is_ok_and(|bytes| sum(&bytes) == written) {
@@ -142,7 +142,7 @@ fn read(path: &Path) -> io::Result<(File, BTreeMap<String, u64>)> {
     file.read_to_string(&mut text)?;
     let files = text.lines().filter_map(|line| {
         let (sum, name) = line.split_once(' ')?;
-        // A name that leads out of the folder is none that this program wrote.
+        // This program does not write outside the folder, so such a name is not from it.
         let inside = Path::new(name)
             .components()
             .all(|part| matches!(part, std::path::Component::Normal(_)));
@@ -164,7 +164,7 @@ fn list(file: &mut File, files: &BTreeMap<String, u64>) -> io::Result<()> {
     file.write_all(text.as_bytes())
 }
 
-/// Checksum of a file (64-bit FNV-1a): tells whether it was changed.
+/// Checksum of a file (64-bit FNV-1a), to detect changes.
 fn sum(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |sum, &byte| {
         (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)

@@ -5,8 +5,8 @@ use crate::plant::Grip;
 use crate::scenario::Speeds;
 use rustfft::{FftPlanner, num_complex::Complex};
 
-/// State of the plant at each tick, and the scenario's decision.
-fn watch(
+/// Calls `each` at every tick with the time, the plant's state and the scenario's inputs.
+fn for_each_tick(
     device: &Device,
     name: ScenarioName,
     rate_hz: f64,
@@ -18,7 +18,7 @@ fn watch(
     for k in 0..ticks(rate_hz, seconds).unwrap() {
         let t = k as f64 / rate_hz;
         let plant = run.plant.clone();
-        let drive = run.tick(k as u64, run.seen(), t, &mut ());
+        let drive = run.tick(k as u64, run.loop_counts(), t, &mut ());
         each(t, &plant, &drive);
     }
 }
@@ -48,7 +48,7 @@ fn speeds_and_currents_are_within_their_ranges() {
             assert!(largest < 2.0, "{name}: {largest} A");
             let small = trace.counts_small.unwrap();
             let moves = small.iter().any(|&count| count != small[0]);
-            assert_eq!(moves, name.reads_small(), "{name}: the handle");
+            assert_eq!(moves, name.reads_small(), "{name}: motion of the handle");
         }
     }
 }
@@ -89,11 +89,11 @@ fn step_holds_each_current_for_a_quarter_of_a_second() {
 }
 
 #[test]
-fn creep_advances_at_its_speed_both_ways() {
+fn creep_has_its_mean_speed_in_both_directions() {
     for rate in RATES {
         let trace = trace(ScenarioName::Creep, rate, 1);
         let (mut forward, mut back) = (Vec::new(), Vec::new());
-        // Means over 100 ms, of those that lie within one way.
+        // Means over 100 ms, without those that contain a reversal.
         for chunk in omega(&trace).chunks((0.1 * rate) as usize) {
             let mean = chunk.iter().sum::<f64>() / chunk.len() as f64;
             if mean > 0.03 {
@@ -103,15 +103,15 @@ fn creep_advances_at_its_speed_both_ways() {
             }
         }
         assert!(forward.len() > 20 && back.len() > 20);
-        for (way, means) in [(0.05, forward), (-0.05, back)] {
+        for (expected, means) in [(0.05, forward), (-0.05, back)] {
             let mean = means.iter().sum::<f64>() / means.len() as f64;
-            assert!((mean - way).abs() < 0.005, "{mean} rad/s");
+            assert!((mean - expected).abs() < 0.005, "{mean} rad/s");
         }
     }
 }
 
 #[test]
-fn texture_shakes_the_motor_between_50_and_300_hz() {
+fn texture_moves_the_motor_at_50_to_300_hz() {
     for rate in RATES {
         let trace = trace(ScenarioName::Texture, rate, 1);
         let mut bins: Vec<Complex<f64>> = omega(&trace)
@@ -139,7 +139,7 @@ fn wall_is_entered_and_left_and_its_torque_acts_on_the_hand() {
     for rate in RATES {
         let (mut deepest, mut farthest, mut entries) = (0.0_f64, 0.0_f64, 0);
         let (mut errors, mut before) = (Vec::new(), 0.0);
-        watch(
+        for_each_tick(
             &device,
             ScenarioName::Wall,
             rate,
@@ -162,7 +162,7 @@ fn wall_is_entered_and_left_and_its_torque_acts_on_the_hand() {
             "{farthest} rad, {entries} entries"
         );
         let error = rms(errors);
-        assert!(error < 2e-3, "{error} N.m beside the wall's");
+        assert!(error < 2e-3, "error of the torque: {error} N.m");
     }
 }
 
@@ -172,7 +172,7 @@ fn hand_feels_little_torque_if_none_is_wanted() {
     for rate in RATES {
         for name in [ScenarioName::FreeAir, ScenarioName::Hold] {
             let mut felt = Vec::new();
-            watch(&device, name, rate, 1, 10.0, |t, plant, drive| {
+            for_each_tick(&device, name, rate, 1, 10.0, |t, plant, drive| {
                 assert!(matches!(drive.grip, Grip::Hand(_)));
                 if t > 0.1 {
                     felt.push(plant.handle_torque(&drive.grip, 0.0));
@@ -185,13 +185,13 @@ fn hand_feels_little_torque_if_none_is_wanted() {
 }
 
 #[test]
-fn heating_takes_30_percent_in_60_s_and_no_more() {
+fn heating_reduces_the_damping_by_30_percent_within_60_s() {
     let mut device = Device::default();
     device.small_ripple.torque = 0.0;
     let (kt, b) = (device.stages.small.torque_constant, device.stages.damping);
     let (mut decided, mut slipped) = (1.0, 0.0_f64);
     let each = |t: f64, plant: &Plant, drive: &Drive| {
-        // The plant was left with the damping decided a tick ago.
+        // The plant has the damping that was applied at the previous tick.
         let coupler = plant.handle_torque(&drive.grip, 0.0) - kt * plant.currents().1;
         let slip = plant.large().omega;
         assert!((coupler - decided * b * slip).abs() < 1e-12);
@@ -200,12 +200,12 @@ fn heating_takes_30_percent_in_60_s_and_no_more() {
         decided = drive.damping_part;
         assert!((decided - expected).abs() < 2e-5);
     };
-    watch(&device, ScenarioName::Heating, 200.0, 1, 70.0, each);
+    for_each_tick(&device, ScenarioName::Heating, 200.0, 1, 70.0, each);
     assert!((decided - 0.7).abs() < 1e-12 && slipped > 5.0);
 }
 
 #[test]
-fn stochastic_obeys_the_equations_of_its_documentation() {
+fn stochastic_has_the_documented_equations_of_motion() {
     let device = Device::default();
     let (b, j) = (device.stages.damping, device.stages.large.inertia);
     let (kt, lag) = (

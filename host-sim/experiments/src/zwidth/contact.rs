@@ -4,7 +4,7 @@ use std::fmt;
 
 use haptic_control::{AnyScene, LoopPoles, Radians, Viscous, Wall};
 
-use super::criterion::{Observer, ProbeTick, Violation};
+use super::criterion::{ContactTick, Evaluator, Violation};
 use crate::closed_loop::{FeedbackEncoder, Hand, Loop, Press, estimator};
 use catalogue::estimators::{Estimator, Kind};
 use catalogue::parameters::Parameters;
@@ -14,8 +14,8 @@ use terminal::failure::Failure;
 /// Position of the wall, rad from the start.
 const WALL: f64 = 0.1;
 
-/// Intended motion of the hand, to 0.08 rad inside the wall: at most 40 mN.m, 1.1 N at the fingertip
-/// of the default device. The hand reaches the wall with 2.2 rad/s.
+/// Intended motion of the hand, to 0.08 rad inside the wall: at most 40 mN.m, 1.1 N at the
+/// fingertip of the default device. The hand reaches the wall with 2.2 rad/s.
 const PRESS: Press = Press {
     angle: WALL + 0.08,
     moving_s: 0.15,
@@ -33,7 +33,7 @@ const THROW: f64 = 2.0;
 
 /// Kind of contact with the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Touch {
+pub enum Contact {
     /// A hand with a tenth of the stiffness and damping presses and releases.
     LightGrip,
     /// The device's hand presses and releases.
@@ -42,7 +42,7 @@ pub enum Touch {
     Throw,
 }
 
-impl Touch {
+impl Contact {
     /// All kinds in the order of the tests, the one with most failures first.
     const ALL: [Self; 3] = [Self::LightGrip, Self::Throw, Self::Hand];
 
@@ -57,23 +57,23 @@ impl Touch {
     }
 }
 
-/// A failure and the contact that caused it.
+/// A violation of the criterion and the contact in which it occurred.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Finding {
     /// Kind of contact.
-    pub touch: Touch,
-    /// Failure.
-    pub fault: Violation,
+    pub contact: Contact,
+    /// Violated part of the criterion.
+    pub violation: Violation,
 }
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.touch.as_str(), self.fault.as_str())
+        write!(f, "{}: {}", self.contact.as_str(), self.violation.as_str())
     }
 }
 
 /// Device and estimators, prepared for any wall or viscous field.
-pub struct Probe {
+pub struct ContactTest {
     device: Device,
     rate_hz: f64,
     seed: u64,
@@ -81,7 +81,7 @@ pub struct Probe {
     handle: Estimator,
 }
 
-impl Probe {
+impl ContactTest {
     /// Prepares the device with the estimators `large` and `handle` and their `parameters`.
     ///
     /// # Errors
@@ -109,23 +109,23 @@ impl Probe {
     ///
     /// # Errors
     /// One line on a loop that cannot be designed.
-    pub fn fault(&self, stiffness: f64, damping: f64) -> Result<Option<Finding>, Failure> {
-        for touch in Touch::ALL {
-            if let Some(fault) = self.touched(touch, stiffness, damping)? {
-                return Ok(Some(Finding { touch, fault }));
+    pub fn violation(&self, stiffness: f64, damping: f64) -> Result<Option<Finding>, Failure> {
+        for contact in Contact::ALL {
+            if let Some(violation) = self.run(contact, stiffness, damping)? {
+                return Ok(Some(Finding { contact, violation }));
             }
         }
         Ok(None)
     }
 
-    fn touched(&self, touch: Touch, k: f64, b: f64) -> Result<Option<Violation>, Failure> {
+    fn run(&self, contact: Contact, k: f64, b: f64) -> Result<Option<Violation>, Failure> {
         let mut device = self.device.clone();
-        if touch == Touch::LightGrip {
+        if contact == Contact::LightGrip {
             device.hand.stiffness_nm_per_rad *= LIGHT;
             device.hand.damping_nms_per_rad *= LIGHT;
         }
-        let (hand, rests) = match touch {
-            Touch::Throw => (Hand::Gone(THROW), false),
+        let (hand, rests) = match contact {
+            Contact::Throw => (Hand::Gone(THROW), false),
             _ => (Hand::Pressing(PRESS), true),
         };
         let scene = match k {
@@ -135,7 +135,7 @@ impl Probe {
         let scene = scene.map_err(|error| Failure::Input(error.to_string()))?;
         let threshold = 0.5 * device.interval.threshold_n * device.handle.diameter_m;
         let inertia = device.stages.small.inertia;
-        let mut observer = Observer::new(threshold, 1.0 / self.rate_hz, inertia);
+        let mut evaluator = Evaluator::new(threshold, 1.0 / self.rate_hz, inertia);
         let run = Loop {
             believed: device.stages,
             device,
@@ -151,7 +151,7 @@ impl Probe {
         };
         let rest = SETTLED_S..PRESS.moving_s + PRESS.rest_s;
         run.run((SECONDS * self.rate_hz) as usize, |moment| {
-            observer.see(ProbeTick {
+            evaluator.update(ContactTick {
                 resting: rests && rest.contains(&moment.t),
                 contact: k == 0.0 || moment.handle.angle > WALL,
                 felt: moment.felt,
@@ -159,6 +159,6 @@ impl Probe {
                 stopped: moment.stopped.is_some(),
             });
         })?;
-        Ok(observer.fault())
+        Ok(evaluator.violation())
     }
 }
