@@ -2,7 +2,7 @@
 
 use super::canvas::{Anchor, Canvas, LABEL};
 use super::curve;
-use super::palette::{GRID, INK, MUTED};
+use super::palette::{BAND, BAND_EDGE, GRID, INK, MUTED};
 use super::style::Style;
 use super::text::number;
 use plotters::style::RGBColor;
@@ -52,8 +52,8 @@ impl Axis {
         self.log
     }
 
-    /// Position of a value: 0 at the low end, 1 at the high end; far below 0 for a value on a log axis
-    /// that is not positive.
+    /// Position of a value: 0 at the low end, 1 at the high end; far below 0 for a value on a log
+    /// axis that is not positive.
     pub(super) fn part(&self, value: f64) -> f64 {
         if self.log {
             let span = (self.high / self.low).ln();
@@ -240,6 +240,19 @@ impl Plot {
         let back = curve::reduce(highs, ends, columns as usize);
         outline.extend(back.into_iter().rev());
         canvas.polygon(&outline, colour)
+    }
+
+    /// The haptic interval: the area between two curves with its edges.
+    pub(super) fn interval(
+        &self,
+        canvas: &Canvas,
+        points: impl Iterator<Item = (f64, f64, f64)> + Clone,
+    ) -> Result<(), String> {
+        self.band(canvas, points.clone(), BAND)?;
+        let low = points.clone().map(|(x, low, _)| (x, low));
+        let high = points.map(|(x, _, high)| (x, high));
+        self.curve(canvas, low, BAND_EDGE, 0.75)?;
+        self.curve(canvas, high, BAND_EDGE, 0.75)
     }
 }
 

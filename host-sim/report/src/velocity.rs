@@ -6,7 +6,7 @@ use super::Traces;
 use super::canvas::{
     Anchor, Canvas, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height, text_width,
 };
-use super::palette::{BAND, BAND_EDGE, INK, MUTED, Palette, TRUTH};
+use super::palette::{INK, MUTED, Palette, TRUTH};
 use super::plot::{Axis, Plot};
 use super::text::share;
 use scoring::score::HapticInterval;
@@ -106,14 +106,7 @@ pub(super) fn truth(
         let tolerance = interval.tolerance(w);
         (time(at), w - tolerance, w + tolerance)
     });
-    plot.band(canvas, band.clone(), BAND)?;
-    plot.curve(
-        canvas,
-        band.clone().map(|(t, low, _)| (t, low)),
-        BAND_EDGE,
-        0.75,
-    )?;
-    plot.curve(canvas, band.map(|(t, _, high)| (t, high)), BAND_EDGE, 0.75)?;
+    plot.interval(canvas, band)?;
     let points = window.map(|at| (time(at), traces.truth[at]));
     plot.curve(canvas, points, TRUTH, 1.6)
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::RecordingView;
 use crate::canvas::{Anchor, Canvas, LABEL};
-use crate::palette::{BAND, BAND_EDGE, INK};
+use crate::palette::INK;
 use crate::plot::Plot;
 use crate::style::Style;
 use crate::text::share;
@@ -12,7 +12,7 @@ use crate::text::share;
 /// A step of `t` above this many periods is a gap, over which no curve is drawn.
 const GAP_STEPS: f64 = 1.5;
 
-/// One curve of a panel: a value for each row of the recording.
+/// One curve of a panel, with a value for each row of the recording.
 pub(super) struct Curve {
     pub(super) name: String,
     pub(super) style: Style,
@@ -57,14 +57,7 @@ impl Panel {
         if let Some(band) = &self.band {
             for rows in &segments {
                 let edges = rows.clone().map(|row| (t[row], -band[row], band[row]));
-                plot.band(canvas, edges.clone(), BAND)?;
-                plot.curve(
-                    canvas,
-                    edges.clone().map(|(t, low, _)| (t, low)),
-                    BAND_EDGE,
-                    0.75,
-                )?;
-                plot.curve(canvas, edges.map(|(t, _, high)| (t, high)), BAND_EDGE, 0.75)?;
+                plot.interval(canvas, edges)?;
             }
         }
         plot.grid(canvas, 9, 4)?;
