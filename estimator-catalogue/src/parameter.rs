@@ -1,4 +1,4 @@
-//! Parameters of estimators: name, unit, range, and how `host-sim tune` searches.
+//! Parameters of estimators: name, unit, range, and the grid on which `host-sim tune` searches.
 
 /// One parameter of an estimator.
 #[derive(Clone, Copy, Debug)]
@@ -15,25 +15,25 @@ pub struct Parameter {
     pub highest: f64,
     /// Whether the value must be a whole number.
     pub whole: bool,
-    /// How `tune` searches.
+    /// Values that `tune` tries.
     pub search: Search,
 }
 
-/// How `tune` searches for a parameter.
+/// Values of a parameter that `host-sim tune` tries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Search {
-    /// Evenly on a logarithmic scale between these bounds.
+    /// Values between these bounds, equidistant on a logarithmic scale.
     Log(f64, f64),
     /// Every whole number between these bounds.
     Each(u32, u32),
-    /// Not at all: the parameter keeps this value.
+    /// This value alone: the parameter is not tuned.
     Fixed(f64),
 }
 
-/// Largest window of the host's FOAW, intervals. Firmware takes a ring of the size it needs.
+/// Largest window of FOAW on the host, intervals. Firmware has a ring of the length that it needs.
 pub const WINDOW_LIMIT: usize = 128;
 
-/// Ranges of the rows' parameters. The row gives the name.
+/// Ranges of the parameters of rows. The row gives the name of the parameter.
 impl Parameter {
     /// Cut-off frequency of a first-order low-pass.
     pub const CUTOFF: Self = Self {
@@ -100,7 +100,7 @@ impl Parameter {
     pub const LITERAL: Self = Self {
         name: "",
         unit: "",
-        meaning: "1 takes the paper's eq. 15 literally: the current acts one tick late",
+        meaning: "1 applies the current one tick late, as the paper's eq. 15 is printed",
         lowest: 0.0,
         highest: 1.0,
         whole: true,
@@ -129,7 +129,7 @@ impl Parameter {
         search: Search::Log(1e-5, 1e-2),
     };
 
-    /// The same for an observer without current: the motor torque is part of the disturbance.
+    /// Slow disturbance torque of an observer without current, which includes the motor torque.
     pub const DISTURBANCE_AND_MOTOR: Self = Self {
         search: Search::Log(1e-4, 1.0),
         ..Self::DISTURBANCE
@@ -146,29 +146,30 @@ impl Parameter {
         search: Search::Fixed(0.1),
     };
 
-    /// Friction's part of the slow disturbance torque.
+    /// Share of the slow disturbance torque that is attributed to friction.
     pub const FRICTION_SHARE: Self = Self {
         name: "",
         unit: "",
-        meaning: "part of the slow disturbance torque that corrects the friction",
+        meaning: "share of the slow disturbance torque that is attributed to friction",
         lowest: 0.0,
         highest: 1.0,
         whole: false,
         search: Search::Fixed(0.7),
     };
 
-    /// Error of a count's boundary.
+    /// Standard deviation of the position of a boundary between counts.
     pub const BOUNDARY_NOISE: Self = Self {
         name: "",
         unit: "counts",
-        meaning: "error of a boundary's position: the disc's, and the rounding of the model",
+        meaning: "standard deviation of a boundary's position: disc errors and rounding of the model",
         lowest: 1e-4,
         highest: 1e3,
         whole: false,
         search: Search::Fixed(0.0625),
     };
 
-    /// The same with learned phases of the disc, which leave 0.02 to 0.03 counts.
+    /// Standard deviation of the position of a boundary whose phase error is learned, which leaves
+    /// 0.02 to 0.03 counts.
     pub const DISC_NOISE: Self = Self {
         search: Search::Fixed(0.03),
         ..Self::BOUNDARY_NOISE

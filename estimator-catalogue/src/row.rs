@@ -1,10 +1,10 @@
-//! The facts of a row.
+//! The row of an estimator: the facts that need no type.
 
 use estimator_core::Signals;
 
 use crate::parameter::Parameter;
 
-/// An estimator's row, without its type and its design: these are in the macro alone.
+/// The row of an estimator without its type and its design, which only the macro has.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
     /// Name on the command line and in files.
@@ -13,50 +13,50 @@ pub struct Row {
     pub id: &'static str,
     /// Summary, in one line.
     pub summary: &'static str,
-    /// Signals that it reads.
+    /// Signals that the estimator reads.
     pub needs: Signals,
-    /// What it reports besides the velocity.
+    /// Quantities that the estimator reports besides the velocity.
     pub reports: Reports,
-    /// How it comes to rest after any motion.
+    /// Law by which the output comes to rest after any motion.
     pub settling: Settling,
-    /// Colour in figures. Relatives share a colour.
+    /// Colour in figures. Estimators of one family share a colour.
     pub colour: Colour,
-    /// Dash of its lines in figures.
+    /// Dash of the lines in figures.
     pub dash: Dash,
-    /// Its parameters, in the order of tables.
+    /// Parameters, in the order of tables.
     pub parameters: &'static [Parameter],
-    /// What the bench image measures.
+    /// Designs that the bench image measures.
     pub variants: &'static [Variant],
     /// Goals of run time.
     pub goals: &'static [Goal],
 }
 
-/// What an estimator reports besides the velocity.
+/// Quantities that an estimator reports besides the velocity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reports {
-    /// Nothing.
+    /// No other quantity.
     Nothing,
     /// The standard deviation of the velocity.
     Deviation,
     /// The standard deviation, and the acceleration of its model.
     Acceleration,
-    /// The standard deviation, and the coupler's damping that it learns.
+    /// The standard deviation, and the coupler's damping that the estimator learns.
     Damping,
     /// The standard deviation; parameter `literal` delays the current by a tick.
     LateCurrent,
 }
 
-/// How the output comes to rest once the count does.
+/// Law by which the output comes to rest after the last change of the count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Settling {
     /// At the next tick.
     AtOnce,
     /// With the pole of parameter `cutoff_hz`.
     OnePole,
-    /// With so many poles at parameter `bandwidth_hz`.
+    /// With this number of poles at parameter `bandwidth_hz`.
     EqualPoles(u8),
-    /// Once only the resting count is in the window, which has as many intervals as the variant's
-    /// capacity.
+    /// When the window contains only the resting count. The window has as many intervals as the
+    /// capacity of the variant.
     Window,
     /// With the three poles of the steady filter on the triple integrator.
     TripleIntegrator,
@@ -64,15 +64,15 @@ pub enum Settling {
     MotorModel,
     /// As one count over the time since the last edge.
     OneCountOverTime,
-    /// Once the disturbance torque is forgotten.
+    /// When the disturbance torque has decayed.
     Disturbance,
-    /// Once the disturbance torque is forgotten, with the truncated-Gaussian update.
+    /// When the disturbance torque has decayed, with the truncated-Gaussian update.
     DisturbanceTruncated,
-    /// Once the disturbance torque, which holds all other torques too, is forgotten, and then as one
+    /// When the disturbance torque, which includes all other torques, has decayed, and then as one
     /// count over the time since the last edge.
     DisturbanceAlone,
     /// Within this time, s, which was measured and not derived. An estimator whose law is not in
-    /// this list takes this one.
+    /// this list has this variant.
     Within(f64),
 }
 
@@ -119,10 +119,10 @@ impl Colour {
     pub const BROWN: Self = Self(0x7a, 0x52, 0x30);
 }
 
-/// How a line is interrupted.
+/// Pattern of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dash {
-    /// Not at all.
+    /// A solid line.
     Solid,
     /// Long strokes.
     Dashed,
@@ -135,22 +135,22 @@ pub enum Dash {
 /// A design that the bench image measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variant {
-    /// Its module in the image.
+    /// Module of the design in the image.
     pub id: &'static str,
     /// Control rate of the tuned parameters, Hz; 0 for a design that suits every rate.
     pub rate_hz: f64,
-    /// Length of its window or gain table; 0 without.
+    /// Length of the window or of the gain table; 0 if the design has neither.
     pub capacity: usize,
 }
 
-/// Goals of run time for the variants of one capacity: instructions an update at `opt-level` 3 on a
-/// Cortex-M4F.
+/// Goals of run time for the variants of one capacity: instructions per update at `opt-level` 3 on
+/// a Cortex-M4F.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
-    /// The capacity concerned; 0 for all variants.
+    /// Capacity of the variants; 0 for all variants.
     pub capacity: usize,
-    /// Mean over the traces, at most.
+    /// Largest mean over the traces.
     pub mean: f64,
-    /// Longest update, at most; infinite without a goal.
+    /// Largest number of instructions of one update; infinite without a goal.
     pub longest: f64,
 }

@@ -23,10 +23,10 @@ use crate::row::{Colour, Dash, Goal, Reports, Row, Settling, Variant};
 ///
 /// with `c` the crate `estimator-core` or its f64 twin, `motor` a `&c::CoupledMotor`, `rate` and
 /// `clock` (of the edge time stamps) a `c::Hertz`, `p` the parameters by name
-/// ([`design`](crate::design)), and `N` the length of a window or a table, a constant. The design is
-/// a `Result<Type, c::DesignError>` and a constant expression. RANGE is a constant of
-/// [`Parameter`](crate::Parameter), or the fields of a range that no other row has, in braces:
-/// `n: { lowest: 2.0, ..Parameter::WINDOW }`.
+/// ([`design`](crate::design)), and `N` the length of a window or a table, a constant. The design
+/// is a `Result<Type, c::DesignError>` and a constant expression. RANGE is a constant of
+/// [`Parameter`](crate::Parameter), or the fields of a range that no other row has, in braces: `n:
+/// { lowest: 2.0, ..Parameter::WINDOW }`.
 ///
 /// ```
 /// macro_rules! names {
@@ -47,8 +47,8 @@ macro_rules! estimators {
     };
 }
 
-/// Passes the rows of the families, in this order, to `$each`. Each family adds its rows to those in
-/// brackets. `$rates` are the variants of a design that depends on the control rate.
+/// Passes the rows of the families, in this order, to `$each`. Each family adds its rows to those
+/// in brackets. `$rates` are the variants of a design that depends on the control rate.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! joined {
@@ -92,8 +92,9 @@ macro_rules! range {
     };
 }
 
-/// An adaptive observer that has learned from nonsense may have a friction near zero: it then rests only
-/// when its disturbance torque has been corrected, count by count. Twice what was seen.
+/// After inputs that no device produces, an adaptive observer can have a friction near zero. It then
+/// comes to rest only after its disturbance torque has been corrected count by count. The time is above
+/// the longest one of the stress test.
 const ADAPTED: Settling = Settling::Within(6.0);
 
 macro_rules! rows {

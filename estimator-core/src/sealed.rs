@@ -1,4 +1,4 @@
-//! The one way in which traits of this crate are sealed.
+//! The supertrait of the sealed traits of this crate.
 
 /// Supertrait of every sealed trait. Types outside the crate cannot name it.
 pub trait Sealed {}

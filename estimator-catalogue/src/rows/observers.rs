@@ -24,7 +24,7 @@ macro_rules! observer_rows {
             ($($uncertainty)*, boundary_noise: BOUNDARY_NOISE),
             $rates,
             {
-                summary: "observer with current, slip, friction and dead zone, scheduled gains",
+                summary: "observer with current, slip and friction, corrected at the ends of the quantisation interval",
                 needs: COUNT_CURRENT_AND_SLIP,
                 settling: Settling::Disturbance,
                 colour: Colour::PURPLE,
@@ -50,7 +50,7 @@ macro_rules! observer_rows {
             ($($uncertainty)*, boundary_noise: BOUNDARY_NOISE),
             $rates,
             {
-                summary: "observer that learns damping, friction and torque constant per inertia",
+                summary: "observer that adapts damping, friction and torque constant, each per inertia",
                 needs: COUNT_CURRENT_AND_SLIP,
                 settling: ADAPTED,
                 colour: Colour::CRIMSON,
@@ -89,7 +89,7 @@ macro_rules! observer_rows {
             ($($uncertainty)*, boundary_noise: BOUNDARY_NOISE),
             $rates,
             {
-                summary: "observer-soft that learns damping, friction and torque constant per inertia",
+                summary: "observer-soft that adapts damping, friction and torque constant, each per inertia",
                 needs: COUNT_CURRENT_AND_SLIP,
                 settling: ADAPTED,
                 colour: Colour::CRIMSON,

@@ -41,7 +41,7 @@ impl Disc {
     }
 }
 
-/// What moves the rotor, rad/s², over the next step.
+/// Acceleration of the rotor over the next step, rad/s².
 trait Drive {
     /// The current that is commanded for the next tick.
     fn tick(&mut self) -> f64;
@@ -121,8 +121,8 @@ impl Drive for Motor {
     }
 }
 
-/// Mean of the squared error over the believed variance, where the next sample has another count: an
-/// observer's variance is that before the correction which is due.
+/// Mean of the squared error over the reported variance, over samples before a change of the count.
+/// The variance of an observer is that before the correction that is due.
 fn ratio<E>(estimator: &E, samples: &[(Sample, f64)]) -> f64
 where
     E: Confidence,
@@ -144,7 +144,7 @@ where
     sum / f64::from(terms)
 }
 
-/// A device without friction and lag, whose encoder has so many counts.
+/// A device without friction and lag, with this number of counts per revolution.
 fn device(counts_per_rev: u32) -> CoupledMotor {
     CoupledMotor {
         motor: MotorModel {
@@ -165,7 +165,7 @@ const UNSURE: Uncertainty = Uncertainty {
     boundary_noise: 0.0625,
 };
 
-/// It turns forward at 20 rad/s, give or take what is random.
+/// The mean velocity is 20 rad/s forward, and the noise is random.
 const OMEGA: f64 = 20.0;
 const TICKS: usize = 200_000;
 
@@ -189,7 +189,7 @@ fn motor(counts_per_rev: u32, unsure: Uncertainty) -> Vec<(Sample, f64)> {
     )
 }
 
-/// A motor whose current is off by a noise that is drawn anew at each tick.
+/// A motor whose current has an independent error at each tick.
 struct NoisyCurrent {
     device: MotorModel,
     mean: f64,
@@ -228,8 +228,8 @@ impl Drive for Jerk {
     }
 }
 
-/// Errors of 200 000 ticks that an estimator remembers some 100 of: the mean is good to about 3 %. The
-/// rest is what a count and an edge are beyond the model's white error of a boundary.
+/// Errors of 200 000 ticks that an estimator remembers some 100 of: the mean is good to about 3 %.
+/// The rest is what a count and an edge are beyond the model's white error of a boundary.
 #[track_caller]
 fn assert_calibrated(found: f64, what: &str) {
     assert!((found - 1.0).abs() < 0.15, "{what}: {found}");
@@ -250,8 +250,8 @@ fn errors_of_observers_have_their_standard_deviation_with_matching_noise() {
             ratio(&edges(&UNSURE), &samples),
             &what("edges, disturbance"),
         );
-        // Without time stamps the instant of a crossing inside its tick is unknown, which matters with
-        // a disturbance; and the covariance of the quantised update contains no disturbance.
+        // Without time stamps the instant of a crossing inside its tick is unknown, which matters
+        // with a disturbance; and the covariance of the quantised update contains no disturbance.
         let unsure = Uncertainty {
             disturbance: 1e-5,
             ..UNSURE

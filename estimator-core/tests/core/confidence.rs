@@ -31,7 +31,7 @@ fn full_filter_settles_to_the_variance_of_the_steady_filter() {
     }
 }
 
-/// Nothing is heard of a motor between two counts, and the observer is ever less sure.
+/// Between two counts an observer has no measurement, so its variance grows.
 #[test]
 fn variance_of_an_observer_grows_without_counts() {
     let unsure = Uncertainty {
@@ -52,17 +52,18 @@ fn variance_of_an_observer_grows_without_counts() {
     for _ in 0..40 {
         observer.update(&mut state, &Sample::new(Count(5 * 199)));
         let now = observer.variance(&state);
-        // The state counts the ticks since the prediction was last outside its cell.
+        // The state counts the ticks since the prediction was last outside its quantisation
+        // interval.
         match *state.correction() {
             0.0 => corrections += 1,
             ticks if ticks > 1.0 => assert!(now > last, "{now:?} after {last:?}, {ticks} ticks"),
-            // The table's first row stands for no tick and for one.
+            // The first row of the table is for a gap of zero and of one tick.
             _ => assert_eq!(now, last),
         }
         last = now;
     }
     assert!((1..20).contains(&corrections), "{corrections}");
-    // Where it rests, nothing corrects it.
+    // At rest the prediction agrees with the count, so no correction follows.
     assert!(last.0 > 4.0 * sure.0, "{} {}", last.0, sure.0);
 }
 
@@ -84,7 +85,7 @@ fn handover_reports_the_larger_variance_of_the_two() {
     assert_eq!(said[38], (Some(Side::Second), 1.0));
 }
 
-/// A choice stays when everything else begins again.
+/// A restart keeps the choice of the estimator.
 #[test]
 fn restart_keeps_the_choice() {
     let window = Foaw::<8, EndFit>::new(8, 1).unwrap();
@@ -95,6 +96,6 @@ fn restart_keeps_the_choice() {
     state.select(Side::Second);
     both.restart(&mut state, &Sample::new(Count(100)));
     assert_eq!(state.in_charge(), Some(Side::Second));
-    // At rest at that sample: no jump from zero.
+    // The state begins at rest at that sample, so its first output does not jump.
     assert_eq!(both.update(&mut state, &Sample::new(Count(103))).0, 3.0);
 }

@@ -12,12 +12,12 @@ use crate::motion::medley;
 
 static EVERY: LazyLock<Vec<Case>> = LazyLock::new(everywhere);
 
-/// An estimator that went a billion counts behaves as one that starts there.
+/// After a displacement of a billion counts an estimator has the output of one that starts there.
 #[test]
 fn velocity_is_exact_beyond_a_billion_counts() {
     let motion = medley();
     for case in EVERY.iter() {
-        // There at high speed, then rest until the journey is forgotten.
+        // Motion at high speed, then rest until its effect on the state has decayed.
         let mut run = case.make();
         let mut count = Count(0);
         run.start(&Sample::new(count));
@@ -36,7 +36,7 @@ fn velocity_is_exact_beyond_a_billion_counts() {
                 .map(|sample| run.update(sample))
                 .collect()
         };
-        // The other one gets the time to settle, too: its covariance starts wide.
+        // The other estimator also gets time to settle, because its covariance starts wide.
         let mut fresh = case.make();
         fresh.start(&Sample::new(Count(7)));
         for _ in 0..case.memory + 3 {
@@ -47,7 +47,7 @@ fn velocity_is_exact_beyond_a_billion_counts() {
             .map(|sample| fresh.update(sample))
             .collect::<Vec<f32>>();
         for (there, here) in arrived.iter().zip(&started) {
-            // The filters meet the motion with residuals that differ in their last places.
+            // The states of both filters differ in their last digits when the motion begins.
             let rounding = 1e-6 * motion.fastest() as f32;
             let tolerance = if case.ramp == Ramp::Exact {
                 0.0

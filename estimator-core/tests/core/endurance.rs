@@ -1,4 +1,4 @@
-//! Long runs and bad input: nothing drifts, nothing is lost, nothing stops being a number.
+//! Long runs and bad input: no drift, no lost count, no output that is not finite.
 
 use std::sync::LazyLock;
 
@@ -31,7 +31,7 @@ fn assert_covariance<const S: usize, U: Input<S>>(
     assert!(exact.cholesky().is_some(), "{what}: {p:?}");
 }
 
-/// Rest, top speed both ways, and anything at all, in turns.
+/// Alternately rest, the largest speed in both directions, and random counts.
 fn abuse(tick: usize, draws: &mut Draws, count: Count) -> Sample {
     let step = match tick / 1000 % 4 {
         0 => 0,
@@ -71,7 +71,7 @@ fn covariance_stays_symmetric_and_positive() {
     }
 }
 
-/// Every filter that is not refused works, however strange its parameters.
+/// Every design that is not refused gives finite outputs and comes to rest.
 #[test]
 fn accepted_designs_stay_finite_and_positive() {
     let mut tried = 0;
@@ -135,7 +135,7 @@ fn bad_currents_leave_everything_finite_for_ever() {
             let output = run.update(&sample.with_current(amps));
             assert!(output.is_finite(), "{}", case.name);
         }
-        // Afterwards, at rest, all of it is forgotten.
+        // At rest the effect of the earlier motion decays.
         let rest = motion[motion.len() - 1].with_current(Amps::ZERO);
         let outputs: Vec<f32> = (0..3 * case.memory + 3)
             .map(|_| run.update(&rest))

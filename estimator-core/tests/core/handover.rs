@@ -1,4 +1,4 @@
-//! Estimators exchanged while they run: no step, nothing left behind.
+//! Exchange of estimators at run time: no step of the velocity, and no state of the old estimator.
 
 use estimator_core::{
     Count, EndFit, FiniteDifference, Foaw, Handover, Hertz, Model, Sample, Side, SteadyKalman,
@@ -61,8 +61,8 @@ fn change_of_estimator_does_not_alter_a_constant_velocity() {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
 
-    /// Whenever and however often somebody changes his mind: from tick to tick the output moves
-    /// by no more than the two estimators do and the fade allows.
+    /// For any number of selections at any ticks, the output changes from tick to tick by at most
+    /// the steps of the two estimators and of the fade.
     #[test]
     fn steps_during_a_fade_are_bounded_by_the_estimators_and_the_fade(
         motion in any_motion(),
@@ -71,10 +71,10 @@ proptest! {
         let samples = motion.samples(u32::MAX - 20);
         let (estimator, window, filter) = (both(), Foaw::<15, EndFit>::new(15, 1).unwrap(), filter());
         let mut state = estimator.start(&samples[0]);
-        // The two on their own, started whenever the one under test starts them.
+        // Each of the two alone, started at the ticks at which the handover starts it.
         let (mut a, mut b) = (window.start(&samples[0]), filter.start(&samples[0]));
         let mut last: Option<[f32; 3]> = None;
-        let mut heard = Vec::new();
+        let mut output = Vec::new();
         for (k, sample) in samples[1..].iter().enumerate() {
             for (at, second) in &changes {
                 if *at == k {
@@ -98,26 +98,27 @@ proptest! {
                     None => moved[1].max(moved[2]) + apart / f32::from(FADE),
                 };
                 // With L the largest of the estimates and ε = 2^-23, half an ulp of a number up to
-                // n L is n ε L / 2. `old + share (new - old)` rounds a difference up to 2 L, a share
-                // of it, their product, and a sum up to L: 3.5 ε L a tick, 7 ε L over two. The
-                // difference of the two outputs adds ε L, and `allowed` has 2.6 ε L of its own: a
-                // difference up to 2 L and a sum up to 3 L.
+                // n L is n ε L / 2. `old + share (new - old)` rounds a difference up to 2 L, a
+                // share of it, their product, and a sum up to L: 3.5 ε L a tick, 7 ε L over two.
+                // The difference of the two outputs adds ε L, and `allowed` has 2.6 ε L of its own:
+                // a difference up to 2 L and a sum up to 3 L.
                 let largest = now.iter().chain(&last).fold(0.0f32, |a, v| a.max(v.abs()));
                 let rounding = 10.6 * f32::EPSILON * largest;
                 prop_assert!(moved[0] <= allowed + rounding, "{k}: {moved:?} {apart} {rounding}");
             }
             last = Some(now);
-            heard.push(v);
+            output.push(v);
         }
-        // With no change asked for it is the first, bit for bit.
+        // Without a selection the output is that of the first estimator, bit for bit.
         if changes.iter().all(|(_, second)| !second) {
             let alone = run(&Foaw::<15, EndFit>::new(15, 1).unwrap(), &samples, |_, _| ());
-            prop_assert!(heard.iter().zip(&alone).all(|(a, b)| a.to_bits() == b.to_bits()));
+            prop_assert!(output.iter().zip(&alone).all(|(a, b)| a.to_bits() == b.to_bits()));
         }
     }
 }
 
-/// With estimators whose difference is known, the fade is a straight line, turned where it is.
+/// For two estimators with a known difference, the fade is linear and reverses from its current
+/// weight.
 #[test]
 fn reversed_fade_continues_from_its_current_weight() {
     // At half a count a tick finite difference says 0 and 1 in turn; its window of two says 1/2.
@@ -129,13 +130,13 @@ fn reversed_fade_continues_from_its_current_weight() {
     )
     .unwrap();
     let samples: Vec<Sample> = (0..80).map(|k| Sample::new(Count(k / 2))).collect();
-    let heard = run(&estimator, &samples, |k, state| match k {
+    let output = run(&estimator, &samples, |k, state| match k {
         10 => state.select(Side::Second),
         21 => state.select(Side::First),
         _ => {}
     });
     // The share of the window, seen in the deviation from 1/2: 1/2 at first, none when faded.
-    let share = |k: usize| 1.0 - 2.0 * (heard[k] - 0.5).abs();
+    let share = |k: usize| 1.0 - 2.0 * (output[k] - 0.5).abs();
     for (k, wanted) in [
         (9, 0.0),
         (14, 0.0),

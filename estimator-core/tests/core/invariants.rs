@@ -115,7 +115,7 @@ proptest! {
                 .map(|sample| sample.with_current(Amps::new(5.0 * draws.unit() as f32)))
                 .collect();
             let same = bits(&case.run(&bare)) == bits(&case.run(&other));
-            // Some stretch may be too short for a current to show.
+            // In a short motion a current may have no effect.
             prop_assert!(same || case.needs.current, "{} reads the current", case.name);
             prop_assert!(!same || !case.needs.current || bare.len() < 4, "{} ignores it", case.name);
         }
@@ -175,7 +175,7 @@ fn first_step_is_relative_to_the_first_sample() {
     }
 }
 
-/// The medley is what it claims, so that the tests above try what they say.
+/// The medley contains each kind of motion that the tests above rely on.
 #[test]
 fn test_signal_has_rest_creep_and_speed() {
     let motion = medley();

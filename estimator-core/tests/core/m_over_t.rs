@@ -1,4 +1,4 @@
-//! The M/T method against the motion that it knows exactly.
+//! The M/T method against motions for which it is exact.
 
 use estimator_core::{
     ClockTicks, Count, Counts, DesignError, Edge, Hertz, MOverT, Sample, VelocityEstimator,
@@ -6,7 +6,7 @@ use estimator_core::{
 
 const CLOCK: Hertz = Hertz(84e6);
 
-/// M/T is exact at a constant velocity, however few counts that is.
+/// M/T is exact at a constant velocity, also below one count per tick.
 #[test]
 fn m_over_t_is_exact_on_a_ramp() {
     let rate = Hertz(1000.0);
@@ -57,7 +57,8 @@ fn counts_without_stamps_are_taken_half_a_tick_old() {
             let sample = Sample::new(Count(50) + Counts(direction * (tick / 3)));
             velocities.push(estimator.update(&mut state, &sample).0 * direction as f32);
         }
-        // The first count comes from the middle of a cell: half a count in two and a half ticks.
+        // Before the first count the position is the middle of the quantisation interval: half a
+        // count in two and a half ticks.
         assert_eq!(velocities[..5], [0.0, 0.0, 0.2, 0.2, 0.2], "{direction}");
         let third = 1.0 / 3.0;
         assert!(
@@ -144,7 +145,7 @@ fn stamp_of_the_first_sample_counts() {
         });
         // From 0.25 of a tick before the first sample to 0.75 before the second.
         assert_eq!(estimator.update(&mut state, &second).0, moved / 0.5);
-        // Two stamps of one instant say nothing.
+        // Two stamps of one instant give no velocity.
         let mut state = estimator.start(&first);
         let same = Sample::new(Count(9)).with_edge(Edge {
             boundary: Count(10 - above),
@@ -154,7 +155,7 @@ fn stamp_of_the_first_sample_counts() {
     }
 }
 
-/// Between edges the velocity is at most what would have shown an edge.
+/// Between edges the velocity is at most one count over the time since the last edge.
 #[test]
 fn velocity_falls_while_no_edge_comes() {
     let estimator = MOverT::new(Hertz(100_000.0), Hertz(1000.0)).expect("valid");

@@ -32,13 +32,13 @@ impl Draws {
 pub(crate) enum Stretch {
     /// No motion.
     Rest,
-    /// So many counts each tick.
+    /// This number of counts each tick.
     Ramp(i64),
     /// A constant velocity that is no whole number of counts, quantised.
     Slope(f64),
-    /// One count every so many ticks, either way.
+    /// One count every this many ticks, in either direction.
     Creep(u16, bool),
-    /// Random steps of at most so many counts.
+    /// Random steps of at most this many counts.
     Walk(i64, u64),
     /// A quantised sine of this amplitude, in counts, and period, in ticks.
     Sine(f64, f64),
@@ -96,7 +96,7 @@ impl Motion {
         self.counts.iter().zip(&self.amps).map(sample).collect()
     }
 
-    /// The same motion the other way round.
+    /// The same motion in the opposite direction.
     pub(crate) fn mirrored(&self) -> Self {
         Self {
             counts: self.counts.iter().map(|count| -count).collect(),
@@ -111,7 +111,7 @@ impl Motion {
     }
 }
 
-/// A motion with everything in it, about 900 ticks long.
+/// A motion with a stretch of each kind, about 900 ticks long.
 pub(crate) fn medley() -> Motion {
     Motion::of(
         &[

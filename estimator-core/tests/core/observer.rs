@@ -35,7 +35,7 @@ proptest! {
 
     #[test]
     fn shift_of_both_counters_changes_nothing(motion in any_motion(), shift: u32) {
-        // By whole lines: an encoder that starts elsewhere has the same phases there.
+        // The offset is a whole number of lines, so that the phases of the disc are the same.
         let shift = shift & !3;
         for rate in RATES {
             let (here, there) = (dressed(&motion, 0, rate, 1), dressed(&motion, shift, rate, 1));
@@ -117,7 +117,7 @@ fn velocity_is_zero_at_rest_at_any_count_and_below_friction() {
     for _ in 0..20 {
         let still =
             Sample::new(Count(draws.bits() as u32)).with_coupled(Count(draws.bits() as u32));
-        // 80 mA are 3.7 of 4 mN.m; only who believes in friction may see them.
+        // 80 mA are 3.7 of 4 mN.m: a model with friction stays at rest.
         for case in everywhere() {
             let pushed = still.with_current(Amps::new(if case.needs.current { 0.08 } else { 0.0 }));
             let mut samples = vec![still];
@@ -145,7 +145,7 @@ fn velocity_comes_back_to_zero_at_rest_without_current() {
         for case in at(rate) {
             let outputs = (case.run)(&samples);
             let end = outputs.last().expect("not empty").abs();
-            // Without a current nothing stops it inside its cell but the cell's walls.
+            // Without a current only the ends of the quantisation interval limit the position.
             let bound = if case.name.contains("blind") {
                 1e-2
             } else {
