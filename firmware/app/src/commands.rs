@@ -10,13 +10,13 @@ use crate::scene::{Settings, TORQUE_SCENE};
 
 /// Messages that wait for the control task, which takes one a tick.
 pub type Messages = Queue<Message, 8>;
-/// Bytes that one look takes at most.
+/// Largest number of bytes that one call takes.
 const BYTES: usize = 64;
 
 /// Counts of what was rejected since the start, modulo 2^32.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rejected {
-    /// Bytes that belong to no command.
+    /// Bytes outside any command.
     pub garbage: u32,
     /// Commands whose value is not finite.
     pub not_finite: u32,
@@ -37,7 +37,7 @@ pub struct Commands<'q> {
 }
 
 impl<'q> Commands<'q> {
-    /// A receiver that has received nothing.
+    /// A receiver without received bytes.
     pub fn new(queue: Producer<'q, Message>) -> Self {
         Self {
             parser: Parser::default(),
@@ -65,7 +65,7 @@ impl<'q> Commands<'q> {
         }
     }
 
-    /// The message of a command. Scenes are built here, where there is time.
+    /// The message of a command. Scenes are built here, at low priority.
     fn follow(&mut self, command: Command) -> Option<Message> {
         let message = match command {
             Command::Request(request) => return Some(Message::Request(request)),
@@ -95,8 +95,8 @@ impl<'q> Commands<'q> {
             .map(Message::Tuned)
     }
 
-    /// The counts before and now, at every 256th call and only if they differ. To be called once
-    /// a frame.
+    /// The counts of the last report and of now, at every 256th call if they differ. The caller
+    /// calls this function once per frame.
     pub fn report(&mut self) -> Option<[Rejected; 2]> {
         self.rejected.garbage = self.parser.garbage();
         self.reports = self.reports.wrapping_add(1);

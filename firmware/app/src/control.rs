@@ -1,4 +1,4 @@
-//! What the control task does between its inputs and its outputs: no I/O.
+//! The control task without I/O: from the inputs of a tick to its outputs.
 
 use estimator_core::Sample;
 use haptic_control::{
@@ -11,13 +11,13 @@ use crate::scene::{Core, FIRST, SCENES, Tuned};
 use crate::telemetry::Record;
 
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
-/// Control ticks from arming to the first scene, 20 ms: amplifiers take 1 to 10 ms until they follow
-/// a command.
+/// Control ticks from arming to the first scene, 20 ms: amplifiers take 1 to 10 ms until they
+/// follow a command.
 pub const SETTLE: u32 = RATE_HZ / 50;
 const SAFETY: Safety = Safety {
     settle: SETTLE,
     silence: SILENCE,
-    // Ten times as long as a scene goes on.
+    // Ten times the timeout of a running scene.
     disarm: match SILENCE {
         Some(longest) => Some(10 * longest),
         None => None,
@@ -26,7 +26,7 @@ const SAFETY: Safety = Safety {
     scenes: SCENES,
 };
 
-/// Inputs of a tick beside its sample.
+/// Inputs of a tick besides its sample.
 pub struct Inputs {
     /// Whether an amplifier reports a fault.
     pub amplifier_fault: bool,
@@ -43,11 +43,11 @@ pub struct Inputs {
 /// A command on its way to the control task.
 #[derive(Clone, Copy)]
 pub enum Message {
-    /// For the safety machine.
+    /// A request to the safety state machine.
     Request(Request),
-    /// For the scenes.
+    /// A change of a scene's parameters.
     Tuned(Tuned),
-    /// For the large motor; in an image of one estimator there is no such message.
+    /// Selection of the large motor's estimator. An image of one estimator has no such message.
     Estimator(Choice),
 }
 
@@ -66,11 +66,11 @@ pub struct Control {
 }
 
 impl Control {
-    /// At rest at the first sample, after a reset for this cause.
+    /// State at rest at the first sample, after a reset with the cause `reset`.
     ///
-    /// `brown_out_reset` says whether a falling supply resets the chip and is named as the cause.
-    /// Without it each dip looks like power-on, after which a device that arms by itself would
-    /// drive again: such an image then waits for a command.
+    /// `brown_out_reset` states whether a falling supply resets the chip with a cause of its own.
+    /// Without this reset a dip of the supply looks like power-on. An image that arms by itself
+    /// then waits for a command, so that the device does not drive again after a dip.
     pub fn new(first: &Sample, reset: Stop, brown_out_reset: bool) -> Self {
         Self {
             core: Core::start(first),
@@ -133,8 +133,8 @@ impl Control {
         order.enable.then_some(action.currents)
     }
 
-    /// Telemetry record of the latest tick, whose sample is given. It is built on demand, because most
-    /// ticks are not reported.
+    /// Telemetry record of the latest tick, whose sample is given. It is built on demand, because
+    /// most ticks are not reported.
     pub fn record(&self, sample: &Sample) -> Record {
         Record {
             tick: self.ticks.wrapping_sub(1),
@@ -148,7 +148,8 @@ impl Control {
         }
     }
 
-    /// Request of an image that arms without a command. It arms after boot, not out of safe.
+    /// Request of an image that arms without a command. It arms after boot, and not from the mode
+    /// safe.
     fn auto_arm_request(&self) -> Option<Request> {
         const ARM: u32 = RATE_HZ / 10;
         const SELECT: u32 = ARM - 1;

@@ -37,12 +37,12 @@ impl Deref for Kind {
     }
 }
 
-/// What every estimator is built for.
+/// The device and the control rate for which estimators are built.
 #[derive(Clone, Copy, Debug)]
 pub struct Setup {
     /// Control rate.
     pub rate: Hertz,
-    /// The device as the estimators believe it to be.
+    /// The device constants that the estimators assume.
     pub stages: DualStage,
 }
 
@@ -63,7 +63,7 @@ impl Setup {
         }
     }
 
-    /// The same without friction of the large motor.
+    /// The same setup without friction of the large motor.
     #[must_use]
     pub fn frictionless(mut self) -> Self {
         self.stages.large.coulomb_friction = 0.0;
@@ -110,8 +110,8 @@ impl Kind {
             })
     }
 
-    /// Whether its model has an acceleration, as [`Estimator::gives_acceleration`] says of one with
-    /// the usual parameters: no parameter changes that.
+    /// Whether the estimator gives an acceleration, as [`Estimator::gives_acceleration`] for the
+    /// default parameters. No parameter changes this.
     #[must_use]
     pub fn gives_acceleration(&self) -> bool {
         let setup = Setup::default();
@@ -120,13 +120,13 @@ impl Kind {
             .is_ok_and(|estimator| estimator.gives_acceleration())
     }
 
-    /// Whether it is an observer: it has a disturbance torque, and with it a mechanical model.
+    /// Whether the estimator is an observer, with a disturbance torque and a mechanical model.
     #[must_use]
     pub fn is_observer(&self) -> bool {
         self.parameters.iter().any(Parameter::is_torque)
     }
 
-    /// Whether `tune` has anything to look for.
+    /// Whether the estimator has a parameter that `tune` searches.
     #[must_use]
     pub fn is_tunable(&self) -> bool {
         self.parameters

@@ -1,6 +1,6 @@
 //! Every estimator by name: its parameters with units and ranges, its tuned presets, and the device
 //! constants that it is designed for.
 
-pub mod belief;
+pub mod constant_error;
 pub mod estimators;
 pub mod parameters;

@@ -12,7 +12,7 @@ use crate::decimal;
 use crate::device::Device;
 use crate::presets::{Estimators, PlantKind, Preset, Presets};
 
-/// Ratio of counts per revolution up to which tuned values still serve.
+/// Largest ratio of counts per revolution for which tuned values are used without a warning.
 const FAR: f64 = 1.5;
 
 /// The constants of a build.
@@ -20,7 +20,7 @@ const FAR: f64 = 1.5;
 pub struct Constants {
     /// Rust text that the package `tuned` includes.
     pub text: String,
-    /// What the build should warn of.
+    /// Warnings of the build.
     pub warning: Option<String>,
 }
 
@@ -44,7 +44,7 @@ pub fn named_file(name: &str, value: &OsStr, root: &Path) -> Result<PathBuf, Str
 }
 
 /// The constants for the files that DEVICE and PRESETS name. Without a device file the device is
-/// `DualStage::DEFAULT`; the presets file lies over the shipped one.
+/// `DualStage::DEFAULT`. Values of the presets file replace the shipped ones.
 ///
 /// # Errors
 /// One line that names the variable, the file and what is wrong in it.
@@ -75,8 +75,8 @@ pub fn constants(device: Option<&Path>, presets: Option<&Path>) -> Result<Consta
     Ok(Constants { text, warning })
 }
 
-/// Refuses estimators, parameters and values that the catalogue does not have, and in the section of
-/// the image those that no image reads, which are not in the shipped file.
+/// Refuses estimators, parameters and values that the catalogue does not have, and in the section
+/// of the image those that no image reads, which are not in the shipped file.
 fn known(presets: &Presets, shipped: &Presets) -> Result<(), String> {
     for preset in &presets.preset {
         check(&preset.estimators)
@@ -160,8 +160,8 @@ fn of_images(layer: &Presets) -> impl Iterator<Item = &Preset> {
     tuned.filter(|preset| preset.plant == PlantKind::Friction)
 }
 
-/// Hash of the values that images find: at every rate tuned for, and those of the image alone. It is
-/// the same for the shipped presets and for a file that repeats them.
+/// Hash of the values that images read: those of every tuned rate, and those of the section of the
+/// image. A file that repeats the shipped presets has the hash of the shipped presets.
 fn fingerprint(layers: &[Presets]) -> Fingerprint {
     let all = || layers.iter().flat_map(of_images);
     let mut hash = Fingerprint::EMPTY;
@@ -204,7 +204,7 @@ fn fingerprint(layers: &[Presets]) -> Fingerprint {
     hash
 }
 
-/// What an image takes from a file, as `tuned::image` does.
+/// A value that an image reads from a file, as `tuned::image` does.
 enum Value {
     /// A value of the section of the image.
     Image(f64),

@@ -40,7 +40,7 @@ pub struct Loop {
     /// The simulated device.
     pub device: Device,
     /// The device constants that the controller uses.
-    pub believed: DualStage,
+    pub assumed: DualStage,
     /// Scene with its parameters.
     pub scene: AnyScene,
     /// The simulated hand.
@@ -107,8 +107,8 @@ impl Loop {
     ) -> Result<(), String> {
         self.device.validate()?;
         let rate = Hertz(self.rate_hz);
-        let designed = RstDesign::new(&self.believed, rate, self.poles)
-            .and_then(|_| Rig::new(&self.believed, rate, self.poles));
+        let designed = RstDesign::new(&self.assumed, rate, self.poles)
+            .and_then(|_| Rig::new(&self.assumed, rate, self.poles));
         let mut rig = designed.map_err(|error| format!("control at {} Hz: {error}", rate.0))?;
         if self.encoder == FeedbackEncoder::Reference {
             rig.large_scale =
@@ -150,7 +150,7 @@ impl<F: FnMut(&TickState)> Visit for Running<'_, F> {
     fn visit<S: Scene<Acceleration: Senses<Estimator>>>(mut self, scene: S) {
         let Loop {
             device,
-            believed,
+            assumed,
             rate_hz,
             large,
             handle,
@@ -162,7 +162,7 @@ impl<F: FnMut(&TickState)> Visit for Running<'_, F> {
         let run = self.run;
         let mut bench = Bench::new(device, run.hand, run.encoder, *rate_hz, run.seed, step);
         let controller = Controller::new(scene, large.clone(), handle.clone(), self.rig);
-        let mut monitored = *believed;
+        let mut monitored = *assumed;
         if self.run.encoder == FeedbackEncoder::Reference {
             monitored.large.counts_per_rev = device.reference.counts_per_rev;
         }

@@ -156,11 +156,11 @@ impl Experiment {
         let (variation, seed) = subject.variation(settings.seed, scene);
         let device = variation.of(&settings.device);
         let inertia = device.stages.small.inertia;
-        let believed = settings.device.stages;
-        let usual = usual(scene, &believed, settings.rate_hz)?;
+        let assumed = settings.device.stages;
+        let usual = usual(scene, &assumed, settings.rate_hz)?;
         let run = Loop {
             device,
-            believed,
+            assumed,
             scene: usual,
             hand: variation.hand(scene),
             rate_hz: settings.rate_hz,

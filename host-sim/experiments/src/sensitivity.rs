@@ -1,7 +1,8 @@
 //! Sensitivity of the estimators to errors in the device's constants.
 //!
 //! Each run of the plant is estimated several times, each time by estimators with one wrong
-//! constant: see [`Belief`]. Plant, loop and the finite difference as reference stay unchanged.
+//! constant: see [`ConstantError`]. Plant, loop and the finite difference as reference stay
+//! unchanged.
 
 pub mod table;
 
@@ -9,7 +10,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::compare::{Case, Settings, interval, setup_of, trace};
-use catalogue::belief::Belief;
+use catalogue::constant_error::ConstantError;
 use catalogue::estimators::{Kind, available};
 use scoring::score::{Truth, Wanted};
 use terminal::failure::Failure;
@@ -71,11 +72,11 @@ fn run(case: &Case, settings: &Settings) -> Result<Vec<SensitivityRow>, Failure>
     let truth = Truth::new(omega, case.rate_hz, interval(&settings.device), wanted)
         .map_err(|error| Failure::Input(format!("{}: {error}", case.scenario)))?;
     let setup = setup_of(case, &settings.device);
-    let score = |kind: &Kind, belief: Option<&Belief>| {
+    let score = |kind: &Kind, constant_error: Option<&ConstantError>| {
         // The tuned parameters stay unchanged.
         let values = settings.parameters.values(kind, &setup, case.plant);
-        let believed = belief.map_or(setup, |belief| belief.of(&setup));
-        let estimator = kind.build(&believed, &values)?;
+        let assumed = constant_error.map_or(setup, |constant_error| constant_error.of(&setup));
+        let estimator = kind.build(&assumed, &values)?;
         let score = truth.score(&estimator.run(&trace));
         let missing = || Failure::Input(format!("{}: no score", kind.name));
         Ok::<_, Failure>((
@@ -84,21 +85,21 @@ fn run(case: &Case, settings: &Settings) -> Result<Vec<SensitivityRow>, Failure>
         ))
     };
     let (reference, _) = score(Kind::named("finite-difference")?, None)?;
-    let beliefs = Belief::at(&PARTS);
+    let constant_errors = ConstantError::at(&PARTS);
     let mut rows = Vec::new();
     for kind in &settings.estimators {
         if !kind.needs.within(available(&trace)) {
             continue;
         }
-        for belief in std::iter::once(None).chain(beliefs.iter().map(Some)) {
-            let (rms_rad_s, outside) = score(kind, belief)?;
+        for constant_error in std::iter::once(None).chain(constant_errors.iter().map(Some)) {
+            let (rms_rad_s, outside) = score(kind, constant_error)?;
             rows.push(SensitivityRow {
                 estimator: kind.name,
                 scenario: case.scenario.as_str(),
                 rate_hz: case.rate_hz,
                 seed: case.seed,
-                constant: belief.map(|belief| belief.constant.as_str()),
-                error: belief.map_or(0.0, |belief| belief.error),
+                constant: constant_error.map(|constant_error| constant_error.constant.as_str()),
+                error: constant_error.map_or(0.0, |constant_error| constant_error.error),
                 rms_rad_s,
                 rms_pct: 100.0 * rms_rad_s / reference,
                 outside,

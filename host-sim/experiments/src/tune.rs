@@ -1,7 +1,8 @@
 //! Search of the estimators' parameters on seeds that are not used for scores.
 //!
-//! The search minimises the cost on the tuning seeds. The result and the shipped parameters are then
-//! compared on one further seed; the shipped parameters are kept if they are at least as good there.
+//! The search minimises the cost on the tuning seeds. The result and the shipped parameters are
+//! then compared on one further seed; the shipped parameters are kept if they are at least as good
+//! there.
 
 mod image_section;
 
@@ -11,7 +12,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::compare::{Case, interval, trace};
-use catalogue::belief::Belief;
+use catalogue::constant_error::ConstantError;
 use catalogue::estimators::{Kind, Parameter, Search, Setup, Values};
 use catalogue::parameters::{Parameters, PlantKind, Preset};
 use scoring::score::{Truth, Wanted};
@@ -49,8 +50,9 @@ pub struct TuningSet {
     pub seeds: u64,
     /// Duration of each run, s.
     pub seconds: f64,
-    /// Errors of the constants, over which the cost is averaged together with the correct constants.
-    pub beliefs: Vec<Belief>,
+    /// Errors of the constants, over which the cost is averaged together with the correct
+    /// constants.
+    pub constant_errors: Vec<ConstantError>,
 }
 
 /// Result of tuning at one rate on one plant.
@@ -68,8 +70,8 @@ pub struct Tuned {
 ///
 /// The cost is the mean distance outside the haptic interval plus a hundredth of the RMS error,
 /// averaged over scenarios and seeds. It is minimised on a grid over all parameters, then on finer
-/// grids around the best point. The result is compared with the shipped parameters on the seed after
-/// the tuning seeds; the better ones are returned.
+/// grids around the best point. The result is compared with the shipped parameters on the seed
+/// after the tuning seeds; the better ones are returned.
 ///
 /// # Errors
 /// [`Failure::Input`] if a case cannot be simulated or an estimator needs a signal that the
@@ -108,7 +110,10 @@ pub fn tune(
         PlantKind::Friction => Setup::of(&set.device, rate_hz),
         PlantKind::Frictionless => Setup::of(&set.device, rate_hz).frictionless(),
     };
-    let wrong = set.beliefs.iter().map(|belief| belief.of(&setup));
+    let wrong = set
+        .constant_errors
+        .iter()
+        .map(|constant_error| constant_error.of(&setup));
     let setups: Vec<_> = std::iter::once(setup).chain(wrong).collect();
     let shipped = Parameters::default();
     let mut notes = Vec::new();

@@ -52,7 +52,7 @@ fn mean(
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Mean RMS of the moving scenarios at the worst belief of all, %.
+/// Mean RMS of the moving scenarios with the wrong constant for which it is largest, %.
 fn worst(rows: &[SensitivityRow], estimator: &str) -> f64 {
     worst_of(rows, estimator, |row| row.rms_pct)
 }
@@ -63,19 +63,19 @@ fn worst_of(
     estimator: &str,
     value: impl Fn(&SensitivityRow) -> f64 + Copy,
 ) -> f64 {
-    let mut beliefs: Vec<(Option<&str>, f64)> = Vec::new();
+    let mut constant_errors: Vec<(Option<&str>, f64)> = Vec::new();
     for row in rows {
-        if !beliefs.contains(&(row.constant, row.error)) {
-            beliefs.push((row.constant, row.error));
+        if !constant_errors.contains(&(row.constant, row.error)) {
+            constant_errors.push((row.constant, row.error));
         }
     }
-    assert_eq!(beliefs.len(), 17);
-    beliefs
+    assert_eq!(constant_errors.len(), 17);
+    constant_errors
         .iter()
-        .map(|belief| {
+        .map(|constant_error| {
             let is = |row: &SensitivityRow| {
                 row.estimator == estimator
-                    && (row.constant, row.error) == *belief
+                    && (row.constant, row.error) == *constant_error
                     && MOVING.contains(&row.scenario)
             };
             mean(rows, is, value)
@@ -105,7 +105,7 @@ fn correct_constants_leave_a_tenth_of_the_error_and_wrong_ones_are_learned() {
     assert_within("adaptive", right("adaptive"), [4.0, 10.0]);
     assert_within("observer-edge", right("observer-edge"), [0.5, 5.5]);
     assert_within("adaptive-edge", right("adaptive-edge"), [0.5, 5.5]);
-    // Any single wrong belief: at most 9 and 5.5.
+    // With any single wrong constant: at most 9 and 5.5.
     assert_within("adaptive, worst", worst(&rows, "adaptive"), [4.0, 9.0]);
     assert_within(
         "adaptive-edge, worst",
@@ -155,7 +155,7 @@ fn correct_constants_leave_a_tenth_of_the_error_and_wrong_ones_are_learned() {
             assert_within(name, mean(&soft, slow, |row| row.rms_pct), [1.0, 10.0]);
         }
     }
-    // Outside the haptic interval, at the worst belief: a few samples of the first second.
+    // Outside the haptic interval with the worst wrong constant: a few samples of the first second.
     for (rows, name, bound) in [
         (&rows, "adaptive", 0.002),
         (&rows, "adaptive-edge", 0.001),

@@ -33,7 +33,7 @@ fn with_kalman(scene: AnyScene, device: &Device, hand: Hand, rate_hz: f64) -> Lo
     let on = |counts| estimator(kind, device, counts, rate_hz, &Parameters::default()).unwrap();
     Loop {
         device: device.clone(),
-        believed: device.stages,
+        assumed: device.stages,
         scene,
         hand,
         rate_hz,
@@ -143,8 +143,8 @@ fn torque_is_rendered_flat_up_to_the_amplifiers() {
     assert!(least(difference) < least(responses));
 }
 
-/// The inertia that a hand feels: felt torque against the handle's acceleration, least squares, over
-/// the whole motion and with both through the same four poles at 1 Hz.
+/// The inertia that a hand feels: felt torque against the handle's acceleration, least squares,
+/// over the whole motion and with both through the same four poles at 1 Hz.
 fn felt_inertia(scene: impl Into<AnyScene>, device: &Device) -> [f64; 2] {
     let rate_hz = 10e3;
     let run = with_kalman(scene.into(), device, Hand::Moving, rate_hz);

@@ -1,7 +1,7 @@
 //! Reported standard deviations of the estimators against their errors, on seeds outside the tuning
 //! set.
 
-use catalogue::belief::{Belief, Constant};
+use catalogue::constant_error::{Constant, ConstantError};
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind};
 use experiments::compare::{Case, setup_of, trace};
@@ -17,7 +17,7 @@ fn calibration(
     kind: &'static Kind,
     scenario: ScenarioName,
     rate_hz: f64,
-    belief: Option<Belief>,
+    constant_error: Option<ConstantError>,
 ) -> [f64; 2] {
     let device = Device::default();
     let case = Case {
@@ -30,7 +30,7 @@ fn calibration(
     };
     let trace = trace(&case, &device, &[kind]).unwrap();
     let setup = setup_of(&case, &device);
-    let setup = belief.map_or(setup, |belief| belief.of(&setup));
+    let setup = constant_error.map_or(setup, |constant_error| constant_error.of(&setup));
     let evaluation = Evaluation::new(&[kind], &Parameters::default(), &setup, case.plant).unwrap();
     let estimate = &evaluation.estimates(&trace)[0];
     let omega = trace.true_omega.as_ref().unwrap();
@@ -44,9 +44,10 @@ fn calibration(
     [share, (sigma / errors).sqrt()]
 }
 
-/// Estimator, least share, least and most that the deviations are of the errors: in scenarios in which
-/// the motor moves, at 1 and 10 kHz. Wide, because the device is not as random as the observers are
-/// tuned for; where it is, the tests of `estimator-core` (`calibration`) hold them to their errors.
+/// Estimator, least share, least and most that the deviations are of the errors: in scenarios in
+/// which the motor moves, at 1 and 10 kHz. Wide, because the device is not as random as the
+/// observers are tuned for; where it is, the tests of `estimator-core` (`calibration`) hold them to
+/// their errors.
 const BOUNDS: [(&str, f64, [f64; 2]); 10] = [
     ("finite-difference", 0.999, [2.0, 4.5]),
     ("foaw-end-fit", 0.98, [1.5, 3.0]),
@@ -81,17 +82,17 @@ fn standard_deviations_are_valid_and_informative() {
 /// The table of docs/telemetry.md. Shares may move by a percent, ratios by a twentieth.
 #[test]
 fn standard_deviations_against_errors_are_those_of_the_table() {
-    let too_large = Belief {
+    let too_large = ConstantError {
         constant: Constant::Damping,
         error: 0.3,
     };
-    let row = |name: &str, belief: Option<Belief>| {
+    let row = |name: &str, constant_error: Option<ConstantError>| {
         let kind = Kind::named(name).unwrap();
         let figures = [Step, Track].map(|scenario| {
-            let [share, ratio] = calibration(kind, scenario, 1e3, belief);
+            let [share, ratio] = calibration(kind, scenario, 1e3, constant_error);
             [100.0 * share, ratio].map(|figure| rounded(figure, 6))
         });
-        let name = match belief {
+        let name = match constant_error {
             None => name.to_owned(),
             Some(_) => format!("{name}, assumed b 30 % too large"),
         };
@@ -112,19 +113,19 @@ fn standard_deviations_against_errors_are_those_of_the_table() {
     checked.unwrap_or_else(|error| panic!("{error}"));
 }
 
-/// An observer is built to doubt its parameters: with one of them wrong by 30 % it errs by what it
+/// An observer is tuned for uncertain constants: with one of them wrong by 30 % it errs by what it
 /// then said.
 #[test]
 fn standard_deviation_of_observers_covers_wrong_parameters() {
     for (name, [low, high]) in [("observer", [1.0, 9.0]), ("observer-edge", [3.0, 20.0])] {
         let kind = Kind::named(name).unwrap();
         for error in [-0.3, 0.3] {
-            let belief = Belief {
+            let constant_error = ConstantError {
                 constant: Constant::Damping,
                 error,
             };
             for scenario in [Step, Track] {
-                let [share, ratio] = calibration(kind, scenario, 1e3, Some(belief));
+                let [share, ratio] = calibration(kind, scenario, 1e3, Some(constant_error));
                 let what = format!(
                     "{name} {} {error}: {share:.3} {ratio:.2}",
                     scenario.as_str()

@@ -17,7 +17,7 @@ fn closed(scene: SceneKind, rate_hz: f64, seed: u64) -> Loop {
         large: on(device.stages.large.counts_per_rev),
         handle: on(device.stages.small.counts_per_rev),
         scene: usual(scene, &device.stages, rate_hz).unwrap(),
-        believed: device.stages,
+        assumed: device.stages,
         device,
         hand: match scene.facts().hand {
             SimulatedHand::WallPress => Hand::Pushing,

@@ -40,7 +40,7 @@ fn record(device: &Device, hand: Hand, seed: u64, every: usize) -> Recording {
     let estimator = |counts| estimator(kind, device, counts, 10e3, &parameters).unwrap();
     let run = Loop {
         device: device.clone(),
-        believed: device.stages,
+        assumed: device.stages,
         scene: usual(SceneKind::Excite, &device.stages, 10e3).unwrap(),
         hand,
         rate_hz: 10e3,
@@ -99,7 +99,8 @@ impl Tally {
         }
     }
 
-    /// For docs/theory/identification.md: `cargo test --release -p experiments --test identify -- --nocapture`.
+    /// For docs/theory/identification.md: `cargo test --release -p experiments --test identify --
+    /// --nocapture`.
     fn print(&self, what: &str) {
         println!(
             "{what}: {} values, the worst {:.2} % off, {} inside their intervals",

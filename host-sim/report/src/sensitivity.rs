@@ -5,7 +5,7 @@ use super::page::Printout;
 use super::palette::{INK, Palette};
 use super::plot::{Axis, Plot};
 use super::text::rate;
-use catalogue::belief::Constant;
+use catalogue::constant_error::Constant;
 use experiments::sensitivity::SensitivityRow;
 use experiments::sensitivity::table::{MOVING, names, rows_by_rate};
 

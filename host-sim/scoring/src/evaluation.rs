@@ -127,7 +127,7 @@ impl Candidate {
 pub struct Evaluation {
     candidates: Vec<Candidate>,
     difference: Candidate,
-    believed_damping: f64,
+    assumed_damping: f64,
 }
 
 impl Evaluation {
@@ -148,7 +148,7 @@ impl Evaluation {
                 .map(|&kind| new(kind))
                 .collect::<Result<_, _>>()?,
             difference: new(Kind::named("finite-difference")?)?,
-            believed_damping: setup.stages.damping,
+            assumed_damping: setup.stages.damping,
         })
     }
 
@@ -226,8 +226,8 @@ impl Evaluation {
     #[must_use]
     pub fn learned_damping(&self, candidate: &Candidate, trace: &Trace) -> Option<Vec<f64>> {
         let ratios = candidate.estimator.damping_ratio(trace)?;
-        let believed = self.believed_damping;
-        Some(ratios.iter().map(|&b| believed * f64::from(b)).collect())
+        let assumed = self.assumed_damping;
+        Some(ratios.iter().map(|&b| assumed * f64::from(b)).collect())
     }
 }
 

@@ -114,8 +114,8 @@ fn closed_loop(outcomes: Vec<Outcome>, settings: &LoopSettings) -> Result<Closed
 }
 
 fn design(settings: &LoopSettings, rate_hz: f64, plant: PlantKind) -> Result<Design, Failure> {
-    let believed = transparency::compare::device(settings, plant).stages;
-    Design::new(&believed, rate_hz, LoopPoles::DEFAULT)
+    let assumed = transparency::compare::device(settings, plant).stages;
+    Design::new(&assumed, rate_hz, LoopPoles::DEFAULT)
 }
 
 /// Writes the page, and the scores of the closed loop as JSON and CSV if there are scores. Returns

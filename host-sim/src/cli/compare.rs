@@ -141,7 +141,7 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
         let (closed, remark) = closed_loop::for_report(options);
         let ReportExtras {
             limits,
-            beliefs,
+            constant_errors,
             warming,
         } = report_extras(options, &settings, &cases)?;
         let input = ReportInput {
@@ -151,7 +151,7 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
             notes: remark.into_iter().collect(),
             cases: outcomes.iter().map(case_report).collect(),
             limits,
-            parameter_errors: beliefs,
+            parameter_errors: constant_errors,
             heating: warming,
             ..ReportInput::default()
         };

@@ -20,7 +20,7 @@ const PARTICLES: usize = 500;
 #[derive(Default)]
 pub(super) struct ReportExtras {
     pub(super) limits: Vec<limit::LimitRow>,
-    pub(super) beliefs: Vec<sensitivity::SensitivityRow>,
+    pub(super) constant_errors: Vec<sensitivity::SensitivityRow>,
     pub(super) warming: Vec<CaseReport>,
 }
 
@@ -62,7 +62,7 @@ pub(super) fn report_extras(
     let warming = compare(&[of(ScenarioName::Heating)], settings, || ())?;
     Ok(ReportExtras {
         limits,
-        beliefs: sensitivity(&moving, settings, || ())?,
+        constant_errors: sensitivity(&moving, settings, || ())?,
         warming: warming.iter().map(case_report).collect(),
     })
 }

@@ -112,10 +112,10 @@ fn of_scene(options: &Simulate) -> Result<Recording, Failure> {
         let kind = Kind::named("kalman-triple-steady")?;
         estimator(kind, &device, counts_per_rev, options.rate, &parameters)
     };
-    let believed = device.stages;
+    let assumed = device.stages;
     let run = Loop {
-        believed,
-        scene: usual(scene, &believed, options.rate)?,
+        assumed,
+        scene: usual(scene, &assumed, options.rate)?,
         hand: match options.hand {
             Holder::Still => Hand::Still,
             Holder::Clamp => Hand::Clamp,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use catalogue::belief::Belief;
+use catalogue::constant_error::ConstantError;
 use catalogue::estimators::Kind;
 use catalogue::parameters::{PlantKind, Preset, Presets};
 use experiments::tune::{FIRST_SEED, TuningSet, image_section, tune};
@@ -86,8 +86,8 @@ impl Tune {
             scenarios: scenarios(&self.scenarios, &ScenarioName::of(recipe.roles))?,
             seeds: self.seeds.unwrap_or(recipe.seeds),
             seconds: self.seconds.unwrap_or(recipe.seconds),
-            beliefs: match perturbed {
-                true => Belief::extremes(),
+            constant_errors: match perturbed {
+                true => ConstantError::extremes(),
                 false => Vec::new(),
             },
         })
@@ -176,7 +176,7 @@ fn tuned_on(kinds: &[&Kind], set: &TuningSet) -> String {
         .iter()
         .map(|scenario| scenario.as_str())
         .collect();
-    let constants = match set.beliefs.is_empty() {
+    let constants = match set.constant_errors.is_empty() {
         true => "right constants",
         false => "right and wrong constants",
     };

@@ -60,7 +60,7 @@ macro_rules! kinds {
                 use estimator_core as $c;
                 const $N: usize = capacity(&design::$id::ROW);
                 let mut values = values.iter().copied();
-                // In the order of the row.
+                // The values are in the order of the row's parameters.
                 let $p = design::$id::Parameters {
                     $($parameter: values.next().unwrap_or(f64::NAN),)*
                 };

@@ -1,4 +1,4 @@
-//! Estimators of any type behind one.
+//! One type for estimators of any type.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -11,34 +11,34 @@ use estimator_core::{
 use super::run::{run, velocities};
 use simulation::trace::Trace;
 
-/// An estimator with its parameters, whatever its type.
+/// An estimator of any type, with its parameters.
 #[derive(Clone)]
 pub struct Estimator(Arc<dyn Erased>);
 
 impl Estimator {
-    /// Velocity at each tick of a trace, rad/s. The first tick only starts the estimator and
-    /// reads zero.
+    /// Velocity at each tick of a trace, rad/s. At the first tick the estimator starts and the
+    /// velocity is zero.
     #[must_use]
     pub fn run(&self, trace: &Trace) -> Vec<f32> {
         self.0.run(trace)
     }
 
-    /// The same, and the standard deviation that the estimator itself believes its velocity to
-    /// have, rad/s; `None` from one that believes nothing.
+    /// Velocity at each tick of a trace and its standard deviation as reported by the estimator,
+    /// rad/s; `None` if the estimator reports none.
     #[must_use]
     pub fn run_confident(&self, trace: &Trace) -> (Vec<f32>, Option<Vec<f32>>) {
         self.0.run_confident(trace)
     }
 
-    /// The coupler's damping at each tick of a trace over what is believed, as the estimator
-    /// learns it; `None` from one that does not.
+    /// Ratio of the coupler's learned damping to the assumed one at each tick of a trace; `None` if
+    /// the estimator does not learn it.
     #[must_use]
     pub fn damping_ratio(&self, trace: &Trace) -> Option<Vec<f32>> {
         self.0.damping_ratio(trace)
     }
 }
 
-/// A tick at a time: the type that a control loop takes.
+/// A control loop calls the estimator through this trait.
 impl VelocityEstimator for Estimator {
     type State = State;
     const NEEDS: Signals = Signals {
@@ -57,7 +57,7 @@ impl VelocityEstimator for Estimator {
 }
 
 impl Estimator {
-    /// Whether its model has an acceleration.
+    /// Whether the estimator gives an acceleration.
     #[must_use]
     pub fn gives_acceleration(&self) -> bool {
         let state = self.start(&Sample::default());
@@ -65,7 +65,7 @@ impl Estimator {
     }
 }
 
-/// Zero where [`Estimator::gives_acceleration`] says no.
+/// The acceleration is zero if [`Estimator::gives_acceleration`] is `false`.
 impl AccelerationEstimator for Estimator {
     fn acceleration(&self, state: &State) -> CountsPerTickSquared {
         self.0.acceleration(state).unwrap_or_default()
@@ -121,39 +121,39 @@ trait Erased: Send + Sync {
     fn acceleration(&self, state: &State) -> Option<CountsPerTickSquared>;
 }
 
-/// An estimator with what its counts are worth.
+/// An estimator, the scale of its encoder and the quantities that it reports.
 struct Scaled<E: VelocityEstimator> {
     estimator: E,
     scale: Scale,
-    says: Says<E>,
+    outputs: Outputs<E>,
 }
 
-/// What a state tells beside the velocity.
-type Tells<E, T> = fn(&E, &<E as VelocityEstimator>::State) -> T;
+/// Reads a quantity from the state of an estimator.
+type Output<E, T> = fn(&E, &<E as VelocityEstimator>::State) -> T;
 
-/// What it says of the damping.
-pub(super) type DampingRatio<E> = Tells<E, f32>;
+/// Reads the ratio of the learned to the assumed damping.
+pub(super) type DampingRatio<E> = Output<E, f32>;
 
-/// All that an estimator may tell beside the velocity.
-struct Says<E: VelocityEstimator> {
-    /// What it believes of its own error.
-    deviation: Option<Tells<E, CountsPerTick>>,
+/// Quantities that an estimator reports besides the velocity.
+struct Outputs<E: VelocityEstimator> {
+    /// Standard deviation of the velocity.
+    deviation: Option<Output<E, CountsPerTick>>,
     damping_ratio: Option<DampingRatio<E>>,
-    acceleration: Option<Tells<E, CountsPerTickSquared>>,
+    acceleration: Option<Output<E, CountsPerTickSquared>>,
 }
 
-impl<E: VelocityEstimator> Says<E> {
-    const NOTHING: Self = Self {
+impl<E: VelocityEstimator> Outputs<E> {
+    const NONE: Self = Self {
         deviation: None,
         damping_ratio: None,
         acceleration: None,
     };
 }
 
-impl<E: Confidence> Says<E> {
+impl<E: Confidence> Outputs<E> {
     const DEVIATION: Self = Self {
         deviation: Some(|estimator, state| estimator.variance(state).std_dev()),
-        ..Self::NOTHING
+        ..Self::NONE
     };
 }
 
@@ -166,7 +166,7 @@ where
     }
 
     fn run_confident(&self, trace: &Trace) -> (Vec<f32>, Option<Vec<f32>>) {
-        let Some(deviation) = self.says.deviation else {
+        let Some(deviation) = self.outputs.deviation else {
             return (self.run(trace), None);
         };
         let both = run(&self.estimator, trace, [0.0; 2], |state, velocity| {
@@ -177,7 +177,7 @@ where
     }
 
     fn damping_ratio(&self, trace: &Trace) -> Option<Vec<f32>> {
-        let damping_ratio = self.says.damping_ratio?;
+        let damping_ratio = self.outputs.damping_ratio?;
         Some(run(&self.estimator, trace, 1.0, |state, _| {
             damping_ratio(&self.estimator, state)
         }))
@@ -190,7 +190,7 @@ where
     fn update(&self, state: &mut State, sample: &Sample) -> CountsPerTick {
         match (*state.0).as_any_mut().downcast_mut() {
             Some(state) => self.estimator.update(state, sample),
-            // The state of another estimator: begin anew, as at a first sample.
+            // The state is that of another estimator: start as at a first sample.
             None => {
                 *state = self.start(sample);
                 CountsPerTick(0.0)
@@ -199,59 +199,60 @@ where
     }
 
     fn acceleration(&self, state: &State) -> Option<CountsPerTickSquared> {
-        let acceleration = self.says.acceleration?;
+        let acceleration = self.outputs.acceleration?;
         let state = (*state.0).as_any().downcast_ref()?;
         Some(acceleration(&self.estimator, state))
     }
 }
 
-/// Forgets an estimator's type; a trace still runs with one dynamic call, not one a tick.
+/// Erases the type of an estimator that reports only the velocity. A trace takes one dynamic call,
+/// not one per tick.
 pub(super) fn erased<E>(estimator: E, scale: Scale) -> Estimator
 where
     E: VelocityEstimator<State: Send + 'static> + Send + Sync + 'static,
 {
-    saying(estimator, scale, Says::NOTHING)
+    with_outputs(estimator, scale, Outputs::NONE)
 }
 
-/// The same for one that says how far off it may be.
+/// Erases the type of an estimator that reports the standard deviation.
 pub(super) fn confident<E>(estimator: E, scale: Scale) -> Estimator
 where
     E: Confidence<State: Send + 'static> + Send + Sync + 'static,
 {
-    saying(estimator, scale, Says::DEVIATION)
+    with_outputs(estimator, scale, Outputs::DEVIATION)
 }
 
-/// The same for one that learns the coupler's damping.
+/// Erases the type of an estimator that reports the standard deviation and the learned damping.
 pub(super) fn learner<E>(estimator: E, scale: Scale, damping_ratio: DampingRatio<E>) -> Estimator
 where
     E: Confidence<State: Send + 'static> + Send + Sync + 'static,
 {
-    let says = Says {
+    let outputs = Outputs {
         damping_ratio: Some(damping_ratio),
-        ..Says::DEVIATION
+        ..Outputs::DEVIATION
     };
-    saying(estimator, scale, says)
+    with_outputs(estimator, scale, outputs)
 }
 
-/// The same for one whose model has an acceleration.
+/// Erases the type of an estimator that reports the standard deviation and the acceleration.
 pub(super) fn accelerating<E>(estimator: E, scale: Scale) -> Estimator
 where
     E: AccelerationEstimator + Confidence<State: Send + 'static> + Send + Sync + 'static,
 {
-    let says = Says {
+    let outputs = Outputs {
         acceleration: Some(E::acceleration),
-        ..Says::DEVIATION
+        ..Outputs::DEVIATION
     };
-    saying(estimator, scale, says)
+    with_outputs(estimator, scale, outputs)
 }
 
-fn saying<E>(estimator: E, scale: Scale, says: Says<E>) -> Estimator
+fn with_outputs<E>(estimator: E, scale: Scale, outputs: Outputs<E>) -> Estimator
 where
     E: VelocityEstimator<State: Send + 'static> + Send + Sync + 'static,
 {
     Estimator(Arc::new(Scaled {
         estimator,
         scale,
-        says,
+        outputs,
     }))
 }

@@ -6,7 +6,7 @@ use estimator_core::{
 
 use simulation::trace::{EDGE_CLOCK_HZ, EdgeStamp, Trace};
 
-/// Which signals a trace offers.
+/// Signals of a trace.
 #[must_use]
 pub fn available(trace: &Trace) -> Signals {
     Signals {
@@ -26,7 +26,8 @@ where
     })
 }
 
-/// What `read` says after each tick; the first tick only starts the estimator and reads `first`.
+/// The results of `read` after each tick. At the first tick the estimator starts and the result is
+/// `first`.
 pub(super) fn run<E, T>(
     estimator: &E,
     trace: &Trace,
@@ -49,14 +50,14 @@ where
     values
 }
 
-/// What the estimator may know at tick `k`: `needs` is a constant where this is inlined, so
-/// columns that the estimator does not read are not touched.
+/// Sample at tick `k` with the signals `needs`. `needs` is a constant where this function is
+/// inlined, so columns that the estimator does not need are not read.
 #[inline(always)]
 #[must_use]
 pub fn sample(needs: Signals, trace: &Trace, k: usize) -> Sample {
     let mut sample = Sample::new(Count(trace.counts_large[k]));
     if needs.current {
-        // The trace's current acts from its tick on; the sample's acted until its tick.
+        // The current of a trace acts from its tick on, that of a sample until its tick.
         if let (Some(current), Some(before)) = (&trace.current, k.checked_sub(1)) {
             sample.current = Amps::new(current[before] as f32);
         }
@@ -82,7 +83,7 @@ fn edge(stamp: EdgeStamp) -> Edge {
 mod tests {
     use super::*;
 
-    /// Reads everything, so that what it returns shows what it was shown.
+    /// An estimator that reads all signals and returns them.
     struct Spy;
 
     impl VelocityEstimator for Spy {

@@ -27,8 +27,8 @@ scenes!(visit);
 ///
 /// # Errors
 /// One line if the scene cannot be rendered with the device or at the control rate.
-pub fn usual(scene: SceneKind, believed: &DualStage, rate_hz: f64) -> Result<AnyScene, String> {
-    let usual = scene.usual(believed, Hertz(rate_hz));
+pub fn usual(scene: SceneKind, assumed: &DualStage, rate_hz: f64) -> Result<AnyScene, String> {
+    let usual = scene.usual(assumed, Hertz(rate_hz));
     usual.map_err(|error| format!("scene {scene}: {error}"))
 }
 

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::SensitivityRow;
 use crate::table::layout::{self, Column};
-use catalogue::belief::Belief;
+use catalogue::constant_error::ConstantError;
 
 /// Scenarios in which the motor moves. Rest and creep do not excite the parameters.
 pub const MOVING: [&str; 6] = ["step", "permanent", "track", "free-air", "wall", "texture"];
@@ -44,11 +44,11 @@ pub fn table(rows: &[SensitivityRow], width: usize) -> String {
             column("right", "all, %", &|of| of.right),
             column("right", "moving, %", &|of| of.moving),
         ];
-        for (i, belief) in Belief::extremes().iter().enumerate() {
+        for (i, constant_error) in ConstantError::extremes().iter().enumerate() {
             let head = format!(
                 "{} {:+.0} %",
-                short(belief.constant.as_str()),
-                100.0 * belief.error
+                short(constant_error.constant.as_str()),
+                100.0 * constant_error.error
             );
             columns.push(column(&head, "%", &|of| of.wrong[i]));
         }
@@ -56,7 +56,7 @@ pub fn table(rows: &[SensitivityRow], width: usize) -> String {
         columns.push(column("outside", "right, %", &|of| of.outside));
         columns.push(column("outside", "worst, %", &|of| of.outside_worst));
         let names = names.iter().map(|name| (*name).to_owned());
-        text += &layout::table(&Column::text("believed:", "", names), &columns, width);
+        text += &layout::table(&Column::text("assumed:", "", names), &columns, width);
     }
     text
 }
@@ -65,7 +65,7 @@ pub fn table(rows: &[SensitivityRow], width: usize) -> String {
 struct Errors {
     right: f64,
     moving: f64,
-    /// Error for each of [`Belief::extremes`].
+    /// Error for each of [`ConstantError::extremes`].
     wrong: Vec<f64>,
     worst: f64,
     outside: f64,
@@ -91,9 +91,10 @@ impl Errors {
             outside: outside(&|row| row.constant.is_none()),
             outside_worst: outside(&|row| row.constant.is_none()),
         };
-        for belief in Belief::extremes() {
+        for constant_error in ConstantError::extremes() {
             let is = |row: &SensitivityRow| {
-                row.constant == Some(belief.constant.as_str()) && row.error == belief.error
+                row.constant == Some(constant_error.constant.as_str())
+                    && row.error == constant_error.error
             };
             let value = mean(&moving, is, |row| row.rms_pct);
             errors.wrong.push(value);

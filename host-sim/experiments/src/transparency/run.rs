@@ -34,7 +34,7 @@ pub(super) struct Prepared<'a> {
     pub(super) case: &'a LoopCase,
     settings: &'a LoopSettings,
     device: Device,
-    believed: DualStage,
+    assumed: DualStage,
     evaluation: Evaluation,
     handle: Estimator,
     reference: Estimator,
@@ -66,7 +66,7 @@ impl<'a> Prepared<'a> {
         Ok(Self {
             case,
             settings,
-            believed: device.stages,
+            assumed: device.stages,
             evaluation: Evaluation::new(
                 &settings.common.estimators,
                 &settings.common.parameters,
@@ -108,8 +108,8 @@ impl<'a> Prepared<'a> {
         let case = self.case;
         let run = Loop {
             device: self.device.clone(),
-            believed: self.believed,
-            scene: usual(case.scene, &self.believed, case.rate_hz)?,
+            assumed: self.assumed,
+            scene: usual(case.scene, &self.assumed, case.rate_hz)?,
             hand: case.scene.facts().hand.into(),
             rate_hz: case.rate_hz,
             seed: case.seed,

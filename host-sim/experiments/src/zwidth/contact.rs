@@ -137,7 +137,7 @@ impl ContactTest {
         let inertia = device.stages.small.inertia;
         let mut evaluator = Evaluator::new(threshold, 1.0 / self.rate_hz, inertia);
         let run = Loop {
-            believed: device.stages,
+            assumed: device.stages,
             device,
             scene,
             hand,

@@ -47,14 +47,14 @@ impl Constant {
 
 /// One wrong constant: an error of 0.3 means that its value is 30 % too large.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Belief {
+pub struct ConstantError {
     /// The constant.
     pub constant: Constant,
     /// Relative error.
     pub error: f64,
 }
 
-impl Belief {
+impl ConstantError {
     /// Every constant with its largest positive and negative error.
     #[must_use]
     pub fn extremes() -> Vec<Self> {
@@ -76,15 +76,15 @@ impl Belief {
     /// `setup` with the wrong constant.
     #[must_use]
     pub fn of(&self, setup: &Setup) -> Setup {
-        let mut believed = *setup;
+        let mut assumed = *setup;
         let value = match self.constant {
-            Constant::Damping => &mut believed.stages.damping,
-            Constant::Inertia => &mut believed.stages.large.inertia,
-            Constant::TorqueConstant => &mut believed.stages.large.torque_constant,
-            Constant::Friction => &mut believed.stages.large.coulomb_friction,
+            Constant::Damping => &mut assumed.stages.damping,
+            Constant::Inertia => &mut assumed.stages.large.inertia,
+            Constant::TorqueConstant => &mut assumed.stages.large.torque_constant,
+            Constant::Friction => &mut assumed.stages.large.coulomb_friction,
         };
         *value *= 1.0 + self.error;
-        believed
+        assumed
     }
 }
 
@@ -93,26 +93,26 @@ mod tests {
     use super::*;
 
     #[test]
-    fn belief_changes_only_its_constant() {
+    fn error_changes_only_its_constant() {
         let device = simulation::device::Device::default();
         let setup = Setup::of(&device, 1000.0);
-        let all = Belief::extremes();
+        let all = ConstantError::extremes();
         assert_eq!(all.len(), 8);
-        for belief in all {
-            let believed = belief.of(&setup);
+        for constant_error in all {
+            let assumed = constant_error.of(&setup);
             let ratios = [
-                believed.stages.damping / setup.stages.damping,
-                believed.stages.large.inertia / setup.stages.large.inertia,
-                believed.stages.large.torque_constant / setup.stages.large.torque_constant,
-                believed.stages.large.coulomb_friction / setup.stages.large.coulomb_friction,
+                assumed.stages.damping / setup.stages.damping,
+                assumed.stages.large.inertia / setup.stages.large.inertia,
+                assumed.stages.large.torque_constant / setup.stages.large.torque_constant,
+                assumed.stages.large.coulomb_friction / setup.stages.large.coulomb_friction,
             ];
             for (constant, ratio) in Constant::ALL.into_iter().zip(ratios) {
-                let meant = if constant == belief.constant {
-                    1.0 + belief.error
+                let meant = if constant == constant_error.constant {
+                    1.0 + constant_error.error
                 } else {
                     1.0
                 };
-                assert!((ratio - meant).abs() < 1e-12, "{belief:?}");
+                assert!((ratio - meant).abs() < 1e-12, "{constant_error:?}");
             }
         }
     }
