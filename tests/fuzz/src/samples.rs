@@ -1,14 +1,14 @@
 //! Any samples into every estimator.
 
 use estimator_core::{Count, Sample};
-use stress::contestants::{Contestant, at};
 use stress::course::Shown;
+use stress::tested::{TestedEstimator, at};
 
 use crate::bytes::Bytes;
 
 /// Every estimator, made once.
 #[must_use]
-pub fn contestants() -> Vec<Contestant> {
+pub fn tested_estimators() -> Vec<TestedEstimator> {
     at(1000.0).into_iter().chain(at(10_000.0)).collect()
 }
 
@@ -16,10 +16,10 @@ pub fn contestants() -> Vec<Contestant> {
 ///
 /// # Panics
 /// If an output is no finite number or a covariance none any more.
-pub fn run(contestants: &[Contestant], data: &[u8]) {
-    for contestant in contestants {
+pub fn run(tested_estimators: &[TestedEstimator], data: &[u8]) {
+    for tested in tested_estimators {
         let mut bytes = Bytes(data);
-        let mut pair = contestant.pair();
+        let mut pair = tested.pair();
         let mut sample = Sample::new(Count(u32::MAX - 3));
         pair.start(&Shown::of(&sample));
         while let Some(next) = bytes.sample(&sample) {
@@ -28,8 +28,8 @@ pub fn run(contestants: &[Contestant], data: &[u8]) {
                 pair.start(&Shown::of(&sample));
             }
             let (output, _) = pair.update(&Shown::of(&sample));
-            assert!(output.is_finite(), "{}: {output}", contestant.name);
-            assert_eq!(pair.fault(), None, "{}", contestant.name);
+            assert!(output.is_finite(), "{}: {output}", tested.name);
+            assert_eq!(pair.fault(), None, "{}", tested.name);
         }
     }
 }

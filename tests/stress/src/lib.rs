@@ -5,7 +5,7 @@
 //! |---|---|
 //! | [`course`] | counts, currents and edges: rest, top speed, ties, creep, jumps, wraps |
 //! | [`pair`] | an estimator of the core beside its twin |
-//! | [`contestants`] | all pairs, with their bounds |
+//! | [`tested`] | all pairs, with their bounds |
 //! | [`trial`] | one estimator over one course |
 //! | [`findings`] | results and bounds |
 //! | [`parts`] | all estimators over long courses, in parts |
@@ -15,7 +15,6 @@
 //! | [`definition`] | FOAW by its O(n²) definition, in exact fractions |
 //! | [`table`] | the findings as text, and as cells of the measured tables |
 
-pub mod contestants;
 pub mod course;
 pub mod definition;
 pub mod designs;
@@ -27,4 +26,5 @@ pub mod sensitivity;
 mod settling;
 pub mod signals;
 pub mod table;
+pub mod tested;
 pub mod trial;

@@ -12,21 +12,22 @@ use terminal::failure::{Failure, ended};
 use terminal::output::{print_bytes, write_whole};
 use terminal::wording::WIDTH;
 
-use stress::contestants::{Contestant, at};
 use stress::parts::Plan;
+use stress::tested::{TestedEstimator, at};
 use stress::{sensitivity, signals, table};
 
-/// Runs every estimator over a long course of extreme motions, in f32 beside its generated f64 twin.
+/// Runs every estimator over a long course of extreme motions, in f32 beside its generated f64
+/// twin.
 ///
-/// The course has rest, top speed, ties of the quantiser, creep with 64 ticks between edges, an edge
-/// at every tick, random 32-bit counts, currents that are not numbers, and wraps of both counter
-/// widths. Every tick compares f32 with f64, the 16-bit counter with the 32-bit one, and the
-/// covariance with its invariants. Some ticks compare the window with its definition in exact
+/// The course has rest, top speed, ties of the quantiser, creep with 64 ticks between edges, an
+/// edge at every tick, random 32-bit counts, currents that are not numbers, and wraps of both
+/// counter widths. Every tick compares f32 with f64, the 16-bit counter with the 32-bit one, and
+/// the covariance with its invariants. Some ticks compare the window with its definition in exact
 /// fractions. After every stretch the time until the output is at rest is measured.
 ///
 /// Further runs use signals of a simulated device, and parameters at the limits of their ranges.
-/// Exit status 1 if a check fails. With UPDATE_GOLDEN=1 in the environment the documented tables are
-/// written.
+/// Exit status 1 if a check fails. With UPDATE_GOLDEN=1 in the environment the documented tables
+/// are written.
 #[derive(Debug, Parser)]
 #[command(
     name = "stress",
@@ -91,8 +92,12 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if golden && (arguments.estimator.is_some() || arguments.rates != RATES_HZ) {
         return Err(Failure::Input("UPDATE_GOLDEN=1 writes all estimators at 1 and 10 kHz: leave out --estimator and --rate".to_owned()));
     }
-    let contestants = contestants(arguments)?;
-    let bar = ProgressBar::new(arguments.ticks.saturating_mul(contestants.len() as u64));
+    let tested_estimators = tested_estimators(arguments)?;
+    let bar = ProgressBar::new(
+        arguments
+            .ticks
+            .saturating_mul(tested_estimators.len() as u64),
+    );
     let style = ProgressStyle::with_template("{bar:40} {percent}% of the ticks, {eta} left");
     bar.set_style(style.map_err(|error| Failure::Input(error.to_string()))?);
     let plan = Plan {
@@ -100,10 +105,12 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         ticks: arguments.ticks,
     };
     let all = plan
-        .run(&contestants, arguments.resume.as_deref(), |n| bar.inc(n))
+        .run(&tested_estimators, arguments.resume.as_deref(), |n| {
+            bar.inc(n);
+        })
         .map_err(Failure::Input)?;
     bar.finish_and_clear();
-    let device: Vec<_> = differences(&contestants, arguments);
+    let device: Vec<_> = differences(&tested_estimators, arguments);
     let extremes = sensitivity::all();
     let tables = [
         (STRESS, table::cells(&all)),
@@ -138,11 +145,14 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Error by f32 of each estimator on a device's signals.
-fn differences(contestants: &[Contestant], arguments: &Arguments) -> Vec<signals::Difference> {
+fn differences(
+    tested_estimators: &[TestedEstimator],
+    arguments: &Arguments,
+) -> Vec<signals::Difference> {
     let mut all = Vec::new();
     for rate in &arguments.rates {
         let scenarios = signals::at(*rate, arguments.seed);
-        let same_rate = contestants
+        let same_rate = tested_estimators
             .par_iter()
             .filter(|one| one.rate_hz.to_bits() == rate.to_bits());
         all.par_extend(same_rate.map(|one| signals::difference(one, &scenarios)));
@@ -150,11 +160,11 @@ fn differences(contestants: &[Contestant], arguments: &Arguments) -> Vec<signals
     all
 }
 
-fn contestants(arguments: &Arguments) -> Result<Vec<Contestant>, Failure> {
-    let mut all: Vec<Contestant> = arguments.rates.iter().flat_map(|rate| at(*rate)).collect();
+fn tested_estimators(arguments: &Arguments) -> Result<Vec<TestedEstimator>, Failure> {
+    let mut all: Vec<TestedEstimator> = arguments.rates.iter().flat_map(|rate| at(*rate)).collect();
     if let Some(wanted) = &arguments.estimator {
         let names: Vec<String> = at(arguments.rates[0]).into_iter().map(|c| c.name).collect();
-        all.retain(|contestant| contestant.name.starts_with(wanted));
+        all.retain(|tested| tested.name.starts_with(wanted));
         if all.is_empty() {
             return Err(Failure::Input(format!(
                 "--estimator {wanted}: no such estimator; there are {}",

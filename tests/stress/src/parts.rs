@@ -11,8 +11,8 @@ use std::sync::Mutex;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::contestants::Contestant;
 use crate::findings::Findings;
+use crate::tested::TestedEstimator;
 use crate::trial;
 
 /// Ticks of a part.
@@ -46,36 +46,37 @@ impl Plan {
         seeds.zip(whole.chain(rest))
     }
 
-    /// Runs it on all cores; `progress` hears of ticks. With a file, each part is added to it when
-    /// done, and what this very program did before is taken from it.
+    /// Runs the parts on all cores and calls `progress` with numbers of ticks. With a file `kept`,
+    /// each finished part is added to the file, and parts that this program build finished before
+    /// are read from it.
     ///
     /// # Errors
     /// One line if the file cannot be read, understood or written.
     pub fn run(
         self,
-        contestants: &[Contestant],
+        tested_estimators: &[TestedEstimator],
         kept: Option<&Path>,
         progress: impl Fn(u64) + Sync,
     ) -> Result<Vec<Findings>, String> {
         let before = kept.map_or(Ok(Vec::new()), read)?;
         let build = build()?;
         let file = kept.map(open).transpose()?.map(Mutex::new);
-        let jobs: Vec<_> = contestants
+        let jobs: Vec<_> = tested_estimators
             .iter()
             .enumerate()
             .flat_map(|(at, one)| self.parts().map(move |part| (at, one, part)))
             .collect();
-        let one = |(at, contestant, (seed, ticks)): &(usize, &Contestant, (u64, u64))| {
+        let one = |(at, tested, (seed, ticks)): &(usize, &TestedEstimator, (u64, u64))| {
             let same = |done: &&Done| {
                 (done.build, done.seed, done.ticks) == (build, *seed, *ticks)
-                    && done.found.estimator == contestant.name
-                    && done.found.rate_hz.to_bits() == contestant.rate_hz.to_bits()
+                    && done.found.estimator == tested.name
+                    && done.found.rate_hz.to_bits() == tested.rate_hz.to_bits()
             };
             if let Some(done) = before.iter().find(same) {
                 progress(*ticks);
                 return Ok((*at, done.found.clone()));
             }
-            let found = trial::run(contestant, *seed, *ticks, &progress);
+            let found = trial::run(tested, *seed, *ticks, &progress);
             if let (Some(path), Some(file)) = (kept, &file) {
                 let done = Done {
                     build,
@@ -92,7 +93,7 @@ impl Plan {
             Ok((*at, found))
         };
         let found: Vec<_> = jobs.par_iter().map(one).collect::<Result<_, String>>()?;
-        let mut all: Vec<Option<Findings>> = vec![None; contestants.len()];
+        let mut all: Vec<Option<Findings>> = vec![None; tested_estimators.len()];
         for (at, part) in found {
             match &mut all[at] {
                 Some(whole) => whole.join(part),
@@ -100,8 +101,8 @@ impl Plan {
             }
         }
         let mut all: Vec<Findings> = all.into_iter().flatten().collect();
-        for (found, contestant) in all.iter_mut().zip(contestants) {
-            found.bounds = contestant.bounds;
+        for (found, tested) in all.iter_mut().zip(tested_estimators) {
+            found.bounds = tested.bounds;
         }
         Ok(all)
     }
@@ -140,7 +141,7 @@ fn build() -> Result<u64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contestants::at;
+    use crate::tested::at;
 
     #[test]
     fn parts_have_all_ticks_of_the_course() {
@@ -156,10 +157,10 @@ mod tests {
         fs::create_dir_all(&directory).unwrap();
         let path = directory.join("kept.jsonl");
         let _ = fs::remove_file(&path);
-        let contestants: Vec<_> = at(1000.0).into_iter().take(2).collect();
+        let tested_estimators: Vec<_> = at(1000.0).into_iter().take(2).collect();
         let run = |seed| {
             let plan = Plan { seed, ticks: 1000 };
-            plan.run(&contestants, Some(&path), |_| ())
+            plan.run(&tested_estimators, Some(&path), |_| ())
         };
         let lines = || fs::read_to_string(&path).unwrap().lines().count();
         let first = run(1).unwrap();

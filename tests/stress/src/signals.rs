@@ -7,8 +7,8 @@ use simulation::scenario::{Role, ScenarioName};
 use simulation::simulate::simulate;
 use simulation::trace::Columns;
 
-use crate::contestants::Contestant;
 use crate::course::Shown;
+use crate::tested::TestedEstimator;
 
 /// Length of each scenario, s.
 const SECONDS: f64 = 10.0;
@@ -78,25 +78,25 @@ impl Difference {
     }
 }
 
-/// Runs `contestant` over all signals in both precisions.
+/// Runs `tested` over all signals in both precisions.
 #[must_use]
-pub fn difference(contestant: &Contestant, scenarios: &[Scenario]) -> Difference {
+pub fn difference(tested: &TestedEstimator, scenarios: &[Scenario]) -> Difference {
     let mut found = Difference {
-        estimator: contestant.name.clone(),
-        rate_hz: contestant.rate_hz,
+        estimator: tested.name.clone(),
+        rate_hz: tested.rate_hz,
         ..Difference::default()
     };
-    let settled = (SETTLED_S * contestant.rate_hz) as usize;
+    let settled = (SETTLED_S * tested.rate_hz) as usize;
     let mut ticks = 0.0;
     for Scenario { shown, truth } in scenarios {
-        let mut pair = contestant.pair();
+        let mut pair = tested.pair();
         pair.start(&shown[0]);
         for (tick, (shown, truth)) in shown.iter().zip(truth).enumerate().skip(1) {
             let (narrow, wide) = pair.update(shown);
             if tick < settled {
                 continue;
             }
-            let both = [f64::from(narrow), wide].map(|v| v * contestant.rad_per_count());
+            let both = [f64::from(narrow), wide].map(|v| v * tested.rad_per_count());
             let apart = (both[0] - both[1]).abs();
             found.largest_rad_s = found.largest_rad_s.max(apart);
             found.rms_rad_s += apart * apart;

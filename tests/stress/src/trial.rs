@@ -1,13 +1,13 @@
 //! One estimator over one course.
 
-use crate::contestants::Contestant;
 use crate::course::{Course, Draws, Shown, Stretch, TOP_STEP};
 use crate::definition::Definition;
 use crate::findings::Findings;
 use crate::pair::Pair;
+use crate::tested::TestedEstimator;
 
-/// Fastest slip of the paper's constant-velocity experiment. A deviation is absolute (rad/s) up to it
-/// and relative to the velocity beyond.
+/// Fastest slip of the paper's constant-velocity experiment. A deviation is absolute (rad/s) up to
+/// it and relative to the velocity beyond.
 const HAPTIC_RAD_S: f64 = 20.0;
 
 /// Number of starts, and ticks of each.
@@ -17,12 +17,13 @@ const START_TICKS: u32 = 300;
 /// Ticks between comparisons of a window with its definition.
 const DEFINITION_EVERY: u64 = 61;
 
-/// Number of counts kept for the definition: many more than a window, so that they are moved rarely.
+/// Number of counts kept for the definition: many more than a window, so that they are moved
+/// rarely.
 const HISTORY: usize = 4096;
 
-/// Runs `contestant` for `ticks` ticks and calls `progress` after every 2^20.
-pub fn run(contestant: &Contestant, seed: u64, ticks: u64, progress: impl Fn(u64)) -> Findings {
-    let mut trial = Trial::new(contestant, seed);
+/// Runs `tested` for `ticks` ticks and calls `progress` after every 2^20.
+pub fn run(tested: &TestedEstimator, seed: u64, ticks: u64, progress: impl Fn(u64)) -> Findings {
+    let mut trial = Trial::new(tested, seed);
     let mut told = 0;
     // The following ticks test the settled filter; starts are measured separately.
     trial.recover();
@@ -39,14 +40,14 @@ pub fn run(contestant: &Contestant, seed: u64, ticks: u64, progress: impl Fn(u64
 }
 
 /// Largest deviation shortly after starts in motion, rad/s.
-fn start_deviation(contestant: &Contestant, seed: u64) -> f64 {
-    let rad_per_count = contestant.rad_per_count();
+fn start_deviation(tested: &TestedEstimator, seed: u64) -> f64 {
+    let rad_per_count = tested.rad_per_count();
     let mut draws = Draws::new(!seed);
     let mut worst = 0.0f64;
     for _ in 0..STARTS {
         let velocity = HAPTIC_RAD_S / rad_per_count * draws.unit();
-        let mut pair = contestant.pair();
-        let mut course = Course::new(draws.bits(), contestant.rate_hz);
+        let mut pair = tested.pair();
+        let mut course = Course::new(draws.bits(), tested.rate_hz);
         pair.start(&course.shown());
         course.slope(velocity, START_TICKS);
         while !course.is_over() {
@@ -58,7 +59,7 @@ fn start_deviation(contestant: &Contestant, seed: u64) -> f64 {
 }
 
 struct Trial<'a> {
-    contestant: &'a Contestant,
+    tested: &'a TestedEstimator,
     pair: Box<dyn Pair>,
     course: Course,
     found: Findings,
@@ -72,22 +73,22 @@ struct Trial<'a> {
 }
 
 impl<'a> Trial<'a> {
-    fn new(contestant: &'a Contestant, seed: u64) -> Self {
-        let course = Course::new(seed, contestant.rate_hz);
+    fn new(tested: &'a TestedEstimator, seed: u64) -> Self {
+        let course = Course::new(seed, tested.rate_hz);
         let first = course.shown();
-        let mut pair = contestant.pair();
+        let mut pair = tested.pair();
         pair.start(&first);
         Self {
-            contestant,
+            tested,
             pair,
             found: Findings {
-                estimator: contestant.name.clone(),
-                rate_hz: contestant.rate_hz,
-                start_deviation_rad_s: start_deviation(contestant, seed),
-                bounds: contestant.bounds,
+                estimator: tested.name.clone(),
+                rate_hz: tested.rate_hz,
+                start_deviation_rad_s: start_deviation(tested, seed),
+                bounds: tested.bounds,
                 ..Findings::default()
             },
-            rad_per_count: contestant.rad_per_count(),
+            rad_per_count: tested.rad_per_count(),
             fastest: 0.0,
             extended: estimator_core::Count(first.large),
             history: vec![first.large],
@@ -113,7 +114,7 @@ impl<'a> Trial<'a> {
         while tick < 2 * narrow_last.max(wide_last) + 130 && tick < limit {
             tick += 1;
             let (narrow, wide) = self.tick(false);
-            let bound = self.contestant.at_rest_rad_s;
+            let bound = self.tested.at_rest_rad_s;
             let at_rest = |velocity: f64| velocity.abs() * self.rad_per_count < bound;
             if !at_rest(f64::from(narrow)) {
                 narrow_last = tick;
@@ -178,7 +179,7 @@ impl<'a> Trial<'a> {
                     .fault(|| format!("tick {tick}: {extended} from 16 bits, not {}", shown.large));
             }
         }
-        let Some(definition) = self.contestant.definition else {
+        let Some(definition) = self.tested.definition else {
             return;
         };
         let last = self.history.last().copied().unwrap_or(shown.large);

@@ -7,8 +7,8 @@ use proptest::test_runner::FileFailurePersistence;
 use drivers::{Command, encode};
 use fuzz_bodies::{commands, control, designs, samples, texts};
 use haptic_control::Request;
-use stress::contestants::Contestant;
 use stress::designs::kinds;
+use stress::tested::TestedEstimator;
 
 /// So many cases. What fails is kept in `fuzz.regressions` beside this file, to be committed, and
 /// tried first from then on.
@@ -108,7 +108,7 @@ fn toml_text() -> impl Strategy<Value = Vec<u8>> {
 }
 
 thread_local! {
-    static CONTESTANTS: Vec<Contestant> = samples::contestants();
+    static TESTED: Vec<TestedEstimator> = samples::tested_estimators();
 }
 
 proptest! {
@@ -116,7 +116,7 @@ proptest! {
 
     #[test]
     fn estimators_stay_finite_for_any_samples(data in any_bytes(4000)) {
-        CONTESTANTS.with(|all| samples::run(all, &data));
+        TESTED.with(|all| samples::run(all, &data));
     }
 
     #[test]

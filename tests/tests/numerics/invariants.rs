@@ -1,13 +1,14 @@
-//! What holds for any estimator, tried on every row of the catalogue: an estimator gets these tests with
-//! its row. What holds for some estimators only, such as exact ramps, is tested in `estimator-core`.
+//! What holds for any estimator, tried on every row of the catalogue: an estimator gets these tests
+//! with its row. What holds for some estimators only, such as exact ramps, is tested in
+//! `estimator-core`.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use estimator_catalogue::ROWS;
-use stress::contestants::{Contestant, at};
 use stress::course::{Course, Draws, Shown};
+use stress::tested::{TestedEstimator, at};
 
 const RATES_HZ: [f64; 2] = [1000.0, 10_000.0];
 
@@ -26,34 +27,34 @@ fn course(seed: u64, rate_hz: f64) -> Vec<Shown> {
     shown
 }
 
-/// Velocities of the core at every sample but the first, as bits. Adding zero turns the negative zero
-/// into the positive one.
-fn velocities(contestant: &Contestant, course: &[Shown]) -> Vec<f32> {
-    let mut pair = contestant.pair();
+/// Velocities of the core at every sample but the first, as bits. Adding zero turns the negative
+/// zero into the positive one.
+fn velocities(tested: &TestedEstimator, course: &[Shown]) -> Vec<f32> {
+    let mut pair = tested.pair();
     pair.start(&course[0]);
     let update = |shown| pair.update(shown).0 + 0.0;
     course[1..].iter().map(update).collect()
 }
 
-/// Every contestant over the courses of a few seeds.
-fn each(test: impl Fn(&Contestant, &[Shown])) {
+/// Calls `test` with every estimator and the courses of a few seeds.
+fn each(test: impl Fn(&TestedEstimator, &[Shown])) {
     for rate_hz in RATES_HZ {
-        let contestants = at(rate_hz);
+        let tested_estimators = at(rate_hz);
         for seed in 1..=3 {
             let course = course(seed, rate_hz);
-            for contestant in &contestants {
-                test(contestant, &course);
+            for tested in &tested_estimators {
+                test(tested, &course);
             }
         }
     }
 }
 
 #[track_caller]
-fn assert_identical(contestant: &Contestant, one: &[f32], other: &[f32]) {
+fn assert_identical(tested: &TestedEstimator, one: &[f32], other: &[f32]) {
     assert_eq!(one.len(), other.len());
     let differ = |(a, b): (&f32, &f32)| a.to_bits() != b.to_bits();
     if let Some(tick) = one.iter().zip(other).position(differ) {
-        let (name, rate_hz) = (&contestant.name, contestant.rate_hz);
+        let (name, rate_hz) = (&tested.name, tested.rate_hz);
         panic!(
             "{name} at {rate_hz} Hz: {} against {} at tick {tick}",
             one[tick], other[tick]
@@ -63,7 +64,7 @@ fn assert_identical(contestant: &Contestant, one: &[f32], other: &[f32]) {
 
 #[test]
 fn shift_of_the_counters_by_whole_lines_changes_nothing() {
-    each(|contestant, course| {
+    each(|tested, course| {
         let shift = 0x7654_3210u32;
         let there = |shown: &Shown| Shown {
             large: shown.large.wrapping_add(shift),
@@ -72,14 +73,14 @@ fn shift_of_the_counters_by_whole_lines_changes_nothing() {
             edge: shown.edge.map(|(e, age)| (e.wrapping_add(shift), age)),
         };
         let shifted: Vec<_> = course.iter().map(there).collect();
-        let here = velocities(contestant, course);
-        assert_identical(contestant, &here, &velocities(contestant, &shifted));
+        let here = velocities(tested, course);
+        assert_identical(tested, &here, &velocities(tested, &shifted));
     });
 }
 
 #[test]
 fn mirrored_motion_gives_mirrored_velocity() {
-    each(|contestant, course| {
+    each(|tested, course| {
         // Boundary e lies between counts e - 1 and e: turned round, it is 1 - e.
         let turned = |shown: &Shown| Shown {
             large: shown.large.wrapping_neg(),
@@ -88,30 +89,30 @@ fn mirrored_motion_gives_mirrored_velocity() {
             edge: (shown.edge).map(|(e, age)| (1u32.wrapping_sub(e), age)),
         };
         let mirrored: Vec<_> = course.iter().map(turned).collect();
-        let forth = velocities(contestant, course);
+        let forth = velocities(tested, course);
         let forth: Vec<_> = forth.iter().map(|v| 0.0 - v).collect();
-        assert_identical(contestant, &forth, &velocities(contestant, &mirrored));
+        assert_identical(tested, &forth, &velocities(tested, &mirrored));
     });
 }
 
 #[test]
 fn restart_is_a_fresh_start() {
-    each(|contestant, course| {
-        let mut used = contestant.pair();
+    each(|tested, course| {
+        let mut used = tested.pair();
         used.start(&course[0]);
         for shown in &course[1..] {
             used.update(shown);
         }
         used.start(&course[0]);
         let again: Vec<_> = (course[1..].iter().map(|shown| used.update(shown).0 + 0.0)).collect();
-        assert_identical(contestant, &velocities(contestant, course), &again);
+        assert_identical(tested, &velocities(tested, course), &again);
     });
 }
 
 #[test]
 fn signals_not_needed_are_not_read() {
-    each(|contestant, course| {
-        let needs = contestant.pair().needs();
+    each(|tested, course| {
+        let needs = tested.pair().needs();
         let mut draws = Draws::new(9);
         let other = |shown: &Shown| {
             let mut other = *shown;
@@ -127,15 +128,15 @@ fn signals_not_needed_are_not_read() {
             other
         };
         let dressed: Vec<_> = course.iter().map(other).collect();
-        let bare = velocities(contestant, course);
-        assert_identical(contestant, &bare, &velocities(contestant, &dressed));
+        let bare = velocities(tested, course);
+        assert_identical(tested, &bare, &velocities(tested, &dressed));
     });
 }
 
 #[test]
 fn rest_from_the_start_is_zero_velocity() {
     for rate_hz in RATES_HZ {
-        for contestant in at(rate_hz) {
+        for tested in at(rate_hz) {
             for count in [0, 1, 0x7FFF_FFFF, 0x8000_0000, u32::MAX, 1_000_000_000] {
                 let rest = Shown {
                     large: count,
@@ -143,8 +144,8 @@ fn rest_from_the_start_is_zero_velocity() {
                     amps: 0.0,
                     edge: None,
                 };
-                let outputs = velocities(&contestant, &[rest; 300]);
-                let (name, moves) = (&contestant.name, outputs.iter().any(|v| *v != 0.0));
+                let outputs = velocities(&tested, &[rest; 300]);
+                let (name, moves) = (&tested.name, outputs.iter().any(|v| *v != 0.0));
                 assert!(!moves, "{name} at {rate_hz} Hz moves at count {count}");
             }
         }
@@ -154,13 +155,13 @@ fn rest_from_the_start_is_zero_velocity() {
 #[test]
 fn signals_of_a_row_are_those_of_its_type() {
     for rate_hz in RATES_HZ {
-        for contestant in at(rate_hz) {
+        for tested in at(rate_hz) {
             let row = ROWS.iter().find(|row| {
-                let rest = contestant.name.strip_prefix(row.name);
+                let rest = tested.name.strip_prefix(row.name);
                 rest.is_some_and(|rest| rest.is_empty() || rest.starts_with([' ', ',']))
             });
             if let Some(row) = row {
-                assert_eq!(row.needs, contestant.pair().needs(), "{}", row.name);
+                assert_eq!(row.needs, tested.pair().needs(), "{}", row.name);
             }
         }
     }
@@ -188,12 +189,12 @@ fn bare(name: &str) -> String {
 /// Implements the trait and passes the work on to two estimators: `estimator-core` tests it.
 const COMBINES_TWO: &str = "Handover";
 
-/// A type that implements `VelocityEstimator`, and an alias of one, is a contestant's.
+/// A type that implements `VelocityEstimator`, and an alias of such a type, is a tested estimator.
 #[test]
 fn every_estimator_of_the_core_is_tried() {
     let tried: BTreeSet<String> = at(1000.0)
         .iter()
-        .map(|contestant| bare(contestant.pair().kind()))
+        .map(|tested| bare(tested.pair().kind()))
         .collect();
     let mut missing = Vec::new();
     let mut found = 0;

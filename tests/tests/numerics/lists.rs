@@ -1,6 +1,6 @@
-//! Every row of the catalogues is in every list that is made from them. The lists that are not here:
-//! every row has functions of the code probe (`codegen`), colours that differ (`report`), a page, and
-//! scenarios and scores a row of documentation (`host-sim`, test `documented`).
+//! Every row of the catalogues is in every list that is made from them. The lists that are not
+//! here: every row has functions of the code probe (`codegen`), colours that differ (`report`), a
+//! page, and scenarios and scores a row of documentation (`host-sim`, test `documented`).
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -13,8 +13,8 @@ use fuzz_bodies::samples;
 use haptic_control::SceneKind;
 use measured::tables;
 use simulation::scenario::ScenarioName;
-use stress::contestants::at;
 use stress::designs;
+use stress::tested::at;
 
 /// Names of all rows.
 fn rows() -> BTreeSet<&'static str> {
@@ -44,9 +44,9 @@ fn every_row_is_on_the_command_line_stressed_and_measured() {
         rows()
     );
     for rate_hz in [1000, 10_000] {
-        let contestants = at(f64::from(rate_hz));
-        let names = contestants.iter().map(|one| one.name.as_str());
-        assert_eq!(of_rows(names), rows(), "stress::contestants");
+        let tested_estimators = at(f64::from(rate_hz));
+        let names = tested_estimators.iter().map(|one| one.name.as_str());
+        assert_eq!(of_rows(names), rows(), "stress::tested");
         let at_rate = |subject: &&bench_image::Subject| [0, rate_hz].contains(&subject.rate_hz);
         let names = SUBJECTS.iter().filter(at_rate).map(|subject| subject.name);
         assert_eq!(
@@ -72,8 +72,8 @@ fn measured_names(table: &measured::Table) -> Vec<String> {
 
 #[test]
 fn every_row_is_in_the_fuzz_target_of_samples() {
-    let contestants = samples::contestants();
-    let names = contestants.iter().map(|one| one.name.as_str());
+    let tested_estimators = samples::tested_estimators();
+    let names = tested_estimators.iter().map(|one| one.name.as_str());
     assert_eq!(of_rows(names), rows());
 }
 

@@ -3,16 +3,16 @@
 use estimator_catalogue::{Parameter, ROWS};
 use measured::Row;
 use measured::tables::{STRESS, STRESS_PARAMETERS};
-use stress::contestants::{Contestant, at};
 use stress::findings::Findings;
+use stress::tested::{TestedEstimator, at};
 use stress::{sensitivity, signals, table, trial};
 
 const TICKS: u64 = 1_000_000;
 
-fn run(contestants: &[Contestant], seed: u64) -> Vec<Findings> {
-    contestants
+fn run(tested_estimators: &[TestedEstimator], seed: u64) -> Vec<Findings> {
+    tested_estimators
         .iter()
-        .map(|contestant| trial::run(contestant, seed, TICKS, |_| ()))
+        .map(|tested| trial::run(tested, seed, TICKS, |_| ()))
         .collect()
 }
 
@@ -31,14 +31,14 @@ fn every_estimator_passes_the_stress_course() {
     }
 }
 
-/// The table has every estimator, none failed, and no figure of a run as short as this is far beyond
-/// that of a longer one.
+/// The table has every estimator, none failed, and no figure of a run as short as this is far
+/// beyond that of a longer one.
 #[test]
 fn measured_figures_are_those_of_these_estimators() {
     let mut rows = STRESS.read().unwrap();
     for rate in [1000.0, 10_000.0] {
-        for (contestant, found) in at(rate).iter().zip(run(&at(rate), 16)) {
-            let name = &contestant.name;
+        for (tested, found) in at(rate).iter().zip(run(&at(rate), 16)) {
+            let name = &tested.name;
             let own =
                 |row: &Row| row.text("estimator") == Ok(name) && row.number("rate_hz") == Ok(rate);
             let own = rows.iter().position(own);
@@ -52,14 +52,14 @@ fn measured_figures_are_those_of_these_estimators() {
             );
             assert_eq!(
                 figure("settles_ticks"),
-                f64::from(contestant.bounds.settles_ticks)
+                f64::from(tested.bounds.settles_ticks)
             );
             let recovery = f64::from(found.recovery_ticks);
             assert!(
                 recovery <= 1.1 * figure("recovery_ticks") + 2.0,
                 "{name}: {recovery} ticks"
             );
-            if contestant.bounds.deviation_rad_s.is_finite() {
+            if tested.bounds.deviation_rad_s.is_finite() {
                 let deviation = found.deviation_rad_s;
                 assert!(
                     deviation <= 2.0 * figure("deviation_rad_s"),
@@ -103,8 +103,8 @@ fn extreme_parameters_are_stable_or_refused_by_name() {
 fn f32_error_is_negligible_on_the_signals_of_a_device() {
     for (rate, seed) in [(1000.0, 14), (10_000.0, 15)] {
         let scenarios = signals::at(rate, seed);
-        for contestant in at(rate) {
-            let found = signals::difference(&contestant, &scenarios);
+        for tested in at(rate) {
+            let found = signals::difference(&tested, &scenarios);
             assert!(found.added_error().abs() < 1e-2, "{found:?}");
             // Without time stamps an observer decides at every count whether the prediction agrees;
             // without the handle or the current it decides that between two edges too. A bank decides

@@ -1,6 +1,7 @@
 //! Velocities of every estimator, bit for bit, as hashes in measured/traces.csv.
 //!
-//! `UPDATE_GOLDEN=1 cargo test --release -p acceptance --test numerics traces` writes the file anew.
+//! `UPDATE_GOLDEN=1 cargo test --release -p acceptance --test numerics traces` writes the file
+//! anew.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -11,8 +12,8 @@ use simulation::device::Device;
 use simulation::scenario::ScenarioName;
 use simulation::simulate::simulate;
 use simulation::trace::{Columns, Trace};
-use stress::contestants::{Contestant, at};
 use stress::course::Course;
+use stress::tested::{TestedEstimator, at};
 
 const RATES_HZ: [f64; 2] = [1000.0, 10_000.0];
 
@@ -91,10 +92,10 @@ fn scenarios(rate_hz: f64, rows: &mut String) {
     }
 }
 
-/// The row of a contestant over the stress course.
-fn course(contestant: &Contestant) -> String {
-    let mut course = Course::new(SEED, contestant.rate_hz);
-    let mut pair = contestant.pair();
+/// The row of an estimator over the stress course.
+fn course(tested: &TestedEstimator) -> String {
+    let mut course = Course::new(SEED, tested.rate_hz);
+    let mut pair = tested.pair();
     pair.start(&course.shown());
     let (mut input, mut velocities) = (Hash::new(), Hash::new());
     for tick in 0..COURSE_TICKS {
@@ -112,8 +113,8 @@ fn course(contestant: &Contestant) -> String {
     }
     format!(
         "{},{},course,{COURSE_TICKS},{:016x},{:016x}\n",
-        contestant.name.replace(',', ""),
-        contestant.rate_hz,
+        tested.name.replace(',', ""),
+        tested.rate_hz,
         input.0,
         velocities.0
     )
@@ -137,8 +138,8 @@ fn velocity_traces_are_unchanged() {
     let mut now = format!("{HEADER}\n");
     for rate_hz in RATES_HZ {
         scenarios(rate_hz, &mut now);
-        for contestant in at(rate_hz) {
-            now += &course(&contestant);
+        for tested in at(rate_hz) {
+            now += &course(&tested);
         }
     }
     if std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1") {

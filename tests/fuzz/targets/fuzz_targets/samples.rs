@@ -2,7 +2,7 @@
 use fuzz_bodies::samples;
 
 thread_local! {
-    static CONTESTANTS: Vec<stress::contestants::Contestant> = samples::contestants();
+    static TESTED: Vec<stress::tested::TestedEstimator> = samples::tested_estimators();
 }
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| CONTESTANTS.with(|all| samples::run(all, data)));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| TESTED.with(|all| samples::run(all, data)));

@@ -10,8 +10,8 @@ use crate::pair::Pair;
 use crate::pairs::{self, Design, Entry, request};
 use crate::settling;
 
-/// An estimator under stress.
-pub struct Contestant {
+/// An estimator of one design at one control rate, with the bounds of the stress test.
+pub struct TestedEstimator {
     /// Name and parameters.
     pub name: String,
     /// Control rate, Hz.
@@ -25,8 +25,8 @@ pub struct Contestant {
     make: Box<dyn Fn() -> Box<dyn Pair> + Send + Sync>,
 }
 
-impl Contestant {
-    /// One that holds nothing but the design.
+impl TestedEstimator {
+    /// An estimator of this design, with the default bounds and without a definition.
     fn new(
         name: String,
         rate_hz: f64,
@@ -85,8 +85,8 @@ impl Contestant {
         self.settles(settling::poles(radius, order, quiet))
     }
 
-    /// At rest when one count over the time since the last edge is below 0.05 rad/s; below 1e-5 rad/s
-    /// would take two and a half minutes.
+    /// At rest when one count over the time since the last edge is below 0.05 rad/s; below 1e-5
+    /// rad/s would take two and a half minutes.
     fn one_count_over_time(mut self) -> Self {
         self.at_rest_rad_s = 0.05;
         let ticks = self.rad_per_count() / self.at_rest_rad_s;
@@ -234,8 +234,13 @@ impl Laws {
         }
     }
 
-    /// The contestant with the bounds of its law.
-    fn bounded(&self, one: Contestant, settling: Settling, capacity: usize) -> Contestant {
+    /// The estimator `one` with the bounds of its law of settling.
+    fn bounded(
+        &self,
+        one: TestedEstimator,
+        settling: Settling,
+        capacity: usize,
+    ) -> TestedEstimator {
         let pole = |hertz| settling::pole(hertz, self.rate_hz);
         match settling {
             Settling::AtOnce => one,
@@ -270,7 +275,7 @@ impl Laws {
     clippy::missing_panics_doc,
     reason = "the parameters are constants that a test tries"
 )]
-pub fn at(rate_hz: f64) -> Vec<Contestant> {
+pub fn at(rate_hz: f64) -> Vec<TestedEstimator> {
     let laws = Laws::new(rate_hz);
     let mut all = Vec::new();
     for entry in pairs::ALL {
@@ -283,7 +288,7 @@ pub fn at(rate_hz: f64) -> Vec<Contestant> {
                 (true, d) => format!("{} n {capacity} d {d}", entry.row.name),
             };
             let value = move |name: &str| value(name, entry, rate_hz, capacity);
-            let mut one = Contestant::new(name, rate_hz, capacity, entry.design, value);
+            let mut one = TestedEstimator::new(name, rate_hz, capacity, entry.design, value);
             one.definition = line(entry.row).map(|line| Definition {
                 n: capacity,
                 d: bound,
@@ -297,11 +302,11 @@ pub fn at(rate_hz: f64) -> Vec<Contestant> {
         ("kalman-motor, literal", pairs::late_kalman_motor),
     ];
     for (name, design) in more {
-        let one = Contestant::new(name.to_owned(), rate_hz, 0, design, |_| CURRENT_NOISE);
+        let one = TestedEstimator::new(name.to_owned(), rate_hz, 0, design, |_| CURRENT_NOISE);
         all.push(laws.bounded(one, Settling::MotorModel, 0));
     }
     if rate_hz > 5000.0 {
-        let slowest = |one: &&mut Contestant| one.name == "kalman-triple";
+        let slowest = |one: &&mut TestedEstimator| one.name == "kalman-triple";
         for slow in all.iter_mut().filter(slowest) {
             slow.bounds.deviation_rad_s = SLOW_DEVIATION_RAD_S;
         }
