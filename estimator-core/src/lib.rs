@@ -54,6 +54,7 @@ mod observer;
 mod sample;
 mod sealed;
 mod units;
+mod wrapped;
 
 pub use bank::{Imm, ImmEdge, ImmPair, ModelBank, ModelBankState, NoStamps, Stamped, Stamps};
 pub use confidence::{Confidence, Variance};
@@ -72,6 +73,7 @@ pub use sample::{Edge, Sample, Signals};
 pub use units::{
     Amps, ClockTicks, Count, Counts, CountsPerTick, CountsPerTickSquared, Hertz, Scale,
 };
+pub use wrapped::WrapError;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -3,6 +3,7 @@
 use estimator_core::{
     AccelerationEstimator, Amps, Confidence, Count, Counts, CountsPerTick, Hertz, LateCurrent,
     Model, ParameterErrors, Sample, Scale, Signals, SteadyKalman, Variance, VelocityEstimator,
+    WrapError,
 };
 
 #[test]
@@ -33,6 +34,90 @@ fn sixteen_bit_counts_are_extended_by_the_smaller_difference() {
             );
         }
     }
+}
+
+/// An absolute encoder is followed over a long motion in steps of up to half a turn, in both
+/// directions, from a position known without wrapping.
+#[test]
+fn absolute_encoders_are_followed_over_many_turns() {
+    for modulus in [
+        2_u32,
+        3,
+        360,
+        999,
+        4095,
+        4096,
+        16_384,
+        1 << 16,
+        (1 << 31) - 1,
+        1 << 31,
+    ] {
+        let longest = (i64::from(modulus) - 1) / 2;
+        let mut position = i64::from(modulus) - 1;
+        let mut count = Count(position as u32);
+        for k in 0..2000_i64 {
+            let forward = (k / 500) % 2 == 0;
+            let step = (longest * (k % 7)) / 6 * if forward { 1 } else { -1 };
+            let next = position + step;
+            // A modulus that does not divide 2^32 needs a position of 32 bits.
+            if !modulus.is_power_of_two() && i32::try_from(next).is_err() {
+                continue;
+            }
+            position = next;
+            let raw = position.rem_euclid(i64::from(modulus)) as u32;
+            count = count.wrapped(raw, modulus).unwrap();
+            assert_eq!(count, Count(position as u32), "{modulus} {k}");
+        }
+        // Half of an even turn is taken backward, as the smallest 16-bit number is negative.
+        if modulus % 2 == 0 {
+            let half = modulus / 2;
+            let back = Count(5).wrapped((5 + half) % modulus, modulus).unwrap();
+            assert_eq!(back - Count(5), Counts(-(half as i32)), "{modulus}");
+        }
+    }
+}
+
+#[test]
+fn powers_of_two_wrap_beyond_32_bits_and_16_bits_agree_with_a_counter() {
+    let mut count = Count(u32::MAX - 10);
+    for k in 0..20_u32 {
+        let position = (u32::MAX - 10).wrapping_add(100 * k);
+        count = count.wrapped(position % 4096, 4096).unwrap();
+        assert_eq!(count, Count(position));
+    }
+    for raw in [0, 1, 0x7FFF, 0x8000, 0xFFFF] {
+        for count in [Count(0x1_8000), Count(u32::MAX), Count(77)] {
+            assert_eq!(
+                count.wrapped(raw, 1 << 16),
+                Ok(count.extended(raw as u16)),
+                "{count:?} {raw}"
+            );
+        }
+    }
+}
+
+#[test]
+fn invalid_readings_of_absolute_encoders_are_refused() {
+    for (count, raw, modulus, error) in [
+        (0, 0, 0, WrapError::Modulus),
+        (0, 0, 1, WrapError::Modulus),
+        (0, 0, (1 << 31) + 1, WrapError::Modulus),
+        (7, 4096, 4096, WrapError::Raw),
+        (7, 3600, 3600, WrapError::Raw),
+        (0, 1 << 31, 1 << 31, WrapError::Raw),
+        // 2^31 - 1 is 847 modulo 3600: the next count has no signed number.
+        (i32::MAX as u32, 848, 3600, WrapError::Position),
+        // -2^31 is 2752 modulo 3600.
+        (1 << 31, 2751, 3600, WrapError::Position),
+    ] {
+        let refused = Count(count).wrapped(raw, modulus);
+        assert_eq!(refused, Err(error), "{count} {raw} {modulus}");
+    }
+    assert_eq!(i32::MAX.rem_euclid(3600), 847);
+    assert_eq!(i32::MIN.rem_euclid(3600), 2752);
+    assert!(WrapError::Raw.to_string().contains("below modulus"));
+    const NEXT: Result<Count, WrapError> = Count(4095).wrapped(0, 4096);
+    assert_eq!(NEXT, Ok(Count(4096)));
 }
 
 #[test]
