@@ -3,18 +3,32 @@
 mod absolute;
 mod board;
 mod clock;
+mod columns;
+mod formats;
 mod header;
+mod json;
+mod layout;
+mod lines;
+mod options;
+mod records;
+mod resample;
+mod row;
+mod separator;
+mod units;
 mod write;
 
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::Read;
 use std::path::Path;
 
-use csv::ByteRecord;
-
 pub use board::BoardColumns;
+pub use formats::{KnownLog, known_logs};
+pub use options::ReadOptions;
 
-use simulation::trace::{EDGE_CLOCK_HZ, EdgeStamp, Trace};
+use columns::Columns;
+use records::Records;
+
+use simulation::trace::Trace;
 use terminal::failure::Failure;
 
 /// A recording: its time column, and the other columns as a trace.
@@ -28,22 +42,12 @@ pub struct Recording {
     pub current_small: Option<Vec<f64>>,
     /// Number of steps of `t` that differ from the period by more than a tenth of it.
     pub uneven_steps: usize,
+    /// Notes of the reader, one line each: what it converted, and the rows that are missing.
+    pub notes: Vec<String>,
 }
 
-/// The columns that are read; others are ignored.
-const COLUMNS: [&str; 8] = [
-    "t",
-    "counts_large",
-    "counts_small",
-    "current",
-    "current_small",
-    "edge_tick",
-    "edge_bound",
-    "true_omega",
-];
-
 impl Recording {
-    /// Reads a CSV file.
+    /// Reads a CSV file with the columns of this project, or a known log, for the default device.
     ///
     /// # Errors
     /// [`Failure::Input`], one line that names file, line and column.
@@ -51,230 +55,29 @@ impl Recording {
         let name = path.display().to_string();
         let file = File::open(path)
             .map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
-        Self::parse(BufReader::new(file), &name)
+        Self::parse(file, &name)
     }
 
-    /// Reads CSV text called `name` in messages.
+    /// Reads text called `name` in messages, as [`Recording::read`].
     ///
     /// # Errors
     /// As [`Recording::read`].
     pub fn parse(input: impl Read, name: &str) -> Result<Self, Failure> {
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .from_reader(input);
-        let at = Places::find(
-            reader.byte_headers().map_err(|e| csv_failure(name, &e))?,
-            name,
-        )?;
-        let mut columns = Columns::default();
-        let mut record = ByteRecord::new();
-        let mut last = f64::NEG_INFINITY;
-        while reader
-            .read_byte_record(&mut record)
-            .map_err(|e| csv_failure(name, &e))?
-        {
-            let line = record.position().map_or(0, csv::Position::line);
-            let row = Row {
-                name,
-                line,
-                record: &record,
-            };
-            let t = row.number("t", at.t)?;
-            if t < last {
-                return Err(row.failure("t", &format!("{t} s is before the {last} s above it")));
-            }
-            last = t;
-            columns.t.push(t);
-            columns.take(&row, &at)?;
-        }
-        columns.into_recording(name, &at)
-    }
-}
-
-/// Index of each column in a row.
-struct Places {
-    t: usize,
-    counts_large: usize,
-    counts_small: Option<usize>,
-    current: Option<usize>,
-    current_small: Option<usize>,
-    edge: Option<[usize; 2]>,
-    true_omega: Option<usize>,
-}
-
-impl Places {
-    fn find(header: &ByteRecord, name: &str) -> Result<Self, Failure> {
-        let mut places = [None; COLUMNS.len()];
-        for (i, field) in header.iter().enumerate() {
-            let field = header::field(field);
-            let Some(column) = COLUMNS.iter().position(|c| c.as_bytes() == field) else {
-                continue;
-            };
-            if places[column].replace(i).is_some() {
-                let message = format!(
-                    "{name}: line 1: two columns {}; rename or remove one",
-                    COLUMNS[column]
-                );
-                return Err(Failure::Input(message));
-            }
-        }
-        let [
-            t,
-            counts_large,
-            counts_small,
-            current,
-            current_small,
-            edge_tick,
-            edge_bound,
-            true_omega,
-        ] = places;
-        let needed = |place: Option<usize>, column: &str| {
-            place.ok_or_else(|| header::missing(column, header, name))
-        };
-        Ok(Self {
-            t: needed(t, "t")?,
-            counts_large: needed(counts_large, "counts_large")?,
-            counts_small,
-            current,
-            current_small,
-            edge: match (edge_tick, edge_bound) {
-                (Some(tick), Some(bound)) => Some([tick, bound]),
-                (None, None) => None,
-                (Some(_), None) => return Err(needed(None, "edge_bound").unwrap_err()),
-                (None, Some(_)) => return Err(needed(None, "edge_tick").unwrap_err()),
-            },
-            true_omega,
-        })
-    }
-}
-
-/// One row, to read fields from.
-struct Row<'a> {
-    name: &'a str,
-    line: u64,
-    record: &'a ByteRecord,
-}
-
-impl Row<'_> {
-    fn failure(&self, column: &str, what: &str) -> Failure {
-        Failure::Input(format!(
-            "{}: line {}: column {column}: {what}",
-            self.name, self.line
-        ))
+        Self::parse_as(input, name, &ReadOptions::default())
     }
 
-    fn text(&self, column: &str, place: usize) -> Result<&str, Failure> {
-        let bytes = self.record.get(place).unwrap_or_default();
-        std::str::from_utf8(bytes).map_err(|_| self.failure(column, "not text"))
-    }
-
-    fn number(&self, column: &str, place: usize) -> Result<f64, Failure> {
-        let text = self.text(column, place)?;
-        match text.parse::<f64>() {
-            Ok(number) if number.is_finite() => Ok(number),
-            _ => Err(self.failure(column, &format!("{} is not a number", quoted(text)))),
+    /// Reads text called `name` in messages, with the columns and units of `options`.
+    ///
+    /// # Errors
+    /// As [`Recording::read`].
+    pub fn parse_as(input: impl Read, name: &str, options: &ReadOptions) -> Result<Self, Failure> {
+        let mut records = Records::open(input, name, options)?;
+        let places = records.layout.places(options, name)?;
+        let mut columns = Columns::new(&places, options);
+        while let Some(row) = records.next()? {
+            columns.take(&row)?;
         }
-    }
-
-    /// A whole number, modulo 2^32.
-    fn count(&self, column: &str, place: usize) -> Result<u32, Failure> {
-        let text = self.text(column, place)?;
-        if let Ok(count) = text.parse::<i64>() {
-            return Ok(count as u32);
-        }
-        // Some tools write integers as floats: 12.0.
-        match text.parse::<f64>() {
-            Ok(number) if number.fract() == 0.0 && number.abs() < 9e15 => Ok(number as i64 as u32),
-            Ok(number) if number.is_finite() => {
-                Err(self.failure(column, &format!("{number} is not a whole number of counts")))
-            }
-            _ => Err(self.failure(column, &format!("{} is not a number", quoted(text)))),
-        }
-    }
-}
-
-/// A field for a message: shortened, without control characters.
-fn quoted(text: &str) -> String {
-    let short: String = text.chars().take(20).flat_map(char::escape_debug).collect();
-    format!("'{short}'")
-}
-
-fn csv_failure(name: &str, error: &csv::Error) -> Failure {
-    let line = error.position().map_or(1, csv::Position::line);
-    let what = match error.kind() {
-        csv::ErrorKind::UnequalLengths {
-            expected_len, len, ..
-        } => format!("{len} fields where the first line has {expected_len}"),
-        csv::ErrorKind::Io(error) => format!("cannot read: {error}"),
-        _ => error.to_string(),
-    };
-    Failure::Input(format!("{name}: line {line}: {what}"))
-}
-
-#[derive(Default)]
-struct Columns {
-    t: Vec<f64>,
-    counts_large: Vec<u32>,
-    counts_small: Vec<u32>,
-    current: Vec<f64>,
-    current_small: Vec<f64>,
-    edges: Vec<Option<EdgeStamp>>,
-    true_omega: Vec<f64>,
-}
-
-impl Columns {
-    /// Adds the fields of a row except `t`.
-    fn take(&mut self, row: &Row, at: &Places) -> Result<(), Failure> {
-        self.counts_large
-            .push(row.count("counts_large", at.counts_large)?);
-        if let Some(place) = at.counts_small {
-            self.counts_small.push(row.count("counts_small", place)?);
-        }
-        if let Some(place) = at.current {
-            self.current.push(row.number("current", place)?);
-        }
-        if let Some(place) = at.current_small {
-            self.current_small.push(row.number("current_small", place)?);
-        }
-        if let Some([tick, bound]) = at.edge {
-            self.edges.push(self.edge(row, tick, bound)?);
-        }
-        if let Some(place) = at.true_omega {
-            self.true_omega.push(row.number("true_omega", place)?);
-        }
-        Ok(())
-    }
-
-    /// The latest edge; `None` if both fields are empty, before the first edge.
-    fn edge(&self, row: &Row, tick: usize, bound: usize) -> Result<Option<EdgeStamp>, Failure> {
-        if row.text("edge_tick", tick)?.is_empty() && row.text("edge_bound", bound)?.is_empty() {
-            return Ok(None);
-        }
-        let now = self.t.last().copied().unwrap_or_default();
-        let age_s = now - row.number("edge_tick", tick)? / EDGE_CLOCK_HZ;
-        Ok(Some(EdgeStamp {
-            // `t` has fewer digits than the stamp, so an edge at the tick can appear after it.
-            age_s: age_s.max(0.0),
-            boundary: row.count("edge_bound", bound)?,
-        }))
-    }
-
-    fn into_recording(self, name: &str, at: &Places) -> Result<Recording, Failure> {
-        let (rate_hz, uneven_steps) = clock::rate(&self.t, name)?;
-        Ok(Recording {
-            uneven_steps,
-            t: self.t,
-            current_small: at.current_small.is_some().then_some(self.current_small),
-            trace: Trace {
-                rate_hz,
-                counts_large: self.counts_large,
-                counts_small: at.counts_small.is_some().then_some(self.counts_small),
-                current: at.current.is_some().then_some(self.current),
-                edges: at.edge.is_some().then_some(self.edges),
-                true_omega: at.true_omega.is_some().then_some(self.true_omega),
-                true_damping: None,
-            },
-        })
+        columns.into_recording(name, &places, &records.layout)
     }
 }
 

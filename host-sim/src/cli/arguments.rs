@@ -6,10 +6,13 @@ use clap::{Args, Parser, Subcommand};
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
+use recordings::recording::{ReadOptions, Recording};
 use simulation::device::Device;
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
 use terminal::wording::WIDTH;
+
+use super::input::Log;
 
 /// Velocity estimation for a dual-stage haptic device, simulated and scored.
 ///
@@ -108,6 +111,56 @@ pub(super) struct ParameterOptions {
     /// repeatable
     #[arg(long = "set", value_name = "NAME.PARAM=VALUE")]
     set: Vec<String>,
+}
+
+/// How a recording is read.
+#[derive(Clone, Debug, Default, Args)]
+pub(super) struct RecordingOptions {
+    /// Read a column from the user's column of another name, with its unit: t=time_ms:ms,
+    /// counts_large=angle:deg. The end of the name may be the unit (time_ms); a number is the number
+    /// of the column. Units: s, ms, us, ns; counts, deg, rad, rev; A, mA, Nm; rad/s, deg/s, rev/s,
+    /// rpm. Repeatable
+    #[arg(long = "column", value_name = "OURS=THEIRS[:UNIT]")]
+    columns: Vec<String>,
+    /// Counts of a revolution of an absolute encoder, at which the column counts_large wraps;
+    /// counts_small=M for the other encoder; repeatable
+    #[arg(long, value_name = "M")]
+    modulus: Vec<String>,
+    /// Rate of the rows, for a recording without a column of time
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    row_rate: Option<f64>,
+    /// Replace the rows by rows at a constant rate: counts are interpolated and rounded
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    resample: Option<f64>,
+}
+
+impl RecordingOptions {
+    /// Whether the recording has the rows of the file.
+    pub(super) fn keeps_rows(&self) -> bool {
+        self.resample.is_none()
+    }
+
+    /// Reads the recording `log` of `device`. Its notes are those of the reader.
+    pub(super) fn read(&self, log: &Log, device: &Device) -> Result<Recording, Failure> {
+        let mut options = ReadOptions::of(device);
+        for text in &self.columns {
+            options.add_columns(text)?;
+        }
+        for text in &self.modulus {
+            options.set_modulus(text)?;
+        }
+        if let Some(hz) = self.row_rate {
+            options.set_row_rate(hz)?;
+        }
+        let mut recording = Recording::parse_as(log.reader()?, log.name(), &options)?;
+        let unwrapped = recording.unwrap_counts(device);
+        recording.notes.extend(unwrapped);
+        if let Some(hz) = self.resample {
+            recording.notes.extend(recording.unevenness());
+            recording.resample(hz, log.name())?;
+        }
+        Ok(recording)
+    }
 }
 
 impl DeviceFile {

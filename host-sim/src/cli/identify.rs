@@ -6,13 +6,12 @@ use std::path::PathBuf;
 use clap::Args;
 
 use experiments::identify::{self, Known};
-use recordings::recording::Recording;
 use report::{self, Printout};
 use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, note, print_bytes, write_whole};
 
-use super::arguments::DeviceFile;
-use super::input::{called, read, short_name};
+use super::arguments::{DeviceFile, RecordingOptions};
+use super::input::{Log, short_name};
 use super::page;
 
 #[derive(Debug, Args)]
@@ -22,6 +21,8 @@ pub(super) struct Identify {
     /// Several recordings of one device are fitted together; - is standard input
     #[arg(value_name = "RECORDING", required = true)]
     recordings: Vec<PathBuf>,
+    #[command(flatten)]
+    read: RecordingOptions,
     #[command(flatten)]
     device: DeviceFile,
     /// Constant with a known value, from which the others follow: large.torque_constant_nm_per_a,
@@ -55,12 +56,11 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
         None => Known::TorqueConstant(device.stages.large.torque_constant),
     };
     let mut recordings = Vec::new();
-    let mut wraps = Vec::new();
+    let mut notes = Vec::new();
     for path in &options.recordings {
         let name = short_name(path);
-        let mut recording = Recording::parse(read(path)?.as_slice(), &called(path))?;
-        let notes = recording.unwrap_counts(&device);
-        wraps.extend(notes.iter().map(|line| format!("{name}: {line}")));
+        let recording = options.read.read(&Log::open(path)?, &device)?;
+        notes.extend(recording.notes.iter().map(|line| format!("{name}: {line}")));
         recordings.push((name, recording));
     }
     let mut found = identify::identify(&recordings, &device, known, options.clamped)?;
@@ -94,7 +94,7 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
         json.push(b'\n');
         write_whole(path, &json)?;
     }
-    for line in wraps {
+    for line in notes {
         note(line);
     }
     if [&options.out, &options.json]

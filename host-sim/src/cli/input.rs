@@ -1,12 +1,16 @@
 //! Input files, one of which can be standard input.
 
-use std::io::Read as _;
-use std::path::Path;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 
 use terminal::failure::Failure;
 
 /// Name of standard input in messages, and as a recording.
 const STDIN: &str = "standard input";
+
+/// Number of first bytes that hold a header.
+const HEAD: u64 = 1 << 16;
 
 /// Whether `path` stands for standard input.
 pub(super) fn is_stdin(path: &Path) -> bool {
@@ -42,5 +46,67 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
             read.map(|_| bytes)
         }
     };
-    read.map_err(|error| Failure::Input(format!("{}: cannot read: {error}", called(path))))
+    read.map_err(|error| cannot_read(&called(path), &error))
+}
+
+/// A recording that can be read more than once.
+pub(super) struct Log {
+    name: String,
+    path: PathBuf,
+    /// The bytes of standard input or of a pipe, which can be read only once.
+    bytes: Option<Vec<u8>>,
+}
+
+impl Log {
+    /// Opens the file `path`, or standard input where it is -.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that names the file.
+    pub(super) fn open(path: &Path) -> Result<Self, Failure> {
+        let name = called(path);
+        let is_file = std::fs::metadata(path).is_ok_and(|file| file.is_file());
+        let bytes = match is_file && !is_stdin(path) {
+            true => None,
+            false => Some(read(path)?),
+        };
+        Ok(Self {
+            name,
+            path: path.to_owned(),
+            bytes,
+        })
+    }
+
+    /// What messages call the recording.
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its bytes from the begin.
+    ///
+    /// # Errors
+    /// As [`Log::open`].
+    pub(super) fn reader(&self) -> Result<Box<dyn Read + '_>, Failure> {
+        match &self.bytes {
+            Some(bytes) => Ok(Box::new(bytes.as_slice())),
+            None => match File::open(&self.path) {
+                Ok(file) => Ok(Box::new(file)),
+                Err(error) => Err(cannot_read(&self.name, &error)),
+            },
+        }
+    }
+
+    /// Its first bytes, which hold the header.
+    ///
+    /// # Errors
+    /// As [`Log::open`].
+    pub(super) fn head(&self) -> Result<Vec<u8>, Failure> {
+        let mut head = Vec::new();
+        let read = self.reader()?.take(HEAD).read_to_end(&mut head);
+        read.map_err(|error| cannot_read(&self.name, &error))?;
+        Ok(head)
+    }
+}
+
+fn cannot_read(name: &str, error: &std::io::Error) -> Failure {
+    Failure::Input(format!("{name}: cannot read: {error}"))
 }

@@ -6,13 +6,13 @@ use clap::Args;
 
 use experiments::compare::interval;
 use experiments::replay;
-use recordings::recording::{BoardColumns, Recording};
+use recordings::recording::BoardColumns;
 use report::{self, RecordingView};
 use terminal::failure::Failure;
-use terminal::output::{is_stdout, note, print_bytes, write_whole};
+use terminal::output::{is_stdout, print_bytes, write_whole};
 
-use super::arguments::{DeviceFile, ParameterOptions, kinds};
-use super::input::{self, called, is_stdin, short_name};
+use super::arguments::{DeviceFile, ParameterOptions, RecordingOptions, kinds};
+use super::input::{Log, is_stdin, short_name};
 use super::replay::note_about;
 
 /// Estimators that are drawn by default.
@@ -34,6 +34,8 @@ pub(super) struct Plot {
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(super) to: Option<f64>,
     #[command(flatten)]
+    pub(super) read: RecordingOptions,
+    #[command(flatten)]
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
@@ -51,11 +53,15 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
     let device = options.device.load()?;
     let parameters = options.parameters.load()?;
     let name = short_name(&options.recording);
-    let path = called(&options.recording);
-    let bytes = input::read(&options.recording)?;
-    let mut recording = Recording::parse(bytes.as_slice(), &path)?;
-    let board = BoardColumns::parse(bytes.as_slice(), &path)?;
-    let wraps = recording.unwrap_counts(&device);
+    let log = Log::open(&options.recording)?;
+    let path = log.name();
+    let recording = options.read.read(&log, &device)?;
+    recording.check_even(path)?;
+    // Rows of another rate are not those of the board.
+    let board = match options.read.keeps_rows() {
+        true => BoardColumns::parse(log.reader()?, path)?,
+        false => BoardColumns::default(),
+    };
 
     let [first, .., last] = recording.t[..] else {
         unreachable!("a recording has at least two rows");
@@ -91,9 +97,6 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
     };
     let out = options.out.as_ref().unwrap_or(&beside);
     write_whole(out, svg.as_bytes())?;
-    for line in wraps {
-        note(format_args!("{name}: {line}"));
-    }
     note_about(&name, &recording, &replayed);
     if options.out.is_some() || is_stdout(out) {
         return Ok(());

@@ -13,21 +13,24 @@ use terminal::failure::Failure;
 use terminal::output::{is_stdout, note, print_bytes, write_whole, write_with};
 use terminal::wording::wrapped;
 
-use super::arguments::{DeviceFile, ParameterOptions, kinds};
-use super::input::{self, called, short_name};
+use super::arguments::{DeviceFile, ParameterOptions, RecordingOptions, kinds};
+use super::input::{Log, called, short_name};
 use super::page::{one_to_stdout, progress};
 
 #[derive(Debug, Args)]
 pub(super) struct Replay {
     /// Recording: CSV with the columns t (s) and counts_large; optional columns: counts_small,
     /// current (A), edge_tick (periods of 84 MHz), edge_bound, true_omega (rad/s); other columns
-    /// are ignored; - is standard input
+    /// are ignored. Logs of moteus, ODrive, VESC Tool, SimpleFOC and PlotJuggler are read by their
+    /// own names, other logs with --column; - is standard input
     #[arg(value_name = "TRACE.csv")]
     pub(super) trace: PathBuf,
     /// Estimator to run, see host-sim estimators; repeatable [default: all whose needed columns are
     /// present]
     #[arg(long = "estimator", value_name = "NAME")]
     pub(super) estimators: Vec<String>,
+    #[command(flatten)]
+    pub(super) recording: RecordingOptions,
     #[command(flatten)]
     pub(super) device: DeviceFile,
     #[command(flatten)]
@@ -48,7 +51,14 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let device = options.device.load()?;
     let parameters = options.parameters.load()?;
     let name = short_name(&options.trace);
-    let (mut recording, board) = read(&options.trace)?;
+    let log = Log::open(&options.trace)?;
+    let recording = options.recording.read(&log, &device)?;
+    recording.check_even(log.name())?;
+    // Rows of another rate are not those of the board.
+    let board = match options.recording.keeps_rows() {
+        true => board(&log)?,
+        false => BoardColumns::default(),
+    };
     if options.json.is_some() && recording.trace.true_omega.is_none() {
         return Err(Failure::Input(format!(
             "{}: line 1: no column true_omega, which --json needs for the scores; add it or leave out \
@@ -56,7 +66,6 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
             called(&options.trace)
         )));
     }
-    let wraps = recording.unwrap_counts(&device);
     let bar = progress(kinds.len(), "estimating");
     let replayed = replay::replay(&recording, &name, &kinds, &device, &parameters, || {
         bar.inc(1);
@@ -83,9 +92,6 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     if let Some(path) = &options.json {
         write_whole(path, &rows::json(rows)?)?;
     }
-    for line in wraps {
-        note(format_args!("{name}: {line}"));
-    }
     note_about(&name, &recording, &replayed);
     for line in replay::board_summary(&recording, &board, &device) {
         note(format_args!("{name}: {line}"));
@@ -105,22 +111,21 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     print_bytes(format!("{header}\n{table}").as_bytes())
 }
 
-/// The recording, and the columns with the board's own estimates. A recording without the board's
-/// column `sigma` is from another source: its further columns are not read.
-fn read(path: &Path) -> Result<(Recording, BoardColumns), Failure> {
-    let text = input::read(path)?;
-    let name = called(path);
-    let recording = Recording::parse(text.as_slice(), &name)?;
-    let board = match BoardColumns::are_in(&text) {
-        true => BoardColumns::parse(text.as_slice(), &name)?,
-        false => BoardColumns::default(),
-    };
-    Ok((recording, board))
+/// The columns with the board's own estimates. A recording without the board's column `sigma` is from
+/// another source: its further columns are not read.
+fn board(log: &Log) -> Result<BoardColumns, Failure> {
+    match BoardColumns::are_in(&log.head()?) {
+        true => BoardColumns::parse(log.reader()?, log.name()),
+        false => Ok(BoardColumns::default()),
+    }
 }
 
-/// Prints notes: one line per missing column with the estimators left out, parameters that were
-/// tuned for another encoder or rate, and an uneven clock.
+/// Prints notes: those of the reader, one line per missing column with the estimators left out,
+/// parameters that were tuned for another encoder or rate, and an uneven clock.
 pub(super) fn note_about(name: &str, recording: &Recording, replayed: &replay::Replay) {
+    for line in &recording.notes {
+        note(format_args!("{name}: {line}"));
+    }
     let mut columns: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for (estimator, column) in &replayed.left_out {
         columns.entry(column).or_default().push(estimator);
@@ -137,7 +142,8 @@ pub(super) fn note_about(name: &str, recording: &Recording, replayed: &replay::R
     // The estimators assume a constant period.
     if let Some(uneven) = recording.unevenness() {
         note(format_args!(
-            "{name}: {uneven}; the estimators assume a constant step of 1/{} s",
+            "{name}: {uneven}; the estimators assume a constant step of 1/{0} s; --resample {0:.0} makes \
+             the rows even",
             recording.trace.rate_hz,
         ));
     }

@@ -91,6 +91,7 @@ fn of_scenario(options: &Simulate, name: ScenarioName) -> Result<Recording, Fail
         trace,
         current_small: None,
         uneven_steps: 0,
+        notes: Vec::new(),
     })
 }
 

@@ -4,6 +4,7 @@ mod closed_loop;
 mod compare;
 mod escaping;
 mod identify;
+mod logs;
 mod output;
 mod recordings;
 mod refusals;

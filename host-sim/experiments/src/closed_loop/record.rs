@@ -20,6 +20,7 @@ impl Loop {
             },
             current_small: None,
             uneven_steps: 0,
+            notes: Vec::new(),
         };
         let column = || Vec::with_capacity(rows);
         let (mut small, mut large_a, mut small_a, mut omega) =

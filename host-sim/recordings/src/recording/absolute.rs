@@ -1,6 +1,7 @@
 //! Absolute encoders and short counters: counts that wrap at a revolution or at 16 bits.
 
 use super::Recording;
+use estimator_core::{Count, WrapError};
 use simulation::device::Device;
 use simulation::trace::EdgeStamp;
 
@@ -17,32 +18,30 @@ impl Recording {
         let longest = 1.5 * trace.period_s();
         let mut said = Vec::new();
         let per_rev = device.stages.large.counts_per_rev;
-        let found = look(&trace.counts_large, &self.t, longest, per_rev);
-        said.extend(
-            found
-                .as_ref()
-                .map(|found| found.note("counts_large", "large", per_rev)),
-        );
+        let mut found = look(&trace.counts_large, &self.t, longest, per_rev);
         if let Some(Found::Wraps(modulus)) = found {
-            let raw = unwrap(&mut trace.counts_large, modulus);
-            for (k, edge) in trace.edges.iter_mut().flatten().enumerate() {
-                if let Some(EdgeStamp { boundary, .. }) = edge {
-                    let away = centred(i64::from(*boundary as i32) - raw[k], modulus);
-                    *boundary = trace.counts_large[k].wrapping_add(away as u32);
+            match unwrap(&mut trace.counts_large, modulus) {
+                Err(error) => found = Some(Found::Refused(modulus, error)),
+                Ok(raw) => {
+                    for (k, edge) in trace.edges.iter_mut().flatten().enumerate() {
+                        if let Some(EdgeStamp { boundary, .. }) = edge {
+                            let away = centred(i64::from(*boundary as i32) - raw[k], modulus);
+                            *boundary = trace.counts_large[k].wrapping_add(away as u32);
+                        }
+                    }
                 }
             }
         }
+        said.extend(found.map(|found| found.note("counts_large", "large", per_rev)));
         if let Some(counts) = &mut trace.counts_small {
             let per_rev = device.stages.small.counts_per_rev;
-            let found = look(counts, &self.t, longest, per_rev);
-            said.extend(
-                found
-                    .as_ref()
-                    .map(|found| found.note("counts_small", "small", per_rev)),
-            );
-            if let Some(Found::Wraps(modulus)) = found {
-                unwrap(counts, modulus);
+            let mut found = look(counts, &self.t, longest, per_rev);
+            if let Some(Found::Wraps(modulus)) = found
+                && let Err(error) = unwrap(counts, modulus)
+            {
+                found = Some(Found::Refused(modulus, error));
             }
+            said.extend(found.map(|found| found.note("counts_small", "small", per_rev)));
         }
         said
     }
@@ -55,6 +54,8 @@ enum Found {
     Wraps(u32),
     /// The counts have an impossible jump, the first number, and span the second number of counts.
     Jumps(i64, i64),
+    /// The counts wrap at this modulus and cannot be unwrapped.
+    Refused(u32, WrapError),
 }
 
 impl Found {
@@ -70,9 +71,23 @@ impl Found {
             Self::Jumps(jump, span) => format!(
                 "{column} jumps by {jump} from one row to the next and spans {span} counts, with {per_rev} \
                  counts per revolution: if the encoder is absolute, give its counts as \
-                 {motor}.counts_per_rev in the file of --device"
+                 {motor}.counts_per_rev in the file of --device{}",
+                modulus_option(column, jump, span)
             ),
+            Self::Refused(modulus, error) => {
+                format!("{column} wraps at {modulus} and is not unwrapped: {error}")
+            }
         }
+    }
+}
+
+/// The option for an encoder whose counts wrap at a power of two and whose counts per revolution
+/// differ from it; empty where the counts do not look so.
+fn modulus_option(column: &str, jump: i64, span: i64) -> String {
+    let modulus = u64::try_from(span).unwrap_or(0).next_power_of_two();
+    match 4 * jump.unsigned_abs() >= 3 * modulus {
+        true => format!(", or --modulus {column}={modulus} if it has other counts per revolution"),
+        false => String::new(),
     }
 }
 
@@ -88,7 +103,8 @@ fn look(counts: &[u32], t: &[f64], longest: f64, per_rev: u32) -> Option<Found> 
     let wraps = |modulus: &u32| {
         let modulus = i64::from(*modulus);
         // A shaft turns less than a quarter of a revolution from row to row.
-        span < modulus && 4 * jump.abs() >= 3 * modulus
+        // An angle that is rounded to counts can be the modulus itself.
+        span <= modulus && 4 * jump.abs() >= 3 * modulus
     };
     let wraps = [per_rev, SHORT].into_iter().find(wraps);
     let far = 2 * jump.abs() > i64::from(per_rev) && span < i64::from(SHORT);
@@ -97,21 +113,21 @@ fn look(counts: &[u32], t: &[f64], longest: f64, per_rev: u32) -> Option<Found> 
         .or(far.then_some(Found::Jumps(jump, span + 1)))
 }
 
-/// Unwraps `counts` and returns the original ones.
-fn unwrap(counts: &mut [u32], modulus: u32) -> Vec<i64> {
-    let raw: Vec<_> = counts
-        .iter()
-        .map(|&count| i64::from(count as i32))
-        .collect();
+/// Unwraps `counts` and returns the original ones. An error leaves `counts` as they are.
+fn unwrap(counts: &mut Vec<u32>, modulus: u32) -> Result<Vec<i64>, WrapError> {
+    let signed = |count: &u32| i64::from(*count as i32);
+    let raw: Vec<_> = counts.iter().map(signed).collect();
+    let mut unwrapped = counts.clone();
     for k in 1..counts.len() {
-        let step = centred(raw[k] - raw[k - 1], modulus);
-        counts[k] = counts[k - 1].wrapping_add(step as u32);
+        let reading = raw[k].rem_euclid(i64::from(modulus)) as u32;
+        unwrapped[k] = Count(unwrapped[k - 1]).wrapped(reading, modulus)?.0;
     }
-    raw
+    *counts = unwrapped;
+    Ok(raw)
 }
 
 /// The number nearest to zero that differs from `x` by a multiple of `modulus`.
-fn centred(x: i64, modulus: u32) -> i64 {
+pub(super) fn centred(x: i64, modulus: u32) -> i64 {
     let modulus = i64::from(modulus);
     let half = modulus / 2;
     (x + half).rem_euclid(modulus) - half

@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 use std::io::Read;
 
-use csv::ByteRecord;
-
-use super::{Row, csv_failure};
+use super::options::ReadOptions;
+use super::records::Records;
 use crate::telemetry::{COLUMNS, LearnedLine};
 use terminal::failure::Failure;
 
@@ -25,7 +24,8 @@ const LEARNED: [&str; 3] = [
 ];
 
 impl BoardColumns {
-    /// Whether this CSV text has the board's columns of standard deviations or learned parameters.
+    /// Whether the CSV text that begins with `text` has the board's columns of standard deviations or
+    /// learned parameters.
     #[must_use]
     pub fn are_in(text: &[u8]) -> bool {
         let header = text.split(|byte| *byte == b'\n').next().unwrap_or_default();
@@ -33,37 +33,29 @@ impl BoardColumns {
         names.any(|name| name == b"sigma_large" || name == LEARNED[0].as_bytes())
     }
 
-    /// Reads CSV text called `name` in messages.
+    /// Reads CSV text called `name` in messages. A text without the columns that the board's
+    /// recordings have is from another source: nothing of it is read.
     ///
     /// # Errors
     /// [`Failure::Input`], one line that names file, line and column.
     pub fn parse(input: impl Read, name: &str) -> Result<Self, Failure> {
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .from_reader(input);
+        let mut records = Records::open(input, name, &ReadOptions::default())?;
         let mut board = Self::default();
-        let header = reader.byte_headers().map_err(|e| csv_failure(name, &e))?;
-        let names: Vec<_> = header.iter().map(<[u8]>::to_vec).collect();
+        let names = &records.layout.names;
         let mut places = Vec::new();
         for (place, name) in names.iter().enumerate() {
-            let known = COLUMNS.iter().find(|(column, _)| column.as_bytes() == name);
+            let known = COLUMNS.iter().find(|(column, _)| column == name);
             if let Some((column, _)) = known {
                 board.columns.insert(column, Vec::new());
                 places.push((place, *column));
             }
         }
-        let place = |column: &str| names.iter().position(|name| name == column.as_bytes());
+        let place = |column: &str| names.iter().position(|name| name == column);
         let learned = LEARNED.map(place);
-        let mut record = ByteRecord::new();
-        while reader
-            .read_byte_record(&mut record)
-            .map_err(|e| csv_failure(name, &e))?
-        {
-            let row = Row {
-                name,
-                line: record.position().map_or(0, csv::Position::line),
-                record: &record,
-            };
+        if place("counts_large").or(learned[0]).is_none() {
+            return Ok(Self::default());
+        }
+        while let Some(row) = records.next()? {
             for &(place, column) in &places {
                 let number = row.number(column, place)?;
                 if let Some(values) = board.columns.get_mut(column) {
@@ -112,7 +104,8 @@ mod tests {
         assert_eq!(board.learned, Some(learned));
         let torn = text.replace("3,1,2", "3,1,");
         let error = BoardColumns::parse(torn.as_bytes(), "r.csv").unwrap_err();
-        let said = "r.csv: line 3: column learned_friction: '' is not a number";
+        let said = "r.csv: line 3: column learned_friction: '' is not a number; remove the row, or \
+                    fill the field";
         assert_eq!(error.to_string(), said);
         let text = "t,torque,counts_large,state\n0,0.5,1,2\n1,-0.25,1,3\n";
         let bad = text.replace("-0.25", "x");

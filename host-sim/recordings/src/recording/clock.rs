@@ -1,6 +1,7 @@
 //! Period of a recording's rows, and its uneven steps.
 
 use super::Recording;
+use super::lines::LineNumbers;
 use terminal::failure::Failure;
 
 /// Largest relative difference of an even step from the period.
@@ -10,8 +11,12 @@ const EVEN: f64 = 0.1;
 /// rounded digits are included, steps over a missing row are not.
 const REGULAR: f64 = 0.5;
 
+/// Largest share of the steps that differ from the period by more than [`REGULAR`] of it, for the
+/// estimators, which assume a constant period.
+const IRREGULAR_SHARE: f64 = 0.1;
+
 /// Slowest rate of a recording, Hz.
-const SLOWEST_HZ: f64 = 10.0;
+pub(super) const SLOWEST_HZ: f64 = 10.0;
 
 /// Rate of the rows of `t`, Hz, and the number of uneven steps.
 ///
@@ -42,11 +47,32 @@ pub(super) fn rate(t: &[f64], name: &str) -> Result<(f64, usize), Failure> {
     if rate_hz < SLOWEST_HZ {
         return Err(Failure::Input(format!(
             "{name}: column t: rows {period} s apart are {rate_hz} Hz, which is below {SLOWEST_HZ} Hz; \
-             t must be in seconds, check that it is not in ms or us"
+             t must be in seconds, check that it is not in ms or us, which --column t=NAME:ms states"
         )));
     }
     let uneven = steps.iter().filter(|step| differs(**step, period) > EVEN);
     Ok((rate_hz, uneven.count()))
+}
+
+/// Description of the gaps of `t` in which rows are missing; `None` if there is none.
+pub(super) fn missing_rows(t: &[f64], rate_hz: f64, lines: &LineNumbers) -> Option<String> {
+    let missing = |step: f64| (step * rate_hz).round() - 1.0;
+    let steps = t.windows(2).map(|t| missing(t[1] - t[0])).enumerate();
+    let gaps = steps.filter(|(_, missing)| *missing >= 1.0);
+    let mut first = None;
+    let (mut number, mut rows, mut most) = (0, 0.0, 0.0_f64);
+    for (k, missing) in gaps {
+        first = first.or(Some(k + 1));
+        number += 1;
+        rows += missing;
+        most = most.max(missing);
+    }
+    let first = first?;
+    Some(format!(
+        "{rows} rows are missing in {number} gaps of at most {most}, the first before line {} at {} s",
+        lines.of(first),
+        t[first]
+    ))
 }
 
 impl Recording {
@@ -66,6 +92,31 @@ impl Recording {
                 to_digits(1e6 * most, 4)
             )
         })
+    }
+
+    /// Checks that the estimators can take the rows as evenly spaced.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] with the remedy if more than a tenth of the steps of `t` differ from the
+    /// period by more than half of it.
+    pub fn check_even(&self, name: &str) -> Result<(), Failure> {
+        let period = self.trace.period_s();
+        let steps = self.t.windows(2).map(|t| t[1] - t[0]);
+        let irregular = steps
+            .filter(|step| differs(*step, period) > REGULAR)
+            .count();
+        let share = irregular as f64 / (self.t.len() - 1) as f64;
+        if share <= IRREGULAR_SHARE {
+            return Ok(());
+        }
+        let rate_hz = self.trace.rate_hz;
+        Err(Failure::Input(format!(
+            "{name}: column t: {:.0} % of the steps differ by more than half from the period of 1/{rate_hz} \
+             s, {:.0} % may; the estimators assume a constant period: add --resample {:.0}",
+            100.0 * share,
+            100.0 * IRREGULAR_SHARE,
+            rate_hz
+        )))
     }
 
     /// Share of uneven steps of `t`, 0 to 1.

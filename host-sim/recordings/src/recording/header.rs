@@ -1,104 +1,215 @@
-//! Error message for a header with a missing column.
-
-use csv::ByteRecord;
+//! Error messages for a header without a needed column.
 
 use terminal::failure::Failure;
+
+use super::formats::Format;
+use super::layout::Layout;
+use super::options::Column;
+use super::units::Quantity;
 
 /// Characters of a header that a message shows.
 const SHOWN: usize = 60;
 
-/// A header field without the byte order mark, which can precede the first field.
-pub(super) fn field(bytes: &[u8]) -> &[u8] {
-    bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)
-}
+/// Characters of one name that a message shows.
+const NAME: usize = 30;
 
-/// Error for a header without `column`, with the header and a hint at the probable cause.
-pub(super) fn missing(column: &str, header: &ByteRecord, name: &str) -> Failure {
-    let fields = header
-        .iter()
-        .map(|bytes| String::from_utf8_lossy(field(bytes)));
-    let fields: Vec<String> = fields.map(Into::into).collect();
-    let line: String = fields.join(",").chars().take(SHOWN).collect();
-    let hint = hint(column, &fields).map_or_else(String::new, |hint| format!(" ({hint})"));
+/// Error for a log without `column`, with the header as found and a hint at the remedy.
+pub(super) fn missing(column: Column, layout: &Layout, name: &str) -> Failure {
+    let ours = column.name();
+    let found = found(layout);
+    let remedy = match column {
+        Column::T | Column::CountsLarge => format!(
+            "{}; read without options are t with counts_large, and the logs of {}",
+            hint(layout),
+            known()
+        ),
+        _ => format!("name it with --column {ours}=THEIRS, or rename a column"),
+    };
     Failure::Input(format!(
-        "{name}: line 1: no column {column}; the line is '{}'{hint}; it must have the names of the \
-         columns, t and counts_large among them, separated by commas",
-        line.escape_debug()
+        "{name}: line {}: no column {ours}; {found}; {remedy}",
+        layout.line.max(1)
     ))
 }
 
-fn hint(column: &str, fields: &[String]) -> Option<String> {
-    let short = |field: &str| field.chars().take(20).collect::<String>();
-    let first = fields
-        .first()
-        .filter(|_| fields.iter().any(|field| !field.is_empty()));
-    let Some(first) = first else {
-        return Some("empty".to_owned());
-    };
-    if first.starts_with('#') {
-        return Some("remove the comment before the names".to_owned());
+/// Error for a `--column` whose name is not in the header.
+pub(super) fn unknown(theirs: &str, column: Column, layout: &Layout, name: &str) -> Failure {
+    let theirs = short(theirs);
+    Failure::Input(format!(
+        "{name}: line {}: no column '{theirs}', which --column names for {}; {}; write one of these \
+         names, or the number of the column",
+        layout.line.max(1),
+        column.name(),
+        found(layout)
+    ))
+}
+
+/// Error for a log of `format`, which has no time.
+pub(super) fn without_time(format: &Format, name: &str) -> Failure {
+    Failure::Input(format!(
+        "{name}: line 1: no column t: the rows look like the monitor of {}, which has no time; give the rate of the \
+         rows with --row-rate HZ, or the columns with --column t=1,counts_large=2:rad",
+        format.name
+    ))
+}
+
+/// Names of the known logs.
+fn known() -> String {
+    let mut names: Vec<_> = Format::all().map(|format| format.name).collect();
+    names.dedup();
+    names.join(", ")
+}
+
+fn short(name: &str) -> String {
+    name.chars()
+        .take(NAME)
+        .flat_map(char::escape_debug)
+        .collect()
+}
+
+/// The columns as found, and their separator.
+fn found(layout: &Layout) -> String {
+    let number = layout.names.len();
+    if !layout.has_header() {
+        return format!(
+            "there are no names but {number} columns of numbers, separated by {}",
+            layout.separator.name()
+        );
     }
-    if let ([only], Some(separator)) = (fields, first.find([';', '\t'])) {
-        let separator = &only[separator..=separator];
-        return Some(format!("separated by '{}'?", separator.escape_debug()));
-    }
-    if fields.iter().all(|field| field.parse::<f64>().is_ok()) {
-        return Some("these are numbers; put a line with the names before them".to_owned());
-    }
-    let lower = |field: &&String| field.to_lowercase() == column;
-    if let Some(field) = fields.iter().find(lower) {
-        return Some(format!("'{}' must be in lower case", short(field)));
-    }
-    let words: &[&str] = match column {
-        "t" => &["time", "ms", "sec", "stamp"],
-        "counts_large" => &["count", "enc", "pos", "angle"],
-        _ => return None,
-    };
-    let like = |field: &&String| words.iter().any(|word| field.to_lowercase().contains(word));
-    let field = fields.iter().find(like)?;
-    Some(match column {
-        "t" => format!("if '{}' is the time, name it t, in seconds", short(field)),
+    let names: Vec<_> = layout.names.iter().map(|name| short(name)).collect();
+    let all = names.join("; ");
+    let shown: String = all.chars().take(SHOWN).collect();
+    let more = if shown.len() < all.len() { " ..." } else { "" };
+    match number {
+        0 | 1 => format!("found: '{shown}{more}'"),
         _ => format!(
-            "if '{}' is the encoder, name it {column}, in counts",
-            short(field)
+            "found: {shown}{more}, separated by {}",
+            layout.separator.name()
         ),
-    })
+    }
+}
+
+/// Options that would read the log.
+fn hint(layout: &Layout) -> String {
+    if layout.names.iter().all(String::is_empty) {
+        return "the file has no names of columns; write t,counts_large in its first line"
+            .to_owned();
+    }
+    if !layout.has_header() {
+        return "give the numbers of the columns, for example --column t=1:s,counts_large=2:counts"
+            .to_owned();
+    }
+    let guess = |column: Column, words: &[&str], place: &str| {
+        let own = |name: &&String| name.as_str() == column.name();
+        let lower = |name: &&String| name.to_lowercase() == column.name();
+        let like = |name: &&String| {
+            let name = name.to_lowercase();
+            words.iter().any(|word| name.contains(word))
+        };
+        let mut names = layout.names.iter();
+        let here = names
+            .clone()
+            .find(own)
+            .or_else(|| names.clone().find(lower));
+        let theirs = here.or_else(|| names.find(like)).map(|name| short(name));
+        let theirs = theirs.unwrap_or_else(|| place.to_owned());
+        let quantity = column.quantity();
+        let unit = match quantity.suffix(&theirs) {
+            // The end of the name says the unit.
+            Some(_) => String::new(),
+            None => format!(":{}", quantity_example(quantity)),
+        };
+        let ours = column.name();
+        match theirs == ours {
+            true => None,
+            false => Some(format!("{ours}={theirs}{unit}")),
+        }
+    };
+    let parts: Vec<_> = [
+        guess(Column::T, &["time", "stamp", "sec", "ms"], "TIME"),
+        guess(
+            Column::CountsLarge,
+            &["count", "enc", "pos", "angle", "theta"],
+            "POSITION",
+        ),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    format!(
+        "name the columns and units, for example --column '{}'",
+        parts.join(",")
+    )
+}
+
+const fn quantity_example(quantity: Quantity) -> &'static str {
+    quantity.units()[0].name()
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::Recording;
 
+    fn error(text: &str) -> String {
+        let error = Recording::parse(text.as_bytes(), "r.csv").unwrap_err();
+        error.to_string()
+    }
+
     #[test]
-    fn error_shows_the_header_and_a_hint() {
+    fn error_shows_the_header_and_the_option_that_reads_it() {
         for (text, said) in [
             (
-                "t;counts_large\n0;1\n",
-                "the line is 't;counts_large' (separated by ';'?)",
+                "time_ms;angle_deg\n0;1\n1;2\n",
+                "line 1: no column t; found: time_ms; angle_deg, separated by ';'; name the columns and \
+                 units, for example --column 't=time_ms,counts_large=angle_deg'",
             ),
-            ("", "the line is '' (empty)"),
-            ("t\tcounts_large\n0\t1\n", r"separated by '\t'?"),
-            ("# my log\nt,counts_large\n", "remove the comment"),
-            ("T,counts_large\n0,1\n", "'T' must be in lower case"),
+            (
+                "",
+                "no column t; found: ''; the file has no names of columns",
+            ),
+            (
+                "T,counts_large\n0,1\n",
+                "found: T; counts_large, separated by ','; name the columns and units, for example \
+                 --column 't=T:s'",
+            ),
             (
                 "t,Counts_Large\n0,1\n",
-                "'Counts_Large' must be in lower case",
-            ),
-            ("0,1\n0.1,2\n", "these are numbers"),
-            (
-                "time_ms,counts_large\n0,1\n",
-                "if 'time_ms' is the time, name it t, in seconds",
+                "no column counts_large; found: t; Counts_Large, separated by ','; name the columns and \
+                 units, for example --column 'counts_large=Counts_Large:counts'",
             ),
             (
-                "t,angle_deg\n0,1\n",
-                "if 'angle_deg' is the encoder, name it counts_large",
+                "0,1\n0.1,2\n",
+                "no column t; there are no names but 2 columns of numbers, separated by ','; give the \
+                 numbers of the columns, for example --column t=1:s,counts_large=2:counts",
+            ),
+            (
+                "# a log\nsome text\n\nstamp angle\n0 1\n1 2\n",
+                "line 4: no column t; found: stamp; angle, separated by spaces; name the columns and \
+                 units, for example --column 't=stamp:s,counts_large=angle:counts'",
+            ),
+            (
+                "a,b\n1,2\n",
+                "for example --column 't=TIME:s,counts_large=POSITION:counts'",
             ),
         ] {
-            let error = Recording::parse(text.as_bytes(), "r.csv")
-                .unwrap_err()
-                .to_string();
-            assert!(error.starts_with("r.csv: line 1: no column "), "{error}");
+            let error = error(text);
+            assert!(error.starts_with("r.csv: line "), "{error}");
             assert!(error.contains(said), "{text:?}: {error}");
         }
+    }
+
+    #[test]
+    fn error_names_the_known_logs() {
+        let error = error("a,b\n1,2\n");
+        for name in ["moteus", "ODrive", "VESC Tool", "SimpleFOC", "PlotJuggler"] {
+            assert!(error.contains(name), "{name}: {error}");
+        }
+    }
+
+    #[test]
+    fn long_names_and_headers_are_shortened() {
+        let text = format!("{},{}\n1,2\n", "x".repeat(500), "y".repeat(500));
+        let error = error(&text);
+        assert!(error.len() < 600, "{}", error.len());
+        assert!(!error.contains(&"x".repeat(31)), "{error}");
     }
 }

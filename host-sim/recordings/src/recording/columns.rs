@@ -1,0 +1,291 @@
+//! Columns of a recording while it is read.
+
+use estimator_core::Count;
+use simulation::trace::{EDGE_CLOCK_HZ, EdgeStamp, Trace};
+use terminal::failure::Failure;
+
+use super::layout::{Layout, Place, Places};
+use super::lines::LineNumbers;
+use super::options::{Column, ReadOptions};
+use super::row::Row;
+use super::units::Scale;
+use super::{Recording, absolute, clock};
+
+/// Distance from a whole count from which positions are reported as rounded.
+const ROUNDED: f64 = 0.25;
+
+/// The columns that are read, and their rows so far.
+pub(super) struct Columns<'a> {
+    options: &'a ReadOptions,
+    places: [Option<Place>; Column::ALL.len()],
+    /// Whether a row without a position is left out.
+    sparse: bool,
+    t: Vec<f64>,
+    lines: LineNumbers,
+    counts_large: Encoder,
+    counts_small: Encoder,
+    current: Vec<f64>,
+    current_small: Vec<f64>,
+    edges: Vec<Option<EdgeStamp>>,
+    true_omega: Vec<f64>,
+    /// Number of rows left out.
+    left_out: usize,
+}
+
+/// Counts of an encoder.
+#[derive(Default)]
+struct Encoder {
+    counts: Vec<u32>,
+    /// The reading of the latest row: counts before they are unwrapped.
+    raw: i64,
+    /// Largest distance of a position from a whole count.
+    rounded: f64,
+}
+
+impl<'a> Columns<'a> {
+    pub(super) fn new(places: &Places, options: &'a ReadOptions) -> Self {
+        Self {
+            options,
+            places: Column::ALL.map(|column| places.get(column)),
+            sparse: places.format.is_some_and(|format| format.sparse),
+            t: Vec::new(),
+            lines: LineNumbers::default(),
+            counts_large: Encoder::default(),
+            counts_small: Encoder::default(),
+            current: Vec::new(),
+            current_small: Vec::new(),
+            edges: Vec::new(),
+            true_omega: Vec::new(),
+            left_out: 0,
+        }
+    }
+
+    fn place(&self, column: Column) -> Option<Place> {
+        self.places[column as usize]
+    }
+
+    /// Adds a row.
+    pub(super) fn take(&mut self, row: &Row) -> Result<(), Failure> {
+        if let (true, Some(at)) = (self.sparse, self.place(Column::CountsLarge))
+            && row.text(Column::CountsLarge.name(), at.place)?.is_empty()
+        {
+            self.left_out += 1;
+            return Ok(());
+        }
+        let t = self.time(row)?;
+        if let Some(last) = self.t.last().filter(|last| t < **last) {
+            return Err(row.failure("t", &format!("{t} s is before the {last} s above it")));
+        }
+        self.t.push(t);
+        self.lines.push(row.line);
+        let options = self.options;
+        if let Some(at) = self.place(Column::CountsLarge) {
+            self.counts_large.take(row, at, options, 0)?;
+        }
+        if let Some(at) = self.place(Column::CountsSmall) {
+            self.counts_small.take(row, at, options, 1)?;
+        }
+        if let Some(at) = self.place(Column::Current) {
+            self.current
+                .push(scaled(row, at, options.torque_constant[0])?);
+        }
+        if let Some(at) = self.place(Column::CurrentSmall) {
+            self.current_small
+                .push(scaled(row, at, options.torque_constant[1])?);
+        }
+        if let (Some(tick), Some(bound)) =
+            (self.place(Column::EdgeTick), self.place(Column::EdgeBound))
+        {
+            self.edges.push(self.edge(row, tick, bound, t)?);
+        }
+        if let Some(at) = self.place(Column::TrueOmega) {
+            self.true_omega.push(scaled(row, at, 1.0)?);
+        }
+        Ok(())
+    }
+
+    fn time(&self, row: &Row) -> Result<f64, Failure> {
+        match (self.options.row_rate_hz, self.place(Column::T)) {
+            (None, Some(at)) => scaled(row, at, 1.0),
+            (rate_hz, _) => Ok(self.t.len() as f64 / rate_hz.unwrap_or(1.0)),
+        }
+    }
+
+    /// The latest edge; `None` if both fields are empty, before the first edge.
+    fn edge(
+        &self,
+        row: &Row,
+        tick: Place,
+        bound: Place,
+        now: f64,
+    ) -> Result<Option<EdgeStamp>, Failure> {
+        let text = |at: Place| row.text(at.column.name(), at.place);
+        if text(tick)?.is_empty() && text(bound)?.is_empty() {
+            return Ok(None);
+        }
+        let age_s = now - scaled(row, tick, 1.0)? / EDGE_CLOCK_HZ;
+        let boundary = row.count(bound.column.name(), bound.place)?;
+        let large = &self.counts_large;
+        Ok(Some(EdgeStamp {
+            // `t` has fewer digits than the stamp, so an edge at the tick can appear after it.
+            age_s: age_s.max(0.0),
+            boundary: match self.options.modulus[0] {
+                None => boundary as u32,
+                Some(modulus) => {
+                    let away = absolute::centred(boundary - large.raw, modulus);
+                    large
+                        .counts
+                        .last()
+                        .map_or(0, |count| count.wrapping_add(away as u32))
+                }
+            },
+        }))
+    }
+
+    /// The recording of the rows so far.
+    pub(super) fn into_recording(
+        self,
+        name: &str,
+        places: &Places,
+        layout: &Layout,
+    ) -> Result<Recording, Failure> {
+        let (rate_hz, uneven_steps) = clock::rate(&self.t, name)?;
+        let mut notes = Vec::new();
+        notes.extend(self.sources(places, layout));
+        if self.left_out > 0 {
+            notes.push(format!(
+                "{} rows without a position are left out",
+                self.left_out
+            ));
+        }
+        for (encoder, column, motor) in [
+            (&self.counts_large, Column::CountsLarge, 0),
+            (&self.counts_small, Column::CountsSmall, 1),
+        ] {
+            notes.extend(encoder.note(column.name(), self.options.counts_per_rev[motor]));
+        }
+        notes.extend(clock::missing_rows(&self.t, rate_hz, &self.lines));
+        let has = |column: Column| self.places[column as usize].is_some();
+        Ok(Recording {
+            uneven_steps,
+            current_small: has(Column::CurrentSmall).then_some(self.current_small),
+            trace: Trace {
+                rate_hz,
+                counts_large: self.counts_large.counts,
+                counts_small: has(Column::CountsSmall).then_some(self.counts_small.counts),
+                current: has(Column::Current).then_some(self.current),
+                edges: has(Column::EdgeTick).then_some(self.edges),
+                true_omega: has(Column::TrueOmega).then_some(self.true_omega),
+                true_damping: None,
+            },
+            t: self.t,
+            notes,
+        })
+    }
+
+    /// The columns and units that the recording is read from; `None` if they are its own.
+    fn sources(&self, places: &Places, layout: &Layout) -> Option<String> {
+        let own = |place: &Place| *place.unit == place.column.quantity().units()[0];
+        if places.format.is_none() && places.all().iter().all(own) {
+            return None;
+        }
+        let [counts_large, counts_small] = self.options.counts_per_rev;
+        let [kt_large, kt_small] = self.options.torque_constant;
+        let small = |column| matches!(column, Column::CountsSmall | Column::CurrentSmall);
+        let part = |place: &Place| {
+            let counts = if small(place.column) {
+                counts_small
+            } else {
+                counts_large
+            };
+            let kt = if small(place.column) {
+                kt_small
+            } else {
+                kt_large
+            };
+            let with = match place.unit.scale {
+                Scale::PerRev(_) => format!(" with {counts} counts/rev"),
+                Scale::Torque => format!(" with {kt} N.m/A"),
+                _ => String::new(),
+            };
+            let (name, unit) = (place.column.name(), place.unit.name());
+            let theirs = match layout.has_header() {
+                true => format!("'{}'", layout.names[place.place].escape_debug()),
+                false => format!("column {}", place.place + 1),
+            };
+            format!("{name} from {theirs} ({unit}{with})")
+        };
+        let parts: Vec<_> = places.all().iter().map(part).collect();
+        let log = places.format.map_or_else(String::new, |format| {
+            format!("read as a log of {}: ", format.name)
+        });
+        Some(format!("{log}{}", parts.join(", ")))
+    }
+}
+
+impl Encoder {
+    fn take(
+        &mut self,
+        row: &Row,
+        at: Place,
+        options: &ReadOptions,
+        motor: usize,
+    ) -> Result<(), Failure> {
+        let column = at.column.name();
+        let raw = match at.unit.scale {
+            Scale::PerRev(per_rev) => {
+                let position = row.number(column, at.place)?;
+                let exact = position * f64::from(options.counts_per_rev[motor]) / per_rev;
+                if exact.abs() > 9e15 {
+                    return Err(row.failure(column, &format!("{position} is too far from zero")));
+                }
+                let whole = (exact + 0.5).floor();
+                self.rounded = self.rounded.max((exact - whole).abs());
+                whole as i64
+            }
+            _ => row.count(column, at.place)?,
+        };
+        self.raw = raw;
+        let count = match options.modulus[motor] {
+            None => raw as u32,
+            Some(modulus) => {
+                let within = -i64::from(modulus) <= raw && raw < i64::from(modulus);
+                let reading = raw.rem_euclid(i64::from(modulus)) as u32;
+                let last = self.counts.last().map_or(reading, |last| *last);
+                let next = Count(last).wrapped(reading, modulus);
+                let refused = |why: &str| {
+                    row.failure(column, &format!("{raw} with --modulus {modulus}: {why}"))
+                };
+                if !within {
+                    return Err(refused("raw must be below modulus"));
+                }
+                next.map_err(|error| refused(error.message()))?.0
+            }
+        };
+        self.counts.push(count);
+        Ok(())
+    }
+
+    fn note(&self, column: &str, counts_per_rev: u32) -> Option<String> {
+        (self.rounded > ROUNDED).then(|| {
+            format!(
+                "{column}: positions are up to {:.2} counts from a whole count with {counts_per_rev} \
+                 counts/rev and are rounded to the nearest; if the encoder has more counts, give them \
+                 with --device",
+                self.rounded
+            )
+        })
+    }
+}
+
+/// A number in the unit of the recording; `torque_constant` converts torques.
+fn scaled(row: &Row, at: Place, torque_constant: f64) -> Result<f64, Failure> {
+    let number = row.number(at.column.name(), at.place)?;
+    Ok(match at.unit.scale {
+        Scale::Over(by) => number / by,
+        Scale::Times(by) => number * by,
+        Scale::Torque => number / torque_constant,
+        // Positions are read as counts.
+        Scale::Counts | Scale::PerRev(_) => number,
+    })
+}

@@ -1,0 +1,254 @@
+//! Logs of other programs, which are read by their own column names.
+
+use super::options::Column;
+
+/// A part of a header that is the name of a column.
+#[derive(Clone, Copy, Debug)]
+enum Called {
+    /// The whole name.
+    Name(&'static str),
+    /// The end of a longer name; only one column of a log may end so.
+    End(&'static str),
+}
+
+use Called::{End, Name};
+
+/// A column of a foreign log.
+#[derive(Clone, Copy, Debug)]
+struct Foreign {
+    column: Column,
+    called: Called,
+    unit: &'static str,
+}
+
+const fn foreign(column: Column, called: Called, unit: &'static str) -> Foreign {
+    Foreign {
+        column,
+        called,
+        unit,
+    }
+}
+
+/// The log of another program.
+#[derive(Debug)]
+pub(super) struct Format {
+    /// Name in messages.
+    pub(super) name: &'static str,
+    /// A column that distinguishes this log; any name fits where it is empty.
+    mark: &'static str,
+    /// Its columns, the preferred one first where several measure the same.
+    columns: &'static [Foreign],
+    /// Whether a row without the position is left out, because each row has the columns that changed.
+    pub(super) sparse: bool,
+    /// Where the names of the columns come from.
+    pub(super) source: &'static str,
+}
+
+/// The known logs. A header belongs to the first one whose mark, time and position it has.
+pub(super) const FORMATS: &[Format] = &[
+    Format {
+        name: "moteus",
+        mark: "q_A",
+        columns: &[
+            foreign(Column::T, Name("timestamp"), "s"),
+            foreign(Column::CountsLarge, Name("position"), "rev"),
+            foreign(Column::Current, Name("q_A"), "A"),
+        ],
+        sparse: false,
+        source: "mjbots/moteus, utils/gui/moteus_gui/tview.py (log as CSV or JSONL) and \
+                 fw/bldc_servo_structs.h (channel servo_stats)",
+    },
+    Format {
+        name: "moteus",
+        mark: "POSITION",
+        columns: &[
+            foreign(Column::T, Name("time"), "s"),
+            foreign(Column::CountsLarge, Name("POSITION"), "rev"),
+            foreign(Column::Current, Name("Q_CURRENT"), "A"),
+        ],
+        sparse: false,
+        source: "mjbots/moteus, lib/python/examples/csv_output.py (names of moteus.Register)",
+    },
+    Format {
+        name: "ODrive",
+        mark: "",
+        columns: &[
+            foreign(Column::T, Name("time"), "s"),
+            foreign(Column::CountsLarge, End("encoder.shadow_count"), "counts"),
+            foreign(Column::CountsLarge, End("encoder.pos_estimate"), "rev"),
+            foreign(Column::CountsLarge, End("pos_vel_mapper.pos_rel"), "rev"),
+            foreign(Column::Current, End("Iq_measured"), "A"),
+        ],
+        sparse: false,
+        source: "odriverobotics/ODrive, GUI/src/components/plots/Plot.vue (Export) and \
+                 Firmware/odrive-interface.yaml",
+    },
+    Format {
+        name: "VESC Tool",
+        mark: "ms_today",
+        columns: &[
+            foreign(Column::T, Name("ms_today"), "ms"),
+            foreign(Column::CountsLarge, Name("encoder_position"), "deg"),
+            foreign(Column::Current, Name("q_axis_current"), "A"),
+        ],
+        sparse: false,
+        source: "vedderb/vesc_tool, vescinterface.cpp (log of real-time data)",
+    },
+    Format {
+        name: "PlotJuggler",
+        mark: "",
+        columns: &[
+            foreign(Column::T, Name("__time"), "s"),
+            foreign(Column::T, Name("time"), "s"),
+            foreign(Column::CountsLarge, End("/position"), "rad"),
+            foreign(Column::Current, End("/effort"), "nm"),
+        ],
+        sparse: true,
+        source: "facontidavide/PlotJuggler, plotjuggler_plugins/ToolboxCSV and datasamples/turtle.csv; \
+                 position (rad) and effort (N.m) are those of the ROS message JointState",
+    },
+];
+
+/// The output of `motor.monitor()` of SimpleFOC: numbers separated by tabs, without names or time.
+pub(super) const SIMPLEFOC: Format = Format {
+    name: "SimpleFOC",
+    mark: "",
+    columns: &[
+        foreign(Column::CountsLarge, Name("angle"), "rad"),
+        foreign(Column::Current, Name("current.q"), "mA"),
+    ],
+    sparse: false,
+    source: "simplefoc/Arduino-FOC, src/common/base_classes/FOCMotor.cpp (monitor)",
+};
+
+/// Names of the columns of [`SIMPLEFOC`] by their number: the default variables, and all of them.
+pub(super) const SIMPLEFOC_COLUMNS: [&[&str]; 2] = [
+    &["target", "voltage.q", "velocity", "angle"],
+    &[
+        "target",
+        "voltage.q",
+        "voltage.d",
+        "current.q",
+        "current.d",
+        "velocity",
+        "angle",
+    ],
+];
+
+/// A column of a known log in a header.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Found {
+    pub(super) column: Column,
+    /// Its place in the header.
+    pub(super) place: usize,
+    pub(super) unit: &'static str,
+}
+
+/// A known log, for lists in the documentation.
+#[derive(Clone, Debug)]
+pub struct KnownLog {
+    /// Name of the program.
+    pub name: &'static str,
+    /// Each column that is read: the project's name, the log's name and its unit. A log's name that
+    /// begins with `...` is the end of a longer name.
+    pub columns: Vec<[String; 3]>,
+    /// Where the names come from.
+    pub source: &'static str,
+}
+
+/// The logs of other programs that are read by their own column names.
+#[must_use]
+pub fn known_logs() -> Vec<KnownLog> {
+    let column = |foreign: &Foreign| {
+        let theirs = match foreign.called {
+            Name(name) => name.to_owned(),
+            End(end) => format!("...{end}"),
+        };
+        [
+            foreign.column.name().to_owned(),
+            theirs,
+            foreign.unit.to_owned(),
+        ]
+    };
+    let known = |format: &'static Format| KnownLog {
+        name: format.name,
+        columns: format.columns.iter().map(column).collect(),
+        source: format.source,
+    };
+    Format::all().map(known).collect()
+}
+
+impl Format {
+    /// Every known log.
+    pub(super) fn all() -> impl Iterator<Item = &'static Self> {
+        FORMATS.iter().chain(std::iter::once(&SIMPLEFOC))
+    }
+
+    /// The log with this header.
+    pub(super) fn of(header: &[String]) -> Option<&'static Self> {
+        FORMATS.iter().find(|format| {
+            let has = |column| {
+                format
+                    .find(header)
+                    .iter()
+                    .any(|found| found.column == column)
+            };
+            let marked = format.mark.is_empty() || header.iter().any(|name| name == format.mark);
+            marked && has(Column::T) && has(Column::CountsLarge)
+        })
+    }
+
+    /// The columns of this log in `header`.
+    pub(super) fn find(&self, header: &[String]) -> Vec<Found> {
+        let mut found: Vec<Found> = Vec::new();
+        for foreign in self.columns {
+            let here = |name: &String| match foreign.called {
+                Name(whole) => name == whole,
+                End(end) => name.ends_with(end),
+            };
+            let mut places = (0..header.len()).filter(|&place| here(&header[place]));
+            let known = found.iter().any(|found| found.column == foreign.column);
+            if let (Some(place), None, false) = (places.next(), places.next(), known) {
+                found.push(Found {
+                    column: foreign.column,
+                    place,
+                    unit: foreign.unit,
+                });
+            }
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_unit_of_a_known_log_is_a_unit() {
+        for format in Format::all() {
+            assert!(format.source.contains('/'), "{}", format.name);
+            for foreign in format.columns {
+                let unit = foreign.column.quantity().unit(foreign.unit);
+                assert!(unit.is_some(), "{} {foreign:?}", format.name);
+            }
+        }
+    }
+
+    #[test]
+    fn ambiguous_columns_are_not_chosen() {
+        let header = |names: &[&str]| {
+            names
+                .iter()
+                .map(|name| (*name).to_owned())
+                .collect::<Vec<_>>()
+        };
+        let one = header(&["__time", "/joints/a/position", "/joints/a/velocity"]);
+        assert_eq!(
+            Format::of(&one).map(|format| format.name),
+            Some("PlotJuggler")
+        );
+        let two = header(&["__time", "/joints/a/position", "/joints/b/position"]);
+        assert!(Format::of(&two).is_none());
+    }
+}

@@ -1,0 +1,130 @@
+//! The rows of a log: text with separators, or one JSON object a line.
+
+use std::io::{BufReader, Cursor, Read};
+
+use csv::ByteRecord;
+
+use terminal::failure::Failure;
+
+use super::json::{self, Json};
+use super::layout::Layout;
+use super::options::ReadOptions;
+use super::row::Row;
+use super::separator::{Lines, Separator};
+
+/// Bytes at the begin of a log in which its layout is searched.
+const HEAD: u64 = 1 << 16;
+
+const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
+
+type Input<'a> = BufReader<Box<dyn Read + 'a>>;
+
+enum Source<'a> {
+    Text(csv::Reader<Lines<Input<'a>>>),
+    Json(Json<Input<'a>>),
+}
+
+/// The rows of the log called `name` in messages.
+pub(super) struct Records<'a> {
+    name: &'a str,
+    source: Source<'a>,
+    pub(super) layout: Layout,
+    record: ByteRecord,
+}
+
+impl<'a> Records<'a> {
+    /// Reads the begin of a log.
+    pub(super) fn open(
+        mut input: impl Read + 'a,
+        name: &'a str,
+        options: &ReadOptions,
+    ) -> Result<Self, Failure> {
+        let mut head = Vec::new();
+        let read = input.by_ref().take(HEAD).read_to_end(&mut head);
+        read.map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
+        if head.starts_with(b"\xFF\xFE") || head.starts_with(b"\xFE\xFF") {
+            return Err(Failure::Input(format!(
+                "{name}: line 1: the text is in UTF-16; save it in UTF-8"
+            )));
+        }
+        if head.starts_with(BYTE_ORDER_MARK) {
+            head.drain(..BYTE_ORDER_MARK.len());
+        }
+        // Lines end with a carriage return alone only where there is no line feed.
+        let end = if head.contains(&b'\n') { b'\n' } else { b'\r' };
+        let text = String::from_utf8_lossy(&head).replace(char::from(end), "\n");
+        let is_json = text.trim_start().starts_with('{');
+        let layout = match is_json {
+            true => Layout {
+                separator: Separator::Comma,
+                names: json::names(&text),
+                line: 1,
+                skip: 0,
+            },
+            false => Layout::of(&text, options),
+        };
+        let input: Box<dyn Read> = Box::new(Cursor::new(head).chain(input));
+        let input = BufReader::with_capacity(1 << 16, input);
+        let source = match is_json {
+            true => Source::Json(Json::new(input)),
+            false => Source::Text(
+                csv::ReaderBuilder::new()
+                    .has_headers(false)
+                    .flexible(true)
+                    .delimiter(layout.separator.byte())
+                    .from_reader(Lines::new(input, layout.separator, layout.skip, end)),
+            ),
+        };
+        Ok(Self {
+            name,
+            source,
+            layout,
+            record: ByteRecord::new(),
+        })
+    }
+
+    /// The next row.
+    pub(super) fn next(&mut self) -> Result<Option<Row<'_>>, Failure> {
+        let line = match &mut self.source {
+            Source::Json(json) => json.read(&self.layout.names, &mut self.record, self.name)?,
+            Source::Text(reader) => {
+                let read = reader.read_byte_record(&mut self.record);
+                let read = read.map_err(|error| {
+                    let line = error.position().map_or(1, csv::Position::line);
+                    Failure::Input(format!("{}: line {line}: cannot read: {error}", self.name))
+                })?;
+                // The reader is at the begin of the next line.
+                read.then(|| reader.position().line() - 1)
+            }
+        };
+        let Some(line) = line else {
+            return Ok(None);
+        };
+        let (fields, names) = (self.record.len(), self.layout.names.len());
+        let ends_with_separator = fields == names + 1 && self.record[names].trim_ascii().is_empty();
+        if fields != names && !ends_with_separator {
+            return Err(Failure::Input(self.ragged(line, fields)));
+        }
+        Ok(Some(Row {
+            name: self.name,
+            line,
+            record: &self.record,
+            decimal_comma: self.layout.separator.allows_decimal_comma(),
+        }))
+    }
+
+    fn ragged(&self, line: u64, fields: usize) -> String {
+        let (name, names) = (self.name, self.layout.names.len());
+        let model = match self.layout.line {
+            0 => "the first row".to_owned(),
+            1 => "the first line".to_owned(),
+            line => format!("the header in line {line}"),
+        };
+        let commas = self.layout.separator == Separator::Comma && fields > names;
+        let remedy = match commas {
+            true => "; numbers with a decimal comma need another separator than a comma",
+            false => "; remove the line if the log was cut there",
+        };
+        format!("{name}: line {line}: {fields} fields where {model} has {names}{remedy}")
+    }
+}
