@@ -256,7 +256,7 @@ fn columns_and_units_that_were_converted_are_reported() {
             "moteus-tview.csv",
             "",
             "read as a log of moteus: t from 'timestamp' (s), counts_large from 'position' (rev with 4096 \
-             counts/rev), current from 'q_A' (a)",
+             counts/rev), current from 'q_A' (A)",
         ),
         (
             "vesc-tool.csv",
@@ -276,7 +276,7 @@ fn columns_and_units_that_were_converted_are_reported() {
         (
             "plotjuggler.csv",
             "",
-            "current from '/joint_states/handle/effort' (nm with 0.",
+            "current from '/joint_states/handle/effort' (N.m with 0.",
         ),
         (
             "plotjuggler.csv",

@@ -1,5 +1,5 @@
 //! Lists in docs/ that nobody writes by hand: the pages of estimators, from the pages themselves; the
-//! scenarios and the scores, from their rows.
+//! scenarios, the scores and the known logs, from their rows.
 //!
 //! `UPDATE_GOLDEN=1 cargo test --release --package host-sim --test documented lists` writes them. The
 //! page of an estimator has a table with the heading row [`HEAD`].
@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use catalogue::estimators::Kind;
 use measured::block::{Block, markdown};
 use measured::update;
+use recordings::recording::known_logs;
 use scoring::score::Score;
 use simulation::scenario::ScenarioName;
 
@@ -174,4 +175,21 @@ fn every_score_is_in_the_table_of_scores() {
         .collect();
     let table = markdown(&["name in JSON, CSV and options", "definition"], &rows);
     check("docs/theory/scores.md", "scores", &table);
+}
+
+#[test]
+fn every_known_log_is_in_the_table_of_logs() {
+    let row = |log: recordings::recording::KnownLog| {
+        let column =
+            |[ours, theirs, unit]: &[String; 3]| format!("`{ours}` from `{theirs}` ({unit})");
+        let columns: Vec<_> = log.columns.iter().map(column).collect();
+        vec![
+            log.name.to_owned(),
+            columns.join("<br>"),
+            log.source.to_owned(),
+        ]
+    };
+    let rows: Vec<_> = known_logs().into_iter().map(row).collect();
+    let table = markdown(&["program", "columns", "source of the names"], &rows);
+    check("docs/your-log.md", "logs", &table);
 }

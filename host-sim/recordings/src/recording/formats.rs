@@ -81,7 +81,7 @@ pub(super) const FORMATS: &[Format] = &[
         ],
         sparse: false,
         source: "odriverobotics/ODrive, GUI/src/components/plots/Plot.vue (Export) and \
-                 Firmware/odrive-interface.yaml",
+                 Firmware/odrive-interface.yaml; pos_vel_mapper is of firmware 0.6",
     },
     Format {
         name: "VESC Tool",
@@ -101,7 +101,7 @@ pub(super) const FORMATS: &[Format] = &[
             foreign(Column::T, Name("__time"), "s"),
             foreign(Column::T, Name("time"), "s"),
             foreign(Column::CountsLarge, End("/position"), "rad"),
-            foreign(Column::Current, End("/effort"), "nm"),
+            foreign(Column::Current, End("/effort"), "N.m"),
         ],
         sparse: true,
         source: "facontidavide/PlotJuggler, plotjuggler_plugins/ToolboxCSV and datasamples/turtle.csv; \

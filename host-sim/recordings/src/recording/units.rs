@@ -70,9 +70,9 @@ const POSITION: &[Unit] = &[
 ];
 
 const CURRENT: &[Unit] = &[
-    unit(&["a", "amp", "amps", "ampere"], Scale::Over(1.0)),
-    unit(&["ma", "milliamps"], Scale::Over(1e3)),
-    unit(&["nm", "n.m", "n*m"], Scale::Torque),
+    unit(&["A", "amp", "amps", "ampere"], Scale::Over(1.0)),
+    unit(&["mA", "milliamps"], Scale::Over(1e3)),
+    unit(&["N.m", "Nm", "N*m"], Scale::Torque),
 ];
 
 const EDGE: &[Unit] = &[
@@ -108,7 +108,7 @@ impl Quantity {
     /// The unit called `name`, in upper or lower case.
     pub(super) fn unit(self, name: &str) -> Option<&'static Unit> {
         let name = name.to_lowercase();
-        let called = |unit: &&Unit| unit.names.contains(&name.as_str());
+        let called = |unit: &&Unit| unit.names.iter().any(|known| known.to_lowercase() == name);
         self.units().iter().find(called)
     }
 
@@ -128,7 +128,7 @@ mod tests {
     fn units_are_found_by_name_and_at_the_end_of_a_column() {
         let shown = |unit: Option<&Unit>| unit.map(Unit::name);
         assert_eq!(shown(Quantity::Time.unit("MS")), Some("ms"));
-        assert_eq!(shown(Quantity::Current.unit("N.m")), Some("nm"));
+        assert_eq!(shown(Quantity::Current.unit("N.m")), Some("N.m"));
         assert_eq!(shown(Quantity::Time.unit("deg")), None);
         for (quantity, column, unit) in [
             (Quantity::Time, "time_ms", Some("ms")),
@@ -139,8 +139,8 @@ mod tests {
             (Quantity::Position, "joint angle [deg]", Some("deg")),
             (Quantity::Position, "pos_turns", Some("rev")),
             (Quantity::Position, "time_ms", None),
-            (Quantity::Current, "i_mA", Some("ma")),
-            (Quantity::Current, "torque_Nm", Some("nm")),
+            (Quantity::Current, "i_mA", Some("mA")),
+            (Quantity::Current, "torque_Nm", Some("N.m")),
         ] {
             assert_eq!(shown(quantity.suffix(column)), unit, "{column}");
         }
