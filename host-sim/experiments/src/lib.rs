@@ -5,6 +5,7 @@ pub mod closed_loop;
 pub mod compare;
 pub mod identify;
 pub mod limit;
+pub mod real;
 pub mod replay;
 pub mod robust;
 pub mod rows;
