@@ -2,6 +2,7 @@
 
 mod arguments;
 mod closed_loop;
+mod coarsen;
 mod compare;
 mod identify;
 mod input;
@@ -9,6 +10,7 @@ mod limit;
 mod list;
 mod page;
 mod plot;
+mod real;
 mod record;
 mod replay;
 mod report_extras;
@@ -45,6 +47,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         }
         Some(Command::Compare(options)) => compare::run(&options, &command_line),
         Some(Command::Replay(options)) => replay::run(&options),
+        Some(Command::Real(options)) => real::run(&options),
+        Some(Command::Coarsen(options)) => coarsen::run(&options),
         Some(Command::Record(options)) => record::run(&options),
         Some(Command::Plot(options)) => plot::run(&options),
         Some(Command::Identify(options)) => identify::run(&options, &command_line),

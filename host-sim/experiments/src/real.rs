@@ -5,6 +5,11 @@
 //! afterwards in both directions of time, is the truth. [`coarsen`] computes from it what a coarse
 //! encoder on the same shaft would have reported.
 
+pub mod cases;
 pub mod coarsen;
 pub mod fine;
+pub mod pool;
+pub mod rest;
+pub mod run;
 pub mod sources;
+pub mod table;

@@ -41,6 +41,15 @@ pub(super) enum Command {
     #[command(after_help = "Example:
   host-sim replay motor.csv --estimator pll --out velocity.csv")]
     Replay(super::replay::Replay),
+    /// Run the estimators on recordings of real devices with a known velocity and score them
+    #[command(after_help = "Examples:
+  host-sim real
+  host-sim real --counts-per-rev 64,1024,16384 --rate 500,2000 --csv real.csv")]
+    Real(super::real::Real),
+    /// Turn the recording of a fine encoder into what a coarse encoder would have seen
+    #[command(after_help = "Example:
+  host-sim coarsen fine.csv --fine-counts-per-rev 300000 --counts-per-rev 4096 --out coarse.csv")]
+    Coarsen(super::coarsen::Coarsen),
     /// Convert the firmware's telemetry to a recording (CSV)
     #[command(after_help = "Example:
   host-sim record firmware.log --out motor.csv")]
@@ -279,7 +288,7 @@ mod tests {
                 texts.push((command.get_name().to_owned(), help));
             }
         }
-        assert_eq!(texts.len(), 16);
+        assert_eq!(texts.len(), 18);
         for (name, help) in texts {
             let examples = examples(&help);
             assert!(!examples.is_empty(), "{name}: {help}");

@@ -6,6 +6,7 @@ mod escaping;
 mod identify;
 mod logs;
 mod output;
+mod real;
 mod recordings;
 mod refusals;
 mod replay;
@@ -106,6 +107,8 @@ fn help_names_every_command() {
         "plot",
         "identify",
         "simulate",
+        "coarsen",
+        "real",
         "tune",
         "sensitivity",
         "limit",

@@ -1,0 +1,134 @@
+//! `host-sim real`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use experiments::real::cases::Recordings;
+use experiments::real::run::{Row, Settings, run as run_all};
+use experiments::real::table::table;
+use experiments::rows::{csv, json};
+use experiments::table::layout::terminal_width;
+use terminal::failure::Failure;
+use terminal::output::{is_stdout, print_bytes, write_whole};
+
+use super::arguments::{DeviceFile, ParameterOptions, kinds, rates};
+use super::coarsen::{phase, rate, seconds};
+use super::page::{self, one_to_stdout, progress};
+
+/// Default folder of the recordings.
+const DATA: &str = "tests/data/real";
+
+/// Default phases: two, so that no result depends on where a boundary lies.
+const PHASES: [f64; 2] = [0.37, 0.81];
+
+#[derive(Debug, Args)]
+pub(super) struct Real {
+    /// Folder of the recordings with its list recordings.toml
+    #[arg(long, value_name = "DIR", default_value = DATA)]
+    data: PathBuf,
+    /// Counts per revolution to which recordings of a fine encoder are coarsened, a comma between
+    /// two; those of a coarse encoder keep their own
+    #[arg(long, value_name = "C,...", value_delimiter = ',', default_value = "4096",
+        value_parser = clap::value_parser!(u32).range(16..=4_000_000))]
+    counts_per_rev: Vec<u32>,
+    /// Rate of the ticks, 10 to 100000 Hz, a comma between two; recordings of a coarse encoder run at
+    /// their own rate only
+    #[arg(
+        long,
+        value_name = "HZ,...",
+        value_delimiter = ',',
+        default_value = "1000",
+        allow_negative_numbers = true
+    )]
+    rate: Vec<f64>,
+    /// Positions of the coarse encoder's boundaries, coarse counts, a comma between two; scores are
+    /// means over them [default: 0.37,0.81]
+    #[arg(
+        long,
+        value_name = "COUNTS,...",
+        value_delimiter = ',',
+        allow_negative_numbers = true
+    )]
+    phase: Vec<f64>,
+    /// Part of each recording that is used, s from its start
+    #[arg(
+        long,
+        value_name = "S",
+        default_value_t = 10.0,
+        allow_negative_numbers = true
+    )]
+    seconds: f64,
+    /// Estimator to run, see host-sim estimators; repeatable [default: all]
+    #[arg(long = "estimator", value_name = "NAME")]
+    estimators: Vec<String>,
+    /// Print every score on each recording
+    #[arg(long)]
+    details: bool,
+    #[command(flatten)]
+    device: DeviceFile,
+    #[command(flatten)]
+    parameters: ParameterOptions,
+    /// Write the scores of each run as JSON to FILE; - is standard output, which then has nothing else
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Write the scores of each run as CSV to FILE; - is standard output, which then has nothing else
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+}
+
+pub(super) fn run(options: &Real) -> Result<(), Failure> {
+    one_to_stdout(&[("--json", &options.json), ("--csv", &options.csv)])?;
+    let settings = settings(options)?;
+    let recordings = Recordings::read(&options.data, settings.seconds)?;
+    let cases = recordings.cases(&settings);
+    if cases.is_empty() {
+        return Err(Failure::Input(format!(
+            "{}: no recording has these rates and resolves these counts per revolution; ask for a \
+             lower --rate or --counts-per-rev",
+            options.data.display()
+        )));
+    }
+    let bar = progress(cases.len(), "estimating");
+    let outcomes = run_all(&recordings, &cases, &settings, |_| false, || bar.inc(1))?;
+    bar.finish_and_clear();
+
+    let rows: Vec<Row> = outcomes
+        .into_iter()
+        .flat_map(|outcome| outcome.rows)
+        .collect();
+    let names: Vec<_> = settings.estimators.iter().map(|kind| kind.name).collect();
+    let text = table(&rows, &names, options.details, terminal_width());
+    if let Some(path) = &options.csv {
+        let bytes = csv(&rows)?;
+        match is_stdout(path) {
+            true => return print_bytes(&bytes),
+            false => write_whole(path, &bytes)?,
+        }
+    }
+    page::print(options.json.as_deref(), &json(&rows)?, &text)
+}
+
+fn settings(options: &Real) -> Result<Settings, Failure> {
+    let rates = rates(&options.rate, &[]);
+    rates.iter().try_for_each(|hz| rate(*hz).map(drop))?;
+    options
+        .phase
+        .iter()
+        .try_for_each(|counts| phase(*counts).map(drop))?;
+    let mut counts_per_rev = options.counts_per_rev.clone();
+    counts_per_rev.dedup();
+    Ok(Settings {
+        estimators: kinds(&options.estimators)?,
+        parameters: options.parameters.load()?,
+        device: options.device.load()?,
+        counts_per_rev,
+        rates_hz: rates,
+        phases: if options.phase.is_empty() {
+            PHASES.to_vec()
+        } else {
+            options.phase.clone()
+        },
+        seconds: seconds(options.seconds)?,
+    })
+}

@@ -1,0 +1,176 @@
+//! `real` and `coarsen`: recordings of a fine encoder as estimators of a coarse one see them.
+
+use std::process::Command;
+
+use crate::{Folder, json};
+
+/// The shipped recordings.
+const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real");
+
+/// A list with one fine recording `f.csv` of 100 000 counts per revolution.
+const LIST: &str =
+    "[[recording]]\nfile = 'f.csv'\nwhat = 'x'\nkind = 'fine'\ncounts_per_rev = 100000\n";
+
+/// 1 s at 2 kHz: rest for 0.5 s, then 5 rad/s. A revolution has 100 000 counts.
+fn fine() -> String {
+    let mut text = String::from("time_s,fine_count,true_omega_rad_s\n");
+    for k in 0..=2000 {
+        let (moving, omega) = if k > 1000 { (k - 1000, 5.0) } else { (0, 0.0) };
+        let angle = 5.0 * f64::from(moving) * 0.5e-3;
+        let count = (angle / std::f64::consts::TAU * 1e5).floor();
+        text += &format!("{},{count},{omega}\n", f64::from(k) * 0.5e-3);
+    }
+    text
+}
+
+#[test]
+fn coarse_recording_has_the_scores_of_real_in_replay() {
+    let folder = Folder::new("coarsen");
+    let source = format!("{DATA}/tue-q1c-free-motion.csv.gz");
+    let coarsen = "--counts-per-rev 1024 --rate 2000 --phase 0.25 --seconds 2 --out c.csv";
+    let coarsen: Vec<_> = coarsen.split(' ').collect();
+    folder.good(&[&["coarsen", &source], &coarsen[..]].concat());
+    folder.write("d.toml", "[large]\ncounts_per_rev = 1024\n");
+    let replay = "replay c.csv --device d.toml --json -";
+    let replay = json(&folder.good(&replay.split(' ').collect::<Vec<_>>()));
+    let real = "--counts-per-rev 1024 --rate 2000 --phase 0.25 --seconds 2 --json -";
+    let real: Vec<_> = real.split(' ').collect();
+    let real = json(&folder.good(&[&["real", "--data", DATA], &real[..]].concat()));
+    let of = |row: &&serde_json::Value| row["recording"] == "tue-q1c-free-motion";
+    let real: Vec<_> = real.iter().filter(of).collect();
+    assert!(real.len() > 10 && real.len() == replay.len());
+    for (real, replay) in real.iter().zip(&replay) {
+        assert_eq!(real["estimator"], replay["estimator"]);
+        for score in ["rms_rad_s", "rms_pct", "p99_rad_s"] {
+            let [a, b] = [real, replay].map(|row| row[score].as_f64().unwrap());
+            // The file has edges on an 84 MHz clock, 12 ns apart.
+            assert!((a - b).abs() < 1e-3 * b.abs(), "{score}: {real} {replay}");
+        }
+    }
+}
+
+#[test]
+fn errors_at_constant_speed_and_rest_are_those_of_the_definition() {
+    let folder = Folder::new("real");
+    folder.write("f.csv", fine());
+    folder.write("recordings.toml", LIST);
+    let arguments = "real --data . --counts-per-rev 1000 --phase 0.5 --json -";
+    let rows = json(&folder.good(&arguments.split(' ').collect::<Vec<_>>()));
+    let row = rows
+        .iter()
+        .find(|row| row["estimator"] == "finite-difference")
+        .unwrap();
+    // At 5 rad/s a tick has p = 0.796 counts of 6.28 rad/s: the velocity is one count or none. From
+    // 0.1 s on, 500 of 901 samples move.
+    let p = 5.0 / std::f64::consts::TAU;
+    let count = std::f64::consts::TAU;
+    let variance = p * (count - 5.0).powi(2) + (1.0 - p) * 25.0;
+    let rms = (variance * 500.0 / 901.0).sqrt();
+    let found = row["rms_rad_s"].as_f64().unwrap();
+    // The fraction of samples with a count is known to one of 500.
+    assert!((found / rms - 1.0).abs() < 5e-3, "{found} {rms}");
+    assert_eq!(row["p99_rad_s"], 5.0);
+    assert_eq!(row["rms_pct"], 100.0);
+    assert_eq!(row["moving_at_rest"], 0.0);
+    assert_eq!(row["role"], "judges");
+    // The recording has neither current nor handle.
+    assert!(rows.iter().all(|row| row["estimator"] != "kalman-motor"));
+}
+
+#[test]
+fn output_does_not_depend_on_the_number_of_threads() {
+    let folder = Folder::new("threads");
+    let run = |threads: &str, kind: &str| {
+        let arguments = "--seconds 1 --counts-per-rev 256,4096 --rate 500,1000";
+        let output = Command::new(env!("CARGO_BIN_EXE_host-sim"))
+            .args(["real", "--data", DATA, kind, "-"])
+            .args(arguments.split(' '))
+            .env("RAYON_NUM_THREADS", threads)
+            .current_dir(&folder.0)
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{output:?}");
+        output.stdout
+    };
+    for kind in ["--json", "--csv"] {
+        assert_eq!(run("1", kind), run("7", kind), "{kind}");
+    }
+}
+
+#[test]
+fn estimators_without_their_signals_are_shown_as_dashes() {
+    let folder = Folder::new("dashes");
+    folder.write("f.csv", fine());
+    folder.write("recordings.toml", LIST);
+    let table = folder.good(&["real", "--data", ".", "--details"]);
+    let line = table
+        .lines()
+        .find(|line| line.contains("kalman-motor "))
+        .unwrap();
+    let cells: Vec<_> = line.split_whitespace().skip(1).collect();
+    assert_eq!(cells, ["-", "-", "-", "-", "-", "-", "0"]);
+    assert!(
+        table.lines().all(|line| line.chars().count() <= 80),
+        "{table}"
+    );
+}
+
+#[test]
+fn invalid_input_of_real_and_coarsen_is_one_line() {
+    let folder = Folder::new("refused");
+    folder.write("f.csv", fine());
+    folder.write("broken.csv", "time_s,fine_count\n0,1\nx,2\n");
+    let fine = ["--fine-counts-per-rev", "100000", "--out", "c.csv"];
+    for (arguments, said) in [
+        (
+            "coarsen f.csv --counts-per-rev 64 --out c.csv",
+            "f.csv: its counts per revolution are not known; give --fine",
+        ),
+        (
+            "coarsen f.csv --counts-per-rev 60000",
+            "do not resolve 60000 counts/rev at 1000 Hz; ask for at most 50000",
+        ),
+        (
+            "coarsen f.csv --counts-per-rev 64 --rate 4000",
+            "ask for at most 50000 counts/rev and 2000 Hz",
+        ),
+        (
+            "coarsen f.csv --counts-per-rev 64 --rate 0",
+            "--rate 0: must be from 10 to 100000 Hz",
+        ),
+        (
+            "coarsen f.csv --counts-per-rev 64 --phase NaN",
+            "--phase NaN: must be from",
+        ),
+        (
+            "coarsen f.csv --counts-per-rev 64 --seconds 0",
+            "--seconds 0: must be from 0.2",
+        ),
+        (
+            "coarsen broken.csv --counts-per-rev 64",
+            "broken.csv: line 3: column time_s: 'x' is not a number",
+        ),
+        (
+            "coarsen none.csv --counts-per-rev 64",
+            "none.csv: cannot read",
+        ),
+        ("real --data .", "recordings.toml: cannot read"),
+        (
+            "real --data . --csv - --json -",
+            "only one of them can go to standard output",
+        ),
+    ] {
+        let mut arguments: Vec<_> = arguments.split(' ').collect();
+        if arguments[0] == "coarsen" && !arguments.contains(&"--out") {
+            arguments.extend(fine);
+        }
+        let error = folder.refused(&arguments);
+        assert!(error.contains(said), "{error}");
+    }
+    folder.write("recordings.toml", LIST);
+    let error = folder.refused(&["real", "--data", ".", "--rate", "3000"]);
+    assert!(
+        error.contains("ask for a lower --rate or --counts-per-rev"),
+        "{error}"
+    );
+}
