@@ -26,6 +26,7 @@ pub const ALL: &[Table] = &[
     TICK_INSTRUCTIONS,
     FAULTS,
     ESTIMATORS,
+    REAL_MOTION,
     PAPER,
     FINITE_DIFFERENCE,
     SCENARIOS_1000HZ,

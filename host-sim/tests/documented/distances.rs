@@ -10,6 +10,7 @@ use serde_json::Value;
 use simulation::scenario::ScenarioName;
 
 use crate::forces::{FELT, felt};
+use crate::real_motion;
 use crate::runs::{FREE_AIR, FRICTIONLESS, SCORED, number, text, values};
 use crate::{cell, check};
 
@@ -55,6 +56,7 @@ fn overview_has_every_estimator() {
     let free_air: BTreeMap<_, _> = felt(&FREE_AIR[0]).into_iter().collect();
     let row = |kind: &Kind| {
         let mut row = vec![kind.name.to_owned(), signals(kind)];
+        row.extend(real_motion::pooled(kind.name));
         for rows in &*SCORED {
             row.push(cell(pooled(rows, kind.name, &TUNED_ON)));
             row.push(cell(pooled(rows, kind.name, &scenarios(rows))));

@@ -8,6 +8,7 @@ mod forces;
 mod in_the_loop;
 mod lists;
 mod pages;
+mod real_motion;
 mod runs;
 
 use measured::Table;

@@ -3,14 +3,16 @@
 use super::DOCUMENTED;
 use crate::Table;
 
-/// Every estimator: distance outside the haptic interval, and what the hand feels in free air at
-/// 1 kHz.
+/// Every estimator: error on recordings of real devices, distance outside the haptic interval in the
+/// simulation, and what the hand feels in free air at 1 kHz.
 pub const ESTIMATORS: Table = Table {
     name: "estimators",
     page: "README.md",
     columns: &[
         ("estimator", "estimator"),
         ("reads", "reads"),
+        ("real_rms_pct", "real motion, all"),
+        ("real_judging_rms_pct", "judging"),
         ("tuned_1000hz_pct", "1 kHz, three"),
         ("all_1000hz_pct", "nine"),
         ("tuned_11600hz_pct", "11.6 kHz, three"),
@@ -19,6 +21,20 @@ pub const ESTIMATORS: Table = Table {
         ("roughness_mn", "roughness, mN"),
     ],
     digits: Some(2),
+    command: DOCUMENTED,
+};
+
+/// RMS error on recordings of real devices at 1 kHz and 4096 counts/rev, % of finite difference; then
+/// a column for each recording.
+pub const REAL_MOTION: Table = Table {
+    name: "real-motion",
+    page: "docs/benchmarks.md",
+    columns: &[
+        ("estimator", "estimator"),
+        ("all", "all"),
+        ("judging", "judging"),
+    ],
+    digits: Some(3),
     command: DOCUMENTED,
 };
 
