@@ -47,7 +47,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         }
         Some(Command::Compare(options)) => compare::run(&options, &command_line),
         Some(Command::Replay(options)) => replay::run(&options),
-        Some(Command::Real(options)) => real::run(&options),
+        Some(Command::Real(options)) => real::run(&options, &command_line),
         Some(Command::Coarsen(options)) => coarsen::run(&options),
         Some(Command::Record(options)) => record::run(&options),
         Some(Command::Plot(options)) => plot::run(&options),

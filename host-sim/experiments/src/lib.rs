@@ -1,5 +1,6 @@
 //! The experiments that the commands run: comparison of estimators, closed loop, robustness,
-//! stiffness limits, wrong parameters, tuning, identification and replay of recordings.
+//! stiffness limits, wrong parameters, tuning, identification, replay of recordings, and recordings of
+//! real devices with a known velocity.
 
 pub mod closed_loop;
 pub mod compare;

@@ -26,6 +26,7 @@ mod page;
 mod palette;
 mod plot;
 mod quantisation;
+mod real;
 mod recording;
 mod robust;
 mod score_tables;
@@ -47,6 +48,8 @@ pub use sensitivity::sensitivity;
 pub use identify::identify;
 
 pub use zwidth::zwidth;
+
+pub use real::real;
 
 pub use page::Printout;
 

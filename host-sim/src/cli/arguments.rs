@@ -44,11 +44,11 @@ pub(super) enum Command {
     /// Run the estimators on recordings of real devices with a known velocity and score them
     #[command(after_help = "Examples:
   host-sim real
-  host-sim real --counts-per-rev 64,1024,16384 --rate 500,2000 --csv real.csv")]
+  host-sim real --counts-per-rev 64,1024,16384 --rate 500,1000 --out page")]
     Real(super::real::Real),
     /// Turn the recording of a fine encoder into what a coarse encoder would have seen
     #[command(after_help = "Example:
-  host-sim coarsen fine.csv --fine-counts-per-rev 300000 --counts-per-rev 4096 --out coarse.csv")]
+  host-sim coarsen fine.csv --counts-per-rev 1024 --rate 500 --out coarse.csv")]
     Coarsen(super::coarsen::Coarsen),
     /// Convert the firmware's telemetry to a recording (CSV)
     #[command(after_help = "Example:

@@ -50,7 +50,7 @@ pub(super) struct Coarsen {
     #[command(flatten)]
     device: DeviceFile,
     /// Write the recording, which replay reads, to FILE; - is standard output
-    #[arg(long, value_name = "FILE.csv")]
+    #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
 

@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use experiments::real::cases::Recordings;
+use experiments::real::cases::{Case, Recordings};
 use experiments::real::run::{Row, Settings, run as run_all};
 use experiments::real::table::table;
 use experiments::rows::{csv, json};
-use experiments::table::layout::terminal_width;
+use experiments::table::layout::{NARROW, terminal_width};
+use report::{self, Printout};
 use terminal::failure::Failure;
-use terminal::output::{is_stdout, print_bytes, write_whole};
+use terminal::output::{Folder, is_stdout, print_bytes, write_whole};
 
 use super::arguments::{DeviceFile, ParameterOptions, kinds, rates};
 use super::coarsen::{phase, rate, seconds};
@@ -75,10 +76,17 @@ pub(super) struct Real {
     /// Write the scores of each run as CSV to FILE; - is standard output, which then has nothing else
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
+    /// Folder of index.html, figures as SVG, real.csv, real.json; the velocities and the ranking are of
+    /// the middle resolution and rate [default: no folder]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
 }
 
-pub(super) fn run(options: &Real) -> Result<(), Failure> {
+pub(super) fn run(options: &Real, command_line: &str) -> Result<(), Failure> {
     one_to_stdout(&[("--json", &options.json), ("--csv", &options.csv)])?;
+    if let Some(folder) = &options.out {
+        Folder::check("--out", folder)?;
+    }
     let settings = settings(options)?;
     let recordings = Recordings::read(&options.data, settings.seconds)?;
     let cases = recordings.cases(&settings);
@@ -89,16 +97,39 @@ pub(super) fn run(options: &Real) -> Result<(), Failure> {
             options.data.display()
         )));
     }
+    // The first phase alone is drawn.
+    let shown = (middle(&settings.counts_per_rev), middle(&settings.rates_hz));
+    let keep = |case: &Case| {
+        let is_first = case.phase.is_none_or(|phase| phase == settings.phases[0]);
+        let coarsened = case.phase.is_none() || case.counts_per_rev == shown.0;
+        options.out.is_some() && is_first && coarsened && case.rate_hz == shown.1
+    };
     let bar = progress(cases.len(), "estimating");
-    let outcomes = run_all(&recordings, &cases, &settings, |_| false, || bar.inc(1))?;
+    let outcomes = run_all(&recordings, &cases, &settings, keep, || bar.inc(1))?;
     bar.finish_and_clear();
 
-    let rows: Vec<Row> = outcomes
-        .into_iter()
-        .flat_map(|outcome| outcome.rows)
-        .collect();
+    let (kept, rows): (Vec<_>, Vec<_>) = (outcomes.into_iter())
+        .map(|mut outcome| {
+            let rows = std::mem::take(&mut outcome.rows);
+            (outcome, rows)
+        })
+        .unzip();
+    let rows: Vec<Row> = rows.into_iter().flatten().collect();
     let names: Vec<_> = settings.estimators.iter().map(|kind| kind.name).collect();
-    let text = table(&rows, &names, options.details, terminal_width());
+    let mut text = table(&rows, &names, options.details, terminal_width());
+    if let Some(folder) = &options.out {
+        let printout = Printout {
+            command: command_line,
+            device: &options.device.name(),
+            table: &table(&rows, &names, true, NARROW),
+        };
+        let page = report::real(&rows, &names, shown, &kept, &printout)?;
+        let mut files = Folder::new(folder);
+        files.add("real.json", json(&rows)?);
+        files.add("real.csv", csv(&rows)?);
+        let index = page::write(files, &page)?;
+        text.push_str(&format!("Page: {}\n", index.display()));
+    }
     if let Some(path) = &options.csv {
         let bytes = csv(&rows)?;
         match is_stdout(path) {
@@ -107,6 +138,11 @@ pub(super) fn run(options: &Real) -> Result<(), Failure> {
         }
     }
     page::print(options.json.as_deref(), &json(&rows)?, &text)
+}
+
+/// The middle one of several values, in the order in which they were given.
+fn middle<T: Copy>(values: &[T]) -> T {
+    values[values.len() / 2]
 }
 
 fn settings(options: &Real) -> Result<Settings, Failure> {

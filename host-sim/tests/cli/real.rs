@@ -1,5 +1,8 @@
 //! `real` and `coarsen`: recordings of a fine encoder as estimators of a coarse one see them.
 
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::PathBuf;
 use std::process::Command;
 
 use crate::{Folder, json};
@@ -77,23 +80,42 @@ fn errors_at_constant_speed_and_rest_are_those_of_the_definition() {
     assert!(rows.iter().all(|row| row["estimator"] != "kalman-motor"));
 }
 
+/// Standard output and every file of a run with so many threads.
+fn files_of(threads: &str, kind: &str) -> (Vec<u8>, BTreeMap<PathBuf, Vec<u8>>) {
+    let folder = Folder::new("threads");
+    let arguments = "--seconds 1 --counts-per-rev 256,4096 --rate 500,1000 --out page";
+    let output = Command::new(env!("CARGO_BIN_EXE_host-sim"))
+        .args(["real", "--data", DATA, kind, "-"])
+        .args(arguments.split(' '))
+        .env("RAYON_NUM_THREADS", threads)
+        .current_dir(&folder.0)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let mut files = BTreeMap::new();
+    for part in ["page", "page/figures"] {
+        for entry in fs::read_dir(folder.0.join(part)).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_file() {
+                let name = path.strip_prefix(&folder.0).unwrap().to_owned();
+                files.insert(name, fs::read(&path).unwrap());
+            }
+        }
+    }
+    (output.stdout, files)
+}
+
 #[test]
 fn output_does_not_depend_on_the_number_of_threads() {
-    let folder = Folder::new("threads");
-    let run = |threads: &str, kind: &str| {
-        let arguments = "--seconds 1 --counts-per-rev 256,4096 --rate 500,1000";
-        let output = Command::new(env!("CARGO_BIN_EXE_host-sim"))
-            .args(["real", "--data", DATA, kind, "-"])
-            .args(arguments.split(' '))
-            .env("RAYON_NUM_THREADS", threads)
-            .current_dir(&folder.0)
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{output:?}");
-        output.stdout
-    };
     for kind in ["--json", "--csv"] {
-        assert_eq!(run("1", kind), run("7", kind), "{kind}");
+        let (printed, files) = files_of("1", kind);
+        // A page, its list, both tables, ranking, resolution, rate, a figure for each recording.
+        assert_eq!(files.len(), 4 + 3 + 11, "{:?}", files.keys());
+        let (printed_by_many, files_of_many) = files_of("7", kind);
+        assert!(printed == printed_by_many, "{kind}");
+        for (name, bytes) in &files {
+            assert!(files_of_many[name] == *bytes, "{}", name.display());
+        }
     }
 }
 

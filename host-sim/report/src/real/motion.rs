@@ -1,0 +1,111 @@
+//! The velocity in one second of a recording.
+
+use std::ops::Range;
+
+use super::super::canvas::{Anchor, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height};
+use super::super::palette::{INK, Palette, TRUTH};
+use super::super::plot::{Axis, Plot};
+use experiments::real::run::Outcome;
+use scoring::evaluation::Estimate;
+
+/// Length of the part that is drawn, s.
+const SHOWN_S: f64 = 1.0;
+
+/// Distance of two parts that are compared, s.
+const STEP_S: f64 = 0.1;
+
+const LEFT: f64 = 62.0;
+const TOP: f64 = 34.0;
+const PANEL: f64 = 220.0;
+
+/// First tick of the part of [`SHOWN_S`] in which the estimates have the largest errors, each relative
+/// to its own error over the recording.
+pub(super) fn hardest(truth: &[f64], estimates: &[&Estimate], rate_hz: f64) -> usize {
+    let [length, step] = [SHOWN_S, STEP_S].map(|s| (s * rate_hz).round().max(1.0) as usize);
+    let sum = |estimate: &Estimate, ticks: Range<usize>| -> f64 {
+        let errors = ticks.map(|k| (f64::from(estimate.velocity[k]) - truth[k]).powi(2));
+        errors.sum()
+    };
+    // Squared errors in pieces of a step. The first one is not scored.
+    let mut pieces = vec![0.0; truth.len() / step];
+    for estimate in estimates {
+        let all = sum(estimate, step.min(truth.len())..truth.len());
+        for (k, piece) in pieces.iter_mut().enumerate().filter(|_| all > 0.0) {
+            *piece += sum(estimate, k * step..(k + 1) * step) / all;
+        }
+    }
+    let sums = (1..pieces.len().max(2)).map(|first| {
+        let part = pieces.iter().skip(first).take(length / step);
+        // A shorter part at the end has a smaller sum.
+        (first, part.sum::<f64>())
+    });
+    let best = sums.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
+    let first = step * best.map_or(0, |(first, _)| first);
+    first.min(truth.len().saturating_sub(length + 1))
+}
+
+/// Truth and estimates in the hardest second; `None` without signals.
+pub(super) fn chart(
+    outcome: &Outcome,
+    drawn: &[&'static str],
+    palette: &Palette,
+) -> Result<Option<Svg>, String> {
+    let Some((trace, estimates)) = &outcome.signals else {
+        return Ok(None);
+    };
+    let Some(truth) = &trace.true_omega else {
+        return Ok(None);
+    };
+    let drawn: Vec<&Estimate> = estimates
+        .iter()
+        .filter(|estimate| drawn.contains(&estimate.estimator))
+        .collect();
+    let first = hardest(truth, &drawn, trace.rate_hz);
+    let ticks = first..(first + (SHOWN_S * trace.rate_hz) as usize + 1).min(truth.len());
+    let part = &truth[ticks.clone()];
+    let low = part.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = part.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // Noise that is larger than the motion leaves the frame.
+    let margin = (0.3 * (high - low))
+        .max(0.4 * low.abs().max(high.abs()))
+        .max(0.05);
+    let seconds = |tick: usize| tick as f64 / trace.rate_hz;
+    let mut keys = vec![Key::Line(TRUTH.into(), "truth")];
+    keys.extend((drawn.iter()).map(|e| Key::Line(palette.style(e.estimator), e.estimator)));
+    let bottom = TOP + PANEL + 46.0;
+    let case = &outcome.case;
+    let title = format!(
+        "{} at {} counts/rev and {} Hz: the second with the largest errors",
+        case.name, case.counts_per_rev, trace.rate_hz
+    );
+    let svg = figure(bottom + legend_height(&keys, LEFT), &title, |canvas| {
+        canvas.text(&title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
+        let plot = Plot {
+            left: LEFT,
+            top: TOP,
+            right: WIDTH - 20.0,
+            bottom: TOP + PANEL,
+            x: Axis::linear([seconds(ticks.start), seconds(ticks.end - 1)]),
+            y: Axis::linear([low - margin, high + margin]),
+        };
+        plot.grid(canvas, 10, 5)?;
+        plot.x_title(canvas, "time, s")?;
+        let at = (16.0, TOP + 0.5 * PANEL);
+        canvas.text("velocity, rad/s", at, Anchor::Upwards, LABEL, INK)?;
+        for estimate in &drawn {
+            let points = ticks
+                .clone()
+                .map(|k| (seconds(k), f64::from(estimate.velocity[k])));
+            plot.curve(canvas, points, palette.style(estimate.estimator), 1.2)?;
+        }
+        plot.curve(
+            canvas,
+            ticks.clone().map(|k| (seconds(k), truth[k])),
+            TRUTH,
+            1.6,
+        )?;
+        plot.edges(canvas)?;
+        canvas.legend(&keys, (LEFT, bottom))
+    })?;
+    Ok(Some(svg))
+}
