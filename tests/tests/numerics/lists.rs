@@ -57,8 +57,9 @@ fn every_row_is_on_the_command_line_stressed_and_measured() {
     }
     let kinds = designs::kinds();
     for row in ROWS {
-        let designed = kinds.contains(&row.name);
-        assert_eq!(designed, row.name != "finite-difference", "{}", row.name);
+        // The rate alone fixes these.
+        let fixed = ["finite-difference", "imm", "imm-pair"].contains(&row.name);
+        assert_eq!(kinds.contains(&row.name), !fixed, "{}", row.name);
     }
 }
 

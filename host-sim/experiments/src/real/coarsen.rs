@@ -107,6 +107,7 @@ impl Coarse {
             trace,
             current_small: None,
             uneven_steps: 0,
+            notes: Vec::new(),
         })
     }
 }
