@@ -8,8 +8,53 @@ pub(super) struct Truncated {
     /// Factor of the variance, 0 to 1.
     pub(super) kept: f32,
     /// Probability of the interval before.
-    pub(super) probability: f32,
+    pub(super) likelihood: Likelihood,
 }
+
+/// `factor · divisor^-16`: a likelihood whose exponential part is too small for an f32 by itself. The
+/// part `divisor^-16` stands for `exp(-x)`, with `divisor = 1 + x / 16`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Likelihood {
+    pub(super) factor: f32,
+    /// At least 1.
+    pub(super) divisor: f32,
+}
+
+impl Likelihood {
+    /// The likelihood `factor`.
+    const fn plain(factor: f32) -> Self {
+        Self {
+            factor,
+            divisor: 1.0,
+        }
+    }
+
+    /// `factor · exp(-x)`, with the tail of a Student distribution for large x.
+    #[inline(always)]
+    pub(super) fn new(factor: f32, x: f32) -> Self {
+        Self {
+            factor,
+            divisor: 1.0 + x * (1.0 / 16.0),
+        }
+    }
+
+    /// The likelihood of certainty.
+    pub(super) const CERTAIN: Self = Self::plain(1.0);
+
+    /// The likelihood over `smallest^-16`, the exponential part of the most likely member, and never 0.
+    #[inline(always)]
+    pub(super) fn relative(self, smallest: f32) -> f32 {
+        let y = smallest / self.divisor;
+        let y = y * y;
+        let y = y * y;
+        let y = y * y;
+        let y = y * y;
+        self.factor * if y > LEAST { y } else { LEAST }
+    }
+}
+
+/// The smallest exponential part: a sum of weights stays a normal number.
+const LEAST: f32 = 1e-12;
 
 /// Deviations from an end beyond which the end truncates nothing.
 const REACH: f32 = 3.5;
@@ -31,31 +76,31 @@ pub(super) fn truncate(position: f32, variance: f32) -> Option<Truncated> {
     if inside > 0.0 && inside * inside > REACH * REACH * variance {
         return None;
     }
-    let (inwards, kept, probability) = if variance > WIDE {
+    let (inwards, kept, likelihood) = if variance > WIDE {
         wide(away, variance)
     } else {
         let per_std_dev = inverse_root(variance);
         let near = end(inside * per_std_dev);
         let far = (1.0 - inside) * per_std_dev;
-        let (mut inwards, mut kept, mut probability) = near;
+        let (mut inwards, mut kept, mut likelihood) = near;
         if far < REACH {
             let far = end(far);
             inwards -= far.0;
             kept -= 1.0 - far.1;
-            probability -= 1.0 - far.2;
+            likelihood.factor -= 1.0 - far.2.factor;
         }
-        (inwards * variance * per_std_dev, kept, probability)
+        (inwards * variance * per_std_dev, kept, likelihood)
     };
     Some(Truncated {
         shift: if position > 0.0 { -inwards } else { inwards },
         kept,
-        probability,
+        likelihood,
     })
 }
 
 /// Shift, factor of the variance and probability for a wide Gaussian.
 #[inline(always)]
-fn wide(away: f32, variance: f32) -> (f32, f32, f32) {
+fn wide(away: f32, variance: f32) -> (f32, f32, Likelihood) {
     let per_variance = 1.0 / variance;
     let narrowest = 1.0 / (12.0 + 0.45 * per_variance);
     let z = away * per_variance * narrowest;
@@ -65,9 +110,9 @@ fn wide(away: f32, variance: f32) -> (f32, f32, f32) {
     let kept = narrowest * (1.0 + twice + twice) * per * per * per_variance;
     let blurred = variance + 1.0 / 12.0;
     let per_std_dev = inverse_root(blurred);
-    let probability =
-        DENSITY_AT_MEAN * per_std_dev * density(0.5 * away * away * per_std_dev * per_std_dev);
-    (away - mean, kept, probability)
+    let exponent = 0.5 * away * away * per_std_dev * per_std_dev;
+    let likelihood = Likelihood::new(DENSITY_AT_MEAN * per_std_dev, exponent);
+    (away - mean, kept, likelihood)
 }
 
 /// 1 / √2π.
@@ -77,7 +122,7 @@ const DENSITY_AT_MEAN: f32 = 0.398_942_3;
 /// variance, probability Φ. For u above 0 λ is a fourth power, below 0 it is |u| + 1/g with a
 /// parabola g, and the factor is the derivative g'/g².
 #[inline(always)]
-fn end(u: f32) -> (f32, f32, f32) {
+fn end(u: f32) -> (f32, f32, Likelihood) {
     if u > 0.0 {
         let root = 0.945 - u * (0.205 + 0.0145 * u);
         let root = if root > 0.0 { root } else { 0.0 };
@@ -86,30 +131,16 @@ fn end(u: f32) -> (f32, f32, f32) {
         (
             shift,
             1.0 - shift * (shift + u),
-            1.0 - shift * (0.63 - 0.11 * u),
+            Likelihood::plain(1.0 - shift * (0.63 - 0.11 * u)),
         )
     } else {
         let per = 1.0 / (1.2533 - u * (0.571 - 0.066 * u));
         let shift = per - u;
         let kept = (0.571 - 0.132 * u) * per * per;
         // Φ = φ / λ, and 1 / λ = g / (1 + g |u|).
-        let probability = DENSITY_AT_MEAN * density(0.5 * u * u) / shift;
-        (shift, kept, probability)
+        let likelihood = Likelihood::new(DENSITY_AT_MEAN / shift, 0.5 * u * u);
+        (shift, kept, likelihood)
     }
-}
-
-/// The smallest density: a sum of weights stays a normal number.
-const LEAST: f32 = 1e-12;
-
-/// `exp(-x)` for small x >= 0, `(1 + x / 16)^-16` in general, and never less than 1e-12.
-#[inline(always)]
-pub(super) fn density(x: f32) -> f32 {
-    let y = 1.0 / (1.0 + x * (1.0 / 16.0));
-    let y = y * y;
-    let y = y * y;
-    let y = y * y;
-    let y = y * y;
-    if y > LEAST { y } else { LEAST }
 }
 
 /// `1 / √x` for a positive normal x, to 1e-6.
@@ -125,4 +156,95 @@ fn inverse_root(x: f32) -> f32 {
         y *= 1.5 - half * y * y;
     }
     y
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::{inverse_root, truncate};
+
+    /// Shift of the mean, factor of the variance and probability, by numerical integration.
+    fn integrated(x: f64, variance: f64) -> (f64, f64, f64) {
+        let (mut sums, steps) = ([0.0; 3], 20_000);
+        for step in 0..steps {
+            let y = (f64::from(step) + 0.5) / f64::from(steps) - 0.5;
+            let density = (-0.5 * (y - x) * (y - x) / variance).exp();
+            sums[0] += density;
+            sums[1] += density * y;
+            sums[2] += density * y * y;
+        }
+        let mean = sums[1] / sums[0];
+        let kept = (sums[2] / sums[0] - mean * mean) / variance;
+        let whole = f64::from(steps) * (core::f64::consts::TAU * variance).sqrt();
+        (mean - x, kept, sums[0] / whole)
+    }
+
+    #[test]
+    fn truncation_is_that_of_a_gaussian() {
+        let mut worst = [0.0f64; 3];
+        for deviation in [0.02, 0.1, 0.2, 0.3, 0.34, 0.36, 0.5, 1.0, 3.0, 10.0] {
+            for tenth in -60..=60 {
+                // From far inside to two and a half deviations outside.
+                let x = f64::from(tenth) / 60.0 * (0.5 + 2.5 * deviation);
+                let variance = deviation * deviation;
+                let (shift, kept, probability) = integrated(x, variance);
+                let found = truncate(x as f32, variance as f32);
+                let found = found.map_or([0.0, 1.0, 1.0], |found| {
+                    let probability = found.likelihood.relative(1.0);
+                    [found.shift, found.kept, probability].map(f64::from)
+                });
+                let off = [
+                    (found[0] - shift).abs() / deviation,
+                    (found[1] - kept).abs(),
+                    (found[2] - probability).abs(),
+                ];
+                for (worst, off) in worst.iter_mut().zip(off) {
+                    *worst = worst.max(off);
+                }
+            }
+        }
+        let bounds = [0.05, 0.05, 0.05];
+        for (worst, bound) in worst.iter().zip(bounds) {
+            assert!(*worst < bound, "{worst:?}");
+        }
+    }
+
+    #[test]
+    fn truncation_is_odd_and_ends_inside() {
+        for variance in [1e-6, 1e-3, 0.02, 0.12, 0.125, 1.0, 1e4, 1e8] {
+            for step in -4000..=4000 {
+                let x = step as f32 / 500.0;
+                let Some(found) = truncate(x, variance) else {
+                    assert!(x.abs() < 0.5, "{x} {variance}");
+                    continue;
+                };
+                let mirrored = truncate(-x, variance).expect("symmetric");
+                assert_eq!(found.shift, -mirrored.shift, "{x} {variance}");
+                assert!(
+                    (x + found.shift).abs() <= 0.5 + 1e-4,
+                    "{x} {variance} {found:?}"
+                );
+                assert!(
+                    found.kept >= 0.0 && found.kept <= 1.0,
+                    "{x} {variance} {found:?}"
+                );
+                let probability = found.likelihood.relative(1.0);
+                assert!(
+                    probability > 0.0 && probability < 1.05,
+                    "{x} {variance} {found:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn inverse_root_is_exact_to_1e_6() {
+        let mut x = 1e-30f32;
+        while x < 1e30 {
+            let exact = 1.0 / f64::from(x).sqrt();
+            let off = f64::from(inverse_root(x)) / exact - 1.0;
+            assert!(off.abs() < 1e-6, "{x}: {off}");
+            x *= 1.37;
+        }
+    }
 }

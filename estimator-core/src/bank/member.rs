@@ -1,6 +1,6 @@
 //! One filter of the bank, and its corrections.
 
-use super::interval::truncate;
+use super::interval::{Likelihood, truncate};
 use crate::edge_clock::FreshEdge;
 
 /// Least variance of a position, counts²: rounding cannot make it negative.
@@ -18,7 +18,7 @@ pub(super) struct Member {
 }
 
 /// Innovation of an edge.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Innovation {
     /// e, counts.
     pub(super) error: f32,
@@ -86,15 +86,15 @@ impl Member {
     /// Corrects by the knowledge that the position lies in its quantisation interval. Returns the
     /// probability of the interval.
     #[inline(always)]
-    pub(super) fn correct_by_interval(&mut self) -> f32 {
+    pub(super) fn correct_by_interval(&mut self) -> Likelihood {
         let [p00, p01, p02, ..] = self.covariance;
         let variance = p00 + LEAST_VARIANCE;
         let Some(truncated) = truncate(self.position, variance) else {
-            return 1.0;
+            return Likelihood::CERTAIN;
         };
         let per_variance = 1.0 / variance;
         let removed = 1.0 - truncated.kept;
         self.correct([p00, p01, p02], per_variance, truncated.shift, removed);
-        truncated.probability
+        truncated.likelihood
     }
 }

@@ -1,8 +1,8 @@
 //! State of the bank: members, weights, and where on the ladder they stand.
 
-use super::interval::density;
+use super::interval::Likelihood;
 use super::ladder::{FIRST_RUNG, Ladder, RUNGS};
-use super::member::Member;
+use super::member::{Innovation, Member};
 use crate::design::const_math::limited;
 use crate::edge_clock::FreshEdge;
 use crate::units::Count;
@@ -116,20 +116,28 @@ impl<const K: usize> ModelBankState<K> {
     }
 
     /// Corrects all members by an edge, and R by the correlation of two innovations. Returns the
-    /// likelihoods, times the deviation of the first member's innovation.
+    /// likelihoods, times the deviation of the middle member's innovation.
     #[inline(always)]
-    pub(super) fn correct_by_edge(&mut self, edge: &FreshEdge) -> [f32; K] {
-        let mut likelihoods = [0.0; K];
-        let (mut first, mut error, mut variance) = (0.0, 0.0, 0.0);
+    pub(super) fn correct_by_edge(&mut self, edge: &FreshEdge) -> [Likelihood; K] {
+        let mut innovations = [Innovation::default(); K];
+        let (mut error, mut variance) = (0.0, 0.0);
         for i in 0..K {
-            let innovation = self.members[i].correct_by_edge(edge, self.boundary);
-            if i == 0 {
-                first = innovation.variance;
-            }
-            let squares = innovation.error * innovation.error * innovation.per_variance;
-            likelihoods[i] = root(first * innovation.per_variance) * density(0.5 * squares);
-            error += self.weights[i] * innovation.error;
-            variance += self.weights[i] * innovation.variance;
+            innovations[i] = self.members[i].correct_by_edge(edge, self.boundary);
+            error += self.weights[i] * innovations[i].error;
+            variance += self.weights[i] * innovations[i].variance;
+        }
+        let mut likelihoods = [Likelihood::default(); K];
+        let middle = innovations[K / 2].variance;
+        for i in 0..K {
+            let Innovation {
+                error,
+                per_variance,
+                ..
+            } = innovations[i];
+            likelihoods[i] = Likelihood::new(
+                root(middle * per_variance),
+                0.5 * error * error * per_variance,
+            );
         }
         let correlation = limited(error * self.innovation / variance, 1.0);
         let boundary = self.boundary * (1.0 - BOUNDARY_GAIN * correlation);
@@ -141,8 +149,8 @@ impl<const K: usize> ModelBankState<K> {
 
     /// Corrects all members by the quantisation interval of the count. Returns its probabilities.
     #[inline(always)]
-    pub(super) fn correct_by_interval(&mut self) -> [f32; K] {
-        let mut likelihoods = [0.0; K];
+    pub(super) fn correct_by_interval(&mut self) -> [Likelihood; K] {
+        let mut likelihoods = [Likelihood::default(); K];
         for i in 0..K {
             likelihoods[i] = self.members[i].correct_by_interval();
         }
@@ -151,10 +159,16 @@ impl<const K: usize> ModelBankState<K> {
 
     /// Updates the weights by the likelihoods, with the probability `change` of a change of q.
     #[inline(always)]
-    pub(super) fn weigh(&mut self, likelihoods: &[f32; K], change: f32) {
+    pub(super) fn weigh(&mut self, likelihoods: &[Likelihood; K], change: f32) {
+        let mut smallest = likelihoods[0].divisor;
+        for likelihood in likelihoods {
+            if likelihood.divisor < smallest {
+                smallest = likelihood.divisor;
+            }
+        }
         let mut sum = 0.0;
         for i in 0..K {
-            self.weights[i] = (self.weights[i] + change) * likelihoods[i];
+            self.weights[i] = (self.weights[i] + change) * likelihoods[i].relative(smallest);
             sum += self.weights[i];
         }
         let per_sum = 1.0 / sum;

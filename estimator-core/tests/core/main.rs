@@ -9,6 +9,7 @@
 //! | `distance` | counts beyond the exact range of f32, long ramps |
 //! | `foaw_definition` | the O(n²) definition of FOAW in exact fractions |
 //! | `kalman_reference` | the textbook filter in f64, absolute positions, the current as a state |
+//! | `bank` | the multiple-model bank by its definition in f64, and what it promises |
 //! | `acceleration` | a constant acceleration |
 //! | `m_over_t` | ramps and stamps, of which the M/T method knows the result |
 //! | `observer` | invariants of the observers, which read more than counts; a motor that obeys their model; adaptation |
@@ -29,6 +30,7 @@
 )]
 
 mod acceleration;
+mod bank;
 mod calibration;
 mod confidence;
 mod distance;

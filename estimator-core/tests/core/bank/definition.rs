@@ -1,0 +1,194 @@
+//! The bank by its definition: f64, matrices of the textbook, exact normal probabilities.
+
+use nalgebra::{Matrix3, SMatrix, Vector3};
+
+const TAU: f64 = 0.01;
+const WHITE_SHARE: f64 = 0.1;
+const LOWEST: f64 = 10.0;
+const RUNGS: usize = 18;
+
+/// One Kalman filter over position, velocity and acceleration, in counts and seconds.
+#[derive(Clone)]
+struct Filter {
+    x: Vector3<f64>,
+    p: Matrix3<f64>,
+}
+
+/// The bank, after the documentation of `ModelBank`.
+pub(super) struct Definition {
+    filters: Vec<Filter>,
+    weights: Vec<f64>,
+    rung: usize,
+    period: f64,
+    noise: f64,
+    innovation: f64,
+    still: usize,
+}
+
+/// Transition and process noise of density 1 over one period, by Van Loan's exponential of a block
+/// matrix.
+fn discretised(period: f64) -> (Matrix3<f64>, Matrix3<f64>) {
+    let a = Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0 / TAU);
+    let q = Matrix3::from_diagonal(&Vector3::new(0.0, WHITE_SHARE * TAU * TAU, 1.0));
+    let mut block = SMatrix::<f64, 6, 6>::zeros();
+    block.fixed_view_mut::<3, 3>(0, 0).copy_from(&(-a * period));
+    block.fixed_view_mut::<3, 3>(0, 3).copy_from(&(q * period));
+    block
+        .fixed_view_mut::<3, 3>(3, 3)
+        .copy_from(&(a.transpose() * period));
+    let exponential = block.exp();
+    let transition = exponential.fixed_view::<3, 3>(3, 3).transpose();
+    let noise = transition * exponential.fixed_view::<3, 3>(0, 3);
+    (transition, noise)
+}
+
+fn density(x: f64) -> f64 {
+    (-0.5 * x * x).exp() / core::f64::consts::TAU.sqrt()
+}
+
+/// Probability of a standard Gaussian below x.
+fn below(x: f64) -> f64 {
+    0.5 * libm::erfc(-x / core::f64::consts::SQRT_2)
+}
+
+/// Shift of the mean and factor of the variance of a standard Gaussian within `a` and `b`, and its
+/// probability.
+fn truncated(a: f64, b: f64) -> (f64, f64, f64) {
+    if a > 0.0 {
+        let (shift, kept, probability) = truncated(-b, -a);
+        return (-shift, kept, probability);
+    }
+    let probability = below(b) - below(a);
+    if b < -8.0 {
+        // Far outside: the near end, and an exponential decay beyond it.
+        return (b, 1.0 / (b * b), (density(b) / -b).max(1e-300));
+    }
+    let shift = (density(a) - density(b)) / probability;
+    let kept = 1.0 + (a * density(a) - b * density(b)) / probability - shift * shift;
+    (shift, kept, probability)
+}
+
+impl Definition {
+    /// Velocities, counts per tick, of a bank of `members` on counts, and on the edges if given:
+    /// boundary and age in ticks.
+    pub(super) fn run(
+        members: usize,
+        rate: f64,
+        counts: &[f64],
+        edges: Option<&[Option<(f64, f64)>]>,
+    ) -> Vec<f64> {
+        let filter = Filter {
+            x: Vector3::new(counts[0] + 0.5, 0.0, 0.0),
+            p: Matrix3::from_diagonal(&Vector3::new(
+                1.0 / 12.0,
+                1024.0 * rate * rate,
+                rate.powi(4),
+            )),
+        };
+        let mut bank = Self {
+            filters: vec![filter; members],
+            weights: vec![1.0 / members as f64; members],
+            rung: 4,
+            period: 1.0 / rate,
+            noise: 1e-3,
+            innovation: 0.0,
+            still: 0,
+        };
+        let mut velocities = vec![0.0];
+        for tick in 1..counts.len() {
+            let edge = edges.and_then(|edges| edges[tick]);
+            let moved = counts[tick] != counts[tick - 1] || edge.is_some();
+            velocities.push(bank.update(counts[tick], moved, edge) / rate);
+        }
+        velocities
+    }
+
+    fn update(&mut self, count: f64, moved: bool, edge: Option<(f64, f64)>) -> f64 {
+        self.still = if moved { 0 } else { self.still + 1 };
+        let rest = (0.3 / self.period) as usize;
+        if self.still > rest {
+            return 0.0;
+        }
+        self.reset();
+        self.shift();
+        let (transition, noise) = discretised(self.period);
+        let members = self.filters.len();
+        let mut likelihoods = Vec::new();
+        let (mut error, mut variance) = (0.0, 0.0);
+        for (i, filter) in self.filters.iter_mut().enumerate() {
+            let q = LOWEST * 10f64.powi((self.rung + i) as i32);
+            filter.x = transition * filter.x;
+            filter.p = transition * filter.p * transition.transpose() + noise * q;
+            if let Some((boundary, age)) = edge {
+                let t = age * self.period;
+                let h = Vector3::new(1.0, -t, 0.5 * t * t);
+                let s = (h.transpose() * filter.p * h)[0] + self.noise;
+                let e = boundary - h.dot(&filter.x);
+                let k = filter.p * h / s;
+                filter.x += k * e;
+                filter.p -= k * k.transpose() * s;
+                likelihoods.push((1.0 + e * e / (32.0 * s)).powi(-16) / s.sqrt());
+                error += self.weights[i] * e;
+                variance += self.weights[i] * s;
+            } else {
+                let deviation = filter.p[(0, 0)].sqrt();
+                let ends = [count, count + 1.0].map(|end| (end - filter.x[0]) / deviation);
+                let (shift, kept, probability) = truncated(ends[0], ends[1]);
+                let k = filter.p.column(0) / deviation;
+                filter.x += k * shift;
+                filter.p -= k * k.transpose() * (1.0 - kept);
+                likelihoods.push(probability);
+            }
+        }
+        if edge.is_some() {
+            let correlation = (error * self.innovation / variance).clamp(-1.0, 1.0);
+            self.noise = (self.noise * (1.0 - 0.05 * correlation)).clamp(3e-4, 0.1);
+            self.innovation = error;
+        }
+        let change = self.period / (members as f64 - 1.0);
+        for (weight, likelihood) in self.weights.iter_mut().zip(likelihoods) {
+            *weight = (*weight + change) * likelihood;
+        }
+        let sum: f64 = self.weights.iter().sum();
+        for weight in &mut self.weights {
+            *weight /= sum;
+        }
+        if self.still == rest {
+            for filter in &mut self.filters {
+                filter.x[1] = 0.0;
+                filter.x[2] = 0.0;
+            }
+        }
+        let parts = self.weights.iter().zip(&self.filters);
+        parts.map(|(weight, filter)| weight * filter.x[1]).sum()
+    }
+
+    fn reset(&mut self) {
+        let heaviest = (0..self.weights.len())
+            .max_by(|&a, &b| self.weights[a].total_cmp(&self.weights[b]))
+            .expect("members");
+        for i in 0..self.weights.len() {
+            if self.weights[i] < 0.01 {
+                self.filters[i] = self.filters[heaviest].clone();
+                self.weights[i] = 0.03;
+            }
+        }
+    }
+
+    fn shift(&mut self) {
+        let last = self.weights.len() - 1;
+        if self.weights[last] > 0.9 && self.rung + last + 1 < RUNGS {
+            self.rung += 1;
+            self.filters.remove(0);
+            self.weights.remove(0);
+            self.filters.push(self.filters[last - 1].clone());
+            self.weights.push(0.2);
+        } else if self.weights[0] > 0.9 && self.rung > 0 {
+            self.rung -= 1;
+            self.filters.pop();
+            self.weights.pop();
+            self.filters.insert(0, self.filters[0].clone());
+            self.weights.insert(0, 0.2);
+        }
+    }
+}
