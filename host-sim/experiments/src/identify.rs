@@ -209,7 +209,7 @@ impl Gathered {
             return Err(match &self.uneven {
                 Some(uneven) => format!(
                     "{uneven}; only {} of {} windows of 40 ms have even steps and turn one way; if only \
-                     column t is uneven, write t as row / rate, else record with a timer",
+                     column t is uneven, give --row-rate HZ, else --resample HZ",
                     self.large.usable.len(),
                     self.large.windows
                 ),

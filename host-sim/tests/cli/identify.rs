@@ -104,8 +104,23 @@ fn identify_replaces_only_the_identified_values_of_the_device_file() {
     let errors = folder.refused(&words("identify uneven.csv --device mine.toml"));
     assert!(errors.contains("uneven.csv: t is uneven in 5"), "{errors}");
     assert!(
-        errors.contains("by up to 120 us") && errors.contains("row / rate"),
+        errors.contains("by up to 120 us") && errors.contains("--row-rate HZ, else --resample HZ"),
         "{errors}"
+    );
+
+    // The rows are evenly spaced, whatever column t says.
+    let second = |k: usize| recorded.lines().nth(k).unwrap().split_once(',').unwrap().0;
+    let step: f64 = second(2).parse::<f64>().unwrap() - second(1).parse::<f64>().unwrap();
+    let even = good(&format!(
+        "identify uneven.csv --device mine.toml --row-rate {:.0}",
+        1.0 / step
+    ));
+    assert_eq!(
+        even.lines().take(4).collect::<Vec<_>>(),
+        good("identify excite.csv --device mine.toml")
+            .lines()
+            .take(4)
+            .collect::<Vec<_>>()
     );
 
     // What is refused writes nothing and says why in a line.

@@ -257,6 +257,12 @@ mod tests {
     }
 
     #[test]
+    fn names_may_contain_commas_and_equals_signs() {
+        let name = ("counts_large", "a,b=c".to_owned(), Some("deg"));
+        assert_eq!(mapped("counts_large=a,b=c:deg"), [name]);
+    }
+
+    #[test]
     fn invalid_options_are_refused_with_the_reason() {
         for (text, said) in [
             (
