@@ -74,6 +74,17 @@ impl Parameter {
         search: Search::Each(0, 4),
     };
 
+    /// Bound on the acceleration of a differentiator.
+    pub const ACCELERATION: Self = Self {
+        name: "",
+        unit: "rad/s^2",
+        meaning: "largest acceleration that the differentiator expects",
+        lowest: 1e-3,
+        highest: 1e9,
+        whole: false,
+        search: Search::Log(1.0, 1e5),
+    };
+
     /// Process noise of the triple integrator.
     pub const JERK: Self = Self {
         name: "",

@@ -1,5 +1,6 @@
 //! Estimators without a model of the motor, and Kalman filters over a linear model.
 
+mod acceleration_bound;
 mod alpha_beta_gamma;
 mod finite_difference;
 mod foaw;
@@ -11,7 +12,9 @@ mod m_over_t;
 mod pll;
 mod pole;
 mod savitzky_golay;
+mod square_root;
 mod steady_kalman;
+mod super_twisting;
 mod table_kalman;
 
 pub use alpha_beta_gamma::{AlphaBetaGamma, AlphaBetaGammaState};
@@ -25,4 +28,5 @@ pub use m_over_t::{MOverT, MOverTState};
 pub use pll::{Pll, PllState};
 pub use savitzky_golay::{SavitzkyGolay, SavitzkyGolayState};
 pub use steady_kalman::{SteadyKalman, SteadyKalmanMotor, SteadyKalmanState, SteadyKalmanTriple};
+pub use super_twisting::{SuperTwisting, SuperTwistingState};
 pub use table_kalman::{TableKalman, TableKalmanMotor, TableKalmanState, TableKalmanTriple};

@@ -33,6 +33,20 @@ macro_rules! tracking_rows {
             },
             |c, motor, rate, clock, p, N| c::AlphaBetaGamma =>
                 c::AlphaBetaGamma::new(c::Hertz(p.bandwidth_hz), rate);
+            super_twisting, "super-twisting", Nothing,
+            (acceleration: ACCELERATION),
+            $rates,
+            {
+                summary: "super-twisting differentiator (Levant), implicit steps",
+                needs: Signals::COUNT,
+                // Twice what was seen after random counts.
+                settling: Settling::SlidingMode(3.0),
+                colour: Colour::ORANGE,
+                dash: Dash::Dashed,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::SuperTwisting =>
+                c::SuperTwisting::new(motor.motor.counts_per_rev, rate, p.acceleration);
             m_over_t, "m-over-t", Nothing,
             (),
             $rates,

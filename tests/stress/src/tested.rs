@@ -263,7 +263,9 @@ impl Laws {
                 let one = one.decides().one_count_over_time();
                 one.also(self.forgotten_alone)
             }
-            Settling::Within(seconds) => one.decides().settles((seconds * self.rate_hz) as u32),
+            Settling::SlidingMode(seconds) | Settling::Within(seconds) => {
+                one.decides().settles((seconds * self.rate_hz) as u32)
+            }
         }
     }
 }

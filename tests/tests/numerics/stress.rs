@@ -1,6 +1,6 @@
 //! `cargo stress`, short enough for every test run.
 
-use estimator_catalogue::{Parameter, ROWS};
+use estimator_catalogue::{Parameter, ROWS, Settling};
 use measured::Row;
 use measured::tables::{STRESS, STRESS_PARAMETERS};
 use stress::findings::Findings;
@@ -71,6 +71,12 @@ fn measured_figures_are_those_of_these_estimators() {
     assert!(rows.is_empty(), "rows too many: {rows:?}");
 }
 
+/// Whether the row of this name has a sliding mode.
+fn slides(name: &str) -> bool {
+    let slides = |row: &estimator_catalogue::Row| matches!(row.settling, Settling::SlidingMode(_));
+    ROWS.iter().any(|row| row.name == name && slides(row))
+}
+
 #[test]
 fn extreme_parameters_are_stable_or_refused_by_name() {
     let all = sensitivity::all();
@@ -90,9 +96,10 @@ fn extreme_parameters_are_stable_or_refused_by_name() {
             "{name}: {outcome:?}"
         );
         // With a current that is all noise the motor filter's pole goes to -1, and the rounding of
-        // its gain shows; observers and banks decide. Stable is all that they have to be there.
+        // its gain shows; observers, banks and sliding modes decide. Stable is all that they have to be
+        // there.
         let stable = ["kalman-motor", "observer", "adaptive", "imm"];
-        if !stable.iter().any(|one| name.starts_with(one)) {
+        if !stable.iter().any(|one| name.starts_with(one)) && !slides(name) {
             assert!(outcome.relative_deviation < 1e-5, "{name}: {outcome:?}");
         }
     }
@@ -108,13 +115,14 @@ fn f32_error_is_negligible_on_the_signals_of_a_device() {
             assert!(found.added_error().abs() < 1e-2, "{found:?}");
             // Without time stamps an observer decides at every count whether the prediction agrees;
             // without the handle or the current it decides that between two edges too. A bank decides
-            // at every tick which filters it runs.
+            // at every tick which filters it runs. A sliding mode decides by the sign of the error.
             let decides = ROWS.iter().any(|row| {
                 let observer = row.parameters.iter().any(Parameter::is_torque);
                 let bank = row.name.starts_with("imm");
                 let edges = row.needs.edge && row.needs.coupled;
                 row.name == found.estimator && (bank || observer && !edges)
             });
+            let decides = decides || slides(&found.estimator);
             if !decides {
                 assert!(found.rms_rad_s < 1e-5, "{found:?}");
             }
