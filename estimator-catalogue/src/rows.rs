@@ -8,7 +8,7 @@ mod windows;
 
 use estimator_core::Signals;
 
-use crate::parameter::Parameter;
+use crate::parameter::{Parameter, Search, WINDOW_LIMIT};
 use crate::row::{Colour, Dash, Goal, Reports, Row, Settling, Variant};
 
 /// Passes all rows to the macro `$each`. A row is

@@ -83,6 +83,23 @@ macro_rules! window_rows {
             },
             |c, motor, rate, clock, p, N| c::SavitzkyGolay<N> =>
                 c::SavitzkyGolay::new(p.n as usize);
+            robust_exact, "robust-exact", Nothing,
+            (acceleration: ACCELERATION, n: {
+                meaning: "largest number of intervals in the window; a longer one costs run time alone",
+                search: Search::Fixed(WINDOW_LIMIT as f64),
+                ..Parameter::WINDOW
+            }),
+            (n_15: 1000.0, 15; n_64: 10_000.0, 64;),
+            {
+                summary: "optimal robust exact differentiator: a window as long as the noise in it asks for",
+                needs: Signals::COUNT,
+                settling: Settling::Window,
+                colour: Colour::SKY,
+                dash: Dash::Dashed,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::RobustExact<N> =>
+                c::RobustExact::new(motor.motor.counts_per_rev, rate, p.acceleration, p.n as usize);
         ] $($families)* }
     };
 }
