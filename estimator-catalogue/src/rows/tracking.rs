@@ -33,6 +33,19 @@ macro_rules! tracking_rows {
             },
             |c, motor, rate, clock, p, N| c::AlphaBetaGamma =>
                 c::AlphaBetaGamma::new(c::Hertz(p.bandwidth_hz), rate);
+            linear_eso, "linear-eso", Nothing,
+            (bandwidth_hz: BANDWIDTH),
+            $rates,
+            {
+                summary: "linear extended-state observer: alpha-beta-gamma with the known motor current",
+                needs: Signals::COUNT_AND_CURRENT,
+                settling: Settling::EqualPoles(3),
+                colour: Colour::VERMILION,
+                dash: Dash::Dashed,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::LinearEso =>
+                c::LinearEso::new(&motor.motor, rate, c::Hertz(p.bandwidth_hz));
             super_twisting, "super-twisting", Nothing,
             (acceleration: ACCELERATION),
             $rates,

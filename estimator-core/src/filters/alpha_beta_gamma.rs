@@ -86,13 +86,35 @@ impl VelocityEstimator for AlphaBetaGamma {
 
     #[inline(always)]
     fn update(&self, state: &mut AlphaBetaGammaState, sample: &Sample) -> CountsPerTick {
+        self.tick(state, sample, state.acceleration)
+    }
+}
+
+impl AlphaBetaGamma {
+    /// The update, with the acceleration over the tick that ends with `sample`: that of the state, and a
+    /// part that is known.
+    #[inline(always)]
+    pub(super) fn tick(
+        &self,
+        state: &mut AlphaBetaGammaState,
+        sample: &Sample,
+        acceleration: f32,
+    ) -> CountsPerTick {
         let displacement = (sample.count - state.anchor).to_f32();
         state.anchor = sample.count;
-        let predicted = state.velocity + 0.5 * state.acceleration;
+        let predicted = state.velocity + 0.5 * acceleration;
         state.innovation = displacement - predicted + self.leftover * state.innovation;
-        state.velocity += state.acceleration + self.beta * state.innovation;
+        state.velocity += acceleration + self.beta * state.innovation;
         state.acceleration += self.gamma * state.innovation;
         CountsPerTick(state.velocity)
+    }
+}
+
+impl AlphaBetaGammaState {
+    /// The acceleration of the state, counts/tick².
+    #[inline(always)]
+    pub(super) const fn acceleration(&self) -> f32 {
+        self.acceleration
     }
 }
 
