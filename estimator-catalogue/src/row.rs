@@ -71,9 +71,9 @@ pub enum Settling {
     /// When the disturbance torque, which includes all other torques, has decayed, and then as one
     /// count over the time since the last edge.
     DisturbanceAlone,
-    /// Within this time, s, which was measured and not derived, in a sliding mode: the sign of an
-    /// error decides, which amplifies rounding.
-    SlidingMode(f64),
+    /// Within this time, s, which was measured and not derived. The sign of an error switches the law,
+    /// which amplifies rounding.
+    Switching(f64),
     /// Within this time, s, which was measured and not derived. An estimator whose law is not in
     /// this list has this variant.
     Within(f64),

@@ -18,6 +18,7 @@ mod square_root;
 mod steady_kalman;
 mod super_twisting;
 mod table_kalman;
+mod tracking_differentiator;
 
 pub use alpha_beta_gamma::{AlphaBetaGamma, AlphaBetaGammaState};
 pub use finite_difference::FiniteDifference;
@@ -34,3 +35,4 @@ pub use savitzky_golay::{SavitzkyGolay, SavitzkyGolayState};
 pub use steady_kalman::{SteadyKalman, SteadyKalmanMotor, SteadyKalmanState, SteadyKalmanTriple};
 pub use super_twisting::{SuperTwisting, SuperTwistingState};
 pub use table_kalman::{TableKalman, TableKalmanMotor, TableKalmanState, TableKalmanTriple};
+pub use tracking_differentiator::{TrackingDifferentiator, TrackingDifferentiatorState};

@@ -53,13 +53,35 @@ macro_rules! tracking_rows {
                 summary: "super-twisting differentiator (Levant), implicit steps",
                 needs: Signals::COUNT,
                 // Twice what was seen after random counts.
-                settling: Settling::SlidingMode(3.0),
+                settling: Settling::Switching(3.0),
                 colour: Colour::ORANGE,
                 dash: Dash::Dashed,
                 goals: &[],
             },
             |c, motor, rate, clock, p, N| c::SuperTwisting =>
                 c::SuperTwisting::new(motor.motor.counts_per_rev, rate, p.acceleration);
+            tracking_differentiator, "tracking-differentiator", Nothing,
+            (acceleration: ACCELERATION, filter_time: {
+                name: "",
+                unit: "s",
+                meaning: "filter time of the linear region, at least a tick",
+                lowest: 1e-6,
+                highest: 100.0,
+                whole: false,
+                search: Search::Log(1e-4, 0.02),
+            }),
+            $rates,
+            {
+                summary: "tracking differentiator (Han): follows as fast as a bound on the acceleration allows",
+                needs: Signals::COUNT,
+                // Twice what was seen after random counts.
+                settling: Settling::Switching(3.0),
+                colour: Colour::OLIVE,
+                dash: Dash::Dashed,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::TrackingDifferentiator => c::TrackingDifferentiator::new(
+                motor.motor.counts_per_rev, rate, p.acceleration, p.filter_time);
             m_over_t, "m-over-t", Nothing,
             (),
             $rates,

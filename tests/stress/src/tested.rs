@@ -263,7 +263,7 @@ impl Laws {
                 let one = one.decides().one_count_over_time();
                 one.also(self.forgotten_alone)
             }
-            Settling::SlidingMode(seconds) | Settling::Within(seconds) => {
+            Settling::Switching(seconds) | Settling::Within(seconds) => {
                 one.decides().settles((seconds * self.rate_hz) as u32)
             }
         }

@@ -71,10 +71,10 @@ fn measured_figures_are_those_of_these_estimators() {
     assert!(rows.is_empty(), "rows too many: {rows:?}");
 }
 
-/// Whether the row of this name has a sliding mode.
-fn slides(name: &str) -> bool {
-    let slides = |row: &estimator_catalogue::Row| matches!(row.settling, Settling::SlidingMode(_));
-    ROWS.iter().any(|row| row.name == name && slides(row))
+/// Whether the law of the row of this name switches by the sign of an error.
+fn switches(name: &str) -> bool {
+    let switches = |row: &estimator_catalogue::Row| matches!(row.settling, Settling::Switching(_));
+    ROWS.iter().any(|row| row.name == name && switches(row))
 }
 
 #[test]
@@ -96,10 +96,10 @@ fn extreme_parameters_are_stable_or_refused_by_name() {
             "{name}: {outcome:?}"
         );
         // With a current that is all noise the motor filter's pole goes to -1, and the rounding of
-        // its gain shows; observers, banks and sliding modes decide. Stable is all that they have to be
+        // its gain shows; observers, banks and switching laws decide. Stable is all that they have to be
         // there.
         let stable = ["kalman-motor", "observer", "adaptive", "imm"];
-        if !stable.iter().any(|one| name.starts_with(one)) && !slides(name) {
+        if !stable.iter().any(|one| name.starts_with(one)) && !switches(name) {
             assert!(outcome.relative_deviation < 1e-5, "{name}: {outcome:?}");
         }
     }
@@ -115,14 +115,14 @@ fn f32_error_is_negligible_on_the_signals_of_a_device() {
             assert!(found.added_error().abs() < 1e-2, "{found:?}");
             // Without time stamps an observer decides at every count whether the prediction agrees;
             // without the handle or the current it decides that between two edges too. A bank decides
-            // at every tick which filters it runs. A sliding mode decides by the sign of the error.
+            // at every tick which filters it runs. A switching law decides by the sign of an error.
             let decides = ROWS.iter().any(|row| {
                 let observer = row.parameters.iter().any(Parameter::is_torque);
                 let bank = row.name.starts_with("imm");
                 let edges = row.needs.edge && row.needs.coupled;
                 row.name == found.estimator && (bank || observer && !edges)
             });
-            let decides = decides || slides(&found.estimator);
+            let decides = decides || switches(&found.estimator);
             if !decides {
                 assert!(found.rms_rad_s < 1e-5, "{found:?}");
             }
