@@ -2,6 +2,8 @@
 
 mod acceleration_bound;
 mod alpha_beta_gamma;
+#[cfg(test)]
+mod draws;
 mod finite_difference;
 mod foaw;
 mod handover;

@@ -163,6 +163,7 @@ impl<const N: usize> VelocityEstimator for SavitzkyGolay<N> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::draws::draw;
     use super::*;
 
     /// The slope of the least-squares parabola, by Cramer's rule on the normal equations, at the
@@ -183,13 +184,6 @@ mod tests {
         let with_moment = |k: u32| [power(k), moment(k), power(k + 2)];
         let slope = determinant([with_moment(0), with_moment(1), with_moment(2)]);
         slope as f64 / determinant([row(0), row(1), row(2)]) as f64
-    }
-
-    /// A sequence of draws (SplitMix64).
-    fn draw(state: &mut u64) -> u64 {
-        *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (*state ^ (*state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z ^ (z >> 27)
     }
 
     #[test]

@@ -130,6 +130,7 @@ impl VelocityEstimator for SuperTwisting {
 
 #[cfg(test)]
 mod tests {
+    use super::super::draws::draw;
     use super::*;
 
     /// Counts/rev and rate for which 1 rad/s² is 1e-3 counts/tick².
@@ -139,13 +140,6 @@ mod tests {
     fn differentiator(bound: f64) -> SuperTwisting {
         let per_tick = f64::from(TURN) / core::f64::consts::TAU / (RATE.0 * RATE.0);
         SuperTwisting::new(TURN, RATE, bound / per_tick).unwrap()
-    }
-
-    /// A sequence of draws (SplitMix64).
-    fn draw(state: &mut u64) -> u64 {
-        *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (*state ^ (*state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z ^ (z >> 27)
     }
 
     /// The backward Euler step by its definition: the new error e solves `b ∈ e + c S + a sqrt(|e|) S`

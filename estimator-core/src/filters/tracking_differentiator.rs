@@ -155,6 +155,7 @@ impl VelocityEstimator for TrackingDifferentiator {
 
 #[cfg(test)]
 mod tests {
+    use super::super::draws::draw;
     use super::*;
 
     const TURN: u32 = 6283;
@@ -164,13 +165,6 @@ mod tests {
     fn differentiator(bound: f64, ticks: f64) -> TrackingDifferentiator {
         let per_tick = f64::from(TURN) / core::f64::consts::TAU / (RATE.0 * RATE.0);
         TrackingDifferentiator::new(TURN, RATE, bound / per_tick, ticks / RATE.0).unwrap()
-    }
-
-    /// A sequence of draws (SplitMix64).
-    fn draw(state: &mut u64) -> u64 {
-        *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (*state ^ (*state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z ^ (z >> 27)
     }
 
     /// fhan as Han writes it, with signs in place of branches.

@@ -8,6 +8,7 @@
 //! | `endurance` | long runs: covariance, bad currents, huge jumps |
 //! | `distance` | counts beyond the exact range of f32, long ramps |
 //! | `foaw_definition` | the O(n²) definition of FOAW in exact fractions |
+//! | `robust_exact` | the definition of the optimal robust exact differentiator, and its largest error |
 //! | `kalman_reference` | the textbook filter in f64, absolute positions, the current as a state |
 //! | `bank` | the multiple-model bank by its definition in f64, and what it promises |
 //! | `acceleration` | a constant acceleration |
@@ -47,5 +48,6 @@ mod observer;
 mod ramps;
 mod reference;
 mod regressions;
+mod robust_exact;
 mod steady_gain;
 mod units;
