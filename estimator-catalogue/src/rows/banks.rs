@@ -14,9 +14,9 @@ macro_rules! bank_rows {
                 summary: "bank of three filters that finds its own process noise",
                 needs: Signals::COUNT,
                 settling: Settling::Within(0.3),
-                colour: Colour::GREEN,
-                dash: Dash::Mixed,
-                goals: &[Goal { capacity: 0, mean: 250.0, longest: 400.0 }],
+                colour: Colour::PINE,
+                dash: Dash::Solid,
+                goals: &[],
             },
             |c, motor, rate, clock, p, N| c::Imm =>
                 c::ModelBank::new(rate);
@@ -28,8 +28,8 @@ macro_rules! bank_rows {
                 needs: EDGE,
                 settling: Settling::Within(0.3),
                 colour: Colour::PINE,
-                dash: Dash::Mixed,
-                goals: &[Goal { capacity: 0, mean: 300.0, longest: 450.0 }],
+                dash: Dash::Dashed,
+                goals: &[],
             },
             |c, motor, rate, clock, p, N| c::ImmEdge =>
                 c::ModelBank::with_edges(clock, rate);
@@ -40,7 +40,7 @@ macro_rules! bank_rows {
                 summary: "bank of two filters: the cheap one",
                 needs: Signals::COUNT,
                 settling: Settling::Within(0.3),
-                colour: Colour::GREEN,
+                colour: Colour::PINE,
                 dash: Dash::Dotted,
                 goals: &[],
             },
