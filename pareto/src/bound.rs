@@ -33,6 +33,14 @@ pub fn of(image: &Image, subject: &Subject) -> Result<u32, String> {
     costs[turns].ok_or_else(|| format!("{subject}: never returns"))
 }
 
+/// Whether a bound can be derived. This analysis knows one loop over a window: not the loops over the
+/// members of a bank, nor the routines that clear its arrays, nor the several loops of the robust exact
+/// differentiator.
+#[must_use]
+pub fn is_derivable(estimator: &str) -> bool {
+    !estimator.starts_with("imm") && estimator != "robust-exact"
+}
+
 /// By turns that may be taken: instructions of the longest path to a return, if there is one.
 type Costs = Vec<Option<u32>>;
 

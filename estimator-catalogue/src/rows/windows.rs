@@ -89,7 +89,7 @@ macro_rules! window_rows {
                 search: Search::Fixed(WINDOW_LIMIT as f64),
                 ..Parameter::WINDOW
             }),
-            (n_15: 1000.0, 15; n_64: 10_000.0, 64;),
+            (at_1k: 1000.0, 64; at_10k: 10_000.0, 64;),
             {
                 summary: "optimal robust exact differentiator: a window as long as the noise in it asks for",
                 needs: Signals::COUNT,

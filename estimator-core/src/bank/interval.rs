@@ -203,7 +203,7 @@ mod tests {
                 }
             }
         }
-        let bounds = [0.05, 0.05, 0.05];
+        let bounds = [0.02, 0.04, 0.04];
         for (worst, bound) in worst.iter().zip(bounds) {
             assert!(*worst < bound, "{worst:?}");
         }

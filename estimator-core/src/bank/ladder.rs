@@ -129,3 +129,65 @@ const fn integrated(rate: f64) -> [f64; 6] {
     }
     sums
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::{CORRELATION_TIME, LOWEST, Ladder, WHITE_SHARE};
+    use crate::bank::member::Member;
+    use nalgebra::{Matrix3, SMatrix, Vector3};
+
+    /// Transition and process noise over a tick, by Van Loan's exponential of a block matrix, of the
+    /// model in counts and ticks.
+    fn van_loan(period: f64, density: f64) -> (Matrix3<f64>, Matrix3<f64>) {
+        let rate = period / CORRELATION_TIME;
+        let a = Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -rate);
+        let jerk = density * period.powi(5);
+        let white = density * CORRELATION_TIME.powi(2) * WHITE_SHARE * period.powi(3);
+        let q = Matrix3::from_diagonal(&Vector3::new(0.0, white, jerk));
+        let mut block = SMatrix::<f64, 6, 6>::zeros();
+        block.fixed_view_mut::<3, 3>(0, 0).copy_from(&-a);
+        block.fixed_view_mut::<3, 3>(0, 3).copy_from(&q);
+        let transposed = a.transpose();
+        block.fixed_view_mut::<3, 3>(3, 3).copy_from(&transposed);
+        let exponential = block.exp();
+        let transition = exponential.fixed_view::<3, 3>(3, 3).transpose();
+        let noise = transition * exponential.fixed_view::<3, 3>(0, 3);
+        (transition, noise)
+    }
+
+    #[test]
+    fn prediction_is_that_of_the_continuous_model() {
+        for period in [1e-2, 2e-3, 1e-3, 5e-5, 1e-5] {
+            let ladder = Ladder::new(period);
+            // The noise of the first rung, and a rung whose noise matters.
+            for rung in [0, 9, 17] {
+                let density = LOWEST * 10f64.powi(i32::try_from(rung).expect("small"));
+                let (transition, noise) = van_loan(period, density);
+                let p = Matrix3::new(0.3, 0.1, 0.02, 0.1, 0.4, -0.05, 0.02, -0.05, 0.2);
+                for p in [p, Matrix3::zeros()] {
+                    let x = Vector3::new(0.2, 3.0, -0.7);
+                    let mut member = Member {
+                        position: x[0] as f32,
+                        velocity: x[1] as f32,
+                        acceleration: x[2] as f32,
+                        covariance: [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
+                            .map(|at| p[at] as f32),
+                    };
+                    ladder.predict(&mut member, rung, 4.0);
+                    let x = transition * x;
+                    let found = [member.position, member.velocity, member.acceleration];
+                    for (found, expected) in found.iter().zip([x[0] - 4.0, x[1], x[2]]) {
+                        assert!((f64::from(*found) - expected).abs() < 1e-5, "{period}");
+                    }
+                    let p = transition * p * transition.transpose() + noise;
+                    let places = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+                    for (found, at) in member.covariance.iter().zip(places) {
+                        let off = f64::from(*found) / p[at] - 1.0;
+                        assert!(off.abs() < 1e-5, "{period} {rung} {at:?}: {off}");
+                    }
+                }
+            }
+        }
+    }
+}

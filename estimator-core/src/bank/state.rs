@@ -188,7 +188,7 @@ impl<const K: usize> ModelBankState<K> {
         }
         for i in 0..K {
             if self.weights[i] < IMPROBABLE {
-                self.members[i] = self.members[heaviest % K];
+                self.members[i] = self.members[heaviest % K].copied();
                 self.weights[i] = RESET_WEIGHT;
             }
         }
@@ -200,14 +200,14 @@ impl<const K: usize> ModelBankState<K> {
         if self.weights[K - 1] > HEAVY && self.rung + K < RUNGS {
             self.rung += 1;
             for i in 1..K {
-                self.members[i - 1] = self.members[i];
+                self.members[i - 1] = self.members[i].copied();
                 self.weights[i - 1] = self.weights[i];
             }
             self.weights[K - 1] = NEW_WEIGHT;
         } else if self.weights[0] > HEAVY && self.rung > 0 {
             self.rung -= 1;
             for i in (1..K).rev() {
-                self.members[i] = self.members[i - 1];
+                self.members[i] = self.members[i - 1].copied();
                 self.weights[i] = self.weights[i - 1];
             }
             self.weights[0] = NEW_WEIGHT;
@@ -215,9 +215,64 @@ impl<const K: usize> ModelBankState<K> {
     }
 }
 
-/// √x: the Padé approximant of order [2/2] at 1, to 3 % from 1/20 to 20.
+/// √x: the Padé approximant of order [2/2] at 1, to 8 % from 1/10 to 10. The variances of neighbouring
+/// members differ by at most a factor of 10.
 #[inline(always)]
 fn root(x: f32) -> f32 {
     let square = x * x;
     (1.0 + 10.0 * x + 5.0 * square) / (5.0 + 10.0 * x + square)
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::{ModelBankState, root};
+    use crate::bank::interval::Likelihood;
+    use crate::units::Count;
+
+    #[test]
+    fn variance_is_that_of_the_mixture() {
+        let mut state = ModelBankState::<2>::start(Count(0));
+        state.weights = [0.25, 0.75];
+        for (member, (velocity, variance)) in
+            state.members.iter_mut().zip([(3.0, 0.5), (-1.0, 0.1)])
+        {
+            member.velocity = velocity;
+            member.covariance[3] = variance;
+        }
+        // Mean 0; 1/4 (1/2 + 9) + 3/4 (1/10 + 1).
+        assert_eq!(state.velocity(), 0.0);
+        assert!((state.velocity_variance() - 3.2).abs() < 1e-6);
+    }
+
+    #[test]
+    fn weights_follow_likelihoods_that_f32_cannot_hold() {
+        let mut state = ModelBankState::<3>::start(Count(0));
+        // exp(-5000) is far below the smallest f32; the ratio of the last two is (1 + x)^-16.
+        let likelihoods = [1e6, 5000.0, 4000.0].map(|x| Likelihood::new(1.0, x));
+        state.weigh(&likelihoods, 0.0);
+        let ratio = (251.0f64 / 313.5).powi(16);
+        let expected = [0.0, ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)];
+        for (weight, expected) in state.weights.iter().zip(expected) {
+            assert!((f64::from(*weight) - expected).abs() < 1e-5, "{weight}");
+        }
+    }
+
+    #[test]
+    fn a_change_of_the_noise_keeps_every_member_possible() {
+        let mut state = ModelBankState::<2>::start(Count(0));
+        state.weights = [0.0, 1.0];
+        state.weigh(&[Likelihood::CERTAIN; 2], 0.25);
+        assert!((state.weights[0] - 0.25 / 1.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn root_is_approximated_to_8_percent() {
+        let mut x = 0.1f32;
+        while x <= 10.0 {
+            let off = root(x) / x.sqrt() - 1.0;
+            assert!(off.abs() < 0.08, "{x}: {off}");
+            x *= 1.01;
+        }
+    }
 }

@@ -16,10 +16,12 @@ use super::arguments::DeviceFile;
 pub(super) fn estimators() -> Result<(), Failure> {
     let mut text = String::new();
     let presets = Presets::shipped();
+    let longest = Kind::all().iter().map(|kind| kind.name.len()).max();
+    let width = longest.unwrap_or(0) + 2;
     for kind in Kind::all() {
         // Writing to a string cannot fail.
-        let line = format!("{:<22}{}", kind.name, kind.summary);
-        let _ = writeln!(text, "{}", wrapped(&line, 22));
+        let line = format!("{:<width$}{}", kind.name, kind.summary);
+        let _ = writeln!(text, "{}", wrapped(&line, width));
         for (needed, what) in [
             (kind.needs.current, "the large motor's current"),
             (kind.needs.coupled, "the small encoder"),

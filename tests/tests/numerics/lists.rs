@@ -90,7 +90,11 @@ fn every_row_is_in_the_measured_tables() {
     ] {
         let names = measured_names(&table);
         let found = of_rows(names.iter().map(String::as_str));
-        assert_eq!(found, rows(), "measured/{}.csv", table.name);
+        let mut expected = rows();
+        if table.name == tables::BOUNDS.name {
+            expected.retain(|name| pareto::bound::is_derivable(name));
+        }
+        assert_eq!(found, expected, "measured/{}.csv", table.name);
     }
 }
 
