@@ -64,7 +64,7 @@ macro_rules! tracking_rows {
             (acceleration: ACCELERATION, filter_time: {
                 name: "",
                 unit: "s",
-                meaning: "filter time of the linear region, at least a tick",
+                meaning: "filter time of the linear region; below a tick it is a tick",
                 lowest: 1e-6,
                 highest: 100.0,
                 whole: false,

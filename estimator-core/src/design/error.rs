@@ -62,7 +62,7 @@ impl DesignError {
         BANDWIDTH: "bandwidth", "must be between 1e-6 and 1/2 of the rate", "Hz";
         ACCELERATION: "acceleration", "must give counts_per_rev acceleration / (2 pi rate^2) from \
             1e-12 to 1e6 counts/tick^2", "rad/s^2";
-        FILTER_TIME: "filter_time", "must be between 1 and 10^4 ticks", "s";
+        FILTER_TIME: "filter_time", "must be above 0 and at most 10^4 ticks", "s";
         WINDOW: "window", "must be between 1 and N", "intervals";
         BOUND: "bound", "must be at most 2^14", "counts";
         SETTLE: "settle", "must be below 2^15", "ticks";

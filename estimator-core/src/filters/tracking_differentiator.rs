@@ -31,7 +31,8 @@ const LONGEST_FILTER_TIME: f64 = 1e4;
 ///
 /// If x lies more than 2^15 counts beside the count, the differentiator restarts there with the finite
 /// difference as v. `acceleration` is r in rad/s², valid from 1e-12 to 1e6 counts/tick²; `filter_time` is
-/// h in s, valid from 1 to 10^4 ticks.
+/// h in s, valid up to 10^4 ticks. A time below one tick is one tick, so that parameters for one rate
+/// serve a lower one too.
 ///
 /// Source: Han and Wang, Nonlinear tracking-differentiator, Journal of Systems Science and Mathematical
 /// Sciences 14, 1994; Han, From PID to active disturbance rejection control, IEEE Trans. Industrial
@@ -79,10 +80,10 @@ impl TrackingDifferentiator {
             Err(error) => return Err(error),
         };
         let ticks = filter_time * rate.0;
-        // 0.001 s at 1000 Hz is a tick, whatever the product rounds to.
-        if !(ticks >= 1.0 - 1e-9 && ticks <= LONGEST_FILTER_TIME) {
+        if !(ticks > 0.0 && ticks <= LONGEST_FILTER_TIME) {
             return Err(DesignError::FILTER_TIME);
         }
+        let ticks = if ticks < 1.0 { 1.0 } else { ticks };
         let band = bound * ticks * ticks;
         Ok(Self {
             bound: bound as f32,
@@ -267,8 +268,11 @@ mod tests {
             |acceleration, time| TrackingDifferentiator::new(4096, RATE, acceleration, time).err();
         assert_eq!(new(60.0, 0.001), None);
         assert_eq!(new(60.0, 10.0), None);
+        let new_at = |time| TrackingDifferentiator::new(4096, RATE, 60.0, time).expect("in range");
+        assert_eq!(new_at(0.0003), new_at(0.001));
+        assert_ne!(new_at(0.0011), new_at(0.001));
         assert_eq!(new(0.0, 0.001), Some(DesignError::ACCELERATION));
-        for time in [0.0009, 10.1, f64::NAN, -1.0] {
+        for time in [0.0, 10.1, f64::NAN, -1.0] {
             assert_eq!(new(60.0, time), Some(DesignError::FILTER_TIME), "{time}");
         }
     }
