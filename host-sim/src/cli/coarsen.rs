@@ -1,5 +1,6 @@
 //! `host-sim coarsen`.
 
+use std::fs;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -63,6 +64,11 @@ pub(super) fn run(options: &Coarsen) -> Result<(), Failure> {
         None => Source::of(&options.fine)?.map(|source| source.counts_per_rev),
         given => given,
     };
+    if options.fine.as_os_str() != "-"
+        && let Err(error) = fs::metadata(&options.fine)
+    {
+        return Err(Failure::Input(format!("{name}: cannot read: {error}")));
+    }
     let fine_counts_per_rev = known.ok_or_else(|| {
         Failure::Input(format!(
             "{name}: its counts per revolution are not known; give --fine-counts-per-rev, or list the \

@@ -149,6 +149,10 @@ fn invalid_input_of_real_and_coarsen_is_one_line() {
             "f.csv: its counts per revolution are not known; give --fine",
         ),
         (
+            "coarsen none.csv --counts-per-rev 64 --out c.csv",
+            "none.csv: cannot read: No such file",
+        ),
+        (
             "coarsen f.csv --counts-per-rev 60000",
             "do not resolve 60000 counts/rev at 1000 Hz; ask for at most 50000",
         ),
