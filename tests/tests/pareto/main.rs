@@ -88,7 +88,9 @@ fn claims_of_estimators(rows: &[Row]) {
         }
     }
     assert!(goals > 10, "{goals} goals");
-    for row in rows.iter().filter(|row| !row.peer) {
+    // The loops over the members of a bank are unrolled at opt-level 3 alone.
+    let straight = |row: &&Row| !row.peer && !row.name.starts_with("imm");
+    for row in rows.iter().filter(straight) {
         let [fast, small] = [0, 1].map(|level| row.cost[level].mean);
         assert!(small <= 1.1 * fast, "{}: {small} at s, {fast}", row.name);
     }
@@ -116,9 +118,14 @@ fn claims_of_tasks(tasks: &[Task], rows: &[Row]) {
     assert!(without > 74e3, "{without} Hz without a velocity");
     for row in rows.iter().filter(|row| !row.peer) {
         let range = match &*row.name {
+            "robust-exact, n = 64" => 5e3..10e3,
             "foaw-best-fit, n = 64" => 10e3..20e3,
-            "foaw-end-fit, n = 64" => 20e3..33e3,
-            "foaw-best-fit, n = 15" | "adaptive" | "adaptive-edge" | "adaptive-soft" => 33e3..43e3,
+            "foaw-end-fit, n = 64" | "imm" | "imm-edge" => 20e3..33e3,
+            "imm-pair"
+            | "foaw-best-fit, n = 15"
+            | "adaptive"
+            | "adaptive-edge"
+            | "adaptive-soft" => 33e3..43e3,
             _ => 43e3..60e3,
         };
         let rate = row.highest_rate_hz;
