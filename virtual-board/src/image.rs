@@ -262,7 +262,8 @@ mod tests {
             panic!("taken for an image");
         };
         assert!(
-            said.contains("Cargo.toml: no image") && said.ends_with(&format!("`{HOW_TO_BUILD}`")),
+            said.contains("Cargo.toml: not an image")
+                && said.ends_with(&format!("`{HOW_TO_BUILD}`")),
             "{said}"
         );
     }

@@ -86,7 +86,7 @@ mod tests {
         let torque = tune(SceneKind::Torque, "torque=-0.01");
         assert_eq!(torque, Ok(Command::Torque(-0.01)));
         for (text, said) in [
-            ("stiffness", "give it as"),
+            ("stiffness", "must be NAME=VALUE@S"),
             ("softness=1", "wall has position, stiffness, damping"),
             ("stiffness=soft", "'soft' is not a number"),
         ] {

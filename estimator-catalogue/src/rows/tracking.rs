@@ -76,8 +76,8 @@ macro_rules! tracking_rows {
                 needs: Signals::COUNT,
                 // Twice what was seen after random counts.
                 settling: Settling::Switching(3.0),
-                colour: Colour::OLIVE,
-                dash: Dash::Dashed,
+                colour: Colour::SKY,
+                dash: Dash::Mixed,
                 goals: &[],
             },
             |c, motor, rate, clock, p, N| c::TrackingDifferentiator => c::TrackingDifferentiator::new(
