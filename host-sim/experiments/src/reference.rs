@@ -1,0 +1,182 @@
+//! A reference velocity from the recording itself, for recordings without a true velocity.
+//!
+//! The position is a triple integrator of white jerk, in counts and seconds. A row observes that the
+//! position, with sensor noise, is in the cell of the row's count; a stamped edge observes that it is
+//! the boundary at the edge's instant. Intervals may be uneven. The density of the jerk and the
+//! variance of the sensor are those that make the innovations most likely. The velocity is smoothed
+//! in both directions of time, so it needs the future: no estimator can be as good.
+//!
+//! # What it does not resolve
+//! * Motion within a cell without an edge. Its standard deviation grows with the time between edges.
+//! * Motion faster than [`Reference::bandwidth_hz`], where the smoother halves an amplitude.
+//! * Errors of the encoder's disc: equal cells are assumed.
+//! * One density of jerk serves the whole recording. Where the motion is more abrupt than on the
+//!   average, as in impacts, the standard deviation is too small, and at rest it is too large.
+
+mod cell;
+mod events;
+mod noises;
+mod state;
+mod sweeps;
+
+use std::f64::consts::TAU;
+
+use rayon::prelude::*;
+
+use recordings::recording::Recording;
+use scoring::score::SKIP_S;
+
+use sweeps::Model;
+
+/// Smallest number of rows of a recording with a reference.
+pub const FEWEST_ROWS: usize = 100;
+
+/// Smallest number of rows of a recording with a reference at which the count changes.
+pub const FEWEST_CHANGES: usize = 30;
+
+/// Smallest RMS error, in standard deviations of the reference, that ranks an estimator. Below it the
+/// reference's own error is more than half of what the score measures.
+pub const RESOLVED: f64 = 1.5;
+
+/// Rows of a piece that is smoothed at a time.
+const PIECE: usize = 65_536;
+
+/// Rows before and after a piece that are smoothed with it.
+const OVERLAP: usize = 8192;
+
+/// Noises of a recording.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noises {
+    /// Spectral density of the white jerk, counts^2/s^5.
+    pub jerk: f64,
+    /// Variance of the sensor's noise, counts^2. Quantisation is not part of it.
+    pub sensor: f64,
+}
+
+/// Velocity of a recording with its standard deviation, one value per row.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// Velocity, rad/s.
+    pub omega: Vec<f64>,
+    /// Its standard deviation, rad/s.
+    pub sd: Vec<f64>,
+    /// The noises with which it was computed.
+    pub noises: Noises,
+    /// Frequency at which the smoother halves the amplitude of a motion, on the average over the
+    /// recording, Hz.
+    pub bandwidth_hz: f64,
+}
+
+impl Reference {
+    /// The reference of `recording`, whose encoder has `counts_per_rev`. The result does not depend on
+    /// the number of threads.
+    ///
+    /// # Errors
+    /// If the recording has fewer than [`FEWEST_ROWS`] rows, or its count changes at fewer than
+    /// [`FEWEST_CHANGES`] of them: the noises cannot be estimated.
+    pub fn of(recording: &Recording, counts_per_rev: u32) -> Result<Self, String> {
+        let noises = Noises::of(recording)?;
+        Ok(Self::with(recording, counts_per_rev, noises))
+    }
+
+    /// The reference with given noises.
+    #[must_use]
+    pub fn with(recording: &Recording, counts_per_rev: u32, noises: Noises) -> Self {
+        Self::in_pieces(recording, counts_per_rev, noises, PIECE, OVERLAP)
+    }
+
+    /// The reference, computed in pieces of `piece` rows with `overlap` rows more on both sides.
+    fn in_pieces(
+        recording: &Recording,
+        counts_per_rev: u32,
+        noises: Noises,
+        piece: usize,
+        overlap: usize,
+    ) -> Self {
+        let rows = recording.t.len();
+        let period = recording.trace.period_s();
+        let model = Model {
+            jerk: noises.jerk * period.powi(5),
+            sensor: noises.sensor,
+            fastest: fastest(recording),
+        };
+        let smoothed = |first: usize| {
+            let inner = first..(first + piece).min(rows);
+            let outer = first.saturating_sub(overlap)..(inner.end + overlap).min(rows);
+            let events = events::events(recording, outer.clone(), period);
+            let (velocities, sites) = sweeps::smoothed(&events, model);
+            let precision: f64 = sites.iter().map(|site| site.precision).sum();
+            let of_inner = inner.start - outer.start..inner.end - outer.start;
+            let share = inner.len() as f64 / outer.len() as f64;
+            (velocities[of_inner].to_vec(), share * precision)
+        };
+        let firsts: Vec<usize> = (0..rows).step_by(piece).collect();
+        let pieces: Vec<_> = firsts.into_par_iter().map(smoothed).collect();
+        let precision: f64 = pieces.iter().map(|(_, precision)| precision).sum();
+        let scale = TAU / f64::from(counts_per_rev) / period;
+        let all = || pieces.iter().flat_map(|(velocities, _)| velocities);
+        // The smoother of a triple integrator is 1 / (1 + (w / w0)^6), w0^6 = density of the jerk times
+        // the information on the position in a unit of time.
+        let corner = (model.jerk * precision / rows as f64).powf(1.0 / 6.0);
+        Self {
+            omega: all().map(|s| scale * s.velocity).collect(),
+            sd: all().map(|s| scale * s.variance.sqrt()).collect(),
+            noises,
+            bandwidth_hz: corner / TAU / period,
+        }
+    }
+
+    /// Root mean square of the standard deviation from the first row that is scored, rad/s.
+    #[must_use]
+    pub fn rms_sd(&self, rate_hz: f64) -> f64 {
+        let first = (SKIP_S * rate_hz).round() as usize;
+        let sd = &self.sd[first.min(self.sd.len())..];
+        (sd.iter().map(|sd| sd * sd).sum::<f64>() / sd.len().max(1) as f64).sqrt()
+    }
+
+    /// Whether an RMS error `rms_rad_s` against the reference is that of the estimator: at least
+    /// [`RESOLVED`] times the reference's own.
+    #[must_use]
+    pub fn resolves(&self, rms_rad_s: f64, rate_hz: f64) -> bool {
+        rms_rad_s >= RESOLVED * self.rms_sd(rate_hz)
+    }
+}
+
+impl Noises {
+    /// The noises that make the innovations of `recording` most likely.
+    ///
+    /// # Errors
+    /// As [`Reference::of`].
+    pub fn of(recording: &Recording) -> Result<Self, String> {
+        let counts = &recording.trace.counts_large;
+        if counts.len() < FEWEST_ROWS {
+            return Err(format!(
+                "{} rows; a reference without true_omega needs at least {FEWEST_ROWS}",
+                counts.len()
+            ));
+        }
+        let changes = counts.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        if changes < FEWEST_CHANGES {
+            return Err(format!(
+                "counts_large changes at {changes} rows; a reference without true_omega needs at least \
+                 {FEWEST_CHANGES}: record more motion"
+            ));
+        }
+        let period = recording.trace.period_s();
+        let model = noises::most_likely(recording, period, fastest(recording));
+        Ok(Self {
+            jerk: model.jerk / period.powi(5),
+            sensor: model.sensor,
+        })
+    }
+}
+
+/// Largest displacement from row to row, counts.
+fn fastest(recording: &Recording) -> f64 {
+    let steps = recording.trace.counts_large.windows(2);
+    let steps = steps.map(|pair| (pair[1].wrapping_sub(pair[0]) as i32).unsigned_abs());
+    f64::from(steps.max().unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,166 @@
+use rand_distr::{Distribution as _, StandardNormal};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::SeedableRng as _;
+
+use simulation::trace::{EdgeStamp, Trace};
+
+use super::*;
+
+/// Noises per period and count of the synthetic recordings.
+const JERK: f64 = 1e-8;
+const SENSOR: f64 = 0.05;
+
+/// Steps of the integration in a period.
+const STEPS: usize = 8;
+
+/// A recording of the smoother's own model at 1 kHz, with the true velocity in counts/s, and edges
+/// where the noisy position crosses a boundary.
+fn synthetic(rows: usize, seed: u64) -> Recording {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+    let h = 1.0 / STEPS as f64;
+    let [mut x, mut v, mut a] = [0.3, 0.0, 0.0];
+    let mut trace = Trace {
+        rate_hz: 1e3,
+        true_omega: Some(Vec::new()),
+        edges: Some(Vec::new()),
+        ..Trace::default()
+    };
+    let mut t = Vec::new();
+    let mut edge = None;
+    for k in 0..rows {
+        let now = k as f64 * 1e-3;
+        t.push(now);
+        trace
+            .counts_large
+            .push((x + SENSOR.sqrt() * normal()).floor() as i64 as u32);
+        trace.true_omega.as_mut().unwrap().push(v * 1e3);
+        trace
+            .edges
+            .as_mut()
+            .unwrap()
+            .push(edge.map(|(at, boundary): (f64, i64)| EdgeStamp {
+                age_s: now - at,
+                boundary: boundary as u32,
+            }));
+        for step in 0..STEPS {
+            let before = x;
+            x += h * (v + h * (a / 2.0));
+            v += h * a;
+            a += (JERK * h).sqrt() * normal();
+            if x.floor() != before.floor() {
+                let boundary = x.max(before).floor();
+                let part = (boundary - before) / (x - before);
+                // The sensor noise moves the boundary that is crossed, so it moves the instant.
+                let late = SENSOR.sqrt() * normal() / v.abs().max(0.1) * 1e-3;
+                let at = now + 1e-3 * h * (step as f64 + part) + late;
+                edge = Some((at.min(now + 1e-3), boundary as i64));
+            }
+        }
+    }
+    Recording {
+        t,
+        trace,
+        current_small: None,
+        uneven_steps: 0,
+        notes: Vec::new(),
+    }
+}
+
+/// RMS of the error divided by the standard deviation.
+fn normalised_error(reference: &Reference, recording: &Recording, counts_per_rev: u32) -> f64 {
+    let scale = TAU / f64::from(counts_per_rev);
+    let truth = recording.trace.true_omega.as_ref().unwrap();
+    let errors = reference.omega.iter().zip(truth).zip(&reference.sd);
+    let squares = errors.map(|((omega, truth), sd)| ((omega - scale * truth) / sd).powi(2));
+    (squares.sum::<f64>() / truth.len() as f64).sqrt()
+}
+
+#[test]
+fn likelihood_recovers_the_noises_of_a_synthetic_recording() {
+    let mut recording = synthetic(20_000, 7);
+    recording.trace.edges = None;
+    let noises = Noises::of(&recording).unwrap();
+    // About 450 independent values of the jerk are resolved: three deviations are a factor of 1.8.
+    let factor = noises.jerk / (JERK * 1e15);
+    assert!((1.0 / 1.8..1.8).contains(&factor), "jerk off by {factor}");
+    // 20 000 rows with the variance R + 1/12: three deviations are 0.004.
+    assert!((noises.sensor - SENSOR).abs() < 0.004, "{}", noises.sensor);
+}
+
+#[test]
+fn standard_deviation_of_a_synthetic_recording_is_that_of_the_error() {
+    for stamped in [false, true] {
+        let mut recording = synthetic(20_000, 8);
+        if !stamped {
+            recording.trace.edges = None;
+        }
+        let noises = Noises {
+            jerk: JERK * 1e15,
+            sensor: SENSOR,
+        };
+        let reference = Reference::with(&recording, 4096, noises);
+        let error = normalised_error(&reference, &recording, 4096);
+        // About 450 independent values: three deviations are 10 %.
+        assert!((0.9..1.1).contains(&error), "stamped {stamped}: {error}");
+    }
+}
+
+#[test]
+fn pieces_with_overlap_give_the_reference_of_the_whole() {
+    let recording = synthetic(12_000, 9);
+    let noises = Noises {
+        jerk: JERK * 1e15,
+        sensor: SENSOR,
+    };
+    let whole = Reference::in_pieces(&recording, 4096, noises, 12_000, 0);
+    let pieces = Reference::in_pieces(&recording, 4096, noises, 2500, 1000);
+    for (k, (a, b)) in whole.omega.iter().zip(&pieces.omega).enumerate() {
+        let sd = whole.sd[k];
+        assert!((a - b).abs() < 1e-3 * sd, "row {k}: {a} {b}, sd {sd}");
+        assert!((pieces.sd[k] / sd - 1.0).abs() < 1e-3, "row {k}");
+    }
+}
+
+#[test]
+fn uneven_rows_and_any_start_of_the_counts_are_taken_exactly() {
+    let mut recording = synthetic(6000, 10);
+    recording.trace.edges = None;
+    let noises = Noises {
+        jerk: JERK * 1e15,
+        sensor: SENSOR,
+    };
+    let even = Reference::with(&recording, 4096, noises);
+    // The counts wrap, and every third row is missing.
+    let keep = |k: &usize| k % 3 != 1;
+    let mut thinned = recording.clone();
+    thinned.t = (0..6000).filter(keep).map(|k| recording.t[k]).collect();
+    let counts = &recording.trace.counts_large;
+    let shifted = |k: usize| counts[k].wrapping_add(u32::MAX - 5);
+    thinned.trace.counts_large = (0..6000).filter(keep).map(shifted).collect();
+    let uneven = Reference::with(&thinned, 4096, noises);
+    let rows = (0..6000).filter(keep);
+    for (i, k) in rows.enumerate() {
+        let off = (uneven.omega[i] - even.omega[k]).abs();
+        assert!(
+            off < 4.0 * uneven.sd[i],
+            "row {k}: {off}, sd {}",
+            uneven.sd[i]
+        );
+    }
+    assert!(uneven.rms_sd(1e3) > even.rms_sd(1e3));
+}
+
+#[test]
+fn recording_that_determines_no_noise_is_refused() {
+    let mut still = synthetic(200, 1);
+    still.trace.counts_large.fill(7);
+    let error = Reference::of(&still, 4096).unwrap_err();
+    assert!(
+        error.starts_with("counts_large changes at 0 rows"),
+        "{error}"
+    );
+    let short = synthetic(99, 1);
+    let error = Reference::of(&short, 4096).unwrap_err();
+    assert!(error.starts_with("99 rows;"), "{error}");
+}
