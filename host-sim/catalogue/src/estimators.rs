@@ -13,7 +13,7 @@ use haptic_control::DualStage;
 
 pub use estimator_catalogue::{Parameter, Search};
 
-pub use erased::{Estimator, State};
+pub use erased::{Estimator, Reports, State};
 pub use run::{available, sample};
 
 use crate::parameters::{Parameters, PlantKind};

@@ -1,21 +1,24 @@
 //! Replay of recordings through the estimators.
 
+mod board;
+mod run;
+
 use std::io::{self, Write};
 use std::path::Path;
 
 use rayon::prelude::*;
 
-use crate::compare::interval;
 use crate::table;
-use catalogue::estimators::Setup;
-use catalogue::estimators::{Kind, available};
-use catalogue::parameters::{Parameters, PlantKind};
-use recordings::health;
-use recordings::recording::{BoardColumns, Recording};
-use scoring::evaluation::{Candidate, Estimate, Evaluation, Heading, Row};
-use scoring::score::{Field, Score, Wanted};
+use catalogue::estimators::Kind;
+use catalogue::parameters::Parameters;
+use recordings::recording::Recording;
+use scoring::evaluation::{Estimate, Row};
+use scoring::score::{Field, Score};
 use simulation::device::Device;
 use terminal::failure::Failure;
+
+pub use board::BoardSummary;
+pub use run::{Run, section_rows};
 
 /// Results of a replay.
 #[derive(Clone, Debug)]
@@ -43,55 +46,26 @@ pub fn replay(
     done: impl Fn() + Sync,
 ) -> Result<Replay, Failure> {
     let trace = &recording.trace;
-    let (able, unable): (Vec<_>, Vec<_>) = kinds
-        .iter()
-        .partition(|kind| kind.needs.within(available(trace)));
-    let setup = Setup::of(device, trace.rate_hz);
-    let evaluation = Evaluation::new(&able, parameters, &setup, PlantKind::Friction)?;
-    let estimate = |candidate: &Candidate| {
-        let estimate = candidate.estimate(trace);
-        done();
-        estimate
-    };
-    let estimates: Vec<_> = (evaluation.candidates().par_iter())
-        .filter_map(estimate)
-        .collect();
-    let heading = Heading {
-        scenario: name.to_owned(),
-        rate_hz: trace.rate_hz,
-        plant: PlantKind::Friction,
-        seed: 0,
-    };
-    let rows = evaluation.rows(&heading, trace, &estimates, interval(device), Wanted::ALL)?;
-    let missing = |kind: &&'static Kind| {
-        let has = available(trace);
-        let column = match kind.needs {
-            needs if needs.current && !has.current => "current",
-            needs if needs.coupled && !has.coupled => "counts_small",
-            _ => "edge_tick",
-        };
-        (kind.name, column)
-    };
+    let mut run = Run::new(trace, trace.len(), name, kinds, device, parameters)?;
+    run.add(recording.clone(), done)?;
     Ok(Replay {
-        estimates,
-        rows,
-        left_out: unable.iter().map(missing).collect(),
-        mismatched_presets: parameters.used_far_away(&able, &setup, PlantKind::Friction),
+        rows: run.rows(),
+        left_out: run.left_out,
+        mismatched_presets: run.mismatched_presets,
+        estimates: run.estimates,
     })
 }
 
 /// One line on the recording's length and rate, the encoder and the parameters.
 #[must_use]
 pub fn header(
-    recording: &Recording,
+    (rows, rate_hz): (usize, f64),
     device: &Device,
     device_name: &str,
     parameters: &Parameters,
 ) -> String {
     format!(
-        "{} rows at {} Hz, {} counts/rev ({device_name}), parameters: {}",
-        recording.t.len(),
-        recording.trace.rate_hz,
+        "{rows} rows at {rate_hz} Hz, {} counts/rev ({device_name}), parameters: {}",
         device.stages.large.counts_per_rev,
         parameters.sources()
     )
@@ -118,37 +92,6 @@ pub fn table(rows: &[Row], with_coupler: bool, width: usize) -> String {
     table::details(rows, &fields, width)
 }
 
-/// Summary of the board's own estimates in a recording, one line each: the share of samples whose
-/// error is within two of its standard deviations, and its estimated parameters relative to `device`.
-#[must_use]
-pub fn board_summary(recording: &Recording, board: &BoardColumns, device: &Device) -> Vec<String> {
-    let mut lines = Vec::new();
-    let trace = &recording.trace;
-    if let (Some(omega), Some(velocity), Some(sigma)) = (
-        &trace.true_omega,
-        board.column("velocity_large"),
-        board.column("sigma_large"),
-    ) {
-        let own = Estimate {
-            estimator: "board",
-            velocity: velocity.iter().map(|v| *v as f32).collect(),
-            deviation: Some(sigma.iter().map(|s| *s as f32).collect()),
-        };
-        let share = own.within_2_sigma(omega, trace.rate_hz);
-        lines.extend(share.map(|share| {
-            let percent = 100.0 * share;
-            format!(
-                "the error of the board's velocity_large is within two sigma_large in {percent:.1} % \
-                 of the samples"
-            )
-        }));
-    }
-    if let Some(learned) = &board.learned {
-        lines.extend(health::lines(learned, device));
-    }
-    lines
-}
-
 /// Name of a recording: that of its file.
 #[must_use]
 pub fn name(path: &Path) -> String {
@@ -156,24 +99,41 @@ pub fn name(path: &Path) -> String {
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
-/// Writes `t` and one column per estimator, rad/s, as CSV.
+/// Writes the header of [`csv`].
 ///
 /// # Errors
 /// The errors of `out`.
-pub fn csv(out: &mut dyn Write, t: &[f64], estimates: &[Estimate]) -> io::Result<()> {
+pub fn csv_header<'a>(out: &mut dyn Write, names: impl Iterator<Item = &'a str>) -> io::Result<()> {
     write!(out, "t")?;
-    for estimate in estimates {
-        write!(out, ",{}", estimate.estimator)?;
+    for name in names {
+        write!(out, ",{name}")?;
     }
-    writeln!(out)?;
-    for (k, t) in t.iter().enumerate() {
-        write!(out, "{t}")?;
-        for estimate in estimates {
-            write!(out, ",{}", estimate.velocity[k])?;
-        }
-        writeln!(out)?;
-    }
-    Ok(())
+    writeln!(out)
+}
+
+/// Rows of the CSV that one thread formats.
+const FORMATTED: usize = 1 << 11;
+
+/// Writes rows of `t` and one velocity per estimator, rad/s, as CSV.
+///
+/// # Errors
+/// The errors of `out`.
+pub fn csv(out: &mut dyn Write, t: &[f64], velocities: &[&[f32]]) -> io::Result<()> {
+    let chunks = t.par_chunks(FORMATTED).enumerate();
+    let texts: Vec<_> = chunks
+        .map(|(chunk, t)| {
+            let mut text = Vec::new();
+            for (k, t) in t.iter().enumerate() {
+                write!(text, "{t}")?;
+                for velocity in velocities {
+                    write!(text, ",{}", velocity[chunk * FORMATTED + k])?;
+                }
+                writeln!(text)?;
+            }
+            io::Result::Ok(text)
+        })
+        .collect();
+    texts.into_iter().try_for_each(|text| out.write_all(&text?))
 }
 
 #[cfg(test)]
@@ -204,7 +164,9 @@ mod tests {
                 .any(|e| e.estimator == "kalman-motor")
         );
         let mut text = Vec::new();
-        csv(&mut text, &recording.t, &replay.estimates[..1]).unwrap();
+        let first = &replay.estimates[0];
+        csv_header(&mut text, [first.estimator].into_iter()).unwrap();
+        csv(&mut text, &recording.t, &[&first.velocity]).unwrap();
         let csv = String::from_utf8(text).unwrap();
         assert_eq!(
             csv,

@@ -10,10 +10,13 @@ mod json;
 mod layout;
 mod lines;
 mod options;
+mod parts;
 mod records;
 mod resample;
 mod row;
+mod rows;
 mod separator;
+mod survey;
 mod units;
 mod write;
 
@@ -21,9 +24,11 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-pub use board::BoardColumns;
+pub use board::{BoardColumns, BoardReader};
 pub use formats::{KnownLog, known_logs};
 pub use options::ReadOptions;
+pub use parts::Parts;
+pub use survey::Survey;
 
 use columns::Columns;
 use records::Records;
@@ -32,7 +37,7 @@ use simulation::trace::Trace;
 use terminal::failure::Failure;
 
 /// A recording: its time column, and the other columns as a trace.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Recording {
     /// Column `t`, s.
     pub t: Vec<f64>,

@@ -1,14 +1,18 @@
 //! Evaluation of estimators on one trace.
 
+mod sectioned;
+
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::score::{HapticInterval, SKIP_S, Score, Truth, Wanted};
+use crate::score::{HapticInterval, SKIP_S, Score, Wanted};
 use catalogue::estimators::{Estimator, Kind, Setup, available};
 use catalogue::parameters::{Parameters, PlantKind};
 use simulation::trace::Trace;
 use terminal::failure::Failure;
+
+pub use sectioned::Scoring;
 
 /// The scores of one estimator on one trace. It is an object of the JSON output and a row of the
 /// CSV.
@@ -75,11 +79,17 @@ impl Estimate {
         let skip = (SKIP_S * rate_hz).round() as usize;
         let samples = self.velocity.iter().zip(deviations).zip(omega).skip(skip);
         let inside = |((velocity, deviation), truth): &((&f32, &f32), &f64)| {
-            (f64::from(**velocity) - **truth).abs() <= 2.0 * f64::from(**deviation)
+            is_within_2_sigma(**velocity, **deviation, **truth)
         };
         let scored = self.velocity.len().saturating_sub(skip);
         (scored > 0).then(|| samples.filter(inside).count() as f64 / scored as f64)
     }
+}
+
+/// Whether a velocity is within two of its standard deviations of the true one.
+#[must_use]
+pub fn is_within_2_sigma(velocity: f32, deviation: f32, truth: f64) -> bool {
+    (f64::from(velocity) - truth).abs() <= 2.0 * f64::from(deviation)
 }
 
 impl Candidate {
@@ -180,45 +190,24 @@ impl Evaluation {
         interval: HapticInterval,
         wanted: Wanted,
     ) -> Result<Vec<Row>, Failure> {
-        let Some(omega) = &trace.true_omega else {
+        if trace.true_omega.is_none() {
             return Ok(Vec::new());
+        }
+        let mut scoring = Scoring::new(heading.clone(), interval, wanted, false);
+        scoring.add(self, trace, estimates)?;
+        let learned = |candidate: &Candidate| {
+            let learned = self.learned_damping(candidate, trace)?;
+            Some((last_tenth(&learned), damping_error(&learned, trace)))
         };
-        let truth = Truth::new(omega, trace.rate_hz, interval, wanted)
-            .map_err(|error| Failure::Input(format!("{}: {error}", heading.scenario)))?;
-        let scores: Vec<_> = estimates.iter().map(|e| truth.score(&e.velocity)).collect();
-        let reference = estimates
-            .iter()
-            .position(|e| e.estimator == self.difference.kind.name)
-            .map_or_else(
-                || truth.score(&self.difference.estimator.run(trace)),
-                |i| scores[i],
-            );
-        let row = |(estimate, score): (&Estimate, &Score)| {
-            let candidate = self
-                .candidates
-                .iter()
-                .find(|c| c.kind.name == estimate.estimator);
-            let damping = candidate
-                .filter(|_| wanted.learned)
-                .and_then(|c| self.learned_damping(c, trace));
-            Row {
-                scenario: heading.scenario.clone(),
-                rate_hz: heading.rate_hz,
-                plant: heading.plant,
-                seed: heading.seed,
-                estimator: estimate.estimator,
-                score: Score {
-                    within_2_sigma: (wanted.within)
-                        .then(|| estimate.within_2_sigma(omega, trace.rate_hz))
-                        .flatten(),
-                    learned_damping_nms_per_rad: damping.as_deref().map(last_tenth),
-                    learned_damping_pct: damping.as_deref().and_then(|b| damping_error(b, trace)),
-                    ..score.relative_to(&reference)
-                },
-                parameters: candidate.map(Candidate::named_values).unwrap_or_default(),
-            }
-        };
-        Ok(estimates.iter().zip(&scores).map(row).collect())
+        Ok(scoring.rows(self, |candidate| {
+            learned(candidate).filter(|_| wanted.learned)
+        }))
+    }
+
+    /// The coupler's damping that the estimators assume, N.m.s/rad.
+    #[must_use]
+    pub fn assumed_damping(&self) -> f64 {
+        self.assumed_damping
     }
 
     /// Damping b that `candidate` has learned by each tick of `trace`, N.m.s/rad; `None` if the

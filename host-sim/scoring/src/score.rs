@@ -11,11 +11,13 @@
 mod delay;
 mod field;
 mod fields;
+mod sections;
 mod transient;
 mod truth;
 
 pub use field::{Better, Field, Form, Over};
 pub use fields::{Score, Wanted};
+pub use sections::Sections;
 pub use truth::Truth;
 
 /// Duration at the start of a trace that is not scored, s.

@@ -6,7 +6,7 @@ use clap::{Args, Parser, Subcommand};
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use recordings::recording::{ReadOptions, Recording};
+use recordings::recording::{ReadOptions, Recording, Survey};
 use simulation::device::Device;
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
@@ -149,8 +149,8 @@ impl RecordingOptions {
         self.resample.is_none()
     }
 
-    /// Reads the recording `log` of `device`. Its notes are those of the reader.
-    pub(super) fn read(&self, log: &Log, device: &Device) -> Result<Recording, Failure> {
+    /// What the options say about the log of `device`.
+    fn options(&self, device: &Device) -> Result<ReadOptions, Failure> {
         let mut options = ReadOptions::of(device);
         for text in &self.columns {
             options.add_columns(text)?;
@@ -161,6 +161,12 @@ impl RecordingOptions {
         if let Some(hz) = self.row_rate {
             options.set_row_rate(hz)?;
         }
+        Ok(options)
+    }
+
+    /// Reads the recording `log` of `device`. Its notes are those of the reader.
+    pub(super) fn read(&self, log: &Log, device: &Device) -> Result<Recording, Failure> {
+        let options = self.options(device)?;
         let mut recording = Recording::parse_as(log.reader()?, log.name(), &options)?;
         let unwrapped = recording.unwrap_counts(device);
         recording.notes.extend(unwrapped);
@@ -169,6 +175,18 @@ impl RecordingOptions {
             recording.resample(hz, log.name())?;
         }
         Ok(recording)
+    }
+
+    /// Reads all rows of the recording `log` of `device` without keeping them, and returns how to
+    /// read them again.
+    pub(super) fn survey(
+        &self,
+        log: &Log,
+        device: &Device,
+    ) -> Result<(ReadOptions, Survey), Failure> {
+        let options = self.options(device)?;
+        let survey = Survey::new(log.reader()?, log.name(), &options, device, self.resample)?;
+        Ok((options, survey))
     }
 }
 

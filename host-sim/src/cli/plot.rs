@@ -13,7 +13,7 @@ use terminal::output::{is_stdout, print_bytes, write_whole};
 
 use super::arguments::{DeviceFile, ParameterOptions, RecordingOptions, kinds};
 use super::input::{Log, is_stdin, short_name};
-use super::replay::note_about;
+use super::replay::About;
 
 /// Estimators that are drawn by default.
 const ESTIMATORS: [&str; 2] = ["finite-difference", "kalman-triple-steady"];
@@ -97,7 +97,14 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
     };
     let out = options.out.as_ref().unwrap_or(&beside);
     write_whole(out, svg.as_bytes())?;
-    note_about(&name, &recording, &replayed);
+    let about = About {
+        notes: recording.notes.clone(),
+        uneven: recording.unevenness(),
+        rate_hz: recording.trace.rate_hz,
+        left_out: &replayed.left_out,
+        mismatched_presets: &replayed.mismatched_presets,
+    };
+    about.note(&name);
     if options.out.is_some() || is_stdout(out) {
         return Ok(());
     }

@@ -1,14 +1,16 @@
 //! `host-sim replay`.
 
 use std::collections::BTreeMap;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use indicatif::ProgressBar;
 
-use experiments::replay;
+use experiments::replay::{self, BoardSummary, Run, section_rows};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
-use recordings::recording::{BoardColumns, Recording};
+use recordings::recording::{BoardColumns, BoardReader, Parts};
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, note, print_bytes, write_whole, write_with};
 use terminal::wording::wrapped;
@@ -52,99 +54,164 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let parameters = options.parameters.load()?;
     let name = short_name(&options.trace);
     let log = Log::open(&options.trace)?;
-    let recording = options.recording.read(&log, &device)?;
-    recording.check_even(log.name())?;
-    // Rows of another rate are not those of the board.
-    let board = match options.recording.keeps_rows() {
-        true => board(&log)?,
-        false => BoardColumns::default(),
-    };
-    if options.json.is_some() && recording.trace.true_omega.is_none() {
+    let (read, survey) = options.recording.survey(&log, &device)?;
+    survey.check_even(log.name())?;
+    if options.json.is_some() && survey.columns.true_omega.is_none() {
         return Err(Failure::Input(format!(
             "{}: line 1: no column true_omega, which --json needs for the scores; add it or leave out \
              --json",
             called(&options.trace)
         )));
     }
-    let bar = progress(kinds.len(), "estimating");
-    let replayed = replay::replay(&recording, &name, &kinds, &device, &parameters, || {
-        bar.inc(1);
-    })?;
-    bar.finish_and_clear();
-
-    if let (true, Some((estimator, column))) =
-        (replayed.estimates.is_empty(), replayed.left_out.first())
-    {
+    let (columns, rows) = (&survey.columns, survey.rows);
+    let mut run = Run::new(columns, rows, &name, &kinds, &device, &parameters)?;
+    if let (true, Some((estimator, column))) = (run.estimates.is_empty(), run.left_out.first()) {
         return Err(Failure::Input(format!(
             "{}: line 1: no column {column}, which {estimator} needs; see host-sim estimators",
             called(&options.trace)
         )));
     }
+    let mut passes = Passes {
+        parts: Parts::open(log.reader()?, log.name(), &read, &survey)?,
+        // Rows of another rate are not those of the board.
+        board: match options.recording.keeps_rows() && BoardColumns::are_in(&log.head()?) {
+            true => Some(BoardReader::open(log.reader()?, log.name())?),
+            false => None,
+        },
+        summary: BoardSummary::default(),
+        bar: progress(
+            rows.div_ceil(section_rows(rows)) * run.estimates.len(),
+            "estimating",
+        ),
+        section: section_rows(rows),
+    };
     let json_to_stdout = options.json.as_deref().is_some_and(is_stdout);
     let out = match &options.out {
         None if json_to_stdout => None,
         out => Some(out.as_deref().unwrap_or(Path::new("-"))),
     };
-    if let Some(out) = out {
-        write_with(out, |to| replay::csv(to, &recording.t, &replayed.estimates))?;
+    match out {
+        Some(out) => write_rows(out, &mut passes, &mut run)?,
+        None => while passes.step(&mut run)? {},
     }
-    let rows = &replayed.rows;
+    passes.bar.finish_and_clear();
+
+    let rows = run.rows();
     if let Some(path) = &options.json {
-        write_whole(path, &rows::json(rows)?)?;
+        write_whole(path, &rows::json(&rows)?)?;
     }
-    note_about(&name, &recording, &replayed);
-    for line in replay::board_summary(&recording, &board, &device) {
+    let about = About {
+        notes: [survey.notes.clone(), passes.parts.notes()].concat(),
+        uneven: passes.parts.unevenness(),
+        rate_hz: survey.columns.rate_hz,
+        left_out: &run.left_out,
+        mismatched_presets: &run.mismatched_presets,
+    };
+    about.note(&name);
+    for line in passes.summary.lines(&device) {
         note(format_args!("{name}: {line}"));
     }
     let device_name = match options.device.is_given() {
         true => options.device.name(),
         false => "the default device: no --device given".to_owned(),
     };
-    let header = replay::header(&recording, &device, &device_name, &parameters);
+    let size = (survey.rows, survey.columns.rate_hz);
+    let header = replay::header(size, &device, &device_name, &parameters);
     let header = wrapped(&format!("{name}: {header}"), 2);
     if json_to_stdout || out.is_some_and(is_stdout) {
         note(header);
         return Ok(());
     }
-    let with_coupler = recording.trace.counts_small.is_some();
-    let table = replay::table(rows, with_coupler, terminal_width());
+    let with_coupler = survey.columns.counts_small.is_some();
+    let table = replay::table(&rows, with_coupler, terminal_width());
     print_bytes(format!("{header}\n{table}").as_bytes())
 }
 
-/// The columns with the board's own estimates. A recording without the board's column `sigma` is from
-/// another source: its further columns are not read.
-fn board(log: &Log) -> Result<BoardColumns, Failure> {
-    match BoardColumns::are_in(&log.head()?) {
-        true => BoardColumns::parse(log.reader()?, log.name()),
-        false => Ok(BoardColumns::default()),
+/// The second pass over a log: its rows, and those with the board's own estimates. A recording without
+/// the board's column `sigma` is from another source: its further columns are not read.
+struct Passes<'a> {
+    parts: Parts<'a>,
+    board: Option<BoardReader<'a>>,
+    summary: BoardSummary,
+    bar: ProgressBar,
+    /// Rows of a section.
+    section: usize,
+}
+
+impl Passes<'_> {
+    /// Runs the estimators over the next section; `false` after the last one.
+    fn step(&mut self, run: &mut Run) -> Result<bool, Failure> {
+        let rows = self.parts.next(self.section)?;
+        if rows.t.is_empty() {
+            return Ok(false);
+        }
+        let bar = &self.bar;
+        run.add(rows, || bar.inc(1))?;
+        if let Some(board) = &mut self.board {
+            let board = board.next(self.section)?;
+            self.summary.add(&run.section.trace, &board);
+        }
+        Ok(true)
     }
 }
 
-/// Prints notes: those of the reader, one line per missing column with the estimators left out,
-/// parameters that were tuned for another encoder or rate, and an uneven clock.
-pub(super) fn note_about(name: &str, recording: &Recording, replayed: &replay::Replay) {
-    for line in &recording.notes {
-        note(format_args!("{name}: {line}"));
-    }
-    let mut columns: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-    for (estimator, column) in &replayed.left_out {
-        columns.entry(column).or_default().push(estimator);
-    }
-    for (column, estimators) in columns {
-        let names = estimators.join(", ");
-        note(format_args!(
-            "{name}: no column {column}; estimators left out: {names}"
-        ));
-    }
-    for line in &replayed.mismatched_presets {
-        note(format_args!("{name}: {line}"));
-    }
-    // The estimators assume a constant period.
-    if let Some(uneven) = recording.unevenness() {
-        note(format_args!(
-            "{name}: {uneven}; the estimators assume a constant step of 1/{0} s; --resample {0:.0} makes \
-             the rows even",
-            recording.trace.rate_hz,
-        ));
+/// Runs the estimators over all sections and writes the velocities of each.
+fn write_rows(out: &Path, passes: &mut Passes, run: &mut Run) -> Result<(), Failure> {
+    let mut refused = None;
+    let written = write_with(out, |to| {
+        replay::csv_header(to, run.estimates.iter().map(|e| e.estimator))?;
+        loop {
+            match passes.step(run) {
+                Ok(true) => replay::csv(to, run.t(), &run.velocities())?,
+                Ok(false) => return Ok(()),
+                Err(failure) => {
+                    let error = io::Error::other(failure.to_string());
+                    refused = Some(failure);
+                    return Err(error);
+                }
+            }
+        }
+    });
+    refused.map_or(written, Err)
+}
+
+/// What is said about a recording and the estimators that ran on it.
+pub(super) struct About<'a> {
+    /// Notes of the reader.
+    pub(super) notes: Vec<String>,
+    pub(super) uneven: Option<String>,
+    pub(super) rate_hz: f64,
+    pub(super) left_out: &'a [(&'static str, &'static str)],
+    pub(super) mismatched_presets: &'a [String],
+}
+
+impl About<'_> {
+    /// Prints notes: those of the reader, one line per missing column with the estimators left out,
+    /// parameters that were tuned for another encoder or rate, and an uneven clock.
+    pub(super) fn note(&self, name: &str) {
+        for line in &self.notes {
+            note(format_args!("{name}: {line}"));
+        }
+        let mut columns: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+        for (estimator, column) in self.left_out {
+            columns.entry(column).or_default().push(estimator);
+        }
+        for (column, estimators) in columns {
+            let names = estimators.join(", ");
+            note(format_args!(
+                "{name}: no column {column}; estimators left out: {names}"
+            ));
+        }
+        for line in self.mismatched_presets {
+            note(format_args!("{name}: {line}"));
+        }
+        // The estimators assume a constant period.
+        if let Some(uneven) = &self.uneven {
+            note(format_args!(
+                "{name}: {uneven}; the estimators assume a constant step of 1/{0} s; --resample {0:.0} \
+                 makes the rows even",
+                self.rate_hz,
+            ));
+        }
     }
 }

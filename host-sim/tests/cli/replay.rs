@@ -168,3 +168,51 @@ fn closed_standard_error_does_not_end_the_command() {
     assert_eq!(status.unwrap().code(), Some(0));
     assert!(folder.files().contains("v.csv"));
 }
+
+/// Rows of a shaft that turns back and forth, at 1 kHz, with its true velocity.
+#[cfg(target_os = "linux")]
+fn long_recording(rows: u32) -> Vec<u8> {
+    let mut text = b"t,counts_large,true_omega\n".to_vec();
+    for k in 0..rows {
+        let angle = f64::from(k) * 2e-3;
+        let (count, omega) = (2000.0 * angle.sin(), 6.0 * angle.cos());
+        writeln!(text, "{}.{:03},{count:.0},{omega:.3}", k / 1000, k % 1000).unwrap();
+    }
+    text
+}
+
+/// A section has 125 000 rows in both recordings.
+#[cfg(target_os = "linux")]
+#[test]
+fn memory_does_not_grow_with_the_rows() {
+    let folder = Folder::new("memory");
+    let peak_kb = |rows: u32| {
+        folder.write("long.csv", long_recording(rows));
+        let mut replay = Command::new(env!("CARGO_BIN_EXE_host-sim"))
+            .args(["replay", "long.csv", "--out", "v.csv", "--json", "v.json"])
+            .args(["--estimator", "finite-difference", "--estimator", "pll"])
+            .current_dir(&folder.0)
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap();
+        let status = format!("/proc/{}/status", replay.id());
+        let mut peak = 0_u32;
+        while replay.try_wait().unwrap().is_none() {
+            let text = fs::read_to_string(&status).unwrap_or_default();
+            let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+            let kb = line.and_then(|line| line.split_whitespace().next());
+            peak = kb.map_or(peak, |kb| kb.parse().unwrap());
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        assert!(replay.wait().unwrap().success());
+        let written = fs::read_to_string(folder.0.join("v.csv")).unwrap();
+        assert_eq!(written.lines().count(), 1 + rows as usize);
+        f64::from(peak)
+    };
+    let [short, long] = [250_000, 1_000_000].map(peak_kb);
+    println!("{short} and {long} kB");
+    assert!(
+        short > 1000.0 && long < 1.25 * short,
+        "{short} and {long} kB"
+    );
+}

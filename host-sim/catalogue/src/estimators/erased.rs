@@ -8,7 +8,7 @@ use estimator_core::{
     VelocityEstimator,
 };
 
-use super::run::{run, velocities};
+use super::run::{resume, run, velocities};
 use simulation::trace::Trace;
 
 /// An estimator of any type, with its parameters.
@@ -30,12 +30,33 @@ impl Estimator {
         self.0.run_confident(trace)
     }
 
+    /// What the estimator reports at each tick of a trace from `from` on. `state` is its state after
+    /// the tick before, or `None` for a start at `from`, and becomes that after the last tick. A trace
+    /// in parts gives the values of the whole trace, if each part begins with a tick of the part
+    /// before it.
+    #[must_use]
+    pub fn resume(&self, state: &mut Option<State>, trace: &Trace, from: usize) -> Reports {
+        self.0.resume(state, trace, from)
+    }
+
     /// Ratio of the coupler's learned damping to the assumed one at each tick of a trace; `None` if
     /// the estimator does not learn it.
     #[must_use]
     pub fn damping_ratio(&self, trace: &Trace) -> Option<Vec<f32>> {
         self.0.damping_ratio(trace)
     }
+}
+
+/// What an estimator reports, one value per tick.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Reports {
+    /// Velocity, rad/s.
+    pub velocity: Vec<f32>,
+    /// Standard deviation of the velocity, rad/s; `None` if the estimator reports none.
+    pub deviation: Option<Vec<f32>>,
+    /// Ratio of the coupler's learned damping to the assumed one; `None` if the estimator does not
+    /// learn it.
+    pub damping_ratio: Option<Vec<f32>>,
 }
 
 /// A control loop calls the estimator through this trait.
@@ -92,6 +113,7 @@ trait ErasedState: Any + Send {
     fn same(&self, other: &dyn Any) -> bool;
     fn as_any(&self) -> &dyn Any;
     fn as_any_mut(&mut self) -> &mut dyn Any;
+    fn into_any(self: Box<Self>) -> Box<dyn Any>;
 }
 
 impl<S: Clone + PartialEq + Send + 'static> ErasedState for S {
@@ -110,12 +132,17 @@ impl<S: Clone + PartialEq + Send + 'static> ErasedState for S {
     fn as_any_mut(&mut self) -> &mut dyn Any {
         self
     }
+
+    fn into_any(self: Box<Self>) -> Box<dyn Any> {
+        self
+    }
 }
 
 trait Erased: Send + Sync {
     fn run(&self, trace: &Trace) -> Vec<f32>;
     fn run_confident(&self, trace: &Trace) -> (Vec<f32>, Option<Vec<f32>>);
     fn damping_ratio(&self, trace: &Trace) -> Option<Vec<f32>>;
+    fn resume(&self, state: &mut Option<State>, trace: &Trace, from: usize) -> Reports;
     fn start(&self, first: &Sample) -> State;
     fn update(&self, state: &mut State, sample: &Sample) -> CountsPerTick;
     fn acceleration(&self, state: &State) -> Option<CountsPerTickSquared>;
@@ -181,6 +208,40 @@ where
         Some(run(&self.estimator, trace, 1.0, |state, _| {
             damping_ratio(&self.estimator, state)
         }))
+    }
+
+    fn resume(&self, state: &mut Option<State>, trace: &Trace, from: usize) -> Reports {
+        let Outputs {
+            deviation,
+            damping_ratio,
+            ..
+        } = self.outputs;
+        // The state of another estimator counts as none.
+        let own = state
+            .take()
+            .and_then(|state| state.0.into_any().downcast().ok());
+        let mut own = own.map(|state| *state);
+        let values = resume(
+            &self.estimator,
+            &mut own,
+            trace,
+            from,
+            [0.0, 0.0, 1.0],
+            |state, velocity| {
+                let deviation =
+                    deviation.map_or(CountsPerTick(0.0), |of| of(&self.estimator, state));
+                let ratio = damping_ratio.map_or(1.0, |of| of(&self.estimator, state));
+                let [velocity, deviation] = [velocity, deviation].map(|v| v.rad_per_s(&self.scale));
+                [velocity, deviation, ratio]
+            },
+        );
+        *state = own.map(|state| State(Box::new(state)));
+        let column = |index: usize| values.iter().map(|value| value[index]).collect();
+        Reports {
+            velocity: column(0),
+            deviation: deviation.map(|_| column(1)),
+            damping_ratio: damping_ratio.map(|_| column(2)),
+        }
     }
 
     fn start(&self, first: &Sample) -> State {

@@ -38,15 +38,37 @@ where
     E: VelocityEstimator,
     T: Clone,
 {
-    let mut values = vec![first; trace.len()];
-    let mut state = match trace.is_empty() {
-        true => return values,
-        false => estimator.start(&sample(E::NEEDS, trace, 0)),
+    resume(estimator, &mut None, trace, 0, first, read)
+}
+
+/// The results of `read` after each tick from `from` on, with the state after the tick before it.
+/// Without a state, the estimator starts at tick `from` and the result there is `first`.
+pub(super) fn resume<E, T>(
+    estimator: &E,
+    state: &mut Option<E::State>,
+    trace: &Trace,
+    from: usize,
+    first: T,
+    read: impl Fn(&E::State, CountsPerTick) -> T,
+) -> Vec<T>
+where
+    E: VelocityEstimator,
+    T: Clone,
+{
+    let mut values = vec![first; trace.len() - from];
+    let mut ticks = (from..trace.len()).zip(&mut values);
+    let mut after = match state.take() {
+        Some(state) => state,
+        None => match ticks.next() {
+            Some((k, _)) => estimator.start(&sample(E::NEEDS, trace, k)),
+            None => return values,
+        },
     };
-    for (k, value) in values.iter_mut().enumerate().skip(1) {
-        let velocity = estimator.update(&mut state, &sample(E::NEEDS, trace, k));
-        *value = read(&state, velocity);
+    for (k, value) in ticks {
+        let velocity = estimator.update(&mut after, &sample(E::NEEDS, trace, k));
+        *value = read(&after, velocity);
     }
+    *state = Some(after);
     values
 }
 

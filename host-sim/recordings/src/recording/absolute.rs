@@ -3,10 +3,12 @@
 use super::Recording;
 use estimator_core::{Count, WrapError};
 use simulation::device::Device;
-use simulation::trace::EdgeStamp;
 
 /// Modulus of a 16-bit counter.
 const SHORT: u32 = 1 << 16;
+
+/// Longest step over which a jump counts, in periods.
+pub(super) const LONGEST: f64 = 1.5;
 
 impl Recording {
     /// Unwraps counts that wrap at a revolution or at 16 bits to counts modulo 2^32. Returns one line
@@ -15,7 +17,7 @@ impl Recording {
     #[must_use]
     pub fn unwrap_counts(&mut self, device: &Device) -> Vec<String> {
         let trace = &mut self.trace;
-        let longest = 1.5 * trace.period_s();
+        let longest = LONGEST * trace.period_s();
         let mut said = Vec::new();
         let per_rev = device.stages.large.counts_per_rev;
         let mut found = look(&trace.counts_large, &self.t, longest, per_rev);
@@ -24,9 +26,9 @@ impl Recording {
                 Err(error) => found = Some(Found::Refused(modulus, error)),
                 Ok(raw) => {
                     for (k, edge) in trace.edges.iter_mut().flatten().enumerate() {
-                        if let Some(EdgeStamp { boundary, .. }) = edge {
-                            let away = centred(i64::from(*boundary as i32) - raw[k], modulus);
-                            *boundary = trace.counts_large[k].wrapping_add(away as u32);
+                        if let Some(edge) = edge {
+                            let count = trace.counts_large[k];
+                            edge.boundary = boundary(edge.boundary, raw[k], count, modulus);
                         }
                     }
                 }
@@ -49,7 +51,7 @@ impl Recording {
 
 /// Property of a column of counts that is worth a note.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Found {
+pub(super) enum Found {
     /// The counts wrap at this modulus.
     Wraps(u32),
     /// The counts have an impossible jump, the first number, and span the second number of counts.
@@ -59,7 +61,7 @@ enum Found {
 }
 
 impl Found {
-    fn note(self, column: &str, motor: &str, per_rev: u32) -> String {
+    pub(super) fn note(self, column: &str, motor: &str, per_rev: u32) -> String {
         match self {
             Self::Wraps(modulus) => format!(
                 "{column} wraps at {modulus} and is unwrapped: a {}",
@@ -100,30 +102,53 @@ fn look(counts: &[u32], t: &[f64], longest: f64, per_rev: u32) -> Option<Found> 
     let jump = jump.max_by_key(|jump| jump.abs())?;
     let values = || counts.iter().map(|&count| signed(count));
     let span = values().max()? - values().min()?;
+    found(jump, span, per_rev)
+}
+
+/// What the largest jump between two rows and the span of a column tell.
+pub(super) fn found(jump: i64, span: i64, per_rev: u32) -> Option<Found> {
     let wraps = |modulus: &u32| {
         let modulus = i64::from(*modulus);
         // A shaft turns less than a quarter of a revolution from row to row.
         // An angle that is rounded to counts can be the modulus itself.
         span <= modulus && 4 * jump.abs() >= 3 * modulus
     };
-    let wraps = [per_rev, SHORT].into_iter().find(wraps);
+    let wraps = moduli(per_rev).into_iter().find(wraps);
     let far = 2 * jump.abs() > i64::from(per_rev) && span < i64::from(SHORT);
     wraps
         .map(Found::Wraps)
         .or(far.then_some(Found::Jumps(jump, span + 1)))
 }
 
+/// Moduli at which counts are unwrapped without an option.
+pub(super) fn moduli(per_rev: u32) -> [u32; 2] {
+    [per_rev, SHORT]
+}
+
 /// Unwraps `counts` and returns the original ones. An error leaves `counts` as they are.
-fn unwrap(counts: &mut Vec<u32>, modulus: u32) -> Result<Vec<i64>, WrapError> {
-    let signed = |count: &u32| i64::from(*count as i32);
-    let raw: Vec<_> = counts.iter().map(signed).collect();
-    let mut unwrapped = counts.clone();
-    for k in 1..counts.len() {
-        let reading = raw[k].rem_euclid(i64::from(modulus)) as u32;
-        unwrapped[k] = Count(unwrapped[k - 1]).wrapped(reading, modulus)?.0;
-    }
-    *counts = unwrapped;
+fn unwrap(counts: &mut Vec<u32>, modulus: u32) -> Result<Vec<u32>, WrapError> {
+    let raw = counts.clone();
+    let mut last = None;
+    let unwrapped = counts.iter().map(|&count| {
+        let next = after(last, count, modulus)?;
+        last = Some(next);
+        Ok(next.0)
+    });
+    *counts = unwrapped.collect::<Result<_, _>>()?;
     Ok(raw)
+}
+
+/// The count after `last` of an encoder that wraps at `modulus` and reads `count`; the first count is
+/// the reading.
+pub(super) fn after(last: Option<Count>, count: u32, modulus: u32) -> Result<Count, WrapError> {
+    let reading = i64::from(count as i32).rem_euclid(i64::from(modulus)) as u32;
+    last.map_or(Ok(Count(count)), |last| last.wrapped(reading, modulus))
+}
+
+/// The boundary of an edge beside the unwrapped `count`, given that beside its reading `raw`.
+pub(super) fn boundary(boundary: u32, raw: u32, count: u32, modulus: u32) -> u32 {
+    let away = i64::from(boundary as i32) - i64::from(raw as i32);
+    count.wrapping_add(centred(away, modulus) as u32)
 }
 
 /// The number nearest to zero that differs from `x` by a multiple of `modulus`.

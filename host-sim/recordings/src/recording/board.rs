@@ -39,30 +39,73 @@ impl BoardColumns {
     /// # Errors
     /// [`Failure::Input`], one line that names file, line and column.
     pub fn parse(input: impl Read, name: &str) -> Result<Self, Failure> {
-        let mut records = Records::open(input, name, &ReadOptions::default())?;
-        let mut board = Self::default();
+        BoardReader::open(input, name)?.next(usize::MAX)
+    }
+
+    /// The column called `name`, a field of telemetry frames.
+    #[must_use]
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        self.columns.get(name).map(Vec::as_slice)
+    }
+}
+
+/// A log with the board's columns, read in parts.
+pub struct BoardReader<'a> {
+    records: Records<'a>,
+    /// Index in a row, and name, of each column.
+    places: Vec<(usize, &'static str)>,
+    learned: [Option<usize>; 3],
+}
+
+impl<'a> BoardReader<'a> {
+    /// Reads the header of CSV text called `name` in messages.
+    ///
+    /// # Errors
+    /// As [`BoardColumns::parse`].
+    pub fn open(input: impl Read + 'a, name: &'a str) -> Result<Self, Failure> {
+        let records = Records::open(input, name, &ReadOptions::default())?;
         let names = &records.layout.names;
+        let place = |column: &str| names.iter().position(|name| name == column);
+        let mut learned = LEARNED.map(place);
         let mut places = Vec::new();
-        for (place, name) in names.iter().enumerate() {
-            let known = COLUMNS.iter().find(|(column, _)| column == name);
-            if let Some((column, _)) = known {
-                board.columns.insert(column, Vec::new());
-                places.push((place, *column));
+        if place("counts_large").or(learned[0]).is_none() {
+            learned = [None; 3];
+        } else {
+            for (place, name) in names.iter().enumerate() {
+                let known = COLUMNS.iter().find(|(column, _)| column == name);
+                places.extend(known.map(|(column, _)| (place, *column)));
             }
         }
-        let place = |column: &str| names.iter().position(|name| name == column);
-        let learned = LEARNED.map(place);
-        if place("counts_large").or(learned[0]).is_none() {
-            return Ok(Self::default());
+        Ok(Self {
+            records,
+            places,
+            learned,
+        })
+    }
+
+    /// The next rows, at most `rows`.
+    ///
+    /// # Errors
+    /// As [`BoardColumns::parse`].
+    pub fn next(&mut self, rows: usize) -> Result<BoardColumns, Failure> {
+        let mut board = BoardColumns::default();
+        if self.places.is_empty() && self.learned[0].is_none() {
+            return Ok(board);
         }
-        while let Some(row) = records.next()? {
-            for &(place, column) in &places {
+        for (_, column) in &self.places {
+            board.columns.insert(column, Vec::new());
+        }
+        for _ in 0..rows {
+            let Some(row) = self.records.next()? else {
+                break;
+            };
+            for &(place, column) in &self.places {
                 let number = row.number(column, place)?;
                 if let Some(values) = board.columns.get_mut(column) {
                     values.push(number);
                 }
             }
-            if let [Some(damping), Some(friction), Some(torque_constant)] = learned
+            if let [Some(damping), Some(friction), Some(torque_constant)] = self.learned
                 && !row.text(LEARNED[0], damping)?.is_empty()
             {
                 board.learned = Some(LearnedLine {
@@ -73,12 +116,6 @@ impl BoardColumns {
             }
         }
         Ok(board)
-    }
-
-    /// The column called `name`, a field of telemetry frames.
-    #[must_use]
-    pub fn column(&self, name: &str) -> Option<&[f64]> {
-        self.columns.get(name).map(Vec::as_slice)
     }
 }
 

@@ -1,7 +1,8 @@
 //! Period of a recording's rows, and its uneven steps.
 
+use std::collections::BTreeMap;
+
 use super::Recording;
-use super::lines::LineNumbers;
 use terminal::failure::Failure;
 
 /// Largest relative difference of an even step from the period.
@@ -18,80 +19,231 @@ const IRREGULAR_SHARE: f64 = 0.1;
 /// Slowest rate of a recording, Hz.
 pub(super) const SLOWEST_HZ: f64 = 10.0;
 
-/// Rate of the rows of `t`, Hz, and the number of uneven steps.
+/// Steps of `t` by their length, in memory that does not grow with their number.
 ///
-/// The rate is one over the mean of the steps near the median, because the resolution of the median
-/// alone is that of the digits of `t`.
-pub(super) fn rate(t: &[f64], name: &str) -> Result<(f64, usize), Failure> {
-    let mut steps: Vec<_> = t.windows(2).map(|t| t[1] - t[0]).collect();
-    if steps.is_empty() {
-        return Err(Failure::Input(format!(
-            "{name}: fewer than two rows of data; a recording needs at least two"
-        )));
-    }
-    steps.sort_unstable_by(f64::total_cmp);
-    let median = steps[steps.len() / 2];
-    if median <= 0.0 {
-        return Err(Failure::Input(format!(
-            "{name}: column t: does not increase in most rows; write it in seconds with enough digits to \
-             distinguish rows"
-        )));
-    }
-    let regular = steps
-        .iter()
-        .filter(|step| differs(**step, median) <= REGULAR);
-    let (sum, number) = regular.fold((0.0, 0.0), |(sum, number), step| (sum + step, number + 1.0));
-    let period = sum / number;
-    // Decimal digits of `t` are rounded, so the rate is rounded too.
-    let rate_hz = to_digits(1.0 / period, 7);
-    if rate_hz < SLOWEST_HZ {
-        return Err(Failure::Input(format!(
-            "{name}: column t: rows {period} s apart are {rate_hz} Hz, which is below {SLOWEST_HZ} Hz; \
-             t must be in seconds, check that it is not in ms or us, which --column t=NAME:ms states"
-        )));
-    }
-    let uneven = steps.iter().filter(|step| differs(**step, period) > EVEN);
-    Ok((rate_hz, uneven.count()))
+/// Steps whose lengths differ by less than 2^-12 of them share a class. Only the number and the sum
+/// of the steps of a class are known, so limits apply to a class as to its mean.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Steps {
+    classes: BTreeMap<u64, Class>,
+    number: u64,
 }
 
-/// Description of the gaps of `t` in which rows are missing; `None` if there is none.
-pub(super) fn missing_rows(t: &[f64], rate_hz: f64, lines: &LineNumbers) -> Option<String> {
-    let missing = |step: f64| (step * rate_hz).round() - 1.0;
-    let steps = t.windows(2).map(|t| missing(t[1] - t[0])).enumerate();
-    let gaps = steps.filter(|(_, missing)| *missing >= 1.0);
-    let mut first = None;
-    let (mut number, mut rows, mut most) = (0, 0.0, 0.0_f64);
-    for (k, missing) in gaps {
-        first = first.or(Some(k + 1));
-        number += 1;
-        rows += missing;
-        most = most.max(missing);
+/// Steps of nearly one length.
+#[derive(Clone, Copy, Debug, Default)]
+struct Class {
+    number: u64,
+    sum: f64,
+    /// The largest change of each encoder's count over one of the steps.
+    jump: [i64; 2],
+}
+
+impl Class {
+    /// Mean length, s.
+    fn mean(&self) -> f64 {
+        self.sum / self.number as f64
     }
-    let first = first?;
-    Some(format!(
-        "{rows} rows are missing in {number} gaps of at most {most}, the first before line {} at {} s",
-        lines.of(first),
-        t[first]
-    ))
+}
+
+impl Steps {
+    /// Bits of a length that do not distinguish classes.
+    const SHARED_BITS: u32 = 52 - 12;
+
+    /// Adds a step of `length` s, not negative, over which the counts change by `jump`.
+    pub(super) fn add(&mut self, length: f64, jump: [i64; 2]) {
+        // A zero has a sign.
+        let key = (length + 0.0).to_bits() >> Self::SHARED_BITS;
+        let class = self.classes.entry(key).or_default();
+        class.number += 1;
+        class.sum += length;
+        for (most, jump) in class.jump.iter_mut().zip(jump) {
+            if jump.abs() >= most.abs() {
+                *most = jump;
+            }
+        }
+        self.number += 1;
+    }
+
+    fn classes(&self) -> impl Iterator<Item = &Class> {
+        self.classes.values()
+    }
+
+    /// The largest jump of an encoder's counts over steps of at most `longest` s.
+    pub(super) fn largest_jump(&self, longest: f64, motor: usize) -> i64 {
+        let short = self.classes().filter(|class| class.mean() <= longest);
+        let jumps = short.map(|class| class.jump[motor]);
+        jumps.max_by_key(|jump| jump.abs()).unwrap_or_default()
+    }
+
+    /// Period of the rows, s, and the rate, Hz.
+    ///
+    /// The rate is one over the mean of the steps near the median, because the resolution of the
+    /// median alone is that of the digits of `t`.
+    pub(super) fn period(&self, name: &str) -> Result<(f64, f64), Failure> {
+        if self.number == 0 {
+            return Err(Failure::Input(format!(
+                "{name}: fewer than two rows of data; a recording needs at least two"
+            )));
+        }
+        let mut below = 0;
+        let median = self.classes().find(|class| {
+            below += class.number;
+            below > self.number / 2
+        });
+        let median = median.map_or(0.0, Class::mean);
+        if median <= 0.0 {
+            return Err(Failure::Input(format!(
+                "{name}: column t: does not increase in most rows; write it in seconds with enough \
+                 digits to distinguish rows"
+            )));
+        }
+        let regular = self
+            .classes()
+            .filter(|class| differs(class.mean(), median) <= REGULAR);
+        let (sum, number) = regular.fold((0.0, 0), |(sum, number), class| {
+            (sum + class.sum, number + class.number)
+        });
+        let period = sum / number as f64;
+        // Decimal digits of `t` are rounded, so the rate is rounded too.
+        let rate_hz = to_digits(1.0 / period, 7);
+        if rate_hz < SLOWEST_HZ {
+            return Err(Failure::Input(format!(
+                "{name}: column t: rows {period} s apart are {rate_hz} Hz, which is below {SLOWEST_HZ} \
+                 Hz; t must be in seconds, check that it is not in ms or us, which --column t=NAME:ms \
+                 states"
+            )));
+        }
+        Ok((period, rate_hz))
+    }
+
+    /// Checks that the estimators can take rows at `rate_hz` as evenly spaced.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] with the remedy if more than a tenth of the steps differ from the period by
+    /// more than half of it.
+    pub(super) fn check_even(&self, rate_hz: f64, name: &str) -> Result<(), Failure> {
+        let irregular = self
+            .classes()
+            .filter(|class| differs(class.mean(), 1.0 / rate_hz) > REGULAR);
+        let irregular: u64 = irregular.map(|class| class.number).sum();
+        let share = irregular as f64 / self.number as f64;
+        if share <= IRREGULAR_SHARE {
+            return Ok(());
+        }
+        Err(Failure::Input(format!(
+            "{name}: column t: {:.0} % of the steps differ by more than half from the period of \
+             1/{rate_hz} s, {:.0} % may; the estimators assume a constant period: add --resample {:.0}",
+            100.0 * share,
+            100.0 * IRREGULAR_SHARE,
+            rate_hz
+        )))
+    }
+
+    fn of(t: &[f64]) -> Self {
+        let mut steps = Self::default();
+        for pair in t.windows(2) {
+            steps.add(pair[1] - pair[0], [0; 2]);
+        }
+        steps
+    }
+}
+
+/// Rate of the rows of `t`, Hz, and the number of uneven steps.
+pub(super) fn rate(t: &[f64], name: &str) -> Result<(f64, usize), Failure> {
+    let (period, rate_hz) = Steps::of(t).period(name)?;
+    let mut uneven = Uneven::new(period);
+    for pair in t.windows(2) {
+        uneven.add(pair[1] - pair[0]);
+    }
+    Ok((rate_hz, uneven.number))
+}
+
+/// Steps that differ from a period by more than a tenth of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Uneven {
+    period: f64,
+    number: usize,
+    all: usize,
+    most: f64,
+}
+
+impl Uneven {
+    pub(super) fn new(period: f64) -> Self {
+        Self {
+            period,
+            number: 0,
+            all: 0,
+            most: 0.0,
+        }
+    }
+
+    pub(super) fn add(&mut self, step: f64) {
+        self.all += 1;
+        if differs(step, self.period) > EVEN {
+            self.number += 1;
+            self.most = self.most.max((step - self.period).abs());
+        }
+    }
+
+    /// Description; `None` if all steps are even.
+    pub(super) fn note(&self) -> Option<String> {
+        (self.number > 0).then(|| {
+            let (number, all) = (self.number, self.all);
+            format!(
+                "t is uneven in {:.2} % of steps ({number} of {all}), by up to {} us",
+                100.0 * number as f64 / all as f64,
+                to_digits(1e6 * self.most, 4)
+            )
+        })
+    }
+}
+
+/// Gaps of `t` in which rows are missing.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Gaps {
+    /// Line and time after the first gap.
+    first: Option<(u64, f64)>,
+    number: u64,
+    rows: f64,
+    most: f64,
+}
+
+impl Gaps {
+    /// Adds a step that ends at `t` in a line of the file.
+    pub(super) fn add(&mut self, step: f64, rate_hz: f64, t: f64, line: impl FnOnce() -> u64) {
+        let missing = (step * rate_hz).round() - 1.0;
+        if missing >= 1.0 {
+            self.first = self.first.or_else(|| Some((line(), t)));
+            self.number += 1;
+            self.rows += missing;
+            self.most = self.most.max(missing);
+        }
+    }
+
+    /// Description; `None` if there is no gap.
+    pub(super) fn note(&self) -> Option<String> {
+        let (line, t) = self.first?;
+        let Self {
+            number, rows, most, ..
+        } = self;
+        Some(format!(
+            "{rows} rows are missing in {number} gaps of at most {most}, the first before line {line} at \
+             {t} s"
+        ))
+    }
 }
 
 impl Recording {
     /// Description of the uneven steps of `t`; `None` if there are none.
     #[must_use]
     pub fn unevenness(&self) -> Option<String> {
-        let period = self.trace.period_s();
-        let steps = self.t.windows(2).map(|t| t[1] - t[0]);
-        let uneven = steps.filter(|step| differs(*step, period) > EVEN);
-        let most = uneven.fold(0.0_f64, |most, step| most.max((step - period).abs()));
-        (self.uneven_steps > 0).then(|| {
-            let all = self.t.len() - 1;
-            format!(
-                "t is uneven in {:.2} % of steps ({} of {all}), by up to {} us",
-                100.0 * self.uneven_share(),
-                self.uneven_steps,
-                to_digits(1e6 * most, 4)
-            )
-        })
+        let mut uneven = Uneven::new(self.trace.period_s());
+        for pair in self.t.windows(2) {
+            uneven.add(pair[1] - pair[0]);
+        }
+        // The number is that about the period before its digits were rounded.
+        uneven.number = self.uneven_steps;
+        uneven.note()
     }
 
     /// Checks that the estimators can take the rows as evenly spaced.
@@ -100,23 +252,7 @@ impl Recording {
     /// [`Failure::Input`] with the remedy if more than a tenth of the steps of `t` differ from the
     /// period by more than half of it.
     pub fn check_even(&self, name: &str) -> Result<(), Failure> {
-        let period = self.trace.period_s();
-        let steps = self.t.windows(2).map(|t| t[1] - t[0]);
-        let irregular = steps
-            .filter(|step| differs(*step, period) > REGULAR)
-            .count();
-        let share = irregular as f64 / (self.t.len() - 1) as f64;
-        if share <= IRREGULAR_SHARE {
-            return Ok(());
-        }
-        let rate_hz = self.trace.rate_hz;
-        Err(Failure::Input(format!(
-            "{name}: column t: {:.0} % of the steps differ by more than half from the period of 1/{rate_hz} \
-             s, {:.0} % may; the estimators assume a constant period: add --resample {:.0}",
-            100.0 * share,
-            100.0 * IRREGULAR_SHARE,
-            rate_hz
-        )))
+        Steps::of(&self.t).check_even(self.trace.rate_hz, name)
     }
 
     /// Share of uneven steps of `t`, 0 to 1.

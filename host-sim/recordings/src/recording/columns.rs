@@ -1,12 +1,16 @@
 //! Columns of a recording while it is read.
 
+use std::mem::take;
+
 use estimator_core::Count;
 use simulation::trace::{EDGE_CLOCK_HZ, EdgeStamp, Trace};
 use terminal::failure::Failure;
 
+use super::clock::Gaps;
 use super::layout::{Layout, Place, Places};
 use super::lines::LineNumbers;
 use super::options::{Column, ReadOptions};
+use super::records::Records;
 use super::row::Row;
 use super::units::Scale;
 use super::{Recording, absolute, clock};
@@ -20,6 +24,9 @@ pub(super) struct Columns<'a> {
     places: [Option<Place>; Column::ALL.len()],
     /// Whether a row without a position is left out.
     sparse: bool,
+    /// Number of rows that were taken, and the time of the last one, s.
+    taken: usize,
+    last_t: f64,
     t: Vec<f64>,
     lines: LineNumbers,
     counts_large: Encoder,
@@ -36,6 +43,8 @@ pub(super) struct Columns<'a> {
 #[derive(Default)]
 struct Encoder {
     counts: Vec<u32>,
+    /// The count of the latest row.
+    last: Option<u32>,
     /// The reading of the latest row: counts before they are unwrapped.
     raw: i64,
     /// Largest distance of a position from a whole count.
@@ -48,6 +57,8 @@ impl<'a> Columns<'a> {
             options,
             places: Column::ALL.map(|column| places.get(column)),
             sparse: places.format.is_some_and(|format| format.sparse),
+            taken: 0,
+            last_t: f64::NEG_INFINITY,
             t: Vec::new(),
             lines: LineNumbers::default(),
             counts_large: Encoder::default(),
@@ -73,9 +84,12 @@ impl<'a> Columns<'a> {
             return Ok(());
         }
         let t = self.time(row)?;
-        if let Some(last) = self.t.last().filter(|last| t < **last) {
+        if t < self.last_t {
+            let last = self.last_t;
             return Err(row.failure("t", &format!("{t} s is before the {last} s above it")));
         }
+        self.last_t = t;
+        self.taken += 1;
         self.t.push(t);
         self.lines.push(row.line);
         let options = self.options;
@@ -107,7 +121,7 @@ impl<'a> Columns<'a> {
     fn time(&self, row: &Row) -> Result<f64, Failure> {
         match (self.options.row_rate_hz, self.place(Column::T)) {
             (None, Some(at)) => scaled(row, at, 1.0),
-            (rate_hz, _) => Ok(self.t.len() as f64 / rate_hz.unwrap_or(1.0)),
+            (rate_hz, _) => Ok(self.taken as f64 / rate_hz.unwrap_or(1.0)),
         }
     }
 
@@ -134,22 +148,81 @@ impl<'a> Columns<'a> {
                 Some(modulus) => {
                     let away = absolute::centred(boundary - large.raw, modulus);
                     large
-                        .counts
-                        .last()
+                        .last
                         .map_or(0, |count| count.wrapping_add(away as u32))
                 }
             },
         }))
     }
 
-    /// The recording of the rows so far.
+    /// Takes at most `rows` rows and returns them. `step` is called at each row but the first of the
+    /// log, with its time, the step to it, and its line.
+    pub(super) fn read(
+        &mut self,
+        records: &mut Records,
+        rows: usize,
+        mut step: impl FnMut(f64, f64, u64),
+    ) -> Result<Recording, Failure> {
+        while self.t.len() < rows
+            && let Some(row) = records.next()?
+        {
+            let (taken, before) = (self.taken, self.last_t);
+            self.take(&row)?;
+            if taken > 0 && self.taken > taken {
+                step(self.last_t, self.last_t - before, row.line);
+            }
+        }
+        Ok(self.drain(f64::NAN))
+    }
+
+    /// The recording of all rows.
     pub(super) fn into_recording(
-        self,
+        mut self,
         name: &str,
         places: &Places,
         layout: &Layout,
     ) -> Result<Recording, Failure> {
         let (rate_hz, uneven_steps) = clock::rate(&self.t, name)?;
+        let mut notes = self.notes(places, layout);
+        let mut gaps = Gaps::default();
+        for (k, step) in self.t.windows(2).enumerate() {
+            gaps.add(step[1] - step[0], rate_hz, step[1], || self.lines.of(k + 1));
+        }
+        notes.extend(gaps.note());
+        Ok(Recording {
+            uneven_steps,
+            notes,
+            ..self.drain(rate_hz)
+        })
+    }
+
+    /// The rows since the last call, without notes.
+    pub(super) fn drain(&mut self, rate_hz: f64) -> Recording {
+        let has = self.places.map(|place| place.is_some());
+        let has = |column: Column| has[column as usize];
+        self.lines = LineNumbers::default();
+        let large = take(&mut self.counts_large.counts);
+        let small = take(&mut self.counts_small.counts);
+        let current_small = take(&mut self.current_small);
+        Recording {
+            t: take(&mut self.t),
+            uneven_steps: 0,
+            current_small: has(Column::CurrentSmall).then_some(current_small),
+            trace: Trace {
+                rate_hz,
+                counts_large: large,
+                counts_small: has(Column::CountsSmall).then_some(small),
+                current: has(Column::Current).then_some(take(&mut self.current)),
+                edges: has(Column::EdgeTick).then_some(take(&mut self.edges)),
+                true_omega: has(Column::TrueOmega).then_some(take(&mut self.true_omega)),
+                true_damping: None,
+            },
+            notes: Vec::new(),
+        }
+    }
+
+    /// Notes on the rows that were taken: their columns, rows left out, and rounded positions.
+    pub(super) fn notes(&self, places: &Places, layout: &Layout) -> Vec<String> {
         let mut notes = Vec::new();
         notes.extend(self.sources(places, layout));
         if self.left_out > 0 {
@@ -164,23 +237,7 @@ impl<'a> Columns<'a> {
         ] {
             notes.extend(encoder.note(column.name(), self.options.counts_per_rev[motor]));
         }
-        notes.extend(clock::missing_rows(&self.t, rate_hz, &self.lines));
-        let has = |column: Column| self.places[column as usize].is_some();
-        Ok(Recording {
-            uneven_steps,
-            current_small: has(Column::CurrentSmall).then_some(self.current_small),
-            trace: Trace {
-                rate_hz,
-                counts_large: self.counts_large.counts,
-                counts_small: has(Column::CountsSmall).then_some(self.counts_small.counts),
-                current: has(Column::Current).then_some(self.current),
-                edges: has(Column::EdgeTick).then_some(self.edges),
-                true_omega: has(Column::TrueOmega).then_some(self.true_omega),
-                true_damping: None,
-            },
-            t: self.t,
-            notes,
-        })
+        notes
     }
 
     /// The columns and units that the recording is read from; `None` if they are its own.
@@ -251,7 +308,7 @@ impl Encoder {
             Some(modulus) => {
                 let within = -i64::from(modulus) <= raw && raw < i64::from(modulus);
                 let reading = raw.rem_euclid(i64::from(modulus)) as u32;
-                let last = self.counts.last().map_or(reading, |last| *last);
+                let last = self.last.unwrap_or(reading);
                 let next = Count(last).wrapped(reading, modulus);
                 let refused = |why: &str| {
                     row.failure(column, &format!("{raw} with --modulus {modulus}: {why}"))
@@ -262,6 +319,7 @@ impl Encoder {
                 next.map_err(|error| refused(error.message()))?.0
             }
         };
+        self.last = Some(count);
         self.counts.push(count);
         Ok(())
     }

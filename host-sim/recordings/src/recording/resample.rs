@@ -22,26 +22,14 @@ impl Recording {
         let [first, .., last] = self.t[..] else {
             return Ok(());
         };
-        let rows = ((last - first) * rate_hz).floor() + 1.0;
-        if !(rate_hz >= super::clock::SLOWEST_HZ && rows >= 2.0) {
-            return Err(Failure::Input(format!(
-                "--resample {rate_hz}: {name} has {} s, of which at least two rows at {} Hz or more must \
-                 result",
-                last - first,
-                super::clock::SLOWEST_HZ
-            )));
-        }
-        if rows > MOST_ROWS * self.t.len() as f64 {
-            return Err(Failure::Input(format!(
-                "--resample {rate_hz}: {name} has {} rows in {} s, which would become {rows}; choose a \
-                 lower rate, or cut the recording at its pauses",
-                self.t.len(),
-                last - first
-            )));
-        }
-        let t: Vec<_> = (0..rows as usize)
-            .map(|k| first + k as f64 / rate_hz)
-            .collect();
+        let rows = resampled_rows(first, last, self.t.len(), rate_hz, name)?;
+        let t = (0..rows).map(|k| first + k as f64 / rate_hz).collect();
+        self.replace_rows(t, rate_hz);
+        Ok(())
+    }
+
+    /// Replaces the rows by rows at the times `t`, which are within those of the rows.
+    pub(super) fn replace_rows(&mut self, t: Vec<f64>, rate_hz: f64) {
         let mut row = 0;
         // For each new row: the latest row, and the part of its step that has passed.
         let at: Vec<(usize, f64)> = (t.iter())
@@ -89,8 +77,36 @@ impl Recording {
         trace.rate_hz = rate_hz;
         self.uneven_steps = 0;
         self.t = t;
-        Ok(())
     }
+}
+
+/// Number of rows at `rate_hz` from `first` to `last`, s, that replace `rows` rows.
+///
+/// # Errors
+/// [`Failure::Input`] if the rate is out of reach for the recording called `name`.
+pub(super) fn resampled_rows(
+    first: f64,
+    last: f64,
+    rows: usize,
+    rate_hz: f64,
+    name: &str,
+) -> Result<usize, Failure> {
+    let seconds = last - first;
+    let wanted = (seconds * rate_hz).floor() + 1.0;
+    if !(rate_hz >= super::clock::SLOWEST_HZ && wanted >= 2.0) {
+        return Err(Failure::Input(format!(
+            "--resample {rate_hz}: {name} has {seconds} s, of which at least two rows at {} Hz or more \
+             must result",
+            super::clock::SLOWEST_HZ
+        )));
+    }
+    if wanted > MOST_ROWS * rows as f64 {
+        return Err(Failure::Input(format!(
+            "--resample {rate_hz}: {name} has {rows} rows in {seconds} s, which would become {wanted}; \
+             choose a lower rate, or cut the recording at its pauses"
+        )));
+    }
+    Ok(wanted as usize)
 }
 
 /// Counts at new rows, each of which has a row and a part of that row's step.

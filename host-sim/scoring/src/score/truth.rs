@@ -78,6 +78,23 @@ impl<'a> Truth<'a> {
         &self.transients
     }
 
+    /// Number of samples that are scored.
+    #[must_use]
+    pub fn scored(&self) -> usize {
+        self.omega.len() - self.skip
+    }
+
+    /// Sum of the squared differences of neighbouring samples, (rad/s)^2.
+    pub(super) fn slope(&self) -> f64 {
+        let differences = self.omega.windows(2).map(|pair| pair[1] - pair[0]);
+        differences.map(|difference| difference * difference).sum()
+    }
+
+    /// The errors of an estimate in the samples that are scored, rad/s.
+    pub(super) fn scored_errors(&self, estimate: &[f32]) -> impl Iterator<Item = f64> {
+        self.errors(&estimate[self.skip..])
+    }
+
     /// Scores an estimate (rad/s) of this truth. All scores are `None` if the trace is not longer
     /// than [`SKIP_S`].
     ///

@@ -1,0 +1,164 @@
+//! The first of two passes over a log, for a recording in parts: what all rows tell.
+
+use std::io::Read;
+
+use estimator_core::{Count, WrapError};
+use simulation::device::Device;
+use simulation::trace::Trace;
+use terminal::failure::Failure;
+
+use super::absolute::{self, Found};
+use super::clock::Steps;
+use super::columns::Columns;
+use super::options::ReadOptions;
+use super::parts::BLOCK;
+use super::records::Records;
+use super::resample::resampled_rows;
+
+/// Properties of a log as a whole, from a pass over all of its rows.
+#[derive(Clone, Debug)]
+pub struct Survey {
+    /// The columns and the rate of the recording, without rows.
+    pub columns: Trace,
+    /// Number of rows of the recording.
+    pub rows: usize,
+    /// Notes of the reader on the columns and the encoders, one line each.
+    pub notes: Vec<String>,
+    /// Rate at which rows replace those of the log, Hz.
+    pub(super) resample: Option<f64>,
+    /// Period of the log's rows, s, and rate, Hz.
+    pub(super) period: f64,
+    pub(super) rate_hz: f64,
+    pub(super) first_t: f64,
+    steps: Steps,
+    /// Modulus at which the counts of each encoder are unwrapped.
+    pub(super) wraps: [Option<u32>; 2],
+}
+
+/// What a survey keeps of one encoder.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    last: Option<i64>,
+    least: i64,
+    most: i64,
+    /// The last count, unwrapped at each of the moduli; an error stays.
+    unwrapped: [Result<Option<Count>, WrapError>; 2],
+}
+
+impl Seen {
+    const NOTHING: Self = Self {
+        last: None,
+        least: i64::MAX,
+        most: i64::MIN,
+        unwrapped: [Ok(None); 2],
+    };
+
+    /// Adds a count and returns its distance from the last one.
+    fn add(&mut self, count: u32, moduli: [u32; 2]) -> i64 {
+        let signed = i64::from(count as i32);
+        self.least = self.least.min(signed);
+        self.most = self.most.max(signed);
+        for (unwrapped, modulus) in self.unwrapped.iter_mut().zip(moduli) {
+            *unwrapped = unwrapped.and_then(|last| absolute::after(last, count, modulus).map(Some));
+        }
+        let jump = signed - self.last.unwrap_or(signed);
+        self.last = Some(signed);
+        jump
+    }
+
+    /// What the counts with the largest jump `jump` are.
+    fn found(&self, jump: i64, per_rev: u32) -> Option<Found> {
+        self.last?;
+        let found = absolute::found(jump, self.most - self.least, per_rev);
+        let Some(Found::Wraps(modulus)) = found else {
+            return found;
+        };
+        let tried = absolute::moduli(per_rev).into_iter().zip(self.unwrapped);
+        let error = tried
+            .filter(|(tried, _)| *tried == modulus)
+            .find_map(|(_, unwrapped)| unwrapped.err());
+        error.map_or(found, |error| Some(Found::Refused(modulus, error)))
+    }
+}
+
+impl Survey {
+    /// Reads all rows of the log called `name` in messages, for `device`. `resample` is the rate of
+    /// the rows that replace them, Hz.
+    ///
+    /// # Errors
+    /// [`Failure::Input`], one line that names file, line and column.
+    pub fn new(
+        input: impl Read,
+        name: &str,
+        options: &ReadOptions,
+        device: &Device,
+        resample: Option<f64>,
+    ) -> Result<Self, Failure> {
+        let stages = &device.stages;
+        let per_rev = [stages.large.counts_per_rev, stages.small.counts_per_rev];
+        let moduli = per_rev.map(absolute::moduli);
+        let mut records = Records::open(input, name, options)?;
+        let places = records.layout.places(options, name)?;
+        let mut columns = Columns::new(&places, options);
+        let mut steps = Steps::default();
+        let mut seen = [Seen::NOTHING; 2];
+        let mut ends: Option<[f64; 2]> = None;
+        let mut rows = 0;
+        loop {
+            let block = columns.read(&mut records, BLOCK, |_, _, _| ())?;
+            if block.t.is_empty() {
+                break;
+            }
+            rows += block.t.len();
+            for (k, &t) in block.t.iter().enumerate() {
+                let large = seen[0].add(block.trace.counts_large[k], moduli[0]);
+                let small = block.trace.counts_small.as_ref();
+                let small = small.map_or(0, |counts| seen[1].add(counts[k], moduli[1]));
+                if let Some([_, last]) = ends {
+                    steps.add(t - last, [large, small]);
+                }
+                ends = Some([ends.map_or(t, |[first, _]| first), t]);
+            }
+        }
+        let (period, rate_hz) = steps.period(name)?;
+        let mut notes = columns.notes(&places, &records.layout);
+        let mut wraps = [None; 2];
+        let names = [("counts_large", "large"), ("counts_small", "small")];
+        for (motor, (column, stage)) in names.into_iter().enumerate() {
+            let jump = steps.largest_jump(absolute::LONGEST / rate_hz, motor);
+            let found = seen[motor].found(jump, per_rev[motor]);
+            if let Some(Found::Wraps(modulus)) = found {
+                wraps[motor] = Some(modulus);
+            }
+            notes.extend(found.map(|found| found.note(column, stage, per_rev[motor])));
+        }
+        let [first_t, last_t] = ends.unwrap_or_default();
+        let rows = match resample {
+            Some(hz) => resampled_rows(first_t, last_t, rows, hz, name)?,
+            None => rows,
+        };
+        Ok(Self {
+            columns: columns.drain(resample.unwrap_or(rate_hz)).trace,
+            rows,
+            notes,
+            resample,
+            period,
+            rate_hz,
+            first_t,
+            steps,
+            wraps,
+        })
+    }
+
+    /// Checks that the estimators can take the rows as evenly spaced; see
+    /// [`Recording::check_even`](super::Recording::check_even).
+    ///
+    /// # Errors
+    /// [`Failure::Input`] with the remedy.
+    pub fn check_even(&self, name: &str) -> Result<(), Failure> {
+        match self.resample {
+            Some(_) => Ok(()),
+            None => self.steps.check_even(self.rate_hz, name),
+        }
+    }
+}
