@@ -58,7 +58,7 @@ pub(super) enum Command {
     #[command(after_help = "Example:
   host-sim plot motor.csv --from 1 --to 2.5 --out motor.svg")]
     Plot(super::plot::Plot),
-    /// Fit the device's constants to recordings of scene excite and write a device file
+    /// Fit the device's constants to recordings with the motor current and write a device file
     #[command(after_help = "Example:
   host-sim identify excite.csv --out device.toml --report target/identify")]
     Identify(super::identify::Identify),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use experiments::identify::{self, Known};
+use experiments::identify::{self, Known, Quantity};
 use report::{self, Printout};
 use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, note, print_bytes, write_whole};
@@ -16,8 +16,9 @@ use super::page;
 
 #[derive(Debug, Args)]
 pub(super) struct Identify {
-    /// Recording of scene excite: CSV as for host-sim replay, with the columns current and
-    /// counts_small. With column current_small and a free handle, the handle is identified too.
+    /// Recording with the motor current, of scene excite or of any motion that speeds up, slows down
+    /// and reverses: CSV as for host-sim replay, with the columns current and counts_small. With
+    /// column current_small and a free handle, the handle is identified too.
     /// Several recordings of one device are fitted together; - is standard input
     #[arg(value_name = "RECORDING", required = true)]
     recordings: Vec<PathBuf>,
@@ -29,7 +30,8 @@ pub(super) struct Identify {
     /// large.inertia_kg_m2 or coupler.damping_nms_per_rad [default: the device's torque constant]
     #[arg(long, value_name = "KEY=VALUE")]
     known: Option<String>,
-    /// State that the handle was clamped in recordings without column counts_small
+    /// State that the handle was clamped, or that there is none, in recordings without column
+    /// counts_small
     #[arg(long)]
     clamped: bool,
     /// Write a device file with the identified constants; it keeps the other keys and comments of
@@ -68,6 +70,15 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
         found.assumed.insert(0, identify::default_counts(&device));
     }
     if let Some(out) = &options.out {
+        let identified = |quantity: &Quantity| quantity.rejected.is_none();
+        if !found.quantities.iter().any(identified) {
+            let reason = found.quantities.first().and_then(|q| q.rejected.as_deref());
+            return Err(Failure::Input(format!(
+                "--out {}: no constant is identified: {}",
+                out.display(),
+                reason.unwrap_or_default()
+            )));
+        }
         let text = options.device.text()?;
         let names: Vec<_> = recordings.iter().map(|(name, _)| name.as_str()).collect();
         let given = options.known.is_some();

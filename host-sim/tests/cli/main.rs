@@ -4,6 +4,7 @@ mod closed_loop;
 mod compare;
 mod escaping;
 mod identify;
+mod identify_logs;
 mod logs;
 mod output;
 mod real;

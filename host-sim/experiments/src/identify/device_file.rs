@@ -85,6 +85,7 @@ mod tests {
             file: value,
             unit: super::super::quantity::MILLI_NM,
             rejected: None,
+            vague: false,
         }
     }
 

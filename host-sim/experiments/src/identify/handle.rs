@@ -58,7 +58,7 @@ pub(super) fn quantities(
         "record slow motion in both directions",
     );
     if !turns {
-        friction.rejected = Some(
+        friction.reject(
             "friction varies over a turn; record at least three turns of the handle".to_owned(),
         );
     }

@@ -57,6 +57,23 @@ impl Motion {
         Self { angle, direction }
     }
 
+    /// The smallest and largest mean velocity over windows of `window_s`, rad/s, with those of `before`.
+    pub(super) fn velocities(
+        &self,
+        window_s: f64,
+        period_s: f64,
+        before: Option<[f64; 2]>,
+    ) -> Option<[f64; 2]> {
+        let samples = ((window_s / period_s).round() as usize).max(1);
+        let windows = self.angle.windows(samples + 1).step_by(samples);
+        let seconds = samples as f64 * period_s;
+        let velocity = windows.map(|angle| (angle[samples] - angle[0]) / seconds);
+        velocity.fold(before, |ends, omega| {
+            let [low, high] = ends.unwrap_or([omega; 2]);
+            Some([low.min(omega), high.max(omega)])
+        })
+    }
+
     /// Largest minus smallest angle, rad.
     pub(super) fn travel(&self) -> f64 {
         let low = self.angle.iter().copied().fold(f64::INFINITY, f64::min);

@@ -89,11 +89,16 @@ pub struct Quantity {
     pub unit: Unit,
     /// Reason for which the value is rejected; `None` for an identified value.
     pub rejected: Option<String>,
+    /// Whether the reason is the width of the interval, or doubt about the model, alone.
+    pub vague: bool,
 }
 
 /// Largest half-width of the 95 % interval of an identified value, relative to the value: 3 % are
 /// then three standard deviations.
 const IDENTIFIED: f64 = 0.02;
+
+/// Largest half-width of the 95 % interval of a value that is shown, relative to the value.
+const TOLD: f64 = 0.5;
 
 /// Unit for tables, with its relation to the unit of the device file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,10 +148,34 @@ impl Quantity {
             estimate,
             file,
             unit,
+            vague: vague.is_some(),
             rejected: vague.or(negative.then(|| {
                 "the estimate is negative; check that the recording is of scene excite".to_owned()
             })),
         }
+    }
+
+    /// Rejects the value for a reason other than the width of its interval.
+    pub(super) fn reject(&mut self, reason: String) {
+        self.rejected = Some(reason);
+        self.vague = false;
+    }
+
+    /// Rejects a value for a reason that is more important than the width of its interval. The value
+    /// is still shown.
+    pub(super) fn doubt(&mut self, reason: &str) {
+        if self.rejected.is_none() || self.vague {
+            self.rejected = Some(reason.to_owned());
+            self.vague = true;
+        }
+    }
+
+    /// Whether the value tells something: it is identified, or its interval is not wider than half of
+    /// it.
+    #[must_use]
+    pub fn is_told(&self) -> bool {
+        let Estimate { value, half } = self.estimate;
+        self.rejected.is_none() || self.vague && half < TOLD * value.abs()
     }
 
     /// Half-width of the interval as text, in % of the value if it is below 10 %.

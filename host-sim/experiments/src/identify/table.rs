@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use super::Identification;
 use super::fit::Estimate;
 use super::quantity::{DAMPING, Quantity, Unit};
+use super::ratio::Ratio;
 use terminal::wording::wrapped;
 
 /// The result as text: values with units and intervals, health lines, assumptions.
@@ -24,12 +25,14 @@ pub fn text(found: &Identification) -> String {
         let Unit { name, per_si, .. } = quantity.unit;
         let key = quantity.key;
         if let Some(why) = &quantity.rejected {
-            let _ = writeln!(text, "{key:<32}{:>10}  {name:<11}", "-");
             let _ = writeln!(
                 rejected,
                 "{}",
                 wrapped(&format!("not identified: {key}: {why}"), 4)
             );
+        }
+        if !quantity.is_told() {
+            let _ = writeln!(text, "{key:<32}{:>10}  {name:<11}", "-");
             continue;
         }
         let Estimate { value, .. } = quantity.estimate;
@@ -45,6 +48,21 @@ pub fn text(found: &Identification) -> String {
         text,
         "The keys are those of the device file, whose values are in SI units.\n\n{rejected}"
     );
+    let _ = writeln!(
+        text,
+        "Counts and current alone determine, without a known constant:"
+    );
+    for ratio in &found.ratios {
+        let Estimate { value, half } = ratio.estimate;
+        let _ = writeln!(
+            text,
+            "{:<42}{value:>10.4e}  {:<10}+-{half:.1e}",
+            ratio.name, ratio.unit
+        );
+    }
+    if found.quantities.iter().any(|q| q.rejected.is_none()) {
+        text.push('\n');
+    }
     for quantity in found.quantities.iter().filter(|q| q.rejected.is_none()) {
         let _ = writeln!(
             text,
@@ -87,7 +105,7 @@ fn health(quantity: &Quantity) -> String {
 }
 
 /// The result as JSON: one object per quantity, in the SI unit that it names. `untold` is the reason
-/// of a rejection.
+/// of a rejection; `estimate` is the value whether it is rejected or not.
 #[must_use]
 pub fn json(found: &Identification) -> Value {
     let row = |quantity: &Quantity| {
@@ -99,13 +117,24 @@ pub fn json(found: &Identification) -> Value {
             "value": identified.then_some(quantity.estimate.value),
             "half_width_95": identified.then_some(quantity.estimate.half),
             "untold": quantity.rejected,
+            "estimate": quantity.estimate.value,
+            "estimate_half_width_95": quantity.estimate.half,
             "file": quantity.file,
             "of_file": identified.then_some(part).filter(|part| part.is_finite()),
             "file_inside": identified.then_some(inside),
         })
     };
+    let ratio = |ratio: &Ratio| {
+        json!({
+            "name": ratio.name,
+            "unit": ratio.unit,
+            "value": ratio.estimate.value,
+            "half_width_95": ratio.estimate.half,
+        })
+    };
     json!({
         "quantities": found.quantities.iter().map(row).collect::<Vec<_>>(),
+        "ratios": found.ratios.iter().map(ratio).collect::<Vec<_>>(),
         "assumed": found.assumed,
         "windows_used": found.windows.0,
         "windows": found.windows.1,

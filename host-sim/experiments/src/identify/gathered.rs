@@ -1,0 +1,226 @@
+//! Everything that the recordings tell together: the equations of the shafts, and what limits them.
+
+use super::equations::{Equations, Shaft, TURNS};
+use super::fit::{Equation, Fit};
+use super::motion::Motion;
+use super::{MOST_UNEXPLAINED, WINDOW_S, breaks, handle, quantity};
+use recordings::recording::Recording;
+use simulation::device::Device;
+use terminal::failure::Failure;
+
+/// Share of the motor's torque from which a model that lacks it tells nothing.
+const REFUSED_UNEXPLAINED: f64 = 0.30;
+/// Current that no amplifier of the device delivers, relative to its limit.
+const IMPLAUSIBLE_CURRENT: f64 = 20.0;
+/// Largest relative spread of a velocity that is constant.
+const CONSTANT_SPREAD: f64 = 0.05;
+/// Mean number of uneven steps per window from which the error of too few windows names the clock.
+const UNEVEN_WINDOWS: f64 = 0.5;
+/// Slowest rate at which a row is assumed to be a control tick, Hz; below it the lag is rejected.
+const LAG_RATE_HZ: f64 = 5000.0;
+
+/// The equations of all recordings, and properties of the recordings for messages.
+#[derive(Default)]
+pub(super) struct Gathered {
+    pub(super) large: Equations,
+    /// Equations of a free handle.
+    pub(super) free: Vec<Equation>,
+    /// Reasons for which recordings do not identify the handle.
+    pub(super) without_handle: Vec<String>,
+    /// The longest travel of each shaft, rad.
+    pub(super) travel: [f64; 2],
+    pub(super) largest_current: f64,
+    slowest_hz: Option<f64>,
+    /// The smallest and largest velocity of a window, rad/s.
+    velocities: Option<[f64; 2]>,
+    /// Whether a recording has no counts of the handle.
+    pub(super) unseen: bool,
+    /// Description of the first clock that leaves too few windows without uneven steps.
+    uneven: Option<String>,
+}
+
+impl Gathered {
+    /// Adds a recording; `place` is its index and the number of recordings.
+    pub(super) fn add(
+        &mut self,
+        name: &str,
+        recording: &Recording,
+        place: (usize, usize),
+        device: &Device,
+    ) -> Result<(), Failure> {
+        let trace = &recording.trace;
+        let period_s = trace.period_s();
+        let Some(current) = &trace.current else {
+            return Err(Failure::Input(format!(
+                "{name}: line 1: no column current; torques cannot be identified from counts alone: \
+                 record scene excite with the large motor's current"
+            )));
+        };
+        let motion = |counts: &[u32], counts_per_rev| Motion::new(counts, counts_per_rev, period_s);
+        let own = motion(&trace.counts_large, device.stages.large.counts_per_rev);
+        let handle = trace.counts_small.as_ref();
+        let handle = handle.map(|counts| motion(counts, device.stages.small.counts_per_rev));
+        let breaks = breaks(&recording.t, period_s);
+        if recording.uneven_share() * WINDOW_S > UNEVEN_WINDOWS * period_s {
+            self.uneven = self.uneven.take().or_else(|| recording.unevenness());
+        }
+        let shaft = Shaft {
+            period_s,
+            own: &own,
+            other: handle.as_ref(),
+            current,
+            ripple_per_rev: device.large_ripple.per_rev,
+            breaks: &breaks,
+            hand: false,
+        };
+        self.large.add(&shaft, place.0, place.1);
+        self.velocities = own.velocities(WINDOW_S, period_s, self.velocities);
+        self.travel[0] = self.travel[0].max(own.travel());
+        let largest = current.iter().fold(0.0_f64, |m, i| m.max(i.abs()));
+        self.largest_current = self.largest_current.max(largest);
+        let slowest = self.slowest_hz.unwrap_or(trace.rate_hz);
+        self.slowest_hz = Some(slowest.min(trace.rate_hz));
+        let Some(handle) = &handle else {
+            self.unseen = true;
+            return Ok(());
+        };
+        let free = match &recording.current_small {
+            None => Err("no column current_small"),
+            Some(current) => {
+                let mut small = Equations::default();
+                let shaft = Shaft {
+                    own: handle,
+                    other: Some(&own),
+                    current,
+                    ripple_per_rev: device.small_ripple.per_rev,
+                    hand: true,
+                    ..shaft
+                };
+                small.add(&shaft, place.0, place.1);
+                handle::free(small)
+            }
+        };
+        match free {
+            Ok(equations) => {
+                self.free.extend(equations);
+                self.travel[1] = self.travel[1].max(handle.travel());
+            }
+            Err(why) => {
+                self.without_handle
+                    .push(format!("{name}: the handle is not identified: {why}"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Fits the large shaft's equation.
+    ///
+    /// # Errors
+    /// One line on currents, windows, or a model that does not fit.
+    pub(super) fn fit(&self, device: &Device) -> Result<Fit, String> {
+        if self.largest_current == 0.0 {
+            return Err("column current is zero throughout; record scene excite".to_owned());
+        }
+        let (largest, limit) = (self.largest_current, device.stages.large.current_limit);
+        if largest > IMPLAUSIBLE_CURRENT * limit {
+            return Err(format!(
+                "column current reaches {largest} A, where large.current_limit_a is {limit}; if it is in mA, \
+                 give --column current=current:mA"
+            ));
+        }
+        let Some(fit) = Fit::new(&self.large.usable) else {
+            return Err(match &self.uneven {
+                Some(uneven) => format!(
+                    "{uneven}; only {} of {} windows of 40 ms have even steps and turn one way; if only \
+                     column t is uneven, give --row-rate HZ, else --resample HZ",
+                    self.large.usable.len(),
+                    self.large.windows
+                ),
+                None => format!(
+                    "the large motor turns one way throughout only {} of {} windows of 40 ms; record \
+                     the whole scene excite, with the handle held",
+                    self.large.usable.len(),
+                    self.large.windows
+                ),
+            });
+        };
+        if let Some([low, high]) = self.velocities
+            && high - low < CONSTANT_SPREAD * low.abs().max(high.abs())
+        {
+            return Err(format!(
+                "no constant is identified: the velocity is constant, {low:.4} to {high:.4} rad/s, and the \
+                 inertia shows in accelerations alone; record motion that speeds up and slows down"
+            ));
+        }
+        let unexplained = fit.unexplained / fit.driven;
+        let drive = fit.estimate(|ratios, _| ratios[0]);
+        let backward = drive.value < -drive.half;
+        if unexplained < MOST_UNEXPLAINED && backward {
+            return Err(
+                "positive current turns the large motor backward; swap two phases of the motor or \
+                 the phases of its encoder, or record without a hand against which the motor works"
+                    .to_owned(),
+            );
+        }
+        // NaN is an error too.
+        if unexplained.is_nan() || unexplained >= REFUSED_UNEXPLAINED || backward {
+            return Err(format!(
+                "the model leaves {:.0} % of the motor's torque unexplained (limit {:.0} %){}; check that \
+                 column current is in A, that large.counts_per_rev = {} is correct, and that {}",
+                100.0 * unexplained,
+                100.0 * MOST_UNEXPLAINED,
+                match backward {
+                    true => ", and the shaft turns against the current",
+                    false => "",
+                },
+                device.stages.large.counts_per_rev,
+                match self.unseen {
+                    true => "no hand or contact touched the shaft, and the handle was clamped",
+                    false => "nothing else touched the shafts",
+                }
+            ));
+        }
+        Ok(fit)
+    }
+
+    /// Reason for which no value of the fit is identified, if a torque acts that is not in the model.
+    pub(super) fn doubts(&self, fit: &Fit) -> Option<String> {
+        let unexplained = fit.unexplained / fit.driven;
+        (unexplained >= MOST_UNEXPLAINED).then(|| {
+            format!(
+                "{:.0} % of the motor's torque is unexplained (limit {:.0} %), and a torque that depends on \
+                 the motor's, as that of a hand, would bias the value; record with nothing that touches \
+                 the shaft",
+                100.0 * unexplained,
+                100.0 * MOST_UNEXPLAINED
+            )
+        })
+    }
+
+    /// The only direction of motion, if one is too rare to separate friction from a constant torque.
+    pub(super) fn turns_one_way(&self) -> Option<f64> {
+        let usable = self.large.usable.len();
+        let rarer_way = self.large.forward.min(usable - self.large.forward);
+        let forward = 2 * self.large.forward > usable;
+        (20 * rarer_way < usable).then(|| if forward { 1.0 } else { -1.0 })
+    }
+
+    /// Reason for which the recordings cannot identify this key, whatever its interval.
+    pub(super) fn rejects(&self, key: &str) -> Option<String> {
+        match (key, self.slowest_hz) {
+            (quantity::BANDWIDTH, Some(rate_hz)) if rate_hz < LAG_RATE_HZ => Some(format!(
+                "rows {} ms apart may be frames of a faster control loop; record every control tick",
+                1000.0 / rate_hz
+            )),
+            (quantity::FRICTION, _) if self.turns_one_way().is_some() => Some(
+                "the large motor turns one way only, so friction and a constant torque cannot be told \
+                 apart; record both directions"
+                    .to_owned(),
+            ),
+            (quantity::FRICTION, _) if self.travel[0] < TURNS => {
+                Some("friction varies over a turn; record at least three turns".to_owned())
+            }
+            _ => None,
+        }
+    }
+}
