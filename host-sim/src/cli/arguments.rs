@@ -66,9 +66,11 @@ pub(super) enum Command {
     #[command(after_help = "Example:
   host-sim simulate --scene wall --hand moving --seconds 5 --out wall.csv")]
     Simulate(super::simulate::Simulate),
-    /// Search the estimators' parameters on separate tuning seeds and write a presets file
-    #[command(after_help = "Example:
-  host-sim tune --estimator pll --rate 1000 --out presets.toml")]
+    /// Search the estimators' parameters on separate tuning seeds, or on recordings, and write a
+    /// presets file
+    #[command(after_help = "Examples:
+  host-sim tune --estimator pll --rate 1000 --out presets.toml
+  host-sim tune log.csv --device mine.toml --estimator pll --out presets.toml")]
     Tune(super::tune::Tune),
     /// Measure how errors in the device's constants degrade each estimator
     #[command(after_help = "Example:

@@ -7,14 +7,15 @@ use clap::Args;
 
 use catalogue::constant_error::ConstantError;
 use catalogue::estimators::Kind;
-use catalogue::parameters::{PlantKind, Preset, Presets};
-use experiments::tune::{FIRST_SEED, TuningSet, image_section, tune};
+use catalogue::parameters::{Parameters, PlantKind, Preset, Presets};
+use experiments::tune::{FIRST_SEED, TuningSet, image_section, tune, tune_on_logs};
 use simulation::scenario::{Role, ScenarioName};
 use simulation::simulate;
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, print_bytes, write_whole};
 
-use super::arguments::{DeviceFile, kinds, rates, scenarios};
+use super::arguments::{DeviceFile, RecordingOptions, kinds, rates, scenarios};
+use super::input::{Log, short_name};
 use super::page::progress;
 
 /// Defaults of the tuning options for one kind of estimators.
@@ -46,6 +47,16 @@ impl Recipe {
 
 #[derive(Debug, Args)]
 pub(super) struct Tune {
+    /// Recording to tune on instead of simulated motion: CSV as for host-sim replay, with the columns
+    /// that the estimators need, at least 4 s. Every second of it in turn is tuned on and held out;
+    /// the found parameters are written if their RMS error in the held-out seconds is smaller. The
+    /// errors are those against true_omega, or without this column against a smoother of the log;
+    /// repeatable; - is standard input
+    #[arg(value_name = "RECORDING", conflicts_with_all =
+        ["perturbed", "scenarios", "rates", "seeds", "seconds", "frictionless"])]
+    pub(super) recordings: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(super) read: RecordingOptions,
     /// Average the cost over the true and perturbed device constants, with the errors of host-sim
     /// sensitivity [default: only for observers, and only without --scenario]
     #[arg(long = "perturbed", visible_alias = "doubting")]
@@ -105,6 +116,9 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
                 .to_owned(),
         ));
     }
+    if !options.recordings.is_empty() {
+        return on_recordings(options, &kinds, command_line);
+    }
     let (observers, others): (Vec<_>, Vec<_>) =
         kinds.iter().copied().partition(|kind| kind.is_observer());
     let groups: Vec<_> = [(others, Recipe::PLAIN), (observers, Recipe::OBSERVER)]
@@ -122,10 +136,7 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
         true => &[PlantKind::Frictionless],
         false => &[PlantKind::Friction, PlantKind::Frictionless],
     };
-    let kept = match is_stdout(&options.out) {
-        true => String::new(),
-        false => image_section(&options.out).map_err(Failure::Input)?,
-    };
+    let kept = kept_section(options)?;
     let bar = progress(rates.len() * plants.len() * kinds.len(), "tuning");
     let mut presets = Presets::default();
     let mut notes = Vec::new();
@@ -149,11 +160,40 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
         }
     }
     bar.finish_and_clear();
-    let mut text = format!("# {command_line}\n");
-    for (kinds, set) in &groups {
-        text += &tuned_on(kinds, set);
+    let tuned_on = groups.iter().map(|(kinds, set)| tuned_on(kinds, set));
+    write_presets(
+        options,
+        command_line,
+        &tuned_on.collect::<String>(),
+        &notes,
+        &presets,
+        &kept,
+    )?;
+    if is_stdout(&options.out) {
+        return Ok(());
     }
-    for note in &notes {
+    print_bytes(format!("{}\n", options.out.display()).as_bytes())
+}
+
+/// The section [image] of an existing presets file.
+fn kept_section(options: &Tune) -> Result<String, Failure> {
+    match is_stdout(&options.out) {
+        true => Ok(String::new()),
+        false => image_section(&options.out).map_err(Failure::Input),
+    }
+}
+
+/// Writes the presets file with its comments and prints the notes.
+fn write_presets(
+    options: &Tune,
+    command_line: &str,
+    tuned_on: &str,
+    notes: &[String],
+    presets: &Presets,
+    kept: &str,
+) -> Result<(), Failure> {
+    let mut text = format!("# {command_line}\n{tuned_on}");
+    for note in notes {
         terminal::output::note(format_args!("note: {note}"));
         text += &format!("# {note}\n");
     }
@@ -161,11 +201,63 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
     if !kept.is_empty() {
         text += &format!("\n{kept}");
     }
-    write_whole(&options.out, text.as_bytes())?;
-    if is_stdout(&options.out) {
-        return Ok(());
+    write_whole(&options.out, text.as_bytes())
+}
+
+/// Tunes on recordings.
+fn on_recordings(
+    options: &Tune,
+    kinds: &[&'static Kind],
+    command_line: &str,
+) -> Result<(), Failure> {
+    let device = options.device.load()?;
+    let kept = kept_section(options)?;
+    let mut recordings = Vec::new();
+    let mut notes = Vec::new();
+    for path in &options.recordings {
+        let (name, log) = (short_name(path), Log::open(path)?);
+        let recording = options.read.read(&log, &device)?;
+        recording.check_even(log.name())?;
+        notes.extend(recording.notes.iter().map(|line| format!("{name}: {line}")));
+        recordings.push((name, recording));
     }
-    print_bytes(format!("{}\n", options.out.display()).as_bytes())
+    let bar = progress(kinds.len(), "tuning");
+    let before = Parameters::default();
+    let tuned = tune_on_logs(&recordings, &device, kinds, &before, || bar.inc(1))?;
+    bar.finish_and_clear();
+    notes.extend(tuned.notes);
+    let names: Vec<_> = recordings.iter().map(|(name, _)| name.as_str()).collect();
+    let tuned_on = format!("# Tuned on every second second of {}.\n", names.join(", "));
+    let presets = Presets {
+        preset: vec![tuned.preset],
+        ..Presets::default()
+    };
+    write_presets(options, command_line, &tuned_on, &notes, &presets, &kept)?;
+    let mut table = format!(
+        "{:<24}{:>22}{:>22}\n{:<24}{:>11}{:>11}{:>11}{:>11}\n",
+        "RMS error, rad/s",
+        "tuned seconds",
+        "held-out seconds",
+        "",
+        "before",
+        "found",
+        "before",
+        "found"
+    );
+    for row in &tuned.rows {
+        let [seen, unseen] = [0, 1].map(|half| [row.before[half], row.found[half]]);
+        let numbers: String = [seen, unseen]
+            .concat()
+            .iter()
+            .map(|rms| format!("{rms:>11.4}"))
+            .collect();
+        let verdict = if row.kept { "  kept" } else { "" };
+        table += &format!("{:<24}{numbers}{verdict}\n", row.estimator);
+    }
+    match is_stdout(&options.out) {
+        true => Ok(()),
+        false => print_bytes(format!("{table}{}\n", options.out.display()).as_bytes()),
+    }
 }
 
 /// Comment line of the presets file: the tuning set of these estimators.

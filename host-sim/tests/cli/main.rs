@@ -13,6 +13,7 @@ mod refusals;
 mod replay;
 mod tables;
 mod tune;
+mod tune_logs;
 mod version;
 mod words;
 

@@ -1,0 +1,193 @@
+//! Search of the parameters with the smallest cost.
+
+use rayon::prelude::*;
+
+use catalogue::estimators::{Kind, Parameter, Search, Setup, Values};
+
+/// Points of a search's first grid.
+const GRID: usize = 25;
+
+/// Inertia of the device for which the ranges of the parameters are stated, kg.m2.
+const DEFAULT_INERTIA: f64 = estimator_core::MotorModel::DCX35L.inertia;
+
+/// Rounds of refinement between the neighbours of the best point.
+const REFINEMENTS: usize = 3;
+
+/// One line for each value at a limit of the searched range.
+pub(super) fn ends_of_ranges(kind: &Kind, setup: &Setup, values: &Values) -> Vec<String> {
+    let searched = kind.parameters.iter().zip(values);
+    searched
+        .filter_map(|(parameter, &value)| {
+            let grid = first_grid(parameter, setup);
+            let (low, high) = (grid[0], grid[grid.len() - 1]);
+            let is = |end: f64| three_digits(end) == three_digits(value);
+            let at = match parameter.search {
+                Search::Fixed(_) => return None,
+                _ if is(low) => "lower",
+                _ if is(high) => "upper",
+                _ => return None,
+            };
+            Some(format!(
+                "{}.{} = {value} {} is the {at} limit of the searched range; a value beyond it may be better: try --set",
+                kind.name, parameter.name, parameter.unit
+            ))
+        })
+        .collect()
+}
+
+/// The parameters of `kind` with the smallest cost, on a grid over all parameters for `setup` and then
+/// on finer grids around the best point.
+pub(super) fn best_values(
+    kind: &Kind,
+    setup: &Setup,
+    cost: impl Fn(&Values) -> f64 + Sync,
+) -> Values {
+    let mut axes: Vec<_> = kind
+        .parameters
+        .iter()
+        .map(|p| first_grid(p, setup))
+        .collect();
+    let mut best = evaluate(&cost, &axes);
+    for _ in 0..REFINEMENTS {
+        for ((axis, parameter), value) in axes.iter_mut().zip(kind.parameters).zip(&best) {
+            *axis = finer(parameter, axis, *value);
+        }
+        best = evaluate(&cost, &axes);
+    }
+    best
+}
+
+/// The point of the grid spanned by `axes` with the smallest cost.
+fn evaluate(cost: &(impl Fn(&Values) -> f64 + Sync), axes: &[Vec<f64>]) -> Values {
+    let mut points = vec![Vec::new()];
+    for axis in axes {
+        points = points
+            .iter()
+            .flat_map(|point: &Values| {
+                axis.iter()
+                    .map(|&value| point.iter().copied().chain([value]).collect())
+            })
+            .collect();
+    }
+    points
+        .into_par_iter()
+        .map(|point| (cost(&point), point))
+        // Of equal costs the earlier point wins, so that the result does not depend on threads.
+        .min_by(|(a, p), (b, q)| a.total_cmp(b).then_with(|| compare_points(p, q)))
+        .map(|(_, point)| point)
+        .unwrap_or_default()
+}
+
+fn compare_points(p: &Values, q: &Values) -> std::cmp::Ordering {
+    let differing = p.iter().zip(q).map(|(a, b)| a.total_cmp(b));
+    differing
+        .into_iter()
+        .find(|o| o.is_ne())
+        .unwrap_or(std::cmp::Ordering::Equal)
+}
+
+fn first_grid(parameter: &Parameter, setup: &Setup) -> Vec<f64> {
+    match parameter.search {
+        Search::Fixed(value) => vec![value],
+        Search::Log(low, high) => {
+            // The motion depends on the ratio of torque to inertia.
+            let scale = match parameter.is_torque() {
+                true => setup.stages.large.inertia / DEFAULT_INERTIA,
+                false => 1.0,
+            };
+            let high = match parameter.unit {
+                "Hz" => high.min(setup.rate.0 / 2.0),
+                _ => high * scale,
+            };
+            logarithmic(low * scale, high, GRID)
+        }
+        Search::Each(low, high) if high - low < GRID as u32 => {
+            (low..=high).map(f64::from).collect()
+        }
+        Search::Each(low, high) => whole(logarithmic(f64::from(low), f64::from(high), GRID)),
+    }
+}
+
+/// A grid between the neighbours of `best` on `axis`.
+fn finer(parameter: &Parameter, axis: &[f64], best: f64) -> Vec<f64> {
+    let at = axis
+        .iter()
+        .position(|&value| value == best)
+        .unwrap_or_default();
+    let low = axis[at.saturating_sub(1)];
+    let high = axis[(at + 1).min(axis.len() - 1)];
+    match parameter.search {
+        Search::Fixed(_) => vec![best],
+        Search::Log(..) => {
+            // More than three digits of a tuned value are not significant.
+            logarithmic(low, high, 9)
+                .into_iter()
+                .map(three_digits)
+                .collect()
+        }
+        Search::Each(..) if high - low <= 8.0 => {
+            (low as u32..=high as u32).map(f64::from).collect()
+        }
+        Search::Each(..) => {
+            let mut values = logarithmic(low, high, 9);
+            values.push(best);
+            whole(values)
+        }
+    }
+}
+
+fn logarithmic(low: f64, high: f64, points: usize) -> Vec<f64> {
+    let step = (high / low).ln() / (points - 1) as f64;
+    (0..points).map(|i| low * (step * i as f64).exp()).collect()
+}
+
+fn whole(mut values: Vec<f64>) -> Vec<f64> {
+    for value in &mut values {
+        *value = value.round();
+    }
+    values.sort_unstable_by(f64::total_cmp);
+    values.dedup();
+    values
+}
+
+fn three_digits(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use simulation::device::Device;
+
+    #[test]
+    fn grid_contains_its_limits_and_the_best_point() {
+        let grid = logarithmic(1.0, 100.0, 5);
+        assert!((grid[2] - 10.0).abs() < 1e-9 && (grid[4] - 100.0).abs() < 1e-9);
+        assert_eq!(whole(vec![1.2, 0.9, 3.0]), [1.0, 3.0]);
+        assert_eq!(three_digits(123.456), 123.0);
+        let window = Kind::named("foaw-end-fit").unwrap().parameters[0];
+        assert_eq!(
+            finer(&window, &[1.0, 5.0, 9.0], 5.0),
+            (1..=9).map(f64::from).collect::<Vec<_>>()
+        );
+    }
+
+    /// Twice the inertia needs twice the torque for the same motion.
+    #[test]
+    fn ranges_of_torques_follow_the_inertia() {
+        let kind = Kind::named("observer").unwrap();
+        let device = Device::default();
+        let mut heavy = device.clone();
+        heavy.stages.large.inertia *= 2.0;
+        for parameter in kind
+            .parameters
+            .iter()
+            .filter(|p| p.name != "boundary_noise")
+        {
+            let grid = |device| first_grid(parameter, &Setup::of(device, 1e3));
+            let ratio = grid(&heavy)[0] / grid(&device)[0];
+            let wanted = if parameter.is_torque() { 2.0 } else { 1.0 };
+            assert!((ratio - wanted).abs() < 1e-9, "{}: {ratio}", parameter.name);
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! `host-sim tune` on recordings.
+
+use std::f64::consts::TAU;
+
+use crate::Folder;
+
+const NAMES: [&str; 4] = ["pll", "low-pass", "foaw-best-fit", "observer-held"];
+
+/// Eight seconds at 1 kHz and 4096 counts/rev: the angle, rad, and its derivative at `t`.
+fn log(motion: impl Fn(f64) -> (f64, f64)) -> String {
+    let row = |k: u32| {
+        let t = f64::from(k) * 1e-3;
+        let (angle, omega) = motion(t);
+        format!("{t},{},{omega}\n", (angle * 4096.0 / TAU).floor())
+    };
+    let rows: String = (0..8000).map(row).collect();
+    format!("t,counts_large,true_omega\n{rows}")
+}
+
+/// Slow, and in every other second with a vibration of 12 Hz.
+fn now_slow_now_fast(t: f64) -> (f64, f64) {
+    let slow = (0.3 * t, 0.3);
+    match t as u32 % 2 {
+        0 => slow,
+        _ => {
+            let phase = 12.0 * TAU * t;
+            let fast = (2.0 * (1.0 - phase.cos()) / (12.0 * TAU), 2.0 * phase.sin());
+            (slow.0 + fast.0, slow.1 + fast.1)
+        }
+    }
+}
+
+/// RMS errors of `replay` in the second, the fourth and so on of the seconds, without the first tenth
+/// of each.
+fn held_out(folder: &Folder, names: &[&str], more: &[&str]) -> Vec<f64> {
+    let mut arguments = vec!["replay", "log.csv", "--out", "v.csv"];
+    arguments.extend(names.iter().flat_map(|name| ["--estimator", name]));
+    arguments.extend(more);
+    folder.good(&arguments);
+    let column = |file: &str, name: &str| -> Vec<f64> {
+        let mut reader = csv::Reader::from_path(folder.0.join(file)).unwrap();
+        let place = reader.headers().unwrap().iter().position(|n| n == name);
+        let place = place.unwrap();
+        let rows = reader.records().map(Result::unwrap);
+        rows.map(|row| row[place].parse().unwrap()).collect()
+    };
+    let truth = column("log.csv", "true_omega");
+    let rms = |name: &&str| {
+        let errors = column("v.csv", name).into_iter().zip(&truth).enumerate();
+        let unseen = errors.filter(|(k, _)| (k / 1000) % 2 == 1 && k % 1000 >= 100);
+        let squares: Vec<_> = unseen.map(|(_, (v, truth))| (v - truth).powi(2)).collect();
+        (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+    };
+    names.iter().map(rms).collect()
+}
+
+#[test]
+fn found_parameters_are_better_in_the_held_out_seconds() {
+    let folder = Folder::new("tune-log");
+    let simulate = "simulate --scenario track --rate 1000 --seconds 6 --out log.csv";
+    folder.good(&simulate.split(' ').collect::<Vec<_>>());
+    let mut tune = vec!["tune", "log.csv", "--out", "tuned.toml"];
+    tune.extend(NAMES.iter().flat_map(|name| ["--estimator", name]));
+    let table = folder.good(&tune);
+    let before = held_out(&folder, &NAMES, &[]);
+    let after = held_out(&folder, &NAMES, &["--presets", "tuned.toml"]);
+    for (name, (before, after)) in NAMES.iter().zip(before.iter().zip(&after)) {
+        let line = table.lines().find(|line| line.starts_with(name)).unwrap();
+        let fields: Vec<_> = line.split_whitespace().collect();
+        let [shown_before, shown_after] = [3, 4].map(|k| fields[k].parse::<f64>().unwrap());
+        assert!((shown_before - before).abs() < 1e-4, "{line}: {before}");
+        match fields.get(5) {
+            None => {
+                assert!(after < before, "{line}");
+                assert!((shown_after - after).abs() < 1e-4, "{line}: {after}");
+            }
+            Some(_) => assert_eq!(after, before, "{line}"),
+        }
+    }
+    // The shipped ones are tuned for wrong constants too.
+    assert!(after[3] < 0.9 * before[3], "{before:?} became {after:?}");
+
+    // Without the truth the log's own reference takes its place, and that is said.
+    let text = std::fs::read_to_string(folder.0.join("log.csv")).unwrap();
+    let rows = text
+        .lines()
+        .map(|line| line.rsplit_once(',').unwrap().0.to_owned() + "\n");
+    folder.write("log.csv", rows.collect::<String>());
+    let output = folder.run(&["tune", "log.csv", "--estimator", "pll", "--out", "own.toml"]);
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{errors}");
+    assert!(
+        errors.contains("log.csv: no column true_omega; errors are those against"),
+        "{errors}"
+    );
+}
+
+#[test]
+fn parameters_that_fail_in_the_held_out_seconds_are_not_written() {
+    let folder = Folder::new("tune-overfit");
+    let names = ["low-pass"];
+    folder.write("log.csv", log(now_slow_now_fast));
+    let tune = [
+        "tune",
+        "log.csv",
+        "--estimator",
+        "low-pass",
+        "--out",
+        "tuned.toml",
+    ];
+    let output = folder.run(&tune);
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{errors}");
+    let said =
+        "low-pass: the parameters are kept; the ones found are not better in the held-out half";
+    assert!(errors.contains(said), "{errors}");
+    let (before, after) = (
+        held_out(&folder, &names, &[]),
+        held_out(&folder, &names, &["--presets", "tuned.toml"]),
+    );
+    assert_eq!(before, after);
+}
+
+#[test]
+fn end_of_the_range_is_reported_on_a_log() {
+    let folder = Folder::new("tune-log-end");
+    folder.write("log.csv", log(|t| (0.3 * t, 0.3)));
+    let tune = [
+        "tune",
+        "log.csv",
+        "--estimator",
+        "low-pass",
+        "--out",
+        "tuned.toml",
+    ];
+    let output = folder.run(&tune);
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        errors.contains("Hz is the lower limit of the searched range"),
+        "{errors}"
+    );
+}
+
+#[test]
+fn recordings_that_do_not_suffice_are_refused() {
+    let folder = Folder::new("tune-log-refused");
+    let text = log(now_slow_now_fast);
+    let first = |rows: usize| text.lines().take(rows).collect::<Vec<_>>().join("\n");
+    folder.write("log.csv", &text);
+    folder.write("short.csv", first(3001));
+    folder.write(
+        "still.csv",
+        log(|_| (0.0, 0.0)).replace("true_omega", "note"),
+    );
+    let slow: Vec<_> = text
+        .lines()
+        .enumerate()
+        .filter(|(k, _)| *k == 0 || k % 2 == 1)
+        .collect();
+    folder.write(
+        "slow.csv",
+        slow.iter()
+            .map(|(_, line)| format!("{line}\n"))
+            .collect::<String>(),
+    );
+    for (arguments, said) in [
+        (
+            &["short.csv"][..],
+            "short.csv: 3 s are too short; tuning needs 4 s",
+        ),
+        (
+            &["log.csv", "slow.csv"],
+            "slow.csv: its rate is 500 Hz and that of the first recording 1000",
+        ),
+        (
+            &["still.csv"],
+            "still.csv: no column true_omega, and no reference: ",
+        ),
+        (
+            &["log.csv", "--seeds", "2"],
+            "cannot be used with '--seeds <N>'",
+        ),
+        (
+            &["log.csv", "--estimator", "kalman-motor"],
+            "no estimator to tune has the columns",
+        ),
+        (&["none.csv"], "none.csv: cannot read"),
+    ] {
+        let line = folder.refused(&[&["tune", "--out", "new.toml"], arguments].concat());
+        assert!(line.contains(said), "{line}");
+    }
+}
