@@ -16,7 +16,9 @@
 mod parameter;
 mod row;
 mod rows;
+mod scaling;
 
 pub use parameter::{Parameter, Search, WINDOW_LIMIT};
 pub use row::{Colour, Dash, Goal, Reports, Row, Settling, Variant};
 pub use rows::{ROWS, design};
+pub use scaling::{Powers, Scaling};

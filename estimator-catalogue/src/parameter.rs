@@ -1,4 +1,7 @@
-//! Parameters of estimators: name, unit, range, and the grid on which `host-sim tune` searches.
+//! Parameters of estimators: name, unit, range, the grid on which `host-sim tune` searches, and the rule
+//! that scales a tuned value.
+
+use crate::scaling::{Powers, Scaling};
 
 /// One parameter of an estimator.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +20,8 @@ pub struct Parameter {
     pub whole: bool,
     /// Values that `tune` tries.
     pub search: Search,
+    /// Rule that scales a tuned value to another encoder and another control rate.
+    pub scaling: Scaling,
 }
 
 /// Values of a parameter that `host-sim tune` tries.
@@ -44,11 +49,13 @@ impl Parameter {
         highest: 1e6,
         whole: false,
         search: Search::Log(5.0, 500.0),
+        scaling: Scaling::Bandwidth(Powers::ONE_POLE),
     };
 
-    /// Frequency of the equal poles of a tracking loop.
+    /// Frequency of the three equal poles of a tracking loop.
     pub const BANDWIDTH: Self = Self {
         meaning: "frequency of the loop's poles, at most half the rate",
+        scaling: Scaling::Bandwidth(Powers::THREE_POLES),
         ..Self::CUTOFF
     };
 
@@ -61,6 +68,7 @@ impl Parameter {
         highest: WINDOW_LIMIT as f64,
         whole: true,
         search: Search::Each(1, WINDOW_LIMIT as u32),
+        scaling: Scaling::Intervals(Powers::STRAIGHT),
     };
 
     /// Noise bound of FOAW.
@@ -72,6 +80,7 @@ impl Parameter {
         highest: 16_384.0,
         whole: true,
         search: Search::Each(0, 4),
+        scaling: Scaling::Unscaled,
     };
 
     /// Bound on the acceleration of a differentiator.
@@ -83,6 +92,7 @@ impl Parameter {
         highest: 1e9,
         whole: false,
         search: Search::Log(1.0, 1e5),
+        scaling: Scaling::Unscaled,
     };
 
     /// Process noise of the triple integrator.
@@ -94,6 +104,7 @@ impl Parameter {
         highest: 1e12,
         whole: false,
         search: Search::Log(1.0, 1e6),
+        scaling: Scaling::Unscaled,
     };
 
     /// Process noise of the motor model.
@@ -105,6 +116,7 @@ impl Parameter {
         highest: 1e6,
         whole: false,
         search: Search::Log(1e-4, 100.0),
+        scaling: Scaling::DrawnEachTick,
     };
 
     /// Choice between two readings of the paper's eq. 15.
@@ -116,6 +128,7 @@ impl Parameter {
         highest: 1.0,
         whole: true,
         search: Search::Fixed(0.0),
+        scaling: Scaling::Unscaled,
     };
 
     /// White disturbance torque of an observer.
@@ -127,6 +140,7 @@ impl Parameter {
         highest: 1.0,
         whole: false,
         search: Search::Log(5e-7, 5e-4),
+        scaling: Scaling::Unscaled,
     };
 
     /// Slow disturbance torque of an observer.
@@ -138,6 +152,7 @@ impl Parameter {
         highest: 1e3,
         whole: false,
         search: Search::Log(1e-5, 1e-2),
+        scaling: Scaling::Unscaled,
     };
 
     /// Slow disturbance torque of an observer without current, which includes the motor torque.
@@ -155,6 +170,7 @@ impl Parameter {
         highest: 1e6,
         whole: false,
         search: Search::Fixed(0.1),
+        scaling: Scaling::Unscaled,
     };
 
     /// Share of the slow disturbance torque that is attributed to friction.
@@ -166,6 +182,7 @@ impl Parameter {
         highest: 1.0,
         whole: false,
         search: Search::Fixed(0.7),
+        scaling: Scaling::Unscaled,
     };
 
     /// Standard deviation of the position of a boundary between counts.
@@ -177,6 +194,7 @@ impl Parameter {
         highest: 1e3,
         whole: false,
         search: Search::Fixed(0.0625),
+        scaling: Scaling::Unscaled,
     };
 
     /// Standard deviation of the position of a boundary whose phase error is learned, which leaves

@@ -10,6 +10,7 @@ use estimator_core::Signals;
 
 use crate::parameter::{Parameter, Search, WINDOW_LIMIT};
 use crate::row::{Colour, Dash, Goal, Reports, Row, Settling, Variant};
+use crate::scaling::{Powers, Scaling};
 
 /// Passes all rows to the macro `$each`. A row is
 ///

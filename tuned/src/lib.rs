@@ -11,6 +11,7 @@
 //! ```
 #![no_std]
 
+use estimator_catalogue::{Parameter, ROWS};
 use estimator_core::{Hertz, Uncertainty};
 use haptic_control::{DualStage, Fingerprint, Motor};
 
@@ -18,8 +19,9 @@ use haptic_control::{DualStage, Fingerprint, Motor};
 struct Layer {
     /// Motor, estimator, parameter, value.
     image: &'static [(&'static str, &'static str, &'static str, f64)],
-    /// Rate in Hz, estimator, parameter, value.
-    tuned: &'static [(f64, &'static str, &'static str, f64)],
+    /// Rate in Hz, ratio of the device's counts per revolution to the tuned ones, estimator, parameter,
+    /// value.
+    tuned: &'static [(f64, f64, &'static str, &'static str, f64)],
 }
 
 include!(concat!(env!("OUT_DIR"), "/constants.rs"));
@@ -31,11 +33,11 @@ pub const PRESETS_FINGERPRINT: Fingerprint = PRESETS;
 
 impl Layer {
     /// The value tuned at the rate nearest to `rate` by ratio, among the rates at which `estimator`
-    /// is tuned.
+    /// is tuned, scaled to `rate` and to the encoder of the device.
     const fn tuned(&self, estimator: &str, rate: Hertz, parameter: &str) -> Option<f64> {
         let (mut value, mut nearest) = (None, f64::INFINITY);
         let mut rows = self.tuned;
-        while let [(at, of, name, tuned), rest @ ..] = rows {
+        while let [(at, counts, of, name, tuned), rest @ ..] = rows {
             rows = rest;
             if !same(of, estimator) {
                 continue;
@@ -49,7 +51,8 @@ impl Layer {
                 (value, nearest) = (None, ratio);
             }
             if ratio == nearest && same(name, parameter) {
-                value = Some(*tuned);
+                let scaled = parameter_of(estimator, parameter);
+                value = Some(scaled.scaled(*tuned, *counts, rate.0 / *at));
             }
         }
         value
@@ -67,8 +70,28 @@ impl Layer {
     }
 }
 
-/// The value of an estimator's parameter, tuned at the rate nearest to `rate` by ratio, as host-sim
-/// takes it; `None` if no file has such a parameter.
+/// The row of a parameter.
+const fn parameter_of(estimator: &str, parameter: &str) -> &'static Parameter {
+    let mut rows = ROWS;
+    while let [row, rest @ ..] = rows {
+        let mut parameters = if same(row.name, estimator) {
+            row.parameters
+        } else {
+            &[]
+        };
+        while let [found, rest @ ..] = parameters {
+            if same(found.name, parameter) {
+                return found;
+            }
+            parameters = rest;
+        }
+        rows = rest;
+    }
+    panic!("a parameter of the catalogue")
+}
+
+/// The value of an estimator's parameter, tuned at the rate nearest to `rate` by ratio and scaled to
+/// `rate` and to the encoder of the device, as host-sim takes it; `None` if no file has such a parameter.
 #[must_use]
 pub const fn find(estimator: &str, rate: Hertz, parameter: &str) -> Option<f64> {
     let mut layers = LAYERS;

@@ -8,7 +8,7 @@ macro_rules! tracking_rows {
         $crate::joined! { $each $rates [
             $($before)*
             pll, "pll", Nothing,
-            (bandwidth_hz: BANDWIDTH),
+            (bandwidth_hz: { scaling: Scaling::Bandwidth(Powers::TWO_POLES), ..Parameter::BANDWIDTH }),
             $rates,
             {
                 summary: "critically damped tracking loop, as motor boards have it",
@@ -69,6 +69,7 @@ macro_rules! tracking_rows {
                 highest: 100.0,
                 whole: false,
                 search: Search::Log(1e-4, 0.02),
+                scaling: Scaling::Time(Powers::TWO_POLES),
             }),
             $rates,
             {

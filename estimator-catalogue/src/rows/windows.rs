@@ -71,7 +71,11 @@ macro_rules! window_rows {
             |c, motor, rate, clock, p, N| c::Foaw<N, c::BestFit> =>
                 c::Foaw::new(p.n as usize, p.d as u16);
             savitzky_golay, "savitzky-golay", Nothing,
-            (n: { meaning: "number of intervals in the window", ..Parameter::WINDOW }),
+            (n: {
+                meaning: "number of intervals in the window",
+                scaling: Scaling::Intervals(Powers::THREE_POLES),
+                ..Parameter::WINDOW
+            }),
             $windows,
             {
                 summary: "slope at the newest count of the least-squares parabola through a fixed window",
@@ -87,6 +91,7 @@ macro_rules! window_rows {
             (acceleration: ACCELERATION, n: {
                 meaning: "largest number of intervals in the window; a longer one costs run time alone",
                 search: Search::Fixed(WINDOW_LIMIT as f64),
+                scaling: Scaling::Unscaled,
                 ..Parameter::WINDOW
             }),
             (at_1k: 1000.0, 64; at_10k: 10_000.0, 64;),

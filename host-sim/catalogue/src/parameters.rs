@@ -89,19 +89,19 @@ impl Parameters {
 
     /// The values for `kind` at a rate on a plant.
     ///
-    /// A tuned frequency above half the rate is lowered to it; a value set by name is not.
+    /// A tuned value is scaled from the encoder and the rate of its preset to those of `setup`
+    /// ([`Preset::value`]). A tuned frequency above half the
+    /// rate is lowered to it. A value set by name is taken as it is.
     #[must_use]
     pub fn values(&self, kind: &Kind, setup: &Setup, plant: PlantKind) -> Values {
         let mut values: Values = kind.parameters.iter().map(|p| middle(p.search)).collect();
         for layer in &self.layers {
             let nearest = layer.nearest(kind.name, setup.rate.0, plant);
-            let Some(tuned) = nearest.and_then(|preset| preset.estimators.get(kind.name)) else {
-                continue;
-            };
+            let Some(preset) = nearest else { continue };
+            let counts = setup.stages.large.counts_per_rev;
             for (value, parameter) in values.iter_mut().zip(kind.parameters) {
-                if let Some(&tuned) = tuned.get(parameter.name) {
-                    *value = tuned;
-                }
+                let tuned = preset.value(kind.name, parameter, counts, setup.rate.0);
+                *value = tuned.unwrap_or(*value);
             }
         }
         for (value, parameter) in values.iter_mut().zip(kind.parameters) {
@@ -161,29 +161,84 @@ mod tests {
     }
 
     #[test]
-    fn preset_of_the_nearest_rate_is_used_and_a_set_value_has_priority() {
+    fn preset_of_the_nearest_rate_is_scaled_and_a_set_value_has_priority() {
         let file = "[[preset]]\nrate_hz = 1000\nplant = 'friction'\nestimators = { pll = { bandwidth_hz = 10 } }\n\
                     [[preset]]\nrate_hz = 10000\nplant = 'friction'\nestimators = { pll = { bandwidth_hz = 20 } }";
         let mut parameters = Parameters::default();
         parameters.layer(checked(Presets::parse(file, "f").unwrap()).unwrap());
         let pll = Kind::named("pll").unwrap();
+        // Below the tuned rate both poles fall with its fourth root.
+        for (rate, tuned, at) in [
+            (600.0, 10.0, 1000.0),
+            (1000.0, 10.0, 1000.0),
+            (3000.0, 10.0, 3000.0),
+            (3300.0, 20.0, 10_000.0),
+            (10_000.0, 20.0, 10_000.0),
+            (20_000.0, 20.0, 20_000.0),
+        ] {
+            let value = parameters.values(pll, &setup(rate), PlantKind::Friction)[0];
+            let wanted: f64 = tuned * (rate / at).powf(0.25);
+            assert!((value / wanted - 1.0).abs() < 1e-12, "{rate}: {value}");
+        }
         assert_eq!(
-            parameters.values(pll, &setup(3000.0), PlantKind::Friction),
-            [10.0]
-        );
-        assert_eq!(
-            parameters.values(pll, &setup(3300.0), PlantKind::Friction),
-            [20.0]
-        );
-        assert_eq!(
-            parameters.values(pll, &setup(15.0), PlantKind::Friction),
-            [7.5]
+            parameters.values(pll, &setup(4.0), PlantKind::Friction),
+            [2.0]
         );
         parameters.set("pll.bandwidth_hz=33").unwrap();
         assert_eq!(
             parameters.values(pll, &setup(3000.0), PlantKind::Friction),
             [33.0]
         );
+    }
+
+    #[test]
+    fn shipped_value_is_the_tuned_one_at_its_own_encoder_and_rate() {
+        let parameters = Parameters::default();
+        let mut compared = 0;
+        for preset in &Presets::shipped().preset {
+            let mut setup = setup(preset.rate_hz);
+            setup.stages.large.counts_per_rev = preset.counts_per_rev.unwrap();
+            for (name, tuned) in &preset.estimators {
+                let kind = Kind::named(name).unwrap();
+                let values = parameters.values(kind, &setup, preset.plant);
+                for (parameter, value) in kind.parameters.iter().zip(values) {
+                    if let Some(tuned) = tuned.get(parameter.name) {
+                        assert_eq!(value, *tuned, "{name}.{}", parameter.name);
+                        compared += 1;
+                    }
+                }
+            }
+        }
+        assert!(compared > 100, "{compared}");
+    }
+
+    /// The counts per revolution are those of the file; a file without them is not scaled by them.
+    #[test]
+    fn value_is_scaled_by_the_counts_of_its_preset() {
+        let pll = Kind::named("pll").unwrap();
+        let mut coarse = setup(1000.0);
+        coarse.stages.large.counts_per_rev = 256;
+        for (counts, wanted) in [
+            ("", 10.0),
+            ("counts_per_rev = 256", 10.0),
+            ("counts_per_rev = 4096", 2.5),
+            ("counts_per_rev = 64", 10.0),
+        ] {
+            let file = format!(
+                "[[preset]]\nrate_hz = 1000\nplant = 'friction'\n{counts}\n\
+                 estimators = {{ pll = {{ bandwidth_hz = 10 }} }}"
+            );
+            let mut parameters = Parameters::default();
+            parameters.layer(Presets::parse(&file, "f").unwrap());
+            let value = parameters.values(pll, &coarse, PlantKind::Friction)[0];
+            assert!(
+                (value / wanted - 1.0_f64).abs() < 1e-12,
+                "{counts}: {value}"
+            );
+            parameters.set("pll.bandwidth_hz=33").unwrap();
+            let set = parameters.values(pll, &coarse, PlantKind::Friction);
+            assert_eq!(set, [33.0]);
+        }
     }
 
     #[test]

@@ -12,7 +12,7 @@ use crate::decimal;
 use crate::device::Device;
 use crate::presets::{Estimators, PlantKind, Preset, Presets};
 
-/// Largest ratio of counts per revolution for which tuned values are used without a warning.
+/// Largest ratio of counts per revolution to which tuned values are scaled without a warning.
 const FAR: f64 = 1.5;
 
 /// The constants of a build.
@@ -60,16 +60,17 @@ pub fn constants(device: Option<&Path>, presets: Option<&Path>) -> Result<Consta
             .map_err(|error| format!("PRESETS: {}: {error}", path.display()))?;
         layers.insert(0, presets);
     }
-    let warning = far_presets(&layers[0], device.stages.large.counts_per_rev);
+    let counts_per_rev = device.stages.large.counts_per_rev;
+    let warning = far_presets(&layers[0], counts_per_rev);
     let mut text = device_text(&device.stages);
     let _ = writeln!(
         text,
         "const PRESETS: Fingerprint = {:?};",
-        fingerprint(&layers)
+        fingerprint(&layers, counts_per_rev)
     );
     text += "static LAYERS: &[Layer] = &[\n";
     for layer in &layers {
-        text += &layer_text(layer);
+        text += &layer_text(layer, counts_per_rev);
     }
     text += "];\n";
     Ok(Constants { text, warning })
@@ -145,7 +146,7 @@ fn far_presets(presets: &Presets, counts_per_rev: u32) -> Option<String> {
     if !counts.is_empty() && counts.iter().all(far) {
         let counts: Vec<_> = counts.iter().map(u32::to_string).collect();
         return Some(format!(
-            "{}: parameters tuned for {} counts/rev are used for {counts_per_rev}; tune them \
+            "{}: parameters tuned for {} counts/rev are scaled to {counts_per_rev}; to be better, tune them \
              with host-sim tune --device FILE.toml --out tuned.toml and build with PRESETS=tuned.toml",
             presets.source,
             counts.join(", "),
@@ -160,9 +161,9 @@ fn of_images(layer: &Presets) -> impl Iterator<Item = &Preset> {
     tuned.filter(|preset| preset.plant == PlantKind::Friction)
 }
 
-/// Hash of the values that images read: those of every tuned rate, and those of the section of the
-/// image. A file that repeats the shipped presets has the hash of the shipped presets.
-fn fingerprint(layers: &[Presets]) -> Fingerprint {
+/// Hash of the values that images read: those of every tuned rate, scaled to the encoder, and those of
+/// the section of the image. A file that repeats the shipped presets has the hash of the shipped presets.
+fn fingerprint(layers: &[Presets], counts_per_rev: u32) -> Fingerprint {
     let all = || layers.iter().flat_map(of_images);
     let mut hash = Fingerprint::EMPTY;
     let mut rates: Vec<_> = all().map(|preset| preset.rate_hz).collect();
@@ -176,9 +177,11 @@ fn fingerprint(layers: &[Presets]) -> Fingerprint {
         for (estimator, name) in &names {
             let tuned = layers.iter().find_map(|layer| {
                 let preset = layer.nearest(estimator, rate_hz, PlantKind::Friction)?;
-                preset.estimators[*estimator].get(*name)
+                let row = ROWS.iter().find(|row| row.name == *estimator)?;
+                let parameter = row.parameters.iter().find(|p| p.name == *name)?;
+                preset.value(estimator, parameter, counts_per_rev, rate_hz)
             });
-            let tuned = *tuned.expect("it is in one of the layers");
+            let tuned = tuned.expect("a known parameter in one of the layers");
             hash = hash
                 .number(rate_hz)
                 .text(estimator)
@@ -235,7 +238,7 @@ fn device_text(device: &DualStage) -> String {
     )
 }
 
-fn layer_text(layer: &Presets) -> String {
+fn layer_text(layer: &Presets, counts_per_rev: u32) -> String {
     let mut text = "Layer { image: &[".to_owned();
     for (motor, estimators) in &layer.image {
         for (estimator, values) in estimators {
@@ -251,10 +254,10 @@ fn layer_text(layer: &Presets) -> String {
     for preset in of_images(layer) {
         for (estimator, values) in &preset.estimators {
             for (name, value) in values {
-                let rate = preset.rate_hz;
+                let (rate, counts) = (preset.rate_hz, preset.counts_ratio(counts_per_rev));
                 let _ = write!(
                     text,
-                    "({rate:?}, {estimator:?}, {name:?}, {value:?}),\n    "
+                    "({rate:?}, {counts:?}, {estimator:?}, {name:?}, {value:?}),\n    "
                 );
             }
         }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use estimator_catalogue::Parameter;
 use serde::{Deserialize, Serialize};
 
 use crate::decimal;
@@ -72,6 +73,30 @@ pub struct Preset {
     pub estimators: Estimators,
 }
 
+impl Preset {
+    /// Ratio of `counts_per_rev` to the counts per revolution for which the values were tuned; 1 if the
+    /// file does not name them.
+    #[must_use]
+    pub fn counts_ratio(&self, counts_per_rev: u32) -> f64 {
+        f64::from(counts_per_rev) / f64::from(self.counts_per_rev.unwrap_or(counts_per_rev))
+    }
+
+    /// The value of a parameter of `estimator`, scaled to an encoder and a rate
+    /// ([`Parameter::scaled`]); `None` if the preset has no such value.
+    #[must_use]
+    pub fn value(
+        &self,
+        estimator: &str,
+        parameter: &Parameter,
+        counts_per_rev: u32,
+        rate_hz: f64,
+    ) -> Option<f64> {
+        let tuned = *self.estimators.get(estimator)?.get(parameter.name)?;
+        let counts = self.counts_ratio(counts_per_rev);
+        Some(parameter.scaled(tuned, counts, rate_hz / self.rate_hz))
+    }
+}
+
 impl Presets {
     /// The presets shipped with the program.
     #[must_use]
@@ -109,6 +134,12 @@ impl Presets {
             if !(rate > 0.0 && rate.is_finite()) {
                 return Err(format!(
                     "{name}: rate_hz = {}: must be above 0 Hz",
+                    decimal(rate)
+                ));
+            }
+            if preset.counts_per_rev == Some(0) {
+                return Err(format!(
+                    "{name}: counts_per_rev = 0 at rate_hz = {}: must be above 0",
                     decimal(rate)
                 ));
             }

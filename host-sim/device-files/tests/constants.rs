@@ -122,6 +122,10 @@ fn errors_of_a_presets_file_name_line_or_key_and_remedy() {
             &["rate_hz = 0: must be above 0 Hz"],
         ),
         (
+            "[[preset]]\nrate_hz = 1e3\nplant = \"friction\"\ncounts_per_rev = 0\nestimators = {}\n".into(),
+            &["counts_per_rev = 0 at rate_hz = 1000: must be above 0"],
+        ),
+        (
             preset("[preset.estimators.pl]\nbandwidth_hz = 1"),
             &["preset at 1000 Hz: no estimator 'pl'; host-sim estimators lists them"],
         ),
@@ -194,7 +198,7 @@ fn files_reach_the_constants() {
     assert_line(
         &warning,
         &[
-            "tuned for 4096 counts/rev are used for 20000",
+            "tuned for 4096 counts/rev are scaled to 20000",
             "host-sim tune --device",
         ],
     );

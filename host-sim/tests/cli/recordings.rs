@@ -63,8 +63,8 @@ fn presets_for_another_encoder_or_rate_are_reported() {
     let estimators = "--estimator pll --estimator finite-difference";
     let said = notes(&folder, &format!("{replay} {estimators}"));
     let warning = "back-and-forth.csv: parameters tuned in the shipped presets for 4096 counts/rev at \
-                   1000 Hz are used for 90 counts/rev at 1000 Hz, which differs too much: pll; tune them \
-                   with host-sim tune --rate 1000 --device FILE.toml";
+                   1000 Hz are scaled to 90 counts/rev at 1000 Hz, far from there: pll; to be better, tune \
+                   them with host-sim tune --rate 1000 --device FILE.toml";
     assert!(said.contains(warning), "{said}");
     let said: Vec<_> = said.split_whitespace().collect();
     let said = said.join(" ");
@@ -85,7 +85,7 @@ fn presets_for_another_encoder_or_rate_are_reported() {
         &format!("{replay} {estimators} --presets slow.toml"),
     );
     let warning =
-        "tuned in slow.toml for 90 counts/rev at 100 Hz are used for 90 counts/rev at 1000 Hz";
+        "tuned in slow.toml for 90 counts/rev at 100 Hz are scaled to 90 counts/rev at 1000 Hz";
     assert!(said.contains(warning), "{said}");
     assert!(
         said.contains("parameters: slow.toml, then the shipped presets"),
@@ -115,7 +115,7 @@ fn tuned_presets_name_their_encoder() {
     folder.good(&tune.split_whitespace().collect::<Vec<_>>());
     folder.write("r.csv", "t,counts_large\n0,1\n0.001,2\n");
     let replay = "replay r.csv --estimator pll --presets mine-presets.toml";
-    assert!(notes(&folder, replay).contains("for 512 counts/rev at 1000 Hz are used for 4096"));
+    assert!(notes(&folder, replay).contains("for 512 counts/rev at 1000 Hz are scaled to 4096"));
     let right = notes(&folder, &format!("{replay} --device mine.toml"));
     assert!(!right.contains("far from"), "{right}");
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::{Override, Parameters, PlantKind, Preset, Presets};
 use crate::estimators::{Kind, Search, Setup};
 
-/// Largest ratio of rates, or of counts per revolution, at which tuned values are used without a
+/// Largest ratio of rates, or of counts per revolution, at which tuned values are scaled without a
 /// note.
 const FAR: f64 = 1.5;
 
@@ -19,8 +19,8 @@ impl Parameters {
         sources.join(", then ")
     }
 
-    /// One line for each preset whose values are used at a rate or with an encoder that is far from
-    /// the tuned one: the estimators, both rates and encoders, and the remedy.
+    /// One line for each preset whose values are scaled to a rate or an encoder that is far from the
+    /// tuned one: the estimators, both rates and encoders, and the remedy.
     #[must_use]
     pub fn used_far_away(&self, kinds: &[&Kind], setup: &Setup, plant: PlantKind) -> Vec<String> {
         let mut far: BTreeMap<String, Vec<&str>> = BTreeMap::new();
@@ -48,7 +48,7 @@ impl Parameters {
         );
         let line = |(tuned, names): (String, Vec<&str>)| {
             format!(
-                "parameters tuned in {tuned} are used for {here}, which differs too much: {}; tune them \
+                "parameters tuned in {tuned} are scaled to {here}, far from there: {}; to be better, tune them \
                  with host-sim tune --rate {} --device FILE.toml and give its file as --presets, or set \
                  values with --set",
                 names.join(", "),
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn preset_used_far_from_its_rate_or_encoder_is_reported() {
+    fn preset_scaled_far_from_its_rate_or_encoder_is_reported() {
         let shipped = Parameters::default();
         let kinds = ["finite-difference", "pll", "foaw-end-fit"];
         for (rate_hz, counts) in [
@@ -105,11 +105,11 @@ mod tests {
         }
         let said = far(&shipped, &kinds, 1000.0, 90);
         assert_eq!(said.len(), 1, "{said:?}");
-        let words = "the shipped presets for 4096 counts/rev at 1000 Hz are used for 90 counts/rev at \
-                     1000 Hz, which differs too much: pll, foaw-end-fit; tune them with host-sim tune \
+        let words = "the shipped presets for 4096 counts/rev at 1000 Hz are scaled to 90 counts/rev at \
+                     1000 Hz, far from there: pll, foaw-end-fit; to be better, tune them with host-sim tune \
                      --rate 1000 --device FILE.toml";
         assert!(said[0].contains(words), "{said:?}");
-        assert!(far(&shipped, &kinds, 300.0, 4096)[0].contains("at 300 Hz, which differs"));
+        assert!(far(&shipped, &kinds, 300.0, 4096)[0].contains("at 300 Hz, far from there"));
         assert_eq!(
             far(&shipped, &["finite-difference"], 1000.0, 90),
             Vec::<String>::new()
