@@ -62,8 +62,8 @@ pub enum Settling {
     TripleIntegrator,
     /// With the two poles of the steady filter on the motor model.
     MotorModel,
-    /// As one count over the time since the last edge.
-    OneCountOverTime,
+    /// As this number of counts over the time since the last edge.
+    CountsOverTime(f64),
     /// When the disturbance torque has decayed.
     Disturbance,
     /// When the disturbance torque has decayed, with the truncated-Gaussian update.
@@ -74,6 +74,10 @@ pub enum Settling {
     /// Within this time, s, which was measured and not derived. The sign of an error switches the law,
     /// which amplifies rounding.
     Switching(f64),
+    /// To a limit cycle of 2.5 times the change of velocity that parameter `acceleration` allows in a
+    /// tick, within this time, s, which was measured and not derived. The sign of an error switches the
+    /// law.
+    Chattering(f64),
     /// Within this time, s, which was measured and not derived. An estimator whose law is not in
     /// this list has this variant.
     Within(f64),

@@ -60,6 +60,20 @@ macro_rules! tracking_rows {
             },
             |c, motor, rate, clock, p, N| c::SuperTwisting =>
                 c::SuperTwisting::new(motor.motor.counts_per_rev, rate, p.acceleration);
+            super_twisting_explicit, "super-twisting-explicit", Nothing,
+            (acceleration: ACCELERATION),
+            $rates,
+            {
+                summary: "super-twisting differentiator (Levant), explicit steps: chatters",
+                needs: Signals::COUNT,
+                // Twice what was seen after random counts.
+                settling: Settling::Chattering(3.0),
+                colour: Colour::PINK,
+                dash: Dash::Mixed,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::ExplicitSuperTwisting =>
+                c::ExplicitSuperTwisting::new(motor.motor.counts_per_rev, rate, p.acceleration);
             tracking_differentiator, "tracking-differentiator", Nothing,
             (acceleration: ACCELERATION, filter_time: {
                 name: "",
@@ -89,13 +103,26 @@ macro_rules! tracking_rows {
             {
                 summary: "counts over the time between edges, at most one count over the time since the last",
                 needs: EDGE,
-                settling: Settling::OneCountOverTime,
+                settling: Settling::CountsOverTime(1.0),
                 colour: Colour::OLIVE,
                 dash: Dash::Mixed,
                 goals: &[],
             },
             |c, motor, rate, clock, p, N| c::MOverT =>
                 c::MOverT::new(clock, rate);
+            m_over_t_learned, "m-over-t-learned", Nothing,
+            (),
+            $rates,
+            {
+                summary: "m-over-t that learns the places of uneven boundaries, as of Hall sensors",
+                needs: EDGE,
+                settling: Settling::CountsOverTime(1.5),
+                colour: Colour::NAVY,
+                dash: Dash::Dotted,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::LearnedMOverT<12> =>
+                c::LearnedMOverT::new(clock, rate);
         ] $($families)* }
     };
 }

@@ -87,6 +87,23 @@ macro_rules! window_rows {
             },
             |c, motor, rate, clock, p, N| c::SavitzkyGolay<N> =>
                 c::SavitzkyGolay::new(p.n as usize);
+            algebraic, "algebraic", Nothing,
+            (n: {
+                meaning: "number of intervals in the window",
+                scaling: Scaling::Intervals(Powers::THREE_POLES),
+                ..Parameter::WINDOW
+            }),
+            $windows,
+            {
+                summary: "algebraic differentiator: a line through the weighted differences of a fixed window",
+                needs: Signals::COUNT,
+                settling: Settling::Window,
+                colour: Colour::BLUE,
+                dash: Dash::Mixed,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::Algebraic<N, 1, 2> =>
+                c::Algebraic::new(p.n as usize);
             robust_exact, "robust-exact", Nothing,
             (acceleration: ACCELERATION, n: {
                 meaning: "largest number of intervals in the window; a longer one costs run time alone",

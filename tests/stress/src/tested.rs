@@ -1,7 +1,7 @@
 //! Every estimator of the core with its twin, and the bounds of its test.
 
 use catalogue::parameters::middle;
-use estimator_catalogue::{Row, Settling};
+use estimator_catalogue::{Parameter, Row, Settling};
 use estimator_core as core;
 
 use crate::definition::{Definition, Line};
@@ -85,11 +85,11 @@ impl TestedEstimator {
         self.settles(settling::poles(radius, order, quiet))
     }
 
-    /// At rest when one count over the time since the last edge is below 0.05 rad/s; below 1e-5
+    /// At rest when `counts` over the time since the last edge are below 0.05 rad/s; below 1e-5
     /// rad/s would take two and a half minutes.
-    fn one_count_over_time(mut self) -> Self {
+    fn counts_over_time(mut self, counts: f64) -> Self {
         self.at_rest_rad_s = 0.05;
-        let ticks = self.rad_per_count() / self.at_rest_rad_s;
+        let ticks = counts * self.rad_per_count() / self.at_rest_rad_s;
         self.settles(ticks.ceil() as u32)
     }
 }
@@ -256,15 +256,22 @@ impl Laws {
             Settling::Window => one.settles(capacity as u32 - 1),
             Settling::TripleIntegrator => one.poles(self.triple, 3),
             Settling::MotorModel => one.poles(self.motor, 2),
-            Settling::OneCountOverTime => one.one_count_over_time().decides(),
+            Settling::CountsOverTime(counts) => one.counts_over_time(counts).decides(),
             Settling::Disturbance => one.decides().settles(self.forgotten),
             Settling::DisturbanceTruncated => one.decides().settles(self.forgotten_softly),
             Settling::DisturbanceAlone => {
-                let one = one.decides().one_count_over_time();
+                let one = one.decides().counts_over_time(1.0);
                 one.also(self.forgotten_alone)
             }
             Settling::Switching(seconds) | Settling::Within(seconds) => {
                 one.decides().settles((seconds * self.rate_hz) as u32)
+            }
+            Settling::Chattering(seconds) => {
+                let mut one = one.decides().settles((seconds * self.rate_hz) as u32);
+                // The parameter in every run is the middle of its range.
+                let acceleration = middle(Parameter::ACCELERATION.search);
+                one.at_rest_rad_s = 2.5 * acceleration / self.rate_hz;
+                one
             }
         }
     }

@@ -73,7 +73,12 @@ fn measured_figures_are_those_of_these_estimators() {
 
 /// Whether the law of the row of this name switches by the sign of an error.
 fn switches(name: &str) -> bool {
-    let switches = |row: &estimator_catalogue::Row| matches!(row.settling, Settling::Switching(_));
+    let switches = |row: &estimator_catalogue::Row| {
+        matches!(
+            row.settling,
+            Settling::Switching(_) | Settling::Chattering(_)
+        )
+    };
     ROWS.iter().any(|row| row.name == name && switches(row))
 }
 
