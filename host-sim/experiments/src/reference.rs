@@ -26,6 +26,8 @@ use rayon::prelude::*;
 use recordings::recording::Recording;
 use scoring::score::SKIP_S;
 
+use crate::table::number;
+
 use sweeps::Model;
 
 /// Smallest number of rows of a recording with a reference.
@@ -132,6 +134,20 @@ impl Reference {
         let first = (SKIP_S * rate_hz).round() as usize;
         let sd = &self.sd[first.min(self.sd.len())..];
         (sd.iter().map(|sd| sd * sd).sum::<f64>() / sd.len().max(1) as f64).sqrt()
+    }
+
+    /// A sentence on the reference's error and what it does not resolve, for a recording at `rate_hz`.
+    #[must_use]
+    pub fn limits(&self, rate_hz: f64) -> String {
+        let sd = self.rms_sd(rate_hz);
+        format!(
+            "the reference is smoothed from the counts in both directions of time; its standard \
+             deviation is {} rad/s (RMS), so errors below {} rad/s rank no estimator. It does not \
+             resolve motion above about {:.0} Hz, motion within a count, and errors of the encoder's disc",
+            number(Some(sd)),
+            number(Some(RESOLVED * sd)),
+            self.bandwidth_hz
+        )
     }
 
     /// Whether an RMS error `rms_rad_s` against the reference is that of the estimator: at least

@@ -7,7 +7,9 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use rayon::prelude::*;
+use serde::Serialize;
 
+use crate::reference::Reference;
 use crate::table;
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
@@ -25,7 +27,7 @@ pub use run::{Run, section_rows};
 pub struct Replay {
     /// One estimate per estimator, in the requested order.
     pub estimates: Vec<Estimate>,
-    /// The scores, empty without column `true_omega`.
+    /// The scores, empty without a velocity to score against.
     pub rows: Vec<Row>,
     /// Estimators left out, each with the missing column.
     pub left_out: Vec<(&'static str, &'static str)>,
@@ -33,7 +35,8 @@ pub struct Replay {
     pub mismatched_presets: Vec<String>,
 }
 
-/// Runs the estimators `kinds` on a recording called `name` and calls `done` after each.
+/// Runs the estimators `kinds` on a recording called `name`, scores them against its true velocity, if
+/// it has one, and calls `done` after each.
 ///
 /// # Errors
 /// [`Failure::Input`] if an estimator cannot be built.
@@ -54,6 +57,63 @@ pub fn replay(
         mismatched_presets: run.mismatched_presets,
         estimates: run.estimates,
     })
+}
+
+/// As [`replay`], with scores against the velocity `omega`, rad/s, instead of the true one.
+///
+/// # Errors
+/// As [`replay`].
+pub fn replay_against(
+    omega: Option<&[f64]>,
+    recording: &Recording,
+    name: &str,
+    kinds: &[&'static Kind],
+    device: &Device,
+    parameters: &Parameters,
+    done: impl Fn() + Sync,
+) -> Result<Replay, Failure> {
+    let mut recording = recording.clone();
+    recording.trace.true_omega = omega.map(<[f64]>::to_vec);
+    replay(&recording, name, kinds, device, parameters, done)
+}
+
+/// What the scores of a replay are against.
+#[derive(Clone, Copy, Debug)]
+pub enum Against<'a> {
+    /// The column `true_omega`.
+    Truth,
+    /// The velocity that was computed from the recording itself.
+    Reference(&'a Reference),
+}
+
+/// A row of the scores with what they are against: an object of the JSON output.
+#[derive(Clone, Debug, Serialize)]
+pub struct Scored<'a> {
+    #[serde(flatten)]
+    row: &'a Row,
+    /// `truth` or `reference`.
+    against: &'static str,
+    /// RMS of the reference's standard deviation, rad/s; `None` for the truth.
+    reference_sd_rad_s: Option<f64>,
+}
+
+impl Against<'_> {
+    /// `rows` with what they are against.
+    #[must_use]
+    pub fn scored<'a>(&self, rows: &'a [Row]) -> Vec<Scored<'a>> {
+        let scored = |row: &'a Row| {
+            let (against, reference_sd_rad_s) = match self {
+                Self::Truth => ("truth", None),
+                Self::Reference(reference) => ("reference", Some(reference.rms_sd(row.rate_hz))),
+            };
+            Scored {
+                row,
+                against,
+                reference_sd_rad_s,
+            }
+        };
+        rows.iter().map(scored).collect()
+    }
 }
 
 /// One line on the recording's length and rate, the encoder and the parameters.
@@ -114,11 +174,19 @@ pub fn csv_header<'a>(out: &mut dyn Write, names: impl Iterator<Item = &'a str>)
 /// Rows of the CSV that one thread formats.
 const FORMATTED: usize = 1 << 11;
 
-/// Writes rows of `t` and one velocity per estimator, rad/s, as CSV.
+/// Names of the columns of a reference.
+pub const REFERENCE_COLUMNS: [&str; 2] = ["reference_rad_s", "reference_sd_rad_s"];
+
+/// Writes rows of `t`, one velocity per estimator, and the columns `reference`, rad/s, as CSV.
 ///
 /// # Errors
 /// The errors of `out`.
-pub fn csv(out: &mut dyn Write, t: &[f64], velocities: &[&[f32]]) -> io::Result<()> {
+pub fn csv(
+    out: &mut dyn Write,
+    t: &[f64],
+    velocities: &[&[f32]],
+    reference: &[&[f64]],
+) -> io::Result<()> {
     let chunks = t.par_chunks(FORMATTED).enumerate();
     let texts: Vec<_> = chunks
         .map(|(chunk, t)| {
@@ -127,6 +195,9 @@ pub fn csv(out: &mut dyn Write, t: &[f64], velocities: &[&[f32]]) -> io::Result<
                 write!(text, "{t}")?;
                 for velocity in velocities {
                     write!(text, ",{}", velocity[chunk * FORMATTED + k])?;
+                }
+                for value in reference {
+                    write!(text, ",{:.6}", value[chunk * FORMATTED + k])?;
                 }
                 writeln!(text)?;
             }
@@ -166,7 +237,7 @@ mod tests {
         let mut text = Vec::new();
         let first = &replay.estimates[0];
         csv_header(&mut text, [first.estimator].into_iter()).unwrap();
-        csv(&mut text, &recording.t, &[&first.velocity]).unwrap();
+        csv(&mut text, &recording.t, &[&first.velocity], &[]).unwrap();
         let csv = String::from_utf8(text).unwrap();
         assert_eq!(
             csv,

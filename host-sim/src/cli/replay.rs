@@ -4,13 +4,15 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use indicatif::ProgressBar;
 
-use experiments::replay::{self, BoardSummary, Run, section_rows};
+use experiments::reference::Reference;
+use experiments::replay::{self, Against, BoardSummary, Run, section_rows};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
-use recordings::recording::{BoardColumns, BoardReader, Parts};
+use recordings::recording::{BoardColumns, BoardReader, Parts, Survey};
+use simulation::device::Device;
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, note, print_bytes, write_whole, write_with};
 use terminal::wording::wrapped;
@@ -41,10 +43,29 @@ pub(super) struct Replay {
     /// nothing with --json -]
     #[arg(long, value_name = "FILE.csv")]
     pub(super) out: Option<PathBuf>,
-    /// Write the scores against true_omega as JSON to FILE; - is standard output, which then has
-    /// nothing else
+    /// Write the scores as JSON to FILE; - is standard output, which then has nothing else. They are
+    /// against true_omega, or against the reference
     #[arg(long, value_name = "FILE")]
     pub(super) json: Option<PathBuf>,
+    /// Velocity smoothed from the counts in both directions of time: for the scores of a recording
+    /// without true_omega; or also as columns reference_rad_s and reference_sd_rad_s of --out. It
+    /// needs the whole recording in memory [default: scores, up to 2 million rows]
+    #[arg(long, value_name = "USE")]
+    pub(super) reference: Option<ReferenceUse>,
+}
+
+/// Largest number of rows of which a reference is computed unasked.
+const UNASKED: usize = 2_000_000;
+
+/// What a reference is computed for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum ReferenceUse {
+    /// Nothing: a recording without true_omega has no scores
+    Off,
+    /// The scores of a recording without true_omega
+    Scores,
+    /// The same, and two columns of --out for every recording
+    Columns,
 }
 
 pub(super) fn run(options: &Replay) -> Result<(), Failure> {
@@ -56,13 +77,11 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let log = Log::open(&options.trace)?;
     let (read, survey) = options.recording.survey(&log, &device)?;
     survey.check_even(log.name())?;
-    if options.json.is_some() && survey.columns.true_omega.is_none() {
-        return Err(Failure::Input(format!(
-            "{}: line 1: no column true_omega, which --json needs for the scores; add it or leave out \
-             --json",
-            called(&options.trace)
-        )));
-    }
+    let (reference, without) = reference(options, &log, &survey, &device)?;
+    let against = match &reference {
+        Some(reference) if survey.columns.true_omega.is_none() => Against::Reference(reference),
+        _ => Against::Truth,
+    };
     let (columns, rows) = (&survey.columns, survey.rows);
     let mut run = Run::new(columns, rows, &name, &kinds, &device, &parameters)?;
     if let (true, Some((estimator, column))) = (run.estimates.is_empty(), run.left_out.first()) {
@@ -84,6 +103,10 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
             "estimating",
         ),
         section: section_rows(rows),
+        reference: reference.as_ref(),
+        scores: matches!(against, Against::Reference(_)),
+        columns: options.reference == Some(ReferenceUse::Columns),
+        passed: 0..0,
     };
     let json_to_stdout = options.json.as_deref().is_some_and(is_stdout);
     let out = match &options.out {
@@ -98,7 +121,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
 
     let rows = run.rows();
     if let Some(path) = &options.json {
-        write_whole(path, &rows::json(&rows)?)?;
+        write_whole(path, &rows::json(&against.scored(&rows))?)?;
     }
     let about = About {
         notes: [survey.notes.clone(), passes.parts.notes()].concat(),
@@ -115,8 +138,23 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         true => options.device.name(),
         false => "the default device: no --device given".to_owned(),
     };
+    if let Some(why) = without {
+        note(format_args!("{name}: no scores: {why}"));
+    }
+    let against = match against {
+        Against::Truth => "",
+        Against::Reference(reference) => {
+            let limits = reference.limits(survey.columns.rate_hz);
+            note(wrapped(
+                &format!("{name}: no column true_omega; scores are against a reference: {limits}"),
+                2,
+            ));
+            ", scores against a reference computed from the recording itself"
+        }
+    };
     let size = (survey.rows, survey.columns.rate_hz);
     let header = replay::header(size, &device, &device_name, &parameters);
+    let header = format!("{header}{against}");
     let header = wrapped(&format!("{name}: {header}"), 2);
     if json_to_stdout || out.is_some_and(is_stdout) {
         note(header);
@@ -125,6 +163,43 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let with_coupler = survey.columns.counts_small.is_some();
     let table = replay::table(&rows, with_coupler, terminal_width());
     print_bytes(format!("{header}\n{table}").as_bytes())
+}
+
+/// The reference, if it is needed, or why a recording without a truth has no scores.
+fn reference(
+    options: &Replay,
+    log: &Log,
+    survey: &Survey,
+    device: &Device,
+) -> Result<(Option<Reference>, Option<String>), Failure> {
+    let has_truth = survey.columns.true_omega.is_some();
+    let called = called(&options.trace);
+    let unasked = options.reference.is_none();
+    match options.reference {
+        Some(ReferenceUse::Off) if !has_truth && options.json.is_some() => {
+            return Err(Failure::Input(format!(
+                "{called}: line 1: no column true_omega, which --json needs for the scores with \
+                 --reference off; add it or leave out --reference off"
+            )));
+        }
+        Some(ReferenceUse::Off) => return Ok((None, None)),
+        None | Some(ReferenceUse::Scores) if has_truth => return Ok((None, None)),
+        None if survey.rows > UNASKED && options.json.is_none() => {
+            let why = format!(
+                "no column true_omega, and {} rows; --reference scores computes a reference of them",
+                survey.rows
+            );
+            return Ok((None, Some(why)));
+        }
+        _ => {}
+    }
+    let recording = options.recording.read(log, device)?;
+    match Reference::of(&recording, device.stages.large.counts_per_rev) {
+        Ok(reference) => Ok((Some(reference), None)),
+        // Velocities alone need no reference.
+        Err(why) if options.json.is_none() && unasked => Ok((None, Some(why))),
+        Err(why) => Err(Failure::Input(format!("{called}: {why}"))),
+    }
 }
 
 /// The second pass over a log: its rows, and those with the board's own estimates. A recording without
@@ -136,22 +211,44 @@ struct Passes<'a> {
     bar: ProgressBar,
     /// Rows of a section.
     section: usize,
+    reference: Option<&'a Reference>,
+    /// Whether scores are against the reference.
+    scores: bool,
+    /// Whether the reference is written.
+    columns: bool,
+    /// The latest rows.
+    passed: std::ops::Range<usize>,
 }
 
 impl Passes<'_> {
     /// Runs the estimators over the next section; `false` after the last one.
     fn step(&mut self, run: &mut Run) -> Result<bool, Failure> {
-        let rows = self.parts.next(self.section)?;
+        let mut rows = self.parts.next(self.section)?;
         if rows.t.is_empty() {
             return Ok(false);
+        }
+        self.passed = self.passed.end..self.passed.end + rows.t.len();
+        if let (Some(reference), true) = (self.reference, self.scores) {
+            rows.trace.true_omega = Some(reference.omega[self.passed.clone()].to_vec());
         }
         let bar = &self.bar;
         run.add(rows, || bar.inc(1))?;
         if let Some(board) = &mut self.board {
             let board = board.next(self.section)?;
-            self.summary.add(&run.section.trace, &board);
+            match self.scores {
+                true => self.summary.learn(&board),
+                false => self.summary.add(&run.section.trace, &board),
+            }
         }
         Ok(true)
+    }
+
+    /// The reference of the latest rows and its standard deviation, if they are written.
+    fn reference_columns(&self) -> Vec<&[f64]> {
+        let reference = self.reference.filter(|_| self.columns);
+        let columns = reference.map(|reference| [&reference.omega, &reference.sd]);
+        let columns = columns.into_iter().flatten();
+        columns.map(|column| &column[self.passed.clone()]).collect()
     }
 }
 
@@ -159,10 +256,18 @@ impl Passes<'_> {
 fn write_rows(out: &Path, passes: &mut Passes, run: &mut Run) -> Result<(), Failure> {
     let mut refused = None;
     let written = write_with(out, |to| {
-        replay::csv_header(to, run.estimates.iter().map(|e| e.estimator))?;
+        let reference: &[&str] = match passes.reference_columns().is_empty() {
+            true => &[],
+            false => &replay::REFERENCE_COLUMNS,
+        };
+        let names = run.estimates.iter().map(|e| e.estimator);
+        replay::csv_header(to, names.chain(reference.iter().copied()))?;
         loop {
             match passes.step(run) {
-                Ok(true) => replay::csv(to, run.t(), &run.velocities())?,
+                Ok(true) => {
+                    let reference = passes.reference_columns();
+                    replay::csv(to, run.t(), &run.velocities(), &reference)?;
+                }
                 Ok(false) => return Ok(()),
                 Err(failure) => {
                     let error = io::Error::other(failure.to_string());

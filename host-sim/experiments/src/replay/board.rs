@@ -19,9 +19,14 @@ pub struct BoardSummary {
 }
 
 impl BoardSummary {
-    /// Adds rows: `trace` ends with those of `board`.
-    pub fn add(&mut self, trace: &Trace, board: &BoardColumns) {
+    /// Adds what the board learned.
+    pub fn learn(&mut self, board: &BoardColumns) {
         self.learned = board.learned.or(self.learned);
+    }
+
+    /// Adds rows with a true velocity: `trace` ends with those of `board`.
+    pub fn add(&mut self, trace: &Trace, board: &BoardColumns) {
+        self.learn(board);
         let (Some(omega), Some(velocity), Some(sigma)) = (
             &trace.true_omega,
             board.column("velocity_large"),
