@@ -17,6 +17,10 @@ pub struct Row {
     pub needs: Signals,
     /// Quantities that the estimator reports besides the velocity.
     pub reports: Reports,
+    /// The type, as the macro has it.
+    pub rust_type: &'static str,
+    /// The design, as the macro has it: see [`estimators!`](crate::estimators).
+    pub rust_design: &'static str,
     /// Law by which the output comes to rest after any motion.
     pub settling: Settling,
     /// Colour in figures. Estimators of one family share a colour.

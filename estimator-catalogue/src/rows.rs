@@ -121,6 +121,8 @@ macro_rules! rows {
                         name: $name,
                         id: stringify!($id),
                         reports: Reports::$reports,
+                        rust_type: stringify!($type),
+                        rust_design: stringify!($make),
                         parameters: &[$(
                             Parameter { name: stringify!($parameter), ..range!($range) }
                         ),*],

@@ -2,6 +2,7 @@
 
 mod build;
 mod erased;
+mod paste;
 mod run;
 
 use std::ops::Deref;

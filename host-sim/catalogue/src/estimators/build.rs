@@ -14,7 +14,7 @@ pub(super) type Build = fn(&Setup, &Values) -> Result<Estimator, DesignError>;
 const TABLE: usize = 4096;
 
 /// Length of the window or of the gain table of a row.
-const fn capacity(row: &Row) -> usize {
+pub(super) const fn capacity(row: &Row) -> usize {
     if row.settling.is_window() {
         WINDOW_LIMIT
     } else {
