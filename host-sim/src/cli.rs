@@ -11,6 +11,7 @@ mod list;
 mod page;
 mod plot;
 mod real;
+mod recommend;
 mod record;
 mod replay;
 mod report_extras;
@@ -48,6 +49,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Some(Command::Compare(options)) => compare::run(&options, &command_line),
         Some(Command::Replay(options)) => replay::run(&options),
         Some(Command::Real(options)) => real::run(&options, &command_line),
+        Some(Command::Recommend(options)) => recommend::run(&options, &command_line),
         Some(Command::Coarsen(options)) => coarsen::run(&options),
         Some(Command::Record(options)) => record::run(&options),
         Some(Command::Plot(options)) => plot::run(&options),

@@ -7,6 +7,7 @@ pub mod compare;
 pub mod identify;
 pub mod limit;
 pub mod real;
+pub mod recommend;
 pub mod reference;
 pub mod replay;
 pub mod robust;

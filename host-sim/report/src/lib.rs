@@ -27,6 +27,7 @@ mod palette;
 mod plot;
 mod quantisation;
 mod real;
+mod recommend;
 mod recording;
 mod robust;
 mod score_tables;
@@ -50,6 +51,8 @@ pub use identify::identify;
 pub use zwidth::zwidth;
 
 pub use real::real;
+
+pub use recommend::recommend;
 
 pub use page::Printout;
 

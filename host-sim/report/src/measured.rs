@@ -2,23 +2,31 @@
 
 use std::collections::BTreeMap;
 
+use experiments::recommend::Cost;
+
 /// The table that `cargo pareto` measured.
 const MEASURED: &str = include_str!("../../../measured/pareto.csv");
 
-/// Instructions per update on a Cortex-M4F, mean of the traces, at `opt-level` 3; `None` for an
-/// estimator that was not measured. The cost of FOAW depends on its window n: the row with the
-/// nearest n counts.
+/// Mean instructions per update on a Cortex-M4F, as [`cost`].
 #[must_use]
 pub fn instructions(estimator: &str, parameters: &BTreeMap<&'static str, f64>) -> Option<f64> {
-    let n = parameters.get("n").copied().unwrap_or(1.0);
-    let away = |row: &(String, Option<f64>, f64)| row.1.map_or(0.0, |of| (of / n).ln().abs());
-    let rows = rows().into_iter().filter(|(name, ..)| name == estimator);
-    let nearest = rows.min_by(|a, b| away(a).total_cmp(&away(b)));
-    nearest.map(|(_, _, mean)| mean)
+    cost(estimator, parameters).map(|cost| cost.mean)
 }
 
-/// Name, window and mean of each row.
-fn rows() -> Vec<(String, Option<f64>, f64)> {
+/// Instructions per update on a Cortex-M4F over the traces of `cargo pareto` at 1 and 10 kHz, at
+/// `opt-level` 3; `None` for an estimator that was not measured. The cost of FOAW depends on its
+/// window n: the row with the nearest n counts.
+#[must_use]
+pub fn cost(estimator: &str, parameters: &BTreeMap<&'static str, f64>) -> Option<Cost> {
+    let n = parameters.get("n").copied().unwrap_or(1.0);
+    let away = |row: &(String, Option<f64>, Cost)| row.1.map_or(0.0, |of| (of / n).ln().abs());
+    let rows = rows().into_iter().filter(|(name, ..)| name == estimator);
+    let nearest = rows.min_by(|a, b| away(a).total_cmp(&away(b)));
+    nearest.map(|(_, _, cost)| cost)
+}
+
+/// Name, window and cost of each row.
+fn rows() -> Vec<(String, Option<f64>, Cost)> {
     let mut reader = csv::Reader::from_reader(MEASURED.as_bytes());
     let head = reader.headers().expect("a head").clone();
     let column = |name| {
@@ -26,13 +34,17 @@ fn rows() -> Vec<(String, Option<f64>, f64)> {
             .position(|one| one == name)
             .expect("a column of cargo pareto")
     };
-    let (name, mean) = (column("estimator"), column("mean_3"));
+    let (name, mean, most) = (column("estimator"), column("mean_3"), column("most_3"));
     let rows = reader.records().map(|row| {
         let row = row.expect("a row of cargo pareto");
-        let mean = row[mean].parse().expect("a number of cargo pareto");
+        let number = |at: usize| row[at].parse().expect("a number of cargo pareto");
+        let cost = Cost {
+            mean: number(mean),
+            most: number(most),
+        };
         match row[name].split_once(", n = ") {
-            Some((name, n)) => (name.to_owned(), n.parse().ok(), mean),
-            None => (row[name].to_owned(), None, mean),
+            Some((name, n)) => (name.to_owned(), n.parse().ok(), cost),
+            None => (row[name].to_owned(), None, cost),
         }
     });
     rows.collect()

@@ -1,8 +1,8 @@
 //! The page of `real`: ranking, error against resolution and rate, and the velocity in one second of
 //! each recording.
 
-mod motion;
-mod ranking;
+pub(super) mod motion;
+pub(super) mod ranking;
 
 use super::canvas::{Anchor, Key, LABEL, Svg, TITLE, WIDTH, figure, legend_height};
 use super::page::Printout;
@@ -33,7 +33,14 @@ pub fn real(
 ) -> Result<String, String> {
     let palette = Palette::of(estimators.iter().copied());
     let ranks = ranking::ranks(rows, estimators, shown);
-    let mut figures = vec![ranking::chart(&ranks, shown, &palette)?];
+    let title = format!(
+        "Ranking at {} counts/rev and {}: RMS error by recording",
+        shown.0,
+        rate(shown.1)
+    );
+    let legend = "mark: a recording that judges; grey: one with which constants were chosen; bar: mean; a \
+                  value beyond the frame stands at its edge";
+    let mut figures = vec![ranking::chart(&ranks, &title, legend, &palette)?];
     let coarsened = || rows.iter().filter(|row| row.phase.is_some());
     let resolutions = distinct(coarsened().map(|row| row.counts_per_rev));
     let rates = distinct(coarsened().map(|row| row.rate_hz));

@@ -46,6 +46,11 @@ pub(super) enum Command {
   host-sim real
   host-sim real --counts-per-rev 64,1024,16384 --rate 500,1000 --out page")]
     Real(super::real::Real),
+    /// Name the estimator to use for a device from recordings of it, with the lines of Rust
+    #[command(after_help = "Examples:
+  host-sim recommend motor.csv --counts-per-rev 4096
+  host-sim recommend free.csv wall.csv --device mine.toml --report page")]
+    Recommend(super::recommend::Recommend),
     /// Turn the recording of a fine encoder into what a coarse encoder would have seen
     #[command(after_help = "Example:
   host-sim coarsen fine.csv --counts-per-rev 1024 --rate 500 --out coarse.csv")]
@@ -308,7 +313,7 @@ mod tests {
                 texts.push((command.get_name().to_owned(), help));
             }
         }
-        assert_eq!(texts.len(), 18);
+        assert_eq!(texts.len(), 19);
         for (name, help) in texts {
             let examples = examples(&help);
             assert!(!examples.is_empty(), "{name}: {help}");

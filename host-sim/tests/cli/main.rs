@@ -8,6 +8,7 @@ mod identify_logs;
 mod logs;
 mod output;
 mod real;
+mod recommend;
 mod recordings;
 mod refusals;
 mod replay;
@@ -111,6 +112,7 @@ fn help_names_every_command() {
         "simulate",
         "coarsen",
         "real",
+        "recommend",
         "tune",
         "sensitivity",
         "limit",

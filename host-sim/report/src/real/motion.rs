@@ -56,12 +56,51 @@ pub(super) fn chart(
     let Some(truth) = &trace.true_omega else {
         return Ok(None);
     };
+    let case = &outcome.case;
+    let title = format!(
+        "{} at {} counts/rev and {} Hz: the second with the largest errors",
+        case.name, case.counts_per_rev, trace.rate_hz
+    );
+    let signals = Signals {
+        truth,
+        called: "truth",
+        estimates,
+        rate_hz: trace.rate_hz,
+    };
+    velocity(&title, &signals, drawn, palette).map(Some)
+}
+
+/// The velocities of one recording.
+pub(in super::super) struct Signals<'a> {
+    /// The velocity that the errors are against, rad/s.
+    pub truth: &'a [f64],
+    /// What the legend calls it.
+    pub called: &'static str,
+    /// The estimates.
+    pub estimates: &'a [Estimate],
+    /// Rate of all signals, Hz.
+    pub rate_hz: f64,
+}
+
+/// Truth and the estimates `drawn` in the hardest second.
+pub(in super::super) fn velocity(
+    title: &str,
+    signals: &Signals,
+    drawn: &[&'static str],
+    palette: &Palette,
+) -> Result<Svg, String> {
+    let Signals {
+        truth,
+        called,
+        estimates,
+        rate_hz,
+    } = *signals;
     let drawn: Vec<&Estimate> = estimates
         .iter()
         .filter(|estimate| drawn.contains(&estimate.estimator))
         .collect();
-    let first = hardest(truth, &drawn, trace.rate_hz);
-    let ticks = first..(first + (SHOWN_S * trace.rate_hz) as usize + 1).min(truth.len());
+    let first = hardest(truth, &drawn, rate_hz);
+    let ticks = first..(first + (SHOWN_S * rate_hz) as usize + 1).min(truth.len());
     let part = &truth[ticks.clone()];
     let low = part.iter().copied().fold(f64::INFINITY, f64::min);
     let high = part.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -69,17 +108,12 @@ pub(super) fn chart(
     let margin = (0.3 * (high - low))
         .max(0.4 * low.abs().max(high.abs()))
         .max(0.05);
-    let seconds = |tick: usize| tick as f64 / trace.rate_hz;
-    let mut keys = vec![Key::Line(TRUTH.into(), "truth")];
+    let seconds = |tick: usize| tick as f64 / rate_hz;
+    let mut keys = vec![Key::Line(TRUTH.into(), called)];
     keys.extend((drawn.iter()).map(|e| Key::Line(palette.style(e.estimator), e.estimator)));
     let bottom = TOP + PANEL + 46.0;
-    let case = &outcome.case;
-    let title = format!(
-        "{} at {} counts/rev and {} Hz: the second with the largest errors",
-        case.name, case.counts_per_rev, trace.rate_hz
-    );
-    let svg = figure(bottom + legend_height(&keys, LEFT), &title, |canvas| {
-        canvas.text(&title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
+    figure(bottom + legend_height(&keys, LEFT), title, |canvas| {
+        canvas.text(title, (LEFT, 16.0), Anchor::Left, TITLE, INK)?;
         let plot = Plot {
             left: LEFT,
             top: TOP,
@@ -106,6 +140,5 @@ pub(super) fn chart(
         )?;
         plot.edges(canvas)?;
         canvas.legend(&keys, (LEFT, bottom))
-    })?;
-    Ok(Some(svg))
+    })
 }

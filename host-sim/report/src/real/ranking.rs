@@ -3,7 +3,7 @@
 use super::super::canvas::{Anchor, LABEL, Svg, TITLE, WIDTH, figure};
 use super::super::palette::{INK, MUTED, Palette};
 use super::super::plot::{Axis, Plot};
-use super::super::text::{number, rate};
+use super::super::text::number;
 use super::SHOWN_PCT;
 use catalogue::estimators::Kind;
 use experiments::real::pool::{block, distinct, on};
@@ -11,12 +11,12 @@ use experiments::real::run::Row;
 use experiments::real::sources::Role;
 
 /// Errors of one estimator, % of finite difference.
-pub(super) struct Rank {
-    pub(super) estimator: &'static str,
+pub(in super::super) struct Rank {
+    pub(in super::super) estimator: &'static str,
     /// Mean over the recordings on which it ran.
-    pub(super) mean: f64,
+    pub(in super::super) mean: f64,
     /// Error on each recording.
-    errors: Vec<(Role, f64)>,
+    pub(in super::super) errors: Vec<(Role, f64)>,
 }
 
 /// The estimators that ran, the smallest mean error first.
@@ -71,19 +71,15 @@ const TOP: f64 = 52.0;
 const LINE: f64 = 19.0;
 
 /// One line per estimator: a mark per recording and a bar at the mean.
-pub(super) fn chart(
+pub(in super::super) fn chart(
     ranks: &[Rank],
-    (counts_per_rev, rate_hz): (u32, f64),
+    title: &str,
+    legend: &str,
     palette: &Palette,
 ) -> Result<Svg, String> {
     let bottom = TOP + LINE * ranks.len() as f64;
-    let rate = rate(rate_hz);
-    let title =
-        format!("Ranking at {counts_per_rev} counts/rev and {rate}: RMS error by recording");
-    figure(bottom + 44.0, &title, |canvas| {
-        canvas.text(&title, (14.0, 16.0), Anchor::Left, TITLE, INK)?;
-        let legend = "mark: a recording that judges; grey: one with which constants were chosen; bar: \
-                      mean; a value beyond the frame stands at its edge";
+    figure(bottom + 44.0, title, |canvas| {
+        canvas.text(title, (14.0, 16.0), Anchor::Left, TITLE, INK)?;
         canvas.text(legend, (14.0, 36.0), Anchor::Left, LABEL, MUTED)?;
         let plot = Plot {
             left: LEFT,

@@ -1,0 +1,370 @@
+//! Which estimator to use on a device of which only recordings exist.
+
+mod table;
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use catalogue::estimators::{Kind, Setup, available};
+use catalogue::parameters::{Parameters, PlantKind};
+use recordings::recording::Recording;
+use scoring::evaluation::{Estimate, Row};
+use scoring::score::SKIP_S;
+use simulation::device::Device;
+use terminal::failure::Failure;
+
+use crate::reference::{FEWEST_ROWS, Reference};
+use crate::replay;
+
+pub use table::{lines, reads, table};
+
+/// Errors that differ by less than this part are equal: the cheaper estimator is named.
+const EQUAL: f64 = 0.01;
+
+/// The 100 % of the scores.
+const DIFFERENCE: &str = "finite-difference";
+
+/// Instructions per update on a Cortex-M4F.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Cost {
+    /// Mean over the traces of the measurement.
+    #[serde(rename = "instructions_mean")]
+    pub mean: f64,
+    /// Largest number of one update.
+    #[serde(rename = "instructions_most")]
+    pub most: f64,
+}
+
+/// What to compare.
+pub struct Settings<'a> {
+    /// The device; only its counts per revolution are used unless it `is_known`.
+    pub device: &'a Device,
+    /// Whether the device's constants are those of the recorded device.
+    pub is_known: bool,
+    /// Parameters of the estimators.
+    pub parameters: &'a Parameters,
+    /// Largest number of instructions per update of the cheap estimator.
+    pub budget: f64,
+    /// Measured cost of an estimator with these parameters.
+    pub cost: &'a (dyn Fn(&str, &BTreeMap<&'static str, f64>) -> Option<Cost> + Sync),
+}
+
+/// Scores on one recording.
+#[derive(Clone, Debug, Serialize)]
+pub struct OnLog {
+    /// Name of the recording.
+    pub log: String,
+    /// Root mean square of the error, rad/s.
+    pub rms_rad_s: f64,
+    /// The same in % of finite difference.
+    pub rms_pct: f64,
+    /// 99th percentile of the error's magnitude, rad/s.
+    pub p99_rad_s: f64,
+    /// Delay, ms.
+    pub delay_ms: Option<f64>,
+    /// RMS of the standard deviation that the estimator reports, rad/s.
+    pub sd_rad_s: Option<f64>,
+    /// `truth` or `reference`.
+    pub against: &'static str,
+    /// RMS of the reference's standard deviation, rad/s; `None` for the truth.
+    pub reference_sd_rad_s: Option<f64>,
+}
+
+/// One estimator: an object of the JSON output.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ranked {
+    /// Its name.
+    pub estimator: &'static str,
+    /// `best`, `cheap`, or nothing.
+    pub recommended: Option<&'static str>,
+    /// Geometric mean over the recordings of the RMS error in % of finite difference.
+    pub rms_pct: f64,
+    /// RMS over the recordings of the RMS error, rad/s.
+    pub rms_rad_s: f64,
+    /// Largest 99th percentile of a recording, rad/s.
+    pub p99_rad_s: f64,
+    /// Mean delay, ms.
+    pub delay_ms: Option<f64>,
+    /// RMS over the recordings of the standard deviation that the estimator reports, rad/s.
+    pub sd_rad_s: Option<f64>,
+    /// Instructions per update; `None` if they were not measured.
+    pub cost: Option<Cost>,
+    /// Signals that it reads besides the counts.
+    pub reads: Vec<&'static str>,
+    /// Its parameters.
+    pub parameters: BTreeMap<&'static str, f64>,
+    /// Lines for the user's program.
+    pub rust: String,
+    /// The scores on each recording.
+    pub logs: Vec<OnLog>,
+}
+
+/// One recording with what was computed from it.
+#[derive(Debug)]
+pub struct Outcome<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// The recording.
+    pub recording: &'a Recording,
+    /// The reference, if there is no true velocity.
+    pub reference: Option<Reference>,
+    /// The velocities of all estimators that ran.
+    pub estimates: Vec<Estimate>,
+    rows: Vec<Row>,
+}
+
+impl Outcome<'_> {
+    /// The velocity that the scores are against, rad/s.
+    #[must_use]
+    pub fn omega(&self) -> &[f64] {
+        match (&self.recording.trace.true_omega, &self.reference) {
+            (Some(truth), _) => truth,
+            (None, Some(reference)) => &reference.omega,
+            (None, None) => &[],
+        }
+    }
+}
+
+/// The estimators on all recordings.
+#[derive(Debug)]
+pub struct Recommendation<'a> {
+    /// The estimators, the smallest error first.
+    pub ranked: Vec<Ranked>,
+    /// The recordings.
+    pub outcomes: Vec<Outcome<'a>>,
+    /// What was left out, and what the scores do not say: one line each.
+    pub notes: Vec<String>,
+}
+
+/// Runs all estimators whose signals every one of `logs` has, as shipped, and ranks them.
+///
+/// # Errors
+/// [`Failure::Input`] that names the recording, if it is too short or determines no reference.
+pub fn recommend<'a>(
+    logs: &'a [(String, Recording)],
+    settings: &Settings,
+    done: impl Fn() + Sync,
+) -> Result<Recommendation<'a>, Failure> {
+    let has = |kind: &Kind| {
+        logs.iter()
+            .all(|(_, log)| kind.needs.within(available(&log.trace)))
+    };
+    let able: Vec<&'static Kind> = Kind::all().iter().filter(|kind| has(kind)).collect();
+    let (kinds, of_device): (Vec<_>, Vec<_>) = able
+        .into_iter()
+        .partition(|kind| settings.is_known || !kind.needs_device());
+    let outcomes: Result<Vec<_>, Failure> = logs
+        .par_iter()
+        .map(|(name, recording)| outcome(name, recording, &kinds, settings, &done))
+        .collect();
+    let outcomes = outcomes?;
+    let mut notes = Vec::new();
+    if !of_device.is_empty() {
+        let names: Vec<_> = of_device.iter().map(|kind| kind.name).collect();
+        notes.push(format!(
+            "estimators with constants of the device left out: {}; --device FILE.toml includes them",
+            names.join(", ")
+        ));
+    }
+    for outcome in &outcomes {
+        let rate_hz = outcome.recording.trace.rate_hz;
+        if let Some(reference) = &outcome.reference {
+            let limits = reference.limits(rate_hz);
+            notes.push(format!(
+                "{}: no column true_omega; scores are against a reference: {limits}",
+                outcome.name
+            ));
+            let scores = outcome
+                .rows
+                .iter()
+                .filter_map(|row| Some((row.estimator, row.score.rms_rad_s?)));
+            let close: Vec<_> = scores
+                .filter(|(_, rms)| !reference.resolves(*rms, rate_hz))
+                .map(|(name, _)| name)
+                .collect();
+            if close.len() > 1 {
+                notes.push(format!(
+                    "{}: not ranked among each other: {}",
+                    outcome.name,
+                    close.join(", ")
+                ));
+            }
+        }
+    }
+    let mut ranked: Vec<Ranked> = kinds
+        .iter()
+        .filter_map(|kind| ranked(kind, &outcomes, settings))
+        .collect();
+    ranked.sort_by(|a, b| a.rms_pct.total_cmp(&b.rms_pct));
+    if let Some(best) = chosen(&ranked, f64::INFINITY) {
+        ranked[best].recommended = Some("best");
+        let cheap = chosen(&ranked, settings.budget).filter(|cheap| *cheap != best);
+        if let Some(cheap) = cheap {
+            ranked[cheap].recommended = Some("cheap");
+        }
+    }
+    Ok(Recommendation {
+        ranked,
+        outcomes,
+        notes,
+    })
+}
+
+fn outcome<'a>(
+    name: &'a str,
+    recording: &'a Recording,
+    kinds: &[&'static Kind],
+    settings: &Settings,
+    done: &(impl Fn() + Sync),
+) -> Result<Outcome<'a>, Failure> {
+    let failed = |why: String| Failure::Input(format!("{name}: {why}"));
+    let rows = recording.t.len();
+    if rows < FEWEST_ROWS || rows as f64 <= 2.0 * SKIP_S * recording.trace.rate_hz {
+        let needed = FEWEST_ROWS.max((2.0 * SKIP_S * recording.trace.rate_hz) as usize + 1);
+        return Err(failed(format!(
+            "{rows} rows; scores need at least {needed}"
+        )));
+    }
+    let truth = recording.trace.true_omega.as_deref();
+    let reference = match truth {
+        Some(_) => None,
+        None => {
+            let counts_per_rev = settings.device.stages.large.counts_per_rev;
+            Some(Reference::of(recording, counts_per_rev).map_err(failed)?)
+        }
+    };
+    let omega = truth.or(reference.as_ref().map(|reference| &*reference.omega));
+    let (device, parameters) = (settings.device, settings.parameters);
+    let replayed = replay::replay_against(omega, recording, name, kinds, device, parameters, done)?;
+    Ok(Outcome {
+        name,
+        recording,
+        reference,
+        estimates: replayed.estimates,
+        rows: replayed.rows,
+    })
+}
+
+/// The scores of one estimator; `None` if one is not finite.
+fn ranked(kind: &'static Kind, outcomes: &[Outcome], settings: &Settings) -> Option<Ranked> {
+    let logs: Option<Vec<OnLog>> = outcomes
+        .iter()
+        .map(|outcome| on_log(kind, outcome))
+        .collect();
+    let logs = logs?;
+    let n = logs.len() as f64;
+    let mean = |of: &dyn Fn(&OnLog) -> Option<f64>| -> Option<f64> {
+        let values: Option<Vec<f64>> = logs.iter().map(of).collect();
+        Some(values?.iter().sum::<f64>() / n)
+    };
+    let first = outcomes.first()?;
+    let parameters = first
+        .rows
+        .iter()
+        .find(|row| row.estimator == kind.name)?
+        .parameters
+        .clone();
+    // Six digits: steps of a clock that are rounded in the log do not give a rate of 999.9999.
+    let rate_hz = format!("{:.5e}", first.recording.trace.rate_hz)
+        .parse()
+        .ok()?;
+    let setup = Setup::of(settings.device, rate_hz);
+    let values = settings
+        .parameters
+        .values(kind, &setup, PlantKind::Friction);
+    Some(Ranked {
+        estimator: kind.name,
+        recommended: None,
+        rms_pct: mean(&|log| Some(log.rms_pct.ln()))?.exp(),
+        rms_rad_s: mean(&|log| Some(log.rms_rad_s.powi(2)))?.sqrt(),
+        p99_rad_s: logs.iter().map(|log| log.p99_rad_s).fold(0.0, f64::max),
+        delay_ms: mean(&|log| log.delay_ms),
+        sd_rad_s: mean(&|log| Some(log.sd_rad_s?.powi(2))).map(f64::sqrt),
+        cost: (settings.cost)(kind.name, &parameters),
+        reads: reads(kind),
+        parameters,
+        rust: kind.rust(&setup, &values),
+        logs,
+    })
+}
+
+fn on_log(kind: &Kind, outcome: &Outcome) -> Option<OnLog> {
+    let row = outcome.rows.iter().find(|row| row.estimator == kind.name)?;
+    let estimate = outcome
+        .estimates
+        .iter()
+        .find(|e| e.estimator == kind.name)?;
+    let rate_hz = outcome.recording.trace.rate_hz;
+    let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
+    Some(OnLog {
+        log: outcome.name.to_owned(),
+        rms_rad_s: finite(row.score.rms_rad_s)?,
+        rms_pct: finite(row.score.rms_pct)?,
+        p99_rad_s: finite(row.score.p99_rad_s)?,
+        delay_ms: row.score.delay_ms,
+        sd_rad_s: estimate.deviation.as_ref().map(|sd| {
+            let scored = &sd[(SKIP_S * rate_hz).round() as usize..];
+            let squares: f64 = scored.iter().map(|sd| f64::from(*sd).powi(2)).sum();
+            (squares / scored.len() as f64).sqrt()
+        }),
+        against: if outcome.reference.is_some() {
+            "reference"
+        } else {
+            "truth"
+        },
+        reference_sd_rad_s: outcome
+            .reference
+            .as_ref()
+            .map(|reference| reference.rms_sd(rate_hz)),
+    })
+}
+
+/// Of the estimators within `budget` instructions, the one with the smallest error, or a cheaper one
+/// with an equal error. An estimator whose cost is not known is within an infinite budget only.
+fn chosen(ranked: &[Ranked], budget: f64) -> Option<usize> {
+    let most = |i: &usize| ranked[*i].cost.map_or(f64::INFINITY, |cost| cost.most);
+    let within = || (0..ranked.len()).filter(|i| most(i) <= budget);
+    let least = ranked[within().next()?].rms_pct;
+    let equal = within().filter(|i| ranked[*i].rms_pct <= (1.0 + EQUAL) * least);
+    equal.min_by(|a, b| most(a).total_cmp(&most(b)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ranked(estimator: &'static str, rms_pct: f64, most: Option<f64>) -> Ranked {
+        Ranked {
+            estimator,
+            recommended: None,
+            rms_pct,
+            rms_rad_s: 0.0,
+            p99_rad_s: 0.0,
+            delay_ms: None,
+            sd_rad_s: None,
+            cost: most.map(|most| Cost { mean: most, most }),
+            reads: Vec::new(),
+            parameters: BTreeMap::new(),
+            rust: String::new(),
+            logs: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn cheaper_of_equal_estimators_is_chosen_within_the_budget() {
+        let all = [
+            ranked("a", 10.0, None),
+            ranked("b", 10.05, Some(400.0)),
+            ranked("c", 10.08, Some(300.0)),
+            ranked("d", 10.2, Some(50.0)),
+            ranked("e", 30.0, Some(20.0)),
+        ];
+        let names = |budget: f64| chosen(&all, budget).map(|i| all[i].estimator);
+        assert_eq!(names(f64::INFINITY), Some("c"));
+        assert_eq!(names(100.0), Some("d"));
+        assert_eq!(names(20.0), Some("e"));
+        assert_eq!(names(10.0), None);
+    }
+}

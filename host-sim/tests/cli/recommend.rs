@@ -1,0 +1,251 @@
+//! `host-sim recommend`: which estimator to use on a user's device.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::process::Command;
+
+use serde_json::Value;
+
+use crate::{Folder, json};
+
+const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
+
+/// Counts of a shaft with 4096 counts/rev at 1 kHz that swings by two radians, for 3 s.
+fn swing() -> String {
+    let mut text = String::from("t,counts_large\n");
+    for k in 0..3000 {
+        let t = f64::from(k) * 1e-3;
+        let angle = 2.0 * (1.0 - (10.0 * t).cos());
+        let count = (angle * 4096.0 / std::f64::consts::TAU).floor();
+        let _ = writeln!(text, "{t:.3},{count}");
+    }
+    text
+}
+
+fn recommended<'a>(rows: &'a [Value], why: &str) -> &'a Value {
+    let mut rows = rows.iter().filter(|row| row["recommended"] == why);
+    let row = rows.next().unwrap();
+    assert!(rows.next().is_none(), "two rows {why}");
+    row
+}
+
+#[test]
+fn real_motor_gets_estimators_ranked_against_its_truth() {
+    let folder = Folder::new("recommend-real");
+    let log = format!("{DATA}/back-and-forth.csv");
+    let arguments = ["recommend", &log, "--counts-per-rev", "90"];
+    let text = folder.good(&arguments);
+    assert!(
+        text.contains("1501 rows at 1000 Hz; 90 counts/rev"),
+        "{text}"
+    );
+    for said in [
+        "(best)",
+        "(cheap)",
+        "Most accurate",
+        "Scale::new(90, RATE)",
+        "pub fn update",
+    ] {
+        assert!(text.contains(said), "{said}: {text}");
+    }
+    let rows = json(&folder.good(&[&arguments[..], &["--json", "-"]].concat()));
+    let errors: Vec<f64> = rows
+        .iter()
+        .map(|row| row["rms_pct"].as_f64().unwrap())
+        .collect();
+    assert!(errors.is_sorted(), "{errors:?}");
+    // Scores are those of replay on the same recording.
+    let device = format!("{DATA}/hall-90.toml");
+    let replayed = json(&folder.good(&["replay", &log, "--device", &device, "--json", "-"]));
+    for row in &rows {
+        let same = replayed
+            .iter()
+            .find(|other| other["estimator"] == row["estimator"])
+            .unwrap();
+        assert_eq!(
+            row["logs"][0]["rms_rad_s"], same["rms_rad_s"],
+            "{}",
+            row["estimator"]
+        );
+        assert_eq!(row["logs"][0]["against"], "truth");
+    }
+    let best = recommended(&rows, "best");
+    assert!(best["rms_pct"].as_f64().unwrap() <= 1.01 * errors[0]);
+    let cheap = recommended(&rows, "cheap");
+    let most = |row: &Value| row["cost"]["instructions_most"].as_f64().unwrap();
+    assert!(most(cheap) <= 100.0 && most(cheap) < most(best));
+    // A smaller budget names another one, and a large one the best alone.
+    let budget = |n: &str| {
+        json(&folder.good(&[&arguments[..], &["--instructions", n, "--json", "-"]].concat()))
+    };
+    assert!(most(recommended(&budget("20"), "cheap")) <= 20.0);
+    assert!(
+        budget("1e6")
+            .iter()
+            .all(|row| row["recommended"] != "cheap")
+    );
+}
+
+#[test]
+fn log_without_a_truth_is_ranked_against_a_reference() {
+    let folder = Folder::new("recommend-log");
+    folder.write("swing.csv", swing());
+    let output = folder.run(&["recommend", "swing.csv", "--json", "-"]);
+    assert_eq!(output.status.code(), Some(0));
+    let notes = String::from_utf8(output.stderr).unwrap();
+    let notes = notes.split_whitespace().collect::<Vec<_>>().join(" ");
+    for said in [
+        "4096 counts/rev assumed: give --counts-per-rev or --device",
+        "swing.csv: no column true_omega; scores are against a reference",
+    ] {
+        assert!(notes.contains(said), "{said}: {notes}");
+    }
+    let rows = json(&String::from_utf8(output.stdout).unwrap());
+    let best = recommended(&rows, "best");
+    for key in [
+        "estimator",
+        "rms_pct",
+        "rms_rad_s",
+        "p99_rad_s",
+        "delay_ms",
+        "sd_rad_s",
+        "cost",
+        "reads",
+        "parameters",
+        "rust",
+        "logs",
+    ] {
+        assert!(best.get(key).is_some(), "{key}");
+    }
+    let log = &best["logs"][0];
+    assert_eq!(
+        (&log["log"], &log["against"]),
+        (&"swing.csv".into(), &"reference".into())
+    );
+    assert!(log["reference_sd_rad_s"].as_f64().unwrap() > 0.0);
+    assert_eq!(best["reads"], Value::Array(Vec::new()));
+    assert!(
+        rows.iter().all(|row| row["estimator"] != "m-over-t"),
+        "no time stamps"
+    );
+}
+
+#[test]
+fn device_file_admits_estimators_with_its_constants() {
+    let folder = Folder::new("recommend-device");
+    let mut text = String::from("t,counts_large,current\n");
+    for (k, line) in swing().lines().skip(1).enumerate() {
+        let _ = writeln!(text, "{line},{}", (10.0 * k as f64 * 1e-3).cos());
+    }
+    folder.write("r.csv", text);
+    folder.write("mine.toml", "large.inertia_kg_m2 = 2e-5\n");
+    let names = |more: &[&str]| -> Vec<String> {
+        let arguments = [&["recommend", "r.csv", "--json", "-"][..], more].concat();
+        let rows = json(&folder.good(&arguments));
+        rows.iter()
+            .map(|row| row["estimator"].as_str().unwrap().to_owned())
+            .collect()
+    };
+    let notes = String::from_utf8(folder.run(&["recommend", "r.csv"]).stderr).unwrap();
+    let said = "estimators with constants of the device left out: kalman-motor,";
+    assert!(notes.contains(said), "{notes}");
+    let of_motor = |names: &[String]| names.iter().any(|name| name == "kalman-motor");
+    assert!(!of_motor(&names(&["--counts-per-rev", "4096"])));
+    assert!(of_motor(&names(&["--device", "mine.toml"])));
+    let rows = json(&folder.good(&["recommend", "r.csv", "--device", "mine.toml", "--json", "-"]));
+    let motor = rows
+        .iter()
+        .find(|row| row["estimator"] == "kalman-motor")
+        .unwrap();
+    assert!(
+        motor["rust"].as_str().unwrap().contains("inertia: 2e-5"),
+        "{motor}"
+    );
+}
+
+#[test]
+fn several_logs_are_ranked_by_the_geometric_mean() {
+    let folder = Folder::new("recommend-several");
+    folder.write("swing.csv", swing());
+    let log = format!("{DATA}/logs/own.csv");
+    let text = folder.good(&["recommend", "swing.csv", &log]);
+    assert!(
+        text.contains("own.csv") && text.contains("swing.csv"),
+        "{text}"
+    );
+    for row in json(&folder.good(&["recommend", "swing.csv", &log, "--json", "-"])) {
+        let of = |i: usize| row["logs"][i]["rms_pct"].as_f64().unwrap();
+        let mean = (of(0) * of(1)).sqrt();
+        let pct = row["rms_pct"].as_f64().unwrap();
+        assert!((pct / mean - 1.0).abs() < 1e-9, "{pct} {mean}");
+    }
+}
+
+#[test]
+fn unsuitable_logs_are_refused() {
+    let folder = Folder::new("recommend-bad");
+    let line = folder.refused(&["recommend", "none.csv"]);
+    assert!(line.contains("none.csv: cannot read"), "{line}");
+    folder.write("no-counts.csv", "t,speed\n0,0\n1e-3,1\n");
+    let line = folder.refused(&["recommend", "no-counts.csv"]);
+    assert!(
+        line.contains("no-counts.csv: line 1: no column counts_large"),
+        "{line}"
+    );
+    let short: String = swing().lines().take(100).collect::<Vec<_>>().join("\n");
+    folder.write("short.csv", short);
+    let line = folder.refused(&["recommend", "short.csv", "--report", "page"]);
+    assert!(
+        line.contains("short.csv: 99 rows; scores need at least 201"),
+        "{line}"
+    );
+    let still: String = (0..500)
+        .map(|k| format!("{}.{:03},7\n", k / 1000, k % 1000))
+        .collect();
+    folder.write("still.csv", format!("t,counts_large\n{still}"));
+    let line = folder.refused(&["recommend", "still.csv"]);
+    assert!(
+        line.contains("still.csv: counts_large changes at 0 rows"),
+        "{line}"
+    );
+    folder.write("swing.csv", swing());
+    let line = folder.refused(&["recommend", "swing.csv", "--instructions", "0"]);
+    assert!(
+        line.contains("--instructions 0: must be a number above 0"),
+        "{line}"
+    );
+    let line = folder.refused(&["recommend", "-", "-"]);
+    assert!(line.contains("standard input can be read once"), "{line}");
+}
+
+#[test]
+fn page_escapes_the_name_of_the_log_and_has_the_lines_of_rust() {
+    let folder = Folder::new("recommend-page");
+    let name = "a<b>&c.csv";
+    folder.write(name, swing());
+    folder.good(&["recommend", name, "--report", "page"]);
+    let page = fs::read_to_string(folder.0.join("page/index.html")).unwrap();
+    assert!(!page.contains("a<b>") && page.contains("a&lt;b&gt;&amp;c.csv"));
+    assert!(page.contains("ESTIMATOR.update(&amp;mut self.0"));
+    // The ranking and one velocity.
+    assert_eq!(page.matches("<figure>").count(), 2);
+    assert!(folder.0.join("page/figures/02.svg").is_file());
+}
+
+#[test]
+fn bytes_do_not_depend_on_the_number_of_threads() {
+    let folder = Folder::new("recommend-threads");
+    folder.write("swing.csv", swing());
+    let log = format!("{DATA}/back-and-forth.csv");
+    let run = |threads: &str| {
+        let output = Command::new(env!("CARGO_BIN_EXE_host-sim"))
+            .args(["recommend", "swing.csv", &log, "--json", "-"])
+            .env("RAYON_NUM_THREADS", threads)
+            .current_dir(&folder.0)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(0));
+        output.stdout
+    };
+    assert_eq!(run("1"), run("2"));
+}
