@@ -27,6 +27,7 @@ pub const ALL: &[Table] = &[
     FAULTS,
     ESTIMATORS,
     REAL_MOTION,
+    REFERENCE,
     PAPER,
     FINITE_DIFFERENCE,
     SCENARIOS_1000HZ,

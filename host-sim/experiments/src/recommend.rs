@@ -37,6 +37,9 @@ pub struct Cost {
     pub most: f64,
 }
 
+/// The measured cost of an estimator with these parameters.
+pub type Measured = fn(&str, &BTreeMap<&'static str, f64>) -> Option<Cost>;
+
 /// What to compare.
 pub struct Settings<'a> {
     /// The device; only its counts per revolution are used unless it `is_known`.
@@ -48,7 +51,7 @@ pub struct Settings<'a> {
     /// Largest number of instructions per update of the cheap estimator.
     pub budget: f64,
     /// Measured cost of an estimator with these parameters.
-    pub cost: &'a (dyn Fn(&str, &BTreeMap<&'static str, f64>) -> Option<Cost> + Sync),
+    pub cost: Measured,
 }
 
 /// Scores on one recording.

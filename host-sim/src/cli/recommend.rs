@@ -82,7 +82,7 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
         is_known: options.device.is_given(),
         parameters: &parameters,
         budget: options.instructions,
-        cost: &report::measured::cost,
+        cost: report::measured::cost,
     };
     let bar = progress(
         logs.len() * catalogue::estimators::Kind::all().len(),

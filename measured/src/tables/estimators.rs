@@ -38,6 +38,25 @@ pub const REAL_MOTION: Table = Table {
     command: DOCUMENTED,
 };
 
+/// The reference of a recording, which is computed from the recording alone, beside its truth: RMS
+/// errors at 1 kHz, % of finite difference.
+pub const REFERENCE: Table = Table {
+    name: "reference",
+    page: "docs/your-log.md",
+    columns: &[
+        ("recording", "recording"),
+        ("counts_per_rev", "counts/rev"),
+        ("read", "from"),
+        ("error_pct", "error of the reference"),
+        ("sd_pct", "its standard deviation"),
+        ("chosen_pct", "estimator that is best by the reference"),
+        ("best_pct", "best estimator"),
+        ("resolved", "resolved"),
+    ],
+    digits: Some(2),
+    command: "cargo test --release --package experiments --test reference",
+};
+
 /// The paper's experiment beside an independent simulation: distance outside the haptic interval.
 pub const PAPER: Table = Table {
     name: "paper",
