@@ -1,18 +1,27 @@
 //! A bank of Kalman filters that needs no parameters of the device.
 
+mod driven;
+mod input;
 mod interval;
 mod ladder;
+mod learned_current;
 mod member;
+mod regression;
 mod stamps;
 mod state;
 
 use crate::confidence::{Confidence, Variance};
 use crate::design::DesignError;
 use crate::estimator::{AccelerationEstimator, VelocityEstimator};
+use crate::observer::{AdaptiveEdgeObserver, AdaptiveObserver};
 use crate::sample::{Sample, Signals};
 use crate::units::{CountsPerTick, CountsPerTickSquared, Hertz};
 
+pub use driven::{DrivenBank, DrivenBankState};
+pub use input::{BankInput, Followed};
+use interval::Likelihood;
 use ladder::Ladder;
+pub use learned_current::{LearnedCurrent, LearnedCurrentState};
 pub use stamps::{NoStamps, Stamped, Stamps};
 pub use state::ModelBankState;
 
@@ -24,6 +33,18 @@ pub type ImmPair = ModelBank<2, NoStamps>;
 
 /// The bank of three members on counts and edge time stamps.
 pub type ImmEdge = ModelBank<3, Stamped>;
+
+/// The bank on counts beside one that is driven by the motor current.
+pub type ImmMotor = DrivenBank<NoStamps, LearnedCurrent>;
+
+/// The bank on counts and edge time stamps beside one that is driven by the motor current.
+pub type ImmMotorEdge = DrivenBank<Stamped, LearnedCurrent>;
+
+/// The bank on counts beside one that follows the adaptive observer.
+pub type ImmAdaptive = DrivenBank<NoStamps, Followed<AdaptiveObserver>>;
+
+/// The bank on counts and edge time stamps beside one that follows the adaptive observer.
+pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 
 /// Multiple-model estimator: a moving bank of K Kalman filters. It has no parameter of the device; the
 /// control rate alone fixes it, for any number of counts per revolution.
@@ -43,9 +64,10 @@ pub type ImmEdge = ModelBank<3, Stamped>;
 /// predict    x = F x       P = F P Fᵀ + Q(q)             F: transition of the model over one tick
 /// edge       H = [1, -t, t²/2], t the age of the edge    e = boundary - H x
 ///            S = H P Hᵀ + R    K = P Hᵀ / S              x += K e    P -= K S Kᵀ
-/// no edge    the position lies in the quantisation interval of the count: mean and variance of the
-///            truncated Gaussian
-/// weights    w_i = (w_i + c) L_i / Σ    L: density of e, or the probability of the interval
+/// interval   the position lies in the quantisation interval of the count: mean and variance of the
+///            truncated Gaussian; with stamps, of x_0 plus a noise of variance R
+/// weights    w_i = (w_i + c) L_i / Σ    L: density of e; without an edge the probability of the
+///            interval
 /// noise      R = R (1 - 0.05 ρ)         ρ = e e' / S within ±1, e' of the edge before; R within
 ///            3e-4 and 0.1 counts²
 /// output     v = Σ w_i v_i      a = Σ w_i a_i      variance Σ w_i (P_11,i + (v_i - v)²)
@@ -147,13 +169,38 @@ impl<const K: usize, S: Stamps> VelocityEstimator for ModelBank<K, S> {
     }
 
     fn update(&self, state: &mut ModelBankState<K>, sample: &Sample) -> CountsPerTick {
+        match self.advance(state, sample, None) {
+            Some(_) => CountsPerTick(state.velocity()),
+            None => CountsPerTick(0.0),
+        }
+    }
+}
+
+/// How likely a bank found the measurement of a tick.
+struct Evidence {
+    /// The likelihood, times `deviation`'s root.
+    likelihood: Likelihood,
+    /// Variance of the middle member's innovation, counts²; 1 without an edge.
+    deviation: f32,
+}
+
+impl<const K: usize, S: Stamps> ModelBank<K, S> {
+    /// Advances the state by one tick, over which the known acceleration is `input`, counts/tick². `None`
+    /// at rest.
+    #[inline(always)]
+    fn advance(
+        &self,
+        state: &mut ModelBankState<K>,
+        sample: &Sample,
+        input: Option<f32>,
+    ) -> Option<Evidence> {
         let displacement = sample.count - state.anchor;
         state.anchor = sample.count;
         let edge = self.stamps.fresh(sample);
         if displacement.0 != 0 || edge.is_some() {
             state.still = 0;
         } else if state.resting {
-            return CountsPerTick(0.0);
+            return None;
         } else {
             state.still = state.still.saturating_add(1);
         }
@@ -161,15 +208,29 @@ impl<const K: usize, S: Stamps> VelocityEstimator for ModelBank<K, S> {
         state.reset();
         state.follow();
         state.predict(&self.ladder, displacement.to_f32());
-        let likelihoods = match edge {
-            Some(edge) => state.correct_by_edge(&edge),
-            None => state.correct_by_interval(),
+        if let Some(input) = input {
+            state.drive(input);
+        }
+        let ends = S::noise_of_ends(state.boundary_variance());
+        let (likelihoods, deviation) = match edge {
+            Some(mut edge) => {
+                if let Some(input) = input {
+                    edge.position -= 0.5 * input * edge.age * edge.age;
+                }
+                let found = state.correct_by_edge(&edge);
+                state.correct_by_interval(ends);
+                found
+            }
+            None => (state.correct_by_interval(ends), 1.0),
         };
-        state.weigh(&likelihoods, self.change);
+        let likelihood = state.weigh(&likelihoods, self.change);
         if state.still >= self.rest {
             state.stop();
         }
-        CountsPerTick(state.velocity())
+        Some(Evidence {
+            likelihood,
+            deviation,
+        })
     }
 }
 

@@ -4,7 +4,7 @@ mod acceleration_bound;
 mod algebraic;
 mod alpha_beta_gamma;
 #[cfg(test)]
-mod draws;
+pub(crate) mod draws;
 mod explicit_super_twisting;
 mod finite_difference;
 mod foaw;

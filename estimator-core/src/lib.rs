@@ -56,7 +56,11 @@ mod sealed;
 mod units;
 mod wrapped;
 
-pub use bank::{Imm, ImmEdge, ImmPair, ModelBank, ModelBankState, NoStamps, Stamped, Stamps};
+pub use bank::{
+    BankInput, DrivenBank, DrivenBankState, Followed, Imm, ImmAdaptive, ImmAdaptiveEdge, ImmEdge,
+    ImmMotor, ImmMotorEdge, ImmPair, LearnedCurrent, LearnedCurrentState, ModelBank,
+    ModelBankState, NoStamps, Stamped, Stamps,
+};
 pub use confidence::{Confidence, Variance};
 pub use design::{DesignError, const_math};
 pub use estimator::{AccelerationEstimator, Skip, VelocityEstimator};

@@ -210,6 +210,32 @@ where
 
     #[inline(always)]
     fn update(&self, state: &mut Self::State, sample: &Sample) -> CountsPerTick {
+        CountsPerTick(self.advance(state, sample).velocity)
+    }
+}
+
+/// Velocities of an observer at one tick, counts/tick.
+pub(crate) struct Advance {
+    /// After the correction.
+    pub(crate) velocity: f32,
+    /// Change over the tick before the correction.
+    pub(crate) predicted_change: f32,
+}
+
+impl<C, S, M, L> Observer<C, S, M, L>
+where
+    C: CurrentSource,
+    S: SlipSource,
+    M: Correction,
+    L: Adaptation,
+{
+    /// Advances the state by one tick.
+    #[inline(always)]
+    pub(crate) fn advance(
+        &self,
+        state: &mut <Self as VelocityEstimator>::State,
+        sample: &Sample,
+    ) -> Advance {
         let input = self.current.input(&mut state.current, sample);
         let coupled = self.slip.displacement(&mut state.slip, sample);
         let before = state.velocity;
@@ -252,7 +278,10 @@ where
             state.velocity = step.velocity;
             state.disturbance = disturbance;
             self.adaptation.store(&mut state.adaptation, sensitivity);
-            return CountsPerTick(step.velocity);
+            return Advance {
+                velocity: step.velocity,
+                predicted_change: step.velocity - before,
+            };
         };
         let gain = gain.borrow();
         let moving_start =
@@ -292,6 +321,9 @@ where
         state.position = position;
         state.velocity = velocity;
         state.disturbance = disturbance;
-        CountsPerTick(velocity)
+        Advance {
+            velocity,
+            predicted_change: step.velocity - before,
+        }
     }
 }

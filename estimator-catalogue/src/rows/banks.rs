@@ -46,6 +46,32 @@ macro_rules! bank_rows {
             },
             |c, motor, rate, clock, p, N| c::ImmPair =>
                 c::ModelBank::new(rate);
+            imm_motor, "imm-motor", Acceleration,
+            (),
+            $rates,
+            {
+                summary: "bank that also learns the effect of the motor current",
+                needs: Signals::COUNT_AND_CURRENT,
+                settling: Settling::Within(0.3),
+                colour: Colour::PINE,
+                dash: Dash::Dashed,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::ImmMotor =>
+                c::ImmMotor::learning(rate);
+            imm_motor_edge, "imm-motor-edge", Acceleration,
+            (),
+            $rates,
+            {
+                summary: "the same bank, which also uses edge time stamps",
+                needs: Signals::COUNT_AND_CURRENT.or(EDGE),
+                settling: Settling::Within(0.3),
+                colour: Colour::SKY,
+                dash: Dash::Dashed,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::ImmMotorEdge =>
+                c::ImmMotorEdge::learning(clock, rate);
         ] $($families)* }
     };
 }

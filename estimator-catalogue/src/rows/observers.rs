@@ -72,6 +72,32 @@ macro_rules! observer_rows {
             },
             |c, motor, rate, clock, p, N| c::AdaptiveEdgeObserver =>
                 c::ObserverDesign::new(motor, rate, &$crate::uncertainty!(c, p)).with_edges(clock).adaptive().build();
+            imm_adaptive, "imm-adaptive", Acceleration,
+            ($($uncertainty)*, boundary_noise: BOUNDARY_NOISE),
+            $rates,
+            {
+                summary: "bank that also follows adaptive, and distrusts it for a wrong device",
+                needs: COUNT_CURRENT_AND_SLIP,
+                settling: Settling::Within(0.3),
+                colour: Colour::CRIMSON,
+                dash: Dash::Solid,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::ImmAdaptive =>
+                c::ImmAdaptive::following(c::ObserverDesign::new(motor, rate, &$crate::uncertainty!(c, p)).adaptive().build(), rate);
+            imm_adaptive_edge, "imm-adaptive-edge", Acceleration,
+            ($($uncertainty)*, boundary_noise: DISC_NOISE),
+            $rates,
+            {
+                summary: "bank with edge time stamps that also follows adaptive-edge",
+                needs: COUNT_CURRENT_AND_SLIP.or(EDGE),
+                settling: Settling::Within(0.3),
+                colour: Colour::PINE,
+                dash: Dash::Dotted,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::ImmAdaptiveEdge =>
+                c::ImmAdaptiveEdge::following(c::ObserverDesign::new(motor, rate, &$crate::uncertainty!(c, p)).with_edges(clock).adaptive().build(), clock, rate);
             observer_soft, "observer-soft", Deviation,
             ($($uncertainty)*, boundary_noise: BOUNDARY_NOISE),
             $rates,

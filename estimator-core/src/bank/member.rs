@@ -96,12 +96,12 @@ impl Member {
         }
     }
 
-    /// Corrects by the knowledge that the position lies in its quantisation interval. Returns the
-    /// probability of the interval.
+    /// Corrects by the knowledge that the position lies in its quantisation interval, whose ends are
+    /// known to the variance `ends`. Returns the probability of the interval.
     #[inline(always)]
-    pub(super) fn correct_by_interval(&mut self) -> Likelihood {
+    pub(super) fn correct_by_interval(&mut self, ends: f32) -> Likelihood {
         let [p00, p01, p02, ..] = self.covariance;
-        let variance = p00 + LEAST_VARIANCE;
+        let variance = p00 + LEAST_VARIANCE + ends;
         let Some(truncated) = truncate(self.position, variance) else {
             return Likelihood::CERTAIN;
         };

@@ -15,6 +15,11 @@ pub trait Stamps: Sealed + Copy + PartialEq {
     #[doc(hidden)]
     #[expect(private_interfaces, reason = "the trait is sealed")]
     fn fresh(&self, sample: &Sample) -> Option<FreshEdge>;
+
+    /// The variance of the ends of a quantisation interval, counts², where that of a boundary is
+    /// `boundary`. Counts alone do not tell it.
+    #[doc(hidden)]
+    fn noise_of_ends(boundary: f32) -> f32;
 }
 
 /// Counts alone.
@@ -30,6 +35,11 @@ impl Stamps for NoStamps {
     #[expect(private_interfaces, reason = "the trait is sealed")]
     fn fresh(&self, _: &Sample) -> Option<FreshEdge> {
         None
+    }
+
+    #[inline(always)]
+    fn noise_of_ends(_: f32) -> f32 {
+        0.0
     }
 }
 
@@ -60,5 +70,10 @@ impl Stamps for Stamped {
     #[expect(private_interfaces, reason = "the trait is sealed")]
     fn fresh(&self, sample: &Sample) -> Option<FreshEdge> {
         self.clock.fresh(sample)
+    }
+
+    #[inline(always)]
+    fn noise_of_ends(boundary: f32) -> f32 {
+        boundary
     }
 }

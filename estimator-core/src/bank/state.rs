@@ -77,6 +77,15 @@ impl<const K: usize> ModelBankState<K> {
         sum
     }
 
+    /// Adds the effect of the known acceleration `input` over the tick before, counts/tick².
+    #[inline(always)]
+    pub(super) fn drive(&mut self, input: f32) {
+        for member in &mut self.members {
+            member.position += 0.5 * input;
+            member.velocity += input;
+        }
+    }
+
     /// The mean velocity, counts/tick.
     #[inline(always)]
     pub(super) fn velocity(&self) -> f32 {
@@ -116,9 +125,10 @@ impl<const K: usize> ModelBankState<K> {
     }
 
     /// Corrects all members by an edge, and R by the correlation of two innovations. Returns the
-    /// likelihoods, times the deviation of the middle member's innovation.
+    /// likelihoods, times the deviation of the middle member's innovation, and the square of this
+    /// deviation.
     #[inline(always)]
-    pub(super) fn correct_by_edge(&mut self, edge: &FreshEdge) -> [Likelihood; K] {
+    pub(super) fn correct_by_edge(&mut self, edge: &FreshEdge) -> ([Likelihood; K], f32) {
         let mut innovations = [Innovation::default(); K];
         let (mut error, mut variance) = (0.0, 0.0);
         for i in 0..K {
@@ -144,22 +154,24 @@ impl<const K: usize> ModelBankState<K> {
         // Both ends are constants: the panic of `clamp` is removed.
         self.boundary = boundary.clamp(LEAST_BOUNDARY, LARGEST_BOUNDARY);
         self.innovation = error;
-        likelihoods
+        (likelihoods, middle)
     }
 
-    /// Corrects all members by the quantisation interval of the count. Returns its probabilities.
+    /// Corrects all members by the quantisation interval of the count, whose ends are known to the
+    /// variance `ends`. Returns its probabilities.
     #[inline(always)]
-    pub(super) fn correct_by_interval(&mut self) -> [Likelihood; K] {
+    pub(super) fn correct_by_interval(&mut self, ends: f32) -> [Likelihood; K] {
         let mut likelihoods = [Likelihood::default(); K];
         for i in 0..K {
-            likelihoods[i] = self.members[i].correct_by_interval();
+            likelihoods[i] = self.members[i].correct_by_interval(ends);
         }
         likelihoods
     }
 
-    /// Updates the weights by the likelihoods, with the probability `change` of a change of q.
+    /// Updates the weights by the likelihoods, with the probability `change` of a change of q. Returns
+    /// the likelihood of the bank.
     #[inline(always)]
-    pub(super) fn weigh(&mut self, likelihoods: &[Likelihood; K], change: f32) {
+    pub(super) fn weigh(&mut self, likelihoods: &[Likelihood; K], change: f32) -> Likelihood {
         let mut smallest = likelihoods[0].divisor;
         for likelihood in likelihoods {
             if likelihood.divisor < smallest {
@@ -174,6 +186,10 @@ impl<const K: usize> ModelBankState<K> {
         let per_sum = 1.0 / sum;
         for weight in &mut self.weights {
             *weight *= per_sum;
+        }
+        Likelihood {
+            factor: sum,
+            divisor: smallest,
         }
     }
 
@@ -215,10 +231,36 @@ impl<const K: usize> ModelBankState<K> {
     }
 }
 
+impl ModelBankState<3> {
+    /// The two neighbouring members with the larger weights.
+    pub(super) const fn narrowed(&self) -> ModelBankState<2> {
+        let first = if self.weights[0] > self.weights[2] {
+            0
+        } else {
+            1
+        };
+        let [a, b] = [self.weights[first], self.weights[first + 1]];
+        let per_sum = 1.0 / (a + b);
+        ModelBankState {
+            anchor: self.anchor,
+            still: self.still,
+            resting: self.resting,
+            members: [
+                self.members[first].copied(),
+                self.members[first + 1].copied(),
+            ],
+            weights: [a * per_sum, b * per_sum],
+            rung: self.rung + first,
+            boundary: self.boundary,
+            innovation: self.innovation,
+        }
+    }
+}
+
 /// √x: the Padé approximant of order [2/2] at 1, to 8 % from 1/10 to 10. The variances of neighbouring
 /// members differ by at most a factor of 10.
 #[inline(always)]
-fn root(x: f32) -> f32 {
+pub(super) fn root(x: f32) -> f32 {
     let square = x * x;
     (1.0 + 10.0 * x + 5.0 * square) / (5.0 + 10.0 * x + square)
 }

@@ -2,6 +2,7 @@
 //! positions. And what it promises: rest, a variance, a noise of the boundaries, any encoder.
 
 mod definition;
+mod driven;
 
 use estimator_core::{
     AccelerationEstimator, ClockTicks, Confidence, Count, DesignError, Edge, Hertz, Imm, ImmEdge,

@@ -20,6 +20,7 @@ pub(super) struct Definition {
     weights: Vec<f64>,
     rung: usize,
     period: f64,
+    stamps: bool,
     noise: f64,
     innovation: f64,
     still: usize,
@@ -90,6 +91,7 @@ impl Definition {
             weights: vec![1.0 / members as f64; members],
             rung: 4,
             period: 1.0 / rate,
+            stamps: edges.is_some(),
             noise: 1e-3,
             innovation: 0.0,
             still: 0,
@@ -119,6 +121,7 @@ impl Definition {
             let q = LOWEST * 10f64.powi((self.rung + i) as i32);
             filter.x = transition * filter.x;
             filter.p = transition * filter.p * transition.transpose() + noise * q;
+            let mut likelihood = None;
             if let Some((boundary, age)) = edge {
                 let t = age * self.period;
                 let h = Vector3::new(1.0, -t, 0.5 * t * t);
@@ -127,18 +130,18 @@ impl Definition {
                 let k = filter.p * h / s;
                 filter.x += k * e;
                 filter.p -= k * k.transpose() * s;
-                likelihoods.push((1.0 + e * e / (32.0 * s)).powi(-16) / s.sqrt());
+                likelihood = Some((1.0 + e * e / (32.0 * s)).powi(-16) / s.sqrt());
                 error += self.weights[i] * e;
                 variance += self.weights[i] * s;
-            } else {
-                let deviation = filter.p[(0, 0)].sqrt();
-                let ends = [count, count + 1.0].map(|end| (end - filter.x[0]) / deviation);
-                let (shift, kept, probability) = truncated(ends[0], ends[1]);
-                let k = filter.p.column(0) / deviation;
-                filter.x += k * shift;
-                filter.p -= k * k.transpose() * (1.0 - kept);
-                likelihoods.push(probability);
             }
+            let ends = if self.stamps { self.noise } else { 0.0 };
+            let deviation = (filter.p[(0, 0)] + ends).sqrt();
+            let ends = [count, count + 1.0].map(|end| (end - filter.x[0]) / deviation);
+            let (shift, kept, probability) = truncated(ends[0], ends[1]);
+            let k = filter.p.column(0) / deviation;
+            filter.x += k * shift;
+            filter.p -= k * k.transpose() * (1.0 - kept);
+            likelihoods.push(likelihood.unwrap_or(probability));
         }
         if edge.is_some() {
             let correlation = (error * self.innovation / variance).clamp(-1.0, 1.0);
