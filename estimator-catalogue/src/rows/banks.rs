@@ -66,8 +66,8 @@ macro_rules! bank_rows {
                 summary: "the same bank, which also uses edge time stamps",
                 needs: Signals::COUNT_AND_CURRENT.or(EDGE),
                 settling: Settling::Within(0.3),
-                colour: Colour::SKY,
-                dash: Dash::Dashed,
+                colour: Colour::ORANGE,
+                dash: Dash::Dotted,
                 goals: &[],
             },
             |c, motor, rate, clock, p, N| c::ImmMotorEdge =>
