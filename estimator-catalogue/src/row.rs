@@ -126,6 +126,8 @@ impl Colour {
     pub const CRIMSON: Self = Self(0xc0, 0x00, 0x3a);
     /// Pine green.
     pub const PINE: Self = Self(0x00, 0x4d, 0x40);
+    /// Maroon.
+    pub const MAROON: Self = Self(0x60, 0x00, 0x00);
     /// Brown.
     pub const BROWN: Self = Self(0x7a, 0x52, 0x30);
 }

@@ -53,7 +53,7 @@ macro_rules! bank_rows {
                 summary: "bank that also learns the effect of the motor current",
                 needs: Signals::COUNT_AND_CURRENT,
                 settling: Settling::Within(0.3),
-                colour: Colour::PINE,
+                colour: Colour::MAROON,
                 dash: Dash::Dashed,
                 goals: &[],
             },

@@ -79,8 +79,8 @@ macro_rules! observer_rows {
                 summary: "bank that also follows adaptive, and distrusts it for a wrong device",
                 needs: COUNT_CURRENT_AND_SLIP,
                 settling: Settling::Within(0.3),
-                colour: Colour::CRIMSON,
-                dash: Dash::Solid,
+                colour: Colour::PURPLE,
+                dash: Dash::Dotted,
                 goals: &[],
             },
             |c, motor, rate, clock, p, N| c::ImmAdaptive =>
@@ -92,8 +92,8 @@ macro_rules! observer_rows {
                 summary: "bank with edge time stamps that also follows adaptive-edge",
                 needs: COUNT_CURRENT_AND_SLIP.or(EDGE),
                 settling: Settling::Within(0.3),
-                colour: Colour::PINE,
-                dash: Dash::Dotted,
+                colour: Colour::BROWN,
+                dash: Dash::Mixed,
                 goals: &[],
             },
             |c, motor, rate, clock, p, N| c::ImmAdaptiveEdge =>
