@@ -57,8 +57,10 @@ impl Kind {
             "preset",
         ]
         .into();
+        let [of_type, design] =
+            [&of_type, &design].map(|text| with_name(text, "c", "estimator_core"));
         for text in [&of_type, &design] {
-            let names = text.split("c::").skip(1);
+            let names = text.split(CRATE).skip(1);
             used.extend(names.map(|rest| rest.split(|c: char| !is_name(c)).next().unwrap_or(rest)));
         }
         let by_signal = [
@@ -73,7 +75,7 @@ impl Kind {
                 .flat_map(|(_, names)| *names),
         );
         let used: Vec<_> = used.into_iter().collect();
-        let [of_type, design] = [&of_type, &design].map(|text| text.replace("c::", ""));
+        let [of_type, design] = [&of_type, &design].map(|text| text.replace(CRATE, ""));
         let estimator = match design
             .strip_prefix("Ok(")
             .and_then(|rest| rest.strip_suffix(')'))
@@ -152,6 +154,9 @@ impl Kind {
         text
     }
 }
+
+/// The crate of the estimators, before a name.
+const CRATE: &str = "estimator_core::";
 
 /// What the macro `uncertainty` of the catalogue expands to.
 const UNCERTAINTY: &str = "c::Uncertainty { torque_noise: p.torque_noise, disturbance: p.load, \
