@@ -217,9 +217,7 @@ impl<const K: usize, S: Stamps> ModelBank<K, S> {
                 if let Some(input) = input {
                     edge.position -= 0.5 * input * edge.age * edge.age;
                 }
-                let found = state.correct_by_edge(&edge);
-                state.correct_by_interval(ends);
-                found
+                state.correct_by_edge(&edge)
             }
             None => (state.correct_by_interval(ends), 1.0),
         };

@@ -50,6 +50,12 @@ impl Member {
         }
     }
 
+    /// Variance of the position, counts².
+    #[inline(always)]
+    pub(super) const fn position_variance(&self) -> f32 {
+        self.covariance[0]
+    }
+
     /// Variance of the velocity, (counts/tick)².
     pub(super) const fn velocity_variance(&self) -> f32 {
         self.covariance[3]

@@ -43,6 +43,10 @@ const BOUNDARY: f32 = 1e-3;
 const LEAST_BOUNDARY: f32 = 3e-4;
 const LARGEST_BOUNDARY: f32 = 0.1;
 
+/// Variance of the position after an edge, over that of the innovation, below which it is rounding: some
+/// 30 units in the last place.
+const ROUNDING: f32 = 4e-6;
+
 /// Change of R by an edge.
 const BOUNDARY_GAIN: f32 = 0.05;
 
@@ -124,7 +128,8 @@ impl<const K: usize> ModelBankState<K> {
         }
     }
 
-    /// Corrects all members by an edge, and R by the correlation of two innovations. Returns the
+    /// Corrects all members by an edge and then by the quantisation interval of the count, and R by the
+    /// correlation of two innovations. Returns the
     /// likelihoods, times the deviation of the middle member's innovation, and the square of this
     /// deviation.
     #[inline(always)]
@@ -132,7 +137,12 @@ impl<const K: usize> ModelBankState<K> {
         let mut innovations = [Innovation::default(); K];
         let (mut error, mut variance) = (0.0, 0.0);
         for i in 0..K {
-            innovations[i] = self.members[i].correct_by_edge(edge, self.boundary);
+            let member = &mut self.members[i];
+            innovations[i] = member.correct_by_edge(edge, self.boundary);
+            // A smaller variance is rounding: the edge alone fixes the position.
+            if member.position_variance() > ROUNDING * innovations[i].variance {
+                member.correct_by_interval(self.boundary);
+            }
             error += self.weights[i] * innovations[i].error;
             variance += self.weights[i] * innovations[i].variance;
         }

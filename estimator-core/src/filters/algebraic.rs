@@ -156,15 +156,26 @@ impl<const N: usize, const KAPPA: u32, const MU: u32> VelocityEstimator
         let older = state.steps.get(newest + 1..).unwrap_or(&[]);
         let older = older.get(..usize::from(self.window - 1) - newest);
         let weights = self.weights.get(newest + 1..).unwrap_or(&[]);
-        let mut sum = 0.0;
-        for (step, weight) in recent.iter().rev().zip(&self.weights) {
-            sum += f32::from(*step) * weight;
-        }
-        for (step, weight) in older.unwrap_or(&[]).iter().rev().zip(weights) {
-            sum += f32::from(*step) * weight;
-        }
-        CountsPerTick(sum)
+        CountsPerTick(dot(recent, &self.weights) + dot(older.unwrap_or(&[]), weights))
     }
+}
+
+/// Number of products that are added before they are added to the sum.
+const BLOCK: usize = 8;
+
+/// Sum of `steps`, the last of which is the newest, times `weights`. Sums of blocks lose fewer digits
+/// than one sum of 64 products.
+#[inline]
+fn dot(steps: &[i16], weights: &[f32]) -> f32 {
+    let mut sum = 0.0;
+    for (steps, weights) in steps.rchunks(BLOCK).zip(weights.chunks(BLOCK)) {
+        let mut part = 0.0;
+        for (step, weight) in steps.iter().rev().zip(weights) {
+            part += f32::from(*step) * weight;
+        }
+        sum += part;
+    }
+    sum
 }
 
 #[cfg(test)]
