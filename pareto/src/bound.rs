@@ -35,10 +35,10 @@ pub fn of(image: &Image, subject: &Subject) -> Result<u32, String> {
 
 /// Whether a bound can be derived. This analysis knows one loop over a window: not the loops over the
 /// members of a bank, nor the routines that clear its arrays, nor the several loops of the robust exact
-/// differentiator.
+/// differentiator, nor the routine that clears a window of the algebraic one.
 #[must_use]
 pub fn is_derivable(estimator: &str) -> bool {
-    !estimator.starts_with("imm") && estimator != "robust-exact"
+    !estimator.starts_with("imm") && !["algebraic", "robust-exact"].contains(&estimator)
 }
 
 /// By turns that may be taken: instructions of the longest path to a return, if there is one.

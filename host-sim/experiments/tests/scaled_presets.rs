@@ -1,5 +1,6 @@
 //! Error on recordings of real devices with tuned values as they are and scaled to the encoder. The
-//! rule was chosen with none of them.
+//! powers of the rule were chosen with none of them; that no band gets wider than the tuned one was chosen
+//! with all.
 
 use std::path::Path;
 
