@@ -167,15 +167,18 @@ const BLOCK: usize = 8;
 /// than one sum of 64 products.
 #[inline]
 fn dot(steps: &[i16], weights: &[f32]) -> f32 {
-    let mut sum = 0.0;
-    for (steps, weights) in steps.rchunks(BLOCK).zip(weights.chunks(BLOCK)) {
-        let mut part = 0.0;
-        for (step, weight) in steps.iter().rev().zip(weights) {
-            part += f32::from(*step) * weight;
+    let [mut sum, mut part] = [0.0; 2];
+    let mut left = BLOCK;
+    for (step, weight) in steps.iter().rev().zip(weights) {
+        part += f32::from(*step) * weight;
+        left -= 1;
+        if left == 0 {
+            sum += part;
+            part = 0.0;
+            left = BLOCK;
         }
-        sum += part;
     }
-    sum
+    sum + part
 }
 
 #[cfg(test)]

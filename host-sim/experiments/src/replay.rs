@@ -159,7 +159,7 @@ pub fn name(path: &Path) -> String {
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
-/// Writes the header of [`csv`].
+/// Writes the header of [`csv()`].
 ///
 /// # Errors
 /// The errors of `out`.
