@@ -47,6 +47,10 @@ pub enum Command {
     },
     /// Selects the estimator of the large motor by its number.
     Estimator(u8),
+    /// Asks for the identity of the image: [`Hello`](crate::link::Hello), then
+    /// [`Rejected`](crate::link::Rejected). All commands before this one have been processed by then.
+    /// It is no keep-alive.
+    Identify,
 }
 
 /// The frame of a command: 0xA5, kind, eight bytes of payload, CRC over kind and payload. Numbers
@@ -79,6 +83,7 @@ pub const fn encode(command: Command) -> [u8; FRAME] {
             [6, scene, parameter, a, b, c, d, 0, 0]
         }
         Command::Estimator(number) => [7, number, 0, 0, 0, 0, 0, 0, 0],
+        Command::Identify => [8, 0, 0, 0, 0, 0, 0, 0, 0],
     };
     let [kind, a, b, c, d, e, f, g, h] = body;
     [START, kind, a, b, c, d, e, f, g, h, crc8(&body)]
@@ -148,6 +153,7 @@ fn decode(kind: u8, payload: [u8; BODY - 1]) -> Option<Command> {
             value: f32::from_le_bytes([c, d, e, f]),
         }),
         7 => Some(Command::Estimator(a)),
+        8 => Some(Command::Identify),
         _ => None,
     }
 }

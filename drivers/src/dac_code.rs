@@ -2,40 +2,16 @@
 
 use estimator_core::Amps;
 
-/// A 12-bit DAC code. Mid-scale is zero current, 2047 steps are full scale.
-///
-/// ```
-/// use drivers::DacCode;
-/// use estimator_core::Amps;
-/// let full_scale = Amps::new(6.0);
-/// assert_eq!(DacCode::new(Amps::new(-6.0), full_scale).get(), 1);
-/// assert_eq!(DacCode::new(Amps::new(1.0), full_scale).get(), 2048 + 341);
-/// assert_eq!(DacCode::new(Amps::new(f32::NAN), full_scale), DacCode::ZERO);
-/// ```
+/// Steps of full scale on either side of mid-scale.
+const STEPS: f32 = 2047.0;
+
+/// A 12-bit DAC code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DacCode(u16);
 
 impl DacCode {
-    /// Zero current.
-    pub const ZERO: Self = Self(2048);
-
-    /// `2048 + round(current / full_scale * 2047)`, saturated to 1 to 4095. NaN and a full scale of 0
-    /// give mid-scale, because the conversion to an integer comes before the offset.
-    #[must_use]
-    pub const fn new(current: Amps, full_scale: Amps) -> Self {
-        let scaled = current.get() / full_scale.get() * 2047.0;
-        let rounded = scaled + 0.5_f32.copysign(scaled);
-        if !rounded.is_finite() {
-            return Self::ZERO;
-        }
-        // A cast truncates towards zero, and saturates.
-        let steps = match rounded as i32 {
-            ..-2047 => -2047,
-            2048.. => 2047,
-            steps => steps,
-        };
-        Self((2048 + steps) as u16)
-    }
+    /// Mid-scale: zero current on a board that is not calibrated.
+    pub const MIDDLE: Self = Self(2048);
 
     /// The value for the register of the DAC.
     #[must_use]
@@ -44,34 +20,114 @@ impl DacCode {
     }
 }
 
+/// Conversion of a current to a code: `code = zero + current / full_scale / gain * 2047`, rounded and
+/// saturated to 1 to 4095.
+///
+/// ```
+/// use drivers::{DacCode, DacScale};
+/// use estimator_core::Amps;
+/// let scale = DacScale::new(Amps::new(6.0)).unwrap();
+/// assert_eq!(scale.code(Amps::new(-6.0)).get(), 1);
+/// assert_eq!(scale.code(Amps::new(1.0)).get(), 2048 + 341);
+/// assert_eq!(scale.code(Amps::ZERO), DacCode::MIDDLE);
+/// // The zero of this channel is 12.3 codes lower, and a code changes the current by 2 % more.
+/// let scale = scale.calibrated(2035.7, 1.02).unwrap();
+/// assert_eq!(scale.code(Amps::ZERO).get(), 2036);
+/// assert_eq!(scale.code(Amps::new(1.0)).get(), 2370);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DacScale {
+    /// Code of zero current.
+    zero: f32,
+    per_amp: f32,
+}
+
+impl DacScale {
+    /// The nominal conversion for currents to `full_scale`, which is above 0; otherwise `None`.
+    #[must_use]
+    pub const fn new(full_scale: Amps) -> Option<Self> {
+        let per_amp = STEPS / full_scale.get();
+        if !(full_scale.get() > 0.0 && per_amp.is_finite()) {
+            return None;
+        }
+        Some(Self {
+            zero: DacCode::MIDDLE.0 as f32,
+            per_amp,
+        })
+    }
+
+    /// The conversion with the code `zero` of zero current, and the change of the current per code over the
+    /// nominal one, `gain`. `None` if `zero` is no code or `gain` is not above 0.
+    #[must_use]
+    pub const fn calibrated(self, zero: f32, gain: f32) -> Option<Self> {
+        let per_amp = self.per_amp / gain;
+        if !(1.0 <= zero && zero <= 4095.0 && gain > 0.0 && per_amp.is_finite()) {
+            return None;
+        }
+        Some(Self { zero, per_amp })
+    }
+
+    /// The code of a current.
+    #[must_use]
+    pub const fn code(&self, current: Amps) -> DacCode {
+        // A cast truncates towards zero, and saturates.
+        DacCode(
+            match (self.zero + current.get() * self.per_amp + 0.5) as i32 {
+                ..1 => 1,
+                4096.. => 4095,
+                code => code as u16,
+            },
+        )
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::DacCode;
+    use super::{DacCode, DacScale};
     use estimator_core::Amps;
 
+    fn scale(full: f32) -> DacScale {
+        DacScale::new(Amps::new(full)).unwrap()
+    }
+
     #[test]
-    fn codes_are_odd_about_mid_scale_monotonic_and_within_half_a_step() {
+    fn codes_are_monotonic_and_within_half_a_step_of_the_calibration() {
         let full = 1.5;
-        let mut last = 0;
-        for k in -3000..=3000_i16 {
-            let amps = f32::from(k) / 3000.0 * full;
-            let code = DacCode::new(Amps::new(amps), Amps::new(full)).get();
-            let mirrored = DacCode::new(Amps::new(-amps), Amps::new(full)).get();
-            assert_eq!(code + mirrored, 4096);
-            assert!(code >= last);
-            last = code;
-            let back = (f32::from(code) - 2048.0) / 2047.0 * full;
-            assert!((back - amps).abs() <= full / 2047.0 * 0.5001);
+        for (zero, gain) in [(2048.0, 1.0), (2033.4, 1.02), (2061.6, 0.97)] {
+            let scale = scale(full).calibrated(zero, gain).unwrap();
+            let mut last = 0;
+            for k in -2800..=2800_i16 {
+                let amps = f32::from(k) / 3000.0 * full;
+                let code = scale.code(Amps::new(amps)).get();
+                assert!(code >= last);
+                last = code;
+                let back = (f32::from(code) - zero) / 2047.0 * full * gain;
+                assert!((back - amps).abs() <= full * gain / 2047.0 * 0.501, "{k}");
+            }
         }
     }
 
     #[test]
-    fn invalid_current_is_mid_scale_and_large_current_saturates() {
-        let full = Amps::new(6.0);
-        assert_eq!(DacCode::new(Amps::new(f32::INFINITY), full), DacCode::ZERO);
-        assert_eq!(DacCode::new(Amps::new(1.0), Amps::ZERO), DacCode::ZERO);
-        assert_eq!(DacCode::new(Amps::ZERO, Amps::ZERO), DacCode::ZERO);
-        assert_eq!(DacCode::new(Amps::new(1e30), full).get(), 4095);
-        assert_eq!(DacCode::new(Amps::new(-1e30), full).get(), 1);
+    fn large_currents_saturate_and_invalid_ones_are_zero() {
+        let scale = scale(6.0).calibrated(2040.0, 1.0).unwrap();
+        for (amps, code) in [
+            (7.0, 4095),
+            (-7.0, 1),
+            (900.0, 4095),
+            (-900.0, 1),
+            (f32::INFINITY, 2040),
+            (f32::NAN, 2040),
+            (0.0, 2040),
+        ] {
+            assert_eq!(scale.code(Amps::new(amps)).get(), code, "{amps}");
+        }
+        for full in [0.0, -1.0, f32::NAN, 1e-42] {
+            assert_eq!(DacScale::new(Amps::new(full)), None, "{full}");
+        }
+        assert_eq!(DacCode::MIDDLE.get(), 2048);
+        for (zero, gain) in [(0.0, 1.0), (5e3, 1.0), (f32::NAN, 1.0), (2048.0, 0.0)] {
+            assert_eq!(scale.calibrated(zero, gain), None, "{zero} {gain}");
+        }
+        assert_eq!(scale.calibrated(2048.0, f32::NAN), None);
     }
 }

@@ -4,10 +4,15 @@
 mod amplifier;
 mod command;
 mod dac_code;
+pub mod link;
 mod pwm;
+mod settings;
+mod store;
 mod telemetry;
 
-pub use amplifier::{Amplifier, CurrentOutput};
+pub use amplifier::{Amplifier, Amplifiers, CurrentOutput, Enables};
 pub use command::{Command, Parser, encode};
-pub use dac_code::DacCode;
+pub use dac_code::{DacCode, DacScale};
 pub use pwm::PwmCurrent;
+pub use settings::{SETTINGS_BYTES, Setting, SettingFacts, Settings, SettingsError};
+pub use store::{SaveError, Store};

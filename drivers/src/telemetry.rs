@@ -1,5 +1,6 @@
-//! The fields of a telemetry frame: the one list from which the firmware makes its log line and the
-//! host its decoder and the columns of a recording.
+//! The fields of a telemetry frame: the one list from which the firmware makes its log line, the host
+//! its decoder and the columns of a recording, and the link the payload of
+//! [`Frame`](crate::link::Frame).
 
 /// Hands the list of fields to the macro `$then`: the format of the log line, then a row for each
 /// field in the order of the format.
@@ -8,8 +9,20 @@
 /// marked `csv` is a column of that name in recordings. `$frame` is the firmware's `Frame`, `$lost`
 /// the number of frames that RTT lost.
 ///
-/// To add a field: its part of the format, its row, its line in docs/telemetry.md, and its value in
-/// firmware/app/src/telemetry.rs if the frame does not have it yet.
+/// To add a field: its part of the format, its row, its line in docs/telemetry.md, its value in
+/// firmware/app/src/telemetry.rs if the frame does not have it yet, and the next number of
+/// [`PROTOCOL`](crate::link::PROTOCOL).
+///
+/// The firmware makes the message of the link from the same values:
+///
+/// ```ignore
+/// macro_rules! message {
+///     ($format:literal; $($(#[$doc:meta])* $name:ident: $type:ty, $old:literal, $csv:ident, $value:expr;)+) => {
+///         drivers::link::Frame { $($name: $value),+ }
+///     };
+/// }
+/// let message = drivers::frame_fields!(message, frame, lost);
+/// ```
 #[macro_export]
 macro_rules! frame_fields {
     ($then:ident, $frame:ident, $lost:ident) => {
@@ -49,7 +62,7 @@ macro_rules! frame_fields {
             drops: u32, "drops", log, $frame.drops($lost);
             /// Those of `drops` that found no place in RTT, modulo 2^16; the others found none in the
             /// queue. Older images do not have it.
-            rtt_drops: Option<u32>, "rtt_drops", log, $lost as u16;
+            rtt_drops: Option<u16>, "rtt_drops", log, $lost as u16;
             /// Core clock cycles of the longest control task since the frame before.
             cycles: u32, "cycles", log, $frame.cycles;
         }

@@ -1,22 +1,24 @@
-//! The amplifier's driver against mocked pins and a mocked PWM channel.
+//! The amplifiers' driver against mocked outputs and pins, and a mocked PWM channel.
 
 use std::cell::RefCell;
-use std::convert::Infallible;
 
-use drivers::{Amplifier, CurrentOutput, PwmCurrent};
-use embedded_hal::digital::{ErrorType, OutputPin};
+use drivers::{Amplifier, Amplifiers, CurrentOutput, Enables, PwmCurrent};
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as On};
 use embedded_hal_mock::eh1::pwm::{Mock as Pwm, Transaction as Duty};
 use estimator_core::Amps;
+use haptic_control::Currents;
 
-/// What reaches an amplifier's inputs, in order.
+/// A call of an output, in order.
 #[derive(Debug, PartialEq)]
 enum Event {
     Command(f32),
-    Enable(bool),
+    Enable,
+    Renew,
+    Disable,
 }
 
 /// Outputs that write to one journal.
+#[derive(Clone, Copy)]
 struct Journal<'a>(&'a RefCell<Vec<Event>>);
 
 impl CurrentOutput for Journal<'_> {
@@ -25,68 +27,82 @@ impl CurrentOutput for Journal<'_> {
     }
 }
 
-impl ErrorType for Journal<'_> {
-    type Error = Infallible;
-}
-
-impl OutputPin for Journal<'_> {
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        self.0.borrow_mut().push(Event::Enable(false));
-        Ok(())
+impl Enables for Journal<'_> {
+    fn enable(&mut self) {
+        self.0.borrow_mut().push(Event::Enable);
     }
 
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        self.0.borrow_mut().push(Event::Enable(true));
-        Ok(())
+    fn renew(&mut self) {
+        self.0.borrow_mut().push(Event::Renew);
+    }
+
+    fn disable(&mut self) {
+        self.0.borrow_mut().push(Event::Disable);
     }
 }
 
+fn currents(large: f32, small: f32) -> Currents {
+    Currents {
+        large: Amps::new(large),
+        small: Amps::new(small),
+    }
+}
+
+/// The enable is given once. If hardware withdraws it, only disabling gives it again.
 #[test]
 fn command_precedes_enable_and_disable_precedes_command() {
-    use Event::{Command, Enable};
+    use Event::{Command, Disable, Enable, Renew};
     let journal = RefCell::new(Vec::new());
-    let mut fault = Pin::new(&[]);
-    let mut amplifier = Amplifier::new(Journal(&journal), Journal(&journal), fault.clone());
-    assert_eq!(journal.take(), [Enable(false), Command(0.0)]);
+    let output = Journal(&journal);
+    let (mut large, mut small) = (Pin::new(&[]), Pin::new(&[]));
+    let mut amplifiers = Amplifiers::new(
+        Amplifier::new(output, large.clone()),
+        Amplifier::new(output, small.clone()),
+        output,
+    );
+    let disabled = [Disable, Command(0.0), Command(0.0)];
+    assert_eq!(journal.take(), disabled);
     for _ in 0..2 {
-        amplifier.drive(Amps::new(0.5));
-        assert_eq!(journal.take(), [Command(0.5), Enable(true)]);
-        // Once enabled, the pin is left alone.
-        amplifier.drive(Amps::new(-0.25));
-        assert_eq!(journal.take(), [Command(-0.25)]);
-        amplifier.disable();
-        assert_eq!(journal.take(), [Enable(false), Command(0.0)]);
+        amplifiers.drive(currents(0.5, 0.125));
+        assert_eq!(journal.take(), [Command(0.5), Command(0.125), Enable]);
+        for _ in 0..2 {
+            amplifiers.drive(currents(-0.25, 1.0));
+            assert_eq!(journal.take(), [Command(-0.25), Command(1.0), Renew]);
+        }
+        amplifiers.disable();
+        assert_eq!(journal.take(), disabled);
     }
-    fault.done();
+    large.done();
+    small.done();
 }
 
 #[test]
-fn failed_enable_is_repeated() {
-    let refused = On::set(State::High).with_error(embedded_hal_mock::eh1::MockError::Io(
-        std::io::ErrorKind::Other,
-    ));
-    let mut enable = Pin::new(&[On::set(State::Low), refused, On::set(State::High)]);
-    let mut fault = Pin::new(&[]);
-    let commands = RefCell::new(Vec::new());
-    let mut amplifier = Amplifier::new(Journal(&commands), enable.clone(), fault.clone());
-    amplifier.drive(Amps::ZERO);
-    amplifier.drive(Amps::ZERO);
-    enable.done();
-    fault.done();
-}
-
-#[test]
-fn low_or_unreadable_fault_input_is_a_fault() {
+fn low_or_unreadable_ready_line_is_not_ready() {
     let unreadable = On::get(State::High).with_error(embedded_hal_mock::eh1::MockError::Io(
         std::io::ErrorKind::Other,
     ));
-    let mut enable = Pin::new(&[On::set(State::Low)]);
-    let mut fault = Pin::new(&[On::get(State::High), On::get(State::Low), unreadable]);
-    let commands = RefCell::new(Vec::new());
-    let mut amplifier = Amplifier::new(Journal(&commands), enable.clone(), fault.clone());
-    assert_eq!([(); 3].map(|()| amplifier.is_faulty()), [false, true, true]);
-    enable.done();
-    fault.done();
+    let (high, low) = (On::get(State::High), On::get(State::Low));
+    for (large, small, ready) in [
+        (high.clone(), Some(high.clone()), true),
+        (high.clone(), Some(low.clone()), false),
+        (high.clone(), Some(unreadable.clone()), false),
+        // The small amplifier is not asked.
+        (low, None, false),
+        (unreadable, None, false),
+    ] {
+        let journal = RefCell::new(Vec::new());
+        let output = Journal(&journal);
+        let small: Vec<_> = small.into_iter().collect();
+        let (mut large, mut small) = (Pin::new(&[large]), Pin::new(&small));
+        let mut amplifiers = Amplifiers::new(
+            Amplifier::new(output, large.clone()),
+            Amplifier::new(output, small.clone()),
+            output,
+        );
+        assert_eq!(amplifiers.are_ready(), ready);
+        large.done();
+        small.done();
+    }
 }
 
 /// The duties of these currents, of a channel whose largest is `top`, at a full scale.

@@ -17,8 +17,10 @@ mod parameter;
 mod row;
 mod rows;
 mod scaling;
+mod varying;
 
 pub use parameter::{Parameter, Search, WINDOW_LIMIT};
 pub use row::{Colour, Dash, Goal, Reports, Row, Settling, Variant};
 pub use rows::{ROWS, design};
 pub use scaling::{Powers, Scaling};
+pub use varying::{AssumesConstantPeriod, UpdateOver, VarianceOver, Varying};

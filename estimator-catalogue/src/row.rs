@@ -15,6 +15,8 @@ pub struct Row {
     pub summary: &'static str,
     /// Signals that the estimator reads.
     pub needs: Signals,
+    /// Whether the type takes a varying period: see [`VaryingPeriod`](estimator_core::VaryingPeriod).
+    pub varying_period: bool,
     /// Quantities that the estimator reports besides the velocity.
     pub reports: Reports,
     /// The type, as the macro has it.

@@ -104,7 +104,7 @@ macro_rules! rows {
         ($($parameter:ident: $range:tt),*),
         ($($variant:ident: $rate:literal, $capacity:literal;)*),
         { $($fact:tt)* },
-        |$($used:ident),*| $type:ty => $make:expr;
+        |$c:ident, $motor:ident, $rates:ident, $clock:ident, $p:ident, $N:ident| $type:ty => $make:expr;
     )*) => {
         /// All rows, in the order in which the command line shows them.
         pub const ROWS: &[Row] = &[$(design::$id::ROW),*];
@@ -120,6 +120,7 @@ macro_rules! rows {
                     pub const ROW: Row = Row {
                         name: $name,
                         id: stringify!($id),
+                        varying_period: varying_period(),
                         reports: Reports::$reports,
                         rust_type: stringify!($type),
                         rust_design: stringify!($make),
@@ -135,6 +136,16 @@ macro_rules! rows {
                         ),*],
                         $($fact)*
                     };
+
+                    const fn varying_period() -> bool {
+                        #[allow(unused_imports, reason = "unused if all types take a varying period")]
+                        use crate::varying::{AssumesConstantPeriod as _, Varying};
+                        use estimator_core as $c;
+                        // Any length: it is no matter of the trait.
+                        #[allow(dead_code, reason = "not every type has a length")]
+                        const $N: usize = 2;
+                        Varying::<$type>::UPDATE_OVER.is_some()
+                    }
 
                     /// The parameters by name, in the units of the row.
                     #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,10 +9,12 @@ mod member;
 mod regression;
 mod stamps;
 mod state;
+mod uneven;
 
 use crate::confidence::{Confidence, Variance};
 use crate::design::DesignError;
-use crate::estimator::{AccelerationEstimator, VelocityEstimator};
+use crate::estimator::{AccelerationEstimator, VaryingPeriod, VelocityEstimator};
+use crate::interval::limited_period;
 use crate::observer::{AdaptiveEdgeObserver, AdaptiveObserver};
 use crate::sample::{Sample, Signals};
 use crate::units::{CountsPerTick, CountsPerTickSquared, Hertz};
@@ -20,10 +22,11 @@ use crate::units::{CountsPerTick, CountsPerTickSquared, Hertz};
 pub use driven::{DrivenBank, DrivenBankState};
 pub use input::{BankInput, Followed};
 use interval::Likelihood;
-use ladder::Ladder;
+use ladder::{Ladder, Predict};
 pub use learned_current::{LearnedCurrent, LearnedCurrentState};
 pub use stamps::{NoStamps, Stamped, Stamps};
 pub use state::ModelBankState;
+use uneven::Interval;
 
 /// The bank of three members on counts.
 pub type Imm = ModelBank<3, NoStamps>;
@@ -58,7 +61,7 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 /// values of q are the rungs of a ladder of 18 decades from 10 counts²/s⁵; the members stand on K
 /// neighbouring rungs. One tick is
 /// ```text
-/// reset      a member with w < 0.01 takes state and covariance of the heaviest one, and w = 0.03
+/// reset      a member with w < 0.003 takes state and covariance of the heaviest one, and w = 0.06
 /// move       w > 0.9 of the last member: the bank moves up by a rung; of the first: down. The new
 ///            member takes state and covariance of its neighbour, and w = 0.2
 /// predict    x = F x       P = F P Fᵀ + Q(q)             F: transition of the model over one tick
@@ -68,7 +71,7 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 ///            truncated Gaussian; with stamps, of x_0 plus a noise of variance R
 /// weights    w_i = (w_i + c) L_i / Σ    L: density of e; without an edge the probability of the
 ///            interval
-/// noise      R = R (1 - 0.05 ρ)         ρ = e e' / S within ±1, e' of the edge before; R within
+/// noise      R = R (1 - 0.1 ρ)          ρ = e e' / S within ±1, e' of the edge before; R within
 ///            3e-4 and 0.1 counts²
 /// output     v = Σ w_i v_i      a = Σ w_i a_i      variance Σ w_i (P_11,i + (v_i - v)²)
 /// ```
@@ -79,6 +82,9 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 /// Rest: 0.3 s after the last change of the count and the last edge, v and a become 0 exactly, and stay
 /// 0 until the next change or edge. A shaft slower than 3.3 counts per second is taken for one at rest.
 /// A count that alternates between two values is not at rest.
+///
+/// Over another interval between samples F and Q are those of this interval, c and the time at rest
+/// grow with it, and an edge older than τ is not used.
 ///
 /// Units: counts and ticks. Valid for rates from 100 Hz to 100 kHz. The ladder covers encoders of 64 to
 /// 1e6 counts per revolution: q grows with the square of the counts, hence by 2.4e8 from one to the
@@ -104,7 +110,7 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 pub struct ModelBank<const K: usize, S> {
     ladder: Ladder,
     stamps: S,
-    /// Ticks without a change after which the shaft is at rest.
+    /// Time without a change after which the shaft is at rest, 1/1024 ticks.
     rest: u32,
     /// Probability that q changes in a tick, to one of the other members.
     change: f32,
@@ -113,11 +119,25 @@ pub struct ModelBank<const K: usize, S> {
 /// Time without a change after which the shaft is at rest, s.
 const REST: f64 = 0.3;
 
+/// Units of the time without a change in a tick.
+const TICK: u32 = 1024;
+
 /// Rate of changes of q, 1/s.
 const CHANGES: f64 = 1.0;
 
 /// Range of the control rate, Hz.
 const RATES: [f64; 2] = [100.0, 1e5];
+
+/// Refuses a control rate for which no bank is made.
+const fn checked(rate: Hertz) -> Result<(), DesignError> {
+    if !rate.is_positive() {
+        return Err(DesignError::RATE);
+    }
+    if !(rate.0 >= RATES[0] && rate.0 <= RATES[1]) {
+        return Err(DesignError::RATE_OF_BANK);
+    }
+    Ok(())
+}
 
 impl<const K: usize> ModelBank<K, NoStamps> {
     /// The bank on counts, updated at `rate`.
@@ -145,16 +165,13 @@ impl<const K: usize> ModelBank<K, Stamped> {
 impl<const K: usize, S: Copy> ModelBank<K, S> {
     const fn with_stamps(stamps: S, rate: Hertz) -> Result<Self, DesignError> {
         const { assert!(K >= 2 && K <= 8, "2 to 8 members") };
-        if !rate.is_positive() {
-            return Err(DesignError::RATE);
-        }
-        if !(rate.0 >= RATES[0] && rate.0 <= RATES[1]) {
-            return Err(DesignError::RATE_OF_BANK);
+        if let Err(error) = checked(rate) {
+            return Err(error);
         }
         Ok(Self {
             ladder: Ladder::new(rate.period_s()),
             stamps,
-            rest: (REST * rate.0) as u32,
+            rest: (REST * rate.0) as u32 * TICK,
             change: (CHANGES / rate.0 / (K as f64 - 1.0)) as f32,
         })
     }
@@ -176,6 +193,41 @@ impl<const K: usize, S: Stamps> VelocityEstimator for ModelBank<K, S> {
     }
 }
 
+impl<const K: usize, S: Stamps> VaryingPeriod for ModelBank<K, S> {
+    fn update_over(
+        &self,
+        state: &mut ModelBankState<K>,
+        sample: &Sample,
+        period: f32,
+    ) -> CountsPerTick {
+        if period == 1.0 {
+            return self.update(state, sample);
+        }
+        let period = limited_period(period);
+        let over = Over {
+            predict: &Interval::new(&self.ladder, period),
+            elapsed: (TICK as f32 * period + 0.5) as u32,
+            edges_within: self.ladder.correlation_time().min(period),
+            change: self.change * period,
+        };
+        match self.advance_over(state, sample, None, &over) {
+            Some(_) => CountsPerTick(state.velocity()),
+            None => CountsPerTick(0.0),
+        }
+    }
+}
+
+/// The interval between two samples, as a bank uses it.
+struct Over<'a, P> {
+    predict: &'a P,
+    /// Its length, 1/1024 ticks.
+    elapsed: u32,
+    /// Age below which an edge is used, ticks.
+    edges_within: f32,
+    /// Probability that q changes in it, to one of the other members.
+    change: f32,
+}
+
 /// How likely a bank found the measurement of a tick.
 struct Evidence {
     /// The likelihood, times `deviation`'s root.
@@ -194,20 +246,38 @@ impl<const K: usize, S: Stamps> ModelBank<K, S> {
         sample: &Sample,
         input: Option<f32>,
     ) -> Option<Evidence> {
+        let over = Over {
+            predict: &self.ladder,
+            elapsed: TICK,
+            edges_within: 1.0,
+            change: self.change,
+        };
+        self.advance_over(state, sample, input, &over)
+    }
+
+    /// Advances the state as [`ModelBank::advance`], over the interval `over`.
+    #[inline(always)]
+    fn advance_over(
+        &self,
+        state: &mut ModelBankState<K>,
+        sample: &Sample,
+        input: Option<f32>,
+        over: &Over<impl Predict>,
+    ) -> Option<Evidence> {
         let displacement = sample.count - state.anchor;
         state.anchor = sample.count;
-        let edge = self.stamps.fresh(sample);
+        let edge = self.stamps.fresh_within(sample, over.edges_within);
         if displacement.0 != 0 || edge.is_some() {
             state.still = 0;
         } else if state.resting {
             return None;
         } else {
-            state.still = state.still.saturating_add(1);
+            state.still = state.still.saturating_add(over.elapsed);
         }
         state.resting = false;
         state.reset();
         state.follow();
-        state.predict(&self.ladder, displacement.to_f32());
+        state.predict(over.predict, displacement.to_f32());
         if let Some(input) = input {
             state.drive(input);
         }
@@ -221,7 +291,7 @@ impl<const K: usize, S: Stamps> ModelBank<K, S> {
             }
             None => (state.correct_by_interval(ends), 1.0),
         };
-        let likelihood = state.weigh(&likelihoods, self.change);
+        let likelihood = state.weigh(&likelihoods, over.change);
         if state.still >= self.rest {
             state.stop();
         }
@@ -243,3 +313,6 @@ impl<const K: usize, S: Stamps> Confidence for ModelBank<K, S> {
         Variance(state.velocity_variance())
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -18,7 +18,7 @@ pub(crate) struct FreshEdge {
     pub(crate) phase: usize,
     /// Position from the middle of the quantisation interval of the newest count: ±1/2 count.
     pub(crate) position: f32,
-    /// Age in control periods, 0 to below 1.
+    /// Age in control periods, 0 to below the interval since the last sample.
     pub(crate) age: f32,
 }
 
@@ -39,14 +39,20 @@ impl EdgeClock {
         })
     }
 
-    /// The latest edge, if it came since the last sample and is a boundary of the newest count's
-    /// interval. Any other stamp disagrees with the counter and is ignored.
+    /// The latest edge, if it came since the last sample, one control period ago, and is a boundary of
+    /// the newest count's interval. Any other stamp disagrees with the counter and is ignored.
     #[inline(always)]
     pub(crate) fn fresh(&self, sample: &Sample) -> Option<FreshEdge> {
+        self.fresh_within(sample, 1.0)
+    }
+
+    /// The latest edge as [`EdgeClock::fresh`] gives it, if it is younger than `period` control periods.
+    #[inline(always)]
+    pub(crate) fn fresh_within(&self, sample: &Sample, period: f32) -> Option<FreshEdge> {
         let edge = sample.edge?;
         let age = edge.age.0 as f32 * self.period;
         let above = (edge.boundary - sample.count).0;
-        if age < 1.0 && (above == 0 || above == 1) {
+        if age < period && (above == 0 || above == 1) {
             Some(FreshEdge {
                 phase: (edge.boundary.0 & 3) as usize,
                 position: above as f32 - 0.5,

@@ -1,5 +1,6 @@
 //! The interface of every estimator.
 
+use crate::confidence::{Confidence, Variance};
 use crate::sample::{Sample, Signals};
 use crate::units::{CountsPerTick, CountsPerTickSquared};
 
@@ -25,6 +26,37 @@ pub trait VelocityEstimator {
 
     /// Processes the sample of one tick and returns the velocity at the instant of that sample.
     fn update(&self, state: &mut Self::State, sample: &Sample) -> CountsPerTick;
+}
+
+/// An estimator that also takes samples at uneven times.
+///
+/// [`update`](VelocityEstimator::update) assumes that one control period lies between two samples.
+/// `update_over` takes the interval itself. Both may be mixed.
+///
+/// ```
+/// use estimator_core::{Count, FiniteDifference, Sample, VaryingPeriod, VelocityEstimator};
+/// let mut state = FiniteDifference.start(&Sample::new(Count(0)));
+/// // A sample that comes a quarter of a period late.
+/// let v = FiniteDifference.update_over(&mut state, &Sample::new(Count(5)), 1.25);
+/// assert_eq!(v.0, 4.0); // counts per control period
+/// ```
+pub trait VaryingPeriod: VelocityEstimator {
+    /// Processes a sample that comes `period` control periods after the one before, and returns the
+    /// velocity at the instant of that sample, in counts per control period.
+    ///
+    /// A period of 1 gives the result of [`update`](VelocityEstimator::update), bit for bit. Valid from
+    /// 1/1024 to 2^20 periods: a shorter one, or NaN, is taken as 1/1024, a longer one as 2^20. The
+    /// number of instructions grows with the logarithm of the period at most.
+    fn update_over(&self, state: &mut Self::State, sample: &Sample, period: f32) -> CountsPerTick;
+
+    /// Variance of the velocity of the latest `update_over`, which had this `period`.
+    fn variance_over(&self, state: &Self::State, period: f32) -> Variance
+    where
+        Self: Confidence,
+    {
+        let _ = period;
+        self.variance(state)
+    }
 }
 
 /// An estimator whose model has an acceleration.

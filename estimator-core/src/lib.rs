@@ -9,10 +9,11 @@
 //! * Internal quantities are in counts and ticks; one tick is one control period T. Physical units
 //!   are converted once, by [`Scale`].
 //! * [`Confidence`] gives the variance of an estimate.
+//! * [`VaryingPeriod`] takes samples at uneven times.
 //! * Constructors are `const fn` and return a [`DesignError`] that names the parameter. [`preset!`]
 //!   turns it into a build error.
-//! * The traits [`VelocityEstimator`], [`AccelerationEstimator`] and [`Confidence`] may be
-//!   implemented by any crate. The traits of an estimator's parts ([`Fit`], [`Input`],
+//! * The traits [`VelocityEstimator`], [`VaryingPeriod`], [`AccelerationEstimator`] and
+//!   [`Confidence`] may be implemented by any crate. The traits of an estimator's parts ([`Fit`], [`Input`],
 //!   [`CurrentSource`], [`SlipSource`], [`Correction`], [`Adaptation`]) are sealed.
 //!
 //! The page of [`VelocityEstimator`] lists the estimators under its implementors. Each type documents its
@@ -49,6 +50,7 @@ mod design;
 mod edge_clock;
 mod estimator;
 mod filters;
+mod interval;
 mod models;
 mod observer;
 mod sample;
@@ -63,15 +65,16 @@ pub use bank::{
 };
 pub use confidence::{Confidence, Variance};
 pub use design::{DesignError, const_math};
-pub use estimator::{AccelerationEstimator, Skip, VelocityEstimator};
+pub use estimator::{AccelerationEstimator, Skip, VaryingPeriod, VelocityEstimator};
 pub use filters::*;
 pub use models::{CoupledMotor, CurrentInput, Input, Model, MotorModel, NoInput};
 pub use observer::{
-    Adaptation, Adaptive, AdaptiveEdgeObserver, AdaptiveObserver, AdaptiveQuantisedObserver,
-    AdaptiveState, AmplifierCurrent, Correction, CountObserver, CountUpdate, CoupledEncoder,
-    Covariance, CurrentSource, EdgeObserver, EdgeUpdate, EdgeUpdateState, Fixed, Gain, HeldShaft,
-    NoCurrent, Observer, ObserverDesign, ObserverState, ParameterErrors, QuantisedObserver,
-    QuantisedUpdate, QuantisedUpdateState, SlipSource, Uncertainty,
+    Adaptation, Adaptive, AdaptiveEdgeHeldObserver, AdaptiveEdgeObserver, AdaptiveHeldObserver,
+    AdaptiveObserver, AdaptiveQuantisedObserver, AdaptiveState, AmplifierCurrent, Correction,
+    CountObserver, CountUpdate, CoupledEncoder, Covariance, CurrentSource, EdgeObserver,
+    EdgeUpdate, EdgeUpdateState, Fixed, Gain, HeldShaft, Narrow, NoCurrent, Observer,
+    ObserverDesign, ObserverState, ParameterErrors, QuantisedObserver, QuantisedUpdate,
+    QuantisedUpdateState, Range, SlipSource, Uncertainty, Wide,
 };
 pub use sample::{Edge, Sample, Signals};
 pub use units::{

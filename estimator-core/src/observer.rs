@@ -16,6 +16,7 @@ mod motion;
 mod moving_start;
 mod plan;
 mod quantised_update;
+mod range;
 mod sensitivity;
 mod uncertainty;
 
@@ -31,6 +32,7 @@ pub use inputs::{
     AmplifierCurrent, CoupledEncoder, CurrentSource, HeldShaft, NoCurrent, SlipSource,
 };
 pub use quantised_update::{QuantisedUpdate, QuantisedUpdateState};
+pub use range::{Narrow, Range, Wide};
 pub use uncertainty::Uncertainty;
 
 use core::borrow::Borrow;
@@ -62,6 +64,14 @@ pub type AdaptiveQuantisedObserver =
 
 /// [`EdgeObserver`] that adapts damping, friction and torque constant.
 pub type AdaptiveEdgeObserver = Observer<AmplifierCurrent, CoupledEncoder, EdgeUpdate, Adaptive>;
+
+/// [`CountObserver`] for a device without an encoder on the coupled shaft, with a model that may be
+/// wrong by a factor of ten: see [`Wide`].
+pub type AdaptiveHeldObserver = Observer<AmplifierCurrent, HeldShaft, CountUpdate, Adaptive<Wide>>;
+
+/// [`AdaptiveHeldObserver`] with edge time stamps.
+pub type AdaptiveEdgeHeldObserver =
+    Observer<AmplifierCurrent, HeldShaft, EdgeUpdate, Adaptive<Wide>>;
 
 /// Largest innovation that changes the velocity, counts: a larger step of the count is a fault.
 const LARGEST_INNOVATION: f32 = 65_536.0;
@@ -95,7 +105,7 @@ const LARGEST_FRICTION_ERROR: f32 = 0.5;
 /// The type parameters leave out what a device does not measure: the current source C
 /// ([`AmplifierCurrent`], [`NoCurrent`]), the slip source S ([`CoupledEncoder`], [`HeldShaft`]), the
 /// correction M ([`CountUpdate`], [`QuantisedUpdate`], [`EdgeUpdate`]) and the adaptation L
-/// ([`Fixed`], [`Adaptive`]). An [`ObserverDesign`] constructs an observer of any parts.
+/// ([`Fixed`], [`Adaptive`] in the range [`Narrow`] or [`Wide`]). An [`ObserverDesign`] constructs an observer of any parts.
 ///
 /// Valid for innovations up to 65536 counts; beyond, the position follows and the velocity is
 /// corrected by 65536. A displacement beyond ±2^24 counts/tick is rounded.

@@ -65,6 +65,15 @@ impl Counts {
     pub const fn to_f32(self) -> f32 {
         self.0 as f32
     }
+
+    /// The longest displacement in a tick that is taken for motion: that of a counter of 16 bits.
+    pub(crate) const LONGEST_STEP: i32 = i16::MAX as i32;
+
+    /// Whether the displacement of a tick is taken for motion.
+    #[inline(always)]
+    pub(crate) const fn is_motion(self) -> bool {
+        -Self::LONGEST_STEP <= self.0 && self.0 <= Self::LONGEST_STEP
+    }
 }
 
 /// Velocity in counts per control period.

@@ -6,6 +6,7 @@
 //! memory map in build.rs.
 
 use estimator_core::{Amps, Count, Sample};
+use firmware_app::port::PortFaults;
 use haptic_control::{Currents, Stop};
 
 #[cfg(feature = "nucleo-f429zi")]
@@ -26,8 +27,11 @@ pub(crate) trait Board {
     /// Reads the reference encoder, if the image has one.
     fn reference(&mut self) -> Option<Count>;
 
-    /// Whether an amplifier reports a fault.
-    fn amplifier_fault(&mut self) -> bool;
+    /// Whether both amplifiers are ready. Amplifiers may be not ready while they are disabled.
+    fn amplifiers_ready(&mut self) -> bool;
+
+    /// Whether the interlock loop is open, or was open since the amplifiers were last disabled.
+    fn interlock_was_open(&self) -> bool;
 
     /// Whether the core does not run on its crystal.
     fn clock_failure(&self) -> bool;
@@ -50,11 +54,30 @@ pub(crate) trait Watchdog {
     fn feed(&mut self);
 }
 
+/// The serial port to the host. Each call is bounded and waits for nothing.
+pub(crate) trait Port {
+    /// Passes on what waits to be sent, and ends errors of the line. Called at each look of the task
+    /// of lowest priority.
+    fn look(&mut self);
+
+    /// Takes the next byte that has come.
+    fn receive(&mut self) -> Option<u8>;
+
+    /// Queues a frame to be sent, or counts it as lost if it does not fit.
+    fn send(&mut self, frame: &[u8]);
+
+    /// Returns what has gone wrong since the start.
+    fn faults(&self) -> PortFaults;
+}
+
 /// Inputs of a board at its tick.
-pub(crate) struct Start<W> {
+pub(crate) struct Start<W, P> {
     pub(crate) watchdog: W,
+    pub(crate) port: P,
     /// Cause of the last reset.
     pub(crate) reset: Stop,
+    /// Whether the flash has settings that this image can read.
+    pub(crate) is_calibrated: bool,
     /// Whether a falling supply resets the chip and is named as the cause.
     pub(crate) brown_out_reset: bool,
 }

@@ -2,17 +2,23 @@
 
 use estimator_core::Count;
 use firmware_app::commands::Rejected;
+use firmware_app::port::PortFaults;
 use firmware_app::telemetry::{DEPTH, Frame};
 use heapless::spsc::Consumer;
 
-/// Logs the frames that wait; whether there were any.
-pub(crate) fn frames(frames: &mut Consumer<'static, Frame>) -> bool {
+use crate::boards::Port;
+use crate::link::Link;
+
+/// Logs the frames that wait, and sends them over the link; whether there were any.
+pub(crate) fn frames(frames: &mut Consumer<'static, Frame>, link: &mut Link<impl Port>) -> bool {
     let mut any = false;
     for _ in 0..DEPTH {
         let Some(frame) = frames.dequeue() else {
             break;
         };
-        log(&frame);
+        let lost = firmware_rt::lost();
+        log(&frame, lost);
+        link.frame(&frame, lost);
         any = true;
     }
     any
@@ -25,8 +31,7 @@ macro_rules! line {
     };
 }
 
-fn log(frame: &Frame) {
-    let lost = firmware_rt::lost();
+fn log(frame: &Frame, lost: u32) {
     drivers::frame_fields!(line, frame, lost);
     if let Some(edge) = frame.edge() {
         defmt::info!(
@@ -64,4 +69,9 @@ pub(crate) fn rejected([before, now]: [Rejected; 2]) {
             now.unknown
         );
     }
+}
+
+/// Logs what has gone wrong on the serial port.
+pub(crate) fn port(faults: PortFaults) {
+    defmt::warn!("port errors={=u32} lost={=u32}", faults.errors, faults.lost);
 }

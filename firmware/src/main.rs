@@ -3,5 +3,6 @@
 #![no_main]
 
 mod boards;
+mod link;
 mod log;
 mod tasks;

@@ -1,15 +1,18 @@
 //! The two tasks of the firmware: control at the highest priority, the rest at the lowest.
 
+use drivers::link::Hello;
 use estimator_core::Amps;
-use firmware_app::commands::{Commands, Messages};
-use firmware_app::config::{AUTO_ARM, RATE_HZ};
+use firmware_app::commands::{Channel, Commands, Messages};
+use firmware_app::config::AUTO_ARM;
 use firmware_app::control::{Control, Inputs, Message};
+use firmware_app::port::PortFaults;
+use firmware_app::reports::Reports;
 use firmware_app::telemetry::{Frame, Frames, Sender};
 use haptic_control::Request;
 use heapless::spsc::Consumer;
-use tuned::{DEVICE_FINGERPRINT, PRESETS_FINGERPRINT};
 
-use crate::boards::{Board, Start, Watchdog};
+use crate::boards::{Board, Port, Start, Watchdog};
+use crate::link::{COMMIT, Link, VERSION, identity};
 use crate::log;
 
 /// The queues between the tasks.
@@ -29,27 +32,37 @@ impl Queues {
 }
 
 /// Both tasks, on a board that has just started.
-pub(crate) fn tasks<W: Watchdog>(
+pub(crate) fn tasks<W: Watchdog, P: Port>(
     board: &mut impl Board,
-    start: Start<W>,
+    start: Start<W, P>,
     queues: &'static mut Queues,
-) -> (ControlTask, IdleTask<W>) {
+) -> (ControlTask, IdleTask<W, P>) {
     let Start {
         watchdog,
+        port,
         reset,
         brown_out_reset,
+        is_calibrated,
     } = start;
     let (to_log, frames) = queues.frames.split();
     let (to_control, messages) = queues.messages.split();
     let first = board.sample(Amps::ZERO);
+    let identity = identity(reset, brown_out_reset);
     defmt::info!(
-        "boot rate={=u32} cause={=u8} brown-out-reset={=bool} device={=u32:08x} presets={=u32:08x}",
-        RATE_HZ,
-        reset as u8,
-        brown_out_reset,
-        DEVICE_FINGERPRINT.0,
-        PRESETS_FINGERPRINT.0
+        "boot rate={=u32} cause={=u8} brown-out-reset={=bool} device={=u32:08x} presets={=u32:08x} version={=str} commit={=str} features={=str} protocol={=u16}",
+        identity.rate,
+        identity.cause,
+        identity.brown_out_reset,
+        identity.device,
+        identity.presets,
+        VERSION,
+        COMMIT,
+        env!("FEATURES"),
+        identity.protocol
     );
+    if !is_calibrated {
+        defmt::warn!("no settings in flash: zero and gain of the current outputs are nominal");
+    }
     if AUTO_ARM && !brown_out_reset {
         defmt::warn!("auto-arm waits for a command: the brown-out level is not 3");
     }
@@ -58,11 +71,16 @@ pub(crate) fn tasks<W: Watchdog>(
         sender: Sender::new(to_log),
         control: Control::new(&first, reset, brown_out_reset),
     };
-    let idle = IdleTask {
+    let mut idle = IdleTask {
         frames,
         commands: Commands::new(to_control),
         watchdog,
+        link: Link { port, rtt: false },
+        identity,
+        port_first: false,
+        reports: Reports::default(),
     };
+    idle.link.send(identity);
     (control, idle)
 }
 
@@ -89,7 +107,8 @@ impl ControlTask {
         let request = control.accept(messages.dequeue());
         let arms = AUTO_ARM || request == Some(Request::Arm);
         let inputs = Inputs {
-            amplifier_fault: board.amplifier_fault(),
+            amplifiers_ready: board.amplifiers_ready(),
+            interlock: board.interlock_was_open(),
             clock_failure: board.clock_failure(),
             missed,
             debugger: arms && firmware_rt::debugger_interferes(),
@@ -105,22 +124,49 @@ impl ControlTask {
 }
 
 /// Everything that may wait: commands, the log, the watchdog.
-pub(crate) struct IdleTask<W> {
+pub(crate) struct IdleTask<W, P> {
     frames: Consumer<'static, Frame>,
     commands: Commands<'static>,
     watchdog: W,
+    link: Link<P>,
+    identity: Hello,
+    /// Whether the last look began with the port.
+    port_first: bool,
+    reports: Reports<PortFaults>,
 }
 
-impl<W: Watchdog> IdleTask<W> {
+impl<W: Watchdog, P: Port> IdleTask<W, P> {
     /// One look at the channels. The watchdog is fed if the control task has sent a frame.
     #[inline(always)]
     pub(crate) fn run(&mut self) {
-        self.commands.receive(firmware_rt::receive);
-        if log::frames(&mut self.frames) {
+        let Self { link, commands, .. } = self;
+        link.port.look();
+        // In turn: a channel that fills the queue of messages leaves the other its share.
+        self.port_first = !self.port_first;
+        let mut channels = [Channel::Port, Channel::Rtt];
+        if !self.port_first {
+            channels.reverse();
+        }
+        for channel in channels {
+            commands.receive(channel, || match channel {
+                Channel::Port => link.port.receive(),
+                Channel::Rtt => firmware_rt::receive(),
+            });
+        }
+        link.rtt = commands.is_used(Channel::Rtt);
+        if let Some(counts) = commands.asked() {
+            link.send(self.identity);
+            link.rejected(counts);
+        }
+        if log::frames(&mut self.frames, link) {
             self.watchdog.feed();
             firmware_rt::undo_debugger();
-            if let Some(counts) = self.commands.report() {
-                log::rejected(counts);
+            if let Some([before, now]) = commands.report() {
+                log::rejected([before, now]);
+                link.rejected(now);
+            }
+            if let Some([_, faults]) = self.reports.take(link.port.faults()) {
+                log::port(faults);
             }
         }
     }

@@ -80,8 +80,12 @@ pub enum Request {
 pub struct Findings {
     /// Cause that the monitor found.
     pub monitor: Option<Stop>,
-    /// An amplifier's fault input is active.
-    pub amplifier_fault: bool,
+    /// Both amplifiers are ready. Amplifiers may be not ready while they are disabled and for some
+    /// time after they are enabled.
+    pub amplifiers_ready: bool,
+    /// The interlock loop is open, or was open since the amplifiers were last disabled: hardware
+    /// has disabled the amplifiers.
+    pub interlock: bool,
     /// The clock is not that of the crystal.
     pub clock_failure: bool,
     /// Torque and velocities are finite.
@@ -97,7 +101,8 @@ impl Findings {
     /// Findings of a tick without a fault.
     pub const WELL: Self = Self {
         monitor: None,
-        amplifier_fault: false,
+        amplifiers_ready: true,
+        interlock: false,
         clock_failure: false,
         finite: true,
         missed: 0,
@@ -124,13 +129,17 @@ pub struct Order {
 ///     Safety { settle: 200, silence: Some(5000), disarm: Some(50_000), missed: 4, scenes: 8 };
 /// let mut state = SAFETY.start(Stop::None);
 /// assert!(SAFETY.tick(&mut state, &Findings::WELL, Some(Request::Arm)).enable);
-/// let fault = Findings { amplifier_fault: true, ..Findings::WELL };
-/// assert!(!SAFETY.tick(&mut state, &fault, None).enable);
-/// assert_eq!((state.mode(), state.stop()), (Mode::Safe, Stop::AmplifierFault));
+/// // An amplifier that has just been enabled may take some time until it is ready.
+/// let not_ready = Findings { amplifiers_ready: false, ..Findings::WELL };
+/// assert!(SAFETY.tick(&mut state, &not_ready, None).enable);
+/// let open = Findings { interlock: true, ..Findings::WELL };
+/// assert!(!SAFETY.tick(&mut state, &open, None).enable);
+/// assert_eq!((state.mode(), state.stop()), (Mode::Safe, Stop::Interlock));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Safety {
-    /// Time after enabling the amplifiers in which no current is commanded.
+    /// Time after enabling the amplifiers in which no current is commanded. At its end the
+    /// amplifiers have to be ready.
     pub settle: u32,
     /// Longest time without a command while running, after which the scene is switched off; `None`:
     /// no limit.
@@ -170,6 +179,15 @@ impl SafetyState {
     #[must_use]
     pub const fn stop(&self) -> Stop {
         self.stop
+    }
+
+    /// Whether the amplifiers have to be ready: from the last tick of settling on.
+    const fn needs_amplifiers(&self) -> bool {
+        match self.mode {
+            Mode::Boot | Mode::Safe => false,
+            Mode::Settling => self.settling <= 1,
+            Mode::Armed | Mode::Running => true,
+        }
     }
 }
 
@@ -325,18 +343,21 @@ impl Safety {
         order
     }
 
-    /// The most urgent cause of a stop among the findings.
+    /// The cause of a stop among the findings. A cause that brings about others comes before them:
+    /// missed ticks let hardware disable the amplifiers, and a disabled amplifier is not ready.
     fn fault(&self, state: &SafetyState, findings: &Findings) -> Stop {
         if findings.clock_failure {
             Stop::ClockFailure
-        } else if findings.amplifier_fault {
+        } else if findings.interlock {
+            Stop::Interlock
+        } else if state.debt >= self.missed.saturating_mul(MISSED_WEIGHT).max(1) {
+            Stop::TickOverrun
+        } else if !findings.amplifiers_ready && state.needs_amplifiers() {
             Stop::AmplifierFault
         } else if let Some(cause) = findings.monitor {
             cause
         } else if !findings.finite {
             Stop::NonFinite
-        } else if state.debt >= self.missed.saturating_mul(MISSED_WEIGHT).max(1) {
-            Stop::TickOverrun
         } else {
             Stop::None
         }

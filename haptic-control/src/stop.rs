@@ -46,7 +46,7 @@ stops! {
     Jump = 3, "jump";
     /// The large motor's current was high for some time, and its encoder did not move.
     Stall = 4, "not-moving";
-    /// An amplifier reports a fault.
+    /// An amplifier is not ready, or was not ready in time after it was enabled.
     AmplifierFault = 5, "amplifier-fault";
     /// Control ticks were missed.
     TickOverrun = 6, "tick-overrun";
@@ -74,4 +74,7 @@ stops! {
     Debugger = 15, "debugger";
     /// An interrupt or exception that nothing handles, in the session before this reset.
     Exception = 16, "exception";
+    /// The interlock loop opened, and hardware disabled the amplifiers: the emergency stop is
+    /// pressed, or an amplifier reports a fault in the loop.
+    Interlock = 17, "interlock";
 }

@@ -19,6 +19,7 @@ mod robust;
 mod sensitivity;
 mod simulate;
 mod tune;
+mod uneven;
 mod zwidth;
 
 use std::ffi::OsString;

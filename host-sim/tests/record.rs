@@ -99,14 +99,23 @@ fn log_is_converted_replayed_and_drawn() {
         printed,
         fs::read_to_string(folder.0.join("run.csv")).unwrap()
     );
-    let [estimates, said] = folder.good(&["replay", "run.csv", "--estimator", "pll"], b"");
-    assert_eq!(estimates.lines().count(), 191);
+    let replay = ["replay", "run.csv", "--estimator"];
+    let uneven = "t is uneven in 0.53 % of steps (1 of 189), by up to 10000 us";
+    let refused = folder.refused(&[&replay[..], &["pll"]].concat(), b"");
     assert!(
-        said.contains("t is uneven in 0.53 % of steps (1 of 189), by up to 10000 us"),
-        "{said}"
+        refused.contains(uneven) && refused.contains("add --resample 1000"),
+        "{refused}"
     );
+    let [estimates, said] = folder.good(&[&replay[..], &["low-pass"]].concat(), b"");
+    assert_eq!(estimates.lines().count(), 191);
+    assert!(said.contains(uneven), "{said}");
+    let even = [&replay[..], &["pll", "--resample", "1000"]].concat();
+    let [estimates, said] = folder.good(&even, b"");
+    // The ten missing rows are interpolated.
+    assert_eq!(estimates.lines().count(), 201);
+    assert!(said.contains("200 rows at 1000 Hz"), "{said}");
     // A count is 1.5 rad/s from row to row, so the estimate is right on average alone.
-    let velocities = estimates.lines().skip(91);
+    let velocities = estimates.lines().skip(101);
     let velocities = velocities.map(|line| line.rsplit(',').next().unwrap().parse::<f64>());
     let mean = velocities.map(Result::unwrap).sum::<f64>() / 100.0;
     assert!((mean - 1.0).abs() < 0.1, "{mean} rad/s");

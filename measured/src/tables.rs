@@ -27,6 +27,7 @@ pub const ALL: &[Table] = &[
     FAULTS,
     ESTIMATORS,
     REAL_MOTION,
+    REAL_RESOLUTION,
     REFERENCE,
     PAPER,
     FINITE_DIFFERENCE,

@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::Parser;
 use experiments::closed_loop::Hand;
@@ -13,11 +14,12 @@ use terminal::failure::Failure;
 use terminal::output::{print_bytes, write_whole};
 use terminal::wording::WIDTH;
 
+use crate::bridge::{Bridge, LAG_S, Pace};
 use crate::budget;
 use crate::command::Command;
 use crate::fault::Fault;
 use crate::image::{HOW_TO_BUILD, Image};
-use crate::run::{Setup, on_board};
+use crate::run::{DacError, Setup, on_board};
 use crate::scene;
 use crate::summary::summary;
 
@@ -56,9 +58,9 @@ struct Arguments {
     /// reversals); pressing (once with 10 N)
     #[arg(long, value_name = "NAME", default_value = "moving", value_parser = holder)]
     hand: HandChoice,
-    /// Virtual duration, above 0, at most 3600 s
-    #[arg(long, value_name = "S", default_value_t = 3.0)]
-    seconds: f64,
+    /// Virtual duration, above 0, at most 3600 s [default: 3; 3600 with --link]
+    #[arg(long, value_name = "S")]
+    seconds: Option<f64>,
     /// Seed of the hand's motion and of the encoders' phases
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -82,11 +84,26 @@ struct Arguments {
     /// Write the bytes of RTT channel 0, for cargo sim record --image
     #[arg(long, value_name = "FILE")]
     rtt: Option<PathBuf>,
+    /// Serve the board's serial port over TCP at this port of 127.0.0.1, 0 for a free one, in real
+    /// time; print the address. The client commands the board. One client at a time
+    #[arg(long, value_name = "PORT", conflicts_with_all = ["scene", "tune", "estimator", "record", "rtt", "budget"])]
+    link: Option<u16>,
     /// Print only the cost of a control tick in every scene, each run for --seconds, at most 1 s:
     /// instructions, estimated cycles, and the control rate at which the ticks use half of the
     /// processor's time
     #[arg(long, conflicts_with_all = ["device", "scene", "hand", "fault", "record", "rtt", "tune", "estimator", "dac_offset"])]
     budget: bool,
+}
+
+/// Longest run, s.
+const LONGEST_S: f64 = 3600.0;
+
+impl Arguments {
+    /// Virtual duration, s.
+    fn seconds(&self) -> f64 {
+        let usual = if self.link.is_some() { LONGEST_S } else { 3.0 };
+        self.seconds.unwrap_or(usual)
+    }
 }
 
 /// The list of faults, the build command, and examples.
@@ -101,6 +118,7 @@ fn after_help() -> String {
         Examples:\n  \
         cargo board --scene wall --hand pushing --record wall.csv\n  \
         cargo board --fault swapped@0.5 --seconds 1\n  \
+        cargo board --link 0\n  \
         cargo board --budget"
     )
 }
@@ -161,11 +179,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Ok(arguments) => arguments,
         Err(error) => return terminal::explain(&error, "cargo board"),
     };
-    if !(arguments.seconds > 0.0 && arguments.seconds <= 3600.0) {
-        let message = format!(
-            "--seconds {}: must be above 0 and at most 3600 s",
-            arguments.seconds
-        );
+    let seconds = arguments.seconds();
+    if !(seconds > 0.0 && seconds <= LONGEST_S) {
+        let message = format!("--seconds {seconds}: must be above 0 and at most {LONGEST_S} s");
         return Err(Failure::Input(message));
     }
     let path = arguments
@@ -184,7 +200,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     }
     let image = Image::read(&path)?;
     if arguments.budget {
-        let table = budget::table(&image, arguments.seconds.min(1.0), arguments.seed)?;
+        let table = budget::table(&image, seconds.min(1.0), arguments.seed)?;
         return print_bytes(table.as_bytes());
     }
     let device = arguments
@@ -198,12 +214,15 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         },
         device,
         seed: arguments.seed,
-        seconds: arguments.seconds,
+        seconds,
         faults: arguments.fault.clone(),
         commands,
-        dac_offset: arguments.dac_offset,
+        dac_errors: [DacError::offset(f64::from(arguments.dac_offset)); 2],
         ..Setup::default()
     };
+    if let Some(port) = arguments.link {
+        return serve(port, &image, setup);
+    }
     let outcome = on_board(&image, &setup, bar(setup.seconds))?;
     print_bytes(summary(scene, &setup, &outcome).as_bytes())?;
     if let Some(path) = &arguments.record {
@@ -218,9 +237,28 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     outcome.check()
 }
 
+/// Serves the serial port to clients, which command the board.
+fn serve(port: u16, image: &Image, setup: Setup) -> Result<(), Failure> {
+    let bridge = Bridge::bind(port).map_err(Failure::Input)?;
+    let address = bridge.address();
+    print_bytes(format!("serial port of the board at {address}\n").as_bytes())?;
+    let setup = Setup {
+        commands: Vec::new(),
+        keep_alive: false,
+        ..setup
+    };
+    let Pace { seconds, lag_s } = bridge.run(image, &setup, Arc::default())?;
+    let lag = if lag_s < LAG_S {
+        "in real time".to_owned()
+    } else {
+        format!("up to {lag_s:.3} s behind real time: this computer is busy or too slow")
+    };
+    print_bytes(format!("{seconds:.3} s of virtual time, {lag}\n").as_bytes())
+}
+
 /// Refuses events after the end of the run.
 fn in_time(arguments: &Arguments) -> Result<(), Failure> {
-    let end = arguments.seconds;
+    let end = arguments.seconds();
     let faults = arguments.fault.iter();
     let faults = faults.map(|(at, fault)| ("fault", *at, fault.as_str().to_owned()));
     let tunes = arguments.tune.iter();

@@ -13,16 +13,32 @@ pub enum Fault {
     Swapped,
     /// The last four of every 64 edges of the large motor's encoder are lost.
     LostCounts,
-    /// The large motor's amplifier reports a fault. It continues to drive, so that only the
+    /// The large motor's amplifier is no longer ready. It continues to drive, so that only the
     /// firmware can stop it.
     AmplifierFault,
-    /// The small motor's amplifier reports a fault and continues to drive.
+    /// The small motor's amplifier is no longer ready and continues to drive.
     SmallAmplifierFault,
+    /// The wire of the large amplifier's ready line breaks.
+    BrokenReadyWire,
+    /// The large amplifier loses its supply. Its fault contact opens the interlock loop.
+    Unpowered,
+    /// The large amplifier takes this number of ms from its enable until it is ready, from power-up
+    /// on.
+    ReadyAfter(u16),
+    /// The emergency stop is pressed: the interlock loop is open from then on.
+    EmergencyStop,
+    /// The interlock loop opens for 20 us.
+    InterlockGlitch,
     /// The core stops until the watchdog resets it.
     HungCore,
-    /// A debugger halts the core for this number of ms, or until a reset. Timers and watchdog
-    /// continue, the outputs keep their state, and the cycle counter stops.
+    /// A debugger halts the core for this number of ms, or until a reset. Watchdog and tick timer
+    /// continue, the cycle counter stops, and the timer of the enables does as `DBG_TIM8_STOP` says.
     Halt(u16),
+    /// A debugger freezes the watchdog and halts the core for ever.
+    FrozenHalt,
+    /// A debugger freezes the watchdog, lets the timer of the enables continue in a halt, and halts
+    /// the core for ever.
+    FrozenHaltTimerOn,
     /// For 10 ms every control task takes 1.2 periods, because the core stops in the middle of it.
     LongTasks,
     /// The timer of the control tick stops; all other parts continue.
@@ -54,7 +70,7 @@ pub enum Fault {
 }
 
 /// Each fault with its name on the command line and its description.
-const NAMES: [(Fault, &str, &str); 27] = [
+const NAMES: [(Fault, &str, &str); 35] = [
     (Fault::StuckA, "stuck-a", "large encoder's line A stuck"),
     (Fault::StuckB, "stuck-b", "large encoder's line B stuck"),
     (
@@ -75,12 +91,42 @@ const NAMES: [(Fault, &str, &str); 27] = [
     (
         Fault::AmplifierFault,
         "amplifier-fault",
-        "large amplifier reports a fault and continues to drive",
+        "large amplifier is no longer ready and continues to drive",
     ),
     (
         Fault::SmallAmplifierFault,
         "small-amplifier-fault",
-        "small amplifier reports a fault and continues to drive",
+        "small amplifier is no longer ready and continues to drive",
+    ),
+    (
+        Fault::BrokenReadyWire,
+        "broken-ready-wire",
+        "wire of the large amplifier's ready line breaks",
+    ),
+    (
+        Fault::Unpowered,
+        "unpowered-amplifier",
+        "large amplifier loses its supply",
+    ),
+    (
+        Fault::ReadyAfter(15),
+        "ready-after-15ms",
+        "large amplifier is ready 15 ms after its enable, for any S",
+    ),
+    (
+        Fault::ReadyAfter(30),
+        "ready-after-30ms",
+        "large amplifier is ready 30 ms after its enable, for any S",
+    ),
+    (
+        Fault::EmergencyStop,
+        "emergency-stop",
+        "the emergency stop opens the interlock loop",
+    ),
+    (
+        Fault::InterlockGlitch,
+        "interlock-glitch",
+        "the interlock loop opens for 20 us",
     ),
     (
         Fault::HungCore,
@@ -111,6 +157,16 @@ const NAMES: [(Fault, &str, &str); 27] = [
         Fault::Halt(500),
         "halt-500ms",
         "a debugger halts the core for 500 ms",
+    ),
+    (
+        Fault::FrozenHalt,
+        "frozen-halt",
+        "a debugger freezes the watchdog and halts the core",
+    ),
+    (
+        Fault::FrozenHaltTimerOn,
+        "frozen-halt-timer-on",
+        "a debugger freezes the watchdog, clears DBG_TIM8_STOP and halts the core",
     ),
     (
         Fault::LongTasks,

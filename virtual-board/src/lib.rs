@@ -4,7 +4,9 @@
 //! the amplifiers, and RTT is read and written as by a debug probe. The image runs unmodified. Cycles
 //! are not modelled: a virtual second is a constant number of instructions.
 
+mod amplifiers;
 pub mod board;
+pub mod bridge;
 pub mod budget;
 pub mod cli;
 pub mod code;
@@ -12,11 +14,13 @@ pub mod command;
 pub mod cycles;
 pub mod dac;
 pub mod fault;
+mod flash;
 pub mod image;
 mod lines;
 mod lockstep;
 mod objections;
 pub mod pins;
+pub mod port;
 mod probe;
 mod quadrature;
 pub mod recording;

@@ -16,14 +16,16 @@ use rigless::time::VirtualNanos;
 use simulation::encoder::{DiscErrors, Encoder};
 use simulation::plant::Grip;
 
+use crate::amplifiers::Amplifiers;
 use crate::board::ControllerBoard;
+use crate::bridge::Live;
 use crate::fault::Fault;
 use crate::image::Image;
 use crate::lines::Lines;
-use crate::pins;
+use crate::port::Port;
 use crate::probe::{DebugProbe, schedule};
 use crate::quadrature::{Edge, Generator, LARGE};
-use crate::run::{ControlTick, PlantState, RATE_HZ, Setup};
+use crate::run::{ControlTick, DacError, PlantState, RATE_HZ, Setup};
 use crate::stack::Stack;
 pub use core_access::CoreAccess;
 use core_access::CoreAccesses;
@@ -62,6 +64,7 @@ pub(crate) struct Lockstep {
     motion: Motion,
     grip: Grip,
     lines: Lines,
+    amplifiers: Amplifiers,
     edges: VecDeque<Edge>,
     /// Edges of the step being computed.
     fresh: Vec<Edge>,
@@ -74,6 +77,9 @@ pub(crate) struct Lockstep {
     /// Start of the crystal, ns, and its frequency; `None` if it has run from the beginning.
     crystal: Option<(u64, u64)>,
     pub(crate) probe: DebugProbe,
+    pub(crate) port: Port,
+    /// The client of a run in real time.
+    pub(crate) live: Option<Live>,
     stack: Stack,
     pub(crate) accesses: CoreAccesses,
     entry: u64,
@@ -89,7 +95,7 @@ pub(crate) struct Lockstep {
     stalls: Stalls,
     /// Virtual time that an instruction takes, ns.
     instruction_ns: f64,
-    dac_offset: i16,
+    dac_errors: [DacError; 2],
     resets: usize,
     progress: Box<dyn FnMut(f64) + Send>,
 }
@@ -118,6 +124,7 @@ impl Lockstep {
         Self {
             recorded: Recorded::default(),
             lines: Lines::at(counts),
+            amplifiers: Amplifiers::new(&setup.faults),
             bench,
             reference,
             motion: setup.hand.motion(1.0 / RATE_HZ, setup.seed),
@@ -132,6 +139,8 @@ impl Lockstep {
             crystal: (setup.crystal_from_s > 0.0)
                 .then_some(((setup.crystal_from_s * 1e9) as u64, setup.crystal_hz)),
             probe: DebugProbe::new(image.rtt, setup),
+            port: Port::new(setup),
+            live: None,
             stack: Stack(image.stack),
             accesses: CoreAccesses::new(&setup.accesses, Stack(image.stack)),
             entry: image.entry,
@@ -144,7 +153,7 @@ impl Lockstep {
             follow: Follow::new(image, setup),
             stalls: Stalls::default(),
             instruction_ns: 1e9 / setup.instructions_per_second.get() as f64,
-            dac_offset: setup.dac_offset,
+            dac_errors: setup.dac_errors,
             resets: 0,
             progress,
         }
@@ -167,14 +176,28 @@ impl Lockstep {
         (self.steps % STEPS_PER_TICK) as f64 * STEP_S
     }
 
-    /// Levels of the pins after a restart: pull-downs of the board, amplifiers without a fault.
+    /// Serves the client of a run in real time, and forgets what a run without a client records;
+    /// whether the run goes on.
+    fn serve(&mut self, now_ns: u64) -> bool {
+        let Some(live) = &mut self.live else {
+            return true;
+        };
+        let Recorded {
+            ticks,
+            plant_states,
+            ..
+        } = &mut self.recorded;
+        // The latest is compared with the next.
+        ticks.drain(..ticks.len().saturating_sub(1));
+        plant_states.clear();
+        self.probe.stream.clear();
+        self.probe.link.clear();
+        live.look(&mut self.port.wire(), now_ns)
+    }
+
+    /// Levels of the pins after a restart.
     fn restart(&mut self, board: &mut ControllerBoard, at: VirtualNanos) {
-        for pin in pins::ENABLES {
-            pins::drive(&mut board.part, at, pin, false);
-        }
-        for pin in pins::FAULTS {
-            pins::drive(&mut board.part, at, pin, true);
-        }
+        self.amplifiers.restart(&mut board.part, at);
         self.lines.restart();
         self.running = None;
         self.asleep = false;
@@ -236,11 +259,13 @@ impl Driver<ControllerBoard> for Lockstep {
         host: &mut dyn Host,
     ) -> Option<VirtualNanos> {
         if self.steps == 0 {
+            self.port.attach(&mut session.board_mut().part);
             self.restart(session.board_mut(), stop.at);
             self.stack.paint(host);
         }
         let now_ns = stop.at.0;
         self.release(session, stop.at, host);
+        let mut stopped = false;
         loop {
             let board = session.board_mut();
             while let Some(edge) = self.edges.front().copied().filter(|e| e.at_ns <= now_ns) {
@@ -251,12 +276,15 @@ impl Driver<ControllerBoard> for Lockstep {
             if self.plant_ns() > now_ns {
                 break;
             }
+            self.port.look(&mut board.part, now_ns);
             if self.steps.is_multiple_of(STEPS_PER_LOOK) {
                 self.probe.poll(now_ns, host);
+                self.hold_watchdog(&mut board.part, stop.at);
                 self.lines.connect(&mut board.part, stop.at);
                 (self.progress)(now_ns as f64 * 1e-9);
+                stopped = !self.serve(now_ns);
             }
-            if now_ns >= self.end_ns {
+            if stopped || now_ns >= self.end_ns {
                 self.recorded.stack = self.stack.used(host);
                 return None;
             }
@@ -267,7 +295,7 @@ impl Driver<ControllerBoard> for Lockstep {
                 self.faults.pop_front();
                 self.fail(fault, session, stop, host);
             }
-            self.step(session.board_mut());
+            self.step(session.board_mut(), stop.at);
         }
         let next_edge = self.edges.front().map_or(u64::MAX, |edge| edge.at_ns);
         let release = self.stalls.release.unwrap_or(u64::MAX);

@@ -103,7 +103,7 @@ mod tests {
             seconds: 2e-3,
             ..Setup::default()
         };
-        let (session, ..) = emulate(&program(writes), &setup, |_| ()).unwrap();
+        let (session, ..) = emulate(&program(writes), &setup, None, |_| ()).unwrap();
         super::of(&session)
     }
 

@@ -3,7 +3,8 @@
 use rigless::device::Level;
 use rigless::mcu::Operate;
 use rigless::soc::Width;
-use rigless::soc::stm32f427::peripherals::gpio::Pin;
+use rigless::soc::stm32f427::peripherals::gpio::{Gpio, Pin};
+use rigless::soc::stm32f427::peripherals::tim::Channel;
 use rigless::time::VirtualNanos;
 
 use crate::board::Part;
@@ -48,22 +49,39 @@ pub const REFERENCE: [Wire; 2] = [
     ('E', 11, Mode::Function(1), "reference encoder B, TIM1_CH2"),
 ];
 
-/// Set values, enable and fault lines of the amplifiers, large motor first.
-pub const AMPLIFIERS: [Wire; 6] = [
-    ('A', 4, Mode::Analog, "large set value, DAC_OUT1"),
-    ('A', 5, Mode::Analog, "small set value, DAC_OUT2"),
-    ('E', 4, Mode::Output, "large enable"),
-    ('E', 5, Mode::Output, "small enable"),
-    ('E', 2, Mode::Input, "large fault"),
-    ('E', 6, Mode::Input, "small fault"),
+/// The serial port to the host.
+pub const PORT: [Wire; 2] = [
+    ('D', 8, Mode::Function(7), "serial port out, USART3_TX"),
+    ('D', 9, Mode::Function(7), "serial port in, USART3_RX"),
 ];
 
-/// Enable lines, high to enable; a pull-down holds an undriven line low.
-pub(crate) const ENABLES: [u8; 2] = [4, 5];
-/// Fault lines, low on a fault.
-pub(crate) const FAULTS: [u8; 2] = [2, 6];
-/// Port of enable and fault lines.
-pub(crate) const AMPLIFIER_PORT: usize = 4;
+/// Set values, enables and ready lines of the amplifiers, large motor first, and the interlock loop.
+pub const AMPLIFIERS: [Wire; 7] = [
+    ('A', 4, Mode::Analog, "large set value, DAC_OUT1"),
+    ('A', 5, Mode::Analog, "small set value, DAC_OUT2"),
+    ('C', 8, Mode::Function(3), "large enable, TIM8_CH3"),
+    ('C', 9, Mode::Function(3), "small enable, TIM8_CH4"),
+    ('E', 2, Mode::Input, "large ready"),
+    ('E', 6, Mode::Input, "small ready"),
+    ('A', 6, Mode::Function(3), "interlock, TIM8_BKIN"),
+];
+
+/// A pin: index of its port from A on, and its number.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct At(usize, u8);
+
+/// Enables, high to enable; a pull-down holds an undriven line low.
+const ENABLES: [At; 2] = [At(2, 8), At(2, 9)];
+/// Channels of TIM8 on these pins.
+const CHANNELS: [u8; 2] = [3, 4];
+/// Ready lines, high if the amplifier is ready.
+pub(crate) const READY: [At; 2] = [At(4, 2), At(4, 6)];
+/// The interlock loop, high while it is closed.
+pub(crate) const INTERLOCK: At = At(0, 6);
+/// Number of the function that connects a pin to TIM8.
+const TIM8_FUNCTION: u8 = 3;
+/// Index of TIM8 among the advanced timers of the emulator.
+const TIM8: usize = 1;
 
 /// The pin's mode as configured by the firmware.
 fn mode(part: &mut Part, port: char, pin: u8) -> Mode {
@@ -91,7 +109,7 @@ pub fn wired(part: &mut Part, wires: &[Wire]) -> bool {
 /// One line for each pin with a wrong mode.
 #[must_use]
 pub fn complaints(part: &mut Part) -> Vec<String> {
-    let wires = LARGE.iter().chain(&SMALL).chain(&AMPLIFIERS);
+    let wires = LARGE.iter().chain(&SMALL).chain(&PORT).chain(&AMPLIFIERS);
     let wrong = wires.filter_map(|&(port, pin, wanted, what)| {
         let is = mode(part, port, pin);
         (is != wanted).then(|| format!("P{port}{pin} ({what}) is {is:?}; it must be {wanted:?}"))
@@ -99,20 +117,61 @@ pub fn complaints(part: &mut Part) -> Vec<String> {
     wrong.collect()
 }
 
-/// Whether each amplifier is enabled.
+/// Whether the enable of each amplifier is active.
 pub(crate) fn enabled(part: &mut Part) -> [bool; 2] {
-    let (port, registers) = part.stm32.port(AMPLIFIER_PORT);
-    ENABLES.map(|pin| {
-        let pin = Pin::new(pin).expect("below 16");
-        port.level(pin, registers) == Level::High
-    })
+    let by_pin = ENABLES.map(|at| (function(part, at), level(part, at)));
+    let (timer, registers) = part.stm32.advanced_timer(TIM8);
+    let mut enabled = [false; 2];
+    for (n, (function, level)) in by_pin.into_iter().enumerate() {
+        enabled[n] = if function == Some(TIM8_FUNCTION) {
+            let channel = Channel::new(CHANNELS[n]).expect("channels 3 and 4");
+            timer.output(channel, registers) == Some(Level::High)
+        } else {
+            level
+        };
+    }
+    enabled
 }
 
-/// Sets the level of an input of the amplifiers' port.
-pub(crate) fn drive(part: &mut Part, at: VirtualNanos, pin: u8, level: bool) {
-    let pin = Pin::new(pin).expect("below 16");
+/// Level of the interlock loop at the timer. The emulator has the input low while no pin is
+/// connected.
+pub(crate) fn interlock_level(part: &mut Part) -> bool {
+    function(part, INTERLOCK) == Some(TIM8_FUNCTION) && level(part, INTERLOCK)
+}
+
+/// Sets the break input of TIM8.
+pub(crate) fn drive_break(part: &mut Part, at: VirtualNanos, level: bool) {
     part.stm32
-        .drive_port(at, AMPLIFIER_PORT, |port, registers, context| {
-            port.drive(pin, Some(Level::from(level)), registers, context);
+        .drive_advanced_timer(at, TIM8, |timer, registers, context| {
+            timer.drive_break(Level::from(level), registers, context);
         });
+}
+
+/// Sets the level of an input; `None` if nothing drives its wire, which leaves the level to the
+/// pull resistor of the pin. Without one the level stays as it was.
+pub(crate) fn drive(part: &mut Part, at: VirtualNanos, pin: At, level: Option<bool>) {
+    let At(port, pin) = pin;
+    let pin = Pin::new(pin).expect("below 16");
+    part.stm32.drive_port(at, port, |port, registers, context| {
+        port.drive(pin, level.map(Level::from), registers, context);
+    });
+}
+
+/// Connects the pull-downs of the enables, which outputs of the chip override.
+pub(crate) fn pull_enables_down(part: &mut Part, at: VirtualNanos) {
+    for pin in ENABLES {
+        drive(part, at, pin, Some(false));
+    }
+}
+
+/// Level of a pin.
+fn level(part: &mut Part, At(port, pin): At) -> bool {
+    let (port, registers) = part.stm32.port(port);
+    port.level(Pin::new(pin).expect("below 16"), registers) == Level::High
+}
+
+/// Number of the alternate function of a pin.
+fn function(part: &mut Part, At(port, pin): At) -> Option<u8> {
+    let (_, registers) = part.stm32.port(port);
+    Gpio::function(Pin::new(pin).expect("below 16"), registers)
 }

@@ -13,8 +13,10 @@ const KEEP_ALIVE_NS: u64 = 50_000_000;
 /// Polls the target: reads its telemetry and sends the commands that are due.
 #[derive(Debug)]
 pub(crate) struct DebugProbe {
-    /// Bytes from up channel 0.
+    /// Bytes from up channel 0, the log.
     pub(crate) stream: Vec<u8>,
+    /// Bytes from up channel 1, the link.
+    pub(crate) link: Vec<u8>,
     /// Time from which telemetry is read, ns.
     pub(crate) drains_from: u64,
     /// Whether the command channel is kept full of random bytes.
@@ -42,6 +44,7 @@ impl DebugProbe {
         let commands = commands.map(|(at, command)| (*at, command.encode().to_vec()));
         Self {
             stream: Vec::new(),
+            link: Vec::new(),
             drains_from: 0,
             floods: false,
             taken: 0,
@@ -55,7 +58,8 @@ impl DebugProbe {
 
     pub(crate) fn poll(&mut self, now_ns: u64, memory: &mut dyn Memory) {
         if now_ns >= self.drains_from {
-            self.rtt.drain(memory, &mut self.stream);
+            self.rtt.drain(0, memory, &mut self.stream);
+            self.rtt.drain(1, memory, &mut self.link);
         }
         if let Some(next) = self.next_keep_alive.filter(|next| *next <= now_ns) {
             let bytes = Command::KeepAlive.encode().to_vec();

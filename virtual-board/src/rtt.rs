@@ -27,12 +27,12 @@ impl Rtt {
         memory.read(address, Width::W32).unwrap_or(0)
     }
 
-    /// Reads the bytes in up channel 0.
-    pub(crate) fn drain(self, memory: &mut dyn Memory, into: &mut Vec<u8>) {
-        if !self.ready(memory) || Self::word(memory, self.0 + 16) == 0 {
+    /// Reads the bytes in an up channel, if the firmware has so many.
+    pub(crate) fn drain(self, channel: u64, memory: &mut dyn Memory, into: &mut Vec<u8>) {
+        if !self.ready(memory) || Self::word(memory, self.0 + 16) <= channel {
             return;
         }
-        let channel = self.0 + HEADER;
+        let channel = self.0 + HEADER + CHANNEL * channel;
         let [buffer, size, write, mut read] =
             [BUFFER, SIZE, WRITE, READ].map(|at| Self::word(memory, channel + at));
         if size == 0 || write >= size || read >= size || read == write {

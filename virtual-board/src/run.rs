@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::num::NonZeroU64;
 use std::time::{Duration, Instant};
 
+use drivers::Settings;
 use experiments::closed_loop::Hand;
 use haptic_control::SceneKind;
 use recordings::telemetry::{Frame, Telemetry};
@@ -15,18 +16,47 @@ use simulation::plant::Pose;
 use terminal::failure::Failure;
 
 use crate::board::{CORE_HZ, ControllerBoard};
+use crate::bridge::Live;
 use crate::command::Command;
 use crate::fault::Fault;
+use crate::flash;
 use crate::image::Image;
 pub use crate::lockstep::CoreAccess;
 use crate::lockstep::Lockstep;
 use crate::objections;
+use crate::port::LineErrors;
 
 /// Control rate of the image, Hz.
 pub const RATE_HZ: f64 = 10e3;
 
 /// Current per DAC code from mid-scale, A: large motor, small motor.
 pub const AMPS_PER_CODE: [f64; 2] = [6.0 / 2047.0, 1.5 / 2047.0];
+
+/// Error of a channel from DAC code to current.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DacError {
+    /// Offset, codes; up to 12 on a real chip.
+    pub offset: f64,
+    /// Change of the current per code, over [`AMPS_PER_CODE`].
+    pub gain: f64,
+}
+
+impl DacError {
+    /// That of a perfect channel.
+    pub const NONE: Self = Self {
+        offset: 0.0,
+        gain: 1.0,
+    };
+
+    /// An offset alone, codes.
+    #[must_use]
+    pub const fn offset(offset: f64) -> Self {
+        Self {
+            offset,
+            ..Self::NONE
+        }
+    }
+}
 
 /// Conditions of a run.
 #[derive(Clone, Debug)]
@@ -47,6 +77,11 @@ pub struct Setup {
     pub garbage: Vec<(f64, Vec<u8>)>,
     /// Whether to send a keep-alive every 50 ms.
     pub keep_alive: bool,
+    /// Bytes that the serial port of the board receives, one after the other as fast as the line is,
+    /// and the times at which they begin, s.
+    pub port: Vec<(f64, Vec<u8>)>,
+    /// How bytes arrive at the serial port, and the times from which on they do, s.
+    pub port_errors: Vec<(f64, LineErrors)>,
     /// Edges per second of a signal generator instead of the large encoder, counting down if
     /// negative.
     pub generator_hz: Option<f64>,
@@ -54,8 +89,10 @@ pub struct Setup {
     pub crystal_hz: u64,
     /// Start of the crystal, s.
     pub crystal_from_s: f64,
-    /// Offset of both DAC outputs, codes; up to 12 on a real chip.
-    pub dac_offset: i16,
+    /// Errors of the DAC outputs and of the inputs behind them: large motor, small motor.
+    pub dac_errors: [DacError; 2],
+    /// Settings in the board's flash; `None`: the flash is erased.
+    pub settings: Option<Settings>,
     /// Additional loads and stores of the core, and their times, s.
     pub accesses: Vec<(f64, CoreAccess)>,
     /// Instructions per second of virtual time.
@@ -78,10 +115,13 @@ impl Default for Setup {
             ],
             garbage: Vec::new(),
             keep_alive: true,
+            port: Vec::new(),
+            port_errors: Vec::new(),
             generator_hz: None,
             crystal_hz: 8_000_000,
             crystal_from_s: 0.0,
-            dac_offset: 0,
+            dac_errors: [DacError::NONE; 2],
+            settings: None,
             accesses: Vec::new(),
             instructions_per_second: NonZeroU64::new(CORE_HZ).expect("not zero"),
             follow: BTreeSet::new(),
@@ -160,6 +200,8 @@ pub struct Outcome {
     pub first_counts: [Option<u16>; 2],
     /// Bytes that the debug probe read from up channel 0.
     pub rtt: Vec<u8>,
+    /// Bytes that the debug probe read from up channel 1: messages of the link.
+    pub rtt_link: Vec<u8>,
     /// Decoded telemetry of the firmware.
     pub telemetry: Telemetry,
     /// Each change of the amplifiers' enables, with its time in ns.
@@ -179,6 +221,8 @@ pub struct Outcome {
     pub stack: u64,
     /// Bytes sent on the command channel, each with the time of the last byte, ns.
     pub sent: Vec<(u64, Vec<u8>)>,
+    /// Bytes that the serial port of the board has sent, each with the time of its end, ns.
+    pub port: Vec<(u64, u8)>,
     /// Run time of the emulation.
     pub wall: Duration,
     /// Number of the first of `ticks` in telemetry.
@@ -217,7 +261,7 @@ pub fn on_board(
     setup: &Setup,
     progress: impl FnMut(f64) + Send + 'static,
 ) -> Result<Outcome, String> {
-    let (session, lockstep, wall) = emulate(image, setup, progress)?;
+    let (session, lockstep, wall) = emulate(image, setup, None, progress)?;
     let restarts = session.resets().iter().map(|reset| Restart {
         at_s: reset.at.0 as f64 * 1e-9,
         cause: format!("{:?}", reset.cause),
@@ -227,12 +271,15 @@ pub fn on_board(
         recorded,
         probe,
         accesses,
+        port,
         ..
     } = lockstep;
+    let sent_by_port = std::mem::take(&mut port.wire().up);
     let telemetry = Telemetry::decode(&image.elf, &probe.stream)?;
     Ok(Outcome {
         first_tick: first_tick(&telemetry.frames, &recorded.ticks),
         rtt: probe.stream,
+        rtt_link: probe.link,
         telemetry,
         ticks: recorded.ticks,
         first_counts: recorded.first_counts,
@@ -243,16 +290,19 @@ pub fn on_board(
         stack: recorded.stack,
         values: accesses.values,
         sent: probe.sent,
+        port: sent_by_port,
         restarts,
         objections: objections::of(&session),
         wall,
     })
 }
 
-/// The run: final state of board and plant, and the run time.
+/// The run, with a client on the serial port if there is one: final state of board and plant, and the
+/// run time.
 pub(crate) fn emulate(
     image: &Image,
     setup: &Setup,
+    client: Option<Live>,
     progress: impl FnMut(f64) + Send + 'static,
 ) -> Result<(Session<ControllerBoard>, Lockstep, Duration), String> {
     setup.device.validate()?;
@@ -272,10 +322,14 @@ pub(crate) fn emulate(
     }
     let mut session =
         Session::new(Box::new(board), 0, VirtualNanos(0)).map_err(|error| emulator(&error))?;
-    let lockstep = Lockstep::new(image, setup, Box::new(progress));
+    let mut lockstep = Lockstep::new(image, setup, Box::new(progress));
+    lockstep.live = client;
     lockstep.watch(&mut session);
     let since = Instant::now();
-    let images = [image.placed.clone()];
+    let mut images = vec![image.placed.clone(), flash::size()?];
+    if let Some(settings) = &setup.settings {
+        images.push(flash::with(settings)?);
+    }
     let finished =
         run(session, &Start::new(&images), lockstep).map_err(|error| emulator(&error))?;
     let wall = since.elapsed();

@@ -150,6 +150,32 @@ macro_rules! observer_rows {
             },
             |c, motor, rate, clock, p, N| c::Observer<c::AmplifierCurrent, c::HeldShaft, c::EdgeUpdate, c::Fixed> =>
                 c::ObserverDesign::new(motor, rate, &$crate::uncertainty!(c, p)).with_edges(clock).held().build();
+            adaptive_held, "adaptive-held", Deviation,
+            ($($uncertainty)*, boundary_noise: BOUNDARY_NOISE),
+            $rates,
+            {
+                summary: "observer-held that learns damping, friction and torque constant, from a model that may be wrong tenfold",
+                needs: Signals::COUNT_AND_CURRENT,
+                settling: ADAPTED,
+                colour: Colour::MAROON,
+                dash: Dash::Dotted,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::AdaptiveHeldObserver =>
+                c::ObserverDesign::new(motor, rate, &$crate::uncertainty!(c, p)).held().widely_adaptive().build();
+            adaptive_edge_held, "adaptive-edge-held", Deviation,
+            ($($uncertainty)*, boundary_noise: DISC_NOISE),
+            $rates,
+            {
+                summary: "adaptive-held that also uses edge time stamps",
+                needs: Signals::COUNT_AND_CURRENT.or(EDGE),
+                settling: ADAPTED,
+                colour: Colour::MAROON,
+                dash: Dash::Mixed,
+                goals: &[],
+            },
+            |c, motor, rate, clock, p, N| c::AdaptiveEdgeHeldObserver =>
+                c::ObserverDesign::new(motor, rate, &$crate::uncertainty!(c, p)).with_edges(clock).held().widely_adaptive().build();
             observer_edge_blind, "observer-edge-blind", Deviation,
             (torque_noise: TORQUE_NOISE, load: DISTURBANCE_AND_MOTOR, load_time: DISTURBANCE_TIME,
              boundary_noise: DISC_NOISE),

@@ -260,3 +260,6 @@ impl<S: Stamps, I: BankInput> Confidence for DrivenBank<S, I> {
         Variance(state.mean(plain, driven) + trust * (1.0 - trust) * apart * apart)
     }
 }
+
+#[cfg(test)]
+mod tests;

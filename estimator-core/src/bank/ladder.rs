@@ -1,4 +1,4 @@
-//! The ladder of process noises, and the prediction over one tick.
+//! The ladder of process noises, and the prediction over one tick or another interval.
 
 use super::member::Member;
 use crate::design::const_math::{exp, phi1, phi2};
@@ -7,16 +7,22 @@ use crate::design::const_math::{exp, phi1, phi2};
 pub(super) const RUNGS: usize = 18;
 
 /// Spectral density of the first rung, counts²/s⁵. Each rung has ten times that of the rung below.
-const LOWEST: f64 = 10.0;
+pub(super) const LOWEST: f64 = 10.0;
 
 /// Rung of the first member at the start.
 pub(super) const FIRST_RUNG: usize = 4;
 
 /// Correlation time τ of the acceleration, s.
-const CORRELATION_TIME: f64 = 0.01;
+pub(super) const CORRELATION_TIME: f64 = 0.01;
 
 /// Spectral density of the white part of the acceleration over q τ².
-const WHITE_SHARE: f64 = 0.1;
+pub(super) const WHITE_SHARE: f64 = 0.1;
+
+/// Prediction of a member.
+pub(super) trait Predict {
+    /// Predicts a member on `rung`, relative to a count that moved by `displacement`.
+    fn predict(&self, member: &mut Member, rung: usize, displacement: f32);
+}
 
 /// Prediction over one tick of a position, a velocity and an acceleration that decays.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +37,8 @@ pub(super) struct Ladder {
     noise: [f32; 6],
     /// q T⁵ of each rung, counts².
     densities: [f32; RUNGS],
+    /// T / τ.
+    pub(super) rate: f32,
 }
 
 impl Ladder {
@@ -64,12 +72,27 @@ impl Ladder {
                 noise[5] as f32,
             ],
             densities,
+            rate: rate as f32,
         }
     }
 
-    /// Predicts a member on `rung` over one tick, relative to a count that moved by `displacement`.
+    /// τ, ticks.
+    pub(super) fn correlation_time(&self) -> f32 {
+        1.0 / self.rate
+    }
+
+    /// q T⁵ of a rung, counts².
     #[inline(always)]
-    pub(super) fn predict(&self, member: &mut Member, rung: usize, displacement: f32) {
+    pub(super) fn density(&self, rung: usize) -> f32 {
+        // `min` is no limit, as no rung lies above: it removes the panic of an index.
+        self.densities[if rung < RUNGS { rung } else { RUNGS - 1 }]
+    }
+}
+
+impl Predict for Ladder {
+    /// Predicts over one tick.
+    #[inline(always)]
+    fn predict(&self, member: &mut Member, rung: usize, displacement: f32) {
         let (f02, f12, f22) = (
             self.position_by_acceleration,
             self.velocity_by_acceleration,
@@ -79,8 +102,7 @@ impl Ladder {
         member.position += member.velocity + f02 * a - displacement;
         member.velocity += f12 * a;
         member.acceleration = f22 * a;
-        // `min` is no limit, as no rung lies above: it removes the panic of an index.
-        let density = self.densities[if rung < RUNGS { rung } else { RUNGS - 1 }];
+        let density = self.density(rung);
         let [p00, p01, p02, p11, p12, p22] = member.covariance;
         let r00 = p00 + p01 + f02 * p02;
         let r01 = p01 + p11 + f02 * p12;
@@ -131,24 +153,32 @@ const fn integrated(rate: f64) -> [f64; 6] {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     extern crate std;
-    use super::{CORRELATION_TIME, LOWEST, Ladder, WHITE_SHARE};
+    use super::{CORRELATION_TIME, LOWEST, Ladder, Predict, WHITE_SHARE};
     use crate::bank::member::Member;
     use nalgebra::{Matrix3, SMatrix, Vector3};
 
-    /// Transition and process noise over a tick, by Van Loan's exponential of a block matrix, of the
+    /// Transition and process noise over `interval` ticks, by Van Loan's exponential of a block matrix, of the
     /// model in counts and ticks.
-    fn van_loan(period: f64, density: f64) -> (Matrix3<f64>, Matrix3<f64>) {
+    pub(in crate::bank) fn van_loan(
+        period: f64,
+        interval: f64,
+        density: f64,
+    ) -> (Matrix3<f64>, Matrix3<f64>) {
         let rate = period / CORRELATION_TIME;
         let a = Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -rate);
         let jerk = density * period.powi(5);
         let white = density * CORRELATION_TIME.powi(2) * WHITE_SHARE * period.powi(3);
         let q = Matrix3::from_diagonal(&Vector3::new(0.0, white, jerk));
         let mut block = SMatrix::<f64, 6, 6>::zeros();
-        block.fixed_view_mut::<3, 3>(0, 0).copy_from(&-a);
-        block.fixed_view_mut::<3, 3>(0, 3).copy_from(&q);
-        let transposed = a.transpose();
+        block
+            .fixed_view_mut::<3, 3>(0, 0)
+            .copy_from(&(-a * interval));
+        block
+            .fixed_view_mut::<3, 3>(0, 3)
+            .copy_from(&(q * interval));
+        let transposed = a.transpose() * interval;
         block.fixed_view_mut::<3, 3>(3, 3).copy_from(&transposed);
         let exponential = block.exp();
         let transition = exponential.fixed_view::<3, 3>(3, 3).transpose();
@@ -163,7 +193,7 @@ mod tests {
             // The noise of the first rung, and a rung whose noise matters.
             for rung in [0, 9, 17] {
                 let density = LOWEST * 10f64.powi(i32::try_from(rung).expect("small"));
-                let (transition, noise) = van_loan(period, density);
+                let (transition, noise) = van_loan(period, 1.0, density);
                 let p = Matrix3::new(0.3, 0.1, 0.02, 0.1, 0.4, -0.05, 0.02, -0.05, 0.2);
                 for p in [p, Matrix3::zeros()] {
                     let x = Vector3::new(0.2, 3.0, -0.7);

@@ -30,7 +30,7 @@ const TERMS: usize = 4;
 /// than chance would have no gain: there is then no input, and the bank without input is alone.
 ///
 /// Friction brakes by at most half of the velocity, so it cannot reverse the motion. A gain g₃ below 0
-/// is taken as 0.
+/// is taken as 0. A displacement beyond ±32767 counts in a tick is no motion: learning starts again.
 ///
 /// Units: counts, ticks, A. Valid for the rates of [`ModelBank`](crate::ModelBank).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +58,8 @@ pub struct LearnedCurrentState {
     /// Sum of the terms over the block before, weighted by the ticks from its end.
     falling: [f32; TERMS],
     moved: f32,
-    moved_before: f32,
+    /// Displacement over the block before; `None` in the first block.
+    moved_before: Option<f32>,
     regression: Regression<TERMS>,
 }
 
@@ -78,10 +79,10 @@ impl LearnedCurrent {
     /// The input at `rate`.
     ///
     /// # Errors
-    /// [`DesignError::RATE`].
+    /// [`DesignError::RATE`], [`DesignError::RATE_OF_BANK`].
     pub const fn new(rate: Hertz) -> Result<Self, DesignError> {
-        if !rate.is_positive() {
-            return Err(DesignError::RATE);
+        if let Err(error) = super::checked(rate) {
+            return Err(error);
         }
         let ticks = BLOCK * rate.0;
         let block = if ticks > 1.0 { ticks as u32 } else { 1 };
@@ -138,13 +139,15 @@ impl LearnedCurrentState {
     /// Learns from the block and the one before, and begins the next.
     fn learn(&mut self, design: &LearnedCurrent) {
         let ticks = design.block as f32;
-        let difference = self.moved - self.moved_before;
         let mut explained = [0.0; TERMS];
         for n in 0..TERMS {
             explained[n] = self.rising[n] + self.falling[n];
             self.falling[n] = ticks * self.sums[n] - self.rising[n];
         }
-        if self.moved != 0.0 || self.moved_before != 0.0 {
+        // The displacement before the first block is unknown.
+        let before = self.moved_before.replace(self.moved);
+        if let Some(before) = before.filter(|before| self.moved != 0.0 || *before != 0.0) {
+            let difference = self.moved - before;
             self.regression.add(&explained, difference, design.kept);
             let (gains, share) = self.regression.solve();
             self.gains = gains.map(|gain| share * gain);
@@ -152,7 +155,6 @@ impl LearnedCurrentState {
         }
         self.sums = [0.0; TERMS];
         self.rising = [0.0; TERMS];
-        self.moved_before = self.moved;
         self.moved = 0.0;
         self.left = design.block;
     }
@@ -175,7 +177,7 @@ impl BankInput for LearnedCurrent {
             rising: [0.0; TERMS],
             falling: [0.0; TERMS],
             moved: 0.0,
-            moved_before: 0.0,
+            moved_before: None,
             regression: Regression::NONE,
         }
     }
@@ -198,8 +200,17 @@ impl BankInput for LearnedCurrent {
             twice + self.step * (once - twice),
             -velocity * speed / (velocity * velocity + variance + LEAST),
         ];
+        let moved = sample.count - bank.anchor;
+        // A count that jumped would be learned as an effect of the current.
+        if !moved.is_motion() {
+            *state = self.start(sample);
+            return None;
+        }
         let input = state.known.then(|| state.acceleration(speed));
-        state.collect((sample.count - bank.anchor).to_f32(), self);
+        state.collect(moved.to_f32(), self);
         input
     }
 }
+
+#[cfg(test)]
+mod tests;

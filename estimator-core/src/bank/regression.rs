@@ -136,12 +136,13 @@ mod tests {
         regression
     }
 
-    #[test]
-    fn gains_are_those_of_the_normal_equations() {
-        let rows = rows(60, 0.7);
-        let kept = 0.97;
-        let (mut a, mut b) = (SMatrix::<f64, 3, 3>::zeros(), SVector::<f64, 3>::zeros());
-        for (terms, y) in &rows {
+    /// A with its ridge, and b.
+    fn normal_equations(
+        rows: &[([f64; 3], f64)],
+        kept: f64,
+    ) -> (SMatrix<f64, 3, 3>, SVector<f64, 3>) {
+        let (mut a, mut b) = (SMatrix::zeros(), SVector::zeros());
+        for (terms, y) in rows {
             let phi = SVector::from(*terms);
             a = a * kept + phi * phi.transpose();
             b = b * kept + phi * *y;
@@ -149,8 +150,15 @@ mod tests {
         for i in 0..3 {
             a[(i, i)] *= 1.0 + f64::from(RIDGE);
         }
+        (a, b)
+    }
+
+    #[test]
+    fn gains_are_those_of_the_normal_equations() {
+        let rows = rows(60, 0.7);
+        let (a, b) = normal_equations(&rows, 0.97);
         let expected = a.try_inverse().expect("regular") * b;
-        let (found, _) = of(&rows, kept as f32).solve();
+        let (found, _) = of(&rows, 0.97).solve();
         for (found, expected) in found.iter().zip(expected.iter()) {
             assert!(
                 (f64::from(*found) / expected - 1.0).abs() < 1e-4,
@@ -179,5 +187,42 @@ mod tests {
         }
         assert_eq!(share(&exact), 0.0);
         assert_eq!(Regression::<3>::NONE.solve(), ([0.0; 3], 0.0));
+    }
+    #[test]
+    fn share_is_that_of_james_and_stein() {
+        // The count's second difference has a variance of 1/2 by quantisation.
+        for (noise, scale) in [(0.7, 1.0), (0.7, 20.0), (3.0, 20.0), (10.0, 2.0)] {
+            let mut rows = rows(300, noise);
+            for (_, y) in &mut rows {
+                *y *= scale;
+            }
+            let (a, b) = normal_equations(&rows, 1.0);
+            let explained = b.dot(&(a.try_inverse().expect("regular") * b));
+            let residuals = rows.iter().map(|(_, y)| y * y).sum::<f64>() - explained;
+            // 4 times the number of terms.
+            let chance = 12.0 * (residuals / (300.0 - 3.0) + 0.5);
+            let expected = (1.0 - chance / explained).max(0.0);
+            let (_, found) = of(&rows, 1.0).solve();
+            assert!(
+                (f64::from(found) - expected).abs() < 1e-4,
+                "{noise} {scale}: {found} for {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn chance_is_taken_for_an_effect_once_in_a_hundred_times() {
+        let mut seed = 9;
+        let mut taken = 0;
+        for _ in 0..1000 {
+            let mut rows = rows(60, 0.0);
+            for (_, y) in &mut rows {
+                *y = 1000.0 * uniform(&mut seed);
+            }
+            taken += u32::from(of(&rows, 1.0).solve().1 > 0.0);
+        }
+        // The variance ratio of 3 and 57 degrees of freedom exceeds 4 with a probability of 1.2 %, and 1
+        // with 40 %.
+        assert!((3..30).contains(&taken), "{taken}");
     }
 }

@@ -11,10 +11,10 @@ pub trait Stamps: Sealed + Copy + PartialEq {
     /// The parts of a sample that are read.
     const NEEDS: Signals;
 
-    /// The edge that came since the last sample.
+    /// The edge that came within the last `period` control periods.
     #[doc(hidden)]
     #[expect(private_interfaces, reason = "the trait is sealed")]
-    fn fresh(&self, sample: &Sample) -> Option<FreshEdge>;
+    fn fresh_within(&self, sample: &Sample, period: f32) -> Option<FreshEdge>;
 
     /// The variance of the ends of a quantisation interval, counts², where that of a boundary is
     /// `boundary`. Counts alone do not tell it.
@@ -33,7 +33,7 @@ impl Stamps for NoStamps {
 
     #[inline(always)]
     #[expect(private_interfaces, reason = "the trait is sealed")]
-    fn fresh(&self, _: &Sample) -> Option<FreshEdge> {
+    fn fresh_within(&self, _: &Sample, _: f32) -> Option<FreshEdge> {
         None
     }
 
@@ -68,8 +68,8 @@ impl Stamps for Stamped {
 
     #[inline(always)]
     #[expect(private_interfaces, reason = "the trait is sealed")]
-    fn fresh(&self, sample: &Sample) -> Option<FreshEdge> {
-        self.clock.fresh(sample)
+    fn fresh_within(&self, sample: &Sample, period: f32) -> Option<FreshEdge> {
+        self.clock.fresh_within(sample, period)
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! State of the bank: members, weights, and where on the ladder they stand.
 
 use super::interval::Likelihood;
-use super::ladder::{FIRST_RUNG, Ladder, RUNGS};
+use super::ladder::{FIRST_RUNG, Predict, RUNGS};
 use super::member::{Innovation, Member};
 use crate::design::const_math::limited;
 use crate::edge_clock::FreshEdge;
@@ -11,7 +11,7 @@ use crate::units::Count;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelBankState<const K: usize> {
     pub(super) anchor: Count,
-    /// Ticks since the last change of the count and the last edge.
+    /// Time since the last change of the count and the last edge, 1/1024 ticks.
     pub(super) still: u32,
     /// Whether the shaft is at rest.
     pub(super) resting: bool,
@@ -27,10 +27,10 @@ pub struct ModelBankState<const K: usize> {
 }
 
 /// A member with less weight is reset.
-const IMPROBABLE: f32 = 0.01;
+const IMPROBABLE: f32 = 0.003;
 
 /// Weight of a member after its reset.
-const RESET_WEIGHT: f32 = 0.03;
+const RESET_WEIGHT: f32 = 0.06;
 
 /// Weight of the outermost member above which the bank moves.
 const HEAVY: f32 = 0.9;
@@ -48,7 +48,7 @@ const LARGEST_BOUNDARY: f32 = 0.1;
 const ROUNDING: f32 = 4e-6;
 
 /// Change of R by an edge.
-const BOUNDARY_GAIN: f32 = 0.05;
+const BOUNDARY_GAIN: f32 = 0.1;
 
 impl<const K: usize> ModelBankState<K> {
     pub(super) const fn start(anchor: Count) -> Self {
@@ -120,11 +120,11 @@ impl<const K: usize> ModelBankState<K> {
         }
     }
 
-    /// Predicts all members over one tick, relative to a count that moved by `displacement`.
+    /// Predicts all members over a tick or another interval, relative to a count that moved by `displacement`.
     #[inline(always)]
-    pub(super) fn predict(&mut self, ladder: &Ladder, displacement: f32) {
+    pub(super) fn predict(&mut self, over: &impl Predict, displacement: f32) {
         for i in 0..K {
-            ladder.predict(&mut self.members[i], self.rung + i, displacement);
+            over.predict(&mut self.members[i], self.rung + i, displacement);
         }
     }
 
@@ -278,8 +278,10 @@ pub(super) fn root(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     extern crate std;
-    use super::{ModelBankState, root};
+    use super::{LEAST_BOUNDARY, ModelBankState, root};
     use crate::bank::interval::Likelihood;
+    use crate::edge_clock::FreshEdge;
+    use crate::filters::draws::draw;
     use crate::units::Count;
 
     #[test]
@@ -316,6 +318,43 @@ mod tests {
         state.weights = [0.0, 1.0];
         state.weigh(&[Likelihood::CERTAIN; 2], 0.25);
         assert!((state.weights[0] - 0.25 / 1.5).abs() < 1e-6);
+    }
+
+    /// Members of any uncertainty, up to far beyond that of the ladder: the position has the correlation
+    /// with the velocity that a tick of white acceleration leaves, or nearly 1 as after many ticks.
+    #[test]
+    fn an_edge_after_any_uncertainty_leaves_numbers() {
+        let mut seed = 5;
+        let mut uniform = || (draw(&mut seed) >> 40) as f32 / (1u32 << 24) as f32;
+        for _ in 0..200_000 {
+            let mut state = ModelBankState::<2>::start(Count(0));
+            state.boundary = LEAST_BOUNDARY;
+            let variance = 10f32.powf(14.0 * uniform() - 6.0);
+            let ticks = 10f32.powf(3.0 * uniform());
+            let own = variance * uniform();
+            for member in &mut state.members {
+                // Position = ticks * velocity + another part.
+                let velocity = variance / (ticks * ticks);
+                member.covariance = [variance + own, ticks * velocity, 0.0, velocity, 0.0, 1e-3];
+                member.position = 0.5 * variance.sqrt();
+            }
+            let edge = FreshEdge {
+                phase: 0,
+                position: -0.5,
+                age: uniform() * uniform(),
+            };
+            let before = state;
+            let (likelihoods, _) = state.correct_by_edge(&edge);
+            for (member, likelihood) in state.members.iter().zip(likelihoods) {
+                let case = std::format!("{edge:?} {:?} {member:?}", before.members[0]);
+                let near = 2.0 + edge.age * variance.sqrt();
+                assert!(member.position.abs() < near, "{case}");
+                let near = 10.0 + 3.0 * variance.sqrt();
+                assert!(member.velocity.abs() < near, "{case}");
+                assert!(member.acceleration.abs() < near, "{case}");
+                assert!(likelihood.factor.is_finite(), "{case}");
+            }
+        }
     }
 
     #[test]

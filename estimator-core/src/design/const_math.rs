@@ -1,6 +1,9 @@
 //! Functions in f64 that `core` does not have at compile time.
 
-/// `exp(x)` for |x| <= 700, to 1e-15 relative near zero and 5e-13 at the ends.
+/// Largest argument of [`exp`] with a finite result: infinity has no half.
+const LARGEST_EXPONENT: f64 = 700.0;
+
+/// `exp(x)` for |x| <= 700, to 1e-15 relative near zero and 5e-13 at the ends. Beyond, infinity and 0.
 ///
 /// ```
 /// const DECAY: f64 = estimator_core::const_math::exp(-0.5);
@@ -10,6 +13,9 @@
 pub const fn exp(x: f64) -> f64 {
     if x < 0.0 {
         return 1.0 / exp(-x);
+    }
+    if x > LARGEST_EXPONENT {
+        return f64::INFINITY;
     }
     // Halve the argument until the series is short, then square back.
     let mut halvings = 0;
@@ -85,6 +91,14 @@ mod tests {
                 "{x}: {ours} {theirs}"
             );
         }
+    }
+
+    #[test]
+    fn exp_of_any_argument_ends() {
+        for x in [700.1, 1e300, f64::INFINITY] {
+            assert_eq!((exp(x), exp(-x)), (f64::INFINITY, 0.0));
+        }
+        assert!(exp(f64::NAN).is_nan());
     }
 
     #[test]

@@ -16,9 +16,6 @@ use fit::Straight;
 pub use fit::{BestFit, EndFit, Fit};
 use recent::Recent;
 
-/// Shortest step that restarts the window, counts/tick: from here on products overflow i32.
-const LONGEST_STEP: i32 = 1 << 15;
-
 /// First-order adaptive windowing (FOAW): the slope of a straight line over the longest window in
 /// which the line passes every sample within a noise bound (Janabi-Sharifi, Hayward, Chen 2000; eqs.
 /// 6 to 8).
@@ -126,7 +123,8 @@ impl<const N: usize, F: Fit> VelocityEstimator for Foaw<N, F> {
             state.window = self.window;
             return CountsPerTick(0.0);
         }
-        if !(1 - LONGEST_STEP..LONGEST_STEP).contains(&step.0) {
+        // The products of longer steps overflow i32.
+        if !step.is_motion() {
             recent.restart(sample.count);
             state.window = 1;
             return CountsPerTick(step.to_f32());

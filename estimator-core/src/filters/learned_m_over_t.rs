@@ -2,10 +2,12 @@
 
 use core::ops::RangeInclusive;
 
+use crate::branch::unlikely;
 use crate::design::DesignError;
 use crate::design::const_math::limited;
 use crate::edge_clock::EdgeClock;
-use crate::estimator::VelocityEstimator;
+use crate::estimator::{VaryingPeriod, VelocityEstimator};
+use crate::interval::limited_period;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick, Hertz};
 
@@ -107,19 +109,25 @@ impl<const P: usize> LearnedMOverTState<P> {
         (place, position + offset)
     }
 
-    /// Takes the error of the prediction at an edge, and learns the offset of its boundary.
+    /// Corrects the prediction at an edge and returns its error, counts, unless it starts again.
     #[inline]
-    fn learn(&mut self, edge: f32, time: f32, place: Option<usize>) {
+    fn correct(&mut self, edge: f32, time: f32) -> Option<f32> {
         let expected = self.predicted + self.slope * time;
         let error = edge - expected;
         if !(-LARGEST_ERROR..=LARGEST_ERROR).contains(&error) {
             (self.predicted, self.slope) = (edge, self.velocity);
-            return;
+            return None;
         }
         self.predicted = expected + POSITION_GAIN * error;
         self.slope += VELOCITY_GAIN * error / time;
         self.mean_error += (error - self.mean_error) * (1.0 / P as f32);
-        if let Some(offset) = place.and_then(|place| self.offsets.get_mut(place)) {
+        Some(error)
+    }
+
+    /// Learns the offset of the boundary `place` from the error of the prediction.
+    #[inline]
+    fn learn(&mut self, place: usize, error: f32) {
+        if let Some(offset) = self.offsets.get_mut(place) {
             let error = limited(error - self.mean_error, LARGEST_OFFSET);
             *offset = limited(*offset - OFFSET_GAIN * error, LARGEST_OFFSET);
         }
@@ -150,24 +158,55 @@ impl<const P: usize> VelocityEstimator for LearnedMOverT<P> {
     }
 
     fn update(&self, state: &mut LearnedMOverTState<P>, sample: &Sample) -> CountsPerTick {
+        self.advance(state, sample, 1.0)
+    }
+}
+
+impl<const P: usize> VaryingPeriod for LearnedMOverT<P> {
+    fn update_over(
+        &self,
+        state: &mut LearnedMOverTState<P>,
+        sample: &Sample,
+        period: f32,
+    ) -> CountsPerTick {
+        self.advance(state, sample, limited_period(period))
+    }
+}
+
+impl<const P: usize> LearnedMOverT<P> {
+    /// Processes a sample that comes `period` ticks after the one before.
+    #[inline(always)]
+    fn advance(
+        &self,
+        state: &mut LearnedMOverTState<P>,
+        sample: &Sample,
+        period: f32,
+    ) -> CountsPerTick {
         let step = sample.count - state.anchor;
         let counts = step.to_f32();
         state.anchor = sample.count;
-        let turned = step.0 % P as i32 + i32::from(state.lower);
+        let period_counts = P as i32;
+        let part = if -period_counts < step.0 && step.0 < period_counts {
+            step.0
+        } else {
+            unlikely();
+            step.0 % period_counts
+        };
+        let turned = part + i32::from(state.lower);
         state.lower = if turned < 0 {
-            turned + P as i32
-        } else if turned < P as i32 {
+            turned + period_counts
+        } else if turned < period_counts {
             turned
         } else {
-            turned - P as i32
+            turned - period_counts
         } as u8;
         state.edge -= counts;
         state.predicted -= counts;
-        state.since += 1.0;
-        let (position, age, is_stamped) = match self.clock.fresh(sample) {
+        state.since += period;
+        let (position, age, is_stamped) = match self.clock.fresh_within(sample, period) {
             Some(edge) => (edge.position, edge.age, true),
-            None if counts > 0.0 => (-0.5, 0.5, false),
-            None if counts < 0.0 => (0.5, 0.5, false),
+            None if counts > 0.0 => (-0.5, 0.5 * period, false),
+            None if counts < 0.0 => (0.5, 0.5 * period, false),
             None => {
                 let distance = if state.velocity > 0.0 {
                     state.boundary(0.5).1 - state.edge
@@ -186,8 +225,11 @@ impl<const P: usize> VelocityEstimator for LearnedMOverT<P> {
         // Two stamps of the same instant give no velocity.
         if time > 0.0 {
             state.velocity = displacement / time;
+            let error = state.correct(edge, time);
             let is_told = is_stamped && LEARNED_FROM.contains(&displacement.abs());
-            state.learn(edge, time, is_told.then_some(place));
+            if let Some(error) = error.filter(|_| is_told) {
+                state.learn(place, error);
+            }
         }
         state.edge = edge;
         state.since = age;
@@ -196,98 +238,4 @@ impl<const P: usize> VelocityEstimator for LearnedMOverT<P> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::MOverT;
-    use super::*;
-    use crate::sample::Edge;
-    use crate::units::ClockTicks;
-
-    const CLOCK: Hertz = Hertz(1e8);
-    const RATE: Hertz = Hertz(1000.0);
-    /// Deviations of the boundaries of an electrical turn of three Hall sensors, counts.
-    const UNEVEN: [f64; 6] = [0.0, 0.15, -0.1, 0.05, -0.15, 0.05];
-
-    /// Samples at constant velocity, counts/tick, of an encoder whose boundary b lies at
-    /// `b + deviations[b mod 6]`.
-    fn samples(velocity: f64, deviations: [f64; 6], ticks: i32) -> impl Iterator<Item = Sample> {
-        let boundary = move |b: i32| f64::from(b) + deviations[b.rem_euclid(6) as usize];
-        let (mut count, mut edge) = (0, None);
-        (1..=ticks).map(move |k| {
-            let position = 0.37 + velocity * f64::from(k);
-            while position >= boundary(count + 1) {
-                count += 1;
-                edge = Some(count);
-            }
-            while position < boundary(count) {
-                edge = Some(count);
-                count -= 1;
-            }
-            let mut sample = Sample::new(Count(count as u32));
-            if let Some(of) = edge {
-                let age = (position - boundary(of)) / velocity;
-                sample = sample.with_edge(Edge {
-                    boundary: Count(of as u32),
-                    age: ClockTicks((age * CLOCK.0 / RATE.0) as u32),
-                });
-            }
-            sample
-        })
-    }
-
-    /// Largest error of the last 500 ticks.
-    fn largest_error<E: VelocityEstimator>(filter: &E, velocity: f64, uneven: [f64; 6]) -> f64 {
-        let mut state = filter.start(&Sample::new(Count(0)));
-        let errors = samples(velocity, uneven, 20_000).map(|sample| {
-            let found = filter.update(&mut state, &sample).0;
-            (f64::from(found) - velocity).abs()
-        });
-        errors.skip(19_500).fold(0.0, f64::max)
-    }
-
-    #[test]
-    fn uneven_boundaries_are_learned() {
-        let even = MOverT::new(CLOCK, RATE).unwrap();
-        for velocity in [0.3, 0.9, -0.7123, 1.43] {
-            let plain = largest_error(&even, velocity, UNEVEN);
-            // 0.25 counts between neighbours of 1 count.
-            assert!(plain > 0.1 * velocity.abs(), "{velocity}: {plain}");
-            let learned = LearnedMOverT::<12>::new(CLOCK, RATE).unwrap();
-            let learned = largest_error(&learned, velocity, UNEVEN);
-            assert!(learned < 0.05 * plain, "{velocity}: {plain} to {learned}");
-        }
-    }
-
-    #[test]
-    fn even_boundaries_are_not_disturbed() {
-        for velocity in [0.3, -0.7123, 3.3] {
-            let learned = LearnedMOverT::<12>::new(CLOCK, RATE).unwrap();
-            let error = largest_error(&learned, velocity, [0.0; 6]);
-            // The clock resolves 1e-5 ticks.
-            assert!(error < 1e-3 * velocity.abs(), "{velocity}: {error}");
-        }
-    }
-
-    #[test]
-    fn velocity_falls_as_a_distance_over_the_time_at_rest() {
-        let filter = LearnedMOverT::<12>::new(CLOCK, RATE).unwrap();
-        let mut state = filter.start(&Sample::new(Count(0)));
-        let mut last = Sample::new(Count(0));
-        for sample in samples(0.9, UNEVEN, 3000) {
-            filter.update(&mut state, &sample);
-            last = sample;
-        }
-        let rest = Sample::new(last.count);
-        let learned = state.offsets;
-        for tick in 1..1000 {
-            let v = filter.update(&mut state, &rest).0;
-            assert!(v <= 1.5 / tick as f32, "{tick}: {v}");
-        }
-        assert_eq!(state.offsets, learned);
-    }
-
-    #[test]
-    fn clock_out_of_range_is_refused() {
-        let slow = LearnedMOverT::<12>::new(Hertz(10.0), RATE);
-        assert_eq!(slow, Err(DesignError::CLOCK));
-    }
-}
+mod tests;

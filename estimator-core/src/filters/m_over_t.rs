@@ -3,7 +3,8 @@
 use crate::design::DesignError;
 use crate::design::const_math::limited;
 use crate::edge_clock::EdgeClock;
-use crate::estimator::VelocityEstimator;
+use crate::estimator::{VaryingPeriod, VelocityEstimator};
+use crate::interval::limited_period;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick, Hertz};
 
@@ -15,7 +16,8 @@ use crate::units::{Count, CountsPerTick, Hertz};
 /// count over the time since the last edge, reduces the velocity to zero at rest. The velocity is
 /// exact while it is constant; the delay is half the time between edges.
 ///
-/// A change of the count without a time stamp is assumed to have happened half a tick ago.
+/// A change of the count without a time stamp is assumed to have happened half a tick ago, or half an
+/// interval ago where the intervals between samples vary.
 ///
 /// ```
 /// use estimator_core::*;
@@ -74,14 +76,28 @@ impl VelocityEstimator for MOverT {
     }
 
     fn update(&self, state: &mut MOverTState, sample: &Sample) -> CountsPerTick {
+        self.advance(state, sample, 1.0)
+    }
+}
+
+impl VaryingPeriod for MOverT {
+    fn update_over(&self, state: &mut MOverTState, sample: &Sample, period: f32) -> CountsPerTick {
+        self.advance(state, sample, limited_period(period))
+    }
+}
+
+impl MOverT {
+    /// Processes a sample that comes `period` ticks after the one before.
+    #[inline(always)]
+    fn advance(&self, state: &mut MOverTState, sample: &Sample, period: f32) -> CountsPerTick {
         let counts = (sample.count - state.anchor).to_f32();
         state.anchor = sample.count;
         state.edge -= counts;
-        state.since += 1.0;
-        let latest = match self.clock.fresh(sample) {
+        state.since += period;
+        let latest = match self.clock.fresh_within(sample, period) {
             Some(edge) => Some((edge.position, edge.age)),
-            None if counts > 0.0 => Some((-0.5, 0.5)),
-            None if counts < 0.0 => Some((0.5, 0.5)),
+            None if counts > 0.0 => Some((-0.5, 0.5 * period)),
+            None if counts < 0.0 => Some((0.5, 0.5 * period)),
             None => None,
         };
         if let Some((edge, age)) = latest {

@@ -7,9 +7,6 @@ use crate::units::{Count, CountsPerTick, Hertz};
 
 use super::acceleration_bound::counts_per_tick_squared;
 
-/// Longest step that is taken for motion, counts/tick. A longer step restarts the window.
-const LONGEST_STEP: i32 = i16::MAX as i32;
-
 /// Fraction bits of L.
 const FRACTION_BITS: u32 = 24;
 
@@ -153,7 +150,7 @@ impl<const N: usize> VelocityEstimator for RobustExact<N> {
     fn update(&self, state: &mut RobustExactState<N>, sample: &Sample) -> CountsPerTick {
         let step = sample.count - state.newest;
         let before = core::mem::replace(&mut state.newest, sample.count);
-        if !(-LONGEST_STEP..=LONGEST_STEP).contains(&step.0) {
+        if !step.is_motion() {
             state.filled = 0;
             return CountsPerTick(step.to_f32());
         }

@@ -5,9 +5,6 @@ use crate::estimator::VelocityEstimator;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick};
 
-/// Longest step that is taken for motion, counts/tick. A longer step restarts the window.
-const LONGEST_STEP: i32 = i16::MAX as i32;
-
 /// Savitzky-Golay filter of second degree: the slope, at the newest sample, of the least-squares
 /// parabola through the newest n + 1 samples.
 ///
@@ -127,7 +124,7 @@ impl<const N: usize> VelocityEstimator for SavitzkyGolay<N> {
     fn update(&self, state: &mut SavitzkyGolayState<N>, sample: &Sample) -> CountsPerTick {
         let step = sample.count - state.anchor;
         state.anchor = sample.count;
-        if !(-LONGEST_STEP..=LONGEST_STEP).contains(&step.0) {
+        if !step.is_motion() {
             (state.filled, state.sum, state.first) = (0, 0, 0);
             (state.second, state.third) = (0, 0);
             return CountsPerTick(step.to_f32());
@@ -165,6 +162,7 @@ impl<const N: usize> VelocityEstimator for SavitzkyGolay<N> {
 mod tests {
     use super::super::draws::draw;
     use super::*;
+    use crate::units::Counts;
 
     /// The slope of the least-squares parabola, by Cramer's rule on the normal equations, at the
     /// newest of the samples `y`, oldest first.
@@ -191,7 +189,7 @@ mod tests {
         let mut seed = 1;
         for n in [2, 3, 5, 15, 64, 100, 128] {
             let filter = SavitzkyGolay::<128>::new(n).unwrap();
-            for limit in [1, 3, 200, LONGEST_STEP] {
+            for limit in [1, 3, 200, Counts::LONGEST_STEP] {
                 let mut positions = [0i32; 400];
                 let mut state = filter.start(&Sample::new(Count(0)));
                 for k in 1..positions.len() {
@@ -216,7 +214,7 @@ mod tests {
             let filter = SavitzkyGolay::<128>::new(n).unwrap();
             let mut count = Count(u32::MAX - 1000);
             let mut state = filter.start(&Sample::new(count));
-            for velocity in [7, -LONGEST_STEP, 0, LONGEST_STEP, 0] {
+            for velocity in [7, -Counts::LONGEST_STEP, 0, Counts::LONGEST_STEP, 0] {
                 for tick in 1..=n + 3 {
                     count = Count(count.0.wrapping_add_signed(velocity));
                     let v = filter.update(&mut state, &Sample::new(count)).0;

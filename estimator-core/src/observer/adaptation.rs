@@ -12,7 +12,8 @@ use crate::sealed::Sealed;
 pub struct ParameterErrors {
     /// Error of the damping per inertia, b / J.
     pub damping: f32,
-    /// Error of the Coulomb friction per inertia.
+    /// Error of the Coulomb friction per inertia; in the range [`Wide`](super::Wide) in parts of the
+    /// friction that [`Range::friction`](super::Range::friction) returns.
     pub friction: f32,
     /// Error of the torque constant per inertia, Kt / J.
     pub torque_constant: f32,

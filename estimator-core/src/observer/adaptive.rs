@@ -7,9 +7,9 @@ use super::innovation::Innovation;
 use super::inputs::TickInput;
 use super::motion::Motion;
 use super::moving_start::MovingStart;
+use super::range::{Narrow, Range};
 use super::sensitivity::{Sensitivity, Tick, Update};
 use crate::branch::unlikely;
-use crate::design::const_math::limited;
 use crate::sealed::Sealed;
 use crate::units::Hertz;
 
@@ -33,14 +33,17 @@ use crate::units::Hertz;
 /// Bierman: every new element of D is an old one times a ratio of positive sums, so rounding cannot
 /// make P indefinite. Edges that contradict the counts can make s grow without limit. Where
 /// hᵀ P h + c S is above 65536², the square of the observer's range, the parameters stay and s
-/// restarts at zero, so D cannot underflow. The standard deviations start at 35, 60 and 35 %, grow by
-/// a tenth of that in a second of motion, and never exceed it. The parameter errors are limited to
-/// ±60 % (friction: ±90 %). Below 0.5 rad/s friction hides the other parameters, and all stay.
+/// restarts at zero, so D cannot underflow. The standard deviations at the start and the limits of the
+/// parameter errors are those of the range R, [`Narrow`] or [`Wide`](super::Wide). The standard
+/// deviations grow by a tenth of those at the start in a second of motion, and never exceed them.
+/// Below 0.5 rad/s friction hides the other parameters, and all stay.
 ///
 /// If the motor is already moving at start-up, the first innovations are not attributed to parameter
 /// errors: the velocity gain is then that of the mean since the start, and p, U and D stay.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Adaptive {
+pub struct Adaptive<R = Narrow> {
+    /// Range of the parameter errors.
+    range: R,
     /// Velocity below which the parameters stay, counts/tick.
     slowest: f32,
     /// Growth of each element of D in a tick.
@@ -77,14 +80,11 @@ impl AdaptiveState {
     }
 }
 
-/// Standard deviations of the parameter errors before the first update.
-const PRIOR: [f32; 3] = [0.35, 0.6, 0.35];
-
-/// Largest parameter errors.
-const LARGEST: [f32; 3] = [0.6, 0.9, 0.6];
-
 /// Growth of a standard deviation in a second of motion, in parts of [`PRIOR`].
 const WALK: f64 = 0.1;
+
+/// Largest relative error of the damping that does not indicate a moving start.
+const EXPLAINED: f32 = 0.6;
 
 /// Velocity below which the parameters stay, rad/s.
 const SLOWEST: f64 = 0.5;
@@ -100,18 +100,19 @@ const SPACING: f64 = 3.5e-3;
 /// [`CAUTION`] for innovations that are [`SPACING`] apart.
 const DENSE_CAUTION: f32 = 2.0;
 
-impl Adaptive {
+impl<R: Range> Adaptive<R> {
     /// The adaptation for an encoder of `counts_per_rev` at this control rate; both are above 0.
-    pub(super) const fn new(counts_per_rev: u32, rate: Hertz) -> Self {
+    pub(super) const fn new(range: R, counts_per_rev: u32, rate: Hertz) -> Self {
         let per_rad = counts_per_rev as f64 / (2.0 * core::f64::consts::PI);
         let mut walk = [0.0; 3];
         let mut i = 0;
         while i < 3 {
-            let step = WALK * PRIOR[i] as f64;
+            let step = WALK * R::PRIOR[i] as f64;
             walk[i] = (step * step / rate.0) as f32;
             i += 1;
         }
         Self {
+            range,
             slowest: (SLOWEST * per_rad / rate.0) as f32,
             walk,
             spacing: (SPACING * rate.0) as f32,
@@ -119,9 +120,9 @@ impl Adaptive {
     }
 }
 
-impl Sealed for Adaptive {}
+impl<R> Sealed for Adaptive<R> {}
 
-impl Adaptation for Adaptive {
+impl<R: Range> Adaptation for Adaptive<R> {
     type State = AdaptiveState;
     /// Sensitivity to each parameter.
     type Sensitivity = [Sensitivity; 3];
@@ -131,7 +132,7 @@ impl Adaptation for Adaptive {
             parameters: [0.0; 3],
             sensitivity: [Sensitivity::default(); 3],
             upper: [0.0; 3],
-            diagonal: PRIOR.map(|std_dev| std_dev * std_dev),
+            diagonal: R::PRIOR.map(|std_dev| std_dev * std_dev),
             waiting: 0.0,
             start: MovingStart::new(),
         }
@@ -174,7 +175,7 @@ impl Adaptation for Adaptive {
 
     #[inline(always)]
     fn friction(&self, state: &AdaptiveState, motion: &Motion) -> f32 {
-        motion.friction + state.parameters[1] * motion.friction
+        motion.friction + state.parameters[1] * self.range.friction(motion)
     }
 
     #[inline(always)]
@@ -185,7 +186,7 @@ impl Adaptation for Adaptive {
         gain: &Gain,
         velocity: f32,
     ) -> Option<Gain> {
-        state.start.gain(innovation, gain, velocity, LARGEST[0])
+        state.start.gain(innovation, gain, velocity, EXPLAINED)
     }
 
     #[inline(always)]
@@ -194,15 +195,21 @@ impl Adaptation for Adaptive {
         let mean = 0.5 * (tick.before + step.velocity);
         let regressors = [
             motion.coupling * (tick.coupled - mean),
-            -step.direction * motion.friction,
+            -step.direction * self.range.friction(motion),
             tick.input.mean,
         ];
-        let [damping, friction, torque_constant] = state.sensitivity;
-        [
-            damping.propagated(regressors[0], tick),
-            friction.propagated(regressors[1], tick),
-            torque_constant.propagated(regressors[2], tick),
-        ]
+        let rests = step.stuck && !(R::LARGE && tick.before != 0.0);
+        let propagated = |i: usize| {
+            let sensitivity = state.sensitivity[i];
+            let regressor = if R::LARGE {
+                let damping = motion.coupling * state.parameters[0];
+                regressors[i] - damping * sensitivity.velocity
+            } else {
+                regressors[i]
+            };
+            sensitivity.propagated(regressor, rests, tick)
+        };
+        [propagated(0), propagated(1), propagated(2)]
     }
 
     #[inline(always)]
@@ -231,17 +238,22 @@ impl Adaptation for Adaptive {
             sensitivity[2].corrected(update, h[2]),
         ];
         state.sensitivity = after;
-        let waiting = state.waiting + innovation.gap;
+        let gap = if R::LARGE {
+            innovation.waited
+        } else {
+            innovation.gap
+        };
+        let waiting = state.waiting + gap;
         state.waiting = waiting;
         let early = update.dense && waiting < self.spacing;
         let slow = update.velocity.abs() < self.slowest;
-        if update.moving_start || innovation.gap == 0.0 || early || slow {
+        if update.moving_start || gap == 0.0 || early || slow {
             return None;
         }
         state.waiting = 0.0;
         let grown = |i: usize| {
             let grown = state.diagonal[i] + self.walk[i] * waiting;
-            let prior = PRIOR[i] * PRIOR[i];
+            let prior = R::PRIOR[i] * R::PRIOR[i];
             if grown < prior { grown } else { prior }
         };
         let caution = if update.dense { DENSE_CAUTION } else { CAUTION };
@@ -264,7 +276,7 @@ impl Adaptation for Adaptive {
         state.diagonal = diagonal;
         let mut change = |i: usize| {
             let before = state.parameters[i];
-            state.parameters[i] = limited(before + k[i] * update.error, LARGEST[i]);
+            state.parameters[i] = self.range.limited(i, before + k[i] * update.error);
             state.parameters[i] - before
         };
         let change = [change(0), change(1), change(2)];

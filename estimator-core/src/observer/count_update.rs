@@ -48,6 +48,7 @@ impl Correction for CountUpdate {
             age: 0.0,
             position_gain: 1.0,
             gap: *gap,
+            waited: *gap,
         };
         *gap = 0.0;
         Some((innovation, self.table.gain(innovation.gap)))

@@ -8,6 +8,7 @@ use super::gain::Gain;
 use super::inputs::{AmplifierCurrent, CoupledEncoder, HeldShaft, NoCurrent};
 use super::plan::Plan;
 use super::quantised_update::QuantisedUpdate;
+use super::range::{Narrow, Range, Wide};
 use super::uncertainty::Uncertainty;
 use super::{CountObserver, Observer};
 use crate::design::DesignError;
@@ -18,8 +19,8 @@ use crate::units::Hertz;
 /// that its parts are designed from. The observer itself keeps neither of them.
 ///
 /// [`new`](Self::new), [`quantised`](Self::quantised) and [`blind`](Self::blind) begin a design,
-/// [`held`](Self::held), [`with_edges`](Self::with_edges) and [`adaptive`](Self::adaptive) exchange one
-/// part of it, and [`build`](Self::build) gives the observer or the first error.
+/// [`held`](Self::held), [`with_edges`](Self::with_edges), [`adaptive`](Self::adaptive) and
+/// [`widely_adaptive`](Self::widely_adaptive) exchange one part of it, and [`build`](Self::build) gives the observer or the first error.
 ///
 /// ```
 /// use estimator_core::*;
@@ -40,6 +41,8 @@ use crate::units::Hertz;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObserverDesign<C = AmplifierCurrent, S = CoupledEncoder, M = CountUpdate, L = Fixed> {
     observer: Result<Observer<C, S, M, L>, DesignError>,
+    /// Standard deviation of the disturbance, counts/tick².
+    load: f32,
     rate: Hertz,
     counts_per_rev: u32,
 }
@@ -52,12 +55,13 @@ impl ObserverDesign {
     /// [`DesignError::NOT_STABLE`] for any row of the gain table.
     #[must_use]
     pub const fn new(device: &CoupledMotor, rate: Hertz, uncertainty: &Uncertainty) -> Self {
-        let observer = match Plan::new(device, rate, uncertainty) {
-            Ok(plan) => plan.counts(),
-            Err(error) => Err(error),
+        let (observer, load) = match Plan::new(device, rate, uncertainty) {
+            Ok(plan) => (plan.counts(), plan.load()),
+            Err(error) => (Err(error), 0.0),
         };
         Self {
             observer,
+            load,
             rate,
             counts_per_rev: device.motor.counts_per_rev,
         }
@@ -73,12 +77,13 @@ impl ObserverDesign<AmplifierCurrent, CoupledEncoder, QuantisedUpdate, Fixed> {
     /// tick by less than 1e-9 or more than 512 counts/tick.
     #[must_use]
     pub const fn quantised(device: &CoupledMotor, rate: Hertz, uncertainty: &Uncertainty) -> Self {
-        let observer = match Plan::new(device, rate, uncertainty) {
-            Ok(plan) => plan.quantised(),
-            Err(error) => Err(error),
+        let (observer, load) = match Plan::new(device, rate, uncertainty) {
+            Ok(plan) => (plan.quantised(), plan.load()),
+            Err(error) => (Err(error), 0.0),
         };
         Self {
             observer,
+            load,
             rate,
             counts_per_rev: device.motor.counts_per_rev,
         }
@@ -141,6 +146,7 @@ impl<C: Copy, S: Copy, M: Copy, L: Copy> ObserverDesign<C, S, M, L> {
     ) -> ObserverDesign<D, T, N, K> {
         ObserverDesign {
             observer,
+            load: self.load,
             rate: self.rate,
             counts_per_rev: self.counts_per_rev,
         }
@@ -180,9 +186,24 @@ impl<C: Copy, S: Copy, M: Copy> ObserverDesign<C, S, M, Fixed> {
     /// [`Adaptive`].
     #[must_use]
     pub const fn adaptive(self) -> ObserverDesign<C, S, M, Adaptive> {
+        self.adapted_in(Narrow)
+    }
+
+    /// As [`adaptive`](Self::adaptive), for a model that may be wrong by a factor of ten: see
+    /// [`Wide`].
+    #[must_use]
+    pub const fn widely_adaptive(self) -> ObserverDesign<C, S, M, Adaptive<Wide>> {
+        match self.observer {
+            Ok(it) => self.adapted_in(Wide::new(&it.motion, self.load)),
+            Err(error) => self.with_observer(Err(error)),
+        }
+    }
+
+    /// This observer with adaptation in `range`.
+    const fn adapted_in<R: Range>(self, range: R) -> ObserverDesign<C, S, M, Adaptive<R>> {
         self.with_observer(match self.observer {
             Ok(it) => {
-                let adaptation = Adaptive::new(self.counts_per_rev, self.rate);
+                let adaptation = Adaptive::new(range, self.counts_per_rev, self.rate);
                 Ok(it.with_parts(it.current, it.slip, it.correction, adaptation))
             }
             Err(error) => Err(error),

@@ -101,13 +101,15 @@ impl Correction for EdgeUpdate {
             state.since = since;
             state.alone += 1.0;
             let error = excess(prediction.from + prediction.displacement)?;
-            let gap = state.alone + self.unstamped;
+            let waited = state.alone;
+            let gap = waited + self.unstamped;
             state.alone = 0.0;
             let innovation = Innovation {
                 error,
                 age: 0.0,
                 position_gain: 1.0,
                 gap: 0.0,
+                waited,
             };
             return Some((innovation, self.table.gain(gap)));
         };
@@ -126,6 +128,7 @@ impl Correction for EdgeUpdate {
             age: edge.age,
             position_gain: gain.position,
             gap,
+            waited: gap,
         };
         Some((innovation, gain))
     }

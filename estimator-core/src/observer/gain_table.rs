@@ -126,6 +126,7 @@ mod tests {
     fn gap_selects_the_longest_row_that_is_not_longer() {
         let noise = Noise {
             white: 1e-6,
+            load: 1e-3,
             disturbance: 1e-8,
             decay: 0.99,
             boundary: 0.0625,

@@ -22,6 +22,8 @@ pub struct Innovation {
     pub(super) age: f32,
     /// Gain of the position at the time of the measurement, 0 to 1.
     pub(super) position_gain: f32,
-    /// Time since the last innovation, ticks.
+    /// Time since the last innovation, ticks; zero if the instant of this one is not known.
     pub(super) gap: f32,
+    /// The same time, also if the instant is not known.
+    pub(super) waited: f32,
 }

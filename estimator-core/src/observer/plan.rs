@@ -80,6 +80,11 @@ impl Plan {
         Ok(Self { motor, beta, noise })
     }
 
+    /// Standard deviation of the disturbance, counts/tick².
+    pub(super) const fn load(&self) -> f32 {
+        self.noise.load as f32
+    }
+
     /// This motor with the correction that counts alone give.
     pub(super) const fn counts(&self) -> Result<CountObserver, DesignError> {
         match GainTable::new(self.beta, &self.noise) {

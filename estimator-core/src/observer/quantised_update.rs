@@ -159,15 +159,17 @@ impl Correction for QuantisedUpdate {
         } else {
             self.sharp
         };
+        let gap = if outside && state.started {
+            state.since
+        } else {
+            0.0
+        };
         let innovation = Innovation {
             error: share * inwards,
             age: 0.0,
             position_gain: 1.0,
-            gap: if outside && state.started {
-                state.since
-            } else {
-                0.0
-            },
+            gap,
+            waited: gap,
         };
         if outside {
             state.since = 0.0;

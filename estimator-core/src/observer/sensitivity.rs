@@ -43,12 +43,13 @@ pub struct Sensitivity {
 }
 
 impl Sensitivity {
-    /// The sensitivity after a tick; `regressor` is the acceleration per relative parameter error.
+    /// The sensitivity after a tick; `regressor` is the acceleration per relative parameter error,
+    /// `rests` whether the rotor is at rest for every parameter near the present one.
     #[inline(always)]
-    pub(super) fn propagated(self, regressor: f32, tick: &Tick<'_>) -> Self {
+    pub(super) fn propagated(self, regressor: f32, rests: bool, tick: &Tick<'_>) -> Self {
         let motion = tick.motion;
         let disturbance = self.disturbance * tick.disturbance_decay;
-        if tick.step.stuck {
+        if rests {
             return Self {
                 position: self.position + 0.5 * motion.phi1 * self.velocity,
                 velocity: 0.0,

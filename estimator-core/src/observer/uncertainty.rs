@@ -48,6 +48,8 @@ impl Uncertainty {
 pub(super) struct Noise {
     /// Variance that the white torque adds to the velocity in a tick, (counts/tick)².
     pub(super) white: f64,
+    /// Standard deviation of the disturbance, counts/tick².
+    pub(super) load: f64,
     /// Variance that a tick adds to the disturbance, (counts/tick²)².
     pub(super) disturbance: f64,
     /// Factor by which the disturbance decays in a tick.
@@ -68,6 +70,7 @@ impl Noise {
         let disturbance = per_torque * uncertainty.disturbance;
         let noise = Self {
             white: white * white / t,
+            load: disturbance,
             disturbance: disturbance * disturbance * (1.0 - decay * decay),
             decay,
             boundary: uncertainty.boundary_noise,

@@ -2,8 +2,10 @@
 
 use estimator_core::{
     Amps, Confidence, Count, CountObserver, CoupledMotor, EndFit, FiniteDifference, Foaw, Handover,
-    Hertz, Kalman, Model, Observer, Sample, Side, SteadyKalman, Uncertainty, VelocityEstimator,
+    Hertz, Kalman, Model, Observer, Sample, Side, SteadyKalman, VelocityEstimator,
 };
+
+use crate::UNSURE;
 
 const RATE: Hertz = Hertz(1000.0);
 
@@ -34,14 +36,7 @@ fn full_filter_settles_to_the_variance_of_the_steady_filter() {
 /// Between two counts an observer has no measurement, so its variance grows.
 #[test]
 fn variance_of_an_observer_grows_without_counts() {
-    let unsure = Uncertainty {
-        torque_noise: 5e-6,
-        disturbance: 1e-4,
-        disturbance_time: 0.1,
-        friction_share: 0.7,
-        boundary_noise: 0.0625,
-    };
-    let observer: CountObserver = Observer::new(&CoupledMotor::DCX35L, RATE, &unsure).unwrap();
+    let observer: CountObserver = Observer::new(&CoupledMotor::DCX35L, RATE, &UNSURE).unwrap();
     let at = |count| Sample::new(Count(count)).with_current(Amps::new(0.3));
     let mut state = observer.start(&at(0));
     for k in 0..200 {

@@ -51,3 +51,14 @@ mod regressions;
 mod robust_exact;
 mod steady_gain;
 mod units;
+
+use estimator_core::Uncertainty;
+
+/// Noise of an ordinary motor, for which tests design observers.
+const UNSURE: Uncertainty = Uncertainty {
+    torque_noise: 1e-5,
+    disturbance: 3e-4,
+    disturbance_time: 0.1,
+    friction_share: 0.7,
+    boundary_noise: 0.03,
+};

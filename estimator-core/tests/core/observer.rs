@@ -17,18 +17,11 @@ use proptest::prelude::*;
 
 use cases::{Case, at, bits, case, dressed, everywhere};
 
+use crate::UNSURE;
 use crate::motion::{Draws, any_motion, medley};
 
 const CLOCK: Hertz = Hertz(84e6);
 const RATES: [f64; 3] = [1000.0, 10_000.0, 11_600.0];
-
-const UNSURE: Uncertainty = Uncertainty {
-    torque_noise: 1e-5,
-    disturbance: 3e-4,
-    disturbance_time: 0.1,
-    friction_share: 0.7,
-    boundary_noise: 0.03,
-};
 
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(24) })]

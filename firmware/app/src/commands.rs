@@ -6,12 +6,27 @@ use heapless::spsc::{Producer, Queue};
 
 use crate::control::Message;
 use crate::large::{Large, LargeEstimator as _};
+use crate::reports::Reports;
 use crate::scene::{Settings, TORQUE_SCENE};
 
 /// Messages that wait for the control task, which takes one a tick.
 pub type Messages = Queue<Message, 8>;
 /// Largest number of bytes that one call takes.
 const BYTES: usize = 64;
+
+/// Where commands come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channel {
+    /// The debug probe.
+    Rtt,
+    /// The serial port.
+    Port,
+}
+
+impl Channel {
+    /// Number of channels.
+    const COUNT: usize = Self::Port as usize + 1;
+}
 
 /// Counts of what was rejected since the start, modulo 2^32.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,32 +41,35 @@ pub struct Rejected {
     pub unknown: u32,
 }
 
-/// The receiving end of the command channel.
+/// The receiving end of the command channels. Each channel has a parser of its own, and all of them
+/// feed one queue.
 pub struct Commands<'q> {
-    parser: Parser,
+    parsers: [Parser; Channel::COUNT],
     settings: Settings,
     queue: Producer<'q, Message>,
     rejected: Rejected,
-    reported: Rejected,
-    reports: u8,
+    reports: Reports<Rejected>,
+    asked: bool,
+    used: [bool; Channel::COUNT],
 }
 
 impl<'q> Commands<'q> {
     /// A receiver without received bytes.
     pub fn new(queue: Producer<'q, Message>) -> Self {
         Self {
-            parser: Parser::default(),
+            parsers: [Parser::default(); Channel::COUNT],
             settings: Settings::default(),
             queue,
             rejected: Rejected::default(),
-            reported: Rejected::default(),
-            reports: 0,
+            reports: Reports::default(),
+            asked: false,
+            used: [false; Channel::COUNT],
         }
     }
 
-    /// Takes bytes from `next` until it has none, at most 64, while the queue has room for a
-    /// message.
-    pub fn receive(&mut self, mut next: impl FnMut() -> Option<u8>) {
+    /// Takes bytes of a channel from `next` until it has none, at most 64, while the queue has room
+    /// for a message.
+    pub fn receive(&mut self, channel: Channel, mut next: impl FnMut() -> Option<u8>) {
         for _ in 0..BYTES {
             if !self.queue.ready() {
                 return;
@@ -59,16 +77,30 @@ impl<'q> Commands<'q> {
             let Some(byte) = next() else {
                 break;
             };
-            if let Some(message) = self.parser.take(byte).and_then(|it| self.follow(it)) {
+            let Some(command) = self.parsers[channel as usize].take(byte) else {
+                continue;
+            };
+            self.used[channel as usize] = true;
+            if let Some(message) = self.follow(command) {
                 let _ = self.queue.enqueue(message);
             }
         }
+    }
+
+    /// Whether a command has come over the channel.
+    #[must_use]
+    pub const fn is_used(&self, channel: Channel) -> bool {
+        self.used[channel as usize]
     }
 
     /// The message of a command. Scenes are built here, at low priority.
     fn follow(&mut self, command: Command) -> Option<Message> {
         let message = match command {
             Command::Request(request) => return Some(Message::Request(request)),
+            Command::Identify => {
+                self.asked = true;
+                return None;
+            }
             Command::Estimator(number) => Large::choice(number)
                 .map(Message::Estimator)
                 .ok_or(Refusal::Unknown),
@@ -95,15 +127,23 @@ impl<'q> Commands<'q> {
             .map(Message::Tuned)
     }
 
+    /// The counts of now, if a command has asked for the identity of the image since the last call.
+    /// The identity and the counts are the answer.
+    pub fn asked(&mut self) -> Option<Rejected> {
+        core::mem::take(&mut self.asked).then(|| self.rejected())
+    }
+
     /// The counts of the last report and of now, at every 256th call if they differ. The caller
     /// calls this function once per frame.
     pub fn report(&mut self) -> Option<[Rejected; 2]> {
-        self.rejected.garbage = self.parser.garbage();
-        self.reports = self.reports.wrapping_add(1);
-        if self.reports != 0 || self.rejected == self.reported {
-            return None;
+        self.reports.take(self.rejected())
+    }
+
+    fn rejected(&self) -> Rejected {
+        let garbage = self.parsers.iter().map(Parser::garbage);
+        Rejected {
+            garbage: garbage.fold(0, u32::wrapping_add),
+            ..self.rejected
         }
-        let before = core::mem::replace(&mut self.reported, self.rejected);
-        Some([before, self.rejected])
     }
 }

@@ -12,7 +12,7 @@ use crate::telemetry::Record;
 
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
 /// Control ticks from arming to the first scene, 20 ms: amplifiers take 1 to 10 ms until they
-/// follow a command.
+/// are ready and follow a command.
 pub const SETTLE: u32 = RATE_HZ / 50;
 const SAFETY: Safety = Safety {
     settle: SETTLE,
@@ -28,8 +28,10 @@ const SAFETY: Safety = Safety {
 
 /// Inputs of a tick besides its sample.
 pub struct Inputs {
-    /// Whether an amplifier reports a fault.
-    pub amplifier_fault: bool,
+    /// Whether both amplifiers are ready.
+    pub amplifiers_ready: bool,
+    /// Whether the interlock loop is open, or was open since the amplifiers were last disabled.
+    pub interlock: bool,
     /// Whether the core does not run on its crystal.
     pub clock_failure: bool,
     /// Control ticks missed since the last one.
@@ -110,7 +112,8 @@ impl Control {
         let mut action = self.core.step(sample);
         let findings = Findings {
             monitor: MONITOR.check(&mut self.monitor, sample),
-            amplifier_fault: inputs.amplifier_fault,
+            amplifiers_ready: inputs.amplifiers_ready,
+            interlock: inputs.interlock,
             clock_failure: inputs.clock_failure,
             finite: is_finite(&action),
             missed: inputs.missed,

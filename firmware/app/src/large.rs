@@ -10,14 +10,17 @@ use estimator_core::{
 
 use crate::config::{DEVICE, RATE, TIMERS};
 
+/// Names of the estimators of [`Both`] in the catalogue of estimators, each at its number.
+pub const NAMES: [&str; 2] = ["foaw-end-fit", "kalman-triple-steady"];
+
 /// Longest window of [`Window`], intervals.
-pub const INTERVALS: usize = tuned::image("large", "foaw-end-fit", RATE, "n") as usize;
+pub const INTERVALS: usize = tuned::image("large", NAMES[0], RATE, "n") as usize;
 /// FOAW over at most [`INTERVALS`].
 pub type Window = Foaw<INTERVALS, EndFit>;
 /// The parameters of [`Window`].
 pub const WINDOW: Window = preset!(Foaw::new(
     INTERVALS,
-    tuned::image("large", "foaw-end-fit", RATE, "d") as u16
+    tuned::image("large", NAMES[0], RATE, "d") as u16
 ));
 
 /// A steady-state Kalman filter.
@@ -25,7 +28,7 @@ pub type Filter = SteadyKalmanTriple;
 const MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(
     DEVICE.large.counts_per_rev,
     RATE,
-    tuned::image("large", "kalman-triple-steady", RATE, "jerk")
+    tuned::image("large", NAMES[1], RATE, "jerk")
 ));
 /// The parameters of [`Filter`].
 pub const FILTER: Filter = preset!(SteadyKalman::new(&MODEL));

@@ -6,5 +6,7 @@ pub mod commands;
 pub mod config;
 pub mod control;
 pub mod large;
+pub mod port;
+pub mod reports;
 pub mod scene;
 pub mod telemetry;

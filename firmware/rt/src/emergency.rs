@@ -9,62 +9,73 @@ use stm32f4xx_hal::pac;
 
 use crate::{reset_cause, rtt};
 
-/// The enables of both amplifiers, pins of one port. A board states them with
+/// The timer whose outputs enable the amplifiers. A board states it with
 /// [`emergency_outputs!`](crate::emergency_outputs): as a constant in flash, because memory may be
-/// corrupt when they are needed.
+/// corrupt when it is needed.
 pub struct EmergencyOutputs {
-    /// Address of the port's BSRR.
-    bsrr: usize,
-    /// The word for BSRR that sets the pins low.
-    low: u32,
+    /// Address of the timer's BDTR.
+    bdtr: usize,
+    /// The bit in DBGMCU_APB2_FZ that disables the timer's outputs in a halt.
+    pub(crate) off_in_halt: u32,
 }
 
 impl EmergencyOutputs {
-    /// The pins of these numbers on port `A` to `K`.
+    /// The outputs of TIM1 or TIM8.
     ///
     /// # Panics
-    /// If there is no such port or pin: in a constant, the build stops.
+    /// If the timer is another one: in a constant, the build stops.
     #[must_use]
-    pub const fn new(port: char, enables: [u8; 2]) -> Self {
-        assert!(
-            matches!(port, 'A'..='K') && enables[0] < 16 && enables[1] < 16,
-            "ports are A to K, pins 0 to 15"
-        );
-        Self {
-            // The ports follow one another, 0x400 apart; BSRR is at 0x18 of each.
-            bsrr: 0x4002_0000 + 0x400 * (port as usize - 'A' as usize) + 0x18,
-            low: 1 << (16 + enables[0]) | 1 << (16 + enables[1]),
+    pub const fn new(timer: u8) -> Self {
+        // BDTR is at 0x44 of each.
+        match timer {
+            1 => Self {
+                bdtr: 0x4001_0044,
+                off_in_halt: 1 << 0,
+            },
+            8 => Self {
+                bdtr: 0x4001_0444,
+                off_in_halt: 1 << 1,
+            },
+            _ => panic!("the timers with a break input are TIM1 and TIM8"),
         }
     }
 }
 
-/// States the amplifiers' enables of the board, as `port: 'E', enables: [4, 5]`; once in an image.
+/// States the timer whose outputs enable the amplifiers, as `timer: 8`; once in an image.
 #[macro_export]
 macro_rules! emergency_outputs {
-    (port: $port:expr, enables: $enables:expr $(,)?) => {
+    (timer: $timer:expr) => {
         // SAFETY: the name is the one that this crate declares, with its type.
         #[unsafe(no_mangle)]
-        static EMERGENCY_OUTPUTS: $crate::EmergencyOutputs =
-            $crate::EmergencyOutputs::new($port, $enables);
+        static EMERGENCY_OUTPUTS: $crate::EmergencyOutputs = $crate::EmergencyOutputs::new($timer);
     };
 }
 
 // SAFETY: `emergency_outputs!` defines it with this type; without that the image does not link.
 unsafe extern "Rust" {
-    safe static EMERGENCY_OUTPUTS: EmergencyOutputs;
+    pub(crate) safe static EMERGENCY_OUTPUTS: EmergencyOutputs;
 }
+
+/// Word for BDTR that makes the outputs inactive: `MOE` clear; inactive outputs are driven (`OSSI`)
+/// to their idle level, low; the break input is enabled (`BKE`) and active low (`BKP` clear), so
+/// that a broken wire is a break; only software enables the outputs (`AOE` clear). `LOCK` level 2
+/// makes the first write after a reset final, except for `MOE`.
+const OUTPUTS_OFF: u32 = BKE | OSSI | LOCK_LEVEL_2;
+const BKE: u32 = 1 << 12;
+const OSSI: u32 = 1 << 10;
+const LOCK_LEVEL_2: u32 = 0b10 << 8;
 
 /// Both DAC channels at mid-scale, as DAC_DHR12RD takes them: no current.
 const MID_SCALE: u32 = 2048 << 16 | 2048;
 
 /// Disables both amplifiers and commands no current, from any context.
 pub fn outputs_safe() {
-    // SAFETY: two stores of constants to write-only registers, of which BSRR's address is that of a
-    // port by construction. They have no side effects but the outputs and need no lock, because both
-    // registers are written whole, and every caller interrupts for good whatever else writes there.
-    // Before their clocks run, they do nothing.
+    // SAFETY: two stores of constants, of which BDTR's address is that of a timer by construction.
+    // They have no side effects but the outputs and need no lock, because both registers are written
+    // whole, and every caller interrupts for good whatever else writes there. Before their clocks
+    // run, they do nothing.
     unsafe {
-        (EMERGENCY_OUTPUTS.bsrr as *mut u32).write_volatile(EMERGENCY_OUTPUTS.low);
+        (EMERGENCY_OUTPUTS.bdtr as *mut u32).write_volatile(OUTPUTS_OFF);
         (*pac::DAC::ptr()).dhr12rd().write(|w| w.bits(MID_SCALE));
     }
 }

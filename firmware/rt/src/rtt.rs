@@ -1,4 +1,4 @@
-//! RTT: the log goes up channel 0, commands come down channel 0.
+//! RTT: the log goes up channel 0, messages of the link go up channel 1, commands come down channel 0.
 //!
 //! `defmt-rtt` has no down channel and `rtt-target` masks interrupts for every frame; here a frame
 //! is staged whole and published by one store; a task that interrupts a frame loses its own. When
@@ -12,6 +12,8 @@ use cortex_m::peripheral::SCB;
 /// Bytes that wait for the probe: at least 67 lines of a telemetry frame, which has 59 bytes before
 /// and at most 61 after its encoding.
 const UP: usize = 4096;
+/// Bytes of the link that wait for the probe.
+const LINK: usize = 4096;
 /// Bytes of commands that wait, and that one look takes at most.
 const DOWN: usize = 64;
 /// Owner while no frame is being written.
@@ -36,21 +38,28 @@ struct Block {
     up_channels: u32,
     down_channels: u32,
     up: Channel<UP>,
+    link: Channel<LINK>,
     down: Channel<DOWN>,
 }
 
 static NAME: [u8; 6] = *b"defmt\0";
+static MESSAGES: [u8; 6] = *b"link\0\0";
 static COMMANDS: [u8; 6] = *b"cmds\0\0";
 static UP_BUFFER: [AtomicU8; UP] = [const { AtomicU8::new(0) }; UP];
+// SAFETY: the section is RAM that the start-up code does not touch; every content is bytes, and no
+// byte is read before it was written. Its clearing would delay the start of the watchdog.
+#[unsafe(link_section = ".uninit.link")]
+static LINK_BUFFER: [AtomicU8; LINK] = [const { AtomicU8::new(0) }; LINK];
 static DOWN_BUFFER: [AtomicU8; DOWN] = [const { AtomicU8::new(0) }; DOWN];
 
 // SAFETY: the name is the one that probes look for, and nothing else here has it.
 #[unsafe(no_mangle)]
 static _SEGGER_RTT: Block = Block {
     id: *b"SEGGER RTT\0\0\0\0\0\0",
-    up_channels: 1,
+    up_channels: 2,
     down_channels: 1,
     up: Channel::new(&NAME, &UP_BUFFER),
+    link: Channel::new(&MESSAGES, &LINK_BUFFER),
     down: Channel::new(&COMMANDS, &DOWN_BUFFER),
 };
 
@@ -83,6 +92,22 @@ pub fn receive() -> Option<u8> {
     down.read
         .store(((read + 1) % DOWN) as u32, Ordering::Release);
     Some(byte)
+}
+
+/// Publishes a frame of the link, unless there is no room for it. For the task of lowest priority.
+pub fn send(frame: &[u8]) {
+    let up = &_SEGGER_RTT.link;
+    let (read, write) = (up.index(&up.read), up.index(&up.write));
+    let used = (LINK + write - read) % LINK;
+    // A full buffer would look empty.
+    if frame.len() >= LINK - used {
+        return;
+    }
+    for (k, &byte) in frame.iter().enumerate() {
+        up.buffer[(write + k) % LINK].store(byte, Ordering::Relaxed);
+    }
+    let end = (write + frame.len()) % LINK;
+    up.write.store(end as u32, Ordering::Release);
 }
 
 /// Frames lost because the buffer was full or another frame was being written.

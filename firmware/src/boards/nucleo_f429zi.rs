@@ -2,19 +2,19 @@
 
 #[allow(dead_code, reason = "an image without the wires captures nothing")]
 mod edge;
+mod enables;
 mod encoder;
 mod parts;
+mod port;
 mod reset;
 mod tick;
 
-firmware_rt::emergency_outputs! {
-    port: parts::ENABLE_PORT,
-    enables: [parts::LARGE_ENABLE, parts::SMALL_ENABLE],
-}
+firmware_rt::emergency_outputs!(timer: enables::TIMER);
 
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
     use super::parts::{Guard, Parts, start};
+    use super::port::Usart;
     use crate::tasks::{ControlTask, IdleTask, Queues, tasks};
 
     #[shared]
@@ -25,7 +25,7 @@ mod app {
         parts: Parts,
         control: ControlTask,
 
-        idle: IdleTask<Guard>,
+        idle: IdleTask<Guard, Usart>,
     }
 
     #[init(local = [queues: Queues = Queues::new()])]

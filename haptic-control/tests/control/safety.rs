@@ -45,7 +45,7 @@ fn settling() -> SafetyState {
 }
 
 /// Causes of a stop in order of their priority.
-fn wrongs() -> [(Findings, Stop); 9] {
+fn wrongs() -> [(Findings, Stop); 10] {
     let of = |cause| Findings {
         monitor: Some(cause),
         ..WELL
@@ -60,11 +60,13 @@ fn wrongs() -> [(Findings, Stop); 9] {
         ),
         (
             Findings {
-                amplifier_fault: true,
+                interlock: true,
                 ..WELL
             },
-            Stop::AmplifierFault,
+            Stop::Interlock,
         ),
+        (Findings { missed: 4, ..WELL }, Stop::TickOverrun),
+        (NOT_READY, Stop::AmplifierFault),
         (of(Stop::HandleOverspeed), Stop::HandleOverspeed),
         (of(Stop::LargeOverspeed), Stop::LargeOverspeed),
         (of(Stop::Jump), Stop::Jump),
@@ -77,15 +79,29 @@ fn wrongs() -> [(Findings, Stop); 9] {
             },
             Stop::NonFinite,
         ),
-        (Findings { missed: 4, ..WELL }, Stop::TickOverrun),
     ]
+}
+
+const NOT_READY: Findings = Findings {
+    amplifiers_ready: false,
+    ..WELL
+};
+
+/// The modes in which each cause stops the device. Amplifiers that settle may be not ready.
+fn stopped_by(stop: Stop) -> Vec<SafetyState> {
+    let mut modes = vec![armed(), running()];
+    if stop != Stop::AmplifierFault {
+        modes.push(settling());
+    }
+    modes
 }
 
 /// All that is found by either.
 fn both(a: Findings, b: Findings) -> Findings {
     Findings {
         monitor: a.monitor.or(b.monitor),
-        amplifier_fault: a.amplifier_fault || b.amplifier_fault,
+        amplifiers_ready: a.amplifiers_ready && b.amplifiers_ready,
+        interlock: a.interlock || b.interlock,
         clock_failure: a.clock_failure || b.clock_failure,
         finite: a.finite && b.finite,
         missed: a.missed.max(b.missed),
@@ -96,7 +112,7 @@ fn both(a: Findings, b: Findings) -> Findings {
 #[test]
 fn every_cause_disables_in_its_tick_and_stays_until_rearmed() {
     for (findings, stop) in wrongs() {
-        for before in [settling(), armed(), running()] {
+        for before in stopped_by(stop) {
             let mut state = before;
             let order = tick(&mut state, findings, None);
             assert_eq!(
@@ -135,7 +151,7 @@ fn first_cause_of_the_list_is_reported() {
 fn cause_has_priority_over_a_request_of_the_same_tick() {
     for (findings, stop) in wrongs() {
         for request in [Request::Select(1), Request::Disarm, Request::Arm] {
-            for before in [settling(), armed(), running()] {
+            for before in stopped_by(stop) {
                 let mut state = before;
                 assert!(!tick(&mut state, findings, Some(request)).enable);
                 assert_eq!((state.mode(), state.stop()), (Mode::Safe, stop));
@@ -156,7 +172,9 @@ fn present_cause_refuses_arming_and_a_past_one_does_not() {
         tick(&mut state, WELL, Some(Request::Select(3)));
         let order = tick(&mut state, findings, Some(Request::Arm));
         // The monitor latches its cause and missed ticks are counted: both begin again with arm.
-        let over = findings.monitor.is_some() || findings.missed > 0;
+        // Amplifiers may be not ready while they are disabled.
+        let over =
+            findings.monitor.is_some() || findings.missed > 0 || stop == Stop::AmplifierFault;
         if over {
             assert!(order.enable && order.restart, "{stop:?}");
             assert_eq!((state.mode(), state.stop()), (Mode::Running, Stop::None));
@@ -166,6 +184,36 @@ fn present_cause_refuses_arming_and_a_past_one_does_not() {
             // The selection is gone.
             assert_eq!(tick(&mut state, WELL, Some(Request::Arm)).select, None);
         }
+    }
+}
+
+/// Two of three ticks of settling may pass without ready amplifiers. The third one needs them, and
+/// so does every tick from then on.
+#[test]
+fn amplifiers_have_to_be_ready_at_the_end_of_settling() {
+    for scene in [0, 2] {
+        let start = || {
+            let mut state = SLOW.start(Stop::None);
+            SLOW.tick(&mut state, &NOT_READY, Some(Request::Select(scene)));
+            assert!(SLOW.tick(&mut state, &NOT_READY, Some(Request::Arm)).enable);
+            for _ in 0..2 {
+                assert!(SLOW.tick(&mut state, &NOT_READY, None).enable);
+                assert_eq!((state.mode(), state.stop()), (Mode::Settling, Stop::None));
+            }
+            state
+        };
+        let mut late = start();
+        let order = SLOW.tick(&mut late, &NOT_READY, None);
+        assert_eq!((order.enable, order.select), (false, None));
+        assert_eq!(
+            (late.mode(), late.stop()),
+            (Mode::Safe, Stop::AmplifierFault)
+        );
+        let mut ready = start();
+        assert!(SLOW.tick(&mut ready, &WELL, None).enable);
+        assert!(matches!(ready.mode(), Mode::Armed | Mode::Running));
+        assert!(!SLOW.tick(&mut ready, &NOT_READY, None).enable);
+        assert_eq!(ready.stop(), Stop::AmplifierFault);
     }
 }
 
@@ -215,7 +263,7 @@ fn debug_settings_refuse_arming_and_do_not_stop_an_armed_device() {
 
 #[test]
 fn reset_with_a_cause_boots_in_state_safe() {
-    for stop in (1..=16).map(|code| Stop::from_code(code).unwrap()) {
+    for stop in (1..=17).map(|code| Stop::from_code(code).unwrap()) {
         let mut state = SAFETY.start(stop);
         assert!(!tick(&mut state, WELL, None).enable);
         assert_eq!((state.mode(), state.stop()), (Mode::Safe, stop));
@@ -321,7 +369,9 @@ fn only_arm_enables() {
                     assert!(!order.enable || is_on || request == Some(Request::Arm));
                     assert!(state.mode() != Mode::Safe || state.stop() != Stop::None);
                     assert!(order.select.is_none_or(|scene| scene < 8 && order.enable));
-                    assert!(!is_on || findings == WELL || state.mode() == Mode::Safe);
+                    let may_wait = findings == NOT_READY && before.mode() == Mode::Settling;
+                    let allowed = findings == WELL || may_wait;
+                    assert!(!is_on || allowed || state.mode() == Mode::Safe);
                 }
             }
         }
@@ -349,6 +399,7 @@ fn every_stop_keeps_its_number_and_name() {
         "against",
         "debugger",
         "exception",
+        "interlock",
     ];
     assert_eq!(Stop::ALL.map(Stop::as_str), names);
     for code in 0..=u8::MAX {
@@ -357,5 +408,5 @@ fn every_stop_keeps_its_number_and_name() {
             None => assert!(usize::from(code) >= names.len(), "{code}"),
         }
     }
-    assert_eq!(Stop::from_code(16), Some(Stop::Exception));
+    assert_eq!(Stop::from_code(17), Some(Stop::Interlock));
 }

@@ -237,10 +237,10 @@ fn one_missed_tick_in_16_is_tolerated_and_more_are_not() {
 
 #[test]
 fn codes_of_stops_and_modes_are_unique_and_reversible() {
-    for code in 0..=16 {
+    for code in 0..=17 {
         assert_eq!(Stop::from_code(code).map(|stop| stop as u8), Some(code));
     }
-    assert_eq!(Stop::from_code(17), None);
+    assert_eq!(Stop::from_code(18), None);
     for code in 0..=4 {
         assert_eq!(Mode::from_code(code).map(|mode| mode as u8), Some(code));
     }

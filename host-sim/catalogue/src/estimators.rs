@@ -15,7 +15,10 @@ use haptic_control::DualStage;
 pub use estimator_catalogue::{Parameter, Search};
 
 pub use erased::{Estimator, Reports, State};
-pub use run::{available, sample};
+pub use run::sample;
+
+use run::available;
+use simulation::trace::Trace;
 
 use crate::parameters::{Parameters, PlantKind};
 use terminal::failure::Failure;
@@ -72,6 +75,15 @@ impl Setup {
     }
 }
 
+/// What a trace lacks for an estimator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lack {
+    /// A column of a recording.
+    Column(&'static str),
+    /// A constant period.
+    ConstantPeriod,
+}
+
 /// Values of a kind's parameters, in the order of its row.
 pub type Values = Vec<f64>;
 
@@ -119,6 +131,20 @@ impl Kind {
         let values = Parameters::default().values(self, &setup, PlantKind::Friction);
         self.build(&setup, &values)
             .is_ok_and(|estimator| estimator.gives_acceleration())
+    }
+
+    /// Reason why the estimator cannot run on `trace`; `None` if it can.
+    #[must_use]
+    pub fn lack(&self, trace: &Trace) -> Option<Lack> {
+        let (needs, has) = (self.needs, available(trace));
+        if !needs.within(has) {
+            return Some(Lack::Column(match needs {
+                needs if needs.current && !has.current => "current",
+                needs if needs.coupled && !has.coupled => "counts_small",
+                _ => "edge_tick",
+            }));
+        }
+        (trace.periods.is_some() && !self.varying_period).then_some(Lack::ConstantPeriod)
     }
 
     /// Whether the estimator is an observer, with a disturbance torque and a mechanical model.

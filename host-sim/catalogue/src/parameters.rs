@@ -212,6 +212,22 @@ mod tests {
         assert!(compared > 100, "{compared}");
     }
 
+    #[test]
+    fn bank_that_follows_an_observer_has_the_values_of_the_observer() {
+        let shipped = Presets::shipped();
+        for (bank, observer) in [
+            ("imm-adaptive", "adaptive"),
+            ("imm-adaptive-edge", "adaptive-edge"),
+        ] {
+            let of = |name: &str| -> Vec<_> {
+                let presets = shipped.preset.iter();
+                presets.map(|p| p.estimators.get(name).cloned()).collect()
+            };
+            assert!(of(observer).iter().any(Option::is_some), "{observer}");
+            assert_eq!(of(bank), of(observer), "{bank}");
+        }
+    }
+
     /// The counts per revolution are those of the file; a file without them is not scaled by them.
     #[test]
     fn value_is_scaled_by_the_counts_of_its_preset() {

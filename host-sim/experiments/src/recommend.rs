@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use catalogue::estimators::{Kind, Setup, available};
+use catalogue::estimators::{Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
 use recordings::recording::Recording;
 use scoring::evaluation::{Estimate, Row};
@@ -73,6 +73,8 @@ pub struct OnLog {
     pub against: &'static str,
     /// RMS of the reference's standard deviation, rad/s; `None` for the truth.
     pub reference_sd_rad_s: Option<f64>,
+    /// `constant` or `varying`: the steps of `t`.
+    pub period: &'static str,
 }
 
 /// One estimator: an object of the JSON output.
@@ -150,10 +152,7 @@ pub fn recommend<'a>(
     settings: &Settings,
     done: impl Fn() + Sync,
 ) -> Result<Recommendation<'a>, Failure> {
-    let has = |kind: &Kind| {
-        logs.iter()
-            .all(|(_, log)| kind.needs.within(available(&log.trace)))
-    };
+    let has = |kind: &Kind| logs.iter().all(|(_, log)| kind.lack(&log.trace).is_none());
     let able: Vec<&'static Kind> = Kind::all().iter().filter(|kind| has(kind)).collect();
     let (kinds, of_device): (Vec<_>, Vec<_>) = able
         .into_iter()
@@ -321,6 +320,7 @@ fn on_log(kind: &Kind, outcome: &Outcome) -> Option<OnLog> {
             .reference
             .as_ref()
             .map(|reference| reference.rms_sd(rate_hz)),
+        period: replay::period(&outcome.recording.trace),
     })
 }
 

@@ -17,6 +17,7 @@ use recordings::recording::Recording;
 use scoring::evaluation::{Estimate, Row};
 use scoring::score::{Field, Score};
 use simulation::device::Device;
+use simulation::trace::Trace;
 use terminal::failure::Failure;
 
 pub use board::BoardSummary;
@@ -95,12 +96,23 @@ pub struct Scored<'a> {
     against: &'static str,
     /// RMS of the reference's standard deviation, rad/s; `None` for the truth.
     reference_sd_rad_s: Option<f64>,
+    /// `constant` or `varying`: the steps of `t`.
+    period: &'static str,
+}
+
+/// Name of the steps of a recording in JSON.
+#[must_use]
+pub fn period(trace: &Trace) -> &'static str {
+    match trace.periods {
+        None => "constant",
+        Some(_) => "varying",
+    }
 }
 
 impl Against<'_> {
-    /// `rows` with what they are against.
+    /// `rows` of a recording with the columns of `trace`, with what they are against.
     #[must_use]
-    pub fn scored<'a>(&self, rows: &'a [Row]) -> Vec<Scored<'a>> {
+    pub fn scored<'a>(&self, rows: &'a [Row], trace: &Trace) -> Vec<Scored<'a>> {
         let scored = |row: &'a Row| {
             let (against, reference_sd_rad_s) = match self {
                 Self::Truth => ("truth", None),
@@ -110,6 +122,7 @@ impl Against<'_> {
                 row,
                 against,
                 reference_sd_rad_s,
+                period: period(trace),
             }
         };
         rows.iter().map(scored).collect()

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::compare::{Case, Settings, interval, setup_of, trace};
 use catalogue::constant_error::ConstantError;
-use catalogue::estimators::{Kind, available};
+use catalogue::estimators::Kind;
 use scoring::score::{Truth, Wanted};
 use terminal::failure::Failure;
 
@@ -88,7 +88,7 @@ fn run(case: &Case, settings: &Settings) -> Result<Vec<SensitivityRow>, Failure>
     let constant_errors = ConstantError::at(&PARTS);
     let mut rows = Vec::new();
     for kind in &settings.estimators {
-        if !kind.needs.within(available(&trace)) {
+        if kind.lack(&trace).is_some() {
             continue;
         }
         for constant_error in std::iter::once(None).chain(constant_errors.iter().map(Some)) {

@@ -1,6 +1,7 @@
 //! Telemetry of the firmware, from a board or an emulated one: frames, boot lines, other lines.
 
 mod frame;
+mod link;
 #[cfg(feature = "rtt")]
 mod rtt;
 mod run;

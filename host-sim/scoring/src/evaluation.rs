@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::score::{HapticInterval, SKIP_S, Score, Wanted};
-use catalogue::estimators::{Estimator, Kind, Setup, available};
+use catalogue::estimators::{Estimator, Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
 use simulation::trace::Trace;
 use terminal::failure::Failure;
@@ -108,10 +108,11 @@ impl Candidate {
         })
     }
 
-    /// The estimate over `trace`; `None` if the trace lacks a signal that the estimator needs.
+    /// The estimate over `trace`; `None` if the trace lacks a signal or a constant period that the
+    /// estimator needs.
     #[must_use]
     pub fn estimate(&self, trace: &Trace) -> Option<Estimate> {
-        self.kind.needs.within(available(trace)).then(|| {
+        self.kind.lack(trace).is_none().then(|| {
             let (velocity, deviation) = self.estimator.run_confident(trace);
             Estimate {
                 estimator: self.kind.name,

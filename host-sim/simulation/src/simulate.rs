@@ -250,6 +250,7 @@ impl Run {
             edges,
             true_omega: Some(omega),
             true_damping: Some(damping),
+            periods: None,
         }
     }
 

@@ -19,6 +19,9 @@ pub struct EdgeStamp {
 pub struct Trace {
     /// Control rate, Hz.
     pub rate_hz: f64,
+    /// Time from the tick before, in periods of `rate_hz`; `None` for a constant period. The first value
+    /// is 1.
+    pub periods: Option<Vec<f32>>,
     /// Large encoder, modulo 2^32.
     pub counts_large: Vec<u32>,
     /// Small encoder, modulo 2^32.

@@ -6,13 +6,13 @@ use clap::{Args, Parser, Subcommand};
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use recordings::recording::{ReadOptions, Recording, Survey};
+use recordings::recording::{ReadOptions, Recording, Survey, stated_counts_per_rev};
 use simulation::device::Device;
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
 use terminal::wording::WIDTH;
 
-use super::input::Log;
+use super::input::{Log, short_name};
 
 /// Velocity estimation for a dual-stage haptic device, simulated and scored.
 ///
@@ -212,6 +212,52 @@ impl DeviceFile {
         let name = self.device.as_deref().unwrap_or(Path::new(""));
         Device::from_toml_str(&self.text()?)
             .map_err(|error| Failure::Input(format!("{}: {error}", name.display())))
+    }
+
+    /// `device`, as loaded, for recordings, and a line for each one that states its counts per
+    /// revolution. Without a device file, and without `counts_per_rev` of an option, the device has
+    /// these counts.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that names the recording whose counts differ from those of the first one.
+    pub(super) fn with_stated_counts(
+        &self,
+        mut device: Device,
+        logs: &[Log],
+        counts_per_rev: Option<u32>,
+    ) -> Result<(Device, Vec<String>), Failure> {
+        let counts = &mut device.stages.large.counts_per_rev;
+        let mut is_known = self.is_given();
+        if let Some(given) = counts_per_rev {
+            (*counts, is_known) = (given, true);
+        }
+        let mut lines = Vec::new();
+        let mut first: Option<&str> = None;
+        for log in logs {
+            let Some(stated) = stated_counts_per_rev(&log.head()?, log.name())? else {
+                continue;
+            };
+            let name = short_name(log.path());
+            match first {
+                _ if is_known && stated == *counts => {}
+                _ if is_known => lines.push(format!(
+                    "{name}: {counts} counts/rev of the options are used; the file states {stated}"
+                )),
+                Some(first) if stated != *counts => {
+                    return Err(Failure::Input(format!(
+                        "{}: states {stated} counts/rev and {first} {counts}; give recordings of one \
+                         encoder, or the counts with --device",
+                        log.name()
+                    )));
+                }
+                _ => {
+                    *counts = stated;
+                    first = first.or(Some(log.name()));
+                    lines.push(format!("{name}: {stated} counts/rev, as the file states"));
+                }
+            }
+        }
+        Ok((device, lines))
     }
 
     /// Whether a file was given.

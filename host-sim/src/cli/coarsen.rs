@@ -8,6 +8,7 @@ use clap::Args;
 use experiments::real::coarsen::Coarse;
 use experiments::real::fine::{Fine, decompressed};
 use experiments::real::sources::Source;
+use recordings::recording::counts_per_rev_line;
 use terminal::failure::Failure;
 use terminal::output::write_whole;
 
@@ -50,7 +51,8 @@ pub(super) struct Coarsen {
     /// The device's torque constant turns motor_torque_nm into the column current
     #[command(flatten)]
     device: DeviceFile,
-    /// Write the recording, which replay reads, to FILE; - is standard output
+    /// Write the recording to FILE, with its counts per revolution in a comment that the commands on
+    /// recordings read; - is standard output
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
@@ -84,7 +86,9 @@ pub(super) fn run(options: &Coarsen) -> Result<(), Failure> {
     };
     let text = decompressed(read(&options.fine)?, &name)?;
     let fine = Fine::parse(&text, &name, seconds)?;
-    write_whole(&options.out, &coarse.recording(&fine, &name)?.to_csv())
+    let mut text = counts_per_rev_line(coarse.counts_per_rev).into_bytes();
+    text.extend(coarse.recording(&fine, &name)?.to_csv());
+    write_whole(&options.out, &text)
 }
 
 /// A rate that a recording can have.

@@ -53,20 +53,23 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
         Folder::check("--report", folder)?;
     }
     let device = options.device.load()?;
+    let logs = options.recordings.iter().map(|path| Log::open(path));
+    let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
+    let (device, mut notes) = options.device.with_stated_counts(device, &logs, None)?;
     let known = match &options.known {
         Some(text) => Known::parse(text)?,
         None => Known::TorqueConstant(device.stages.large.torque_constant),
     };
     let mut recordings = Vec::new();
-    let mut notes = Vec::new();
-    for path in &options.recordings {
-        let name = short_name(path);
-        let recording = options.read.read(&Log::open(path)?, &device)?;
+    let states_counts = !notes.is_empty();
+    for log in &logs {
+        let name = short_name(log.path());
+        let recording = options.read.read(log, &device)?;
         notes.extend(recording.notes.iter().map(|line| format!("{name}: {line}")));
         recordings.push((name, recording));
     }
     let mut found = identify::identify(&recordings, &device, known, options.clamped)?;
-    if !options.device.is_given() {
+    if !options.device.is_given() && !states_counts {
         found.assumed.insert(0, identify::default_counts(&device));
     }
     if let Some(out) = &options.out {

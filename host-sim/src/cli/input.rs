@@ -81,6 +81,11 @@ impl Log {
         &self.name
     }
 
+    /// Where it is.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Its bytes from the begin.
     ///
     /// # Errors

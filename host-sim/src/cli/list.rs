@@ -31,6 +31,9 @@ pub(super) fn estimators() -> Result<(), Failure> {
                 let _ = writeln!(text, "  needs {what}");
             }
         }
+        if kind.varying_period {
+            let _ = writeln!(text, "  takes rows at uneven times");
+        }
         for p in kind.parameters {
             let unit = if p.unit.is_empty() {
                 String::new()

@@ -9,11 +9,12 @@ use experiments::replay;
 use recordings::recording::BoardColumns;
 use report::{self, RecordingView};
 use terminal::failure::Failure;
-use terminal::output::{is_stdout, print_bytes, write_whole};
+use terminal::output::{is_stdout, note, print_bytes, write_whole};
 
 use super::arguments::{DeviceFile, ParameterOptions, RecordingOptions, kinds};
 use super::input::{Log, is_stdin, short_name};
 use super::replay::About;
+use super::uneven::Chosen;
 
 /// Estimators that are drawn by default.
 const ESTIMATORS: [&str; 2] = ["finite-difference", "kalman-triple-steady"];
@@ -55,8 +56,20 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
     let name = short_name(&options.recording);
     let log = Log::open(&options.recording)?;
     let path = log.name();
+    let (device, stated) =
+        options
+            .device
+            .with_stated_counts(device, std::slice::from_ref(&log), None)?;
     let recording = options.read.read(&log, &device)?;
-    recording.check_even(path)?;
+    recording.check_times(path)?;
+    let uneven = recording.unevenness();
+    let chosen = Chosen::new(
+        &kinds,
+        !options.estimators.is_empty(),
+        &recording.trace,
+        path,
+        uneven.as_deref(),
+    )?;
     // Rows of another rate are not those of the board.
     let board = match options.read.keeps_rows() {
         true => BoardColumns::parse(log.reader()?, path)?,
@@ -78,7 +91,14 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
              choose --from and --to there"
         )));
     }
-    let replayed = replay::replay(&recording, &name, &kinds, &device, &parameters, || ())?;
+    let replayed = replay::replay(
+        &recording,
+        &name,
+        &chosen.kinds,
+        &device,
+        &parameters,
+        || (),
+    )?;
     let svg = report::recording(&RecordingView {
         name: &name,
         recording: &recording,
@@ -99,11 +119,13 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
     write_whole(out, svg.as_bytes())?;
     let about = About {
         notes: recording.notes.clone(),
-        uneven: recording.unevenness(),
-        rate_hz: recording.trace.rate_hz,
+        uneven: uneven.map(|uneven| chosen.note(&recording.trace, &uneven)),
         left_out: &replayed.left_out,
         mismatched_presets: &replayed.mismatched_presets,
     };
+    for line in &stated {
+        note(line);
+    }
     about.note(&name);
     if options.out.is_some() || is_stdout(out) {
         return Ok(());

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use catalogue::estimators::Kind;
 use experiments::recommend::{self, Settings, recommend};
 use experiments::rows::json;
 use experiments::table::layout::{NARROW, terminal_width};
@@ -16,6 +17,7 @@ use terminal::wording::wrapped;
 use super::arguments::{DeviceFile, ParameterOptions, RecordingOptions};
 use super::input::{Log, is_stdin, short_name};
 use super::page::{self, progress};
+use super::uneven::Chosen;
 
 /// Default budget of the cheap estimator, instructions per update.
 const BUDGET: f64 = 100.0;
@@ -65,18 +67,20 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
         let what = "LOG -: standard input can be read once; give - once";
         return Err(Failure::Input(what.to_owned()));
     }
-    let mut device = options.device.load()?;
-    if let Some(counts) = options.counts_per_rev {
-        device.stages.large.counts_per_rev = counts;
-    }
+    let device = options.device.load()?;
     let parameters = options.parameters.load()?;
-    let read = |path: &PathBuf| -> Result<(String, Recording), Failure> {
-        let log = Log::open(path)?;
-        let recording = options.recording.read(&log, &device)?;
-        recording.check_even(log.name())?;
-        Ok((short_name(path), recording))
+    let logs = options.logs.iter().map(|path| Log::open(path));
+    let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
+    let (device, stated) =
+        options
+            .device
+            .with_stated_counts(device, &logs, options.counts_per_rev)?;
+    let read = |log: &Log| -> Result<(String, Recording), Failure> {
+        let recording = options.recording.read(log, &device)?;
+        recording.check_times(log.name())?;
+        Ok((short_name(log.path()), recording))
     };
-    let logs: Vec<_> = options.logs.iter().map(read).collect::<Result<_, _>>()?;
+    let logs: Vec<_> = logs.iter().map(read).collect::<Result<_, _>>()?;
     let settings = Settings {
         device: &device,
         is_known: options.device.is_given(),
@@ -84,22 +88,22 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
         budget: options.instructions,
         cost: report::measured::cost,
     };
-    let bar = progress(
-        logs.len() * catalogue::estimators::Kind::all().len(),
-        "estimating",
-    );
+    let bar = progress(logs.len() * Kind::all().len(), "estimating");
     let recommended = recommend(&logs, &settings, || bar.inc(1))?;
     bar.finish_and_clear();
 
     let counts_per_rev = device.stages.large.counts_per_rev;
-    let mut notes = Vec::new();
-    if options.counts_per_rev.is_none() && !options.device.is_given() {
+    let mut notes = stated;
+    if notes.is_empty() && options.counts_per_rev.is_none() && !options.device.is_given() {
         notes.push(format!(
             "{counts_per_rev} counts/rev assumed: give --counts-per-rev or --device"
         ));
     }
     for (name, recording) in &logs {
+        let kinds: Vec<_> = Kind::all().iter().collect();
+        let chosen = Chosen::new(&kinds, false, &recording.trace, name, None)?;
         let uneven = recording.unevenness();
+        let uneven = uneven.map(|uneven| chosen.note(&recording.trace, &uneven));
         let all = recording.notes.iter().chain(&uneven);
         notes.extend(all.map(|line| format!("{name}: {line}")));
     }

@@ -20,6 +20,7 @@ use terminal::wording::wrapped;
 use super::arguments::{DeviceFile, ParameterOptions, RecordingOptions, kinds};
 use super::input::{Log, called, short_name};
 use super::page::{one_to_stdout, progress};
+use super::uneven::Chosen;
 
 #[derive(Debug, Args)]
 pub(super) struct Replay {
@@ -75,15 +76,26 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let parameters = options.parameters.load()?;
     let name = short_name(&options.trace);
     let log = Log::open(&options.trace)?;
+    let (device, stated) =
+        options
+            .device
+            .with_stated_counts(device, std::slice::from_ref(&log), None)?;
     let (read, survey) = options.recording.survey(&log, &device)?;
-    survey.check_even(log.name())?;
+    survey.check_times(log.name())?;
+    let chosen = Chosen::new(
+        &kinds,
+        !options.estimators.is_empty(),
+        &survey.columns,
+        log.name(),
+        survey.unevenness().as_deref(),
+    )?;
     let (reference, without) = reference(options, &log, &survey, &device)?;
     let against = match &reference {
         Some(reference) if survey.columns.true_omega.is_none() => Against::Reference(reference),
         _ => Against::Truth,
     };
     let (columns, rows) = (&survey.columns, survey.rows);
-    let mut run = Run::new(columns, rows, &name, &kinds, &device, &parameters)?;
+    let mut run = Run::new(columns, rows, &name, &chosen.kinds, &device, &parameters)?;
     if let (true, Some((estimator, column))) = (run.estimates.is_empty(), run.left_out.first()) {
         return Err(Failure::Input(format!(
             "{}: line 1: no column {column}, which {estimator} needs; see host-sim estimators",
@@ -121,22 +133,28 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
 
     let rows = run.rows();
     if let Some(path) = &options.json {
-        write_whole(path, &rows::json(&against.scored(&rows))?)?;
+        write_whole(path, &rows::json(&against.scored(&rows, columns))?)?;
     }
     let about = About {
         notes: [survey.notes.clone(), passes.parts.notes()].concat(),
-        uneven: passes.parts.unevenness(),
-        rate_hz: survey.columns.rate_hz,
+        uneven: passes
+            .parts
+            .unevenness()
+            .map(|uneven| chosen.note(&survey.columns, &uneven)),
         left_out: &run.left_out,
         mismatched_presets: &run.mismatched_presets,
     };
+    for line in &stated {
+        note(line);
+    }
     about.note(&name);
     for line in passes.summary.lines(&device) {
         note(format_args!("{name}: {line}"));
     }
     let device_name = match options.device.is_given() {
         true => options.device.name(),
-        false => "the default device: no --device given".to_owned(),
+        false if stated.is_empty() => "the default device: no --device given".to_owned(),
+        false => "of the file; the default device: no --device given".to_owned(),
     };
     if let Some(why) = without {
         note(format_args!("{name}: no scores: {why}"));
@@ -284,8 +302,8 @@ fn write_rows(out: &Path, passes: &mut Passes, run: &mut Run) -> Result<(), Fail
 pub(super) struct About<'a> {
     /// Notes of the reader.
     pub(super) notes: Vec<String>,
+    /// What is said about an uneven clock.
     pub(super) uneven: Option<String>,
-    pub(super) rate_hz: f64,
     pub(super) left_out: &'a [(&'static str, &'static str)],
     pub(super) mismatched_presets: &'a [String],
 }
@@ -310,13 +328,8 @@ impl About<'_> {
         for line in self.mismatched_presets {
             note(format_args!("{name}: {line}"));
         }
-        // The estimators assume a constant period.
         if let Some(uneven) = &self.uneven {
-            note(format_args!(
-                "{name}: {uneven}; the estimators assume a constant step of 1/{0} s; --resample {0:.0} \
-                 makes the rows even",
-                self.rate_hz,
-            ));
+            note(wrapped(&format!("{name}: {uneven}"), 2));
         }
     }
 }

@@ -17,6 +17,7 @@ use terminal::output::{is_stdout, print_bytes, write_whole};
 use super::arguments::{DeviceFile, RecordingOptions, kinds, rates, scenarios};
 use super::input::{Log, short_name};
 use super::page::progress;
+use super::uneven::Chosen;
 
 /// Defaults of the tuning options for one kind of estimators.
 struct Recipe {
@@ -212,18 +213,28 @@ fn on_recordings(
 ) -> Result<(), Failure> {
     let device = options.device.load()?;
     let kept = kept_section(options)?;
+    let logs = options.recordings.iter().map(|path| Log::open(path));
+    let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
+    let (device, mut notes) = options.device.with_stated_counts(device, &logs, None)?;
     let mut recordings = Vec::new();
-    let mut notes = Vec::new();
-    for path in &options.recordings {
-        let (name, log) = (short_name(path), Log::open(path)?);
-        let recording = options.read.read(&log, &device)?;
-        recording.check_even(log.name())?;
-        notes.extend(recording.notes.iter().map(|line| format!("{name}: {line}")));
+    let mut kinds = kinds.to_vec();
+    for log in &logs {
+        let name = short_name(log.path());
+        let recording = options.read.read(log, &device)?;
+        recording.check_times(log.name())?;
+        let uneven = recording.unevenness();
+        let trace = &recording.trace;
+        let are_named = !options.estimators.is_empty();
+        let chosen = Chosen::new(&kinds, are_named, trace, log.name(), uneven.as_deref())?;
+        let uneven = uneven.map(|uneven| chosen.note(trace, &uneven));
+        let lines = recording.notes.iter().chain(&uneven);
+        notes.extend(lines.map(|line| format!("{name}: {line}")));
+        kinds = chosen.kinds;
         recordings.push((name, recording));
     }
     let bar = progress(kinds.len(), "tuning");
     let before = Parameters::default();
-    let tuned = tune_on_logs(&recordings, &device, kinds, &before, || bar.inc(1))?;
+    let tuned = tune_on_logs(&recordings, &device, &kinds, &before, || bar.inc(1))?;
     bar.finish_and_clear();
     notes.extend(tuned.notes);
     let names: Vec<_> = recordings.iter().map(|(name, _)| name.as_str()).collect();

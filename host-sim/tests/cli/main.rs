@@ -1,6 +1,7 @@
 //! The command line as somebody types it.
 
 mod closed_loop;
+mod coarsen;
 mod compare;
 mod escaping;
 mod identify;
@@ -12,9 +13,11 @@ mod recommend;
 mod recordings;
 mod refusals;
 mod replay;
+mod replay_reference;
 mod tables;
 mod tune;
 mod tune_logs;
+mod uneven;
 mod version;
 mod words;
 

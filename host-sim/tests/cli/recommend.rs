@@ -178,6 +178,12 @@ fn several_logs_are_ranked_by_the_geometric_mean() {
         let mean = (of(0) * of(1)).sqrt();
         let pct = row["rms_pct"].as_f64().unwrap();
         assert!((pct / mean - 1.0).abs() < 1e-9, "{pct} {mean}");
+        let of = |key: &str| [0, 1].map(|i| row["logs"][i][key].as_f64().unwrap());
+        let [a, b] = of("rms_rad_s");
+        let rms = row["rms_rad_s"].as_f64().unwrap();
+        assert!((rms / ((a * a + b * b) / 2.0).sqrt() - 1.0).abs() < 1e-9);
+        let [a, b] = of("p99_rad_s");
+        assert_eq!(row["p99_rad_s"].as_f64().unwrap(), a.max(b));
     }
 }
 
@@ -219,17 +225,37 @@ fn unsuitable_logs_are_refused() {
 }
 
 #[test]
-fn page_escapes_the_name_of_the_log_and_has_the_lines_of_rust() {
+fn page_has_every_section_and_escapes_the_name_of_the_log() {
     let folder = Folder::new("recommend-page");
     let name = "a<b>&c.csv";
     folder.write(name, swing());
-    folder.good(&["recommend", name, "--report", "page"]);
+    let arguments = ["recommend", name, "--report", "page", "--json", "-"];
+    let rows = json(&folder.good(&arguments));
     let page = fs::read_to_string(folder.0.join("page/index.html")).unwrap();
-    assert!(!page.contains("a<b>") && page.contains("a&lt;b&gt;&amp;c.csv"));
-    assert!(page.contains("ESTIMATOR.update(&amp;mut self.0"));
+    assert!(!page.contains("a<b>"));
+    let escaped = "a&lt;b&gt;&amp;c.csv";
+    let blocks: Vec<_> = page.split("<pre class=\"scroll\">").collect();
+    let [head, lines, table] = blocks[..] else {
+        panic!("{} parts", blocks.len());
+    };
+    for said in [
+        format!("host-sim recommend '{escaped}' --report page"),
+        "4096 counts/rev assumed".to_owned(),
+        format!("{escaped}: no column true_omega; scores are against a reference"),
+        "instructions: of one update on the emulated board".to_owned(),
+    ] {
+        assert!(head.contains(&said), "{said}: {head}");
+    }
+    assert!(lines.contains("Most accurate") && lines.contains("ESTIMATOR.update(&amp;mut self.0"));
     // The ranking and one velocity.
     assert_eq!(page.matches("<figure>").count(), 2);
+    let velocity = format!("{escaped}: the second with the largest errors");
+    assert!(lines.contains(&velocity), "{lines}");
     assert!(folder.0.join("page/figures/02.svg").is_file());
+    for row in rows {
+        let estimator = row["estimator"].as_str().unwrap();
+        assert!(table.contains(&format!("\n  {estimator} ")), "{estimator}");
+    }
 }
 
 #[test]

@@ -54,6 +54,15 @@ fn held_out(folder: &Folder, names: &[&str], more: &[&str]) -> Vec<f64> {
     names.iter().map(rms).collect()
 }
 
+/// Tunes `estimator` on log.csv into tuned.toml, and returns what is reported on standard error.
+fn notes_of_tuning(folder: &Folder, estimator: &str) -> String {
+    let tune = ["tune", "log.csv", "--out", "tuned.toml", "--estimator"];
+    let output = folder.run(&[&tune[..], &[estimator]].concat());
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{errors}");
+    errors
+}
+
 #[test]
 fn found_parameters_are_better_in_the_held_out_seconds() {
     let folder = Folder::new("tune-log");
@@ -86,9 +95,7 @@ fn found_parameters_are_better_in_the_held_out_seconds() {
         .lines()
         .map(|line| line.rsplit_once(',').unwrap().0.to_owned() + "\n");
     folder.write("log.csv", rows.collect::<String>());
-    let output = folder.run(&["tune", "log.csv", "--estimator", "pll", "--out", "own.toml"]);
-    let errors = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(0), "{errors}");
+    let errors = notes_of_tuning(&folder, "pll");
     assert!(
         errors.contains("log.csv: no column true_omega; errors are those against"),
         "{errors}"
@@ -96,10 +103,13 @@ fn found_parameters_are_better_in_the_held_out_seconds() {
 }
 
 #[test]
-fn parameters_that_fail_in_the_held_out_seconds_are_not_written() {
-    let folder = Folder::new("tune-overfit");
-    let names = ["low-pass"];
+fn errors_are_those_of_all_recordings_together() {
+    let [folder, other] = ["tune-log-first", "tune-log-second"].map(Folder::new);
     folder.write("log.csv", log(now_slow_now_fast));
+    // The low-pass lags behind this motion.
+    let fast = |t: f64| (10.0 * (1.0 - (9.0 * t).cos()), 90.0 * (9.0 * t).sin());
+    other.write("log.csv", log(fast));
+    let second = other.0.join("log.csv");
     let tune = [
         "tune",
         "log.csv",
@@ -108,9 +118,24 @@ fn parameters_that_fail_in_the_held_out_seconds_are_not_written() {
         "--out",
         "tuned.toml",
     ];
-    let output = folder.run(&tune);
-    let errors = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(0), "{errors}");
+    let table = folder.good(&[&tune[..], &[second.to_str().unwrap()]].concat());
+    let line = table
+        .lines()
+        .find(|line| line.starts_with("low-pass"))
+        .unwrap();
+    let shown: f64 = line.split_whitespace().nth(3).unwrap().parse().unwrap();
+    let [a, b] = [&folder, &other].map(|folder| held_out(folder, &["low-pass"], &[])[0]);
+    let both = ((a * a + b * b) / 2.0).sqrt();
+    assert!((shown - both).abs() < 1e-4, "{line}: {a} and {b}");
+    assert!((a - b).abs() > 0.1 * both, "{a} and {b}");
+}
+
+#[test]
+fn parameters_that_fail_in_the_held_out_seconds_are_not_written() {
+    let folder = Folder::new("tune-overfit");
+    let names = ["low-pass"];
+    folder.write("log.csv", log(now_slow_now_fast));
+    let errors = notes_of_tuning(&folder, "low-pass");
     let said =
         "low-pass: the parameters are kept; the ones found are not better in the held-out half";
     assert!(errors.contains(said), "{errors}");
@@ -125,16 +150,7 @@ fn parameters_that_fail_in_the_held_out_seconds_are_not_written() {
 fn end_of_the_range_is_reported_on_a_log() {
     let folder = Folder::new("tune-log-end");
     folder.write("log.csv", log(|t| (0.3 * t, 0.3)));
-    let tune = [
-        "tune",
-        "log.csv",
-        "--estimator",
-        "low-pass",
-        "--out",
-        "tuned.toml",
-    ];
-    let output = folder.run(&tune);
-    let errors = String::from_utf8(output.stderr).unwrap();
+    let errors = notes_of_tuning(&folder, "low-pass");
     assert!(
         errors.contains("Hz is the lower limit of the searched range"),
         "{errors}"

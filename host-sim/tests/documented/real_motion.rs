@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use catalogue::estimators::Kind;
-use measured::tables::REAL_MOTION;
+use measured::tables::{REAL_MOTION, REAL_RESOLUTION};
 use serde_json::Value;
 
 use crate::runs::{json, number, text, values};
@@ -68,6 +68,53 @@ fn table_of_real_motion_has_every_estimator_and_recording() {
     };
     let rows: Vec<_> = Kind::all().iter().map(row).collect();
     check(&REAL_MOTION, &names, &rows);
+}
+
+/// A bank beside the other estimators, from what it reads: its mean error over the recordings of fine
+/// encoders, and where the ratio to the smallest error of the others is largest.
+fn beside_others(runs: &[Value], counts_per_rev: u32, bank: &str) -> [String; 3] {
+    let reads_edges = |name: &str| Kind::all().iter().any(|k| k.name == name && k.needs.edge);
+    let may_be_compared =
+        |name: &str| !name.starts_with("imm") && (reads_edges(bank) || !reads_edges(name));
+    let at = |recording: &str, estimator: &str| {
+        let rows = runs.iter().filter(|row| {
+            row["counts_per_rev"] == counts_per_rev
+                && text(row, "recording") == recording
+                && text(row, "estimator") == estimator
+        });
+        mean(rows.map(|row| number(row, "rms_pct")))
+    };
+    let mut errors = Vec::new();
+    let mut worst = (0.0, String::new());
+    for recording in values(runs, "recording") {
+        let Some(error) = at(recording, bank) else {
+            continue;
+        };
+        errors.push(error);
+        for kind in Kind::all().iter().filter(|kind| may_be_compared(kind.name)) {
+            let Some(other) = at(recording, kind.name) else {
+                continue;
+            };
+            // The largest ratio of a recording is that to the best estimator.
+            if error / other > worst.0 {
+                worst = (error / other, format!("{recording}, {}", kind.name));
+            }
+        }
+    }
+    [shown(mean(errors.into_iter())), cell(worst.0), worst.1]
+}
+
+#[test]
+fn table_of_resolutions_has_the_worst_recording_of_a_bank() {
+    let resolutions = [64, 256, 1024, 4096, 16384];
+    let all = resolutions.map(|counts| counts.to_string()).join(",");
+    let runs = json(&["real", "--data", DATA, "--counts-per-rev", &all]);
+    let rows = resolutions.map(|counts| {
+        let banks = ["imm", "imm-edge"].map(|bank| beside_others(&runs, counts, bank));
+        let cells = banks.into_iter().flatten();
+        [counts.to_string()].into_iter().chain(cells).collect()
+    });
+    check(&REAL_RESOLUTION, &[], &rows);
 }
 
 /// The table of the program pools as the documented one does.

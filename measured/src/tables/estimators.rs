@@ -38,6 +38,24 @@ pub const REAL_MOTION: Table = Table {
     command: DOCUMENTED,
 };
 
+/// Banks beside the other estimators on recordings of real devices at 1 kHz, by resolution: RMS errors,
+/// % of finite difference, and where the largest ratio to the best of the others is.
+pub const REAL_RESOLUTION: Table = Table {
+    name: "real-resolution",
+    page: "docs/real-motion.md",
+    columns: &[
+        ("counts_per_rev", "counts/rev"),
+        ("imm", "imm"),
+        ("imm_ratio", "largest ratio to another"),
+        ("imm_on", "recording, the other"),
+        ("imm_edge", "imm-edge"),
+        ("imm_edge_ratio", "largest ratio to another"),
+        ("imm_edge_on", "recording, the other"),
+    ],
+    digits: Some(3),
+    command: DOCUMENTED,
+};
+
 /// The reference of a recording, which is computed from the recording alone, beside its truth: RMS
 /// errors at 1 kHz, % of finite difference.
 pub const REFERENCE: Table = Table {

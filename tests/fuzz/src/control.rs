@@ -68,7 +68,8 @@ pub fn run(data: &[u8]) {
         };
         let findings = Findings {
             monitor: MONITOR.check(&mut monitor, &sample),
-            amplifier_fault: inputs == 0xFF,
+            amplifiers_ready: inputs != 0xFF,
+            interlock: inputs == 0xFB,
             clock_failure: inputs == 0xFE,
             finite: true,
             missed: u32::from(inputs == 0xFD),
@@ -84,8 +85,9 @@ pub fn run(data: &[u8]) {
 
         let before = safety.mode();
         let order = SAFETY.tick(&mut safety, &findings, request);
+        let not_ready = !findings.amplifiers_ready && before != Mode::Settling;
         let wrong =
-            findings.monitor.is_some() || findings.amplifier_fault || findings.clock_failure;
+            findings.monitor.is_some() || not_ready || findings.interlock || findings.clock_failure;
         // What is wrong while enabled stops it in this very tick.
         if wrong && before.is_enabled() {
             assert!(!order.enable && safety.mode() == Mode::Safe, "{findings:?}");

@@ -8,6 +8,7 @@
 //! | [`samples`] | counts, currents, edges, restarts | every output finite, every covariance sound |
 //! | [`designs`] | rates, encoders, noises | refused by name, or finite ever after |
 //! | [`commands`] | the command channel | every byte is in a frame, counted, or still held |
+//! | [`link`] | the bytes from a board | every byte is in a frame, counted, or still held; a valid frame is found |
 //! | [`control`] | a whole control task's inputs | currents within limits, safe once stopped |
 //! | [`texts`] | recordings, devices, presets | read whole, or refused in one line |
 
@@ -15,5 +16,6 @@ mod bytes;
 pub mod commands;
 pub mod control;
 pub mod designs;
+pub mod link;
 pub mod samples;
 pub mod texts;

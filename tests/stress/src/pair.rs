@@ -78,14 +78,24 @@ impl<E, C, S, M: Corrections> Of<'_, E, core::ObserverState<C, S, M, ()>> {
     }
 }
 
-/// `U D Uᵀ` is positive definite if D is positive and U is made of numbers.
-impl<E, C, S, M: Corrections> Of<'_, E, core::ObserverState<C, S, M, core::AdaptiveState>> {
+/// `U D Uᵀ` is positive definite if D is positive and U is made of numbers. D is never above the
+/// prior.
+impl<A, B, K, R: core::Range, C, S, M: Corrections>
+    Of<
+        '_,
+        core::Observer<A, B, K, core::Adaptive<R>>,
+        core::ObserverState<C, S, M, core::AdaptiveState>,
+    >
+{
     pub(crate) fn fault(&self) -> Option<&'static str> {
         if let Some(fault) = self.1.correction().fault() {
             return Some(fault);
         }
         let learned = self.1.adaptation();
-        let positive = learned.diagonal().iter().all(|d| *d > 0.0 && *d < 1.0);
+        let diagonal = learned.diagonal().iter().zip(R::PRIOR);
+        let positive = diagonal
+            .into_iter()
+            .all(|(d, prior)| *d > 0.0 && *d <= prior * prior);
         let finite = learned.upper().iter().all(|u| u.is_finite());
         (!(positive && finite)).then_some("covariance of the parameters not positive definite")
     }

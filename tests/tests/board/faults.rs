@@ -45,6 +45,13 @@ impl Bound {
             0.0
         } else {
             let diameter = Device::default().handle.diameter_m;
+            // After a halt the outputs may return until the next control task.
+            let mut offs = run.enables.iter().filter(|(_, on)| *on == [false; 2]);
+            let first_off = offs.find_map(|(ns, _)| {
+                let s = *ns as f64 * 1e-9;
+                (s >= self.at_s).then_some(s)
+            });
+            let until = first_off.unwrap_or(until);
             run.spurious_mn(free_air(), self.at_s, until, diameter)
         };
         let from = if never_on {
@@ -72,12 +79,15 @@ impl Bound {
             (None, []) => true,
             _ => false,
         };
-        let [most, least] = self.force_mn;
         // Whatever came after, no amplifier was on again.
         let safe = found.quiet && found.state == Some(Mode::Safe);
-        let end = match (self.end, found.off_ms) {
+        let ends = |end: End| match (end, found.off_ms) {
             (End::Off(range, cause), Some(ms)) => {
                 safe && found.cause == Some(cause) && within(ms, range)
+            }
+            // The last frame is of the time before the halt.
+            (End::Halted(range), Some(ms)) => {
+                found.quiet && found.state == Some(Mode::Running) && within(ms, range)
             }
             (End::NeverOn(cause), None) => found.never_on && safe && found.cause == Some(cause),
             (End::On, None) => {
@@ -85,7 +95,10 @@ impl Bound {
             }
             _ => false,
         };
-        reset && end && within(found.force_mn, [least, most])
+        let mut outcomes = [(self.end, self.force_mn)].into_iter().chain(self.or);
+        reset
+            && outcomes
+                .any(|(end, [most, least])| ends(end) && within(found.force_mn, [least, most]))
     }
 
     /// The fault, or both of them.

@@ -1,9 +1,10 @@
 //! The loop closes, on time and at a known cost, and does no harm before it is armed.
 
+use drivers::{Setting, Settings};
 use experiments::closed_loop::Hand;
 use haptic_control::{Mode, SceneKind, Stop};
 use simulation::device::Device;
-use virtual_board::run::{AMPS_PER_CODE, Outcome, RATE_HZ, Setup};
+use virtual_board::run::{AMPS_PER_CODE, DacError, Outcome, RATE_HZ, Setup};
 use virtual_board::scene::{press, stiffness};
 
 use crate::image::{SETTLED_S, free_air, of_scene, run};
@@ -98,24 +99,55 @@ fn a_press_of_10_n_switches_no_scene_off() {
     }
 }
 
+/// Mean torque that a still hand feels in free air, N·m, with these errors of the small motor's channel
+/// and of the large one's.
+fn mean_torque(errors: [DacError; 2], settings: Option<Settings>) -> f64 {
+    let run = run(&Setup {
+        dac_errors: errors,
+        settings,
+        ..of_scene(SceneKind::FreeAir, Hand::Still, 3.0)
+    });
+    let last = run.telemetry.frames.last().expect("frames");
+    assert_eq!((last.state, last.cause), (Mode::Running, Stop::None));
+    let felt = run.plant_states.iter().skip((SETTLED_S * 1e4) as usize);
+    let n = felt.len() as f64;
+    felt.map(|moment| moment.felt).sum::<f64>() / n
+}
+
 /// Twelve codes is what the datasheet allows the DAC; a little more. The small motor makes its part
 /// of it felt, and nothing stops.
 #[test]
 fn dac_offset_causes_a_force_and_no_stop() {
-    let mean = |dac_offset: i16| {
-        let run = run(&Setup {
-            dac_offset,
-            ..of_scene(SceneKind::FreeAir, Hand::Still, 3.0)
-        });
-        let last = run.telemetry.frames.last().expect("frames");
-        assert_eq!((last.state, last.cause), (Mode::Running, Stop::None));
-        let felt = run.plant_states.iter().skip((SETTLED_S * 1e4) as usize);
-        let n = felt.len() as f64;
-        felt.map(|moment| moment.felt).sum::<f64>() / n
-    };
-    let [up, down] = [15, -15].map(mean);
+    let mean = |offset| mean_torque([DacError::offset(offset); 2], None);
+    let [up, down] = [15.0, -15.0].map(mean);
     let device = Device::default();
     let small = 15.0 * AMPS_PER_CODE[1] * device.stages.small.torque_constant;
     println!("{up} {down} N.m of {small}");
     assert!(((up - down) / 2.0 / small - 1.0).abs() < 0.1);
+}
+
+/// Settings in flash that state zero and gain of both channels leave less than 1 mN of what the errors
+/// cost.
+#[test]
+fn settings_in_flash_take_zero_and_gain_of_the_dac_into_account() {
+    let perfect = mean_torque([DacError::NONE; 2], None);
+    for (offset, gain) in [(15.3, 1.04), (-15.3, 0.96)] {
+        let errors = [DacError { offset, gain }; 2];
+        let mut settings = Settings::DEFAULT;
+        for (setting, value) in [
+            (Setting::ZeroLarge, 2048.0 - offset),
+            (Setting::ZeroSmall, 2048.0 - offset),
+            (Setting::GainLarge, gain),
+            (Setting::GainSmall, gain),
+        ] {
+            assert!(settings.set(setting, value as f32));
+        }
+        let force = |settings| {
+            let torque = mean_torque(errors, settings) - perfect;
+            2e3 * torque.abs() / Device::default().handle.diameter_m
+        };
+        let [without, with] = [None, Some(settings)].map(force);
+        println!("{offset} codes, gain {gain}: {without} mN without settings, {with} mN with");
+        assert!(without > 5.0 && with < 1.0, "{without} {with} mN");
+    }
 }

@@ -3,12 +3,14 @@
 mod choice;
 mod cost;
 mod edges;
+mod enables;
 mod faults;
 mod hardware;
 mod healthy;
 mod identify;
 mod image;
 mod learned;
+mod link;
 mod mirror;
 mod own_device;
 mod record;

@@ -78,7 +78,8 @@ pub(crate) fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
         });
         let request = control.accept(message);
         let inputs = Inputs {
-            amplifier_fault: false,
+            amplifiers_ready: true,
+            interlock: false,
             clock_failure: false,
             missed: 0,
             debugger: false,

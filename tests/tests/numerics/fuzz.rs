@@ -4,8 +4,9 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::FileFailurePersistence;
 
+use drivers::link::{Edge, LONGEST, Message, Rejected};
 use drivers::{Command, encode};
-use fuzz_bodies::{commands, control, designs, samples, texts};
+use fuzz_bodies::{commands, control, designs, link, samples, texts};
 use haptic_control::Request;
 use stress::designs::kinds;
 use stress::tested::TestedEstimator;
@@ -40,6 +41,30 @@ fn command_bytes() -> impl Strategy<Value = Vec<u8>> {
         (1usize..11)
             .prop_map(|most| { encode(Command::Request(Request::KeepAlive))[..most].to_vec() }),
         vec(prop_oneof![Just(0xA5u8), any::<u8>()], 0..30),
+    ];
+    vec(piece, 0..40).prop_map(|pieces| pieces.concat())
+}
+
+/// Messages that are right, cut, or hit by stray bytes, among which start bytes are frequent.
+fn link_bytes() -> impl Strategy<Value = Vec<u8>> {
+    let encoded = |message: Message| {
+        let mut buffer = [0; LONGEST];
+        message.encode(&mut buffer).expect("room").to_vec()
+    };
+    let edge = move |(seq, bound, age)| encoded(Edge { seq, bound, age }.into());
+    let rejected = encoded(
+        Rejected {
+            garbage: 1,
+            not_finite: 2,
+            out_of_bounds: 3,
+            unknown: 4,
+        }
+        .into(),
+    );
+    let piece = prop_oneof![
+        any::<(u32, u32, u32)>().prop_map(edge),
+        (1..rejected.len()).prop_map(move |most| rejected[..most].to_vec()),
+        vec(prop_oneof![Just(0x5Au8), 0..8u8, any::<u8>()], 0..30),
     ];
     vec(piece, 0..40).prop_map(|pieces| pieces.concat())
 }
@@ -157,6 +182,11 @@ proptest! {
     #[test]
     fn command_bytes_are_all_accounted_for(data in prop_oneof![any_bytes(200), command_bytes()]) {
         commands::run(&data);
+    }
+
+    #[test]
+    fn link_bytes_are_all_accounted_for(data in prop_oneof![any_bytes(600), link_bytes()]) {
+        link::run(&data);
     }
 
     #[test]

@@ -9,7 +9,6 @@ use rigless::time::VirtualNanos;
 use super::{COUNTERS, Lockstep};
 use crate::board::{ControllerBoard, Part};
 use crate::fault::Fault;
-use crate::pins;
 use crate::quadrature::{LARGE, SMALL};
 use crate::run::RATE_HZ;
 
@@ -18,6 +17,19 @@ const TICK_CONTROL: u64 = 0x4000_0C00;
 /// Control register of the cycle counter; bit 0 enables it.
 const CYCLES_CONTROL: u64 = 0xE000_1000;
 
+/// Freeze register of the bus of TIM8, `DBGMCU_APB2_FZ`, and the bit `DBG_TIM8_STOP` in it.
+const HALT_CONTROL: u64 = 0xE004_200C;
+const STOPS_TIM8: u64 = 1 << 1;
+/// Control and break register of TIM8, and the bit `MOE` of the latter.
+const TIM8_CONTROL: u64 = 0x4001_0400;
+const TIM8_BREAK: u64 = 0x4001_0444;
+const OUTPUTS_ON: u64 = 1 << 15;
+/// Key register of the watchdog, and the key that restarts its time.
+const WATCHDOG_KEY: u64 = 0x4000_3000;
+const WATCHDOG_FEED: u64 = 0xAAAA;
+
+/// Time for which a glitch opens the interlock loop, ns.
+const GLITCH_NS: u64 = 20_000;
 /// Duration of a control task that is too long, ns.
 const LONG_TASK_NS: u64 = (1.2e9 / RATE_HZ) as u64;
 /// Time in which every control task is too long, ns.
@@ -32,8 +44,10 @@ const PAUSE_NS: u64 = 300_000_000;
 pub(super) struct Stalls {
     /// Time at which a halted core continues.
     pub(super) release: Option<u64>,
-    /// The cycle counter's control register before a debugger halted the core.
-    cycles_control: Option<u64>,
+    /// Registers that a halt by a debugger has changed, and their values before.
+    halted: Vec<(u64, u64)>,
+    /// Whether a debugger has frozen the watchdog.
+    pub(super) frozen: bool,
     /// Time until which every control task is too long.
     long_tasks: u64,
     /// Time for which the task of lowest priority is to loop after its next wake.
@@ -60,25 +74,42 @@ impl Lockstep {
             Fault::StuckBoth => self.lines.stuck = now.map(Some),
             Fault::Swapped => self.lines.swapped = true,
             Fault::LostCounts => self.lines.lossy = Some(0),
-            Fault::AmplifierFault => pins::drive(part, at, pins::FAULTS[LARGE], false),
-            Fault::SmallAmplifierFault => pins::drive(part, at, pins::FAULTS[SMALL], false),
+            Fault::AmplifierFault => self.amplifiers.each[LARGE].unready = true,
+            Fault::SmallAmplifierFault => self.amplifiers.each[SMALL].unready = true,
+            Fault::BrokenReadyWire => self.amplifiers.each[LARGE].cut = true,
+            Fault::Unpowered => self.amplifiers.each[LARGE].powered = false,
+            Fault::EmergencyStop => self.amplifiers.stop_until_ns = u64::MAX,
+            Fault::InterlockGlitch => self.amplifiers.stop_until_ns = at.0 + GLITCH_NS,
             Fault::HungCore => host.hold(true),
             Fault::Halt(ms) => {
                 host.hold(true);
                 self.stalls.release = Some(at.0 + 1_000_000 * u64::from(ms));
-                self.stalls.cycles_control = Some(stop_cycles(part, at));
+                self.stalls.halted = halt(part, at);
+            }
+            Fault::FrozenHalt => {
+                host.hold(true);
+                self.stalls.frozen = true;
+                self.stalls.halted = halt(part, at);
+            }
+            Fault::FrozenHaltTimerOn => {
+                host.hold(true);
+                self.stalls.frozen = true;
+                change(part, at, HALT_CONTROL, |bits| bits & !STOPS_TIM8);
+                self.stalls.halted = halt(part, at);
             }
             Fault::LongTasks => self.stalls.long_tasks = at.0 + LONG_TASKS_NS,
             Fault::HungControl => {
-                // A write to an existing timer cannot fail.
-                let _ = part.write(at, TICK_CONTROL, Width::W32, 0);
+                change(part, at, TICK_CONTROL, |_| 0);
             }
             Fault::HungIdle => self.stalls.hang = Some(u64::MAX),
             Fault::StarvedIdle => self.stalls.hang = Some(STARVED_NS),
             Fault::Panic => self.stalls.panics = true,
             Fault::BusError => session.fail_next(COUNTERS[LARGE], COUNTERS[LARGE] + 4),
             // The board is built with these parts.
-            Fault::DeadCrystal | Fault::SlowWatchdog | Fault::FastWatchdog => {}
+            Fault::DeadCrystal
+            | Fault::SlowWatchdog
+            | Fault::FastWatchdog
+            | Fault::ReadyAfter(_) => {}
             Fault::CrystalFails => part.stm32.drive_clocks(at, |rcc, registers, context| {
                 rcc.fail_hse(registers, context);
             }),
@@ -102,11 +133,18 @@ impl Lockstep {
         if self.stalls.release.is_some_and(|release| release <= at.0) {
             self.stalls.release = None;
             host.hold(false);
-            if let Some(control) = self.stalls.cycles_control.take() {
-                // A write to the existing counter cannot fail.
-                let part = &mut session.board_mut().part;
-                let _ = part.write(at, CYCLES_CONTROL, Width::W32, control);
+            let part = &mut session.board_mut().part;
+            for (register, value) in self.stalls.halted.drain(..) {
+                // A write to an existing register cannot fail.
+                let _ = part.write(at, register, Width::W32, value);
             }
+        }
+    }
+
+    /// Keeps a frozen watchdog from counting. The emulator has no freeze bits: the watchdog is fed.
+    pub(super) fn hold_watchdog(&self, part: &mut Part, at: VirtualNanos) {
+        if self.stalls.frozen {
+            change(part, at, WATCHDOG_KEY, |_| WATCHDOG_FEED);
         }
     }
 
@@ -154,10 +192,27 @@ impl Lockstep {
     }
 }
 
-/// Stops the cycle counter, as the debug state does, and returns its control register.
-fn stop_cycles(part: &mut Part, at: VirtualNanos) -> u64 {
-    let control = part.peek(at, CYCLES_CONTROL, Width::W32).unwrap_or(0);
-    // A write to the existing counter cannot fail.
-    let _ = part.write(at, CYCLES_CONTROL, Width::W32, control & !1);
-    control
+/// Does what a halt of the core by a debugger does: stops the cycle counter, and, if
+/// `DBG_TIM8_STOP` is set, stops TIM8 and disables its outputs as if `MOE` were clear. Returns the
+/// changed registers and their values before.
+fn halt(part: &mut Part, at: VirtualNanos) -> Vec<(u64, u64)> {
+    let mut changed = vec![(
+        CYCLES_CONTROL,
+        change(part, at, CYCLES_CONTROL, |control| control & !1),
+    )];
+    let stops = part.peek(at, HALT_CONTROL, Width::W32).unwrap_or(0);
+    if stops & STOPS_TIM8 != 0 {
+        for (register, bit) in [(TIM8_CONTROL, 1), (TIM8_BREAK, OUTPUTS_ON)] {
+            changed.push((register, change(part, at, register, |bits| bits & !bit)));
+        }
+    }
+    changed
+}
+
+/// Changes an existing register and returns its value before.
+fn change(part: &mut Part, at: VirtualNanos, register: u64, new: impl Fn(u64) -> u64) -> u64 {
+    let before = part.peek(at, register, Width::W32).unwrap_or(0);
+    // A write to an existing register cannot fail.
+    let _ = part.write(at, register, Width::W32, new(before));
+    before
 }

@@ -1,15 +1,17 @@
 //! The plant's steps.
 
+use rigless::time::VirtualNanos;
+
 use super::{Lockstep, STEP_NS, STEP_S, STEPS_PER_TICK};
 use crate::board::ControllerBoard;
-use crate::pins;
 use crate::quadrature::{Edge, Edges, LARGE, REFERENCE, SMALL};
-use crate::run::{AMPS_PER_CODE, PlantState};
+use crate::run::{AMPS_PER_CODE, DacError, PlantState};
 
 impl Lockstep {
     /// One step of the plant with the present commands of the amplifiers.
-    pub(super) fn step(&mut self, board: &mut ControllerBoard) {
-        let enabled = pins::enabled(&mut board.part);
+    pub(super) fn step(&mut self, board: &mut ControllerBoard, at: VirtualNanos) {
+        let outputs = self.amplifiers.follow(&mut board.part, at);
+        let enabled = outputs.enables;
         if self
             .recorded
             .enables
@@ -21,9 +23,10 @@ impl Lockstep {
         let codes = board.part.dac_codes();
         for n in [LARGE, SMALL] {
             // A floating pin is assumed at mid-scale.
-            let code = codes[n].map_or(0, |code| code as i16 - 2048 + self.dac_offset);
-            self.currents[n] = if enabled[n] {
-                f64::from(code) * AMPS_PER_CODE[n]
+            let DacError { offset, gain } = self.dac_errors[n];
+            let steps = codes[n].map_or(0.0, |code| f64::from(code) - 2048.0 + offset);
+            self.currents[n] = if outputs.drives[n] {
+                steps * gain * AMPS_PER_CODE[n]
             } else {
                 0.0
             };

@@ -23,10 +23,11 @@ pub(super) struct Definition {
     stamps: bool,
     noise: f64,
     innovation: f64,
-    still: usize,
+    /// Time without a change, periods.
+    still: f64,
 }
 
-/// Transition and process noise of density 1 over one period, by Van Loan's exponential of a block
+/// Transition and process noise of density 1 over `period` s, by Van Loan's exponential of a block
 /// matrix.
 fn discretised(period: f64) -> (Matrix3<f64>, Matrix3<f64>) {
     let a = Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0 / TAU);
@@ -78,6 +79,17 @@ impl Definition {
         counts: &[f64],
         edges: Option<&[Option<(f64, f64)>]>,
     ) -> Vec<f64> {
+        Self::run_over(members, rate, counts, edges, &vec![1.0; counts.len()])
+    }
+
+    /// As [`Definition::run`], with each sample `intervals` periods after the one before.
+    pub(super) fn run_over(
+        members: usize,
+        rate: f64,
+        counts: &[f64],
+        edges: Option<&[Option<(f64, f64)>]>,
+        intervals: &[f64],
+    ) -> Vec<f64> {
         let filter = Filter {
             x: Vector3::new(counts[0] + 0.5, 0.0, 0.0),
             p: Matrix3::from_diagonal(&Vector3::new(
@@ -94,26 +106,27 @@ impl Definition {
             stamps: edges.is_some(),
             noise: 1e-3,
             innovation: 0.0,
-            still: 0,
+            still: 0.0,
         };
         let mut velocities = vec![0.0];
         for tick in 1..counts.len() {
             let edge = edges.and_then(|edges| edges[tick]);
             let moved = counts[tick] != counts[tick - 1] || edge.is_some();
-            velocities.push(bank.update(counts[tick], moved, edge) / rate);
+            velocities.push(bank.update(counts[tick], moved, edge, intervals[tick]) / rate);
         }
         velocities
     }
 
-    fn update(&mut self, count: f64, moved: bool, edge: Option<(f64, f64)>) -> f64 {
-        self.still = if moved { 0 } else { self.still + 1 };
-        let rest = (0.3 / self.period) as usize;
-        if self.still > rest {
+    fn update(&mut self, count: f64, moved: bool, edge: Option<(f64, f64)>, interval: f64) -> f64 {
+        let rest = (0.3 / self.period).floor();
+        let was_at_rest = self.still >= rest;
+        self.still = if moved { 0.0 } else { self.still + interval };
+        if was_at_rest && !moved {
             return 0.0;
         }
         self.reset();
         self.shift();
-        let (transition, noise) = discretised(self.period);
+        let (transition, noise) = discretised(interval * self.period);
         let members = self.filters.len();
         let mut likelihoods = Vec::new();
         let (mut error, mut variance) = (0.0, 0.0);
@@ -145,10 +158,10 @@ impl Definition {
         }
         if edge.is_some() {
             let correlation = (error * self.innovation / variance).clamp(-1.0, 1.0);
-            self.noise = (self.noise * (1.0 - 0.05 * correlation)).clamp(3e-4, 0.1);
+            self.noise = (self.noise * (1.0 - 0.1 * correlation)).clamp(3e-4, 0.1);
             self.innovation = error;
         }
-        let change = self.period / (members as f64 - 1.0);
+        let change = interval * self.period / (members as f64 - 1.0);
         for (weight, likelihood) in self.weights.iter_mut().zip(likelihoods) {
             *weight = (*weight + change) * likelihood;
         }
@@ -156,7 +169,7 @@ impl Definition {
         for weight in &mut self.weights {
             *weight /= sum;
         }
-        if self.still == rest {
+        if self.still >= rest {
             for filter in &mut self.filters {
                 filter.x[1] = 0.0;
                 filter.x[2] = 0.0;
@@ -171,9 +184,9 @@ impl Definition {
             .max_by(|&a, &b| self.weights[a].total_cmp(&self.weights[b]))
             .expect("members");
         for i in 0..self.weights.len() {
-            if self.weights[i] < 0.01 {
+            if self.weights[i] < 0.003 {
                 self.filters[i] = self.filters[heaviest].clone();
-                self.weights[i] = 0.03;
+                self.weights[i] = 0.06;
             }
         }
     }

@@ -1,12 +1,13 @@
 //! Banks that are driven by a known acceleration: what they learn, and what a wrong one costs.
 
 use estimator_core::{
-    AccelerationEstimator, Amps, Confidence, CoupledMotor, Hertz, Imm, ImmAdaptive,
+    AccelerationEstimator, Amps, Confidence, Counts, CoupledMotor, Hertz, Imm, ImmAdaptive,
     ImmAdaptiveEdge, ImmEdge, ImmMotor, ImmMotorEdge, LearnedCurrentState, MotorModel,
-    ObserverDesign, Uncertainty, VelocityEstimator,
+    ObserverDesign, Sample, VelocityEstimator,
 };
 
 use super::{CLOCK, Random, Seen};
+use crate::UNSURE;
 
 const RATE: Hertz = Hertz(1000.0);
 
@@ -98,6 +99,36 @@ fn gain_and_friction_are_learned_for_either_sign_and_a_late_torque() {
 }
 
 #[test]
+fn a_count_that_jumps_is_not_learned_as_an_effect_of_the_current() {
+    let seen = driven(&Drive {
+        gain: 60_000.0,
+        friction: 0.0,
+        delay: 0,
+    });
+    let bank = ImmMotor::learning(RATE).expect("valid");
+    for jump in [32_768i32, -32_768, i32::MIN, i32::MAX, 3_000_000] {
+        let mut state = bank.start(&seen.samples[0]);
+        let half = seen.samples.len() / 2;
+        for sample in &seen.samples[1..half] {
+            bank.update(&mut state, sample);
+        }
+        assert!(state.input().gain() > 0.0, "learned before the jump");
+        // The counter is replaced by another one; the step of the shaft adds to the jump.
+        let past = jump.saturating_add(jump.signum() * 100);
+        for sample in &seen.samples[half..half + 200] {
+            let jumped = Sample {
+                count: sample.count + Counts(past),
+                ..*sample
+            };
+            let v = bank.update(&mut state, &jumped);
+            assert!(v.0.is_finite());
+            let gain = state.input().gain() * 1e6;
+            assert!((0.0..2.0 * 60_000.0).contains(&gain), "{jump}: {gain}");
+        }
+    }
+}
+
+#[test]
 fn a_current_that_moves_the_shaft_improves_the_velocity() {
     for delay in [0, 4] {
         let seen = driven(&Drive {
@@ -129,13 +160,6 @@ fn a_current_without_effect_costs_nothing() {
 
 #[test]
 fn a_followed_observer_of_another_device_costs_little() {
-    const UNCERTAINTY: Uncertainty = Uncertainty {
-        torque_noise: 5e-6,
-        disturbance: 1e-4,
-        disturbance_time: 0.1,
-        friction_share: 0.7,
-        boundary_noise: 0.0625,
-    };
     let per_count = core::f64::consts::TAU / 4096.0;
     let right = CoupledMotor::DCX35L;
     let MotorModel {
@@ -156,7 +180,7 @@ fn a_followed_observer_of_another_device_costs_little() {
         let mut wrong = right;
         wrong.motor.torque_constant *= f64::max(torque, 1e-3);
         wrong.motor.inertia *= mass;
-        let design = || ObserverDesign::new(&wrong, RATE, &UNCERTAINTY);
+        let design = || ObserverDesign::new(&wrong, RATE, &UNSURE);
         let counts = ImmAdaptive::following(design().adaptive().build(), RATE);
         let edges = design().with_edges(CLOCK).adaptive().build();
         let edges = ImmAdaptiveEdge::following(edges, CLOCK, RATE);

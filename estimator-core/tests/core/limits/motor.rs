@@ -6,14 +6,7 @@ use estimator_core::{
 };
 
 use super::{RATE, assert_range};
-
-const UNSURE: Uncertainty = Uncertainty {
-    torque_noise: 1e-5,
-    disturbance: 3e-4,
-    disturbance_time: 0.1,
-    friction_share: 0.7,
-    boundary_noise: 0.03,
-};
+use crate::UNSURE;
 
 #[test]
 fn uncertainty_has_a_range() {

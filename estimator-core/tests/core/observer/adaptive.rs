@@ -1,11 +1,11 @@
 //! Adaptation of the parameters, and motions that must not change them.
 
 use estimator_core::{
-    Adaptive, AmplifierCurrent, Amps, Correction, Count, CoupledEncoder, CoupledMotor, Hertz,
-    Observer, ObserverDesign, Sample, Uncertainty, VelocityEstimator,
+    Adaptation, Adaptive, AmplifierCurrent, Amps, Correction, Count, CoupledEncoder, CoupledMotor,
+    HeldShaft, Hertz, Observer, ObserverDesign, Sample, Uncertainty, VelocityEstimator,
 };
 
-use super::modelled::{modelled, rms};
+use super::modelled::{modelled, modelled_over, rms};
 use super::{CLOCK, UNSURE, at};
 
 /// The parameters of a motor whose damping, friction and torque constant are wrong are estimated.
@@ -40,6 +40,69 @@ fn wrong_parameters_are_estimated() {
         let error = rms(&velocities, &truth, 6000);
         assert!(error < 0.5 * fixed, "{error} of {fixed}");
     }
+}
+
+/// A model that is wrong by a factor of ten, has no friction or the wrong sign of the torque constant is
+/// learned without the small encoder: the torque constant per inertia, and a velocity that is nearly as
+/// good as with the right model.
+#[test]
+fn model_of_another_device_is_learned() {
+    let rate = Hertz(1000.0);
+    let device = CoupledMotor::DCX35L;
+    let (samples, truth) = modelled_over(0.0, rate.0, 8.0, 0.3, device);
+    let turned = samples.iter().map(|sample| {
+        let current = Amps::new(-sample.current.get());
+        sample.with_current(current)
+    });
+    let turned: Vec<Sample> = turned.collect();
+    let design = |believed: &CoupledMotor| ObserverDesign::new(believed, rate, &UNSURE).held();
+    let with = |inertia: f64, torque_constant: f64, damping: f64, friction: f64| {
+        let mut believed = device;
+        believed.motor.inertia *= inertia;
+        believed.motor.torque_constant *= torque_constant;
+        believed.motor.damping *= damping;
+        believed.coulomb_friction *= friction;
+        believed
+    };
+    let from = 4000;
+    for (believed, sign, what) in [
+        (with(10.0, 1.0, 1.0, 1.0), 1.0, "inertia 10"),
+        (with(0.1, 1.0, 1.0, 1.0), 1.0, "inertia 0.1"),
+        (with(1.0, 3.0, 1.0, 1.0), 1.0, "torque constant 3"),
+        (with(1.0, 1.0, 5.0, 1.0), 1.0, "damping 5"),
+        (with(1.0, 1.0, 1.0, 0.0), 1.0, "no friction"),
+        (with(1.0, 1.0, 1.0, 1.0), -1.0, "sign"),
+    ] {
+        let samples = if sign > 0.0 { &samples } else { &turned };
+        let right = sign * believed.motor.inertia / believed.motor.torque_constant
+            * device.motor.torque_constant
+            / device.motor.inertia;
+        let fixed = run(&design(&believed).build().expect("valid"), samples).0;
+        let fixed = rms(&fixed, &truth, from);
+        let counts = design(&believed).widely_adaptive();
+        let edges = run(&counts.with_edges(CLOCK).build().expect("valid"), samples);
+        let counts = run(&counts.build().expect("valid"), samples);
+        for ((velocities, gain), part) in [(counts, 0.7), (edges, 0.35)] {
+            let error = rms(&velocities, &truth, from);
+            assert!(error < part * fixed, "{what}: {error} of {fixed}");
+            // Within 30 % of the larger of the true and the assumed one.
+            let allowed = 0.3 * right.abs().max(1.0);
+            assert!((gain - right).abs() < allowed, "{what}: {gain} for {right}");
+        }
+    }
+}
+
+/// Velocities of an observer, and the torque constant per inertia that it ends with, in parts of that of
+/// its model.
+fn run<M: Correction, L: Adaptation>(
+    estimator: &Observer<AmplifierCurrent, HeldShaft, M, L>,
+    samples: &[Sample],
+) -> (Vec<f32>, f64) {
+    let mut state = estimator.start(&samples[0]);
+    let update = |sample| estimator.update(&mut state, sample).0;
+    let velocities = samples[1..].iter().map(update).collect();
+    let learned = estimator.parameter_errors(&state).torque_constant;
+    (velocities, 1.0 + f64::from(learned))
 }
 
 /// After a moving start only the velocity is unknown: the parameters of the design are correct.

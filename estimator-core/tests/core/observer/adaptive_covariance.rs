@@ -1,8 +1,8 @@
 //! The covariance of the adapted parameters, through regular and absurd samples.
 
 use estimator_core::{
-    Adaptive, AmplifierCurrent, Amps, ClockTicks, Correction, Count, Counts, CoupledEncoder,
-    CoupledMotor, Edge, Hertz, MotorModel, Observer, ObserverDesign, Sample, Uncertainty,
+    Adaptive, AmplifierCurrent, Amps, ClockTicks, Correction, Count, Counts, CoupledMotor, Edge,
+    Hertz, MotorModel, Observer, ObserverDesign, Range, Sample, SlipSource, Uncertainty,
     VelocityEstimator,
 };
 
@@ -12,8 +12,8 @@ use crate::motion::Draws;
 
 /// Asserts that the state of an adaptive observer is valid after any samples.
 #[track_caller]
-fn assert_sound<M: Correction>(
-    estimator: &Observer<AmplifierCurrent, CoupledEncoder, M, Adaptive>,
+fn assert_sound<S: SlipSource, M: Correction, R: Range>(
+    estimator: &Observer<AmplifierCurrent, S, M, Adaptive<R>>,
     samples: impl Iterator<Item = Sample>,
     what: &str,
 ) {
@@ -23,7 +23,7 @@ fn assert_sound<M: Correction>(
         assert!(velocity.is_finite(), "{what}: {velocity} at {tick}");
         let diagonal = state.adaptation().diagonal();
         assert!(
-            diagonal.iter().all(|d| *d > 0.0 && *d <= 0.36),
+            (0..3).all(|i| diagonal[i] > 0.0 && diagonal[i] <= R::PRIOR[i] * R::PRIOR[i]),
             "{what}: {diagonal:?} at {tick}"
         );
         let upper = state.adaptation().upper();
@@ -56,9 +56,13 @@ fn covariance_is_sound_at_ticks_of_many_time_constants() {
                 };
                 let rate = Hertz(rate);
                 let what = format!("{rate:?}, {counts_per_rev} counts, {torque_noise:e}");
-                let counts = ObserverDesign::new(&device, rate, &unsure).adaptive();
+                let design = ObserverDesign::new(&device, rate, &unsure);
+                let counts = design.adaptive();
                 let edges = counts.with_edges(CLOCK).build().expect("valid");
                 let counts = counts.build().expect("valid");
+                let wide = design.held().widely_adaptive();
+                let wide_edges = wide.with_edges(CLOCK).build().expect("valid");
+                let wide = wide.build().expect("valid");
                 let noise = || {
                     let mut draws = Draws(u64::from(counts_per_rev));
                     (0..300).map(move |_| {
@@ -74,6 +78,8 @@ fn covariance_is_sound_at_ticks_of_many_time_constants() {
                 };
                 assert_sound(&counts, noise(), &what);
                 assert_sound(&edges, noise(), &what);
+                assert_sound(&wide, noise(), &what);
+                assert_sound(&wide_edges, noise(), &what);
             }
         }
     }
@@ -103,24 +109,28 @@ fn covariance_is_sound_with_edges_that_contradict_the_counts() {
     };
     let rate = Hertz(34.3);
     let edges = ObserverDesign::new(&device, rate, &unsure).with_edges(CLOCK);
+    let wide = edges.held().widely_adaptive().build().expect("valid");
     let edges = edges.adaptive().build().expect("valid");
     let mut draws = Draws(3);
     let mut jumps = 0;
-    let samples = (0..3000u32).map(|tick| {
-        // Jumps build up an unknown torque that overcomes the friction.
-        if tick < 300 {
-            jumps += draws.within(100_000);
-        }
-        let count = Count(jumps as u32) + Counts(tick as i32 / 29);
-        Sample::new(count)
-            .with_coupled(Count(draws.bits() as u32 % 100))
-            .with_current(Amps::new(6.0 * draws.unit() as f32))
-            .with_edge(Edge {
-                boundary: count,
-                age: ClockTicks(50_000 + tick % 29 * 84_000),
-            })
-    });
-    assert_sound(&edges, samples, "contradicting edges");
+    let samples: Vec<Sample> = (0..3000u32)
+        .map(|tick| {
+            // Jumps build up an unknown torque that overcomes the friction.
+            if tick < 300 {
+                jumps += draws.within(100_000);
+            }
+            let count = Count(jumps as u32) + Counts(tick as i32 / 29);
+            Sample::new(count)
+                .with_coupled(Count(draws.bits() as u32 % 100))
+                .with_current(Amps::new(6.0 * draws.unit() as f32))
+                .with_edge(Edge {
+                    boundary: count,
+                    age: ClockTicks(50_000 + tick % 29 * 84_000),
+                })
+        })
+        .collect();
+    assert_sound(&edges, samples.iter().copied(), "contradicting edges");
+    assert_sound(&wide, samples.iter().copied(), "contradicting edges, wide");
 }
 
 /// The covariance of the parameters stays positive definite through irregular, absurd updates:

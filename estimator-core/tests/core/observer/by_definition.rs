@@ -1,5 +1,7 @@
 //! The observers against their definition.
 
+mod wide;
+
 use estimator_core::{
     Adaptation, Amps, Confidence, Correction, Counts, CoupledMotor, CurrentSource, Edge, Hertz,
     MotorModel, Observer, ObserverDesign, Sample, SlipSource, Uncertainty, VelocityEstimator,

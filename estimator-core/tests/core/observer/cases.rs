@@ -64,6 +64,16 @@ pub(super) fn at(rate: f64) -> Vec<Case> {
             edges.held().build().expect("valid"),
         ),
         case(
+            "adaptive, held",
+            rate,
+            counts.held().widely_adaptive().build().expect("valid"),
+        ),
+        case(
+            "adaptive, edges, held",
+            rate,
+            edges.held().widely_adaptive().build().expect("valid"),
+        ),
+        case(
             "observer, edges, blind",
             rate,
             blind.build().expect("valid"),

@@ -10,7 +10,7 @@ use estimator_core::{CoupledMotor, Sample, Uncertainty};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
 pub(super) use learner::factors;
-use learner::{Learner, PRIOR};
+use learner::{Learner, Span};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kind {
@@ -53,6 +53,8 @@ pub(super) struct Definition {
     pub(super) current: f64,
     pub(super) gap: f64,
     pub(super) alone: f64,
+    /// Ticks since the correction before the last one.
+    pub(super) waited: f64,
     pub(super) offsets: [f64; 4],
     pub(super) covariance: Matrix2<f64>,
     pub(super) sigma: f64,
@@ -86,15 +88,7 @@ impl Definition {
         let decay = (-t / unsure.disturbance_time).exp();
         let white = (per_torque * unsure.torque_noise).powi(2) * rate;
         let disturbance = (per_torque * unsure.disturbance).powi(2) * (1.0 - decay * decay);
-        let learner = Learner {
-            parameters: Vector3::zeros(),
-            sensitivity: Matrix3::zeros(),
-            p: Matrix3::from_diagonal(&Vector3::from(PRIOR.map(|sigma| sigma * sigma))),
-            waiting: 0.0,
-            age: 0.0,
-            over: false,
-            in_motion: false,
-        };
+        let friction = per_torque * device.coulomb_friction;
         Self {
             kind,
             rate,
@@ -102,7 +96,7 @@ impl Definition {
             beta,
             per_amp: per_torque * device.motor.torque_constant,
             lag: device.amplifier_lag * rate,
-            friction: per_torque * device.coulomb_friction,
+            friction,
             ratio: f64::from(device.motor.counts_per_rev)
                 / f64::from(device.coupled_counts_per_rev),
             share: if device.coulomb_friction > 0.0 {
@@ -134,13 +128,23 @@ impl Definition {
             current: f64::from(first.current.get()),
             gap: 0.0,
             alone: 0.0,
+            waited: 0.0,
             offsets: [0.0; 4],
             covariance: Matrix2::from_diagonal_element(1.0 / 12.0),
             sigma: 0.3,
             started: false,
-            learner: learns.then_some(learner),
+            learner: learns.then(|| Learner::new(Span::narrow(friction))),
             rounds: false,
         }
+    }
+
+    /// This definition without the coupled shaft, with errors in the wide range.
+    pub(super) fn held_and_wide(mut self) -> Self {
+        let load = (self.q[(2, 2)] / (1.0 - self.decay * self.decay)).sqrt();
+        let span = Span::wide(self.friction, load, (-self.beta).exp());
+        self.learner = Some(Learner::new(span));
+        self.ratio = 0.0;
+        self
     }
 
     /// The gain of the filter that is corrected once in so many ticks, of the longest row that is
@@ -229,7 +233,7 @@ impl Definition {
             push *= 1.0 + p[2];
             behind *= 1.0 + p[2];
             slip += self.beta * p[0] * (coupled - v);
-            friction *= 1.0 + p[1];
+            friction += learner.span.friction * p[1];
         }
         let (moved, after, direction, against, rests) = self.motion(
             v,
@@ -239,16 +243,24 @@ impl Definition {
         if let Some(learner) = &mut self.learner {
             let force = Vector3::new(
                 self.beta * (coupled - (v + after) / 2.0),
-                -direction * self.friction,
+                -direction * learner.span.friction,
                 believed_push,
             );
+            let wide = learner.span.wide;
+            // A motor that moved before the tick is stopped by the model alone.
+            let rests = rests && !(wide && v != 0.0);
+            let damping = if wide {
+                self.beta * learner.parameters[0]
+            } else {
+                0.0
+            };
             for j in 0..3 {
                 let s = learner.sensitivity.column(j).into_owned();
                 let next = if rests {
                     Vector3::new(s[0] + self.a[(0, 1)] * s[1] / 2.0, 0.0, self.decay * s[2])
                 } else {
                     let b = Vector3::new(self.a[(0, 2)], self.a[(0, 1)], 0.0);
-                    self.a * s + b * force[j]
+                    self.a * s + b * (force[j] - damping * s[1])
                 };
                 learner.sensitivity.set_column(j, &next);
             }

@@ -41,6 +41,17 @@ pub(super) fn modelled(
     first: f64,
     device: CoupledMotor,
 ) -> (Vec<Sample>, Vec<f64>) {
+    modelled_over(0.3, rate, seconds, first, device)
+}
+
+/// The same over a handle that swings by `swing` rad; 0 for a clamped one.
+pub(super) fn modelled_over(
+    swing: f64,
+    rate: f64,
+    seconds: f64,
+    first: f64,
+    device: CoupledMotor,
+) -> (Vec<Sample>, Vec<f64>) {
     let per_rad = f64::from(device.motor.counts_per_rev) / std::f64::consts::TAU;
     let per_small = f64::from(device.coupled_counts_per_rev) / std::f64::consts::TAU;
     let mut motor = Motor {
@@ -51,7 +62,7 @@ pub(super) fn modelled(
     };
     let steps = (2e5 / rate) as u32;
     let dt = 1.0 / rate / f64::from(steps);
-    let coupled = |t: f64| 0.3 * (7.0 * t).sin();
+    let coupled = |t: f64| swing * (7.0 * t).sin();
     let (mut samples, mut truth) = (Vec::new(), Vec::new());
     let (mut last, mut command) = (None, 0.0);
     for tick in 0..(rate * seconds) as u32 {
@@ -73,7 +84,7 @@ pub(super) fn modelled(
         for step in 0..steps {
             let since = t + f64::from(step) * dt;
             let before = motor.angle * per_rad;
-            motor.step(command, 0.3 * 7.0 * (7.0 * since).cos(), dt);
+            motor.step(command, swing * 7.0 * (7.0 * since).cos(), dt);
             let after = motor.angle * per_rad;
             if after.floor() != before.floor() {
                 let boundary = after.floor().max(before.floor());

@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use estimator_core::{Amps, Count, Sample};
-use firmware_app::commands::{Commands, Messages};
+use firmware_app::commands::{Channel, Commands, Messages};
 use firmware_app::config::{DEVICE, RATE_HZ};
 use firmware_app::control::{Control, Inputs, Message};
 use firmware_app::telemetry::Record;
@@ -21,7 +21,8 @@ pub(crate) fn ticks(seconds: f64) -> u32 {
 
 /// A tick at which nothing is wrong and nothing is asked for.
 pub(crate) const CALM: Inputs = Inputs {
-    amplifier_fault: false,
+    amplifiers_ready: true,
+    interlock: false,
     clock_failure: false,
     missed: 0,
     debugger: false,
@@ -128,7 +129,7 @@ pub(crate) fn messages(frames: &[[u8; 11]]) -> Vec<Message> {
     let mut bytes = frames.concat().into_iter();
     let mut messages = Vec::new();
     while bytes.len() > 0 {
-        commands.receive(|| bytes.next());
+        commands.receive(Channel::Rtt, || bytes.next());
         messages.extend(core::iter::from_fn(|| consumer.dequeue()));
     }
     messages

@@ -1,5 +1,5 @@
 use drivers::{Command, encode};
-use firmware_app::commands::{Commands, Messages, Rejected};
+use firmware_app::commands::{Channel, Commands, Messages, Rejected};
 use firmware_app::control::Message;
 use firmware_app::large::{Large, LargeEstimator as _};
 use firmware_app::scene::FIRST;
@@ -14,7 +14,7 @@ fn rejected(bytes: &[u8]) -> Option<[Rejected; 2]> {
     let mut commands = Commands::new(producer);
     let mut bytes = bytes.iter().copied();
     while bytes.len() > 0 {
-        commands.receive(|| bytes.next());
+        commands.receive(Channel::Rtt, || bytes.next());
         while consumer.dequeue().is_some() {}
     }
     let reports: Vec<_> = (0..256).map(|_| commands.report()).collect();
@@ -39,10 +39,10 @@ fn poll_reads_at_most_64_bytes_and_only_if_the_queue_has_room() {
     let (producer, mut consumer) = queue.split();
     let mut commands = Commands::new(producer);
     let mut bytes = arm.repeat(20).into_iter();
-    commands.receive(|| bytes.next());
+    commands.receive(Channel::Rtt, || bytes.next());
     assert_eq!(bytes.len(), 20 * 11 - 64);
     for _ in 0..5 {
-        commands.receive(|| bytes.next());
+        commands.receive(Channel::Rtt, || bytes.next());
     }
     // The queue holds 7 messages; their bytes are taken and no other.
     assert_eq!(bytes.len(), 13 * 11);
@@ -51,7 +51,7 @@ fn poll_reads_at_most_64_bytes_and_only_if_the_queue_has_room() {
         while consumer.dequeue().is_some() {
             taken += 1;
         }
-        commands.receive(|| bytes.next());
+        commands.receive(Channel::Rtt, || bytes.next());
     }
     assert_eq!(taken, 20);
 }
@@ -107,16 +107,33 @@ fn counts_are_reported_once() {
     let (producer, _consumer) = queue.split();
     let mut commands = Commands::new(producer);
     let mut bytes = [1].into_iter();
-    commands.receive(|| bytes.next());
+    commands.receive(Channel::Rtt, || bytes.next());
     let reports = (0..1024).filter_map(|_| commands.report()).count();
     assert_eq!(reports, 1);
     let mut bytes = [2].into_iter();
-    commands.receive(|| bytes.next());
+    commands.receive(Channel::Rtt, || bytes.next());
     let reports: Vec<_> = (0..256).filter_map(|_| commands.report()).collect();
     let [[before, now]] = reports[..] else {
         panic!("one report");
     };
     assert_eq!((before.garbage, now.garbage), (1, 2));
+}
+
+#[test]
+fn identity_is_asked_once_after_the_commands_before_it() {
+    let mut queue = Messages::new();
+    let (producer, _consumer) = queue.split();
+    let mut commands = Commands::new(producer);
+    assert_eq!(commands.asked(), None);
+    let unknown = encode(Command::Estimator(255));
+    let mut bytes = [unknown, encode(Command::Identify)].into_iter().flatten();
+    commands.receive(Channel::Rtt, || bytes.next());
+    let counts = Rejected {
+        unknown: 1,
+        ..Rejected::default()
+    };
+    assert_eq!(commands.asked(), Some(counts));
+    assert_eq!(commands.asked(), None);
 }
 
 #[test]
@@ -129,4 +146,34 @@ fn estimators_are_chosen_by_number_where_there_is_a_choice() {
     ));
     assert_eq!(choices, [usize::from(two); 2]);
     assert!(Large::choice(2).is_none());
+}
+
+/// Half a frame on one channel does not touch a frame on the other, and garbage of both is counted.
+#[test]
+fn channels_have_parsers_of_their_own_and_share_the_queue_and_the_counts() {
+    let arm = encode(Command::Request(Request::Arm));
+    let mut queue = Messages::new();
+    let (producer, mut consumer) = queue.split();
+    let mut commands = Commands::new(producer);
+    let feed = |commands: &mut Commands<'_>, channel, bytes: &[u8]| {
+        let mut bytes = bytes.iter().copied();
+        commands.receive(channel, || bytes.next());
+    };
+    feed(&mut commands, Channel::Rtt, &arm[..5]);
+    feed(&mut commands, Channel::Port, &arm);
+    assert!(commands.is_used(Channel::Port) && !commands.is_used(Channel::Rtt));
+    feed(&mut commands, Channel::Rtt, &arm[5..]);
+    feed(&mut commands, Channel::Rtt, &[1, 2]);
+    feed(&mut commands, Channel::Port, &[3]);
+    let mut arms = 0;
+    while let Some(message) = consumer.dequeue() {
+        arms += u32::from(matches!(message, Message::Request(Request::Arm)));
+    }
+    assert_eq!(arms, 2);
+    let counts = (0..256).find_map(|_| commands.report()).expect("a report");
+    let garbage = Rejected {
+        garbage: 3,
+        ..Rejected::default()
+    };
+    assert_eq!(counts, [Rejected::default(), garbage]);
 }

@@ -55,10 +55,17 @@ fn any_fault_disables_the_amplifiers_in_the_same_tick() {
     let faults = [
         (
             Inputs {
-                amplifier_fault: true,
+                amplifiers_ready: false,
                 ..calm()
             },
             Stop::AmplifierFault,
+        ),
+        (
+            Inputs {
+                interlock: true,
+                ..calm()
+            },
+            Stop::Interlock,
         ),
         (
             Inputs {

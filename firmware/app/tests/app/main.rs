@@ -5,5 +5,6 @@ mod bench;
 mod commands;
 mod control;
 mod large;
+mod port;
 mod scenes;
 mod telemetry;

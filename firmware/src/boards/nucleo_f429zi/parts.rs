@@ -1,11 +1,17 @@
 //! Pins, peripherals and clocks, and how they start.
 
-use drivers::{Amplifier, CurrentOutput, DacCode};
+use core::ops::Range;
+
+use drivers::{
+    Amplifier, Amplifiers, CurrentOutput, DacCode, DacScale, SETTINGS_BYTES, Setting, Settings,
+    SettingsError, Store,
+};
 use estimator_core::{Amps, Count, Sample};
 use firmware_app::config::{DEVICE, REFERENCE, TIMER_HZ};
 use haptic_control::Currents;
 use stm32f4xx_hal::dac::{C1, C2, DacOut, DacPin};
-use stm32f4xx_hal::gpio::{Input, Output, Pin};
+use stm32f4xx_hal::flash::{FlashExt as _, LockedFlash};
+use stm32f4xx_hal::gpio::{Input, PE2, PE6};
 use stm32f4xx_hal::pac::{self, TIM1, TIM3, TIM4};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::qei::Qei;
@@ -13,7 +19,9 @@ use stm32f4xx_hal::rcc::{Config, Rcc};
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
 use super::edge::{Source, Stamps as _};
+use super::enables::Outputs;
 use super::encoder::Encoder;
+use super::port::Usart;
 use super::reset::{self, LateCrystal};
 use super::tick::{Clock, Tick};
 use crate::boards::{Board, Start, Watchdog};
@@ -21,13 +29,6 @@ use crate::boards::{Board, Start, Watchdog};
 /// Core clock, Hz.
 pub(crate) const CORE_HZ: u32 = 168_000_000;
 const _: () = assert!(CORE_HZ.is_multiple_of(TIMER_HZ));
-
-/// Port of the amplifiers' enables.
-pub(super) const ENABLE_PORT: char = 'E';
-/// Pin of the large amplifier's enable.
-pub(super) const LARGE_ENABLE: u8 = 4;
-/// Pin of the small amplifier's enable.
-pub(super) const SMALL_ENABLE: u8 = 5;
 
 /// Current of the large amplifier at the DAC's ends.
 const LARGE_FULL_SCALE: Amps = Amps::new(6.0);
@@ -39,6 +40,9 @@ const _: () = assert!(
     "large.current_limit_a or small.current_limit_a of the device file is above what the board's \
      amplifiers give at full scale, 6 A and 1.5 A"
 );
+/// Sectors 12 and 13 of the flash, which hold the settings, as offsets from its begin. They are in bank 2,
+/// and the image is in bank 1: the core runs on while they are erased or programmed.
+const SETTINGS_SECTORS: [Range<u32>; 2] = [0x10_0000..0x10_4000, 0x10_4000..0x10_8000];
 /// Period that the watchdog is set to, ms. The HAL rounds to steps of 4 ms and adds one: 28 ms at the
 /// 32 kHz of its oscillator, 19 ms at the 47 kHz and 53 ms at the 17 kHz of the datasheet's limits.
 const WATCHDOG_MS: u32 = 25;
@@ -61,21 +65,19 @@ struct Encoders {
 /// A channel of the DAC as a current command.
 struct DacCurrent<C> {
     channel: C,
-    full_scale: Amps,
+    scale: DacScale,
 }
 
 impl<C: DacOut<u16>> CurrentOutput for DacCurrent<C> {
     fn command(&mut self, current: Amps) {
-        self.channel
-            .set_value(DacCode::new(current, self.full_scale).get());
+        self.channel.set_value(self.scale.code(current).get());
     }
 }
 
-/// Both amplifiers.
-struct Amplifiers {
-    large: Amplifier<DacCurrent<C1>, Pin<ENABLE_PORT, LARGE_ENABLE, Output>, Pin<'E', 2, Input>>,
-    small: Amplifier<DacCurrent<C2>, Pin<ENABLE_PORT, SMALL_ENABLE, Output>, Pin<'E', 6, Input>>,
-}
+/// The large amplifier and its ready line.
+type Large = Amplifier<DacCurrent<C1>, PE2<Input>>;
+/// The small amplifier and its ready line.
+type Small = Amplifier<DacCurrent<C2>, PE6<Input>>;
 
 /// The clock tree.
 struct Tree {
@@ -86,7 +88,7 @@ struct Tree {
 /// The parts that the control task works with.
 pub(super) struct Parts {
     encoders: Encoders,
-    amplifiers: Amplifiers,
+    amplifiers: Amplifiers<Large, Small, Outputs>,
     tick: Tick,
     clock: Tree,
 }
@@ -116,8 +118,12 @@ impl Board for Parts {
         self.encoders.reference.as_mut().map(Encoder::read)
     }
 
-    fn amplifier_fault(&mut self) -> bool {
-        self.amplifiers.large.is_faulty() || self.amplifiers.small.is_faulty()
+    fn amplifiers_ready(&mut self) -> bool {
+        self.amplifiers.are_ready()
+    }
+
+    fn interlock_was_open(&self) -> bool {
+        self.amplifiers.enables().interlock_was_open()
     }
 
     /// The NMI comes first; this is for when it did not.
@@ -126,13 +132,9 @@ impl Board for Parts {
     }
 
     fn apply(&mut self, currents: Option<Currents>) {
-        let Amplifiers { large, small } = &mut self.amplifiers;
-        if let Some(currents) = currents {
-            large.drive(currents.large);
-            small.drive(currents.small);
-        } else {
-            large.disable();
-            small.disable();
+        match currents {
+            Some(currents) => self.amplifiers.drive(currents),
+            None => self.amplifiers.disable(),
         }
     }
 
@@ -158,17 +160,48 @@ impl Watchdog for Guard {
     }
 }
 
+/// The settings in flash; `None` if there are none that this image can read.
+fn stored_settings(flash: pac::FLASH) -> Option<Settings> {
+    let mut flash = LockedFlash::new(flash);
+    let [_, last] = &SETTINGS_SECTORS;
+    if flash.len() < last.end as usize {
+        defmt::warn!(
+            "no settings: this chip has {=usize} bytes of flash",
+            flash.len()
+        );
+        return None;
+    }
+    // Reading flash cannot fail.
+    let (_, record) = Store::<SETTINGS_BYTES>::open(&mut flash, SETTINGS_SECTORS).ok()?;
+    match Settings::decode(&record?) {
+        Ok(settings) => Some(settings),
+        Err(error) => {
+            match error {
+                SettingsError::Version(version) => {
+                    defmt::warn!("settings not used: they are of version {=u16}", version);
+                }
+                SettingsError::Value(setting) => {
+                    defmt::warn!(
+                        "settings not used: number {=u8} is out of its range",
+                        setting as u8
+                    );
+                }
+            }
+            None
+        }
+    }
+}
+
 /// Starts the board: amplifiers off, then the watchdog, then the clocks, then the rest. The tick runs
 /// when this returns.
-pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard>) {
+pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart>) {
     let mut rcc = chip.RCC.constrain();
-    let e = chip.GPIOE.split(&mut rcc);
-    // A port without its clock takes no write.
-    firmware_rt::outputs_safe();
-    let large_enable = e.pe4.into_push_pull_output();
-    let small_enable = e.pe5.into_push_pull_output();
+    let enables = Outputs::new(chip.TIM8, &mut rcc);
+    let a = chip.GPIOA.split(&mut rcc);
+    let c = chip.GPIOC.split(&mut rcc);
+    Outputs::connect(c.pc8, c.pc9, a.pa6);
 
-    // A halted core holds its last current, so a halt must not stop the watchdog.
+    // A halt must disable the outputs, and must not stop the watchdog.
     firmware_rt::undo_debugger();
     let mut watchdog = IndependentWatchdog::new(chip.IWDG);
     watchdog.start(WATCHDOG_MS.millis());
@@ -200,23 +233,36 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard>) {
         rcc.cr().modify(|_, w| w.csson().set_bit());
     }
 
-    let a = chip.GPIOA.split(&mut rcc);
+    let stored = stored_settings(chip.FLASH);
+    let settings = stored.unwrap_or_default();
+    let scale = |full_scale: Amps, zero, gain| {
+        let nominal = DacScale::new(full_scale)?;
+        nominal.calibrated(settings.get(zero), settings.get(gain))
+    };
     let b = chip.GPIOB.split(&mut rcc);
-    let c = chip.GPIOC.split(&mut rcc);
     let d = chip.GPIOD.split(&mut rcc);
+    let e = chip.GPIOE.split(&mut rcc);
     let pins = (a.pa4.into_analog(), a.pa5.into_analog());
     let (mut large_dac, mut small_dac) = chip.DAC.constrain(pins, &mut rcc);
-    large_dac.set_value(DacCode::ZERO.get());
-    small_dac.set_value(DacCode::ZERO.get());
+    large_dac.set_value(DacCode::MIDDLE.get());
+    small_dac.set_value(DacCode::MIDDLE.get());
     large_dac.enable();
     small_dac.enable();
     let large = DacCurrent {
         channel: large_dac,
-        full_scale: LARGE_FULL_SCALE,
+        scale: defmt::unwrap!(scale(
+            LARGE_FULL_SCALE,
+            Setting::ZeroLarge,
+            Setting::GainLarge
+        )),
     };
     let small = DacCurrent {
         channel: small_dac,
-        full_scale: SMALL_FULL_SCALE,
+        scale: defmt::unwrap!(scale(
+            SMALL_FULL_SCALE,
+            Setting::ZeroSmall,
+            Setting::GainSmall
+        )),
     };
 
     let reference =
@@ -227,14 +273,23 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard>) {
         small: Encoder::new(Qei::new(chip.TIM3, (c.pc6, c.pc7), &mut rcc).release().0),
         reference,
     };
-    let amplifiers = Amplifiers {
-        large: Amplifier::new(large, large_enable, e.pe2.into_pull_up_input()),
-        small: Amplifier::new(small, small_enable, e.pe6.into_pull_up_input()),
-    };
+    // A broken wire and an amplifier without supply are not ready.
+    let amplifiers = Amplifiers::new(
+        Amplifier::new(large, e.pe2.into_pull_down_input()),
+        Amplifier::new(small, e.pe6.into_pull_down_input()),
+        enables,
+    );
+
+    let port = Usart::start(chip.USART3, chip.DMA1, (d.pd8, d.pd9), &mut rcc);
+    let port = defmt::unwrap!(port, "the clocks do not give the baud rate of the port");
 
     defmt::assert!(
         rcc.clocks.timclk1().raw() == TIMER_HZ,
         "timers are not clocked with half of the core's clock"
+    );
+    defmt::assert!(
+        rcc.clocks.timclk2().raw() == CORE_HZ,
+        "the timer of the enables is not clocked like the core"
     );
     let parts = Parts {
         encoders,
@@ -247,8 +302,10 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard>) {
             watchdog,
             crystal: LateCrystal::new(crystal),
         },
+        port,
         reset,
         brown_out_reset,
+        is_calibrated: stored.is_some(),
     };
     (parts, start)
 }

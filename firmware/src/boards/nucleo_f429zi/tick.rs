@@ -13,6 +13,10 @@ use super::parts::CORE_HZ;
 /// Counts of a control period.
 const PERIOD: u32 = TIMER_HZ / RATE_HZ;
 
+/// Times that a poll may ask in a count. One pass takes several counts on the chip; on the emulated board
+/// the core is ten times as fast as the timer until the clocks are set up, and a pass takes half a count.
+const PER_COUNT: u32 = 4;
+
 /// A timer that counts from 0 to 2^32 - 1 and starts again, at the rate of its bus.
 pub(super) struct Clock(TIM5);
 
@@ -27,10 +31,10 @@ impl Clock {
     }
 
     /// Asks `done` until it is true, at most for so many counts; whether it was. Without a running
-    /// clock it gives up by the number of times.
+    /// clock it gives up by the number of times, [`PER_COUNT`] for a count.
     pub(super) fn poll(&self, counts: u32, mut done: impl FnMut() -> bool) -> bool {
         let since = self.now();
-        for _ in 0..counts {
+        for _ in 0..counts.saturating_mul(PER_COUNT) {
             if done() {
                 return true;
             }

@@ -1,10 +1,11 @@
 //! Builds every row of the catalogue from parameters that are known at run time.
 
-use estimator_catalogue::{Row, WINDOW_LIMIT, design};
+use estimator_catalogue::{AssumesConstantPeriod as _, Row, Varying, WINDOW_LIMIT, design};
 use estimator_core::{DesignError, Hertz, LateCurrent, Scale};
 use simulation::trace::EDGE_CLOCK_HZ;
 
 use super::erased::{Estimator, accelerating, confident, erased, learner};
+use super::run::Over;
 use super::{Setup, Values};
 
 pub(super) type Build = fn(&Setup, &Values) -> Result<Estimator, DesignError>;
@@ -24,24 +25,24 @@ pub(super) const fn capacity(row: &Row) -> usize {
 
 /// The estimator behind one type, with what it reports.
 macro_rules! reporting {
-    (Nothing, $estimator:ident, $scale:ident, $p:ident) => {
-        erased($estimator, $scale)
+    (Nothing, $estimator:ident, $scale:ident, $over:ident, $p:ident) => {
+        erased($estimator, $scale, $over)
     };
-    (Deviation, $estimator:ident, $scale:ident, $p:ident) => {
-        confident($estimator, $scale)
+    (Deviation, $estimator:ident, $scale:ident, $over:ident, $p:ident) => {
+        confident($estimator, $scale, $over)
     };
-    (Acceleration, $estimator:ident, $scale:ident, $p:ident) => {
-        accelerating($estimator, $scale)
+    (Acceleration, $estimator:ident, $scale:ident, $over:ident, $p:ident) => {
+        accelerating($estimator, $scale, $over)
     };
-    (Damping, $estimator:ident, $scale:ident, $p:ident) => {
-        learner($estimator, $scale, |estimator, state| {
+    (Damping, $estimator:ident, $scale:ident, $over:ident, $p:ident) => {
+        learner($estimator, $scale, $over, |estimator, state| {
             estimator.parameter_errors(state).damping_ratio()
         })
     };
-    (LateCurrent, $estimator:ident, $scale:ident, $p:ident) => {
+    (LateCurrent, $estimator:ident, $scale:ident, $over:ident, $p:ident) => {
         match $p.literal != 0.0 {
-            true => confident(LateCurrent($estimator), $scale),
-            false => confident($estimator, $scale),
+            true => confident(LateCurrent($estimator), $scale, Over::NONE),
+            false => confident($estimator, $scale, $over),
         }
     };
 }
@@ -68,7 +69,11 @@ macro_rules! kinds {
                 let ($motor, $rate, $clock) = (&motor, setup.rate, Hertz(EDGE_CLOCK_HZ));
                 let estimator: $type = $make?;
                 let scale = Scale::new(setup.stages.large.counts_per_rev, setup.rate)?;
-                Ok(reporting!($reports, estimator, scale, $p))
+                let over = Over {
+                    update: Varying::<$type>::UPDATE_OVER,
+                    variance: Varying::<$type>::VARIANCE_OVER,
+                };
+                Ok(reporting!($reports, estimator, scale, over, $p))
             }
         )*
 

@@ -8,7 +8,7 @@ use estimator_core::{
     VelocityEstimator,
 };
 
-use super::run::{resume, run, velocities};
+use super::run::{Over, resume, run, velocities};
 use simulation::trace::Trace;
 
 /// An estimator of any type, with its parameters.
@@ -153,6 +153,23 @@ struct Scaled<E: VelocityEstimator> {
     estimator: E,
     scale: Scale,
     outputs: Outputs<E>,
+    over: Over<E>,
+}
+
+impl<E: VelocityEstimator> Scaled<E> {
+    /// The standard deviation after an update over `period`, as `deviation` reads it over a constant
+    /// one.
+    fn deviation_over(
+        &self,
+        deviation: Output<E, CountsPerTick>,
+        state: &E::State,
+        period: Option<f32>,
+    ) -> CountsPerTick {
+        match (period, self.over.variance) {
+            (Some(period), Some(variance)) => variance(&self.estimator, state, period).std_dev(),
+            _ => deviation(&self.estimator, state),
+        }
+    }
 }
 
 /// Reads a quantity from the state of an estimator.
@@ -189,15 +206,17 @@ where
     E: VelocityEstimator<State: Send + 'static> + Send + Sync,
 {
     fn run(&self, trace: &Trace) -> Vec<f32> {
-        velocities(&self.estimator, trace, &self.scale)
+        velocities((&self.estimator, &self.over), trace, &self.scale)
     }
 
     fn run_confident(&self, trace: &Trace) -> (Vec<f32>, Option<Vec<f32>>) {
         let Some(deviation) = self.outputs.deviation else {
             return (self.run(trace), None);
         };
-        let both = run(&self.estimator, trace, [0.0; 2], |state, velocity| {
-            [velocity, deviation(&self.estimator, state)].map(|v| v.rad_per_s(&self.scale))
+        let subject = (&self.estimator, &self.over);
+        let both = run(subject, trace, [0.0; 2], |state, velocity, period| {
+            let deviation = self.deviation_over(deviation, state, period);
+            [velocity, deviation].map(|v| v.rad_per_s(&self.scale))
         });
         let (velocity, deviation) = both.into_iter().map(<(f32, f32)>::from).unzip();
         (velocity, Some(deviation))
@@ -205,7 +224,8 @@ where
 
     fn damping_ratio(&self, trace: &Trace) -> Option<Vec<f32>> {
         let damping_ratio = self.outputs.damping_ratio?;
-        Some(run(&self.estimator, trace, 1.0, |state, _| {
+        let subject = (&self.estimator, &self.over);
+        Some(run(subject, trace, 1.0, |state, _, _| {
             damping_ratio(&self.estimator, state)
         }))
     }
@@ -222,14 +242,15 @@ where
             .and_then(|state| state.0.into_any().downcast().ok());
         let mut own = own.map(|state| *state);
         let values = resume(
-            &self.estimator,
+            (&self.estimator, &self.over),
             &mut own,
             trace,
             from,
             [0.0, 0.0, 1.0],
-            |state, velocity| {
-                let deviation =
-                    deviation.map_or(CountsPerTick(0.0), |of| of(&self.estimator, state));
+            |state, velocity, period| {
+                let deviation = deviation.map_or(CountsPerTick(0.0), |of| {
+                    self.deviation_over(of, state, period)
+                });
                 let ratio = damping_ratio.map_or(1.0, |of| of(&self.estimator, state));
                 let [velocity, deviation] = [velocity, deviation].map(|v| v.rad_per_s(&self.scale));
                 [velocity, deviation, ratio]
@@ -268,23 +289,28 @@ where
 
 /// Erases the type of an estimator that reports only the velocity. A trace takes one dynamic call,
 /// not one per tick.
-pub(super) fn erased<E>(estimator: E, scale: Scale) -> Estimator
+pub(super) fn erased<E>(estimator: E, scale: Scale, over: Over<E>) -> Estimator
 where
     E: VelocityEstimator<State: Send + 'static> + Send + Sync + 'static,
 {
-    with_outputs(estimator, scale, Outputs::NONE)
+    with_outputs(estimator, scale, over, Outputs::NONE)
 }
 
 /// Erases the type of an estimator that reports the standard deviation.
-pub(super) fn confident<E>(estimator: E, scale: Scale) -> Estimator
+pub(super) fn confident<E>(estimator: E, scale: Scale, over: Over<E>) -> Estimator
 where
     E: Confidence<State: Send + 'static> + Send + Sync + 'static,
 {
-    with_outputs(estimator, scale, Outputs::DEVIATION)
+    with_outputs(estimator, scale, over, Outputs::DEVIATION)
 }
 
 /// Erases the type of an estimator that reports the standard deviation and the learned damping.
-pub(super) fn learner<E>(estimator: E, scale: Scale, damping_ratio: DampingRatio<E>) -> Estimator
+pub(super) fn learner<E>(
+    estimator: E,
+    scale: Scale,
+    over: Over<E>,
+    damping_ratio: DampingRatio<E>,
+) -> Estimator
 where
     E: Confidence<State: Send + 'static> + Send + Sync + 'static,
 {
@@ -292,11 +318,11 @@ where
         damping_ratio: Some(damping_ratio),
         ..Outputs::DEVIATION
     };
-    with_outputs(estimator, scale, outputs)
+    with_outputs(estimator, scale, over, outputs)
 }
 
 /// Erases the type of an estimator that reports the standard deviation and the acceleration.
-pub(super) fn accelerating<E>(estimator: E, scale: Scale) -> Estimator
+pub(super) fn accelerating<E>(estimator: E, scale: Scale, over: Over<E>) -> Estimator
 where
     E: AccelerationEstimator + Confidence<State: Send + 'static> + Send + Sync + 'static,
 {
@@ -304,10 +330,10 @@ where
         acceleration: Some(E::acceleration),
         ..Outputs::DEVIATION
     };
-    with_outputs(estimator, scale, outputs)
+    with_outputs(estimator, scale, over, outputs)
 }
 
-fn with_outputs<E>(estimator: E, scale: Scale, outputs: Outputs<E>) -> Estimator
+fn with_outputs<E>(estimator: E, scale: Scale, over: Over<E>, outputs: Outputs<E>) -> Estimator
 where
     E: VelocityEstimator<State: Send + 'static> + Send + Sync + 'static,
 {
@@ -315,5 +341,6 @@ where
         estimator,
         scale,
         outputs,
+        over,
     }))
 }

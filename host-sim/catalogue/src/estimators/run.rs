@@ -1,5 +1,6 @@
 //! One estimator over one trace.
 
+use estimator_catalogue::{UpdateOver, VarianceOver};
 use estimator_core::{
     Amps, ClockTicks, Count, CountsPerTick, Edge, Sample, Scale, Signals, VelocityEstimator,
 };
@@ -8,7 +9,7 @@ use simulation::trace::{EDGE_CLOCK_HZ, EdgeStamp, Trace};
 
 /// Signals of a trace.
 #[must_use]
-pub fn available(trace: &Trace) -> Signals {
+pub(super) fn available(trace: &Trace) -> Signals {
     Signals {
         current: trace.current.is_some(),
         coupled: trace.counts_small.is_some(),
@@ -16,12 +17,29 @@ pub fn available(trace: &Trace) -> Signals {
     }
 }
 
+/// The functions of an estimator over varying periods; `None` for one that assumes a constant period.
+pub(super) struct Over<E: VelocityEstimator> {
+    pub(super) update: Option<UpdateOver<E>>,
+    pub(super) variance: Option<VarianceOver<E>>,
+}
+
+impl<E: VelocityEstimator> Over<E> {
+    /// A constant period is assumed.
+    pub(super) const NONE: Self = Self {
+        update: None,
+        variance: None,
+    };
+}
+
+/// An estimator that runs over a trace.
+type Subject<'a, E> = (&'a E, &'a Over<E>);
+
 /// The velocity at each tick, rad/s.
-pub(super) fn velocities<E>(estimator: &E, trace: &Trace, scale: &Scale) -> Vec<f32>
+pub(super) fn velocities<E>(subject: Subject<E>, trace: &Trace, scale: &Scale) -> Vec<f32>
 where
     E: VelocityEstimator,
 {
-    run(estimator, trace, 0.0, |_, velocity| {
+    run(subject, trace, 0.0, |_, velocity, _| {
         velocity.rad_per_s(scale)
     })
 }
@@ -29,27 +47,29 @@ where
 /// The results of `read` after each tick. At the first tick the estimator starts and the result is
 /// `first`.
 pub(super) fn run<E, T>(
-    estimator: &E,
+    subject: Subject<E>,
     trace: &Trace,
     first: T,
-    read: impl Fn(&E::State, CountsPerTick) -> T,
+    read: impl Fn(&E::State, CountsPerTick, Option<f32>) -> T,
 ) -> Vec<T>
 where
     E: VelocityEstimator,
     T: Clone,
 {
-    resume(estimator, &mut None, trace, 0, first, read)
+    resume(subject, &mut None, trace, 0, first, read)
 }
 
 /// The results of `read` after each tick from `from` on, with the state after the tick before it.
-/// Without a state, the estimator starts at tick `from` and the result there is `first`.
+/// Without a state, the estimator starts at tick `from` and the result there is `first`. `read` also
+/// has the period before the tick, in control periods, where the trace has periods and the estimator
+/// takes them.
 pub(super) fn resume<E, T>(
-    estimator: &E,
+    (estimator, over): Subject<E>,
     state: &mut Option<E::State>,
     trace: &Trace,
     from: usize,
     first: T,
-    read: impl Fn(&E::State, CountsPerTick) -> T,
+    read: impl Fn(&E::State, CountsPerTick, Option<f32>) -> T,
 ) -> Vec<T>
 where
     E: VelocityEstimator,
@@ -64,9 +84,20 @@ where
             None => return values,
         },
     };
+    let over = trace.periods.as_deref().zip(over.update);
     for (k, value) in ticks {
-        let velocity = estimator.update(&mut after, &sample(E::NEEDS, trace, k));
-        *value = read(&after, velocity);
+        let sample = sample(E::NEEDS, trace, k);
+        *value = match over {
+            Some((periods, update)) => {
+                let period = periods[k];
+                let velocity = update(estimator, &mut after, &sample, period);
+                read(&after, velocity, Some(period))
+            }
+            None => {
+                let velocity = estimator.update(&mut after, &sample);
+                read(&after, velocity, None)
+            }
+        };
     }
     *state = Some(after);
     values
@@ -140,6 +171,9 @@ mod tests {
         let unit = Scale {
             rad_per_s_per_count_per_tick: 1.0,
         };
-        assert_eq!(velocities(&Spy, &trace, &unit), [0.0, 101.0, 1202.0]);
+        assert_eq!(
+            velocities((&Spy, &Over::NONE), &trace, &unit),
+            [0.0, 101.0, 1202.0]
+        );
     }
 }

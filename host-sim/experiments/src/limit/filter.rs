@@ -314,6 +314,7 @@ mod tests {
             edges: None,
             true_omega: None,
             true_damping: None,
+            periods: None,
         };
         let noise = Noise {
             torque_noise: 6e-6,

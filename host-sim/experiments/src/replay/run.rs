@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::compare::interval;
-use catalogue::estimators::{Kind, Setup, State, available};
+use catalogue::estimators::{Kind, Lack, Setup, State};
 use catalogue::parameters::{Parameters, PlantKind};
 use recordings::recording::Recording;
 use scoring::evaluation::{Estimate, Evaluation, Heading, Row, Scoring};
@@ -63,18 +63,13 @@ impl Run {
         device: &Device,
         parameters: &Parameters,
     ) -> Result<Self, Failure> {
-        let has = available(columns);
         let (able, unable): (Vec<_>, Vec<_>) =
-            kinds.iter().partition(|kind| kind.needs.within(has));
+            kinds.iter().partition(|kind| kind.lack(columns).is_none());
         let setup = Setup::of(device, columns.rate_hz);
         let evaluation = Evaluation::new(&able, parameters, &setup, PlantKind::Friction)?;
-        let missing = |kind: &&'static Kind| {
-            let column = match kind.needs {
-                needs if needs.current && !has.current => "current",
-                needs if needs.coupled && !has.coupled => "counts_small",
-                _ => "edge_tick",
-            };
-            (kind.name, column)
+        let missing = |kind: &&'static Kind| match kind.lack(columns)? {
+            Lack::Column(column) => Some((kind.name, column)),
+            Lack::ConstantPeriod => None,
         };
         let heading = Heading {
             scenario: name.to_owned(),
@@ -92,7 +87,7 @@ impl Run {
             section: Recording::default(),
             before: 0,
             estimates: able.iter().map(estimate).collect(),
-            left_out: unable.iter().map(missing).collect(),
+            left_out: unable.iter().filter_map(missing).collect(),
             mismatched_presets: parameters.used_far_away(&able, &setup, PlantKind::Friction),
             scoring: Scoring::new(heading, interval(device), Wanted::ALL, several),
             states: able.iter().map(|_| (None, Learned::default())).collect(),

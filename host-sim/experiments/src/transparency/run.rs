@@ -233,6 +233,7 @@ impl Recorder {
                 edges: None,
                 true_omega: Some(Vec::with_capacity(prepared.ticks)),
                 true_damping: None,
+                periods: None,
             },
             used: Vec::with_capacity(prepared.ticks),
             parasitic_mn: Vec::with_capacity(prepared.ticks),

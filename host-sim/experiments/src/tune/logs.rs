@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::search::{best_values, ends_of_ranges};
 use crate::reference::Reference;
-use catalogue::estimators::{Kind, Setup, Values, available};
+use catalogue::estimators::{Kind, Lack, Setup, Values};
 use catalogue::parameters::{Parameters, PlantKind, Preset};
 use recordings::recording::Recording;
 use simulation::device::Device;
@@ -90,9 +90,12 @@ pub fn tune_on_logs(
         estimators: Default::default(),
     };
     for &kind in kinds {
-        let runs = |track: &Track| kind.needs.within(available(track.trace));
-        if !tracks.iter().all(runs) {
-            notes.push(format!("{}: left out, it needs other columns", kind.name));
+        if let Some(lack) = tracks.iter().find_map(|track| kind.lack(track.trace)) {
+            let why = match lack {
+                Lack::Column(_) => "it needs other columns",
+                Lack::ConstantPeriod => "it assumes a constant period",
+            };
+            notes.push(format!("{}: left out, {why}", kind.name));
             done();
             continue;
         }

@@ -172,6 +172,19 @@ mod tests {
         );
     }
 
+    #[test]
+    fn value_at_either_end_of_its_range_is_reported() {
+        let kind = Kind::named("low-pass").unwrap();
+        let setup = Setup::of(&Device::default(), 1e4);
+        // The cut-off is searched from 5 to 500 Hz.
+        for (value, end) in [(5.0, "lower"), (500.0, "upper")] {
+            let notes = ends_of_ranges(kind, &setup, &vec![value]);
+            let said = format!("low-pass.cutoff_hz = {value} Hz is the {end} limit");
+            assert!(notes.len() == 1 && notes[0].starts_with(&said), "{notes:?}");
+        }
+        assert!(ends_of_ranges(kind, &setup, &vec![100.0]).is_empty());
+    }
+
     /// Twice the inertia needs twice the torque for the same motion.
     #[test]
     fn ranges_of_torques_follow_the_inertia() {

@@ -1,151 +1,28 @@
-//! Period of a recording's rows, and its uneven steps.
-
-use std::collections::BTreeMap;
+//! Rate of a recording's rows, its uneven steps, and gaps in which rows are missing.
 
 use super::Recording;
+use super::steps::{EVEN, Steps, differs, to_digits};
 use terminal::failure::Failure;
 
-/// Largest relative difference of an even step from the period.
-const EVEN: f64 = 0.1;
-
-/// Largest relative difference from the median step of the steps that determine the rate. Steps with
-/// rounded digits are included, steps over a missing row are not.
-const REGULAR: f64 = 0.5;
-
-/// Largest share of the steps that differ from the period by more than [`REGULAR`] of it, for the
-/// estimators, which assume a constant period.
-const IRREGULAR_SHARE: f64 = 0.1;
-
-/// Slowest rate of a recording, Hz.
-pub(super) const SLOWEST_HZ: f64 = 10.0;
-
-/// Steps of `t` by their length, in memory that does not grow with their number.
-///
-/// Steps whose lengths differ by less than 2^-12 of them share a class. Only the number and the sum
-/// of the steps of a class are known, so limits apply to a class as to its mean.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Steps {
-    classes: BTreeMap<u64, Class>,
-    number: u64,
+/// Time of each row from the row before, in periods of `rate_hz`, if the rows of `t` are uneven. That of
+/// the first row is 1.
+pub(super) fn periods(t: &[f64], rate_hz: f64) -> Option<Vec<f32>> {
+    let first = t.first().map(|_| 1.0);
+    let later = t
+        .windows(2)
+        .map(|pair| ((pair[1] - pair[0]) * rate_hz) as f32);
+    let are_uneven = Steps::of(t).are_uneven(1.0 / rate_hz);
+    are_uneven.then(|| first.into_iter().chain(later).collect())
 }
 
-/// Steps of nearly one length.
-#[derive(Clone, Copy, Debug, Default)]
-struct Class {
-    number: u64,
-    sum: f64,
-    /// The largest change of each encoder's count over one of the steps.
-    jump: [i64; 2],
-}
-
-impl Class {
-    /// Mean length, s.
-    fn mean(&self) -> f64 {
-        self.sum / self.number as f64
+/// Description of those `steps` that differ from `period`, s; `None` if there are none. Steps of one
+/// class count by their mean.
+pub(super) fn unevenness(steps: &Steps, period: f64) -> Option<String> {
+    let mut uneven = Uneven::new(period);
+    for (length, number) in steps.lengths() {
+        uneven.add_equal(length, number as usize);
     }
-}
-
-impl Steps {
-    /// Bits of a length that do not distinguish classes.
-    const SHARED_BITS: u32 = 52 - 12;
-
-    /// Adds a step of `length` s, not negative, over which the counts change by `jump`.
-    pub(super) fn add(&mut self, length: f64, jump: [i64; 2]) {
-        // A zero has a sign.
-        let key = (length + 0.0).to_bits() >> Self::SHARED_BITS;
-        let class = self.classes.entry(key).or_default();
-        class.number += 1;
-        class.sum += length;
-        for (most, jump) in class.jump.iter_mut().zip(jump) {
-            if jump.abs() >= most.abs() {
-                *most = jump;
-            }
-        }
-        self.number += 1;
-    }
-
-    fn classes(&self) -> impl Iterator<Item = &Class> {
-        self.classes.values()
-    }
-
-    /// The largest jump of an encoder's counts over steps of at most `longest` s.
-    pub(super) fn largest_jump(&self, longest: f64, motor: usize) -> i64 {
-        let short = self.classes().filter(|class| class.mean() <= longest);
-        let jumps = short.map(|class| class.jump[motor]);
-        jumps.max_by_key(|jump| jump.abs()).unwrap_or_default()
-    }
-
-    /// Period of the rows, s, and the rate, Hz.
-    ///
-    /// The rate is one over the mean of the steps near the median, because the resolution of the
-    /// median alone is that of the digits of `t`.
-    pub(super) fn period(&self, name: &str) -> Result<(f64, f64), Failure> {
-        if self.number == 0 {
-            return Err(Failure::Input(format!(
-                "{name}: fewer than two rows of data; a recording needs at least two"
-            )));
-        }
-        let mut below = 0;
-        let median = self.classes().find(|class| {
-            below += class.number;
-            below > self.number / 2
-        });
-        let median = median.map_or(0.0, Class::mean);
-        if median <= 0.0 {
-            return Err(Failure::Input(format!(
-                "{name}: column t: does not increase in most rows; write it in seconds with enough \
-                 digits to distinguish rows"
-            )));
-        }
-        let regular = self
-            .classes()
-            .filter(|class| differs(class.mean(), median) <= REGULAR);
-        let (sum, number) = regular.fold((0.0, 0), |(sum, number), class| {
-            (sum + class.sum, number + class.number)
-        });
-        let period = sum / number as f64;
-        // Decimal digits of `t` are rounded, so the rate is rounded too.
-        let rate_hz = to_digits(1.0 / period, 7);
-        if rate_hz < SLOWEST_HZ {
-            return Err(Failure::Input(format!(
-                "{name}: column t: rows {period} s apart are {rate_hz} Hz, which is below {SLOWEST_HZ} \
-                 Hz; t must be in seconds, check that it is not in ms or us, which --column t=NAME:ms \
-                 states"
-            )));
-        }
-        Ok((period, rate_hz))
-    }
-
-    /// Checks that the estimators can take rows at `rate_hz` as evenly spaced.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] with the remedy if more than a tenth of the steps differ from the period by
-    /// more than half of it.
-    pub(super) fn check_even(&self, rate_hz: f64, name: &str) -> Result<(), Failure> {
-        let irregular = self
-            .classes()
-            .filter(|class| differs(class.mean(), 1.0 / rate_hz) > REGULAR);
-        let irregular: u64 = irregular.map(|class| class.number).sum();
-        let share = irregular as f64 / self.number as f64;
-        if share <= IRREGULAR_SHARE {
-            return Ok(());
-        }
-        Err(Failure::Input(format!(
-            "{name}: column t: {:.0} % of the steps differ by more than half from the period of \
-             1/{rate_hz} s, {:.0} % may; the estimators assume a constant period: add --resample {:.0}",
-            100.0 * share,
-            100.0 * IRREGULAR_SHARE,
-            rate_hz
-        )))
-    }
-
-    fn of(t: &[f64]) -> Self {
-        let mut steps = Self::default();
-        for pair in t.windows(2) {
-            steps.add(pair[1] - pair[0], [0; 2]);
-        }
-        steps
-    }
+    uneven.note()
 }
 
 /// Rate of the rows of `t`, Hz, and the number of uneven steps.
@@ -178,9 +55,14 @@ impl Uneven {
     }
 
     pub(super) fn add(&mut self, step: f64) {
-        self.all += 1;
+        self.add_equal(step, 1);
+    }
+
+    /// Adds `number` steps of one length.
+    fn add_equal(&mut self, step: f64, number: usize) {
+        self.all += number;
         if differs(step, self.period) > EVEN {
-            self.number += 1;
+            self.number += number;
             self.most = self.most.max((step - self.period).abs());
         }
     }
@@ -246,13 +128,13 @@ impl Recording {
         uneven.note()
     }
 
-    /// Checks that the estimators can take the rows as evenly spaced.
+    /// Checks that the times of the rows are known.
     ///
     /// # Errors
     /// [`Failure::Input`] with the remedy if more than a tenth of the steps of `t` differ from the
-    /// period by more than half of it.
-    pub fn check_even(&self, name: &str) -> Result<(), Failure> {
-        Steps::of(&self.t).check_even(self.trace.rate_hz, name)
+    /// period by more than half of it, and `t` has so few digits that late rows look as missing ones.
+    pub fn check_times(&self, name: &str) -> Result<(), Failure> {
+        Steps::of(&self.t).check_times(self.trace.rate_hz, name)
     }
 
     /// Share of uneven steps of `t`, 0 to 1.
@@ -260,15 +142,6 @@ impl Recording {
     pub fn uneven_share(&self) -> f64 {
         self.uneven_steps as f64 / (self.t.len() - 1) as f64
     }
-}
-
-fn differs(step: f64, period: f64) -> f64 {
-    (step - period).abs() / period
-}
-
-/// `x` with `digits` significant digits.
-fn to_digits(x: f64, digits: usize) -> f64 {
-    format!("{x:.0$e}", digits - 1).parse().unwrap_or(x)
 }
 
 #[cfg(test)]

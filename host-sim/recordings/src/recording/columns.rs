@@ -2,11 +2,11 @@
 
 use std::mem::take;
 
-use estimator_core::Count;
 use simulation::trace::{EDGE_CLOCK_HZ, EdgeStamp, Trace};
 use terminal::failure::Failure;
 
 use super::clock::Gaps;
+use super::encoder::Encoder;
 use super::layout::{Layout, Place, Places};
 use super::lines::LineNumbers;
 use super::options::{Column, ReadOptions};
@@ -14,9 +14,6 @@ use super::records::Records;
 use super::row::Row;
 use super::units::Scale;
 use super::{Recording, absolute, clock};
-
-/// Distance from a whole count from which positions are reported as rounded.
-const ROUNDED: f64 = 0.25;
 
 /// The columns that are read, and their rows so far.
 pub(super) struct Columns<'a> {
@@ -37,18 +34,6 @@ pub(super) struct Columns<'a> {
     true_omega: Vec<f64>,
     /// Number of rows left out.
     left_out: usize,
-}
-
-/// Counts of an encoder.
-#[derive(Default)]
-struct Encoder {
-    counts: Vec<u32>,
-    /// The count of the latest row.
-    last: Option<u32>,
-    /// The reading of the latest row: counts before they are unwrapped.
-    raw: i64,
-    /// Largest distance of a position from a whole count.
-    rounded: f64,
 }
 
 impl<'a> Columns<'a> {
@@ -189,11 +174,14 @@ impl<'a> Columns<'a> {
             gaps.add(step[1] - step[0], rate_hz, step[1], || self.lines.of(k + 1));
         }
         notes.extend(gaps.note());
-        Ok(Recording {
+        let periods = clock::periods(&self.t, rate_hz);
+        let mut recording = Recording {
             uneven_steps,
             notes,
             ..self.drain(rate_hz)
-        })
+        };
+        recording.trace.periods = periods;
+        Ok(recording)
     }
 
     /// The rows since the last call, without notes.
@@ -216,6 +204,7 @@ impl<'a> Columns<'a> {
                 edges: has(Column::EdgeTick).then_some(take(&mut self.edges)),
                 true_omega: has(Column::TrueOmega).then_some(take(&mut self.true_omega)),
                 true_damping: None,
+                periods: None,
             },
             notes: Vec::new(),
         }
@@ -277,62 +266,6 @@ impl<'a> Columns<'a> {
             format!("read as a log of {}: ", format.name)
         });
         Some(format!("{log}{}", parts.join(", ")))
-    }
-}
-
-impl Encoder {
-    fn take(
-        &mut self,
-        row: &Row,
-        at: Place,
-        options: &ReadOptions,
-        motor: usize,
-    ) -> Result<(), Failure> {
-        let column = at.column.name();
-        let raw = match at.unit.scale {
-            Scale::PerRev(per_rev) => {
-                let position = row.number(column, at.place)?;
-                let exact = position * f64::from(options.counts_per_rev[motor]) / per_rev;
-                if exact.abs() > 9e15 {
-                    return Err(row.failure(column, &format!("{position} is too far from zero")));
-                }
-                let whole = (exact + 0.5).floor();
-                self.rounded = self.rounded.max((exact - whole).abs());
-                whole as i64
-            }
-            _ => row.count(column, at.place)?,
-        };
-        self.raw = raw;
-        let count = match options.modulus[motor] {
-            None => raw as u32,
-            Some(modulus) => {
-                let within = -i64::from(modulus) <= raw && raw < i64::from(modulus);
-                let reading = raw.rem_euclid(i64::from(modulus)) as u32;
-                let last = self.last.unwrap_or(reading);
-                let next = Count(last).wrapped(reading, modulus);
-                let refused = |why: &str| {
-                    row.failure(column, &format!("{raw} with --modulus {modulus}: {why}"))
-                };
-                if !within {
-                    return Err(refused("raw must be below modulus"));
-                }
-                next.map_err(|error| refused(error.message()))?.0
-            }
-        };
-        self.last = Some(count);
-        self.counts.push(count);
-        Ok(())
-    }
-
-    fn note(&self, column: &str, counts_per_rev: u32) -> Option<String> {
-        (self.rounded > ROUNDED).then(|| {
-            format!(
-                "{column}: positions are up to {:.2} counts from a whole count with {counts_per_rev} \
-                 counts/rev and are rounded to the nearest; if the encoder has more counts, give them \
-                 with --device",
-                self.rounded
-            )
-        })
     }
 }
 

@@ -31,6 +31,7 @@ pub struct Parts<'a> {
     resampled: usize,
     /// Rows that are not yet returned.
     waiting: Recording,
+    begun: bool,
     ended: bool,
 }
 
@@ -57,7 +58,11 @@ impl<'a> Parts<'a> {
             uneven: Uneven::new(survey.period),
             between: empty.clone(),
             resampled: 0,
-            waiting: empty,
+            waiting: Recording {
+                trace: survey.columns.clone(),
+                ..empty
+            },
+            begun: false,
             ended: false,
         })
     }
@@ -97,13 +102,22 @@ impl<'a> Parts<'a> {
     /// The next rows of the log, with unwrapped counts.
     fn read(&mut self) -> Result<Recording, Failure> {
         let (gaps, uneven, rate_hz) = (&mut self.gaps, &mut self.uneven, self.survey.rate_hz);
+        // The first row has no step.
+        let first = (!self.begun).then_some(1.0);
+        let columns = &self.survey.columns;
+        let mut periods = columns.periods.as_ref().map(|_| Vec::from_iter(first));
         let mut part = self
             .columns
             .read(&mut self.records, BLOCK, |t, step, line| {
                 gaps.add(step, rate_hz, t, || line);
                 uneven.add(step);
+                if let Some(periods) = &mut periods {
+                    periods.push((step * rate_hz) as f32);
+                }
             })?;
-        part.trace.rate_hz = self.survey.columns.rate_hz;
+        self.begun = true;
+        part.trace.rate_hz = columns.rate_hz;
+        part.trace.periods = periods;
         let trace = &mut part.trace;
         let [large, small] = self.survey.wraps;
         if let Some(modulus) = large {
@@ -236,6 +250,8 @@ mod tests {
             assert_eq!(parts.current, whole.current);
             assert_eq!(parts.edges, whole.edges);
             assert_eq!(parts.true_omega, whole.true_omega);
+            assert_eq!(parts.periods, whole.periods);
+            assert_eq!(parts.periods.is_some(), resample.is_none());
         }
     }
 }

@@ -75,6 +75,7 @@ impl Recording {
             at.iter().map(value).collect()
         });
         trace.rate_hz = rate_hz;
+        trace.periods = None;
         self.uneven_steps = 0;
         self.t = t;
     }
@@ -93,11 +94,11 @@ pub(super) fn resampled_rows(
 ) -> Result<usize, Failure> {
     let seconds = last - first;
     let wanted = (seconds * rate_hz).floor() + 1.0;
-    if !(rate_hz >= super::clock::SLOWEST_HZ && wanted >= 2.0) {
+    if !(rate_hz >= super::steps::SLOWEST_HZ && wanted >= 2.0) {
         return Err(Failure::Input(format!(
             "--resample {rate_hz}: {name} has {seconds} s, of which at least two rows at {} Hz or more \
              must result",
-            super::clock::SLOWEST_HZ
+            super::steps::SLOWEST_HZ
         )));
     }
     if wanted > MOST_ROWS * rows as f64 {

@@ -14,6 +14,7 @@ impl Recording {
         add(&mut trace.current, &mut added.current);
         add(&mut self.current_small, &mut other.current_small);
         add(&mut trace.edges, &mut added.edges);
+        add(&mut trace.periods, &mut added.periods);
         add(&mut trace.true_omega, &mut added.true_omega);
     }
 
@@ -32,6 +33,7 @@ impl Recording {
                 counts_small: front(&mut trace.counts_small, rows),
                 current: front(&mut trace.current, rows),
                 edges: front(&mut trace.edges, rows),
+                periods: front(&mut trace.periods, rows),
                 true_omega: front(&mut trace.true_omega, rows),
                 true_damping: front(&mut trace.true_damping, rows),
             },

@@ -8,12 +8,13 @@ use simulation::trace::Trace;
 use terminal::failure::Failure;
 
 use super::absolute::{self, Found};
-use super::clock::Steps;
+use super::clock;
 use super::columns::Columns;
 use super::options::ReadOptions;
 use super::parts::BLOCK;
 use super::records::Records;
 use super::resample::resampled_rows;
+use super::steps::Steps;
 
 /// Properties of a log as a whole, from a pass over all of its rows.
 #[derive(Clone, Debug)]
@@ -137,8 +138,11 @@ impl Survey {
             Some(hz) => resampled_rows(first_t, last_t, rows, hz, name)?,
             None => rows,
         };
+        let mut columns = columns.drain(resample.unwrap_or(rate_hz)).trace;
+        let are_uneven = resample.is_none() && steps.are_uneven(1.0 / rate_hz);
+        columns.periods = are_uneven.then(Vec::new);
         Ok(Self {
-            columns: columns.drain(resample.unwrap_or(rate_hz)).trace,
+            columns,
             rows,
             notes,
             resample,
@@ -150,15 +154,24 @@ impl Survey {
         })
     }
 
-    /// Checks that the estimators can take the rows as evenly spaced; see
-    /// [`Recording::check_even`](super::Recording::check_even).
+    /// Description of the uneven steps of the rows; `None` if there are none.
+    #[must_use]
+    pub fn unevenness(&self) -> Option<String> {
+        match self.resample {
+            Some(_) => None,
+            None => clock::unevenness(&self.steps, self.period),
+        }
+    }
+
+    /// Checks that the times of the rows are known; see
+    /// [`Recording::check_times`](super::Recording::check_times).
     ///
     /// # Errors
     /// [`Failure::Input`] with the remedy.
-    pub fn check_even(&self, name: &str) -> Result<(), Failure> {
+    pub fn check_times(&self, name: &str) -> Result<(), Failure> {
         match self.resample {
             Some(_) => Ok(()),
-            None => self.steps.check_even(self.rate_hz, name),
+            None => self.steps.check_times(self.rate_hz, name),
         }
     }
 }

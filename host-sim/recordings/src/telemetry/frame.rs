@@ -2,6 +2,7 @@
 
 use std::str::FromStr;
 
+use drivers::link;
 use haptic_control::{Mode, Stop};
 
 use super::side_lines::SideLines;
@@ -34,6 +35,18 @@ macro_rules! frame {
                 let fields = Fields(line);
                 Ok(Self {
                     $($name: Field::read(&fields, stringify!($name), $old)?,)+
+                    side_lines: SideLines::default(),
+                })
+            }
+        }
+
+        impl TryFrom<link::Frame> for Frame {
+            type Error = String;
+
+            /// The message of the link as the frame of a log.
+            fn try_from(frame: link::Frame) -> Result<Self, String> {
+                Ok(Self {
+                    $($name: Field::of(stringify!($name), frame.$name)?,)+
                     side_lines: SideLines::default(),
                 })
             }
@@ -76,6 +89,12 @@ const fn is_csv(word: &str) -> bool {
 
 /// A value of a frame's line and of a recording.
 trait Field: Sized {
+    /// The type on the link.
+    type Wire;
+
+    /// The value of the link; an error names the field.
+    fn of(name: &str, value: Self::Wire) -> Result<Self, String>;
+
     /// The value under either name.
     fn read(fields: &Fields<'_>, name: &str, old: &str) -> Result<Self, String>;
 
@@ -86,6 +105,12 @@ trait Field: Sized {
 macro_rules! numbers {
     ($($type:ty)+) => {$(
         impl Field for $type {
+            type Wire = Self;
+
+            fn of(_: &str, value: Self) -> Result<Self, String> {
+                Ok(value)
+            }
+
             fn read(fields: &Fields<'_>, name: &str, old: &str) -> Result<Self, String> {
                 fields.number(fields.name_of(name, old))
             }
@@ -97,10 +122,16 @@ macro_rules! numbers {
     )+};
 }
 
-numbers!(u8 u32 f32);
+numbers!(u8 u16 u32 f32);
 
 /// A field that older images do not have.
 impl<T: Field> Field for Option<T> {
+    type Wire = T::Wire;
+
+    fn of(name: &str, value: T::Wire) -> Result<Self, String> {
+        T::of(name, value).map(Some)
+    }
+
     fn read(fields: &Fields<'_>, name: &str, old: &str) -> Result<Self, String> {
         match fields.text(fields.name_of(name, old)) {
             Ok(_) => T::read(fields, name, old).map(Some),
@@ -116,10 +147,15 @@ impl<T: Field> Field for Option<T> {
 macro_rules! codes {
     ($($type:ty)+) => {$(
         impl Field for $type {
+            type Wire = u8;
+
+            fn of(name: &str, code: u8) -> Result<Self, String> {
+                Self::from_code(code).ok_or_else(|| format!("{name}={code} has no meaning"))
+            }
+
             fn read(fields: &Fields<'_>, name: &str, old: &str) -> Result<Self, String> {
                 let code = u8::read(fields, name, old)?;
-                let value = Self::from_code(code);
-                value.ok_or_else(|| format!("{name}={code} has no meaning in '{}'", fields.0))
+                Self::of(name, code).map_err(|error| format!("{error} in '{}'", fields.0))
             }
 
             fn text(&self) -> Option<String> {

@@ -8,6 +8,8 @@ pub(super) const FAULT_S: f64 = 0.5;
 /// When some happen instead: the watchdog runs, and the task of lowest priority has fed it once at
 /// most; nothing is enabled.
 pub(super) const START_S: f64 = 0.5e-3;
+/// When the device is armed, s.
+pub(super) const ARM_S: f64 = 0.1;
 
 /// Watchdog period at the nominal oscillator of 32 kHz, ms: prescaler 128, reload 6.
 const WATCHDOG_MS: f64 = 28.0;
@@ -26,6 +28,8 @@ const NOTICED_MN: f64 = 10.0;
 pub(super) enum End {
     /// Amplifiers off so many ms later, within a range, for this cause.
     Off([f64; 2], Stop),
+    /// Amplifiers off so many ms later, within a range, and a core that never runs again.
+    Halted([f64; 2]),
     /// Amplifiers never on, for this cause.
     NeverOn(Stop),
     /// Amplifiers on, no cause: nothing dangerous, or nothing that is noticed yet.
@@ -42,6 +46,8 @@ pub(super) struct Bound {
     /// How long to watch after the fault, s.
     pub(super) watched_s: f64,
     pub(super) end: End,
+    /// The end at other instants of the same fault, with its forces.
+    pub(super) or: Option<(End, [f64; 2])>,
     /// The one reset, within a range of ms after the fault.
     pub(super) reset_ms: Option<[f64; 2]>,
     /// Largest and smallest difference from the healthy run's torque until the end, mN at the
@@ -57,13 +63,37 @@ const fn bound(fault: Fault, watched_s: f64, end: End, force_mn: [f64; 2]) -> Bo
         with: None,
         watched_s,
         end,
+        or: None,
         reset_ms: None,
         force_mn,
     }
 }
 
+/// No motion in spite of the push: the loop pushes ever harder until the monitor misses the motion.
+const STALLS: (End, [f64; 2]) = (End::Off([0.0, 200.0], Stop::Stall), [300.0, 10.0]);
+
+/// One phase alone counts to and fro. By the instant of the fault, this is motion against the push or no
+/// motion.
+const fn one_phase(fault: Fault) -> Bound {
+    Bound {
+        or: Some(STALLS),
+        ..bound(
+            fault,
+            0.3,
+            End::Off([0.0, 10.0], Stop::RunawayDirection),
+            [60.0, 10.0],
+        )
+    }
+}
+
 /// Off at once: at the end of the next tick, and a step of the lockstep.
 const NEXT_TICK: [f64; 2] = [0.0, 0.15];
+
+/// Off by hardware, without the firmware: a step of the lockstep.
+const AT_ONCE: [f64; 2] = [0.0, STEP_MS];
+
+/// The enables lapse 16 periods after the last control task.
+const LAPSED: [f64; 2] = [1.5 - STEP_MS, 1.6 + STEP_MS];
 
 /// When a watchdog at this frequency resets a chip that is fed no more, ms.
 const fn starved(oscillator_hz: f64) -> [f64; 2] {
@@ -75,11 +105,27 @@ const NOMINAL: [f64; 2] = starved(32e3);
 const SLOW: [f64; 2] = starved(17e3);
 const FAST: [f64; 2] = starved(47e3);
 
-/// A fault that ends with the watchdog's reset, and with the amplifiers off no earlier.
-const fn dies(fault: Fault, when: [f64; 2], force_mn: [f64; 2]) -> Bound {
+/// A fault that ends with the watchdog's reset, and with the amplifiers off at `off`.
+const fn dies(fault: Fault, off: [f64; 2], when: [f64; 2]) -> Bound {
     Bound {
         reset_ms: Some(when),
-        ..bound(fault, 0.2, End::Off(when, Stop::Watchdog), force_mn)
+        ..bound(fault, 0.2, End::Off(off, Stop::Watchdog), [1.0, 0.0])
+    }
+}
+
+/// A control task that runs no more: the enables lapse, then the watchdog resets the chip.
+const fn lapses(fault: Fault, when: [f64; 2]) -> Bound {
+    Bound {
+        force_mn: [NOTICED_MN, 0.0],
+        ..dies(fault, LAPSED, when)
+    }
+}
+
+/// A fault at the start, before the device is armed. Arming is refused.
+const fn refused(fault: Fault, cause: Stop) -> Bound {
+    Bound {
+        at_s: START_S,
+        ..bound(fault, 0.2, End::NeverOn(cause), [0.0, 0.0])
     }
 }
 
@@ -98,35 +144,18 @@ const fn dies_at_start(with: Option<Fault>, [least, most]: [f64; 2]) -> Bound {
     }
 }
 
-/// A halt that is over before the watchdog resets the chip: the ticks missed meanwhile stop the
-/// device at the end of the first one behind it. A halted core cannot do better.
-const fn halted(ms: u16, force_mn: [f64; 2]) -> Bound {
+/// A halt that is over before the watchdog resets the chip: hardware has the amplifiers off during
+/// the halt, and the ticks missed meanwhile stop the device at the end of the first one behind it.
+const fn halted(ms: u16) -> Bound {
     let [_, late] = NEXT_TICK;
-    let end = End::Off([ms as f64, ms as f64 + late], Stop::TickOverrun);
-    bound(Fault::Halt(ms), 0.2, end, force_mn)
+    let end = End::Off([0.0, ms as f64 + late], Stop::TickOverrun);
+    bound(Fault::Halt(ms), 0.2, end, [NOTICED_MN, 0.0])
 }
 
-pub(super) const MATRIX: [Bound; 33] = [
-    // One phase alone counts to and fro, which looks like motion against the push.
-    bound(
-        Fault::StuckA,
-        0.3,
-        End::Off([0.0, 10.0], Stop::RunawayDirection),
-        [60.0, 10.0],
-    ),
-    bound(
-        Fault::StuckB,
-        0.3,
-        End::Off([0.0, 10.0], Stop::RunawayDirection),
-        [60.0, 10.0],
-    ),
-    // The loop pushes ever harder until the monitor misses the motion.
-    bound(
-        Fault::StuckBoth,
-        0.5,
-        End::Off([0.0, 200.0], Stop::Stall),
-        [300.0, 10.0],
-    ),
+pub(super) const MATRIX: [Bound; 43] = [
+    one_phase(Fault::StuckA),
+    one_phase(Fault::StuckB),
+    bound(Fault::StuckBoth, 0.5, STALLS.0, STALLS.1),
     // The loop drives the motor the wrong way until the monitor has seen enough of it.
     bound(
         Fault::Swapped,
@@ -147,23 +176,68 @@ pub(super) const MATRIX: [Bound; 33] = [
         End::Off(NEXT_TICK, Stop::AmplifierFault),
         [1.0, 0.0],
     ),
-    dies(Fault::HungCore, NOMINAL, [NOTICED_MN, 1.0]),
+    bound(
+        Fault::BrokenReadyWire,
+        0.2,
+        End::Off(NEXT_TICK, Stop::AmplifierFault),
+        [1.0, 0.0],
+    ),
+    bound(
+        Fault::Unpowered,
+        0.2,
+        End::Off(AT_ONCE, Stop::Interlock),
+        [1.0, 0.0],
+    ),
+    refused(Fault::Unpowered, Stop::Interlock),
+    bound(Fault::ReadyAfter(15), 0.3, End::On, [0.0, 0.0]),
+    // Refused at the end of settling, which takes 20 ms and begins with the tick after the command.
+    Bound {
+        at_s: ARM_S,
+        ..bound(
+            Fault::ReadyAfter(30),
+            0.2,
+            End::Off([20.0, 20.3], Stop::AmplifierFault),
+            [0.0, 0.0],
+        )
+    },
+    bound(
+        Fault::EmergencyStop,
+        0.2,
+        End::Off(AT_ONCE, Stop::Interlock),
+        [1.0, 0.0],
+    ),
+    refused(Fault::EmergencyStop, Stop::Interlock),
+    // Shorter than a tick, and over when the control task looks.
+    bound(
+        Fault::InterlockGlitch,
+        0.2,
+        End::Off(AT_ONCE, Stop::Interlock),
+        [1.0, 0.0],
+    ),
+    lapses(Fault::HungCore, NOMINAL),
     Bound {
         with: Some(Fault::SlowWatchdog),
-        ..dies(Fault::HungCore, SLOW, [NOTICED_MN, 1.0])
+        ..lapses(Fault::HungCore, SLOW)
     },
     Bound {
         with: Some(Fault::FastWatchdog),
-        ..dies(Fault::HungCore, FAST, [NOTICED_MN, 0.0])
+        ..lapses(Fault::HungCore, FAST)
     },
     dies_at_start(None, NOMINAL),
     dies_at_start(Some(Fault::SlowWatchdog), SLOW),
     dies_at_start(Some(Fault::FastWatchdog), FAST),
-    halted(1, [NOTICED_MN, 0.0]),
-    halted(5, [NOTICED_MN, 0.0]),
-    halted(20, [NOTICED_MN, 0.0]),
-    dies(Fault::Halt(100), NOMINAL, [NOTICED_MN, 1.0]),
-    dies(Fault::Halt(500), NOMINAL, [NOTICED_MN, 1.0]),
+    halted(1),
+    halted(5),
+    halted(20),
+    dies(Fault::Halt(100), AT_ONCE, NOMINAL),
+    dies(Fault::Halt(500), AT_ONCE, NOMINAL),
+    bound(Fault::FrozenHalt, 0.2, End::Halted(AT_ONCE), [1.0, 0.0]),
+    bound(
+        Fault::FrozenHaltTimerOn,
+        0.2,
+        End::Halted(LAPSED),
+        [NOTICED_MN, 0.0],
+    ),
     // Each task that begins late counts as a missed tick, of which four in a row stop the device;
     // five tasks of 120 us bring as many.
     bound(
@@ -172,9 +246,9 @@ pub(super) const MATRIX: [Bound; 33] = [
         End::Off([0.36, 0.85], Stop::TickOverrun),
         [5.0, 0.0],
     ),
-    dies(Fault::HungControl, NOMINAL, [NOTICED_MN, 1.0]),
-    dies(Fault::HungIdle, NOMINAL, [1.0, 0.0]),
-    dies(Fault::StarvedIdle, NOMINAL, [1.0, 0.0]),
+    lapses(Fault::HungControl, NOMINAL),
+    dies(Fault::HungIdle, NOMINAL, NOMINAL),
+    dies(Fault::StarvedIdle, NOMINAL, NOMINAL),
     // Nothing is missed but frames.
     Bound {
         with: Some(Fault::SlowWatchdog),
@@ -209,13 +283,13 @@ pub(super) const MATRIX: [Bound; 33] = [
         End::NeverOn(Stop::ClockFailure),
         [0.0, 0.0],
     ),
-    // The emulator raises no NMI: the control task finds the lost crystal, on a clock of 16 MHz,
-    // which makes every tick ten times as long and late.
+    // The clock security system breaks TIM8. The emulator raises no NMI: the control task finds the
+    // cause, on a clock of 16 MHz.
     bound(
         Fault::CrystalFails,
         0.2,
-        End::Off([0.0, 1.5], Stop::ClockFailure),
-        [5.0, 0.0],
+        End::Off(AT_ONCE, Stop::ClockFailure),
+        [1.0, 0.0],
     ),
     // Control is not touched; but an interrupt that comes an instruction later may take a current
     // over to the next step of the plant, and a count with it. Half of what a fingertip notices.

@@ -5,7 +5,7 @@ use nalgebra::{Matrix2, Matrix3, Vector3};
 use estimator_core::Sample;
 
 use super::super::CLOCK;
-use super::learner::{PRIOR, RANGE, factors};
+use super::learner::factors;
 use super::{Definition, Gain, Kind};
 
 impl Definition {
@@ -25,6 +25,7 @@ impl Definition {
                 self.gap += 1.0;
                 let e = outside?;
                 let gap = std::mem::take(&mut self.gap);
+                self.waited = gap;
                 Some((e, 0.0, 1.0, gap, self.gain(gap)))
             }
             Kind::EdgeUpdate => {
@@ -37,11 +38,13 @@ impl Definition {
                 });
                 let Some((boundary, above, age)) = edge else {
                     let e = outside?;
-                    let gap = std::mem::take(&mut self.alone) + self.unstamped;
+                    self.waited = std::mem::take(&mut self.alone);
+                    let gap = self.waited + self.unstamped;
                     return Some((e, 0.0, 1.0, 0.0, self.gain(gap)));
                 };
                 let gap = self.gap - age;
                 (self.gap, self.alone) = (age, age);
+                self.waited = gap;
                 let f = 1.0 - age;
                 let there = from + lead * f - gained * f * (1.0 - f) / 2.0;
                 let offset = &mut self.offsets[boundary as usize % 4];
@@ -145,6 +148,8 @@ impl Definition {
         let k = Vector3::new(to_position, k[1], k[2]);
         let h = (learner.sensitivity.row(0) - learner.sensitivity.row(1) * age).transpose();
         learner.sensitivity -= k * h.transpose();
+        // In the wide range a count without its edge is learned from too.
+        let gap = if learner.span.wide { self.waited } else { gap };
         learner.waiting += gap;
         let early = edges && learner.waiting < 3.5e-3 * rate;
         if starting.is_some() || gap == 0.0 || early || slow {
@@ -152,8 +157,8 @@ impl Definition {
         }
         let (mut d, u) = factors(&learner.p);
         for j in 0..3 {
-            let walk = (0.1 * PRIOR[j]).powi(2) * learner.waiting / rate;
-            d[j] = (d[j] + walk).min(PRIOR[j] * PRIOR[j]);
+            let prior = learner.span.prior[j].powi(2);
+            d[j] = (d[j] + 0.01 * prior * learner.waiting / rate).min(prior);
         }
         learner.waiting = 0.0;
         let p = u * Matrix3::from_diagonal(&d) * u.transpose();
@@ -162,9 +167,10 @@ impl Definition {
         let k = to_p / (h.dot(&to_p) + caution * gain.variance);
         learner.p = p - k * to_p.transpose();
         let mut change = Vector3::zeros();
+        let span = &learner.span;
         for j in 0..3 {
             let before = learner.parameters[j];
-            learner.parameters[j] = (before + k[j] * within).clamp(-RANGE[j], RANGE[j]);
+            learner.parameters[j] = (before + k[j] * within).clamp(span.least[j], span.most[j]);
             change[j] = learner.parameters[j] - before;
         }
         self.x += learner.sensitivity * change;

@@ -1,0 +1,302 @@
+//! A connection to a board: commands down, messages up.
+
+use std::collections::VecDeque;
+use std::io;
+use std::time::{Duration, Instant};
+
+use drivers::link::{Frame, Hello, Message, PROTOCOL, Parser, Rejected};
+use drivers::{Command, encode};
+use haptic_control::Request;
+use terminal::failure::Failure;
+
+use crate::port::Port;
+use crate::watch::is_enabled;
+
+/// Time after which a question is asked again.
+const AGAIN: Duration = Duration::from_millis(200);
+
+/// A connected board. After [`Board::disarm_at_the_end`] a drop disarms the board.
+pub(crate) struct Board {
+    port: Port,
+    parser: Parser,
+    messages: VecDeque<Message>,
+    /// Longest wait for an answer.
+    patience: Duration,
+    /// Whether the end has to disarm.
+    disarms: bool,
+}
+
+/// The answer to the command `identify`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Answer {
+    /// Identity of the image.
+    pub(crate) hello: Hello,
+    /// Commands that were rejected so far; `None` from a board of another protocol.
+    pub(crate) rejected: Option<Rejected>,
+}
+
+impl Board {
+    /// The board at a port. Nothing has been sent.
+    pub(crate) fn new(port: Port, patience: Duration) -> Self {
+        Self {
+            port,
+            parser: Parser::default(),
+            messages: VecDeque::new(),
+            patience,
+            disarms: false,
+        }
+    }
+
+    /// Sends a command.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if the connection is lost.
+    pub(crate) fn send(&mut self, command: Command) -> Result<(), Failure> {
+        let sent = self.port.write(&encode(command));
+        sent.map_err(|error| self.lost(&error))
+    }
+
+    /// The next message; `None` if none comes until then.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if the connection is lost.
+    pub(crate) fn next(&mut self, until: Instant) -> Result<Option<Message>, Failure> {
+        loop {
+            if let Some(message) = self.messages.pop_front() {
+                return Ok(Some(message));
+            }
+            let mut bytes = [0; 4096];
+            let read = self.port.read(&mut bytes);
+            let count = read.map_err(|error| self.lost(&error))?;
+            for byte in &bytes[..count] {
+                let messages = &mut self.messages;
+                self.parser
+                    .take(*byte, |message| messages.push_back(message));
+            }
+            if self.messages.is_empty() && Instant::now() >= until {
+                return Ok(None);
+            }
+        }
+    }
+
+    /// Sends a command again and again until `answer` takes a message; `None` if it takes none in
+    /// time.
+    fn ask<T>(
+        &mut self,
+        command: Command,
+        mut answer: impl FnMut(Message) -> Option<T>,
+    ) -> Result<Option<T>, Failure> {
+        let mut again = Instant::now();
+        let end = again + self.patience;
+        while Instant::now() < end {
+            if Instant::now() >= again {
+                self.send(command)?;
+                again = Instant::now() + AGAIN;
+            }
+            let message = self.next(end.min(again))?;
+            if let Some(answer) = message.and_then(&mut answer) {
+                return Ok(Some(answer));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The identity of the board. Commands that were sent before have been processed by then.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if the board does not answer.
+    pub(crate) fn identify(&mut self) -> Result<Answer, Failure> {
+        let mut identity: Option<Hello> = None;
+        let answer = self.ask(Command::Identify, |message| {
+            match message {
+                Message::Hello(hello) => identity = Some(hello),
+                Message::Rejected(rejected) => {
+                    return Some(Answer {
+                        hello: identity?,
+                        rejected: Some(rejected),
+                    });
+                }
+                _ => {}
+            }
+            // The counts of another protocol may differ.
+            let hello = identity.filter(|hello| hello.protocol != PROTOCOL)?;
+            Some(Answer {
+                hello,
+                rejected: None,
+            })
+        })?;
+        answer.ok_or_else(|| self.silent())
+    }
+
+    /// The identity of a board that speaks the protocol of this tool.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if the board speaks another protocol or does not answer.
+    pub(crate) fn compatible(&mut self) -> Result<Answer, Failure> {
+        let answer = self.identify()?;
+        let hello = &answer.hello;
+        match hello.protocol {
+            PROTOCOL => Ok(answer),
+            other => Err(Failure::Input(format!(
+                "{}: the board speaks protocol {other}, this tool protocol {PROTOCOL}; build both \
+                 from one commit (the board has {}, commit {})",
+                self.port.name(),
+                hello.version,
+                hello.commit
+            ))),
+        }
+    }
+
+    /// Sends a command and checks that the board takes it. `what` names the command in the message.
+    ///
+    /// # Errors
+    /// [`Failure::Check`] if the board refuses it, [`Failure::Input`] if it does not answer.
+    pub(crate) fn change(&mut self, command: Command, what: &str) -> Result<(), Failure> {
+        let before = self.identify()?.rejected;
+        self.send(command)?;
+        let after = self.identify()?.rejected;
+        match before.zip(after).and_then(|(a, b)| refusal(&a, &b)) {
+            Some(reason) => Err(Failure::Check(format!(
+                "{what}: the board refuses it: {reason}"
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// The first frame that is as wanted.
+    ///
+    /// # Errors
+    /// [`Failure::Check`] with `failed` of the last frame, [`Failure::Input`] if there is none.
+    pub(crate) fn wait(
+        &mut self,
+        wanted: impl Fn(&Frame) -> bool,
+        failed: impl Fn(&Frame) -> String,
+    ) -> Result<Frame, Failure> {
+        let end = Instant::now() + self.patience;
+        let mut last = None;
+        while Instant::now() < end {
+            if let Some(Message::Frame(frame)) = self.next(end)? {
+                if wanted(&frame) {
+                    return Ok(frame);
+                }
+                last = Some(frame);
+            }
+        }
+        match last {
+            Some(frame) => Err(Failure::Check(failed(&frame))),
+            None => Err(self.silent()),
+        }
+    }
+
+    /// From now on the end of the connection disarms the board, if [`Board::disarm`] has not.
+    pub(crate) fn disarm_at_the_end(&mut self) {
+        self.disarms = true;
+    }
+
+    /// Disarms the board and waits until a frame shows it.
+    ///
+    /// # Errors
+    /// [`Failure::Check`] if the amplifiers stay enabled, [`Failure::Input`] if no frame comes.
+    pub(crate) fn disarm(&mut self) -> Result<Frame, Failure> {
+        self.disarms = true;
+        let mut enabled = false;
+        let disarm = Command::Request(Request::Disarm);
+        let frame = self.ask(disarm, |message| match message {
+            Message::Frame(frame) => {
+                enabled = is_enabled(&frame);
+                (!enabled).then_some(frame)
+            }
+            _ => None,
+        })?;
+        match frame {
+            Some(frame) => {
+                self.disarms = false;
+                Ok(frame)
+            }
+            None if enabled => Err(Failure::Check(format!(
+                "{}: the amplifiers stay enabled after disarm; switch off their supply",
+                self.port.name()
+            ))),
+            None => Err(self.silent()),
+        }
+    }
+
+    /// The failure of a board that sends nothing that is understood.
+    pub(crate) fn silent(&self) -> Failure {
+        let bytes = self.parser.garbage();
+        let heard = match (bytes, self.parser.foreign()) {
+            (0, 0) => "sends nothing".to_owned(),
+            (_, 0) => format!("does not answer; {bytes} bytes were no message"),
+            (_, frames) => format!("does not answer; {frames} messages are of another protocol"),
+        };
+        Failure::Input(format!(
+            "{}: the board {heard}; check the port, the power and that the image has the link",
+            self.port.name()
+        ))
+    }
+
+    fn lost(&self, error: &io::Error) -> Failure {
+        let end = match self.disarms {
+            true => "; the board ends the scene by itself when no command comes",
+            false => "",
+        };
+        Failure::Input(format!(
+            "{}: connection lost: {error}; check cable and power, then run the command again{end}",
+            self.port.name()
+        ))
+    }
+}
+
+impl Drop for Board {
+    fn drop(&mut self) {
+        if self.disarms {
+            // A lost connection cannot be told again.
+            let _ = self.send(Command::Request(Request::Disarm));
+            self.port.finish();
+        }
+    }
+}
+
+/// The reason of a refusal between two counts.
+pub(crate) fn refusal(before: &Rejected, now: &Rejected) -> Option<&'static str> {
+    [
+        (before.not_finite, now.not_finite, "the value is not finite"),
+        (
+            before.out_of_bounds,
+            now.out_of_bounds,
+            "the value is out of bounds",
+        ),
+        (before.unknown, now.unknown, "the image does not have it"),
+        (before.garbage, now.garbage, "the command arrived damaged"),
+    ]
+    .into_iter()
+    .find_map(|(before, now, reason)| (before != now).then_some(reason))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn refusal_is_named_by_the_count_that_changed() {
+        let none = Rejected {
+            garbage: 1,
+            not_finite: 2,
+            out_of_bounds: 3,
+            unknown: 4,
+        };
+        assert_eq!(refusal(&none, &none), None);
+        let unknown = Rejected { unknown: 5, ..none };
+        assert!(
+            refusal(&none, &unknown)
+                .unwrap()
+                .contains("does not have it")
+        );
+        // The counts wrap.
+        let most = Rejected {
+            not_finite: u32::MAX,
+            ..none
+        };
+        assert!(refusal(&most, &none).unwrap().contains("not finite"));
+    }
+}

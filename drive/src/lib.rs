@@ -1,0 +1,16 @@
+//! Commands a board over its link, and shows and records its telemetry.
+//!
+//! The messages are those of `drivers::link`; the commands those of `drivers::Command`. A board that
+//! speaks another protocol can be identified and disarmed, and gets no other command.
+
+mod board;
+pub mod cli;
+mod identity;
+mod interrupt;
+mod named;
+mod pace;
+mod port;
+mod record;
+mod session;
+mod timed;
+mod watch;

@@ -1,0 +1,193 @@
+//! Ports: a serial port, or a TCP connection to an emulated board or a debug server.
+
+use std::io::{self, ErrorKind, Read as _, Write as _};
+use std::net::{Shutdown, TcpStream, ToSocketAddrs as _};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use drivers::link::BAUD;
+use serial2::SerialPort;
+use terminal::failure::Failure;
+
+/// Longest time of one read. The tool looks at the clock and at interrupts in between.
+const READ: Duration = Duration::from_millis(10);
+/// Longest time of one write.
+const WRITE: Duration = Duration::from_secs(1);
+/// Longest time for a TCP connection.
+const CONNECT: Duration = Duration::from_secs(2);
+/// Longest time that the other end of a TCP connection gets to take the last bytes.
+const LINGER: Duration = Duration::from_millis(300);
+/// Begin of the name of a TCP port.
+const TCP: &str = "tcp:";
+
+/// An open port.
+pub(crate) struct Port {
+    name: String,
+    channel: Channel,
+}
+
+enum Channel {
+    Serial(SerialPort),
+    Tcp(TcpStream),
+}
+
+/// The serial ports of this machine.
+///
+/// # Errors
+/// [`Failure::Input`] if the system does not tell them.
+pub(crate) fn list() -> Result<Vec<PathBuf>, Failure> {
+    let mut ports = SerialPort::available_ports()
+        .map_err(|error| Failure::Input(format!("serial ports: {error}; name one with --port")))?;
+    ports.sort();
+    Ok(ports)
+}
+
+impl Port {
+    /// Opens the port of this name, by default the only serial port.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if it cannot be opened, or if there is no default.
+    pub(crate) fn open(name: Option<&str>) -> Result<Self, Failure> {
+        let name = match name {
+            Some(name) => name.to_owned(),
+            None => only(&list()?)?,
+        };
+        let opened = match name.strip_prefix(TCP) {
+            Some(address) => connect(address).map(Channel::Tcp),
+            None => open_serial(&name).map(Channel::Serial),
+        };
+        let remedy = match (&opened, name.starts_with(TCP)) {
+            (Ok(_), _) => "",
+            (Err(_), true) => "start the board's server first, or give tcp:HOST:PORT",
+            (Err(error), false) if error.kind() == ErrorKind::PermissionDenied => {
+                "add the user to the group of the port (dialout) and log in again"
+            }
+            (Err(_), false) => "cargo drive list shows the ports",
+        };
+        match opened {
+            Ok(channel) => Ok(Self { name, channel }),
+            Err(error) => Err(Failure::Input(format!(
+                "{name}: cannot open: {error}; {remedy}"
+            ))),
+        }
+    }
+
+    /// Name for messages.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Reads what has arrived, and waits a short time for it; 0 if nothing has.
+    ///
+    /// # Errors
+    /// An error if the connection is lost.
+    pub(crate) fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let read = match &mut self.channel {
+            Channel::Serial(port) => port.read(buffer),
+            Channel::Tcp(stream) => stream.read(buffer),
+        };
+        match read {
+            Ok(0) => Err(ErrorKind::UnexpectedEof.into()),
+            Err(error) if is_silence(&error) => Ok(0),
+            other => other,
+        }
+    }
+
+    /// Writes all bytes.
+    ///
+    /// # Errors
+    /// An error if the connection is lost or takes no bytes.
+    pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        match &mut self.channel {
+            Channel::Serial(port) => port.write_all(bytes),
+            Channel::Tcp(stream) => stream.write_all(bytes),
+        }
+    }
+
+    /// Waits until the written bytes have left. A TCP connection that is closed while bytes wait to be
+    /// read may discard what was written, so that they are read first.
+    pub(crate) fn finish(&mut self) {
+        match &mut self.channel {
+            Channel::Serial(port) => drop(port.flush()),
+            Channel::Tcp(stream) => {
+                let _ = stream.shutdown(Shutdown::Write);
+                let end = Instant::now() + LINGER;
+                let mut rest = [0; 4096];
+                while Instant::now() < end {
+                    match stream.read(&mut rest) {
+                        Ok(0) => break,
+                        Err(error) if !is_silence(&error) => break,
+                        _ => {}
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The default port.
+fn only(ports: &[PathBuf]) -> Result<String, Failure> {
+    let names: Vec<_> = ports.iter().map(|port| port.to_string_lossy()).collect();
+    match &names[..] {
+        [one] => Ok(one.to_string()),
+        [] => Err(Failure::Input(
+            "no serial port; connect the board, or give --port tcp:HOST:PORT".to_owned(),
+        )),
+        _ => Err(Failure::Input(format!(
+            "more than one serial port; give --port with one of {}",
+            names.join(", ")
+        ))),
+    }
+}
+
+fn is_silence(error: &io::Error) -> bool {
+    let kinds = [
+        ErrorKind::TimedOut,
+        ErrorKind::WouldBlock,
+        ErrorKind::Interrupted,
+    ];
+    kinds.contains(&error.kind())
+}
+
+fn open_serial(name: &str) -> io::Result<SerialPort> {
+    let mut port = SerialPort::open(name, BAUD)?;
+    port.set_read_timeout(READ)?;
+    port.set_write_timeout(WRITE)?;
+    // What the board sent before has no meaning for this connection.
+    port.discard_input_buffer()?;
+    Ok(port)
+}
+
+fn connect(address: &str) -> io::Result<TcpStream> {
+    let mut failed = ErrorKind::AddrNotAvailable.into();
+    for address in address.to_socket_addrs()? {
+        match TcpStream::connect_timeout(&address, CONNECT) {
+            Ok(stream) => {
+                stream.set_nodelay(true)?;
+                stream.set_read_timeout(Some(READ))?;
+                stream.set_write_timeout(Some(WRITE))?;
+                return Ok(stream);
+            }
+            Err(error) => failed = error,
+        }
+    }
+    Err(failed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_port_is_the_default() {
+        assert_eq!(only(&["/dev/ttyACM0".into()]).unwrap(), "/dev/ttyACM0");
+        let two = only(&["/dev/ttyACM0".into(), "/dev/ttyUSB1".into()]).unwrap_err();
+        assert!(two.to_string().contains("/dev/ttyACM0, /dev/ttyUSB1"));
+        assert!(
+            only(&[])
+                .unwrap_err()
+                .to_string()
+                .contains("connect the board")
+        );
+    }
+}

@@ -1,0 +1,88 @@
+//! The recording of a session.
+
+use std::path::PathBuf;
+
+use drivers::link::{Hello, Message};
+use recordings::record::{choose, csv, report};
+use recordings::telemetry::Telemetry;
+use terminal::failure::Failure;
+use terminal::output::{note, write_whole};
+
+/// Telemetry that becomes a file at the end of a session.
+pub(crate) struct Recorder {
+    telemetry: Telemetry,
+    rate_hz: f64,
+    out: PathBuf,
+}
+
+impl Recorder {
+    /// A recorder of an image for the file `out`.
+    pub(crate) fn new(hello: &Hello, out: PathBuf) -> Self {
+        let mut telemetry = Telemetry::default();
+        telemetry.add(Message::Hello(*hello));
+        Self {
+            telemetry,
+            rate_hz: f64::from(hello.rate),
+            out,
+        }
+    }
+
+    /// Takes a message.
+    pub(crate) fn take(&mut self, message: Message) {
+        self.telemetry.add(message);
+    }
+
+    /// Writes the file, the longest run if the firmware started again.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if there are fewer than two frames, or the file cannot be written.
+    pub(crate) fn write(self) -> Result<(), Failure> {
+        let name = self.out.display();
+        let runs = self.telemetry.runs();
+        if runs.is_empty() {
+            return Err(Failure::Input(format!(
+                "{name}: not written: no telemetry frame came; record for longer"
+            )));
+        }
+        let run = choose(&runs, None)
+            .map_err(|error| Failure::Input(format!("{name}: not written: {error}")))?;
+        write_whole(&self.out, csv(run, self.rate_hz, |_| None).as_bytes())?;
+        for line in report(&self.telemetry, &runs, run) {
+            note(format_args!("{name}: {line}"));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use drivers::link::{Features, Label, PROTOCOL};
+
+    #[test]
+    fn older_file_stays_if_no_frame_came() {
+        let hello = Hello {
+            protocol: PROTOCOL,
+            version: Label::default(),
+            commit: Label::default(),
+            features: Features(0),
+            rate: 10_000,
+            device: 0,
+            presets: 0,
+            cause: 0,
+            brown_out_reset: true,
+        };
+        let out = std::env::temp_dir().join(format!("no-frame-{}.csv", std::process::id()));
+        std::fs::write(&out, "old").unwrap();
+        let failed = Recorder::new(&hello, out.clone()).write();
+        let left = std::fs::read_to_string(&out).unwrap();
+        std::fs::remove_file(&out).unwrap();
+        assert!(
+            failed
+                .unwrap_err()
+                .to_string()
+                .contains("no telemetry frame came")
+        );
+        assert_eq!(left, "old");
+    }
+}

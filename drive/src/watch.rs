@@ -1,0 +1,135 @@
+//! Telemetry as lines of text.
+
+use drivers::link::Frame;
+use haptic_control::{Mode, Stop};
+
+/// Number of the estimator of a frame without one.
+const NOBODY: u8 = u8::MAX;
+
+/// Whether the amplifiers are enabled in a frame.
+pub(crate) fn is_enabled(frame: &Frame) -> bool {
+    // A state without a name may be an enabled one.
+    Mode::from_code(frame.state).is_none_or(Mode::is_enabled)
+}
+
+/// State and cause of a frame.
+pub(crate) fn state(frame: &Frame) -> String {
+    let state = Mode::from_code(frame.state).map(Mode::as_str);
+    let state = state.map_or_else(|| frame.state.to_string(), str::to_owned);
+    format!("state {state}, cause {}", cause(frame.cause))
+}
+
+/// Name of a cause by its number.
+pub(crate) fn cause(code: u8) -> String {
+    Stop::from_code(code).map_or_else(|| code.to_string(), |cause| cause.as_str().to_owned())
+}
+
+/// A frame as a line with units; the time is that of the board.
+pub(crate) fn line(frame: &Frame, rate_hz: u32) -> String {
+    let t = f64::from(frame.tick) / f64::from(rate_hz.max(1));
+    let estimator = match frame.estimator {
+        NOBODY => "-".to_owned(),
+        number => number.to_string(),
+    };
+    format!(
+        "{t:.3} s, {}; torque {:.4} N·m; large {} counts, {:.3} rad/s (sigma {:.3}), {:.3} A, \
+         estimator {estimator}; handle {} counts, {:.3} rad/s, {:.3} A; overruns {}, lost frames {}",
+        state(frame),
+        frame.torque,
+        frame.counts_large as i32,
+        frame.velocity_large,
+        frame.sigma_large,
+        frame.current,
+        frame.counts_small as i32,
+        frame.velocity_small,
+        frame.current_small,
+        frame.overruns,
+        frame.drops,
+    )
+}
+
+/// Selects frames at equal intervals of the board's time.
+pub(crate) struct Every {
+    ticks: u32,
+    last: Option<u32>,
+}
+
+impl Every {
+    /// Intervals of this length.
+    pub(crate) fn new(seconds: f64, rate_hz: u32) -> Self {
+        Self {
+            ticks: (seconds * f64::from(rate_hz)).round() as u32,
+            last: None,
+        }
+    }
+
+    /// Whether the frame is the first one or an interval after the last one that was selected.
+    pub(crate) fn selects(&mut self, frame: &Frame) -> bool {
+        let due = self
+            .last
+            .is_none_or(|last| frame.tick.wrapping_sub(last) >= self.ticks);
+        if due {
+            self.last = Some(frame.tick);
+        }
+        due
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FRAME: Frame = Frame {
+        seq: 5,
+        tick: 12_345,
+        counts_large: u32::MAX,
+        counts_small: 7,
+        current: -0.5,
+        current_small: 0.25,
+        torque: 0.01,
+        velocity_large: 1.5,
+        velocity_small: -2.25,
+        state: 2,
+        cause: 0,
+        sigma_large: 0.125,
+        estimator: 1,
+        overruns: 3,
+        drops: 4,
+        rtt_drops: 4,
+        cycles: 900,
+    };
+
+    #[test]
+    fn line_has_every_quantity_with_its_unit() {
+        assert_eq!(
+            line(&FRAME, 10_000),
+            "1.234 s, state running, cause none; torque 0.0100 N·m; large -1 counts, 1.500 rad/s \
+             (sigma 0.125), -0.500 A, estimator 1; handle 7 counts, -2.250 rad/s, 0.250 A; \
+             overruns 3, lost frames 4"
+        );
+        let odd = Frame {
+            state: 200,
+            cause: 99,
+            ..FRAME
+        };
+        assert_eq!(state(&odd), "state 200, cause 99");
+        assert!(is_enabled(&odd) && is_enabled(&FRAME));
+        assert!(!is_enabled(&Frame { state: 3, ..FRAME }));
+    }
+
+    #[test]
+    fn frames_are_selected_at_intervals_of_the_board() {
+        let mut every = Every::new(0.1, 10_000);
+        let selected: Vec<u32> = (0..350)
+            .map(|k| (10 * k as u32).wrapping_sub(500))
+            .filter(|tick| {
+                every.selects(&Frame {
+                    tick: *tick,
+                    ..FRAME
+                })
+            })
+            .map(|tick| tick.wrapping_add(500))
+            .collect();
+        assert_eq!(selected, [0, 1000, 2000, 3000]);
+    }
+}

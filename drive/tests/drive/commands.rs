@@ -1,0 +1,232 @@
+//! Commands that a board gets, and the end of a session.
+
+use std::process::{Command as Process, Stdio};
+
+use drivers::Command;
+use haptic_control::{Mode, Request, Stop};
+
+use crate::scripted::{Board, Script, error};
+
+const ARM: Command = Command::Request(Request::Arm);
+const DISARM: Command = Command::Request(Request::Disarm);
+const KEEP_ALIVE: Command = Command::Request(Request::KeepAlive);
+const WALL: Command = Command::Request(Request::Select(2));
+
+fn board() -> Board {
+    Board::new(Script::default())
+}
+
+/// The commands without questions and keep-alives, and the number of keep-alives.
+fn sorted(commands: &[Command]) -> (Vec<Command>, usize) {
+    let (alive, others): (Vec<_>, Vec<_>) = commands
+        .iter()
+        .filter(|command| **command != Command::Identify)
+        .partition(|command| **command == KEEP_ALIVE);
+    (others, alive.len())
+}
+
+/// `others` without the repetitions at its end: a disarm is sent until a frame shows it.
+fn deduplicated(mut others: Vec<Command>) -> Vec<Command> {
+    others.dedup();
+    others
+}
+
+#[test]
+fn select_arms_keeps_alive_and_disarms_at_the_end() {
+    let (output, commands) = board().run(&["select", "wall", "--seconds", "2"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let (others, alive) = sorted(&commands);
+    assert_eq!(deduplicated(others), [ARM, WALL, DISARM]);
+    // One for each 0.1 s of the board, which is seen within a frame.
+    assert!(alive >= 19, "{alive}");
+    let last = commands.iter().rposition(|command| *command == KEEP_ALIVE);
+    let end = commands.iter().position(|command| *command == DISARM);
+    assert!(last < end, "{commands:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("state running, cause none; torque 0.0100 N·m"));
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(text, "disarmed: state boot, cause none\n");
+}
+
+#[test]
+fn changes_are_sent_in_the_order_of_their_times() {
+    let tune = |parameter, value| Command::Tune {
+        scene: 2,
+        parameter,
+        value,
+    };
+    let (output, commands) = board().run(&[
+        "select",
+        "wall",
+        "--tune",
+        "stiffness=0.1@0.6",
+        "--tune",
+        "damping=0.001@0.2",
+        "--tune",
+        "stiffness=0.2",
+        "--estimator",
+        "kalman-triple-steady@0.4",
+        "--seconds",
+        "1",
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let expected = [
+        ARM,
+        WALL,
+        tune(1, 0.2),
+        tune(2, 0.001),
+        Command::Estimator(1),
+        tune(1, 0.1),
+        DISARM,
+    ];
+    assert_eq!(deduplicated(sorted(&commands).0), expected);
+}
+
+#[test]
+fn torque_is_set_after_its_scene_is_selected() {
+    let (output, commands) = board().run(&["torque", "-0.01", "--seconds", "0.5"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let select = Command::Request(Request::Select(8));
+    let expected = [ARM, select, Command::Torque(-0.01), DISARM];
+    assert_eq!(deduplicated(sorted(&commands).0), expected);
+}
+
+#[test]
+fn arm_and_keep_alive_end_with_disarm() {
+    let (output, commands) = board().run(&["arm", "--seconds", "1"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let (others, alive) = sorted(&commands);
+    assert_eq!(deduplicated(others), [ARM, DISARM]);
+    assert!(alive >= 9, "{alive}");
+    let armed = Script {
+        begin: Mode::Running,
+        ..Script::default()
+    };
+    let (output, commands) = Board::new(armed).run(&["keep-alive", "--seconds", "1"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let (others, alive) = sorted(&commands);
+    assert_eq!(deduplicated(others), [DISARM]);
+    assert!(alive >= 9, "{alive}");
+}
+
+#[test]
+fn keep_alive_of_a_board_that_is_not_armed_is_refused() {
+    let (output, commands) = board().run(&["keep-alive", "--timeout", "0.3"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(error(&output).starts_with("nothing to keep alive: state boot"));
+    assert_eq!(sorted(&commands), (Vec::new(), 0));
+}
+
+#[test]
+fn tune_and_estimator_change_a_board_without_arming_it() {
+    let (output, commands) = board().run(&["tune", "wall", "stiffness", "0.2"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let tune = Command::Tune {
+        scene: 2,
+        parameter: 1,
+        value: 0.2,
+    };
+    assert_eq!(sorted(&commands), (vec![tune], 0));
+    let (output, commands) = board().run(&["estimator", "kalman-triple-steady"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert_eq!(sorted(&commands), (vec![Command::Estimator(1)], 0));
+}
+
+#[test]
+fn watch_sends_questions_alone() {
+    let (output, commands) = board().run(&["watch", "--every", "0.1", "--seconds", "1"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(text.lines().count(), 11, "{text}");
+    assert!(text.lines().all(|line| line.contains("state boot")));
+    assert_eq!(sorted(&commands), (Vec::new(), 0));
+}
+
+#[cfg(unix)]
+#[test]
+fn interrupt_and_termination_disarm() {
+    for signal in ["-INT", "-TERM", "-HUP"] {
+        let board = board();
+        let tool = board
+            .tool(&["select", "wall"])
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        board.wait_for(WALL);
+        let id = tool.id().to_string();
+        let killed = Process::new("kill").args([signal, &id]).status().unwrap();
+        assert!(killed.success());
+        let output = tool.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{signal}: {output:?}");
+        let (others, _) = sorted(&board.commands());
+        assert_eq!(deduplicated(others), [DISARM], "{signal}");
+    }
+}
+
+#[test]
+fn stop_of_the_board_ends_the_session_with_its_cause_and_disarms() {
+    for (mode, stop, said) in [
+        (Mode::Safe, Stop::Stall, "state safe, cause not-moving"),
+        (
+            Mode::Armed,
+            Stop::CommandTimeout,
+            "state armed, cause command-timeout",
+        ),
+        (Mode::Boot, Stop::None, "state boot, cause none"),
+    ] {
+        let board = Board::new(Script {
+            stop: Some((100, mode, stop)),
+            ..Script::default()
+        });
+        let (output, commands) = board.run(&["select", "wall"]);
+        assert_eq!(output.status.code(), Some(1));
+        let error = error(&output);
+        assert!(error.contains("the board stopped: ") && error.contains(said));
+        assert_eq!(commands.last(), Some(&DISARM), "{commands:?}");
+    }
+}
+
+#[test]
+fn board_that_does_not_arm_is_told_and_disarmed() {
+    let board = Board::new(Script {
+        armed: Mode::Safe,
+        ..Script::default()
+    });
+    let (output, commands) = board.run(&["select", "wall", "--timeout", "0.3"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(error(&output).contains("not armed: state safe"));
+    assert_eq!(deduplicated(sorted(&commands).0), [ARM, DISARM]);
+}
+
+#[test]
+fn board_that_stays_enabled_after_disarm_is_told() {
+    let board = Board::new(Script {
+        disarms: false,
+        ..Script::default()
+    });
+    let (output, _) = board.run(&["arm", "--seconds", "0.2", "--timeout", "0.3"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(error(&output).contains("stay enabled after disarm; switch off their supply"));
+}
+
+#[test]
+fn refused_value_is_told_and_ends_a_session_with_disarm() {
+    let refuses = || {
+        Board::new(Script {
+            refuses: true,
+            ..Script::default()
+        })
+    };
+    let (output, _) = refuses().run(&["tune", "wall", "stiffness", "0.2"]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = error(&output);
+    assert_eq!(
+        said,
+        "wall stiffness 0.2 N·m/rad: the board refuses it: the value is out of bounds"
+    );
+    let (output, commands) = refuses().run(&["select", "wall", "--tune", "stiffness=0.2@0.1"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(error(&output).contains("refuses a command: the value is out of bounds"));
+    assert_eq!(commands.last(), Some(&DISARM), "{commands:?}");
+}

@@ -1,0 +1,117 @@
+//! Ports and boards that cannot be used, and input that is refused: one line with a remedy, status 2.
+
+use drivers::Command;
+use drivers::link::Hello;
+use haptic_control::Request;
+
+use crate::scripted::{Board, Script, error, tool};
+
+#[test]
+fn port_that_cannot_be_opened_is_named() {
+    for (port, said) in [
+        ("/dev/no-such-port", "/dev/no-such-port: cannot open"),
+        ("tcp:127.0.0.1:1", "start the board's server first"),
+        ("tcp:nonsense", "tcp:nonsense: cannot open"),
+    ] {
+        let output = tool(&["info", "--port", port]).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{port}");
+        let error = error(&output);
+        assert!(error.contains(said), "{error}");
+    }
+}
+
+#[test]
+fn board_that_sends_nothing_is_told() {
+    let board = Board::new(Script {
+        speaks: false,
+        ..Script::default()
+    });
+    let (output, _) = board.run(&["info", "--timeout", "0.3"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(error(&output).contains("the board sends nothing; check the port"));
+}
+
+#[test]
+fn connection_that_ends_is_told_and_disarmed_as_far_as_possible() {
+    for arguments in [&["watch"][..], &["select", "wall"]] {
+        let board = Board::new(Script {
+            hang_up: Some(500),
+            ..Script::default()
+        });
+        let (output, _) = board.run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let said = error(&output);
+        assert!(said.contains("connection lost"), "{said}");
+        assert!(said.contains("run the command again"), "{said}");
+    }
+}
+
+#[test]
+fn input_is_refused_before_the_board_gets_a_command() {
+    // No port is opened for these.
+    for (arguments, said) in [
+        (&["select", "wal"][..], "no scene 'wal'; did you mean wall?"),
+        (
+            &["tune", "wall", "stifness", "1"],
+            "did you mean stiffness?",
+        ),
+        (
+            &["tune", "torque", "torque", "0"],
+            "use cargo drive torque 0",
+        ),
+        (&["estimator", "pll"], "no estimator 'pll'"),
+        (&["select", "wall", "--tune", "stiffness"], "NAME=VALUE@S"),
+        (&["select", "wall", "--seconds", "-1"], "above 0 s"),
+        (&["watch", "--every", "nan"], "above 0 s"),
+        (&["info", "--timeout", "0"], "0.1 to 60 s"),
+        (&["fly"], "cargo drive --help"),
+    ] {
+        let mut tool = tool(arguments);
+        let output = tool.args(["--port", "/dev/no-such-port"]).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let error = error(&output);
+        assert!(error.contains(said), "{error}");
+    }
+}
+
+#[test]
+fn value_out_of_bounds_is_refused_with_the_bounds() {
+    for arguments in [
+        &["tune", "wall", "stiffness", "0.36"][..],
+        &["tune", "wall", "stiffness", "NaN"],
+        &["select", "wall", "--tune", "stiffness=-1"],
+    ] {
+        let (output, commands) = Board::new(Script::default()).run(arguments);
+        assert_eq!(output.status.code(), Some(2));
+        let said = error(&output);
+        assert!(
+            said.ends_with("out of bounds; give 0 to 0.35 N·m/rad"),
+            "{said}"
+        );
+        assert!(commands.iter().all(|it| *it == Command::Identify));
+    }
+    let (output, commands) = Board::new(Script::default()).run(&["torque", "-0.05"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(error(&output).contains("torque torque -0.05 N·m: out of bounds"));
+    assert!(!commands.contains(&Command::Request(Request::Arm)));
+}
+
+/// An image for another device has bounds of its own and checks them.
+#[test]
+fn bounds_of_another_device_are_left_to_the_board() {
+    let other = || {
+        let script = Script::default();
+        Board::new(Script {
+            hello: Hello {
+                device: script.hello.device ^ 1,
+                ..script.hello
+            },
+            ..script
+        })
+    };
+    let (output, commands) = other().run(&["tune", "texture", "amplitude", "0.05"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert!(commands.iter().any(|it| matches!(it, Command::Tune { .. })));
+    let (output, _) = other().run(&["tune", "texture", "amplitude", "inf"]);
+    assert_eq!(output.status.code(), Some(2));
+}

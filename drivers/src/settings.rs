@@ -1,0 +1,202 @@
+//! The settings that a board keeps in flash.
+
+/// Version of the meaning of the settings. A new setting at the end of the list keeps the version.
+const VERSION: u16 = 1;
+
+/// Bytes of encoded settings, in every version: version, number of the settings, and place for 61 of them.
+pub const SETTINGS_BYTES: usize = 248;
+
+/// Bytes of version and number of the settings, and of a value.
+const HEAD: usize = 4;
+const VALUE: usize = 4;
+
+/// What is known of a setting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SettingFacts {
+    /// Name.
+    pub name: &'static str,
+    /// Meaning.
+    pub meaning: &'static str,
+    /// Unit; "1" for a ratio, a number and a yes or no.
+    pub unit: &'static str,
+    /// Value of a board without settings.
+    pub default: f32,
+    /// Smallest value.
+    pub least: f32,
+    /// Largest value.
+    pub most: f32,
+    /// Whether the value is a whole number.
+    pub is_whole: bool,
+}
+
+macro_rules! settings {
+    ($($(#[doc = $meaning:literal])+ $setting:ident: $name:literal, $unit:literal, $default:literal in $least:literal, $most:literal $($whole:ident)?;)+) => {
+        /// A setting. Its number is its place in this list. A number never changes its meaning, and a new
+        /// setting is added at the end.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(u8)]
+        pub enum Setting {
+            $($(#[doc = $meaning])+ $setting,)+
+        }
+
+        impl Setting {
+            /// All settings, each at its number.
+            pub const ALL: &[Self] = &[$(Self::$setting),+];
+
+            /// What is known of the setting.
+            #[must_use]
+            pub const fn facts(self) -> SettingFacts {
+                match self {
+                    $(Self::$setting => SettingFacts {
+                        name: $name,
+                        meaning: concat!($($meaning),+).trim_ascii(),
+                        unit: $unit,
+                        default: $default,
+                        least: $least,
+                        most: $most,
+                        is_whole: false $(|| stringify!($whole).len() > 0)?,
+                    },)+
+                }
+            }
+        }
+    };
+}
+
+settings! {
+    /// DAC code at which the current of the large motor is zero.
+    ZeroLarge: "zero-large", "codes", 2048.0 in 1848.0, 2248.0;
+    /// DAC code at which the current of the small motor is zero.
+    ZeroSmall: "zero-small", "codes", 2048.0 in 1848.0, 2248.0;
+    /// Change of the current of the large motor per code, over the nominal one.
+    GainLarge: "gain-large", "1", 1.0 in 0.8, 1.25;
+    /// Change of the current of the small motor per code, over the nominal one.
+    GainSmall: "gain-small", "1", 1.0 in 0.8, 1.25;
+    /// Share of the current limits of the device that the board uses.
+    CurrentScale: "current-scale", "1", 0.1 in 0.0, 1.0;
+    /// Whether the signs of encoders and currents have been verified: 1 is yes.
+    SignsVerified: "signs-verified", "1", 0.0 in 0.0, 1.0 whole;
+    /// Number of the estimator of the large motor after a start.
+    Estimator: "estimator", "1", 0.0 in 0.0, 254.0 whole;
+    /// Count of the large encoder at the zero of its angle.
+    OffsetLarge: "offset-large", "counts", 0.0 in -1e6, 1e6 whole;
+    /// Count of the small encoder at the zero of its angle.
+    OffsetSmall: "offset-small", "counts", 0.0 in -1e6, 1e6 whole;
+    /// Serial number of the device.
+    Serial: "serial", "1", 0.0 in 0.0, 16_777_215.0 whole;
+}
+
+const COUNT: usize = Setting::ALL.len();
+const _: () = assert!(HEAD + VALUE * COUNT <= SETTINGS_BYTES, "no room");
+
+impl Setting {
+    /// The setting of a number.
+    #[must_use]
+    pub fn from_number(number: u8) -> Option<Self> {
+        Self::ALL.get(usize::from(number)).copied()
+    }
+
+    /// Whether a value is in the range of the setting.
+    #[must_use]
+    pub fn admits(self, value: f32) -> bool {
+        let SettingFacts {
+            least,
+            most,
+            is_whole,
+            ..
+        } = self.facts();
+        let is_whole_value = value as i32 as f32 == value;
+        least <= value && value <= most && (is_whole_value || !is_whole)
+    }
+}
+
+/// Reason for encoded settings not to be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SettingsError {
+    /// They are of this other version.
+    Version(u16),
+    /// The value of this setting is outside its range.
+    Value(Setting),
+}
+
+/// The settings of a board.
+///
+/// ```
+/// use drivers::{Setting, Settings};
+/// let mut settings = Settings::DEFAULT;
+/// assert!(settings.set(Setting::ZeroLarge, 2051.5));
+/// assert!(!settings.set(Setting::CurrentScale, 2.0));
+/// let read = Settings::decode(&settings.encode()).unwrap();
+/// assert_eq!(read.get(Setting::ZeroLarge), 2051.5);
+/// assert_eq!(read.get(Setting::CurrentScale), 0.1);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings([f32; COUNT]);
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+impl Settings {
+    /// Those of a board without settings.
+    pub const DEFAULT: Self = {
+        let mut values = [0.0; COUNT];
+        let mut i = 0;
+        while i < COUNT {
+            values[i] = Setting::ALL[i].facts().default;
+            i += 1;
+        }
+        Self(values)
+    };
+
+    /// The value of a setting.
+    #[must_use]
+    pub const fn get(&self, setting: Setting) -> f32 {
+        self.0[setting as usize]
+    }
+
+    /// Changes a setting, if its range has the value; returns whether it has.
+    pub fn set(&mut self, setting: Setting, value: f32) -> bool {
+        let is_admitted = setting.admits(value);
+        if is_admitted {
+            self.0[setting as usize] = value;
+        }
+        is_admitted
+    }
+
+    /// The settings as bytes: version and number of the settings, u16, then each value, f32; little endian,
+    /// with zeros behind.
+    #[must_use]
+    pub fn encode(&self) -> [u8; SETTINGS_BYTES] {
+        let mut bytes = [0; SETTINGS_BYTES];
+        let head = [VERSION.to_le_bytes(), (COUNT as u16).to_le_bytes()];
+        let values = self.0.iter().flat_map(|value| value.to_le_bytes());
+        let all = head.into_iter().flatten().chain(values);
+        for (byte, value) in bytes.iter_mut().zip(all) {
+            *byte = value;
+        }
+        bytes
+    }
+
+    /// The settings of encoded bytes. A setting that an older image did not have has its default.
+    ///
+    /// # Errors
+    /// [`SettingsError`].
+    pub fn decode(bytes: &[u8; SETTINGS_BYTES]) -> Result<Self, SettingsError> {
+        let [a, b, c, d, values @ ..] = bytes;
+        let version = u16::from_le_bytes([*a, *b]);
+        if version != VERSION {
+            return Err(SettingsError::Version(version));
+        }
+        let count = usize::from(u16::from_le_bytes([*c, *d]));
+        let (values, _) = values.as_chunks::<VALUE>();
+        let mut settings = Self::DEFAULT;
+        for (setting, value) in Setting::ALL.iter().zip(values).take(count) {
+            if !settings.set(*setting, f32::from_le_bytes(*value)) {
+                return Err(SettingsError::Value(*setting));
+            }
+        }
+        Ok(settings)
+    }
+}

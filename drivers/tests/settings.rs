@@ -1,0 +1,98 @@
+//! Settings as bytes, their ranges, and settings of other images.
+
+use drivers::{SETTINGS_BYTES, Setting, Settings, SettingsError};
+
+/// Names at their numbers. They are in the flash of boards: none ever changes.
+const NAMES: [&str; 10] = [
+    "zero-large",
+    "zero-small",
+    "gain-large",
+    "gain-small",
+    "current-scale",
+    "signs-verified",
+    "estimator",
+    "offset-large",
+    "offset-small",
+    "serial",
+];
+
+#[test]
+fn numbers_do_not_change() {
+    for (number, name) in (0..).zip(NAMES) {
+        let setting = Setting::from_number(number).expect("a setting");
+        assert_eq!((setting as u8, setting.facts().name), (number, name));
+    }
+    assert_eq!(Setting::from_number(Setting::ALL.len() as u8), None);
+    assert_eq!(Setting::from_number(u8::MAX), None);
+}
+
+#[test]
+fn every_default_is_in_its_range_and_every_end_is_kept() {
+    for &setting in Setting::ALL {
+        let facts = setting.facts();
+        assert!(facts.least < facts.most, "{}", facts.name);
+        for value in [facts.default, facts.least, facts.most] {
+            let mut settings = Settings::DEFAULT;
+            assert!(settings.set(setting, value), "{}: {value}", facts.name);
+            let read = Settings::decode(&settings.encode());
+            assert_eq!(read, Ok(settings), "{}: {value}", facts.name);
+        }
+    }
+}
+
+#[test]
+fn values_out_of_range_change_nothing() {
+    for &setting in Setting::ALL {
+        let facts = setting.facts();
+        let mut settings = Settings::DEFAULT;
+        let half = facts.least + 0.5;
+        let outside = [
+            f32::NAN,
+            f32::INFINITY,
+            facts.least - 1.0,
+            facts.most * 1.001 + 0.01,
+        ];
+        for value in outside.into_iter().chain(facts.is_whole.then_some(half)) {
+            assert!(!settings.set(setting, value), "{}: {value}", facts.name);
+        }
+        assert_eq!(settings, Settings::DEFAULT);
+    }
+}
+
+#[test]
+fn settings_of_another_image_are_read_as_far_as_they_are_known() {
+    let mut settings = Settings::DEFAULT;
+    assert!(settings.set(Setting::ZeroSmall, 2050.0));
+    assert!(settings.set(Setting::Serial, 77.0));
+    let whole = settings.encode();
+    // An image that had the first two settings alone.
+    let mut older = whole;
+    older[2..4].copy_from_slice(&2u16.to_le_bytes());
+    older[12..].fill(0);
+    let read = Settings::decode(&older).expect("readable");
+    assert_eq!(read.get(Setting::ZeroSmall), 2050.0);
+    assert_eq!(read.get(Setting::Serial), 0.0);
+    assert_eq!(read.get(Setting::GainLarge), 1.0);
+    // One with more of them, and one with more than there is room for.
+    for count in [Setting::ALL.len() as u16 + 3, u16::MAX] {
+        let mut newer = whole;
+        newer[2..4].copy_from_slice(&count.to_le_bytes());
+        newer[SETTINGS_BYTES - 8..].fill(0xEE);
+        assert_eq!(Settings::decode(&newer), Ok(settings));
+    }
+}
+
+#[test]
+fn settings_of_another_version_or_out_of_range_are_refused() {
+    let mut bytes = Settings::DEFAULT.encode();
+    bytes[0] = 9;
+    assert_eq!(Settings::decode(&bytes), Err(SettingsError::Version(9)));
+    let mut bytes = Settings::DEFAULT.encode();
+    bytes[4 + 4 * 4..][..4].copy_from_slice(&1.5f32.to_le_bytes());
+    let refused = Err(SettingsError::Value(Setting::CurrentScale));
+    assert_eq!(Settings::decode(&bytes), refused);
+    assert_eq!(
+        Settings::decode(&[0xFF; SETTINGS_BYTES]),
+        Err(SettingsError::Version(0xFFFF))
+    );
+}

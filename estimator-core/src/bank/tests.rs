@@ -1,0 +1,116 @@
+//! The correction by a quantisation interval whose ends are noisy, and the choice of two members.
+
+extern crate std;
+
+use super::interval::Likelihood;
+use super::ladder::Ladder;
+use super::member::Member;
+use super::state::ModelBankState;
+use super::{NoStamps, Stamped, Stamps};
+use crate::units::Count;
+
+/// Probability that a position plus noise is inside ±1/2, and mean and variance of the position if so, by
+/// summation over both.
+fn summed(mean: f64, variance: f64, ends: f64) -> [f64; 3] {
+    let steps = 400;
+    let grid = move |variance: f64| {
+        let deviation = variance.sqrt();
+        (0..steps).map(move |step| {
+            let y = 12.0 * ((f64::from(step) + 0.5) / f64::from(steps) - 0.5);
+            (deviation * y, (-0.5 * y * y).exp())
+        })
+    };
+    let (mut all, mut sums) = (0.0, [0.0; 3]);
+    for (off, density) in grid(variance) {
+        for (noise, of_noise) in grid(ends) {
+            let (x, weight) = (mean + off, density * of_noise);
+            all += weight;
+            if (x + noise).abs() < 0.5 {
+                sums[0] += weight;
+                sums[1] += weight * x;
+                sums[2] += weight * x * x;
+            }
+        }
+    }
+    let after = sums[1] / sums[0];
+    [sums[0] / all, after, sums[2] / sums[0] - after * after]
+}
+
+#[test]
+fn interval_with_noisy_ends_corrects_less() {
+    for (mean, variance, ends) in [
+        (0.45f32, 0.02, 0.1),
+        (-0.45, 0.02, 0.1),
+        (0.3, 0.08, 0.05),
+        (-0.7, 0.04, 0.04),
+    ] {
+        let mut member = Member::START;
+        member.position = mean;
+        member.covariance = [variance, 0.0, 0.0, 1.0, 0.0, 1.0];
+        let [probability, position, after] =
+            summed(f64::from(mean), f64::from(variance), f64::from(ends));
+        let likelihood = member.correct_by_interval(ends);
+        // The truncation is approximated to 2 % of the deviation and 4 % of the variance, and its
+        // probability to 4 %.
+        let sum = f64::from(variance + ends);
+        let share = f64::from(variance) / sum;
+        let off = f64::from(member.position) - position;
+        assert!(off.abs() < 0.02 * share * sum.sqrt(), "{mean}: {off}");
+        let off = f64::from(member.covariance[0]) - after;
+        assert!(
+            off.abs() < 0.04 * share * f64::from(variance),
+            "{mean}: {off}"
+        );
+        let off = f64::from(likelihood.relative(1.0)) - probability;
+        assert!(off.abs() < 0.04, "{mean}: {off}");
+    }
+}
+
+#[test]
+fn bank_takes_the_ends_for_as_noisy_as_told() {
+    let ends = 0.1;
+    let mut state = ModelBankState::<2>::start(Count(0));
+    // Moves every position by 0.4 counts.
+    state.drive(0.8);
+    let likelihoods = state.correct_by_interval(ends);
+    let variance = f64::from(Member::START.position_variance());
+    let [noisy, exact] = [ends, 1e-9].map(|ends| summed(0.4, variance, f64::from(ends))[0]);
+    for likelihood in likelihoods {
+        let found = f64::from(likelihood.relative(1.0));
+        // The error of the truncation, as above.
+        assert!((found - noisy).abs() < 0.04, "{found} {noisy} {exact}");
+    }
+    // The boundaries of an edge are those of the interval; counts tell nothing of them.
+    assert_eq!(<Stamped as Stamps>::noise_of_ends(0.03), 0.03);
+    assert_eq!(<NoStamps as Stamps>::noise_of_ends(0.03), 0.0);
+}
+
+#[test]
+fn two_neighbours_with_the_larger_weights_are_kept() {
+    let ladder = Ladder::new(1e-3);
+    let mut bank = ModelBankState::<3>::start(Count(0));
+    bank.drive(3.0);
+    for _ in 0..100 {
+        bank.predict(&ladder, 3.0);
+        bank.correct_by_interval(0.0);
+    }
+    let weighed = |weights: [f32; 3]| {
+        let mut bank = bank;
+        bank.weigh(&weights.map(|weight| Likelihood::new(weight, 0.0)), 0.0);
+        bank
+    };
+    // The variance of a member grows with its process noise, from the first to the last.
+    let variance = |weights| weighed(weights).velocity_variance();
+    for (weights, kept) in [
+        ([0.6, 0.3, 0.1], [2.0 / 3.0, 1.0 / 3.0, 0.0]),
+        ([0.1, 0.3, 0.6], [0.0, 1.0 / 3.0, 2.0 / 3.0]),
+    ] {
+        let narrowed = weighed(weights).narrowed();
+        let (found, expected) = (narrowed.velocity_variance(), variance(kept));
+        let other = variance([kept[2], kept[1], kept[0]]);
+        assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
+        assert!((found / other - 1.0).abs() > 0.1, "{found} {other}");
+        let velocity = weighed(kept).velocity();
+        assert!((narrowed.velocity() - velocity).abs() < 1e-5 * velocity.abs());
+    }
+}

@@ -1,0 +1,198 @@
+//! Steps of a recording's times by their length, and the period that follows from them.
+
+use std::collections::BTreeMap;
+
+use terminal::failure::Failure;
+
+/// Largest relative difference of an even step from the period.
+pub(super) const EVEN: f64 = 0.1;
+
+/// Largest relative difference from the median step of the steps that determine the rate. Steps with
+/// rounded digits are included, steps over a missing row are not.
+const REGULAR: f64 = 0.5;
+
+/// Largest share of the steps that differ from the period by more than [`REGULAR`] of it, where `t` has
+/// few digits.
+const IRREGULAR_SHARE: f64 = 0.1;
+
+/// Relative difference of two steps of the same length, which floats round.
+const SAME: f64 = 1e-3;
+
+/// Slowest rate of a recording, Hz.
+pub(super) const SLOWEST_HZ: f64 = 10.0;
+
+/// Steps of `t` by their length, in memory that does not grow with their number.
+///
+/// Steps whose lengths differ by less than 2^-12 of them share a class. Only the number and the sum
+/// of the steps of a class are known, so limits apply to a class as to its mean.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Steps {
+    classes: BTreeMap<u64, Class>,
+    number: u64,
+}
+
+/// Steps of nearly one length.
+#[derive(Clone, Copy, Debug, Default)]
+struct Class {
+    number: u64,
+    sum: f64,
+    least: f64,
+    most: f64,
+    /// The largest change of each encoder's count over one of the steps.
+    jump: [i64; 2],
+}
+
+impl Class {
+    /// Mean length, s.
+    fn mean(&self) -> f64 {
+        self.sum / self.number as f64
+    }
+}
+
+impl Steps {
+    /// Bits of a length that do not distinguish classes.
+    const SHARED_BITS: u32 = 52 - 12;
+
+    /// Adds a step of `length` s, not negative, over which the counts change by `jump`.
+    pub(super) fn add(&mut self, length: f64, jump: [i64; 2]) {
+        // A zero has a sign.
+        let key = (length + 0.0).to_bits() >> Self::SHARED_BITS;
+        let class = self.classes.entry(key).or_default();
+        class.least = match class.number {
+            0 => length,
+            _ => class.least.min(length),
+        };
+        class.most = class.most.max(length);
+        class.number += 1;
+        class.sum += length;
+        for (most, jump) in class.jump.iter_mut().zip(jump) {
+            if jump.abs() >= most.abs() {
+                *most = jump;
+            }
+        }
+        self.number += 1;
+    }
+
+    fn classes(&self) -> impl Iterator<Item = &Class> {
+        self.classes.values()
+    }
+
+    /// The largest jump of an encoder's counts over steps of at most `longest` s.
+    pub(super) fn largest_jump(&self, longest: f64, motor: usize) -> i64 {
+        let short = self.classes().filter(|class| class.mean() <= longest);
+        let jumps = short.map(|class| class.jump[motor]);
+        jumps.max_by_key(|jump| jump.abs()).unwrap_or_default()
+    }
+
+    /// Period of the rows, s, and the rate, Hz.
+    ///
+    /// The rate is one over the mean of the steps near the median, because the resolution of the
+    /// median alone is that of the digits of `t`.
+    pub(super) fn period(&self, name: &str) -> Result<(f64, f64), Failure> {
+        if self.number == 0 {
+            return Err(Failure::Input(format!(
+                "{name}: fewer than two rows of data; a recording needs at least two"
+            )));
+        }
+        let mut below = 0;
+        let median = self.classes().find(|class| {
+            below += class.number;
+            below > self.number / 2
+        });
+        let median = median.map_or(0.0, Class::mean);
+        if median <= 0.0 {
+            return Err(Failure::Input(format!(
+                "{name}: column t: does not increase in most rows; write it in seconds with enough \
+                 digits to distinguish rows"
+            )));
+        }
+        let regular = self
+            .classes()
+            .filter(|class| differs(class.mean(), median) <= REGULAR);
+        let (sum, number) = regular.fold((0.0, 0), |(sum, number), class| {
+            (sum + class.sum, number + class.number)
+        });
+        let period = sum / number as f64;
+        // Decimal digits of `t` are rounded, so the rate is rounded too.
+        let rate_hz = to_digits(1.0 / period, 7);
+        if rate_hz < SLOWEST_HZ {
+            return Err(Failure::Input(format!(
+                "{name}: column t: rows {period} s apart are {rate_hz} Hz, which is below {SLOWEST_HZ} \
+                 Hz; t must be in seconds, check that it is not in ms or us, which --column t=NAME:ms \
+                 states"
+            )));
+        }
+        Ok((period, rate_hz))
+    }
+
+    /// Whether rows of this `period`, s, come at uneven times: a step differs from it by more than a
+    /// tenth, and the resolution of `t` does not explain the difference.
+    pub(super) fn are_uneven(&self, period: f64) -> bool {
+        let resolution = self.resolution(period).unwrap_or(0.0);
+        let explained = (1.0 - SAME) * resolution;
+        let mut ends = self.classes().flat_map(|class| [class.least, class.most]);
+        ends.any(|step| differs(step, period) > EVEN && (step - period).abs() >= explained)
+    }
+
+    /// Mean length and number of the steps of each class.
+    pub(super) fn lengths(&self) -> impl Iterator<Item = (f64, u64)> {
+        self.classes().map(|class| (class.mean(), class.number))
+    }
+
+    /// The resolution of `t`, s, if every step is a multiple of it and it is more than a tenth of the
+    /// `period`.
+    fn resolution(&self, period: f64) -> Option<f64> {
+        let steps: Vec<_> = self.classes().map(Class::mean).collect();
+        let apart = steps.windows(2).map(|pair| pair[1] - pair[0]);
+        // Steps of one length differ by the rounding of a float.
+        let distances = steps.iter().copied().chain(apart);
+        let distances = distances.filter(|distance| *distance > SAME * period);
+        let unit = distances.fold(f64::INFINITY, f64::min);
+        let is_multiple = |step: &f64| (step / unit - (step / unit).round()).abs() < SAME;
+        (unit > EVEN * period && steps.iter().all(is_multiple)).then_some(unit)
+    }
+
+    /// Checks that the times of rows at `rate_hz` are known.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] with the remedy if more than a tenth of the steps differ from the period by
+    /// more than half of it, and `t` has so few digits that late rows look as missing ones.
+    pub(super) fn check_times(&self, rate_hz: f64, name: &str) -> Result<(), Failure> {
+        let Some(resolution) = self.resolution(1.0 / rate_hz) else {
+            return Ok(());
+        };
+        let irregular = self
+            .classes()
+            .filter(|class| differs(class.mean(), 1.0 / rate_hz) > REGULAR);
+        let irregular: u64 = irregular.map(|class| class.number).sum();
+        let share = irregular as f64 / self.number as f64;
+        if share <= IRREGULAR_SHARE {
+            return Ok(());
+        }
+        Err(Failure::Input(format!(
+            "{name}: column t: {:.0} % of the steps differ by more than half from the period of \
+             1/{rate_hz} s, and t has steps of {} ms: late rows look as missing ones; log t with more \
+             digits, or, if t is exact and rows are missing, add --resample {rate_hz:.0}",
+            100.0 * share,
+            to_digits(1e3 * resolution, 4),
+        )))
+    }
+
+    pub(super) fn of(t: &[f64]) -> Self {
+        let mut steps = Self::default();
+        for pair in t.windows(2) {
+            steps.add(pair[1] - pair[0], [0; 2]);
+        }
+        steps
+    }
+}
+
+/// Difference of a step from a period, over the period.
+pub(super) fn differs(step: f64, period: f64) -> f64 {
+    (step - period).abs() / period
+}
+
+/// `x` with `digits` significant digits.
+pub(super) fn to_digits(x: f64, digits: usize) -> f64 {
+    format!("{x:.0$e}", digits - 1).parse().unwrap_or(x)
+}

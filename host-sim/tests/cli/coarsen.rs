@@ -1,0 +1,80 @@
+//! A coarsened recording states its counts per revolution.
+
+use crate::{Folder, json};
+
+/// 1 s at 2 kHz and 5 rad/s, of an encoder of 100 000 counts per revolution.
+fn fine() -> String {
+    let mut text = String::from("t,counts_large\n");
+    for k in 0..=2000 {
+        let angle = 5.0 * f64::from(k) * 0.5e-3;
+        let count = (angle / std::f64::consts::TAU * 1e5).floor();
+        text += &format!("{},{count}\n", f64::from(k) * 0.5e-3);
+    }
+    text
+}
+
+fn coarse(name: &str, counts: &str) -> (Folder, String) {
+    let folder = Folder::new(name);
+    folder.write("f.csv", fine());
+    let command = "coarsen f.csv --fine-counts-per-rev 100000 --rate 1000 --out c.csv";
+    let mut arguments: Vec<_> = command.split(' ').collect();
+    arguments.extend(["--counts-per-rev", counts]);
+    folder.good(&arguments);
+    let text = std::fs::read_to_string(folder.0.join("c.csv")).unwrap();
+    (folder, text)
+}
+
+#[test]
+fn counts_per_revolution_of_a_coarsened_recording_need_no_option() {
+    let (folder, text) = coarse("coarse-counts", "1000");
+    assert!(text.starts_with("# counts_per_rev = 1000\nt,counts_large,edge_tick,edge_bound\n"));
+    let velocity = |arguments: &str| {
+        let text = folder.good(&arguments.split(' ').collect::<Vec<_>>());
+        let last = text.lines().last().unwrap();
+        last.split_once(',').unwrap().1.parse::<f64>().unwrap()
+    };
+    // With 4096 counts, those of the default device, the velocity would be 1.2 rad/s.
+    let with_file = velocity("replay c.csv --estimator m-over-t");
+    assert!((with_file - 5.0).abs() < 0.05, "{with_file}");
+    folder.write("d.toml", "large.counts_per_rev = 500\n");
+    let with_device = velocity("replay c.csv --estimator m-over-t --device d.toml");
+    assert!((with_device - 10.0).abs() < 0.1, "{with_device}");
+    for (command, said) in [
+        (
+            "replay c.csv --estimator pll",
+            "c.csv: 1000 counts/rev, as the file states",
+        ),
+        (
+            "replay c.csv --estimator pll --device d.toml",
+            "500 counts/rev of the options are used; the file states 1000",
+        ),
+        (
+            "plot c.csv --out p.svg",
+            "1000 counts/rev, as the file states",
+        ),
+        ("recommend c.csv", "1000 counts/rev, as the file states"),
+    ] {
+        let output = folder.run(&command.split(' ').collect::<Vec<_>>());
+        let notes = String::from_utf8(output.stderr).unwrap();
+        assert!(notes.contains(said), "{command}: {notes}");
+        assert!(!notes.contains("assumed"), "{command}: {notes}");
+    }
+    let ranked = json(&folder.good(&["recommend", "c.csv", "--json", "-"]));
+    let rust = |row: &serde_json::Value| row["rust"].as_str().unwrap().contains("1000");
+    assert!(ranked.iter().all(rust), "{ranked:?}");
+}
+
+#[test]
+fn recordings_of_different_encoders_are_refused() {
+    let (folder, text) = coarse("two-encoders", "1000");
+    folder.write("d.csv", text.replacen("= 1000", "= 500", 1));
+    let error = folder.refused(&["recommend", "c.csv", "d.csv"]);
+    let said = "d.csv: states 500 counts/rev and c.csv 1000; give recordings of one encoder";
+    assert!(error.contains(said), "{error}");
+    folder.write("e.csv", text.replacen("= 1000", "= many", 1));
+    for command in ["replay", "plot", "recommend", "identify"] {
+        let error = folder.refused(&[command, "e.csv"]);
+        let said = "e.csv: line 1: counts_per_rev: 'many' is not a whole number from 16 to 4000000";
+        assert!(error.contains(said), "{command}: {error}");
+    }
+}

@@ -1,0 +1,124 @@
+//! Logs that read to the motion that they were written from.
+
+use super::{LOGS, ROWS, counts, replay, split, steps};
+use crate::Folder;
+
+/// Logs that read to the motion, and the options that they need.
+pub(super) const READ: &[(&str, &str)] = &[
+    ("own.csv", ""),
+    ("crlf-bom.csv", ""),
+    ("carriage-return.csv", ""),
+    (
+        "semicolons-decimal-commas.csv",
+        "--column t=time_ms,counts_large=angle_deg",
+    ),
+    (
+        "tabs.tsv",
+        "--column|t=time [us]|--column|counts_large=position [rad]|--column|current=iq [mA]",
+    ),
+    ("spaces.txt", ""),
+    ("comments.csv", ""),
+    ("text-before-header.csv", ""),
+    ("header-in-comment.txt", ""),
+    ("no-header.csv", "--column t=1:ms,counts_large=2:rev"),
+    (
+        "no-time.csv",
+        "--column counts_large=encoder --row-rate 1000",
+    ),
+    (
+        "quoted-names.csv",
+        "--column|t=time, ns:ns,counts_large=shaft angle (rev),current=torque (Nm)",
+    ),
+    ("absolute-4096.csv", ""),
+    ("absolute-3600.csv", "--modulus 3600"),
+    ("absolute-deg.csv", "--column counts_large=angle:deg"),
+    ("moteus-tview.csv", ""),
+    ("moteus-tview.jsonl", ""),
+    ("moteus-python.csv", ""),
+    ("odrive.csv", ""),
+    ("vesc-tool.csv", ""),
+    ("simplefoc-monitor.txt", "--row-rate 1000"),
+    ("simplefoc-monitor-all.txt", "--row-rate 1000"),
+    ("plotjuggler.csv", ""),
+];
+
+#[test]
+fn logs_read_to_the_motion_that_they_were_written_from() {
+    let folder = Folder::new("logs");
+    for (log, options) in READ {
+        let (rows, _) = replay(&folder, log, options);
+        assert_eq!(rows.len(), ROWS, "{log}");
+        for (k, step) in steps(&rows).into_iter().enumerate() {
+            let [before, now] = [k, k + 1].map(|row| row as f64 * 1e-3);
+            let t = rows[k + 1][0] - rows[0][0];
+            // Seconds since 1970 are a float with a resolution of 0.24 us.
+            assert!((t - now).abs() < 1e-6, "{log}: {t} s in row {k}");
+            // The velocity is an f32.
+            let moved = counts(now) - counts(before);
+            assert!(
+                (step - moved).abs() < 1e-4,
+                "{log}: {step} counts for {moved} in row {k}"
+            );
+        }
+    }
+}
+
+#[test]
+fn uneven_rows_become_even() {
+    let folder = Folder::new("uneven");
+    for (log, options) in [
+        ("uneven.csv", "--resample 1000"),
+        ("missing-rows.csv", "--resample 1000"),
+    ] {
+        let (rows, notes) = replay(&folder, log, options);
+        assert!(notes.contains("t is uneven in "), "{log}: {notes}");
+        let mut position = 0.0;
+        for (k, step) in steps(&rows).into_iter().enumerate() {
+            let t = (k + 1) as f64 * 1e-3;
+            assert!((rows[k + 1][0] - rows[0][0] - t).abs() < 1e-9, "{log}");
+            position += step;
+            // A row has the count below the position; a line between two rows is at most a count off,
+            // and rounding half a count.
+            let off = position - (counts(t) - counts(0.0));
+            assert!(off.abs() < 2.0, "{log}: {off} counts in row {k}");
+        }
+    }
+    // A few missing rows alone are reported and read.
+    let (rows, notes) = replay(&folder, "missing-rows.csv", "");
+    assert_eq!(rows.len(), ROWS - 3);
+    assert!(
+        notes.contains("the estimators use the true steps"),
+        "{notes}"
+    );
+}
+
+#[test]
+fn torque_is_divided_by_the_torque_constant() {
+    // The files have 0.05 times the current as torque; a device with 0.05 N.m/A has the current again.
+    let folder = Folder::new("torque");
+    folder.write("mine.toml", "large.torque_constant_nm_per_a = 0.05\n");
+    let torque = "--column|t=time, ns:ns,counts_large=shaft angle (rev),current=torque (Nm)";
+    let milliamps =
+        "--column|t=time [us]|--column|counts_large=position [rad]|--column|current=iq [mA]";
+    let run = |log: &str, options: &str| {
+        let path = format!("{LOGS}/{log}");
+        let mut arguments = vec!["replay", &path, "--estimator", "kalman-motor"];
+        arguments.extend(["--device", "mine.toml"]);
+        arguments.extend(split(options));
+        let text = folder.good(&arguments);
+        let velocity = |line: &str| line.split_once(',').unwrap().1.parse::<f64>().unwrap();
+        text.lines().skip(1).map(velocity).collect::<Vec<_>>()
+    };
+    let (one, other) = (run("quoted-names.csv", torque), run("tabs.tsv", milliamps));
+    let without = run(
+        "quoted-names.csv",
+        &torque.replace("torque (Nm)", "torque (Nm):A"),
+    );
+    let far = |a: &[f64], b: &[f64]| {
+        let pairs = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+        pairs.fold(0.0, f64::max)
+    };
+    // The logs round the current to 0.1 mA and the torque to 1e-6 N.m.
+    assert!(far(&one, &other) < 0.05, "{}", far(&one, &other));
+    assert!(far(&one, &without) > 1.0, "{}", far(&one, &without));
+}

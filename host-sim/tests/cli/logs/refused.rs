@@ -1,0 +1,117 @@
+//! Logs that are refused with one line.
+
+use super::{LOGS, split};
+use crate::Folder;
+
+/// Logs that are refused, the options, and parts of the line.
+pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
+    (
+        "semicolons-decimal-commas.csv",
+        "",
+        &[
+            "line 1: no column t; found: time_ms; angle_deg, separated by ';'",
+            "--column 't=time_ms,counts_large=angle_deg'",
+            "moteus, ODrive, VESC Tool, PlotJuggler, SimpleFOC",
+        ],
+    ),
+    (
+        "unknown-names.csv",
+        "",
+        &["found: stamp; shaft; speed", "--column 't=stamp:s,"],
+    ),
+    (
+        "no-header.csv",
+        "",
+        &[
+            "2 columns of numbers",
+            "--column t=1:s,counts_large=2:counts",
+        ],
+    ),
+    ("simplefoc-monitor.txt", "", &["SimpleFOC", "--row-rate HZ"]),
+    ("utf-16.csv", "", &["line 1", "UTF-16; save it in UTF-8"]),
+    (
+        "not-a-number.csv",
+        "",
+        &["line 7: column counts_large: 'n/a' is not a number"],
+    ),
+    (
+        "cut.csv",
+        "",
+        &["line 52: 1 fields where the first line has 2; remove the line"],
+    ),
+    (
+        "thousands.csv",
+        "",
+        &[
+            "line 2: column counts_large: '1.234,0'",
+            "without separators of thousands",
+        ],
+    ),
+    (
+        "decimal-commas-and-commas.csv",
+        "",
+        &["line 2: 3 fields", "need another separator than a comma"],
+    ),
+    (
+        "time-goes-back.csv",
+        "",
+        &["line 4: column t: 0.0005 s is before the 0.001 s"],
+    ),
+    (
+        "seconds-in-ms.csv",
+        "",
+        &["column t: rows 1 s apart", "--column t=NAME:ms"],
+    ),
+    (
+        "two-joints.csv",
+        "",
+        &["found: __time; /a/position; /b/position", "--column"],
+    ),
+    (
+        "two-controllers.jsonl",
+        "",
+        &["line 31: field controller: 2 after 1; keep the lines of one"],
+    ),
+    (
+        "broken.jsonl",
+        "",
+        &["line 2: no JSON object; remove the line"],
+    ),
+    (
+        "absolute-4096.csv",
+        "--modulus 3600",
+        &["line 21: column counts_large: 3615 with --modulus 3600: raw must be below modulus"],
+    ),
+    (
+        "milliseconds-at-700-hz.csv",
+        "--column t=t_ms",
+        &["column t: ", "% of the steps", "add --resample"],
+    ),
+    (
+        "own.csv",
+        "--column t=time",
+        &["no column 'time', which --column names for t; found: t; counts_large"],
+    ),
+    (
+        "own.csv",
+        "--resample 1",
+        &["--resample 1: ", "at 10 Hz or more"],
+    ),
+];
+
+#[test]
+fn unreadable_logs_are_refused_with_one_line() {
+    let folder = Folder::new("refused-logs");
+    for (log, options, said) in REFUSED {
+        let path = format!("{LOGS}/{log}");
+        for command in ["replay", "plot"] {
+            let mut arguments = vec![command, &path, "--out", "out"];
+            arguments.extend(split(options));
+            let line = folder.refused(&arguments);
+            assert!(line.contains(log), "{log}: {line}");
+            for part in *said {
+                assert!(line.contains(part), "{log}: {line}");
+            }
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! `host-sim replay` of recordings without a true velocity.
+
+use crate::{Folder, json};
+
+/// Counts of an encoder with 4096 counts/rev at 1 kHz on a shaft whose velocity is
+/// `20 sin(10 t)` rad/s, with the column `true_omega` if asked.
+fn sine(truth: bool) -> String {
+    let mut text = String::from(if truth {
+        "t,counts_large,true_omega\n"
+    } else {
+        "t,counts_large\n"
+    });
+    for k in 0..3000 {
+        let t = f64::from(k) * 1e-3;
+        let angle = 2.0 * (1.0 - (10.0 * t).cos());
+        let count = (angle * 4096.0 / std::f64::consts::TAU).floor();
+        text += &format!("{t:.3},{count}");
+        if truth {
+            text += &format!(",{}", 20.0 * (10.0 * t).sin());
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// The text without its line ends.
+fn words(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn recording_without_a_truth_is_scored_against_a_reference() {
+    let folder = Folder::new("reference");
+    folder.write("truth.csv", sine(true));
+    folder.write("plain.csv", sine(false));
+    let estimators = ["--estimator", "finite-difference", "--estimator", "imm"];
+    let scores = |name: &str| {
+        let rows =
+            json(&folder.good(&[&["replay", name, "--json", "-"][..], &estimators].concat()));
+        assert_eq!(rows.len(), 2);
+        rows
+    };
+    let (truth, reference) = (scores("truth.csv"), scores("plain.csv"));
+    for (a, b) in truth.iter().zip(&reference) {
+        assert_eq!(
+            (&a["against"], &b["against"]),
+            (&"truth".into(), &"reference".into())
+        );
+        assert!(a["reference_sd_rad_s"].is_null());
+        let sd = b["reference_sd_rad_s"].as_f64().unwrap();
+        let [a, b] = [a, b].map(|row| row["rms_rad_s"].as_f64().unwrap());
+        // The error of the reference adds to that of the estimator.
+        assert!(sd > 0.0 && sd < 0.1, "{sd}");
+        assert!((a - b).abs() < 2.0 * sd, "{a} {b}");
+    }
+
+    let columns = [
+        &[
+            "replay",
+            "plain.csv",
+            "--out",
+            "v.csv",
+            "--reference",
+            "columns",
+        ][..],
+        &estimators,
+    ];
+    let output = folder.run(&columns.concat());
+    assert_eq!(output.status.code(), Some(0));
+    let table = words(&String::from_utf8(output.stdout).unwrap());
+    assert!(
+        table.contains("against a reference computed from the"),
+        "{table}"
+    );
+    let notes = words(&String::from_utf8(output.stderr).unwrap());
+    assert!(
+        notes.contains("no column true_omega; scores are against a reference"),
+        "{notes}"
+    );
+    let mut reader = csv::Reader::from_path(folder.0.join("v.csv")).unwrap();
+    let header: Vec<_> = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .map(str::to_owned)
+        .collect();
+    let expected = [
+        "t",
+        "finite-difference",
+        "imm",
+        "reference_rad_s",
+        "reference_sd_rad_s",
+    ];
+    assert_eq!(header, expected);
+    for (k, row) in reader.records().map(Result::unwrap).enumerate() {
+        let value = |i: usize| row[i].parse::<f64>().unwrap();
+        let truth = 20.0 * (10.0 * value(0)).sin();
+        assert!(
+            (value(3) - truth).abs() < 6.0 * value(4),
+            "row {k}: {} {truth}",
+            value(3)
+        );
+    }
+
+    let off = folder.good(
+        &[
+            &[
+                "replay",
+                "plain.csv",
+                "--out",
+                "v.csv",
+                "--reference",
+                "off",
+            ][..],
+            &estimators,
+        ]
+        .concat(),
+    );
+    assert!(!off.contains("rms") && !off.contains("reference"), "{off}");
+}

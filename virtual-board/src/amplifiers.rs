@@ -1,0 +1,134 @@
+//! The amplifiers behind the board's connectors: their enables, ready lines, and the interlock
+//! loop with the emergency stop.
+
+use rigless::time::VirtualNanos;
+
+use crate::board::Part;
+use crate::fault::Fault;
+use crate::pins::{self, INTERLOCK, READY};
+use crate::quadrature::LARGE;
+
+/// Time from the enable of an amplifier until it is ready and follows its command, ns.
+const READY_AFTER_NS: u64 = 5_000_000;
+
+/// An amplifier and the wires to it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Amplifier {
+    /// Whether it has supply. Without supply it does not drive, is not ready, and opens the
+    /// interlock loop.
+    pub(crate) powered: bool,
+    /// Whether it reports that it is not ready. It continues to drive.
+    pub(crate) unready: bool,
+    /// Whether the wire of its ready line is broken.
+    pub(crate) cut: bool,
+    /// Time from its enable until it is ready, ns.
+    pub(crate) ready_after_ns: u64,
+    /// Time since which it is enabled, ns.
+    enabled_ns: Option<u64>,
+}
+
+impl Amplifier {
+    const WELL: Self = Self {
+        powered: true,
+        unready: false,
+        cut: false,
+        ready_after_ns: READY_AFTER_NS,
+        enabled_ns: None,
+    };
+
+    /// Whether it follows its command.
+    fn drives(&self, now_ns: u64) -> bool {
+        let ready = |since| now_ns >= since + self.ready_after_ns;
+        self.powered && self.enabled_ns.is_some_and(ready)
+    }
+
+    /// Level on the wire of its ready line: high, or nothing drives the wire.
+    fn ready(&self, now_ns: u64) -> Option<bool> {
+        (self.drives(now_ns) && !self.unready && !self.cut).then_some(true)
+    }
+}
+
+/// Both amplifiers, large motor first, and the emergency stop.
+#[derive(Debug)]
+pub(crate) struct Amplifiers {
+    pub(crate) each: [Amplifier; 2],
+    /// Time until which the emergency stop opens the interlock loop, ns.
+    pub(crate) stop_until_ns: u64,
+    /// Levels on the wires; `None` until they are set after a restart.
+    driven: Option<Wires>,
+}
+
+/// Levels on the wires to the board; `None` for a wire that nothing drives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Wires {
+    ready: [Option<bool>; 2],
+    interlock: Option<bool>,
+    /// Level at the break input of the timer, behind the pin.
+    broken: bool,
+}
+
+/// Outputs of the board and of the amplifiers at an instant.
+pub(crate) struct Enabled {
+    /// Whether the enable of each amplifier is active.
+    pub(crate) enables: [bool; 2],
+    /// Whether each amplifier follows its command.
+    pub(crate) drives: [bool; 2],
+}
+
+impl Amplifiers {
+    /// Both amplifiers with supply and closed loop, and with those faults that exist from power-up
+    /// on.
+    pub(crate) fn new(faults: &[(f64, Fault)]) -> Self {
+        let mut each = [Amplifier::WELL; 2];
+        for (_, fault) in faults {
+            if let Fault::ReadyAfter(ms) = fault {
+                each[LARGE].ready_after_ns = 1_000_000 * u64::from(*ms);
+            }
+        }
+        Self {
+            each,
+            stop_until_ns: 0,
+            driven: None,
+        }
+    }
+
+    /// Restores the levels of the wires after a restart of the processor.
+    pub(crate) fn restart(&mut self, part: &mut Part, at: VirtualNanos) {
+        pins::pull_enables_down(part, at);
+        self.driven = None;
+        self.follow(part, at);
+    }
+
+    /// Sets the wires to the board for its present enables.
+    pub(crate) fn follow(&mut self, part: &mut Part, at: VirtualNanos) -> Enabled {
+        let closed = at.0 >= self.stop_until_ns && self.each.iter().all(|one| one.powered);
+        let interlock = closed.then_some(true);
+        if self.driven.is_none_or(|wires| wires.interlock != interlock) {
+            pins::drive(part, at, INTERLOCK, interlock);
+        }
+        // The level at the timer follows the wire, and the configuration of the pin.
+        let broken = !pins::interlock_level(part);
+        if self.driven.is_none_or(|wires| wires.broken != broken) {
+            pins::drive_break(part, at, !broken);
+        }
+        let enables = pins::enabled(part);
+        for (amplifier, on) in self.each.iter_mut().zip(enables) {
+            amplifier.enabled_ns = on.then(|| amplifier.enabled_ns.unwrap_or(at.0));
+        }
+        let ready = self.each.map(|amplifier| amplifier.ready(at.0));
+        for n in 0..2 {
+            if self.driven.is_none_or(|wires| wires.ready[n] != ready[n]) {
+                pins::drive(part, at, READY[n], ready[n]);
+            }
+        }
+        self.driven = Some(Wires {
+            ready,
+            interlock,
+            broken,
+        });
+        Enabled {
+            enables,
+            drives: self.each.map(|amplifier| amplifier.drives(at.0)),
+        }
+    }
+}

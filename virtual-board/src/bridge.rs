@@ -1,0 +1,195 @@
+//! The serial port of the emulated board over TCP, in real time.
+
+use std::io::{ErrorKind, Read, Write};
+use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use terminal::failure::Failure;
+use terminal::output::note;
+
+use crate::image::Image;
+use crate::objections;
+use crate::port::Wire;
+use crate::run::{Setup, emulate};
+
+/// Bytes that one look takes from the client at most.
+const CHUNK: usize = 4096;
+/// Bytes on their way to the board while which no more are taken from the client: TCP holds them back.
+const WAITING: usize = 256;
+/// Virtual time from which on the run is in real time. The emulator translates the image's code before.
+const STARTED: Duration = Duration::from_millis(100);
+/// Lag behind real time from which on it is told, s; then each time that it has doubled.
+pub(crate) const LAG_S: f64 = 0.05;
+/// What a second client is told.
+const REFUSAL: &[u8] = b"the board has a client already; one client at a time\n";
+
+/// A TCP port of this machine that is to be the serial port of an emulated board. One client is served
+/// at a time, and one after the other.
+#[derive(Debug)]
+pub struct Bridge {
+    listener: TcpListener,
+    address: SocketAddr,
+}
+
+/// How a run in real time kept up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pace {
+    /// Virtual time, s.
+    pub seconds: f64,
+    /// Largest lag of virtual time behind real time, s.
+    pub lag_s: f64,
+}
+
+impl Bridge {
+    /// Listens on this port of the loopback interface; 0 takes a free one.
+    ///
+    /// # Errors
+    /// One line if the port cannot be had.
+    pub fn bind(port: u16) -> Result<Self, String> {
+        let failed = |error| format!("--link {port}: {error}; give a free port, or 0 for any");
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(failed)?;
+        listener.set_nonblocking(true).map_err(failed)?;
+        let address = listener.local_addr().map_err(failed)?;
+        Ok(Self { listener, address })
+    }
+
+    /// Where a client connects to.
+    #[must_use]
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Runs `image` with the port bridged, in real time, until the end of the setup or until `stop`.
+    /// Only the last state is kept, so that a run may be long. A computer that is too slow makes the
+    /// run slower; nothing is left out.
+    ///
+    /// # Errors
+    /// As [`on_board`](crate::run::on_board) and [`Outcome::check`](crate::run::Outcome::check).
+    pub fn run(self, image: &Image, setup: &Setup, stop: Arc<AtomicBool>) -> Result<Pace, Failure> {
+        let live = Live::new(self.listener, stop);
+        let (session, lockstep, _) = emulate(image, setup, Some(live), |_| ())?;
+        objections::verdict(&objections::of(&session))?;
+        Ok(lockstep.live.map(|live| live.pace).unwrap_or_default())
+    }
+}
+
+/// The client's side of a run.
+#[derive(Debug)]
+pub(crate) struct Live {
+    listener: TcpListener,
+    client: Option<TcpStream>,
+    /// Clients that have been refused and have not gone.
+    refused: Vec<TcpStream>,
+    stop: Arc<AtomicBool>,
+    /// Real time at which virtual time was [`STARTED`].
+    since: Option<Instant>,
+    /// Lag that was told last, s.
+    told_s: f64,
+    pub(crate) pace: Pace,
+}
+
+impl Live {
+    fn new(listener: TcpListener, stop: Arc<AtomicBool>) -> Self {
+        Self {
+            listener,
+            client: None,
+            refused: Vec::new(),
+            stop,
+            since: None,
+            pace: Pace::default(),
+            told_s: 0.5 * LAG_S,
+        }
+    }
+
+    /// Passes bytes between client and board, and waits until real time is `now_ns` too; whether the
+    /// run goes on.
+    pub(crate) fn look(&mut self, wire: &mut Wire, now_ns: u64) -> bool {
+        self.accept();
+        let sent: Vec<u8> = wire.up.drain(..).map(|(_, byte)| byte).collect();
+        let keeps = self.client.as_mut().is_none_or(|client| {
+            let room = WAITING.saturating_sub(wire.down.len());
+            let taken = take(client, room.min(CHUNK));
+            if let Some(bytes) = &taken {
+                wire.down.extend(bytes.iter().map(|byte| (now_ns, *byte)));
+            }
+            taken.is_some() && give(client, &sent)
+        });
+        if !keeps {
+            self.client = None;
+        }
+        let virtual_time = Duration::from_nanos(now_ns);
+        self.pace.seconds = virtual_time.as_secs_f64();
+        if virtual_time < STARTED {
+            return true;
+        }
+        let real = self.since.get_or_insert_with(Instant::now).elapsed() + STARTED;
+        if let Some(early) = virtual_time.checked_sub(real) {
+            std::thread::sleep(early);
+        } else {
+            let lag = (real - virtual_time).as_secs_f64();
+            self.pace.lag_s = self.pace.lag_s.max(lag);
+            if lag > 2.0 * self.told_s {
+                self.told_s = lag;
+                note(format_args!(
+                    "the board is {lag:.3} s behind real time at {:.3} s: this computer is busy or too slow",
+                    self.pace.seconds
+                ));
+            }
+        }
+        !self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Takes the first client, and refuses others.
+    fn accept(&mut self) {
+        while let Ok((mut stream, _)) = self.listener.accept() {
+            if stream.set_nonblocking(true).is_err() {
+                continue;
+            }
+            if self.client.is_none() {
+                let _ = stream.set_nodelay(true);
+                self.client = Some(stream);
+            } else if stream.write_all(REFUSAL).is_ok() && stream.shutdown(Shutdown::Write).is_ok()
+            {
+                self.refused.push(stream);
+            }
+        }
+        // A connection that is closed with bytes unread takes the refusal back.
+        self.refused
+            .retain_mut(|stream| take(stream, CHUNK).is_some());
+    }
+}
+
+/// The bytes that have come, at most so many; `None` if the client has gone.
+fn take(client: &mut TcpStream, room: usize) -> Option<Vec<u8>> {
+    let mut bytes = vec![0; room];
+    if room == 0 {
+        return Some(bytes);
+    }
+    match client.read(&mut bytes) {
+        Ok(0) => None,
+        Ok(length) => {
+            bytes.truncate(length);
+            Some(bytes)
+        }
+        Err(error) if is_later(&error) => Some(Vec::new()),
+        Err(_) => None,
+    }
+}
+
+/// Sends bytes; whether the client is there. What a client does not read is lost, as on a serial line.
+fn give(client: &mut TcpStream, mut bytes: &[u8]) -> bool {
+    while !bytes.is_empty() {
+        match client.write(bytes) {
+            Ok(0) => return false,
+            Ok(length) => bytes = &bytes[length..],
+            Err(error) => return is_later(&error),
+        }
+    }
+    true
+}
+
+fn is_later(error: &std::io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted)
+}
