@@ -267,6 +267,11 @@ pub(crate) fn refusal(before: &Rejected, now: &Rejected) -> Option<&'static str>
             "the value is out of bounds",
         ),
         (before.unknown, now.unknown, "the image does not have it"),
+        (
+            before.unverified,
+            now.unverified,
+            "the signs of encoders and currents have not been verified; run cargo drive bring-up",
+        ),
         (before.garbage, now.garbage, "the command arrived damaged"),
     ]
     .into_iter()
@@ -284,6 +289,7 @@ mod tests {
             not_finite: 2,
             out_of_bounds: 3,
             unknown: 4,
+            unverified: 5,
         };
         assert_eq!(refusal(&none, &none), None);
         let unknown = Rejected { unknown: 5, ..none };

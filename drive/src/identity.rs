@@ -40,8 +40,12 @@ pub(crate) fn text(answer: &Answer) -> String {
     ];
     if let Some(rejected) = answer.rejected {
         let counts = format!(
-            "{} not finite, {} out of bounds, {} unknown, {} bytes of garbage",
-            rejected.not_finite, rejected.out_of_bounds, rejected.unknown, rejected.garbage
+            "{} not finite, {} out of bounds, {} unknown, {} before bring-up, {} bytes of garbage",
+            rejected.not_finite,
+            rejected.out_of_bounds,
+            rejected.unknown,
+            rejected.unverified,
+            rejected.garbage
         );
         rows.push(("rejected commands", counts));
     }

@@ -95,6 +95,11 @@ where
         self.large.is_ready() && self.small.is_ready()
     }
 
+    /// The outputs of the commands, large and small. A change of an output acts from the next command on.
+    pub const fn outputs(&mut self) -> (&mut CL, &mut CS) {
+        (&mut self.large.output, &mut self.small.output)
+    }
+
     /// The enables.
     pub const fn enables(&self) -> &E {
         &self.enables

@@ -51,6 +51,17 @@ pub enum Command {
     /// [`Rejected`](crate::link::Rejected). All commands before this one have been processed by then.
     /// It is no keep-alive.
     Identify,
+    /// Changes a setting until the next reset, at once. [`Command::Store`] keeps it.
+    Set {
+        /// Number of the [`Setting`](crate::Setting).
+        setting: u8,
+        /// Value, in the setting's unit.
+        value: f32,
+    },
+    /// Asks for all settings, each a [`Setting`](crate::link::Setting). It is no keep-alive.
+    Settings,
+    /// Stores the settings in flash. The answer is [`Stored`](crate::link::Stored). It is no keep-alive.
+    Store,
 }
 
 /// The frame of a command: 0xA5, kind, eight bytes of payload, CRC over kind and payload. Numbers
@@ -84,6 +95,12 @@ pub const fn encode(command: Command) -> [u8; FRAME] {
         }
         Command::Estimator(number) => [7, number, 0, 0, 0, 0, 0, 0, 0],
         Command::Identify => [8, 0, 0, 0, 0, 0, 0, 0, 0],
+        Command::Set { setting, value } => {
+            let [a, b, c, d] = value.to_le_bytes();
+            [9, setting, a, b, c, d, 0, 0, 0]
+        }
+        Command::Settings => [10, 0, 0, 0, 0, 0, 0, 0, 0],
+        Command::Store => [11, 0, 0, 0, 0, 0, 0, 0, 0],
     };
     let [kind, a, b, c, d, e, f, g, h] = body;
     [START, kind, a, b, c, d, e, f, g, h, crc8(&body)]
@@ -154,6 +171,12 @@ fn decode(kind: u8, payload: [u8; BODY - 1]) -> Option<Command> {
         }),
         7 => Some(Command::Estimator(a)),
         8 => Some(Command::Identify),
+        9 => Some(Command::Set {
+            setting: a,
+            value: f32::from_le_bytes([b, c, d, e]),
+        }),
+        10 => Some(Command::Settings),
+        11 => Some(Command::Store),
         _ => None,
     }
 }

@@ -14,5 +14,5 @@ pub use amplifier::{Amplifier, Amplifiers, CurrentOutput, Enables};
 pub use command::{Command, Parser, encode};
 pub use dac_code::{DacCode, DacScale};
 pub use pwm::PwmCurrent;
-pub use settings::{SETTINGS_BYTES, Setting, SettingFacts, Settings, SettingsError};
+pub use settings::{SETTINGS_BYTES, Saved, Setting, SettingFacts, Settings, SettingsError};
 pub use store::{SaveError, Store};

@@ -26,6 +26,7 @@ mod wire;
 pub use features::{FEATURES, Features};
 pub use messages::{
     Edge, FieldFacts, Frame, Hello, Learned, Message, MessageFacts, Reference, Rejected, SCHEMA,
+    Setting, Stored,
 };
 pub use parser::Parser;
 pub use wire::Label;

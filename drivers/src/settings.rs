@@ -1,5 +1,9 @@
 //! The settings that a board keeps in flash.
 
+use haptic_control::CurrentScale;
+
+use crate::SaveError;
+
 /// Version of the meaning of the settings. A new setting at the end of the list keeps the version.
 const VERSION: u16 = 1;
 
@@ -71,16 +75,13 @@ settings! {
     GainLarge: "gain-large", "1", 1.0 in 0.8, 1.25;
     /// Change of the current of the small motor per code, over the nominal one.
     GainSmall: "gain-small", "1", 1.0 in 0.8, 1.25;
-    /// Share of the current limits of the device that the board uses.
+    /// Part of the current limits of the device that the board uses.
     CurrentScale: "current-scale", "1", 0.1 in 0.0, 1.0;
-    /// Whether the signs of encoders and currents have been verified: 1 is yes.
+    /// Whether the signs of encoders and currents have been verified: 1 is yes. Scenes in closed loop are
+    /// refused before.
     SignsVerified: "signs-verified", "1", 0.0 in 0.0, 1.0 whole;
     /// Number of the estimator of the large motor after a start.
     Estimator: "estimator", "1", 0.0 in 0.0, 254.0 whole;
-    /// Count of the large encoder at the zero of its angle.
-    OffsetLarge: "offset-large", "counts", 0.0 in -1e6, 1e6 whole;
-    /// Count of the small encoder at the zero of its angle.
-    OffsetSmall: "offset-small", "counts", 0.0 in -1e6, 1e6 whole;
     /// Serial number of the device.
     Serial: "serial", "1", 0.0 in 0.0, 16_777_215.0 whole;
 }
@@ -93,6 +94,12 @@ impl Setting {
     #[must_use]
     pub fn from_number(number: u8) -> Option<Self> {
         Self::ALL.get(usize::from(number)).copied()
+    }
+
+    /// Number of the setting.
+    #[must_use]
+    pub const fn number(self) -> u8 {
+        self as u8
     }
 
     /// Whether a value is in the range of the setting.
@@ -116,6 +123,48 @@ pub enum SettingsError {
     Version(u16),
     /// The value of this setting is outside its range.
     Value(Setting),
+}
+
+/// Outcome of the command [`Store`](crate::Command::Store).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Saved {
+    /// The settings are in flash.
+    Stored = 0,
+    /// The amplifiers are enabled, or were a moment ago.
+    Enabled = 1,
+    /// The flash is full until the next reset.
+    Full = 2,
+    /// The flash refuses the access.
+    Refused = 3,
+    /// The flash does not hold what was written.
+    Mismatch = 4,
+}
+
+impl Saved {
+    /// The outcome with this number in a message.
+    #[must_use]
+    pub const fn from_code(code: u8) -> Option<Self> {
+        Some(match code {
+            0 => Self::Stored,
+            1 => Self::Enabled,
+            2 => Self::Full,
+            3 => Self::Refused,
+            4 => Self::Mismatch,
+            _ => return None,
+        })
+    }
+}
+
+impl<E> From<Result<(), SaveError<E>>> for Saved {
+    fn from(result: Result<(), SaveError<E>>) -> Self {
+        match result {
+            Ok(()) => Self::Stored,
+            Err(SaveError::Full) => Self::Full,
+            Err(SaveError::Flash(_)) => Self::Refused,
+            Err(SaveError::Mismatch) => Self::Mismatch,
+        }
+    }
 }
 
 /// The settings of a board.
@@ -150,6 +199,14 @@ impl Settings {
         Self(values)
     };
 
+    /// Those of a board after its bring-up, with ideal current outputs and the whole current.
+    pub const COMMISSIONED: Self = {
+        let Self(mut values) = Self::DEFAULT;
+        values[Setting::CurrentScale as usize] = 1.0;
+        values[Setting::SignsVerified as usize] = 1.0;
+        Self(values)
+    };
+
     /// The value of a setting.
     #[must_use]
     pub const fn get(&self, setting: Setting) -> f32 {
@@ -163,6 +220,24 @@ impl Settings {
             self.0[setting as usize] = value;
         }
         is_admitted
+    }
+
+    /// The scale of the current limits.
+    #[must_use]
+    pub fn current_scale(&self) -> CurrentScale {
+        CurrentScale::new(self.get(Setting::CurrentScale)).unwrap_or(CurrentScale::NONE)
+    }
+
+    /// Whether the signs of encoders and currents have been verified.
+    #[must_use]
+    pub fn are_signs_verified(&self) -> bool {
+        self.get(Setting::SignsVerified) != 0.0
+    }
+
+    /// Number of the estimator of the large motor after a start.
+    #[must_use]
+    pub const fn estimator(&self) -> u8 {
+        self.get(Setting::Estimator) as u8
     }
 
     /// The settings as bytes: version and number of the settings, u16, then each value, f32; little endian,

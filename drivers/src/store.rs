@@ -121,14 +121,32 @@ impl<const N: usize> Store<N> {
         Ok(Self::read(flash, at)? == Some((number, *bytes)))
     }
 
+    /// Whether [`Self::prepare`] would erase nothing.
+    ///
+    /// # Errors
+    /// That of the flash.
+    pub fn is_prepared<F: ReadNorFlash>(&self, flash: &mut F) -> Result<bool, F::Error> {
+        for (i, sector) in self.sectors.iter().enumerate() {
+            if !self.is_kept(i) && !is_blank(flash, sector.range.clone())? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Whether a sector has the newest record.
+    fn is_kept(&self, sector: usize) -> bool {
+        self.newest.is_some_and(|(newest, _)| newest == sector)
+    }
+
     /// Erases the sector without the newest record, unless it is blank; both sectors if there is no record.
     ///
     /// # Errors
     /// That of the flash.
     pub fn prepare<F: NorFlash>(&mut self, flash: &mut F) -> Result<(), F::Error> {
         for i in 0..self.sectors.len() {
+            let is_kept = self.is_kept(i);
             let Sector { range, free } = &mut self.sectors[i];
-            let is_kept = self.newest.is_some_and(|(newest, _)| newest == i);
             if !is_kept && !is_blank(flash, range.clone())? {
                 flash.erase(range.start, range.end)?;
                 *free = range.start;

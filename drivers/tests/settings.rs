@@ -1,9 +1,10 @@
 //! Settings as bytes, their ranges, and settings of other images.
 
-use drivers::{SETTINGS_BYTES, Setting, Settings, SettingsError};
+use drivers::{SETTINGS_BYTES, SaveError, Saved, Setting, Settings, SettingsError};
+use haptic_control::CurrentScale;
 
 /// Names at their numbers. They are in the flash of boards: none ever changes.
-const NAMES: [&str; 10] = [
+const NAMES: [&str; 8] = [
     "zero-large",
     "zero-small",
     "gain-large",
@@ -11,8 +12,6 @@ const NAMES: [&str; 10] = [
     "current-scale",
     "signs-verified",
     "estimator",
-    "offset-large",
-    "offset-small",
     "serial",
 ];
 
@@ -38,6 +37,31 @@ fn every_default_is_in_its_range_and_every_end_is_kept() {
             assert_eq!(read, Ok(settings), "{}: {value}", facts.name);
         }
     }
+}
+
+#[test]
+fn commissioned_board_has_the_whole_current_and_verified_signs() {
+    let [blank, commissioned] = [Settings::DEFAULT, Settings::COMMISSIONED];
+    assert!(!blank.are_signs_verified() && commissioned.are_signs_verified());
+    assert_eq!(CurrentScale::new(0.1), Some(blank.current_scale()));
+    assert_eq!(CurrentScale::FULL, commissioned.current_scale());
+    let differ = |setting: &&Setting| blank.get(**setting) != commissioned.get(**setting);
+    assert_eq!(Setting::ALL.iter().filter(differ).count(), 2);
+}
+
+#[test]
+fn outcomes_are_read_back_by_their_numbers() {
+    let codes: Vec<_> = (0..=u8::MAX).filter_map(Saved::from_code).collect();
+    let results: [Result<(), SaveError<()>>; 4] = [
+        Ok(()),
+        Err(SaveError::Full),
+        Err(SaveError::Flash(())),
+        Err(SaveError::Mismatch),
+    ];
+    let [stored, others @ ..] = results.map(Saved::from);
+    assert_eq!(codes[..2], [stored, Saved::Enabled]);
+    assert_eq!(codes[2..], others);
+    assert!((0..).zip(codes).all(|(code, saved)| saved as u8 == code));
 }
 
 #[test]

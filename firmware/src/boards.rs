@@ -5,6 +5,7 @@
 //! add one: the folder, a feature in Cargo.toml that selects it and its chip, a line below, and its
 //! memory map in build.rs.
 
+use drivers::{Saved, Settings};
 use estimator_core::{Amps, Count, Sample};
 use firmware_app::port::PortFaults;
 use haptic_control::{Currents, Stop};
@@ -35,6 +36,9 @@ pub(crate) trait Board {
 
     /// Whether the core does not run on its crystal.
     fn clock_failure(&self) -> bool;
+
+    /// Takes zero and gain of the current outputs from the settings.
+    fn calibrate(&mut self, settings: &Settings);
 
     /// Commands both currents and enables the amplifiers; `None` disables them.
     fn apply(&mut self, currents: Option<Currents>);
@@ -70,14 +74,21 @@ pub(crate) trait Port {
     fn faults(&self) -> PortFaults;
 }
 
-/// Inputs of a board at its tick.
-pub(crate) struct Start<W, P> {
+/// The flash that keeps the settings.
+pub(crate) trait Memory {
+    /// Stores the settings, in a few milliseconds. The amplifiers are disabled.
+    fn save(&mut self, settings: &Settings) -> Saved;
+}
+
+/// A board that has just started.
+pub(crate) struct Start<W, P, M> {
     pub(crate) watchdog: W,
     pub(crate) port: P,
+    pub(crate) memory: M,
     /// Cause of the last reset.
     pub(crate) reset: Stop,
-    /// Whether the flash has settings that this image can read.
-    pub(crate) is_calibrated: bool,
+    /// The settings in flash; `None` if there are none that this image can read.
+    pub(crate) settings: Option<Settings>,
     /// Whether a falling supply resets the chip and is named as the cause.
     pub(crate) brown_out_reset: bool,
 }

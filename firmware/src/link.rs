@@ -2,8 +2,9 @@
 
 use drivers::link::{
     Edge, Features, Frame as FrameMessage, Hello, LONGEST, Label, Learned, Message, PROTOCOL,
-    Reference, Rejected as RejectedMessage,
+    Reference, Rejected as RejectedMessage, Setting as SettingMessage,
 };
+use drivers::{Setting, Settings};
 use estimator_core::Count;
 use firmware_app::commands::Rejected;
 use firmware_app::config::RATE_HZ;
@@ -95,12 +96,25 @@ impl<P: Port> Link<P> {
             not_finite,
             out_of_bounds,
             unknown,
+            unverified,
         } = counts;
         self.send(RejectedMessage {
             garbage,
             not_finite,
             out_of_bounds,
             unknown,
+            unverified,
         });
+    }
+
+    /// Sends all settings.
+    pub(crate) fn settings(&mut self, settings: &Settings) {
+        for setting in Setting::ALL {
+            self.send(SettingMessage {
+                number: setting.number(),
+                value: settings.get(*setting),
+                count: Setting::ALL.len() as u8,
+            });
+        }
     }
 }

@@ -3,6 +3,7 @@
 use estimator_core::Count;
 use firmware_app::commands::Rejected;
 use firmware_app::port::PortFaults;
+use firmware_app::rest::Rest;
 use firmware_app::telemetry::{DEPTH, Frame};
 use heapless::spsc::Consumer;
 
@@ -10,7 +11,11 @@ use crate::boards::Port;
 use crate::link::Link;
 
 /// Logs the frames that wait, and sends them over the link; whether there were any.
-pub(crate) fn frames(frames: &mut Consumer<'static, Frame>, link: &mut Link<impl Port>) -> bool {
+pub(crate) fn frames(
+    frames: &mut Consumer<'static, Frame>,
+    link: &mut Link<impl Port>,
+    rest: &mut Rest,
+) -> bool {
     let mut any = false;
     for _ in 0..DEPTH {
         let Some(frame) = frames.dequeue() else {
@@ -19,6 +24,7 @@ pub(crate) fn frames(frames: &mut Consumer<'static, Frame>, link: &mut Link<impl
         let lost = firmware_rt::lost();
         log(&frame, lost);
         link.frame(&frame, lost);
+        rest.frame(&frame.record);
         any = true;
     }
     any
@@ -63,10 +69,11 @@ pub(crate) fn rejected([before, now]: [Rejected; 2]) {
     let garbage = before.garbage;
     if (Rejected { garbage, ..now }) != before {
         defmt::warn!(
-            "refused not-finite={=u32} out-of-bounds={=u32} unknown={=u32}",
+            "refused not-finite={=u32} out-of-bounds={=u32} unknown={=u32} unverified={=u32}",
             now.not_finite,
             now.out_of_bounds,
-            now.unknown
+            now.unknown,
+            now.unverified
         );
     }
 }

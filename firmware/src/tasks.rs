@@ -1,17 +1,19 @@
 //! The two tasks of the firmware: control at the highest priority, the rest at the lowest.
 
-use drivers::link::Hello;
+use drivers::Saved;
+use drivers::link::{Hello, Stored};
 use estimator_core::Amps;
 use firmware_app::commands::{Channel, Commands, Messages};
 use firmware_app::config::AUTO_ARM;
 use firmware_app::control::{Control, Inputs, Message};
 use firmware_app::port::PortFaults;
 use firmware_app::reports::Reports;
+use firmware_app::rest::Rest;
 use firmware_app::telemetry::{Frame, Frames, Sender};
 use haptic_control::Request;
 use heapless::spsc::Consumer;
 
-use crate::boards::{Board, Port, Start, Watchdog};
+use crate::boards::{Board, Memory, Port, Start, Watchdog};
 use crate::link::{COMMIT, Link, VERSION, identity};
 use crate::log;
 
@@ -32,17 +34,18 @@ impl Queues {
 }
 
 /// Both tasks, on a board that has just started.
-pub(crate) fn tasks<W: Watchdog, P: Port>(
+pub(crate) fn tasks<W: Watchdog, P: Port, M: Memory>(
     board: &mut impl Board,
-    start: Start<W, P>,
+    start: Start<W, P, M>,
     queues: &'static mut Queues,
-) -> (ControlTask, IdleTask<W, P>) {
+) -> (ControlTask, IdleTask<W, P, M>) {
     let Start {
         watchdog,
         port,
+        memory,
         reset,
         brown_out_reset,
-        is_calibrated,
+        settings,
     } = start;
     let (to_log, frames) = queues.frames.split();
     let (to_control, messages) = queues.messages.split();
@@ -60,8 +63,14 @@ pub(crate) fn tasks<W: Watchdog, P: Port>(
         env!("FEATURES"),
         identity.protocol
     );
-    if !is_calibrated {
-        defmt::warn!("no settings in flash: zero and gain of the current outputs are nominal");
+    if settings.is_none() {
+        defmt::warn!(
+            "no settings in flash: bring-up has not been done, current limits are at 10 %"
+        );
+    }
+    let settings = settings.unwrap_or_default();
+    if !settings.are_signs_verified() {
+        defmt::warn!("signs not verified: scenes in closed loop are refused");
     }
     if AUTO_ARM && !brown_out_reset {
         defmt::warn!("auto-arm waits for a command: the brown-out level is not 3");
@@ -69,12 +78,14 @@ pub(crate) fn tasks<W: Watchdog, P: Port>(
     let control = ControlTask {
         messages,
         sender: Sender::new(to_log),
-        control: Control::new(&first, reset, brown_out_reset),
+        control: Control::new(&first, reset, brown_out_reset, &settings),
     };
     let mut idle = IdleTask {
         frames,
-        commands: Commands::new(to_control),
+        commands: Commands::new(to_control, settings),
+        rest: Rest::default(),
         watchdog,
+        memory,
         link: Link { port, rtt: false },
         identity,
         port_first: false,
@@ -104,7 +115,11 @@ impl ControlTask {
         } = self;
         let missed = board.begin_tick();
         let sample = board.sample(control.applied().large);
-        let request = control.accept(messages.dequeue());
+        let message = messages.dequeue();
+        if let Some(Message::Settings(settings)) = &message {
+            board.calibrate(settings);
+        }
+        let request = control.accept(message);
         let arms = AUTO_ARM || request == Some(Request::Arm);
         let inputs = Inputs {
             amplifiers_ready: board.amplifiers_ready(),
@@ -124,10 +139,12 @@ impl ControlTask {
 }
 
 /// Everything that may wait: commands, the log, the watchdog.
-pub(crate) struct IdleTask<W, P> {
+pub(crate) struct IdleTask<W, P, M> {
     frames: Consumer<'static, Frame>,
     commands: Commands<'static>,
+    rest: Rest,
     watchdog: W,
+    memory: M,
     link: Link<P>,
     identity: Hello,
     /// Whether the last look began with the port.
@@ -135,7 +152,7 @@ pub(crate) struct IdleTask<W, P> {
     reports: Reports<PortFaults>,
 }
 
-impl<W: Watchdog, P: Port> IdleTask<W, P> {
+impl<W: Watchdog, P: Port, M: Memory> IdleTask<W, P, M> {
     /// One look at the channels. The watchdog is fed if the control task has sent a frame.
     #[inline(always)]
     pub(crate) fn run(&mut self) {
@@ -154,11 +171,28 @@ impl<W: Watchdog, P: Port> IdleTask<W, P> {
             });
         }
         link.rtt = commands.is_used(Channel::Rtt);
-        if let Some(counts) = commands.asked() {
-            link.send(self.identity);
-            link.rejected(counts);
+        if commands.take_arms() {
+            self.rest.arms();
         }
-        if log::frames(&mut self.frames, link) {
+        let asked = commands.asked();
+        if asked.identity {
+            link.send(self.identity);
+            link.rejected(commands.rejected());
+        }
+        if asked.settings {
+            link.settings(commands.settings());
+        }
+        if asked.store {
+            let saved = if self.rest.is_certain() {
+                self.memory.save(commands.settings())
+            } else {
+                Saved::Enabled
+            };
+            link.send(Stored {
+                outcome: saved as u8,
+            });
+        }
+        if log::frames(&mut self.frames, link, &mut self.rest) {
             self.watchdog.feed();
             firmware_rt::undo_debugger();
             if let Some([before, now]) = commands.report() {

@@ -2,6 +2,7 @@
 
 use estimator_core::{Count, Sample, Scale, VelocityEstimator};
 
+use crate::limits::CurrentScale;
 use crate::need::{Need, Senses};
 use crate::rig::{AccelerationScale, AngleScale, Rig};
 use crate::scene::Scene;
@@ -126,28 +127,60 @@ where
             handle: HandleNeed::<S>::map(HandleNeed::<S>::as_ref(&self.handle), |(handle, _)| {
                 handle.start(&handle_sample)
             }),
-            transient: S::Transient::make(TransientState::default),
+            transient: S::Transient::map(
+                S::Transient::as_ref(&self.transient),
+                TransientStage::start,
+            ),
             origin: first.coupled,
         }
     }
 
     /// Restarts at rest at this sample, to which angles are then relative. The choice among several
-    /// estimators does not change.
+    /// estimators and the scale of the currents do not change.
     pub fn restart(&self, state: &mut ControllerState<S, L, H>, first: &Sample) {
         let mut fresh = self.start(first);
         S::Continuous::zip(
             S::Continuous::zip(
                 S::Continuous::as_mut(&mut fresh.continuous),
                 S::Continuous::as_mut(&mut state.continuous),
-                |fresh, before| (&mut fresh.0, &mut before.0),
+                |fresh, before| (fresh, before),
             ),
             S::Continuous::as_ref(&self.continuous),
-            |(fresh, before), (large, ..)| {
-                large.restart(before, first);
-                fresh.clone_from(before);
+            |(fresh, before), (large, _, stage)| {
+                large.restart(&mut before.0, first);
+                fresh.0.clone_from(&before.0);
+                stage.restart(&mut before.1, RadPerS(0.0));
+                fresh.1 = before.1;
+            },
+        );
+        S::Transient::zip(
+            S::Transient::zip(
+                S::Transient::as_mut(&mut fresh.transient),
+                S::Transient::as_mut(&mut state.transient),
+                |fresh, before| (fresh, before),
+            ),
+            S::Transient::as_ref(&self.transient),
+            |(fresh, before), stage| {
+                stage.restart(before);
+                *fresh = *before;
             },
         );
         *state = fresh;
+    }
+
+    /// Scales the limits of both currents, from the next tick on. The currents of an open loop have no
+    /// limits here.
+    pub fn scale(&self, state: &mut ControllerState<S, L, H>, scale: CurrentScale) {
+        S::Continuous::zip(
+            S::Continuous::as_ref(&self.continuous),
+            S::Continuous::as_mut(&mut state.continuous),
+            |(_, _, stage), (_, state)| stage.scale(state, scale),
+        );
+        S::Transient::zip(
+            S::Transient::as_ref(&self.transient),
+            S::Transient::as_mut(&mut state.transient),
+            |stage, state| stage.scale(state, scale),
+        );
     }
 
     /// Changes the scene's parameters before the next tick. The slew limit bounds the change of the

@@ -42,7 +42,7 @@ pub use design_error::DesignError;
 pub use device::{DualStage, Motor};
 pub use fingerprint::Fingerprint;
 pub use grid::Grid;
-pub use limits::{CurrentLimits, Currents};
+pub use limits::{CurrentLimits, CurrentScale, Currents};
 pub use margins::Margins;
 pub use monitor::{Monitor, MonitorState};
 pub use need::{Need, Senses, Wanted};

@@ -2,6 +2,8 @@
 
 use estimator_core::Amps;
 
+use crate::device::DualStage;
+
 /// Limits of one motor's current, applied last: NaN becomes zero, the magnitude saturates, and a
 /// tick changes the current by at most the slew limit.
 ///
@@ -30,6 +32,56 @@ impl CurrentLimits {
         }
         let slewed = within(wanted, before - self.slew, before + self.slew);
         within(slewed, -self.largest, self.largest)
+    }
+}
+
+/// The part of the device's current limits that the stages use, 0 to 1.
+///
+/// ```
+/// use haptic_control::CurrentScale;
+/// assert_eq!(CurrentScale::FULL, CurrentScale::new(1.0).unwrap());
+/// assert!(CurrentScale::new(1.1).is_none() && CurrentScale::new(f32::NAN).is_none());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurrentScale(f32);
+
+impl CurrentScale {
+    /// No current.
+    pub const NONE: Self = Self(0.0);
+    /// The limits of the device.
+    pub const FULL: Self = Self(1.0);
+
+    /// This part of the limits; `None` unless it is 0 to 1.
+    #[must_use]
+    pub const fn new(part: f32) -> Option<Self> {
+        if 0.0 <= part && part <= 1.0 {
+            Some(Self(part))
+        } else {
+            None
+        }
+    }
+}
+
+impl CurrentScale {
+    /// Currents within this part of a device's limits. The stages have limits of their own; this is for the
+    /// currents of an open loop.
+    #[must_use]
+    pub fn within(self, device: &DualStage, currents: Currents) -> Currents {
+        let limited = |current: Amps, limit: f64| {
+            let largest = limit as f32 * self.0;
+            Amps::new(within(current.get(), -largest, largest))
+        };
+        Currents {
+            large: limited(currents.large, device.large.current_limit),
+            small: limited(currents.small, device.small.current_limit),
+        }
+    }
+}
+
+impl CurrentLimits {
+    /// The largest current at a scale, A.
+    pub(crate) const fn largest_at(&self, scale: CurrentScale) -> f32 {
+        self.largest * scale.0
     }
 }
 

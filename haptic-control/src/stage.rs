@@ -3,7 +3,7 @@
 use estimator_core::Amps;
 
 use crate::device::DualStage;
-use crate::limits::{CurrentLimits, within};
+use crate::limits::{CurrentLimits, CurrentScale, within};
 use crate::monitor::LARGE_OVERSPEED;
 use crate::rst::{Rst, RstState};
 use crate::rst_design::RstDesign;
@@ -40,10 +40,19 @@ pub struct ContinuousStage {
 pub struct ContinuousState {
     rst: RstState,
     current: f32,
+    /// Largest current, A.
+    largest: f32,
     /// The commanded torque, limited by the largest velocity of the large motor, N·m.
     asked: f32,
     /// Both halves of the tracking filter, for `asked`.
     expected: [f32; 2],
+}
+
+impl ContinuousState {
+    /// Largest current, A.
+    pub(crate) const fn largest_current(&self) -> f32 {
+        self.largest
+    }
 }
 
 /// Largest commanded velocity of the large motor, rad/s. The rest up to the monitor's limit is for
@@ -92,20 +101,29 @@ impl ContinuousStage {
         }
     }
 
-    /// Largest current, A.
-    pub(crate) const fn largest_current(&self) -> f32 {
-        self.limits.largest
-    }
-
-    /// State with no current, the large motor at a velocity.
+    /// State with no current and the limits of the device, the large motor at a velocity.
     #[must_use]
     pub const fn start(&self, large: RadPerS) -> ContinuousState {
         ContinuousState {
             rst: self.rst.start(large),
             current: 0.0,
+            largest: self.limits.largest,
             asked: 0.0,
             expected: [0.0; 2],
         }
+    }
+
+    /// Starts again with no current. The scale of the limit stays.
+    pub fn restart(&self, state: &mut ContinuousState, large: RadPerS) {
+        *state = ContinuousState {
+            largest: state.largest,
+            ..self.start(large)
+        };
+    }
+
+    /// Scales the limit of the current, from the next tick on.
+    pub fn scale(&self, state: &mut ContinuousState, scale: CurrentScale) {
+        state.largest = self.limits.largest_at(scale);
     }
 
     /// One tick: the large motor's current for a commanded torque.
@@ -128,7 +146,11 @@ impl ContinuousStage {
         let direction = within(state.rst.filtered().0 * self.per_fade, -1.0, 1.0);
         let forward = self.friction * direction + self.damping * handle.0;
         let wanted = looped + forward;
-        state.current = self.limits.applied(wanted, state.current);
+        let limits = CurrentLimits {
+            largest: state.largest,
+            ..self.limits
+        };
+        state.current = limits.applied(wanted, state.current);
         if state.current != wanted {
             state.rst.limited(state.current - forward);
         }
@@ -164,10 +186,19 @@ pub struct TransientStage {
     per_fade: f32,
 }
 
-/// State of a [`TransientStage`]: the current of the last tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// State of a [`TransientStage`].
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransientState {
     current: f32,
+    /// Largest current, A.
+    largest: f32,
+}
+
+impl TransientState {
+    /// Largest current, A.
+    pub(crate) const fn largest_current(&self) -> f32 {
+        self.largest
+    }
 }
 
 impl TransientStage {
@@ -185,9 +216,23 @@ impl TransientStage {
         }
     }
 
-    /// Largest current, A.
-    pub(crate) const fn largest_current(&self) -> f32 {
-        self.limits.largest
+    /// State with no current and the limits of the device.
+    #[must_use]
+    pub const fn start(&self) -> TransientState {
+        TransientState {
+            current: 0.0,
+            largest: self.limits.largest,
+        }
+    }
+
+    /// Starts again with no current. The scale of the limit stays.
+    pub fn restart(&self, state: &mut TransientState) {
+        state.current = 0.0;
+    }
+
+    /// Scales the limit of the current, from the next tick on.
+    pub fn scale(&self, state: &mut TransientState, scale: CurrentScale) {
+        state.largest = self.limits.largest_at(scale);
     }
 
     /// One tick: the small motor's current for the torque that is missing.
@@ -200,7 +245,11 @@ impl TransientStage {
     ) -> Amps {
         let friction = self.friction.0 * within(handle.0 * self.per_fade, -1.0, 1.0);
         let wanted = (missing.0 + friction) * self.amps_per_nm;
-        state.current = self.limits.applied(wanted, state.current);
+        let limits = CurrentLimits {
+            largest: state.largest,
+            ..self.limits
+        };
+        state.current = limits.applied(wanted, state.current);
         Amps::new(state.current)
     }
 }

@@ -2,7 +2,7 @@
 
 use estimator_core::{AccelerationEstimator, Amps, Count, Hertz, Sample, VelocityEstimator};
 
-use crate::limits::{Currents, within};
+use crate::limits::{CurrentScale, Currents, within};
 use crate::need::{Need, Senses};
 use crate::rig::Rig;
 use crate::scene::*;
@@ -147,7 +147,7 @@ where
                 large: self.large.start(first),
                 continuous: self.rig.continuous.start(RadPerS(0.0)),
                 handle: self.handle.start(&Sample::new(first.coupled)),
-                transient: TransientState::default(),
+                transient: self.rig.transient.start(),
                 live: [false; 3],
             },
             origin: first.coupled,
@@ -157,13 +157,31 @@ where
         }
     }
 
-    /// Restarts at this sample, as at the first one. The choice among several estimators does not
-    /// change.
+    /// Restarts at this sample, as at the first one. The choice among several estimators and the scale
+    /// of the currents do not change.
     pub fn restart(&self, state: &mut SwitchboardState<L, H>, first: &Sample) {
         let mut fresh = self.start(first);
-        self.large.restart(&mut state.shared.large, first);
-        fresh.shared.large.clone_from(&state.shared.large);
+        let Shared {
+            large,
+            continuous,
+            transient,
+            ..
+        } = &mut state.shared;
+        self.large.restart(large, first);
+        fresh.shared.large.clone_from(large);
+        self.rig.continuous.restart(continuous, RadPerS(0.0));
+        fresh.shared.continuous = *continuous;
+        self.rig.transient.restart(transient);
+        fresh.shared.transient = *transient;
         *state = fresh;
+    }
+
+    /// Scales the limits of both currents, from the next tick on.
+    pub fn scale(&self, state: &mut SwitchboardState<L, H>, scale: CurrentScale) {
+        self.rig
+            .continuous
+            .scale(&mut state.shared.continuous, scale);
+        self.rig.transient.scale(&mut state.shared.transient, scale);
     }
 
     /// Changes the scene before the next tick; `sample` is the latest sample.
@@ -193,8 +211,8 @@ where
         let wanted = [wanted.large.get(), wanted.small.get()];
         let before = [state.applied.large.get(), state.applied.small.get()];
         let largest = [
-            self.rig.continuous.largest_current(),
-            self.rig.transient.largest_current(),
+            state.shared.continuous.largest_current(),
+            state.shared.transient.largest_current(),
         ];
         let mut applied = [0.0; 2];
         for (i, applied) in applied.iter_mut().enumerate() {
@@ -225,13 +243,14 @@ where
         ];
         if wanted[0] && !shared.live[0] {
             self.large.restart(&mut shared.large, sample);
-            shared.continuous = self.rig.continuous.start(RadPerS(0.0));
+            let continuous = &self.rig.continuous;
+            continuous.restart(&mut shared.continuous, RadPerS(0.0));
         }
         if wanted[1] && !shared.live[1] {
             shared.handle = self.handle.start(&Sample::new(sample.coupled));
         }
         if wanted[2] && !shared.live[2] {
-            shared.transient = TransientState::default();
+            self.rig.transient.restart(&mut shared.transient);
         }
         shared.live = wanted;
         let parts: Parts<'_, S, L, H> = Parts {

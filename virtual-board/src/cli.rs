@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Parser;
+use drivers::Settings;
 use experiments::closed_loop::Hand;
 use haptic_control::SceneKind;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -68,6 +69,10 @@ struct Arguments {
     #[arg(long, value_name = "CODES", default_value_t = 0, allow_negative_numbers = true,
         value_parser = clap::value_parser!(i16).range(-100..=100))]
     dac_offset: i16,
+    /// Erased flash, as before the bring-up: current limits at 10 %, no scene in closed loop [default: the
+    /// settings of a board after its bring-up]
+    #[arg(long)]
+    blank: bool,
     /// Inject a fault of the list below at S seconds, for example stuck-a@0.5; repeatable
     #[arg(long, value_name = "NAME@S", value_parser = timed::<Fault>)]
     fault: Vec<(f64, Fault)>,
@@ -91,7 +96,7 @@ struct Arguments {
     /// Print only the cost of a control tick in every scene, each run for --seconds, at most 1 s:
     /// instructions, estimated cycles, and the control rate at which the ticks use half of the
     /// processor's time
-    #[arg(long, conflicts_with_all = ["device", "scene", "hand", "fault", "record", "rtt", "tune", "estimator", "dac_offset"])]
+    #[arg(long, conflicts_with_all = ["device", "scene", "hand", "fault", "record", "rtt", "tune", "estimator", "dac_offset", "blank"])]
     budget: bool,
 }
 
@@ -218,6 +223,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         faults: arguments.fault.clone(),
         commands,
         dac_errors: [DacError::offset(f64::from(arguments.dac_offset)); 2],
+        settings: (!arguments.blank).then_some(Settings::COMMISSIONED),
         ..Setup::default()
     };
     if let Some(port) = arguments.link {

@@ -33,19 +33,21 @@ fn raw(bytes: Vec<u8>, address: u64) -> Result<Image, String> {
         .map_err(|error| format!("flash at {address:#x}: {error}"))
 }
 
-/// An image of the flash behind the firmware, in which these settings are the newest.
+/// An image of the flash behind the firmware, in which these settings are the newest, after so many
+/// records of older ones.
 ///
 /// # Errors
 /// One line if they do not fit.
-pub(crate) fn with(settings: &Settings) -> Result<Image, String> {
+pub(crate) fn with(settings: &Settings, older: u32) -> Result<Image, String> {
     let mut flash = Sectors(vec![0xFF; 2 * SECTOR as usize]);
     let full = |error| format!("settings in flash: {error:?}");
     let opened = Store::<SETTINGS_BYTES>::open(&mut flash, SECTORS);
     let (mut store, _) = opened.map_err(SaveError::Flash).map_err(full)?;
-    // An older record is there too.
-    for record in [&Settings::DEFAULT, settings] {
-        store.save(&mut flash, &record.encode()).map_err(full)?;
+    for _ in 0..older {
+        let record = Settings::DEFAULT.encode();
+        store.save(&mut flash, &record).map_err(full)?;
     }
+    store.save(&mut flash, &settings.encode()).map_err(full)?;
     raw(flash.0, SECTOR_12)
 }
 

@@ -93,6 +93,8 @@ pub struct Setup {
     pub dac_errors: [DacError; 2],
     /// Settings in the board's flash; `None`: the flash is erased.
     pub settings: Option<Settings>,
+    /// Number of records of older settings before them.
+    pub older_records: u32,
     /// Additional loads and stores of the core, and their times, s.
     pub accesses: Vec<(f64, CoreAccess)>,
     /// Instructions per second of virtual time.
@@ -121,7 +123,8 @@ impl Default for Setup {
             crystal_hz: 8_000_000,
             crystal_from_s: 0.0,
             dac_errors: [DacError::NONE; 2],
-            settings: None,
+            settings: Some(Settings::COMMISSIONED),
+            older_records: 1,
             accesses: Vec::new(),
             instructions_per_second: NonZeroU64::new(CORE_HZ).expect("not zero"),
             follow: BTreeSet::new(),
@@ -328,7 +331,7 @@ pub(crate) fn emulate(
     let since = Instant::now();
     let mut images = vec![image.placed.clone(), flash::size()?];
     if let Some(settings) = &setup.settings {
-        images.push(flash::with(settings)?);
+        images.push(flash::with(settings, setup.older_records)?);
     }
     let finished =
         run(session, &Start::new(&images), lockstep).map_err(|error| emulator(&error))?;

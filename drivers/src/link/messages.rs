@@ -189,8 +189,26 @@ macro_rules! all {
                 not_finite: u32;
                 /// Commands whose value is out of bounds.
                 out_of_bounds: u32;
-                /// Commands that name an unknown scene, parameter or estimator.
+                /// Commands that name an unknown scene, parameter, estimator or setting.
                 unknown: u32;
+                /// Selections of a scene in closed loop before the signs were verified.
+                unverified: u32;
+            }
+            /// A setting, as it is now. All of them answer the command `settings`, in the order of their
+            /// numbers.
+            Setting = 7 {
+                /// Number of the setting.
+                number: u8;
+                /// Value, in the setting's unit.
+                value: f32;
+                /// Number of the settings of the image.
+                count: u8;
+            }
+            /// Answer to the command `store`.
+            Stored = 8 {
+                /// Outcome: 0 stored; 1 the amplifiers are enabled or were a moment ago; 2 the flash is full
+                /// until the next reset; 3 the flash refuses; 4 the flash does not hold what was written.
+                outcome: u8;
             }
         }
     };

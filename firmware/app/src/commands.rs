@@ -1,13 +1,13 @@
 //! Commands: from the bytes of a channel to messages for the control task.
 
-use drivers::{Command, Parser};
-use haptic_control::Refusal;
+use drivers::{Command, Parser, Setting, Settings};
+use haptic_control::{Refusal, Request, SceneKind};
 use heapless::spsc::{Producer, Queue};
 
 use crate::control::Message;
 use crate::large::{Large, LargeEstimator as _};
 use crate::reports::Reports;
-use crate::scene::{Settings, TORQUE_SCENE};
+use crate::scene::{Parameters, TORQUE_SCENE};
 
 /// Messages that wait for the control task, which takes one a tick.
 pub type Messages = Queue<Message, 8>;
@@ -37,32 +37,49 @@ pub struct Rejected {
     pub not_finite: u32,
     /// Commands whose value is out of bounds.
     pub out_of_bounds: u32,
-    /// Commands that name an unknown scene, parameter or estimator.
+    /// Commands that name an unknown scene, parameter, estimator or setting.
     pub unknown: u32,
+    /// Selections of a scene in closed loop before the signs were verified.
+    pub unverified: u32,
+}
+
+/// What commands have asked for since the last call of [`Commands::asked`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Asked {
+    /// The identity of the image, and the counts of what was rejected.
+    pub identity: bool,
+    /// All settings.
+    pub settings: bool,
+    /// That the settings are stored.
+    pub store: bool,
 }
 
 /// The receiving end of the command channels. Each channel has a parser of its own, and all of them
 /// feed one queue.
 pub struct Commands<'q> {
     parsers: [Parser; Channel::COUNT],
+    parameters: Parameters,
     settings: Settings,
     queue: Producer<'q, Message>,
     rejected: Rejected,
     reports: Reports<Rejected>,
-    asked: bool,
+    asked: Asked,
+    arms: bool,
     used: [bool; Channel::COUNT],
 }
 
 impl<'q> Commands<'q> {
-    /// A receiver without received bytes.
-    pub fn new(queue: Producer<'q, Message>) -> Self {
+    /// A receiver without received bytes, on a board with these settings.
+    pub fn new(queue: Producer<'q, Message>, settings: Settings) -> Self {
         Self {
             parsers: [Parser::default(); Channel::COUNT],
-            settings: Settings::default(),
+            parameters: Parameters::default(),
+            settings,
             queue,
             rejected: Rejected::default(),
             reports: Reports::default(),
-            asked: false,
+            asked: Asked::default(),
+            arms: false,
             used: [false; Channel::COUNT],
         }
     }
@@ -96,11 +113,28 @@ impl<'q> Commands<'q> {
     /// The message of a command. Scenes are built here, at low priority.
     fn follow(&mut self, command: Command) -> Option<Message> {
         let message = match command {
-            Command::Request(request) => return Some(Message::Request(request)),
-            Command::Identify => {
-                self.asked = true;
+            Command::Request(Request::Select(scene)) if !self.admits(scene) => {
+                let count = &mut self.rejected.unverified;
+                *count = count.wrapping_add(1);
                 return None;
             }
+            Command::Request(request) => {
+                self.arms |= request == Request::Arm;
+                return Some(Message::Request(request));
+            }
+            Command::Identify => {
+                self.asked.identity = true;
+                return None;
+            }
+            Command::Settings => {
+                self.asked.settings = true;
+                return None;
+            }
+            Command::Store => {
+                self.asked.store = true;
+                return None;
+            }
+            Command::Set { setting, value } => self.changed(setting, value),
             Command::Estimator(number) => Large::choice(number)
                 .map(Message::Estimator)
                 .ok_or(Refusal::Unknown),
@@ -122,15 +156,44 @@ impl<'q> Commands<'q> {
     }
 
     fn tuned(&mut self, scene: u8, parameter: u8, value: f32) -> Result<Message, Refusal> {
-        self.settings
+        self.parameters
             .set(scene, parameter, value)
             .map(Message::Tuned)
     }
 
-    /// The counts of now, if a command has asked for the identity of the image since the last call.
-    /// The identity and the counts are the answer.
-    pub fn asked(&mut self) -> Option<Rejected> {
-        core::mem::take(&mut self.asked).then(|| self.rejected())
+    /// Changes a setting.
+    fn changed(&mut self, setting: u8, value: f32) -> Result<Message, Refusal> {
+        let setting = Setting::from_number(setting).ok_or(Refusal::Unknown)?;
+        if !value.is_finite() {
+            return Err(Refusal::NotFinite);
+        }
+        if !self.settings.set(setting, value) {
+            return Err(Refusal::OutOfBounds);
+        }
+        Ok(Message::Settings(self.settings))
+    }
+
+    /// Whether the scene may be selected: a scene in closed loop needs verified signs. The safety machine
+    /// ignores the number of a scene that does not exist.
+    fn admits(&self, scene: u8) -> bool {
+        let kind = SceneKind::ALL.get(usize::from(scene));
+        self.settings.are_signs_verified() || !kind.is_some_and(|kind| kind.is_closed_loop())
+    }
+
+    /// The settings.
+    #[must_use]
+    pub const fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// What commands have asked for since the last call.
+    pub fn asked(&mut self) -> Asked {
+        core::mem::take(&mut self.asked)
+    }
+
+    /// Whether a command has asked to arm since the last call.
+    pub fn take_arms(&mut self) -> bool {
+        core::mem::take(&mut self.arms)
     }
 
     /// The counts of the last report and of now, at every 256th call if they differ. The caller
@@ -139,7 +202,9 @@ impl<'q> Commands<'q> {
         self.reports.take(self.rejected())
     }
 
-    fn rejected(&self) -> Rejected {
+    /// The counts of now.
+    #[must_use]
+    pub fn rejected(&self) -> Rejected {
         let garbage = self.parsers.iter().map(Parser::garbage);
         Rejected {
             garbage: garbage.fold(0, u32::wrapping_add),

@@ -1,12 +1,13 @@
 //! The control task without I/O: from the inputs of a tick to its outputs.
 
+use drivers::Settings;
 use estimator_core::Sample;
 use haptic_control::{
     Action, Currents, Findings, Mode, Monitor, MonitorState, Request, Safety, SafetyState, Stop,
 };
 
 use crate::config::{AUTO_ARM, DEVICE, RATE, RATE_HZ, SILENCE};
-use crate::large::Choice;
+use crate::large::{Choice, Large, LargeEstimator as _};
 use crate::scene::{Core, FIRST, SCENES, Tuned};
 use crate::telemetry::Record;
 
@@ -51,6 +52,8 @@ pub enum Message {
     Tuned(Tuned),
     /// Selection of the large motor's estimator. An image of one estimator has no such message.
     Estimator(Choice),
+    /// Changed settings.
+    Settings(Settings),
 }
 
 /// The control core under its monitor and safety state.
@@ -63,8 +66,8 @@ pub struct Control {
     /// Ticks so far, modulo 2^32.
     ticks: u32,
     overruns: u32,
-    /// Whether the supply's brown-out resets the chip.
-    brown_out_reset: bool,
+    /// Whether an image that arms without a command does so.
+    auto_arm: bool,
 }
 
 impl Control {
@@ -72,16 +75,23 @@ impl Control {
     ///
     /// `brown_out_reset` states whether a falling supply resets the chip with a cause of its own.
     /// Without this reset a dip of the supply looks like power-on. An image that arms by itself
-    /// then waits for a command, so that the device does not drive again after a dip.
-    pub fn new(first: &Sample, reset: Stop, brown_out_reset: bool) -> Self {
+    /// then waits for a command, so that the device does not drive again after a dip. It also waits
+    /// until the signs have been verified.
+    pub fn new(first: &Sample, reset: Stop, brown_out_reset: bool, settings: &Settings) -> Self {
+        let mut core = Core::start(first);
+        core.scale(settings.current_scale());
+        // A number that this image does not have leaves its first estimator in charge.
+        if let Some(choice) = Large::choice(settings.estimator()) {
+            core.choose(choice);
+        }
         Self {
-            core: Core::start(first),
+            core,
             monitor: MONITOR.start(first),
             safety: SAFETY.start(reset),
             action: Action::default(),
             ticks: 0,
             overruns: 0,
-            brown_out_reset,
+            auto_arm: AUTO_ARM && brown_out_reset && settings.are_signs_verified(),
         }
     }
 
@@ -101,6 +111,10 @@ impl Control {
             }
             Message::Estimator(choice) => {
                 self.core.choose(choice);
+                Some(Request::KeepAlive)
+            }
+            Message::Settings(settings) => {
+                self.core.scale(settings.current_scale());
                 Some(Request::KeepAlive)
             }
         }
@@ -156,7 +170,7 @@ impl Control {
     fn auto_arm_request(&self) -> Option<Request> {
         const ARM: u32 = RATE_HZ / 10;
         const SELECT: u32 = ARM - 1;
-        if !(AUTO_ARM && self.brown_out_reset) {
+        if !self.auto_arm {
             return None;
         }
         match (self.ticks, self.safety.mode()) {

@@ -8,5 +8,6 @@ pub mod control;
 pub mod large;
 pub mod port;
 pub mod reports;
+pub mod rest;
 pub mod scene;
 pub mod telemetry;

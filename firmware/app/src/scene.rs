@@ -86,10 +86,10 @@ haptic_control::scenes!(image);
 #[cfg(one_scene)]
 mod one;
 #[cfg(one_scene)]
-pub use one::{Core, Settings, Tuned};
+pub use one::{Core, Parameters, Tuned};
 
 #[cfg(not(one_scene))]
-pub use all::{Core, Settings, Tuned};
+pub use all::{Core, Parameters, Tuned};
 /// Number of the scene that an image that arms without a command selects: free-air.
 #[cfg(not(one_scene))]
 pub const FIRST: u8 = SceneKind::FreeAir.number();

@@ -4,6 +4,7 @@
 mod edge;
 mod enables;
 mod encoder;
+mod memory;
 mod parts;
 mod port;
 mod reset;
@@ -13,6 +14,7 @@ firmware_rt::emergency_outputs!(timer: enables::TIMER);
 
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
+    use super::memory::Flash;
     use super::parts::{Guard, Parts, start};
     use super::port::Usart;
     use crate::tasks::{ControlTask, IdleTask, Queues, tasks};
@@ -25,7 +27,7 @@ mod app {
         parts: Parts,
         control: ControlTask,
 
-        idle: IdleTask<Guard, Usart>,
+        idle: IdleTask<Guard, Usart, Flash>,
     }
 
     #[init(local = [queues: Queues = Queues::new()])]

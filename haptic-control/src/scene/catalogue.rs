@@ -242,6 +242,14 @@ impl SceneKind {
         self.facts().name
     }
 
+    /// Whether the scene's currents follow the encoders: with an encoder or a current of the wrong sign
+    /// the feedback is positive.
+    #[must_use]
+    pub const fn is_closed_loop(self) -> bool {
+        let needs = self.facts().needs;
+        needs.continuous || needs.transient
+    }
+
     /// The virtual environments, in the order of their numbers.
     pub fn environments() -> impl Iterator<Item = Self> + Clone {
         Self::ALL

@@ -2,6 +2,7 @@
 
 mod bench;
 mod controller;
+mod current_scale;
 mod design;
 mod excite;
 mod margins;

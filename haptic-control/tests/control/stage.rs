@@ -3,7 +3,7 @@
 use estimator_core::{Amps, Counts, CountsPerTickSquared, Hertz};
 use haptic_control::{
     ContinuousStage, CurrentLimits, DesignError, DualStage, LoopPoles, NewtonMetres, RadPerS, Rig,
-    Rst, RstDesign, TransientStage, TransientState,
+    Rst, RstDesign, TransientStage,
 };
 
 const RATE: Hertz = Hertz(1e3);
@@ -112,11 +112,7 @@ fn small_current_has_the_torque_and_four_fifths_of_the_friction() {
             (0.13, 1.0),
             (-5.0, -1.0),
         ] {
-            let current = stage.update(
-                &mut TransientState::default(),
-                NewtonMetres(missing),
-                RadPerS(handle),
-            );
+            let current = stage.update(&mut stage.start(), NewtonMetres(missing), RadPerS(handle));
             let torque = f64::from(missing) + 0.8 * DEVICE.small.coulomb_friction * direction;
             near(current.get(), torque / DEVICE.small.torque_constant, 1e-6);
         }
@@ -129,7 +125,7 @@ fn currents_are_limited_in_size_and_slew() {
         let rig = Rig::new(&DEVICE, Hertz(rate), LoopPoles::DEFAULT).unwrap();
         for sign in [1.0, -1.0] {
             let mut large = rig.continuous.start(RadPerS(0.0));
-            let mut small = TransientState::default();
+            let mut small = rig.transient.start();
             let (mut rise, mut most) = ([0.0_f32; 2], [0.0_f32; 2]);
             let mut before = [0.0; 2];
             for _ in 0..2000 {

@@ -195,7 +195,7 @@ fn unknown_estimator_is_refused() {
     setup.commands.push((0.5, Command::Estimator(2)));
     let refused = |run: &Outcome| {
         let mut log = run.telemetry.log.iter();
-        log.any(|line| line == "refused not-finite=0 out-of-bounds=0 unknown=1")
+        log.any(|line| line == "refused not-finite=0 out-of-bounds=0 unknown=1 unverified=0")
     };
     let two = run(&setup);
     assert!(refused(&two), "{:?}", two.telemetry.log);

@@ -101,10 +101,10 @@ fn a_press_of_10_n_switches_no_scene_off() {
 
 /// Mean torque that a still hand feels in free air, N·m, with these errors of the small motor's channel
 /// and of the large one's.
-fn mean_torque(errors: [DacError; 2], settings: Option<Settings>) -> f64 {
+fn mean_torque(errors: [DacError; 2], settings: Settings) -> f64 {
     let run = run(&Setup {
         dac_errors: errors,
-        settings,
+        settings: Some(settings),
         ..of_scene(SceneKind::FreeAir, Hand::Still, 3.0)
     });
     let last = run.telemetry.frames.last().expect("frames");
@@ -118,7 +118,7 @@ fn mean_torque(errors: [DacError; 2], settings: Option<Settings>) -> f64 {
 /// of it felt, and nothing stops.
 #[test]
 fn dac_offset_causes_a_force_and_no_stop() {
-    let mean = |offset| mean_torque([DacError::offset(offset); 2], None);
+    let mean = |offset| mean_torque([DacError::offset(offset); 2], Settings::COMMISSIONED);
     let [up, down] = [15.0, -15.0].map(mean);
     let device = Device::default();
     let small = 15.0 * AMPS_PER_CODE[1] * device.stages.small.torque_constant;
@@ -130,10 +130,10 @@ fn dac_offset_causes_a_force_and_no_stop() {
 /// cost.
 #[test]
 fn settings_in_flash_take_zero_and_gain_of_the_dac_into_account() {
-    let perfect = mean_torque([DacError::NONE; 2], None);
+    let perfect = mean_torque([DacError::NONE; 2], Settings::COMMISSIONED);
     for (offset, gain) in [(15.3, 1.04), (-15.3, 0.96)] {
         let errors = [DacError { offset, gain }; 2];
-        let mut settings = Settings::DEFAULT;
+        let mut settings = Settings::COMMISSIONED;
         for (setting, value) in [
             (Setting::ZeroLarge, 2048.0 - offset),
             (Setting::ZeroSmall, 2048.0 - offset),
@@ -146,8 +146,10 @@ fn settings_in_flash_take_zero_and_gain_of_the_dac_into_account() {
             let torque = mean_torque(errors, settings) - perfect;
             2e3 * torque.abs() / Device::default().handle.diameter_m
         };
-        let [without, with] = [None, Some(settings)].map(force);
-        println!("{offset} codes, gain {gain}: {without} mN without settings, {with} mN with");
+        let [without, with] = [Settings::COMMISSIONED, settings].map(force);
+        println!(
+            "{offset} codes, gain {gain}: {without} mN without them in the settings, {with} mN with"
+        );
         assert!(without > 5.0 && with < 1.0, "{without} {with} mN");
     }
 }

@@ -33,7 +33,7 @@ fn messages(bytes: impl IntoIterator<Item = u8>) -> (Vec<Message>, u32) {
 }
 
 /// Messages of the port.
-fn of_port(run: &Outcome) -> (Vec<Message>, u32) {
+pub(crate) fn of_port(run: &Outcome) -> (Vec<Message>, u32) {
     messages(run.port.iter().map(|(_, byte)| *byte))
 }
 

@@ -17,4 +17,5 @@ mod record;
 mod recording;
 mod reference;
 mod scores;
+mod settings;
 mod size;

@@ -1,5 +1,6 @@
 //! The same control on the host, fed with what the image read: the same bits.
 
+use drivers::Settings;
 use estimator_core::{Amps, Count, Sample, VelocityEstimator};
 use experiments::closed_loop::Hand;
 use firmware_app::config::RATE;
@@ -65,7 +66,7 @@ fn requests(run: &Outcome) -> Vec<(usize, Heard)> {
 /// reports.
 pub(crate) fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
     let (mut samples, first) = Samples::new(run);
-    let mut control = Control::new(&first, Stop::None, true);
+    let mut control = Control::new(&first, Stop::None, true, &Settings::COMMISSIONED);
     let requests = requests(run);
     let step = |(k, tick): (usize, &ControlTick)| {
         let sample = samples.next(tick, control.applied().large);

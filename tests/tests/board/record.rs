@@ -147,7 +147,7 @@ fn torque_set_point_is_rendered_bounded_and_ends_after_the_command_timeout() {
     assert_eq!(torque_at(&run, 1.45), -0.003);
     assert_eq!(
         refusals(&run),
-        Some("refused not-finite=2 out-of-bounds=1 unknown=0")
+        Some("refused not-finite=2 out-of-bounds=1 unknown=0 unverified=0")
     );
     // Half a second after the last word the scene is off, and cause 13 says why.
     let last = run.telemetry.frames.last().unwrap();
@@ -195,7 +195,7 @@ fn tuning_a_wall_in_contact_causes_no_jump_of_the_torque() {
     assert!(total > 3e-3 && step < 0.3 * total, "{step} of {total} N.m");
     assert_eq!(
         refusals(&run),
-        Some("refused not-finite=0 out-of-bounds=1 unknown=1")
+        Some("refused not-finite=0 out-of-bounds=1 unknown=1 unverified=0")
     );
     assert_eq!(frames.last().unwrap().state, Mode::Running);
 }

@@ -58,6 +58,7 @@ fn link_bytes() -> impl Strategy<Value = Vec<u8>> {
             not_finite: 2,
             out_of_bounds: 3,
             unknown: 4,
+            unverified: 5,
         }
         .into(),
     );

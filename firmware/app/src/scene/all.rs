@@ -1,7 +1,7 @@
 //! An image of all scenes, one of which is on.
 
 use estimator_core::{Sample, preset};
-use haptic_control::{Action, AnyScene, Refusal, Switchboard, SwitchboardState};
+use haptic_control::{Action, AnyScene, CurrentScale, Refusal, Switchboard, SwitchboardState};
 
 use super::{BOUNDS, Estimation, HANDLE, Handle, RIG, SCENES, TORQUE_SCENE};
 use crate::config::{DEVICE, RATE};
@@ -21,16 +21,16 @@ pub struct Tuned {
 }
 
 /// Parameters of the scenes, kept at the lowest priority.
-pub struct Settings(Scenes);
+pub struct Parameters(Scenes);
 
 /// The presets.
-impl Default for Settings {
+impl Default for Parameters {
     fn default() -> Self {
         Self(SCENES_BY_NUMBER)
     }
 }
 
-impl Settings {
+impl Parameters {
     /// Sets a parameter, within bounds.
     pub fn set(&mut self, number: u8, parameter: u8, value: f32) -> Result<Tuned, Refusal> {
         let Some(known) = self.0.get_mut(usize::from(number)) else {
@@ -84,6 +84,11 @@ impl Core {
         if self.on == tuned.number {
             SWITCHBOARD.retune(&mut self.state, tuned.scene);
         }
+    }
+
+    /// Scales the limits of the currents.
+    pub fn scale(&mut self, scale: CurrentScale) {
+        SWITCHBOARD.scale(&mut self.state, scale);
     }
 
     /// Selects the estimator of the large motor.

@@ -1,9 +1,12 @@
 //! An image of one scene, without code and memory of other scenes.
 
 use estimator_core::Sample;
-use haptic_control::{Action, Controller, ControllerState, Refusal, Tunable};
+use haptic_control::{
+    Action, Controller, ControllerState, CurrentScale, Refusal, SceneKind, Tunable,
+};
 
 use super::{BOUNDS, Estimation, FIRST, HANDLE, Handle, RIG, THE_SCENE, TORQUE_SCENE, TheScene};
+use crate::config::DEVICE;
 use crate::large::{Choice, LARGE, Large, LargeEstimator as _, Learned};
 
 /// The scene with changed parameters, sent to the control task.
@@ -11,16 +14,16 @@ use crate::large::{Choice, LARGE, Large, LargeEstimator as _, Learned};
 pub struct Tuned(TheScene);
 
 /// Parameters of the scene, kept at the lowest priority.
-pub struct Settings(TheScene);
+pub struct Parameters(TheScene);
 
 /// The preset.
-impl Default for Settings {
+impl Default for Parameters {
     fn default() -> Self {
         Self(THE_SCENE)
     }
 }
 
-impl Settings {
+impl Parameters {
     /// Sets a parameter, within bounds.
     pub fn set(&mut self, number: u8, parameter: u8, value: f32) -> Result<Tuned, Refusal> {
         if number != FIRST {
@@ -36,7 +39,11 @@ pub struct Core {
     controller: Controller<TheScene, Large, Handle>,
     state: ControllerState<TheScene, Large, Handle>,
     on: bool,
+    scale: CurrentScale,
 }
+
+/// Whether the scene commands its currents by itself. The stages limit all others.
+const OPEN_LOOP: bool = FIRST == SceneKind::Excite.number();
 
 impl Core {
     /// State at rest at the first sample, off.
@@ -46,6 +53,7 @@ impl Core {
             state: controller.start(first),
             controller,
             on: false,
+            scale: CurrentScale::FULL,
         }
     }
 
@@ -72,6 +80,12 @@ impl Core {
         self.controller.retune(tuned.0);
     }
 
+    /// Scales the limits of the currents.
+    pub fn scale(&mut self, scale: CurrentScale) {
+        self.controller.scale(&mut self.state, scale);
+        self.scale = scale;
+    }
+
     /// Selects the estimator of the large motor.
     pub fn choose(&mut self, choice: Choice) {
         if let Some(state) = self.state.large_mut() {
@@ -81,11 +95,14 @@ impl Core {
 
     /// One tick.
     pub fn step(&mut self, sample: &Sample) -> Action {
-        if self.on {
-            self.controller.step(&mut self.state, sample)
-        } else {
-            Action::default()
+        if !self.on {
+            return Action::default();
         }
+        let mut action = self.controller.step(&mut self.state, sample);
+        if OPEN_LOOP {
+            action.currents = self.scale.within(&DEVICE, action.currents);
+        }
+        action
     }
 
     /// Confidence and number of the large motor's estimator after the latest tick.

@@ -2,6 +2,7 @@
 
 use core::f64::consts::TAU;
 
+use drivers::Settings;
 use estimator_core::{Amps, Count, Sample};
 use firmware_app::commands::{Channel, Commands, Messages};
 use firmware_app::config::{DEVICE, RATE_HZ};
@@ -44,10 +45,15 @@ impl Bench {
         Self::after(Stop::None, true)
     }
 
+    /// After a reset, with the settings of a board after its bring-up.
     pub(crate) fn after(reset: Stop, brown_out_reset: bool) -> Self {
+        Self::with(&Settings::COMMISSIONED, reset, brown_out_reset)
+    }
+
+    pub(crate) fn with(settings: &Settings, reset: Stop, brown_out_reset: bool) -> Self {
         let first = Sample::new(Count(0)).with_coupled(Count(0));
         Self {
-            control: Control::new(&first, reset, brown_out_reset),
+            control: Control::new(&first, reset, brown_out_reset, settings),
             handle: 0.0,
             large: 0.0,
             velocity: 0.0,
@@ -125,7 +131,7 @@ impl Bench {
 pub(crate) fn messages(frames: &[[u8; 11]]) -> Vec<Message> {
     let mut queue = Messages::new();
     let (producer, mut consumer) = queue.split();
-    let mut commands = Commands::new(producer);
+    let mut commands = Commands::new(producer, Settings::COMMISSIONED);
     let mut bytes = frames.concat().into_iter();
     let mut messages = Vec::new();
     while bytes.len() > 0 {

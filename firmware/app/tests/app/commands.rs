@@ -1,5 +1,5 @@
-use drivers::{Command, encode};
-use firmware_app::commands::{Channel, Commands, Messages, Rejected};
+use drivers::{Command, Settings, encode};
+use firmware_app::commands::{Asked, Channel, Commands, Messages, Rejected};
 use firmware_app::control::Message;
 use firmware_app::large::{Large, LargeEstimator as _};
 use firmware_app::scene::FIRST;
@@ -11,7 +11,7 @@ use crate::bench::messages;
 fn rejected(bytes: &[u8]) -> Option<[Rejected; 2]> {
     let mut queue = Messages::new();
     let (producer, mut consumer) = queue.split();
-    let mut commands = Commands::new(producer);
+    let mut commands = Commands::new(producer, Settings::COMMISSIONED);
     let mut bytes = bytes.iter().copied();
     while bytes.len() > 0 {
         commands.receive(Channel::Rtt, || bytes.next());
@@ -37,7 +37,7 @@ fn poll_reads_at_most_64_bytes_and_only_if_the_queue_has_room() {
     let arm = encode(Command::Request(Request::Arm));
     let mut queue = Messages::new();
     let (producer, mut consumer) = queue.split();
-    let mut commands = Commands::new(producer);
+    let mut commands = Commands::new(producer, Settings::COMMISSIONED);
     let mut bytes = arm.repeat(20).into_iter();
     commands.receive(Channel::Rtt, || bytes.next());
     assert_eq!(bytes.len(), 20 * 11 - 64);
@@ -105,7 +105,7 @@ fn rejected_commands_are_counted_by_reason() {
 fn counts_are_reported_once() {
     let mut queue = Messages::new();
     let (producer, _consumer) = queue.split();
-    let mut commands = Commands::new(producer);
+    let mut commands = Commands::new(producer, Settings::COMMISSIONED);
     let mut bytes = [1].into_iter();
     commands.receive(Channel::Rtt, || bytes.next());
     let reports = (0..1024).filter_map(|_| commands.report()).count();
@@ -123,8 +123,8 @@ fn counts_are_reported_once() {
 fn identity_is_asked_once_after_the_commands_before_it() {
     let mut queue = Messages::new();
     let (producer, _consumer) = queue.split();
-    let mut commands = Commands::new(producer);
-    assert_eq!(commands.asked(), None);
+    let mut commands = Commands::new(producer, Settings::COMMISSIONED);
+    assert_eq!(commands.asked(), Asked::default());
     let unknown = encode(Command::Estimator(255));
     let mut bytes = [unknown, encode(Command::Identify)].into_iter().flatten();
     commands.receive(Channel::Rtt, || bytes.next());
@@ -132,8 +132,12 @@ fn identity_is_asked_once_after_the_commands_before_it() {
         unknown: 1,
         ..Rejected::default()
     };
-    assert_eq!(commands.asked(), Some(counts));
-    assert_eq!(commands.asked(), None);
+    let identity = Asked {
+        identity: true,
+        ..Asked::default()
+    };
+    assert_eq!((commands.asked(), commands.rejected()), (identity, counts));
+    assert_eq!(commands.asked(), Asked::default());
 }
 
 #[test]
@@ -154,7 +158,7 @@ fn channels_have_parsers_of_their_own_and_share_the_queue_and_the_counts() {
     let arm = encode(Command::Request(Request::Arm));
     let mut queue = Messages::new();
     let (producer, mut consumer) = queue.split();
-    let mut commands = Commands::new(producer);
+    let mut commands = Commands::new(producer, Settings::COMMISSIONED);
     let feed = |commands: &mut Commands<'_>, channel, bytes: &[u8]| {
         let mut bytes = bytes.iter().copied();
         commands.receive(channel, || bytes.next());

@@ -1,4 +1,4 @@
-use drivers::{Command, encode};
+use drivers::{Command, Settings, encode};
 use firmware_app::config::AUTO_ARM;
 use firmware_app::control::{Inputs, Message};
 use firmware_app::scene::FIRST;
@@ -150,13 +150,14 @@ fn scene_is_switched_off_after_half_a_second_without_commands_except_with_auto_a
 
 /// The supply's dips look like power-on where no brown-out reset is programmed.
 #[test]
-fn auto_arm_requires_brown_out_reset() {
-    for (brown_out_reset, reset, arms) in [
-        (true, Stop::None, AUTO_ARM),
-        (false, Stop::None, false),
-        (true, Stop::BrownOut, false),
+fn auto_arm_requires_brown_out_reset_and_verified_signs() {
+    for (settings, brown_out_reset, reset, arms) in [
+        (Settings::COMMISSIONED, true, Stop::None, AUTO_ARM),
+        (Settings::COMMISSIONED, false, Stop::None, false),
+        (Settings::COMMISSIONED, true, Stop::BrownOut, false),
+        (Settings::DEFAULT, true, Stop::None, false),
     ] {
-        let mut bench = Bench::after(reset, brown_out_reset);
+        let mut bench = Bench::with(&settings, reset, brown_out_reset);
         bench.wait(ticks(0.1));
         assert!(!bench.state().0.is_enabled());
         bench.wait(ticks(0.03));

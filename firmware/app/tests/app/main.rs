@@ -6,5 +6,7 @@ mod commands;
 mod control;
 mod large;
 mod port;
+mod rest;
 mod scenes;
+mod settings;
 mod telemetry;

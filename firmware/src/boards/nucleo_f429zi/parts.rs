@@ -1,16 +1,10 @@
 //! Pins, peripherals and clocks, and how they start.
 
-use core::ops::Range;
-
-use drivers::{
-    Amplifier, Amplifiers, CurrentOutput, DacCode, DacScale, SETTINGS_BYTES, Setting, Settings,
-    SettingsError, Store,
-};
+use drivers::{Amplifier, Amplifiers, CurrentOutput, DacCode, DacScale, Setting, Settings};
 use estimator_core::{Amps, Count, Sample};
 use firmware_app::config::{DEVICE, REFERENCE, TIMER_HZ};
 use haptic_control::Currents;
 use stm32f4xx_hal::dac::{C1, C2, DacOut, DacPin};
-use stm32f4xx_hal::flash::{FlashExt as _, LockedFlash};
 use stm32f4xx_hal::gpio::{Input, PE2, PE6};
 use stm32f4xx_hal::pac::{self, TIM1, TIM3, TIM4};
 use stm32f4xx_hal::prelude::*;
@@ -21,6 +15,7 @@ use stm32f4xx_hal::watchdog::IndependentWatchdog;
 use super::edge::{Source, Stamps as _};
 use super::enables::Outputs;
 use super::encoder::Encoder;
+use super::memory::Flash;
 use super::port::Usart;
 use super::reset::{self, LateCrystal};
 use super::tick::{Clock, Tick};
@@ -40,9 +35,6 @@ const _: () = assert!(
     "large.current_limit_a or small.current_limit_a of the device file is above what the board's \
      amplifiers give at full scale, 6 A and 1.5 A"
 );
-/// Sectors 12 and 13 of the flash, which hold the settings, as offsets from its begin. They are in bank 2,
-/// and the image is in bank 1: the core runs on while they are erased or programmed.
-const SETTINGS_SECTORS: [Range<u32>; 2] = [0x10_0000..0x10_4000, 0x10_4000..0x10_8000];
 /// Period that the watchdog is set to, ms. The HAL rounds to steps of 4 ms and adds one: 28 ms at the
 /// 32 kHz of its oscillator, 19 ms at the 47 kHz and 53 ms at the 17 kHz of the datasheet's limits.
 const WATCHDOG_MS: u32 = 25;
@@ -51,6 +43,9 @@ const RESET_HZ: u32 = 16_000_000;
 /// The watchdog's settings reach it within 5 cycles of its oscillator, 0.3 ms at most, which starts
 /// in 0.04 ms at most, us.
 const WATCHDOG_STARTS_US: u32 = 400;
+/// Period of the watchdog while a sector of the flash is erased, ms: twice the longest time of the
+/// datasheet, and the oscillator may be 1.5 times as fast.
+const ERASES_MS: u32 = 2400;
 /// How long the crystal is waited for, ms.
 const CRYSTAL_MS: u32 = 500;
 
@@ -65,7 +60,26 @@ struct Encoders {
 /// A channel of the DAC as a current command.
 struct DacCurrent<C> {
     channel: C,
+    /// Of a channel that is not calibrated.
+    nominal: DacScale,
     scale: DacScale,
+}
+
+impl<C> DacCurrent<C> {
+    /// A channel that is not calibrated.
+    fn new(channel: C, full_scale: Amps) -> Self {
+        let nominal = defmt::unwrap!(DacScale::new(full_scale));
+        Self {
+            channel,
+            nominal,
+            scale: nominal,
+        }
+    }
+
+    /// Takes zero and gain; nominal ones if the scale does not admit them.
+    fn calibrate(&mut self, zero: f32, gain: f32) {
+        self.scale = self.nominal.calibrated(zero, gain).unwrap_or(self.nominal);
+    }
 }
 
 impl<C: DacOut<u16>> CurrentOutput for DacCurrent<C> {
@@ -131,6 +145,18 @@ impl Board for Parts {
         !self.clock.crystal || !self.clock.rcc.cfgr().read().sws().is_pll()
     }
 
+    fn calibrate(&mut self, settings: &Settings) {
+        let (large, small) = self.amplifiers.outputs();
+        large.calibrate(
+            settings.get(Setting::ZeroLarge),
+            settings.get(Setting::GainLarge),
+        );
+        small.calibrate(
+            settings.get(Setting::ZeroSmall),
+            settings.get(Setting::GainSmall),
+        );
+    }
+
     fn apply(&mut self, currents: Option<Currents>) {
         match currents {
             Some(currents) => self.amplifiers.drive(currents),
@@ -160,41 +186,20 @@ impl Watchdog for Guard {
     }
 }
 
-/// The settings in flash; `None` if there are none that this image can read.
-fn stored_settings(flash: pac::FLASH) -> Option<Settings> {
-    let mut flash = LockedFlash::new(flash);
-    let [_, last] = &SETTINGS_SECTORS;
-    if flash.len() < last.end as usize {
-        defmt::warn!(
-            "no settings: this chip has {=usize} bytes of flash",
-            flash.len()
-        );
-        return None;
-    }
-    // Reading flash cannot fail.
-    let (_, record) = Store::<SETTINGS_BYTES>::open(&mut flash, SETTINGS_SECTORS).ok()?;
-    match Settings::decode(&record?) {
-        Ok(settings) => Some(settings),
-        Err(error) => {
-            match error {
-                SettingsError::Version(version) => {
-                    defmt::warn!("settings not used: they are of version {=u16}", version);
-                }
-                SettingsError::Value(setting) => {
-                    defmt::warn!(
-                        "settings not used: number {=u8} is out of its range",
-                        setting as u8
-                    );
-                }
-            }
-            None
-        }
-    }
+/// Starts the watchdog, or changes its period. `timer` counts at this rate.
+fn watch(watchdog: &mut IndependentWatchdog, period_ms: u32, timer: &Clock, timer_hz: u32) {
+    watchdog.start(period_ms.millis());
+    // A started watchdog counts from its longest period, 16 s, until it is fed with its settings.
+    timer.poll(WATCHDOG_STARTS_US * (timer_hz / 1_000_000), || {
+        watchdog.feed();
+        false
+    });
+    watchdog.feed();
 }
 
 /// Starts the board: amplifiers off, then the watchdog, then the clocks, then the rest. The tick runs
 /// when this returns.
-pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart>) {
+pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart, Flash>) {
     let mut rcc = chip.RCC.constrain();
     let enables = Outputs::new(chip.TIM8, &mut rcc);
     let a = chip.GPIOA.split(&mut rcc);
@@ -204,14 +209,8 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart>) {
     // A halt must disable the outputs, and must not stop the watchdog.
     firmware_rt::undo_debugger();
     let mut watchdog = IndependentWatchdog::new(chip.IWDG);
-    watchdog.start(WATCHDOG_MS.millis());
-    // A started watchdog counts from its longest period, 16 s, until it is fed with its settings.
     let timer = Clock::start(chip.TIM5, &mut rcc);
-    timer.poll(WATCHDOG_STARTS_US * (RESET_HZ / 1_000_000), || {
-        watchdog.feed();
-        false
-    });
-    watchdog.feed();
+    watch(&mut watchdog, WATCHDOG_MS, &timer, RESET_HZ);
     // A probe reads RTT while the core sleeps.
     chip.DBGMCU.cr().modify(|_, w| w.dbg_sleep().set_bit());
 
@@ -233,12 +232,12 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart>) {
         rcc.cr().modify(|_, w| w.csson().set_bit());
     }
 
-    let stored = stored_settings(chip.FLASH);
-    let settings = stored.unwrap_or_default();
-    let scale = |full_scale: Amps, zero, gain| {
-        let nominal = DacScale::new(full_scale)?;
-        nominal.calibrated(settings.get(zero), settings.get(gain))
-    };
+    let (mut memory, settings) = Flash::open(chip.FLASH);
+    memory.prepare(|erase| {
+        watch(&mut watchdog, ERASES_MS, &timer, TIMER_HZ);
+        erase();
+        watch(&mut watchdog, WATCHDOG_MS, &timer, TIMER_HZ);
+    });
     let b = chip.GPIOB.split(&mut rcc);
     let d = chip.GPIOD.split(&mut rcc);
     let e = chip.GPIOE.split(&mut rcc);
@@ -248,22 +247,8 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart>) {
     small_dac.set_value(DacCode::MIDDLE.get());
     large_dac.enable();
     small_dac.enable();
-    let large = DacCurrent {
-        channel: large_dac,
-        scale: defmt::unwrap!(scale(
-            LARGE_FULL_SCALE,
-            Setting::ZeroLarge,
-            Setting::GainLarge
-        )),
-    };
-    let small = DacCurrent {
-        channel: small_dac,
-        scale: defmt::unwrap!(scale(
-            SMALL_FULL_SCALE,
-            Setting::ZeroSmall,
-            Setting::GainSmall
-        )),
-    };
+    let large = DacCurrent::new(large_dac, LARGE_FULL_SCALE);
+    let small = DacCurrent::new(small_dac, SMALL_FULL_SCALE);
 
     let reference =
         REFERENCE.then(|| Encoder::new(Qei::new(chip.TIM1, (e.pe9, e.pe11), &mut rcc).release().0));
@@ -291,21 +276,23 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart>) {
         rcc.clocks.timclk2().raw() == CORE_HZ,
         "the timer of the enables is not clocked like the core"
     );
-    let parts = Parts {
+    let mut parts = Parts {
         encoders,
         amplifiers,
         tick: Tick::new(timer),
         clock: Tree { rcc, crystal },
     };
+    parts.calibrate(&settings.unwrap_or_default());
     let start = Start {
         watchdog: Guard {
             watchdog,
             crystal: LateCrystal::new(crystal),
         },
         port,
+        memory,
         reset,
         brown_out_reset,
-        is_calibrated: stored.is_some(),
+        settings,
     };
     (parts, start)
 }

@@ -18,7 +18,8 @@ impl Telemetry {
                 device: Some(Fingerprint(hello.device)),
                 presets: Some(Fingerprint(hello.presets)),
             }),
-            Message::Hello(_) | Message::Rejected(_) => {}
+            Message::Hello(_) | Message::Rejected(_) | Message::Setting(_) | Message::Stored(_) => {
+            }
             Message::Frame(frame) => match frame.try_into() {
                 Ok(frame) => self.frames.push(frame),
                 Err(error) => self.malformed.push(error),

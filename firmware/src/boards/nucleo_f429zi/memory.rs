@@ -1,0 +1,96 @@
+//! The flash that keeps the settings.
+
+use core::ops::Range;
+
+use drivers::{SETTINGS_BYTES, Saved, Settings, SettingsError, Store};
+use stm32f4xx_hal::flash::{FlashExt as _, UnlockedFlash};
+use stm32f4xx_hal::pac::FLASH;
+
+use crate::boards::Memory;
+
+/// Sectors 12 and 13 of the flash, as offsets from its begin. They are in bank 2, and the image is in bank 1:
+/// the core runs on while they are erased or programmed.
+const SECTORS: [Range<u32>; 2] = [0x10_0000..0x10_4000, 0x10_4000..0x10_8000];
+
+/// The settings in flash.
+pub(super) struct Flash {
+    flash: FLASH,
+    /// `None` on a chip whose flash does not have the sectors.
+    store: Option<Store<SETTINGS_BYTES>>,
+}
+
+impl Flash {
+    /// Reads the settings; `None` if there are none that this image can read.
+    pub(super) fn open(mut flash: FLASH) -> (Self, Option<Settings>) {
+        let [_, last] = &SECTORS;
+        let mut found = (None, None);
+        if flash.len() < last.end as usize {
+            defmt::warn!(
+                "no settings: this chip has {=usize} bytes of flash",
+                flash.len()
+            );
+        } else if let Ok((store, record)) = Store::open(&mut flash.unlocked(), SECTORS) {
+            found = (Some(store), record.and_then(|record| decoded(&record)));
+        }
+        let (store, settings) = found;
+        (Self { flash, store }, settings)
+    }
+
+    /// Makes place for settings. If a sector has to be erased, which takes up to 0.8 s once in some 60 times
+    /// that settings are stored, `patient` runs this under a watchdog that waits for it.
+    pub(super) fn prepare(&mut self, patient: impl FnOnce(&mut dyn FnMut())) {
+        let Self {
+            flash,
+            store: Some(store),
+        } = self
+        else {
+            return;
+        };
+        if let Ok(true) = store.is_prepared(&mut flash.unlocked()) {
+            return;
+        }
+        patient(&mut || {
+            if uncached(flash, |flash| store.prepare(flash)).is_err() {
+                defmt::warn!("the flash of the settings cannot be erased");
+            }
+        });
+    }
+}
+
+impl Memory for Flash {
+    fn save(&mut self, settings: &Settings) -> Saved {
+        match &mut self.store {
+            Some(store) => uncached(&mut self.flash, |flash| {
+                store.save(flash, &settings.encode()).into()
+            }),
+            None => Saved::Refused,
+        }
+    }
+}
+
+/// Changes the flash without the data cache, which would keep bytes of before. It may also hold wrong bytes
+/// after a read from one bank while the other one is written (erratum 2.2.15 of ES0206).
+fn uncached<T>(flash: &mut FLASH, change: impl FnOnce(&mut UnlockedFlash<'_>) -> T) -> T {
+    flash.acr().modify(|_, w| w.dcen().clear_bit());
+    let result = change(&mut flash.unlocked());
+    flash.acr().modify(|_, w| w.dcrst().set_bit());
+    flash.acr().modify(|_, w| w.dcrst().clear_bit());
+    flash.acr().modify(|_, w| w.dcen().set_bit());
+    result
+}
+
+fn decoded(record: &[u8; SETTINGS_BYTES]) -> Option<Settings> {
+    match Settings::decode(record) {
+        Ok(settings) => return Some(settings),
+        Err(SettingsError::Version(version)) => {
+            defmt::warn!("settings not used: they are of version {=u16}", version);
+        }
+        Err(SettingsError::Value(setting)) => {
+            defmt::warn!(
+                "settings not used: number {=u8} is out of its range",
+                setting.number()
+            );
+        }
+    }
+    None
+}

@@ -1,0 +1,147 @@
+//! The scale of the current limits at run time.
+
+use estimator_core::SteadyKalmanTriple;
+use haptic_control::{
+    AnyScene, Controller, CurrentScale, Currents, NewtonMetres, RadPerS, Scene, SceneKind, Senses,
+    Switchboard, scenes,
+};
+
+use crate::bench::{DEVICE, HANDLE, LARGE, RATE, RIG, motion, usual};
+
+/// The part of the currents.
+const PART: f32 = 0.1;
+
+fn part() -> CurrentScale {
+    CurrentScale::new(PART).expect("a part")
+}
+
+/// Whether the currents are within this part of the device's limits, but for rounding.
+fn are_within(currents: Currents, part: f32) -> bool {
+    let within = |current: f32, limit: f64| current.abs() <= limit as f32 * part * 1.000_001;
+    within(currents.large.get(), DEVICE.large.current_limit)
+        && within(currents.small.get(), DEVICE.small.current_limit)
+}
+
+/// The largest currents in a run, after a restart if `restarts`.
+fn largest_of_switchboard(
+    scene: AnyScene,
+    scale: Option<CurrentScale>,
+    restarts: bool,
+) -> [f32; 2] {
+    let board = Switchboard::new(LARGE, HANDLE, RIG, RATE);
+    let mut state = board.start(&motion(0));
+    if let Some(scale) = scale {
+        board.scale(&mut state, scale);
+    }
+    if restarts {
+        board.restart(&mut state, &motion(0));
+    }
+    board.select(&mut state, scene, &motion(0));
+    let mut largest = [0.0_f32; 2];
+    for k in 0..20_000 {
+        let Currents { large, small } = board.step(&mut state, &motion(k)).currents;
+        largest = [
+            largest[0].max(large.get().abs()),
+            largest[1].max(small.get().abs()),
+        ];
+        let part = if scale.is_some() { PART } else { 1.0 };
+        assert!(
+            are_within(Currents { large, small }, part),
+            "{} {k}",
+            scene.kind()
+        );
+    }
+    largest
+}
+
+#[test]
+fn no_scene_of_the_switchboard_exceeds_the_part() {
+    let mut limited = [0; 2];
+    for kind in SceneKind::ALL {
+        let scene = usual(kind);
+        let whole = largest_of_switchboard(scene, None, false);
+        for restarts in [false, true] {
+            let largest = largest_of_switchboard(scene, Some(part()), restarts);
+            for i in 0..2 {
+                limited[i] += u32::from(largest[i] < 0.999 * whole[i]);
+            }
+        }
+    }
+    // Currents of both motors are above the part in some scenes.
+    assert!(limited.iter().all(|scenes| *scenes > 2), "{limited:?}");
+}
+
+fn is_scaled_alone<S>(kind: SceneKind, scene: S)
+where
+    S: Scene<Acceleration: Senses<SteadyKalmanTriple>> + Copy,
+{
+    let alone = Controller::new(scene, LARGE, HANDLE, &RIG);
+    for restarts in [false, true] {
+        let mut state = alone.start(&motion(0));
+        alone.scale(&mut state, part());
+        if restarts {
+            alone.restart(&mut state, &motion(0));
+        }
+        for k in 0..20_000 {
+            let currents = alone.step(&mut state, &motion(k)).currents;
+            // The user of an open loop limits its currents.
+            let currents = if kind.is_closed_loop() {
+                currents
+            } else {
+                part().within(&DEVICE, currents)
+            };
+            assert!(are_within(currents, PART), "{kind} {k}");
+        }
+    }
+}
+
+#[test]
+fn no_controller_of_one_scene_exceeds_the_part() {
+    macro_rules! check {
+        ($($number:literal, $name:literal, $scene:ident, $facts:tt;)+) => {
+            $(is_scaled_alone(SceneKind::$scene, haptic_control::$scene::usual(&DEVICE, RATE).unwrap());)+
+        };
+    }
+    scenes!(check);
+}
+
+/// The loop is given the scaled current, so that time at the limit does not change its state.
+#[test]
+fn time_at_the_scaled_limit_does_not_wind_up() {
+    let held = RadPerS(0.0);
+    let turned = |saturated: u32| -> Vec<f32> {
+        let stage = &RIG.continuous;
+        let mut state = stage.start(held);
+        stage.scale(&mut state, part());
+        let mut current = |torque| {
+            stage
+                .update(&mut state, NewtonMetres(torque), held, held)
+                .get()
+        };
+        for _ in 0..saturated {
+            current(0.1);
+        }
+        (0..2000).map(|_| current(-0.1)).collect()
+    };
+    let [short, long] = [3000, 60_000].map(turned);
+    for (tick, (short, long)) in short.iter().zip(&long).enumerate() {
+        assert!((short - long).abs() < 1e-3, "{tick}: {short} A, {long} A");
+    }
+    let last = f64::from(*long.last().expect("ticks"));
+    assert!((last + f64::from(PART) * DEVICE.large.current_limit).abs() < 1e-6);
+}
+
+#[test]
+fn scale_of_zero_leaves_no_current() {
+    let scene = usual(SceneKind::Hold);
+    let board = Switchboard::new(LARGE, HANDLE, RIG, RATE);
+    let mut state = board.start(&motion(0));
+    board.scale(&mut state, CurrentScale::NONE);
+    board.select(&mut state, scene, &motion(0));
+    for k in 0..2000 {
+        assert_eq!(
+            board.step(&mut state, &motion(k)).currents,
+            Currents::default()
+        );
+    }
+}
