@@ -9,6 +9,7 @@ use drivers::{Command, encode};
 use haptic_control::Request;
 use terminal::failure::Failure;
 
+use crate::clock::Limit;
 use crate::port::Port;
 use crate::watch::is_enabled;
 
@@ -20,7 +21,9 @@ pub(crate) struct Board {
     port: Port,
     parser: Parser,
     messages: VecDeque<Message>,
-    /// Longest wait for an answer.
+    /// Questions that have no answer yet.
+    asked: u32,
+    /// Longest wait for an answer, and longest silence.
     patience: Duration,
     /// Whether the end has to disarm.
     disarms: bool,
@@ -42,9 +45,15 @@ impl Board {
             port,
             parser: Parser::default(),
             messages: VecDeque::new(),
+            asked: 0,
             patience,
             disarms: false,
         }
+    }
+
+    /// Longest wait for an answer, and longest silence.
+    pub(crate) const fn patience(&self) -> Duration {
+        self.patience
     }
 
     /// Sends a command.
@@ -52,6 +61,7 @@ impl Board {
     /// # Errors
     /// [`Failure::Input`] if the connection is lost.
     pub(crate) fn send(&mut self, command: Command) -> Result<(), Failure> {
+        self.asked += u32::from(command == Command::Identify);
         let sent = self.port.write(&encode(command));
         sent.map_err(|error| self.lost(&error))
     }
@@ -63,6 +73,9 @@ impl Board {
     pub(crate) fn next(&mut self, until: Instant) -> Result<Option<Message>, Failure> {
         loop {
             if let Some(message) = self.messages.pop_front() {
+                if let Message::Hello(_) = message {
+                    self.asked = self.asked.saturating_sub(1);
+                }
                 return Ok(Some(message));
             }
             let mut bytes = [0; 4096];
@@ -107,8 +120,12 @@ impl Board {
     /// [`Failure::Input`] if the board does not answer.
     pub(crate) fn identify(&mut self) -> Result<Answer, Failure> {
         let mut identity: Option<Hello> = None;
+        // Answers to questions from before those commands come first. If one is lost, the question is
+        // asked again.
+        let mut older = self.asked;
         let answer = self.ask(Command::Identify, |message| {
             match message {
+                Message::Hello(_) if older > 0 => older -= 1,
                 Message::Hello(hello) => identity = Some(hello),
                 Message::Rejected(rejected) => {
                     return Some(Answer {
@@ -166,25 +183,28 @@ impl Board {
     /// The first frame that is as wanted.
     ///
     /// # Errors
-    /// [`Failure::Check`] with `failed` of the last frame, [`Failure::Input`] if there is none.
+    /// [`Failure::Check`] with `failed` of the last frame, [`Failure::Input`] if no frame comes.
     pub(crate) fn wait(
         &mut self,
+        rate_hz: u32,
         wanted: impl Fn(&Frame) -> bool,
         failed: impl Fn(&Frame) -> String,
     ) -> Result<Frame, Failure> {
-        let end = Instant::now() + self.patience;
-        let mut last = None;
-        while Instant::now() < end {
+        let mut heard = Instant::now();
+        let mut limit = Limit::new(self.patience, rate_hz, heard);
+        loop {
+            let end = heard + self.patience;
             if let Some(Message::Frame(frame)) = self.next(end)? {
                 if wanted(&frame) {
                     return Ok(frame);
                 }
-                last = Some(frame);
+                heard = Instant::now();
+                if limit.is_over(heard, frame.tick) {
+                    return Err(Failure::Check(failed(&frame)));
+                }
+            } else if Instant::now() >= end {
+                return Err(self.silent());
             }
-        }
-        match last {
-            Some(frame) => Err(Failure::Check(failed(&frame))),
-            None => Err(self.silent()),
         }
     }
 

@@ -42,7 +42,7 @@ struct Arguments {
     /// [default: the only serial port]
     #[arg(long, global = true, value_name = "PORT")]
     port: Option<String>,
-    /// Longest wait for an answer of the board, 0.1 to 60 s
+    /// Longest wait for an answer of the board, and longest silence of it, 0.1 to 60 s
     #[arg(long, global = true, value_name = "S", default_value = "2", allow_negative_numbers = true, value_parser = patience)]
     timeout: f64,
     #[command(subcommand)]
@@ -71,10 +71,10 @@ enum Action {
         /// Scene
         #[arg(value_name = "SCENE", value_parser = named::scene)]
         scene: SceneKind,
-        /// Set a parameter of the scene, at S seconds after the select; repeatable
+        /// Set a parameter of the scene, S seconds after the scene begins; repeatable
         #[arg(long, value_name = "NAME=VALUE[@S]", value_parser = timed)]
         tune: Vec<Timed>,
-        /// Put an estimator in charge of the large motor's velocity, at S seconds; repeatable
+        /// Put an estimator in charge of the large motor's velocity, S seconds after the scene begins; repeatable
         #[arg(long, value_name = "NAME[@S]", value_parser = timed)]
         estimator: Vec<Timed>,
         #[command(flatten)]
@@ -137,7 +137,8 @@ enum Action {
 /// Options of the commands that hold the board armed.
 #[derive(Debug, Args)]
 struct Hold {
-    /// End after S seconds of the board's time [default: at Ctrl-C]
+    /// End after S seconds of the board's time; those of a scene count from its begin [default: at
+    /// Ctrl-C]
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
     seconds: Option<f64>,
     /// Print a line of telemetry every S seconds of the board's time

@@ -5,6 +5,7 @@
 
 mod board;
 pub mod cli;
+mod clock;
 mod identity;
 mod interrupt;
 mod named;

@@ -27,6 +27,27 @@ impl Recorder {
         }
     }
 
+    /// Checks that the file has a place, so that a session does not find out at its end.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if the name is that of a folder, or lies in something that is none.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        let name = self.out.display();
+        if self.out.is_dir() {
+            return Err(Failure::Input(format!(
+                "{name}: is a folder; choose the name of a file"
+            )));
+        }
+        let above = self.out.ancestors().skip(1).find(|path| path.exists());
+        match above {
+            Some(path) if !path.is_dir() => Err(Failure::Input(format!(
+                "{name}: {} is no folder; choose another path",
+                path.display()
+            ))),
+            _ => Ok(()),
+        }
+    }
+
     /// Takes a message.
     pub(crate) fn take(&mut self, message: Message) {
         self.telemetry.add(message);

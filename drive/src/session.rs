@@ -1,6 +1,6 @@
 //! A session: what a command does from the first message to the end.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use drivers::Command;
 use drivers::link::{Frame, Message};
@@ -9,22 +9,21 @@ use terminal::failure::Failure;
 use terminal::output::{note, print_bytes};
 
 use crate::board::{Answer, Board, refusal};
+use crate::clock::{Clock, Limit};
 use crate::interrupt;
 use crate::pace::Pace;
 use crate::record::Recorder;
 use crate::timed::Change;
 use crate::watch::{Every, line, state};
 
-/// Longest silence of a board that sends a thousand frames a second.
-const SILENCE: Duration = Duration::from_secs(1);
-
 /// Parts of a session.
 pub(crate) struct Plan {
     /// The scene to select.
     pub(crate) scene: Option<SceneKind>,
-    /// Changes of parameters and estimators, each with its time, s.
+    /// Changes of parameters and estimators, each with its time from the begin of the scene, s.
     pub(crate) changes: Vec<(f64, Change)>,
-    /// Length in the board's time, s; `None`: until Ctrl-C.
+    /// Length in the board's time, from the begin of the scene if there is one, s; `None`: until
+    /// Ctrl-C.
     pub(crate) seconds: Option<f64>,
     /// Interval of the lines of text in the board's time, s; `None`: no lines.
     pub(crate) every: Option<f64>,
@@ -34,17 +33,38 @@ pub(crate) struct Plan {
     pub(crate) keeps_alive: bool,
 }
 
+impl Plan {
+    /// Checks what can be checked before the board gets a command.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if the recording has no place, or a change comes after the end.
+    fn check(&self) -> Result<(), Failure> {
+        self.recorder.as_ref().map_or(Ok(()), Recorder::check)?;
+        let Some(end) = self.seconds else {
+            return Ok(());
+        };
+        match self.changes.iter().find(|(at, _)| *at >= end) {
+            Some((at, _)) => Err(Failure::Input(format!(
+                "the change at {at} s comes after the end at {end} s; give a longer --seconds"
+            ))),
+            None => Ok(()),
+        }
+    }
+}
+
 /// Arms the board, renders a scene if the plan has one, and disarms at the end.
 ///
 /// # Errors
 /// [`Failure::Check`] if the board does not arm, refuses a change or stops; [`Failure::Input`] if the
-/// connection is lost. The board is disarmed in every case.
+/// connection is lost or the plan cannot be followed. A board that was armed is disarmed in every case.
 pub(crate) fn armed(board: &mut Board, answer: &Answer, plan: Plan) -> Result<(), Failure> {
+    plan.check()?;
     interrupt::take();
     board.disarm_at_the_end();
     board.send(Command::Request(Request::Arm))?;
     board.wait(
-        |frame| is_ready(Mode::from_code(frame.state)),
+        answer.hello.rate,
+        |frame| is_ready(Mode::from_code(frame.state)) || interrupt::came(),
         |frame| {
             format!(
                 "not armed: {}; remove the cause, then run again",
@@ -60,16 +80,18 @@ pub(crate) fn armed(board: &mut Board, answer: &Answer, plan: Plan) -> Result<()
 /// # Errors
 /// As [`armed`]; [`Failure::Check`] if the amplifiers are not enabled.
 pub(crate) fn kept_alive(board: &mut Board, answer: &Answer, plan: Plan) -> Result<(), Failure> {
+    plan.check()?;
     interrupt::take();
-    board.wait(
-        |frame| is_ready(Mode::from_code(frame.state)),
-        |frame| {
-            format!(
-                "nothing to keep alive: {}; cargo drive arm arms the board",
-                state(frame)
-            )
-        },
-    )?;
+    let refusal = |frame: &Frame| {
+        let state = state(frame);
+        format!("nothing to keep alive: {state}; cargo drive arm arms the board")
+    };
+    // A board that settles is armed by itself.
+    let is_settled = |frame: &Frame| Mode::from_code(frame.state) != Some(Mode::Settling);
+    let frame = board.wait(answer.hello.rate, is_settled, refusal)?;
+    if !is_ready(Mode::from_code(frame.state)) {
+        return Err(Failure::Check(refusal(&frame)));
+    }
     board.disarm_at_the_end();
     ended(board, answer, plan)
 }
@@ -90,6 +112,7 @@ fn ended(board: &mut Board, answer: &Answer, mut plan: Plan) -> Result<(), Failu
 /// # Errors
 /// [`Failure::Input`] if the connection is lost or the recording cannot be written.
 pub(crate) fn unarmed(board: &mut Board, answer: &Answer, mut plan: Plan) -> Result<(), Failure> {
+    plan.check()?;
     interrupt::take();
     let mut recorder = plan.recorder.take();
     let followed = follow(board, answer, plan, recorder.as_mut());
@@ -122,9 +145,12 @@ fn follow(
         recorder: _,
         keeps_alive,
     } = plan;
-    if let Some(scene) = scene {
+    if let Some(scene) = scene.filter(|_| !interrupt::came()) {
         board.send(Command::Request(Request::Select(scene.number())))?;
     }
+    let mut starts = scene.is_some_and(|scene| scene != SceneKind::Off);
+    let patience = board.patience();
+    let mut limit = Limit::new(patience, hello.rate, Instant::now());
     // The next one last.
     changes.sort_by(|(a, _), (b, _)| b.total_cmp(a));
     let mut every = every.map(|seconds| Every::new(seconds, hello.rate));
@@ -132,14 +158,13 @@ fn follow(
     let mut clock = Clock::new(hello.rate);
     let (mut heard, mut mode, mut tick) = (Instant::now(), None, None);
     while !interrupt::came() {
-        let now = Instant::now();
-        if keeps_alive && pace.is_due(now, tick) {
+        if keeps_alive && pace.is_due(Instant::now(), tick) {
             board.send(Command::Request(Request::KeepAlive))?;
         }
-        if now.duration_since(heard) > SILENCE {
-            return Err(board.silent());
-        }
-        let Some(message) = board.next(pace.next().min(heard + SILENCE))? else {
+        let Some(message) = board.next(pace.next().min(heard + patience))? else {
+            if heard.elapsed() >= patience {
+                return Err(board.silent());
+            }
             continue;
         };
         if let Some(recorder) = &mut recorder {
@@ -162,6 +187,17 @@ fn follow(
         mode = Mode::from_code(frame.state);
         if every.as_mut().is_some_and(|every| every.selects(&frame)) {
             print_bytes(format!("{}\n", line(&frame, hello.rate)).as_bytes())?;
+        }
+        // The select command takes its time, and may be lost.
+        starts &= mode != Some(Mode::Running);
+        if starts && limit.is_over(heard, frame.tick) {
+            let state = state(&frame);
+            return Err(Failure::Check(format!(
+                "the scene does not start: {state}; check the line, then run again"
+            )));
+        }
+        if starts {
+            continue;
         }
         let elapsed = clock.elapsed(frame.tick);
         while let Some((_, change)) = changes.pop_if(|(at, _)| *at <= elapsed) {
@@ -190,44 +226,4 @@ fn stopped(before: Option<Mode>, frame: &Frame) -> Result<(), Failure> {
         "the board stopped: {}; remove the cause, then run again",
         state(frame)
     )))
-}
-
-/// Time of a board since the first frame. The tick of a board that starts again begins at 0.
-struct Clock {
-    rate_hz: f64,
-    last: Option<u32>,
-    ticks: u64,
-}
-
-impl Clock {
-    fn new(rate_hz: u32) -> Self {
-        Self {
-            rate_hz: f64::from(rate_hz.max(1)),
-            last: None,
-            ticks: 0,
-        }
-    }
-
-    /// Seconds from the first frame to this tick.
-    fn elapsed(&mut self, tick: u32) -> f64 {
-        let step = self.last.map_or(0, |last| tick.wrapping_sub(last));
-        self.last = Some(tick);
-        // A step back is a start.
-        if i32::try_from(step).is_ok() {
-            self.ticks += u64::from(step);
-        }
-        self.ticks as f64 / self.rate_hz
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn time_continues_over_a_wrap_and_a_start() {
-        let mut clock = Clock::new(1000);
-        let times = [u32::MAX - 9, u32::MAX, 990, 0, 1000].map(|tick| clock.elapsed(tick));
-        assert_eq!(times, [0.0, 0.009, 1.0, 1.0, 2.0]);
-    }
 }

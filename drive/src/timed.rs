@@ -9,7 +9,7 @@ use crate::named::{self, Tuning};
 /// Text with the time of the session at which it applies, s.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Timed {
-    /// Time from the select command, s.
+    /// Time from the begin of the scene, s.
     pub(crate) at_s: f64,
     text: String,
 }

@@ -4,6 +4,7 @@ use drivers::Command;
 use drivers::link::Hello;
 use haptic_control::Request;
 
+use crate::player::appended;
 use crate::scripted::{Board, Script, error, tool};
 
 #[test]
@@ -23,7 +24,7 @@ fn port_that_cannot_be_opened_is_named() {
 #[test]
 fn board_that_sends_nothing_is_told() {
     let board = Board::new(Script {
-        speaks: false,
+        instead: Some(Vec::new()),
         ..Script::default()
     });
     let (output, _) = board.run(&["info", "--timeout", "0.3"]);
@@ -31,18 +32,39 @@ fn board_that_sends_nothing_is_told() {
     assert!(error(&output).contains("the board sends nothing; check the port"));
 }
 
+/// Text of another program, and a frame of a kind that this protocol has not: kind 99, no payload.
 #[test]
-fn connection_that_ends_is_told_and_disarmed_as_far_as_possible() {
-    for arguments in [&["watch"][..], &["select", "wall"]] {
+fn bytes_that_are_no_message_are_told() {
+    for (instead, said) in [
+        (
+            b"some log\n".to_vec(),
+            " bytes were no message; check the port",
+        ),
+        (
+            appended(&[0x5A, 99, 0, 0, 0], &[]),
+            " messages are of another protocol; check the port",
+        ),
+    ] {
         let board = Board::new(Script {
-            hang_up: Some(500),
+            instead: Some(instead),
             ..Script::default()
         });
-        let (output, _) = board.run(arguments);
-        assert_eq!(output.status.code(), Some(2), "{output:?}");
-        let said = error(&output);
-        assert!(said.contains("connection lost"), "{said}");
-        assert!(said.contains("run the command again"), "{said}");
+        let (output, _) = board.run(&["info", "--timeout", "0.3"]);
+        assert_eq!(output.status.code(), Some(2));
+        let error = error(&output);
+        assert!(error.contains("the board does not answer; "), "{error}");
+        assert!(error.contains(said), "{error}");
+    }
+}
+
+#[test]
+fn list_needs_no_port() {
+    let output = tool(&["list"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let [listed, said] = [output.stdout, output.stderr].map(|it| String::from_utf8(it).unwrap());
+    match listed.is_empty() {
+        true => assert_eq!(said, "no serial port; connect the board\n"),
+        false => assert_eq!(said, ""),
     }
 }
 
@@ -61,6 +83,14 @@ fn input_is_refused_before_the_board_gets_a_command() {
         ),
         (&["estimator", "pll"], "no estimator 'pll'"),
         (&["select", "wall", "--tune", "stiffness"], "NAME=VALUE@S"),
+        (
+            &["select", "wall", "--tune", "stifness=0.2@1"],
+            "no parameter of wall 'stifness'; did you mean stiffness?",
+        ),
+        (
+            &["select", "wall", "--estimator", "pll@1"],
+            "no estimator 'pll'",
+        ),
         (&["select", "wall", "--seconds", "-1"], "above 0 s"),
         (&["watch", "--every", "nan"], "above 0 s"),
         (&["info", "--timeout", "0"], "0.1 to 60 s"),

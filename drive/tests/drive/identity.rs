@@ -6,7 +6,7 @@ use haptic_control::Request;
 
 use crate::scripted::{Board, Script, error};
 
-/// A board of a later protocol.
+/// A board of a later protocol, whose identity has more fields.
 fn later() -> Board {
     let script = Script::default();
     Board::new(Script {
@@ -14,6 +14,7 @@ fn later() -> Board {
             protocol: PROTOCOL + 1,
             ..script.hello
         },
+        appended: vec![1, 2, 3],
         ..script
     })
 }

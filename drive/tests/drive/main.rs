@@ -1,7 +1,9 @@
 //! The tool's binary against a board that a script plays over TCP.
 
 mod commands;
+mod ends;
 mod failures;
 mod identity;
+mod player;
 mod recording;
 mod scripted;

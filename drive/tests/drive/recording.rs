@@ -1,9 +1,12 @@
 //! The file of a recording.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::process::Command as Process;
 
+use drivers::Command;
 use haptic_control::{Mode, Stop};
+use recordings::recording::Recording;
 
 use crate::scripted::{Board, Script};
 
@@ -74,24 +77,108 @@ fn what_came_before_an_error_is_recorded() {
     let out = folder.join("run.csv");
     let path = out.to_str().unwrap();
     let lost = Script {
-        hang_up: Some(500),
+        hang_up: Some((Command::Identify, 500)),
         ..Script::default()
     };
     let (output, _) = Board::new(lost).run(&["record", "--out", path]);
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(said.contains("connection lost"), "{said}");
-    let rows = fs::read_to_string(&out).unwrap().lines().count();
-    assert!((100..=502).contains(&rows), "{rows}");
+    assert_eq!(Recording::read(&out).unwrap().t.len(), 500);
     let stops = Script {
         stop: Some((100, Mode::Safe, Stop::Jump)),
         ..Script::default()
     };
     let (output, _) = Board::new(stops).run(&["select", "wall", "--record", path]);
     assert_eq!(output.status.code(), Some(1));
-    let text = fs::read_to_string(&out).unwrap();
-    let last: Vec<_> = text.lines().last().unwrap().split(',').collect();
-    let [state, cause] = [8, 9].map(|column| last[column].parse::<u8>().unwrap());
-    assert_eq!((state, cause), (Mode::Safe as u8, Stop::Jump as u8));
+    let states = states(&out);
+    let running = states.iter().filter(|it| it[0] == Mode::Running as u8);
+    assert_eq!(running.count(), 100);
+    let last = [Mode::Safe as u8, Stop::Jump as u8];
+    assert_eq!(states.last(), Some(&last));
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+}
+
+/// State and cause of each row.
+fn states(path: &Path) -> Vec<[u8; 2]> {
+    let text = fs::read_to_string(path).unwrap();
+    let row = |row: &str| {
+        let fields: Vec<_> = row.split(',').collect();
+        [8, 9].map(|column| fields[column].parse().unwrap())
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+/// The time of a session begins with its scene, not with the select command.
+#[test]
+fn session_lasts_from_the_begin_of_its_scene() {
+    let out = folder("late").join("run.csv");
+    let path = out.to_str().unwrap();
+    let late = Script {
+        starts_after: Some(700),
+        ..Script::default()
+    };
+    let arguments = ["select", "wall", "--seconds", "0.5", "--record", path];
+    let (output, _) = Board::new(late).run(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let states = states(&out);
+    let first = states.iter().position(|it| it[0] == Mode::Running as u8);
+    let (before, scene) = states.split_at(first.expect("the scene"));
+    assert!(before.len() >= 700, "{}", before.len());
+    assert_eq!(scene, [[Mode::Running as u8, 0]; 501]);
+}
+
+/// Frames 100 to 129 from the first question on are lost.
+#[test]
+fn recording_reads_back_and_lost_frames_are_told() {
+    let out = folder("gap").join("run.csv");
+    let path = out.to_str().unwrap();
+    let gap = Script {
+        lost: Some((100, 129)),
+        ..Script::default()
+    };
+    let (output, _) = Board::new(gap).run(&["record", "--out", path, "--seconds", "0.4"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let said = String::from_utf8(output.stderr).unwrap();
+    let expected = "371 frames recorded, 30 missing at 1 place\n";
+    assert!(said.contains(expected), "{said}");
+    let read = Recording::read(&out).unwrap();
+    let numbers: Vec<u32> = (0..100).chain(130..=400).collect();
+    let times: Vec<_> = numbers.iter().map(|k| f64::from(k * 10) / 1e4).collect();
+    assert_eq!(read.t, times);
+    assert_eq!(read.uneven_steps, 1);
+    let large = &read.trace.counts_large;
+    let small = read.trace.counts_small.as_ref().unwrap();
+    for (k, number) in numbers.iter().enumerate() {
+        assert_eq!(large[k].wrapping_sub(large[0]), 3 * number);
+        assert_eq!(small[0].wrapping_sub(small[k]), *number);
+    }
+    assert_eq!(read.trace.current, Some(vec![0.5; 371]));
+}
+
+/// A pipe stays a pipe, and its reader gets the recording.
+#[cfg(unix)]
+#[test]
+fn recording_replaces_no_file_that_is_not_regular() {
+    use std::os::unix::fs::FileTypeExt as _;
+
+    let pipe = folder("pipe").join("run.csv");
+    let made = Process::new("mkfifo").arg(&pipe).status().unwrap();
+    assert!(made.success());
+    let reader = {
+        let pipe = pipe.clone();
+        std::thread::spawn(move || fs::read_to_string(pipe).unwrap())
+    };
+    let arguments = [
+        "record",
+        "--out",
+        pipe.to_str().unwrap(),
+        "--seconds",
+        "0.5",
+    ];
+    let (output, _) = Board::new(Script::default()).run(&arguments);
+    let kind = fs::symlink_metadata(&pipe).unwrap().file_type();
+    assert!(kind.is_fifo(), "{kind:?}");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    check(&reader.join().unwrap(), 0);
 }

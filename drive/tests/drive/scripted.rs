@@ -1,28 +1,27 @@
-//! A board that a script plays: it answers commands, sends a frame per millisecond of its own time,
-//! and has no control and no time limits.
+//! What a board does, and the tool that is run against it.
 
-use std::io::{ErrorKind, Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
 use std::process::{Command as Process, Output};
-use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::mpsc::{self, Receiver};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use drivers::link::{Features, Frame, Hello, LONGEST, Label, Message, PROTOCOL, Rejected};
-use drivers::{Command, Parser};
-use haptic_control::{Mode, Request, Stop};
+use drivers::Command;
+use drivers::link::{Features, Hello, Label, PROTOCOL};
+use haptic_control::{Mode, Stop};
 use tuned::{DEVICE_FINGERPRINT, PRESETS_FINGERPRINT};
 
-/// Frames that the board sends at a time.
-const BURST: u32 = 10;
+use crate::player::play;
 
 /// What the board does.
 #[derive(Clone)]
 pub(super) struct Script {
     /// Identity.
     pub(super) hello: Hello,
-    /// Whether the board sends anything.
-    pub(super) speaks: bool,
+    /// Bytes after the fields of the identity, as a later protocol may have them.
+    pub(super) appended: Vec<u8>,
+    /// What the board sends again and again instead of all messages.
+    pub(super) instead: Option<Vec<u8>>,
     /// Bytes before each message, which are no message.
     pub(super) noise: Vec<u8>,
     /// State to which the command `arm` leads.
@@ -31,8 +30,16 @@ pub(super) struct Script {
     pub(super) begin: Mode,
     /// State and cause that the board takes so many frames after the command `select`.
     pub(super) stop: Option<(u32, Mode, Stop)>,
-    /// The connection ends so many frames after its begin.
-    pub(super) hang_up: Option<u32>,
+    /// Frames from the command `select` until the scene runs; `None`: it never does.
+    pub(super) starts_after: Option<u32>,
+    /// From so many frames after the command `select` on, no frame comes for so long.
+    pub(super) pause: Option<(u32, Duration)>,
+    /// So many frames are sent from the first of this command on; then the board closes its end.
+    pub(super) hang_up: Option<(Command, u32)>,
+    /// Frames that are lost: first and last, by their number from the first question on.
+    pub(super) lost: Option<(u32, u32)>,
+    /// Whether each answer is sent at the next question only.
+    pub(super) answers_late: bool,
     /// Whether the board refuses values as out of bounds.
     pub(super) refuses: bool,
     /// Whether the board takes the command `disarm`.
@@ -53,12 +60,17 @@ impl Default for Script {
                 cause: 8,
                 brown_out_reset: true,
             },
-            speaks: true,
+            appended: Vec::new(),
+            instead: None,
             noise: Vec::new(),
             armed: Mode::Armed,
             begin: Mode::Boot,
             stop: None,
+            starts_after: Some(0),
+            pause: None,
             hang_up: None,
+            lost: None,
+            answers_late: false,
             refuses: false,
             disarms: true,
         }
@@ -117,95 +129,6 @@ pub(super) fn tool(arguments: &[&str]) -> Process {
     let mut process = Process::new(env!("CARGO_BIN_EXE_drive"));
     process.args(arguments);
     process
-}
-
-/// The frame of this number: its values follow from the number.
-pub(super) fn frame(seq: u32, state: Mode, cause: Stop) -> Frame {
-    Frame {
-        seq,
-        tick: 10 * seq,
-        counts_large: 3 * seq,
-        counts_small: 0_u32.wrapping_sub(seq),
-        current: 0.5,
-        current_small: -0.25,
-        torque: 0.01,
-        velocity_large: 1.5,
-        velocity_small: -2.5,
-        state: state as u8,
-        cause: cause as u8,
-        sigma_large: 0.125,
-        estimator: 0,
-        overruns: 0,
-        drops: 0,
-        rtt_drops: 0,
-        cycles: 900,
-    }
-}
-
-fn play(mut stream: TcpStream, script: &Script, report: &Sender<Command>) {
-    stream
-        .set_read_timeout(Some(Duration::from_millis(2)))
-        .unwrap();
-    let mut parser = Parser::default();
-    let (mut state, mut cause) = (script.begin, Stop::None);
-    let mut rejected = Rejected {
-        garbage: 7,
-        not_finite: 0,
-        out_of_bounds: 0,
-        unknown: 1,
-    };
-    let mut selected = None;
-    // The board has run for some time.
-    let (begin, mut seq) = (50, 50);
-    loop {
-        let mut bytes = [0; 256];
-        let count = match stream.read(&mut bytes) {
-            Ok(0) => return,
-            Ok(count) => count,
-            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => 0,
-            Err(_) => return,
-        };
-        let mut answer = Vec::new();
-        let mut send = |message: Message| {
-            let mut buffer = [0; LONGEST];
-            answer.extend(&script.noise);
-            answer.extend(message.encode(&mut buffer).unwrap());
-        };
-        for command in bytes[..count].iter().filter_map(|byte| parser.take(*byte)) {
-            // A test that has ended looks at no command.
-            let _ = report.send(command);
-            match command {
-                Command::Identify => {
-                    send(script.hello.into());
-                    send(rejected.into());
-                }
-                Command::Request(Request::Arm) => state = script.armed,
-                Command::Request(Request::Disarm) if script.disarms => state = Mode::Boot,
-                Command::Request(Request::Select(_)) => {
-                    (state, selected) = (Mode::Running, Some(seq));
-                }
-                Command::Tune { .. } | Command::Torque(_) | Command::Estimator(_) => {
-                    rejected.out_of_bounds += u32::from(script.refuses);
-                }
-                Command::Request(_) => {}
-            }
-        }
-        for _ in 0..BURST {
-            if let (Some((after, mode, stop)), Some(select)) = (script.stop, selected)
-                && seq == select + after
-            {
-                (state, cause) = (mode, stop);
-            }
-            send(frame(seq, state, cause).into());
-            seq += 1;
-        }
-        if script.speaks && stream.write_all(&answer).is_err() {
-            return;
-        }
-        if script.hang_up.is_some_and(|frames| seq - begin >= frames) {
-            return;
-        }
-    }
 }
 
 /// The one line of an error on standard error.

@@ -1,0 +1,185 @@
+//! The end of a session: the board is disarmed, whatever the reason.
+
+use std::fs::OpenOptions;
+use std::process::{Command as Process, Stdio};
+use std::time::Duration;
+
+use drivers::Command;
+use haptic_control::{Mode, Stop};
+
+use crate::commands::{ARM, DISARM, WALL, deduplicated, sorted};
+use crate::scripted::{Board, Script, error};
+
+#[cfg(unix)]
+#[test]
+fn interrupt_and_termination_disarm() {
+    for signal in ["-INT", "-TERM", "-HUP"] {
+        let board = Board::new(Script::default());
+        let tool = board
+            .tool(&["select", "wall"])
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        board.wait_for(WALL);
+        let id = tool.id().to_string();
+        let killed = Process::new("kill").args([signal, &id]).status().unwrap();
+        assert!(killed.success());
+        let output = tool.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{signal}: {output:?}");
+        let (others, _) = sorted(&board.commands());
+        assert_eq!(deduplicated(others), [DISARM], "{signal}");
+    }
+}
+
+#[test]
+fn stop_of_the_board_ends_the_session_with_its_cause_and_disarms() {
+    for (mode, stop, said) in [
+        (Mode::Safe, Stop::Stall, "state safe, cause not-moving"),
+        (
+            Mode::Armed,
+            Stop::CommandTimeout,
+            "state armed, cause command-timeout",
+        ),
+        (Mode::Boot, Stop::None, "state boot, cause none"),
+    ] {
+        let board = Board::new(Script {
+            stop: Some((100, mode, stop)),
+            ..Script::default()
+        });
+        let (output, commands) = board.run(&["select", "wall"]);
+        assert_eq!(output.status.code(), Some(1));
+        let error = error(&output);
+        assert!(error.contains("the board stopped: ") && error.contains(said));
+        assert_eq!(commands.last(), Some(&DISARM), "{commands:?}");
+    }
+}
+
+#[test]
+fn board_that_does_not_arm_is_told_and_disarmed() {
+    let board = Board::new(Script {
+        armed: Mode::Safe,
+        ..Script::default()
+    });
+    let (output, commands) = board.run(&["select", "wall"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(error(&output).contains("not armed: state safe"));
+    assert_eq!(deduplicated(sorted(&commands).0), [ARM, DISARM]);
+}
+
+#[test]
+fn board_that_stays_enabled_after_disarm_is_told() {
+    let board = Board::new(Script {
+        disarms: false,
+        ..Script::default()
+    });
+    let (output, _) = board.run(&["arm", "--seconds", "0.2"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(error(&output).contains("stay enabled after disarm; switch off their supply"));
+}
+
+/// The board hears what comes after its own end.
+#[test]
+fn connection_that_closes_gets_a_disarm() {
+    for (arguments, from, expected) in [
+        (&["watch"][..], Command::Identify, &[][..]),
+        (&["select", "wall"], WALL, &[ARM, WALL, DISARM]),
+    ] {
+        let board = Board::new(Script {
+            hang_up: Some((from, 500)),
+            ..Script::default()
+        });
+        let (output, commands) = board.run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let said = error(&output);
+        assert!(said.contains("connection lost"), "{said}");
+        assert!(said.contains("run the command again"), "{said}");
+        assert_eq!(deduplicated(sorted(&commands).0), expected);
+    }
+}
+
+/// Standard output has no room.
+#[cfg(target_os = "linux")]
+#[test]
+fn error_of_the_tool_itself_disarms() {
+    let full = OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let board = Board::new(Script::default());
+    let output = board
+        .tool(&["select", "wall"])
+        .stdout(full)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert!(error(&output).contains("standard output"));
+    assert_eq!(
+        deduplicated(sorted(&board.commands()).0),
+        [ARM, WALL, DISARM]
+    );
+}
+
+#[test]
+fn silence_ends_a_session_with_disarm_after_the_timeout_alone() {
+    let pausing = |pause| {
+        Board::new(Script {
+            pause: Some((100, pause)),
+            ..Script::default()
+        })
+    };
+    let forever = Duration::from_secs(3600);
+    let (output, commands) = pausing(forever).run(&["select", "wall"]);
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert!(error(&output).contains("the board sends nothing"));
+    assert_eq!(commands.last(), Some(&DISARM), "{commands:?}");
+    // Longer than the default.
+    let pause = Duration::from_millis(2100);
+    let arguments = ["select", "wall", "--seconds", "0.5", "--timeout", "60"];
+    let (output, _) = pausing(pause).run(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+}
+
+#[test]
+fn scene_that_does_not_start_is_told_and_disarmed() {
+    let board = Board::new(Script {
+        starts_after: None,
+        ..Script::default()
+    });
+    let (output, commands) = board.run(&["select", "wall", "--tune", "stiffness=0.2"]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(error(&output).contains("the scene does not start: state armed, cause none"));
+    assert_eq!(deduplicated(sorted(&commands).0), [ARM, WALL, DISARM]);
+}
+
+#[test]
+fn what_cannot_be_done_is_refused_before_the_board_is_armed() {
+    for (arguments, said) in [
+        (
+            &["select", "wall", "--record", env!("CARGO_TARGET_TMPDIR")][..],
+            "is a folder; choose the name of a file",
+        ),
+        (
+            &[
+                "arm",
+                "--record",
+                concat!(env!("CARGO_BIN_EXE_drive"), "/run.csv"),
+            ],
+            "is no folder; choose another path",
+        ),
+        (
+            &[
+                "select",
+                "wall",
+                "--tune",
+                "stiffness=0.2@2",
+                "--seconds",
+                "2",
+            ],
+            "the change at 2 s comes after the end at 2 s; give a longer --seconds",
+        ),
+    ] {
+        let (output, commands) = Board::new(Script::default()).run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let error = error(&output);
+        assert!(error.contains(said), "{error}");
+        assert!(commands.iter().all(|it| *it == Command::Identify));
+    }
+}

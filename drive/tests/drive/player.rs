@@ -1,0 +1,216 @@
+//! A board that plays a script: it answers commands, sends a frame per millisecond of its own time, and
+//! has no control and no time limits.
+
+use std::io::{ErrorKind, Read as _, Write as _};
+use std::net::{Shutdown, TcpStream};
+use std::sync::mpsc::Sender;
+use std::time::{Duration, Instant};
+
+use drivers::link::{Frame, LONGEST, Message, Rejected};
+use drivers::{Command, Parser};
+use haptic_control::{Mode, Request, Stop};
+
+use crate::scripted::Script;
+
+/// Frames that the board sends at a time.
+const BURST: u32 = 10;
+
+/// The frame of this number: its values follow from the number.
+pub(super) fn frame(seq: u32, state: Mode, cause: Stop) -> Frame {
+    Frame {
+        seq,
+        tick: 10 * seq,
+        counts_large: 3 * seq,
+        counts_small: 0_u32.wrapping_sub(seq),
+        current: 0.5,
+        current_small: -0.25,
+        torque: 0.01,
+        velocity_large: 1.5,
+        velocity_small: -2.5,
+        state: state as u8,
+        cause: cause as u8,
+        sigma_large: 0.125,
+        estimator: 0,
+        overruns: 0,
+        drops: 0,
+        rtt_drops: 0,
+        cycles: 900,
+    }
+}
+
+/// The state of a board that plays a script.
+struct Player<'a> {
+    script: &'a Script,
+    state: Mode,
+    cause: Stop,
+    rejected: Rejected,
+    /// Number of the next frame.
+    seq: u32,
+    /// Frame at which the first question came.
+    asked: Option<u32>,
+    /// Frame before which the board closes its end.
+    last: Option<u32>,
+    /// Frame at which the command `select` came.
+    selected: Option<u32>,
+    /// End of the pause.
+    quiet_until: Option<Instant>,
+    /// An answer that waits for the next question.
+    late: Vec<u8>,
+    /// Bytes to be sent.
+    bytes: Vec<u8>,
+}
+
+impl<'a> Player<'a> {
+    fn new(script: &'a Script) -> Self {
+        Self {
+            script,
+            state: script.begin,
+            cause: Stop::None,
+            rejected: Rejected {
+                garbage: 7,
+                not_finite: 0,
+                out_of_bounds: 0,
+                unknown: 1,
+            },
+            // The board has run for some time.
+            seq: 50,
+            asked: None,
+            last: None,
+            selected: None,
+            quiet_until: None,
+            late: Vec::new(),
+            bytes: Vec::new(),
+        }
+    }
+
+    /// Bytes of a message, with the noise before it.
+    fn message(&self, message: Message) -> Vec<u8> {
+        let mut buffer = [0; LONGEST];
+        let frame = message.encode(&mut buffer).unwrap();
+        let frame = match message {
+            Message::Hello(_) => appended(frame, &self.script.appended),
+            _ => frame.to_vec(),
+        };
+        [&self.script.noise[..], &frame].concat()
+    }
+
+    fn take(&mut self, command: Command) {
+        if let Some((from, frames)) = self.script.hang_up
+            && command == from
+        {
+            self.last.get_or_insert(self.seq + frames);
+        }
+        match command {
+            Command::Identify => {
+                self.asked.get_or_insert(self.seq);
+                let hello = self.message(self.script.hello.into());
+                let answer = [hello, self.message(self.rejected.into())].concat();
+                let now = match self.script.answers_late {
+                    true => std::mem::replace(&mut self.late, answer),
+                    false => answer,
+                };
+                self.bytes.extend(now);
+            }
+            Command::Request(Request::Arm) => self.state = self.script.armed,
+            Command::Request(Request::Disarm) if self.script.disarms => self.state = Mode::Boot,
+            Command::Request(Request::Select(_)) => self.selected = Some(self.seq),
+            Command::Tune { .. } | Command::Torque(_) | Command::Estimator(_) => {
+                self.rejected.out_of_bounds += u32::from(self.script.refuses);
+            }
+            Command::Request(_) => {}
+        }
+    }
+
+    /// Makes a frame.
+    fn tick(&mut self) {
+        let after =
+            |selected: Option<u32>, frames| selected.is_some_and(|at| self.seq == at + frames);
+        if let Some((frames, wait)) = self.script.pause
+            && after(self.selected, frames)
+        {
+            let until = *self.quiet_until.get_or_insert(Instant::now() + wait);
+            if Instant::now() < until {
+                return;
+            }
+        }
+        if self
+            .script
+            .starts_after
+            .is_some_and(|frames| after(self.selected, frames))
+        {
+            self.state = Mode::Running;
+        }
+        if let Some((frames, mode, stop)) = self.script.stop
+            && after(self.selected, frames)
+        {
+            (self.state, self.cause) = (mode, stop);
+        }
+        let number = self.asked.map(|asked| self.seq - asked);
+        let is_lost = |(first, last)| number.is_some_and(|it| (first..=last).contains(&it));
+        if !self.script.lost.is_some_and(is_lost) {
+            let frame = frame(self.seq, self.state, self.cause);
+            self.bytes.extend(self.message(frame.into()));
+        }
+        self.seq += 1;
+    }
+
+    /// Whether the board has sent its last frame.
+    fn is_through(&self) -> bool {
+        self.last.is_some_and(|last| self.seq >= last)
+    }
+}
+
+/// A frame of the link with more bytes in its payload: start, kind, length, payload, CRC-16/IBM-3740
+/// over all but the start.
+pub(super) fn appended(frame: &[u8], more: &[u8]) -> Vec<u8> {
+    let (head, payload) = frame[..frame.len() - 2].split_at(3);
+    let mut longer = vec![head[0], head[1], head[2] + more.len() as u8];
+    longer.extend(payload);
+    longer.extend(more);
+    let crc = longer[1..].iter().fold(0xFFFF_u16, |crc, byte| {
+        (0..8).fold(crc ^ u16::from(*byte) << 8, |crc, _| match crc & 0x8000 {
+            0 => crc << 1,
+            _ => crc << 1 ^ 0x1021,
+        })
+    });
+    longer.extend(crc.to_le_bytes());
+    longer
+}
+
+/// Plays the script for one connection, and reports the commands that come.
+pub(super) fn play(mut stream: TcpStream, script: &Script, report: &Sender<Command>) {
+    stream
+        .set_read_timeout(Some(Duration::from_millis(2)))
+        .unwrap();
+    let mut parser = Parser::default();
+    let mut player = Player::new(script);
+    let mut is_open = true;
+    loop {
+        let mut bytes = [0; 256];
+        let count = match stream.read(&mut bytes) {
+            Ok(0) => return,
+            Ok(count) => count,
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => 0,
+            Err(_) => return,
+        };
+        for command in bytes[..count].iter().filter_map(|byte| parser.take(*byte)) {
+            // A test that has ended looks at no command.
+            let _ = report.send(command);
+            player.take(command);
+        }
+        for _ in 0..BURST {
+            if !player.is_through() {
+                player.tick();
+            }
+        }
+        let made = std::mem::take(&mut player.bytes);
+        let sent = script.instead.as_ref().unwrap_or(&made);
+        if is_open && stream.write_all(sent).is_err() {
+            return;
+        }
+        if is_open && player.is_through() {
+            // What the tool says last is heard.
+            is_open = stream.shutdown(Shutdown::Write).is_err();
+        }
+    }
+}
