@@ -106,19 +106,24 @@ impl Live {
     /// Passes bytes between client and board, and waits until real time is `now_ns` too; whether the
     /// run goes on.
     pub(crate) fn look(&mut self, wire: &mut Wire, now_ns: u64) -> bool {
-        self.accept();
         let sent: Vec<u8> = wire.up.drain(..).map(|(_, byte)| byte).collect();
         let keeps = self.client.as_mut().is_none_or(|client| {
-            let room = WAITING.saturating_sub(wire.down.len());
-            let taken = take(client, room.min(CHUNK));
-            if let Some(bytes) = &taken {
+            // All that has come, so that the end of a client is seen before the next client.
+            loop {
+                let room = WAITING.saturating_sub(wire.down.len());
+                let Some(bytes) = take(client, room.min(CHUNK)) else {
+                    return false;
+                };
+                if bytes.is_empty() {
+                    return give(client, &sent);
+                }
                 wire.down.extend(bytes.iter().map(|byte| (now_ns, *byte)));
             }
-            taken.is_some() && give(client, &sent)
         });
         if !keeps {
             self.client = None;
         }
+        self.accept();
         let virtual_time = Duration::from_nanos(now_ns);
         self.pace.seconds = virtual_time.as_secs_f64();
         if virtual_time < STARTED {
@@ -192,4 +197,31 @@ fn give(client: &mut TcpStream, mut bytes: &[u8]) -> bool {
 
 fn is_later(error: &std::io::Error) -> bool {
     matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A client that has gone is no reason to refuse the next one, even if both are seen at one look.
+    #[test]
+    fn next_client_is_served_at_the_look_that_sees_the_end_of_the_first() {
+        let bridge = Bridge::bind(0).unwrap();
+        let address = bridge.address();
+        let mut live = Live::new(bridge.listener, Arc::default());
+        let mut wire = Wire::default();
+        let first = TcpStream::connect(address).unwrap();
+        while live.client.is_none() {
+            live.look(&mut wire, 0);
+        }
+        drop(first);
+        let served = live.client.as_ref().unwrap();
+        while served.peek(&mut [0]).is_err() {}
+        let mut second = TcpStream::connect(address).unwrap();
+        second.write_all(b"!").unwrap();
+        while wire.down.is_empty() && live.refused.is_empty() {
+            live.look(&mut wire, 0);
+        }
+        assert_eq!(wire.down, [(0, b'!')]);
+    }
 }
