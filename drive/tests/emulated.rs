@@ -1,0 +1,124 @@
+//! The tool's binary against the emulated board, which runs the flash image and has its serial port at
+//! TCP.
+
+use std::fs;
+use std::io::Read as _;
+use std::net::{SocketAddr, TcpStream};
+use std::path::Path;
+use std::process::{Command as Process, Output};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use drivers::link::{Message, PROTOCOL, Parser};
+use haptic_control::{Mode, SimulatedHand};
+use recordings::recording::Recording;
+use tuned::DEVICE_FINGERPRINT;
+use virtual_board::bridge::Bridge;
+use virtual_board::image::Image;
+use virtual_board::run::{RATE_HZ, Setup};
+
+/// Runs the tool. The computer may be busy, and the board slow.
+fn tool(address: SocketAddr, arguments: &[&str]) -> Output {
+    let port = format!("tcp:{address}");
+    Process::new(env!("CARGO_BIN_EXE_drive"))
+        .args(arguments)
+        .args(["--port", &port, "--timeout", "60"])
+        .output()
+        .unwrap()
+}
+
+/// State in a frame that the board sends from now on.
+fn state_now(address: SocketAddr) -> Option<Mode> {
+    let mut client = TcpStream::connect(address).unwrap();
+    let (mut parser, mut state) = (Parser::default(), None);
+    let mut byte = [0];
+    while state.is_none() {
+        client.read_exact(&mut byte).expect("a frame");
+        parser.take(byte[0], |message| {
+            if let Message::Frame(frame) = message {
+                state = Some(frame.state);
+            }
+        });
+    }
+    state.and_then(Mode::from_code)
+}
+
+/// Times of the rows of the running scene, s.
+fn running(path: &Path) -> Vec<f64> {
+    let text = fs::read_to_string(path).unwrap();
+    let mut lines = text.lines();
+    let state = lines
+        .next()
+        .unwrap()
+        .split(',')
+        .position(|it| it == "state");
+    let states = lines.map(|row| row.split(',').nth(state.unwrap()).unwrap());
+    let recording = Recording::read(path).unwrap();
+    let is_running = |state: &str| state.parse() == Ok(Mode::Running as u8);
+    let rows = recording.t.into_iter().zip(states);
+    rows.filter(|(_, state)| is_running(state))
+        .map(|(t, _)| t)
+        .collect()
+}
+
+#[test]
+fn emulated_board_is_identified_renders_a_wall_and_is_left_disarmed() {
+    let image = Image::build("").unwrap();
+    let bridge = Bridge::bind(0).unwrap();
+    let address = bridge.address();
+    let setup = Setup {
+        hand: SimulatedHand::HoldStill.into(),
+        // Until the tool is through.
+        seconds: 3600.0,
+        commands: Vec::new(),
+        keep_alive: false,
+        ..Setup::default()
+    };
+    let stop = Arc::new(AtomicBool::new(false));
+    let until = Arc::clone(&stop);
+    let runs = std::thread::spawn(move || bridge.run(&image, &setup, until).unwrap());
+
+    let output = tool(address, &["info"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    for said in [
+        format!("protocol           {PROTOCOL}\n"),
+        format!("firmware           {}, commit ", env!("CARGO_PKG_VERSION")),
+        format!("control rate       {RATE_HZ} Hz\n"),
+        format!("device             {DEVICE_FINGERPRINT}\n"),
+        "rejected commands  0 not finite, 0 out of bounds, 0 unknown, 0 bytes of garbage\n"
+            .to_owned(),
+    ] {
+        assert!(text.contains(&said), "{said}: {text}");
+    }
+
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("drive-emulated-wall.csv");
+    let path = out.to_str().unwrap();
+    let arguments = [
+        "select",
+        "wall",
+        "--tune",
+        "stiffness=0.1@0.1",
+        "--seconds",
+        "0.3",
+    ];
+    let output = tool(address, &[&arguments[..], &["--record", path]].concat());
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        text.starts_with("disarmed: state boot, cause none\n"),
+        "{text}"
+    );
+    assert!(
+        text.contains(" frames recorded, 0 missing at 0 places\n"),
+        "{text}"
+    );
+    let times = running(&out);
+    // A frame per millisecond.
+    assert_eq!(times.len(), 301);
+    assert!((times[300] - times[0] - 0.3).abs() < 1e-9);
+    assert_eq!(state_now(address), Some(Mode::Boot));
+
+    stop.store(true, Ordering::Relaxed);
+    runs.join().unwrap();
+}
