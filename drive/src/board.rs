@@ -94,7 +94,10 @@ impl Board {
 
     /// Sends a command again and again until `answer` takes a message; `None` if it takes none in
     /// time.
-    fn ask<T>(
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if the connection is lost.
+    pub(crate) fn ask<T>(
         &mut self,
         command: Command,
         mut answer: impl FnMut(Message) -> Option<T>,

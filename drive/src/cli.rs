@@ -12,11 +12,13 @@ use terminal::output::{note, print_bytes};
 use terminal::wording::WIDTH;
 
 use crate::board::{Answer, Board};
+use crate::bring_up;
 use crate::identity;
 use crate::named::{self, Tuning};
 use crate::port::{Port, list};
 use crate::record::Recorder;
 use crate::session::{self, Plan};
+use crate::settings::{self, Assignment, assignment};
 use crate::timed::{Change, Timed, timed};
 use crate::watch::state;
 use drivers::Command;
@@ -112,6 +114,27 @@ enum Action {
     /// Keep a board alive that another program has armed; disarm at the end
     #[command(after_help = "Example:\n  cargo drive keep-alive --seconds 10")]
     KeepAlive(Hold),
+    /// Show the settings of the board; change some until the next reset, or store them
+    #[command(after_help = "Examples:
+  cargo drive settings
+  cargo drive settings current-scale=0.5
+  cargo drive settings zero-large=2051.5 gain-large=1.01 --store")]
+    Settings {
+        /// New values, in the setting's unit; they act at once
+        #[arg(value_name = "NAME=VALUE", value_parser = assignment)]
+        assignments: Vec<Assignment>,
+        /// Store the settings in the board's flash; the amplifiers have to be disabled
+        #[arg(long)]
+        store: bool,
+    },
+    /// Check a new board and its motors step by step, and verify the signs of encoders and currents: scenes
+    /// in closed loop are refused before. Moves the motors, at most with 0.3 A and 0.15 A
+    #[command(after_help = "Examples:\n  cargo drive bring-up\n  cargo drive bring-up --store")]
+    BringUp {
+        /// Store the settings in the board's flash if all checks pass
+        #[arg(long)]
+        store: bool,
+    },
     /// Record the telemetry as CSV, as cargo sim record does; arms nothing
     #[command(after_help = "Example:\n  cargo drive record --seconds 5 --out run.csv")]
     Record {
@@ -264,6 +287,20 @@ fn act(arguments: Arguments) -> Result<(), Failure> {
             note(format_args!("{name}, until the next reset"));
             Ok(())
         }
+        Action::Settings { assignments, store } => {
+            let mut board = open()?;
+            board.compatible()?;
+            settings::change(&mut board, &assignments)?;
+            print_bytes(settings::table(&mut board)?.as_bytes())?;
+            if store {
+                return settings::store(&mut board);
+            }
+            if !assignments.is_empty() {
+                note("until the next reset; --store keeps them");
+            }
+            Ok(())
+        }
+        Action::BringUp { store } => bring_up::run(&mut open()?, store),
         Action::Record { out, seconds } => {
             let mut board = open()?;
             let answer = board.compatible()?;

@@ -4,6 +4,7 @@
 //! speaks another protocol can be identified and disarmed, and gets no other command.
 
 mod board;
+mod bring_up;
 pub mod cli;
 mod clock;
 mod identity;
@@ -12,6 +13,8 @@ mod named;
 mod pace;
 mod port;
 mod record;
+mod response;
 mod session;
+mod settings;
 mod timed;
 mod watch;

@@ -60,6 +60,38 @@ impl Plan {
 pub(crate) fn armed(board: &mut Board, answer: &Answer, plan: Plan) -> Result<(), Failure> {
     plan.check()?;
     interrupt::take();
+    arm(board, answer)?;
+    ended(board, answer, plan)
+}
+
+/// Arms the board, renders a scene if the plan has one, and disarms at the end; without keep-alives in the
+/// plan, only listens. Hands every message to `sink`.
+///
+/// # Errors
+/// As [`armed`]; [`Failure::Check`] after an interrupt.
+pub(crate) fn observed(
+    board: &mut Board,
+    answer: &Answer,
+    plan: Plan,
+    sink: &mut dyn FnMut(Message),
+) -> Result<(), Failure> {
+    interrupt::take();
+    let arms = plan.keeps_alive;
+    if arms {
+        arm(board, answer)?;
+    }
+    follow(board, answer, plan, sink)?;
+    if arms {
+        board.disarm()?;
+    }
+    if interrupt::came() {
+        return Err(Failure::Check("interrupted".to_owned()));
+    }
+    Ok(())
+}
+
+/// Arms the board, and waits until it is.
+fn arm(board: &mut Board, answer: &Answer) -> Result<(), Failure> {
     board.disarm_at_the_end();
     board.send(Command::Request(Request::Arm))?;
     board.wait(
@@ -72,7 +104,7 @@ pub(crate) fn armed(board: &mut Board, answer: &Answer, plan: Plan) -> Result<()
             )
         },
     )?;
-    ended(board, answer, plan)
+    Ok(())
 }
 
 /// Keeps a board alive that is enabled already, and disarms it at the end.
@@ -99,7 +131,7 @@ pub(crate) fn kept_alive(board: &mut Board, answer: &Answer, plan: Plan) -> Resu
 /// Follows the plan, disarms the board and writes the recording.
 fn ended(board: &mut Board, answer: &Answer, mut plan: Plan) -> Result<(), Failure> {
     let mut recorder = plan.recorder.take();
-    let followed = follow(board, answer, plan, recorder.as_mut()).and_then(|()| {
+    let followed = follow(board, answer, plan, &mut sink(&mut recorder)).and_then(|()| {
         let frame = board.disarm()?;
         note(format_args!("disarmed: {}", state(&frame)));
         Ok(())
@@ -115,8 +147,17 @@ pub(crate) fn unarmed(board: &mut Board, answer: &Answer, mut plan: Plan) -> Res
     plan.check()?;
     interrupt::take();
     let mut recorder = plan.recorder.take();
-    let followed = follow(board, answer, plan, recorder.as_mut());
+    let followed = follow(board, answer, plan, &mut sink(&mut recorder));
     written(followed, recorder)
+}
+
+/// Hands messages to the recorder, if there is one.
+fn sink(recorder: &mut Option<Recorder>) -> impl FnMut(Message) {
+    move |message| {
+        if let Some(recorder) = recorder {
+            recorder.take(message);
+        }
+    }
 }
 
 /// Writes the recording, after an error too: the time before a stop tells its reason. The error of the
@@ -130,12 +171,12 @@ fn is_ready(mode: Option<Mode>) -> bool {
     matches!(mode, Some(Mode::Armed | Mode::Running))
 }
 
-/// Follows the plan to its end, and hands what comes to the recorder.
+/// Follows the plan to its end, and hands what comes to `sink`.
 fn follow(
     board: &mut Board,
     Answer { hello, rejected }: &Answer,
     plan: Plan,
-    mut recorder: Option<&mut Recorder>,
+    sink: &mut dyn FnMut(Message),
 ) -> Result<(), Failure> {
     let Plan {
         scene,
@@ -147,6 +188,8 @@ fn follow(
     } = plan;
     if let Some(scene) = scene.filter(|_| !interrupt::came()) {
         board.send(Command::Request(Request::Select(scene.number())))?;
+        // The answer has the counts of refused commands.
+        board.send(Command::Identify)?;
     }
     let mut starts = scene.is_some_and(|scene| scene != SceneKind::Off);
     let patience = board.patience();
@@ -167,9 +210,7 @@ fn follow(
             }
             continue;
         };
-        if let Some(recorder) = &mut recorder {
-            recorder.take(message);
-        }
+        sink(message);
         if let (Message::Rejected(now), Some(before)) = (message, rejected)
             && let Some(reason) = refusal(before, &now)
         {
@@ -202,7 +243,6 @@ fn follow(
         let elapsed = clock.elapsed(frame.tick);
         while let Some((_, change)) = changes.pop_if(|(at, _)| *at <= elapsed) {
             board.send(change.command())?;
-            // The answer has the counts of refused commands.
             board.send(Command::Identify)?;
         }
         if seconds.is_some_and(|seconds| elapsed >= seconds) {

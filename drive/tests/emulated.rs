@@ -8,12 +8,15 @@ use std::path::Path;
 use std::process::{Command as Process, Output};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
 
 use drivers::link::{Message, PROTOCOL, Parser};
+use experiments::closed_loop::Hand;
 use haptic_control::{Mode, SimulatedHand};
 use recordings::recording::Recording;
 use tuned::DEVICE_FINGERPRINT;
 use virtual_board::bridge::Bridge;
+use virtual_board::fault::Fault;
 use virtual_board::image::Image;
 use virtual_board::run::{RATE_HZ, Setup};
 
@@ -25,6 +28,39 @@ fn tool(address: SocketAddr, arguments: &[&str]) -> Output {
         .args(["--port", &port, "--timeout", "60"])
         .output()
         .unwrap()
+}
+
+/// A board that runs until it is ended.
+struct EmulatedBoard {
+    stop: Arc<AtomicBool>,
+    runs: JoinHandle<()>,
+}
+
+impl EmulatedBoard {
+    /// Starts a board that is commanded over the port whose address is returned.
+    fn start(setup: Setup) -> (SocketAddr, Self) {
+        let image = Image::build("").unwrap();
+        let bridge = Bridge::bind(0).unwrap();
+        let address = bridge.address();
+        let setup = Setup {
+            // Until the tool is through.
+            seconds: 3600.0,
+            commands: Vec::new(),
+            keep_alive: false,
+            ..setup
+        };
+        let stop = Arc::new(AtomicBool::new(false));
+        let until = Arc::clone(&stop);
+        let runs = std::thread::spawn(move || {
+            bridge.run(&image, &setup, until).unwrap();
+        });
+        (address, Self { stop, runs })
+    }
+
+    fn end(self) {
+        self.stop.store(true, Ordering::Relaxed);
+        self.runs.join().unwrap();
+    }
 }
 
 /// State in a frame that the board sends from now on.
@@ -63,20 +99,10 @@ fn running(path: &Path) -> Vec<f64> {
 
 #[test]
 fn emulated_board_is_identified_renders_a_wall_and_is_left_disarmed() {
-    let image = Image::build("").unwrap();
-    let bridge = Bridge::bind(0).unwrap();
-    let address = bridge.address();
-    let setup = Setup {
+    let (address, board) = EmulatedBoard::start(Setup {
         hand: SimulatedHand::HoldStill.into(),
-        // Until the tool is through.
-        seconds: 3600.0,
-        commands: Vec::new(),
-        keep_alive: false,
         ..Setup::default()
-    };
-    let stop = Arc::new(AtomicBool::new(false));
-    let until = Arc::clone(&stop);
-    let runs = std::thread::spawn(move || bridge.run(&image, &setup, until).unwrap());
+    });
 
     let output = tool(address, &["info"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
@@ -86,7 +112,7 @@ fn emulated_board_is_identified_renders_a_wall_and_is_left_disarmed() {
         format!("firmware           {}, commit ", env!("CARGO_PKG_VERSION")),
         format!("control rate       {RATE_HZ} Hz\n"),
         format!("device             {DEVICE_FINGERPRINT}\n"),
-        "rejected commands  0 not finite, 0 out of bounds, 0 unknown, 0 bytes of garbage\n"
+        "rejected commands  0 not finite, 0 out of bounds, 0 unknown, 0 before bring-up, 0 bytes of garbage\n"
             .to_owned(),
     ] {
         assert!(text.contains(&said), "{said}: {text}");
@@ -118,7 +144,63 @@ fn emulated_board_is_identified_renders_a_wall_and_is_left_disarmed() {
     assert_eq!(times.len(), 301);
     assert!((times[300] - times[0] - 0.3).abs() < 1e-9);
     assert_eq!(state_now(address), Some(Mode::Boot));
+    board.end();
+}
 
-    stop.store(true, Ordering::Relaxed);
-    runs.join().unwrap();
+/// A board whose flash is blank, with a free handle.
+fn blank(fault: Option<Fault>) -> Setup {
+    Setup {
+        hand: Hand::Gone(0.0),
+        settings: None,
+        faults: fault.map(|fault| (0.001, fault)).into_iter().collect(),
+        ..Setup::default()
+    }
+}
+
+/// Standard output and exit status of the tool.
+fn said(address: SocketAddr, arguments: &[&str]) -> (String, Option<i32>) {
+    let output = tool(address, arguments);
+    let text = String::from_utf8(output.stdout).unwrap();
+    (text, output.status.code())
+}
+
+#[test]
+fn bring_up_passes_on_a_new_board_and_permits_closed_loop() {
+    let (address, board) = EmulatedBoard::start(blank(None));
+    let free_air = ["select", "free-air", "--seconds", "0.1"];
+    assert_eq!(said(address, &free_air).1, Some(1));
+    let (text, status) = said(address, &["bring-up"]);
+    assert_eq!(status, Some(0), "{text}");
+    assert!(
+        text.lines().count() == 6 && !text.contains("FAIL"),
+        "{text}"
+    );
+    // The emulated device is that of the file; the estimate is good to a tenth.
+    for ratio in text
+        .lines()
+        .filter_map(|line| line.split_once(" of the device file"))
+    {
+        let ratio: f64 = ratio.0.rsplit(' ').next().unwrap().parse().unwrap();
+        assert!((ratio - 1.0).abs() < 0.1, "{text}");
+    }
+    assert_eq!(said(address, &free_air).1, Some(0));
+    let (text, _) = said(address, &["settings"]);
+    assert!(text.contains("signs-verified  1 "), "{text}");
+    board.end();
+}
+
+#[test]
+fn bring_up_fails_with_an_encoder_whose_lines_are_exchanged_or_stuck() {
+    for fault in [Fault::Swapped, Fault::StuckA] {
+        let (address, board) = EmulatedBoard::start(blank(Some(fault)));
+        let (text, status) = said(address, &["bring-up"]);
+        assert_eq!(status, Some(1), "{text}");
+        assert!(text.contains("FAIL"), "{text}");
+        assert_eq!(state_now(address), Some(Mode::Boot));
+        assert_eq!(
+            said(address, &["select", "free-air", "--seconds", "0.1"]).1,
+            Some(1)
+        );
+        board.end();
+    }
 }

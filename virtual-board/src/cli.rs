@@ -56,7 +56,7 @@ struct Arguments {
     #[arg(long, value_name = "NUMBER@S", value_parser = timed::<Number>)]
     estimator: Vec<(f64, Number)>,
     /// Hand on the handle: moving; pushing (into the wall and back); still; tracking (chirps and
-    /// reversals); pressing (once with 10 N)
+    /// reversals); pressing (once with 10 N); none (a free handle)
     #[arg(long, value_name = "NAME", default_value = "moving", value_parser = holder)]
     hand: HandChoice,
     /// Virtual duration, above 0, at most 3600 s [default: 3; 3600 with --link]
@@ -142,9 +142,10 @@ fn holder(name: &str) -> Result<HandChoice, String> {
         "still" => HandChoice::Hand(Hand::Still),
         "tracking" => HandChoice::Hand(Hand::Tracking),
         "pressing" => HandChoice::Pressing,
+        "none" => HandChoice::Hand(Hand::Gone(0.0)),
         _ => {
             return Err(format!(
-                "no hand '{name}'; choose moving, pushing, still, tracking or pressing"
+                "no hand '{name}'; choose moving, pushing, still, tracking, pressing or none"
             ));
         }
     })

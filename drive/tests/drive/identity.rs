@@ -37,7 +37,7 @@ fn info_has_every_property_even_among_noise_and_half_frames() {
         "control rate       10000 Hz\n",
         "reset              cause watchdog\n",
         "reset below 2.7 V  yes\n",
-        "rejected commands  0 not finite, 0 out of bounds, 1 unknown, 7 bytes of garbage\n",
+        "rejected commands  0 not finite, 0 out of bounds, 1 unknown, 0 before bring-up, 7 bytes of garbage\n",
     ] {
         assert!(text.contains(said), "{said}: {text}");
     }

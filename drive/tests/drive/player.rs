@@ -71,6 +71,7 @@ impl<'a> Player<'a> {
                 not_finite: 0,
                 out_of_bounds: 0,
                 unknown: 1,
+                unverified: 0,
             },
             // The board has run for some time.
             seq: 50,
@@ -117,7 +118,7 @@ impl<'a> Player<'a> {
             Command::Tune { .. } | Command::Torque(_) | Command::Estimator(_) => {
                 self.rejected.out_of_bounds += u32::from(self.script.refuses);
             }
-            Command::Request(_) => {}
+            Command::Request(_) | Command::Set { .. } | Command::Settings | Command::Store => {}
         }
     }
 

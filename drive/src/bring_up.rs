@@ -1,0 +1,355 @@
+//! The guided bring-up: what has to be right before a scene runs in closed loop.
+
+use std::f64::consts::TAU;
+
+use drivers::link::{Frame, Message};
+use drivers::{Command, Setting};
+use haptic_control::SceneKind;
+use terminal::failure::Failure;
+use terminal::output::{note, print_bytes};
+use tuned::{DEVICE, DEVICE_FINGERPRINT, PRESETS_FINGERPRINT};
+
+use crate::board::{Answer, Board};
+use crate::response::{Motion, Response};
+use crate::session::{self, Plan};
+use crate::settings;
+use crate::watch::cause;
+
+/// Length of the observation of a device that should be at rest, s.
+const REST_S: f64 = 1.0;
+/// Length of the strokes with which the scene `excite` begins, in which a free handle stays near its start,
+/// s.
+const STROKES_S: f64 = 3.8;
+/// Counts by which an encoder at rest may change: it stands on a boundary, or its disc vibrates.
+const NOISE: u32 = 2;
+/// Bounds of a measured constant over that of the device file: outside of them a sign or a wire is wrong.
+const WRONG: [f64; 2] = [0.3, 3.0];
+/// Bounds outside of which the device file should be identified anew: it is assumed good to 15 %, and the
+/// estimate here to as much.
+const DIFFERS: [f64; 2] = [0.7, 1.4];
+/// Least part of the acceleration's variance that a motor's response explains.
+const EXPLAINED: f64 = 0.5;
+
+/// The lines of a step, from its frames.
+type Check = fn(&'static str, &[Frame]) -> Vec<Line>;
+
+/// A line of the report: what was checked, and what was found.
+type Line = (&'static str, Result<String, String>);
+
+/// Checks a board step by step, prints a line for each, and notes in the settings whether the signs are
+/// verified.
+///
+/// # Errors
+/// [`Failure::Check`] if a check failed; otherwise those of the session.
+pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
+    let answer = board.compatible()?;
+    let mut lines = vec![identity(&answer)];
+    show(&lines[0])?;
+    note(format_args!(
+        "leave the handle free and do not touch it: the motors move it by up to a turn for {STROKES_S} s"
+    ));
+    let mut failed = lines[0].1.is_err();
+    let steps: [(&'static str, Plan, Check); 3] = [
+        ("at rest", plan(None, false, REST_S), at_rest),
+        ("armed, no scene", plan(None, true, REST_S), at_rest),
+        (
+            "strokes",
+            plan(Some(SceneKind::Excite), true, STROKES_S),
+            motors,
+        ),
+    ];
+    for (name, plan, check) in steps {
+        if failed {
+            break;
+        }
+        let mut frames = Vec::new();
+        let observed = session::observed(board, &answer, plan, &mut |message| {
+            if let Message::Frame(frame) = message {
+                frames.push(frame);
+            }
+        });
+        let found = match observed {
+            Ok(()) => check(name, &frames),
+            Err(Failure::Check(stopped)) => vec![(name, Err(stopped))],
+            Err(failure) => return Err(failure),
+        };
+        for line in found {
+            show(&line)?;
+            failed |= line.1.is_err();
+            lines.push(line);
+        }
+    }
+    let verified = Setting::SignsVerified;
+    let command = Command::Set {
+        setting: verified.number(),
+        value: if failed { 0.0 } else { 1.0 },
+    };
+    board.change(command, verified.facts().name)?;
+    if failed {
+        let wrong = lines.iter().filter(|(_, result)| result.is_err()).count();
+        return Err(Failure::Check(format!(
+            "bring-up: {wrong} of {} checks failed; scenes in closed loop are refused",
+            lines.len()
+        )));
+    }
+    if store {
+        return settings::store(board);
+    }
+    note("signs verified until the next reset; cargo drive settings --store keeps it");
+    Ok(())
+}
+
+fn plan(scene: Option<SceneKind>, keeps_alive: bool, seconds: f64) -> Plan {
+    Plan {
+        scene,
+        changes: Vec::new(),
+        seconds: Some(seconds),
+        every: None,
+        recorder: None,
+        keeps_alive,
+    }
+}
+
+fn show((name, result): &Line) -> Result<(), Failure> {
+    let (word, text) = match result {
+        Ok(text) => ("pass", text),
+        Err(text) => ("FAIL", text),
+    };
+    print_bytes(format!("{word}  {name:<16}{text}\n").as_bytes())
+}
+
+/// Whether the image is built for the device of this tool, and the board has no cause of a stop.
+fn identity(answer: &Answer) -> Line {
+    let hello = &answer.hello;
+    let built = [
+        (hello.device, DEVICE_FINGERPRINT, "device file"),
+        (hello.presets, PRESETS_FINGERPRINT, "presets"),
+    ];
+    let other = built.iter().find(|(image, tool, _)| *image != tool.0);
+    let result = match other {
+        Some((_, _, what)) => Err(format!(
+            "the image is built for another {what} than this tool; build both with the same DEVICE and PRESETS"
+        )),
+        None => Ok(format!(
+            "firmware {}, commit {}; device and presets as in this tool; last reset: {}",
+            hello.version,
+            hello.commit,
+            cause(hello.cause)
+        )),
+    };
+    ("identity", result)
+}
+
+/// Largest change of a count in frames.
+fn range(frames: &[Frame], count: impl Fn(&Frame) -> u32) -> u32 {
+    let Some(first) = frames.first().map(&count) else {
+        return 0;
+    };
+    let changes = frames
+        .iter()
+        .map(|frame| count(frame).wrapping_sub(first).cast_signed());
+    let (low, high) = changes.fold((0, 0), |(low, high), x| (x.min(low), x.max(high)));
+    high.abs_diff(low)
+}
+
+/// Whether both encoders rest.
+fn at_rest(name: &'static str, frames: &[Frame]) -> Vec<Line> {
+    let large = range(frames, |frame| frame.counts_large);
+    let handle = range(frames, |frame| frame.counts_small);
+    let found = format!(
+        "{:.1} s: large encoder within {large} counts, handle encoder within {handle}",
+        frames.len() as f64 * 1e-3
+    );
+    let result = if frames.len() < 100 {
+        Err(format!(
+            "{} frames came; check the connection",
+            frames.len()
+        ))
+    } else if large.max(handle) <= NOISE {
+        Ok(found)
+    } else {
+        Err(format!(
+            "{found}; {NOISE} are allowed: a shaft turns, a line has noise, or a current is not zero \
+             (zero-large and zero-small of cargo drive settings)"
+        ))
+    };
+    vec![(name, result)]
+}
+
+/// The responses of both motors to the strokes.
+fn motors(_: &'static str, frames: &[Frame]) -> Vec<Line> {
+    // Frames that were lost would be steps of the angle: the longest run without a gap counts.
+    let run = longest_run(frames);
+    let angles = |count: fn(&Frame) -> u32, per_turn: u32| -> Vec<f64> {
+        let first = run.first().map_or(0, count);
+        let rad = |frame| f64::from(count(frame).wrapping_sub(first).cast_signed()) * TAU;
+        run.iter()
+            .map(|frame| rad(frame) / f64::from(per_turn))
+            .collect()
+    };
+    let currents = |current: fn(&Frame) -> f32| -> Vec<f64> {
+        run.iter().map(|frame| f64::from(current(frame))).collect()
+    };
+    let large = angles(|frame| frame.counts_large, DEVICE.large.counts_per_rev);
+    let small = angles(|frame| frame.counts_small, DEVICE.small.counts_per_rev);
+    let [of_large, of_small] = [
+        (&large, &small, currents(|frame| frame.current)),
+        (&small, &large, currents(|frame| frame.current_small)),
+    ]
+    .map(|(angle, coupled, current)| {
+        Response::of(Motion {
+            angle,
+            coupled,
+            current: &current,
+        })
+    });
+    let mut lines = Vec::new();
+    for (name, response, motor) in [
+        ("large motor", of_large, DEVICE.large),
+        ("small motor", of_small, DEVICE.small),
+    ] {
+        let gain = motor.torque_constant / motor.inertia;
+        lines.push((name, gained(response, gain)));
+    }
+    // The handle's inertia is smaller, so that the coupler's pull shows more there.
+    let pull = DEVICE.damping / DEVICE.small.inertia;
+    if let Some(response) = of_small.filter(|_| lines.iter().all(|(_, result)| result.is_ok())) {
+        lines.push(("coupler", coupled(response, pull)));
+    }
+    lines
+}
+
+/// The longest run of frames without a lost one.
+fn longest_run(frames: &[Frame]) -> &[Frame] {
+    let runs = frames.chunk_by(|a, b| b.seq == a.seq.wrapping_add(1));
+    runs.max_by_key(|run| run.len()).unwrap_or_default()
+}
+
+const DIRECTION: &str = "a positive current has to turn its counts up";
+
+/// Whether a motor turns its own counts up, as much as the device file says.
+fn gained(response: Option<Response>, expected: f64) -> Result<String, String> {
+    let moved = response.filter(|response| response.explained > EXPLAINED);
+    let Some(Response { gain, .. }) = moved else {
+        return Err(format!(
+            "its current does not explain the motion of its encoder: check the motor's leads, both lines of \
+             the encoder, and that its plug is not in the place of the other; {DIRECTION}"
+        ));
+    };
+    let ratio = gain / expected;
+    let found = format!("{gain:.0} rad/s² per A, {ratio:.2} of the device file");
+    if gain < 0.0 {
+        Err(format!(
+            "{found}: {DIRECTION}; exchange lines A and B of the encoder, or the motor's leads, so that \
+             both shafts count up in one direction"
+        ))
+    } else {
+        judged(found, ratio)
+    }
+}
+
+/// Whether the coupler pulls the handle to where the large motor turns.
+fn coupled(Response { coupling, .. }: Response, expected: f64) -> Result<String, String> {
+    let ratio = coupling / expected;
+    let found = format!("{coupling:.0} 1/s, {ratio:.2} of the device file");
+    if ratio < WRONG[0] {
+        Err(format!(
+            "{found}: it should pull the handle to where the large motor turns; exchange lines A and B \
+             and the leads of one motor, so that both shafts count up in one direction"
+        ))
+    } else {
+        judged(found, ratio)
+    }
+}
+
+/// A ratio that is right, differs, or is wrong.
+fn judged(found: String, ratio: f64) -> Result<String, String> {
+    let outside = |[low, high]: [f64; 2]| ratio < low || ratio > high;
+    if outside(WRONG) {
+        Err(format!(
+            "{found}: check counts per turn, the amplifier's scale and the device file"
+        ))
+    } else if outside(DIFFERS) {
+        Ok(format!(
+            "{found}: identify this device (cargo sim identify) and build for its file"
+        ))
+    } else {
+        Ok(found)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A frame at rest, with this number and counts.
+    fn frame(seq: u32, large: i32, small: i32) -> Frame {
+        Frame {
+            seq,
+            tick: 10 * seq,
+            counts_large: large.cast_unsigned(),
+            counts_small: small.cast_unsigned(),
+            current: 0.0,
+            current_small: 0.0,
+            torque: 0.0,
+            velocity_large: 0.0,
+            velocity_small: 0.0,
+            state: 0,
+            cause: 0,
+            sigma_large: 0.0,
+            estimator: 255,
+            overruns: 0,
+            drops: 0,
+            rtt_drops: 0,
+            cycles: 0,
+        }
+    }
+
+    fn is_at_rest(counts: impl Fn(u32) -> (i32, i32), frames: u32) -> bool {
+        let frames: Vec<_> = (0..frames)
+            .map(|seq| frame(seq, counts(seq).0, counts(seq).1))
+            .collect();
+        at_rest("", &frames)[0].1.is_ok()
+    }
+
+    #[test]
+    fn encoders_at_rest_may_change_by_two_counts() {
+        // Around the wrap of the counts.
+        assert!(is_at_rest(|seq| (seq as i32 % 3 - 1, i32::MIN), 1000));
+        assert!(!is_at_rest(|seq| (seq as i32 % 4 - 1, 0), 1000));
+        assert!(!is_at_rest(|seq| (0, seq as i32 % 4 - 2), 1000));
+        assert!(!is_at_rest(|_| (0, 0), 50));
+    }
+
+    #[test]
+    fn longest_run_without_a_lost_frame_is_used() {
+        let numbers = [5, 6, 9, 10, 11, u32::MAX, 0];
+        let frames: Vec<_> = numbers.map(|seq| frame(seq, 0, 0)).into();
+        let run: Vec<_> = longest_run(&frames).iter().map(|frame| frame.seq).collect();
+        assert_eq!(run, [9, 10, 11]);
+        assert!(longest_run(&[]).is_empty());
+    }
+
+    #[test]
+    fn signs_and_sizes_of_responses_are_judged() {
+        let response = |gain, coupling, explained| Response {
+            gain,
+            coupling,
+            explained,
+        };
+        let gain = |gain, explained| gained(Some(response(gain, 0.0, explained)), 1000.0);
+        let same = gain(1100.0, 0.9).unwrap();
+        assert!(same.ends_with("1.10 of the device file"), "{same}");
+        for differs in [600.0, 1600.0] {
+            assert!(gain(differs, 0.9).unwrap().contains("identify"));
+        }
+        for (wrong, told) in [(-1000.0, "exchange"), (200.0, "check"), (4000.0, "check")] {
+            assert!(gain(wrong, 0.9).unwrap_err().contains(told), "{wrong}");
+        }
+        assert!(gain(1000.0, 0.2).unwrap_err().contains("does not explain"));
+        assert!(gained(None, 1000.0).is_err());
+        let pull = |coupling| coupled(response(0.0, coupling, 1.0), 100.0);
+        assert!(pull(100.0).is_ok() && pull(-100.0).is_err() && pull(10.0).is_err());
+        assert!(pull(400.0).unwrap_err().contains("check"));
+    }
+}
