@@ -20,6 +20,10 @@ pub struct Motor {
     pub counts_per_rev: u32,
     /// Largest current, A.
     pub current_limit: f64,
+    /// Nominal current of the data sheet: the largest one that the winding carries for ever, A.
+    pub continuous_current: f64,
+    /// Thermal time constant of the winding, s.
+    pub winding_time_constant: f64,
 }
 
 /// Both stages and the coupler between them. SI units.
@@ -39,7 +43,10 @@ impl DualStage {
     /// The paper's device: DCX35L with 1024 lines, DCX22S with 5000, b = 0.96 mN·m·s/rad.
     ///
     /// Damping and lines are the paper's; inertias, torque constants, friction and amplifiers
-    /// are working values, assumed good to 15 %.
+    /// are working values, assumed good to 15 %. The continuous currents are the nominal torques of
+    /// these motors, 125 and 14.9 mN·m in published copies of their data sheets for other windings,
+    /// divided by the torque constants. The thermal time constants are assumed: that of a DC-max 22 S
+    /// (14.3 s), and one between those of an RE 30 (16.9 s) and an RE 40 (41.5 s).
     pub const DEFAULT: Self = Self {
         large: Motor {
             inertia: CoupledMotor::DCX35L.motor.inertia,
@@ -47,6 +54,8 @@ impl DualStage {
             coulomb_friction: CoupledMotor::DCX35L.coulomb_friction,
             counts_per_rev: CoupledMotor::DCX35L.motor.counts_per_rev,
             current_limit: 6.0,
+            continuous_current: 2.67,
+            winding_time_constant: 30.0,
         },
         small: Motor {
             inertia: 50e-7,
@@ -54,6 +63,8 @@ impl DualStage {
             coulomb_friction: 0.8e-3,
             counts_per_rev: CoupledMotor::DCX35L.coupled_counts_per_rev,
             current_limit: 1.5,
+            continuous_current: 0.54,
+            winding_time_constant: 14.0,
         },
         damping: CoupledMotor::DCX35L.motor.damping,
         amplifier_bandwidth: Hertz(1.0 / (2.0 * PI * CoupledMotor::DCX35L.amplifier_lag)),
@@ -115,12 +126,16 @@ impl Motor {
             .number(self.coulomb_friction)
             .number(self.counts_per_rev as f64)
             .number(self.current_limit)
+            .number(self.continuous_current)
+            .number(self.winding_time_constant)
     }
 
     const fn is_possible(&self) -> bool {
         is_positive(self.inertia)
             && is_positive(self.torque_constant)
             && is_positive(self.current_limit)
+            && is_positive(self.continuous_current)
+            && is_positive(self.winding_time_constant)
             && self.coulomb_friction >= 0.0
             && self.coulomb_friction.is_finite()
             && self.counts_per_rev > 0

@@ -36,6 +36,7 @@ mod switchboard;
 mod tick;
 mod tuning;
 mod units;
+mod windings;
 
 pub use controller::{Controller, ControllerState};
 pub use design_error::DesignError;
@@ -57,6 +58,7 @@ pub use switchboard::{Switchboard, SwitchboardState};
 pub use tick::Action;
 pub use tuning::{Bounds, Parameter, Quantity, Refusal, Tunable};
 pub use units::{NewtonMetres, RadPerS, RadPerS2, Radians};
+pub use windings::{Windings, WindingsState};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

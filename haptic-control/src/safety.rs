@@ -78,7 +78,7 @@ pub enum Request {
 /// Findings of one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Findings {
-    /// Cause that the monitor found.
+    /// Cause found by the monitor or by the windings.
     pub monitor: Option<Stop>,
     /// Both amplifiers are ready. Amplifiers may be not ready while they are disabled and for some
     /// time after they are enabled.

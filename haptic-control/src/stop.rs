@@ -77,4 +77,7 @@ stops! {
     /// The interlock loop opened, and hardware disabled the amplifiers: the emergency stop is
     /// pressed, or an amplifier reports a fault in the loop.
     Interlock = 17, "interlock";
+    /// A winding carried more than its continuous current for too long, see
+    /// [`Windings`](crate::Windings).
+    Overload = 18, "overload";
 }

@@ -4,6 +4,7 @@ use drivers::Settings;
 use estimator_core::Sample;
 use haptic_control::{
     Action, Currents, Findings, Mode, Monitor, MonitorState, Request, Safety, SafetyState, Stop,
+    Windings, WindingsState,
 };
 
 use crate::config::{AUTO_ARM, DEVICE, RATE, RATE_HZ, SILENCE};
@@ -12,6 +13,7 @@ use crate::scene::{Core, FIRST, SCENES, Tuned};
 use crate::telemetry::Record;
 
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
+const WINDINGS: Windings = Windings::new(&DEVICE, RATE);
 /// Control ticks from arming to the first scene, 20 ms: amplifiers take 1 to 10 ms until they
 /// are ready and follow a command.
 pub const SETTLE: u32 = RATE_HZ / 50;
@@ -60,6 +62,8 @@ pub enum Message {
 pub struct Control {
     core: Core,
     monitor: MonitorState,
+    /// Outlives every restart.
+    windings: WindingsState,
     safety: SafetyState,
     /// Action of the latest tick.
     action: Action,
@@ -87,6 +91,7 @@ impl Control {
         Self {
             core,
             monitor: MONITOR.start(first),
+            windings: WindingsState::cold(),
             safety: SAFETY.start(reset),
             action: Action::default(),
             ticks: 0,
@@ -123,9 +128,10 @@ impl Control {
     /// One tick: the currents to apply, `None` with the amplifiers disabled.
     pub fn step(&mut self, sample: &Sample, inputs: &Inputs) -> Option<Currents> {
         self.overruns = self.overruns.wrapping_add(inputs.missed);
+        let overload = WINDINGS.check(&mut self.windings, &self.action.currents);
         let mut action = self.core.step(sample);
         let findings = Findings {
-            monitor: MONITOR.check(&mut self.monitor, sample),
+            monitor: MONITOR.check(&mut self.monitor, sample).or(overload),
             amplifiers_ready: inputs.amplifiers_ready,
             interlock: inputs.interlock,
             clock_failure: inputs.clock_failure,

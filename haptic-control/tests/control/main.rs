@@ -17,3 +17,4 @@ mod switchboard;
 mod tuning;
 mod velocity_loop;
 mod wind_up;
+mod windings;

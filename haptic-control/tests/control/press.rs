@@ -7,6 +7,7 @@ use estimator_core::{
 };
 use haptic_control::{
     AnyScene, Currents, DualStage, LoopPoles, Monitor, Rig, SceneKind, Stop, Switchboard, Torque,
+    Windings, WindingsState,
 };
 
 const RATE: Hertz = Hertz(10e3);
@@ -25,6 +26,7 @@ const FAST: Model<3, NoInput> = preset!(Model::triple_integrator(
 ));
 const HANDLE: SteadyKalmanTriple = preset!(SteadyKalman::new(&FAST));
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
+const WINDINGS: Windings = Windings::new(&DEVICE, RATE);
 
 /// All scenes; the torque that is set is all that the small motor makes.
 fn scenes() -> [AnyScene; SceneKind::ALL.len()] {
@@ -135,11 +137,13 @@ fn press(device: DualStage, scene: AnyScene, hand: Hand) -> Pressed {
     let mut sample = plant.sample(Currents::default());
     let mut state = board.start(&sample);
     let mut watch = MONITOR.start(&sample);
+    let mut windings = WindingsState::cold();
     board.select(&mut state, scene, &sample);
     let mut pressed = Pressed::default();
     for k in 0..18_000 {
         let currents = board.step(&mut state, &sample).currents;
-        pressed.stopped = MONITOR.check(&mut watch, &sample);
+        let overload = WINDINGS.check(&mut windings, &currents);
+        pressed.stopped = MONITOR.check(&mut watch, &sample).or(overload);
         if pressed.stopped.is_some() {
             return pressed;
         }

@@ -400,6 +400,7 @@ fn every_stop_keeps_its_number_and_name() {
         "debugger",
         "exception",
         "interlock",
+        "overload",
     ];
     assert_eq!(Stop::ALL.map(Stop::as_str), names);
     for code in 0..=u8::MAX {
@@ -408,5 +409,5 @@ fn every_stop_keeps_its_number_and_name() {
             None => assert!(usize::from(code) >= names.len(), "{code}"),
         }
     }
-    assert_eq!(Stop::from_code(17), Some(Stop::Interlock));
+    assert_eq!(Stop::from_code(18), Some(Stop::Overload));
 }

@@ -201,13 +201,17 @@ fn scales_are_those_of_the_encoders() {
 }
 
 /// Every constant of the device, as a way to set it.
-const CONSTANTS: [fn(&mut DualStage, f64); 10] = [
+const CONSTANTS: [fn(&mut DualStage, f64); 14] = [
     |device, value| device.large.inertia = value,
     |device, value| device.large.torque_constant = value,
     |device, value| device.large.current_limit = value,
     |device, value| device.small.inertia = value,
     |device, value| device.small.torque_constant = value,
     |device, value| device.small.current_limit = value,
+    |device, value| device.large.continuous_current = value,
+    |device, value| device.small.continuous_current = value,
+    |device, value| device.large.winding_time_constant = value,
+    |device, value| device.small.winding_time_constant = value,
     |device, value| device.damping = value,
     |device, value| device.amplifier_bandwidth = Hertz(value),
     |device, value| device.large.coulomb_friction = value,
@@ -227,7 +231,7 @@ fn device_constants_must_be_finite_and_positive_and_friction_not_negative() {
         for value in [-1e-9, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             assert_eq!(with(value), refused.map(|_: DualStage| ()), "{i} {value}");
         }
-        let is_friction = i >= 8;
+        let is_friction = i >= 12;
         assert_eq!(with(0.0).is_ok(), is_friction, "{i}");
         assert!(with(1e-9).is_ok(), "{i}");
     }

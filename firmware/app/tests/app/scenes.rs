@@ -6,7 +6,7 @@ use estimator_core::ParameterErrors;
 use firmware_app::config::EDGES;
 use firmware_app::large::Learnable as _;
 use firmware_app::scene::SCENES;
-use haptic_control::{Mode, Request};
+use haptic_control::{Mode, Request, Stop};
 
 use crate::bench::{Bench, messages, ticks};
 
@@ -43,6 +43,36 @@ fn send(bench: &mut Bench, command: Command) {
 
 fn near(is: f64, should: f64, within: f64) {
     assert!((is - should).abs() <= within, "{is} is not {should}");
+}
+
+/// Turns the handle by a rad in scene hold, where the small motor has its largest current, and counts
+/// the ticks until the device stops.
+fn ticks_to_overload(bench: &mut Bench) -> u32 {
+    let to = bench.handle + 1.0;
+    turn(bench, to, 10.0);
+    let mut held = 0;
+    while bench.state().0 == Mode::Running {
+        bench.run(1);
+        held += 1;
+        assert!(held < ticks(4.0), "twice the time from the cold");
+    }
+    assert_eq!(bench.state(), (Mode::Safe, Stop::Overload));
+    held
+}
+
+#[test]
+fn arming_does_not_cool_the_windings() {
+    let mut bench = Bench::start(7);
+    let cold = ticks_to_overload(&mut bench);
+    for _ in 0..2 {
+        bench.request(Request::Disarm);
+        bench.request(Request::Arm);
+        bench.request(Request::Select(7));
+        bench.run(ticks(0.1));
+        // A seventh of a second without current cools a winding of 14 s by a hundredth.
+        let warm = ticks_to_overload(&mut bench);
+        assert!(warm < cold / 10, "{warm} of {cold} ticks");
+    }
 }
 
 // A count of the handle is 0.3 mrad, so 0.3 N.m/rad make 0.1 mN.m of it.

@@ -84,6 +84,18 @@ fn check_motor(name: &str, motor: &Motor, ripple: &Ripple) -> Result<(), String>
             Range::Above0,
         ),
         ("current_limit_a", motor.current_limit, "A", Range::Above0),
+        (
+            "continuous_current_a",
+            motor.continuous_current,
+            "A",
+            Range::Above0,
+        ),
+        (
+            "winding_time_constant_s",
+            motor.winding_time_constant,
+            "s",
+            Range::Most(1000.0, "ms", -3),
+        ),
     ] {
         check(&format!("{name}.{key}"), value, unit, &range)?;
     }
@@ -295,6 +307,15 @@ mod tests {
             (
                 "small.current_limit_a = 0",
                 "small.current_limit_a = 0: must be above 0 A",
+            ),
+            (
+                "large.continuous_current_a = -1",
+                "large.continuous_current_a = -1: must be above 0 A",
+            ),
+            (
+                "small.winding_time_constant_s = 14000",
+                "small.winding_time_constant_s = 14000: must be at most 1000 s; did you mean 14000e-3, \
+                 which is 14000 ms?",
             ),
             (
                 "large.coulomb_ripple = 1.0",

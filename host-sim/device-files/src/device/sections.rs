@@ -33,6 +33,8 @@ struct MotorSection {
     ripple_per_rev: Option<f64>,
     counts_per_rev: Option<u32>,
     current_limit_a: Option<f64>,
+    continuous_current_a: Option<f64>,
+    winding_time_constant_s: Option<f64>,
 }
 
 /// The coupler: torque is damping times slip velocity.
@@ -63,6 +65,8 @@ impl MotorSection {
             ripple_per_rev: Some(ripple.per_rev),
             counts_per_rev: Some(motor.counts_per_rev),
             current_limit_a: Some(motor.current_limit),
+            continuous_current_a: Some(motor.continuous_current),
+            winding_time_constant_s: Some(motor.winding_time_constant),
         }
     }
 
@@ -76,6 +80,12 @@ impl MotorSection {
             coulomb_friction: self.coulomb_nm.unwrap_or(motor.coulomb_friction),
             counts_per_rev: self.counts_per_rev.unwrap_or(motor.counts_per_rev),
             current_limit: self.current_limit_a.unwrap_or(motor.current_limit),
+            continuous_current: self
+                .continuous_current_a
+                .unwrap_or(motor.continuous_current),
+            winding_time_constant: self
+                .winding_time_constant_s
+                .unwrap_or(motor.winding_time_constant),
         };
         let ripple = Ripple {
             friction: self.coulomb_ripple.unwrap_or(ripple.friction),
