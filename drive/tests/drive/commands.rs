@@ -165,7 +165,14 @@ fn refused_value_is_told_and_ends_a_session_with_disarm() {
         said,
         "wall stiffness 0.2 N·m/rad: the board refuses it: the value is out of bounds"
     );
-    let (output, commands) = refuses().run(&["select", "wall", "--tune", "stiffness=0.2@0.1"]);
+    let (output, commands) = refuses().run(&[
+        "select",
+        "wall",
+        "--tune",
+        "stiffness=0.2@0.1",
+        "--seconds",
+        "10",
+    ]);
     assert_eq!(output.status.code(), Some(1));
     assert!(error(&output).contains("refuses a command: the value is out of bounds"));
     assert_eq!(commands.last(), Some(&DISARM), "{commands:?}");

@@ -10,13 +10,16 @@ use haptic_control::{Mode, Stop};
 use crate::commands::{ARM, DISARM, WALL, deduplicated, sorted};
 use crate::scripted::{Board, Script, error};
 
+/// A session that ends later than by the reason that a test gives it.
+const SELECT: [&str; 4] = ["select", "wall", "--seconds", "10"];
+
 #[cfg(unix)]
 #[test]
 fn interrupt_and_termination_disarm() {
     for signal in ["-INT", "-TERM", "-HUP"] {
         let board = Board::new(Script::default());
         let tool = board
-            .tool(&["select", "wall"])
+            .tool(&["select", "wall", "--seconds", "500"])
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
             .spawn()
@@ -47,7 +50,7 @@ fn stop_of_the_board_ends_the_session_with_its_cause_and_disarms() {
             stop: Some((100, mode, stop)),
             ..Script::default()
         });
-        let (output, commands) = board.run(&["select", "wall"]);
+        let (output, commands) = board.run(&SELECT);
         assert_eq!(output.status.code(), Some(1));
         let error = error(&output);
         assert!(error.contains("the board stopped: ") && error.contains(said));
@@ -61,7 +64,7 @@ fn board_that_does_not_arm_is_told_and_disarmed() {
         armed: Mode::Safe,
         ..Script::default()
     });
-    let (output, commands) = board.run(&["select", "wall"]);
+    let (output, commands) = board.run(&SELECT);
     assert_eq!(output.status.code(), Some(1));
     assert!(error(&output).contains("not armed: state safe"));
     assert_eq!(deduplicated(sorted(&commands).0), [ARM, DISARM]);
@@ -82,8 +85,12 @@ fn board_that_stays_enabled_after_disarm_is_told() {
 #[test]
 fn connection_that_closes_gets_a_disarm() {
     for (arguments, from, expected) in [
-        (&["watch"][..], Command::Identify, &[][..]),
-        (&["select", "wall"], WALL, &[ARM, WALL, DISARM]),
+        (
+            &["watch", "--seconds", "10"][..],
+            Command::Identify,
+            &[][..],
+        ),
+        (&SELECT, WALL, &[ARM, WALL, DISARM]),
     ] {
         let board = Board::new(Script {
             hang_up: Some((from, 500)),
@@ -104,11 +111,7 @@ fn connection_that_closes_gets_a_disarm() {
 fn error_of_the_tool_itself_disarms() {
     let full = OpenOptions::new().write(true).open("/dev/full").unwrap();
     let board = Board::new(Script::default());
-    let output = board
-        .tool(&["select", "wall"])
-        .stdout(full)
-        .output()
-        .unwrap();
+    let output = board.tool(&SELECT).stdout(full).output().unwrap();
     assert_eq!(output.status.code(), Some(2), "{output:?}");
     assert!(error(&output).contains("standard output"));
     assert_eq!(
@@ -126,7 +129,7 @@ fn silence_ends_a_session_with_disarm_after_the_timeout_alone() {
         })
     };
     let forever = Duration::from_secs(3600);
-    let (output, commands) = pausing(forever).run(&["select", "wall"]);
+    let (output, commands) = pausing(forever).run(&SELECT);
     assert_eq!(output.status.code(), Some(2), "{output:?}");
     assert!(error(&output).contains("the board sends nothing"));
     assert_eq!(commands.last(), Some(&DISARM), "{commands:?}");
@@ -143,7 +146,7 @@ fn scene_that_does_not_start_is_told_and_disarmed() {
         starts_after: None,
         ..Script::default()
     });
-    let (output, commands) = board.run(&["select", "wall", "--tune", "stiffness=0.2"]);
+    let (output, commands) = board.run(&[&SELECT[..], &["--tune", "stiffness=0.2"]].concat());
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     assert!(error(&output).contains("the scene does not start: state armed, cause none"));
     assert_eq!(deduplicated(sorted(&commands).0), [ARM, WALL, DISARM]);
@@ -153,7 +156,14 @@ fn scene_that_does_not_start_is_told_and_disarmed() {
 fn what_cannot_be_done_is_refused_before_the_board_is_armed() {
     for (arguments, said) in [
         (
-            &["select", "wall", "--record", env!("CARGO_TARGET_TMPDIR")][..],
+            &[
+                "select",
+                "wall",
+                "--record",
+                env!("CARGO_TARGET_TMPDIR"),
+                "--seconds",
+                "1",
+            ][..],
             "is a folder; choose the name of a file",
         ),
         (
@@ -161,6 +171,8 @@ fn what_cannot_be_done_is_refused_before_the_board_is_armed() {
                 "arm",
                 "--record",
                 concat!(env!("CARGO_BIN_EXE_drive"), "/run.csv"),
+                "--seconds",
+                "1",
             ],
             "is no folder; choose another path",
         ),

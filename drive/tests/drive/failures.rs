@@ -109,7 +109,7 @@ fn value_out_of_bounds_is_refused_with_the_bounds() {
     for arguments in [
         &["tune", "wall", "stiffness", "0.36"][..],
         &["tune", "wall", "stiffness", "NaN"],
-        &["select", "wall", "--tune", "stiffness=-1"],
+        &["select", "wall", "--tune", "stiffness=-1", "--seconds", "1"],
     ] {
         let (output, commands) = Board::new(Script::default()).run(arguments);
         assert_eq!(output.status.code(), Some(2));
@@ -120,7 +120,8 @@ fn value_out_of_bounds_is_refused_with_the_bounds() {
         );
         assert!(commands.iter().all(|it| *it == Command::Identify));
     }
-    let (output, commands) = Board::new(Script::default()).run(&["torque", "-0.05"]);
+    let (output, commands) =
+        Board::new(Script::default()).run(&["torque", "-0.05", "--seconds", "1"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(error(&output).contains("torque torque -0.05 N·m: out of bounds"));
     assert!(!commands.contains(&Command::Request(Request::Arm)));

@@ -74,14 +74,14 @@ fn info_tells_another_protocol() {
 #[test]
 fn board_of_another_protocol_gets_no_command_but_disarm() {
     for arguments in [
-        &["arm"][..],
-        &["select", "wall"],
+        &["arm", "--seconds", "1"][..],
+        &["select", "wall", "--seconds", "1"],
         &["tune", "wall", "stiffness", "0.2"],
-        &["torque", "0.01"],
+        &["torque", "0.01", "--seconds", "1"],
         &["estimator", "foaw-end-fit"],
-        &["keep-alive"],
-        &["watch"],
-        &["record", "--out", "-"],
+        &["keep-alive", "--seconds", "1"],
+        &["watch", "--seconds", "1"],
+        &["record", "--out", "-", "--seconds", "1"],
     ] {
         let (output, commands) = later().run(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");

@@ -80,7 +80,7 @@ fn what_came_before_an_error_is_recorded() {
         hang_up: Some((Command::Identify, 500)),
         ..Script::default()
     };
-    let (output, _) = Board::new(lost).run(&["record", "--out", path]);
+    let (output, _) = Board::new(lost).run(&["record", "--out", path, "--seconds", "10"]);
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(said.contains("connection lost"), "{said}");
@@ -89,7 +89,8 @@ fn what_came_before_an_error_is_recorded() {
         stop: Some((100, Mode::Safe, Stop::Jump)),
         ..Script::default()
     };
-    let (output, _) = Board::new(stops).run(&["select", "wall", "--record", path]);
+    let (output, _) =
+        Board::new(stops).run(&["select", "wall", "--record", path, "--seconds", "10"]);
     assert_eq!(output.status.code(), Some(1));
     let states = states(&out);
     let running = states.iter().filter(|it| it[0] == Mode::Running as u8);
