@@ -6,8 +6,8 @@ use std::io::Read as _;
 use std::net::{SocketAddr, TcpStream};
 use std::path::Path;
 use std::process::{Command as Process, Output};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
 use drivers::link::{Message, PROTOCOL, Parser};
@@ -30,8 +30,12 @@ fn tool(address: SocketAddr, arguments: &[&str]) -> Output {
         .unwrap()
 }
 
+/// Each test has the computer for itself: a board runs in real time.
+static ALONE: Mutex<()> = Mutex::new(());
+
 /// A board that runs until it is ended.
 struct EmulatedBoard {
+    _alone: MutexGuard<'static, ()>,
     stop: Arc<AtomicBool>,
     runs: JoinHandle<()>,
 }
@@ -39,6 +43,7 @@ struct EmulatedBoard {
 impl EmulatedBoard {
     /// Starts a board that is commanded over the port whose address is returned.
     fn start(setup: Setup) -> (SocketAddr, Self) {
+        let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
         let image = Image::build("").unwrap();
         let bridge = Bridge::bind(0).unwrap();
         let address = bridge.address();
@@ -54,7 +59,12 @@ impl EmulatedBoard {
         let runs = std::thread::spawn(move || {
             bridge.run(&image, &setup, until).unwrap();
         });
-        (address, Self { stop, runs })
+        let board = Self {
+            _alone: alone,
+            stop,
+            runs,
+        };
+        (address, board)
     }
 
     fn end(self) {

@@ -122,21 +122,15 @@ impl<const N: usize> Store<N> {
     }
 
     /// Whether [`Self::prepare`] would erase nothing.
-    ///
-    /// # Errors
-    /// That of the flash.
-    pub fn is_prepared<F: ReadNorFlash>(&self, flash: &mut F) -> Result<bool, F::Error> {
-        for (i, sector) in self.sectors.iter().enumerate() {
-            if !self.is_kept(i) && !is_blank(flash, sector.range.clone())? {
-                return Ok(false);
-            }
-        }
-        Ok(true)
+    #[must_use]
+    pub fn is_prepared(&self) -> bool {
+        (0..self.sectors.len()).all(|i| self.is_usable(i))
     }
 
-    /// Whether a sector has the newest record.
-    fn is_kept(&self, sector: usize) -> bool {
-        self.newest.is_some_and(|(newest, _)| newest == sector)
+    /// Whether a sector has the newest record, or none. Bytes behind its last place are never used.
+    fn is_usable(&self, sector: usize) -> bool {
+        let Sector { range, free } = &self.sectors[sector];
+        *free == range.start || self.newest.is_some_and(|(newest, _)| newest == sector)
     }
 
     /// Erases the sector without the newest record, unless it is blank; both sectors if there is no record.
@@ -145,9 +139,9 @@ impl<const N: usize> Store<N> {
     /// That of the flash.
     pub fn prepare<F: NorFlash>(&mut self, flash: &mut F) -> Result<(), F::Error> {
         for i in 0..self.sectors.len() {
-            let is_kept = self.is_kept(i);
+            let is_usable = self.is_usable(i);
             let Sector { range, free } = &mut self.sectors[i];
-            if !is_kept && !is_blank(flash, range.clone())? {
+            if !is_usable {
                 flash.erase(range.start, range.end)?;
                 *free = range.start;
             }

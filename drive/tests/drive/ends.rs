@@ -10,6 +10,8 @@ use haptic_control::{Mode, Stop};
 use crate::commands::{ARM, DISARM, WALL, deduplicated, sorted};
 use crate::scripted::{Board, Script, error};
 
+/// Patience where it comes to its end.
+const BRIEFLY: [&str; 2] = ["--timeout", "4"];
 /// A session that ends later than by the reason that a test gives it.
 const SELECT: [&str; 4] = ["select", "wall", "--seconds", "10"];
 
@@ -64,7 +66,7 @@ fn board_that_does_not_arm_is_told_and_disarmed() {
         armed: Mode::Safe,
         ..Script::default()
     });
-    let (output, commands) = board.run(&SELECT);
+    let (output, commands) = board.run(&[&SELECT[..], &BRIEFLY].concat());
     assert_eq!(output.status.code(), Some(1));
     assert!(error(&output).contains("not armed: state safe"));
     assert_eq!(deduplicated(sorted(&commands).0), [ARM, DISARM]);
@@ -76,7 +78,7 @@ fn board_that_stays_enabled_after_disarm_is_told() {
         disarms: false,
         ..Script::default()
     });
-    let (output, _) = board.run(&["arm", "--seconds", "0.2"]);
+    let (output, _) = board.run(&[&["arm", "--seconds", "0.2"][..], &BRIEFLY].concat());
     assert_eq!(output.status.code(), Some(1));
     assert!(error(&output).contains("stay enabled after disarm; switch off their supply"));
 }
@@ -129,7 +131,7 @@ fn silence_ends_a_session_with_disarm_after_the_timeout_alone() {
         })
     };
     let forever = Duration::from_secs(3600);
-    let (output, commands) = pausing(forever).run(&SELECT);
+    let (output, commands) = pausing(forever).run(&[&SELECT[..], &BRIEFLY].concat());
     assert_eq!(output.status.code(), Some(2), "{output:?}");
     assert!(error(&output).contains("the board sends nothing"));
     assert_eq!(commands.last(), Some(&DISARM), "{commands:?}");
@@ -146,7 +148,8 @@ fn scene_that_does_not_start_is_told_and_disarmed() {
         starts_after: None,
         ..Script::default()
     });
-    let (output, commands) = board.run(&[&SELECT[..], &["--tune", "stiffness=0.2"]].concat());
+    let (output, commands) =
+        board.run(&[&SELECT[..], &["--tune", "stiffness=0.2"], &BRIEFLY].concat());
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     assert!(error(&output).contains("the scene does not start: state armed, cause none"));
     assert_eq!(deduplicated(sorted(&commands).0), [ARM, WALL, DISARM]);

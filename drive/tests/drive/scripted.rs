@@ -97,10 +97,14 @@ impl Board {
         Self { port, seen, thread }
     }
 
-    /// The tool with these arguments and the port of the board, to be started.
+    /// The tool with these arguments and the port of the board, to be started. It has patience with a busy
+    /// computer, unless the arguments say how much.
     pub(super) fn tool(&self, arguments: &[&str]) -> Process {
         let mut process = tool(arguments);
         process.args(["--port", &self.port]);
+        if !arguments.contains(&"--timeout") {
+            process.args(["--timeout", "30"]);
+        }
         process
     }
 

@@ -1,9 +1,12 @@
 //! The loop closes, on time and at a known cost, and does no harm before it is armed.
 
+use std::num::NonZeroU64;
+
 use drivers::{Setting, Settings};
 use experiments::closed_loop::Hand;
 use haptic_control::{Mode, SceneKind, Stop};
 use simulation::device::Device;
+use virtual_board::board::CORE_HZ;
 use virtual_board::run::{AMPS_PER_CODE, DacError, Outcome, RATE_HZ, Setup};
 use virtual_board::scene::{press, stiffness};
 
@@ -95,6 +98,30 @@ fn a_press_of_10_n_switches_no_scene_off() {
         if stiffness(scene, &Device::default().stages).is_some() {
             // What the coupler transmits at the limit of its slip is 4.1 N, so it is near that.
             assert!(force > 3.0, "{scene}: {force} N");
+        }
+    }
+}
+
+/// Wait states and bus contention, which the emulator does not have, may cost as much again or twice as much.
+#[test]
+fn slower_core_misses_no_tick() {
+    for cycles_per_instruction in [2, 3] {
+        for scene in [SceneKind::FreeAir, SceneKind::Wall, SceneKind::Inertia] {
+            let slower = NonZeroU64::new(CORE_HZ / cycles_per_instruction).expect("not zero");
+            let run = run(&Setup {
+                instructions_per_second: slower,
+                ..Setup::playing(scene, 0.6)
+            });
+            let last = run.telemetry.frames.last().expect("frames");
+            let name = format!("{scene}, {cycles_per_instruction} cycles an instruction");
+            assert_eq!(
+                (last.state, last.cause),
+                (Mode::Running, Stop::None),
+                "{name}"
+            );
+            assert_eq!((last.overruns, last.drops), (0, 0), "{name}");
+            assert!(last.tick > 5_800, "{name}: {}", last.tick);
+            assert!(!run.port.is_empty(), "{name}");
         }
     }
 }

@@ -46,7 +46,7 @@ impl Flash {
         else {
             return;
         };
-        if let Ok(true) = store.is_prepared(&mut flash.unlocked()) {
+        if store.is_prepared() {
             return;
         }
         patient(&mut || {
