@@ -1,5 +1,6 @@
 //! The serial port of the emulated board over TCP, in real time.
 
+use std::collections::VecDeque;
 use std::io::{ErrorKind, Read, Write};
 use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
@@ -80,6 +81,8 @@ impl Bridge {
 pub(crate) struct Live {
     listener: TcpListener,
     client: Option<TcpStream>,
+    /// Clients that have come and are neither served nor refused.
+    waiting: VecDeque<TcpStream>,
     /// Clients that have been refused and have not gone.
     refused: Vec<TcpStream>,
     stop: Arc<AtomicBool>,
@@ -95,6 +98,7 @@ impl Live {
         Self {
             listener,
             client: None,
+            waiting: VecDeque::new(),
             refused: Vec::new(),
             stop,
             since: None,
@@ -107,10 +111,16 @@ impl Live {
     /// run goes on.
     pub(crate) fn look(&mut self, wire: &mut Wire, now_ns: u64) -> bool {
         let sent: Vec<u8> = wire.up.drain(..).map(|(_, byte)| byte).collect();
+        // Before the client is read: a client that came after the last one had closed finds its end read.
+        while let Ok((stream, _)) = self.listener.accept() {
+            self.waiting.push_back(stream);
+        }
+        let mut is_read = true;
         let keeps = self.client.as_mut().is_none_or(|client| {
             // All that has come, so that the end of a client is seen before the next client.
             loop {
                 let room = WAITING.saturating_sub(wire.down.len());
+                is_read = room > 0;
                 let Some(bytes) = take(client, room.min(CHUNK)) else {
                     return false;
                 };
@@ -123,7 +133,9 @@ impl Live {
         if !keeps {
             self.client = None;
         }
-        self.accept();
+        if is_read {
+            self.admit();
+        }
         let virtual_time = Duration::from_nanos(now_ns);
         self.pace.seconds = virtual_time.as_secs_f64();
         if virtual_time < STARTED {
@@ -147,8 +159,8 @@ impl Live {
     }
 
     /// Takes the first client, and refuses others.
-    fn accept(&mut self) {
-        while let Ok((mut stream, _)) = self.listener.accept() {
+    fn admit(&mut self) {
+        while let Some(mut stream) = self.waiting.pop_front() {
             if stream.set_nonblocking(true).is_err() {
                 continue;
             }
