@@ -46,7 +46,7 @@ pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
     let mut lines = vec![identity(&answer)];
     show(&lines[0])?;
     note(format_args!(
-        "leave the handle free and do not touch it: the motors move it by up to a turn for {STROKES_S} s"
+        "leave the handle free and do not touch it: the motors move it for {STROKES_S} s, by 2 rad at most"
     ));
     let mut failed = lines[0].1.is_err();
     let steps: [(&'static str, Plan, Check); 3] = [
