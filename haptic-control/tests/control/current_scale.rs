@@ -1,6 +1,6 @@
 //! The scale of the current limits at run time.
 
-use estimator_core::SteadyKalmanTriple;
+use estimator_core::{Amps, SteadyKalmanTriple};
 use haptic_control::{
     AnyScene, Controller, CurrentScale, Currents, NewtonMetres, RadPerS, Scene, SceneKind, Senses,
     Switchboard, scenes,
@@ -143,5 +143,26 @@ fn scale_of_zero_leaves_no_current() {
             board.step(&mut state, &motion(k)).currents,
             Currents::default()
         );
+    }
+}
+
+#[test]
+fn currents_of_an_open_loop_are_limited_on_both_sides() {
+    let whole = [DEVICE.large.current_limit, DEVICE.small.current_limit];
+    for sign in [1.0, -1.0] {
+        let [large, small] = whole.map(|limit| Amps::new(sign * limit as f32));
+        let limited = part().within(&DEVICE, Currents { large, small });
+        for (current, limit) in [limited.large, limited.small].into_iter().zip(whole) {
+            let expected = sign * PART * limit as f32;
+            assert!(
+                (current.get() - expected).abs() < 1e-6,
+                "{current:?} {expected}"
+            );
+        }
+        let small_enough = Currents {
+            large: Amps::new(sign * 0.1),
+            small: Amps::new(sign * 0.01),
+        };
+        assert_eq!(part().within(&DEVICE, small_enough), small_enough);
     }
 }
