@@ -1,6 +1,7 @@
 //! Drivers of the controller board, over the traits of embedded-hal 1.0 where they exist.
 #![no_std]
 
+mod adc_scale;
 mod amplifier;
 mod command;
 mod dac_code;
@@ -10,6 +11,7 @@ mod settings;
 mod store;
 mod telemetry;
 
+pub use adc_scale::AdcScale;
 pub use amplifier::{Amplifier, Amplifiers, CurrentOutput, Enables};
 pub use command::{Command, Parser, encode};
 pub use dac_code::{DacCode, DacScale};

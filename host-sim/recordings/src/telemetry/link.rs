@@ -3,7 +3,7 @@
 use drivers::link::Message;
 use haptic_control::Fingerprint;
 
-use super::{Boot, EdgeLine, LearnedLine, SideLines, Telemetry};
+use super::{Boot, EdgeLine, LearnedLine, MeasuredLine, SideLines, Telemetry};
 
 impl Telemetry {
     /// Adds a message. Lines beside a frame that is missing are ignored, as in a log.
@@ -40,6 +40,12 @@ impl Telemetry {
             Message::Reference(reference) => self.beside(reference.seq, |lines| {
                 lines.reference = Some(reference.count);
             }),
+            Message::Measured(measured) => self.beside(measured.seq, |lines| {
+                lines.measured = Some(MeasuredLine {
+                    large: decimal(measured.large),
+                    small: decimal(measured.small),
+                });
+            }),
         }
     }
 
@@ -58,7 +64,7 @@ fn decimal(value: f32) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use drivers::link::{Edge, Frame, Hello, Label, Learned, PROTOCOL, Reference};
+    use drivers::link::{Edge, Frame, Hello, Label, Learned, Measured, PROTOCOL, Reference};
 
     use super::*;
     use crate::record::csv;
@@ -127,9 +133,15 @@ mod tests {
             torque_constant: 0.3,
         }));
         telemetry.add(Message::Reference(Reference { seq: 5, count: 11 }));
+        telemetry.add(Message::Measured(Measured {
+            seq: 5,
+            large: 0.5,
+            small: -0.1,
+        }));
         log += "edge seq=5 bound=9 age=84\n\
                 learned seq=5 damping=0.1 friction=-0.2 torque_constant=0.3\n\
-                reference seq=5 count=11\n";
+                reference seq=5 count=11\n\
+                measured seq=5 large=0.5 small=-0.1\n";
         let logged = Telemetry::text(log.as_bytes());
         assert_eq!(telemetry.frames, logged.frames);
         assert_eq!(telemetry.boots, logged.boots);

@@ -11,6 +11,8 @@ pub struct SideLines {
     pub learned: Option<LearnedLine>,
     /// `reference`: count of the reference encoder.
     pub reference: Option<u32>,
+    /// `measured`: measured currents.
+    pub measured: Option<MeasuredLine>,
 }
 
 /// An edge of the large encoder.
@@ -33,8 +35,22 @@ pub struct LearnedLine {
     pub torque_constant: f64,
 }
 
+/// Mean measured currents since the frame before, A.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasuredLine {
+    /// Large motor.
+    pub large: f64,
+    /// Small motor.
+    pub small: f64,
+}
+
 /// Begins of side lines.
-pub(super) const STARTS: [&str; 3] = ["edge seq=", "learned seq=", "reference seq="];
+pub(super) const STARTS: [&str; 4] = [
+    "edge seq=",
+    "learned seq=",
+    "measured seq=",
+    "reference seq=",
+];
 
 impl Frame {
     /// Reads a line that begins with one of [`STARTS`]. A side line of another frame, which is
@@ -59,6 +75,12 @@ impl Frame {
                     torque_constant: fields.number("torque_constant")?,
                 });
             }
+            Some("measured") => {
+                lines.measured = Some(MeasuredLine {
+                    large: fields.number("large")?,
+                    small: fields.number("small")?,
+                });
+            }
             _ => lines.reference = Some(fields.number("count")?),
         }
         Ok(())
@@ -76,6 +98,7 @@ mod tests {
         let log = format!(
             "{LINE}\n[INFO ] edge seq=3 bound=4294967295 age=42 (firmware src/telemetry.rs:99)\n\
              learned seq=3 damping=0.1 friction=-0.2 torque_constant=0\nreference seq=3 count=9\n\
+             measured seq=3 large=-0.25 small=1.5\n\
              {LINE}\nedge seq=4 bound=1 age=1\nedge seq=3 bound=x age=1\nedge seq=3 bound=1\n"
         );
         let telemetry = Telemetry::text(log.as_bytes());
@@ -93,6 +116,10 @@ mod tests {
                 torque_constant: 0.0,
             }),
             reference: Some(9),
+            measured: Some(MeasuredLine {
+                large: -0.25,
+                small: 1.5,
+            }),
         };
         assert_eq!(first.side_lines, expected);
         assert_eq!(second.side_lines, SideLines::default());
