@@ -7,6 +7,7 @@
 
 use drivers::{Saved, Settings};
 use estimator_core::{Amps, Count, Sample};
+use firmware_app::ammeter::Measured;
 use firmware_app::port::PortFaults;
 use haptic_control::{Currents, Stop};
 
@@ -21,6 +22,9 @@ pub(crate) trait Board {
     /// Acknowledges the tick's interrupt. Returns the number of ticks missed since the last one;
     /// a tick that the last task overran counts as missed.
     fn begin_tick(&mut self) -> u32;
+
+    /// Reads the amplifiers' current monitors, if the image does.
+    fn currents(&mut self) -> Measured;
 
     /// Reads the encoders. `current` is the large motor's current over the period just ended.
     fn sample(&mut self, current: Amps) -> Sample;

@@ -1,15 +1,15 @@
 //! The link: messages to the host over the serial port and RTT, sent at the lowest priority.
 
 use drivers::link::{
-    Edge, Features, Frame as FrameMessage, Hello, LONGEST, Label, Learned, Message, PROTOCOL,
-    Reference, Rejected as RejectedMessage, Setting as SettingMessage,
+    Edge, Features, Frame as FrameMessage, Hello, LONGEST, Label, Learned, Measured, Message,
+    PROTOCOL, Reference, Rejected as RejectedMessage, Setting as SettingMessage,
 };
 use drivers::{Setting, Settings};
 use estimator_core::Count;
 use firmware_app::commands::Rejected;
 use firmware_app::config::RATE_HZ;
 use firmware_app::telemetry::Frame;
-use haptic_control::Stop;
+use haptic_control::{Currents, Stop};
 use tuned::{DEVICE_FINGERPRINT, PRESETS_FINGERPRINT};
 
 use crate::boards::Port;
@@ -83,6 +83,10 @@ impl<P: Port> Link<P> {
                 friction: learned.friction,
                 torque_constant: learned.torque_constant,
             });
+        }
+        if let Some(Currents { large, small }) = frame.measured() {
+            let (large, small) = (large.get(), small.get());
+            self.send(Measured { seq, large, small });
         }
         if let Some(Count(count)) = frame.reference {
             self.send(Reference { seq, count });

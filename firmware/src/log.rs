@@ -5,6 +5,7 @@ use firmware_app::commands::Rejected;
 use firmware_app::port::PortFaults;
 use firmware_app::rest::Rest;
 use firmware_app::telemetry::{DEPTH, Frame};
+use haptic_control::Currents;
 use heapless::spsc::Consumer;
 
 use crate::boards::Port;
@@ -54,6 +55,14 @@ fn log(frame: &Frame, lost: u32) {
             learned.damping,
             learned.friction,
             learned.torque_constant
+        );
+    }
+    if let Some(Currents { large, small }) = frame.measured() {
+        defmt::info!(
+            "measured seq={=u32} large={=f32} small={=f32}",
+            frame.seq,
+            large.get(),
+            small.get()
         );
     }
     if let Some(Count(count)) = frame.reference {

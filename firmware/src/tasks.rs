@@ -114,7 +114,8 @@ impl ControlTask {
             control,
         } = self;
         let missed = board.begin_tick();
-        let sample = board.sample(control.applied().large);
+        let flow = control.flow(&board.currents());
+        let sample = board.sample(flow.currents.large);
         let message = messages.dequeue();
         if let Some(Message::Settings(settings)) = &message {
             board.calibrate(settings);
@@ -129,10 +130,11 @@ impl ControlTask {
             debugger: arms && firmware_rt::debugger_interferes(),
             request,
         };
-        board.apply(control.step(&sample, &inputs));
+        board.apply(control.step(&sample, &flow, &inputs));
         if sender.is_due() {
             let record = control.record(&sample);
-            sender.send(record, board.take_longest(), board.reference());
+            let measured = control.take_measured();
+            sender.send(record, measured, board.take_longest(), board.reference());
         }
         board.end_tick();
     }

@@ -15,6 +15,7 @@
     reason = "a NaN has to fail these comparisons"
 )]
 
+mod ammeters;
 mod controller;
 mod design_error;
 mod device;
@@ -38,6 +39,7 @@ mod tuning;
 mod units;
 mod windings;
 
+pub use ammeters::{Ammeters, AmmetersState, Flow};
 pub use controller::{Controller, ControllerState};
 pub use design_error::DesignError;
 pub use device::{DualStage, Motor};

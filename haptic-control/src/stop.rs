@@ -80,4 +80,7 @@ stops! {
     /// A winding carried more than its continuous current for too long, see
     /// [`Windings`](crate::Windings).
     Overload = 18, "overload";
+    /// A measured current was not the commanded one for too long, see
+    /// [`Ammeters`](crate::Ammeters).
+    CurrentMismatch = 19, "current-mismatch";
 }

@@ -11,6 +11,18 @@ use crate::quadrature::LARGE;
 /// Time from the enable of an amplifier until it is ready and follows its command, ns.
 const READY_AFTER_NS: u64 = 5_000_000;
 
+/// Middle of the range of an analogue input, codes.
+const MIDDLE: f64 = 2048.0;
+
+/// An analogue input for a current monitor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Monitor {
+    /// Error of the zero, codes.
+    pub(crate) offset: f64,
+    /// Current from the middle of the range to its ends, A.
+    pub(crate) amps: f64,
+}
+
 /// An amplifier and the wires to it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Amplifier {
@@ -21,6 +33,10 @@ pub(crate) struct Amplifier {
     pub(crate) unready: bool,
     /// Whether the wire of its ready line is broken.
     pub(crate) cut: bool,
+    /// Whether a lead of its motor is open: no current flows.
+    pub(crate) open: bool,
+    /// Whether the wire of its current monitor is broken. A pull-down at the board holds the input low.
+    pub(crate) monitor_cut: bool,
     /// Time from its enable until it is ready, ns.
     pub(crate) ready_after_ns: u64,
     /// Time since which it is enabled, ns.
@@ -32,6 +48,8 @@ impl Amplifier {
         powered: true,
         unready: false,
         cut: false,
+        open: false,
+        monitor_cut: false,
         ready_after_ns: READY_AFTER_NS,
         enabled_ns: None,
     };
@@ -40,6 +58,14 @@ impl Amplifier {
     fn drives(&self, now_ns: u64) -> bool {
         let ready = |since| now_ns >= since + self.ready_after_ns;
         self.powered && self.enabled_ns.is_some_and(ready)
+    }
+
+    /// Level of its current monitor at this current, codes.
+    fn monitor(&self, current: f64, Monitor { offset, amps }: Monitor) -> f64 {
+        if self.monitor_cut || !self.powered {
+            return 0.0;
+        }
+        MIDDLE + offset + current / amps * MIDDLE
     }
 
     /// Level on the wire of its ready line: high, or nothing drives the wire.
@@ -71,7 +97,7 @@ struct Wires {
 pub(crate) struct Enabled {
     /// Whether the enable of each amplifier is active.
     pub(crate) enables: [bool; 2],
-    /// Whether each amplifier follows its command.
+    /// Whether each amplifier follows its command and a current can flow.
     pub(crate) drives: [bool; 2],
 }
 
@@ -97,6 +123,11 @@ impl Amplifiers {
         pins::pull_enables_down(part, at);
         self.driven = None;
         self.follow(part, at);
+    }
+
+    /// Levels of the current monitors, codes.
+    pub(crate) fn monitors(&self, currents: [f64; 2], inputs: [Monitor; 2]) -> [f64; 2] {
+        [0, 1].map(|n| self.each[n].monitor(currents[n], inputs[n]))
     }
 
     /// Sets the wires to the board for its present enables.
@@ -128,7 +159,9 @@ impl Amplifiers {
         });
         Enabled {
             enables,
-            drives: self.each.map(|amplifier| amplifier.drives(at.0)),
+            drives: self
+                .each
+                .map(|amplifier| amplifier.drives(at.0) && !amplifier.open),
         }
     }
 }

@@ -15,6 +15,7 @@ use rigless::soc::stm32f427::generated::rcc::{
 use rigless::soc::{Bus, Error};
 use rigless::time::VirtualNanos;
 
+use crate::adc::{Adc, Common};
 use crate::dac::Dac;
 
 const NAME: &str = "limpid";
@@ -22,15 +23,18 @@ const NAME: &str = "limpid";
 /// Core clock, Hz.
 pub const CORE_HZ: u64 = 168_000_000;
 
-/// The emulated microcontroller with a model of the DAC, which the emulator does not have.
+/// The emulated microcontroller with models of DAC and ADC, which the emulator does not have.
 #[derive(Debug)]
 pub struct Part {
-    /// The emulator's model of the other peripherals.
+    /// The emulator's models of the other peripherals.
     pub stm32: Stm32f427,
     /// Whether the next reset is one of the brown-out detector, which the emulator does not model.
     pub(crate) brown_out: bool,
     dac: Dac,
     dac_slot: usize,
+    /// Converters of the large and the small current monitor, with their slots.
+    adcs: [(Adc, usize); 2],
+    adc_common: (Common, usize),
     rcc_slot: usize,
 }
 
@@ -39,6 +43,13 @@ impl Part {
     #[must_use]
     pub fn dac_codes(&self) -> [Option<u16>; 2] {
         Dac::codes(self.stm32.bus().slots()[self.dac_slot].registers())
+    }
+
+    /// Sets the levels on the current monitors, codes; `None` for a pin that is not analogue.
+    pub(crate) fn drive_monitors(&mut self, levels: [Option<f64>; 2]) {
+        for ((adc, _), level) in self.adcs.iter_mut().zip(levels) {
+            adc.drive(level);
+        }
     }
 }
 
@@ -65,6 +76,9 @@ impl Mcu for Part {
 
     fn reset(&mut self, at: VirtualNanos, cause: ResetCause) {
         self.stm32.reset(at, cause);
+        for (adc, _) in &mut self.adcs {
+            adc.reset();
+        }
         if std::mem::take(&mut self.brown_out) {
             let (_, registers) = self.stm32.clocks();
             let flag = BORRSTF.mask();
@@ -82,8 +96,18 @@ impl Mcu for Part {
             let (_, registers) = self.stm32.clocks();
             registers.restore(Register::Cr, HSERDY.mask(), 0);
         }
-        if slot == self.dac_slot {
-            return (self.stm32.bus_mut(), Some(&mut self.dac));
+        let models: [(usize, &mut dyn ErasedDevice); 4] = {
+            let [(large, large_slot), (small, small_slot)] = &mut self.adcs;
+            let (common, common_slot) = &mut self.adc_common;
+            [
+                (self.dac_slot, &mut self.dac),
+                (*large_slot, large),
+                (*small_slot, small),
+                (*common_slot, common),
+            ]
+        };
+        if let Some((_, model)) = models.into_iter().find(|(of, _)| *of == slot) {
+            return (self.stm32.bus_mut(), Some(model));
         }
         self.stm32.split(slot)
     }
@@ -111,12 +135,21 @@ impl ControllerBoard {
         stm32.set_supply(3300);
         let dac_slot = stm32.bus().slot("DAC")?;
         let rcc_slot = stm32.bus().slot("RCC")?;
+        let bus = stm32.bus();
+        // PA3 is channel 3, PC0 channel 10.
+        let adcs = [
+            (Adc::new(3), bus.slot("ADC1")?),
+            (Adc::new(10), bus.slot("ADC2")?),
+        ];
+        let adc_common = (Common, bus.slot("C_ADC")?);
         Ok(Self {
             part: Part {
                 stm32,
                 brown_out: false,
                 dac: Dac,
                 dac_slot,
+                adcs,
+                adc_common,
                 rcc_slot,
             },
             instructions_per_second,

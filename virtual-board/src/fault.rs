@@ -22,6 +22,12 @@ pub enum Fault {
     BrokenReadyWire,
     /// The large amplifier loses its supply. Its fault contact opens the interlock loop.
     Unpowered,
+    /// A lead of the large motor is open: no current flows.
+    OpenLead,
+    /// A lead of the small motor is open.
+    SmallOpenLead,
+    /// The wire of the large amplifier's current monitor breaks.
+    BrokenMonitorWire,
     /// The large amplifier takes this number of ms from its enable until it is ready, from power-up
     /// on.
     ReadyAfter(u16),
@@ -70,7 +76,7 @@ pub enum Fault {
 }
 
 /// Each fault with its name on the command line and its description.
-const NAMES: [(Fault, &str, &str); 35] = [
+const NAMES: [(Fault, &str, &str); 38] = [
     (Fault::StuckA, "stuck-a", "large encoder's line A stuck"),
     (Fault::StuckB, "stuck-b", "large encoder's line B stuck"),
     (
@@ -107,6 +113,21 @@ const NAMES: [(Fault, &str, &str); 35] = [
         Fault::Unpowered,
         "unpowered-amplifier",
         "large amplifier loses its supply",
+    ),
+    (
+        Fault::OpenLead,
+        "open-lead",
+        "a lead of the large motor is open",
+    ),
+    (
+        Fault::SmallOpenLead,
+        "small-open-lead",
+        "a lead of the small motor is open",
+    ),
+    (
+        Fault::BrokenMonitorWire,
+        "broken-monitor-wire",
+        "wire of the large amplifier's current monitor breaks",
     ),
     (
         Fault::ReadyAfter(15),

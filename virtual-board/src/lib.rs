@@ -1,9 +1,10 @@
 //! The flash image on an emulated STM32F427, in lockstep with the plant of `host-sim`.
 //!
 //! The timers' pins receive the quadrature edges at their times, the DAC and the enable lines drive
-//! the amplifiers, and RTT is read and written as by a debug probe. The image runs unmodified. Cycles
+//! the amplifiers, the ADC reads their current monitors, and RTT is read and written as by a debug probe. The image runs unmodified. Cycles
 //! are not modelled: a virtual second is a constant number of instructions.
 
+pub mod adc;
 mod amplifiers;
 pub mod board;
 pub mod bridge;

@@ -16,16 +16,17 @@ use rigless::time::VirtualNanos;
 use simulation::encoder::{DiscErrors, Encoder};
 use simulation::plant::Grip;
 
-use crate::amplifiers::Amplifiers;
+use crate::amplifiers::{Amplifiers, Monitor};
 use crate::board::ControllerBoard;
 use crate::bridge::Live;
 use crate::fault::Fault;
 use crate::image::Image;
 use crate::lines::Lines;
+use crate::pins;
 use crate::port::Port;
 use crate::probe::{DebugProbe, schedule};
 use crate::quadrature::{Edge, Generator, LARGE};
-use crate::run::{ControlTick, DacError, PlantState, RATE_HZ, Setup};
+use crate::run::{ControlTick, DacError, MONITOR_AMPS, PlantState, RATE_HZ, Setup};
 use crate::stack::Stack;
 pub use core_access::CoreAccess;
 use core_access::CoreAccesses;
@@ -96,6 +97,9 @@ pub(crate) struct Lockstep {
     /// Virtual time that an instruction takes, ns.
     instruction_ns: f64,
     dac_errors: [DacError; 2],
+    monitors: [Monitor; 2],
+    /// Whether the pin of each current monitor is analogue.
+    monitors_wired: [bool; 2],
     resets: usize,
     progress: Box<dyn FnMut(f64) + Send>,
 }
@@ -154,6 +158,11 @@ impl Lockstep {
             stalls: Stalls::default(),
             instruction_ns: 1e9 / setup.instructions_per_second.get() as f64,
             dac_errors: setup.dac_errors,
+            monitors: [0, 1].map(|n| Monitor {
+                offset: setup.monitor_offsets[n],
+                amps: MONITOR_AMPS[n],
+            }),
+            monitors_wired: [false; 2],
             resets: 0,
             progress,
         }
@@ -281,6 +290,8 @@ impl Driver<ControllerBoard> for Lockstep {
                 self.probe.poll(now_ns, host);
                 self.hold_watchdog(&mut board.part, stop.at);
                 self.lines.connect(&mut board.part, stop.at);
+                self.monitors_wired =
+                    pins::MONITORS.map(|wire| pins::wired(&mut board.part, &[wire]));
                 (self.progress)(now_ns as f64 * 1e-9);
                 stopped = !self.serve(now_ns);
             }

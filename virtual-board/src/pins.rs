@@ -66,6 +66,12 @@ pub const AMPLIFIERS: [Wire; 7] = [
     ('A', 6, Mode::Function(3), "interlock, TIM8_BKIN"),
 ];
 
+/// The current monitors of the amplifiers, of an image that reads them.
+pub const MONITORS: [Wire; 2] = [
+    ('A', 3, Mode::Analog, "large current monitor, ADC1_IN3"),
+    ('C', 0, Mode::Analog, "small current monitor, ADC2_IN10"),
+];
+
 /// A pin: index of its port from A on, and its number.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct At(usize, u8);

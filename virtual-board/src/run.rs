@@ -32,6 +32,9 @@ pub const RATE_HZ: f64 = 10e3;
 /// Current per DAC code from mid-scale, A: large motor, small motor.
 pub const AMPS_PER_CODE: [f64; 2] = [6.0 / 2047.0, 1.5 / 2047.0];
 
+/// Current from the middle of the range of a current monitor to its ends, A: large motor, small motor.
+pub const MONITOR_AMPS: [f64; 2] = [7.5, 1.875];
+
 /// Error of a channel from DAC code to current.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DacError {
@@ -91,6 +94,8 @@ pub struct Setup {
     pub crystal_from_s: f64,
     /// Errors of the DAC outputs and of the inputs behind them: large motor, small motor.
     pub dac_errors: [DacError; 2],
+    /// Errors of the zeros of the current monitors, codes.
+    pub monitor_offsets: [f64; 2],
     /// Settings in the board's flash; `None`: the flash is erased.
     pub settings: Option<Settings>,
     /// Number of records of older settings before them.
@@ -123,6 +128,7 @@ impl Default for Setup {
             crystal_hz: 8_000_000,
             crystal_from_s: 0.0,
             dac_errors: [DacError::NONE; 2],
+            monitor_offsets: [11.0, -7.0],
             settings: Some(Settings::COMMISSIONED),
             older_records: 1,
             accesses: Vec::new(),

@@ -3,10 +3,11 @@
 use drivers::Settings;
 use estimator_core::Sample;
 use haptic_control::{
-    Action, Currents, Findings, Mode, Monitor, MonitorState, Request, Safety, SafetyState, Stop,
-    Windings, WindingsState,
+    Action, Currents, Findings, Flow, Mode, Monitor, MonitorState, Request, Safety, SafetyState,
+    Stop, Windings, WindingsState,
 };
 
+use crate::ammeter::{Ammeter, Measure as _, Measured};
 use crate::config::{AUTO_ARM, DEVICE, RATE, RATE_HZ, SILENCE};
 use crate::large::{Choice, Large, LargeEstimator as _};
 use crate::scene::{Core, FIRST, SCENES, Tuned};
@@ -64,6 +65,7 @@ pub struct Control {
     monitor: MonitorState,
     /// Outlives every restart.
     windings: WindingsState,
+    ammeter: Ammeter,
     safety: SafetyState,
     /// Action of the latest tick.
     action: Action,
@@ -92,6 +94,7 @@ impl Control {
             core,
             monitor: MONITOR.start(first),
             windings: WindingsState::cold(),
+            ammeter: Ammeter::new(),
             safety: SAFETY.start(reset),
             action: Action::default(),
             ticks: 0,
@@ -103,6 +106,19 @@ impl Control {
     /// Currents commanded over the period that ends now.
     pub fn applied(&self) -> Currents {
         self.action.currents
+    }
+
+    /// Mean measured currents since the last call.
+    pub fn take_measured(&mut self) -> Measured {
+        self.ammeter.take_means()
+    }
+
+    /// Currents over the period that ends now: those measured, or those commanded in an image that
+    /// measures none.
+    pub fn flow(&mut self, readings: &Measured) -> Flow {
+        let enabled = self.safety.mode().is_enabled();
+        self.ammeter
+            .update(readings, &self.action.currents, enabled)
     }
 
     /// Applies a message before the tick and returns the request for the safety state machine.
@@ -125,13 +141,17 @@ impl Control {
         }
     }
 
-    /// One tick: the currents to apply, `None` with the amplifiers disabled.
-    pub fn step(&mut self, sample: &Sample, inputs: &Inputs) -> Option<Currents> {
+    /// One tick, after the currents of [`Self::flow`]: the currents to apply, `None` with the
+    /// amplifiers disabled.
+    pub fn step(&mut self, sample: &Sample, flow: &Flow, inputs: &Inputs) -> Option<Currents> {
         self.overruns = self.overruns.wrapping_add(inputs.missed);
-        let overload = WINDINGS.check(&mut self.windings, &self.action.currents);
+        let overload = WINDINGS.check(&mut self.windings, &flow.currents);
         let mut action = self.core.step(sample);
         let findings = Findings {
-            monitor: MONITOR.check(&mut self.monitor, sample).or(overload),
+            monitor: MONITOR
+                .check(&mut self.monitor, sample)
+                .or(overload)
+                .or(flow.mismatch),
             amplifiers_ready: inputs.amplifiers_ready,
             interlock: inputs.interlock,
             clock_failure: inputs.clock_failure,
@@ -144,6 +164,7 @@ impl Control {
         if order.restart {
             self.core.restart(sample);
             self.monitor = MONITOR.start(sample);
+            self.ammeter.restart();
         }
         if let Some(scene) = order.select {
             self.core.select(scene, sample);

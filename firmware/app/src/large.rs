@@ -8,6 +8,7 @@ use estimator_core::{
     preset,
 };
 
+use crate::ammeter::{Ammeter, Measure};
 use crate::config::{DEVICE, RATE, TIMERS};
 
 /// Names of the estimators of [`Both`] in the catalogue of estimators, each at its number.
@@ -43,7 +44,12 @@ pub const BOTH: Both = preset!(Handover::new(WINDOW, FILTER, TICKS, TICKS));
 
 const fn observer(tuned_as: &str) -> ObserverDesign {
     let uncertainty = tuned::uncertainty(tuned_as, RATE);
-    ObserverDesign::new(&DEVICE.coupled_motor(), RATE, &uncertainty)
+    let mut motor = DEVICE.coupled_motor();
+    if <Ammeter as Measure>::WANTED {
+        // A measured current has the amplifier's lag in it.
+        motor.amplifier_lag = 0.0;
+    }
+    ObserverDesign::new(&motor, RATE, &uncertainty)
 }
 
 /// An observer that learns damping, friction and torque constant from counts.

@@ -2,6 +2,7 @@
 //! the telemetry frames. The crate has no I/O, so the host runs the same code in tests.
 #![no_std]
 
+pub mod ammeter;
 pub mod commands;
 pub mod config;
 pub mod control;

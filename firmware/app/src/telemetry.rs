@@ -1,9 +1,10 @@
 //! Telemetry frames: made by the control task, logged at the lowest priority.
 
 use estimator_core::{Count, Edge, ParameterErrors, Sample};
-use haptic_control::{Action, Mode, Stop};
+use haptic_control::{Action, Currents, Mode, Stop};
 use heapless::spsc::{Producer, Queue};
 
+use crate::ammeter::{Measured, Measurement as _};
 use crate::config::{DECIMATION, EDGES};
 use crate::large::{Learnable as _, Learned};
 use crate::scene::{Estimation, RIG};
@@ -46,6 +47,7 @@ pub struct Frame {
     pub cycles: u32,
     /// Count of the reference encoder, if there is one.
     pub reference: Option<Count>,
+    measured: Measured,
     drops: u32,
 }
 
@@ -77,13 +79,20 @@ impl<'q> Sender<'q> {
     }
 
     /// Sends a record, or counts it as dropped if the queue is full.
-    pub fn send(&mut self, record: Record, cycles: u32, reference: Option<Count>) {
+    pub fn send(
+        &mut self,
+        record: Record,
+        measured: Measured,
+        cycles: u32,
+        reference: Option<Count>,
+    ) {
         let frame = Frame {
             seq: self.seq,
             drops: self.drops,
             record,
             cycles,
             reference,
+            measured,
         };
         self.seq = self.seq.wrapping_add(1);
         if self.queue.enqueue(frame).is_err() {
@@ -122,6 +131,12 @@ impl Frame {
     #[must_use]
     pub const fn edge(&self) -> Option<Edge> {
         if EDGES { self.record.sample.edge } else { None }
+    }
+
+    /// Mean measured currents since the frame before.
+    #[must_use]
+    pub fn measured(&self) -> Option<Currents> {
+        self.measured.currents()
     }
 
     /// Learned parameter errors, in one frame of 128 and by estimators that learn.

@@ -1,5 +1,7 @@
 //! NUCLEO-F429ZI: the tasks on their interrupts. The only folder that names a pin or a timer.
 
+#[allow(dead_code, reason = "an image without the wires measures nothing")]
+mod ammeters;
 #[allow(dead_code, reason = "an image without the wires captures nothing")]
 mod edge;
 mod enables;

@@ -1,5 +1,6 @@
 //! Tests of the control core, in one program because that is built sooner.
 
+mod ammeters;
 mod bench;
 mod controller;
 mod current_scale;

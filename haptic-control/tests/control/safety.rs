@@ -401,6 +401,7 @@ fn every_stop_keeps_its_number_and_name() {
         "exception",
         "interlock",
         "overload",
+        "current-mismatch",
     ];
     assert_eq!(Stop::ALL.map(Stop::as_str), names);
     for code in 0..=u8::MAX {
@@ -409,5 +410,5 @@ fn every_stop_keeps_its_number_and_name() {
             None => assert!(usize::from(code) >= names.len(), "{code}"),
         }
     }
-    assert_eq!(Stop::from_code(18), Some(Stop::Overload));
+    assert_eq!(Stop::from_code(19), Some(Stop::CurrentMismatch));
 }

@@ -31,6 +31,12 @@ impl Lockstep {
                 0.0
             };
         }
+        let (large, small) = self.bench.plant.currents();
+        let levels = self.amplifiers.monitors([large, small], self.monitors);
+        let analog = self.monitors_wired;
+        board
+            .part
+            .drive_monitors([0, 1].map(|n| analog[n].then_some(levels[n])));
         self.bench
             .plant
             .command(self.currents[LARGE], self.currents[SMALL]);

@@ -4,6 +4,7 @@ use core::f64::consts::TAU;
 
 use drivers::Settings;
 use estimator_core::{Amps, Count, Sample};
+use firmware_app::ammeter::Measured;
 use firmware_app::commands::{Channel, Commands, Messages};
 use firmware_app::config::{DEVICE, RATE_HZ};
 use firmware_app::control::{Control, Inputs, Message};
@@ -37,6 +38,8 @@ pub(crate) struct Bench {
     pub(crate) handle: f64,
     pub(crate) large: f64,
     velocity: f64,
+    /// Readings of the ammeters, if they are not those of the commanded currents.
+    pub(crate) readings: Option<Currents>,
 }
 
 impl Bench {
@@ -57,22 +60,26 @@ impl Bench {
             handle: 0.0,
             large: 0.0,
             velocity: 0.0,
+            readings: None,
         }
     }
 
-    pub(crate) fn sample(&self) -> Sample {
+    /// The sample with this current of the large motor over the period before.
+    fn sample(&self, current: Amps) -> Sample {
         let counts = |angle: f64, per_turn: f64| {
             Count(((angle / TAU * per_turn).floor() as i32).cast_unsigned())
         };
         Sample::new(counts(self.large, LARGE))
             .with_coupled(counts(self.handle, SMALL))
-            .with_current(self.control.applied().large)
+            .with_current(current)
     }
 
     /// One tick with these inputs.
     pub(crate) fn step(&mut self, inputs: &Inputs) -> Option<Currents> {
-        let sample = self.sample();
-        let currents = self.control.step(&sample, inputs);
+        let readings = readings(self.readings.unwrap_or(self.control.applied()));
+        let flow = self.control.flow(&readings);
+        let sample = self.sample(flow.currents.large);
+        let currents = self.control.step(&sample, &flow, inputs);
         let DualStage { large, damping, .. } = DEVICE;
         let current = f64::from(currents.unwrap_or_default().large.get());
         let torque = large.torque_constant * current - damping * self.velocity;
@@ -113,7 +120,8 @@ impl Bench {
     }
 
     pub(crate) fn record(&self) -> Record {
-        self.control.record(&self.sample())
+        self.control
+            .record(&self.sample(self.control.applied().large))
     }
 
     pub(crate) fn state(&self) -> (Mode, Stop) {
@@ -146,3 +154,13 @@ pub(crate) const ZERO: Currents = Currents {
     large: Amps::ZERO,
     small: Amps::ZERO,
 };
+
+/// Readings of ammeters at these currents.
+#[cfg(feature = "current-monitor")]
+pub(crate) fn readings(currents: Currents) -> Measured {
+    currents
+}
+#[cfg(not(feature = "current-monitor"))]
+pub(crate) fn readings(_: Currents) -> Measured {
+    estimator_core::Skip
+}

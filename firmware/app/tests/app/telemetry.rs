@@ -1,17 +1,34 @@
 use core::f32::consts::TAU;
 
-use estimator_core::{ClockTicks, Count, Edge, Variance};
+use estimator_core::{Amps, ClockTicks, Count, Edge, Variance};
+use firmware_app::ammeter::{Ammeter, Measure, Measured};
 use firmware_app::config::{EDGES, RATE_HZ};
 use firmware_app::large::Learnable as _;
 use firmware_app::scene::Estimation;
 use firmware_app::telemetry::{Frame, Frames, Record, Sender};
+use haptic_control::Currents;
 
-use crate::bench::{Bench, CALM};
+use crate::bench::{Bench, CALM, readings};
 
 fn record() -> Record {
     let mut bench = Bench::new();
     bench.step(&CALM);
     bench.record()
+}
+
+const MEASURED: Currents = Currents {
+    large: Amps::new(0.25),
+    small: Amps::new(-0.5),
+};
+
+/// The means of ammeters that have measured these currents.
+fn measured() -> Measured {
+    let mut ammeter = Ammeter::new();
+    ammeter.update(&readings(MEASURED), &MEASURED, true);
+    ammeter.update(&readings(MEASURED), &MEASURED, true);
+    ammeter.take_means();
+    ammeter.update(&readings(MEASURED), &MEASURED, true);
+    ammeter.take_means()
 }
 
 /// The frame of this record, after `before` others.
@@ -20,10 +37,10 @@ fn frame(record: Record, before: u32) -> Frame {
     let (producer, mut consumer) = queue.split();
     let mut sender = Sender::new(producer);
     for _ in 0..before {
-        sender.send(record, 0, None);
+        sender.send(record, measured(), 0, None);
         consumer.dequeue().expect("a frame");
     }
-    sender.send(record, 321, Some(Count(7)));
+    sender.send(record, measured(), 321, Some(Count(7)));
     consumer.dequeue().expect("a frame")
 }
 
@@ -44,14 +61,14 @@ fn dropped_frames_leave_a_gap_in_seq_equal_to_drops() {
     let mut sender = Sender::new(producer);
     let record = record();
     for _ in 0..40 {
-        sender.send(record, 0, None);
+        sender.send(record, measured(), 0, None);
     }
     let waiting: Vec<_> = core::iter::from_fn(|| consumer.dequeue()).collect();
     let found = waiting.len() as u32;
     assert!(found < 40);
     assert!(waiting.iter().map(|frame| frame.seq).eq(0..found));
     assert!(waiting.iter().all(|frame| frame.drops(0) == 0));
-    sender.send(record, 0, None);
+    sender.send(record, measured(), 0, None);
     let next = consumer.dequeue().expect("there is place again");
     assert_eq!(next.seq, 40);
     assert_eq!(next.drops(0), 40 - found);
@@ -65,6 +82,10 @@ fn frame_has_the_values_of_its_record() {
     let frame = frame(record, 3);
     assert_eq!((frame.seq, frame.cycles), (3, 321));
     assert_eq!(frame.reference, Some(Count(7)));
+    assert_eq!(
+        frame.measured(),
+        <Ammeter as Measure>::WANTED.then_some(MEASURED)
+    );
     assert_eq!(frame.record.tick, record.tick);
 }
 

@@ -2,6 +2,7 @@
 
 use drivers::{Amplifier, Amplifiers, CurrentOutput, DacCode, DacScale, Setting, Settings};
 use estimator_core::{Amps, Count, Sample};
+use firmware_app::ammeter::Measured;
 use firmware_app::config::{DEVICE, REFERENCE, TIMER_HZ};
 use haptic_control::Currents;
 use stm32f4xx_hal::dac::{C1, C2, DacOut, DacPin};
@@ -12,6 +13,7 @@ use stm32f4xx_hal::qei::Qei;
 use stm32f4xx_hal::rcc::{Config, Rcc};
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
+use super::ammeters::{Monitors, Wires as _};
 use super::edge::{Source, Stamps as _};
 use super::enables::Outputs;
 use super::encoder::Encoder;
@@ -103,6 +105,7 @@ struct Tree {
 pub(super) struct Parts {
     encoders: Encoders,
     amplifiers: Amplifiers<Large, Small, Outputs>,
+    monitors: Monitors,
     tick: Tick,
     clock: Tree,
 }
@@ -110,6 +113,10 @@ pub(super) struct Parts {
 impl Board for Parts {
     fn begin_tick(&mut self) -> u32 {
         self.tick.enter()
+    }
+
+    fn currents(&mut self) -> Measured {
+        self.monitors.read()
     }
 
     fn sample(&mut self, current: Amps) -> Sample {
@@ -265,6 +272,13 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart, Flash
         enables,
     );
 
+    let monitors = Monitors::start(
+        (chip.ADC1, chip.ADC2, chip.ADC_COMMON),
+        (a.pa3, c.pc0),
+        &timer,
+        &mut rcc,
+    );
+
     let port = Usart::start(chip.USART3, chip.DMA1, (d.pd8, d.pd9), &mut rcc);
     let port = defmt::unwrap!(port, "the clocks do not give the baud rate of the port");
 
@@ -279,6 +293,7 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart, Flash
     let mut parts = Parts {
         encoders,
         amplifiers,
+        monitors,
         tick: Tick::new(timer),
         clock: Tree { rcc, crystal },
     };

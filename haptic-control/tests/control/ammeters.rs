@@ -1,0 +1,187 @@
+//! Measured currents: zeros, means, and disagreement with the commands.
+
+use std::f64::consts::TAU;
+
+use estimator_core::{Amps, Hertz};
+use haptic_control::{Ammeters, AmmetersState, Currents, DualStage, Flow, Stop};
+
+const DEVICE: DualStage = DualStage::DEFAULT;
+const RATE: Hertz = Hertz(10e3);
+const AMMETERS: Ammeters = Ammeters::new(&DEVICE, RATE);
+/// Ticks of 10 ms and of 50 ms.
+const WAIT: usize = 100;
+const SPAN: usize = 500;
+
+fn currents([large, small]: [f64; 2]) -> Currents {
+    Currents {
+        large: Amps::new(large as f32),
+        small: Amps::new(small as f32),
+    }
+}
+
+/// Largest difference that agrees, A.
+fn tolerances() -> [f64; 2] {
+    [DEVICE.large, DEVICE.small].map(|motor| 0.08 * motor.current_limit)
+}
+
+/// Ticks until the mismatch, if one comes within `seconds`.
+fn mismatch(
+    rate: Hertz,
+    seconds: f64,
+    mut readings_and_commands: impl FnMut(f64) -> [[f64; 2]; 2],
+) -> Option<usize> {
+    let ammeters = Ammeters::new(&DEVICE, rate);
+    let mut state = AmmetersState::START;
+    (0..(seconds * rate.0) as usize).find(|tick| {
+        let [readings, commands] = readings_and_commands(*tick as f64 / rate.0);
+        let command = currents(commands);
+        let flow = ammeters.update(&mut state, &currents(readings), Some(&command));
+        assert!(flow.mismatch.is_none() || flow.mismatch == Some(Stop::CurrentMismatch));
+        flow.mismatch.is_some()
+    })
+}
+
+#[test]
+fn constant_difference_stops_after_50_ms_if_it_is_above_the_tolerance() {
+    for rate in [1e3, 10e3, 20e3].map(Hertz) {
+        let expected = (0.05 * rate.0) as usize;
+        for motor in [0, 1] {
+            for sign in [1.0, -1.0] {
+                let found = |part: f64| {
+                    let mut readings = [0.4, -0.1];
+                    readings[motor] += sign * part * tolerances()[motor];
+                    mismatch(rate, 1.0, |_| [readings, [0.4, -0.1]])
+                };
+                assert_eq!(found(1.01), Some(expected), "{motor} {sign}");
+                assert_eq!(found(0.99), None, "{motor} {sign}");
+            }
+        }
+    }
+}
+
+/// A sine agrees while it is below the tolerance: for 2 asin(tolerance / amplitude) / π of the time. The
+/// count grows by the rest less this part.
+#[test]
+fn open_lead_is_found_under_a_command_that_swings_through_zero() {
+    for (motor, amplitude) in [(0, 1.2), (1, 0.3)] {
+        let agrees = (tolerances()[motor] / amplitude).asin() * 4.0 / TAU;
+        let expected = SPAN as f64 / (1.0 - 2.0 * agrees);
+        let found = mismatch(RATE, 1.0, |t| {
+            let mut commands = [0.0; 2];
+            commands[motor] = amplitude * (TAU * 20.0 * t).sin();
+            [[0.0; 2], commands]
+        });
+        // Half a swing of 20 Hz is 250 ticks.
+        let off = (found.expect("a mismatch") as f64 - expected).abs();
+        assert!(off < 250.0, "{motor}: {found:?}, {expected}");
+    }
+}
+
+/// The amplifiers follow by a first-order lag of 80 us, and steps over the whole range every 2 ms
+/// disagree for less than half of the time.
+#[test]
+fn amplifier_that_lags_behind_large_steps_agrees() {
+    let lag = (-1.0 / (RATE.0 * DEVICE.amplifier_lag())).exp();
+    let mut flows = [0.0; 2];
+    let found = mismatch(RATE, 10.0, |t| {
+        let sign = if (t / 2e-3) as u32 % 2 == 0 {
+            1.0
+        } else {
+            -1.0
+        };
+        let commands = [DEVICE.large, DEVICE.small].map(|motor| sign * motor.current_limit);
+        for (flow, command) in flows.iter_mut().zip(commands) {
+            *flow = command + (*flow - command) * lag;
+        }
+        [flows, commands]
+    });
+    assert_eq!(found, None);
+}
+
+#[test]
+fn zero_is_the_mean_while_the_amplifiers_are_disabled() {
+    let mut state = AmmetersState::START;
+    // The current falls for 10 ms, and is no part of the mean.
+    for _ in 0..WAIT {
+        AMMETERS.update(&mut state, &currents([3.0, 1.0]), None);
+    }
+    for tick in 0..SPAN {
+        let noise = if tick % 2 == 0 { 0.02 } else { -0.02 };
+        AMMETERS.update(&mut state, &currents([0.3 + noise, -0.05 + noise]), None);
+    }
+    let commands = currents([1.0, 0.5]);
+    let exact = currents([1.3, 0.45]);
+    let mut flow = Flow::default();
+    for _ in 0..2 {
+        flow = AMMETERS.update(&mut state, &exact, Some(&commands));
+    }
+    for (found, expected) in [
+        (flow.currents.large.get(), 1.0),
+        (flow.currents.small.get(), 0.5),
+    ] {
+        assert!((found - expected).abs() < 1e-4, "{found}");
+    }
+    // Enabled amplifiers leave the zeros as they are.
+    for _ in 0..10 * SPAN {
+        AMMETERS.update(&mut state, &currents([1.4, 0.45]), Some(&commands));
+    }
+    let large = AMMETERS
+        .update(&mut state, &exact, Some(&commands))
+        .currents
+        .large;
+    assert!((large.get() - 1.05).abs() < 1e-4, "{large:?}");
+}
+
+#[test]
+fn monitor_that_is_not_connected_is_a_mismatch_of_disabled_amplifiers() {
+    let mut state = AmmetersState::START;
+    let low = currents([-7.5, 0.0]);
+    let update = |state: &mut _| AMMETERS.update(state, &low, None).mismatch.is_some();
+    let ticks = (0..2000).take_while(|_| !update(&mut state)).count();
+    assert_eq!(ticks, SPAN);
+    // A later start has the same patience, however long it has been so.
+    for _ in 0..10_000 {
+        update(&mut state);
+    }
+    state.restart();
+    let ticks = (0..2000).take_while(|_| !update(&mut state)).count();
+    assert_eq!(ticks, SPAN);
+}
+
+#[test]
+fn disagreement_of_the_past_is_counted_down() {
+    let mut state = AmmetersState::START;
+    let mut after = |ticks, reading| {
+        let flows = (0..ticks).map(|_| {
+            AMMETERS.update(
+                &mut state,
+                &currents([reading, 0.0]),
+                Some(&currents([0.0; 2])),
+            )
+        });
+        flows.last().unwrap().mismatch.is_some()
+    };
+    assert!(after(100_000, 1.0));
+    assert!(after(1, 1.0));
+    assert!(!after(1, 0.0));
+    assert!(!after(SPAN, 0.0));
+    assert!(!after(SPAN, 1.0));
+    assert!(after(1, 1.0));
+}
+
+#[test]
+fn current_of_a_period_is_the_mean_of_its_ends() {
+    let mut state = AmmetersState::START;
+    for k in 0..20 {
+        let reading = [0.01 * f64::from(k), -0.02 * f64::from(k)];
+        let flow = AMMETERS.update(&mut state, &currents(reading), Some(&currents(reading)));
+        if k > 0 {
+            let middle = f64::from(k) - 0.5;
+            let off = [
+                flow.currents.large.get() as f64 - 0.01 * middle,
+                flow.currents.small.get() as f64 + 0.02 * middle,
+            ];
+            assert!(off.iter().all(|x| x.abs() < 1e-6), "{off:?}");
+        }
+    }
+}
