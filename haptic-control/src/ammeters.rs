@@ -23,7 +23,8 @@ use crate::stop::Stop;
 /// ticks would not survive.
 ///
 /// Readings are taken at the begin of a tick. The current over the period before it is the mean of
-/// the readings at both of its ends, which is exact for a straight line.
+/// the readings at both of its ends, which is exact for a straight line. A reading that disagrees is
+/// replaced by the command: a monitor that breaks must not drive an observer.
 ///
 /// 50 ms is the rule of the da Vinci Research Kit's controller, whose tolerance is 7 % of its range.
 ///
@@ -63,14 +64,16 @@ pub struct AmmetersState {
     disabled: u32,
     /// Ticks that disagree, less those that agree.
     disagreeing: u32,
-    /// Measured currents at the last tick, A.
+    /// Measured currents at the latest tick, A.
+    measured: [f32; 2],
+    /// The same, or the commands where they disagree.
     last: [f32; 2],
 }
 
 /// Currents over the period before a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flow {
-    /// Mean currents.
+    /// Mean currents, measured if they agree with the commands.
     pub currents: Currents,
     /// Whether the currents disagree with the commands.
     pub mismatch: Option<Stop>,
@@ -89,12 +92,25 @@ impl AmmetersState {
         far: false,
         disabled: 0,
         disagreeing: 0,
+        measured: [0.0; 2],
         last: [0.0; 2],
     };
 
-    /// Forgets the disagreement. The zeros stay.
+    /// The measured currents at the latest tick.
+    #[must_use]
+    pub const fn currents(&self) -> Currents {
+        let [large, small] = self.measured;
+        Currents {
+            large: Amps::new(large),
+            small: Amps::new(small),
+        }
+    }
+
+    /// Forgets the disagreement of currents. Zeros stay, and the disagreement of a zero.
     pub fn restart(&mut self) {
-        self.disagreeing = 0;
+        if !self.far {
+            self.disagreeing = 0;
+        }
     }
 }
 
@@ -137,9 +153,14 @@ impl Ammeters {
             }
         };
         let currents = [0, 1].map(|i| readings[i] - state.zeros[i]);
-        let means = [0, 1].map(|i| 0.5 * (state.last[i] + currents[i]));
-        state.last = currents;
         let agrees = [0, 1].map(|i| (currents[i] - commands[i]).abs() <= self.tolerances[i]);
+        let mut means = [0.0; 2];
+        for i in 0..2 {
+            let believed = if agrees[i] { currents[i] } else { commands[i] };
+            means[i] = 0.5 * (state.last[i] + believed);
+            state.last[i] = believed;
+        }
+        state.measured = currents;
         state.disagreeing = if agrees == [true; 2] && !state.far {
             state.disagreeing.saturating_sub(1)
         } else {

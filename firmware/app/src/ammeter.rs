@@ -68,8 +68,9 @@ impl Measure for Meters {
     fn update(&mut self, readings: &Currents, commands: &Currents, enabled: bool) -> Flow {
         let commands = enabled.then_some(commands);
         let flow = AMMETERS.update(&mut self.state, readings, commands);
-        self.sums[0] += flow.currents.large.get();
-        self.sums[1] += flow.currents.small.get();
+        let measured = self.state.currents();
+        self.sums[0] += measured.large.get();
+        self.sums[1] += measured.small.get();
         self.ticks += 1;
         flow
     }

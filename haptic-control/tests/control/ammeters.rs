@@ -139,13 +139,23 @@ fn monitor_that_is_not_connected_is_a_mismatch_of_disabled_amplifiers() {
     let update = |state: &mut _| AMMETERS.update(state, &low, None).mismatch.is_some();
     let ticks = (0..2000).take_while(|_| !update(&mut state)).count();
     assert_eq!(ticks, SPAN);
-    // A later start has the same patience, however long it has been so.
-    for _ in 0..10_000 {
-        update(&mut state);
-    }
+    // A start does not wait for it again.
     state.restart();
-    let ticks = (0..2000).take_while(|_| !update(&mut state)).count();
-    assert_eq!(ticks, SPAN);
+    assert!(update(&mut state));
+}
+
+#[test]
+fn start_forgets_currents_that_were_not_the_commanded_ones() {
+    let mut state = AmmetersState::START;
+    let command = currents([1.0, 0.0]);
+    let mut ticks = || {
+        let update = |state: &mut _| AMMETERS.update(state, &currents([0.0; 2]), Some(&command));
+        let ticks = (0..2000).take_while(|_| update(&mut state).mismatch.is_none());
+        let ticks = ticks.count();
+        state.restart();
+        ticks
+    };
+    assert_eq!([ticks(), ticks()], [SPAN; 2]);
 }
 
 #[test]
@@ -167,6 +177,22 @@ fn disagreement_of_the_past_is_counted_down() {
     assert!(!after(SPAN, 0.0));
     assert!(!after(SPAN, 1.0));
     assert!(after(1, 1.0));
+}
+
+/// A monitor that breaks must not drive what takes the currents.
+#[test]
+fn current_that_disagrees_is_replaced_by_the_command() {
+    let mut state = AmmetersState::START;
+    let command = currents([0.25, -0.1]);
+    for (readings, expected) in [
+        ([0.25, -0.1], [0.125, -0.05]),
+        ([-7.5, -0.1], [0.25, -0.1]),
+        ([0.25, 1.8], [0.25, -0.1]),
+    ] {
+        let flow = AMMETERS.update(&mut state, &currents(readings), Some(&command));
+        assert_eq!(flow.currents, currents(expected));
+        assert_eq!(state.currents(), currents(readings));
+    }
 }
 
 #[test]

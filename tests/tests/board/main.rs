@@ -2,6 +2,7 @@
 
 mod choice;
 mod cost;
+mod current_monitor;
 mod edges;
 mod enables;
 mod faults;

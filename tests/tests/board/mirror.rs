@@ -1,7 +1,7 @@
 //! The same control on the host, fed with what the image read: the same bits.
 
 use drivers::Settings;
-use estimator_core::{Amps, Count, Sample, VelocityEstimator};
+use estimator_core::{Amps, Count, Sample, Skip, VelocityEstimator};
 use experiments::closed_loop::Hand;
 use firmware_app::config::RATE;
 use firmware_app::control::{Control, Inputs, Message, SETTLE};
@@ -69,7 +69,8 @@ pub(crate) fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
     let mut control = Control::new(&first, Stop::None, true, &Settings::COMMISSIONED);
     let requests = requests(run);
     let step = |(k, tick): (usize, &ControlTick)| {
-        let sample = samples.next(tick, control.applied().large);
+        let flow = control.flow(&Skip);
+        let sample = samples.next(tick, flow.currents.large);
         let heard = requests.iter().find(|(at, _)| *at == k);
         let message = heard.map(|(_, heard)| match heard {
             Heard::Request(request) => Message::Request(*request),
@@ -86,7 +87,7 @@ pub(crate) fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
             debugger: false,
             request: Some(request.unwrap_or(Request::KeepAlive)),
         };
-        let currents = control.step(&sample, &inputs);
+        let currents = control.step(&sample, &flow, &inputs);
         (currents, control.record(&sample))
     };
     run.ticks.iter().enumerate().map(step).collect()

@@ -152,7 +152,7 @@ const fn halted(ms: u16) -> Bound {
     bound(Fault::Halt(ms), 0.2, end, [NOTICED_MN, 0.0])
 }
 
-pub(super) const MATRIX: [Bound; 43] = [
+pub(super) const MATRIX: [Bound; 46] = [
     one_phase(Fault::StuckA),
     one_phase(Fault::StuckB),
     bound(Fault::StuckBoth, 0.5, STALLS.0, STALLS.1),
@@ -189,6 +189,19 @@ pub(super) const MATRIX: [Bound; 43] = [
         [1.0, 0.0],
     ),
     refused(Fault::Unpowered, Stop::Interlock),
+    // The hand turns a motor without current, until the loop's current is one that should move it. The
+    // hand feels friction, which is 4 mN.m, 114 mN, and inertia.
+    bound(
+        Fault::OpenLead,
+        1.0,
+        End::Off([0.0, 1000.0], Stop::Stall),
+        [200.0, 10.0],
+    ),
+    // Nothing but a measured current shows it. The compensation of the friction of 0.8 mN.m, 23 mN, is
+    // missing, and the transients.
+    bound(Fault::SmallOpenLead, 1.0, End::On, [60.0, 5.0]),
+    // This image does not read it.
+    bound(Fault::BrokenMonitorWire, 0.2, End::On, [0.0, 0.0]),
     bound(Fault::ReadyAfter(15), 0.3, End::On, [0.0, 0.0]),
     // Refused at the end of settling, which takes 20 ms and begins with the tick after the command.
     Bound {

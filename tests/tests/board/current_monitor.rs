@@ -1,0 +1,151 @@
+//! An image that measures the currents.
+
+use experiments::closed_loop::Hand;
+use haptic_control::{Mode, SceneKind, Stop};
+use recordings::telemetry::Frame;
+use simulation::device::Device;
+use virtual_board::fault::Fault;
+use virtual_board::run::{DacError, MONITOR_AMPS, Outcome, Setup};
+
+use crate::image::{of_scene, run_image};
+
+/// The image learns with the measured currents too.
+const IMAGE: &str = "large-adaptive,current-monitor";
+
+/// When a fault happens, s.
+const FAULT_S: f64 = 0.6;
+
+fn end(run: &Outcome) -> (Mode, Stop) {
+    let last = run.telemetry.frames.last().expect("frames");
+    (last.state, last.cause)
+}
+
+/// The zeros of the monitors are 11 and -7 codes off, and a conversion has noise of up to 2 codes.
+#[test]
+fn measured_currents_are_those_that_flow() {
+    let run = run_image(IMAGE, &of_scene(SceneKind::Excite, Hand::Gone(0.0), 3.0));
+    assert_eq!(run.complaints, [""; 0], "pins");
+    let codes = MONITOR_AMPS.map(|amps| amps / 2048.0);
+    let (mut compared, mut largest) = (0, [0.0_f64; 2]);
+    // The zeros are known when the device is armed, after 0.1 s.
+    let known = |frame: &&Frame| run.tick(frame).is_some_and(|tick| tick.at_ns > 100_000_000);
+    for frame in run.telemetry.frames.iter().filter(known) {
+        let measured = frame
+            .side_lines
+            .measured
+            .expect("a line beside every frame");
+        let tick = run.tick(frame).expect("a tick");
+        // 2 ms in which no current changes: the one of the means, and the one before for the lag.
+        let now = (tick.at_ns / 100_000) as usize;
+        let Some(states) = now
+            .checked_sub(20)
+            .and_then(|from| run.plant_states.get(from..=now))
+        else {
+            continue;
+        };
+        let currents = states[0].currents;
+        if states.iter().any(|state| state.currents != currents) {
+            continue;
+        }
+        for (n, found) in [measured.large, measured.small].into_iter().enumerate() {
+            let off = (found - currents[n]).abs() / codes[n];
+            assert!(off < 2.6, "{n}: {found} A instead of {}", currents[n]);
+            largest[n] = largest[n].max(currents[n].abs());
+        }
+        compared += 1;
+    }
+    assert!(compared > 1000, "{compared}");
+    assert!(largest[0] > 0.2 && largest[1] > 0.1, "{largest:?}");
+}
+
+#[test]
+fn healthy_currents_agree_in_every_scene() {
+    for scene in SceneKind::ALL {
+        let run = run_image(IMAGE, &Setup::playing(scene, 0.7));
+        let expected = match scene {
+            SceneKind::Off => Mode::Armed,
+            _ => Mode::Running,
+        };
+        assert_eq!(end(&run), (expected, Stop::None), "{scene:?}");
+    }
+}
+
+/// A command below the tolerance agrees with no current, so that an open lead takes longer where the
+/// command changes its sign.
+#[test]
+fn current_that_is_not_the_commanded_one_stops_the_device_after_50_ms() {
+    for (fault, scene, longest_ms) in [
+        (Fault::BrokenMonitorWire, SceneKind::FreeAir, 50.4),
+        (Fault::OpenLead, SceneKind::Wall, 80.0),
+        (Fault::SmallOpenLead, SceneKind::Detents, 300.0),
+        (Fault::SmallOpenLead, SceneKind::Texture, 300.0),
+    ] {
+        let run = run_image(
+            IMAGE,
+            &Setup {
+                faults: vec![(FAULT_S, fault)],
+                ..Setup::playing(scene, 1.0)
+            },
+        );
+        let what = format!("{} in {scene:?}", fault.as_str());
+        assert_eq!(end(&run), (Mode::Safe, Stop::CurrentMismatch), "{what}");
+        let off_ms = 1e3 * run.off_after(FAULT_S).expect("off");
+        println!("{what}: off after {off_ms:.2} ms");
+        assert!((50.0..longest_ms).contains(&off_ms), "{what}: {off_ms} ms");
+    }
+}
+
+/// A monitor that breaks drives nothing while it is not known which of the two is right.
+#[test]
+fn broken_monitor_wire_is_not_felt() {
+    let run = |faults| {
+        let scene = Setup::playing(SceneKind::FreeAir, FAULT_S + 0.1);
+        run_image(IMAGE, &Setup { faults, ..scene })
+    };
+    let healthy = run(vec![]);
+    let broken = run(vec![(FAULT_S, Fault::BrokenMonitorWire)]);
+    let off_s = FAULT_S + broken.off_after(FAULT_S).expect("off");
+    let diameter = Device::default().handle.diameter_m;
+    let force_mn = broken.spurious_mn(&healthy, FAULT_S, off_s, diameter);
+    println!("{force_mn:.2} mN");
+    assert!(force_mn < 1.0, "{force_mn} mN");
+}
+
+#[test]
+fn device_with_a_broken_monitor_wire_drives_no_current() {
+    let run = run_image(
+        IMAGE,
+        &Setup {
+            faults: vec![(0.0, Fault::BrokenMonitorWire)],
+            ..Setup::playing(SceneKind::Wall, 0.5)
+        },
+    );
+    assert_eq!(end(&run), (Mode::Safe, Stop::CurrentMismatch));
+    let driven = |state: &virtual_board::run::PlantState| state.currents != [0.0; 2];
+    assert!(!run.plant_states.iter().any(driven));
+}
+
+/// An amplifier that gives 5 % less than commanded looks like a motor that is weaker by as much to an
+/// image that believes its commands.
+#[test]
+fn observer_takes_the_measured_current() {
+    const GAIN: f64 = 0.95;
+    let large = DacError {
+        gain: GAIN,
+        ..DacError::NONE
+    };
+    let learned = |image| {
+        let run = run_image(
+            image,
+            &Setup {
+                dac_errors: [large, DacError::NONE],
+                ..of_scene(SceneKind::Wall, Hand::Pushing, 6.0)
+            },
+        );
+        let frames = run.telemetry.frames.iter().rev();
+        let line = frames.filter_map(|frame| frame.side_lines.learned).next();
+        1.0 + line.expect("a line").torque_constant
+    };
+    let ratio = learned("large-adaptive") / learned(IMAGE);
+    assert!((ratio - GAIN).abs() < 0.02, "{ratio}");
+}
