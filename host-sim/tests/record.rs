@@ -195,6 +195,36 @@ fn side_lines_are_columns_and_health_lines() {
 }
 
 #[test]
+fn measured_currents_are_columns_that_replay_and_plot_use_and_tell() {
+    let folder = Folder::new("record-measured");
+    let mut text = String::new();
+    for (k, line) in log(0..200, true).lines().enumerate() {
+        writeln!(text, "{line}").unwrap();
+        if let (true, Some(seq)) = (line.contains("frame seq="), k.checked_sub(2)) {
+            writeln!(text, "measured seq={seq} large=0.25 small=-0.5").unwrap();
+        }
+    }
+    folder.good(&["record", "--out", "run.csv"], text.as_bytes());
+    let csv = fs::read_to_string(folder.0.join("run.csv")).unwrap();
+    assert!(csv.lines().last().unwrap().ends_with(",0.25,-0.5"), "{csv}");
+    for command in [
+        &["replay", "run.csv", "--estimator", "pll"][..],
+        &["plot", "run.csv"],
+    ] {
+        let [_, said] = folder.good(command, b"");
+        for (measured, command) in [
+            ("current_measured", "current"),
+            ("current_small_measured", "current_small"),
+        ] {
+            let line = format!(
+                "run.csv: the current of each row is {measured} of the next row, not {command}\n"
+            );
+            assert!(said.contains(&line), "{said}");
+        }
+    }
+}
+
+#[test]
 fn streams_that_cannot_be_recorded_or_drawn_are_refused_with_one_line() {
     let folder = Folder::new("record-refused");
     let whole = log(0..3, true);

@@ -1,10 +1,12 @@
 //! Identification against the truth of simulated devices. Tuned on seeds from 1000 on, scored here
 //! on others.
 
+use std::fmt::Write as _;
+
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
 use experiments::closed_loop::{FeedbackEncoder, Hand, Loop, estimator, usual};
-use experiments::identify::{Identification, Known, identify};
+use experiments::identify::{Identification, Known, Quantity, identify};
 use haptic_control::{LoopPoles, SceneKind};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
@@ -229,6 +231,37 @@ fn ratios_do_not_depend_on_the_known_constant() {
     for (one, two) in single.iter().zip(&double) {
         assert!((two.1 / one.1 - 2.0).abs() < 1e-9);
     }
+}
+
+/// Rows with the current that flows as the measured one, and commands of which the amplifier gives only a part.
+#[test]
+fn measured_current_identifies_the_torque_constant_although_the_amplifier_has_another_gain() {
+    const GAIN: f64 = 0.9;
+    let device = device(5);
+    let all = record(&device, Hand::Still, 5, 1);
+    let flowing = all.trace.current.as_ref().unwrap();
+    let small = all.trace.counts_small.as_ref().unwrap();
+    let mut text = "t,counts_large,counts_small,current,current_measured\n".to_owned();
+    for (k, t) in all.t.iter().enumerate() {
+        let (large, small) = (all.trace.counts_large[k], small[k]);
+        let command = flowing[k] / GAIN;
+        let measured = k.checked_sub(1).map(|before| flowing[before].to_string());
+        let measured = measured.unwrap_or_default();
+        writeln!(text, "{t},{large},{small},{command},{measured}").unwrap();
+    }
+    let torque_constant = |text: &str| {
+        let recording = Recording::parse(text.as_bytes(), "r.csv").unwrap();
+        let known = Known::Inertia(device.stages.large.inertia);
+        let found = found(vec![recording], known).unwrap();
+        let is_it = |quantity: &&Quantity| quantity.key == "large.torque_constant_nm_per_a";
+        let quantity = found.quantities.iter().find(is_it).unwrap();
+        assert_eq!(quantity.rejected, None);
+        quantity.estimate.value / device.stages.large.torque_constant
+    };
+    // The bound of the other tests; the commands alone are wrong by the gain.
+    assert!((torque_constant(&text) - 1.0).abs() < 0.03);
+    let commands = text.replace("current_measured", "ignored");
+    assert!((torque_constant(&commands) / GAIN - 1.0).abs() < 0.03);
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use crate::telemetry::{COLUMNS, Column, Frame, LearnedLine, Run, Telemetry};
+use crate::recording::MEASURED;
+use crate::telemetry::{COLUMNS, Column, Frame, LearnedLine, MeasuredLine, Run, Telemetry};
 use simulation::trace::EDGE_CLOCK_HZ;
 use terminal::failure::Failure;
 
@@ -13,13 +14,15 @@ const LEARNED: &str = ",learned_damping,learned_friction,learned_torque_constant
 /// control rate.
 ///
 /// The fields of a frame that every frame has are columns. `edge_tick` and `edge_bound` are present
-/// if the firmware stamps edges, and empty for a frame without a stamp. The three `learned_*` columns
-/// are present if any frame has them, and empty in the other rows. `true_omega` is the last column,
+/// if the firmware stamps edges, and empty for a frame without a stamp. `current_measured` and
+/// `current_small_measured` are present if the firmware measures currents, and empty for a frame without
+/// the line, as the first one may be. The three `learned_*` columns are present if any frame has them, and empty in the other rows. `true_omega` is the last column,
 /// if every frame has one.
 #[must_use]
 pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) -> String {
     let truth: Option<Vec<f64>> = run.frames.iter().map(|(_, f)| true_omega(f)).collect();
     let edges = run.frames.iter().any(|(_, f)| f.side_lines.edge.is_some());
+    let measured = measured(run) > 0;
     let learned = run
         .frames
         .iter()
@@ -31,8 +34,10 @@ pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) 
         text.push(',');
         text += name;
     }
+    let [large, small] = MEASURED;
     let more = [
         (",edge_tick,edge_bound", edges),
+        (&format!(",{large},{small}"), measured),
         (LEARNED, learned),
         (",true_omega", truth.is_some()),
     ];
@@ -57,6 +62,12 @@ pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) 
                 }
             };
         }
+        if measured {
+            let _ = match frame.side_lines.measured {
+                None => write!(text, ",,"),
+                Some(MeasuredLine { large, small }) => write!(text, ",{large},{small}"),
+            };
+        }
         if learned {
             let _ = match frame.side_lines.learned {
                 None => write!(text, ",,,"),
@@ -73,6 +84,12 @@ pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) 
         text.push('\n');
     }
     text
+}
+
+/// Number of frames with measured currents.
+fn measured(run: &Run) -> usize {
+    let has = |(_, frame): &&(u64, &Frame)| frame.side_lines.measured.is_some();
+    run.frames.iter().filter(has).count()
 }
 
 /// The run to record: that of the given number, of which 1 is the first, by default the longest.
@@ -109,6 +126,16 @@ pub fn report(telemetry: &Telemetry, runs: &[Run], run: &Run) -> Vec<String> {
         gaps.frames,
         plural(gaps.places, "place"),
     ));
+    // What is measured beside the first frame began before the recording.
+    let first = run.frames.first();
+    let first = first.filter(|(_, frame)| frame.side_lines.measured.is_none());
+    let unmeasured = frames - measured(run) - usize::from(first.is_some());
+    if measured(run) > 0 && unmeasured > 0 {
+        lines.push(format!(
+            "{} without measured currents: their columns are empty there",
+            plural(unmeasured as u64, "frame")
+        ));
+    }
     if let Some((device, presets)) = telemetry
         .boots
         .last()
@@ -231,6 +258,44 @@ mod tests {
             panic!("one edge");
         };
         assert!((edge.age_s - 250e-6).abs() < 1e-9 && edge.boundary == 1);
+    }
+
+    #[test]
+    fn measured_currents_are_columns_of_the_recording() {
+        let beside = |from: u32| {
+            let mut text = String::new();
+            for (k, line) in (0..).zip(log(0..4).lines()) {
+                let _ = writeln!(text, "{line}");
+                // The boot line is the first one.
+                if k > from {
+                    let k = k - 1;
+                    let _ = writeln!(text, "measured seq={k} large=0.{k} small=-0.{k}");
+                }
+            }
+            text
+        };
+        let said = |log: &str| {
+            let telemetry = Telemetry::text(log.as_bytes());
+            let runs = telemetry.runs();
+            report(&telemetry, &runs, &runs[0])
+        };
+        let lack = "2 frames without measured currents: their columns are empty there";
+        assert_eq!(said(&beside(3))[1], lack);
+        // The first frame may lack them.
+        let log = beside(1);
+        assert_eq!(said(&log).len(), 1);
+        let telemetry = Telemetry::text(log.as_bytes());
+        let runs = telemetry.runs();
+        let text = csv(&runs[0], 1e4, |_| Some(1.0));
+        let lines: Vec<_> = text.lines().collect();
+        let end = "cause,current_measured,current_small_measured,true_omega";
+        assert!(lines[0].ends_with(end), "{text}");
+        assert!(lines[1].ends_with(",2,0,,,1"), "{text}");
+        assert!(lines[2].ends_with(",2,0,0.1,-0.1,1"), "{text}");
+        let recording = Recording::parse(text.as_bytes(), "r").unwrap();
+        assert_eq!(recording.trace.current, Some(vec![0.1, 0.2, 0.3, 0.5]));
+        let small = vec![-0.1, -0.2, -0.3, -0.125];
+        assert_eq!(recording.current_small, Some(small));
     }
 
     #[test]

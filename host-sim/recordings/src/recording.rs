@@ -4,6 +4,7 @@ mod absolute;
 mod board;
 mod clock;
 mod columns;
+mod currents;
 mod encoder;
 mod formats;
 mod header;
@@ -29,6 +30,7 @@ use std::path::Path;
 
 pub use board::{BoardColumns, BoardReader};
 pub use formats::{KnownLog, known_logs};
+pub(crate) use options::MEASURED;
 pub use options::ReadOptions;
 pub use parts::Parts;
 pub use stated::{counts_per_rev_line, stated_counts_per_rev};
@@ -45,9 +47,10 @@ use terminal::failure::Failure;
 pub struct Recording {
     /// Column `t`, s.
     pub t: Vec<f64>,
-    /// The columns as a trace; its rate follows from the steps of `t` near their median.
+    /// The columns as a trace; its rate follows from the steps of `t` near their median. Its current is the
+    /// measured one where the next row has it, otherwise the command.
     pub trace: Trace,
-    /// The small motor's commanded current, applied from this tick to the next, A.
+    /// The small motor's current from this tick to the next, A, as that of the trace.
     pub current_small: Option<Vec<f64>>,
     /// Number of steps of `t` that differ from the period by more than a tenth of it.
     pub uneven_steps: usize,

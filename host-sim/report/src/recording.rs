@@ -140,7 +140,11 @@ fn panels(view: &RecordingView) -> Vec<Panel> {
     let board = view.board;
     let currents = [
         ("large motor", LARGE, trace.current.as_deref()),
-        ("small motor", SMALL, board.column("current_small")),
+        (
+            "small motor",
+            SMALL,
+            view.recording.current_small.as_deref(),
+        ),
     ];
     let currents = currents.into_iter();
     let there = currents.filter_map(|(n, c, v)| Some(Curve::new(n, c, v?)));

@@ -18,7 +18,8 @@ use super::page;
 pub(super) struct Identify {
     /// Recording with the motor current, of scene excite or of any motion that speeds up, slows down
     /// and reverses: CSV as for host-sim replay, with the columns current and counts_small. With
-    /// column current_small and a free handle, the handle is identified too.
+    /// column current_small and a free handle, the handle is identified too. Measured currents in the
+    /// columns current_measured and current_small_measured are used in the place of the commands.
     /// Several recordings of one device are fitted together; - is standard input
     #[arg(value_name = "RECORDING", required = true)]
     recordings: Vec<PathBuf>,

@@ -25,8 +25,8 @@ use super::uneven::Chosen;
 #[derive(Debug, Args)]
 pub(super) struct Replay {
     /// Recording: CSV with the columns t (s) and counts_large; optional columns: counts_small,
-    /// current (A), edge_tick (periods of 84 MHz), edge_bound, true_omega (rad/s); other columns
-    /// are ignored. Logs of moteus, ODrive, VESC Tool, SimpleFOC and PlotJuggler are read by their
+    /// current (A), current_measured (A, mean since the row before; used instead of current),
+    /// edge_tick (periods of 84 MHz), edge_bound, true_omega (rad/s); other columns are ignored. Logs of moteus, ODrive, VESC Tool, SimpleFOC and PlotJuggler are read by their
     /// own names, other logs with --column; - is standard input
     #[arg(value_name = "TRACE.csv")]
     pub(super) trace: PathBuf,

@@ -1,11 +1,10 @@
 //! Columns of a recording while it is read.
 
-use std::mem::take;
-
 use simulation::trace::{EDGE_CLOCK_HZ, EdgeStamp, Trace};
 use terminal::failure::Failure;
 
 use super::clock::Gaps;
+use super::currents::{Current, measured_note};
 use super::encoder::Encoder;
 use super::layout::{Layout, Place, Places};
 use super::lines::LineNumbers;
@@ -28,8 +27,8 @@ pub(super) struct Columns<'a> {
     lines: LineNumbers,
     counts_large: Encoder,
     counts_small: Encoder,
-    current: Vec<f64>,
-    current_small: Vec<f64>,
+    current: Current,
+    current_small: Current,
     edges: Vec<Option<EdgeStamp>>,
     true_omega: Vec<f64>,
     /// Number of rows left out.
@@ -48,8 +47,8 @@ impl<'a> Columns<'a> {
             lines: LineNumbers::default(),
             counts_large: Encoder::default(),
             counts_small: Encoder::default(),
-            current: Vec::new(),
-            current_small: Vec::new(),
+            current: Current::default(),
+            current_small: Current::default(),
             edges: Vec::new(),
             true_omega: Vec::new(),
             left_out: 0,
@@ -84,14 +83,12 @@ impl<'a> Columns<'a> {
         if let Some(at) = self.place(Column::CountsSmall) {
             self.counts_small.take(row, at, options, 1)?;
         }
-        if let Some(at) = self.place(Column::Current) {
-            self.current
-                .push(scaled(row, at, options.torque_constant[0])?);
-        }
-        if let Some(at) = self.place(Column::CurrentSmall) {
-            self.current_small
-                .push(scaled(row, at, options.torque_constant[1])?);
-        }
+        let places = [Column::Current, Column::CurrentMeasured].map(|column| self.place(column));
+        self.current.take(row, places, options.torque_constant[0])?;
+        let places =
+            [Column::CurrentSmall, Column::CurrentSmallMeasured].map(|column| self.place(column));
+        self.current_small
+            .take(row, places, options.torque_constant[1])?;
         if let (Some(tick), Some(bound)) =
             (self.place(Column::EdgeTick), self.place(Column::EdgeBound))
         {
@@ -140,24 +137,41 @@ impl<'a> Columns<'a> {
         }))
     }
 
-    /// Takes at most `rows` rows and returns them. `step` is called at each row but the first of the
-    /// log, with its time, the step to it, and its line.
+    /// Takes rows until `rows` are there, and returns them, with measured currents all but the last one: its
+    /// current comes with the next row. `step` is called at each row that is taken but the first of the log,
+    /// with its time, the step to it, and its line.
     pub(super) fn read(
         &mut self,
         records: &mut Records,
         rows: usize,
         mut step: impl FnMut(f64, f64, u64),
     ) -> Result<Recording, Failure> {
-        while self.t.len() < rows
-            && let Some(row) = records.next()?
-        {
+        let mut ended = false;
+        while self.t.len() < rows && !ended {
+            let Some(row) = records.next()? else {
+                ended = true;
+                continue;
+            };
             let (taken, before) = (self.taken, self.last_t);
             self.take(&row)?;
             if taken > 0 && self.taken > taken {
                 step(self.last_t, self.last_t - before, row.line);
             }
         }
-        Ok(self.drain(f64::NAN))
+        let waits = !ended && self.measured().next().is_some();
+        Ok(self.drain(self.t.len() - usize::from(waits), f64::NAN))
+    }
+
+    /// The columns of measured currents that there are, each with the number of rows without a value.
+    fn measured(&self) -> impl Iterator<Item = (Column, usize)> {
+        let columns = [
+            (Column::CurrentMeasured, self.current.unmeasured),
+            (Column::CurrentSmallMeasured, self.current_small.unmeasured),
+        ];
+        let is_there = |column: Column| self.place(column).is_some();
+        columns
+            .into_iter()
+            .filter(move |(column, _)| is_there(*column))
     }
 
     /// The recording of all rows.
@@ -178,31 +192,35 @@ impl<'a> Columns<'a> {
         let mut recording = Recording {
             uneven_steps,
             notes,
-            ..self.drain(rate_hz)
+            ..self.drain(self.t.len(), rate_hz)
         };
         recording.trace.periods = periods;
         Ok(recording)
     }
 
-    /// The rows since the last call, without notes.
-    pub(super) fn drain(&mut self, rate_hz: f64) -> Recording {
+    /// Removes the first `rows` rows and returns them, without notes.
+    pub(super) fn drain(&mut self, rows: usize, rate_hz: f64) -> Recording {
         let has = self.places.map(|place| place.is_some());
-        let has = |column: Column| has[column as usize];
+        let any = |columns: &[Column]| columns.iter().any(|column| has[*column as usize]);
         self.lines = LineNumbers::default();
-        let large = take(&mut self.counts_large.counts);
-        let small = take(&mut self.counts_small.counts);
-        let current_small = take(&mut self.current_small);
+        let large = front(&mut self.counts_large.counts, rows);
+        let small = front(&mut self.counts_small.counts, rows);
+        let current = front(&mut self.current.values, rows);
+        let current_small = front(&mut self.current_small.values, rows);
+        let edges = front(&mut self.edges, rows);
+        let true_omega = front(&mut self.true_omega, rows);
         Recording {
-            t: take(&mut self.t),
+            t: front(&mut self.t, rows),
             uneven_steps: 0,
-            current_small: has(Column::CurrentSmall).then_some(current_small),
+            current_small: any(&[Column::CurrentSmall, Column::CurrentSmallMeasured])
+                .then_some(current_small),
             trace: Trace {
                 rate_hz,
                 counts_large: large,
-                counts_small: has(Column::CountsSmall).then_some(small),
-                current: has(Column::Current).then_some(take(&mut self.current)),
-                edges: has(Column::EdgeTick).then_some(take(&mut self.edges)),
-                true_omega: has(Column::TrueOmega).then_some(take(&mut self.true_omega)),
+                counts_small: any(&[Column::CountsSmall]).then_some(small),
+                current: any(&[Column::Current, Column::CurrentMeasured]).then_some(current),
+                edges: any(&[Column::EdgeTick]).then_some(edges),
+                true_omega: any(&[Column::TrueOmega]).then_some(true_omega),
                 true_damping: None,
                 periods: None,
             },
@@ -214,6 +232,10 @@ impl<'a> Columns<'a> {
     pub(super) fn notes(&self, places: &Places, layout: &Layout) -> Vec<String> {
         let mut notes = Vec::new();
         notes.extend(self.sources(places, layout));
+        notes.extend(
+            self.measured()
+                .map(|(column, lack)| measured_note(column, lack)),
+        );
         if self.left_out > 0 {
             notes.push(format!(
                 "{} rows without a position are left out",
@@ -237,7 +259,12 @@ impl<'a> Columns<'a> {
         }
         let [counts_large, counts_small] = self.options.counts_per_rev;
         let [kt_large, kt_small] = self.options.torque_constant;
-        let small = |column| matches!(column, Column::CountsSmall | Column::CurrentSmall);
+        let small = |column| {
+            matches!(
+                column,
+                Column::CountsSmall | Column::CurrentSmall | Column::CurrentSmallMeasured
+            )
+        };
         let part = |place: &Place| {
             let counts = if small(place.column) {
                 counts_small
@@ -269,8 +296,14 @@ impl<'a> Columns<'a> {
     }
 }
 
+/// Removes the first `rows` values of a column and returns them; a column that is not read has none.
+fn front<T>(column: &mut Vec<T>, rows: usize) -> Vec<T> {
+    let rest = column.split_off(rows.min(column.len()));
+    std::mem::replace(column, rest)
+}
+
 /// A number in the unit of the recording; `torque_constant` converts torques.
-fn scaled(row: &Row, at: Place, torque_constant: f64) -> Result<f64, Failure> {
+pub(super) fn scaled(row: &Row, at: Place, torque_constant: f64) -> Result<f64, Failure> {
     let number = row.number(at.column.name(), at.place)?;
     Ok(match at.unit.scale {
         Scale::Over(by) => number / by,

@@ -93,7 +93,11 @@ impl Layout {
                     place,
                     unit,
                 });
-            } else {
+            } else if !column
+                .command()
+                .is_some_and(|command| options.mapping(command).is_some())
+            {
+                // Who names the column of the current wants that one.
                 places.add_own(column, self, name)?;
             }
         }

@@ -13,19 +13,26 @@ pub(super) enum Column {
     CountsSmall,
     Current,
     CurrentSmall,
+    CurrentMeasured,
+    CurrentSmallMeasured,
     EdgeTick,
     EdgeBound,
     TrueOmega,
 }
 
+/// Names of the columns of measured currents: large and small motor.
+pub(crate) const MEASURED: [&str; 2] = ["current_measured", "current_small_measured"];
+
 impl Column {
     /// Every column that is read; other columns of a file are ignored.
-    pub(super) const ALL: [Self; 8] = [
+    pub(super) const ALL: [Self; 10] = [
         Self::T,
         Self::CountsLarge,
         Self::CountsSmall,
         Self::Current,
         Self::CurrentSmall,
+        Self::CurrentMeasured,
+        Self::CurrentSmallMeasured,
         Self::EdgeTick,
         Self::EdgeBound,
         Self::TrueOmega,
@@ -39,9 +46,20 @@ impl Column {
             Self::CountsSmall => "counts_small",
             Self::Current => "current",
             Self::CurrentSmall => "current_small",
+            Self::CurrentMeasured => MEASURED[0],
+            Self::CurrentSmallMeasured => MEASURED[1],
             Self::EdgeTick => "edge_tick",
             Self::EdgeBound => "edge_bound",
             Self::TrueOmega => "true_omega",
+        }
+    }
+
+    /// The column of the commands that this one of measured currents replaces.
+    pub(super) const fn command(self) -> Option<Self> {
+        match self {
+            Self::CurrentMeasured => Some(Self::Current),
+            Self::CurrentSmallMeasured => Some(Self::CurrentSmall),
+            _ => None,
         }
     }
 
@@ -49,7 +67,10 @@ impl Column {
         match self {
             Self::T => Quantity::Time,
             Self::CountsLarge | Self::CountsSmall => Quantity::Position,
-            Self::Current | Self::CurrentSmall => Quantity::Current,
+            Self::Current
+            | Self::CurrentSmall
+            | Self::CurrentMeasured
+            | Self::CurrentSmallMeasured => Quantity::Current,
             Self::EdgeTick => Quantity::Edge,
             Self::EdgeBound => Quantity::Boundary,
             Self::TrueOmega => Quantity::Velocity,

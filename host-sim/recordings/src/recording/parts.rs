@@ -25,13 +25,14 @@ pub struct Parts<'a> {
     unwrapped: [Option<Count>; 2],
     gaps: Gaps,
     uneven: Uneven,
+    /// Steps to the rows that were taken and not yet returned, over the period.
+    periods: Vec<f32>,
     /// Rows of the log that new rows lie between.
     between: Recording,
     /// Number of rows that replaced those of the log.
     resampled: usize,
     /// Rows that are not yet returned.
     waiting: Recording,
-    begun: bool,
     ended: bool,
 }
 
@@ -48,7 +49,7 @@ impl<'a> Parts<'a> {
     ) -> Result<Self, Failure> {
         let records = Records::open(input, name, options)?;
         let mut columns = Columns::new(&records.layout.places(options, name)?, options);
-        let empty = columns.drain(survey.columns.rate_hz);
+        let empty = columns.drain(0, survey.columns.rate_hz);
         Ok(Self {
             records,
             columns,
@@ -56,13 +57,14 @@ impl<'a> Parts<'a> {
             unwrapped: [None; 2],
             gaps: Gaps::default(),
             uneven: Uneven::new(survey.period),
+            // The first row has no step.
+            periods: vec![1.0],
             between: empty.clone(),
             resampled: 0,
             waiting: Recording {
                 trace: survey.columns.clone(),
                 ..empty
             },
-            begun: false,
             ended: false,
         })
     }
@@ -102,22 +104,18 @@ impl<'a> Parts<'a> {
     /// The next rows of the log, with unwrapped counts.
     fn read(&mut self) -> Result<Recording, Failure> {
         let (gaps, uneven, rate_hz) = (&mut self.gaps, &mut self.uneven, self.survey.rate_hz);
-        // The first row has no step.
-        let first = (!self.begun).then_some(1.0);
         let columns = &self.survey.columns;
-        let mut periods = columns.periods.as_ref().map(|_| Vec::from_iter(first));
+        let periods = &mut self.periods;
         let mut part = self
             .columns
             .read(&mut self.records, BLOCK, |t, step, line| {
                 gaps.add(step, rate_hz, t, || line);
                 uneven.add(step);
-                if let Some(periods) = &mut periods {
-                    periods.push((step * rate_hz) as f32);
-                }
+                periods.push((step * rate_hz) as f32);
             })?;
-        self.begun = true;
         part.trace.rate_hz = columns.rate_hz;
-        part.trace.periods = periods;
+        let periods = self.periods.drain(..part.t.len()).collect();
+        part.trace.periods = columns.periods.as_ref().map(|_| periods);
         let trace = &mut part.trace;
         let [large, small] = self.survey.wraps;
         if let Some(modulus) = large {
@@ -208,7 +206,8 @@ mod tests {
     /// Rows with every column, of an absolute encoder, with late and missing rows.
     fn log() -> String {
         let mut text = String::from(
-            "t,counts_large,counts_small,current,current_small,edge_tick,edge_bound,true_omega\n",
+            "t,counts_large,counts_small,current,current_small,edge_tick,edge_bound,true_omega,\
+             current_measured,current_small_measured\n",
         );
         for k in 0..40_000_i64 {
             let late = if k % 5 == 0 { 120e-6 } else { 0.0 };
@@ -220,10 +219,16 @@ mod tests {
             let count = at.floor() as i64;
             let edge = count as f64 / 2400.0 * 84e6;
             let (wrapped, small) = (count.rem_euclid(4096), (3 * count).rem_euclid(20_000));
+            let measured = if k % 17 == 0 {
+                String::new()
+            } else {
+                format!("{k}")
+            };
             text += &format!(
-                "{t},{wrapped},{small},{},{},{edge},{wrapped},{at}\n",
+                "{t},{wrapped},{small},{},{},{edge},{wrapped},{at},{measured},{}\n",
                 k % 11,
-                k % 13
+                k % 13,
+                2 * k,
             );
         }
         text

@@ -138,7 +138,7 @@ impl Survey {
             Some(hz) => resampled_rows(first_t, last_t, rows, hz, name)?,
             None => rows,
         };
-        let mut columns = columns.drain(resample.unwrap_or(rate_hz)).trace;
+        let mut columns = columns.drain(0, resample.unwrap_or(rate_hz)).trace;
         let are_uneven = resample.is_none() && steps.are_uneven(1.0 / rate_hz);
         columns.periods = are_uneven.then(Vec::new);
         Ok(Self {
