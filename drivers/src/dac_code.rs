@@ -5,6 +5,9 @@ use estimator_core::Amps;
 /// Steps of full scale on either side of mid-scale.
 const STEPS: f32 = 2047.0;
 
+/// Currents of the large and of the small amplifier at the ends of the DAC.
+pub const FULL_SCALES: [Amps; 2] = [Amps::new(6.0), Amps::new(1.5)];
+
 /// A 12-bit DAC code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DacCode(u16);
@@ -33,6 +36,7 @@ impl DacCode {
 /// // The zero of this channel is 12.3 codes lower, and a code changes the current by 2 % more.
 /// let scale = scale.calibrated(2035.7, 1.02).unwrap();
 /// assert_eq!(scale.code(Amps::ZERO).get(), 2036);
+/// assert_eq!(scale.exact_code(Amps::ZERO), 2035.7);
 /// assert_eq!(scale.code(Amps::new(1.0)).get(), 2370);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,17 +71,21 @@ impl DacScale {
         Some(Self { zero, per_amp })
     }
 
+    /// The code of a current before it is rounded.
+    #[must_use]
+    pub const fn exact_code(&self, current: Amps) -> f32 {
+        self.zero + current.get() * self.per_amp
+    }
+
     /// The code of a current.
     #[must_use]
     pub const fn code(&self, current: Amps) -> DacCode {
         // A cast truncates towards zero, and saturates.
-        DacCode(
-            match (self.zero + current.get() * self.per_amp + 0.5) as i32 {
-                ..1 => 1,
-                4096.. => 4095,
-                code => code as u16,
-            },
-        )
+        DacCode(match (self.exact_code(current) + 0.5) as i32 {
+            ..1 => 1,
+            4096.. => 4095,
+            code => code as u16,
+        })
     }
 }
 

@@ -13,11 +13,11 @@ const LEARNED: &str = ",learned_damping,learned_friction,learned_torque_constant
 /// A run as CSV with one row per frame. `t` starts at the first frame and follows from ticks and
 /// control rate.
 ///
-/// The fields of a frame that every frame has are columns. `edge_tick` and `edge_bound` are present
-/// if the firmware stamps edges, and empty for a frame without a stamp. `current_measured` and
+/// The fields of a frame that every frame has are columns. `edge_tick` and `edge_bound` are present if
+/// the firmware stamps edges, and empty for a frame without a stamp. `current_measured` and
 /// `current_small_measured` are present if the firmware measures currents, and empty for a frame without
-/// the line, as the first one may be. The three `learned_*` columns are present if any frame has them, and empty in the other rows. `true_omega` is the last column,
-/// if every frame has one.
+/// the line, as the first one may be. The three `learned_*` columns are present if any frame has them,
+/// and empty in the other rows. `true_omega` is the last column, if every frame has one.
 #[must_use]
 pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) -> String {
     let truth: Option<Vec<f64>> = run.frames.iter().map(|(_, f)| true_omega(f)).collect();

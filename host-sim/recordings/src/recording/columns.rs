@@ -137,9 +137,9 @@ impl<'a> Columns<'a> {
         }))
     }
 
-    /// Takes rows until `rows` are there, and returns them, with measured currents all but the last one: its
-    /// current comes with the next row. `step` is called at each row that is taken but the first of the log,
-    /// with its time, the step to it, and its line.
+    /// Takes rows until `rows` are there, and returns them, with measured currents all but the last one:
+    /// its current comes with the next row. `step` is called at each row that is taken but the first of
+    /// the log, with its time, the step to it, and its line.
     pub(super) fn read(
         &mut self,
         records: &mut Records,

@@ -17,8 +17,8 @@ pub(super) struct Current {
 }
 
 impl Current {
-    /// Adds a row. Its `measured` current is the mean since the row before, so it is that row's current. A row
-    /// keeps the `command` if the next row has no measured current, or if there is no next row.
+    /// Adds a row. Its `measured` current is the mean since the row before, so it is that row's current.
+    /// A row keeps the `command` if the next row has no measured current, or if there is no next row.
     pub(super) fn take(
         &mut self,
         row: &Row,
@@ -52,7 +52,7 @@ pub(super) fn measured_note(column: Column, lack: usize) -> String {
     let (measured, command) = (column.name(), column.command().map_or("", Column::name));
     let lack = match lack {
         0 => String::new(),
-        lack => format!("; {lack} rows have none, and {command} stands in"),
+        lack => format!("; {command} where the next row has none (rows: {lack})"),
     };
     format!("the current of each row is {measured} of the next row, not {command}{lack}")
 }
@@ -82,8 +82,8 @@ mod tests {
         assert_eq!(recording.trace.current, Some(vec![1.5, 2.0, 3.5, 4.0]));
         assert_eq!(recording.current_small, Some(vec![15.0, 25.0, 35.0, 40.0]));
         let notes = [
-            "the current of each row is current_measured of the next row, not current; 1 rows have none, and \
-             current stands in",
+            "the current of each row is current_measured of the next row, not current; current where the next \
+             row has none (rows: 1)",
             "the current of each row is current_small_measured of the next row, not current_small",
         ];
         assert_eq!(recording.notes, notes);
