@@ -2,24 +2,24 @@
 
 use std::f64::consts::TAU;
 
-use drivers::link::{Frame, Message};
+use drivers::link::Frame;
 use drivers::{Command, Setting};
-use haptic_control::SceneKind;
 use terminal::failure::Failure;
-use terminal::output::{note, print_bytes};
+use terminal::output::note;
 use tuned::{DEVICE, DEVICE_FINGERPRINT, PRESETS_FINGERPRINT};
 
 use crate::board::{Answer, Board};
+use crate::channels::are_measured;
+use crate::check::{Line, failed, show};
+use crate::currents;
 use crate::response::{Motion, Response};
-use crate::session::{self, Plan};
+use crate::session::Plan;
 use crate::settings;
+use crate::strokes::{Seen, announce, observe, plan, strokes};
 use crate::watch::cause;
 
 /// Length of the observation of a device that should be at rest, s.
 const REST_S: f64 = 1.0;
-/// Length of the strokes with which the scene `excite` begins, in which a free handle stays near its start,
-/// s.
-const STROKES_S: f64 = 3.8;
 /// Counts by which an encoder at rest may change: it stands on a boundary, or its disc vibrates.
 const NOISE: u32 = 2;
 /// Bounds of a measured constant over that of the device file: outside of them a sign or a wire is wrong.
@@ -30,11 +30,8 @@ const DIFFERS: [f64; 2] = [0.7, 1.4];
 /// Least part of the acceleration's variance that a motor's response explains.
 const EXPLAINED: f64 = 0.5;
 
-/// The lines of a step, from its frames.
-type Check = fn(&'static str, &[Frame]) -> Vec<Line>;
-
-/// A line of the report: what was checked, and what was found.
-type Line = (&'static str, Result<String, String>);
+/// The lines of a step, from what the board sent.
+type Check = fn(&'static str, &Seen) -> Vec<Line>;
 
 /// Checks a board step by step, prints a line for each, and notes in the settings whether the signs are
 /// verified.
@@ -45,48 +42,38 @@ pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
     let answer = board.compatible()?;
     let mut lines = vec![identity(&answer)];
     show(&lines[0])?;
-    note(format_args!(
-        "leave the handle free and do not touch it: the motors move it for {STROKES_S} s, by 2 rad at most"
-    ));
-    let mut failed = lines[0].1.is_err();
+    announce();
+    let moved: Check = match are_measured(&answer.hello) {
+        true => |name, seen| [currents::lines(seen), motors(name, seen)].concat(),
+        false => motors,
+    };
     let steps: [(&'static str, Plan, Check); 3] = [
         ("at rest", plan(None, false, REST_S), at_rest),
         ("armed, no scene", plan(None, true, REST_S), at_rest),
-        (
-            "strokes",
-            plan(Some(SceneKind::Excite), true, STROKES_S),
-            motors,
-        ),
+        ("strokes", strokes(), moved),
     ];
     for (name, plan, check) in steps {
-        if failed {
+        if failed(&lines) > 0 {
             break;
         }
-        let mut frames = Vec::new();
-        let observed = session::observed(board, &answer, plan, &mut |message| {
-            if let Message::Frame(frame) = message {
-                frames.push(frame);
-            }
-        });
-        let found = match observed {
-            Ok(()) => check(name, &frames),
+        let found = match observe(board, &answer, plan) {
+            Ok(seen) => check(name, &seen),
             Err(Failure::Check(stopped)) => vec![(name, Err(stopped))],
             Err(failure) => return Err(failure),
         };
         for line in found {
             show(&line)?;
-            failed |= line.1.is_err();
             lines.push(line);
         }
     }
+    let wrong = failed(&lines);
     let verified = Setting::SignsVerified;
     let command = Command::Set {
         setting: verified.number(),
-        value: if failed { 0.0 } else { 1.0 },
+        value: if wrong > 0 { 0.0 } else { 1.0 },
     };
     board.change(command, verified.facts().name)?;
-    if failed {
-        let wrong = lines.iter().filter(|(_, result)| result.is_err()).count();
+    if wrong > 0 {
         return Err(Failure::Check(format!(
             "bring-up: {wrong} of {} checks failed; scenes in closed loop are refused",
             lines.len()
@@ -97,25 +84,6 @@ pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
     }
     note("signs verified until the next reset; cargo drive settings --store keeps it");
     Ok(())
-}
-
-fn plan(scene: Option<SceneKind>, keeps_alive: bool, seconds: f64) -> Plan {
-    Plan {
-        scene,
-        changes: Vec::new(),
-        seconds: Some(seconds),
-        every: None,
-        recorder: None,
-        keeps_alive,
-    }
-}
-
-fn show((name, result): &Line) -> Result<(), Failure> {
-    let (word, text) = match result {
-        Ok(text) => ("pass", text),
-        Err(text) => ("FAIL", text),
-    };
-    print_bytes(format!("{word}  {name:<16}{text}\n").as_bytes())
 }
 
 /// Whether the image is built for the device of this tool, and the board has no cause of a stop.
@@ -153,7 +121,7 @@ fn range(frames: &[Frame], count: impl Fn(&Frame) -> u32) -> u32 {
 }
 
 /// Whether both encoders rest.
-fn at_rest(name: &'static str, frames: &[Frame]) -> Vec<Line> {
+fn at_rest(name: &'static str, Seen { frames, .. }: &Seen) -> Vec<Line> {
     let large = range(frames, |frame| frame.counts_large);
     let handle = range(frames, |frame| frame.counts_small);
     let found = format!(
@@ -177,9 +145,9 @@ fn at_rest(name: &'static str, frames: &[Frame]) -> Vec<Line> {
 }
 
 /// The responses of both motors to the strokes.
-fn motors(_: &'static str, frames: &[Frame]) -> Vec<Line> {
+fn motors(_: &'static str, seen: &Seen) -> Vec<Line> {
     // Frames that were lost would be steps of the angle: the longest run without a gap counts.
-    let run = longest_run(frames);
+    let run = seen.longest_run();
     let angles = |count: fn(&Frame) -> u32, per_turn: u32| -> Vec<f64> {
         let first = run.first().map_or(0, count);
         let rad = |frame| f64::from(count(frame).wrapping_sub(first).cast_signed()) * TAU;
@@ -217,12 +185,6 @@ fn motors(_: &'static str, frames: &[Frame]) -> Vec<Line> {
         lines.push(("coupler", coupled(response, pull)));
     }
     lines
-}
-
-/// The longest run of frames without a lost one.
-fn longest_run(frames: &[Frame]) -> &[Frame] {
-    let runs = frames.chunk_by(|a, b| b.seq == a.seq.wrapping_add(1));
-    runs.max_by_key(|run| run.len()).unwrap_or_default()
 }
 
 const DIRECTION: &str = "a positive current has to turn its counts up";
@@ -281,35 +243,19 @@ fn judged(found: String, ratio: f64) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// A frame at rest, with this number and counts.
-    fn frame(seq: u32, large: i32, small: i32) -> Frame {
-        Frame {
-            seq,
-            tick: 10 * seq,
-            counts_large: large.cast_unsigned(),
-            counts_small: small.cast_unsigned(),
-            current: 0.0,
-            current_small: 0.0,
-            torque: 0.0,
-            velocity_large: 0.0,
-            velocity_small: 0.0,
-            state: 0,
-            cause: 0,
-            sigma_large: 0.0,
-            estimator: 255,
-            overruns: 0,
-            drops: 0,
-            rtt_drops: 0,
-            cycles: 0,
-        }
-    }
+    use crate::watch::tests::FRAME;
 
     fn is_at_rest(counts: impl Fn(u32) -> (i32, i32), frames: u32) -> bool {
-        let frames: Vec<_> = (0..frames)
-            .map(|seq| frame(seq, counts(seq).0, counts(seq).1))
-            .collect();
-        at_rest("", &frames)[0].1.is_ok()
+        let frames = (0..frames).map(|seq| Frame {
+            counts_large: counts(seq).0.cast_unsigned(),
+            counts_small: counts(seq).1.cast_unsigned(),
+            ..FRAME
+        });
+        let seen = Seen {
+            frames: frames.collect(),
+            ..Seen::default()
+        };
+        at_rest("", &seen)[0].1.is_ok()
     }
 
     #[test]
@@ -319,15 +265,6 @@ mod tests {
         assert!(!is_at_rest(|seq| (seq as i32 % 4 - 1, 0), 1000));
         assert!(!is_at_rest(|seq| (0, seq as i32 % 4 - 2), 1000));
         assert!(!is_at_rest(|_| (0, 0), 50));
-    }
-
-    #[test]
-    fn longest_run_without_a_lost_frame_is_used() {
-        let numbers = [5, 6, 9, 10, 11, u32::MAX, 0];
-        let frames: Vec<_> = numbers.map(|seq| frame(seq, 0, 0)).into();
-        let run: Vec<_> = longest_run(&frames).iter().map(|frame| frame.seq).collect();
-        assert_eq!(run, [9, 10, 11]);
-        assert!(longest_run(&[]).is_empty());
     }
 
     #[test]

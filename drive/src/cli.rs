@@ -13,6 +13,7 @@ use terminal::wording::WIDTH;
 
 use crate::board::{Answer, Board};
 use crate::bring_up;
+use crate::calibrate;
 use crate::identity;
 use crate::named::{self, Tuning};
 use crate::port::{Port, list};
@@ -132,6 +133,14 @@ enum Action {
     #[command(after_help = "Examples:\n  cargo drive bring-up\n  cargo drive bring-up --store")]
     BringUp {
         /// Store the settings in the board's flash if all checks pass
+        #[arg(long)]
+        store: bool,
+    },
+    /// Find zero and gain of both current outputs by measured currents, and set them; the image has the
+    /// feature current-monitor. Moves the motors, at most with 0.3 A and 0.15 A
+    #[command(after_help = "Examples:\n  cargo drive calibrate\n  cargo drive calibrate --store")]
+    Calibrate {
+        /// Store the settings in the board's flash if both motors pass
         #[arg(long)]
         store: bool,
     },
@@ -301,6 +310,7 @@ fn act(arguments: Arguments) -> Result<(), Failure> {
             Ok(())
         }
         Action::BringUp { store } => bring_up::run(&mut open()?, store),
+        Action::Calibrate { store } => calibrate::run(&mut open()?, store),
         Action::Record { out, seconds } => {
             let mut board = open()?;
             let answer = board.compatible()?;

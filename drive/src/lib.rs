@@ -5,8 +5,12 @@
 
 mod board;
 mod bring_up;
+mod calibrate;
+mod channels;
+mod check;
 pub mod cli;
 mod clock;
+mod currents;
 mod identity;
 mod interrupt;
 mod named;
@@ -16,5 +20,6 @@ mod record;
 mod response;
 mod session;
 mod settings;
+mod strokes;
 mod timed;
 mod watch;

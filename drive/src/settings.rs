@@ -1,7 +1,7 @@
 //! The settings of a board: shown, changed, stored.
 
 use drivers::link::Message;
-use drivers::{Command, Saved, Setting, SettingFacts};
+use drivers::{Command, Saved, Setting, SettingFacts, Settings};
 use terminal::failure::Failure;
 use terminal::output::note;
 use terminal::wording::unknown;
@@ -11,8 +11,8 @@ use crate::board::Board;
 /// A new value of a setting.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Assignment {
-    setting: Setting,
-    value: f32,
+    pub(crate) setting: Setting,
+    pub(crate) value: f32,
 }
 
 /// Parses `NAME=VALUE`.
@@ -74,27 +74,24 @@ pub(crate) fn change(board: &mut Board, assignments: &[Assignment]) -> Result<()
     Ok(())
 }
 
+/// The settings of the board.
+///
+/// # Errors
+/// [`Failure::Input`] if the board does not answer.
+pub(crate) fn present(board: &mut Board) -> Result<Settings, Failure> {
+    let mut settings = Settings::DEFAULT;
+    for (setting, value) in Setting::ALL.iter().zip(values(board)?) {
+        settings.set(*setting, value);
+    }
+    Ok(settings)
+}
+
 /// All settings of the board as a table.
 ///
 /// # Errors
 /// [`Failure::Input`] if the board does not answer.
 pub(crate) fn table(board: &mut Board) -> Result<String, Failure> {
-    let mut values = Vec::new();
-    let all = board.ask(Command::Settings, |message| {
-        let Message::Setting(setting) = message else {
-            return None;
-        };
-        if setting.number == 0 {
-            values.clear();
-        }
-        if usize::from(setting.number) == values.len() {
-            values.push(setting.value);
-        }
-        (values.len() == usize::from(setting.count)).then(|| values.clone())
-    })?;
-    let Some(values) = all else {
-        return Err(board.silent());
-    };
+    let values = values(board)?;
     let lines = Setting::ALL.iter().zip(values).map(|(setting, value)| {
         let SettingFacts {
             name,
@@ -108,6 +105,24 @@ pub(crate) fn table(board: &mut Board) -> Result<String, Failure> {
         format!("{name:<16}{value:<14}{least} to {most}: {meaning}\n")
     });
     Ok(lines.collect())
+}
+
+/// The values of the board's settings, each at its number.
+fn values(board: &mut Board) -> Result<Vec<f32>, Failure> {
+    let mut values = Vec::new();
+    let all = board.ask(Command::Settings, |message| {
+        let Message::Setting(setting) = message else {
+            return None;
+        };
+        if setting.number == 0 {
+            values.clear();
+        }
+        if usize::from(setting.number) == values.len() {
+            values.push(setting.value);
+        }
+        (values.len() == usize::from(setting.count)).then(|| values.clone())
+    })?;
+    all.ok_or_else(|| board.silent())
 }
 
 /// Stores the settings in the board's flash.

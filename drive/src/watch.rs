@@ -76,10 +76,10 @@ impl Every {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    const FRAME: Frame = Frame {
+    pub(crate) const FRAME: Frame = Frame {
         seq: 5,
         tick: 12_345,
         counts_large: u32::MAX,

@@ -1,5 +1,6 @@
 //! The tool's binary against a board that a script plays over TCP.
 
+mod calibrate;
 mod commands;
 mod ends;
 mod failures;

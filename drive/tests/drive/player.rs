@@ -6,8 +6,10 @@ use std::net::{Shutdown, TcpStream};
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
-use drivers::link::{Frame, LONGEST, Message, Rejected};
-use drivers::{Command, Parser};
+use drivers::link::{
+    FEATURES, Features, Frame, Hello, LONGEST, Measured, Message, Rejected, Stored,
+};
+use drivers::{Command, Parser, Saved, Setting, Settings};
 use haptic_control::{Mode, Request, Stop};
 
 use crate::scripted::Script;
@@ -38,12 +40,20 @@ pub(super) fn frame(seq: u32, state: Mode, cause: Stop) -> Frame {
     }
 }
 
+/// Commands to both motors from a frame on, A, in the scene of a board that measures currents: levels of
+/// both signs, 12 ms each.
+fn commands(seq: u32) -> [f32; 2] {
+    let level = [1.0, -1.0, 0.4, 0.0, -0.4, 0.7, -0.7][seq as usize / 12 % 7];
+    [0.3 * level, -0.15 * level]
+}
+
 /// The state of a board that plays a script.
 struct Player<'a> {
     script: &'a Script,
     state: Mode,
     cause: Stop,
     rejected: Rejected,
+    settings: Settings,
     /// Number of the next frame.
     seq: u32,
     /// Frame at which the first question came.
@@ -73,6 +83,7 @@ impl<'a> Player<'a> {
                 unknown: 1,
                 unverified: 0,
             },
+            settings: script.settings,
             // The board has run for some time.
             seq: 50,
             asked: None,
@@ -104,7 +115,7 @@ impl<'a> Player<'a> {
         match command {
             Command::Identify => {
                 self.asked.get_or_insert(self.seq);
-                let hello = self.message(self.script.hello.into());
+                let hello = self.message(self.hello().into());
                 let answer = [hello, self.message(self.rejected.into())].concat();
                 let now = match self.script.answers_late {
                     true => std::mem::replace(&mut self.late, answer),
@@ -118,8 +129,62 @@ impl<'a> Player<'a> {
             Command::Tune { .. } | Command::Torque(_) | Command::Estimator(_) => {
                 self.rejected.out_of_bounds += u32::from(self.script.refuses);
             }
-            Command::Request(_) | Command::Set { .. } | Command::Settings | Command::Store => {}
+            Command::Set { setting, value } => {
+                if let Some(setting) = Setting::from_number(setting) {
+                    self.settings.set(setting, value);
+                }
+            }
+            Command::Settings => {
+                for setting in Setting::ALL {
+                    let message = drivers::link::Setting {
+                        number: setting.number(),
+                        value: self.settings.get(*setting),
+                        count: Setting::ALL.len() as u8,
+                    };
+                    self.bytes.extend(self.message(message.into()));
+                }
+            }
+            Command::Store => {
+                let outcome = Saved::Stored as u8;
+                self.bytes.extend(self.message(Stored { outcome }.into()));
+            }
+            Command::Request(_) => {}
         }
+    }
+
+    /// The identity, with the features of the script.
+    fn hello(&self) -> Hello {
+        let monitors = FEATURES.iter().position(|name| *name == "current-monitor");
+        let bit = self.script.measures.and(monitors).map_or(0, |bit| 1 << bit);
+        let mut hello = self.script.hello;
+        hello.features = Features(hello.features.0 | bit);
+        hello
+    }
+
+    /// The frame of now, and the currents that are measured beside it.
+    fn frame(&self) -> (Frame, Option<Measured>) {
+        let frame = frame(self.seq, self.state, self.cause);
+        let Some(measures) = self.script.measures else {
+            return (frame, None);
+        };
+        // The mean over the millisecond before is that of the command before.
+        let commands = |seq| match self.state {
+            Mode::Running => commands(seq),
+            _ => [0.0; 2],
+        };
+        let flowing = commands(self.seq - 1);
+        let [large, small] =
+            [0, 1].map(|motor| measures[motor].0 + measures[motor].1 * flowing[motor]);
+        let [current, current_small] = commands(self.seq);
+        let frame = Frame {
+            counts_large: 0,
+            counts_small: 0,
+            current,
+            current_small,
+            ..frame
+        };
+        let seq = self.seq;
+        (frame, Some(Measured { seq, large, small }))
     }
 
     /// Makes a frame.
@@ -149,8 +214,11 @@ impl<'a> Player<'a> {
         let number = self.asked.map(|asked| self.seq - asked);
         let is_lost = |(first, last)| number.is_some_and(|it| (first..=last).contains(&it));
         if !self.script.lost.is_some_and(is_lost) {
-            let frame = frame(self.seq, self.state, self.cause);
+            let (frame, measured) = self.frame();
             self.bytes.extend(self.message(frame.into()));
+            if let Some(measured) = measured {
+                self.bytes.extend(self.message(measured.into()));
+            }
         }
         self.seq += 1;
     }

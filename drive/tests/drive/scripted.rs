@@ -6,8 +6,8 @@ use std::sync::mpsc::{self, Receiver};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use drivers::Command;
 use drivers::link::{Features, Hello, Label, PROTOCOL};
+use drivers::{Command, Settings};
 use haptic_control::{Mode, Stop};
 use tuned::{DEVICE_FINGERPRINT, PRESETS_FINGERPRINT};
 
@@ -42,6 +42,11 @@ pub(super) struct Script {
     pub(super) answers_late: bool,
     /// Whether the board refuses values as out of bounds.
     pub(super) refuses: bool,
+    /// Offset, A, and slope of the measured currents of both motors over their commands, by an image with
+    /// `current-monitor`, whose shafts rest; `None`: an image without.
+    pub(super) measures: Option<[(f32, f32); 2]>,
+    /// Settings at the begin.
+    pub(super) settings: Settings,
     /// Whether the board takes the command `disarm`.
     pub(super) disarms: bool,
 }
@@ -72,6 +77,8 @@ impl Default for Script {
             lost: None,
             answers_late: false,
             refuses: false,
+            measures: None,
+            settings: Settings::DEFAULT,
             disarms: true,
         }
     }

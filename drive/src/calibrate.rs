@@ -1,0 +1,202 @@
+//! Zero and gain of both current outputs, from measured currents.
+
+use drivers::{DacScale, Setting, Settings};
+use estimator_core::Amps;
+use terminal::failure::Failure;
+use terminal::output::note;
+
+use crate::board::Board;
+use crate::channels::{CHANNELS, Channel, FEATURE, are_measured};
+use crate::check::{Line, failed, show};
+use crate::currents::Fit;
+use crate::settings::{self, Assignment};
+use crate::strokes::{announce, observe, strokes};
+
+/// Steps to which a new setting is rounded: hundredths of a code, ten thousandths of a gain.
+const ZERO_STEPS: f64 = 100.0;
+const GAIN_STEPS: f64 = 10_000.0;
+
+/// Measures how both currents follow their commands, prints a line for each, and sets zero and gain on the
+/// board.
+///
+/// # Errors
+/// [`Failure::Check`] if the image measures no currents, or a current does not follow its command;
+/// otherwise those of the session and of [`settings::change`].
+pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
+    let answer = board.compatible()?;
+    if !are_measured(&answer.hello) {
+        return Err(Failure::Check(format!(
+            "calibrate: the image does not have the feature {FEATURE}; build it with this feature, or measure \
+             the currents and set zero and gain by hand: cargo drive settings zero-large=2051.5 gain-large=1.01"
+        )));
+    }
+    let present = settings::present(board)?;
+    announce();
+    let seen = observe(board, &answer, strokes())?;
+    let mut assignments = Vec::new();
+    let mut lines: Vec<Line> = Vec::new();
+    for channel in &CHANNELS {
+        let found = Fit::of(&seen, channel).and_then(|fit| calibrated(fit, channel, &present));
+        let result = found.map(|(text, new)| {
+            assignments.extend(new);
+            text
+        });
+        let line = (channel.motor, result);
+        show(&line)?;
+        lines.push(line);
+    }
+    let wrong = failed(&lines);
+    if wrong > 0 {
+        return Err(Failure::Check(format!(
+            "calibrate: {wrong} of {} motors failed; no setting was changed",
+            lines.len()
+        )));
+    }
+    settings::change(board, &assignments)?;
+    if store {
+        return settings::store(board);
+    }
+    note("until the next reset; cargo drive settings --store keeps them");
+    Ok(())
+}
+
+/// New zero and gain of a channel with these `present` settings, and a text on them.
+///
+/// # Errors
+/// What was found and what to do, if a new value is out of the bounds of its setting.
+fn calibrated(
+    fit: Fit,
+    channel: &Channel,
+    present: &Settings,
+) -> Result<(String, [Assignment; 2]), String> {
+    let [zero, gain] = [channel.zero, channel.gain].map(|setting| present.get(setting));
+    let scale = DacScale::new(channel.full_scale).and_then(|it| it.calibrated(zero, gain));
+    let Some(scale) = scale else {
+        return Err(format!(
+            "zero {zero} and gain {gain} of the board are no calibration"
+        ));
+    };
+    // The command whose current is zero.
+    let command = Amps::new((-fit.offset / fit.slope) as f32);
+    let rounded = |value: f64, steps: f64| ((value * steps).round() / steps) as f32;
+    let new = [
+        (
+            channel.zero,
+            zero,
+            rounded(f64::from(scale.exact_code(command)), ZERO_STEPS),
+        ),
+        (
+            channel.gain,
+            gain,
+            rounded(f64::from(gain) * fit.slope, GAIN_STEPS),
+        ),
+    ];
+    let change = |(setting, before, after): (Setting, f32, f32)| {
+        format!("{} {before} to {after}", setting.facts().name)
+    };
+    let text = format!("{}; {}", fit.text(), new.map(change).join(", "));
+    let refused = new
+        .iter()
+        .find(|(setting, _, after)| !setting.admits(*after));
+    if let Some((setting, ..)) = refused {
+        let facts = setting.facts();
+        return Err(format!(
+            "{text}: {} is at least {} and at most {}; adjust zero and scale of the amplifier",
+            facts.name, facts.least, facts.most
+        ));
+    }
+    Ok((
+        text,
+        new.map(|(setting, _, value)| Assignment { setting, value }),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use drivers::AdcScale;
+
+    use super::*;
+    use crate::channels::tests::seen;
+
+    const FULL_SCALES: [f32; 2] = [6.0, 1.5];
+
+    /// New settings of both motors, whose DACs really have this zero and gain, of a board with the
+    /// `present` settings. The currents are those of whole DAC codes, read as whole codes of an ADC.
+    fn found(
+        real: [(f32, f32); 2],
+        present: &Settings,
+    ) -> [Result<Vec<(Setting, f32)>, String>; 2] {
+        let flows = |motor: usize, command: f32| {
+            let (zero, gain) = real[motor];
+            let channel = &CHANNELS[motor];
+            let full_scale = FULL_SCALES[motor];
+            let scale = DacScale::new(Amps::new(full_scale)).unwrap();
+            let [z, g] = [channel.zero, channel.gain].map(|setting| present.get(setting));
+            let code = scale
+                .calibrated(z, g)
+                .unwrap()
+                .code(Amps::new(command))
+                .get();
+            let flows = (f32::from(code) - zero) * full_scale / 2047.0 * gain;
+            let range = 4.0 / 3.0 * full_scale;
+            let read = AdcScale::new(Amps::new(range)).unwrap();
+            let code = (flows / range * 2048.0).round() + 2048.0;
+            read.current(code as u16).get()
+        };
+        let seen = seen(flows);
+        [0, 1].map(|motor| {
+            let channel = &CHANNELS[motor];
+            let fit = Fit::of(&seen, channel)?;
+            let (_, new) = calibrated(fit, channel, present)?;
+            Ok(new.map(|it| (it.setting, it.value)).into())
+        })
+    }
+
+    #[test]
+    fn real_zero_and_gain_are_found_from_any_present_ones() {
+        let real = [(2051.5, 0.96), (2035.25, 1.04)];
+        let mut calibrated = Settings::DEFAULT;
+        calibrated.set(Setting::ZeroLarge, 2060.0);
+        calibrated.set(Setting::GainLarge, 1.1);
+        calibrated.set(Setting::ZeroSmall, 2020.0);
+        calibrated.set(Setting::GainSmall, 0.9);
+        for present in [Settings::DEFAULT, calibrated] {
+            let found = found(real, &present).map(Result::unwrap);
+            for (motor, new) in found.into_iter().enumerate() {
+                let channel = &CHANNELS[motor];
+                let [(first, zero), (second, gain)] = new[..] else {
+                    panic!("two settings: {new:?}");
+                };
+                assert_eq!([first, second], [channel.zero, channel.gain]);
+                // The DAC rounds by half a code, the ADC by two thirds of one. The mean square of the
+                // commands is 80 and 160 codes times their mean magnitude.
+                let most = 0.5 + 2.0 / 3.0;
+                assert!((zero - real[motor].0).abs() < most, "{new:?}");
+                let most = most / [80.0, 160.0][motor];
+                assert!((gain - real[motor].1).abs() < most, "{new:?}");
+                // Hundredths of a code.
+                assert!(
+                    (zero * 100.0 - (zero * 100.0).round()).abs() < 0.05,
+                    "{new:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn settings_out_of_bounds_are_refused() {
+        let [large, small] = found([(1840.0, 1.0), (2048.0, 1.3)], &Settings::DEFAULT);
+        let large = large.unwrap_err();
+        assert!(
+            large.contains("zero-large is at least 1848 and at most 2248"),
+            "{large}"
+        );
+        let small = small.unwrap_err();
+        assert!(
+            small.contains("gain-small is at least 0.8 and at most 1.25"),
+            "{small}"
+        );
+        let [large, small] = found([(1850.0, 1.22), (2246.0, 0.83)], &Settings::DEFAULT);
+        assert!(large.is_ok() && small.is_ok(), "{large:?} {small:?}");
+    }
+}

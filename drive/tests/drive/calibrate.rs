@@ -1,0 +1,155 @@
+//! Measured currents of a board: calibration of its DACs, and their check in the bring-up.
+
+use std::process::Output;
+
+use drivers::{Command, Setting, Settings};
+use haptic_control::{Request, SceneKind};
+
+use crate::commands::{ARM, DISARM, deduplicated, sorted};
+use crate::scripted::{Board, Script};
+
+/// Offset and slope of both motors.
+const MEASURES: [(f32, f32); 2] = [(0.012, 0.96), (-0.006, 1.05)];
+
+/// A board with these measured currents, whose settings are not the default ones.
+fn board(measures: [(f32, f32); 2]) -> Board {
+    let mut settings = Settings::DEFAULT;
+    assert!(settings.set(Setting::ZeroLarge, 2040.0) && settings.set(Setting::GainLarge, 1.1));
+    Board::new(Script {
+        measures: Some(measures),
+        settings,
+        ..Script::default()
+    })
+}
+
+/// The commands without those that measure, and with each repetition left out.
+fn afterwards(commands: &[Command]) -> Vec<Command> {
+    let commands = deduplicated(sorted(commands).0);
+    let excite = Command::Request(Request::Select(SceneKind::Excite.number()));
+    let [Command::Settings, ARM, select, DISARM, rest @ ..] = &commands[..] else {
+        panic!("{commands:?}");
+    };
+    assert_eq!(*select, excite);
+    rest.to_vec()
+}
+
+fn text(output: &Output) -> [String; 2] {
+    [&output.stdout, &output.stderr].map(|bytes| String::from_utf8(bytes.clone()).unwrap())
+}
+
+#[test]
+fn calibrate_sets_zero_and_gain_of_both_motors() {
+    let (output, commands) = board(MEASURES).run(&["calibrate"]);
+    let [shown, said] = text(&output);
+    assert_eq!(output.status.code(), Some(0), "{shown}{said}");
+    let lines: Vec<_> = shown.lines().collect();
+    let begins = [
+        "pass  large motor           offset 12.0 mA, slope 0.960, residual 0.0 mA of ",
+        "pass  small motor           offset -6.0 mA, slope 1.050, residual 0.0 mA of ",
+    ];
+    assert_eq!(lines.len(), 2, "{shown}");
+    for (line, begin) in lines.iter().zip(begins) {
+        assert!(line.starts_with(begin), "{shown}");
+    }
+    // code = zero + current / full scale / gain 2047, and the current is zero at the command
+    // -offset / slope.
+    let zero_large = 2040.0 - 0.012 / 0.96 / 6.0 / 1.1 * 2047.0;
+    let zero_small = 2048.0 + 0.006 / 1.05 / 1.5 * 2047.0;
+    let expected = [
+        (Setting::ZeroLarge, zero_large, 0.01),
+        (Setting::GainLarge, 1.1 * 0.96, 1e-4),
+        (Setting::ZeroSmall, zero_small, 0.01),
+        (Setting::GainSmall, 1.05, 1e-4),
+    ];
+    let set = afterwards(&commands);
+    assert_eq!(set.len(), 4, "{set:?}");
+    // A step of the rounded value.
+    for (command, (setting, value, step)) in set.iter().zip(expected) {
+        let Command::Set {
+            setting: number,
+            value: new,
+        } = command
+        else {
+            panic!("{set:?}");
+        };
+        assert_eq!(*number, setting.number());
+        assert!(
+            (f64::from(*new) - value).abs() <= step,
+            "{setting:?} {new} {value}"
+        );
+        assert!(
+            shown.contains(&format!("{} ", setting.facts().name)),
+            "{shown}"
+        );
+        assert!(shown.contains(&format!(" to {new}")), "{shown}");
+    }
+    assert!(said.contains("settings --store keeps them"), "{said}");
+}
+
+#[test]
+fn calibrate_stores_after_it_has_set() {
+    let (output, commands) = board(MEASURES).run(&["calibrate", "--store"]);
+    let [_, said] = text(&output);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let after = afterwards(&commands);
+    let [set @ .., Command::Store] = &after[..] else {
+        panic!("{after:?}");
+    };
+    assert_eq!(set.len(), 4, "{after:?}");
+    assert!(said.contains("settings stored"), "{said}");
+}
+
+#[test]
+fn nothing_is_set_if_one_motor_fails() {
+    for (small, told) in [
+        ((0.0, 0.1), "check the motor's leads"),
+        ((0.0, -1.0), "exchange"),
+        ((0.0, 1.3), "gain-small is at least 0.8 and at most 1.25"),
+    ] {
+        let (output, commands) = board([MEASURES[0], small]).run(&["calibrate", "--store"]);
+        let [shown, said] = text(&output);
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        let lines: Vec<_> = shown.lines().collect();
+        assert!(lines[0].starts_with("pass  large motor "), "{shown}");
+        assert!(lines[1].starts_with("FAIL  small motor "), "{shown}");
+        assert!(lines[1].contains(told), "{shown}");
+        assert!(
+            said.contains("1 of 2 motors failed; no setting was changed"),
+            "{said}"
+        );
+        assert_eq!(afterwards(&commands), []);
+    }
+}
+
+#[test]
+fn image_without_monitors_is_left_alone() {
+    let (output, commands) = Board::new(Script::default()).run(&["calibrate"]);
+    assert_eq!(output.status.code(), Some(1));
+    let error = crate::scripted::error(&output);
+    assert!(error.contains("current-monitor"), "{error}");
+    assert!(
+        error.contains("cargo drive settings zero-large="),
+        "{error}"
+    );
+    assert_eq!(sorted(&commands), (Vec::new(), 0));
+}
+
+#[test]
+fn bring_up_has_a_line_for_each_measured_current() {
+    for (measures, begins) in [
+        (MEASURES, ["pass", "pass"]),
+        ([(0.0, 0.5), (0.0, 1.0)], ["FAIL", "pass"]),
+        ([(0.0, 1.0), (0.1, 1.0)], ["pass", "FAIL"]),
+    ] {
+        let (output, _) = board(measures).run(&["bring-up"]);
+        let [shown, _] = text(&output);
+        let lines: Vec<_> = shown.lines().collect();
+        let names = ["current, large motor", "current, small motor"];
+        for ((line, begin), name) in lines[3..].iter().zip(begins).zip(names) {
+            assert!(line.starts_with(&format!("{begin}  {name} ")), "{shown}");
+        }
+        // The shafts do not turn.
+        assert!(lines[5].starts_with("FAIL  large motor "), "{shown}");
+        assert_eq!(output.status.code(), Some(1));
+    }
+}
