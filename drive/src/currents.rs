@@ -179,7 +179,7 @@ mod tests {
 
     #[test]
     fn residual_is_the_rms_distance_from_the_line() {
-        let fit = Fit::through(&[[-1.0, -2.0], [-1.0, -1.0], [1.0, 2.0], [1.0, 3.0]]);
+        let fit = Fit::through(&[[1.0, 2.0], [1.0, 3.0], [3.0, 6.0], [3.0, 7.0]]);
         let expected = Fit {
             offset: 0.5,
             slope: 2.0,
