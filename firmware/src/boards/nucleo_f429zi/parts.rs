@@ -1,6 +1,8 @@
 //! Pins, peripherals and clocks, and how they start.
 
-use drivers::{Amplifier, Amplifiers, CurrentOutput, DacCode, DacScale, Setting, Settings};
+use drivers::{
+    Amplifier, Amplifiers, CurrentOutput, DacCode, DacScale, FULL_SCALES, Setting, Settings,
+};
 use estimator_core::{Amps, Count, Sample};
 use firmware_app::ammeter::Measured;
 use firmware_app::config::{DEVICE, REFERENCE, TIMER_HZ};
@@ -27,13 +29,9 @@ use crate::boards::{Board, Start, Watchdog};
 pub(crate) const CORE_HZ: u32 = 168_000_000;
 const _: () = assert!(CORE_HZ.is_multiple_of(TIMER_HZ));
 
-/// Current of the large amplifier at the DAC's ends.
-const LARGE_FULL_SCALE: Amps = Amps::new(6.0);
-/// Current of the small amplifier at the DAC's ends.
-const SMALL_FULL_SCALE: Amps = Amps::new(1.5);
 const _: () = assert!(
-    DEVICE.large.current_limit <= LARGE_FULL_SCALE.get() as f64
-        && DEVICE.small.current_limit <= SMALL_FULL_SCALE.get() as f64,
+    DEVICE.large.current_limit <= FULL_SCALES[0].get() as f64
+        && DEVICE.small.current_limit <= FULL_SCALES[1].get() as f64,
     "large.current_limit_a or small.current_limit_a of the device file is above what the board's \
      amplifiers give at full scale, 6 A and 1.5 A"
 );
@@ -254,8 +252,9 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart, Flash
     small_dac.set_value(DacCode::MIDDLE.get());
     large_dac.enable();
     small_dac.enable();
-    let large = DacCurrent::new(large_dac, LARGE_FULL_SCALE);
-    let small = DacCurrent::new(small_dac, SMALL_FULL_SCALE);
+    let [large_scale, small_scale] = FULL_SCALES;
+    let large = DacCurrent::new(large_dac, large_scale);
+    let small = DacCurrent::new(small_dac, small_scale);
 
     let reference =
         REFERENCE.then(|| Encoder::new(Qei::new(chip.TIM1, (e.pe9, e.pe11), &mut rcc).release().0));
