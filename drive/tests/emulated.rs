@@ -18,7 +18,7 @@ use tuned::DEVICE_FINGERPRINT;
 use virtual_board::bridge::Bridge;
 use virtual_board::fault::Fault;
 use virtual_board::image::Image;
-use virtual_board::run::{RATE_HZ, Setup};
+use virtual_board::run::{DacError, RATE_HZ, Setup};
 
 /// Runs the tool. The computer may be busy, and the board slow.
 fn tool(address: SocketAddr, arguments: &[&str]) -> Output {
@@ -43,8 +43,13 @@ struct EmulatedBoard {
 impl EmulatedBoard {
     /// Starts a board that is commanded over the port whose address is returned.
     fn start(setup: Setup) -> (SocketAddr, Self) {
+        Self::with("", setup)
+    }
+
+    /// Starts a board whose image has these features.
+    fn with(features: &str, setup: Setup) -> (SocketAddr, Self) {
         let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-        let image = Image::build("").unwrap();
+        let image = Image::build(features).unwrap();
         let bridge = Bridge::bind(0).unwrap();
         let address = bridge.address();
         let setup = Setup {
@@ -213,4 +218,62 @@ fn bring_up_fails_with_an_encoder_whose_lines_are_exchanged_or_stuck() {
         );
         board.end();
     }
+}
+
+/// The value of a setting in the table of the tool.
+fn setting(address: SocketAddr, name: &str) -> f64 {
+    let (text, _) = said(address, &["settings"]);
+    let line = text.lines().find(|line| line.starts_with(name));
+    let value = line.and_then(|line| line.split_whitespace().nth(1));
+    value.expect("the setting").parse().unwrap()
+}
+
+/// The zeros of the monitors are 11 and -7 codes off, and their noise is 2 codes.
+#[test]
+fn calibrate_finds_zero_and_gain_of_both_outputs() {
+    let errors = [(15.0, 0.96), (-15.0, 1.04)];
+    let (address, board) = EmulatedBoard::with(
+        "current-monitor",
+        Setup {
+            dac_errors: errors.map(|(offset, gain)| DacError { offset, gain }),
+            ..blank(None)
+        },
+    );
+    let (text, status) = said(address, &["calibrate"]);
+    assert_eq!(status, Some(0), "{text}");
+    for ((offset, gain), motor) in errors.into_iter().zip(["large", "small"]) {
+        let off = setting(address, &format!("zero-{motor}")) - (2048.0 - offset);
+        assert!(off.abs() < 0.3, "{motor}: {off} codes, {text}");
+        let ratio = setting(address, &format!("gain-{motor}")) / gain;
+        assert!((ratio - 1.0).abs() < 5e-3, "{motor}: {ratio}, {text}");
+    }
+    // Calibrated once more, nothing is left to correct.
+    let (text, status) = said(address, &["calibrate"]);
+    assert_eq!(status, Some(0), "{text}");
+    assert_eq!(
+        text.matches("slope 1.00").count() + text.matches("slope 0.99").count(),
+        2,
+        "{text}"
+    );
+    board.end();
+}
+
+#[test]
+fn calibrate_changes_nothing_with_an_open_lead_or_without_monitors() {
+    let (address, board) = EmulatedBoard::with("current-monitor", blank(Some(Fault::OpenLead)));
+    let (text, status) = said(address, &["calibrate"]);
+    assert_eq!(status, Some(1), "{text}");
+    assert!(
+        text.contains("FAIL  large motor") && text.contains("leads"),
+        "{text}"
+    );
+    assert_eq!(setting(address, "zero-large"), 2048.0);
+    assert_eq!(state_now(address), Some(Mode::Boot));
+    board.end();
+    let (address, board) = EmulatedBoard::start(blank(None));
+    let output = tool(address, &["calibrate"]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(text.contains("current-monitor"), "{text}");
+    board.end();
 }

@@ -17,6 +17,7 @@ mod own_device;
 mod record;
 mod recording;
 mod reference;
+mod registers;
 mod scores;
 mod settings;
 mod size;
