@@ -10,8 +10,10 @@ use crate::channels::{CHANNELS, Channel, FEATURE, are_measured};
 use crate::check::{Line, failed, show};
 use crate::currents::Fit;
 use crate::settings::{self, Assignment};
-use crate::strokes::{announce, observe, strokes};
+use crate::strokes::{announce, observe, plan, strokes};
 
+/// A board learns the zeros of its monitors in less, while its amplifiers are disabled, s.
+const ZEROS_S: f64 = 0.1;
 /// Steps to which a new setting is rounded: hundredths of a code, ten thousandths of a gain.
 const ZERO_STEPS: f64 = 100.0;
 const GAIN_STEPS: f64 = 10_000.0;
@@ -32,6 +34,7 @@ pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
     }
     let present = settings::present(board)?;
     announce();
+    observe(board, &answer, plan(None, false, ZEROS_S))?;
     let seen = observe(board, &answer, strokes())?;
     let mut assignments = Vec::new();
     let mut lines: Vec<Line> = Vec::new();

@@ -16,7 +16,7 @@ use crate::stop::Stop;
 /// ```
 ///
 /// A tick disagrees if a current differs from the command by more than 8 % of the motor's current
-/// limit, or if a zero is more than 8 % of the limit away from 0. The ticks that disagree, less the
+/// limit, if a zero is more than 8 % of the limit away from 0, or if the zeros are not known yet. The ticks that disagree, less the
 /// ticks that agree, are counted from 0 on. A count of 50 ms is a [`Stop::CurrentMismatch`]: a lead
 /// is open, an amplifier limits its current or has another scale, or a monitor is not connected.
 /// With an open lead the command swings through zero and agrees there, which a run of consecutive
@@ -34,6 +34,10 @@ use crate::stop::Stop;
 /// const AMMETERS: Ammeters = Ammeters::new(&DualStage::DEFAULT, Hertz(10e3));
 /// let command = Currents { large: Amps::new(1.0), small: Amps::ZERO };
 /// let mut state = AmmetersState::START;
+/// for _ in 0..200 {
+///     AMMETERS.update(&mut state, &Currents::default(), None);
+/// }
+/// state.restart();
 /// // The large motor's lead is open.
 /// for _ in 0..500 {
 ///     assert_eq!(AMMETERS.update(&mut state, &Currents::default(), Some(&command)).mismatch, None);
@@ -58,16 +62,17 @@ pub struct Ammeters {
 pub struct AmmetersState {
     /// Readings without current, large and small motor, A.
     zeros: [f32; 2],
-    /// Whether a zero is too far away from 0.
-    far: bool,
+    /// Largest differences that agree, A: none before the zeros are known, and while one is not near 0.
+    tolerances: [f32; 2],
     /// Ticks since the amplifiers were disabled.
     disabled: u32,
     /// Ticks that disagree, less those that agree.
     disagreeing: u32,
-    /// Measured currents at the latest tick, A.
-    measured: [f32; 2],
-    /// The same, or the commands where they disagree.
+    /// Measured currents at the latest tick, or the commands where they disagree, A.
     last: [f32; 2],
+    /// Sums of the measured currents over `ticks`, A.
+    sums: [f32; 2],
+    ticks: u32,
 }
 
 /// Currents over the period before a tick.
@@ -81,34 +86,35 @@ pub struct Flow {
 
 /// Largest difference of a current from its command, as a part of the current limit.
 const TOLERANCE: f64 = 0.08;
+/// Tolerances with which nothing agrees.
+const NOTHING: [f32; 2] = [-1.0; 2];
 const PATIENCE_S: f64 = 0.05;
 const WAIT_S: f64 = 0.01;
 const SPAN_S: f64 = 0.05;
 
 impl AmmetersState {
-    /// No current, zeros at 0.
+    /// No current, zeros unknown.
     pub const START: Self = Self {
         zeros: [0.0; 2],
-        far: false,
+        tolerances: NOTHING,
         disabled: 0,
         disagreeing: 0,
-        measured: [0.0; 2],
         last: [0.0; 2],
+        sums: [0.0; 2],
+        ticks: 0,
     };
 
-    /// The measured currents at the latest tick.
-    #[must_use]
-    pub const fn currents(&self) -> Currents {
-        let [large, small] = self.measured;
-        Currents {
-            large: Amps::new(large),
-            small: Amps::new(small),
-        }
+    /// Means of the measured currents since the last call, or since the start.
+    pub fn take_means(&mut self) -> Currents {
+        let per_tick = 1.0 / self.ticks.max(1) as f32;
+        let [large, small] = self.sums.map(|sum| Amps::new(sum * per_tick));
+        (self.sums, self.ticks) = ([0.0; 2], 0);
+        Currents { large, small }
     }
 
-    /// Forgets the disagreement of currents. Zeros stay, and the disagreement of a zero.
+    /// Forgets the disagreement of currents, when the device is armed. Zeros stay, and their disagreement.
     pub fn restart(&mut self) {
-        if !self.far {
+        if self.tolerances != NOTHING {
             self.disagreeing = 0;
         }
     }
@@ -152,20 +158,23 @@ impl Ammeters {
                 [0.0; 2]
             }
         };
-        let currents = [0, 1].map(|i| readings[i] - state.zeros[i]);
-        let agrees = [0, 1].map(|i| (currents[i] - commands[i]).abs() <= self.tolerances[i]);
-        let mut means = [0.0; 2];
+        let (mut means, mut agrees) = ([0.0; 2], true);
         for i in 0..2 {
-            let believed = if agrees[i] { currents[i] } else { commands[i] };
+            let measured = readings[i] - state.zeros[i];
+            state.sums[i] += measured;
+            let mut believed = measured;
+            if !((measured - commands[i]).abs() <= state.tolerances[i]) {
+                (believed, agrees) = (commands[i], false);
+            }
             means[i] = 0.5 * (state.last[i] + believed);
             state.last[i] = believed;
         }
-        state.measured = currents;
-        state.disagreeing = if agrees == [true; 2] && !state.far {
-            state.disagreeing.saturating_sub(1)
-        } else {
-            (state.disagreeing + 1).min(self.patience + 1)
-        };
+        state.ticks = state.ticks.wrapping_add(1);
+        if !agrees {
+            state.disagreeing = (state.disagreeing + 1).min(self.patience + 1);
+        } else if state.disagreeing > 0 {
+            state.disagreeing -= 1;
+        }
         Flow {
             currents: Currents {
                 large: Amps::new(means[0]),
@@ -181,11 +190,12 @@ impl Ammeters {
         let ticks = state.disabled.saturating_sub(self.wait).min(self.span);
         if ticks > 0 {
             let gain = 1.0 / ticks as f32;
-            state.far = false;
+            let mut near = true;
             for (i, zero) in state.zeros.iter_mut().enumerate() {
                 *zero += (readings[i] - *zero) * gain;
-                state.far |= !(zero.abs() <= self.tolerances[i]);
+                near &= zero.abs() <= self.tolerances[i];
             }
+            state.tolerances = if near { self.tolerances } else { NOTHING };
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Currents that have flowed: measured ones in an image with `current-monitor`, otherwise those
 //! commanded.
 
-use estimator_core::{Amps, Skip};
+use estimator_core::Skip;
 use haptic_control::{Ammeters, AmmetersState, Currents, Flow};
 
 use crate::config::{DEVICE, RATE};
@@ -10,7 +10,7 @@ const AMMETERS: Ammeters = Ammeters::new(&DEVICE, RATE);
 
 /// The ammeters of the image.
 #[cfg(feature = "current-monitor")]
-pub type Ammeter = Meters;
+pub type Ammeter = AmmetersState;
 /// The ammeters of the image.
 #[cfg(not(feature = "current-monitor"))]
 pub type Ammeter = Skip;
@@ -45,45 +45,24 @@ pub trait Measurement: Copy {
     fn currents(self) -> Option<Currents>;
 }
 
-/// Both ammeters, and the means of their currents.
-pub struct Meters {
-    state: AmmetersState,
-    /// Sums of both currents since the means were taken, A.
-    sums: [f32; 2],
-    ticks: u32,
-}
-
-impl Measure for Meters {
+impl Measure for AmmetersState {
     const WANTED: bool = true;
     type Measured = Currents;
 
     fn new() -> Self {
-        Self {
-            state: AmmetersState::START,
-            sums: [0.0; 2],
-            ticks: 0,
-        }
+        Self::START
     }
 
     fn update(&mut self, readings: &Currents, commands: &Currents, enabled: bool) -> Flow {
-        let commands = enabled.then_some(commands);
-        let flow = AMMETERS.update(&mut self.state, readings, commands);
-        let measured = self.state.currents();
-        self.sums[0] += measured.large.get();
-        self.sums[1] += measured.small.get();
-        self.ticks += 1;
-        flow
+        AMMETERS.update(self, readings, enabled.then_some(commands))
     }
 
     fn restart(&mut self) {
-        self.state.restart();
+        Self::restart(self);
     }
 
     fn take_means(&mut self) -> Currents {
-        let per_tick = 1.0 / self.ticks.max(1) as f32;
-        let [large, small] = self.sums.map(|sum| Amps::new(sum * per_tick));
-        (self.sums, self.ticks) = ([0.0; 2], 0);
-        Currents { large, small }
+        Self::take_means(self)
     }
 }
 

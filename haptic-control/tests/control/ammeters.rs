@@ -24,6 +24,17 @@ fn tolerances() -> [f64; 2] {
     [DEVICE.large, DEVICE.small].map(|motor| 0.08 * motor.current_limit)
 }
 
+/// The state of a device that is being armed, after monitors without an error.
+fn armed(ammeters: &Ammeters) -> AmmetersState {
+    let mut state = AmmetersState::START;
+    for _ in 0..WAIT * 3 {
+        ammeters.update(&mut state, &Currents::default(), None);
+    }
+    state.restart();
+    state.take_means();
+    state
+}
+
 /// Ticks until the mismatch, if one comes within `seconds`.
 fn mismatch(
     rate: Hertz,
@@ -31,7 +42,7 @@ fn mismatch(
     mut readings_and_commands: impl FnMut(f64) -> [[f64; 2]; 2],
 ) -> Option<usize> {
     let ammeters = Ammeters::new(&DEVICE, rate);
-    let mut state = AmmetersState::START;
+    let mut state = armed(&ammeters);
     (0..(seconds * rate.0) as usize).find(|tick| {
         let [readings, commands] = readings_and_commands(*tick as f64 / rate.0);
         let command = currents(commands);
@@ -146,7 +157,7 @@ fn monitor_that_is_not_connected_is_a_mismatch_of_disabled_amplifiers() {
 
 #[test]
 fn start_forgets_currents_that_were_not_the_commanded_ones() {
-    let mut state = AmmetersState::START;
+    let mut state = armed(&AMMETERS);
     let command = currents([1.0, 0.0]);
     let mut ticks = || {
         let update = |state: &mut _| AMMETERS.update(state, &currents([0.0; 2]), Some(&command));
@@ -160,7 +171,7 @@ fn start_forgets_currents_that_were_not_the_commanded_ones() {
 
 #[test]
 fn disagreement_of_the_past_is_counted_down() {
-    let mut state = AmmetersState::START;
+    let mut state = armed(&AMMETERS);
     let mut after = |ticks, reading| {
         let flows = (0..ticks).map(|_| {
             AMMETERS.update(
@@ -182,7 +193,7 @@ fn disagreement_of_the_past_is_counted_down() {
 /// A monitor that breaks must not drive what takes the currents.
 #[test]
 fn current_that_disagrees_is_replaced_by_the_command() {
-    let mut state = AmmetersState::START;
+    let mut state = armed(&AMMETERS);
     let command = currents([0.25, -0.1]);
     for (readings, expected) in [
         ([0.25, -0.1], [0.125, -0.05]),
@@ -191,23 +202,37 @@ fn current_that_disagrees_is_replaced_by_the_command() {
     ] {
         let flow = AMMETERS.update(&mut state, &currents(readings), Some(&command));
         assert_eq!(flow.currents, currents(expected));
-        assert_eq!(state.currents(), currents(readings));
+        assert_eq!(state.take_means(), currents(readings));
     }
 }
 
 #[test]
 fn current_of_a_period_is_the_mean_of_its_ends() {
-    let mut state = AmmetersState::START;
+    let mut state = armed(&AMMETERS);
     for k in 0..20 {
         let reading = [0.01 * f64::from(k), -0.02 * f64::from(k)];
         let flow = AMMETERS.update(&mut state, &currents(reading), Some(&currents(reading)));
         if k > 0 {
             let middle = f64::from(k) - 0.5;
             let off = [
-                flow.currents.large.get() as f64 - 0.01 * middle,
-                flow.currents.small.get() as f64 + 0.02 * middle,
+                f64::from(flow.currents.large.get()) - 0.01 * middle,
+                f64::from(flow.currents.small.get()) + 0.02 * middle,
             ];
             assert!(off.iter().all(|x| x.abs() < 1e-6), "{off:?}");
         }
     }
+}
+
+/// A device that is armed right after its boot does not know the zeros.
+#[test]
+fn currents_are_not_believed_before_the_zeros_are_known() {
+    let mut state = AmmetersState::START;
+    let command = currents([0.25, -0.1]);
+    let mut update = |readings| AMMETERS.update(&mut state, &readings, Some(&command));
+    for tick in 0..SPAN {
+        let flow = update(currents([0.3, -0.15]));
+        assert_eq!(flow.mismatch, None, "{tick}");
+        assert!(tick == 0 || flow.currents == command);
+    }
+    assert_eq!(update(command).mismatch, Some(Stop::CurrentMismatch));
 }

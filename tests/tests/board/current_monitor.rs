@@ -7,7 +7,7 @@ use simulation::device::Device;
 use virtual_board::fault::Fault;
 use virtual_board::run::{DacError, MONITOR_AMPS, Outcome, Setup};
 
-use crate::image::{of_scene, run_image};
+use crate::image::{SETTLED_S, adaptive_free_air, of_scene, run_image};
 
 /// The image learns with the measured currents too.
 const IMAGE: &str = "large-adaptive,current-monitor";
@@ -148,4 +148,21 @@ fn observer_takes_the_measured_current() {
     };
     let ratio = learned("large-adaptive") / learned(IMAGE);
     assert!((ratio - GAIN).abs() < 0.02, "{ratio}");
+}
+
+/// What docs/benchmarks.md says of the cost.
+#[test]
+fn measuring_takes_90_instructions_a_tick() {
+    let mean = |run: &Outcome| {
+        let settled = run.ticks.iter().filter(|tick| {
+            let at_s = tick.at_ns as f64 * 1e-9;
+            (SETTLED_S..0.8).contains(&at_s)
+        });
+        let instructions: Vec<_> = settled.map(|tick| f64::from(tick.instructions)).collect();
+        instructions.iter().sum::<f64>() / instructions.len() as f64
+    };
+    let measured = run_image(IMAGE, &of_scene(SceneKind::FreeAir, Hand::Moving, 0.8));
+    let cost = mean(&measured) - mean(adaptive_free_air());
+    println!("{cost:.1} instructions");
+    assert!((cost - 90.0).abs() < 15.0, "{cost}");
 }

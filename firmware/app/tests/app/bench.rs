@@ -56,7 +56,7 @@ impl Bench {
     pub(crate) fn with(settings: &Settings, reset: Stop, brown_out_reset: bool) -> Self {
         let first = Sample::new(Count(0)).with_coupled(Count(0));
         Self {
-            control: Control::new(&first, reset, brown_out_reset, settings),
+            control: booted(Control::new(&first, reset, brown_out_reset, settings)),
             handle: 0.0,
             large: 0.0,
             velocity: 0.0,
@@ -163,4 +163,12 @@ pub(crate) fn readings(currents: Currents) -> Measured {
 #[cfg(not(feature = "current-monitor"))]
 pub(crate) fn readings(_: Currents) -> Measured {
     estimator_core::Skip
+}
+
+/// A control after the time in which ammeters learn their zeros.
+fn booted(mut control: Control) -> Control {
+    for _ in 0..ticks(0.02) {
+        control.flow(&readings(ZERO));
+    }
+    control
 }
