@@ -8,8 +8,8 @@ use crate::board::ControllerBoard;
 
 /// One line for each access without a register, each access that a closed clock gate or a model
 /// refuses, each access to a register without a model, each interrupt without a line, and each
-/// condition that a model reports. No objection is allowed. The DAC, which the emulator does not
-/// have, has a model in this crate.
+/// condition that a model reports. No objection is allowed. DAC and ADC, which the emulator does not
+/// have, have models in this crate.
 pub(crate) fn of(session: &Session<ControllerBoard>) -> Vec<String> {
     let unmapped = session.unmapped().into_iter().map(|one| {
         format!(

@@ -1,6 +1,7 @@
 //! The firmware without its hardware, against its documentation in docs/telemetry.md and
 //! docs/board.md. Tests hold for every combination of features unless they say otherwise.
 
+mod ammeter;
 mod bench;
 mod commands;
 mod control;
