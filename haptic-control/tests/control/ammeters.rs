@@ -236,3 +236,25 @@ fn currents_are_not_believed_before_the_zeros_are_known() {
     }
     assert_eq!(update(command).mismatch, Some(Stop::CurrentMismatch));
 }
+
+/// The zero moves with the temperature of the amplifier: after 50 ms 1/e of a step is left.
+#[test]
+fn zero_follows_a_drift_however_long_the_device_has_been_disabled() {
+    let mut state = AmmetersState::START;
+    for _ in 0..100 * SPAN {
+        AMMETERS.update(&mut state, &Currents::default(), None);
+    }
+    let drifted = currents([0.1, -0.02]);
+    for _ in 0..SPAN {
+        AMMETERS.update(&mut state, &drifted, None);
+    }
+    state.take_means();
+    AMMETERS.update(&mut state, &drifted, None);
+    let means = state.take_means();
+    let left = [means.large.get() / 0.1, means.small.get() / -0.02];
+    let expected = (-1.0_f32).exp();
+    assert!(
+        left.iter().all(|part| (part - expected).abs() < 0.01),
+        "{left:?}"
+    );
+}
