@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use drivers::link::{Frame, Hello, Measured};
 use drivers::{FULL_SCALES, Setting};
 use estimator_core::Amps;
-use haptic_control::Mode;
+use haptic_control::{Excite, Mode};
 use tuned::DEVICE;
 
 use crate::strokes::Seen;
@@ -28,8 +28,8 @@ pub(crate) struct Channel {
     measured: fn(&Measured) -> f32,
     /// Current at the ends of the DAC.
     pub(crate) full_scale: Amps,
-    /// Largest current in the strokes, A.
-    pub(crate) stroke: f64,
+    /// Largest current in the strokes.
+    pub(crate) stroke: Amps,
     /// Current limit of the motor, A.
     pub(crate) limit: f64,
     /// Settings of its DAC.
@@ -45,7 +45,7 @@ pub(crate) const CHANNELS: [Channel; 2] = [
         command: |frame| frame.current,
         measured: |measured| measured.large,
         full_scale: FULL_SCALES[0],
-        stroke: 0.3,
+        stroke: Excite::STROKES.large,
         limit: DEVICE.large.current_limit,
         zero: Setting::ZeroLarge,
         gain: Setting::GainLarge,
@@ -56,7 +56,7 @@ pub(crate) const CHANNELS: [Channel; 2] = [
         command: |frame| frame.current_small,
         measured: |measured| measured.small,
         full_scale: FULL_SCALES[1],
-        stroke: 0.15,
+        stroke: Excite::STROKES.small,
         limit: DEVICE.small.current_limit,
         zero: Setting::ZeroSmall,
         gain: Setting::GainSmall,

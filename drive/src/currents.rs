@@ -75,11 +75,12 @@ impl Fit {
             count(|command| command < 0.0),
         ];
         let largest = pairs.iter().fold(0.0_f64, |most, [i, _]| most.max(i.abs()));
-        if !pairs.is_empty() && largest < REACHED * channel.stroke {
+        let stroke = f64::from(channel.stroke.get());
+        if !pairs.is_empty() && largest < REACHED * stroke {
             return Err(format!(
                 "the commands reach {:.0} mA of {:.0} mA: set current-scale to {} at least",
                 1e3 * largest,
-                1e3 * channel.stroke,
+                1e3 * stroke,
                 Setting::CurrentScale.facts().default
             ));
         }

@@ -16,11 +16,11 @@ use crate::stop::Stop;
 /// ```
 ///
 /// A tick disagrees if a current differs from the command by more than 8 % of the motor's current
-/// limit, if a zero is more than 8 % of the limit away from 0, or if the zeros are not known yet. The ticks that disagree, less the
-/// ticks that agree, are counted from 0 on. A count of 50 ms is a [`Stop::CurrentMismatch`]: a lead
-/// is open, an amplifier limits its current or has another scale, or a monitor is not connected.
-/// With an open lead the command swings through zero and agrees there, which a run of consecutive
-/// ticks would not survive.
+/// limit, if a zero is more than 8 % of the limit away from 0, or if the zeros are not known yet.
+/// The ticks that disagree, less the ticks that agree, are counted from 0 on. A count of 50 ms is a
+/// [`Stop::CurrentMismatch`]: a lead is open, an amplifier limits its current or has another scale,
+/// or a monitor is not connected. Ticks that agree do not clear the count: the command of a motor
+/// with an open lead agrees while it swings through zero.
 ///
 /// Readings are taken at the begin of a tick. The current over the period before it is the mean of
 /// the readings at both of its ends, which is exact for a straight line. A reading that disagrees is

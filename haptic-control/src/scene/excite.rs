@@ -9,7 +9,7 @@ use crate::units::{NewtonMetres, Radians};
 
 mod pattern;
 
-use pattern::{LARGEST, SECTIONS, Segment};
+use pattern::{LARGEST, LARGEST_OF_STROKES, SECTIONS, Segment};
 
 /// Excitation to identify the device from a recording: a fixed pattern of currents, open loop.
 ///
@@ -66,6 +66,15 @@ const HANDLE_STEP: f32 = 0.025;
 const PASSES: u8 = 4;
 
 impl Excite {
+    /// Largest currents of the strokes, with which the pattern begins.
+    pub const STROKES: Currents = {
+        let [large, small] = LARGEST_OF_STROKES;
+        Currents {
+            large: Amps::new(large as f32 / 1000.0),
+            small: Amps::new(small as f32 / 1000.0),
+        }
+    };
+
     /// The excitation of `device` by a controller that runs at `rate`.
     ///
     /// # Errors

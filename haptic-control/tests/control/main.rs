@@ -2,6 +2,7 @@
 
 mod ammeters;
 mod bench;
+mod codes;
 mod controller;
 mod current_scale;
 mod design;

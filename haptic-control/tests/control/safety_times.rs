@@ -234,11 +234,3 @@ fn one_missed_tick_in_16_is_tolerated_and_more_are_not() {
         assert_eq!(stopped.is_some(), stops, "one in {every}: {stopped:?}");
     }
 }
-
-#[test]
-fn codes_of_modes_are_unique_and_reversible() {
-    for code in 0..=4 {
-        assert_eq!(Mode::from_code(code).map(|mode| mode as u8), Some(code));
-    }
-    assert_eq!(Mode::from_code(5), None);
-}

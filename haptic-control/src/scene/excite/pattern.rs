@@ -44,13 +44,17 @@ impl Segment {
 }
 
 /// Largest magnitudes in the pattern, large and small motor, mA.
-pub(super) const LARGEST: [i16; 2] = {
+pub(super) const LARGEST: [i16; 2] = largest(&SECTIONS);
+/// Largest magnitudes in the strokes, large and small motor, mA.
+pub(super) const LARGEST_OF_STROKES: [i16; 2] = largest(&[&STROKES]);
+
+const fn largest(sections: &[&[Segment]]) -> [i16; 2] {
     let mut largest = [0; 2];
     let mut i = 0;
-    while i < SECTIONS.len() {
+    while i < sections.len() {
         let mut j = 0;
-        while j < SECTIONS[i].len() {
-            let segment = &SECTIONS[i][j];
+        while j < sections[i].len() {
+            let segment = &sections[i][j];
             largest[0] = larger(largest[0], larger(segment.from.abs(), segment.to.abs()));
             largest[1] = larger(largest[1], segment.small.abs());
             j += 1;
@@ -58,7 +62,7 @@ pub(super) const LARGEST: [i16; 2] = {
         i += 1;
     }
     largest
-};
+}
 
 const fn larger(a: i16, b: i16) -> i16 {
     if a > b { a } else { b }
