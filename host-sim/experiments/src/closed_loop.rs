@@ -59,6 +59,8 @@ pub struct Loop {
     pub poles: LoopPoles,
     /// Delay of the currents in ticks, in addition to the amplifier's lag.
     pub late_ticks: usize,
+    /// Errors of the amplifiers' zeros: currents of the large and of the small motor at a command of zero, A.
+    pub offsets_a: [f64; 2],
 }
 
 /// State of the simulation at a tick, with the true values.
@@ -188,7 +190,14 @@ impl<F: FnMut(&TickState)> Visit for Running<'_, F> {
             let commanded = (f64::from(wanted.large.get()), f64::from(wanted.small.get()));
             pending.push(commanded);
             let (large_a, small_a) = pending.remove(0);
-            bench.plant.command(large_a, small_a);
+            // A disabled amplifier has no current, whatever its zero.
+            let [large_zero, small_zero] = match stopped {
+                None => self.run.offsets_a,
+                Some(_) => [0.0; 2],
+            };
+            bench
+                .plant
+                .command(large_a + large_zero, small_a + small_zero);
             let grip = hand.grip(k as u64);
             let omega = bench.plant.small().omega;
             (self.observe)(&TickState {

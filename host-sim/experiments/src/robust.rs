@@ -170,6 +170,7 @@ impl Experiment {
             encoder: FeedbackEncoder::Own,
             poles: self.poles,
             late_ticks: variation.late_ticks + self.late_ticks,
+            offsets_a: variation.offsets_a(&assumed),
         };
         let mut judge = Judge::new(&usual, settings.rate_hz, self.ticks);
         let mut cause = None;

@@ -43,6 +43,7 @@ fn with_kalman(scene: AnyScene, device: &Device, hand: Hand, rate_hz: f64) -> Lo
         encoder: FeedbackEncoder::Own,
         poles: LoopPoles::DEFAULT,
         late_ticks: 0,
+        offsets_a: [0.0; 2],
     }
 }
 

@@ -28,6 +28,7 @@ fn closed(scene: SceneKind, rate_hz: f64, seed: u64) -> Loop {
         encoder: FeedbackEncoder::Own,
         poles: LoopPoles::DEFAULT,
         late_ticks: 0,
+        offsets_a: [0.0; 2],
     }
 }
 

@@ -52,6 +52,7 @@ fn record(device: &Device, hand: Hand, seed: u64, every: usize) -> Recording {
         encoder: FeedbackEncoder::Own,
         poles: LoopPoles::DEFAULT,
         late_ticks: 0,
+        offsets_a: [0.0; 2],
     };
     run.record(165_000, every).unwrap()
 }

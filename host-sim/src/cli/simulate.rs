@@ -130,6 +130,7 @@ fn of_scene(options: &Simulate) -> Result<Recording, Failure> {
         encoder: FeedbackEncoder::Own,
         poles: LoopPoles::DEFAULT,
         late_ticks: 0,
+        offsets_a: [0.0; 2],
         device,
     };
     Ok(run.record(ticks, options.every as usize)?)

@@ -2,6 +2,7 @@
 
 use super::variation::{
     AMPLIFIER, CONSTANT, DAMPING, DISC, FRICTION, GONE_RAD_S, HAND, INERTIA, NOMINAL, Variation,
+    ZERO,
 };
 
 /// Names and devices: one value at a limit at a time, then the worst combinations.
@@ -85,6 +86,14 @@ pub fn corners() -> Vec<(&'static str, Variation)> {
         ),
         ("amplifier-slow", with(n, |v| v.amplifier = AMPLIFIER.0)),
         ("tick-late", with(n, |v| v.late_ticks = 1)),
+        (
+            "zeros-high",
+            with(n, |v| (v.large_zero, v.small_zero) = (ZERO.1, ZERO.1)),
+        ),
+        (
+            "zeros-opposite",
+            with(n, |v| (v.large_zero, v.small_zero) = (ZERO.1, ZERO.0)),
+        ),
         ("hand-stiff", stiff(n)),
         ("hand-gone", gone(n)),
         ("disc", disc),
@@ -118,5 +127,11 @@ mod tests {
         assert!("corner".parse::<Subject>().is_err());
         assert!(corners.iter().any(|(_, v)| v.damping == 0.6));
         assert!(corners.iter().any(|(_, v)| v.hand == 4.0));
+        // 15 steps of 6 A / 2047 and of 1.5 A / 2047.
+        let zeros = corners
+            .iter()
+            .map(|(_, v)| v.offsets_a(&Device::default().stages));
+        let largest = zeros.fold([0.0_f64; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
+        assert!((largest[0] - 0.043_97).abs() < 1e-5 && (largest[1] - 0.010_99).abs() < 1e-5);
     }
 }

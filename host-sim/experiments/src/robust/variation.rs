@@ -7,7 +7,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
 
-use haptic_control::SceneKind;
+use haptic_control::{DualStage, SceneKind};
 
 use super::corners::corners;
 use crate::closed_loop::Hand;
@@ -39,6 +39,10 @@ pub struct Variation {
     pub hand: f64,
     /// Initial velocity of a free handle, rad/s.
     pub gone_rad_s: Option<f64>,
+    /// Error of the zero of the large motor's amplifier, over its current limit.
+    pub large_zero: f64,
+    /// Error of the zero of the small motor's amplifier, over its current limit.
+    pub small_zero: f64,
     /// Phase error of the large encoder's disc, counts.
     pub disc_phase: f64,
     /// Once-a-turn error, counts.
@@ -60,6 +64,8 @@ pub const NOMINAL: Variation = Variation {
     late_ticks: 0,
     hand: 1.0,
     gone_rad_s: None,
+    large_zero: 0.0,
+    small_zero: 0.0,
     disc_phase: 0.0,
     disc_line: 0.0,
     disc_random: 0.0,
@@ -73,6 +79,9 @@ pub(super) const FRICTION: (f64, f64) = (0.6, 1.5);
 pub(super) const AMPLIFIER: (f64, f64) = (0.5, 1.0);
 pub(super) const HAND: (f64, f64) = (1.0, 4.0);
 pub(super) const DISC: (f64, f64, f64) = (0.06, 0.25, 0.02);
+/// 15 steps of a converter with 2047 steps to the current limit, which an output that is not calibrated may
+/// be off by.
+pub(super) const ZERO: (f64, f64) = (-15.0 / 2047.0, 15.0 / 2047.0);
 /// Share of the devices with a free handle, and the handle's initial speed, rad/s.
 const GONE: f64 = 0.2;
 pub(super) const GONE_RAD_S: (f64, f64) = (0.5, 3.0);
@@ -163,10 +172,15 @@ fn drawn(random: &mut Xoshiro256PlusPlus) -> Variation {
         disc_random: within((0.0, DISC.2)),
         late_ticks: usize::from(within((0.0, 1.0)) < 0.5),
         gone_rad_s: None,
+        large_zero: 0.0,
+        small_zero: 0.0,
     };
     if within((0.0, 1.0)) < GONE {
         variation.gone_rad_s = Some(within(GONE_RAD_S) * draw_sign(random));
     }
+    // Drawn last: the other values of a device are those of before.
+    variation.large_zero = draw(random, ZERO.0, ZERO.1);
+    variation.small_zero = draw(random, ZERO.0, ZERO.1);
     variation
 }
 
@@ -189,6 +203,15 @@ impl Variation {
         device.disc.line_counts += self.disc_line;
         device.disc.random_counts += self.disc_random;
         device
+    }
+
+    /// Currents at a command of zero, A: large motor, small motor.
+    #[must_use]
+    pub fn offsets_a(&self, nominal: &DualStage) -> [f64; 2] {
+        [
+            self.large_zero * nominal.large.current_limit,
+            self.small_zero * nominal.small.current_limit,
+        ]
     }
 
     /// The hand for `scene`.
@@ -225,7 +248,7 @@ mod tests {
             .collect();
         let check = |of: fn(&Variation) -> f64, (low, high): (f64, f64)| {
             let smallest = draws.iter().map(of).fold(f64::INFINITY, f64::min);
-            let largest = draws.iter().map(of).fold(0.0, f64::max);
+            let largest = draws.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
             let edge = 0.01 * (high - low);
             assert!(smallest >= low && smallest < low + edge, "{smallest}");
             assert!(largest <= high && largest > high - edge, "{largest}");
@@ -237,6 +260,8 @@ mod tests {
         check(|v| v.small_constant, CONSTANT);
         check(|v| v.amplifier, AMPLIFIER);
         check(|v| v.hand, HAND);
+        check(|v| v.large_zero, ZERO);
+        check(|v| v.small_zero, ZERO);
         check(|v| v.disc_line, (0.0, DISC.1));
         check(|v| v.late_ticks as f64, (0.0, 1.0));
         let gone = draws.iter().filter(|v| v.gone_rad_s.is_some()).count();

@@ -118,6 +118,7 @@ impl<'a> Prepared<'a> {
             encoder,
             poles: LoopPoles::DEFAULT,
             late_ticks: 0,
+            offsets_a: [0.0; 2],
         };
         let mut recorder = Recorder::new(self);
         run.run(self.ticks, |moment| recorder.push(moment))?;

@@ -148,6 +148,7 @@ impl ContactTest {
             encoder: FeedbackEncoder::Own,
             poles: LoopPoles::DEFAULT,
             late_ticks: 0,
+            offsets_a: [0.0; 2],
         };
         let rest = SETTLED_S..PRESS.moving_s + PRESS.rest_s;
         run.run((SECONDS * self.rate_hz) as usize, |moment| {
