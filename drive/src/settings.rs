@@ -149,9 +149,7 @@ pub(crate) fn store(board: &mut Board) -> Result<(), Failure> {
         }
         Some((_, Some(Saved::Full))) => "the flash is full; reset the board and store again",
         Some((_, Some(Saved::Refused))) => "the flash refuses the access",
-        Some((_, Some(Saved::Mismatch))) => {
-            "the flash does not hold what was written; an emulated board keeps nothing"
-        }
+        Some((_, Some(Saved::Mismatch))) => "the flash does not hold what was written",
         Some((code, _)) => return Err(Failure::Check(format!("not stored: outcome {code}"))),
         None if enabled => "the amplifiers are enabled; disarm first",
         None => return Err(board.silent()),

@@ -11,12 +11,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
 use drivers::link::{Message, PROTOCOL, Parser};
+use drivers::{Setting, Settings};
 use experiments::closed_loop::Hand;
 use haptic_control::{Mode, SimulatedHand};
 use recordings::recording::Recording;
 use tuned::DEVICE_FINGERPRINT;
 use virtual_board::bridge::Bridge;
 use virtual_board::fault::Fault;
+use virtual_board::flash::Sectors;
 use virtual_board::image::Image;
 use virtual_board::run::{DacError, RATE_HZ, Setup};
 
@@ -37,7 +39,7 @@ static ALONE: Mutex<()> = Mutex::new(());
 struct EmulatedBoard {
     _alone: MutexGuard<'static, ()>,
     stop: Arc<AtomicBool>,
-    runs: JoinHandle<()>,
+    runs: JoinHandle<Sectors>,
 }
 
 impl EmulatedBoard {
@@ -61,9 +63,7 @@ impl EmulatedBoard {
         };
         let stop = Arc::new(AtomicBool::new(false));
         let until = Arc::clone(&stop);
-        let runs = std::thread::spawn(move || {
-            bridge.run(&image, &setup, until).unwrap();
-        });
+        let runs = std::thread::spawn(move || bridge.run(&image, &setup, until).unwrap().1);
         let board = Self {
             _alone: alone,
             stop,
@@ -72,9 +72,10 @@ impl EmulatedBoard {
         (address, board)
     }
 
-    fn end(self) {
+    /// Ends the board; returns what its flash holds.
+    fn end(self) -> Sectors {
         self.stop.store(true, Ordering::Relaxed);
-        self.runs.join().unwrap();
+        self.runs.join().unwrap()
     }
 }
 
@@ -184,7 +185,7 @@ fn bring_up_passes_on_a_new_board_and_permits_closed_loop() {
     let (address, board) = EmulatedBoard::start(blank(None));
     let free_air = ["select", "free-air", "--seconds", "0.1"];
     assert_eq!(said(address, &free_air).1, Some(1));
-    let (text, status) = said(address, &["bring-up"]);
+    let (text, status) = said(address, &["bring-up", "--store"]);
     assert_eq!(status, Some(0), "{text}");
     assert!(
         text.lines().count() == 6 && !text.contains("FAIL"),
@@ -201,7 +202,9 @@ fn bring_up_passes_on_a_new_board_and_permits_closed_loop() {
     assert_eq!(said(address, &free_air).1, Some(0));
     let (text, _) = said(address, &["settings"]);
     assert!(text.contains("signs-verified  1 "), "{text}");
-    board.end();
+    let mut stored = Settings::DEFAULT;
+    assert!(stored.set(Setting::SignsVerified, 1.0));
+    assert_eq!(board.end().settings(), Some(stored));
 }
 
 #[test]
@@ -218,6 +221,22 @@ fn bring_up_fails_with_an_encoder_whose_lines_are_exchanged_or_stuck() {
         );
         board.end();
     }
+}
+
+#[test]
+fn stored_settings_are_there_when_the_board_is_started_again() {
+    let (address, board) = EmulatedBoard::start(blank(None));
+    let (text, status) = said(address, &["settings", "serial=77", "--store"]);
+    assert_eq!(status, Some(0), "{text}");
+    let (_, status) = said(address, &["settings", "serial=78"]);
+    assert_eq!(status, Some(0));
+    let flash = Some(board.end());
+    let (address, board) = EmulatedBoard::start(Setup {
+        flash,
+        ..blank(None)
+    });
+    assert_eq!(setting(address, "serial"), 77.0);
+    board.end();
 }
 
 /// The value of a setting in the table of the tool.
@@ -248,14 +267,16 @@ fn calibrate_finds_zero_and_gain_of_both_outputs() {
         assert!((ratio - 1.0).abs() < 5e-3, "{motor}: {ratio}, {text}");
     }
     // Calibrated once more, nothing is left to correct.
-    let (text, status) = said(address, &["calibrate"]);
+    let (text, status) = said(address, &["calibrate", "--store"]);
     assert_eq!(status, Some(0), "{text}");
     assert_eq!(
         text.matches("slope 1.00").count() + text.matches("slope 0.99").count(),
         2,
         "{text}"
     );
-    board.end();
+    let gain = setting(address, "gain-large");
+    let stored = board.end().settings().expect("settings");
+    assert!((f64::from(stored.get(Setting::GainLarge)) - gain).abs() < 1e-6);
 }
 
 #[test]

@@ -17,13 +17,15 @@ use rigless::time::VirtualNanos;
 
 use crate::adc::{Adc, Common};
 use crate::dac::Dac;
+use crate::flash::{FlashInterface, MemoryMap};
 
 const NAME: &str = "limpid";
 
 /// Core clock, Hz.
 pub const CORE_HZ: u64 = 168_000_000;
 
-/// The emulated microcontroller with models of DAC and ADC, which the emulator does not have.
+/// The emulated microcontroller with models of DAC and ADC, which the emulator does not have, and one of
+/// the flash interface that programs.
 #[derive(Debug)]
 pub struct Part {
     /// The emulator's models of the other peripherals.
@@ -35,6 +37,8 @@ pub struct Part {
     /// Converters of the large and the small current monitor, with their slots.
     adcs: [(Adc, usize); 2],
     adc_common: (Common, usize),
+    pub(crate) flash: FlashInterface,
+    flash_slot: usize,
     rcc_slot: usize,
 }
 
@@ -54,6 +58,13 @@ impl Part {
 }
 
 impl Part {
+    /// As [`FlashInterface::store`].
+    pub(crate) fn store_to_flash(&mut self, now_ns: u64, offset: u32, bytes: &[u8]) -> u64 {
+        let slot = self.stm32.bus_mut().slot_mut(self.flash_slot);
+        self.flash
+            .store(now_ns, offset, bytes, slot.registers_mut())
+    }
+
     /// Starts a crystal that did not run, at this frequency.
     pub(crate) fn start_crystal(&mut self, hz: u64) {
         self.stm32.rcc.attach_crystals(hz, 0);
@@ -79,6 +90,7 @@ impl Mcu for Part {
         for (adc, _) in &mut self.adcs {
             adc.reset();
         }
+        self.flash.reset();
         if std::mem::take(&mut self.brown_out) {
             let (_, registers) = self.stm32.clocks();
             let flag = BORRSTF.mask();
@@ -96,7 +108,7 @@ impl Mcu for Part {
             let (_, registers) = self.stm32.clocks();
             registers.restore(Register::Cr, HSERDY.mask(), 0);
         }
-        let models: [(usize, &mut dyn ErasedDevice); 4] = {
+        let models: [(usize, &mut dyn ErasedDevice); 5] = {
             let [(large, large_slot), (small, small_slot)] = &mut self.adcs;
             let (common, common_slot) = &mut self.adc_common;
             [
@@ -104,6 +116,7 @@ impl Mcu for Part {
                 (*large_slot, large),
                 (*small_slot, small),
                 (*common_slot, common),
+                (self.flash_slot, &mut self.flash),
             ]
         };
         if let Some((_, model)) = models.into_iter().find(|(of, _)| *of == slot) {
@@ -118,6 +131,7 @@ impl Mcu for Part {
 pub struct ControllerBoard {
     /// The microcontroller.
     pub part: Part,
+    memory: MemoryMap,
     instructions_per_second: NonZeroU64,
 }
 
@@ -135,6 +149,7 @@ impl ControllerBoard {
         stm32.set_supply(3300);
         let dac_slot = stm32.bus().slot("DAC")?;
         let rcc_slot = stm32.bus().slot("RCC")?;
+        let flash_slot = stm32.bus().slot("FLASH")?;
         let bus = stm32.bus();
         // PA3 is channel 3, PC0 channel 10.
         let adcs = [
@@ -143,6 +158,7 @@ impl ControllerBoard {
         ];
         let adc_common = (Common, bus.slot("C_ADC")?);
         Ok(Self {
+            memory: MemoryMap::new()?,
             part: Part {
                 stm32,
                 brown_out: false,
@@ -150,6 +166,8 @@ impl ControllerBoard {
                 dac_slot,
                 adcs,
                 adc_common,
+                flash: FlashInterface::new(),
+                flash_slot,
                 rcc_slot,
             },
             instructions_per_second,
@@ -186,6 +204,7 @@ impl Board for ControllerBoard {
             armv7m::Fpu::FpV4Sp,
             armv7m::MpuRegions::Eight,
         );
-        vec![Target::new(NAME, &mut self.part, core)]
+        // The emulator takes the memory of the core from here, and everything else from `mcu`.
+        vec![Target::new(NAME, &mut self.memory, core)]
     }
 }

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use terminal::failure::Failure;
 use terminal::output::note;
 
+use crate::flash::Sectors;
 use crate::image::Image;
 use crate::objections;
 use crate::port::Wire;
@@ -64,15 +65,21 @@ impl Bridge {
 
     /// Runs `image` with the port bridged, in real time, until the end of the setup or until `stop`.
     /// Only the last state is kept, so that a run may be long. A computer that is too slow makes the
-    /// run slower; nothing is left out.
+    /// run slower; nothing is left out. Returns the content of the flash at the end too.
     ///
     /// # Errors
     /// As [`on_board`](crate::run::on_board) and [`Outcome::check`](crate::run::Outcome::check).
-    pub fn run(self, image: &Image, setup: &Setup, stop: Arc<AtomicBool>) -> Result<Pace, Failure> {
+    pub fn run(
+        self,
+        image: &Image,
+        setup: &Setup,
+        stop: Arc<AtomicBool>,
+    ) -> Result<(Pace, Sectors), Failure> {
         let live = Live::new(self.listener, stop);
         let (session, lockstep, _) = emulate(image, setup, Some(live), |_| ())?;
         objections::verdict(&objections::of(&session))?;
-        Ok(lockstep.live.map(|live| live.pace).unwrap_or_default())
+        let pace = lockstep.live.map(|live| live.pace).unwrap_or_default();
+        Ok((pace, session.board().part.flash.sectors().clone()))
     }
 }
 

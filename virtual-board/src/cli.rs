@@ -254,7 +254,7 @@ fn serve(port: u16, image: &Image, setup: Setup) -> Result<(), Failure> {
         keep_alive: false,
         ..setup
     };
-    let Pace { seconds, lag_s } = bridge.run(image, &setup, Arc::default())?;
+    let (Pace { seconds, lag_s }, _) = bridge.run(image, &setup, Arc::default())?;
     let lag = if lag_s < LAG_S {
         "in real time".to_owned()
     } else {

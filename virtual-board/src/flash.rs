@@ -1,5 +1,8 @@
 //! What the flash of the board holds beside the firmware.
 
+mod interface;
+mod map;
+
 use std::ops::Range;
 use std::path::Path;
 
@@ -9,11 +12,17 @@ use embedded_storage::nor_flash::{
 };
 use rigless::image::Image;
 
+pub(crate) use interface::FlashInterface;
+pub(crate) use map::MemoryMap;
+
 /// Address of sector 12, the first one of bank 2.
-const SECTOR_12: u64 = 0x0810_0000;
+pub(crate) const SECTOR_12: u64 = 0x0810_0000;
 /// Sectors 12 and 13, from the begin of the first one.
 const SECTORS: [Range<u32>; 2] = [0..SECTOR, SECTOR..2 * SECTOR];
-const SECTOR: u32 = 16 * 1024;
+/// Bytes of a sector.
+pub const SECTOR: u32 = 16 * 1024;
+/// Byte of erased flash.
+const ERASED: u8 = 0xFF;
 
 /// Address of the size of the flash, which the factory has programmed, KiB.
 const SIZE_WORD: u64 = 0x1FFF_7A22;
@@ -25,36 +34,103 @@ const SIZE_KIB: u16 = 2048;
 /// # Errors
 /// One line if the emulator does not take it.
 pub(crate) fn size() -> Result<Image, String> {
-    raw(SIZE_KIB.to_le_bytes().to_vec(), SIZE_WORD)
+    let bytes = SIZE_KIB.to_le_bytes().to_vec();
+    Image::new(Path::new("factory.bin"), bytes, Some(SIZE_WORD))
+        .map_err(|error| format!("flash at {SIZE_WORD:#x}: {error}"))
 }
 
-fn raw(bytes: Vec<u8>, address: u64) -> Result<Image, String> {
-    Image::new(Path::new("factory.bin"), bytes, Some(address))
-        .map_err(|error| format!("flash at {address:#x}: {error}"))
+/// A change of the sectors by the flash interface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// A byte is programmed: bits that are 0 in `value` are cleared.
+    Program {
+        /// Place of the byte, from the begin of sector 12.
+        offset: u32,
+        /// The byte that was written.
+        value: u8,
+    },
+    /// All bits of a sector are set.
+    Erase {
+        /// 0 is sector 12, 1 is sector 13.
+        sector: u32,
+    },
 }
 
-/// An image of the flash behind the firmware, in which these settings are the newest, after so many
-/// records of older ones.
-///
-/// # Errors
-/// One line if they do not fit.
-pub(crate) fn with(settings: &Settings, older: u32) -> Result<Image, String> {
-    let mut flash = Sectors(vec![0xFF; 2 * SECTOR as usize]);
-    let full = |error| format!("settings in flash: {error:?}");
-    let opened = Store::<SETTINGS_BYTES>::open(&mut flash, SECTORS);
-    let (mut store, _) = opened.map_err(SaveError::Flash).map_err(full)?;
-    for _ in 0..older {
-        let record = Settings::DEFAULT.encode();
-        store.save(&mut flash, &record).map_err(full)?;
+impl Change {
+    /// Places of the bytes that change, from the begin of sector 12.
+    #[must_use]
+    pub fn range(self) -> Range<usize> {
+        match self {
+            Self::Program { offset, .. } => offset as usize..offset as usize + 1,
+            Self::Erase { sector } => (sector * SECTOR) as usize..((sector + 1) * SECTOR) as usize,
+        }
     }
-    store.save(&mut flash, &settings.encode()).map_err(full)?;
-    raw(flash.0, SECTOR_12)
 }
 
-/// The two sectors.
-struct Sectors(Vec<u8>);
+/// Content of sectors 12 and 13, which keep the settings.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sectors(Vec<u8>);
 
 impl Sectors {
+    /// Erased sectors.
+    #[must_use]
+    pub fn erased() -> Self {
+        Self(vec![ERASED; 2 * SECTOR as usize])
+    }
+
+    /// Sectors in which these settings are the newest, after so many records of older ones.
+    ///
+    /// # Errors
+    /// One line if they do not fit.
+    pub fn with(settings: &Settings, older: u32) -> Result<Self, String> {
+        let mut flash = Self::erased();
+        for _ in 0..older {
+            flash.store(&Settings::DEFAULT)?;
+        }
+        flash.store(settings)?;
+        Ok(flash)
+    }
+
+    /// Does what a board does at its start and when it stores settings.
+    ///
+    /// # Errors
+    /// One line if they are not stored.
+    pub fn store(&mut self, settings: &Settings) -> Result<(), String> {
+        let failed = |error| format!("settings in flash: {error:?}");
+        let opened = Store::<SETTINGS_BYTES>::open(self, SECTORS);
+        let (mut store, _) = opened.map_err(SaveError::Flash).map_err(failed)?;
+        let prepared = store.prepare(self);
+        prepared.map_err(SaveError::Flash).map_err(failed)?;
+        store.save(self, &settings.encode()).map_err(failed)
+    }
+
+    /// The newest settings; `None` if there are none, or none that this version can read.
+    #[must_use]
+    pub fn settings(&self) -> Option<Settings> {
+        let opened = Store::<SETTINGS_BYTES>::open(&mut self.clone(), SECTORS);
+        Settings::decode(&opened.ok()?.1?).ok()
+    }
+
+    /// The bytes of both sectors.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.0
+    }
+
+    /// The bytes of both sectors, to be changed without the rules of a flash.
+    pub fn bytes_mut(&mut self) -> &mut [u8] {
+        &mut self.0
+    }
+
+    /// Makes a change completely.
+    pub fn apply(&mut self, change: Change) {
+        let cells = &mut self.0[change.range()];
+        match change {
+            Change::Program { value, .. } => cells[0] &= value,
+            Change::Erase { .. } => cells.fill(ERASED),
+        }
+    }
+
     fn range(&mut self, offset: u32, length: usize) -> &mut [u8] {
         let start = offset as usize;
         &mut self.0[start..start + length]
@@ -85,7 +161,7 @@ impl NorFlash for Sectors {
 
     fn erase(&mut self, from: u32, to: u32) -> Result<(), NorFlashErrorKind> {
         check_erase(self, from, to)?;
-        self.range(from, (to - from) as usize).fill(0xFF);
+        self.range(from, (to - from) as usize).fill(ERASED);
         Ok(())
     }
 

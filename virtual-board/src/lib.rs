@@ -15,7 +15,7 @@ pub mod command;
 pub mod cycles;
 pub mod dac;
 pub mod fault;
-mod flash;
+pub mod flash;
 pub mod image;
 mod lines;
 mod lockstep;

@@ -2,6 +2,7 @@
 //! edges reach the pins at their times.
 
 mod core_access;
+mod flash;
 mod follow;
 mod hits;
 mod inject;
@@ -10,7 +11,7 @@ mod plant;
 use std::collections::VecDeque;
 
 use experiments::closed_loop::{Bench, FeedbackEncoder, Motion};
-use rigless::emulator::{AccessKind, Driver, Host, Settled, Stop, Watch};
+use rigless::emulator::{AccessKind, Driver, HitKind, Host, Settled, Stop, Watch};
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
 use simulation::encoder::{DiscErrors, Encoder};
@@ -173,6 +174,7 @@ impl Lockstep {
         for &address in self.exits.iter().chain([&self.entry, &self.wait]) {
             session.watch(Watch::Instruction(address));
         }
+        session.watch(flash::STORES);
     }
 
     /// Present time of the plant.
@@ -223,6 +225,9 @@ impl Driver<ControllerBoard> for Lockstep {
     ) {
         match settled {
             Settled::Access { access, value } => {
+                if (access.kind, access.address) == (AccessKind::Write, flash::CONTROL) {
+                    Self::erase_flash(session, host);
+                }
                 if let (AccessKind::Read, STAMP_CLOCK, Some((tick, _))) =
                     (access.kind, access.address, &mut self.running)
                 {
@@ -242,6 +247,9 @@ impl Driver<ControllerBoard> for Lockstep {
                         None => {}
                     }
                 }
+            }
+            Settled::Hit(hit) if hit.kind == HitKind::Write => {
+                self.store_to_flash(session, host, &hit);
             }
             Settled::Hit(hit) => {
                 if hit.address == self.entry {
@@ -271,6 +279,8 @@ impl Driver<ControllerBoard> for Lockstep {
             self.port.attach(&mut session.board_mut().part);
             self.restart(session.board_mut(), stop.at);
             self.stack.paint(host);
+            let sectors = session.board().part.flash.sectors();
+            flash::place(sectors, 0..sectors.bytes().len(), host);
         }
         let now_ns = stop.at.0;
         self.release(session, stop.at, host);
@@ -309,8 +319,7 @@ impl Driver<ControllerBoard> for Lockstep {
             self.step(session.board_mut(), stop.at);
         }
         let next_edge = self.edges.front().map_or(u64::MAX, |edge| edge.at_ns);
-        let release = self.stalls.release.unwrap_or(u64::MAX);
-        let next = next_edge.min(self.plant_ns()).min(release);
+        let next = next_edge.min(self.plant_ns()).min(self.stalls.next());
         Some(VirtualNanos(next))
     }
 }

@@ -19,7 +19,7 @@ use crate::board::{CORE_HZ, ControllerBoard};
 use crate::bridge::Live;
 use crate::command::Command;
 use crate::fault::Fault;
-use crate::flash;
+use crate::flash::{self, Change, Sectors};
 use crate::image::Image;
 pub use crate::lockstep::CoreAccess;
 use crate::lockstep::Lockstep;
@@ -100,6 +100,8 @@ pub struct Setup {
     pub settings: Option<Settings>,
     /// Number of records of older settings before them.
     pub older_records: u32,
+    /// Content of the sectors of the settings instead, such as another run has left it.
+    pub flash: Option<Sectors>,
     /// Additional loads and stores of the core, and their times, s.
     pub accesses: Vec<(f64, CoreAccess)>,
     /// Instructions per second of virtual time.
@@ -131,6 +133,7 @@ impl Default for Setup {
             monitor_offsets: [11.0, -7.0],
             settings: Some(Settings::COMMISSIONED),
             older_records: 1,
+            flash: None,
             accesses: Vec::new(),
             instructions_per_second: NonZeroU64::new(CORE_HZ).expect("not zero"),
             follow: BTreeSet::new(),
@@ -232,6 +235,10 @@ pub struct Outcome {
     pub sent: Vec<(u64, Vec<u8>)>,
     /// Bytes that the serial port of the board has sent, each with the time of its end, ns.
     pub port: Vec<(u64, u8)>,
+    /// Content of the sectors of the settings at the end of the run.
+    pub flash: Sectors,
+    /// What the firmware has programmed and erased, in its order.
+    pub flash_changes: Vec<Change>,
     /// Run time of the emulation.
     pub wall: Duration,
     /// Number of the first of `ticks` in telemetry.
@@ -284,6 +291,7 @@ pub fn on_board(
         ..
     } = lockstep;
     let sent_by_port = std::mem::take(&mut port.wire().up);
+    let flash = &session.board().part.flash;
     let telemetry = Telemetry::decode(&image.elf, &probe.stream)?;
     Ok(Outcome {
         first_tick: first_tick(&telemetry.frames, &recorded.ticks),
@@ -302,6 +310,8 @@ pub fn on_board(
         port: sent_by_port,
         restarts,
         objections: objections::of(&session),
+        flash: flash.sectors().clone(),
+        flash_changes: flash.changes.clone(),
         wall,
     })
 }
@@ -329,16 +339,19 @@ pub(crate) fn emulate(
             board.part.stm32.rcc.calibrate_lsi(hz);
         }
     }
+    let flash = match (&setup.flash, &setup.settings) {
+        (Some(sectors), _) => sectors.clone(),
+        (None, Some(settings)) => Sectors::with(settings, setup.older_records)?,
+        (None, None) => Sectors::erased(),
+    };
+    board.part.flash.place(flash);
     let mut session =
         Session::new(Box::new(board), 0, VirtualNanos(0)).map_err(|error| emulator(&error))?;
     let mut lockstep = Lockstep::new(image, setup, Box::new(progress));
     lockstep.live = client;
     lockstep.watch(&mut session);
     let since = Instant::now();
-    let mut images = vec![image.placed.clone(), flash::size()?];
-    if let Some(settings) = &setup.settings {
-        images.push(flash::with(settings, setup.older_records)?);
-    }
+    let images = [image.placed.clone(), flash::size()?];
     let finished =
         run(session, &Start::new(&images), lockstep).map_err(|error| emulator(&error))?;
     let wall = since.elapsed();

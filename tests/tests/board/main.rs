@@ -6,6 +6,7 @@ mod current_monitor;
 mod edges;
 mod enables;
 mod faults;
+mod flash;
 mod hardware;
 mod healthy;
 mod identify;

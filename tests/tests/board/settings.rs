@@ -3,6 +3,7 @@
 use drivers::link::Message;
 use drivers::{Command, Saved, Setting, Settings, encode};
 use haptic_control::{Mode, Request, SceneKind, Stop};
+use virtual_board::flash::{Change, SECTOR};
 use virtual_board::run::{Outcome, Setup};
 
 use crate::image::{free_air, run};
@@ -14,7 +15,7 @@ const STEPS: u16 = 2047;
 const MIDDLE: u16 = 2048;
 
 /// A run whose port receives these commands, and a keep-alive every 50 ms.
-fn commanded(seconds: f64, commands: &[(f64, Command)], setup: Setup) -> Outcome {
+pub(crate) fn commanded(seconds: f64, commands: &[(f64, Command)], setup: Setup) -> Outcome {
     let kept = (1..).map(|k| (0.05 * f64::from(k), Command::Request(Request::KeepAlive)));
     let kept = kept.take_while(|(at, _)| *at < seconds);
     let all = commands.iter().copied().chain(kept);
@@ -32,11 +33,21 @@ fn commanded(seconds: f64, commands: &[(f64, Command)], setup: Setup) -> Outcome
     run
 }
 
+/// Outcomes of the commands to store.
+pub(crate) fn stored(run: &Outcome) -> Vec<Saved> {
+    let (messages, _) = of_port(run);
+    let outcomes = messages.iter().filter_map(|message| match message {
+        Message::Stored(stored) => Saved::from_code(stored.outcome),
+        _ => None,
+    });
+    outcomes.collect()
+}
+
 fn select(scene: SceneKind) -> Command {
     Command::Request(Request::Select(scene.number()))
 }
 
-const ARM: Command = Command::Request(Request::Arm);
+pub(crate) const ARM: Command = Command::Request(Request::Arm);
 
 /// The emulated amplifiers' full scales are the current limits of the device.
 #[test]
@@ -118,18 +129,10 @@ fn settings_are_told_and_changed_over_the_link() {
     assert_eq!(told, expected.into_iter().flatten().collect::<Vec<_>>());
 }
 
-/// The emulated flash takes the accesses and keeps nothing, so that the image reads back what was there.
 #[test]
-fn settings_are_stored_at_rest_alone_and_read_back() {
-    let outcomes = |commands: &[(f64, Command)]| {
-        let run = commanded(0.8, commands, Setup::default());
-        let (messages, _) = of_port(&run);
-        let outcomes = messages.iter().filter_map(|message| match message {
-            Message::Stored(stored) => Saved::from_code(stored.outcome),
-            _ => None,
-        });
-        outcomes.collect::<Vec<_>>()
-    };
+fn settings_are_stored_at_rest_alone() {
+    let outcomes =
+        |commands: &[(f64, Command)]| stored(&commanded(0.8, commands, Setup::default()));
     let running = [
         (0.10, select(SceneKind::FreeAir)),
         (0.15, ARM),
@@ -140,10 +143,10 @@ fn settings_are_stored_at_rest_alone_and_read_back() {
     ];
     assert_eq!(outcomes(&running), [Saved::Enabled; 3]);
     let at_rest = [(0.10, Command::Store), (0.30, ARM), (0.60, Command::Store)];
-    assert_eq!(outcomes(&at_rest), [Saved::Mismatch, Saved::Enabled]);
+    assert_eq!(outcomes(&at_rest), [Saved::Stored, Saved::Enabled]);
 }
 
-/// A sector of the size of sector 12 is erased for 0.4 s.
+/// A sector of the size of sector 12 is erased for 0.4 s, and the settings are in sector 13 then.
 #[test]
 fn full_sector_is_erased_at_the_start_under_a_patient_watchdog() {
     // 64 records fill a sector, and the next one is in the other sector.
@@ -158,4 +161,8 @@ fn full_sector_is_erased_at_the_start_under_a_patient_watchdog() {
     assert!((200.0..900.0).contains(&later_ms), "{later_ms} ms");
     let last = run.telemetry.frames.last().expect("frames");
     assert_eq!((last.state, last.cause), (Mode::Running, Stop::None));
+    assert_eq!(run.flash_changes, [Change::Erase { sector: 0 }]);
+    let (erased, kept) = run.flash.bytes().split_at(SECTOR as usize);
+    assert!(erased.iter().all(|byte| *byte == 0xFF) && kept[0] != 0xFF);
+    assert_eq!(run.flash.settings(), Some(Settings::COMMISSIONED));
 }

@@ -44,6 +44,8 @@ const PAUSE_NS: u64 = 300_000_000;
 pub(super) struct Stalls {
     /// Time at which a halted core continues.
     pub(super) release: Option<u64>,
+    /// Time at which the core continues that waits for the flash.
+    pub(super) flash: Option<u64>,
     /// Registers that a halt by a debugger has changed, and their values before.
     halted: Vec<(u64, u64)>,
     /// Whether a debugger has frozen the watchdog.
@@ -56,6 +58,14 @@ pub(super) struct Stalls {
     hung: Option<u64>,
     /// Whether the task of lowest priority is to panic at its next wake.
     panics: bool,
+}
+
+impl Stalls {
+    /// Time at which a core continues that is held, ns.
+    pub(super) fn next(&self) -> u64 {
+        let times = [self.release, self.flash].into_iter().flatten();
+        times.min().unwrap_or(u64::MAX)
+    }
 }
 
 impl Lockstep {
@@ -133,6 +143,11 @@ impl Lockstep {
         at: VirtualNanos,
         host: &mut dyn Host,
     ) {
+        if self.stalls.flash.take_if(|over| *over <= at.0).is_some()
+            && self.stalls.release.is_none()
+        {
+            host.hold(false);
+        }
         if self.stalls.release.is_some_and(|release| release <= at.0) {
             self.stalls.release = None;
             host.hold(false);
