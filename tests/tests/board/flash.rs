@@ -2,14 +2,17 @@
 
 use drivers::link::Message;
 use drivers::{Command, Saved, Setting, Settings};
+use haptic_control::Stop;
 use virtual_board::fault::Fault;
-use virtual_board::run::{Outcome, Setup};
+use virtual_board::run::{ControlTick, Outcome, Setup};
 
 use crate::link::of_port;
 use crate::settings::{commanded, stored};
 
 /// Bytes of a record: its number, the settings, the checksum.
 const RECORD: usize = 256;
+/// Period of the control tick, ns.
+const TICK_NS: u64 = 100_000;
 
 fn serial(value: f32) -> Command {
     Command::Set {
@@ -71,4 +74,34 @@ fn stored_settings_are_there_after_a_reset_and_in_the_next_run() {
         },
     );
     assert_eq!(told(&next), numbered(77.0));
+}
+
+/// Largest delay of a tick after the period of the ticks, ns, and largest number of instructions.
+fn worst(ticks: &[ControlTick]) -> (u64, u32) {
+    let first = ticks[0].at_ns;
+    let late = ticks.iter().zip(0..).map(|(tick, k)| {
+        let due = first + TICK_NS * k;
+        tick.at_ns.abs_diff(due)
+    });
+    let instructions = ticks.iter().map(|tick| tick.instructions);
+    (late.max().unwrap_or(0), instructions.max().unwrap_or(0))
+}
+
+/// A byte takes 16 us; a core that waits for the flash on the bus would begin a tick as late.
+#[test]
+fn store_does_not_delay_the_control_tick() {
+    let run = |last| {
+        let commands = [(0.05, serial(77.0)), (0.10, last)];
+        commanded(0.2, &commands, Setup::default())
+    };
+    let (without, with) = (run(Command::Settings), run(Command::Store));
+    assert_eq!(stored(&with), [Saved::Stored]);
+    let last = with.telemetry.frames.last().expect("frames");
+    assert_eq!((last.overruns, last.cause), (0, Stop::None));
+    assert_eq!(with.ticks.len(), without.ticks.len());
+    let (worst_with, worst_without) = (worst(&with.ticks), worst(&without.ticks));
+    println!("with a store {worst_with:?}, without {worst_without:?}: ns late, instructions");
+    // An interrupt waits for the instructions of a critical section at most.
+    assert!(worst_with.0 <= worst_without.0 + 500);
+    assert!(worst_with.1 <= worst_without.1);
 }

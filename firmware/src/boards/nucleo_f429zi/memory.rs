@@ -3,6 +3,7 @@
 use core::ops::Range;
 
 use drivers::{SETTINGS_BYTES, Saved, Settings, SettingsError, Store};
+use embedded_storage::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
 use stm32f4xx_hal::flash::{FlashExt as _, UnlockedFlash};
 use stm32f4xx_hal::pac::FLASH;
 
@@ -70,13 +71,49 @@ impl Memory for Flash {
 
 /// Changes the flash without the data cache, which would keep bytes of before. It may also hold wrong bytes
 /// after a read from one bank while the other one is written (erratum 2.2.15 of ES0206).
-fn uncached<T>(flash: &mut FLASH, change: impl FnOnce(&mut UnlockedFlash<'_>) -> T) -> T {
+fn uncached<T>(flash: &mut FLASH, change: impl FnOnce(&mut ByteByByte<'_>) -> T) -> T {
     flash.acr().modify(|_, w| w.dcen().clear_bit());
-    let result = change(&mut flash.unlocked());
+    let result = change(&mut ByteByByte(flash.unlocked()));
     flash.acr().modify(|_, w| w.dcrst().set_bit());
     flash.acr().modify(|_, w| w.dcrst().clear_bit());
     flash.acr().modify(|_, w| w.dcen().set_bit());
     result
+}
+
+/// The flash, programmed a byte at a time. The HAL stores up to 16 bytes in a row, and a store while a byte is
+/// being programmed holds the core on the bus, interrupts included, for 16 us and up to 100 us. Between single
+/// bytes the core waits in a loop, which the control task interrupts.
+struct ByteByByte<'a>(UnlockedFlash<'a>);
+
+impl<'a> ErrorType for ByteByByte<'a> {
+    type Error = <UnlockedFlash<'a> as ErrorType>::Error;
+}
+
+impl ReadNorFlash for ByteByByte<'_> {
+    const READ_SIZE: usize = 1;
+
+    fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Self::Error> {
+        self.0.read(offset, bytes)
+    }
+
+    fn capacity(&self) -> usize {
+        self.0.capacity()
+    }
+}
+
+impl NorFlash for ByteByByte<'_> {
+    const WRITE_SIZE: usize = 1;
+    const ERASE_SIZE: usize = <UnlockedFlash<'_> as NorFlash>::ERASE_SIZE;
+
+    fn erase(&mut self, from: u32, to: u32) -> Result<(), Self::Error> {
+        NorFlash::erase(&mut self.0, from, to)
+    }
+
+    fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Self::Error> {
+        (offset..)
+            .zip(bytes)
+            .try_for_each(|(at, byte)| self.0.write(at, &[*byte]))
+    }
 }
 
 fn decoded(record: &[u8; SETTINGS_BYTES]) -> Option<Settings> {
