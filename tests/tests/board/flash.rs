@@ -1,9 +1,10 @@
-//! Settings in the flash of the board: programmed and kept.
+//! Settings in the flash of the board: programmed, kept, and interrupted by a loss of power.
 
 use drivers::link::Message;
 use drivers::{Command, Saved, Setting, Settings};
 use haptic_control::Stop;
 use virtual_board::fault::Fault;
+use virtual_board::flash::{Change, Sectors};
 use virtual_board::run::{ControlTick, Outcome, Setup};
 
 use crate::link::of_port;
@@ -104,4 +105,126 @@ fn store_does_not_delay_the_control_tick() {
     // An interrupt waits for the instructions of a critical section at most.
     assert!(worst_with.0 <= worst_without.0 + 500);
     assert!(worst_with.1 <= worst_without.1);
+}
+
+/// A part of what a byte or a sector passes through while its bits change.
+type Noise = fn(&mut u32) -> u8;
+
+/// The next state of a linear congruential generator; its upper byte.
+fn random(state: &mut u32) -> u8 {
+    *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+    (*state >> 24) as u8
+}
+
+/// The content after a loss of power in the change behind the first `complete` ones. Of the bits that the
+/// change would have changed, those of the noise have.
+fn interrupted(before: &Sectors, changes: &[Change], complete: usize, noise: Noise) -> Sectors {
+    let mut sectors = before.clone();
+    for change in &changes[..complete] {
+        sectors.apply(*change);
+    }
+    let Some(change) = changes.get(complete) else {
+        return sectors;
+    };
+    let mut after = sectors.clone();
+    after.apply(*change);
+    let mut state = complete as u32;
+    for at in change.range() {
+        let changing = sectors.bytes()[at] ^ after.bytes()[at];
+        sectors.bytes_mut()[at] ^= changing & noise(&mut state);
+    }
+    sectors
+}
+
+const NONE: Noise = |_| 0;
+const SOME: Noise = random;
+
+/// Starts a board with this content, and stores settings of another number: the settings at the start, and
+/// those in flash at the end.
+fn restarted(flash: Sectors, seconds: f64) -> (Settings, Option<Settings>) {
+    let commands = [
+        (seconds - 0.15, Command::Settings),
+        (seconds - 0.12, serial(3.0)),
+        (seconds - 0.10, Command::Store),
+    ];
+    let setup = Setup {
+        flash: Some(flash),
+        ..Setup::default()
+    };
+    let run = commanded(seconds, &commands, setup);
+    assert_eq!(stored(&run), [Saved::Stored]);
+    (told(&run), run.flash.settings())
+}
+
+/// What the firmware changes in flash to store the number 2 in the place of 1.
+fn stored_once() -> (Sectors, Vec<Change>) {
+    let before = Sectors::with(&numbered(1.0), 1).expect("settings");
+    let setup = Setup {
+        flash: Some(before.clone()),
+        ..Setup::default()
+    };
+    let commands = [(0.05, serial(2.0)), (0.06, Command::Store)];
+    let run = commanded(0.1, &commands, setup);
+    assert_eq!(run.flash.settings(), Some(numbered(2.0)));
+    assert_eq!(run.flash_changes.len(), RECORD);
+    (before, run.flash_changes)
+}
+
+/// Bytes after which the power is lost on the emulated board: every 32nd, and the ends of the record's parts:
+/// number, settings, checksum.
+fn cuts() -> impl Iterator<Item = usize> {
+    const ENDS: [usize; 8] = [1, 3, 4, 8, 251, 252, 253, 255];
+    let every = (0..=RECORD).step_by(32);
+    every.chain(ENDS)
+}
+
+#[test]
+fn loss_of_power_while_settings_are_stored_leaves_the_old_or_the_new_ones() {
+    let (before, changes) = stored_once();
+    for cut in cuts() {
+        let flash = interrupted(&before, &changes, cut, SOME);
+        let [old, new] = [1.0, 2.0].map(numbered);
+        let (at_start, at_end) = restarted(flash, 0.2);
+        assert!(at_start == old || at_start == new, "{cut}: {at_start:?}");
+        assert!((at_start == new) == (cut == RECORD), "{cut}");
+        assert_eq!(at_end, Some(numbered(3.0)), "{cut}");
+    }
+}
+
+/// As above at every byte, with the store of the drivers on the host.
+#[test]
+fn loss_of_power_at_every_byte_leaves_the_old_or_the_new_settings() {
+    let (before, changes) = stored_once();
+    let [old, new, later] = [1.0, 2.0, 3.0].map(numbered);
+    for cut in 0..=changes.len() {
+        for noise in [NONE, SOME] {
+            let mut flash = interrupted(&before, &changes, cut, noise);
+            let found = flash.settings().expect("settings");
+            assert!(found == old || found == new, "{cut}: {found:?}");
+            flash.store(&later).expect("room");
+            assert_eq!(flash.settings(), Some(later), "{cut}");
+        }
+    }
+}
+
+#[test]
+fn loss_of_power_while_a_full_sector_is_erased_keeps_the_settings() {
+    // 64 records fill sector 12; the settings are in sector 13.
+    let before = Sectors::with(&numbered(1.0), 64).expect("settings");
+    let erasure = [Change::Erase { sector: 0 }];
+    for seed in 0..64 {
+        let mut flash = interrupted(&before, &erasure, 0, NONE);
+        let mut state = seed;
+        for byte in &mut flash.bytes_mut()[erasure[0].range()] {
+            // Bits that are set already, or anything.
+            let noise = random(&mut state);
+            *byte = if seed % 2 == 0 { *byte | noise } else { noise };
+        }
+        assert_eq!(flash.settings(), Some(numbered(1.0)), "{seed}");
+        if seed < 2 {
+            let (at_start, at_end) = restarted(flash, 0.7);
+            assert_eq!(at_start, numbered(1.0));
+            assert_eq!(at_end, Some(numbered(3.0)));
+        }
+    }
 }
