@@ -78,7 +78,8 @@ impl Fit {
         let stroke = f64::from(channel.stroke.get());
         if !pairs.is_empty() && largest < REACHED * stroke {
             return Err(format!(
-                "the commands reach {:.0} mA of {:.0} mA: set current-scale to {} at least",
+                "the commands reach {:.0} mA of {:.0} mA: set current-scale to {} at least, and limit-large \
+                 or limit-small to {stroke:.2} A",
                 1e3 * largest,
                 1e3 * stroke,
                 Setting::CurrentScale.facts().default

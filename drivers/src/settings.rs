@@ -1,8 +1,9 @@
 //! The settings that a board keeps in flash.
 
-use haptic_control::CurrentScale;
+use estimator_core::Amps;
+use haptic_control::{CurrentScale, Currents};
 
-use crate::SaveError;
+use crate::{FULL_SCALES, SaveError};
 
 /// Version of the meaning of the settings. A new setting at the end of the list keeps the version.
 const VERSION: u16 = 1;
@@ -34,7 +35,7 @@ pub struct SettingFacts {
 }
 
 macro_rules! settings {
-    ($($(#[doc = $meaning:literal])+ $setting:ident: $name:literal, $unit:literal, $default:literal in $least:literal, $most:literal $($whole:ident)?;)+) => {
+    ($($(#[doc = $meaning:literal])+ $setting:ident: $name:literal, $unit:literal, $default:tt in $least:tt, $most:tt $($whole:ident)?;)+) => {
         /// A setting. Its number is its place in this list. A number never changes its meaning, and a new
         /// setting is added at the end.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,6 +67,10 @@ macro_rules! settings {
     };
 }
 
+/// Full scales of the amplifiers, A.
+const FULL_LARGE: f32 = FULL_SCALES[0].get();
+const FULL_SMALL: f32 = FULL_SCALES[1].get();
+
 settings! {
     /// DAC code at which the current of the large motor is zero.
     ZeroLarge: "zero-large", "codes", 2048.0 in 1848.0, 2248.0;
@@ -84,6 +89,12 @@ settings! {
     Estimator: "estimator", "1", 0.0 in 0.0, 254.0 whole;
     /// Serial number of the device.
     Serial: "serial", "1", 0.0 in 0.0, 16_777_215.0 whole;
+    /// Largest current of the large motor at this bench. The loops use the smaller one of this and of the
+    /// scaled limit of the device.
+    LimitLarge: "limit-large", "A", FULL_LARGE in 0.0, FULL_LARGE;
+    /// Largest current of the small motor at this bench. The loops use the smaller one of this and of the
+    /// scaled limit of the device.
+    LimitSmall: "limit-small", "A", FULL_SMALL in 0.0, FULL_SMALL;
 }
 
 const COUNT: usize = Setting::ALL.len();
@@ -222,10 +233,14 @@ impl Settings {
         is_admitted
     }
 
-    /// The scale of the current limits.
+    /// The scale of the current limits, with the largest currents at this bench.
     #[must_use]
     pub fn current_scale(&self) -> CurrentScale {
-        CurrentScale::new(self.get(Setting::CurrentScale)).unwrap_or(CurrentScale::NONE)
+        let scale = CurrentScale::new(self.get(Setting::CurrentScale));
+        scale.unwrap_or(CurrentScale::NONE).bounded(Currents {
+            large: Amps::new(self.get(Setting::LimitLarge)),
+            small: Amps::new(self.get(Setting::LimitSmall)),
+        })
     }
 
     /// Whether the signs of encoders and currents have been verified.

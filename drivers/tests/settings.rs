@@ -1,10 +1,10 @@
 //! Settings as bytes, their ranges, and settings of other images.
 
-use drivers::{SETTINGS_BYTES, SaveError, Saved, Setting, Settings, SettingsError};
-use haptic_control::CurrentScale;
+use drivers::{FULL_SCALES, SETTINGS_BYTES, SaveError, Saved, Setting, Settings, SettingsError};
+use haptic_control::{CurrentScale, Currents};
 
 /// Names at their numbers. They are in the flash of boards: none ever changes.
-const NAMES: [&str; 8] = [
+const NAMES: [&str; 10] = [
     "zero-large",
     "zero-small",
     "gain-large",
@@ -13,6 +13,8 @@ const NAMES: [&str; 8] = [
     "signs-verified",
     "estimator",
     "serial",
+    "limit-large",
+    "limit-small",
 ];
 
 #[test]
@@ -43,10 +45,35 @@ fn every_default_is_in_its_range_and_every_end_is_kept() {
 fn commissioned_board_has_the_whole_current_and_verified_signs() {
     let [blank, commissioned] = [Settings::DEFAULT, Settings::COMMISSIONED];
     assert!(!blank.are_signs_verified() && commissioned.are_signs_verified());
-    assert_eq!(CurrentScale::new(0.1), Some(blank.current_scale()));
-    assert_eq!(CurrentScale::FULL, commissioned.current_scale());
+    // No limit of the bench: the amplifiers give no more than their full scales.
+    let [large, small] = FULL_SCALES;
+    let unset = |part| CurrentScale::new(part).map(|it| it.bounded(Currents { large, small }));
+    assert_eq!(unset(0.1), Some(blank.current_scale()));
+    assert_eq!(unset(1.0), Some(commissioned.current_scale()));
     let differ = |setting: &&Setting| blank.get(**setting) != commissioned.get(**setting);
     assert_eq!(Setting::ALL.iter().filter(differ).count(), 2);
+}
+
+#[test]
+fn limit_of_the_bench_bounds_its_motor_alone() {
+    let mut settings = Settings::COMMISSIONED;
+    assert!(settings.set(Setting::LimitLarge, 2.0));
+    assert!(settings.set(Setting::CurrentScale, 0.5));
+    let scale = settings.current_scale();
+    // Half of 3 A is below the limit, half of 6 A is not.
+    assert_eq!([scale.large(3.0), scale.large(6.0)], [1.5, 2.0]);
+    assert_eq!(scale.small(1.5), 0.75);
+    assert!(settings.set(Setting::LimitSmall, 0.25));
+    assert_eq!(settings.current_scale().small(1.5), 0.25);
+}
+
+/// Settings of an image that did not have the limits leave them at the full scales.
+#[test]
+fn settings_of_before_the_limits_have_none() {
+    let mut older = Settings::COMMISSIONED.encode();
+    older[2..4].copy_from_slice(&(Setting::LimitLarge as u16).to_le_bytes());
+    older[4 + 4 * 8..].fill(0);
+    assert_eq!(Settings::decode(&older), Ok(Settings::COMMISSIONED));
 }
 
 #[test]

@@ -35,30 +35,78 @@ impl CurrentLimits {
     }
 }
 
-/// The part of the device's current limits that the stages use, 0 to 1.
+/// The part of the device's current limits that the stages use, 0 to 1, and a bound of each current beside it.
 ///
 /// ```
-/// use haptic_control::CurrentScale;
+/// use estimator_core::Amps;
+/// use haptic_control::{CurrentScale, Currents};
 /// assert_eq!(CurrentScale::FULL, CurrentScale::new(1.0).unwrap());
 /// assert!(CurrentScale::new(1.1).is_none() && CurrentScale::new(f32::NAN).is_none());
+/// let bounds = Currents { large: Amps::new(2.0), small: Amps::new(1.0) };
+/// assert_eq!(CurrentScale::new(0.5).unwrap().bounded(bounds).large(6.0), 2.0);
+/// assert_eq!(CurrentScale::new(0.5).unwrap().bounded(bounds).small(1.5), 0.75);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CurrentScale(f32);
+pub struct CurrentScale {
+    part: f32,
+    /// Bounds of the large and the small motor's current, A.
+    bounds: [f32; 2],
+}
 
 impl CurrentScale {
     /// No current.
-    pub const NONE: Self = Self(0.0);
+    pub const NONE: Self = Self::of(0.0);
     /// The limits of the device.
-    pub const FULL: Self = Self(1.0);
+    pub const FULL: Self = Self::of(1.0);
+
+    const fn of(part: f32) -> Self {
+        Self {
+            part,
+            bounds: [f32::INFINITY; 2],
+        }
+    }
 
     /// This part of the limits; `None` unless it is 0 to 1.
     #[must_use]
     pub const fn new(part: f32) -> Option<Self> {
         if 0.0 <= part && part <= 1.0 {
-            Some(Self(part))
+            Some(Self::of(part))
         } else {
             None
         }
+    }
+
+    /// This part of the limits, and no current above these bounds. A bound that is not above 0 leaves no
+    /// current.
+    #[must_use]
+    pub const fn bounded(self, bounds: Currents) -> Self {
+        Self {
+            bounds: [bounds.large.get(), bounds.small.get()],
+            ..self
+        }
+    }
+
+    /// Largest current of the large motor, whose limit is `limit`, A.
+    #[must_use]
+    pub const fn large(self, limit: f32) -> f32 {
+        smaller(limit * self.part, self.bounds[0])
+    }
+
+    /// Largest current of the small motor, whose limit is `limit`, A.
+    #[must_use]
+    pub const fn small(self, limit: f32) -> f32 {
+        smaller(limit * self.part, self.bounds[1])
+    }
+}
+
+/// The smaller one of a limit and a bound; 0 if the bound is not above 0.
+const fn smaller(limit: f32, bound: f32) -> f32 {
+    if bound >= limit {
+        limit
+    } else if bound > 0.0 {
+        bound
+    } else {
+        0.0
     }
 }
 
@@ -67,21 +115,18 @@ impl CurrentScale {
     /// currents of an open loop.
     #[must_use]
     pub fn within(self, device: &DualStage, currents: Currents) -> Currents {
-        let limited = |current: Amps, limit: f64| {
-            let largest = limit as f32 * self.0;
-            Amps::new(within(current.get(), -largest, largest))
-        };
+        let limited =
+            |current: Amps, largest: f32| Amps::new(within(current.get(), -largest, largest));
         Currents {
-            large: limited(currents.large, device.large.current_limit),
-            small: limited(currents.small, device.small.current_limit),
+            large: limited(
+                currents.large,
+                self.large(device.large.current_limit as f32),
+            ),
+            small: limited(
+                currents.small,
+                self.small(device.small.current_limit as f32),
+            ),
         }
-    }
-}
-
-impl CurrentLimits {
-    /// The largest current at a scale, A.
-    pub(crate) const fn largest_at(&self, scale: CurrentScale) -> f32 {
-        self.largest * scale.0
     }
 }
 

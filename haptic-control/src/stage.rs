@@ -123,7 +123,7 @@ impl ContinuousStage {
 
     /// Scales the limit of the current, from the next tick on.
     pub fn scale(&self, state: &mut ContinuousState, scale: CurrentScale) {
-        state.largest = self.limits.largest_at(scale);
+        state.largest = scale.large(self.limits.largest);
     }
 
     /// One tick: the large motor's current for a commanded torque.
@@ -232,7 +232,7 @@ impl TransientStage {
 
     /// Scales the limit of the current, from the next tick on.
     pub fn scale(&self, state: &mut TransientState, scale: CurrentScale) {
-        state.largest = self.limits.largest_at(scale);
+        state.largest = scale.small(self.limits.largest);
     }
 
     /// One tick: the small motor's current for the torque that is missing.

@@ -109,10 +109,19 @@ fn no_controller_of_one_scene_exceeds_the_part() {
 #[test]
 fn time_at_the_scaled_limit_does_not_wind_up() {
     let held = RadPerS(0.0);
+    for (scale, largest) in [
+        (part(), f64::from(PART) * DEVICE.large.current_limit),
+        (bounded(CurrentScale::FULL), BOUNDS[0].into()),
+    ] {
+        does_not_wind_up(held, scale, largest);
+    }
+}
+
+fn does_not_wind_up(held: RadPerS, scale: CurrentScale, largest: f64) {
     let turned = |saturated: u32| -> Vec<f32> {
         let stage = &RIG.continuous;
         let mut state = stage.start(held);
-        stage.scale(&mut state, part());
+        stage.scale(&mut state, scale);
         let mut current = |torque| {
             stage
                 .update(&mut state, NewtonMetres(torque), held, held)
@@ -128,7 +137,51 @@ fn time_at_the_scaled_limit_does_not_wind_up() {
         assert!((short - long).abs() < 1e-3, "{tick}: {short} A, {long} A");
     }
     let last = f64::from(*long.last().expect("ticks"));
-    assert!((last + f64::from(PART) * DEVICE.large.current_limit).abs() < 1e-6);
+    assert!((last + largest).abs() < 1e-6);
+}
+
+/// Bounds below the scaled limits, A.
+const BOUNDS: [f32; 2] = [0.35, 0.08];
+
+fn bounded(scale: CurrentScale) -> CurrentScale {
+    let [large, small] = BOUNDS.map(Amps::new);
+    scale.bounded(Currents { large, small })
+}
+
+#[test]
+fn smaller_one_of_bound_and_scaled_limit_counts() {
+    let limits = [DEVICE.large.current_limit, DEVICE.small.current_limit].map(|it| it as f32);
+    let of = |scale: CurrentScale| [scale.large(limits[0]), scale.small(limits[1])];
+    assert_eq!(of(bounded(CurrentScale::FULL)), BOUNDS);
+    let hundredth = CurrentScale::new(0.01).expect("a part");
+    assert_eq!(of(bounded(hundredth)), limits.map(|limit| 0.01 * limit));
+    assert_eq!(of(bounded(CurrentScale::NONE)), [0.0; 2]);
+    assert_eq!(of(CurrentScale::FULL), limits);
+    for wrong in [-1.0, f32::NAN] {
+        let [large, small] = [Amps::new(wrong); 2];
+        let none = CurrentScale::FULL.bounded(Currents { large, small });
+        assert_eq!(of(none), [0.0; 2], "{wrong}");
+    }
+}
+
+#[test]
+fn no_scene_of_the_switchboard_exceeds_the_bounds() {
+    let mut reached = [0; 2];
+    for kind in SceneKind::ALL {
+        let board = Switchboard::new(LARGE, HANDLE, RIG, RATE);
+        let mut state = board.start(&motion(0));
+        board.scale(&mut state, bounded(CurrentScale::FULL));
+        board.select(&mut state, usual(kind), &motion(0));
+        for k in 0..20_000 {
+            let Currents { large, small } = board.step(&mut state, &motion(k)).currents;
+            for (i, current) in [large, small].into_iter().enumerate() {
+                let current = current.get().abs();
+                assert!(current <= BOUNDS[i], "{kind} {k}");
+                reached[i] += u32::from(current == BOUNDS[i]);
+            }
+        }
+    }
+    assert!(reached.iter().all(|ticks| *ticks > 0), "{reached:?}");
 }
 
 #[test]

@@ -158,6 +158,21 @@ fn control_task_scales_its_currents_at_the_start_and_by_message() {
 }
 
 #[test]
+fn control_task_keeps_its_currents_below_the_limit_of_the_bench() {
+    if !SceneKind::ALL[usize::from(FIRST)].facts().needs.continuous {
+        return;
+    }
+    let limit = 0.01 * DEVICE.large.current_limit as f32;
+    let mut settings = Settings::COMMISSIONED;
+    assert!(settings.set(Setting::LimitLarge, limit));
+    let started = largest(Bench::with(&settings, Stop::None, true));
+    assert_eq!(started, limit);
+    let mut bench = Bench::new();
+    bench.control.accept(Some(Message::Settings(settings)));
+    assert_eq!(largest(bench), limit);
+}
+
+#[test]
 fn estimator_of_the_settings_is_in_charge_after_a_start() {
     let needs = SceneKind::ALL[usize::from(FIRST)].facts().needs;
     for number in 0..3u8 {
