@@ -22,8 +22,8 @@ pub struct Job<'a> {
     pub subject: usize,
     /// At most [`bench_image::mailbox::SAMPLES`].
     pub samples: &'a [Sample],
-    /// Whether to follow every instruction, for cycles; slow.
-    pub follow: bool,
+    /// Number of updates at the end that are followed instruction by instruction, for cycles; slow.
+    pub follow: usize,
 }
 
 /// Results of a job.
@@ -31,7 +31,7 @@ pub struct Job<'a> {
 pub struct Ran {
     /// Instructions of each update, from its first to its return.
     pub instructions: Vec<u32>,
-    /// Estimated cycles of each update, if they were followed.
+    /// Estimated cycles of each followed update.
     pub cycles: Vec<u32>,
     /// Velocity of each update, counts a tick.
     pub velocities: Vec<f32>,
@@ -56,18 +56,36 @@ impl Places {
         })
     }
 
-    fn watches(&self, follow: bool) -> impl Iterator<Item = Watch> {
-        let followed = self.instructions.keys().filter(move |_| follow);
-        let places = self.returns.iter().chain([&self.entry]);
-        places.chain(followed).map(|at| Watch::Instruction(*at))
+    /// Entry and returns.
+    fn ends(&self) -> impl Iterator<Item = u64> {
+        self.returns.iter().copied().chain([self.entry])
+    }
+
+    /// Every other instruction.
+    fn inside(&self) -> impl Iterator<Item = u64> {
+        let all = self.instructions.keys().copied();
+        all.filter(|at| *at != self.entry && !self.returns.contains(at))
     }
 }
 
 /// A job in the format of the board.
 struct Order {
     subject: usize,
-    follow: bool,
+    /// Number of the first update that is followed.
+    follow_from: usize,
     words: Vec<[u32; WORDS]>,
+}
+
+impl Order {
+    fn new(job: &Job<'_>) -> Self {
+        // The first sample starts the estimator.
+        let updates = job.samples.len() - 1;
+        Self {
+            subject: job.subject,
+            follow_from: updates - job.follow,
+            words: job.samples.iter().map(encode).collect(),
+        }
+    }
 }
 
 struct Bench {
@@ -95,8 +113,9 @@ impl Bench {
         let Some((order, mut ran)) = self.running.take() else {
             return Ok(());
         };
-        for watch in self.places[order.subject].watches(order.follow) {
-            host.unwatch(watch);
+        let places = &self.places[order.subject];
+        for at in places.ends().chain(places.inside()) {
+            host.unwatch(Watch::Instruction(at));
         }
         for k in 0..order.words.len() as u64 - 1 {
             let word = host.read(self.velocities + 4 * k, Width::W32)?;
@@ -116,8 +135,8 @@ impl Bench {
         }
         host.write(self.job, Width::W32, order.subject as u64)?;
         host.write(self.job + 4, Width::W32, order.words.len() as u64)?;
-        for watch in self.places[order.subject].watches(order.follow) {
-            host.watch(watch);
+        for at in self.places[order.subject].ends() {
+            host.watch(Watch::Instruction(at));
         }
         self.running = Some((order, Ran::default()));
         Ok(())
@@ -133,6 +152,11 @@ impl Bench {
         };
         let places = &self.places[order.subject];
         if hit.address == places.entry {
+            if ran.instructions.len() == order.follow_from {
+                for at in places.inside() {
+                    host.watch(Watch::Instruction(at));
+                }
+            }
             self.since = Some(hit.instruction_count);
             self.cycles = 0;
             self.at = None;
@@ -149,7 +173,7 @@ impl Bench {
         if places.returns.contains(&hit.address) {
             ran.instructions
                 .push((hit.instruction_count - since) as u32);
-            if order.follow {
+            if ran.instructions.len() > order.follow_from {
                 ran.cycles.push(self.cycles);
             }
             self.since = None;
@@ -201,15 +225,7 @@ pub fn on_board(image: &Image, jobs: &[Job<'_>]) -> Result<Vec<Ran>, String> {
     let mailbox = |name| image.datum(&["bench_image", "mailbox", name]);
     let places: Result<_, String> = SUBJECTS.iter().map(|one| Places::of(image, one)).collect();
     let bench = Bench {
-        jobs: jobs
-            .iter()
-            .rev()
-            .map(|job| Order {
-                subject: job.subject,
-                follow: job.follow,
-                words: job.samples.iter().map(encode).collect(),
-            })
-            .collect(),
+        jobs: jobs.iter().rev().map(Order::new).collect(),
         places: places?,
         ready: image.function(&["bench_image", "ready"])?,
         job: mailbox("JOB")?,

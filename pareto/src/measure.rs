@@ -26,7 +26,7 @@ pub struct Cost {
     pub most: u32,
     /// Mean at rest.
     pub at_rest: f64,
-    /// Estimated cycles for one instruction, on the ends of the traces.
+    /// Estimated cycles for one instruction, at the ends of the traces.
     pub cycles_per_instruction: f64,
     /// Bytes of code and literals that an update reaches.
     pub code: usize,
@@ -80,7 +80,7 @@ pub fn measure() -> Result<Vec<Row>, String> {
     let run = |image| run(image, &traces, &hostile);
     let runs: Result<Vec<_>, String> = images.par_iter().map(run).collect();
     let mut rows: Vec<Row> = Vec::new();
-    for (level, (image, (counted, followed))) in images.iter().zip(runs?).enumerate() {
+    for (level, (image, counted)) in images.iter().zip(runs?).enumerate() {
         for (index, subject) in SUBJECTS.iter().enumerate() {
             let row = match rows.iter().position(|row| row.name == subject.to_string()) {
                 Some(row) => row,
@@ -96,10 +96,9 @@ pub fn measure() -> Result<Vec<Row>, String> {
             };
             let of = |(job, _): &&(Job<'_>, Ran)| job.subject == index;
             let own: Vec<_> = counted.iter().filter(of).collect();
-            let slow: Vec<_> = followed.iter().filter(of).collect();
             let row = &mut rows[row];
             let cost = &mut row.cost[level];
-            *cost = worst(*cost, cost_of(image, subject, &own, &slow)?);
+            *cost = worst(*cost, cost_of(image, subject, &own)?);
             if level == 0 {
                 errors(row, &traces, &own);
             }
@@ -119,14 +118,14 @@ pub fn measure() -> Result<Vec<Row>, String> {
 
 type Runs<'a> = Vec<(Job<'a>, Ran)>;
 
-/// Runs every subject over the traces of its rate: whole traces to count instructions, their ends to
-/// follow instructions, and stress traces only to compare with the host.
+/// Runs every subject over the traces of its rate, and over stress traces, whose runs are only compared
+/// with the host.
 fn run<'a>(
     image: &Image,
     traces: &'a [BenchTrace],
     hostile: &'a [(u32, Vec<Sample>)],
-) -> Result<(Runs<'a>, Runs<'a>), String> {
-    let jobs_of = |traces: &[(u32, &'a [Sample])]| -> Vec<Job<'a>> {
+) -> Result<Runs<'a>, String> {
+    let jobs_of = |traces: &[(u32, &'a [Sample])], follow: usize| -> Vec<Job<'a>> {
         let subjects = SUBJECTS.iter().enumerate();
         let pairs = subjects.flat_map(|pair| traces.iter().map(move |trace| (pair, *trace)));
         pairs
@@ -134,29 +133,23 @@ fn run<'a>(
             .map(|((subject, _), (_, samples))| Job {
                 subject,
                 samples,
-                follow: false,
+                follow,
             })
             .collect()
     };
     let counted = traces.iter().map(|one| (one.rate_hz, &one.samples[..]));
-    let jobs = jobs_of(&counted.collect::<Vec<_>>());
+    let jobs = jobs_of(&counted.collect::<Vec<_>>(), FOLLOWED);
     let compared = hostile
         .iter()
         .map(|(rate_hz, samples)| (*rate_hz, &samples[..]));
-    let compared = jobs_of(&compared.collect::<Vec<_>>());
-    // Enough to fill every window first.
-    let end = |job: &Job<'a>| Job {
-        samples: &job.samples[job.samples.len() - FOLLOWED - 130..],
-        follow: true,
-        ..*job
-    };
-    let ends: Vec<_> = jobs.iter().map(end).collect();
-    let mut ran = on_board(image, &[&jobs[..], &ends[..], &compared[..]].concat())?;
-    let rest = ran.split_off(jobs.len() + ends.len());
-    let compared: Vec<_> = compared.into_iter().zip(rest).collect();
-    let followed: Vec<_> = ends.into_iter().zip(ran.split_off(jobs.len())).collect();
+    let compared = jobs_of(&compared.collect::<Vec<_>>(), 0);
+    let mut ran = on_board(image, &[&jobs[..], &compared[..]].concat())?;
+    let compared: Vec<_> = compared
+        .into_iter()
+        .zip(ran.split_off(jobs.len()))
+        .collect();
     let counted: Vec<_> = jobs.into_iter().zip(ran).collect();
-    for (job, ran) in counted.iter().chain(&followed).chain(&compared) {
+    for (job, ran) in counted.iter().chain(&compared) {
         let subject = &SUBJECTS[job.subject];
         let mut board = ran.velocities.iter();
         let mut same = true;
@@ -173,7 +166,7 @@ fn run<'a>(
             ));
         }
     }
-    Ok((counted, followed))
+    Ok(counted)
 }
 
 fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
@@ -185,16 +178,12 @@ fn mean_count(counts: &[u32]) -> f64 {
     mean(counts.iter().copied().map(f64::from))
 }
 
-fn cost_of(
-    image: &Image,
-    subject: &Subject,
-    own: &[&(Job<'_>, Ran)],
-    slow: &[&(Job<'_>, Ran)],
-) -> Result<Cost, String> {
+fn cost_of(image: &Image, subject: &Subject, own: &[&(Job<'_>, Ran)]) -> Result<Cost, String> {
     let still = |(job, _): &&&(Job<'_>, Ran)| job.samples.iter().all(|s| s == &job.samples[0]);
     let settled = |(_, ran): &(Job<'_>, Ran)| mean_count(&ran.instructions[SKIPPED..]);
-    let sum = |counts: fn(&Ran) -> &[u32]| -> f64 {
-        let ends = slow.iter().flat_map(|(_, ran)| &counts(ran)[130..]);
+    let followed = |counts: fn(&Ran) -> &[u32]| -> f64 {
+        let all = own.iter().map(|(_, ran)| counts(ran));
+        let ends = all.flat_map(|counts| &counts[counts.len() - FOLLOWED..]);
         ends.copied().map(f64::from).sum()
     };
     let reached = image.code.reached(image.update(subject)?);
@@ -206,7 +195,7 @@ fn cost_of(
             .max()
             .unwrap_or(0),
         at_rest: own.iter().find(still).map_or(f64::NAN, |one| settled(one)),
-        cycles_per_instruction: sum(|ran| &ran.cycles) / sum(|ran| &ran.instructions),
+        cycles_per_instruction: followed(|ran| &ran.cycles) / followed(|ran| &ran.instructions),
         code: reached
             .iter()
             .map(|at| image.code.function(*at).len())

@@ -93,7 +93,7 @@ fn measure() -> Result<Vec<Row>, String> {
         jobs.extend(suited.chain(fast).map(|samples| Job {
             subject,
             samples,
-            follow: false,
+            follow: 0,
         }));
     }
     let mut rows: Vec<Row> = Vec::new();
