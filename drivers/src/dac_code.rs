@@ -8,6 +8,18 @@ const STEPS: f32 = 2047.0;
 /// Currents of the large and of the small amplifier at the ends of the DAC.
 pub const FULL_SCALES: [Amps; 2] = [Amps::new(6.0), Amps::new(1.5)];
 
+/// Steps from mid-scale that the output buffer of the DAC reaches: it ends 0.2 V from both rails of a supply
+/// of 3.3 V (data sheet of the STM32F427 and F429, DAC characteristics), and 1.45 V / 1.65 V of 2047 steps
+/// are 1798.9.
+const REACHED_STEPS: f32 = 1798.0;
+
+/// Largest currents of the large and of the small motor that the buffered outputs can command. A loop that
+/// commands more does not know that it is saturated.
+pub const REACHES: [Amps; 2] = [
+    Amps::new(FULL_SCALES[0].get() * (REACHED_STEPS / STEPS)),
+    Amps::new(FULL_SCALES[1].get() * (REACHED_STEPS / STEPS)),
+];
+
 /// A 12-bit DAC code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DacCode(u16);
@@ -91,7 +103,7 @@ impl DacScale {
 
 #[cfg(test)]
 mod tests {
-    use super::{DacCode, DacScale};
+    use super::{DacCode, DacScale, FULL_SCALES, REACHES};
     use estimator_core::Amps;
 
     fn scale(full: f32) -> DacScale {
@@ -112,6 +124,19 @@ mod tests {
                 let back = (f32::from(code) - zero) / 2047.0 * full * gain;
                 assert!((back - amps).abs() <= full * gain / 2047.0 * 0.501, "{k}");
             }
+        }
+    }
+
+    #[test]
+    fn largest_commands_are_within_the_range_of_the_buffer() {
+        for (full, reach) in FULL_SCALES.into_iter().zip(REACHES) {
+            let scale = DacScale::new(full).unwrap();
+            let volts = |amps: f32| f32::from(scale.code(Amps::new(amps)).get()) * 3.3 / 4096.0;
+            let reach = reach.get();
+            assert!(volts(reach) <= 3.1 && volts(-reach) >= 0.2);
+            // Two more steps are beyond it.
+            let beyond = reach + 2.0 * full.get() / 2047.0;
+            assert!(volts(beyond) > 3.1 || volts(-beyond) < 0.2);
         }
     }
 

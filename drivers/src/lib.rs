@@ -14,7 +14,7 @@ mod telemetry;
 pub use adc_scale::AdcScale;
 pub use amplifier::{Amplifier, Amplifiers, CurrentOutput, Enables};
 pub use command::{Command, Parser, encode};
-pub use dac_code::{DacCode, DacScale, FULL_SCALES};
+pub use dac_code::{DacCode, DacScale, FULL_SCALES, REACHES};
 pub use pwm::PwmCurrent;
 pub use settings::{SETTINGS_BYTES, Saved, Setting, SettingFacts, Settings, SettingsError};
 pub use store::{SaveError, Store};

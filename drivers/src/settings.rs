@@ -3,7 +3,7 @@
 use estimator_core::Amps;
 use haptic_control::{CurrentScale, Currents};
 
-use crate::{FULL_SCALES, SaveError};
+use crate::{REACHES, SaveError};
 
 /// Version of the meaning of the settings. A new setting at the end of the list keeps the version.
 const VERSION: u16 = 1;
@@ -67,9 +67,9 @@ macro_rules! settings {
     };
 }
 
-/// Full scales of the amplifiers, A.
-const FULL_LARGE: f32 = FULL_SCALES[0].get();
-const FULL_SMALL: f32 = FULL_SCALES[1].get();
+/// Largest currents that the outputs can command, A.
+const MOST_LARGE: f32 = REACHES[0].get();
+const MOST_SMALL: f32 = REACHES[1].get();
 
 settings! {
     /// DAC code at which the current of the large motor is zero.
@@ -91,10 +91,10 @@ settings! {
     Serial: "serial", "1", 0.0 in 0.0, 16_777_215.0 whole;
     /// Largest current of the large motor at this bench. The loops use the smaller one of this and of the
     /// scaled limit of the device.
-    LimitLarge: "limit-large", "A", FULL_LARGE in 0.0, FULL_LARGE;
+    LimitLarge: "limit-large", "A", MOST_LARGE in 0.0, MOST_LARGE;
     /// Largest current of the small motor at this bench. The loops use the smaller one of this and of the
     /// scaled limit of the device.
-    LimitSmall: "limit-small", "A", FULL_SMALL in 0.0, FULL_SMALL;
+    LimitSmall: "limit-small", "A", MOST_SMALL in 0.0, MOST_SMALL;
 }
 
 const COUNT: usize = Setting::ALL.len();

@@ -1,6 +1,6 @@
 //! Settings as bytes, their ranges, and settings of other images.
 
-use drivers::{FULL_SCALES, SETTINGS_BYTES, SaveError, Saved, Setting, Settings, SettingsError};
+use drivers::{REACHES, SETTINGS_BYTES, SaveError, Saved, Setting, Settings, SettingsError};
 use haptic_control::{CurrentScale, Currents};
 
 /// Names at their numbers. They are in the flash of boards: none ever changes.
@@ -45,8 +45,8 @@ fn every_default_is_in_its_range_and_every_end_is_kept() {
 fn commissioned_board_has_the_whole_current_and_verified_signs() {
     let [blank, commissioned] = [Settings::DEFAULT, Settings::COMMISSIONED];
     assert!(!blank.are_signs_verified() && commissioned.are_signs_verified());
-    // No limit of the bench: the amplifiers give no more than their full scales.
-    let [large, small] = FULL_SCALES;
+    // No limit of the bench: the outputs command no more than this.
+    let [large, small] = REACHES;
     let unset = |part| CurrentScale::new(part).map(|it| it.bounded(Currents { large, small }));
     assert_eq!(unset(0.1), Some(blank.current_scale()));
     assert_eq!(unset(1.0), Some(commissioned.current_scale()));
@@ -67,7 +67,7 @@ fn limit_of_the_bench_bounds_its_motor_alone() {
     assert_eq!(settings.current_scale().small(1.5), 0.25);
 }
 
-/// Settings of an image that did not have the limits leave them at the full scales.
+/// Settings of an image that did not have the limits leave them at the largest currents of the outputs.
 #[test]
 fn settings_of_before_the_limits_have_none() {
     let mut older = Settings::COMMISSIONED.encode();

@@ -1,11 +1,13 @@
 //! An image that measures the currents.
 
+use drivers::REACHES;
 use experiments::closed_loop::Hand;
 use haptic_control::{Mode, SceneKind, Stop};
 use recordings::telemetry::Frame;
 use simulation::device::Device;
 use virtual_board::fault::Fault;
 use virtual_board::run::{DacError, MONITOR_AMPS, Outcome, Setup};
+use virtual_board::scene::press;
 
 use crate::image::{SETTLED_S, adaptive_free_air, of_scene, run_image};
 
@@ -68,6 +70,19 @@ fn healthy_currents_agree_in_every_scene() {
         };
         assert_eq!(end(&run), (expected, Stop::None), "{scene:?}");
     }
+}
+
+/// The buffer of the DAC ends 0.2 V from the rails: a command beyond it would not flow, and would be a mismatch.
+#[test]
+fn currents_at_the_limit_of_the_outputs_agree() {
+    let hand = press(SceneKind::Wall, &Device::default());
+    let run = run_image(IMAGE, &of_scene(SceneKind::Wall, hand, 1.6));
+    assert_eq!(end(&run), (Mode::Running, Stop::None));
+    let [_, reach] = REACHES.map(|reach| f64::from(reach.get()));
+    let small = run.plant_states.iter().map(|state| state.currents[1].abs());
+    let at_the_limit = small.filter(|current| (current - reach).abs() < 1e-3).count();
+    // 50 ms are a mismatch.
+    assert!(at_the_limit > 1000, "{at_the_limit}");
 }
 
 /// A command below the tolerance agrees with no current, so that an open lead takes longer where the
