@@ -35,6 +35,8 @@ pub(crate) struct Amplifier {
     pub(crate) cut: bool,
     /// Whether a lead of its motor is open: no current flows.
     pub(crate) open: bool,
+    /// Whether the leads of its motor are exchanged: the torque has the other sign.
+    pub(crate) reversed: bool,
     /// Whether the wire of its current monitor is broken. A pull-down at the board holds the input low.
     pub(crate) monitor_cut: bool,
     /// Time from its enable until it is ready, ns.
@@ -49,6 +51,7 @@ impl Amplifier {
         unready: false,
         cut: false,
         open: false,
+        reversed: false,
         monitor_cut: false,
         ready_after_ns: READY_AFTER_NS,
         enabled_ns: None,

@@ -11,6 +11,10 @@ pub enum Fault {
     StuckBoth,
     /// Lines A and B of the large motor's encoder are exchanged: it counts backwards.
     Swapped,
+    /// Both lines of the small motor's encoder are stuck.
+    SmallStuck,
+    /// Lines A and B of the small motor's encoder are exchanged: it counts backwards.
+    SmallSwapped,
     /// The last four of every 64 edges of the large motor's encoder are lost.
     LostCounts,
     /// The large motor's amplifier is no longer ready. It continues to drive, so that only the
@@ -26,6 +30,8 @@ pub enum Fault {
     OpenLead,
     /// A lead of the small motor is open.
     SmallOpenLead,
+    /// The leads of the small motor are exchanged: its torque has the other sign.
+    SmallReversed,
     /// The wire of the large amplifier's current monitor breaks.
     BrokenMonitorWire,
     /// The large amplifier takes this number of ms from its enable until it is ready, from power-up
@@ -76,7 +82,7 @@ pub enum Fault {
 }
 
 /// Each fault with its name on the command line and its description.
-const NAMES: [(Fault, &str, &str); 38] = [
+const NAMES: [(Fault, &str, &str); 41] = [
     (Fault::StuckA, "stuck-a", "large encoder's line A stuck"),
     (Fault::StuckB, "stuck-b", "large encoder's line B stuck"),
     (
@@ -88,6 +94,16 @@ const NAMES: [(Fault, &str, &str); 38] = [
         Fault::Swapped,
         "swapped",
         "large encoder's lines A and B exchanged",
+    ),
+    (
+        Fault::SmallStuck,
+        "small-stuck",
+        "both lines of the small encoder stuck",
+    ),
+    (
+        Fault::SmallSwapped,
+        "small-swapped",
+        "small encoder's lines A and B exchanged",
     ),
     (
         Fault::LostCounts,
@@ -123,6 +139,11 @@ const NAMES: [(Fault, &str, &str); 38] = [
         Fault::SmallOpenLead,
         "small-open-lead",
         "a lead of the small motor is open",
+    ),
+    (
+        Fault::SmallReversed,
+        "small-reversed",
+        "leads of the small motor exchanged",
     ),
     (
         Fault::BrokenMonitorWire,

@@ -28,17 +28,24 @@ const PORTS: [Port; 4] = [
     Port(Timer::General(0), &pins::CAPTURE, LARGE),
 ];
 
+/// Faults of the lines of an encoder.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Broken {
+    /// Levels of stuck lines.
+    pub(crate) stuck: [Option<bool>; 2],
+    /// Whether the lines A and B are exchanged.
+    pub(crate) swapped: bool,
+    /// Number of edges since the fault of lost edges began; `None` without it.
+    pub(crate) lossy: Option<u32>,
+}
+
 /// Levels of the encoders' lines.
 #[derive(Debug, Default)]
 pub(crate) struct Lines {
     /// Present counts of the shafts.
     counts: [u32; 3],
-    /// Levels of stuck lines of the large encoder.
-    pub(crate) stuck: [Option<bool>; 2],
-    /// Whether the lines A and B of the large encoder are exchanged.
-    pub(crate) swapped: bool,
-    /// Number of edges of the large encoder since the fault of lost edges began; `None` without it.
-    pub(crate) lossy: Option<u32>,
+    /// Faults of the encoder of the large motor and of the small one.
+    pub(crate) broken: [Broken; 2],
     /// Levels on the pins; `None` until a level is set after a restart.
     driven: [[Option<bool>; 2]; PORTS.len()],
     wired: [bool; PORTS.len()],
@@ -52,9 +59,9 @@ impl Lines {
         }
     }
 
-    /// Present levels of the large encoder's lines.
-    pub(crate) fn now(&self) -> [bool; 2] {
-        self.driven[LARGE].map(Option::unwrap_or_default)
+    /// Present levels of an encoder's lines.
+    pub(crate) fn now(&self, encoder: usize) -> [bool; 2] {
+        self.driven[encoder].map(Option::unwrap_or_default)
     }
 
     /// Resets the levels after a restart of the processor, whose timers have lost them.
@@ -84,7 +91,8 @@ impl Lines {
         (encoder, count): (usize, u32),
     ) {
         self.counts[encoder] = count;
-        if let (LARGE, Some(edges)) = (encoder, &mut self.lossy) {
+        let broken = self.broken.get_mut(encoder);
+        if let Some(edges) = broken.and_then(|broken| broken.lossy.as_mut()) {
             *edges = (*edges + 1) % LOSSY.0;
             if *edges >= LOSSY.0 - LOSSY.1 {
                 return;
@@ -129,11 +137,11 @@ impl Lines {
     /// Levels of an encoder's lines for its count, with the injected faults.
     fn wanted(&self, encoder: usize) -> [bool; 2] {
         let mut wanted = levels(self.counts[encoder]);
-        if encoder == LARGE {
-            if self.swapped {
+        if let Some(broken) = self.broken.get(encoder) {
+            if broken.swapped {
                 wanted.swap(0, 1);
             }
-            for (level, stuck) in wanted.iter_mut().zip(self.stuck) {
+            for (level, stuck) in wanted.iter_mut().zip(broken.stuck) {
                 *level = stuck.unwrap_or(*level);
             }
         }

@@ -137,3 +137,30 @@ pub const FAULTS: Table = Table {
     digits: None,
     command: BOARD,
 };
+
+/// Time until a fault stops a scene while the hand presses, ms.
+pub const SCENE_FAULT_TIME: Table = Table {
+    name: "scene-fault-time",
+    page: "docs/faults.md",
+    columns: &[
+        ("scene", "scene"),
+        ("emergency-stop", "emergency-stop"),
+        ("amplifier-fault", "amplifier-fault"),
+        ("hung-control", "hung-control"),
+        ("stuck-both", "stuck-both"),
+        ("swapped", "swapped"),
+        ("open-lead", "open-lead"),
+        ("small-stuck", "small-stuck"),
+        ("small-swapped", "small-swapped"),
+        ("small-reversed", "small-reversed"),
+        ("small-open-lead", "small-open-lead"),
+    ],
+    digits: None,
+    command: BOARD,
+};
+
+/// Largest force of a fault until the amplifiers are off, mN.
+pub const SCENE_FAULT_FORCE: Table = Table {
+    name: "scene-fault-force",
+    ..SCENE_FAULT_TIME
+};

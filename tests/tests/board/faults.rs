@@ -1,12 +1,14 @@
 //! Faults: what the hand feels until the image has made itself safe.
 
 mod matrix;
+mod scenes;
 
 use std::fmt::Write as _;
 
 use experiments::closed_loop::Hand;
 use haptic_control::{Mode, SceneKind, Stop};
 use measured::tables::FAULTS;
+use rayon::prelude::*;
 use simulation::device::Device;
 use virtual_board::fault::Fault;
 use virtual_board::run::{Outcome, Setup};
@@ -120,14 +122,7 @@ fn every_fault_has_its_documented_outcome() {
         let rows = MATRIX.iter().filter(|bound| bound.fault == fault);
         assert!(rows.count() > 0, "{} has no bound", fault.as_str());
     }
-    // Two at a time: a run takes one thread.
-    let found: Vec<Found> = std::thread::scope(|scope| {
-        let halves = MATRIX.chunks(MATRIX.len().div_ceil(2));
-        let run = |half: &'static [Bound]| half.iter().map(Bound::run).collect::<Vec<_>>();
-        let threads: Vec<_> = halves.map(|half| scope.spawn(move || run(half))).collect();
-        let results = threads.into_iter().map(|thread| thread.join().unwrap());
-        results.flatten().collect()
-    });
+    let found: Vec<Found> = MATRIX.par_iter().map(Bound::run).collect();
     let (mut failed, mut rows) = (String::new(), Vec::new());
     for (bound, found) in MATRIX.iter().zip(&found) {
         let off = match found.off_ms {

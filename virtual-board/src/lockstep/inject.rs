@@ -76,20 +76,25 @@ impl Lockstep {
         stop: Stop,
         host: &mut dyn Host,
     ) {
-        let (at, now) = (stop.at, self.lines.now());
+        let at = stop.at;
+        let now = [LARGE, SMALL].map(|encoder| self.lines.now(encoder));
+        let [large, small] = &mut self.lines.broken;
         let part = &mut session.board_mut().part;
         match fault {
-            Fault::StuckA => self.lines.stuck[0] = Some(now[0]),
-            Fault::StuckB => self.lines.stuck[1] = Some(now[1]),
-            Fault::StuckBoth => self.lines.stuck = now.map(Some),
-            Fault::Swapped => self.lines.swapped = true,
-            Fault::LostCounts => self.lines.lossy = Some(0),
+            Fault::StuckA => large.stuck[0] = Some(now[LARGE][0]),
+            Fault::StuckB => large.stuck[1] = Some(now[LARGE][1]),
+            Fault::StuckBoth => large.stuck = now[LARGE].map(Some),
+            Fault::SmallStuck => small.stuck = now[SMALL].map(Some),
+            Fault::Swapped => large.swapped = true,
+            Fault::SmallSwapped => small.swapped = true,
+            Fault::LostCounts => large.lossy = Some(0),
             Fault::AmplifierFault => self.amplifiers.each[LARGE].unready = true,
             Fault::SmallAmplifierFault => self.amplifiers.each[SMALL].unready = true,
             Fault::BrokenReadyWire => self.amplifiers.each[LARGE].cut = true,
             Fault::Unpowered => self.amplifiers.each[LARGE].powered = false,
             Fault::OpenLead => self.amplifiers.each[LARGE].open = true,
             Fault::SmallOpenLead => self.amplifiers.each[SMALL].open = true,
+            Fault::SmallReversed => self.amplifiers.each[SMALL].reversed = true,
             Fault::BrokenMonitorWire => self.amplifiers.each[LARGE].monitor_cut = true,
             Fault::EmergencyStop => self.amplifiers.stop_until_ns = u64::MAX,
             Fault::InterlockGlitch => self.amplifiers.stop_until_ns = at.0 + GLITCH_NS,

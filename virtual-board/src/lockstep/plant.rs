@@ -31,15 +31,23 @@ impl Lockstep {
                 0.0
             };
         }
+        // A monitor shows the current of the amplifier, whatever the leads of the motor.
+        let sides = self
+            .amplifiers
+            .each
+            .map(|one| if one.reversed { -1.0 } else { 1.0 });
         let (large, small) = self.bench.plant.currents();
-        let levels = self.amplifiers.monitors([large, small], self.monitors);
+        let levels = self
+            .amplifiers
+            .monitors([large * sides[LARGE], small * sides[SMALL]], self.monitors);
         let analog = self.monitors_wired;
         board
             .part
             .drive_monitors([0, 1].map(|n| analog[n].then_some(levels[n])));
-        self.bench
-            .plant
-            .command(self.currents[LARGE], self.currents[SMALL]);
+        self.bench.plant.command(
+            self.currents[LARGE] * sides[LARGE],
+            self.currents[SMALL] * sides[SMALL],
+        );
         if self.steps.is_multiple_of(STEPS_PER_TICK) {
             self.grip = self.motion.grip(self.steps / STEPS_PER_TICK);
             self.recorded.plant_states.push(PlantState {

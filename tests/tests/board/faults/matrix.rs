@@ -152,7 +152,7 @@ const fn halted(ms: u16) -> Bound {
     bound(Fault::Halt(ms), 0.2, end, [NOTICED_MN, 0.0])
 }
 
-pub(super) const MATRIX: [Bound; 46] = [
+pub(super) const MATRIX: [Bound; 49] = [
     one_phase(Fault::StuckA),
     one_phase(Fault::StuckB),
     bound(Fault::StuckBoth, 0.5, STALLS.0, STALLS.1),
@@ -163,6 +163,8 @@ pub(super) const MATRIX: [Bound; 46] = [
         End::Off([0.0, 6.0], Stop::RunawayDirection),
         [90.0, 10.0],
     ),
+    bound(Fault::SmallStuck, 1.0, End::On, [400.0, 5.0]),
+    bound(Fault::SmallSwapped, 1.0, End::On, [400.0, 5.0]),
     bound(Fault::LostCounts, 2.0, End::On, [100.0, 10.0]),
     bound(
         Fault::AmplifierFault,
@@ -200,6 +202,7 @@ pub(super) const MATRIX: [Bound; 46] = [
     // Nothing but a measured current shows it. The compensation of the friction of 0.8 mN.m, 23 mN, is
     // missing, and the transients.
     bound(Fault::SmallOpenLead, 1.0, End::On, [60.0, 5.0]),
+    bound(Fault::SmallReversed, 1.0, End::On, [60.0, 5.0]),
     // This image does not read it.
     bound(Fault::BrokenMonitorWire, 0.2, End::On, [0.0, 0.0]),
     bound(Fault::ReadyAfter(15), 0.3, End::On, [0.0, 0.0]),
