@@ -83,4 +83,7 @@ stops! {
     /// A measured current was not the commanded one for too long, see
     /// [`Ammeters`](crate::Ammeters).
     CurrentMismatch = 19, "current-mismatch";
+    /// Counts of an encoder were lost or gained: an index pulse was not whole turns after the first one,
+    /// see [`Index`](crate::Index). The device file may also have a wrong number of counts per turn.
+    LostCounts = 20, "lost-counts";
 }

@@ -26,6 +26,7 @@ fn every_stop_keeps_its_number_and_name() {
         "interlock",
         "overload",
         "current-mismatch",
+        "lost-counts",
     ];
     assert_eq!(Stop::ALL.map(Stop::as_str), names);
     for code in 0..=u8::MAX {
@@ -34,7 +35,7 @@ fn every_stop_keeps_its_number_and_name() {
             None => assert!(usize::from(code) >= names.len(), "{code}"),
         }
     }
-    assert_eq!(Stop::from_code(19), Some(Stop::CurrentMismatch));
+    assert_eq!(Stop::from_code(20), Some(Stop::LostCounts));
 }
 
 #[test]

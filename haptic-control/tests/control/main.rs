@@ -7,6 +7,7 @@ mod controller;
 mod current_scale;
 mod design;
 mod excite;
+mod index;
 mod margins;
 mod monitor;
 mod monitor_limits;
