@@ -25,8 +25,8 @@ mod wire;
 
 pub use features::{FEATURES, Features};
 pub use messages::{
-    Edge, FieldFacts, Frame, Hello, Learned, Measured, Message, MessageFacts, Reference, Rejected,
-    SCHEMA, Setting, Stored,
+    Edge, FieldFacts, Frame, Hello, Index, Learned, Measured, Message, MessageFacts, Reference,
+    Rejected, SCHEMA, Setting, Stored,
 };
 pub use parser::Parser;
 pub use wire::Label;

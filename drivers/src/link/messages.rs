@@ -24,7 +24,7 @@ pub struct MessageFacts {
 pub struct FieldFacts {
     /// Name.
     pub name: &'static str,
-    /// Type: `u8`, `u16`, `u32`, `f32`, `bool` or `text`.
+    /// Type: `u8`, `u16`, `u32`, `i32`, `f32`, `bool` or `text`.
     pub wire: &'static str,
     /// Number of bytes.
     pub size: usize,
@@ -218,6 +218,31 @@ macro_rules! all {
                 large: f32;
                 /// Mean current of the small motor since the frame before, A.
                 small: f32;
+            }
+            /// Index pulses of both encoders, after a frame since whose predecessor one came, and after
+            /// each 128th frame, by an image with `index-pulse`.
+            Index = 10 {
+                /// Sequence number of the frame.
+                seq: u32;
+                /// Pulses of the large encoder since its reference was taken, the reference included; 0
+                /// without a reference.
+                pulses_large: u32;
+                /// Count of the large encoder at its latest pulse, modulo 2^32.
+                count_large: u32;
+                /// Distance of this pulse from whole turns after the reference, counts.
+                deviation_large: i32;
+                /// Count of the large encoder in the frame, less the one of the reference; 0 without a
+                /// reference.
+                position_large: i32;
+                /// Pulses of the small encoder since its reference was taken, as above.
+                pulses_small: u32;
+                /// Count of the small encoder at its latest pulse, modulo 2^32.
+                count_small: u32;
+                /// Distance of this pulse from whole turns after the reference, counts.
+                deviation_small: i32;
+                /// Count of the small encoder in the frame, less the one of the reference; 0 without a
+                /// reference.
+                position_small: i32;
             }
         }
     };

@@ -39,7 +39,7 @@ macro_rules! numbers {
         }
     )+};
 }
-numbers!(u8 u16 u32 f32);
+numbers!(u8 u16 u32 i32 f32);
 
 /// 0 or 1; any other byte is read as true.
 impl Wire for bool {

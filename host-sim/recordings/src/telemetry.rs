@@ -13,7 +13,7 @@ use haptic_control::Fingerprint;
 pub(crate) use frame::{COLUMNS, Column};
 pub use frame::{Frame, NOBODY};
 pub use run::{Gaps, Run};
-pub use side_lines::{EdgeLine, LearnedLine, MeasuredLine, SideLines};
+pub use side_lines::{EdgeLine, IndexLine, LearnedLine, MeasuredLine, SideLines};
 
 /// A decoded stream.
 #[derive(Clone, Debug, Default)]

@@ -3,7 +3,7 @@
 use drivers::link::Message;
 use haptic_control::Fingerprint;
 
-use super::{Boot, EdgeLine, LearnedLine, MeasuredLine, SideLines, Telemetry};
+use super::{Boot, EdgeLine, IndexLine, LearnedLine, MeasuredLine, SideLines, Telemetry};
 
 impl Telemetry {
     /// Adds a message. Lines beside a frame that is missing are ignored, as in a log.
@@ -46,6 +46,22 @@ impl Telemetry {
                     small: decimal(measured.small),
                 });
             }),
+            Message::Index(index) => self.beside(index.seq, |lines| {
+                lines.index = Some([
+                    IndexLine {
+                        pulses: index.pulses_large,
+                        count: index.count_large,
+                        deviation: index.deviation_large,
+                        position: index.position_large,
+                    },
+                    IndexLine {
+                        pulses: index.pulses_small,
+                        count: index.count_small,
+                        deviation: index.deviation_small,
+                        position: index.position_small,
+                    },
+                ]);
+            }),
         }
     }
 
@@ -64,7 +80,7 @@ fn decimal(value: f32) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use drivers::link::{Edge, Frame, Hello, Label, Learned, Measured, PROTOCOL, Reference};
+    use drivers::link::{Edge, Frame, Hello, Index, Label, Learned, Measured, PROTOCOL, Reference};
 
     use super::*;
     use crate::record::csv;
@@ -138,10 +154,23 @@ mod tests {
             large: 0.5,
             small: -0.1,
         }));
+        telemetry.add(Message::Index(Index {
+            seq: 5,
+            pulses_large: 2,
+            count_large: 4097,
+            deviation_large: -1,
+            position_large: 4096,
+            pulses_small: 3,
+            count_small: 4_294_967_295,
+            deviation_small: 9,
+            position_small: -7,
+        }));
         log += "edge seq=5 bound=9 age=84\n\
                 learned seq=5 damping=0.1 friction=-0.2 torque_constant=0.3\n\
                 reference seq=5 count=11\n\
-                measured seq=5 large=0.5 small=-0.1\n";
+                measured seq=5 large=0.5 small=-0.1\n\
+                index seq=5 pulses_large=2 count_large=4097 deviation_large=-1 position_large=4096 \
+                pulses_small=3 count_small=4294967295 deviation_small=9 position_small=-7\n";
         let logged = Telemetry::text(log.as_bytes());
         assert_eq!(telemetry.frames, logged.frames);
         assert_eq!(telemetry.boots, logged.boots);

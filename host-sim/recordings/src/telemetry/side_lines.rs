@@ -13,6 +13,8 @@ pub struct SideLines {
     pub reference: Option<u32>,
     /// `measured`: measured currents.
     pub measured: Option<MeasuredLine>,
+    /// `index`: index pulses of the large and the small encoder.
+    pub index: Option<[IndexLine; 2]>,
 }
 
 /// An edge of the large encoder.
@@ -44,9 +46,23 @@ pub struct MeasuredLine {
     pub small: f64,
 }
 
+/// Index pulses of an encoder.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct IndexLine {
+    /// Pulses since the reference was taken; 0 without a reference.
+    pub pulses: u32,
+    /// Count of the latest pulse.
+    pub count: u32,
+    /// Distance of the latest pulse from whole turns, counts.
+    pub deviation: i32,
+    /// Count of the frame less the one of the reference; 0 without a reference.
+    pub position: i32,
+}
+
 /// Begins of side lines.
-pub(super) const STARTS: [&str; 4] = [
+pub(super) const STARTS: [&str; 5] = [
     "edge seq=",
+    "index seq=",
     "learned seq=",
     "measured seq=",
     "reference seq=",
@@ -81,6 +97,22 @@ impl Frame {
                     small: fields.number("small")?,
                 });
             }
+            Some("index") => {
+                lines.index = Some([
+                    IndexLine {
+                        pulses: fields.number("pulses_large")?,
+                        count: fields.number("count_large")?,
+                        deviation: fields.number("deviation_large")?,
+                        position: fields.number("position_large")?,
+                    },
+                    IndexLine {
+                        pulses: fields.number("pulses_small")?,
+                        count: fields.number("count_small")?,
+                        deviation: fields.number("deviation_small")?,
+                        position: fields.number("position_small")?,
+                    },
+                ]);
+            }
             _ => lines.reference = Some(fields.number("count")?),
         }
         Ok(())
@@ -99,6 +131,8 @@ mod tests {
             "{LINE}\n[INFO ] edge seq=3 bound=4294967295 age=42 (firmware src/telemetry.rs:99)\n\
              learned seq=3 damping=0.1 friction=-0.2 torque_constant=0\nreference seq=3 count=9\n\
              measured seq=3 large=-0.25 small=1.5\n\
+             index seq=3 pulses_large=2 count_large=4097 deviation_large=-1 position_large=4096 \
+             pulses_small=0 count_small=7 deviation_small=9 position_small=0\n\
              {LINE}\nedge seq=4 bound=1 age=1\nedge seq=3 bound=x age=1\nedge seq=3 bound=1\n"
         );
         let telemetry = Telemetry::text(log.as_bytes());
@@ -120,6 +154,20 @@ mod tests {
                 large: -0.25,
                 small: 1.5,
             }),
+            index: Some([
+                IndexLine {
+                    pulses: 2,
+                    count: 4097,
+                    deviation: -1,
+                    position: 4096,
+                },
+                IndexLine {
+                    pulses: 0,
+                    count: 7,
+                    deviation: 9,
+                    position: 0,
+                },
+            ]),
         };
         assert_eq!(first.side_lines, expected);
         assert_eq!(second.side_lines, SideLines::default());
