@@ -8,6 +8,7 @@
 use drivers::{Saved, Settings};
 use estimator_core::{Amps, Count, Sample};
 use firmware_app::ammeter::Measured;
+use firmware_app::index::Pulses;
 use firmware_app::port::PortFaults;
 use haptic_control::{Currents, Stop};
 
@@ -28,6 +29,10 @@ pub(crate) trait Board {
 
     /// Reads the encoders. `current` is the large motor's current over the period just ended.
     fn sample(&mut self, current: Amps) -> Sample;
+
+    /// Returns the index pulses since the last call, if the image captures them, by the counts of
+    /// [`Self::sample`], which comes before.
+    fn pulses(&mut self) -> Pulses;
 
     /// Reads the reference encoder, if the image has one.
     fn reference(&mut self) -> Option<Count>;

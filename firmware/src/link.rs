@@ -1,8 +1,8 @@
 //! The link: messages to the host over the serial port and RTT, sent at the lowest priority.
 
 use drivers::link::{
-    Edge, Features, Frame as FrameMessage, Hello, LONGEST, Label, Learned, Measured, Message,
-    PROTOCOL, Reference, Rejected as RejectedMessage, Setting as SettingMessage,
+    Edge, Features, Frame as FrameMessage, Hello, Index, LONGEST, Label, Learned, Measured,
+    Message, PROTOCOL, Reference, Rejected as RejectedMessage, Setting as SettingMessage,
 };
 use drivers::{Setting, Settings};
 use estimator_core::Count;
@@ -87,6 +87,19 @@ impl<P: Port> Link<P> {
         if let Some(Currents { large, small }) = frame.measured() {
             let (large, small) = (large.get(), small.get());
             self.send(Measured { seq, large, small });
+        }
+        if let Some([large, small]) = frame.index() {
+            self.send(Index {
+                seq,
+                pulses_large: large.pulses,
+                count_large: large.count.0,
+                deviation_large: large.deviation,
+                position_large: large.position.0,
+                pulses_small: small.pulses,
+                count_small: small.count.0,
+                deviation_small: small.deviation,
+                position_small: small.position.0,
+            });
         }
         if let Some(Count(count)) = frame.reference {
             self.send(Reference { seq, count });

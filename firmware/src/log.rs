@@ -65,6 +65,20 @@ fn log(frame: &Frame, lost: u32) {
             small.get()
         );
     }
+    if let Some([large, small]) = frame.index() {
+        defmt::info!(
+            "index seq={=u32} pulses_large={=u32} count_large={=u32} deviation_large={=i32} position_large={=i32} pulses_small={=u32} count_small={=u32} deviation_small={=i32} position_small={=i32}",
+            frame.seq,
+            large.pulses,
+            large.count.0,
+            large.deviation,
+            large.position.0,
+            small.pulses,
+            small.count.0,
+            small.deviation,
+            small.position.0
+        );
+    }
     if let Some(Count(count)) = frame.reference {
         defmt::info!("reference seq={=u32} count={=u32}", frame.seq, count);
     }

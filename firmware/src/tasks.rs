@@ -128,13 +128,15 @@ impl ControlTask {
             clock_failure: board.clock_failure(),
             missed,
             debugger: arms && firmware_rt::debugger_interferes(),
+            pulses: board.pulses(),
             request,
         };
         board.apply(control.step(&sample, &flow, &inputs));
         if sender.is_due() {
             let record = control.record(&sample);
-            let measured = control.take_measured();
-            sender.send(record, measured, board.take_longest(), board.reference());
+            let (measured, index) = (control.take_measured(), control.take_index(&sample));
+            let (cycles, reference) = (board.take_longest(), board.reference());
+            sender.send(record, measured, index, cycles, reference);
         }
         board.end_tick();
     }

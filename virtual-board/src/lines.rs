@@ -6,7 +6,7 @@ use rigless::time::VirtualNanos;
 
 use crate::board::Part;
 use crate::pins::{self, Wire};
-use crate::quadrature::{LARGE, REFERENCE, SMALL, levels};
+use crate::quadrature::{Index, LARGE, REFERENCE, SMALL, levels};
 
 /// Number of edges of which the last ones are lost, and number of lost edges.
 const LOSSY: (u32, u32) = (64, 4);
@@ -39,6 +39,21 @@ pub(crate) struct Broken {
     pub(crate) lossy: Option<u32>,
 }
 
+/// An index line: number of its general timer, channel, and encoder.
+struct IndexPort(usize, u8, usize);
+
+/// At the places of [`pins::INDICES`].
+const INDICES: [IndexPort; 2] = [IndexPort(2, 3, LARGE), IndexPort(1, 4, SMALL)];
+
+/// An index line as it is.
+#[derive(Clone, Copy, Debug, Default)]
+struct IndexLine {
+    index: Index,
+    wired: bool,
+    /// Level on the pin; `None` until one is set after a restart.
+    driven: Option<bool>,
+}
+
 /// Levels of the encoders' lines.
 #[derive(Debug, Default)]
 pub(crate) struct Lines {
@@ -49,12 +64,19 @@ pub(crate) struct Lines {
     /// Levels on the pins; `None` until a level is set after a restart.
     driven: [[Option<bool>; 2]; PORTS.len()],
     wired: [bool; PORTS.len()],
+    indices: [IndexLine; INDICES.len()],
 }
 
 impl Lines {
-    pub(crate) fn at(counts: [u32; 3]) -> Self {
+    /// The lines at these counts of the shafts. `turns`: counts per turn of the large and the small
+    /// encoder.
+    pub(crate) fn at(counts: [u32; 3], turns: [u32; 2]) -> Self {
         Self {
             counts,
+            indices: [LARGE, SMALL].map(|n| IndexLine {
+                index: Index::new(turns[n], counts[n]),
+                ..IndexLine::default()
+            }),
             ..Self::default()
         }
     }
@@ -68,6 +90,9 @@ impl Lines {
     pub(crate) fn restart(&mut self) {
         self.driven = Default::default();
         self.wired = Default::default();
+        for line in &mut self.indices {
+            (line.wired, line.driven) = (false, None);
+        }
     }
 
     /// Finds the pins that the firmware has connected to timers, and sets their levels.
@@ -76,6 +101,10 @@ impl Lines {
             self.wired[n] = pins::wired(part, *wires);
             self.drive(part, at, *encoder);
         }
+        for (n, wire) in pins::INDICES.iter().enumerate() {
+            self.indices[n].wired = pins::wired(part, &[*wire]);
+            self.drive_index(part, at, n);
+        }
     }
 
     /// Whether the firmware reads the reference encoder.
@@ -83,7 +112,7 @@ impl Lines {
         self.wired[REFERENCE]
     }
 
-    /// Sets the lines of an encoder to the levels of `count`, unless the edge is lost.
+    /// Sets the lines of an encoder to the levels of `count`. A lost edge is one of A and B.
     pub(crate) fn reach(
         &mut self,
         part: &mut Part,
@@ -91,6 +120,16 @@ impl Lines {
         (encoder, count): (usize, u32),
     ) {
         self.counts[encoder] = count;
+        self.follow(part, at, encoder);
+        for (n, IndexPort(.., of)) in INDICES.iter().enumerate() {
+            if *of == encoder {
+                self.drive_index(part, at, n);
+            }
+        }
+    }
+
+    /// Sets the lines A and B of an encoder to its count, unless the edge is lost.
+    fn follow(&mut self, part: &mut Part, at: VirtualNanos, encoder: usize) {
         let broken = self.broken.get_mut(encoder);
         if let Some(edges) = broken.and_then(|broken| broken.lossy.as_mut()) {
             *edges = (*edges + 1) % LOSSY.0;
@@ -132,6 +171,21 @@ impl Lines {
                 }
             }
         }
+    }
+
+    /// Sets the pin of an index line to the level of its shaft. It follows A and B at the same instant:
+    /// an input that settles at the same sample is taken after them.
+    fn drive_index(&mut self, part: &mut Part, at: VirtualNanos, n: usize) {
+        let IndexPort(timer, channel, encoder) = INDICES[n];
+        let line = &mut self.indices[n];
+        let level = line.index.level(self.counts[encoder]);
+        if !line.wired || line.driven.replace(level) == Some(level) {
+            return;
+        }
+        let channel = Channel::new(channel).expect("channels 3 and 4");
+        part.stm32.drive_timer(at, timer, |timer, r, context| {
+            timer.drive_input(channel, Level::from(level), r, context);
+        });
     }
 
     /// Levels of an encoder's lines for its count, with the injected faults.

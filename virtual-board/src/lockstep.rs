@@ -126,9 +126,11 @@ impl Lockstep {
         if setup.generator_hz.is_some() {
             counts[LARGE] = 0;
         }
+        let stages = &setup.device.stages;
+        let turns = [&stages.large, &stages.small].map(|motor| motor.counts_per_rev);
         Self {
             recorded: Recorded::default(),
-            lines: Lines::at(counts),
+            lines: Lines::at(counts, turns),
             amplifiers: Amplifiers::new(&setup.faults),
             bench,
             reference,

@@ -49,6 +49,12 @@ pub const REFERENCE: [Wire; 2] = [
     ('E', 11, Mode::Function(1), "reference encoder B, TIM1_CH2"),
 ];
 
+/// The index lines of the large and the small encoder, of an image that captures them.
+pub const INDICES: [Wire; 2] = [
+    ('D', 14, Mode::Function(2), "large encoder index, TIM4_CH3"),
+    ('B', 1, Mode::Function(2), "small encoder index, TIM3_CH4"),
+];
+
 /// The serial port to the host.
 pub const PORT: [Wire; 2] = [
     ('D', 8, Mode::Function(7), "serial port out, USART3_TX"),

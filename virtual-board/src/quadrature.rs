@@ -8,6 +8,30 @@ pub(crate) fn levels(count: u32) -> [bool; 2] {
     [phase == 1 || phase == 2, phase >= 2]
 }
 
+/// An index, gated by A and B: high for one count per turn.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Index {
+    /// Counts of a turn.
+    turn: u32,
+    /// Count at the begin of a run, which is arbitrary.
+    first: u32,
+}
+
+impl Index {
+    /// The index of a shaft of `turn` counts that is at the count `first`. The remainder of that count
+    /// says how far away the index is.
+    pub(crate) fn new(turn: u32, first: u32) -> Self {
+        Self { turn, first }
+    }
+
+    /// Level at a count less than 2^31 counts away from the first: counts go round after 2^32, which
+    /// are no whole turns.
+    pub(crate) fn level(self, count: u32) -> bool {
+        let moved = i64::from(count.wrapping_sub(self.first).cast_signed());
+        (i64::from(self.first) + moved).rem_euclid(self.turn.into()) == 0
+    }
+}
+
 /// Indices of the encoders.
 pub(crate) const LARGE: usize = 0;
 pub(crate) const SMALL: usize = 1;
@@ -85,6 +109,21 @@ impl Generator {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn index_is_high_for_one_count_a_turn() {
+        // A turn is 20 000 counts, and the counts go round 7296 counts after a whole turn.
+        for first in [0, 12_345, u32::MAX - 5000] {
+            let index = Index::new(20_000, first);
+            let counts =
+                (-45_000..45_000).filter(|moved| index.level(first.wrapping_add_signed(*moved)));
+            let counts: Vec<_> = counts.collect();
+            let nearest = -((first % 20_000).cast_signed());
+            assert!(counts.contains(&nearest), "{first}");
+            assert!(counts.windows(2).all(|pair| pair[1] - pair[0] == 20_000));
+            assert!((4..=5).contains(&counts.len()), "{counts:?}");
+        }
+    }
 
     #[test]
     fn one_line_changes_at_a_time_and_a_leads_in_upward_counting() {

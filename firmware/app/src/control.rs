@@ -9,6 +9,7 @@ use haptic_control::{
 
 use crate::ammeter::{Ammeter, Measure as _, Measured};
 use crate::config::{AUTO_ARM, DEVICE, RATE, RATE_HZ, SILENCE};
+use crate::index::{Indexing as _, Indices, Pulses, Reported};
 use crate::large::{Choice, Large, LargeEstimator as _};
 use crate::scene::{Core, FIRST, SCENES, Tuned};
 use crate::telemetry::Record;
@@ -42,6 +43,8 @@ pub struct Inputs {
     pub missed: u32,
     /// Debug settings are on that would hold the outputs in a halt.
     pub debugger: bool,
+    /// Index pulses since the last tick.
+    pub pulses: Pulses,
     /// A request to the safety machine.
     pub request: Option<Request>,
 }
@@ -66,6 +69,7 @@ pub struct Control {
     /// Outlives every restart.
     windings: WindingsState,
     ammeter: Ammeter,
+    indices: Indices,
     safety: SafetyState,
     /// Action of the latest tick.
     action: Action,
@@ -95,6 +99,7 @@ impl Control {
             monitor: MONITOR.start(first),
             windings: WindingsState::cold(),
             ammeter: Ammeter::new(),
+            indices: Indices::start(),
             safety: SAFETY.start(reset),
             action: Action::default(),
             ticks: 0,
@@ -111,6 +116,11 @@ impl Control {
     /// Mean measured currents since the last call.
     pub fn take_measured(&mut self) -> Measured {
         self.ammeter.take_means()
+    }
+
+    /// Index pulses, at the sample of the latest tick.
+    pub fn take_index(&mut self, sample: &Sample) -> Reported {
+        self.indices.take_reported(sample)
     }
 
     /// Currents over the period that ends now: those measured, or those commanded in an image that
@@ -146,12 +156,14 @@ impl Control {
     pub fn step(&mut self, sample: &Sample, flow: &Flow, inputs: &Inputs) -> Option<Currents> {
         self.overruns = self.overruns.wrapping_add(inputs.missed);
         let overload = WINDINGS.check(&mut self.windings, &flow.currents);
+        let lost_counts = self.indices.check(&inputs.pulses);
         let mut action = self.core.step(sample);
         let findings = Findings {
             monitor: MONITOR
                 .check(&mut self.monitor, sample)
                 .or(overload)
-                .or(flow.mismatch),
+                .or(flow.mismatch)
+                .or(lost_counts),
             amplifiers_ready: inputs.amplifiers_ready,
             interlock: inputs.interlock,
             clock_failure: inputs.clock_failure,
@@ -165,6 +177,7 @@ impl Control {
             self.core.restart(sample);
             self.monitor = MONITOR.start(sample);
             self.ammeter.restart();
+            self.indices.forget();
         }
         if let Some(scene) = order.select {
             self.core.select(scene, sample);

@@ -6,6 +6,7 @@ pub mod ammeter;
 pub mod commands;
 pub mod config;
 pub mod control;
+pub mod index;
 pub mod large;
 pub mod port;
 pub mod reports;

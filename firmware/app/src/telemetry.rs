@@ -6,6 +6,7 @@ use heapless::spsc::{Producer, Queue};
 
 use crate::ammeter::{Measured, Measurement as _};
 use crate::config::{DECIMATION, EDGES};
+use crate::index::{Indication, Indications as _, Reported};
 use crate::large::{Learnable as _, Learned};
 use crate::scene::{Estimation, RIG};
 
@@ -48,6 +49,7 @@ pub struct Frame {
     /// Count of the reference encoder, if there is one.
     pub reference: Option<Count>,
     measured: Measured,
+    index: Reported,
     drops: u32,
 }
 
@@ -83,6 +85,7 @@ impl<'q> Sender<'q> {
         &mut self,
         record: Record,
         measured: Measured,
+        index: Reported,
         cycles: u32,
         reference: Option<Count>,
     ) {
@@ -93,6 +96,7 @@ impl<'q> Sender<'q> {
             cycles,
             reference,
             measured,
+            index,
         };
         self.seq = self.seq.wrapping_add(1);
         if self.queue.enqueue(frame).is_err() {
@@ -104,8 +108,8 @@ impl<'q> Sender<'q> {
 /// Number of the estimator in a frame where none is in charge.
 const NOBODY: u8 = u8::MAX;
 
-/// Frames for one line of what was learned, which changes slowly.
-const LEARNED_EVERY: u32 = 128;
+/// Frames for one line of what changes slowly.
+const SLOWLY: u32 = 128;
 
 impl Frame {
     /// Frames lost so far: before this one in the queue, and `lost` of them after it.
@@ -142,7 +146,20 @@ impl Frame {
     /// Learned parameter errors, in one frame of 128 and by estimators that learn.
     #[must_use]
     pub fn learned(&self) -> Option<ParameterErrors> {
-        let due = self.seq.is_multiple_of(LEARNED_EVERY);
-        self.record.learned.deviations().filter(|_| due)
+        self.record
+            .learned
+            .deviations()
+            .filter(|_| self.is_one_of_many())
+    }
+
+    /// Index pulses of the large and the small encoder, if one came since the frame before, and in one
+    /// frame of 128.
+    #[must_use]
+    pub fn index(&self) -> Option<[Indication; 2]> {
+        self.index.pair(self.is_one_of_many())
+    }
+
+    fn is_one_of_many(&self) -> bool {
+        self.seq.is_multiple_of(SLOWLY)
     }
 }

@@ -85,6 +85,7 @@ pub(crate) fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
             clock_failure: false,
             missed: 0,
             debugger: false,
+            pulses: Skip,
             request: Some(request.unwrap_or(Request::KeepAlive)),
         };
         let currents = control.step(&sample, &flow, &inputs);

@@ -8,6 +8,7 @@ use firmware_app::ammeter::Measured;
 use firmware_app::commands::{Channel, Commands, Messages};
 use firmware_app::config::{DEVICE, RATE_HZ};
 use firmware_app::control::{Control, Inputs, Message};
+use firmware_app::index::{Indexing, Indices, Pulses, Reported};
 use firmware_app::telemetry::Record;
 use haptic_control::{Currents, DualStage, Mode, Request, Stop};
 
@@ -28,6 +29,7 @@ pub(crate) const CALM: Inputs = Inputs {
     clock_failure: false,
     missed: 0,
     debugger: false,
+    pulses: <Indices as Indexing>::NONE,
     request: None,
 };
 
@@ -124,6 +126,12 @@ impl Bench {
             .record(&self.sample(self.control.applied().large))
     }
 
+    /// What is reported of the indices.
+    pub(crate) fn take_index(&mut self) -> Reported {
+        let sample = self.sample(self.control.applied().large);
+        self.control.take_index(&sample)
+    }
+
     pub(crate) fn state(&self) -> (Mode, Stop) {
         let Record { state, cause, .. } = self.record();
         (state, cause)
@@ -162,6 +170,16 @@ pub(crate) fn readings(currents: Currents) -> Measured {
 }
 #[cfg(not(feature = "current-monitor"))]
 pub(crate) fn readings(_: Currents) -> Measured {
+    estimator_core::Skip
+}
+
+/// Index pulses of the large and the small encoder.
+#[cfg(feature = "index-pulse")]
+pub(crate) fn pulses(counts: [Option<Count>; 2]) -> Pulses {
+    counts
+}
+#[cfg(not(feature = "index-pulse"))]
+pub(crate) fn pulses(_: [Option<Count>; 2]) -> Pulses {
     estimator_core::Skip
 }
 

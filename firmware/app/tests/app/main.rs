@@ -5,6 +5,7 @@ mod ammeter;
 mod bench;
 mod commands;
 mod control;
+mod index;
 mod large;
 mod port;
 mod rest;

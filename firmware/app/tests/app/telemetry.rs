@@ -3,12 +3,13 @@ use core::f32::consts::TAU;
 use estimator_core::{Amps, ClockTicks, Count, Edge, Variance};
 use firmware_app::ammeter::{Ammeter, Measure, Measured};
 use firmware_app::config::{EDGES, RATE_HZ};
+use firmware_app::index::{Indexing, Indices, Reported};
 use firmware_app::large::Learnable as _;
 use firmware_app::scene::Estimation;
 use firmware_app::telemetry::{Frame, Frames, Record, Sender};
 use haptic_control::Currents;
 
-use crate::bench::{Bench, CALM, readings};
+use crate::bench::{Bench, CALM, pulses, readings};
 
 fn record() -> Record {
     let mut bench = Bench::new();
@@ -31,16 +32,28 @@ fn measured() -> Measured {
     ammeter.take_means()
 }
 
+/// The report of indices, with or without a pulse of both since the one before.
+fn index(pulse: bool) -> Reported {
+    let mut indices = Indices::start();
+    indices.check(&pulses([pulse.then_some(Count(4)); 2]));
+    indices.take_reported(&record().sample)
+}
+
 /// The frame of this record, after `before` others.
 fn frame(record: Record, before: u32) -> Frame {
+    frame_with(record, index(false), before)
+}
+
+/// The frame of this record and these indices, after `before` others.
+fn frame_with(record: Record, index: Reported, before: u32) -> Frame {
     let mut queue = Frames::new();
     let (producer, mut consumer) = queue.split();
     let mut sender = Sender::new(producer);
     for _ in 0..before {
-        sender.send(record, measured(), 0, None);
+        sender.send(record, measured(), index, 0, None);
         consumer.dequeue().expect("a frame");
     }
-    sender.send(record, measured(), 321, Some(Count(7)));
+    sender.send(record, measured(), index, 321, Some(Count(7)));
     consumer.dequeue().expect("a frame")
 }
 
@@ -61,14 +74,14 @@ fn dropped_frames_leave_a_gap_in_seq_equal_to_drops() {
     let mut sender = Sender::new(producer);
     let record = record();
     for _ in 0..40 {
-        sender.send(record, measured(), 0, None);
+        sender.send(record, measured(), index(false), 0, None);
     }
     let waiting: Vec<_> = core::iter::from_fn(|| consumer.dequeue()).collect();
     let found = waiting.len() as u32;
     assert!(found < 40);
     assert!(waiting.iter().map(|frame| frame.seq).eq(0..found));
     assert!(waiting.iter().all(|frame| frame.drops(0) == 0));
-    sender.send(record, measured(), 0, None);
+    sender.send(record, measured(), index(false), 0, None);
     let next = consumer.dequeue().expect("there is place again");
     assert_eq!(next.seq, 40);
     assert_eq!(next.drops(0), 40 - found);
@@ -136,5 +149,21 @@ fn learned_line_is_sent_with_one_frame_of_128() {
             learned.filter(|_| due),
             "{seq}"
         );
+    }
+}
+
+#[test]
+fn index_line_is_sent_after_a_pulse_and_with_one_frame_of_128() {
+    let record = record();
+    for (seq, pulse, due) in [
+        (0, false, true),
+        (1, false, false),
+        (1, true, true),
+        (127, false, false),
+        (128, false, true),
+    ] {
+        let sent = frame_with(record, index(pulse), seq).index();
+        let expected = <Indices as Indexing>::WANTED && due;
+        assert_eq!(sent.is_some(), expected, "{seq} {pulse}");
     }
 }

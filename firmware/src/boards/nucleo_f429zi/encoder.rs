@@ -51,6 +51,11 @@ impl<T: Counter> Encoder<T> {
         self.take(self.timer.raw())
     }
 
+    /// The count of a capture that is at most 2^15 counts away from the count as read last.
+    pub(super) fn captured(&self, raw: u16) -> Count {
+        self.count.extended(raw)
+    }
+
     /// The count that `raw` stands for, read from the timer just now.
     pub(super) fn take(&mut self, raw: u16) -> Count {
         self.count = self.count.extended(raw);

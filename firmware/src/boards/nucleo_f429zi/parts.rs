@@ -6,6 +6,7 @@ use drivers::{
 use estimator_core::{Amps, Count, Sample};
 use firmware_app::ammeter::Measured;
 use firmware_app::config::{DEVICE, REFERENCE, TIMER_HZ};
+use firmware_app::index::Pulses;
 use haptic_control::Currents;
 use stm32f4xx_hal::dac::{C1, C2, DacOut, DacPin};
 use stm32f4xx_hal::gpio::{Input, PE2, PE6};
@@ -19,6 +20,7 @@ use super::ammeters::{Monitors, Wires as _};
 use super::edge::{Source, Stamps as _};
 use super::enables::Outputs;
 use super::encoder::Encoder;
+use super::indices::{Indices, Lines as _};
 use super::memory::Flash;
 use super::port::Usart;
 use super::reset::{self, LateCrystal};
@@ -54,6 +56,7 @@ struct Encoders {
     large: Encoder<TIM4>,
     small: Encoder<TIM3>,
     stamps: Source,
+    indices: Indices,
     reference: Option<Encoder<TIM1>>,
 }
 
@@ -131,6 +134,16 @@ impl Board for Parts {
             current,
             edge,
         }
+    }
+
+    fn pulses(&mut self) -> Pulses {
+        let Encoders {
+            large,
+            small,
+            indices,
+            ..
+        } = &self.encoders;
+        indices.look(large, small)
     }
 
     fn reference(&mut self) -> Option<Count> {
@@ -258,10 +271,14 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart, Flash
 
     let reference =
         REFERENCE.then(|| Encoder::new(Qei::new(chip.TIM1, (e.pe9, e.pe11), &mut rcc).release().0));
+    let stamps = Source::new(chip.TIM2, (a.pa15, b.pb3), &mut rcc);
+    let large_encoder = Encoder::new(Qei::new(chip.TIM4, (d.pd12, d.pd13), &mut rcc).release().0);
+    let small_encoder = Encoder::new(Qei::new(chip.TIM3, (c.pc6, c.pc7), &mut rcc).release().0);
     let encoders = Encoders {
-        stamps: Source::new(chip.TIM2, (a.pa15, b.pb3), &mut rcc),
-        large: Encoder::new(Qei::new(chip.TIM4, (d.pd12, d.pd13), &mut rcc).release().0),
-        small: Encoder::new(Qei::new(chip.TIM3, (c.pc6, c.pc7), &mut rcc).release().0),
+        stamps,
+        indices: Indices::connect(&large_encoder, &small_encoder, (d.pd14, b.pb1)),
+        large: large_encoder,
+        small: small_encoder,
         reference,
     };
     // A broken wire and an amplifier without supply are not ready.
