@@ -11,6 +11,7 @@ mod hardware;
 mod healthy;
 mod identify;
 mod image;
+mod index_pulse;
 mod learned;
 mod link;
 mod mirror;

@@ -4,6 +4,7 @@
 use virtual_board::run::{CoreAccess, Setup};
 
 use crate::image::run_image;
+use crate::index_pulse::IMAGE;
 
 /// Some bits of a register.
 struct Field {
@@ -27,6 +28,7 @@ const fn field(address: u32, bits: (u32, u32), value: u32, what: &'static str) -
 const RCC: u32 = 0x4002_3800;
 const FLASH: u32 = 0x4002_3C00;
 const GPIOA: u32 = 0x4002_0000;
+const GPIOB: u32 = 0x4002_0400;
 const GPIOC: u32 = 0x4002_0800;
 const GPIOD: u32 = 0x4002_0C00;
 const GPIOE: u32 = 0x4002_1000;
@@ -134,6 +136,27 @@ const AFTER_BOOT: &[Field] = &[
     field(TIM3 + 0x18, (8, 2), 1, "TIM3_CCMR1.CC2S: TI2"),
     field(TIM3 + 0x2C, (0, 16), 0xFFFF, "TIM3_ARR"),
     field(TIM3, (0, 1), 1, "TIM3_CR1.CEN"),
+    // Index lines: the rising edge of channel 3 of TIM4 (PD14) and of channel 4 of TIM3 (PB1) captures, after
+    // 8 samples that agree, without an interrupt.
+    field(GPIOD, (28, 2), 0b10, "GPIOD_MODER14: function"),
+    field(GPIOD + 0x24, (24, 4), 2, "GPIOD_AFR14: TIM4"),
+    field(GPIOD + 0x0C, (28, 2), 2, "GPIOD_PUPDR14: index down"),
+    field(GPIOB, (2, 2), 0b10, "GPIOB_MODER1: function"),
+    field(GPIOB + 0x20, (4, 4), 2, "GPIOB_AFR1: TIM3"),
+    field(GPIOB + 0x0C, (2, 2), 2, "GPIOB_PUPDR1: index down"),
+    field(TIM4 + 0x1C, (0, 4), 0b01, "TIM4_CCMR2.CC3S, IC3PSC: TI3"),
+    field(TIM4 + 0x1C, (4, 4), 3, "TIM4_CCMR2.IC3F: 8 samples"),
+    field(TIM4 + 0x20, (8, 4), 1, "TIM4_CCER.CC3E, CC3P, CC3NP: rises"),
+    field(TIM4 + 0x0C, (0, 15), 0, "TIM4_DIER: no interrupt"),
+    field(TIM3 + 0x1C, (8, 4), 0b01, "TIM3_CCMR2.CC4S, IC4PSC: TI4"),
+    field(TIM3 + 0x1C, (12, 4), 3, "TIM3_CCMR2.IC4F: 8 samples"),
+    field(
+        TIM3 + 0x20,
+        (12, 4),
+        1,
+        "TIM3_CCER.CC4E, CC4P, CC4NP: rises",
+    ),
+    field(TIM3 + 0x0C, (0, 15), 0, "TIM3_DIER: no interrupt"),
     // The tick: one comparison of a counter of 32 bits that does not start again.
     field(TIM5, (0, 1), 1, "TIM5_CR1.CEN"),
     field(TIM5 + 0x0C, (0, 15), 1 << 1, "TIM5_DIER: CC1IE alone"),
@@ -180,7 +203,7 @@ fn registers_after_boot_are_those_of_the_manual() {
         .iter()
         .map(|field| CoreAccess::Load(field.address));
     let run = run_image(
-        "large-adaptive,current-monitor",
+        IMAGE,
         &Setup {
             seconds: 0.06,
             commands: Vec::new(),

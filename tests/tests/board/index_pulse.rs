@@ -1,0 +1,146 @@
+//! An image that captures the index pulses of both encoders.
+
+use experiments::closed_loop::Hand;
+use haptic_control::{Mode, SceneKind, Stop};
+use recordings::telemetry::IndexLine;
+use virtual_board::fault::Fault;
+use virtual_board::run::{Outcome, Setup};
+
+use crate::image::{SETTLED_S, of_scene, run_image};
+
+/// The image of this file, and the one without the feature.
+pub(crate) const IMAGE: &str = "large-adaptive,current-monitor,index-pulse";
+const WITHOUT: &str = "large-adaptive,current-monitor";
+
+/// When counts begin to be lost, s.
+const FAULT_S: f64 = 0.5;
+
+fn end(run: &Outcome) -> (Mode, Stop) {
+    let last = run.telemetry.frames.last().expect("frames");
+    (last.state, last.cause)
+}
+
+/// The lines of both encoders, each with the time of its tick, s.
+fn lines(run: &Outcome) -> Vec<(f64, [IndexLine; 2])> {
+    let lines = run.telemetry.frames.iter().filter_map(|frame| {
+        let at_ns = run.tick(frame)?.at_ns;
+        Some((at_ns as f64 * 1e-9, frame.side_lines.index?))
+    });
+    lines.collect()
+}
+
+/// An index of one count that is aligned with A and B is captured at the same count in both directions.
+/// In these hands the large motor slips by whole turns in two scenes, and no other shaft passes its index.
+#[test]
+fn healthy_pulses_are_whole_turns_apart_in_every_scene() {
+    for scene in SceneKind::ALL {
+        let run = run_image(IMAGE, &Setup::playing(scene, 1.0));
+        let expected = match scene {
+            SceneKind::Off => Mode::Armed,
+            _ => Mode::Running,
+        };
+        assert_eq!(end(&run), (expected, Stop::None), "{scene:?}");
+        let lines = lines(&run);
+        let exact = |(_, pair): &(f64, [IndexLine; 2])| pair.iter().all(|one| one.deviation == 0);
+        assert!(lines.iter().all(exact), "{scene:?}: {lines:?}");
+        let least = match scene {
+            SceneKind::Wall => 1,
+            SceneKind::SpringDamper => 2,
+            _ => 0,
+        };
+        let (_, [large, _]) = lines.last().expect("a line in 128 frames");
+        assert!(large.pulses >= least, "{scene:?}: {large:?}");
+    }
+}
+
+/// Before it is an input, a channel is a comparison of the counter with 0, whose flag is no pulse.
+#[test]
+fn start_of_the_board_is_no_pulse() {
+    let run = run_image(IMAGE, &of_scene(SceneKind::Off, Hand::Clamp, 0.4));
+    let lines = lines(&run);
+    assert!(!lines.is_empty());
+    let nothing = [IndexLine::default(); 2];
+    assert!(lines.iter().all(|(_, pair)| *pair == nothing), "{lines:?}");
+}
+
+#[test]
+fn both_encoders_report_pulses_and_the_position_after_them() {
+    let run = run_image(IMAGE, &of_scene(SceneKind::FreeAir, Hand::Tracking, 1.2));
+    assert_eq!(end(&run), (Mode::Running, Stop::None));
+    let mut first: [Option<u32>; 2] = [None; 2];
+    for frame in &run.telemetry.frames {
+        let Some(pair) = frame.side_lines.index else {
+            continue;
+        };
+        let counts = [frame.counts_large, frame.counts_small];
+        for ((one, first), count) in pair.iter().zip(&mut first).zip(counts) {
+            if one.pulses > 0 {
+                let reference = *first.get_or_insert(one.count);
+                assert_eq!(one.position, count.wrapping_sub(reference).cast_signed());
+            }
+        }
+    }
+    assert!(first.iter().all(Option::is_some), "{first:?}");
+}
+
+/// A frame is at most 1 ms after the pulse that it reports. The tick after a pulse disables the
+/// amplifiers, which the lockstep sees a step or two late.
+#[test]
+fn lost_counts_stop_the_device_at_the_next_pulse() {
+    for (scene, hand) in [
+        (SceneKind::FreeAir, Hand::Tracking),
+        (SceneKind::Wall, Hand::Pushing),
+    ] {
+        let run = run_image(
+            IMAGE,
+            &Setup {
+                faults: vec![(FAULT_S, Fault::LostCounts)],
+                ..of_scene(scene, hand, 1.5)
+            },
+        );
+        assert_eq!(end(&run), (Mode::Safe, Stop::LostCounts), "{scene:?}");
+        let off_s = FAULT_S + run.off_after(FAULT_S).expect("off");
+        let lines = lines(&run);
+        let found = lines.iter().find(|(_, pair)| pair[0].deviation != 0);
+        let (at_s, [large, small]) = found.expect("a deviation");
+        println!(
+            "{scene:?}: {large:?}, off {:.2} ms after its line",
+            1e3 * (off_s - at_s)
+        );
+        assert!(large.deviation.abs() > 3, "{large:?}");
+        assert_eq!(small.deviation, 0, "the other encoder loses nothing");
+        assert!(
+            (-1.0e-3..0.2e-3).contains(&(off_s - at_s)),
+            "{off_s} {at_s}"
+        );
+    }
+}
+
+/// The table of faults has this fault in an image without the feature, which goes on.
+#[test]
+fn image_without_the_feature_does_not_find_lost_counts() {
+    let setup = Setup {
+        faults: vec![(FAULT_S, Fault::LostCounts)],
+        ..of_scene(SceneKind::FreeAir, Hand::Tracking, 1.0)
+    };
+    let run = run_image(WITHOUT, &setup);
+    assert_eq!(end(&run), (Mode::Running, Stop::None));
+    assert!(lines(&run).is_empty());
+}
+
+/// What docs/benchmarks.md says of the cost.
+#[test]
+fn indices_take_45_instructions_a_tick() {
+    let mean = |image| {
+        let run = run_image(image, &of_scene(SceneKind::FreeAir, Hand::Moving, 0.8));
+        let settled = run.ticks.iter().filter(|tick| {
+            let at_s = tick.at_ns as f64 * 1e-9;
+            (SETTLED_S..0.8).contains(&at_s)
+        });
+        let instructions: Vec<_> = settled.map(|tick| f64::from(tick.instructions)).collect();
+        instructions.iter().sum::<f64>() / instructions.len() as f64
+    };
+    let cost = mean(IMAGE) - mean(WITHOUT);
+    println!("{cost:.1} instructions");
+    assert!((cost - 45.0).abs() < 10.0, "{cost}");
+}
