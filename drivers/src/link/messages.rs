@@ -219,7 +219,7 @@ macro_rules! all {
                 /// Mean current of the small motor since the frame before, A.
                 small: f32;
             }
-            /// Index pulses of both encoders, after a frame since whose predecessor one came, and after
+            /// Index pulses of both encoders, after a frame if one came since the frame before, and after
             /// each 128th frame, by an image with `index-pulse`.
             Index = 10 {
                 /// Sequence number of the frame.
