@@ -89,14 +89,18 @@ struct Arguments {
     /// Write the bytes of RTT channel 0, for cargo sim record --image
     #[arg(long, value_name = "FILE")]
     rtt: Option<PathBuf>,
+    /// Write every access to peripherals, exception and access of the debug probe, for
+    /// tests/second-core
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
     /// Serve the board's serial port over TCP at this port of 127.0.0.1, 0 for a free one, in real
     /// time; print the address. The client commands the board. One client at a time
-    #[arg(long, value_name = "PORT", conflicts_with_all = ["scene", "tune", "estimator", "record", "rtt", "budget"])]
+    #[arg(long, value_name = "PORT", conflicts_with_all = ["scene", "tune", "estimator", "record", "rtt", "trace", "budget"])]
     link: Option<u16>,
     /// Print only the cost of a control tick in every scene, each run for --seconds, at most 1 s:
     /// instructions, estimated cycles, and the control rate at which the ticks use half of the
     /// processor's time
-    #[arg(long, conflicts_with_all = ["device", "scene", "hand", "fault", "record", "rtt", "tune", "estimator", "dac_offset", "blank"])]
+    #[arg(long, conflicts_with_all = ["device", "scene", "hand", "fault", "record", "rtt", "trace", "tune", "estimator", "dac_offset", "blank"])]
     budget: bool,
 }
 
@@ -224,6 +228,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         faults: arguments.fault.clone(),
         commands,
         dac_errors: [DacError::offset(f64::from(arguments.dac_offset)); 2],
+        trace: arguments.trace.is_some(),
         settings: (!arguments.blank).then_some(Settings::COMMISSIONED),
         ..Setup::default()
     };
@@ -237,6 +242,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     }
     if let Some(path) = &arguments.rtt {
         write_whole(path, &outcome.rtt)?;
+    }
+    if let Some(path) = &arguments.trace {
+        write_whole(path, &outcome.trace)?;
     }
     if outcome.ticks.is_empty() {
         return Err(Failure::Check("the control task never ran".to_owned()));

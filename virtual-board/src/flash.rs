@@ -29,6 +29,9 @@ const SIZE_WORD: u64 = 0x1FFF_7A22;
 /// Size of the flash of an STM32F429ZI, KiB.
 const SIZE_KIB: u16 = 2048;
 
+/// What the factory has programmed: first address, and the one behind the end. The settings are placed when
+/// a run begins.
+pub(crate) const FACTORY: [u64; 2] = [SIZE_WORD, SIZE_WORD + 2];
 /// An image of the word with the flash's size.
 ///
 /// # Errors

@@ -142,6 +142,23 @@ impl Image {
         &self.elf
     }
 
+    /// The handlers of exceptions by the address of their first instruction, each with its number,
+    /// the lowest one of several, without the reset.
+    pub(crate) fn handlers(&self) -> BTreeMap<u64, u16> {
+        let file = object::File::parse(&*self.elf).ok();
+        let table = file.as_ref().and_then(|file| {
+            let section = file.section_by_name(".vector_table")?;
+            section.data().ok()
+        });
+        let (words, _) = table.unwrap_or_default().as_chunks();
+        let words = words.iter().map(|word| u32::from_le_bytes(*word));
+        let mut handlers = BTreeMap::new();
+        for (number, word) in (0..).zip(words).skip(2).filter(|(_, word)| word & 1 == 1) {
+            handlers.entry(u64::from(word & !1)).or_insert(number);
+        }
+        handlers
+    }
+
     /// A program without telemetry and control task, which ends in a loop at this address.
     #[cfg(test)]
     pub(crate) fn bare(placed: rigless::image::Image, end: u64) -> Self {

@@ -32,3 +32,4 @@ pub mod score;
 mod stack;
 mod summary;
 pub mod thumb;
+pub mod trace;

@@ -7,11 +7,12 @@ mod follow;
 mod hits;
 mod inject;
 mod plant;
+mod traced;
 
 use std::collections::VecDeque;
 
 use experiments::closed_loop::{Bench, FeedbackEncoder, Motion};
-use rigless::emulator::{AccessKind, Driver, HitKind, Host, Settled, Stop, Watch};
+use rigless::emulator::{AccessKind, HitKind, Host, Settled, Stop, Watch};
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
 use simulation::encoder::{DiscErrors, Encoder};
@@ -29,6 +30,7 @@ use crate::probe::{DebugProbe, schedule};
 use crate::quadrature::{Edge, Generator, LARGE};
 use crate::run::{ControlTick, DacError, MONITOR_AMPS, PlantState, RATE_HZ, Setup};
 use crate::stack::Stack;
+use crate::trace::Trace;
 pub use core_access::CoreAccess;
 use core_access::CoreAccesses;
 use follow::Follow;
@@ -82,6 +84,8 @@ pub(crate) struct Lockstep {
     pub(crate) port: Port,
     /// The client of a run in real time.
     pub(crate) live: Option<Live>,
+    /// The record of the run, if it is traced.
+    pub(crate) trace: Option<Trace>,
     stack: Stack,
     pub(crate) accesses: CoreAccesses,
     entry: u64,
@@ -148,6 +152,7 @@ impl Lockstep {
             probe: DebugProbe::new(image.rtt, setup),
             port: Port::new(setup),
             live: None,
+            trace: setup.trace.then(|| Trace::new(image)),
             stack: Stack(image.stack),
             accesses: CoreAccesses::new(&setup.accesses, Stack(image.stack)),
             entry: image.entry,
@@ -177,6 +182,9 @@ impl Lockstep {
             session.watch(Watch::Instruction(address));
         }
         session.watch(flash::STORES);
+        for watch in self.trace.iter().flat_map(Trace::watches) {
+            session.watch(watch);
+        }
     }
 
     /// Present time of the plant.
@@ -216,10 +224,9 @@ impl Lockstep {
         self.asleep = false;
         self.stalls = Stalls::default();
     }
-}
 
-impl Driver<ControllerBoard> for Lockstep {
-    fn on_settled(
+    /// After an access, a hit of a watchpoint or a stop.
+    fn settled(
         &mut self,
         session: &mut Session<ControllerBoard>,
         host: &mut dyn Host,
@@ -271,7 +278,8 @@ impl Driver<ControllerBoard> for Lockstep {
         }
     }
 
-    fn on_stop(
+    /// At the instant that the run was to reach: the next one, or `None` at the end of the run.
+    fn stopped(
         &mut self,
         session: &mut Session<ControllerBoard>,
         stop: Stop,

@@ -108,6 +108,8 @@ pub struct Setup {
     pub instructions_per_second: NonZeroU64,
     /// Indices in [`Outcome::ticks`] of ticks to follow instruction by instruction, which is slow.
     pub follow: BTreeSet<usize>,
+    /// Whether to record the run for another core.
+    pub trace: bool,
 }
 
 impl Default for Setup {
@@ -137,6 +139,7 @@ impl Default for Setup {
             accesses: Vec::new(),
             instructions_per_second: NonZeroU64::new(CORE_HZ).expect("not zero"),
             follow: BTreeSet::new(),
+            trace: false,
         }
     }
 }
@@ -239,6 +242,9 @@ pub struct Outcome {
     pub flash: Sectors,
     /// What the firmware has programmed and erased, in its order.
     pub flash_changes: Vec<Change>,
+    /// The record of the run for another core, of the format in [`crate::trace`]; empty without
+    /// [`Setup::trace`].
+    pub trace: Vec<u8>,
     /// Run time of the emulation.
     pub wall: Duration,
     /// Number of the first of `ticks` in telemetry.
@@ -288,6 +294,7 @@ pub fn on_board(
         probe,
         accesses,
         port,
+        trace,
         ..
     } = lockstep;
     let sent_by_port = std::mem::take(&mut port.wire().up);
@@ -308,6 +315,7 @@ pub fn on_board(
         values: accesses.values,
         sent: probe.sent,
         port: sent_by_port,
+        trace: trace.map_or_else(Vec::new, |trace| trace.bytes),
         restarts,
         objections: objections::of(&session),
         flash: flash.sectors().clone(),

@@ -80,7 +80,9 @@ fn currents_at_the_limit_of_the_outputs_agree() {
     assert_eq!(end(&run), (Mode::Running, Stop::None));
     let [_, reach] = REACHES.map(|reach| f64::from(reach.get()));
     let small = run.plant_states.iter().map(|state| state.currents[1].abs());
-    let at_the_limit = small.filter(|current| (current - reach).abs() < 1e-3).count();
+    let at_the_limit = small
+        .filter(|current| (current - reach).abs() < 1e-3)
+        .count();
     // 50 ms are a mismatch.
     assert!(at_the_limit > 1000, "{at_the_limit}");
 }
