@@ -32,6 +32,7 @@ const SIZE_KIB: u16 = 2048;
 /// What the factory has programmed: first address, and the one behind the end. The settings are placed when
 /// a run begins.
 pub(crate) const FACTORY: [u64; 2] = [SIZE_WORD, SIZE_WORD + 2];
+
 /// An image of the word with the flash's size.
 ///
 /// # Errors

@@ -21,5 +21,6 @@ mod recording;
 mod reference;
 mod registers;
 mod scores;
+mod second_core;
 mod settings;
 mod size;
