@@ -1,6 +1,6 @@
 //! The settings that a board keeps in flash.
 
-use estimator_core::Amps;
+use estimator_core::{Amps, Counts};
 use haptic_control::{CurrentScale, Currents};
 
 use crate::{REACHES, SaveError};
@@ -71,6 +71,10 @@ macro_rules! settings {
 const MOST_LARGE: f32 = REACHES[0].get();
 const MOST_SMALL: f32 = REACHES[1].get();
 
+/// Offsets of encoders, counts: whole numbers that f32 has.
+const LEAST_COUNTS: f32 = -8_388_608.0;
+const MOST_COUNTS: f32 = 8_388_607.0;
+
 settings! {
     /// DAC code at which the current of the large motor is zero.
     ZeroLarge: "zero-large", "codes", 2048.0 in 1848.0, 2248.0;
@@ -95,6 +99,10 @@ settings! {
     /// Largest current of the small motor at this bench. The loops use the smaller one of this and of the
     /// scaled limit of the device.
     LimitSmall: "limit-small", "A", MOST_SMALL in 0.0, MOST_SMALL;
+    /// Counts from the index of the large encoder to the mechanical zero. Positions are reported from there.
+    OffsetLarge: "offset-large", "counts", 0.0 in LEAST_COUNTS, MOST_COUNTS whole;
+    /// Counts from the index of the small encoder to the mechanical zero. Positions are reported from there.
+    OffsetSmall: "offset-small", "counts", 0.0 in LEAST_COUNTS, MOST_COUNTS whole;
 }
 
 const COUNT: usize = Setting::ALL.len();
@@ -247,6 +255,15 @@ impl Settings {
     #[must_use]
     pub fn are_signs_verified(&self) -> bool {
         self.get(Setting::SignsVerified) != 0.0
+    }
+
+    /// Counts from the index of each encoder to the mechanical zero: large, small.
+    #[must_use]
+    pub const fn offsets(&self) -> [Counts; 2] {
+        [
+            Counts(self.get(Setting::OffsetLarge) as i32),
+            Counts(self.get(Setting::OffsetSmall) as i32),
+        ]
     }
 
     /// Number of the estimator of the large motor after a start.

@@ -1,10 +1,11 @@
 //! Settings as bytes, their ranges, and settings of other images.
 
 use drivers::{REACHES, SETTINGS_BYTES, SaveError, Saved, Setting, Settings, SettingsError};
+use estimator_core::Counts;
 use haptic_control::{CurrentScale, Currents};
 
 /// Names at their numbers. They are in the flash of boards: none ever changes.
-const NAMES: [&str; 10] = [
+const NAMES: [&str; 12] = [
     "zero-large",
     "zero-small",
     "gain-large",
@@ -15,6 +16,8 @@ const NAMES: [&str; 10] = [
     "serial",
     "limit-large",
     "limit-small",
+    "offset-large",
+    "offset-small",
 ];
 
 #[test]
@@ -65,6 +68,16 @@ fn limit_of_the_bench_bounds_its_motor_alone() {
     assert_eq!(scale.small(1.5), 0.75);
     assert!(settings.set(Setting::LimitSmall, 0.25));
     assert_eq!(settings.current_scale().small(1.5), 0.25);
+}
+
+#[test]
+fn offsets_are_whole_counts_of_each_encoder() {
+    let mut settings = Settings::DEFAULT;
+    assert_eq!(settings.offsets(), [Counts(0); 2]);
+    assert!(settings.set(Setting::OffsetLarge, -1234.0));
+    assert!(settings.set(Setting::OffsetSmall, 8_388_607.0));
+    assert!(!settings.set(Setting::OffsetSmall, 0.5));
+    assert_eq!(settings.offsets(), [Counts(-1234), Counts(8_388_607)]);
 }
 
 /// Settings of an image that did not have the limits leave them at the largest currents of the outputs.

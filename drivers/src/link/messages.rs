@@ -231,7 +231,7 @@ macro_rules! all {
                 count_large: u32;
                 /// Distance of this pulse from whole turns after the reference, counts.
                 deviation_large: i32;
-                /// Count of the large encoder in the frame, less the one of the reference; 0 without a
+                /// Counts of the large encoder in the frame from its mechanical zero; 0 without a
                 /// reference.
                 position_large: i32;
                 /// Pulses of the small encoder since its reference was taken, as above.
@@ -240,7 +240,7 @@ macro_rules! all {
                 count_small: u32;
                 /// Distance of this pulse from whole turns after the reference, counts.
                 deviation_small: i32;
-                /// Count of the small encoder in the frame, less the one of the reference; 0 without a
+                /// Counts of the small encoder in the frame from its mechanical zero; 0 without a
                 /// reference.
                 position_small: i32;
             }

@@ -94,12 +94,14 @@ impl Control {
         if let Some(choice) = Large::choice(settings.estimator()) {
             core.choose(choice);
         }
+        let mut indices = Indices::start();
+        indices.offset(settings.offsets());
         Self {
             core,
             monitor: MONITOR.start(first),
             windings: WindingsState::cold(),
             ammeter: Ammeter::new(),
-            indices: Indices::start(),
+            indices,
             safety: SAFETY.start(reset),
             action: Action::default(),
             ticks: 0,
@@ -146,6 +148,7 @@ impl Control {
             }
             Message::Settings(settings) => {
                 self.core.scale(settings.current_scale());
+                self.indices.offset(settings.offsets());
                 Some(Request::KeepAlive)
             }
         }

@@ -34,6 +34,9 @@ pub trait Indexing {
     /// Indices without a pulse.
     fn start() -> Self;
 
+    /// Takes the mechanical zeros, counts after the index of the large and of the small encoder.
+    fn offset(&mut self, offsets: [Counts; 2]);
+
     /// One tick, with the pulses since the tick before.
     fn check(&mut self, pulses: &Self::Pulses) -> Option<Stop>;
 
@@ -59,7 +62,7 @@ pub struct Indication {
     pub count: Count,
     /// Distance of the latest pulse from whole turns after the reference, counts.
     pub deviation: i32,
-    /// Count of the sample less the one of the reference; 0 without a reference.
+    /// Displacement of the sample from the mechanical zero of the settings, counts; 0 without a reference.
     pub position: Counts,
 }
 
@@ -67,6 +70,8 @@ pub struct Indication {
 pub struct Pair {
     large: IndexState,
     small: IndexState,
+    /// From the reference to the mechanical zero.
+    offsets: [Counts; 2],
     /// Whether a pulse came since the last report.
     fresh: bool,
 }
@@ -79,12 +84,12 @@ pub struct Report {
 }
 
 impl Indication {
-    fn of(state: &IndexState, count: Count) -> Self {
+    fn of(state: &IndexState, count: Count, offset: Counts) -> Self {
         Self {
             pulses: state.pulses(),
             count: state.latest(),
             deviation: state.deviation(),
-            position: state.position(count, Counts(0)).unwrap_or_default(),
+            position: state.position(count, offset).unwrap_or_default(),
         }
     }
 }
@@ -99,8 +104,13 @@ impl Indexing for Pair {
         Self {
             large: IndexState::START,
             small: IndexState::START,
+            offsets: [Counts(0); 2],
             fresh: false,
         }
+    }
+
+    fn offset(&mut self, offsets: [Counts; 2]) {
+        self.offsets = offsets;
     }
 
     fn check(&mut self, [large, small]: &Self::Pulses) -> Option<Stop> {
@@ -115,10 +125,11 @@ impl Indexing for Pair {
     }
 
     fn take_reported(&mut self, sample: &Sample) -> Report {
+        let [large, small] = self.offsets;
         Report {
             pair: [
-                Indication::of(&self.large, sample.count),
-                Indication::of(&self.small, sample.coupled),
+                Indication::of(&self.large, sample.count, large),
+                Indication::of(&self.small, sample.coupled, small),
             ],
             fresh: core::mem::take(&mut self.fresh),
         }
@@ -141,6 +152,8 @@ impl Indexing for Skip {
     fn start() -> Self {
         Self
     }
+
+    fn offset(&mut self, _: [Counts; 2]) {}
 
     fn check(&mut self, _: &Self) -> Option<Stop> {
         None

@@ -1,7 +1,8 @@
 //! Index pulses in the control task.
 
+use drivers::{Setting, Settings};
 use estimator_core::{Count, Counts};
-use firmware_app::control::Inputs;
+use firmware_app::control::{Inputs, Message};
 use firmware_app::index::{Indexing, Indication, Indications as _, Indices};
 use haptic_control::{Mode, Request, Stop};
 
@@ -83,4 +84,25 @@ fn report_has_pulses_count_deviation_and_position_of_both() {
     // Nothing new since.
     assert_eq!(bench.take_index().pair(false), None);
     assert_eq!(bench.take_index().pair(true), Some([large, small]));
+}
+
+/// The mechanical zeros are 40 counts above the index of the large encoder, and 7 below that of the small one.
+#[test]
+fn reported_positions_are_relative_to_the_mechanical_zeros() {
+    let mut settings = Settings::COMMISSIONED;
+    assert!(settings.set(Setting::OffsetLarge, 40.0));
+    assert!(settings.set(Setting::OffsetSmall, -7.0));
+    let mut changed = Bench::start(0);
+    changed.control.accept(Some(Message::Settings(settings)));
+    for mut bench in [Bench::with(&settings, Stop::None, false), changed] {
+        let sample = bench.record().sample;
+        pulse(&mut bench, Some(100), Some(200));
+        if let Some(pair) = bench.take_index().pair(true) {
+            let from = [
+                sample.count - Count(100 + 40),
+                sample.coupled - Count(200 - 7),
+            ];
+            assert_eq!(pair.map(|one| one.position), from);
+        }
+    }
 }
