@@ -90,7 +90,8 @@ impl Mcu for Part {
         for (adc, _) in &mut self.adcs {
             adc.reset();
         }
-        self.flash.reset();
+        let flash = self.stm32.bus_mut().slot_mut(self.flash_slot);
+        self.flash.reset(flash.registers_mut());
         if std::mem::take(&mut self.brown_out) {
             let (_, registers) = self.stm32.clocks();
             let flag = BORRSTF.mask();

@@ -1,30 +1,25 @@
 //! One run of an image on the board, and its results.
 
-use std::collections::BTreeSet;
-use std::num::NonZeroU64;
+mod setup;
+
 use std::time::{Duration, Instant};
 
-use drivers::Settings;
-use experiments::closed_loop::Hand;
-use haptic_control::SceneKind;
 use recordings::telemetry::{Frame, Telemetry};
 use rigless::emulator::{Start, run};
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
-use simulation::device::Device;
 use simulation::plant::Pose;
 use terminal::failure::Failure;
 
-use crate::board::{CORE_HZ, ControllerBoard};
+use crate::board::ControllerBoard;
 use crate::bridge::Live;
-use crate::command::Command;
 use crate::fault::Fault;
 use crate::flash::{self, Change, Sectors};
 use crate::image::Image;
 pub use crate::lockstep::CoreAccess;
 use crate::lockstep::Lockstep;
 use crate::objections;
-use crate::port::LineErrors;
+pub use setup::{DacError, Setup};
 
 /// Control rate of the image, Hz.
 pub const RATE_HZ: f64 = 10e3;
@@ -34,128 +29,6 @@ pub const AMPS_PER_CODE: [f64; 2] = [6.0 / 2047.0, 1.5 / 2047.0];
 
 /// Current from the middle of the range of a current monitor to its ends, A: large motor, small motor.
 pub const MONITOR_AMPS: [f64; 2] = [7.5, 1.875];
-
-/// Error of a channel from DAC code to current.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DacError {
-    /// Offset, codes; up to 12 on a real chip.
-    pub offset: f64,
-    /// Change of the current per code, over [`AMPS_PER_CODE`].
-    pub gain: f64,
-}
-
-impl DacError {
-    /// That of a perfect channel.
-    pub const NONE: Self = Self {
-        offset: 0.0,
-        gain: 1.0,
-    };
-
-    /// An offset alone, codes.
-    #[must_use]
-    pub const fn offset(offset: f64) -> Self {
-        Self {
-            offset,
-            ..Self::NONE
-        }
-    }
-}
-
-/// Conditions of a run.
-#[derive(Clone, Debug)]
-pub struct Setup {
-    /// The simulated device.
-    pub device: Device,
-    /// The hand on the handle.
-    pub hand: Hand,
-    /// Seed of the hand's motion, the encoders' phases and the disc.
-    pub seed: u64,
-    /// Virtual time, s.
-    pub seconds: f64,
-    /// Faults and their times, s.
-    pub faults: Vec<(f64, Fault)>,
-    /// Commands and their times, s.
-    pub commands: Vec<(f64, Command)>,
-    /// Bytes that are not a command, and their times, s.
-    pub garbage: Vec<(f64, Vec<u8>)>,
-    /// Whether to send a keep-alive every 50 ms.
-    pub keep_alive: bool,
-    /// Bytes that the serial port of the board receives, one after the other as fast as the line is,
-    /// and the times at which they begin, s.
-    pub port: Vec<(f64, Vec<u8>)>,
-    /// How bytes arrive at the serial port, and the times from which on they do, s.
-    pub port_errors: Vec<(f64, LineErrors)>,
-    /// Edges per second of a signal generator instead of the large encoder, counting down if
-    /// negative.
-    pub generator_hz: Option<f64>,
-    /// Frequency of the crystal, Hz; 0 if the crystal does not run.
-    pub crystal_hz: u64,
-    /// Start of the crystal, s.
-    pub crystal_from_s: f64,
-    /// Errors of the DAC outputs and of the inputs behind them: large motor, small motor.
-    pub dac_errors: [DacError; 2],
-    /// Errors of the zeros of the current monitors, codes.
-    pub monitor_offsets: [f64; 2],
-    /// Settings in the board's flash; `None`: the flash is erased.
-    pub settings: Option<Settings>,
-    /// Number of records of older settings before them.
-    pub older_records: u32,
-    /// Content of the sectors of the settings instead, such as another run has left it.
-    pub flash: Option<Sectors>,
-    /// Additional loads and stores of the core, and their times, s.
-    pub accesses: Vec<(f64, CoreAccess)>,
-    /// Instructions per second of virtual time.
-    pub instructions_per_second: NonZeroU64,
-    /// Indices in [`Outcome::ticks`] of ticks to follow instruction by instruction, which is slow.
-    pub follow: BTreeSet<usize>,
-    /// Whether to record the run for another core.
-    pub trace: bool,
-}
-
-impl Default for Setup {
-    fn default() -> Self {
-        Self {
-            device: Device::default(),
-            hand: Hand::Moving,
-            seed: 1,
-            seconds: 1.0,
-            faults: Vec::new(),
-            commands: vec![
-                (0.05, Command::Scene(SceneKind::FreeAir)),
-                (0.1, Command::Arm),
-            ],
-            garbage: Vec::new(),
-            keep_alive: true,
-            port: Vec::new(),
-            port_errors: Vec::new(),
-            generator_hz: None,
-            crystal_hz: 8_000_000,
-            crystal_from_s: 0.0,
-            dac_errors: [DacError::NONE; 2],
-            monitor_offsets: [11.0, -7.0],
-            settings: Some(Settings::COMMISSIONED),
-            older_records: 1,
-            flash: None,
-            accesses: Vec::new(),
-            instructions_per_second: NonZeroU64::new(CORE_HZ).expect("not zero"),
-            follow: BTreeSet::new(),
-            trace: false,
-        }
-    }
-}
-
-impl Setup {
-    /// A scene, selected and armed in the first 0.1 s, with the scene's hand.
-    #[must_use]
-    pub fn playing(scene: SceneKind, seconds: f64) -> Self {
-        Self {
-            hand: scene.facts().hand.into(),
-            seconds,
-            commands: vec![(0.05, Command::Scene(scene)), (0.1, Command::Arm)],
-            ..Self::default()
-        }
-    }
-}
 
 /// One call of the control task, and the true state at its start.
 #[derive(Clone, Copy, Debug, PartialEq)]

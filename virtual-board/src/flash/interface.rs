@@ -57,9 +57,12 @@ impl FlashInterface {
         }
     }
 
-    /// The interface after a reset. The content stays; what was being programmed or erased is complete.
-    pub(crate) fn reset(&mut self) {
+    /// The interface after a reset. The content and the option bytes stay; what was being programmed or
+    /// erased is complete.
+    pub(crate) fn reset(&mut self, registers: &mut RegisterFile) {
+        let (optcr, optcr1) = self.inner.committed_options();
         self.inner = fresh();
+        self.inner.keep_options(optcr, optcr1, registers);
         self.busy_until = 0;
     }
 

@@ -165,7 +165,14 @@ pub(super) const MATRIX: [Bound; 49] = [
     ),
     bound(Fault::SmallStuck, 1.0, End::On, [400.0, 5.0]),
     bound(Fault::SmallSwapped, 1.0, End::On, [400.0, 5.0]),
-    bound(Fault::LostCounts, 2.0, End::On, [100.0, 10.0]),
+    // The lost edges add up until the velocity loop contradicts the counts, or not.
+    Bound {
+        or: Some((
+            End::Off([0.0, 2000.0], Stop::RunawayDirection),
+            [100.0, 10.0],
+        )),
+        ..bound(Fault::LostCounts, 2.0, End::On, [100.0, 10.0])
+    },
     bound(
         Fault::AmplifierFault,
         0.2,
@@ -202,10 +209,12 @@ pub(super) const MATRIX: [Bound; 49] = [
     // Nothing but a measured current shows it. The compensation of the friction of 0.8 mN.m, 23 mN, is
     // missing, and the transients.
     bound(Fault::SmallOpenLead, 1.0, End::On, [60.0, 5.0]),
-    bound(Fault::SmallReversed, 1.0, End::On, [60.0, 5.0]),
+    // The compensation of the friction acts twice against the hand, 46 mN, and the transients.
+    bound(Fault::SmallReversed, 1.0, End::On, [120.0, 5.0]),
     // This image does not read it.
     bound(Fault::BrokenMonitorWire, 0.2, End::On, [0.0, 0.0]),
-    bound(Fault::ReadyAfter(15), 0.3, End::On, [0.0, 0.0]),
+    // Settling takes 20 ms in either case; at its end a count may fall on the other side of a tick.
+    bound(Fault::ReadyAfter(15), 0.3, End::On, [5.0, 0.0]),
     // Refused at the end of settling, which takes 20 ms and begins with the tick after the command.
     Bound {
         at_s: ARM_S,
