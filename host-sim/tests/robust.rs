@@ -74,7 +74,7 @@ fn merged_shards_equal_a_single_run() {
     );
     assert_eq!(whole.replace("whole", "merged"), merged);
     assert!(
-        whole.contains("27 corners and 20 drawn devices per scene"),
+        whole.contains("29 corners and 20 drawn devices per scene"),
         "{whole}"
     );
     assert_eq!(folder.read("whole.json"), folder.read("merged.json"));
@@ -83,7 +83,7 @@ fn merged_shards_equal_a_single_run() {
         assert_eq!(of("whole"), of("merged"), "{name}");
     }
     let rows: Vec<serde_json::Value> = serde_json::from_slice(&folder.read("whole.json")).unwrap();
-    assert_eq!(rows.len(), 2 * (27 + 20));
+    assert_eq!(rows.len(), 2 * (29 + 20));
     assert_eq!(
         (&rows[0]["scene"], &rows[0]["device"]),
         (&"hold".into(), &"nominal".into())
@@ -127,8 +127,9 @@ fn shards_of_different_runs_are_refused_by_name() {
         assert!(said.contains(&format!("{name}: ")), "{said}");
         said
     };
+    // Shard 2 of 3 ends with the last of the 29 corners and 3 devices.
     let said = with("short.jsonl", &lines[..lines.len() - 1]);
-    assert!(said.contains("device 1 is missing"), "{said}");
+    assert!(said.contains("device 2 is missing"), "{said}");
     let said = with("hole.jsonl", &[&lines[..3], &lines[4..]].concat());
     assert!(
         said.contains("line 4: scene off, device large-constant-high is missing"),
