@@ -139,10 +139,10 @@ fn shards_of_different_runs_are_refused_by_name() {
         "twice.jsonl",
         &[&lines[..], &lines[lines.len() - 1..]].concat(),
     );
-    assert!(said.contains("device 1 is there twice"), "{said}");
+    assert!(said.contains("device 2 is there twice"), "{said}");
     let cut = &lines[lines.len() - 1][..40];
     let said = with("cut.jsonl", &[&lines[..lines.len() - 1], &[cut]].concat());
-    assert!(said.contains("line 11: EOF"), "{said}");
+    assert!(said.contains("line 12: EOF"), "{said}");
     let other = text.replacen("\"seed\":1", "\"seed\":2", 1);
     let said = with("other.jsonl", &other.lines().collect::<Vec<_>>());
     assert!(
