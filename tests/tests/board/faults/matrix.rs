@@ -209,11 +209,12 @@ pub(super) const MATRIX: [Bound; 49] = [
     // Nothing but a measured current shows it. The compensation of the friction of 0.8 mN.m, 23 mN, is
     // missing, and the transients.
     bound(Fault::SmallOpenLead, 1.0, End::On, [60.0, 5.0]),
-    // The compensation of the friction acts twice against the hand, 46 mN, and the transients.
+    // Twice what an open lead misses.
     bound(Fault::SmallReversed, 1.0, End::On, [120.0, 5.0]),
     // This image does not read it.
     bound(Fault::BrokenMonitorWire, 0.2, End::On, [0.0, 0.0]),
-    // Settling takes 20 ms in either case; at its end a count may fall on the other side of a tick.
+    // Settling takes 20 ms in either case. The later edge of the ready line shifts the emulator's blocks of
+    // instructions, and an edge at the instant of a reading may be counted a tick later.
     bound(Fault::ReadyAfter(15), 0.3, End::On, [5.0, 0.0]),
     // Refused at the end of settling, which takes 20 ms and begins with the tick after the command.
     Bound {
