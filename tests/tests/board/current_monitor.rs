@@ -9,18 +9,13 @@ use virtual_board::fault::Fault;
 use virtual_board::run::{DacError, MONITOR_AMPS, Outcome, Setup};
 use virtual_board::scene::press;
 
-use crate::image::{SETTLED_S, adaptive_free_air, of_scene, run_image};
+use crate::image::{SETTLED_S, adaptive_free_air, end, of_scene, run_image};
 
 /// The image learns with the measured currents too.
 const IMAGE: &str = "large-adaptive,current-monitor";
 
 /// When a fault happens, s.
 const FAULT_S: f64 = 0.6;
-
-fn end(run: &Outcome) -> (Mode, Stop) {
-    let last = run.telemetry.frames.last().expect("frames");
-    (last.state, last.cause)
-}
 
 /// The zeros of the monitors are 11 and -7 codes off, and a conversion has noise of up to 2 codes.
 #[test]

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use experiments::closed_loop::Hand;
-use haptic_control::SceneKind;
+use haptic_control::{Mode, SceneKind, Stop};
 use virtual_board::command::Command;
 use virtual_board::image::Image;
 use virtual_board::run::{Outcome, Setup, on_board};
@@ -72,6 +72,12 @@ fn run_checked(image: &Image, setup: &Setup) -> Outcome {
     let outcome = on_board(image, setup, |_| ()).unwrap();
     outcome.check().unwrap();
     outcome
+}
+
+/// State and cause in the last frame.
+pub(crate) fn end(run: &Outcome) -> (Mode, Stop) {
+    let last = run.telemetry.frames.last().expect("frames");
+    (last.state, last.cause)
 }
 
 /// A scene from the start, in this hand.

@@ -6,7 +6,7 @@ use recordings::telemetry::IndexLine;
 use virtual_board::fault::Fault;
 use virtual_board::run::{Outcome, Setup};
 
-use crate::image::{SETTLED_S, of_scene, run_image};
+use crate::image::{SETTLED_S, end, of_scene, run_image};
 
 /// The image of this file, and the one without the feature.
 pub(crate) const IMAGE: &str = "large-adaptive,current-monitor,index-pulse";
@@ -14,11 +14,6 @@ const WITHOUT: &str = "large-adaptive,current-monitor";
 
 /// When counts begin to be lost, s.
 const FAULT_S: f64 = 0.5;
-
-fn end(run: &Outcome) -> (Mode, Stop) {
-    let last = run.telemetry.frames.last().expect("frames");
-    (last.state, last.cause)
-}
 
 /// The lines of both encoders, each with the time of its tick, s.
 fn lines(run: &Outcome) -> Vec<(f64, [IndexLine; 2])> {

@@ -1,8 +1,10 @@
 //! The flash image, unmodified, on the virtual board in closed loop with the plant.
 
+mod bridge;
 mod choice;
 mod cost;
 mod current_monitor;
+mod disturbed_line;
 mod edges;
 mod enables;
 mod faults;

@@ -163,8 +163,10 @@ pub(super) const MATRIX: [Bound; 49] = [
         End::Off([0.0, 6.0], Stop::RunawayDirection),
         [90.0, 10.0],
     ),
-    bound(Fault::SmallStuck, 1.0, End::On, [400.0, 5.0]),
-    bound(Fault::SmallSwapped, 1.0, End::On, [400.0, 5.0]),
+    // The large motor rests: the coupler's drag of 0.96 mN.m.s/rad at the hand's 2.95 rad/s, 81 mN, and the
+    // friction of 23 mN that is not compensated. Or it turns against the handle, with twice of both.
+    bound(Fault::SmallStuck, 1.0, End::On, [110.0, 5.0]),
+    bound(Fault::SmallSwapped, 1.0, End::On, [220.0, 5.0]),
     // The lost edges add up until the velocity loop contradicts the counts, or not.
     Bound {
         or: Some((
