@@ -21,7 +21,7 @@ use crate::units::{CountsPerTick, CountsPerTickSquared, Hertz};
 
 pub use driven::{DrivenBank, DrivenBankState};
 pub use input::{BankInput, Followed};
-use interval::Likelihood;
+use interval::{Ends, Likelihood};
 use ladder::{Ladder, Predict};
 pub use learned_current::{LearnedCurrent, LearnedCurrentState};
 pub use stamps::{NoStamps, Stamped, Stamps};
@@ -281,15 +281,18 @@ impl<const K: usize, S: Stamps> ModelBank<K, S> {
         if let Some(input) = input {
             state.drive(input);
         }
-        let ends = S::noise_of_ends(state.boundary_variance());
+        let ends = Ends::of(displacement.0 != 0);
         let (likelihoods, deviation) = match edge {
             Some(mut edge) => {
                 if let Some(input) = input {
                     edge.position -= 0.5 * input * edge.age * edge.age;
                 }
-                state.correct_by_edge(&edge)
+                state.correct_by_edge(&edge, ends)
             }
-            None => (state.correct_by_interval(ends), 1.0),
+            None => {
+                let noise = S::noise_of_ends(state.boundary_variance());
+                (state.correct_by_interval(ends, noise), 1.0)
+            }
         };
         let likelihood = state.weigh(&likelihoods, over.change);
         if state.still >= self.rest {

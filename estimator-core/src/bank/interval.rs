@@ -31,7 +31,7 @@ impl Likelihood {
 
     /// `factor · exp(-x)`, with the tail of a Student distribution for large x.
     #[inline(always)]
-    pub(super) fn new(factor: f32, x: f32) -> Self {
+    pub(super) const fn new(factor: f32, x: f32) -> Self {
         Self {
             factor,
             divisor: 1.0 + x * (1.0 / 16.0),
@@ -56,35 +56,83 @@ impl Likelihood {
 /// The smallest exponential part: a sum of weights stays a normal number.
 const LEAST: f32 = 1e-12;
 
-/// Deviations from an end beyond which the end truncates nothing.
-const REACH: f32 = 3.5;
+/// What the ends of the interval have truncated before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Ends {
+    /// Square of the deviations from an end beyond which the end truncates nothing.
+    reach: f32,
+    /// Shift by an end at the least distance so far, deviations.
+    shift: f32,
+    /// 1 / factor of the variance, and 1 / probability, at this distance.
+    per_kept: f32,
+    per_probability: f32,
+}
+
+impl Ends {
+    /// The ends of the interval of a new count.
+    const NEW: Self = Self {
+        reach: 3.5 * 3.5,
+        shift: 0.0,
+        per_kept: 1.0,
+        per_probability: 1.0,
+    };
+
+    /// The ends of an interval in which the count was a tick ago. The density that is left there fills it to
+    /// its ends, which are √3 deviations from the mean of a uniform density. The Gaussian that stands for it
+    /// has tails beyond them that are no probability. Truncated again at each tick, they would shrink the
+    /// density of a shaft that does not move to a point.
+    const FILLED: Self = {
+        let (shift, kept, probability) = end(1.732_050_8);
+        Self {
+            reach: 3.0,
+            shift,
+            per_kept: 1.0 / kept,
+            per_probability: 1.0 / probability.factor,
+        }
+    };
+
+    /// The ends after a tick, in which the count changed or not.
+    #[inline(always)]
+    pub(super) const fn of(changed: bool) -> &'static Self {
+        if changed { &Self::NEW } else { &Self::FILLED }
+    }
+
+    /// Truncation by the end at `u` deviations, beyond the one so far.
+    #[inline(always)]
+    const fn truncate(&self, u: f32) -> (f32, f32, Likelihood) {
+        let (shift, kept, mut probability) = end(u);
+        probability.factor *= self.per_probability;
+        (shift - self.shift, kept * self.per_kept, probability)
+    }
+}
 
 /// Variance above which a Gaussian is wide: 0.35².
 const WIDE: f32 = 0.1225;
 
-/// Truncates the Gaussian of mean `position` and variance `variance` to ±1/2. `None` if it is inside.
+/// Truncates the Gaussian of mean `position` and variance `variance` to ±1/2, by what exceeds the earlier
+/// truncation by `ends`. `None` if it is inside.
 ///
-/// Up to a standard deviation of 0.35, each end is truncated by itself:
+/// Up to a standard deviation of 0.35, each end truncates by itself:
 /// [`end`] gives its shift, its variance and its probability. Above, the density inside is
 /// `exp(κ y - y²/2σ²)` with κ = x / σ². Its variance at κ = 0 is 1 / (12 + 0.45/σ²) to 2 %, its mean
 /// the rational function of κ with this slope and the limit 1/2, its variance the derivative of the
 /// mean. The probability is the density at x of a Gaussian of variance σ² + 1/12.
 #[inline(always)]
-pub(super) fn truncate(position: f32, variance: f32) -> Option<Truncated> {
+pub(super) fn truncate(position: f32, variance: f32, ends: &Ends) -> Option<Truncated> {
     let away = position.abs();
     let inside = 0.5 - away;
-    if inside > 0.0 && inside * inside > REACH * REACH * variance {
+    if inside > 0.0 && inside * inside > ends.reach * variance {
         return None;
     }
     let (inwards, kept, likelihood) = if variance > WIDE {
         wide(away, variance)
     } else {
         let per_std_dev = inverse_root(variance);
-        let near = end(inside * per_std_dev);
+        let near = ends.truncate(inside * per_std_dev);
         let far = (1.0 - inside) * per_std_dev;
         let (mut inwards, mut kept, mut likelihood) = near;
-        if far < REACH {
-            let far = end(far);
+        if far * far < ends.reach {
+            let far = ends.truncate(far);
             inwards -= far.0;
             kept -= 1.0 - far.1;
             likelihood.factor -= 1.0 - far.2.factor;
@@ -122,7 +170,7 @@ const DENSITY_AT_MEAN: f32 = 0.398_942_3;
 /// variance, probability Φ. For u above 0 λ is a fourth power, below 0 it is |u| + 1/g with a
 /// parabola g, and the factor is the derivative g'/g².
 #[inline(always)]
-fn end(u: f32) -> (f32, f32, Likelihood) {
+const fn end(u: f32) -> (f32, f32, Likelihood) {
     if u > 0.0 {
         let root = 0.945 - u * (0.205 + 0.0145 * u);
         let root = if root > 0.0 { root } else { 0.0 };
@@ -161,7 +209,7 @@ fn inverse_root(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     extern crate std;
-    use super::{inverse_root, truncate};
+    use super::{Ends, inverse_root, truncate};
 
     /// Shift of the mean, factor of the variance and probability, by numerical integration.
     fn integrated(x: f64, variance: f64) -> (f64, f64, f64) {
@@ -188,7 +236,7 @@ mod tests {
                 let x = f64::from(tenth) / 60.0 * (0.5 + 2.5 * deviation);
                 let variance = deviation * deviation;
                 let (shift, kept, probability) = integrated(x, variance);
-                let found = truncate(x as f32, variance as f32);
+                let found = truncate(x as f32, variance as f32, Ends::of(true));
                 let found = found.map_or([0.0, 1.0, 1.0], |found| {
                     let probability = found.likelihood.relative(1.0);
                     [found.shift, found.kept, probability].map(f64::from)
@@ -209,16 +257,43 @@ mod tests {
         }
     }
 
+    /// The shaft does not move: what the ends truncate once, they do not truncate again. Mean and variance
+    /// stay those of the density after the first tick if it is uniform, and near if it falls from an end.
+    #[test]
+    fn truncation_of_a_shaft_that_does_not_move_happens_once() {
+        for (position, variance) in [(0.0, 10.0), (0.0, 0.11), (0.4, 0.04), (-0.55, 0.01)] {
+            let (shift, kept, _) = integrated(position, variance);
+            let (mean, after) = (position + shift, kept * variance);
+            let [mut x, mut p] = [position, variance].map(|x| x as f32);
+            for tick in 0..10_000 {
+                if let Some(found) = truncate(x, p, Ends::of(tick == 0)) {
+                    x += found.shift;
+                    p *= found.kept;
+                }
+            }
+            let off = f64::from(x) - mean;
+            let ratio = f64::from(p) / after;
+            let [far, least] = if position == 0.0 {
+                [1e-6, 0.98]
+            } else {
+                [0.25, 0.65]
+            };
+            let case = std::format!("{position} {variance}: {off} {ratio}");
+            assert!(off.abs() <= far * after.sqrt(), "{case}");
+            assert!(ratio > least && ratio < 1.03, "{case}");
+        }
+    }
+
     #[test]
     fn truncation_is_odd_and_ends_inside() {
         for variance in [1e-6, 1e-3, 0.02, 0.12, 0.125, 1.0, 1e4, 1e8] {
             for step in -4000..=4000 {
                 let x = step as f32 / 500.0;
-                let Some(found) = truncate(x, variance) else {
+                let Some(found) = truncate(x, variance, Ends::of(true)) else {
                     assert!(x.abs() < 0.5, "{x} {variance}");
                     continue;
                 };
-                let mirrored = truncate(-x, variance).expect("symmetric");
+                let mirrored = truncate(-x, variance, Ends::of(true)).expect("symmetric");
                 assert_eq!(found.shift, -mirrored.shift, "{x} {variance}");
                 assert!(
                     (x + found.shift).abs() <= 0.5 + 1e-4,

@@ -1,6 +1,6 @@
 //! One filter of the bank, and its corrections.
 
-use super::interval::{Likelihood, truncate};
+use super::interval::{Ends, Likelihood, truncate};
 use crate::edge_clock::FreshEdge;
 
 /// Least variance of a position, counts²: rounding cannot make it negative.
@@ -103,12 +103,12 @@ impl Member {
     }
 
     /// Corrects by the knowledge that the position lies in its quantisation interval, whose ends are
-    /// known to the variance `ends`. Returns the probability of the interval.
+    /// known to the variance `noise` and have truncated `ends` before. Returns the probability of the interval.
     #[inline(always)]
-    pub(super) fn correct_by_interval(&mut self, ends: f32) -> Likelihood {
+    pub(super) fn correct_by_interval(&mut self, ends: &Ends, noise: f32) -> Likelihood {
         let [p00, p01, p02, ..] = self.covariance;
-        let variance = p00 + LEAST_VARIANCE + ends;
-        let Some(truncated) = truncate(self.position, variance) else {
+        let variance = p00 + LEAST_VARIANCE + noise;
+        let Some(truncated) = truncate(self.position, variance, ends) else {
             return Likelihood::CERTAIN;
         };
         let per_variance = 1.0 / variance;

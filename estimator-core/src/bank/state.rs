@@ -1,6 +1,6 @@
 //! State of the bank: members, weights, and where on the ladder they stand.
 
-use super::interval::Likelihood;
+use super::interval::{Ends, Likelihood};
 use super::ladder::{FIRST_RUNG, Predict, RUNGS};
 use super::member::{Innovation, Member};
 use crate::design::const_math::limited;
@@ -133,7 +133,11 @@ impl<const K: usize> ModelBankState<K> {
     /// likelihoods, times the deviation of the middle member's innovation, and the square of this
     /// deviation.
     #[inline(always)]
-    pub(super) fn correct_by_edge(&mut self, edge: &FreshEdge) -> ([Likelihood; K], f32) {
+    pub(super) fn correct_by_edge(
+        &mut self,
+        edge: &FreshEdge,
+        ends: &Ends,
+    ) -> ([Likelihood; K], f32) {
         let mut innovations = [Innovation::default(); K];
         let (mut error, mut variance) = (0.0, 0.0);
         for i in 0..K {
@@ -141,7 +145,7 @@ impl<const K: usize> ModelBankState<K> {
             innovations[i] = member.correct_by_edge(edge, self.boundary);
             // A smaller variance is rounding: the edge alone fixes the position.
             if member.position_variance() > ROUNDING * innovations[i].variance {
-                member.correct_by_interval(self.boundary);
+                member.correct_by_interval(ends, self.boundary);
             }
             error += self.weights[i] * innovations[i].error;
             variance += self.weights[i] * innovations[i].variance;
@@ -168,12 +172,12 @@ impl<const K: usize> ModelBankState<K> {
     }
 
     /// Corrects all members by the quantisation interval of the count, whose ends are known to the
-    /// variance `ends`. Returns its probabilities.
+    /// variance `noise` and have truncated `ends` before. Returns its probabilities.
     #[inline(always)]
-    pub(super) fn correct_by_interval(&mut self, ends: f32) -> [Likelihood; K] {
+    pub(super) fn correct_by_interval(&mut self, ends: &Ends, noise: f32) -> [Likelihood; K] {
         let mut likelihoods = [Likelihood::default(); K];
         for i in 0..K {
-            likelihoods[i] = self.members[i].correct_by_interval(ends);
+            likelihoods[i] = self.members[i].correct_by_interval(ends, noise);
         }
         likelihoods
     }
@@ -279,7 +283,7 @@ pub(super) fn root(x: f32) -> f32 {
 mod tests {
     extern crate std;
     use super::{LEAST_BOUNDARY, ModelBankState, root};
-    use crate::bank::interval::Likelihood;
+    use crate::bank::interval::{Ends, Likelihood};
     use crate::edge_clock::FreshEdge;
     use crate::filters::draws::draw;
     use crate::units::Count;
@@ -344,7 +348,7 @@ mod tests {
                 age: uniform() * uniform(),
             };
             let before = state;
-            let (likelihoods, _) = state.correct_by_edge(&edge);
+            let (likelihoods, _) = state.correct_by_edge(&edge, Ends::of(true));
             for (member, likelihood) in state.members.iter().zip(likelihoods) {
                 let case = std::format!("{edge:?} {:?} {member:?}", before.members[0]);
                 let near = 2.0 + edge.age * variance.sqrt();

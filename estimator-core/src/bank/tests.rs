@@ -2,7 +2,7 @@
 
 extern crate std;
 
-use super::interval::Likelihood;
+use super::interval::{Ends, Likelihood};
 use super::ladder::Ladder;
 use super::member::Member;
 use super::state::ModelBankState;
@@ -49,7 +49,7 @@ fn interval_with_noisy_ends_corrects_less() {
         member.covariance = [variance, 0.0, 0.0, 1.0, 0.0, 1.0];
         let [probability, position, after] =
             summed(f64::from(mean), f64::from(variance), f64::from(ends));
-        let likelihood = member.correct_by_interval(ends);
+        let likelihood = member.correct_by_interval(Ends::of(true), ends);
         // The truncation is approximated to 2 % of the deviation and 4 % of the variance, and its
         // probability to 4 %.
         let sum = f64::from(variance + ends);
@@ -72,7 +72,7 @@ fn bank_takes_the_ends_for_as_noisy_as_told() {
     let mut state = ModelBankState::<2>::start(Count(0));
     // Moves every position by 0.4 counts.
     state.drive(0.8);
-    let likelihoods = state.correct_by_interval(ends);
+    let likelihoods = state.correct_by_interval(Ends::of(true), ends);
     let variance = f64::from(Member::START.position_variance());
     let [noisy, exact] = [ends, 1e-9].map(|ends| summed(0.4, variance, f64::from(ends))[0]);
     for likelihood in likelihoods {
@@ -92,7 +92,7 @@ fn two_neighbours_with_the_larger_weights_are_kept() {
     bank.drive(3.0);
     for _ in 0..100 {
         bank.predict(&ladder, 3.0);
-        bank.correct_by_interval(0.0);
+        bank.correct_by_interval(Ends::of(true), 0.0);
     }
     let weighed = |weights: [f32; 3]| {
         let mut bank = bank;

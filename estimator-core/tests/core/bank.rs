@@ -7,7 +7,7 @@ mod uneven;
 
 use estimator_core::{
     AccelerationEstimator, ClockTicks, Confidence, Count, DesignError, Edge, Hertz, Imm, ImmEdge,
-    ImmMotor, ImmPair, LearnedCurrent, ModelBank, Sample, VelocityEstimator,
+    ImmMotor, ImmPair, LearnedCurrent, MOverT, ModelBank, Sample, VelocityEstimator,
 };
 
 use definition::Definition;
@@ -222,6 +222,26 @@ fn one_bank_serves_every_encoder_and_rate() {
                     "{rate} Hz, {counts} counts: {error}, finite difference {difference}"
                 );
             }
+        }
+    }
+}
+
+/// A shaft swings by some counts, so slowly that a count takes many ticks. The members do not take the edge
+/// after a long time for a knock: the error stays near that of M/T, whose speed is at most a count over the
+/// time since the edge, at any rate.
+#[test]
+fn a_slow_swing_is_no_knock() {
+    for rate in [500.0, 1000.0, 10_000.0] {
+        let ticks = (20.0 * rate) as usize;
+        let seen = Seen::new(rate, ticks, 0.0, &|t| {
+            1.4 * (2.3 * t).sin() + 0.9 * (1.1 * t).sin() + 0.2
+        });
+        let timed = seen.rms(&seen.run(&MOverT::new(CLOCK, Hertz(rate)).expect("valid")));
+        let counted = seen.rms(&seen.run(&Imm::new(Hertz(rate)).expect("valid")));
+        let stamped = seen.rms(&seen.run(&ImmEdge::with_edges(CLOCK, Hertz(rate)).expect("valid")));
+        println!("{rate} Hz: M/T {timed:.2e}, bank {counted:.2e}, stamped {stamped:.2e}");
+        for error in [counted, stamped] {
+            assert!(error < 1.3 * timed, "{rate} Hz: {error}, M/T {timed}");
         }
     }
 }

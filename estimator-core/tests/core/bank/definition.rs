@@ -70,6 +70,32 @@ fn truncated(a: f64, b: f64) -> (f64, f64, f64) {
     (shift, kept, probability)
 }
 
+/// As [`truncated`], of an interval whose ends have truncated a density before until it filled the interval:
+/// each end by what exceeds its truncation at √3 deviations.
+fn truncated_again(a: f64, b: f64) -> (f64, f64, f64) {
+    let by_end = |u: f64| {
+        if u < -8.0 {
+            return (-u, 1.0 / (u * u), (density(u) / -u).max(1e-300));
+        }
+        let shift = density(u) / below(u);
+        (shift, 1.0 - shift * (shift + u), below(u))
+    };
+    let filled = by_end(3f64.sqrt());
+    let (mut shift, mut kept, mut probability) = (0.0, 1.0, 1.0);
+    for (u, inwards) in [(-a, 1.0), (b, -1.0)] {
+        if u < 3f64.sqrt() {
+            let end = by_end(u);
+            shift += inwards * (end.0 - filled.0);
+            kept -= 1.0 - end.1 / filled.1;
+            probability *= end.2 / filled.2;
+        }
+    }
+    (shift, kept, probability)
+}
+
+/// Standard deviation above which a Gaussian is wider than the interval.
+const WIDE: f64 = 0.35;
+
 impl Definition {
     /// Velocities, counts per tick, of a bank of `members` on counts, and on the edges if given:
     /// boundary and age in ticks.
@@ -111,13 +137,20 @@ impl Definition {
         let mut velocities = vec![0.0];
         for tick in 1..counts.len() {
             let edge = edges.and_then(|edges| edges[tick]);
-            let moved = counts[tick] != counts[tick - 1] || edge.is_some();
-            velocities.push(bank.update(counts[tick], moved, edge, intervals[tick]) / rate);
+            let changed = counts[tick] != counts[tick - 1];
+            velocities.push(bank.update(counts[tick], changed, edge, intervals[tick]) / rate);
         }
         velocities
     }
 
-    fn update(&mut self, count: f64, moved: bool, edge: Option<(f64, f64)>, interval: f64) -> f64 {
+    fn update(
+        &mut self,
+        count: f64,
+        changed: bool,
+        edge: Option<(f64, f64)>,
+        interval: f64,
+    ) -> f64 {
+        let moved = changed || edge.is_some();
         let rest = (0.3 / self.period).floor();
         let was_at_rest = self.still >= rest;
         self.still = if moved { 0.0 } else { self.still + interval };
@@ -150,7 +183,11 @@ impl Definition {
             let ends = if self.stamps { self.noise } else { 0.0 };
             let deviation = (filter.p[(0, 0)] + ends).sqrt();
             let ends = [count, count + 1.0].map(|end| (end - filter.x[0]) / deviation);
-            let (shift, kept, probability) = truncated(ends[0], ends[1]);
+            let (shift, kept, probability) = if changed || deviation > WIDE {
+                truncated(ends[0], ends[1])
+            } else {
+                truncated_again(ends[0], ends[1])
+            };
             let k = filter.p.column(0) / deviation;
             filter.x += k * shift;
             filter.p -= k * k.transpose() * (1.0 - kept);
