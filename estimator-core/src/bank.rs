@@ -68,13 +68,17 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 /// edge       H = [1, -t, t²/2], t the age of the edge    e = boundary - H x
 ///            S = H P Hᵀ + R    K = P Hᵀ / S              x += K e    P -= K S Kᵀ
 /// interval   the position lies in the quantisation interval of the count: mean and variance of the
-///            truncated Gaussian; with stamps, of x_0 plus a noise of variance R
+///            truncated Gaussian; with stamps, of x_0 plus a noise of variance R. In a count that is not
+///            new, what exceeds the truncation by an end at √3 standard deviations
 /// weights    w_i = (w_i + c) L_i / Σ    L: density of e; without an edge the probability of the
 ///            interval
 /// noise      R = R (1 - 0.1 ρ)          ρ = e e' / S within ±1, e' of the edge before; R within
 ///            3e-4 and 0.1 counts²
 /// output     v = Σ w_i v_i      a = Σ w_i a_i      variance Σ w_i (P_11,i + (v_i - v)²)
 /// ```
+/// A density that fills the interval is uniform, and its ends are √3 deviations from its mean. The tails of
+/// the Gaussian beyond them are no probability, and are not truncated again at every tick.
+///
 /// c is the probability that q changes, one a second. The density of e has the tails of a Student
 /// distribution, `S^-1/2 (1 + e² / 32 S)^-16`. The innovations of an optimal filter are white: if
 /// successive ones have opposite signs, R is too small.

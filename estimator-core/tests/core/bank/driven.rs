@@ -158,6 +158,26 @@ fn a_current_without_effect_costs_nothing() {
     assert!(motor < 1.02 * plain, "{motor} {plain}");
 }
 
+/// What an observer assumes wrongly.
+#[derive(Debug)]
+struct Wrong {
+    /// Factors of torque constant, inertia and friction.
+    torque: f64,
+    mass: f64,
+    friction: f64,
+    /// Whether the current has the other sign.
+    reversed: bool,
+}
+
+const RIGHT: Wrong = Wrong {
+    torque: 1.0,
+    mass: 1.0,
+    friction: 1.0,
+    reversed: false,
+};
+
+/// The count of the other shaft never changes: its encoder is stuck in every case, and the hand's torque reaches
+/// the observer by nothing but the counts.
 #[test]
 fn a_followed_observer_of_another_device_costs_little() {
     let per_count = core::f64::consts::TAU / 4096.0;
@@ -167,7 +187,7 @@ fn a_followed_observer_of_another_device_costs_little() {
         inertia,
         ..
     } = right.motor;
-    let seen = driven(&Drive {
+    let mut seen = driven(&Drive {
         gain: torque_constant / inertia / per_count,
         friction: right.coulomb_friction / inertia / per_count,
         delay: 0,
@@ -176,10 +196,50 @@ fn a_followed_observer_of_another_device_costs_little() {
         seen.rms(&seen.run(&Imm::new(RATE).expect("valid"))),
         seen.rms(&seen.run(&ImmEdge::with_edges(CLOCK, RATE).expect("valid"))),
     ];
-    for (torque, mass) in [(1.0, 10.0), (1.0, 0.1), (10.0, 1.0), (0.0, 1.0)] {
+    for case in [
+        RIGHT,
+        Wrong {
+            mass: 10.0,
+            ..RIGHT
+        },
+        Wrong { mass: 0.1, ..RIGHT },
+        Wrong {
+            torque: 10.0,
+            ..RIGHT
+        },
+        Wrong {
+            torque: 1e-3,
+            ..RIGHT
+        },
+        Wrong {
+            friction: 0.0,
+            ..RIGHT
+        },
+        Wrong {
+            friction: 10.0,
+            ..RIGHT
+        },
+        Wrong {
+            reversed: true,
+            ..RIGHT
+        },
+        Wrong {
+            reversed: true,
+            friction: 0.0,
+            ..RIGHT
+        },
+    ] {
         let mut wrong = right;
-        wrong.motor.torque_constant *= f64::max(torque, 1e-3);
-        wrong.motor.inertia *= mass;
+        wrong.motor.torque_constant *= case.torque;
+        wrong.motor.inertia *= case.mass;
+        wrong.coulomb_friction *= case.friction;
+        let sign = if case.reversed { -1.0 } else { 1.0 };
+        let turned = |seen: &mut Seen| {
+            for sample in &mut seen.samples {
+                *sample = sample.with_current(Amps::new(sign * sample.current.get()));
+            }
+        };
+        turned(&mut seen);
         let design = || ObserverDesign::new(&wrong, RATE, &UNSURE);
         let counts = ImmAdaptive::following(design().adaptive().build(), RATE);
         let edges = design().with_edges(CLOCK).adaptive().build();
@@ -188,8 +248,10 @@ fn a_followed_observer_of_another_device_costs_little() {
             seen.rms(&seen.run(&counts.expect("valid"))),
             seen.rms(&seen.run(&edges.expect("valid"))),
         ];
+        turned(&mut seen);
+        println!("{case:?}: {found:?}, plain {plain:?}");
         for (found, plain) in found.iter().zip(plain) {
-            assert!(*found < 1.1 * plain, "{torque} {mass}: {found} {plain}");
+            assert!(*found < 1.1 * plain, "{case:?}: {found} {plain}");
         }
     }
 }
