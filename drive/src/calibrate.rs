@@ -5,12 +5,12 @@ use estimator_core::Amps;
 use terminal::failure::Failure;
 use terminal::output::note;
 
-use crate::board::Board;
+use crate::board::{Answer, Board};
 use crate::channels::{CHANNELS, Channel, FEATURE, are_measured};
 use crate::check::{Line, failed, show};
-use crate::currents::Fit;
+use crate::currents::{Fit, are_strokes_short, offset_at_rest};
 use crate::settings::{self, Assignment};
-use crate::strokes::{announce, observe, plan, strokes};
+use crate::strokes::{Seen, announce, observe, plan, strokes};
 
 /// A board learns the zeros of its monitors in less, while its amplifiers are disabled, s.
 const ZEROS_S: f64 = 0.1;
@@ -32,14 +32,26 @@ pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
              the currents and set zero and gain by hand: cargo drive settings zero-large=2051.5 gain-large=1.01"
         )));
     }
-    let present = settings::present(board)?;
+    let before = settings::present(board)?;
     announce();
-    observe(board, &answer, plan(None, false, ZEROS_S))?;
-    let seen = observe(board, &answer, strokes())?;
+    let mut seen = measured(board, &answer)?;
+    let present = with_zeros(&seen, &before);
+    if present != before {
+        note(format_args!(
+            "the offsets turned the handle out of its bounds: the strokes are repeated without most of them"
+        ));
+        settings::change(board, &zeros(&present))?;
+        let repeated = measured(board, &answer);
+        if repeated.is_err() {
+            settings::change(board, &zeros(&before))?;
+        }
+        seen = repeated?;
+    }
     let mut assignments = Vec::new();
     let mut lines: Vec<Line> = Vec::new();
     for channel in &CHANNELS {
-        let found = Fit::of(&seen, channel).and_then(|fit| calibrated(fit, channel, &present));
+        let found =
+            Fit::of(&seen, channel).and_then(|fit| calibrated(fit, channel, &present, &before));
         let result = found.map(|(text, new)| {
             assignments.extend(new);
             text
@@ -50,6 +62,9 @@ pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
     }
     let wrong = failed(&lines);
     if wrong > 0 {
+        if present != before {
+            settings::change(board, &zeros(&before))?;
+        }
         return Err(Failure::Check(format!(
             "calibrate: {wrong} of {} motors failed; no setting was changed",
             lines.len()
@@ -63,7 +78,49 @@ pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// New zero and gain of a channel with these `present` settings, and a text on them.
+/// The strokes, after the monitors have learned their zeros.
+fn measured(board: &mut Board, answer: &Answer) -> Result<Seen, Failure> {
+    observe(board, answer, plan(None, false, ZEROS_S))?;
+    observe(board, answer, strokes())
+}
+
+/// The settings with the zeros of channels whose strokes ended early, as far as these zeros are admitted. An
+/// offset of both outputs in one direction turns a free handle out of the bounds of the strokes.
+fn with_zeros(seen: &Seen, present: &Settings) -> Settings {
+    let mut settings = *present;
+    let ended = CHANNELS
+        .iter()
+        .any(|channel| are_strokes_short(seen, channel));
+    for channel in CHANNELS.iter().filter(|_| ended) {
+        let zero = offset_at_rest(seen, channel).and_then(|offset| {
+            let code = scale(channel, present)?.exact_code(Amps::new(-offset as f32));
+            // The DAC rounds the command of zero too, which most pairs have: a whole code is exact.
+            Some(code.round())
+        });
+        if let Some(zero) = zero {
+            // A zero that is not admitted stays as it is, and the fit fails again.
+            settings.set(channel.zero, zero);
+        }
+    }
+    settings
+}
+
+/// The zeros in these settings.
+fn zeros(settings: &Settings) -> [Assignment; 2] {
+    [0, 1].map(|n| Assignment {
+        setting: CHANNELS[n].zero,
+        value: settings.get(CHANNELS[n].zero),
+    })
+}
+
+/// The DAC of a channel with these settings; `None` if they are no calibration.
+fn scale(channel: &Channel, settings: &Settings) -> Option<DacScale> {
+    let [zero, gain] = [channel.zero, channel.gain].map(|setting| settings.get(setting));
+    DacScale::new(channel.full_scale)?.calibrated(zero, gain)
+}
+
+/// New zero and gain of a channel, from a line that was measured with the `present` settings, and a text on
+/// what changes against the settings `before`.
 ///
 /// # Errors
 /// What was found and what to do, if a new value is out of the bounds of its setting.
@@ -71,10 +128,10 @@ fn calibrated(
     fit: Fit,
     channel: &Channel,
     present: &Settings,
+    before: &Settings,
 ) -> Result<(String, [Assignment; 2]), String> {
     let [zero, gain] = [channel.zero, channel.gain].map(|setting| present.get(setting));
-    let scale = DacScale::new(channel.full_scale).and_then(|it| it.calibrated(zero, gain));
-    let Some(scale) = scale else {
+    let Some(scale) = scale(channel, present) else {
         return Err(format!(
             "zero {zero} and gain {gain} of the board are no calibration"
         ));
@@ -85,7 +142,7 @@ fn calibrated(
     let new = [
         (
             channel.zero,
-            zero,
+            before.get(channel.zero),
             rounded(f64::from(scale.exact_code(command)), ZERO_STEPS),
         ),
         (
@@ -150,7 +207,7 @@ mod tests {
         [0, 1].map(|motor| {
             let channel = &CHANNELS[motor];
             let fit = Fit::of(&seen, channel)?;
-            let (_, new) = calibrated(fit, channel, present)?;
+            let (_, new) = calibrated(fit, channel, present, present)?;
             Ok(new.map(|it| (it.setting, it.value)).into())
         })
     }

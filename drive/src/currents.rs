@@ -47,6 +47,33 @@ fn flowing(seen: &Seen, channel: &Channel) -> Result<String, String> {
     }
 }
 
+/// Numbers of pairs with a positive and with a negative command.
+fn directions(pairs: &[[f64; 2]]) -> [usize; 2] {
+    let count = |is_meant: fn(f64) -> bool| {
+        let meant = |[command, _]: &&[f64; 2]| is_meant(*command);
+        pairs.iter().filter(meant).count()
+    };
+    [
+        count(|command| command > 0.0),
+        count(|command| command < 0.0),
+    ]
+}
+
+/// Whether the strokes ended before they have enough pairs of a motor for a [`Fit`].
+pub(crate) fn are_strokes_short(seen: &Seen, channel: &Channel) -> bool {
+    let [up, down] = directions(&pairs(seen, channel));
+    up.min(down) < LEAST_PAIRS
+}
+
+/// Mean current of a motor at the command of zero, A, which follows on the strokes; `None` of too few pairs.
+pub(crate) fn offset_at_rest(seen: &Seen, channel: &Channel) -> Option<f64> {
+    let pairs = pairs(seen, channel);
+    let resting = pairs.iter().filter(|[command, _]| *command == 0.0);
+    let number = resting.clone().count();
+    (number >= LEAST_PAIRS)
+        .then(|| resting.map(|[_, measured]| measured).sum::<f64>() / number as f64)
+}
+
 /// The line `measured = offset + slope command` through pairs of currents, by least squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Fit {
@@ -66,14 +93,7 @@ impl Fit {
     /// What was found and what to do, if the line does not state how the amplifier follows its command.
     pub(crate) fn of(seen: &Seen, channel: &Channel) -> Result<Self, String> {
         let pairs = pairs(seen, channel);
-        let count = |is_meant: fn(f64) -> bool| {
-            let meant = |[command, _]: &&[f64; 2]| is_meant(*command);
-            pairs.iter().filter(meant).count()
-        };
-        let [up, down] = [
-            count(|command| command > 0.0),
-            count(|command| command < 0.0),
-        ];
+        let [up, down] = directions(&pairs);
         let largest = pairs.iter().fold(0.0_f64, |most, [i, _]| most.max(i.abs()));
         let stroke = f64::from(channel.stroke.get());
         if !pairs.is_empty() && largest < REACHED * stroke {

@@ -13,14 +13,17 @@ use std::thread::JoinHandle;
 use drivers::link::{Message, PROTOCOL, Parser};
 use drivers::{Setting, Settings};
 use experiments::closed_loop::Hand;
-use haptic_control::{Mode, SimulatedHand};
+use haptic_control::{Mode, SimulatedHand, Stop};
 use recordings::recording::Recording;
 use tuned::DEVICE_FINGERPRINT;
 use virtual_board::bridge::Bridge;
 use virtual_board::fault::Fault;
 use virtual_board::flash::Sectors;
 use virtual_board::image::Image;
-use virtual_board::run::{DacError, RATE_HZ, Setup};
+use virtual_board::run::{DacError, RATE_HZ, Setup, on_board};
+
+/// The feature of an image that `calibrate` asks for.
+const MONITORS: &str = "current-monitor";
 
 /// Runs the tool. The computer may be busy, and the board slow.
 fn tool(address: SocketAddr, arguments: &[&str]) -> Output {
@@ -32,8 +35,12 @@ fn tool(address: SocketAddr, arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-/// Each test has the computer for itself: a board runs in real time.
+/// Each test has the computer for itself: a board runs in real time, and all images are built to one file.
 static ALONE: Mutex<()> = Mutex::new(());
+
+fn alone() -> MutexGuard<'static, ()> {
+    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// A board that runs until it is ended.
 struct EmulatedBoard {
@@ -50,7 +57,7 @@ impl EmulatedBoard {
 
     /// Starts a board whose image has these features.
     fn with(features: &str, setup: Setup) -> (SocketAddr, Self) {
-        let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+        let alone = alone();
         let image = Image::build(features).unwrap();
         let bridge = Bridge::bind(0).unwrap();
         let address = bridge.address();
@@ -247,41 +254,80 @@ fn setting(address: SocketAddr, name: &str) -> f64 {
     value.expect("the setting").parse().unwrap()
 }
 
-/// The zeros of the monitors are 11 and -7 codes off, and their noise is 2 codes.
-#[test]
-fn calibrate_finds_zero_and_gain_of_both_outputs() {
-    let errors = [(15.0, 0.96), (-15.0, 1.04)];
-    let (address, board) = EmulatedBoard::with(
-        "current-monitor",
-        Setup {
-            dac_errors: errors.map(|(offset, gain)| DacError { offset, gain }),
-            ..blank(None)
-        },
-    );
-    let (text, status) = said(address, &["calibrate"]);
-    assert_eq!(status, Some(0), "{text}");
+/// A board that has passed its bring-up, with offset and gain of the large and of the small motor's output.
+fn with_dac_errors(errors: [(f64, f64); 2]) -> Setup {
+    Setup {
+        settings: Some(Settings::COMMISSIONED),
+        dac_errors: errors.map(|(offset, gain)| DacError { offset, gain }),
+        ..blank(None)
+    }
+}
+
+/// RMS of the parasitic force that a moving hand feels in free air, mN, on a board that starts with this
+/// flash.
+fn parasitic_mn(errors: [(f64, f64); 2], flash: Option<Sectors>) -> f64 {
+    /// Before this the board is armed and settles, s.
+    const SETTLED_S: f64 = 0.4;
+    let setup = Setup {
+        hand: Hand::Moving,
+        flash,
+        seconds: 2.4,
+        ..with_dac_errors(errors)
+    };
+    let _alone = alone();
+    let run = on_board(&Image::build(MONITORS).unwrap(), &setup, |_| ()).unwrap();
+    run.check().unwrap();
+    let last = run.telemetry.frames.last().unwrap();
+    assert_eq!((last.state, last.cause), (Mode::Running, Stop::None));
+    let parasitic = run.parasitic(SETTLED_S, setup.device.handle.diameter_m);
+    parasitic.unwrap().rms_mn
+}
+
+/// Zero and gain that `calibrate` has left are those of the errors. The zeros of the monitors are 11 and -7
+/// codes off, and their noise is 2 codes.
+fn assert_calibrated(address: SocketAddr, errors: [(f64, f64); 2]) {
     for ((offset, gain), motor) in errors.into_iter().zip(["large", "small"]) {
         let off = setting(address, &format!("zero-{motor}")) - (2048.0 - offset);
-        assert!(off.abs() < 0.3, "{motor}: {off} codes, {text}");
+        assert!(off.abs() < 0.3, "{motor}: {off} codes");
         let ratio = setting(address, &format!("gain-{motor}")) / gain;
-        assert!((ratio - 1.0).abs() < 5e-3, "{motor}: {ratio}, {text}");
+        assert!((ratio - 1.0).abs() < 5e-3, "{motor}: {ratio}");
     }
-    // Calibrated once more, nothing is left to correct.
-    let (text, status) = said(address, &["calibrate", "--store"]);
-    assert_eq!(status, Some(0), "{text}");
-    assert_eq!(
-        text.matches("slope 1.00").count() + text.matches("slope 0.99").count(),
-        2,
-        "{text}"
-    );
-    let gain = setting(address, "gain-large");
-    let stored = board.end().settings().expect("settings");
-    assert!((f64::from(stored.get(Setting::GainLarge)) - gain).abs() < 1e-6);
+}
+
+/// A board with offset and gain that are worse than the datasheet allows is calibrated over its port, starts
+/// again with what its flash holds then, and renders free air as a board without these errors does.
+#[test]
+fn calibrate_leaves_less_than_1_mn_of_15_codes_after_the_next_start() {
+    const NONE: [(f64, f64); 2] = [(0.0, 1.0); 2];
+    let perfect = parasitic_mn(NONE, None);
+    for (offset, gains) in [(15.0, [0.96, 1.04]), (-15.0, [1.04, 0.96])] {
+        let errors = gains.map(|gain| (offset, gain));
+        let (address, board) = EmulatedBoard::with(MONITORS, with_dac_errors(errors));
+        let (text, status) = said(address, &["calibrate", "--store"]);
+        assert_eq!(status, Some(0), "{text}");
+        assert_calibrated(address, errors);
+        if offset > 0.0 {
+            // Calibrated once more, nothing is left to correct.
+            let (text, status) = said(address, &["calibrate"]);
+            assert_eq!(status, Some(0), "{text}");
+            let small = text.matches("slope 1.00").count() + text.matches("slope 0.99").count();
+            assert_eq!(small, 2, "{text}");
+        }
+        let flash = board.end();
+        assert!(flash.settings().is_some_and(|it| it.are_signs_verified()));
+        let [before, after] = [None, Some(flash)].map(|flash| parasitic_mn(errors, flash));
+        println!(
+            "{offset} codes: {before:.2} mN RMS before, {after:.2} mN after; {perfect:.2} mN without errors"
+        );
+        assert!((after - perfect).abs() < 1.0);
+        // Otherwise the bound above says nothing.
+        assert!((before - perfect).abs() > 1.0);
+    }
 }
 
 #[test]
 fn calibrate_changes_nothing_with_an_open_lead_or_without_monitors() {
-    let (address, board) = EmulatedBoard::with("current-monitor", blank(Some(Fault::OpenLead)));
+    let (address, board) = EmulatedBoard::with(MONITORS, blank(Some(Fault::OpenLead)));
     let (text, status) = said(address, &["calibrate"]);
     assert_eq!(status, Some(1), "{text}");
     assert!(

@@ -11,15 +11,19 @@ use crate::scripted::{Board, Script};
 /// Offset and slope of both motors.
 const MEASURES: [(f32, f32); 2] = [(0.012, 0.96), (-0.006, 1.05)];
 
-/// A board with these measured currents, whose settings are not the default ones.
-fn board(measures: [(f32, f32); 2]) -> Board {
+/// What a board does with these measured currents, whose settings are not the default ones.
+fn script(measures: [(f32, f32); 2]) -> Script {
     let mut settings = Settings::DEFAULT;
     assert!(settings.set(Setting::ZeroLarge, 2040.0) && settings.set(Setting::GainLarge, 1.1));
-    Board::new(Script {
+    Script {
         measures: Some(measures),
         settings,
         ..Script::default()
-    })
+    }
+}
+
+fn board(measures: [(f32, f32); 2]) -> Board {
+    Board::new(script(measures))
 }
 
 /// The commands without those that measure, and with each repetition left out.
@@ -119,6 +123,40 @@ fn nothing_is_set_if_one_motor_fails() {
         );
         assert_eq!(afterwards(&commands), []);
     }
+}
+
+/// A handle that is turned out of its bounds ends the strokes. They are repeated with the zeros of the
+/// currents beside the command of zero, and these zeros are undone if the repeated ones end early too.
+#[test]
+fn short_strokes_are_repeated_once_with_other_zeros_which_a_failure_undoes() {
+    let board = Board::new(Script {
+        strokes_end_after: Some(60),
+        ..script(MEASURES)
+    });
+    let (output, commands) = board.run(&["calibrate"]);
+    let [shown, said] = text(&output);
+    assert_eq!(output.status.code(), Some(1), "{shown}{said}");
+    assert!(said.contains("the strokes are repeated"), "{said}");
+    assert!(said.contains("2 of 2 motors failed"), "{said}");
+    let after = afterwards(&commands);
+    let set = |setting: Setting, value| Command::Set {
+        setting: setting.number(),
+        value,
+    };
+    // Whole codes: 2040 - 0.012 / 6 / 1.1 2047 = 2036.3, and 2048 + 0.006 / 1.5 2047 = 2056.2.
+    let other = [
+        set(Setting::ZeroLarge, 2036.0),
+        set(Setting::ZeroSmall, 2056.0),
+    ];
+    let original = [
+        set(Setting::ZeroLarge, 2040.0),
+        set(Setting::ZeroSmall, 2048.0),
+    ];
+    let excite = Command::Request(Request::Select(SceneKind::Excite.number()));
+    assert_eq!(
+        after,
+        [&other[..], &[ARM, excite, DISARM], &original].concat()
+    );
 }
 
 #[test]

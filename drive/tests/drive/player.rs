@@ -168,8 +168,12 @@ impl<'a> Player<'a> {
             return (frame, None);
         };
         // The mean over the millisecond before is that of the command before.
+        let ended = |seq| {
+            let end = self.selected.zip(self.script.strokes_end_after);
+            end.is_some_and(|(from, frames)| seq >= from + frames)
+        };
         let commands = |seq| match self.state {
-            Mode::Running => commands(seq),
+            Mode::Running if !ended(seq) => commands(seq),
             _ => [0.0; 2],
         };
         let flowing = commands(self.seq - 1);

@@ -45,6 +45,8 @@ pub(super) struct Script {
     /// Offset, A, and slope of the measured currents of both motors over their commands, by an image with
     /// `current-monitor`, whose shafts rest; `None`: an image without.
     pub(super) measures: Option<[(f32, f32); 2]>,
+    /// Frames from the command `select` on after which the commands of such a board are zero.
+    pub(super) strokes_end_after: Option<u32>,
     /// Settings at the begin.
     pub(super) settings: Settings,
     /// Whether the board takes the command `disarm`.
@@ -78,6 +80,7 @@ impl Default for Script {
             answers_late: false,
             refuses: false,
             measures: None,
+            strokes_end_after: None,
             settings: Settings::DEFAULT,
             disarms: true,
         }
