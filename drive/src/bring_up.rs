@@ -16,6 +16,7 @@ use crate::response::{Motion, Response};
 use crate::session::Plan;
 use crate::settings;
 use crate::strokes::{Seen, announce, observe, plan, strokes};
+use crate::turns;
 use crate::watch::cause;
 
 /// Length of the observation of a device that should be at rest, s.
@@ -34,15 +35,22 @@ const EXPLAINED: f64 = 0.5;
 type Check = fn(&'static str, &Seen) -> Vec<Line>;
 
 /// Checks a board step by step, prints a line for each, and notes in the settings whether the signs are
-/// verified.
+/// verified. With `turns`, the shafts are turned by hand at first.
 ///
 /// # Errors
 /// [`Failure::Check`] if a check failed; otherwise those of the session.
-pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
+pub(crate) fn run(board: &mut Board, turns: bool, store: bool) -> Result<(), Failure> {
     let answer = board.compatible()?;
     let mut lines = vec![identity(&answer)];
     show(&lines[0])?;
-    announce();
+    let mut pulses = Vec::new();
+    if turns && failed(&lines) == 0 {
+        pulses = turns::by_hand(board, &answer)?;
+        shown(turns::lines(&pulses)?, &mut lines)?;
+    }
+    if failed(&lines) == 0 {
+        announce();
+    }
     let moved: Check = match are_measured(&answer.hello) {
         true => |name, seen| [currents::lines(seen), motors(name, seen)].concat(),
         false => motors,
@@ -57,14 +65,18 @@ pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
             break;
         }
         let found = match observe(board, &answer, plan) {
-            Ok(seen) => check(name, &seen),
+            Ok(seen) => {
+                let found = check(name, &seen);
+                pulses.extend(seen.indices);
+                found
+            }
             Err(Failure::Check(stopped)) => vec![(name, Err(stopped))],
             Err(failure) => return Err(failure),
         };
-        for line in found {
-            show(&line)?;
-            lines.push(line);
-        }
+        shown(found, &mut lines)?;
+    }
+    if !turns && turns::are_captured(&answer.hello) {
+        shown(turns::lines(&pulses)?, &mut lines)?;
     }
     let wrong = failed(&lines);
     let verified = Setting::SignsVerified;
@@ -83,6 +95,15 @@ pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
         return settings::store(board);
     }
     note("signs verified until the next reset; cargo drive settings --store keeps it");
+    Ok(())
+}
+
+/// Prints lines and adds them to those before.
+fn shown(found: Vec<Line>, lines: &mut Vec<Line>) -> Result<(), Failure> {
+    for line in found {
+        show(&line)?;
+        lines.push(line);
+    }
     Ok(())
 }
 

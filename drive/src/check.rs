@@ -11,10 +11,21 @@ pub(crate) type Line = (&'static str, Result<String, String>);
 /// # Errors
 /// [`Failure`] if standard output takes none.
 pub(crate) fn show((name, result): &Line) -> Result<(), Failure> {
-    let (word, text) = match result {
-        Ok(text) => ("pass", text),
-        Err(text) => ("FAIL", text),
-    };
+    match result {
+        Ok(text) => print("pass", name, text),
+        Err(text) => print("FAIL", name, text),
+    }
+}
+
+/// Prints why something was not checked.
+///
+/// # Errors
+/// [`Failure`] if standard output takes none.
+pub(crate) fn skip(name: &str, reason: &str) -> Result<(), Failure> {
+    print("skip", name, reason)
+}
+
+fn print(word: &str, name: &str, text: &str) -> Result<(), Failure> {
     print_bytes(format!("{word}  {name:<22}{text}\n").as_bytes())
 }
 

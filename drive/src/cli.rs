@@ -130,8 +130,14 @@ enum Action {
     },
     /// Check a new board and its motors step by step, and verify the signs of encoders and currents: scenes
     /// in closed loop are refused before. Moves the motors, at most with 0.3 A and 0.15 A
-    #[command(after_help = "Examples:\n  cargo drive bring-up\n  cargo drive bring-up --store")]
+    #[command(
+        after_help = "Examples:\n  cargo drive bring-up --turns\n  cargo drive bring-up --store"
+    )]
     BringUp {
+        /// Turn both shafts by hand at first, to measure the counts of a turn; the image has the feature
+        /// index-pulse
+        #[arg(long)]
+        turns: bool,
         /// Store the settings in the board's flash if all checks pass
         #[arg(long)]
         store: bool,
@@ -309,7 +315,7 @@ fn act(arguments: Arguments) -> Result<(), Failure> {
             }
             Ok(())
         }
-        Action::BringUp { store } => bring_up::run(&mut open()?, store),
+        Action::BringUp { turns, store } => bring_up::run(&mut open()?, turns, store),
         Action::Calibrate { store } => calibrate::run(&mut open()?, store),
         Action::Record { out, seconds } => {
             let mut board = open()?;

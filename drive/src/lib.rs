@@ -22,4 +22,5 @@ mod session;
 mod settings;
 mod strokes;
 mod timed;
+mod turns;
 mod watch;

@@ -1,6 +1,6 @@
 //! Observations of a board: at rest, and in the strokes with which the scene `excite` begins.
 
-use drivers::link::{Frame, Measured, Message};
+use drivers::link::{Frame, Index, Measured, Message};
 use haptic_control::SceneKind;
 use terminal::failure::Failure;
 use terminal::output::note;
@@ -16,6 +16,7 @@ const SECONDS: f64 = 3.8;
 pub(crate) struct Seen {
     pub(crate) frames: Vec<Frame>,
     pub(crate) measured: Vec<Measured>,
+    pub(crate) indices: Vec<Index>,
 }
 
 impl Seen {
@@ -59,6 +60,7 @@ pub(crate) fn observe(board: &mut Board, answer: &Answer, plan: Plan) -> Result<
     session::observed(board, answer, plan, &mut |message| match message {
         Message::Frame(frame) => seen.frames.push(frame),
         Message::Measured(measured) => seen.measured.push(measured),
+        Message::Index(index) => seen.indices.push(index),
         _ => {}
     })?;
     Ok(seen)

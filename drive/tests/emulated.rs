@@ -15,6 +15,7 @@ use drivers::{Setting, Settings};
 use experiments::closed_loop::Hand;
 use haptic_control::{Mode, SimulatedHand, Stop};
 use recordings::recording::Recording;
+use simulation::device::Device;
 use tuned::DEVICE_FINGERPRINT;
 use virtual_board::bridge::Bridge;
 use virtual_board::fault::Fault;
@@ -212,6 +213,44 @@ fn bring_up_passes_on_a_new_board_and_permits_closed_loop() {
     let mut stored = Settings::DEFAULT;
     assert!(stored.set(Setting::SignsVerified, 1.0));
     assert_eq!(board.end().settings(), Some(stored));
+}
+
+/// Without friction, both shafts turn on from the first velocity of the handle. The board's own check takes twice
+/// the counts for two turns, and finds nothing.
+#[test]
+fn bring_up_finds_counts_of_a_turn_that_are_not_those_of_the_device_file() {
+    let stated = Device::default().frictionless();
+    let mut doubled = stated.clone();
+    doubled.stages.large.counts_per_rev *= 2;
+    doubled.stages.small.counts_per_rev *= 2;
+    for (device, word) in [(stated.clone(), "pass"), (doubled, "FAIL")] {
+        let turns = [device.stages.large, device.stages.small].map(|motor| motor.counts_per_rev);
+        let (address, board) = EmulatedBoard::with(
+            "index-pulse",
+            Setup {
+                device,
+                hand: Hand::Gone(60.0),
+                ..blank(None)
+            },
+        );
+        let (text, status) = said(address, &["bring-up", "--turns"]);
+        // The shafts of a passing board do not rest after their turns.
+        assert_eq!(status, Some(1), "{text}");
+        let motors = [stated.stages.large, stated.stages.small];
+        let names = ["large", "handle"];
+        for ((turn, motor), name) in turns.iter().zip(motors).zip(names) {
+            let line = text
+                .lines()
+                .find(|line| line.contains(&format!("turn, {name} encoder")));
+            let line = line.unwrap_or_else(|| panic!("a line on the {name} encoder: {text}"));
+            let found = format!(
+                "{turn} counts from index to index, {} in the device file",
+                motor.counts_per_rev
+            );
+            assert!(line.starts_with(word) && line.contains(&found), "{text}");
+        }
+        board.end();
+    }
 }
 
 #[test]

@@ -23,7 +23,7 @@ use crate::stop::Stop;
 /// are fours and are found at the next pulse; single ones are found once they sum up to four.
 ///
 /// A wrong N of the device file shows at the first whole turn as well, unless the true number is a
-/// multiple of it. With an N below 8, every count is near whole turns and nothing is found.
+/// multiple of it, which `cargo drive bring-up --turns` finds. With an N below 8, every count is near whole turns and nothing is found.
 ///
 /// ```
 /// use estimator_core::Count;
@@ -57,9 +57,6 @@ pub struct IndexState {
     deviation: i32,
     lost: bool,
 }
-
-/// Largest distance of a pulse from whole turns, counts.
-const TOLERANCE: u32 = 3;
 
 impl IndexState {
     /// No pulse.
@@ -110,6 +107,9 @@ impl IndexState {
 }
 
 impl Index {
+    /// Largest distance of a pulse from whole turns, counts.
+    pub const TOLERANCE: u32 = 3;
+
     /// The index of a motor's encoder.
     #[must_use]
     pub const fn new(motor: &Motor) -> Self {
@@ -134,7 +134,7 @@ impl Index {
             state.nearest = pulse + Counts(-state.deviation);
             state.latest = pulse;
             state.pulses = state.pulses.saturating_add(1);
-            state.lost |= state.deviation.unsigned_abs() > TOLERANCE;
+            state.lost |= state.deviation.unsigned_abs() > Self::TOLERANCE;
         }
         state.lost.then_some(Stop::LostCounts)
     }

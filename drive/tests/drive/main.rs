@@ -8,3 +8,4 @@ mod identity;
 mod player;
 mod recording;
 mod scripted;
+mod turns;

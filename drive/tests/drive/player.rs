@@ -7,7 +7,7 @@ use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
 use drivers::link::{
-    FEATURES, Features, Frame, Hello, LONGEST, Measured, Message, Rejected, Stored,
+    FEATURES, Features, Frame, Hello, Index, LONGEST, Measured, Message, Rejected, Stored,
 };
 use drivers::{Command, Parser, Saved, Setting, Settings};
 use haptic_control::{Mode, Request, Stop};
@@ -154,11 +154,32 @@ impl<'a> Player<'a> {
 
     /// The identity, with the features of the script.
     fn hello(&self) -> Hello {
-        let monitors = FEATURES.iter().position(|name| *name == "current-monitor");
-        let bit = self.script.measures.and(monitors).map_or(0, |bit| 1 << bit);
+        let bit = |has: bool, feature| {
+            let bit = FEATURES.iter().position(|name| *name == feature);
+            bit.filter(|_| has).map_or(0, |bit| 1 << bit)
+        };
+        let bits = bit(self.script.measures.is_some(), "current-monitor")
+            | bit(self.script.turns.is_some(), "index-pulse");
         let mut hello = self.script.hello;
-        hello.features = Features(hello.features.0 | bit);
+        hello.features = Features(hello.features.0 | bits);
         hello
+    }
+
+    /// The index pulses that are told after the frame of now.
+    fn index(&self) -> Option<Index> {
+        let [large, small] = self.script.turns?;
+        let pulses = self.seq / 100;
+        self.seq.is_multiple_of(100).then_some(Index {
+            seq: self.seq,
+            pulses_large: pulses,
+            count_large: pulses * large,
+            deviation_large: 0,
+            position_large: 0,
+            pulses_small: pulses,
+            count_small: pulses * small,
+            deviation_small: 0,
+            position_small: 0,
+        })
     }
 
     /// The frame of now, and the currents that are measured beside it.
@@ -222,6 +243,9 @@ impl<'a> Player<'a> {
             self.bytes.extend(self.message(frame.into()));
             if let Some(measured) = measured {
                 self.bytes.extend(self.message(measured.into()));
+            }
+            if let Some(index) = self.index() {
+                self.bytes.extend(self.message(index.into()));
             }
         }
         self.seq += 1;

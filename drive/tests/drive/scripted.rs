@@ -45,6 +45,9 @@ pub(super) struct Script {
     /// Offset, A, and slope of the measured currents of both motors over their commands, by an image with
     /// `current-monitor`, whose shafts rest; `None`: an image without.
     pub(super) measures: Option<[(f32, f32); 2]>,
+    /// Counts from each index pulse of the large and of the handle encoder to the next one, of an image with
+    /// `index-pulse` that tells a pulse of both every 100 frames; `None`: an image without.
+    pub(super) turns: Option<[u32; 2]>,
     /// Frames from the command `select` on after which the commands of such a board are zero.
     pub(super) strokes_end_after: Option<u32>,
     /// Settings at the begin.
@@ -80,6 +83,7 @@ impl Default for Script {
             answers_late: false,
             refuses: false,
             measures: None,
+            turns: None,
             strokes_end_after: None,
             settings: Settings::DEFAULT,
             disarms: true,
