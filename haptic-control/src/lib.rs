@@ -16,6 +16,7 @@
 )]
 
 mod ammeters;
+mod balance;
 mod controller;
 mod design_error;
 mod device;
@@ -41,6 +42,7 @@ mod units;
 mod windings;
 
 pub use ammeters::{Ammeters, AmmetersState, Flow};
+pub use balance::{Balance, BalanceState};
 pub use controller::{Controller, ControllerState};
 pub use design_error::DesignError;
 pub use device::{DualStage, Motor};

@@ -86,4 +86,8 @@ stops! {
     /// Counts of an encoder were lost or gained: an index pulse was not whole turns after the first one,
     /// see [`Index`](crate::Index). The device file may also have a wrong number of counts per turn.
     LostCounts = 20, "lost-counts";
+    /// The large motor's current does not agree with the motion of both shafts, see
+    /// [`Balance`](crate::Balance): the handle's encoder counts backwards or not at all, or the large motor
+    /// or its encoder fails.
+    TorqueBalance = 21, "torque-balance";
 }

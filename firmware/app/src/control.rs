@@ -3,8 +3,8 @@
 use drivers::Settings;
 use estimator_core::Sample;
 use haptic_control::{
-    Action, Currents, Findings, Flow, Mode, Monitor, MonitorState, Request, Safety, SafetyState,
-    Stop, Windings, WindingsState,
+    Action, Balance, BalanceState, Currents, Findings, Flow, Mode, Monitor, MonitorState, Request,
+    Safety, SafetyState, Stop, Windings, WindingsState,
 };
 
 use crate::ammeter::{Ammeter, Measure as _, Measured};
@@ -15,6 +15,7 @@ use crate::scene::{Core, FIRST, SCENES, Tuned};
 use crate::telemetry::Record;
 
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
+const BALANCE: Balance = Balance::new(&DEVICE, RATE);
 const WINDINGS: Windings = Windings::new(&DEVICE, RATE);
 /// Control ticks from arming to the first scene, 20 ms: amplifiers take 1 to 10 ms until they
 /// are ready and follow a command.
@@ -66,6 +67,7 @@ pub enum Message {
 pub struct Control {
     core: Core,
     monitor: MonitorState,
+    balance: BalanceState,
     /// Outlives every restart.
     windings: WindingsState,
     ammeter: Ammeter,
@@ -99,6 +101,7 @@ impl Control {
         Self {
             core,
             monitor: MONITOR.start(first),
+            balance: BALANCE.start(first),
             windings: WindingsState::cold(),
             ammeter: Ammeter::new(),
             indices,
@@ -160,13 +163,18 @@ impl Control {
         self.overruns = self.overruns.wrapping_add(inputs.missed);
         let overload = WINDINGS.check(&mut self.windings, &flow.currents);
         let lost_counts = self.indices.check(&inputs.pulses);
+        if inputs.missed > 0 {
+            BALANCE.miss(&mut self.balance);
+        }
+        let unbalanced = BALANCE.check(&mut self.balance, sample);
         let mut action = self.core.step(sample);
         let findings = Findings {
             monitor: MONITOR
                 .check(&mut self.monitor, sample)
                 .or(overload)
                 .or(flow.mismatch)
-                .or(lost_counts),
+                .or(lost_counts)
+                .or(unbalanced),
             amplifiers_ready: inputs.amplifiers_ready,
             interlock: inputs.interlock,
             clock_failure: inputs.clock_failure,
@@ -179,6 +187,7 @@ impl Control {
         if order.restart {
             self.core.restart(sample);
             self.monitor = MONITOR.start(sample);
+            self.balance = BALANCE.start(sample);
             self.ammeter.restart();
             self.indices.forget();
         }

@@ -27,6 +27,7 @@ fn every_stop_keeps_its_number_and_name() {
         "overload",
         "current-mismatch",
         "lost-counts",
+        "torque-balance",
     ];
     assert_eq!(Stop::ALL.map(Stop::as_str), names);
     for code in 0..=u8::MAX {
@@ -35,7 +36,7 @@ fn every_stop_keeps_its_number_and_name() {
             None => assert!(usize::from(code) >= names.len(), "{code}"),
         }
     }
-    assert_eq!(Stop::from_code(20), Some(Stop::LostCounts));
+    assert_eq!(Stop::from_code(21), Some(Stop::TorqueBalance));
 }
 
 #[test]

@@ -10,8 +10,8 @@ mod tracking;
 
 use estimator_core::{Amps, Count, Hertz, Sample};
 use haptic_control::{
-    Action, AnyScene, Controller, DualStage, LoopPoles, Monitor, Rig, RstDesign, Scene, Senses,
-    Stop,
+    Action, AnyScene, Balance, Controller, DualStage, LoopPoles, Monitor, Rig, RstDesign, Scene,
+    Senses, Stop,
 };
 
 use catalogue::estimators::{Estimator, Kind, Setup};
@@ -20,7 +20,7 @@ use simulation::device::Device;
 use simulation::plant::{Pose, steps_per_tick};
 
 pub use bench::Bench;
-pub use fault::EncoderFault;
+pub use fault::{EncoderFault, Faulty};
 pub use hand::{Hand, Motion};
 pub use press::Press;
 pub use scene::{Visit, environments_with, named, usual};
@@ -97,14 +97,14 @@ impl Loop {
         self.run_with(ticks, None, observe)
     }
 
-    /// Runs for `ticks`; the encoder is faulty from the tick of `fault` on.
+    /// Runs for `ticks`; one encoder is faulty from the tick of `fault` on.
     ///
     /// # Errors
     /// As [`Self::run`].
     pub fn run_with(
         &self,
         ticks: usize,
-        fault: Option<(usize, EncoderFault)>,
+        fault: Option<(usize, Faulty)>,
         observe: impl FnMut(&TickState),
     ) -> Result<(), String> {
         self.device.validate()?;
@@ -144,7 +144,7 @@ struct Running<'a, F> {
     run: &'a Loop,
     rig: &'a Rig,
     ticks: usize,
-    fault: Option<(usize, EncoderFault)>,
+    fault: Option<(usize, Faulty)>,
     observe: F,
 }
 
@@ -169,20 +169,28 @@ impl<F: FnMut(&TickState)> Visit for Running<'_, F> {
             monitored.large.counts_per_rev = device.reference.counts_per_rev;
         }
         let monitor = Monitor::new(&monitored, Hertz(*rate_hz));
+        let balance = Balance::new(&monitored, Hertz(*rate_hz));
         let mut sample = bench.sample(Amps::ZERO);
         let mut state = controller.start(&sample);
         let mut watch = monitor.start(&sample);
+        let mut balanced = balance.start(&sample);
         let mut pending = vec![(0.0, 0.0); self.run.late_ticks];
         let mut last_omega = bench.plant.small().omega;
         let mut hand = self.run.hand.motion(period, self.run.seed);
         let mut since = None;
+        let mut stopped = None;
         for k in 0..self.ticks {
-            if let Some((_, fault)) = self.fault.filter(|(from, _)| k >= *from) {
-                let since = *since.get_or_insert(sample.count);
-                sample.count = fault.counted(sample.count, since);
+            if let Some((_, faulty)) = self.fault.filter(|(from, _)| k >= *from) {
+                let (count, fault) = match faulty {
+                    Faulty::Large(fault) => (&mut sample.count, fault),
+                    Faulty::Small(fault) => (&mut sample.coupled, fault),
+                };
+                *count = fault.counted(*count, *since.get_or_insert(*count));
             }
             let action = controller.step(&mut state, &sample);
-            let stopped = monitor.check(&mut watch, &sample);
+            stopped = stopped
+                .or(monitor.check(&mut watch, &sample))
+                .or(balance.check(&mut balanced, &sample));
             let wanted = match stopped {
                 None => action.currents,
                 Some(_) => haptic_control::Currents::default(),

@@ -2,7 +2,9 @@
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::closed_loop::{EncoderFault, FeedbackEncoder, Hand, Loop, estimator, usual};
+use experiments::closed_loop::{
+    EncoderFault, Faulty, FeedbackEncoder, Hand, Loop, estimator, usual,
+};
 use haptic_control::{LoopPoles, SceneKind, SimulatedHand, Stop};
 use simulation::device::Device;
 
@@ -49,7 +51,7 @@ fn with(run: &Loop, fault: EncoderFault, seconds: f64) -> Ended {
         spurious_nm: 0.0,
     };
     let mut k = 0;
-    run.run_with(ticks, Some((from, fault)), |now| {
+    run.run_with(ticks, Some((from, Faulty::Large(fault))), |now| {
         if ended.stop.is_none() {
             ended.spurious_nm = ended.spurious_nm.max((now.felt - healthy[k]).abs());
             ended.stop = now.stopped.map(|cause| (now.t - FAULT_S, cause));

@@ -1,8 +1,8 @@
-//! Faults of the large motor's encoder.
+//! Faults of an encoder.
 
 use estimator_core::Count;
 
-/// EncoderFault of the encoder that closes the loop.
+/// Fault of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EncoderFault {
     /// Phase A is stuck; edges of phase B move the count up and down by one.
@@ -13,6 +13,15 @@ pub enum EncoderFault {
     StuckBoth,
     /// The phases are exchanged; the count runs backwards.
     Swapped,
+}
+
+/// A faulty encoder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Faulty {
+    /// The encoder of the large motor, which closes the loop.
+    Large(EncoderFault),
+    /// The encoder of the handle.
+    Small(EncoderFault),
 }
 
 impl EncoderFault {

@@ -38,6 +38,16 @@ const MECHANICAL_S: f64 = 0.3;
 /// that should move it, and then 50 ms.
 const LARGE_MS: f64 = 250.0;
 
+/// Scenes in which the hand moves the handle and the large motor turns, so that a handle's encoder that counts
+/// backwards is found.
+const SWAPPED_FOUND: [SceneKind; 5] = [
+    SceneKind::FreeAir,
+    SceneKind::Wall,
+    SceneKind::SpringDamper,
+    SceneKind::Hold,
+    SceneKind::Inertia,
+];
+
 /// What a fault does in a scene.
 struct Found {
     off_ms: Option<f64>,
@@ -81,7 +91,7 @@ fn bounds_hold(scene: SceneKind, row: &[Found]) {
     for (fault, found) in LARGE.iter().zip(&row[ELECTRICAL.len()..]) {
         let name = format!("{scene}, {}", fault.as_str());
         if scene.facts().needs.continuous {
-            let found_it = [Stop::Stall, Stop::RunawayDirection]
+            let found_it = [Stop::Stall, Stop::RunawayDirection, Stop::TorqueBalance]
                 .map(|cause| Some((Mode::Safe, cause)))
                 .contains(&found.last);
             assert!(found_it, "{name}: {:?}", found.last);
@@ -89,6 +99,18 @@ fn bounds_hold(scene: SceneKind, row: &[Found]) {
         } else {
             // The large motor has no current, and the hand does not feel it.
             assert_eq!((found.off_ms, found.force_mn), (None, 0.0), "{name}");
+        }
+    }
+    for (fault, found) in SMALL.iter().zip(&row[ELECTRICAL.len() + LARGE.len()..]) {
+        let name = format!("{scene}, {}", fault.as_str());
+        if *fault == Fault::SmallSwapped && SWAPPED_FOUND.contains(&scene) {
+            assert_eq!(
+                found.last,
+                Some((Mode::Safe, Stop::TorqueBalance)),
+                "{name}"
+            );
+        } else {
+            assert_eq!(found.last, Some((Mode::Running, Stop::None)), "{name}");
         }
     }
 }

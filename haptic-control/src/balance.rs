@@ -1,0 +1,513 @@
+//! Whether the torques on the large motor balance: a check of the handle's encoder while the device runs.
+
+use core::f64::consts::PI;
+
+use estimator_core::{Count, Hertz, Sample};
+
+use crate::device::DualStage;
+use crate::stop::Stop;
+
+/// Balance of the large motor's torques over windows of 20 ms.
+///
+/// With the motion `J dω_L/dt = Kt i - b (ω_L - ω_S) - friction`, divided by Kt and averaged over a window,
+///
+/// ```text
+/// c = α a + β s + d φ
+/// c  mean current of the large motor
+/// a  J Δω_L / (Kt T), s = b (Δθ_L - Δθ_S) / (Kt T)     with the constants of the description
+/// φ  friction / Kt along the direction d of the motion, and the amplifier's zero
+/// α, β  true J / Kt and b / Kt over those of the description
+/// ```
+///
+/// The torque of the hand is not in it. α, β and φ are unknown within ranges. A window that no values in
+/// these ranges explain is [`Stop::TorqueBalance`]: the handle's encoder counts backwards or not at all, or
+/// another part between current and motion of the large motor fails. A handle's encoder that counts backwards
+/// changes the right side by `2 β b ω_S / Kt`.
+///
+/// **Ranges before the first window.** J is known to 30 %, Kt to 20 %, b to 40 %. Friction is 0 to 1.5 times
+/// the described one, and 10 % more along a turn; at least 50 mA are assumed to be described. The amplifier's
+/// zero is within 15 of 2047 steps of the current limit. A motor that does not turn in one direction
+/// throughout has any friction between those of both directions.
+///
+/// **Errors of measurement.** A position is off by less than one count, and by a third of a count more of the
+/// large encoder's disc. Δω_L is the difference of two displacements over 4 ms. The current acts later than
+/// it is commanded by up to two times the amplifier's lag and a tick.
+///
+/// **Learning.** Each window narrows the ranges of β and, of a motor that turns, of φ in its direction to
+/// what explains the window. 5 % of β and 40 % of the described friction are added on both sides, which
+/// friction varies by along a turn and with speed. The ranges widen again with 0.5 % and 10 % of these
+/// quantities per second, for a coupler that becomes warm.
+///
+/// **Two windows in succession** of the same direction have the same friction within 40 % of the described
+/// one, and the same amplifier's zero. Their difference is checked with these.
+///
+/// Nothing is found while the large motor rests: static friction takes up any torque of the coupler below it.
+///
+/// The work is spread over ticks that do not end a slot of [`Monitor`](crate::Monitor).
+///
+/// ```
+/// use estimator_core::{Amps, Count, Hertz, Sample};
+/// use haptic_control::{Balance, DualStage, Stop};
+/// const BALANCE: Balance = Balance::new(&DualStage::DEFAULT, Hertz(10e3));
+/// // Both shafts turn at 15.3 rad/s, and the current is that of the friction.
+/// let turning = |k: i32, large: i32, milliamps: f32| {
+///     Sample::new(Count((large * k) as u32))
+///         .with_coupled(Count((large * 5 * k) as u32))
+///         .with_current(Amps::new(milliamps / 1000.0))
+/// };
+/// let mut state = BALANCE.start(&turning(0, 1, 85.0));
+/// assert!((1..5000).all(|k| BALANCE.check(&mut state, &turning(k, 1, 85.0)).is_none()));
+/// // The handle would turn backwards with this current: 2 b ω = 29 mN·m are 0.63 A.
+/// let found = (5000..6000).find_map(|k| BALANCE.check(&mut state, &turning(k, 1, 715.0)));
+/// assert_eq!(found, Some(Stop::TorqueBalance));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Balance {
+    /// Ticks of a quarter of a window, at least 4.
+    quarter: u32,
+    /// Ticks until the first window begins.
+    first: u32,
+    /// Windows in a tick.
+    per_window: f32,
+    /// a per count that the displacement in a window changes to the next one, A.
+    inertia: f32,
+    /// Coupler's torque over Kt per count of the large and of the small motor in a window, A.
+    drag: [f32; 2],
+    /// Error by positions, A.
+    rounding: f32,
+    /// Error by the amplifier's lag, per change of the current.
+    lag: f32,
+    /// Friction over Kt with the amplifier's zero, A.
+    friction: Range,
+    /// Variation of the friction over Kt, A.
+    variation: f32,
+    /// Widening of a friction's range in a window, A.
+    friction_drift: f32,
+    /// Widening of β's range in a window.
+    damping_drift: f32,
+}
+
+/// State of a [`Balance`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BalanceState {
+    /// Ticks until the next event.
+    left: u32,
+    event: Event,
+    /// Sum of the currents in the present window, A, and the sum of that over its ticks.
+    charge: f32,
+    area: f32,
+    /// Counts at the begin of the present window, and weighted sums of the displacements since.
+    large: Count,
+    small: Count,
+    sums: [i32; 2],
+    /// The present window, and the one before; `None` if it is not whole.
+    block: Block,
+    before: Option<Block>,
+    now: Terms,
+    /// The terms before those of now, the latest first.
+    past: [Terms; PAST],
+    /// β.
+    damping: Range,
+    /// Friction along the motion, forwards and backwards, with the amplifier's zero, A.
+    friction: [Range; 2],
+}
+
+/// The next thing to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Event {
+    /// Begin a window.
+    Begin,
+    /// Take the positions after one, two, three and four quarters.
+    First,
+    Second,
+    Third,
+    Fourth,
+    /// Compute the terms and check them.
+    Judge,
+    /// Compare them with those before.
+    Compare,
+    /// Narrow the ranges.
+    Learn,
+}
+
+/// Sums of a window, all from its begin on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Block {
+    /// At the end: charge, A, large and small motor, counts.
+    end: [f32; 3],
+    /// Means over the window.
+    mean: [f32; 3],
+}
+
+/// Terms of the balance with the described constants, A.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Terms {
+    current: f32,
+    inertia: f32,
+    slip: f32,
+    /// Largest error of their sum.
+    error: f32,
+    /// Direction of the large motor; 0 if it is uncertain.
+    direction: i32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Range {
+    low: f32,
+    high: f32,
+}
+
+const PAST: usize = 2;
+/// Quarter of a window, s.
+const QUARTER_S: f64 = 0.005;
+
+const INERTIA: (f64, f64) = (0.7, 1.3);
+const CONSTANT: (f64, f64) = (0.8, 1.2);
+const DAMPING: (f64, f64) = (0.6, 1.4);
+/// 1.5, and 10 % along a turn.
+const LARGEST_FRICTION: f64 = 1.65;
+/// Described friction that is assumed at least, A.
+const LEAST_FRICTION: f64 = 0.05;
+const ZERO: f64 = 15.0 / 2047.0;
+/// Variation of the friction, over the described one.
+const VARIATION: f64 = 0.4;
+
+const ALPHA: Range = quotient(INERTIA);
+const BETA: Range = quotient(DAMPING);
+/// What β varies by.
+const TIGHT: (f32, f32) = (0.95, 1.05);
+/// Parts of a second's widening.
+const DRIFT: (f64, f64) = (0.005, 0.1);
+
+/// Error of a position of the large encoder and of the handle's, counts.
+const POSITION: (f64, f64) = (1.33, 1.0);
+/// Displacement of the large motor in a window that has a certain direction: the errors of two positions.
+const TURNS: f32 = 3.0;
+
+const fn quotient((low, high): (f64, f64)) -> Range {
+    Range {
+        low: (low / CONSTANT.1) as f32,
+        high: (high / CONSTANT.0) as f32,
+    }
+}
+
+const REST: Terms = Terms {
+    current: 0.0,
+    inertia: 0.0,
+    slip: 0.0,
+    error: 0.0,
+    direction: 0,
+};
+
+const EMPTY: Block = Block {
+    end: [0.0; 3],
+    mean: [0.0; 3],
+};
+
+impl Range {
+    /// The products with `x`.
+    fn times(self, x: f32) -> Self {
+        if x < 0.0 {
+            Self {
+                low: self.high * x,
+                high: self.low * x,
+            }
+        } else {
+            Self {
+                low: self.low * x,
+                high: self.high * x,
+            }
+        }
+    }
+
+    /// The differences from a value `x`, whose error is `error`.
+    fn below(self, x: f32, error: f32) -> Self {
+        Self {
+            low: x - self.high - error,
+            high: x - self.low + error,
+        }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            low: self.low + other.low,
+            high: self.high + other.high,
+        }
+    }
+
+    fn negative(self) -> Self {
+        Self {
+            low: -self.high,
+            high: -self.low,
+        }
+    }
+
+    fn meets(self, other: Self) -> bool {
+        self.low <= other.high && other.low <= self.high
+    }
+
+    /// Widened by `by` on both sides, but within `most`.
+    fn widened(self, by: f32, most: Self) -> Self {
+        Self {
+            low: larger(self.low - by, most.low),
+            high: -larger(-self.high - by, -most.high),
+        }
+    }
+
+    /// The common part.
+    fn narrowed(self, low: f32, high: f32) -> Self {
+        Self {
+            low: larger(self.low, low),
+            high: -larger(-self.high, -high),
+        }
+    }
+}
+
+fn larger(x: f32, y: f32) -> f32 {
+    if x > y { x } else { y }
+}
+
+impl Balance {
+    /// The balance of `device` at a control rate.
+    #[must_use]
+    pub const fn new(device: &DualStage, rate: Hertz) -> Self {
+        let quarter = match (QUARTER_S * rate.0 + 0.5) as u32 {
+            ticks if ticks > 4 => ticks,
+            _ => 4,
+        };
+        let window = 4 * quarter;
+        let window_s = window as f64 / rate.0;
+        let constant = device.large.torque_constant;
+        let radians = [
+            2.0 * PI / device.large.counts_per_rev as f64,
+            2.0 * PI / device.small.counts_per_rev as f64,
+        ];
+        let inertia = device.large.inertia * radians[0] / (window_s * window_s) / constant;
+        let drag = device.damping / constant / window_s;
+        let described = device.large.coulomb_friction / constant;
+        let friction = if described > LEAST_FRICTION {
+            described
+        } else {
+            LEAST_FRICTION
+        };
+        let zero = ZERO * device.large.current_limit;
+        // The change of a displacement has four positions, the slip two of each encoder.
+        let rounding = inertia * ALPHA.high as f64 * 4.0 * POSITION.0
+            + drag * BETA.high as f64 * 2.0 * (radians[0] * POSITION.0 + radians[1] * POSITION.1);
+        let late_s = 2.0 * device.amplifier_lag() + 1.0 / rate.0;
+        Self {
+            quarter,
+            first: 1 + (0.0005 * rate.0) as u32,
+            per_window: 1.0 / window as f32,
+            inertia: inertia as f32,
+            drag: [(drag * radians[0]) as f32, (drag * radians[1]) as f32],
+            rounding: rounding as f32,
+            lag: (late_s / window_s) as f32,
+            friction: Range {
+                low: -zero as f32,
+                high: (friction * LARGEST_FRICTION / CONSTANT.0 + zero) as f32,
+            },
+            variation: (VARIATION * friction) as f32,
+            friction_drift: (DRIFT.1 * friction * window_s) as f32,
+            damping_drift: (DRIFT.0 * window_s) as f32,
+        }
+    }
+
+    /// State at the first sample, without a finding and without knowledge.
+    #[must_use]
+    pub const fn start(&self, first: &Sample) -> BalanceState {
+        BalanceState {
+            left: self.first,
+            event: Event::Begin,
+            charge: 0.0,
+            area: 0.0,
+            large: first.count,
+            small: first.coupled,
+            sums: [0; 2],
+            block: EMPTY,
+            before: None,
+            now: REST,
+            past: [REST; PAST],
+            damping: BETA,
+            friction: [self.friction; 2],
+        }
+    }
+
+    /// Begins a new window at the next tick, because this one misses ticks.
+    pub const fn miss(&self, state: &mut BalanceState) {
+        (state.left, state.event) = (1, Event::Begin);
+    }
+
+    /// One tick, with the current over the period that ends now. The finding of a window is returned once.
+    pub fn check(&self, state: &mut BalanceState, sample: &Sample) -> Option<Stop> {
+        state.charge += sample.current.get();
+        state.area += state.charge;
+        state.left -= 1;
+        if state.left > 0 {
+            return None;
+        }
+        self.event(state, sample)
+    }
+
+    /// Does what is due. It is a function of its own because most ticks do not call it.
+    #[inline(never)]
+    fn event(&self, state: &mut BalanceState, sample: &Sample) -> Option<Stop> {
+        let mut balanced = true;
+        (state.event, state.left) = match state.event {
+            Event::Begin => {
+                (state.before, state.past) = (None, [REST; PAST]);
+                state.begin(sample);
+                (Event::First, self.quarter)
+            }
+            // Simpson's rule: the mean is (0 + 4 + 2 + 4 + 1) / 12 of the displacements.
+            Event::First => {
+                state.moved(sample, 4);
+                (Event::Second, self.quarter)
+            }
+            Event::Second => {
+                state.moved(sample, 2);
+                (Event::Third, self.quarter)
+            }
+            Event::Third => {
+                state.moved(sample, 4);
+                (Event::Fourth, self.quarter)
+            }
+            Event::Fourth => {
+                let [large, small] = state.moved(sample, 1);
+                let [sum_large, sum_small] = state.sums.map(|sum| sum as f32 / 12.0);
+                state.block = Block {
+                    end: [state.charge, large as f32, small as f32],
+                    mean: [state.area * self.per_window, sum_large, sum_small],
+                };
+                state.begin(sample);
+                (Event::Judge, 1)
+            }
+            Event::Judge => {
+                if let Some(before) = state.before {
+                    state.now = self.terms(&before, &state.block);
+                    balanced = Self::remainder(state).meets(Self::friction(state));
+                }
+                (Event::Compare, 1)
+            }
+            Event::Compare => {
+                balanced = state.before.is_none() || self.follows(state);
+                (Event::Learn, 1)
+            }
+            Event::Learn => {
+                if state.before.is_some() {
+                    self.learn(state);
+                    state.past.copy_within(..PAST - 1, 1);
+                    state.past[0] = state.now;
+                }
+                state.before = Some(state.block);
+                (Event::First, self.quarter - 3)
+            }
+        };
+        (!balanced).then_some(Stop::TorqueBalance)
+    }
+
+    /// The terms from the middle of one window to that of the next, averaged over the length of a window.
+    fn terms(&self, before: &Block, now: &Block) -> Terms {
+        let [charge, large, small] =
+            [0, 1, 2].map(|i| before.end[i] - before.mean[i] + now.mean[i]);
+        let moved = [before.end[1], now.end[1]];
+        let direction = if moved.iter().all(|&counts| counts >= TURNS) {
+            1
+        } else if moved.iter().all(|&counts| counts <= -TURNS) {
+            -1
+        } else {
+            0
+        };
+        let later = (now.end[0] - before.end[0]) * self.per_window;
+        Terms {
+            current: charge * self.per_window,
+            inertia: self.inertia * (moved[1] - moved[0]),
+            slip: self.drag[0] * large - self.drag[1] * small,
+            error: self.rounding + self.lag * larger(later, -later),
+            direction,
+        }
+    }
+
+    /// What the friction of the window has to be.
+    fn remainder(state: &BalanceState) -> Range {
+        let now = &state.now;
+        let known = ALPHA.times(now.inertia).plus(state.damping.times(now.slip));
+        known.below(now.current, now.error)
+    }
+
+    /// What the friction of the window can be.
+    fn friction(state: &BalanceState) -> Range {
+        let [forwards, backwards] = state.friction;
+        match state.now.direction {
+            1 => forwards,
+            -1 => backwards.negative(),
+            _ => Range {
+                low: -backwards.high,
+                high: forwards.high,
+            },
+        }
+    }
+
+    /// Whether the window goes on as the latest one.
+    fn follows(&self, state: &BalanceState) -> bool {
+        let BalanceState { now, past, .. } = state;
+        let last = &past[PAST - 1];
+        if now.direction == 0 || now.direction != last.direction {
+            return true;
+        }
+        let known = ALPHA
+            .times(now.inertia - last.inertia)
+            .plus(state.damping.times(now.slip - last.slip));
+        let varies = Range {
+            low: -self.variation,
+            high: self.variation,
+        };
+        known
+            .below(now.current - last.current, now.error + last.error)
+            .meets(varies)
+    }
+
+    fn learn(&self, state: &mut BalanceState) {
+        let now = state.now;
+        let remainder = Self::remainder(state);
+        let friction = Self::friction(state);
+        state.damping = state.damping.widened(self.damping_drift, BETA);
+        if larger(now.slip, -now.slip) > self.friction.high {
+            let drag = ALPHA
+                .times(now.inertia)
+                .plus(friction)
+                .below(now.current, now.error)
+                .times(1.0 / now.slip);
+            state.damping = state
+                .damping
+                .narrowed(TIGHT.0 * drag.low, TIGHT.1 * drag.high);
+        }
+        let [forwards, backwards] = &mut state.friction;
+        for side in [&mut *forwards, &mut *backwards] {
+            *side = side.widened(self.friction_drift, self.friction);
+        }
+        let (side, along) = match now.direction {
+            1 => (forwards, remainder),
+            -1 => (backwards, remainder.negative()),
+            _ => return,
+        };
+        *side = side.narrowed(along.low - self.variation, along.high + self.variation);
+    }
+}
+
+impl BalanceState {
+    /// Begins a window at this sample.
+    const fn begin(&mut self, sample: &Sample) {
+        (self.large, self.small) = (sample.count, sample.coupled);
+        (self.charge, self.area, self.sums) = (0.0, 0.0, [0; 2]);
+    }
+
+    /// Adds the displacements since the begin of the window, which are returned, to their sums.
+    fn moved(&mut self, sample: &Sample, weight: i32) -> [i32; 2] {
+        let moved = [sample.count - self.large, sample.coupled - self.small].map(|counts| counts.0);
+        for (sum, counts) in self.sums.iter_mut().zip(moved) {
+            *sum = sum.wrapping_add(counts.wrapping_mul(weight));
+        }
+        moved
+    }
+}
