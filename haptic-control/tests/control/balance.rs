@@ -1,0 +1,300 @@
+//! The balance of the large motor's torques, on motions whose current follows from the equation of motion.
+
+use std::f64::consts::TAU;
+
+use estimator_core::{Amps, Count, Hertz, Sample};
+use haptic_control::{Balance, DualStage, Stop};
+
+const DEVICE: DualStage = DualStage::DEFAULT;
+const CONSTANT: f64 = DEVICE.large.torque_constant;
+/// The described friction and the largest error of the amplifier's zero, A.
+const FRICTION: f64 = DEVICE.large.coulomb_friction / CONSTANT;
+const ZERO: f64 = 15.0 / 2047.0 * DEVICE.large.current_limit;
+/// Length of a window, s.
+const WINDOW_S: f64 = 0.02;
+
+/// True constants over the described ones, and the amplifier's zero, A.
+#[derive(Clone, Copy)]
+struct True {
+    inertia: f64,
+    constant: f64,
+    damping: f64,
+    friction: f64,
+    zero: f64,
+}
+
+const NOMINAL: True = True {
+    inertia: 1.0,
+    constant: 1.0,
+    damping: 1.0,
+    friction: 1.0,
+    zero: 0.0,
+};
+
+/// A shaft that turns to and fro about a constant speed: speed, amplitude, rad/s, and frequency, Hz.
+#[derive(Clone, Copy)]
+struct Shaft(f64, f64, f64);
+
+impl Shaft {
+    fn angle(self, t: f64) -> f64 {
+        self.0 * t + self.1 * (1.0 - (TAU * self.2 * t).cos()) / (TAU * self.2)
+    }
+
+    fn speed(self, t: f64) -> f64 {
+        self.0 + self.1 * (TAU * self.2 * t).sin()
+    }
+
+    fn acceleration(self, t: f64) -> f64 {
+        TAU * self.2 * self.1 * (TAU * self.2 * t).cos()
+    }
+}
+
+/// The current that makes this motion, A.
+fn current(of: True, large: Shaft, small: Shaft, t: f64) -> f64 {
+    let speed = large.speed(t);
+    let torque = of.inertia * DEVICE.large.inertia * large.acceleration(t)
+        + of.damping * DEVICE.damping * (speed - small.speed(t))
+        + of.friction * DEVICE.large.coulomb_friction * speed.signum();
+    torque / (of.constant * CONSTANT) + of.zero
+}
+
+fn counts(angle: f64, per_rev: u32) -> Count {
+    // Near the wrap of the counters.
+    Count((angle / TAU * f64::from(per_rev)).floor() as i32 as u32).plus(u32::MAX - 50)
+}
+
+trait Plus {
+    fn plus(self, by: u32) -> Self;
+}
+
+impl Plus for Count {
+    fn plus(self, by: u32) -> Self {
+        Self(self.0.wrapping_add(by))
+    }
+}
+
+/// Time of the first finding, s.
+fn found_s(
+    rate: f64,
+    seconds: f64,
+    large: impl Fn(f64) -> f64,
+    small: impl Fn(f64) -> f64,
+    amps: impl Fn(f64) -> f64,
+) -> Option<f64> {
+    let balance = Balance::new(&DEVICE, Hertz(rate));
+    let sample = |k: u32| {
+        let t = f64::from(k) / rate;
+        Sample::new(counts(large(t), DEVICE.large.counts_per_rev))
+            .with_coupled(counts(small(t), DEVICE.small.counts_per_rev))
+            // The current over the period that ends now.
+            .with_current(Amps::new(amps(t - 0.5 / rate) as f32))
+    };
+    let mut state = balance.start(&sample(0));
+    (1..(seconds * rate) as u32).find_map(|k| {
+        let found = balance.check(&mut state, &sample(k));
+        assert!(found.is_none() || found == Some(Stop::TorqueBalance));
+        found.map(|_| f64::from(k) / rate)
+    })
+}
+
+/// Every combination of the ends of the tolerances.
+fn corners() -> impl Iterator<Item = True> {
+    (0..32).map(|i| {
+        let end = |bit: u32, [low, high]: [f64; 2]| if i >> bit & 1 == 0 { low } else { high };
+        True {
+            inertia: end(0, [0.7, 1.3]),
+            constant: end(1, [0.8, 1.2]),
+            damping: end(2, [0.6, 1.4]),
+            friction: end(3, [0.2, 1.5]),
+            zero: end(4, [-ZERO, ZERO]),
+        }
+    })
+}
+
+/// Free air, a wall at the largest speed, a viscous scene, and one without a hand's motion.
+const MOTIONS: [[Shaft; 2]; 5] = [
+    [Shaft(0.0, 4.0, 1.0), Shaft(0.0, 4.0, 1.0)],
+    [Shaft(-70.0, -50.0, 1.5), Shaft(0.5, 2.0, 1.5)],
+    [Shaft(0.0, -4.0, 2.0), Shaft(0.0, 4.0, 2.0)],
+    [Shaft(100.0, 0.0, 1.0), Shaft(0.0, 0.0, 1.0)],
+    [Shaft(20.0, 15.0, 3.0), Shaft(2.0, 3.0, 0.7)],
+];
+
+#[test]
+fn device_within_the_tolerances_is_balanced() {
+    for rate in [1e3, 10e3] {
+        for [large, small] in MOTIONS {
+            for of in corners() {
+                let amps = |t| current(of, large, small, t);
+                let found = found_s(rate, 1.5, |t| large.angle(t), |t| small.angle(t), amps);
+                assert_eq!(found, None, "{rate} Hz");
+            }
+        }
+    }
+}
+
+/// A handle whose count turns round at 0.5 s.
+fn swapped(small: Shaft) -> impl Fn(f64) -> f64 {
+    move |t| {
+        let at = small.angle(t.min(0.5));
+        at - (small.angle(t) - at)
+    }
+}
+
+#[test]
+fn handle_that_counts_backwards_is_found_where_the_large_motor_turns() {
+    for rate in [1e3, 10e3] {
+        for sign in [1.0, -1.0] {
+            // The large motor follows the wrong count in free air, or turns on in the wall. The speeds are
+            // about those of the emulated press.
+            let hand = Shaft(sign * 4.0, 0.0, 1.0);
+            let follows = |t: f64| {
+                sign * if t < 0.5 {
+                    4.0 * t
+                } else {
+                    2.0 - 4.0 * (t - 0.5)
+                }
+            };
+            let way = |t: f64| if t < 0.5 { sign } else { -sign };
+            let amps = |t: f64| {
+                let speed = 4.0 * way(t);
+                let torque = DEVICE.damping * (speed - hand.speed(t))
+                    + DEVICE.large.coulomb_friction * way(t);
+                torque / CONSTANT
+            };
+            let free = found_s(rate, 1.0, follows, swapped(hand), amps);
+            let wall = Shaft(-sign * 100.0, 0.0, 1.0);
+            let pressed = found_s(
+                rate,
+                1.0,
+                |t| wall.angle(t),
+                swapped(hand),
+                |t| current(NOMINAL, wall, hand, t),
+            );
+            for found in [free, pressed] {
+                // Three windows hold the fault and nothing else by then.
+                let in_time = found.is_some_and(|s| s > 0.5 && s < 0.5 + 5.0 * WINDOW_S);
+                assert!(in_time, "{rate} Hz, {sign}: {free:?}, {pressed:?}");
+            }
+        }
+    }
+}
+
+/// The largest error by positions with no slip, A: four positions of the large encoder of 1.33 counts in the
+/// change of its displacement, with J / Kt 1.3 / 0.8 of the described one, and two of each encoder in the
+/// slip, with b / Kt 1.4 / 0.8 of it.
+fn rounding() -> f64 {
+    let [large, small] =
+        [DEVICE.large, DEVICE.small].map(|motor| TAU / f64::from(motor.counts_per_rev));
+    let accelerated = DEVICE.large.inertia * 4.0 * 1.33 * large / (WINDOW_S * WINDOW_S);
+    let slipped = DEVICE.damping * 2.0 * (1.33 * large + small) / WINDOW_S;
+    (1.625 * accelerated + 1.75 * slipped) / CONSTANT
+}
+
+/// Both shafts turn at a speed at which each count is a whole one at every window's end.
+const EVEN: f64 = TAU * 10.0;
+
+#[test]
+fn first_windows_allow_the_largest_friction_and_the_errors() {
+    let largest = 1.65 / 0.8 * FRICTION + ZERO + rounding();
+    for sign in [1.0, -1.0] {
+        for (amps, found) in [(largest - 2e-3, false), (largest + 2e-3, true)] {
+            // No window is checked before the end of the second one.
+            let seconds = 0.0022 + 2.0 * WINDOW_S;
+            let turn = |t: f64| sign * EVEN * t;
+            let at = found_s(10e3, seconds, turn, turn, |_| sign * amps);
+            assert_eq!(at.is_some(), found, "{amps}");
+            // Against the motion: only the amplifier's zero.
+            let against = amps - largest + ZERO + rounding();
+            let at = found_s(10e3, seconds, turn, turn, |_| -sign * against);
+            assert_eq!(at.is_some(), found, "{against}");
+            // A motor that rests holds against either direction.
+            let at = found_s(10e3, seconds, |_| 0.0, |_| 0.0, |_| sign * amps);
+            assert_eq!(at.is_some(), found, "{amps} at rest");
+        }
+    }
+}
+
+#[test]
+fn friction_of_a_direction_is_learned_from_its_windows() {
+    // The current grows by so little per window that no window differs from the one before.
+    let slope = 0.05;
+    for sign in [1.0, -1.0] {
+        let turn = |t: f64| sign * EVEN * t;
+        let found = found_s(10e3, 4.0, turn, turn, |t| sign * (0.05 + slope * t));
+        // What is learned at the begin is 40 % of the friction and the error, and widens by 10 % of the
+        // friction per second; the window that differs has the error as well.
+        let excess = |rounding: f64| (0.4 * FRICTION + rounding) / (slope - 0.1 * FRICTION);
+        let at = found.expect("the friction has no end");
+        let latest = excess(2.0 * rounding()) + 3.0 * WINDOW_S;
+        assert!(at > excess(rounding()) && at < latest, "{at}, {latest}");
+    }
+}
+
+#[test]
+fn window_is_compared_with_the_one_before_the_last() {
+    // The coupler brings 2 A: its 5 % alone are more than the changes here.
+    let turn = |t: f64| EVEN * t;
+    let slip = DEVICE.damping * EVEN / CONSTANT + FRICTION;
+    let step = |by: f64| {
+        found_s(
+            10e3,
+            1.0,
+            turn,
+            |_| 0.0,
+            |t| slip + if t < 0.3 { 0.0 } else { by },
+        )
+    };
+    let limit = 0.4 * FRICTION + 2.0 * rounding();
+    for sign in [1.0, -1.0] {
+        assert_eq!(step(sign * (limit - 3e-3)), None);
+        let at = step(sign * (limit + 3e-3)).expect("a step is not found");
+        assert!(at > 0.3 && at < 0.3 + 5.0 * WINDOW_S, "{at}");
+    }
+}
+
+#[test]
+fn damping_is_learned_and_forgotten() {
+    let turn = |t: f64| 2.0 * EVEN * t;
+    let slip = DEVICE.damping * 2.0 * EVEN / CONSTANT;
+    let creep = |per_s: f64, seconds: f64| {
+        let amps = |t: f64| slip * (1.0 + per_s * t) + FRICTION;
+        found_s(10e3, seconds, turn, |_| 0.0, amps)
+    };
+    // By a hundredth a second of 2.6 A: 5 % twice, and the friction, 0.26 A.
+    let found = creep(0.05, 20.0).expect("the coupler is not learned");
+    let known = 0.05 + (1.65 / 0.8 * FRICTION + 2.0 * ZERO) / slip;
+    assert!(
+        found > known / 0.05 && found < 2.0 * (known + 0.1) / 0.05,
+        "{found}"
+    );
+    // 0.4 % a second: a coupler that becomes warm.
+    assert_eq!(creep(0.004, 60.0), None);
+}
+
+#[test]
+fn inertia_belongs_to_the_balance() {
+    // Both shafts accelerate together: the current is that of the friction and of the inertia, 0.4 A.
+    let shaft = Shaft(40.0, 30.0, 9.0);
+    let amps = |t| current(NOMINAL, shaft, shaft, t);
+    let angle = |t| shaft.angle(t);
+    assert_eq!(found_s(10e3, 1.0, angle, angle, amps), None);
+    assert!(found_s(10e3, 1.0, angle, angle, |_| FRICTION).is_some());
+}
+
+#[test]
+fn window_with_missed_ticks_is_not_checked() {
+    let balance = Balance::new(&DEVICE, Hertz(10e3));
+    let rest = Sample::new(Count(7)).with_current(Amps::new(0.5));
+    let mut state = balance.start(&rest);
+    for _ in 0..300 {
+        // One tick before a second window is whole.
+        for _ in 0..400 {
+            assert_eq!(balance.check(&mut state, &rest), None);
+        }
+        balance.miss(&mut state);
+    }
+    // The next tick begins a window; two windows later, and a tick, they are checked.
+    let at = (1..).find(|_| balance.check(&mut state, &rest).is_some());
+    assert_eq!(at, Some(402));
+}
