@@ -1,10 +1,11 @@
-//! Faults of the large encoder in closed loop: the monitor ends them, scene by scene.
+//! Faults of the encoders in closed loop: monitor and balance end them, scene by scene.
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
 use experiments::closed_loop::{
-    EncoderFault, Faulty, FeedbackEncoder, Hand, Loop, estimator, usual,
+    EncoderFault, Faulty, FeedbackEncoder, Hand, Loop, Press, estimator, usual,
 };
+use experiments::robust::corners::corners;
 use haptic_control::{LoopPoles, SceneKind, SimulatedHand, Stop};
 use simulation::device::Device;
 
@@ -41,7 +42,7 @@ struct Ended {
     spurious_nm: f64,
 }
 
-fn with(run: &Loop, fault: EncoderFault, seconds: f64) -> Ended {
+fn with(run: &Loop, fault: Faulty, seconds: f64) -> Ended {
     let ticks = (seconds * run.rate_hz) as usize;
     let from = (FAULT_S * run.rate_hz) as usize;
     let mut healthy = Vec::with_capacity(ticks);
@@ -51,7 +52,7 @@ fn with(run: &Loop, fault: EncoderFault, seconds: f64) -> Ended {
         spurious_nm: 0.0,
     };
     let mut k = 0;
-    run.run_with(ticks, Some((from, Faulty::Large(fault))), |now| {
+    run.run_with(ticks, Some((from, fault)), |now| {
         if ended.stop.is_none() {
             ended.spurious_nm = ended.spurious_nm.max((now.felt - healthy[k]).abs());
             ended.stop = now.stopped.map(|cause| (now.t - FAULT_S, cause));
@@ -67,7 +68,7 @@ fn with(run: &Loop, fault: EncoderFault, seconds: f64) -> Ended {
 fn worst(scene: SceneKind, rate_hz: f64, fault: EncoderFault, causes: &[Stop]) -> (f64, f64) {
     let mut worst = (0.0_f64, 0.0_f64);
     for seed in 1..=6 {
-        let ended = with(&closed(scene, rate_hz, seed), fault, 1.5);
+        let ended = with(&closed(scene, rate_hz, seed), Faulty::Large(fault), 1.5);
         let (stop_s, cause) = ended
             .stop
             .unwrap_or_else(|| panic!("{scene}, {fault:?}, {seed}"));
@@ -97,7 +98,7 @@ fn stuck_encoder_is_stopped_before_the_limits_are_exceeded() {
             EncoderFault::StuckB,
             EncoderFault::StuckBoth,
         ] {
-            let causes = [Stop::Stall, Stop::RunawayDirection];
+            let causes = [Stop::Stall, Stop::RunawayDirection, Stop::TorqueBalance];
             let (stop_s, spurious_nm) = worst(scene, 2e3, fault, &causes);
             println!("{scene}, {fault:?}: {stop_s} s, {spurious_nm} N.m");
             // Where nothing moves nothing is wrong yet; free air and a weak field need a motion.
@@ -110,13 +111,76 @@ fn stuck_encoder_is_stopped_before_the_limits_are_exceeded() {
 
 #[test]
 fn exchanged_phases_are_stopped_at_the_first_motion() {
+    let causes = [Stop::RunawayDirection, Stop::TorqueBalance];
     for scene in with_large_motor() {
-        let (stop_s, spurious_nm) =
-            worst(scene, 2e3, EncoderFault::Swapped, &[Stop::RunawayDirection]);
+        let (stop_s, spurious_nm) = worst(scene, 2e3, EncoderFault::Swapped, &causes);
         println!("{scene}: {stop_s} s, {spurious_nm} N.m");
         assert!(stop_s < 0.2, "{scene}: {stop_s} s");
         // The estimate turns round at once, and with it half of what the coupler brings.
         let most = if springs(scene) { 0.04 } else { 0.012 };
         assert!(spurious_nm < most, "{scene}: {spurious_nm} N.m");
+    }
+}
+
+/// A press with 10 N into the wall and back.
+fn pressing(run: Loop) -> Loop {
+    let torque = 10.0 * 0.5 * run.device.handle.diameter_m;
+    let stiffness = 0.3;
+    let compliance = torque / stiffness + torque / run.device.hand.stiffness_nm_per_rad;
+    Loop {
+        hand: Hand::Pressing(Press {
+            angle: 0.1 + compliance,
+            moving_s: 0.8,
+            rest_s: 0.3,
+        }),
+        ..run
+    }
+}
+
+#[test]
+fn handle_that_counts_backwards_is_stopped_where_the_large_motor_turns() {
+    let swapped = Faulty::Small(EncoderFault::Swapped);
+    for scene in [SceneKind::Wall, SceneKind::SpringDamper, SceneKind::Hold] {
+        for seed in 1..=6 {
+            let run = pressing(closed(scene, 10e3, seed));
+            let (stop_s, cause) = with(&run, swapped, 1.0).stop.expect(scene.name());
+            println!("{scene}, {seed}: {stop_s} s");
+            assert_eq!(cause, Stop::TorqueBalance, "{scene}, {seed}");
+            // Three windows of 20 ms, and a tick.
+            assert!(stop_s < 0.061, "{scene}, {seed}: {stop_s} s");
+        }
+    }
+    // A hand in free air moves faster than 2 rad/s at times.
+    for seed in 1..=6 {
+        let run = closed(SceneKind::FreeAir, 10e3, seed);
+        let (stop_s, cause) = with(&run, swapped, 2.5).stop.expect("free air");
+        println!("free air, {seed}: {stop_s} s");
+        assert_eq!(cause, Stop::TorqueBalance, "{seed}");
+    }
+}
+
+#[test]
+fn healthy_devices_at_the_ends_of_the_tolerances_are_balanced() {
+    for scene in SceneKind::environments() {
+        for (i, (name, variation)) in corners().into_iter().enumerate() {
+            let run = closed(scene, 2e3, i as u64 + 1);
+            let nominal = run.device.clone();
+            let varied = Loop {
+                device: variation.of(&nominal),
+                late_ticks: variation.late_ticks,
+                offsets_a: variation.offsets_a(&nominal.stages),
+                ..run
+            };
+            let swinging = Loop {
+                hand: Hand::Moving,
+                ..varied.clone()
+            };
+            for run in [pressing(varied), swinging] {
+                let mut stopped = None;
+                let ticks = (2.0 * run.rate_hz) as usize;
+                run.run(ticks, |now| stopped = now.stopped).unwrap();
+                assert_ne!(stopped, Some(Stop::TorqueBalance), "{scene}, {name}");
+            }
+        }
     }
 }
