@@ -143,7 +143,9 @@ fn handle_that_counts_backwards_is_stopped_where_the_large_motor_turns() {
     for scene in [SceneKind::Wall, SceneKind::SpringDamper, SceneKind::Hold] {
         for seed in 1..=6 {
             let run = pressing(closed(scene, 10e3, seed));
-            let (stop_s, cause) = with(&run, swapped, 1.0).stop.expect(scene.name());
+            let (stop_s, cause) = with(&run, swapped, 1.0)
+                .stop
+                .unwrap_or_else(|| panic!("{scene}"));
             println!("{scene}, {seed}: {stop_s} s");
             assert_eq!(cause, Stop::TorqueBalance, "{scene}, {seed}");
             // Three windows of 20 ms, and a tick.

@@ -69,8 +69,9 @@ const fn bound(fault: Fault, watched_s: f64, end: End, force_mn: [f64; 2]) -> Bo
     }
 }
 
-/// No motion in spite of the push: the loop pushes ever harder until the monitor misses the motion.
-const STALLS: (End, [f64; 2]) = (End::Off([0.0, 200.0], Stop::Stall), [300.0, 10.0]);
+/// No motion in spite of the push: the loop pushes ever harder until the balance or the monitor misses the
+/// motion. The balance is checked every 20 ms, and the monitor waits for 50 ms.
+const STALLS: (End, [f64; 2]) = (End::Off([0.0, 200.0], Stop::TorqueBalance), [300.0, 10.0]);
 
 /// One phase alone counts to and fro. By the instant of the fault, this is motion against the push or no
 /// motion.
@@ -166,7 +167,12 @@ pub(super) const MATRIX: [Bound; 49] = [
     // The large motor rests: the coupler's drag of 0.96 mN.m.s/rad at the hand's 2.95 rad/s, 81 mN, and the
     // friction of 23 mN that is not compensated. Or it turns against the handle, with twice of both.
     bound(Fault::SmallStuck, 1.0, End::On, [110.0, 5.0]),
-    bound(Fault::SmallSwapped, 1.0, End::On, [220.0, 5.0]),
+    bound(
+        Fault::SmallSwapped,
+        1.0,
+        End::Off([0.0, 1000.0], Stop::TorqueBalance),
+        [220.0, 5.0],
+    ),
     // The lost edges add up until the velocity loop contradicts the counts, or not.
     Bound {
         or: Some((
@@ -205,7 +211,7 @@ pub(super) const MATRIX: [Bound; 49] = [
     bound(
         Fault::OpenLead,
         1.0,
-        End::Off([0.0, 1000.0], Stop::Stall),
+        End::Off([0.0, 1000.0], Stop::TorqueBalance),
         [200.0, 10.0],
     ),
     // Nothing but a measured current shows it. The compensation of the friction of 0.8 mN.m, 23 mN, is
