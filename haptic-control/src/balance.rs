@@ -30,16 +30,17 @@ use crate::stop::Stop;
 /// throughout has any friction between those of both directions.
 ///
 /// **Errors of measurement.** A position is off by less than one count, and by a third of a count more of the
-/// large encoder's disc. Δω_L is the difference of two displacements over 4 ms. The current acts later than
-/// it is commanded by up to two times the amplifier's lag and a tick.
+/// large encoder's disc. Charge and positions are means over a window, so that T Δω_L is the difference of the
+/// displacements in two windows. The current acts later than it is commanded by up to two times the
+/// amplifier's lag and a tick.
 ///
 /// **Learning.** Each window narrows the ranges of β and, of a motor that turns, of φ in its direction to
 /// what explains the window. 5 % of β and 40 % of the described friction are added on both sides, which
 /// friction varies by along a turn and with speed. The ranges widen again with 0.5 % and 10 % of these
 /// quantities per second, for a coupler that becomes warm.
 ///
-/// **Two windows in succession** of the same direction have the same friction within 40 % of the described
-/// one, and the same amplifier's zero. Their difference is checked with these.
+/// **Two windows of the same direction**, with one between them, have the same friction within 40 % of the
+/// described one, and the same amplifier's zero. Their difference is checked with these.
 ///
 /// Nothing is found while the large motor rests: static friction takes up any torque of the coupler below it.
 ///
@@ -157,6 +158,7 @@ struct Range {
     high: f32,
 }
 
+/// Terms that are kept. Those of two windows in succession have half of their time in common.
 const PAST: usize = 2;
 /// Quarter of a window, s.
 const QUARTER_S: f64 = 0.005;
