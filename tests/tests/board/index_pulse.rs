@@ -1,16 +1,19 @@
 //! An image that captures the index pulses of both encoders.
 
-use experiments::closed_loop::Hand;
+use experiments::closed_loop::{Bench, FeedbackEncoder, Hand};
 use haptic_control::{Mode, SceneKind, Stop};
 use recordings::telemetry::IndexLine;
 use virtual_board::fault::Fault;
-use virtual_board::run::{Outcome, Setup};
+use virtual_board::run::{ControlTick, Outcome, RATE_HZ, Setup};
 
 use crate::image::{SETTLED_S, end, of_scene, run_image};
 
 /// The image of this file, and the one without the feature.
 pub(crate) const IMAGE: &str = "large-adaptive,current-monitor,index-pulse";
 const WITHOUT: &str = "large-adaptive,current-monitor";
+
+/// Any step of the plant, s.
+const STEP_S: f64 = 1e-5;
 
 /// When counts begin to be lost, s.
 const FAULT_S: f64 = 0.5;
@@ -58,16 +61,47 @@ fn start_of_the_board_is_no_pulse() {
     assert!(lines.iter().all(|(_, pair)| *pair == nothing), "{lines:?}");
 }
 
+/// For each shaft its count at the start, which is arbitrary, and that of the board at the same angle.
+fn starts(setup: &Setup, tick: &ControlTick) -> [[u32; 2]; 2] {
+    let Setup {
+        device, hand, seed, ..
+    } = setup;
+    let mut bench = Bench::new(device, *hand, FeedbackEncoder::Own, RATE_HZ, *seed, STEP_S);
+    let first = [bench.large.count(), bench.small.count()];
+    let poses = [bench.plant.large(), bench.plant.small()];
+    bench.large.follow(poses[0], tick.large, STEP_S, &mut ());
+    bench.small.follow(poses[1], tick.handle, STEP_S, &mut ());
+    let then = [bench.large.count(), bench.small.count()];
+    [0, 1].map(|n| {
+        let moved = then[n].wrapping_sub(first[n]);
+        let board = u32::from(tick.counts[n].expect("a count"));
+        [first[n], board.wrapping_sub(moved)]
+    })
+}
+
+/// The index of a shaft is where its own count is a multiple of a turn.
 #[test]
 fn both_encoders_report_pulses_and_the_position_after_them() {
-    let run = run_image(IMAGE, &of_scene(SceneKind::FreeAir, Hand::Tracking, 1.2));
+    let setup = of_scene(SceneKind::FreeAir, Hand::Tracking, 1.2);
+    let run = run_image(IMAGE, &setup);
     assert_eq!(end(&run), (Mode::Running, Stop::None));
+    // The inputs of the counters have settled, and the shafts rest.
+    let starts = starts(&setup, &run.ticks[10]);
+    let stages = [&setup.device.stages.large, &setup.device.stages.small];
     let mut first: [Option<u32>; 2] = [None; 2];
     for frame in &run.telemetry.frames {
         let Some(pair) = frame.side_lines.index else {
             continue;
         };
         let counts = [frame.counts_large, frame.counts_small];
+        for (n, one) in pair.iter().enumerate().filter(|(_, one)| one.pulses > 0) {
+            let [shaft, board] = starts[n];
+            let moved = one.count.wrapping_sub(board).cast_signed();
+            // Counts go round after 2^32, which are no whole turns.
+            let place = i64::from(shaft) + i64::from(moved);
+            let turn = i64::from(stages[n].counts_per_rev);
+            assert_eq!(place % turn, 0, "encoder {n}: {one:?}");
+        }
         for ((one, first), count) in pair.iter().zip(&mut first).zip(counts) {
             if one.pulses > 0 {
                 let reference = *first.get_or_insert(one.count);
