@@ -4,8 +4,8 @@ use estimator_core::{
     Count, EndFit, Foaw, Hertz, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple, preset,
 };
 use haptic_control::{
-    AnyScene, Bounds, Currents, DualStage, Findings, LoopPoles, Mode, Monitor, Refusal, Request,
-    Rig, Safety, SceneKind, Stop, Switchboard, SwitchboardState,
+    AnyScene, Balance, Bounds, Currents, DualStage, Findings, LoopPoles, Mode, Monitor, Refusal,
+    Request, Rig, Safety, SceneKind, Stop, Switchboard, SwitchboardState,
 };
 
 use crate::bytes::Bytes;
@@ -23,6 +23,7 @@ type Board = Switchboard<Foaw<15, EndFit>, SteadyKalmanTriple>;
 type State = SwitchboardState<Foaw<15, EndFit>, SteadyKalmanTriple>;
 const HANDLE: SteadyKalmanTriple = preset!(SteadyKalman::new(&MODEL));
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
+const BALANCE: Balance = Balance::new(&DEVICE, RATE);
 const SCENES: [AnyScene; SceneKind::ALL.len()] = preset!(AnyScene::usual(&DEVICE, RATE));
 /// Beyond what any device renders, so that the current limits alone bound the currents.
 const BOUNDS: Bounds = Bounds {
@@ -51,6 +52,7 @@ pub fn run(data: &[u8]) {
     let mut sample = Sample::new(Count(0x8000_0000));
     let mut scene = board.start(&sample);
     let mut monitor = MONITOR.start(&sample);
+    let mut balance = BALANCE.start(&sample);
     let mut safety = SAFETY.start(Stop::None);
     let mut bytes = Bytes(data);
     while let (Some(next), Some(inputs)) = (bytes.sample(&sample), bytes.byte()) {
@@ -66,8 +68,13 @@ pub fn run(data: &[u8]) {
             }
             _ => None,
         };
+        if inputs == 0xFD {
+            BALANCE.miss(&mut balance);
+        }
         let findings = Findings {
-            monitor: MONITOR.check(&mut monitor, &sample),
+            monitor: MONITOR
+                .check(&mut monitor, &sample)
+                .or(BALANCE.check(&mut balance, &sample)),
             amplifiers_ready: inputs != 0xFF,
             interlock: inputs == 0xFB,
             clock_failure: inputs == 0xFE,
@@ -98,6 +105,7 @@ pub fn run(data: &[u8]) {
         if order.restart {
             scene = board.start(&sample);
             monitor = MONITOR.start(&sample);
+            balance = BALANCE.start(&sample);
         }
         if let Some(number) = order.select {
             board.select(&mut scene, SCENES[usize::from(number)], &sample);

@@ -33,13 +33,17 @@ pub(crate) const CALM: Inputs = Inputs {
     request: None,
 };
 
-/// A control, its angles, rad, and the velocity of the large motor, which its current drives
-/// against the coupler's damping. The handle turns as the test says.
+/// A control, its angles, rad, and the velocity of the large motor, which its current and the coupler's slip
+/// drive. The handle turns as the test says.
 pub(crate) struct Bench {
     pub(crate) control: Control,
     pub(crate) handle: f64,
     pub(crate) large: f64,
     velocity: f64,
+    /// Angle of the handle a tick ago.
+    handle_before: f64,
+    /// Whether the handle's encoder counts backwards.
+    pub(crate) backwards: bool,
     /// Readings of the ammeters, if they are not those of the commanded currents.
     pub(crate) readings: Option<Currents>,
 }
@@ -62,6 +66,8 @@ impl Bench {
             handle: 0.0,
             large: 0.0,
             velocity: 0.0,
+            handle_before: 0.0,
+            backwards: false,
             readings: None,
         }
     }
@@ -71,8 +77,13 @@ impl Bench {
         let counts = |angle: f64, per_turn: f64| {
             Count(((angle / TAU * per_turn).floor() as i32).cast_unsigned())
         };
+        let handle = if self.backwards {
+            -self.handle
+        } else {
+            self.handle
+        };
         Sample::new(counts(self.large, LARGE))
-            .with_coupled(counts(self.handle, SMALL))
+            .with_coupled(counts(handle, SMALL))
             .with_current(current)
     }
 
@@ -84,9 +95,12 @@ impl Bench {
         let currents = self.control.step(&sample, &flow, inputs);
         let DualStage { large, damping, .. } = DEVICE;
         let current = f64::from(currents.unwrap_or_default().large.get());
-        let torque = large.torque_constant * current - damping * self.velocity;
-        self.velocity += torque / large.inertia / f64::from(RATE_HZ);
-        self.large += self.velocity / f64::from(RATE_HZ);
+        let rate = f64::from(RATE_HZ);
+        let slip = self.velocity - (self.handle - self.handle_before) * rate;
+        self.handle_before = self.handle;
+        let torque = large.torque_constant * current - damping * slip;
+        self.velocity += torque / large.inertia / rate;
+        self.large += self.velocity / rate;
         currents
     }
 
