@@ -101,6 +101,9 @@ pub struct BalanceState {
     large: Count,
     small: Count,
     sums: [i32; 2],
+    /// Displacement of the large motor at the end of the quarter before, and its direction in every quarter.
+    quarters: i32,
+    direction: Option<i32>,
     /// The present window, and the one before; `None` if it is not whole.
     block: Block,
     before: Option<Block>,
@@ -134,6 +137,8 @@ enum Event {
 /// Sums of a window, all from its begin on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Block {
+    /// Direction of the large motor in every quarter; 0 if it is uncertain in one.
+    direction: i32,
     /// At the end: charge, A, large and small motor, counts.
     end: [f32; 3],
     /// Means over the window.
@@ -183,8 +188,10 @@ const DRIFT: (f64, f64) = (0.005, 0.1);
 
 /// Error of a position of the large encoder and of the handle's, counts.
 const POSITION: (f64, f64) = (1.33, 1.0);
-/// Displacement of the large motor in a window that has a certain direction: the errors of two positions.
-const TURNS: f32 = 3.0;
+/// Displacement of the large motor in every quarter of a window that has a certain direction, counts: more than
+/// the errors of two positions. A motor that rests or turns back for a part of a window has less friction in
+/// the mean, and one that does so and still moves by this much in each quarter has it for a small part.
+const TURNS: i32 = 4;
 
 const fn quotient((low, high): (f64, f64)) -> Range {
     Range {
@@ -202,6 +209,7 @@ const REST: Terms = Terms {
 };
 
 const EMPTY: Block = Block {
+    direction: 0,
     end: [0.0; 3],
     mean: [0.0; 3],
 };
@@ -326,6 +334,8 @@ impl Balance {
             large: first.count,
             small: first.coupled,
             sums: [0; 2],
+            quarters: 0,
+            direction: None,
             block: EMPTY,
             before: None,
             now: REST,
@@ -378,6 +388,7 @@ impl Balance {
                 let [large, small] = state.moved(sample, 1);
                 let [sum_large, sum_small] = state.sums.map(|sum| sum as f32 / 12.0);
                 state.block = Block {
+                    direction: state.direction.unwrap_or(0),
                     end: [state.charge, large as f32, small as f32],
                     mean: [state.area * self.per_window, sum_large, sum_small],
                 };
@@ -413,10 +424,8 @@ impl Balance {
         let [charge, large, small] =
             [0, 1, 2].map(|i| before.end[i] - before.mean[i] + now.mean[i]);
         let moved = [before.end[1], now.end[1]];
-        let direction = if moved.iter().all(|&counts| counts >= TURNS) {
-            1
-        } else if moved.iter().all(|&counts| counts <= -TURNS) {
-            -1
+        let direction = if before.direction == now.direction {
+            now.direction
         } else {
             0
         };
@@ -502,6 +511,7 @@ impl BalanceState {
     const fn begin(&mut self, sample: &Sample) {
         (self.large, self.small) = (sample.count, sample.coupled);
         (self.charge, self.area, self.sums) = (0.0, 0.0, [0; 2]);
+        (self.quarters, self.direction) = (0, None);
     }
 
     /// Adds the displacements since the begin of the window, which are returned, to their sums.
@@ -510,6 +520,19 @@ impl BalanceState {
         for (sum, counts) in self.sums.iter_mut().zip(moved) {
             *sum = sum.wrapping_add(counts.wrapping_mul(weight));
         }
+        let quarter = moved[0].wrapping_sub(self.quarters);
+        let direction = if quarter >= TURNS {
+            1
+        } else if quarter <= -TURNS {
+            -1
+        } else {
+            0
+        };
+        self.direction = match self.direction {
+            Some(before) if before != direction => Some(0),
+            _ => Some(direction),
+        };
+        self.quarters = moved[0];
         moved
     }
 }

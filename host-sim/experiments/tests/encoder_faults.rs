@@ -186,3 +186,39 @@ fn healthy_devices_at_the_ends_of_the_tolerances_are_balanced() {
         }
     }
 }
+
+/// What the balance has learned from many windows stays true: stops, reversals and minutes of them.
+#[test]
+fn healthy_devices_stay_balanced_for_minutes() {
+    let seconds = |run: &Loop, seconds: f64| {
+        let ticks = (seconds * run.rate_hz) as usize;
+        let mut stopped = None;
+        run.run(ticks, |now| {
+            stopped = stopped.or(now.stopped.map(|cause| (now.t, cause)))
+        })
+        .unwrap();
+        stopped
+    };
+    let tracking = |scene, seed| Loop {
+        hand: Hand::Tracking,
+        ..closed(scene, 10e3, seed)
+    };
+    for scene in with_large_motor() {
+        for seed in 11..=13 {
+            let stopped = seconds(&tracking(scene, seed), 60.0);
+            assert_eq!(stopped, None, "{scene}, {seed}");
+        }
+        for (i, (name, variation)) in corners().into_iter().enumerate() {
+            let run = tracking(scene, i as u64 + 21);
+            let nominal = run.device.clone();
+            let varied = Loop {
+                device: variation.of(&nominal),
+                late_ticks: variation.late_ticks,
+                offsets_a: variation.offsets_a(&nominal.stages),
+                ..run
+            };
+            let stopped = seconds(&varied, 6.0).map(|(_, cause)| cause);
+            assert_ne!(stopped, Some(Stop::TorqueBalance), "{scene}, {name}");
+        }
+    }
+}
