@@ -268,8 +268,10 @@ fn damping_is_learned_and_forgotten() {
         found > known / 0.05 && found < 2.0 * (known + 0.1) / 0.05,
         "{found}"
     );
-    // 0.4 % a second: a coupler that becomes warm.
-    assert_eq!(creep(0.004, 60.0), None);
+    // A coupler that becomes warm, by 30 % in 60 s and in 24 s.
+    for seconds in [60.0, 24.0] {
+        assert_eq!(creep(-0.3 / seconds, seconds), None, "{seconds}");
+    }
 }
 
 #[test]
