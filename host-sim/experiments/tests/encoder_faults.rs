@@ -194,7 +194,7 @@ fn healthy_devices_stay_balanced_for_minutes() {
         let ticks = (seconds * run.rate_hz) as usize;
         let mut stopped = None;
         run.run(ticks, |now| {
-            stopped = stopped.or(now.stopped.map(|cause| (now.t, cause)))
+            stopped = stopped.or(now.stopped.map(|cause| (now.t, cause)));
         })
         .unwrap();
         stopped
