@@ -200,7 +200,7 @@ impl Experiment {
 
 #[cfg(test)]
 mod tests {
-    use super::judge::{Reason, Verdict};
+    use super::judge::Verdict;
     use super::*;
 
     pub(super) fn settings(scenes: &[&str], devices: u64) -> Settings {
@@ -259,15 +259,16 @@ mod tests {
             let row = experiment.row((scene, Subject::Corner(0))).unwrap();
             assert_ne!(row.verdict, Verdict::Stable, "{row:?}");
         }
-        // A wall with a delay of 22 ms: its limit cycle is slow and weak, and the large motor's
-        // current in it is just too small for the monitor, which stops one with a longer delay.
+        // A wall with a delay of 22 ms: its limit cycle is slow and weak, and the large motor's current in it
+        // is just too small for the monitor. The current is late, which the balance of the torques notices.
         experiment.late_ticks = 44;
         let late_wall = |experiment: &Experiment| {
             experiment
                 .row((SceneKind::Wall, Subject::Corner(0)))
                 .unwrap()
         };
-        assert_eq!(late_wall(&experiment).reason, Some(Reason::Oscillation));
+        let late = late_wall(&experiment);
+        assert_eq!(late.stop.as_deref(), Some("torque-balance"), "{late:?}");
         experiment.late_ticks = 60;
         assert_eq!(late_wall(&experiment).verdict, Verdict::Stopped);
     }
