@@ -116,7 +116,11 @@ impl ControlTask {
         let missed = board.begin_tick();
         let flow = control.flow(&board.currents());
         let sample = board.sample(flow.currents.large);
-        let message = messages.dequeue();
+        let message = if control.takes_message() {
+            messages.dequeue()
+        } else {
+            None
+        };
         if let Some(Message::Settings(settings)) = &message {
             board.calibrate(settings);
         }
@@ -132,7 +136,7 @@ impl ControlTask {
             request,
         };
         board.apply(control.step(&sample, &flow, &inputs));
-        if sender.is_due() {
+        if control.makes_frame() {
             let record = control.record(&sample);
             let (measured, index) = (control.take_measured(), control.take_index(&sample));
             let (cycles, reference) = (board.take_longest(), board.reference());

@@ -44,7 +44,8 @@ use crate::stop::Stop;
 ///
 /// Nothing is found while the large motor rests: static friction takes up any torque of the coupler below it.
 ///
-/// The work is spread over ticks that do not end a slot of [`Monitor`](crate::Monitor).
+/// The work is spread over four ticks. Those of [`Balance::start`] do not end a slot of
+/// [`Monitor`](crate::Monitor).
 ///
 /// ```
 /// use estimator_core::{Amps, Count, Hertz, Sample};
@@ -345,11 +346,6 @@ impl Balance {
         }
     }
 
-    /// Begins a new window at the next tick, because this one misses ticks.
-    pub const fn miss(&self, state: &mut BalanceState) {
-        (state.left, state.event) = (1, Event::Begin);
-    }
-
     /// One tick, with the current over the period that ends now. The finding of a window is returned once.
     pub fn check(&self, state: &mut BalanceState, sample: &Sample) -> Option<Stop> {
         state.charge += sample.current.get();
@@ -507,6 +503,13 @@ impl Balance {
 }
 
 impl BalanceState {
+    /// Begins a new window after this number of ticks, at least 1, and gives up the present one, for
+    /// example because it misses ticks.
+    pub const fn begin_after(&mut self, ticks: u32) {
+        self.left = if ticks == 0 { 1 } else { ticks };
+        self.event = Event::Begin;
+    }
+
     /// Begins a window at this sample.
     const fn begin(&mut self, sample: &Sample) {
         (self.large, self.small) = (sample.count, sample.coupled);

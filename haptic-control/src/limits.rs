@@ -115,18 +115,10 @@ impl CurrentScale {
     /// currents of an open loop.
     #[must_use]
     pub fn within(self, device: &DualStage, currents: Currents) -> Currents {
-        let limited =
-            |current: Amps, largest: f32| Amps::new(within(current.get(), -largest, largest));
-        Currents {
-            large: limited(
-                currents.large,
-                self.large(device.large.current_limit as f32),
-            ),
-            small: limited(
-                currents.small,
-                self.small(device.small.current_limit as f32),
-            ),
-        }
+        currents.within([
+            self.large(device.large.current_limit as f32),
+            self.small(device.small.current_limit as f32),
+        ])
     }
 }
 
@@ -149,4 +141,16 @@ pub struct Currents {
     pub large: Amps,
     /// Small motor.
     pub small: Amps,
+}
+
+impl Currents {
+    /// Within these magnitudes of the large and the small motor's current, A.
+    pub(crate) fn within(self, [large, small]: [f32; 2]) -> Self {
+        let limited =
+            |current: Amps, largest: f32| Amps::new(within(current.get(), -largest, largest));
+        Self {
+            large: limited(self.large, large),
+            small: limited(self.small, small),
+        }
+    }
 }

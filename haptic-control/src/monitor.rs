@@ -123,26 +123,43 @@ impl Monitor {
         }
     }
 
+    /// Ends the present slot after this number of ticks, at least 1 and at most [`Self::slot`]. Over a
+    /// slot that is shorter by that a motor may be faster.
+    pub const fn end_slot_after(&self, state: &mut MonitorState, ticks: u32) {
+        state.ticks = self.slot.saturating_sub(ticks);
+    }
+
     /// One tick. The first cause is latched.
+    #[inline]
     pub fn check(&self, state: &mut MonitorState, sample: &Sample) -> Option<Stop> {
         let now = [sample.count, sample.coupled];
-        let [large, small] = [0, 1].map(|i| distance(now[i] - state.last[i]));
+        let moved = [0, 1].map(|i| now[i] - state.last[i]);
         state.last = now;
         let milliamps = (sample.current.get() * 1000.0) as i32;
         let (low, high) = state.currents;
         state.currents = (low.min(milliamps), high.max(milliamps));
         state.ticks += 1;
+        // One test of both: a displacement within the bound is not negative after the bound is added.
+        let [large, small] = moved.map(|counts| counts.0.wrapping_add(self.jump as i32) as u32);
+        let far = large.max(small) > self.jump.saturating_mul(2);
+        if state.ticks >= self.slot || far {
+            self.look(state, sample, far);
+        }
+        state.cause
+    }
+
+    /// A tick that ends a slot, or in which a position jumped.
+    fn look(&self, state: &mut MonitorState, sample: &Sample, jumped: bool) {
         let mut found = None;
         if state.ticks >= self.slot {
             found = self.slot(state, sample);
             state.ticks = 0;
             state.currents = NO_CURRENT;
         }
-        if large > self.jump || small > self.jump {
+        if jumped {
             found = Some(Stop::Jump);
         }
         state.cause = state.cause.or(found);
-        state.cause
     }
 
     /// Checks at the end of a slot.

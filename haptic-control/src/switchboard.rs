@@ -47,12 +47,12 @@ macro_rules! active_scene {
                 &self,
                 active: &mut Active,
                 shared: &mut Shared<L, H>,
-                angle: Radians,
+                origin: Count,
                 sample: &Sample,
             ) -> Action {
                 match active {
                     $(Active::$scene(scene, state) => {
-                        self.run(scene, state, shared, angle, sample)
+                        self.run(scene, state, shared, origin, sample)
                     })+
                 }
             }
@@ -83,12 +83,22 @@ pub struct SwitchboardState<L: VelocityEstimator, H: VelocityEstimator> {
     active: Active,
     shared: Shared<L, H>,
     origin: Count,
-    /// Set by a swap until the next tick.
-    swapped: bool,
+    change: Change,
     /// Currents that are added to those of the large and the small motor after a change of scenes,
     /// A.
     added: [f32; 2],
     applied: Currents,
+}
+
+/// What a change of scenes has left to do.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Change {
+    /// Nothing.
+    Over,
+    /// The added currents fade.
+    Fading,
+    /// The scene was changed after the latest tick.
+    New,
 }
 
 #[derive(Clone)]
@@ -104,6 +114,8 @@ struct Shared<L: VelocityEstimator, H: VelocityEstimator> {
 
 /// Time constant with which the difference of the currents at a change of scenes fades, s.
 const FADE_S: f64 = 0.02;
+/// Added current below which the fade ends, A: a thousandth of a step of a DAC of 12 bits.
+const FADED: f32 = 1e-6;
 
 impl<L: VelocityEstimator, H: VelocityEstimator> SwitchboardState<L, H> {
     /// State of the large motor's estimator. It does not change while no scene needs it.
@@ -151,7 +163,7 @@ where
                 live: [false; 3],
             },
             origin: first.coupled,
-            swapped: false,
+            change: Change::Over,
             added: [0.0; 2],
             applied: Currents::default(),
         }
@@ -188,25 +200,31 @@ where
     pub fn select(&self, state: &mut SwitchboardState<L, H>, scene: AnyScene, sample: &Sample) {
         let angle = self.rig.angle_scale.of(sample.coupled - state.origin);
         state.active = Active::start(scene, angle);
-        state.swapped = true;
+        state.change = Change::New;
     }
 
     /// Changes the parameters of the active scene before the next tick. The state of the scene
     /// continues. If another scene is active, nothing changes.
     pub fn retune(&self, state: &mut SwitchboardState<L, H>, scene: AnyScene) {
-        state.swapped |= state.active.retune(scene);
+        if state.active.retune(scene) {
+            state.change = Change::New;
+        }
     }
 
     /// One tick.
     pub fn step(&self, state: &mut SwitchboardState<L, H>, sample: &Sample) -> Action {
-        let angle = self.rig.angle_scale.of(sample.coupled - state.origin);
-        let mut action = self.run_active(&mut state.active, &mut state.shared, angle, sample);
-        action.currents = self.faded(state, action.currents);
+        let mut action =
+            self.run_active(&mut state.active, &mut state.shared, state.origin, sample);
+        if state.change != Change::Over {
+            action.currents = self.faded(state, action.currents);
+        }
+        state.applied = action.currents;
         action
     }
 
     /// The currents plus the rest of the difference at the last change of scenes, within the
-    /// limits.
+    /// limits. It is a function of its own because few ticks call it.
+    #[inline(never)]
     fn faded(&self, state: &mut SwitchboardState<L, H>, wanted: Currents) -> Currents {
         let wanted = [wanted.large.get(), wanted.small.get()];
         let before = [state.applied.large.get(), state.applied.small.get()];
@@ -216,16 +234,19 @@ where
         ];
         let mut applied = [0.0; 2];
         for (i, applied) in applied.iter_mut().enumerate() {
-            if state.swapped {
+            if state.change == Change::New {
                 state.added[i] = before[i] - wanted[i];
             }
             *applied = within(wanted[i] + state.added[i], -largest[i], largest[i]);
             state.added[i] -= self.fade * state.added[i];
         }
-        state.swapped = false;
+        state.change = if state.added.iter().all(|added| added.abs() < FADED) {
+            Change::Over
+        } else {
+            Change::Fading
+        };
         let [large, small] = applied.map(Amps::new);
-        state.applied = Currents { large, small };
-        state.applied
+        Currents { large, small }
     }
 
     fn run<S: Scene<Acceleration: Senses<H>>>(
@@ -233,7 +254,7 @@ where
         scene: &S,
         scene_state: &mut S::State,
         shared: &mut Shared<L, H>,
-        angle: Radians,
+        origin: Count,
         sample: &Sample,
     ) -> Action {
         let wanted = [
@@ -253,6 +274,11 @@ where
             self.rig.transient.restart(&mut shared.transient);
         }
         shared.live = wanted;
+        // The stages limit their currents, an open loop does not.
+        let largest = [
+            shared.continuous.largest_current(),
+            shared.transient.largest_current(),
+        ];
         let parts: Parts<'_, S, L, H> = Parts {
             continuous: S::Continuous::zip(
                 S::Continuous::lend(&mut shared.large),
@@ -282,6 +308,11 @@ where
                 }
             }),
         };
-        tick(scene, scene_state, parts, angle, sample)
+        let angle = self.rig.angle_scale.of(sample.coupled - origin);
+        let mut action = tick(scene, scene_state, parts, angle, sample);
+        if S::open_loop(scene_state).is_some() {
+            action.currents = action.currents.within(largest);
+        }
+        action
     }
 }

@@ -12,6 +12,7 @@ use crate::config::{AUTO_ARM, DEVICE, RATE, RATE_HZ, SILENCE};
 use crate::index::{Indexing as _, Indices, Pulses, Reported};
 use crate::large::{Choice, Large, LargeEstimator as _};
 use crate::scene::{Core, FIRST, SCENES, Tuned};
+use crate::schedule::Phase;
 use crate::telemetry::Record;
 
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
@@ -77,6 +78,8 @@ pub struct Control {
     action: Action,
     /// Ticks so far, modulo 2^32.
     ticks: u32,
+    /// Of the latest tick.
+    phase: Phase,
     overruns: u32,
     /// Whether an image that arms without a command does so.
     auto_arm: bool,
@@ -98,16 +101,19 @@ impl Control {
         }
         let mut indices = Indices::start();
         indices.offset(settings.offsets());
+        let phase = Phase::START;
+        let (monitor, balance) = checks(first, phase);
         Self {
             core,
-            monitor: MONITOR.start(first),
-            balance: BALANCE.start(first),
+            monitor,
+            balance,
             windings: WindingsState::cold(),
             ammeter: Ammeter::new(),
             indices,
             safety: SAFETY.start(reset),
             action: Action::default(),
             ticks: 0,
+            phase,
             overruns: 0,
             auto_arm: AUTO_ARM && brown_out_reset && settings.are_signs_verified(),
         }
@@ -116,6 +122,16 @@ impl Control {
     /// Currents commanded over the period that ends now.
     pub fn applied(&self) -> Currents {
         self.action.currents
+    }
+
+    /// Whether the next tick takes a message, if one waits.
+    pub const fn takes_message(&self) -> bool {
+        self.phase.next().takes_message()
+    }
+
+    /// Whether the latest tick makes a telemetry frame.
+    pub fn makes_frame(&self) -> bool {
+        self.phase == Phase::FRAME
     }
 
     /// Mean measured currents since the last call.
@@ -160,11 +176,13 @@ impl Control {
     /// One tick, after the currents of [`Self::flow`]: the currents to apply, `None` with the
     /// amplifiers disabled.
     pub fn step(&mut self, sample: &Sample, flow: &Flow, inputs: &Inputs) -> Option<Currents> {
+        let before = self.phase;
+        self.phase = before.next();
         self.overruns = self.overruns.wrapping_add(inputs.missed);
         let overload = WINDINGS.check(&mut self.windings, &flow.currents);
         let lost_counts = self.indices.check(&inputs.pulses);
         if inputs.missed > 0 {
-            BALANCE.miss(&mut self.balance);
+            self.balance.begin_after(before.until(Phase::BALANCE));
         }
         let unbalanced = BALANCE.check(&mut self.balance, sample);
         let mut action = self.core.step(sample);
@@ -186,8 +204,7 @@ impl Control {
         let order = SAFETY.tick(&mut self.safety, &findings, request);
         if order.restart {
             self.core.restart(sample);
-            self.monitor = MONITOR.start(sample);
-            self.balance = BALANCE.start(sample);
+            (self.monitor, self.balance) = checks(sample, self.phase);
             self.ammeter.restart();
             self.indices.forget();
         }
@@ -233,8 +250,22 @@ impl Control {
     }
 }
 
+/// Monitor and balance at rest, at the sample of a tick of this phase.
+fn checks(sample: &Sample, phase: Phase) -> (MonitorState, BalanceState) {
+    let (mut monitor, mut balance) = (MONITOR.start(sample), BALANCE.start(sample));
+    MONITOR.end_slot_after(&mut monitor, phase.until(Phase::SLOT));
+    balance.begin_after(phase.until(Phase::BALANCE));
+    (monitor, balance)
+}
+
 /// Currents cannot be anything else.
 fn is_finite(action: &Action) -> bool {
+    // A sum of finite numbers is finite or too large, that of others never.
+    let sum = action.torque.0 + action.large_velocity.0 + action.handle_velocity.0;
+    sum.is_finite() || are_finite(action)
+}
+
+fn are_finite(action: &Action) -> bool {
     action.torque.0.is_finite()
         && action.large_velocity.0.is_finite()
         && action.handle_velocity.0.is_finite()

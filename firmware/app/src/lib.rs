@@ -12,4 +12,5 @@ pub mod port;
 pub mod reports;
 pub mod rest;
 pub mod scene;
+pub mod schedule;
 pub mod telemetry;

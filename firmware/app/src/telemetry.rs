@@ -5,7 +5,7 @@ use haptic_control::{Action, Currents, Mode, Stop};
 use heapless::spsc::{Producer, Queue};
 
 use crate::ammeter::{Measured, Measurement as _};
-use crate::config::{DECIMATION, EDGES};
+use crate::config::EDGES;
 use crate::index::{Indication, Indications as _, Reported};
 use crate::large::{Learnable as _, Learned};
 use crate::scene::{Estimation, RIG};
@@ -56,8 +56,6 @@ pub struct Frame {
 /// The control task's end of the queue of frames.
 pub struct Sender<'q> {
     queue: Producer<'q, Frame>,
-    /// Ticks until the next frame.
-    wait: u32,
     seq: u32,
     drops: u32,
 }
@@ -67,17 +65,9 @@ impl<'q> Sender<'q> {
     pub fn new(queue: Producer<'q, Frame>) -> Self {
         Self {
             queue,
-            wait: 0,
             seq: 0,
             drops: 0,
         }
-    }
-
-    /// Whether this tick makes a frame. To be called once a tick.
-    pub fn is_due(&mut self) -> bool {
-        let due = self.wait == 0;
-        self.wait = if due { DECIMATION } else { self.wait } - 1;
-        due
     }
 
     /// Sends a record, or counts it as dropped if the queue is full.

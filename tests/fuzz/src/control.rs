@@ -69,7 +69,7 @@ pub fn run(data: &[u8]) {
             _ => None,
         };
         if inputs == 0xFD {
-            BALANCE.miss(&mut balance);
+            balance.begin_after(1);
         }
         let findings = Findings {
             monitor: MONITOR
