@@ -187,10 +187,8 @@ impl Monitor {
         let handle = sample.coupled - state.small[SLOTS - 1];
         let moved = sample.count - state.large[SLOTS - 1];
         let before = state.large[SLOTS - 1] - state.large[2 * SLOTS - 1];
-        state.small.copy_within(..SLOTS - 1, 1);
-        state.small[0] = sample.coupled;
-        state.large.copy_within(..2 * SLOTS - 1, 1);
-        state.large[0] = sample.count;
+        state.small = shifted(state.small, sample.coupled);
+        state.large = shifted(state.large, sample.count);
 
         // Displacements along the drive. A negative, decreasing one is an acceleration against it.
         let [moved_along, before_along] =
@@ -225,6 +223,13 @@ const DITHER: u32 = 2;
 /// Counts by which the displacements of two windows may differ at constant speed: one count of
 /// rounding at each of three instants, the middle one twice, and one for errors of the disc.
 const FASTER: i32 = 4;
+
+/// The window after a slot that ends at `latest`. Copied by registers: a call to move the memory takes three
+/// times the instructions.
+fn shifted<const N: usize>(window: [Count; N], latest: Count) -> [Count; N] {
+    let mut before = latest;
+    window.map(|count| core::mem::replace(&mut before, count))
+}
 
 fn distance(displacement: Counts) -> u32 {
     displacement.0.unsigned_abs()
