@@ -234,3 +234,53 @@ fn one_missed_tick_in_16_is_tolerated_and_more_are_not() {
         assert_eq!(stopped.is_some(), stops, "one in {every}: {stopped:?}");
     }
 }
+
+/// State of `safety` after arming and settling, without another request.
+fn settled(safety: &Safety) -> SafetyState {
+    let mut state = safety.start(Stop::None);
+    safety.tick(&mut state, &WELL, Some(Request::Arm));
+    for _ in 0..safety.settle {
+        safety.tick(&mut state, &WELL, None);
+    }
+    assert_eq!(state.mode(), Mode::Armed);
+    state
+}
+
+#[test]
+fn ticks_on_time_offset_missed_ones_without_a_request() {
+    let safety = Safety {
+        silence: None,
+        disarm: None,
+        ..SAFETY
+    };
+    let missed = Findings { missed: 1, ..WELL };
+    let run = |period: u32, ticks: u32| {
+        let mut state = settled(&safety);
+        for k in 0..ticks {
+            let findings = if k % period == 0 { &missed } else { &WELL };
+            safety.tick(&mut state, findings, None);
+        }
+        state.stop()
+    };
+    assert_eq!(run(17, 10_000), Stop::None);
+    assert_eq!(run(15, 10_000), Stop::TickOverrun);
+}
+
+#[test]
+fn silence_that_disarms_may_be_shorter_than_that_of_a_scene() {
+    let safety = Safety {
+        silence: Some(100),
+        disarm: Some(30),
+        ..SAFETY
+    };
+    let mut state = settled(&safety);
+    let silent = (safety.settle..).take_while(|_| {
+        safety.tick(&mut state, &WELL, None);
+        state.mode() == Mode::Armed
+    });
+    assert_eq!(silent.count() as u32 + safety.settle, 30);
+    assert_eq!(
+        (state.mode(), state.stop()),
+        (Mode::Boot, Stop::CommandTimeout)
+    );
+}
