@@ -35,6 +35,7 @@ mod safety;
 mod scene;
 mod stage;
 mod stop;
+mod supply;
 mod switchboard;
 mod tick;
 mod tuning;
@@ -60,10 +61,11 @@ pub use safety::{Findings, Mode, Order, Request, Safety, SafetyState};
 pub use scene::*;
 pub use stage::{ContinuousStage, ContinuousState, TransientStage, TransientState};
 pub use stop::Stop;
+pub use supply::{Supply, SupplyFinding, SupplyState};
 pub use switchboard::{Switchboard, SwitchboardState};
 pub use tick::Action;
 pub use tuning::{Bounds, Parameter, Quantity, Refusal, Tunable};
-pub use units::{NewtonMetres, RadPerS, RadPerS2, Radians};
+pub use units::{NewtonMetres, RadPerS, RadPerS2, Radians, Volts};
 pub use windings::{Windings, WindingsState};
 
 #[cfg(doctest)]

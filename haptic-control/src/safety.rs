@@ -1,6 +1,9 @@
 //! The safety state machine of the firmware, as a pure step.
 
+use estimator_core::Skip;
+
 use crate::stop::Stop;
+use crate::supply::SupplyFinding;
 
 /// State of the device.
 ///
@@ -75,9 +78,9 @@ pub enum Request {
     KeepAlive,
 }
 
-/// Findings of one tick.
+/// Findings of one tick. `S` is the finding on the supply; [`Skip`] takes neither state nor code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Findings {
+pub struct Findings<S = Skip> {
     /// Cause found by the monitor or by the windings.
     pub monitor: Option<Stop>,
     /// Both amplifiers are ready. Amplifiers may be not ready while they are disabled and for some
@@ -95,20 +98,27 @@ pub struct Findings {
     /// Debug settings are on that would hold the outputs in a halt: a vector catch is set, or the
     /// watchdog is frozen in a halt.
     pub debugger: bool,
+    /// The supply of the amplifiers.
+    pub supply: S,
 }
 
-impl Findings {
-    /// Findings of a tick without a fault.
-    pub const WELL: Self = Self {
-        monitor: None,
-        amplifiers_ready: true,
-        interlock: false,
-        clock_failure: false,
-        finite: true,
-        missed: 0,
-        debugger: false,
-    };
+impl<S> Findings<S> {
+    /// Findings of a tick without a fault, with this one on the supply.
+    pub const fn well(supply: S) -> Self {
+        Self {
+            monitor: None,
+            amplifiers_ready: true,
+            interlock: false,
+            clock_failure: false,
+            finite: true,
+            missed: 0,
+            debugger: false,
+            supply,
+        }
+    }
+}
 
+impl<S: SupplyFinding> Findings<S> {
     /// Whether nothing stops a device that is on.
     fn are_well(&self) -> bool {
         self.missed == 0
@@ -117,7 +127,13 @@ impl Findings {
             && !self.interlock
             && !self.clock_failure
             && self.finite
+            && !self.supply.is_outside()
     }
+}
+
+impl Findings {
+    /// Findings of a tick without a fault.
+    pub const WELL: Self = Self::well(Skip);
 }
 
 /// Actions at the end of a tick.
@@ -230,10 +246,10 @@ impl Safety {
 
     /// One tick. A fault has priority over a request.
     #[inline]
-    pub fn tick(
+    pub fn tick<S: SupplyFinding + Copy>(
         &self,
         state: &mut SafetyState,
-        findings: &Findings,
+        findings: &Findings<S>,
         request: Option<Request>,
     ) -> Order {
         // Nearly every tick: nothing is wrong, nothing is asked for, no time has passed.
@@ -261,10 +277,10 @@ impl Safety {
     }
 
     /// A tick of which anything may have to be decided.
-    fn eventful(
+    fn eventful<S: SupplyFinding + Copy>(
         &self,
         state: &mut SafetyState,
-        findings: &Findings,
+        findings: &Findings<S>,
         request: Option<Request>,
     ) -> Order {
         let missed = findings.missed.saturating_mul(MISSED_WEIGHT);
@@ -299,7 +315,11 @@ impl Safety {
         order
     }
 
-    fn arm(&self, state: &mut SafetyState, findings: &Findings) -> Order {
+    fn arm<S: SupplyFinding + Copy>(
+        &self,
+        state: &mut SafetyState,
+        findings: &Findings<S>,
+    ) -> Order {
         // Arming clears the cause that the monitor latched and the missed ticks. A present fault
         // refuses it.
         state.debt = 0;
@@ -386,10 +406,13 @@ impl Safety {
     }
 
     /// The cause of a stop among the findings. A cause that brings about others comes before them:
-    /// missed ticks let hardware disable the amplifiers, and a disabled amplifier is not ready.
-    fn fault(&self, state: &SafetyState, findings: &Findings) -> Stop {
+    /// missed ticks let hardware disable the amplifiers, and a disabled amplifier is not ready; an amplifier
+    /// that lacks its supply reports a fault in the loop, and is not ready.
+    fn fault<S: SupplyFinding>(&self, state: &SafetyState, findings: &Findings<S>) -> Stop {
         if findings.clock_failure {
             Stop::ClockFailure
+        } else if findings.supply.is_outside() {
+            Stop::Supply
         } else if findings.interlock {
             Stop::Interlock
         } else if state.debt >= self.missed.saturating_mul(MISSED_WEIGHT).max(1) {

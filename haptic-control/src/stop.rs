@@ -90,4 +90,7 @@ stops! {
     /// [`Balance`](crate::Balance): the handle's encoder counts backwards or not at all, or the large motor
     /// or its encoder fails.
     TorqueBalance = 21, "torque-balance";
+    /// The voltage of the amplifiers' supply is outside of its range, see [`Supply`](crate::Supply). The
+    /// device cannot be armed.
+    Supply = 22, "supply";
 }

@@ -19,3 +19,8 @@ pub struct NewtonMetres(pub f32);
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct RadPerS2(pub f32);
+
+/// Voltage, V.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Volts(pub f32);

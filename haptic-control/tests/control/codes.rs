@@ -28,6 +28,7 @@ fn every_stop_keeps_its_number_and_name() {
         "current-mismatch",
         "lost-counts",
         "torque-balance",
+        "supply",
     ];
     assert_eq!(Stop::ALL.map(Stop::as_str), names);
     for code in 0..=u8::MAX {
@@ -36,7 +37,7 @@ fn every_stop_keeps_its_number_and_name() {
             None => assert!(usize::from(code) >= names.len(), "{code}"),
         }
     }
-    assert_eq!(Stop::from_code(21), Some(Stop::TorqueBalance));
+    assert_eq!(Stop::from_code(22), Some(Stop::Supply));
 }
 
 #[test]

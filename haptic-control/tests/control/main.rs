@@ -17,6 +17,7 @@ mod safety;
 mod safety_times;
 mod scenes;
 mod stage;
+mod supply;
 mod switchboard;
 mod tuning;
 mod velocity_loop;

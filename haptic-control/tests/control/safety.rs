@@ -1,6 +1,6 @@
 //! The safety state machine: what each mode does with findings and requests.
 
-use haptic_control::{Findings, Mode, Order, Request, Safety, SafetyState, Stop};
+use haptic_control::{Mode, Order, Request, Safety, SafetyState, Stop, SupplyFinding};
 
 const SAFETY: Safety = Safety {
     settle: 0,
@@ -9,7 +9,20 @@ const SAFETY: Safety = Safety {
     missed: 4,
     scenes: 8,
 };
-const WELL: Findings = Findings::WELL;
+const WELL: Findings = Findings::well(Outside(false));
+
+/// Findings of a device that measures its supply.
+type Findings = haptic_control::Findings<Outside>;
+
+/// Whether the supply is outside of its range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Outside(bool);
+
+impl SupplyFinding for Outside {
+    fn is_outside(&self) -> bool {
+        self.0
+    }
+}
 
 fn tick(state: &mut SafetyState, findings: Findings, request: Option<Request>) -> Order {
     SAFETY.tick(state, &findings, request)
@@ -45,7 +58,7 @@ fn settling() -> SafetyState {
 }
 
 /// Causes of a stop in order of their priority.
-fn wrongs() -> [(Findings, Stop); 10] {
+fn wrongs() -> [(Findings, Stop); 11] {
     let of = |cause| Findings {
         monitor: Some(cause),
         ..WELL
@@ -57,6 +70,13 @@ fn wrongs() -> [(Findings, Stop); 10] {
                 ..WELL
             },
             Stop::ClockFailure,
+        ),
+        (
+            Findings {
+                supply: Outside(true),
+                ..WELL
+            },
+            Stop::Supply,
         ),
         (
             Findings {
@@ -106,6 +126,7 @@ fn both(a: Findings, b: Findings) -> Findings {
         finite: a.finite && b.finite,
         missed: a.missed.max(b.missed),
         debugger: a.debugger || b.debugger,
+        supply: Outside(a.supply.0 || b.supply.0),
     }
 }
 

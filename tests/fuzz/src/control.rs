@@ -1,7 +1,8 @@
 //! Any inputs into a control task: scenes, monitor and safety state as the firmware has them.
 
 use estimator_core::{
-    Count, EndFit, Foaw, Hertz, Model, NoInput, Sample, SteadyKalman, SteadyKalmanTriple, preset,
+    Count, EndFit, Foaw, Hertz, Model, NoInput, Sample, Skip, SteadyKalman, SteadyKalmanTriple,
+    preset,
 };
 use haptic_control::{
     AnyScene, Balance, Bounds, Currents, DualStage, Findings, LoopPoles, Mode, Monitor, Refusal,
@@ -81,6 +82,7 @@ pub fn run(data: &[u8]) {
             finite: true,
             missed: u32::from(inputs == 0xFD),
             debugger: inputs == 0xFC,
+            supply: Skip,
         };
         let action = board.step(&mut scene, &sample);
         check(&action.currents);
