@@ -26,7 +26,7 @@ mod wire;
 pub use features::{FEATURES, Features};
 pub use messages::{
     Edge, FieldFacts, Frame, Hello, Index, Learned, Measured, Message, MessageFacts, Reference,
-    Rejected, SCHEMA, Setting, Stored,
+    Rejected, SCHEMA, Setting, Stored, Supply,
 };
 pub use parser::Parser;
 pub use wire::Label;

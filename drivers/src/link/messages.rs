@@ -244,6 +244,13 @@ macro_rules! all {
                 /// reference.
                 position_small: i32;
             }
+            /// Voltage of the amplifiers' supply, after a frame, by an image with `supply-monitor`.
+            Supply = 11 {
+                /// Sequence number of the frame.
+                seq: u32;
+                /// Voltage at the frame, V.
+                volts: f32;
+            }
         }
     };
 }

@@ -16,13 +16,18 @@ const LEARNED: &str = ",learned_damping,learned_friction,learned_torque_constant
 /// The fields of a frame that every frame has are columns. `edge_tick` and `edge_bound` are present if
 /// the firmware stamps edges, and empty for a frame without a stamp. `current_measured` and
 /// `current_small_measured` are present if the firmware measures currents, and empty for a frame without
-/// the line, as the first one may be. The three `learned_*` columns are present if any frame has them,
+/// the line, as the first one may be. `supply`, V, is present if the firmware measures the voltage of the
+/// amplifiers' supply. The three `learned_*` columns are present if any frame has them,
 /// and empty in the other rows. `true_omega` is the last column, if every frame has one.
 #[must_use]
 pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) -> String {
     let truth: Option<Vec<f64>> = run.frames.iter().map(|(_, f)| true_omega(f)).collect();
     let edges = run.frames.iter().any(|(_, f)| f.side_lines.edge.is_some());
     let measured = measured(run) > 0;
+    let supply = run
+        .frames
+        .iter()
+        .any(|(_, f)| f.side_lines.supply.is_some());
     let learned = run
         .frames
         .iter()
@@ -38,6 +43,7 @@ pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) 
     let more = [
         (",edge_tick,edge_bound", edges),
         (&format!(",{large},{small}"), measured),
+        (",supply", supply),
         (LEARNED, learned),
         (",true_omega", truth.is_some()),
     ];
@@ -66,6 +72,12 @@ pub fn csv(run: &Run, rate_hz: f64, true_omega: impl Fn(&Frame) -> Option<f64>) 
             let _ = match frame.side_lines.measured {
                 None => write!(text, ",,"),
                 Some(MeasuredLine { large, small }) => write!(text, ",{large},{small}"),
+            };
+        }
+        if supply {
+            let _ = match frame.side_lines.supply {
+                None => write!(text, ","),
+                Some(volts) => write!(text, ",{volts}"),
             };
         }
         if learned {
@@ -296,6 +308,17 @@ mod tests {
         assert_eq!(recording.trace.current, Some(vec![0.1, 0.2, 0.3, 0.5]));
         let small = vec![-0.1, -0.2, -0.3, -0.125];
         assert_eq!(recording.current_small, Some(small));
+    }
+
+    #[test]
+    fn supply_is_a_column_that_is_empty_in_a_row_without_it() {
+        let log = log(0..3) + "supply seq=2 volts=23.75\n";
+        let telemetry = Telemetry::text(log.as_bytes());
+        let text = csv(&telemetry.runs()[0], 1e4, |_| Some(1.0));
+        let lines: Vec<_> = text.lines().collect();
+        assert!(lines[0].ends_with(",cause,supply,true_omega"), "{text}");
+        assert!(lines[1].ends_with(",2,0,,1"), "{text}");
+        assert!(lines[3].ends_with(",2,0,23.75,1"), "{text}");
     }
 
     #[test]

@@ -46,6 +46,9 @@ impl Telemetry {
                     small: decimal(measured.small),
                 });
             }),
+            Message::Supply(supply) => self.beside(supply.seq, |lines| {
+                lines.supply = Some(decimal(supply.volts));
+            }),
             Message::Index(index) => self.beside(index.seq, |lines| {
                 lines.index = Some([
                     IndexLine {
@@ -80,7 +83,9 @@ fn decimal(value: f32) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use drivers::link::{Edge, Frame, Hello, Index, Label, Learned, Measured, PROTOCOL, Reference};
+    use drivers::link::{
+        Edge, Frame, Hello, Index, Label, Learned, Measured, PROTOCOL, Reference, Supply,
+    };
 
     use super::*;
     use crate::record::csv;
@@ -154,6 +159,10 @@ mod tests {
             large: 0.5,
             small: -0.1,
         }));
+        telemetry.add(Message::Supply(Supply {
+            seq: 5,
+            volts: 23.9,
+        }));
         telemetry.add(Message::Index(Index {
             seq: 5,
             pulses_large: 2,
@@ -169,6 +178,7 @@ mod tests {
                 learned seq=5 damping=0.1 friction=-0.2 torque_constant=0.3\n\
                 reference seq=5 count=11\n\
                 measured seq=5 large=0.5 small=-0.1\n\
+                supply seq=5 volts=23.9\n\
                 index seq=5 pulses_large=2 count_large=4097 deviation_large=-1 position_large=4096 \
                 pulses_small=3 count_small=4294967295 deviation_small=9 position_small=-7\n";
         let logged = Telemetry::text(log.as_bytes());
@@ -176,7 +186,7 @@ mod tests {
         assert_eq!(telemetry.boots, logged.boots);
         let text = |telemetry: &Telemetry| csv(&telemetry.runs()[0], 1e4, |_| None);
         assert_eq!(text(&telemetry), text(&logged));
-        assert!(text(&telemetry).ends_with(",0.1,-0.2,0.3\n"));
+        assert!(text(&telemetry).ends_with(",23.9,0.1,-0.2,0.3\n"));
     }
 
     #[test]

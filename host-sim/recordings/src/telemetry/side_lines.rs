@@ -15,6 +15,8 @@ pub struct SideLines {
     pub measured: Option<MeasuredLine>,
     /// `index`: index pulses of the large and the small encoder.
     pub index: Option<[IndexLine; 2]>,
+    /// `supply`: voltage of the amplifiers' supply, V.
+    pub supply: Option<f64>,
 }
 
 /// An edge of the large encoder.
@@ -60,12 +62,13 @@ pub struct IndexLine {
 }
 
 /// Begins of side lines.
-pub(super) const STARTS: [&str; 5] = [
+pub(super) const STARTS: [&str; 6] = [
     "edge seq=",
     "index seq=",
     "learned seq=",
     "measured seq=",
     "reference seq=",
+    "supply seq=",
 ];
 
 impl Frame {
@@ -113,6 +116,7 @@ impl Frame {
                     },
                 ]);
             }
+            Some("supply") => lines.supply = Some(fields.number("volts")?),
             _ => lines.reference = Some(fields.number("count")?),
         }
         Ok(())
@@ -130,7 +134,7 @@ mod tests {
         let log = format!(
             "{LINE}\n[INFO ] edge seq=3 bound=4294967295 age=42 (firmware src/telemetry.rs:99)\n\
              learned seq=3 damping=0.1 friction=-0.2 torque_constant=0\nreference seq=3 count=9\n\
-             measured seq=3 large=-0.25 small=1.5\n\
+             measured seq=3 large=-0.25 small=1.5\nsupply seq=3 volts=23.75\n\
              index seq=3 pulses_large=2 count_large=4097 deviation_large=-1 position_large=4096 \
              pulses_small=0 count_small=7 deviation_small=9 position_small=0\n\
              {LINE}\nedge seq=4 bound=1 age=1\nedge seq=3 bound=x age=1\nedge seq=3 bound=1\n"
@@ -168,6 +172,7 @@ mod tests {
                     position: 0,
                 },
             ]),
+            supply: Some(23.75),
         };
         assert_eq!(first.side_lines, expected);
         assert_eq!(second.side_lines, SideLines::default());
