@@ -10,6 +10,7 @@ use estimator_core::{Amps, Count, Sample};
 use firmware_app::ammeter::Measured;
 use firmware_app::index::Pulses;
 use firmware_app::port::PortFaults;
+use firmware_app::supply::Reading;
 use haptic_control::{Currents, Stop};
 
 #[cfg(feature = "nucleo-f429zi")]
@@ -33,6 +34,9 @@ pub(crate) trait Board {
     /// Returns the index pulses since the last call, if the image captures them, by the counts of
     /// [`Self::sample`], which comes before.
     fn pulses(&mut self) -> Pulses;
+
+    /// Reads the voltage of the amplifiers' supply, if the image does.
+    fn supply(&mut self) -> Reading;
 
     /// Reads the reference encoder, if the image has one.
     fn reference(&mut self) -> Option<Count>;

@@ -2,14 +2,14 @@
 
 use drivers::link::{
     Edge, Features, Frame as FrameMessage, Hello, Index, LONGEST, Label, Learned, Measured,
-    Message, PROTOCOL, Reference, Rejected as RejectedMessage, Setting as SettingMessage,
+    Message, PROTOCOL, Reference, Rejected as RejectedMessage, Setting as SettingMessage, Supply,
 };
 use drivers::{Setting, Settings};
 use estimator_core::Count;
 use firmware_app::commands::Rejected;
 use firmware_app::config::RATE_HZ;
 use firmware_app::telemetry::Frame;
-use haptic_control::{Currents, Stop};
+use haptic_control::{Currents, Stop, Volts};
 use tuned::{DEVICE_FINGERPRINT, PRESETS_FINGERPRINT};
 
 use crate::boards::Port;
@@ -100,6 +100,9 @@ impl<P: Port> Link<P> {
                 deviation_small: small.deviation,
                 position_small: small.position.0,
             });
+        }
+        if let Some(Volts(volts)) = frame.supply() {
+            self.send(Supply { seq, volts });
         }
         if let Some(Count(count)) = frame.reference {
             self.send(Reference { seq, count });

@@ -5,7 +5,7 @@ use firmware_app::commands::Rejected;
 use firmware_app::port::PortFaults;
 use firmware_app::rest::Rest;
 use firmware_app::telemetry::{DEPTH, Frame};
-use haptic_control::Currents;
+use haptic_control::{Currents, Volts};
 use heapless::spsc::Consumer;
 
 use crate::boards::Port;
@@ -78,6 +78,9 @@ fn log(frame: &Frame, lost: u32) {
             small.deviation,
             small.position.0
         );
+    }
+    if let Some(Volts(volts)) = frame.supply() {
+        defmt::info!("supply seq={=u32} volts={=f32}", frame.seq, volts);
     }
     if let Some(Count(count)) = frame.reference {
         defmt::info!("reference seq={=u32} count={=u32}", frame.seq, count);

@@ -139,8 +139,10 @@ impl ControlTask {
         if control.makes_frame() {
             let record = control.record(&sample);
             let (measured, index) = (control.take_measured(), control.take_index(&sample));
+            let supply = board.supply();
+            control.watch(&supply);
             let (cycles, reference) = (board.take_longest(), board.reference());
-            sender.send(record, measured, index, cycles, reference);
+            sender.send(record, measured, index, supply, cycles, reference);
         }
         board.end_tick();
     }

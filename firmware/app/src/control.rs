@@ -13,6 +13,7 @@ use crate::index::{Indexing as _, Indices, Pulses, Reported};
 use crate::large::{Choice, Large, LargeEstimator as _};
 use crate::scene::{Core, FIRST, SCENES, Tuned};
 use crate::schedule::Phase;
+use crate::supply::{Reading, Voltmeter, Watch as _};
 use crate::telemetry::Record;
 
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
@@ -73,6 +74,7 @@ pub struct Control {
     windings: WindingsState,
     ammeter: Ammeter,
     indices: Indices,
+    voltmeter: Voltmeter,
     safety: SafetyState,
     /// Action of the latest tick.
     action: Action,
@@ -110,6 +112,7 @@ impl Control {
             windings: WindingsState::cold(),
             ammeter: Ammeter::new(),
             indices,
+            voltmeter: Voltmeter::unread(),
             safety: SAFETY.start(reset),
             action: Action::default(),
             ticks: 0,
@@ -142,6 +145,11 @@ impl Control {
     /// Index pulses, at the sample of the latest tick.
     pub fn take_index(&mut self, sample: &Sample) -> Reported {
         self.indices.take_reported(sample)
+    }
+
+    /// Takes a reading of the supply, one for each telemetry frame. The next tick has its finding.
+    pub fn watch(&mut self, supply: &Reading) {
+        self.voltmeter.take(supply);
     }
 
     /// Currents over the period that ends now: those measured, or those commanded in an image that
@@ -199,6 +207,7 @@ impl Control {
             finite: is_finite(&action),
             missed: inputs.missed,
             debugger: inputs.debugger,
+            supply: self.voltmeter,
         };
         let request = inputs.request.or_else(|| self.auto_arm_request());
         let order = SAFETY.tick(&mut self.safety, &findings, request);

@@ -13,4 +13,5 @@ pub mod reports;
 pub mod rest;
 pub mod scene;
 pub mod schedule;
+pub mod supply;
 pub mod telemetry;

@@ -1,7 +1,7 @@
 //! Telemetry frames: made by the control task, logged at the lowest priority.
 
 use estimator_core::{Count, Edge, ParameterErrors, Sample};
-use haptic_control::{Action, Currents, Mode, Stop};
+use haptic_control::{Action, Currents, Mode, Stop, Volts};
 use heapless::spsc::{Producer, Queue};
 
 use crate::ammeter::{Measured, Measurement as _};
@@ -9,6 +9,7 @@ use crate::config::EDGES;
 use crate::index::{Indication, Indications as _, Reported};
 use crate::large::{Learnable as _, Learned};
 use crate::scene::{Estimation, RIG};
+use crate::supply::{Reading, Voltage as _};
 
 /// Frames that wait, and that one look logs at most.
 pub const DEPTH: usize = 32;
@@ -50,6 +51,7 @@ pub struct Frame {
     pub reference: Option<Count>,
     measured: Measured,
     index: Reported,
+    supply: Reading,
     drops: u32,
 }
 
@@ -76,6 +78,7 @@ impl<'q> Sender<'q> {
         record: Record,
         measured: Measured,
         index: Reported,
+        supply: Reading,
         cycles: u32,
         reference: Option<Count>,
     ) {
@@ -87,6 +90,7 @@ impl<'q> Sender<'q> {
             reference,
             measured,
             index,
+            supply,
         };
         self.seq = self.seq.wrapping_add(1);
         if self.queue.enqueue(frame).is_err() {
@@ -147,6 +151,12 @@ impl Frame {
     #[must_use]
     pub fn index(&self) -> Option<[Indication; 2]> {
         self.index.pair(self.is_one_of_many())
+    }
+
+    /// Voltage of the amplifiers' supply.
+    #[must_use]
+    pub fn supply(&self) -> Option<Volts> {
+        self.supply.volts()
     }
 
     fn is_one_of_many(&self) -> bool {

@@ -2,6 +2,8 @@
 
 #[allow(dead_code, reason = "an image without the wires measures nothing")]
 mod ammeters;
+#[allow(dead_code, reason = "an image without the wires converts nothing")]
+mod converters;
 #[allow(dead_code, reason = "an image without the wires captures nothing")]
 mod edge;
 mod enables;
@@ -12,6 +14,8 @@ mod memory;
 mod parts;
 mod port;
 mod reset;
+#[allow(dead_code, reason = "an image without the wire measures nothing")]
+mod supply;
 mod tick;
 
 firmware_rt::emergency_outputs!(timer: enables::TIMER);

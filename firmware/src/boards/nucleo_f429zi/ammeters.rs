@@ -9,9 +9,10 @@ use estimator_core::{Amps, Skip};
 use firmware_app::config::TIMER_HZ;
 use haptic_control::Currents;
 use stm32f4xx_hal::gpio::{Input, PA3, PC0};
-use stm32f4xx_hal::pac::{ADC_COMMON, ADC1, ADC2, adc1};
-use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
+use stm32f4xx_hal::pac::{ADC1, ADC2, adc1};
+use stm32f4xx_hal::rcc::{Enable, Rcc};
 
+use super::converters::STABLE_US;
 use super::tick::Clock;
 
 /// Current of the large amplifier at the lower end of its monitor, a quarter above its full scale.
@@ -23,9 +24,6 @@ const SMALL_FULL_SCALE: Amps = Amps::new(1.875);
 const LARGE_CHANNEL: u8 = 3;
 const SMALL_CHANNEL: u8 = 10;
 
-/// Time for which a converter becomes stable after power-on, us. The datasheet has 3 us at most.
-const STABLE_US: u32 = 5;
-
 /// The wires of an image.
 #[cfg(feature = "current-monitor")]
 pub(super) type Monitors = Wired;
@@ -34,12 +32,14 @@ pub(super) type Monitors = Skip;
 
 /// Current monitors, or nothing in their place.
 pub(super) trait Wires {
+    /// Whether the wires have converters.
+    const WANTED: bool;
     /// What a reading gives.
     type Reading;
 
     /// Starts the converters, on the monitors of the large and the small amplifier.
     fn start(
-        converters: (ADC1, ADC2, ADC_COMMON),
+        converters: (ADC1, ADC2),
         pins: (PA3<Input>, PC0<Input>),
         timer: &Clock,
         rcc: &mut Rcc,
@@ -56,10 +56,11 @@ pub(super) struct Wired {
 }
 
 impl Wires for Wired {
+    const WANTED: bool = true;
     type Reading = Currents;
 
     fn start(
-        (large, small, common): (ADC1, ADC2, ADC_COMMON),
+        (large, small): (ADC1, ADC2),
         (large_pin, small_pin): (PA3<Input>, PC0<Input>),
         timer: &Clock,
         rcc: &mut Rcc,
@@ -67,10 +68,7 @@ impl Wires for Wired {
         let _ = (large_pin.into_analog(), small_pin.into_analog());
         ADC1::enable(rcc);
         ADC2::enable(rcc);
-        // It is the reset of all converters.
-        ADC1::reset(rcc);
-        // 21 MHz; the datasheet allows 36 MHz. A conversion takes 56 + 12 of these, 3.2 us.
-        common.ccr().write(|w| w.adcpre().div4());
+        // A conversion takes 56 + 12 cycles of 21 MHz, 3.2 us.
         large.smpr2().write(|w| w.smp3().cycles56());
         small.smpr1().write(|w| w.smp10().cycles56());
         let converters: [(&adc1::RegisterBlock, u8); 2] =
@@ -102,14 +100,10 @@ impl Wires for Wired {
 }
 
 impl Wires for Skip {
+    const WANTED: bool = false;
     type Reading = Self;
 
-    fn start(
-        _: (ADC1, ADC2, ADC_COMMON),
-        _: (PA3<Input>, PC0<Input>),
-        _: &Clock,
-        _: &mut Rcc,
-    ) -> Self {
+    fn start(_: (ADC1, ADC2), _: (PA3<Input>, PC0<Input>), _: &Clock, _: &mut Rcc) -> Self {
         Self
     }
 

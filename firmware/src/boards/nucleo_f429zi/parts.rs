@@ -7,6 +7,7 @@ use estimator_core::{Amps, Count, Sample};
 use firmware_app::ammeter::Measured;
 use firmware_app::config::{DEVICE, REFERENCE, TIMER_HZ};
 use firmware_app::index::Pulses;
+use firmware_app::supply::Reading;
 use haptic_control::Currents;
 use stm32f4xx_hal::dac::{C1, C2, DacOut, DacPin};
 use stm32f4xx_hal::gpio::{Input, PE2, PE6};
@@ -16,7 +17,8 @@ use stm32f4xx_hal::qei::Qei;
 use stm32f4xx_hal::rcc::{Config, Rcc};
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
-use super::ammeters::{Monitors, Wires as _};
+use super::ammeters::{Monitors, Wires};
+use super::converters;
 use super::edge::{Source, Stamps as _};
 use super::enables::Outputs;
 use super::encoder::Encoder;
@@ -24,6 +26,7 @@ use super::indices::{Indices, Lines as _};
 use super::memory::Flash;
 use super::port::Usart;
 use super::reset::{self, LateCrystal};
+use super::supply::{Supply, Wire};
 use super::tick::{Clock, Tick};
 use crate::boards::{Board, Start, Watchdog};
 
@@ -107,6 +110,7 @@ pub(super) struct Parts {
     encoders: Encoders,
     amplifiers: Amplifiers<Large, Small, Outputs>,
     monitors: Monitors,
+    supply: Supply,
     tick: Tick,
     clock: Tree,
 }
@@ -117,7 +121,7 @@ impl Board for Parts {
     }
 
     fn currents(&mut self) -> Measured {
-        self.monitors.read()
+        Wires::read(&self.monitors)
     }
 
     fn sample(&mut self, current: Amps) -> Sample {
@@ -144,6 +148,10 @@ impl Board for Parts {
             ..
         } = &self.encoders;
         indices.look(large, small)
+    }
+
+    fn supply(&mut self) -> Reading {
+        Wire::read(&self.supply)
     }
 
     fn reference(&mut self) -> Option<Count> {
@@ -288,12 +296,12 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart, Flash
         enables,
     );
 
-    let monitors = Monitors::start(
-        (chip.ADC1, chip.ADC2, chip.ADC_COMMON),
-        (a.pa3, c.pc0),
-        &timer,
-        &mut rcc,
-    );
+    if <Monitors as Wires>::WANTED || <Supply as Wire>::WANTED {
+        converters::prepare(&chip.ADC_COMMON, &mut rcc);
+    }
+    let monitors =
+        <Monitors as Wires>::start((chip.ADC1, chip.ADC2), (a.pa3, c.pc0), &timer, &mut rcc);
+    let supply = <Supply as Wire>::start(chip.ADC3, chip.GPIOF, &timer, &mut rcc);
 
     let port = Usart::start(chip.USART3, chip.DMA1, (d.pd8, d.pd9), &mut rcc);
     let port = defmt::unwrap!(port, "the clocks do not give the baud rate of the port");
@@ -310,6 +318,7 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart, Flash
         encoders,
         amplifiers,
         monitors,
+        supply,
         tick: Tick::new(timer),
         clock: Tree { rcc, crystal },
     };
