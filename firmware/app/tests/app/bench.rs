@@ -6,9 +6,10 @@ use drivers::Settings;
 use estimator_core::{Amps, Count, Sample};
 use firmware_app::ammeter::Measured;
 use firmware_app::commands::{Channel, Commands, Messages};
-use firmware_app::config::{DEVICE, RATE_HZ};
+use firmware_app::config::{DECIMATION, DEVICE, RATE_HZ};
 use firmware_app::control::{Control, Inputs, Message};
 use firmware_app::index::{Indexing, Indices, Pulses, Reported};
+use firmware_app::supply::Reading;
 use firmware_app::telemetry::Record;
 use haptic_control::{Currents, DualStage, Mode, Request, Stop};
 
@@ -46,6 +47,10 @@ pub(crate) struct Bench {
     pub(crate) backwards: bool,
     /// Readings of the ammeters, if they are not those of the commanded currents.
     pub(crate) readings: Option<Currents>,
+    /// Voltage of the supply, V.
+    pub(crate) supply: f32,
+    /// Ticks so far.
+    ticks: u32,
 }
 
 impl Bench {
@@ -69,6 +74,8 @@ impl Bench {
             handle_before: 0.0,
             backwards: false,
             readings: None,
+            supply: 24.0,
+            ticks: 0,
         }
     }
 
@@ -93,6 +100,10 @@ impl Bench {
         let flow = self.control.flow(&readings);
         let sample = self.sample(flow.currents.large);
         let currents = self.control.step(&sample, &flow, inputs);
+        if self.ticks.is_multiple_of(DECIMATION) {
+            self.control.watch(&supply(self.supply));
+        }
+        self.ticks += 1;
         let DualStage { large, damping, .. } = DEVICE;
         let current = f64::from(currents.unwrap_or_default().large.get());
         let rate = f64::from(RATE_HZ);
@@ -197,10 +208,23 @@ pub(crate) fn pulses(_: [Option<Count>; 2]) -> Pulses {
     estimator_core::Skip
 }
 
-/// A control after the time in which ammeters learn their zeros.
+/// A reading of the supply at this voltage, V.
+#[cfg(feature = "supply-monitor")]
+pub(crate) fn supply(volts: f32) -> Reading {
+    haptic_control::Volts(volts)
+}
+#[cfg(not(feature = "supply-monitor"))]
+pub(crate) fn supply(_: f32) -> Reading {
+    estimator_core::Skip
+}
+
+/// A control after the time in which ammeters learn their zeros, and the supply is seen.
 fn booted(mut control: Control) -> Control {
     for _ in 0..ticks(0.02) {
         control.flow(&readings(ZERO));
+    }
+    for _ in 0..3 {
+        control.watch(&supply(24.0));
     }
     control
 }

@@ -11,4 +11,5 @@ mod port;
 mod rest;
 mod scenes;
 mod settings;
+mod supply;
 mod telemetry;

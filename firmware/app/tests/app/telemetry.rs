@@ -6,10 +6,11 @@ use firmware_app::config::{EDGES, RATE_HZ};
 use firmware_app::index::{Indexing, Indices, Reported};
 use firmware_app::large::Learnable as _;
 use firmware_app::scene::Estimation;
+use firmware_app::supply::{Voltmeter, Watch};
 use firmware_app::telemetry::{Frame, Frames, Record, Sender};
-use haptic_control::Currents;
+use haptic_control::{Currents, Volts};
 
-use crate::bench::{Bench, CALM, pulses, readings};
+use crate::bench::{Bench, CALM, pulses, readings, supply};
 
 fn record() -> Record {
     let mut bench = Bench::new();
@@ -50,10 +51,10 @@ fn frame_with(record: Record, index: Reported, before: u32) -> Frame {
     let (producer, mut consumer) = queue.split();
     let mut sender = Sender::new(producer);
     for _ in 0..before {
-        sender.send(record, measured(), index, 0, None);
+        sender.send(record, measured(), index, supply(24.5), 0, None);
         consumer.dequeue().expect("a frame");
     }
-    sender.send(record, measured(), index, 321, Some(Count(7)));
+    sender.send(record, measured(), index, supply(24.5), 321, Some(Count(7)));
     consumer.dequeue().expect("a frame")
 }
 
@@ -77,14 +78,14 @@ fn dropped_frames_leave_a_gap_in_seq_equal_to_drops() {
     let mut sender = Sender::new(producer);
     let record = record();
     for _ in 0..40 {
-        sender.send(record, measured(), index(false), 0, None);
+        sender.send(record, measured(), index(false), supply(24.5), 0, None);
     }
     let waiting: Vec<_> = core::iter::from_fn(|| consumer.dequeue()).collect();
     let found = waiting.len() as u32;
     assert!(found < 40);
     assert!(waiting.iter().map(|frame| frame.seq).eq(0..found));
     assert!(waiting.iter().all(|frame| frame.drops(0) == 0));
-    sender.send(record, measured(), index(false), 0, None);
+    sender.send(record, measured(), index(false), supply(24.5), 0, None);
     let next = consumer.dequeue().expect("there is place again");
     assert_eq!(next.seq, 40);
     assert_eq!(next.drops(0), 40 - found);
@@ -101,6 +102,10 @@ fn frame_has_the_values_of_its_record() {
     assert_eq!(
         frame.measured(),
         <Ammeter as Measure>::WANTED.then_some(MEASURED)
+    );
+    assert_eq!(
+        frame.supply(),
+        <Voltmeter as Watch>::WANTED.then_some(Volts(24.5))
     );
     assert_eq!(frame.record.tick, record.tick);
 }
