@@ -34,8 +34,8 @@ pub struct Part {
     pub(crate) brown_out: bool,
     dac: Dac,
     dac_slot: usize,
-    /// Converters of the large and the small current monitor, with their slots.
-    adcs: [(Adc, usize); 2],
+    /// Converters of the large and the small current monitor and of the supply, with their slots.
+    adcs: [(Adc, usize); 3],
     adc_common: (Common, usize),
     pub(crate) flash: FlashInterface,
     flash_slot: usize,
@@ -49,8 +49,9 @@ impl Part {
         Dac::codes(self.stm32.bus().slots()[self.dac_slot].registers())
     }
 
-    /// Sets the levels on the current monitors, codes; `None` for a pin that is not analogue.
-    pub(crate) fn drive_monitors(&mut self, levels: [Option<f64>; 2]) {
+    /// Sets the levels on the current monitors and on the divider of the supply, codes; `None` for a pin
+    /// that is not analogue.
+    pub(crate) fn drive_analog(&mut self, levels: [Option<f64>; 3]) {
         for ((adc, _), level) in self.adcs.iter_mut().zip(levels) {
             adc.drive(level);
         }
@@ -109,13 +110,18 @@ impl Mcu for Part {
             let (_, registers) = self.stm32.clocks();
             registers.restore(Register::Cr, HSERDY.mask(), 0);
         }
-        let models: [(usize, &mut dyn ErasedDevice); 5] = {
-            let [(large, large_slot), (small, small_slot)] = &mut self.adcs;
+        let models: [(usize, &mut dyn ErasedDevice); 6] = {
+            let [
+                (large, large_slot),
+                (small, small_slot),
+                (supply, supply_slot),
+            ] = &mut self.adcs;
             let (common, common_slot) = &mut self.adc_common;
             [
                 (self.dac_slot, &mut self.dac),
                 (*large_slot, large),
                 (*small_slot, small),
+                (*supply_slot, supply),
                 (*common_slot, common),
                 (self.flash_slot, &mut self.flash),
             ]
@@ -152,10 +158,11 @@ impl ControllerBoard {
         let rcc_slot = stm32.bus().slot("RCC")?;
         let flash_slot = stm32.bus().slot("FLASH")?;
         let bus = stm32.bus();
-        // PA3 is channel 3, PC0 channel 10.
+        // PA3 is channel 3, PC0 channel 10, PF3 channel 9.
         let adcs = [
             (Adc::new(3), bus.slot("ADC1")?),
             (Adc::new(10), bus.slot("ADC2")?),
+            (Adc::new(9), bus.slot("ADC3")?),
         ];
         let adc_common = (Common, bus.slot("C_ADC")?);
         Ok(Self {

@@ -34,6 +34,11 @@ pub enum Fault {
     SmallReversed,
     /// The wire of the large amplifier's current monitor breaks.
     BrokenMonitorWire,
+    /// The voltage of the amplifiers' supply drops to 18 V. The amplifiers continue to drive.
+    SupplyDrop,
+    /// The voltage of the amplifiers' supply rises to 31 V, as if motors that brake had charged it. The
+    /// amplifiers continue to drive.
+    SupplyRise,
     /// The large amplifier takes this number of ms from its enable until it is ready, from power-up
     /// on.
     ReadyAfter(u16),
@@ -82,7 +87,7 @@ pub enum Fault {
 }
 
 /// Each fault with its name on the command line and its description.
-const NAMES: [(Fault, &str, &str); 41] = [
+const NAMES: [(Fault, &str, &str); 43] = [
     (Fault::StuckA, "stuck-a", "large encoder's line A stuck"),
     (Fault::StuckB, "stuck-b", "large encoder's line B stuck"),
     (
@@ -149,6 +154,16 @@ const NAMES: [(Fault, &str, &str); 41] = [
         Fault::BrokenMonitorWire,
         "broken-monitor-wire",
         "wire of the large amplifier's current monitor breaks",
+    ),
+    (
+        Fault::SupplyDrop,
+        "supply-drop",
+        "supply of the amplifiers drops from 24 V to 18 V",
+    ),
+    (
+        Fault::SupplyRise,
+        "supply-rise",
+        "supply of the amplifiers rises from 24 V to 31 V",
     ),
     (
         Fault::ReadyAfter(15),

@@ -103,8 +103,10 @@ pub(crate) struct Lockstep {
     instruction_ns: f64,
     dac_errors: [DacError; 2],
     monitors: [Monitor; 2],
-    /// Whether the pin of each current monitor is analogue.
-    monitors_wired: [bool; 2],
+    /// Voltage of the amplifiers' supply, V.
+    supply_v: f64,
+    /// Whether the pins of both current monitors and of the supply are analogue.
+    analog: [bool; 3],
     resets: usize,
     progress: Box<dyn FnMut(f64) + Send>,
 }
@@ -170,7 +172,8 @@ impl Lockstep {
                 offset: setup.monitor_offsets[n],
                 amps: MONITOR_AMPS[n],
             }),
-            monitors_wired: [false; 2],
+            supply_v: setup.supply_v,
+            analog: [false; 3],
             resets: 0,
             progress,
         }
@@ -310,8 +313,9 @@ impl Lockstep {
                 self.probe.poll(now_ns, host);
                 self.hold_watchdog(&mut board.part, stop.at);
                 self.lines.connect(&mut board.part, stop.at);
-                self.monitors_wired =
-                    pins::MONITORS.map(|wire| pins::wired(&mut board.part, &[wire]));
+                let ([large, small], [supply]) = (pins::MONITORS, pins::SUPPLY);
+                self.analog =
+                    [large, small, supply].map(|wire| pins::wired(&mut board.part, &[wire]));
                 (self.progress)(now_ns as f64 * 1e-9);
                 stopped = !self.serve(now_ns);
             }

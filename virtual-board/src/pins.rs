@@ -78,6 +78,9 @@ pub const MONITORS: [Wire; 2] = [
     ('C', 0, Mode::Analog, "small current monitor, ADC2_IN10"),
 ];
 
+/// The divider at the amplifiers' supply, of an image that reads it.
+pub const SUPPLY: [Wire; 1] = [('F', 3, Mode::Analog, "supply voltage, ADC3_IN9")];
+
 /// A pin: index of its port from A on, and its number.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct At(usize, u8);

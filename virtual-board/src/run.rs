@@ -30,6 +30,10 @@ pub const AMPS_PER_CODE: [f64; 2] = [6.0 / 2047.0, 1.5 / 2047.0];
 /// Current from the middle of the range of a current monitor to its ends, A: large motor, small motor.
 pub const MONITOR_AMPS: [f64; 2] = [7.5, 1.875];
 
+/// Voltage of the amplifiers' supply at the upper end of the range of its input, V: 3.3 V behind a divider by
+/// 11.
+pub const SUPPLY_FULL_SCALE_V: f64 = 36.3;
+
 /// One call of the control task, and the true state at its start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControlTick {

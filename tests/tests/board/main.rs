@@ -26,3 +26,4 @@ mod scores;
 mod second_core;
 mod settings;
 mod size;
+mod supply_monitor;

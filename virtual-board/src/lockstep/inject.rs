@@ -28,6 +28,10 @@ const OUTPUTS_ON: u64 = 1 << 15;
 const WATCHDOG_KEY: u64 = 0x4000_3000;
 const WATCHDOG_FEED: u64 = 0xAAAA;
 
+/// Voltage of a supply that has dropped, and of one that braking motors have charged, V.
+const DROPPED_V: f64 = 18.0;
+const RISEN_V: f64 = 31.0;
+
 /// Time for which a glitch opens the interlock loop, ns.
 const GLITCH_NS: u64 = 20_000;
 /// Duration of a control task that is too long, ns.
@@ -96,6 +100,8 @@ impl Lockstep {
             Fault::SmallOpenLead => self.amplifiers.each[SMALL].open = true,
             Fault::SmallReversed => self.amplifiers.each[SMALL].reversed = true,
             Fault::BrokenMonitorWire => self.amplifiers.each[LARGE].monitor_cut = true,
+            Fault::SupplyDrop => self.supply_v = DROPPED_V,
+            Fault::SupplyRise => self.supply_v = RISEN_V,
             Fault::EmergencyStop => self.amplifiers.stop_until_ns = u64::MAX,
             Fault::InterlockGlitch => self.amplifiers.stop_until_ns = at.0 + GLITCH_NS,
             Fault::HungCore => host.hold(true),

@@ -5,7 +5,7 @@ use rigless::time::VirtualNanos;
 use super::{Lockstep, STEP_NS, STEP_S, STEPS_PER_TICK};
 use crate::board::ControllerBoard;
 use crate::quadrature::{Edge, Edges, LARGE, REFERENCE, SMALL};
-use crate::run::{AMPS_PER_CODE, DacError, PlantState};
+use crate::run::{AMPS_PER_CODE, DacError, PlantState, SUPPLY_FULL_SCALE_V};
 
 impl Lockstep {
     /// One step of the plant with the present commands of the amplifiers.
@@ -40,10 +40,11 @@ impl Lockstep {
         let levels = self
             .amplifiers
             .monitors([large * sides[LARGE], small * sides[SMALL]], self.monitors);
-        let analog = self.monitors_wired;
+        let levels = [levels[LARGE], levels[SMALL], supply_code(self.supply_v)];
+        let analog = self.analog;
         board
             .part
-            .drive_monitors([0, 1].map(|n| analog[n].then_some(levels[n])));
+            .drive_analog([0, 1, 2].map(|n| analog[n].then_some(levels[n])));
         self.bench.plant.command(
             self.currents[LARGE] * sides[LARGE],
             self.currents[SMALL] * sides[SMALL],
@@ -103,4 +104,9 @@ impl Lockstep {
         self.edges.extend(fresh.drain(..));
         self.fresh = fresh;
     }
+}
+
+/// Level at the divider of a supply of this voltage, codes.
+fn supply_code(volts: f64) -> f64 {
+    volts / SUPPLY_FULL_SCALE_V * 4096.0
 }

@@ -76,6 +76,8 @@ pub struct Setup {
     pub dac_errors: [DacError; 2],
     /// Errors of the zeros of the current monitors, codes.
     pub monitor_offsets: [f64; 2],
+    /// Voltage of the amplifiers' supply until a fault of it, V.
+    pub supply_v: f64,
     /// Settings in the board's flash; `None`: the flash is erased.
     pub settings: Option<Settings>,
     /// Number of records of older settings before them.
@@ -113,6 +115,7 @@ impl Default for Setup {
             crystal_from_s: 0.0,
             dac_errors: [DacError::NONE; 2],
             monitor_offsets: [11.0, -7.0],
+            supply_v: 24.0,
             settings: Some(Settings::COMMISSIONED),
             older_records: 1,
             flash: None,

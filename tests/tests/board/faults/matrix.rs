@@ -153,7 +153,7 @@ const fn halted(ms: u16) -> Bound {
     bound(Fault::Halt(ms), 0.2, end, [NOTICED_MN, 0.0])
 }
 
-pub(super) const MATRIX: [Bound; 49] = [
+pub(super) const MATRIX: [Bound; 51] = [
     one_phase(Fault::StuckA),
     one_phase(Fault::StuckB),
     bound(Fault::StuckBoth, 0.5, STALLS.0, STALLS.1),
@@ -221,6 +221,9 @@ pub(super) const MATRIX: [Bound; 49] = [
     bound(Fault::SmallReversed, 1.0, End::On, [120.0, 5.0]),
     // This image does not read it.
     bound(Fault::BrokenMonitorWire, 0.2, End::On, [0.0, 0.0]),
+    // Nor these.
+    bound(Fault::SupplyDrop, 0.2, End::On, [0.0, 0.0]),
+    bound(Fault::SupplyRise, 0.2, End::On, [0.0, 0.0]),
     // Settling takes 20 ms in either case. The later edge of the ready line shifts the emulator's blocks of
     // instructions, and an edge at the instant of a reading may be counted a tick later.
     bound(Fault::ReadyAfter(15), 0.3, End::On, [5.0, 0.0]),
