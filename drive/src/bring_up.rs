@@ -16,6 +16,7 @@ use crate::response::{Motion, Response};
 use crate::session::Plan;
 use crate::settings;
 use crate::strokes::{Seen, announce, observe, plan, strokes};
+use crate::supply;
 use crate::turns;
 use crate::watch::cause;
 
@@ -55,8 +56,12 @@ pub(crate) fn run(board: &mut Board, turns: bool, store: bool) -> Result<(), Fai
         true => |name, seen| [currents::lines(seen), motors(name, seen)].concat(),
         false => motors,
     };
+    let disabled: Check = match supply::is_read(&answer.hello) {
+        true => |name, seen| [vec![supply::line(seen)], at_rest(name, seen)].concat(),
+        false => at_rest,
+    };
     let steps: [(&'static str, Plan, Check); 3] = [
-        ("at rest", plan(None, false, REST_S), at_rest),
+        ("at rest", plan(None, false, REST_S), disabled),
         ("armed, no scene", plan(None, true, REST_S), at_rest),
         ("strokes", strokes(), moved),
     ];

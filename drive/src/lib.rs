@@ -21,6 +21,7 @@ mod response;
 mod session;
 mod settings;
 mod strokes;
+mod supply;
 mod timed;
 mod turns;
 mod watch;

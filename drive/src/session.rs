@@ -200,6 +200,8 @@ fn follow(
     let mut pace = Pace::new(hello.rate, Instant::now());
     let mut clock = Clock::new(hello.rate);
     let (mut heard, mut mode, mut tick) = (Instant::now(), None, None);
+    // It comes after its frame: a line has that of the frame before.
+    let mut supply = None;
     while !interrupt::came() {
         if keeps_alive && pace.is_due(Instant::now(), tick) {
             board.send(Command::Request(Request::KeepAlive))?;
@@ -218,6 +220,9 @@ fn follow(
                 "the board refuses a command: {reason}"
             )));
         }
+        if let Message::Supply(now) = message {
+            supply = Some(now.volts);
+        }
         let Message::Frame(frame) = message else {
             continue;
         };
@@ -227,7 +232,8 @@ fn follow(
         }
         mode = Mode::from_code(frame.state);
         if every.as_mut().is_some_and(|every| every.selects(&frame)) {
-            print_bytes(format!("{}\n", line(&frame, hello.rate)).as_bytes())?;
+            let text = line(&frame, supply, hello.rate);
+            print_bytes(format!("{text}\n").as_bytes())?;
         }
         // The select command takes its time, and may be lost.
         starts &= mode != Some(Mode::Running);

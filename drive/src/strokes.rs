@@ -17,6 +17,8 @@ pub(crate) struct Seen {
     pub(crate) frames: Vec<Frame>,
     pub(crate) measured: Vec<Measured>,
     pub(crate) indices: Vec<Index>,
+    /// Voltages of the supply, V.
+    pub(crate) supply: Vec<f32>,
 }
 
 impl Seen {
@@ -61,6 +63,7 @@ pub(crate) fn observe(board: &mut Board, answer: &Answer, plan: Plan) -> Result<
         Message::Frame(frame) => seen.frames.push(frame),
         Message::Measured(measured) => seen.measured.push(measured),
         Message::Index(index) => seen.indices.push(index),
+        Message::Supply(supply) => seen.supply.push(supply.volts),
         _ => {}
     })?;
     Ok(seen)

@@ -24,16 +24,18 @@ pub(crate) fn cause(code: u8) -> String {
     Stop::from_code(code).map_or_else(|| code.to_string(), |cause| cause.as_str().to_owned())
 }
 
-/// A frame as a line with units; the time is that of the board.
-pub(crate) fn line(frame: &Frame, rate_hz: u32) -> String {
+/// A frame as a line with units; the time is that of the board. The voltage of the supply ends the line, if
+/// the board has told one, V.
+pub(crate) fn line(frame: &Frame, supply: Option<f32>, rate_hz: u32) -> String {
     let t = f64::from(frame.tick) / f64::from(rate_hz.max(1));
     let estimator = match frame.estimator {
         NOBODY => "-".to_owned(),
         number => number.to_string(),
     };
+    let supply = supply.map_or_else(String::new, |volts| format!(", supply {volts:.2} V"));
     format!(
         "{t:.3} s, {}; torque {:.4} N·m; large {} counts, {:.3} rad/s (sigma {:.3}), {:.3} A, \
-         estimator {estimator}; handle {} counts, {:.3} rad/s, {:.3} A; overruns {}, lost frames {}",
+         estimator {estimator}; handle {} counts, {:.3} rad/s, {:.3} A; overruns {}, lost frames {}{supply}",
         state(frame),
         frame.torque,
         frame.counts_large as i32,
@@ -102,10 +104,15 @@ pub(crate) mod tests {
     #[test]
     fn line_has_every_quantity_with_its_unit() {
         assert_eq!(
-            line(&FRAME, 10_000),
+            line(&FRAME, None, 10_000),
             "1.234 s, state running, cause none; torque 0.0100 N·m; large -1 counts, 1.500 rad/s \
              (sigma 0.125), -0.500 A, estimator 1; handle 7 counts, -2.250 rad/s, 0.250 A; \
              overruns 3, lost frames 4"
+        );
+        let with_supply = line(&FRAME, Some(23.996), 10_000);
+        assert!(
+            with_supply.ends_with(", lost frames 4, supply 24.00 V"),
+            "{with_supply}"
         );
         let odd = Frame {
             state: 200,

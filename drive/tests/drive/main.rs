@@ -8,4 +8,5 @@ mod identity;
 mod player;
 mod recording;
 mod scripted;
+mod supply;
 mod turns;

@@ -7,7 +7,7 @@ use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
 use drivers::link::{
-    FEATURES, Features, Frame, Hello, Index, LONGEST, Measured, Message, Rejected, Stored,
+    FEATURES, Features, Frame, Hello, Index, LONGEST, Measured, Message, Rejected, Stored, Supply,
 };
 use drivers::{Command, Parser, Saved, Setting, Settings};
 use haptic_control::{Mode, Request, Stop};
@@ -159,7 +159,8 @@ impl<'a> Player<'a> {
             bit.filter(|_| has).map_or(0, |bit| 1 << bit)
         };
         let bits = bit(self.script.measures.is_some(), "current-monitor")
-            | bit(self.script.turns.is_some(), "index-pulse");
+            | bit(self.script.turns.is_some(), "index-pulse")
+            | bit(self.script.supply.is_some(), "supply-monitor");
         let mut hello = self.script.hello;
         hello.features = Features(hello.features.0 | bits);
         hello
@@ -243,6 +244,11 @@ impl<'a> Player<'a> {
             self.bytes.extend(self.message(frame.into()));
             if let Some(measured) = measured {
                 self.bytes.extend(self.message(measured.into()));
+            }
+            if let Some(volts) = self.script.supply {
+                let seq = self.seq;
+                self.bytes
+                    .extend(self.message(Supply { seq, volts }.into()));
             }
             if let Some(index) = self.index() {
                 self.bytes.extend(self.message(index.into()));

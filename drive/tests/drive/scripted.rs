@@ -48,6 +48,8 @@ pub(super) struct Script {
     /// Counts from each index pulse of the large and of the handle encoder to the next one, of an image with
     /// `index-pulse` that tells a pulse of both every 100 frames; `None`: an image without.
     pub(super) turns: Option<[u32; 2]>,
+    /// Voltage beside each frame, V, by an image with `supply-monitor`; `None`: an image without.
+    pub(super) supply: Option<f32>,
     /// Frames from the command `select` on after which the commands of such a board are zero.
     pub(super) strokes_end_after: Option<u32>,
     /// Settings at the begin.
@@ -84,6 +86,7 @@ impl Default for Script {
             refuses: false,
             measures: None,
             turns: None,
+            supply: None,
             strokes_end_after: None,
             settings: Settings::DEFAULT,
             disarms: true,
