@@ -25,6 +25,25 @@ pub fn steps_per_tick(period_s: f64) -> u32 {
     (period_s / LONGEST_STEP_S - 1e-9).ceil().max(1.0) as u32
 }
 
+/// Torques on the shaft of the handle at one instant, N.m, each positive where it pushes the hand in
+/// the positive direction. Their sum is [`felt`](Self::felt) up to rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HandleTorques {
+    /// Torque of the small motor without its ripple, `Kt_S i_S`.
+    pub motor: f64,
+    /// Torque ripple of the small motor.
+    pub ripple: f64,
+    /// Torque of the coupler, `b (w_L - w_S)`.
+    pub coupler: f64,
+    /// Coulomb friction of the small motor, `-friction_S`. At rest it balances the other torques, up
+    /// to its limit.
+    pub friction: f64,
+    /// Inertia of the handle, `-J_S dw_S/dt`.
+    pub inertia: f64,
+    /// Torque of the handle on the hand, [`Plant::handle_torque`].
+    pub felt: f64,
+}
+
 /// State of the device and the constants of one step.
 ///
 /// ```
@@ -130,6 +149,36 @@ impl Plant {
             }
             Grip::Free => 0.0,
             Grip::Hand(motion) => -self.hand_torque(motion.at(t), self.small()),
+        }
+    }
+
+    /// Torques on the shaft of the handle, `t` seconds after the tick. The acceleration is that of the
+    /// second equation of motion at this instant. A clamp has neither friction nor acceleration.
+    #[must_use]
+    pub fn handle_torques(&self, grip: &Grip, t: f64) -> HandleTorques {
+        let felt = self.handle_torque(grip, t);
+        let (constant, factor) = self.small.torque_factors();
+        let motor = constant * self.small.current;
+        let ripple = motor * (factor - 1.0);
+        let coupler = self.damping * (self.large.omega - self.small.omega);
+        let (friction, inertia) = match grip {
+            Grip::Clamped => (0.0, 0.0),
+            Grip::Free | Grip::Hand(_) => {
+                let push = motor + ripple + coupler - felt;
+                let coulomb = self.small.friction();
+                match self.small.direction(push, coulomb) {
+                    0.0 => (-push, 0.0),
+                    direction => (-direction * coulomb, direction * coulomb - push),
+                }
+            }
+        };
+        HandleTorques {
+            motor,
+            ripple,
+            coupler,
+            friction,
+            inertia,
+            felt,
         }
     }
 

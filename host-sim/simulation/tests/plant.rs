@@ -265,6 +265,56 @@ fn torque_on_the_hand_is_the_balance_of_the_small_shaft() {
 }
 
 #[test]
+fn torques_on_the_handle_have_their_causes_and_add_up() {
+    let device = Device::default();
+    let small = &device.stages.small;
+    let moving = Pose {
+        angle: 1.1,
+        omega: -2.0,
+    };
+    let hand = Grip::Hand(HandMotion::still(0.9));
+    for (start, grip) in [
+        (moving, hand),
+        (moving, Grip::Free),
+        // At rest the hand, 10 mrad away, pushes with more and with less than the friction.
+        (Pose::default(), Grip::Hand(HandMotion::still(0.010))),
+        (Pose::default(), Grip::Hand(HandMotion::still(0.001))),
+        (spinning(0.0), Grip::Clamped),
+    ] {
+        let mut plant = Plant::new(&device, STEP_S);
+        plant.place(spinning(0.1), start);
+        plant.command(0.0, 2e-3);
+        // The amplifier settles in 80 us, during which the shafts hardly move.
+        run(&mut plant, &Grip::Clamped, 400, STEP_S);
+        plant.place(spinning(0.1), start);
+        let at = plant.handle_torques(&grip, 0.0);
+        let sum = at.motor + at.ripple + at.coupler + at.friction + at.inertia;
+        assert!((sum - at.felt).abs() < 1e-15, "{grip:?}: {at:?}");
+        assert_eq!(at.felt, plant.handle_torque(&grip, 0.0));
+        assert!((at.motor - 27.5e-3 * 2e-3).abs() < 1e-12);
+        let ripple = 0.015 * (26.0 * start.angle).sin() * at.motor;
+        assert!((at.ripple - ripple).abs() < 1e-9 * at.motor, "{at:?}");
+        assert_eq!(at.coupler, 0.96e-3 * (0.1 - start.omega));
+        let limit = 0.8e-3 * (1.0 + 0.1 * start.angle.sin());
+
+        plant.step(&grip, 0.0, 0.0);
+        let mean_inertia = -small.inertia * (plant.small().omega - start.omega) / STEP_S;
+        // The acceleration changes within the step: by the hand's damping, 3 mN.m.s/rad, as a share of
+        // 10 us over 50 g.cm2 / 3 mN.m.s/rad at most.
+        assert!(
+            (at.inertia - mean_inertia).abs() < 0.01 * at.inertia.abs(),
+            "{grip:?}: {at:?} {mean_inertia}"
+        );
+        match (grip, start.omega == 0.0) {
+            (Grip::Clamped, _) => assert_eq!([at.friction, at.inertia], [0.0; 2]),
+            (_, false) => assert!((at.friction - limit).abs() < 1e-12, "{at:?}"),
+            _ if at.inertia != 0.0 => assert!((at.friction + limit).abs() < 1e-12, "{at:?}"),
+            _ => assert!(at.friction.abs() < limit && plant.small().omega == 0.0),
+        }
+    }
+}
+
+#[test]
 fn step_divides_every_tick() {
     for rate in [100.0, 1000.0, 7777.7, 10_000.0, 11_600.0, 100_000.0] {
         let steps = f64::from(steps_per_tick(1.0 / rate));

@@ -77,8 +77,20 @@ impl Axis {
 
     /// Motor torque at this instant, N.m.
     pub(super) fn torque(&self) -> f64 {
+        let (constant, factor) = self.torque_factors();
+        constant * factor * self.current
+    }
+
+    /// Torque constant, N.m/A, and the factor of its ripple at this angle.
+    pub(super) fn torque_factors(&self) -> (f64, f64) {
         let mut ripple = self.ripple;
-        self.torque_constant * ripple.factors(self.angle).1 * self.current
+        (self.torque_constant, ripple.factors(self.angle).1)
+    }
+
+    /// Coulomb friction at this angle, N.m.
+    pub(super) fn friction(&self) -> f64 {
+        let mut ripple = self.ripple;
+        self.coulomb * ripple.factors(self.angle).0
     }
 
     /// Direction that friction opposes: that of the motion, at rest that of the other torques if they
