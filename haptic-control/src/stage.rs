@@ -235,6 +235,13 @@ impl TransientStage {
         state.largest = scale.small(self.limits.largest);
     }
 
+    /// Torque that is fed forward against the small motor's friction at this velocity of the handle.
+    #[inline]
+    #[must_use]
+    pub fn friction_correction(&self, handle: RadPerS) -> NewtonMetres {
+        NewtonMetres(self.friction.0 * within(handle.0 * self.per_fade, -1.0, 1.0))
+    }
+
     /// One tick: the small motor's current for the torque that is missing.
     #[must_use]
     pub fn update(
@@ -243,8 +250,8 @@ impl TransientStage {
         missing: NewtonMetres,
         handle: RadPerS,
     ) -> Amps {
-        let friction = self.friction.0 * within(handle.0 * self.per_fade, -1.0, 1.0);
-        let wanted = (missing.0 + friction) * self.amps_per_nm;
+        let friction = self.friction_correction(handle);
+        let wanted = (missing.0 + friction.0) * self.amps_per_nm;
         let limits = CurrentLimits {
             largest: state.largest,
             ..self.limits

@@ -1,14 +1,18 @@
 //! Simulation of the controller of `haptic-control` in closed loop with the plant.
 
 mod bench;
+mod conditions;
 mod fault;
 mod hand;
 mod press;
 mod record;
 mod scene;
 mod tracking;
+mod truth;
 
-use estimator_core::{Amps, Count, Hertz, Sample};
+use std::cell::Cell;
+
+use estimator_core::{Amps, Count, Hertz, Sample, VelocityEstimator};
 use haptic_control::{
     Action, AnyScene, Balance, Controller, DualStage, LoopPoles, Monitor, Rig, RstDesign, Scene,
     Senses, Stop,
@@ -17,9 +21,11 @@ use haptic_control::{
 use catalogue::estimators::{Estimator, Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
 use simulation::device::Device;
-use simulation::plant::{Pose, steps_per_tick};
+use simulation::plant::{HandleTorques, Pose, steps_per_tick};
+use truth::TrueVelocity;
 
 pub use bench::Bench;
+pub use conditions::{Conditions, Dac};
 pub use fault::{EncoderFault, Faulty};
 pub use hand::{Hand, Motion};
 pub use press::Press;
@@ -76,6 +82,8 @@ pub struct TickState {
     pub handle_acceleration: f64,
     /// Torque of the handle on the hand, N.m.
     pub felt: f64,
+    /// Torques on the handle's shaft, whose sum is `felt`.
+    pub torques: HandleTorques,
     /// Input of the controller.
     pub sample: Sample,
     /// Count of the device's own large encoder, whichever encoder closes the loop.
@@ -84,6 +92,8 @@ pub struct TickState {
     pub action: Action,
     /// Currents after the monitor, large then small motor, A; zero after a stop.
     pub commanded: (f64, f64),
+    /// Current that the small motor's amplifier was commanded until this tick, and from it on, A.
+    pub small_amplifier: [f64; 2],
     /// Reason for which the monitor stopped the device, if it did.
     pub stopped: Option<Stop>,
 }
@@ -94,7 +104,7 @@ impl Loop {
     /// # Errors
     /// One line on an invalid device or a loop that cannot be designed.
     pub fn run(&self, ticks: usize, observe: impl FnMut(&TickState)) -> Result<(), String> {
-        self.run_with(ticks, None, observe)
+        self.run_under(ticks, Conditions::default(), observe)
     }
 
     /// Runs for `ticks`; one encoder is faulty from the tick of `fault` on.
@@ -105,6 +115,23 @@ impl Loop {
         &self,
         ticks: usize,
         fault: Option<(usize, Faulty)>,
+        observe: impl FnMut(&TickState),
+    ) -> Result<(), String> {
+        let conditions = Conditions {
+            fault,
+            ..Conditions::default()
+        };
+        self.run_under(ticks, conditions, observe)
+    }
+
+    /// Runs for `ticks` under these conditions.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn run_under(
+        &self,
+        ticks: usize,
+        conditions: Conditions,
         observe: impl FnMut(&TickState),
     ) -> Result<(), String> {
         self.device.validate()?;
@@ -131,7 +158,7 @@ impl Loop {
             run: self,
             rig: &rig,
             ticks,
-            fault,
+            conditions,
             observe,
         };
         scene::visit(&self.scene, visit);
@@ -144,26 +171,45 @@ struct Running<'a, F> {
     run: &'a Loop,
     rig: &'a Rig,
     ticks: usize,
-    fault: Option<(usize, Faulty)>,
+    conditions: Conditions,
     observe: F,
 }
 
 impl<F: FnMut(&TickState)> Visit for Running<'_, F> {
-    fn visit<S: Scene<Acceleration: Senses<Estimator>>>(mut self, scene: S) {
+    fn visit<S: Scene<Acceleration: Senses<Estimator>>>(self, scene: S) {
+        let truth = Cell::new(0.0);
+        if self.conditions.true_velocity {
+            self.close(scene, TrueVelocity(&truth), &truth);
+        } else {
+            let large = self.run.large.clone();
+            self.close(scene, large, &truth);
+        }
+    }
+}
+
+impl<F: FnMut(&TickState)> Running<'_, F> {
+    /// Runs with `large` as the estimator of the large motor; `truth` gets its true velocity before
+    /// each tick, counts per tick.
+    fn close<S, L>(mut self, scene: S, large: L, truth: &Cell<f32>)
+    where
+        S: Scene<Acceleration: Senses<Estimator>>,
+        L: VelocityEstimator,
+    {
         let Loop {
             device,
             assumed,
             rate_hz,
-            large,
             handle,
             ..
         } = self.run;
+        let Conditions { fault, dac, .. } = self.conditions;
+        let counts_per_tick = 1.0 / f64::from(self.rig.large_scale.rad_per_s_per_count_per_tick);
         let period = 1.0 / rate_hz;
         let steps = steps_per_tick(period);
         let step = period / f64::from(steps);
         let run = self.run;
         let mut bench = Bench::new(device, run.hand, run.encoder, *rate_hz, run.seed, step);
-        let controller = Controller::new(scene, large.clone(), handle.clone(), self.rig);
+        let controller = Controller::new(scene, large, handle.clone(), self.rig);
         let mut monitored = *assumed;
         if self.run.encoder == FeedbackEncoder::Reference {
             monitored.large.counts_per_rev = device.reference.counts_per_rev;
@@ -180,13 +226,14 @@ impl<F: FnMut(&TickState)> Visit for Running<'_, F> {
         let mut since = None;
         let mut stopped = None;
         for k in 0..self.ticks {
-            if let Some((_, faulty)) = self.fault.filter(|(from, _)| k >= *from) {
+            if let Some((_, faulty)) = fault.filter(|(from, _)| k >= *from) {
                 let (count, fault) = match faulty {
                     Faulty::Large(fault) => (&mut sample.count, fault),
                     Faulty::Small(fault) => (&mut sample.coupled, fault),
                 };
                 *count = fault.counted(*count, *since.get_or_insert(*count));
             }
+            truth.set((bench.plant.large().omega * counts_per_tick) as f32);
             let action = controller.step(&mut state, &sample);
             stopped = stopped
                 .or(monitor.check(&mut watch, &sample))
@@ -196,28 +243,35 @@ impl<F: FnMut(&TickState)> Visit for Running<'_, F> {
                 Some(_) => haptic_control::Currents::default(),
             };
             let commanded = (f64::from(wanted.large.get()), f64::from(wanted.small.get()));
-            pending.push(commanded);
+            pending.push(match &dac {
+                Some(dac) => dac.currents(&wanted),
+                None => commanded,
+            });
             let (large_a, small_a) = pending.remove(0);
             // A disabled amplifier has no current, whatever its zero.
             let [large_zero, small_zero] = match stopped {
                 None => self.run.offsets_a,
                 Some(_) => [0.0; 2],
             };
+            let (_, small_before) = bench.plant.commands();
             bench
                 .plant
                 .command(large_a + large_zero, small_a + small_zero);
             let grip = hand.grip(k as u64);
             let omega = bench.plant.small().omega;
+            let torques = bench.plant.handle_torques(&grip, 0.0);
             (self.observe)(&TickState {
                 t: k as f64 * period,
                 large: bench.plant.large(),
                 handle: bench.plant.small(),
                 handle_acceleration: (omega - last_omega) * rate_hz,
-                felt: bench.plant.handle_torque(&grip, 0.0),
+                felt: torques.felt,
+                torques,
                 sample,
                 own_count: Count(bench.own.as_ref().unwrap_or(&bench.large).count()),
                 action,
                 commanded,
+                small_amplifier: [small_before, bench.plant.commands().1],
                 stopped,
             });
             last_omega = omega;

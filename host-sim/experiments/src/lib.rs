@@ -1,9 +1,10 @@
 //! The experiments that the commands run: comparison of estimators, closed loop, robustness,
-//! stiffness limits, wrong parameters, tuning, identification, replay of recordings, and recordings of
+//! what the hand feels, stiffness limits, wrong parameters, tuning, identification, replay of recordings, and recordings of
 //! real devices with a known velocity.
 
 pub mod closed_loop;
 pub mod compare;
+pub mod feel;
 pub mod identify;
 pub mod limit;
 pub mod real;

@@ -56,6 +56,7 @@ fn parasitic_force_is_felt_minus_wanted_force() {
         seed: 3,
         seconds: 1.5,
         keep: true,
+        attribute: false,
     };
     let outcomes = compare(&[case], &settings(&["pll"]), || ()).unwrap();
     let fingertip = Fingertip::new(&Device::default());

@@ -81,7 +81,13 @@ pub(super) fn for_report(options: &Compare) -> (ClosedLoop, Option<String>) {
     }
     let run = || {
         let settings = settings(options)?;
-        let cases = cases(options, &scenes(&[], settings.handle)?, SECONDS, true)?;
+        let mut cases = cases(options, &scenes(&[], settings.handle)?, SECONDS, true)?;
+        // The attribution at a high rate takes as long as the run; host-sim feel has every rate.
+        let rates = cases.iter().map(|case| case.rate_hz);
+        let lowest = rates.fold(f64::INFINITY, f64::min);
+        for case in &mut cases {
+            case.attribute = case.rate_hz == lowest;
+        }
         closed_loop(compare(&cases, &settings, || ())?, &settings)
     };
     match run() {
@@ -136,38 +142,42 @@ pub(super) fn write(
     page::write(folder, &report::html(&input)?)
 }
 
-/// Settings that all runs share.
-pub(super) fn settings(options: &Compare) -> Result<LoopSettings, Failure> {
-    let handle = Kind::named(
-        options
-            .handle_estimator
-            .as_deref()
-            .unwrap_or(DEFAULT_ESTIMATOR),
-    )?;
+/// The estimator of the handle's velocity of this name, or the default one.
+pub(super) fn handle(name: Option<&str>) -> Result<&'static Kind, Failure> {
+    let handle = Kind::named(name.unwrap_or(DEFAULT_ESTIMATOR))?;
     if handle.needs.current {
         return Err(Failure::Input(format!(
             "--handle-estimator {}: it models the large motor, not the handle; choose one without current",
             handle.name
         )));
     }
-    let mut estimators = kinds(&options.estimators)?;
-    if options.estimators.is_empty() {
+    Ok(handle)
+}
+
+/// The estimators of these names beside that of the handle; without a name, all that a closed loop can
+/// have.
+pub(super) fn estimators(names: &[String], handle: &Kind) -> Result<Vec<&'static Kind>, Failure> {
+    let mut estimators = kinds(names)?;
+    if names.is_empty() {
         estimators.retain(|kind| !kind.needs.edge);
     }
-    if let Some(kind) = estimators
-        .iter()
-        .chain([&handle])
-        .find(|kind| kind.needs.edge)
-    {
+    let all = estimators.iter().copied().chain([handle]);
+    if let Some(kind) = all.into_iter().find(|kind| kind.needs.edge) {
         return Err(Failure::Input(format!(
             "{}: needs edge time stamps, which the closed loop does not have; choose another estimator",
             kind.name
         )));
     }
+    Ok(estimators)
+}
+
+/// Settings that all runs share.
+pub(super) fn settings(options: &Compare) -> Result<LoopSettings, Failure> {
+    let handle = handle(options.handle_estimator.as_deref())?;
     Ok(LoopSettings {
         common: Settings {
             device: options.device.load()?,
-            estimators,
+            estimators: estimators(&options.estimators, handle)?,
             parameters: options.parameters.load()?,
             wanted: wanted(&options.scores)?.0,
         },
@@ -177,7 +187,7 @@ pub(super) fn settings(options: &Compare) -> Result<LoopSettings, Failure> {
 
 /// The scenes of these names without duplicates. Without a name, all environments that this
 /// estimator of the handle supports.
-fn scenes(names: &[String], handle: &Kind) -> Result<Vec<SceneKind>, Failure> {
+pub(super) fn scenes(names: &[String], handle: &Kind) -> Result<Vec<SceneKind>, Failure> {
     if names.is_empty() {
         return Ok(environments_with(handle).collect());
     }
@@ -219,6 +229,7 @@ pub(super) fn cases(
             seed: options.seed,
             seconds,
             keep,
+            attribute: keep,
         }));
     }
     Ok(cases)

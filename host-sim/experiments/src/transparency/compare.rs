@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use haptic_control::SceneKind;
 
 use super::run::{Feedback, Prepared};
-use super::{ClosedLoopRow, Fingertip, Parasitic};
+use super::{Attribution, ClosedLoopRow, Fingertip, Parasitic};
 use crate::compare::{Cost, Settings};
 use catalogue::estimators::Kind;
 use catalogue::parameters::PlantKind;
@@ -32,6 +32,8 @@ pub struct LoopCase {
     pub seconds: f64,
     /// Whether the signals are kept for figures.
     pub keep: bool,
+    /// Whether the parasitic force is attributed to its causes.
+    pub attribute: bool,
 }
 
 /// What all cases have in common.
@@ -72,6 +74,8 @@ pub struct Run {
     pub velocity: Option<Score>,
     /// Reason for which the monitor stopped the motors, if it did.
     pub stopped: Option<&'static str>,
+    /// The parasitic force by cause, if [`LoopCase::attribute`] is set.
+    pub attribution: Option<Attribution>,
     /// The signals, if [`LoopCase::keep`] is set.
     pub signals: Option<Signals>,
 }

@@ -4,9 +4,10 @@ use std::time::{Duration, Instant};
 
 use haptic_control::{DualStage, LoopPoles, Stop};
 
+use super::attribution::CAUSES;
 use super::compare::{DEFAULT_ESTIMATOR, LoopCase, LoopSettings, Run, Signals, device};
-use super::{ClosedLoopRow, Fingertip, Parasitic, REFERENCE};
-use crate::closed_loop::{FeedbackEncoder, Loop, TickState, usual};
+use super::{Attribution, ClosedLoopRow, Fingertip, Ledger, Parasitic, REFERENCE};
+use crate::closed_loop::{Conditions, Dac, FeedbackEncoder, Loop, TickState, usual};
 use crate::compare::{Cost, interval};
 use catalogue::estimators::Setup;
 use catalogue::estimators::{Estimator, Kind};
@@ -120,8 +121,12 @@ impl<'a> Prepared<'a> {
             late_ticks: 0,
             offsets_a: [0.0; 2],
         };
-        let mut recorder = Recorder::new(self);
-        run.run(self.ticks, |moment| recorder.push(moment))?;
+        let mut recorder = Recorder::new(self, &run)?;
+        let conditions = Conditions {
+            dac: Some(Dac::board()?),
+            ..Conditions::default()
+        };
+        run.run_under(self.ticks, conditions, |moment| recorder.push(moment))?;
         let simulated = Instant::now();
 
         let parasitic = Parasitic::of(&recorder.parasitic_mn, case.rate_hz, &recorder.fingertip);
@@ -135,6 +140,7 @@ impl<'a> Prepared<'a> {
             parasitic,
             velocity,
             stopped: recorder.stopped,
+            attribution: recorder.attribution(case.rate_hz),
             signals: recorder.signals,
         };
         let cost = Cost {
@@ -218,13 +224,17 @@ struct Recorder {
     /// Velocity of the large motor that the controller used, rad/s.
     used: Vec<f32>,
     parasitic_mn: Vec<f64>,
+    /// The bookkeeping and the force of each cause, mN.
+    causes: Option<(Ledger, [Vec<f64>; CAUSES])>,
     signals: Option<Signals>,
     stopped: Option<&'static str>,
 }
 
 impl Recorder {
-    fn new(prepared: &Prepared) -> Self {
-        Self {
+    fn new(prepared: &Prepared, run: &Loop) -> Result<Self, Failure> {
+        let scene = run.scene.kind();
+        let ledger = || Ledger::new(&run.device, &run.assumed, scene, run.rate_hz, run.poles);
+        Ok(Self {
             fingertip: Fingertip::new(&prepared.device),
             trace: Trace {
                 rate_hz: prepared.case.rate_hz,
@@ -238,9 +248,18 @@ impl Recorder {
             },
             used: Vec::with_capacity(prepared.ticks),
             parasitic_mn: Vec::with_capacity(prepared.ticks),
+            causes: match prepared.case.attribute {
+                true => Some((ledger()?, Default::default())),
+                false => None,
+            },
             signals: prepared.case.keep.then(Signals::default),
             stopped: None,
-        }
+        })
+    }
+
+    fn attribution(&self, rate_hz: f64) -> Option<Attribution> {
+        let (_, terms_mn) = self.causes.as_ref()?;
+        Attribution::of(terms_mn, rate_hz)
     }
 
     fn push(&mut self, moment: &TickState) {
@@ -262,6 +281,11 @@ impl Recorder {
         }
         if let Some(omega) = &mut self.trace.true_omega {
             omega.push(moment.large.omega);
+        }
+        if let Some((ledger, terms_mn)) = &mut self.causes {
+            for (term, torque) in terms_mn.iter_mut().zip(ledger.terms(moment)) {
+                term.push(mn * torque);
+            }
         }
         if let Some(signals) = &mut self.signals {
             signals.wanted_mn.push((mn * wanted) as f32);

@@ -1,0 +1,64 @@
+//! What a closed-loop run has besides the device, the hand and the controller.
+
+use drivers::{DacScale, FULL_SCALES};
+use haptic_control::Currents;
+
+use super::Faulty;
+
+/// Conditions of a run. The default is a run without faults, with the estimator of the loop, and with
+/// currents that are not rounded.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Conditions {
+    /// Fault of an encoder and the tick from which it lasts.
+    pub fault: Option<(usize, Faulty)>,
+    /// Converters that round the currents; `None` for exact currents.
+    pub dac: Option<Dac>,
+    /// Whether the controller has the true velocity of the large motor instead of an estimate.
+    pub true_velocity: bool,
+}
+
+/// The digital-to-analogue converters of the reference board, one for each amplifier, not calibrated.
+/// A current takes the nearest of 4095 values from minus to plus full scale,
+/// [`FULL_SCALES`](drivers::FULL_SCALES).
+#[derive(Clone, Copy, Debug)]
+pub struct Dac {
+    scales: [DacScale; 2],
+}
+
+impl Dac {
+    /// The converters of the reference board.
+    ///
+    /// # Errors
+    /// One line if a full scale is not above zero.
+    pub fn board() -> Result<Self, String> {
+        let scale = |full| DacScale::new(full).ok_or("full scale of a DAC: must be above 0 A");
+        let [large, small] = FULL_SCALES.map(scale);
+        Ok(Self {
+            scales: [large?, small?],
+        })
+    }
+
+    /// Both currents after rounding, large then small, A.
+    ///
+    /// ```
+    /// use experiments::closed_loop::Dac;
+    /// use estimator_core::Amps;
+    /// use haptic_control::Currents;
+    /// let asked = Currents { large: Amps::new(-6.0), small: Amps::new(0.5) };
+    /// let (large, small) = Dac::board().unwrap().currents(&asked);
+    /// // The small amplifier has 2047 steps up to 1.5 A, and 0.5 A are 682.3 steps.
+    /// assert!((large + 6.0).abs() < 1e-6 && (small - 1.5 * 682.0 / 2047.0).abs() < 1e-6);
+    /// ```
+    #[must_use]
+    pub fn currents(&self, asked: &Currents) -> (f64, f64) {
+        let [large, small] = &self.scales;
+        (rounded(large, asked.large), rounded(small, asked.small))
+    }
+}
+
+/// The current that a converter puts out for a commanded one, A.
+fn rounded(scale: &DacScale, current: estimator_core::Amps) -> f64 {
+    let zero = f64::from(scale.exact_code(estimator_core::Amps::ZERO));
+    let per_amp = f64::from(scale.exact_code(estimator_core::Amps::new(1.0))) - zero;
+    (f64::from(scale.code(current).get()) - zero) / per_amp
+}

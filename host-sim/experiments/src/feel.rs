@@ -1,0 +1,181 @@
+//! What the hand feels: the parasitic force of each scene and estimator by cause, and with each cause
+//! switched off in turn.
+//!
+//! The bookkeeping of [`attribution`](crate::transparency::attribution) says how much force each cause has
+//! in a run. Switching off says how the force changes if the cause goes: the controller then reacts to
+//! another motion. A device without a cause is described to the controller as it is. All runs of a case
+//! have the same seed.
+
+pub mod rows;
+pub mod table;
+mod without;
+
+use haptic_control::{LoopPoles, SceneKind};
+use rayon::prelude::*;
+
+pub use without::Without;
+
+use crate::closed_loop::{Conditions, Dac, FeedbackEncoder, Loop, estimator, usual};
+use crate::transparency::attribution::CAUSES;
+use crate::transparency::{Attribution, Fingertip, Ledger, Parasitic};
+use catalogue::estimators::Kind;
+use catalogue::parameters::Parameters;
+use simulation::device::Device;
+use simulation::simulate;
+use terminal::failure::Failure;
+
+/// What all cases have in common.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Device with every cause.
+    pub device: Device,
+    /// Parameters of the estimators.
+    pub parameters: Parameters,
+    /// Estimator of the handle's velocity.
+    pub handle: &'static Kind,
+    /// Seed.
+    pub seed: u64,
+    /// Duration of each run, s.
+    pub seconds: f64,
+    /// What is switched off in turn.
+    pub without: Vec<Without>,
+}
+
+/// One scene with one estimator at one rate.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// Scene, tried by the hand that the catalogue names.
+    pub scene: SceneKind,
+    /// Control rate, Hz.
+    pub rate_hz: f64,
+    /// Estimator of the large motor's velocity; `None` for a scene that does not use it.
+    pub estimator: Option<&'static Kind>,
+}
+
+impl Case {
+    /// Name of the estimator; "any" without one.
+    #[must_use]
+    pub fn estimator_name(&self) -> &'static str {
+        self.estimator.map_or("any", |kind| kind.name)
+    }
+}
+
+/// Results of one case.
+#[derive(Clone, Debug)]
+pub struct Felt {
+    /// The case.
+    pub case: Case,
+    /// Scores of the parasitic force with every cause.
+    pub parasitic: Parasitic,
+    /// The parasitic force by cause; `None` if it is not finite.
+    pub attribution: Option<Attribution>,
+    /// Scores of the parasitic force without a cause, in the order of [`Settings::without`].
+    pub without: Vec<(Without, Parasitic)>,
+}
+
+/// Runs all cases in parallel; `done` is called after each run.
+///
+/// # Errors
+/// [`Failure::Input`] of the first run, in order, that is not possible.
+pub fn feel(
+    cases: &[Case],
+    settings: &Settings,
+    done: impl Fn() + Sync,
+) -> Result<Vec<Felt>, Failure> {
+    let jobs: Vec<(&Case, Option<Without>)> = (cases.iter())
+        .flat_map(|case| {
+            let without = settings.without.iter().map(move |what| (case, Some(*what)));
+            std::iter::once((case, None)).chain(without)
+        })
+        .collect();
+    let ran: Vec<(Parasitic, Option<Attribution>)> = jobs
+        .par_iter()
+        .map(|(case, without)| {
+            let ran = run(case, *without, settings);
+            done();
+            ran
+        })
+        .collect::<Result<_, _>>()?;
+    let felt = (cases.iter()).zip(ran.chunks(1 + settings.without.len()));
+    Ok(felt
+        .map(|(case, runs)| Felt {
+            case: *case,
+            parasitic: runs[0].0,
+            attribution: runs[0].1.clone(),
+            without: (settings.without.iter().copied())
+                .zip(runs[1..].iter().map(|(parasitic, _)| *parasitic))
+                .collect(),
+        })
+        .collect())
+}
+
+/// Runs a case without a cause, if one is given, and attributes the force of a run with every cause.
+fn run(
+    case: &Case,
+    without: Option<Without>,
+    settings: &Settings,
+) -> Result<(Parasitic, Option<Attribution>), Failure> {
+    let rate_hz = case.rate_hz;
+    let device = match without {
+        Some(without) => without.of(&settings.device),
+        None => settings.device.clone(),
+    };
+    let removes = |remove: fn(&Without) -> bool| without.as_ref().is_some_and(remove);
+    let conditions = Conditions {
+        fault: None,
+        dac: match removes(Without::removes_dac) {
+            true => None,
+            false => Some(Dac::board()?),
+        },
+        true_velocity: removes(Without::removes_estimation_error),
+    };
+    let on = |kind, counts| estimator(kind, &device, counts, rate_hz, &settings.parameters);
+    let assumed = device.stages;
+    let run = Loop {
+        large: on(
+            case.estimator.unwrap_or(settings.handle),
+            assumed.large.counts_per_rev,
+        )?,
+        handle: on(settings.handle, assumed.small.counts_per_rev)?,
+        scene: scene(case, &settings.device)?,
+        hand: case.scene.facts().hand.into(),
+        device,
+        assumed,
+        rate_hz,
+        seed: settings.seed,
+        encoder: FeedbackEncoder::Own,
+        poles: LoopPoles::DEFAULT,
+        late_ticks: 0,
+        offsets_a: [0.0; 2],
+    };
+    let ticks = simulate::ticks(rate_hz, settings.seconds)?;
+    let fingertip = Fingertip::new(&run.device);
+    let mn = fingertip.mn_per_nm;
+    let mut ledger = match without {
+        None => Some(Ledger::new(
+            &run.device,
+            &run.assumed,
+            case.scene,
+            rate_hz,
+            run.poles,
+        )?),
+        Some(_) => None,
+    };
+    let mut terms: [Vec<f64>; CAUSES] = Default::default();
+    let mut parasitic = Vec::with_capacity(ticks);
+    run.run_under(ticks, conditions, |now| {
+        parasitic.push(mn * (now.felt - f64::from(now.action.torque.0)));
+        if let Some(ledger) = &mut ledger {
+            for (term, torque) in terms.iter_mut().zip(ledger.terms(now)) {
+                term.push(mn * torque);
+            }
+        }
+    })?;
+    let attribution = ledger.and_then(|_| Attribution::of(&terms, rate_hz));
+    Ok((Parasitic::of(&parasitic, rate_hz, &fingertip), attribution))
+}
+
+/// The scene as it is for the device with every cause, so that every run has the same task.
+fn scene(case: &Case, device: &Device) -> Result<haptic_control::AnyScene, String> {
+    usual(case.scene, &device.stages, case.rate_hz)
+}

@@ -1,0 +1,137 @@
+//! The terms of the parasitic torque at each tick.
+
+use estimator_core::Hertz;
+use haptic_control::{
+    ContinuousState, DualStage, LoopPoles, NewtonMetres, RadPerS, Rig, SceneKind,
+};
+use simulation::device::Device;
+use simulation::plant::{Grip, Plant};
+
+use super::{CAUSES, Cause};
+use crate::closed_loop::TickState;
+
+/// Bookkeeping of one closed-loop run without late ticks. It repeats the arithmetic of the large motor's
+/// stage, whose state a controller keeps to itself, and follows the linear model of the velocity loop.
+pub struct Ledger {
+    rig: Rig,
+    /// Whether the large motor renders the scene.
+    continuous: bool,
+    /// Whether the small motor renders the scene.
+    transient: bool,
+    /// Whether the controller estimates the velocity of the handle.
+    handle_estimator: bool,
+    /// Torque constant of the small motor, N.m/A.
+    torque_constant: f64,
+    /// Damping b of the coupler, N.m.s/rad.
+    damping: f64,
+    /// Damping m that the controller takes from the measured slip, N.m.s/rad.
+    measured: f64,
+    stage: ContinuousState,
+    error: ErrorLoop,
+}
+
+/// Response of the velocity loop to the estimation error alone: the regulator without reference, and
+/// the large motor without friction and ripple, whose handle is clamped. The limits of current and
+/// slope apply to the difference.
+struct ErrorLoop {
+    stage: ContinuousState,
+    motor: Plant,
+}
+
+impl ErrorLoop {
+    /// Velocity at this tick, rad/s. Then the loop moves on by one tick with this estimation error.
+    fn advance(&mut self, rig: &Rig, error: f64) -> f64 {
+        let omega = self.motor.large().omega;
+        let seen = RadPerS((error + omega) as f32);
+        let zero = RadPerS(0.0);
+        let current = rig
+            .continuous
+            .update(&mut self.stage, NewtonMetres(0.0), seen, zero);
+        self.motor.command(f64::from(current.get()), 0.0);
+        self.motor.step(&Grip::Clamped, 0.0, 0.0);
+        omega
+    }
+}
+
+impl Ledger {
+    /// The bookkeeping of `scene` on `device`, with a controller for `assumed`.
+    ///
+    /// # Errors
+    /// One line where the loop cannot be designed.
+    pub fn new(
+        device: &Device,
+        assumed: &DualStage,
+        scene: SceneKind,
+        rate_hz: f64,
+        poles: LoopPoles,
+    ) -> Result<Self, String> {
+        let rig = Rig::new(assumed, Hertz(rate_hz), poles)
+            .map_err(|error| format!("control at {rate_hz} Hz: {error}"))?;
+        let needs = scene.facts().needs;
+        let start = || rig.continuous.start(RadPerS(0.0));
+        let mut smooth = device.frictionless();
+        smooth.large_ripple.torque = 0.0;
+        Ok(Self {
+            continuous: needs.continuous,
+            transient: needs.transient,
+            handle_estimator: needs.handle_estimator,
+            torque_constant: device.stages.small.torque_constant,
+            damping: device.stages.damping,
+            // From rest nothing else is assumed to come through the coupler.
+            measured: f64::from(rig.continuous.coupled(&mut start(), RadPerS(1.0)).0),
+            stage: start(),
+            error: ErrorLoop {
+                stage: start(),
+                motor: Plant::new(&smooth, 1.0 / rate_hz),
+            },
+            rig,
+        })
+    }
+
+    /// The terms of this tick in the order of [`Cause::ALL`], N.m. Ticks come in order.
+    pub fn terms(&mut self, now: &TickState) -> [f64; CAUSES] {
+        let (action, torques) = (&now.action, &now.torques);
+        let error_large = f64::from(action.large_velocity.0) - now.large.omega;
+        let error_handle = f64::from(action.handle_velocity.0) - now.handle.omega;
+        let (mut coupled, mut estimate, mut of_handle) = (0.0, 0.0, 0.0);
+        if self.continuous {
+            let stage = &self.rig.continuous;
+            let (large, handle) = (action.large_velocity, action.handle_velocity);
+            let _ = stage.update(&mut self.stage, action.torque, large, handle);
+            let slip = RadPerS(large.0 - handle.0);
+            coupled = f64::from(stage.coupled(&mut self.stage, slip).0);
+            let caused = self.error.advance(&self.rig, error_large);
+            estimate = (self.damping - self.measured) * caused - self.measured * error_large;
+            of_handle = self.measured * error_handle;
+        }
+        let slip = torques.coupler - coupled - estimate - of_handle;
+
+        let (mut fed, mut exact) = (0.0, 0.0);
+        if self.transient {
+            let correction = |omega| f64::from(self.rig.transient.friction_correction(omega).0);
+            fed = correction(action.handle_velocity);
+            // A scene without an estimate of the handle's velocity feeds nothing forward.
+            if self.handle_estimator {
+                exact = correction(RadPerS(now.handle.omega as f32));
+            }
+        }
+        let asked = f64::from(action.torque.0) - coupled + fed;
+        let [before, from_now] = now
+            .small_amplifier
+            .map(|current| self.torque_constant * current);
+        let commanded = self.torque_constant * now.commanded.1;
+        let of = |cause| match cause {
+            Cause::Inertia => torques.inertia,
+            Cause::Friction => torques.friction + exact,
+            Cause::Ripple => torques.ripple,
+            Cause::Slip => slip,
+            Cause::Estimate => estimate,
+            Cause::HandleEstimate => of_handle + fed - exact,
+            Cause::Amplifier => torques.motor - before,
+            Cause::Sampling => before - from_now,
+            Cause::Dac => from_now - commanded,
+            Cause::Limits => commanded - asked,
+        };
+        Cause::ALL.map(of)
+    }
+}
