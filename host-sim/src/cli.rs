@@ -4,6 +4,7 @@ mod arguments;
 mod closed_loop;
 mod coarsen;
 mod compare;
+mod feel;
 mod identify;
 mod input;
 mod limit;
@@ -59,6 +60,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Some(Command::Tune(options)) => tune::run(&options, &command_line),
         Some(Command::Sensitivity(options)) => sensitivity::run(&options, &command_line),
         Some(Command::Limit(options)) => limit::run(&options),
+        Some(Command::Feel(options)) => feel::run(&options, &command_line),
         Some(Command::Zwidth(options)) => zwidth::run(&options, &command_line),
         Some(Command::Robust(options)) => robust::run(&options),
         Some(Command::Merge(options)) => robust::merge(&options),

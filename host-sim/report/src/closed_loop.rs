@@ -1,5 +1,6 @@
 //! Sections of the closed loop: parasitic force, rendered force and torque, margins.
 
+mod causes;
 mod charts;
 mod force_by_motion;
 mod margins;
@@ -176,6 +177,7 @@ pub(super) fn sections(report: &ReportInput, palette: &Palette) -> Result<Vec<Se
     let scores = score_table::tables(closed, palette);
     let sections = [
         Section::new("closed-loop", "Closed loop", Some(overview)),
+        Section::new("causes", "Causes", causes::markup(closed, threshold_mn)?),
         Section::new("transparency", "Transparency", joined(transparency)),
         Section::new("rendered", "Rendered force", rendered),
         Section::new("torque", "Torque bandwidth", joined(torque)),

@@ -10,6 +10,7 @@ use scoring::score::Score;
 use simulation::device::Device;
 
 mod canvas;
+mod causes;
 mod closed_loop;
 mod cost;
 mod curve;
@@ -17,6 +18,7 @@ mod damping;
 #[cfg(test)]
 mod demo;
 mod distances;
+mod feel;
 mod grid;
 mod identify;
 pub mod measured;
@@ -45,6 +47,8 @@ mod windows;
 mod zwidth;
 
 pub use sensitivity::sensitivity;
+
+pub use feel::feel;
 
 pub use identify::identify;
 

@@ -1,7 +1,7 @@
 //! One colour and dash for each estimator, the same in every figure.
 
 use estimator_catalogue::{Colour, Dash, ROWS};
-use experiments::transparency::REFERENCE;
+use experiments::transparency::{Cause, REFERENCE};
 use plotters::style::RGBColor;
 
 use super::ReportInput;
@@ -25,6 +25,25 @@ fn known(name: &str) -> Option<Style> {
     let (Colour(r, g, b), dash) = of_row.or((name == REFERENCE).then_some(OF_REFERENCE))?;
     let colour = RGBColor(r, g, b);
     Some(Style { colour, dash })
+}
+
+/// Style of a cause of parasitic force: the colours of Okabe and Ito, told apart with every kind of
+/// colour vision. A cause that is small in most runs has the colour of another one, striped.
+pub(super) fn cause_style(cause: Cause) -> Style {
+    let (r, g, b, dash) = match cause {
+        Cause::Inertia => (0x00, 0x72, 0xb2, Dash::Solid),
+        Cause::Friction => (0xd5, 0x5e, 0x00, Dash::Solid),
+        Cause::Ripple => (0xd5, 0x5e, 0x00, Dash::Dotted),
+        Cause::Slip => (0x00, 0x9e, 0x73, Dash::Solid),
+        Cause::Estimate => (0xf0, 0xe4, 0x42, Dash::Solid),
+        Cause::HandleEstimate => (0xcc, 0x79, 0xa7, Dash::Solid),
+        Cause::Amplifier => (0x56, 0xb4, 0xe9, Dash::Dotted),
+        Cause::Sampling => (0x56, 0xb4, 0xe9, Dash::Solid),
+        Cause::Dac => (0x55, 0x55, 0x55, Dash::Solid),
+        Cause::Limits => (0x55, 0x55, 0x55, Dash::Dotted),
+    };
+    let colour = RGBColor(r, g, b);
+    Style { colour, dash }
 }
 
 /// Estimators of a page in order of appearance, and their styles.
@@ -157,6 +176,20 @@ mod tests {
         assert!((distance(black, white) - 1.0).abs() < 1e-3);
         // A red and a green of equal lightness: similar with a colour vision deficiency alone.
         assert!(distance(RGBColor(163, 60, 0), RGBColor(84, 100, 0)) < 0.08);
+    }
+
+    #[test]
+    fn styles_of_causes_can_be_told_apart() {
+        for (i, a) in Cause::ALL.iter().enumerate() {
+            for b in &Cause::ALL[..i] {
+                let [of_a, of_b] = [*a, *b].map(cause_style);
+                let apart = distance(of_a.colour, of_b.colour);
+                assert!(
+                    of_a.dash != of_b.dash || apart > LEAST,
+                    "{a:?}, {b:?}: {apart:.3}"
+                );
+            }
+        }
     }
 
     #[test]

@@ -112,7 +112,7 @@ impl Axis {
         (first..=last).map(|i| i as f64 * step).collect()
     }
 
-    fn label(&self, value: f64) -> String {
+    pub(super) fn label(&self, value: f64) -> String {
         if self.log {
             return number_of_decade(value);
         }

@@ -85,6 +85,11 @@ pub(super) enum Command {
     #[command(after_help = "Example:
   host-sim limit --scenario step --seconds 2")]
     Limit(super::limit::Limit),
+    /// Divide the force that a hand feels beside the scene among its causes, and switch each cause off
+    #[command(after_help = "Examples:
+  host-sim feel --scene free-air --estimator adaptive
+  host-sim feel --causes-only --rate 1000 --rate 10000")]
+    Feel(super::feel::Feel),
     /// Find the largest stiffness and damping that stay passive and free of limit cycles
     #[command(after_help = "Example:
   host-sim zwidth --estimator pll --rate 10000 --lines 1024")]
@@ -359,7 +364,7 @@ mod tests {
                 texts.push((command.get_name().to_owned(), help));
             }
         }
-        assert_eq!(texts.len(), 19);
+        assert_eq!(texts.len(), 20);
         for (name, help) in texts {
             let examples = examples(&help);
             assert!(!examples.is_empty(), "{name}: {help}");
