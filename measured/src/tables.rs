@@ -3,6 +3,7 @@
 mod board;
 mod closed_loop;
 mod estimators;
+mod feel;
 mod stress;
 
 use crate::Table;
@@ -10,6 +11,7 @@ use crate::Table;
 pub use board::*;
 pub use closed_loop::*;
 pub use estimators::*;
+pub use feel::*;
 pub use stress::*;
 
 /// The command of the tables of the host simulation.
@@ -42,6 +44,12 @@ pub const ALL: &[Table] = &[
     SCENE_FORCE,
     SCENE_ROUGHNESS,
     TEXTURE_INERTIA,
+    FEEL_CAUSES,
+    FEEL_CAUSES_TACTILE,
+    FEEL_ESTIMATORS,
+    FEEL_WITHOUT,
+    FEEL_WITHOUT_ESTIMATORS,
+    FEEL_SMALL_MOTOR,
     ROBUSTNESS,
     Z_WIDTH,
     PARAMETER_BOUNDS,

@@ -63,15 +63,17 @@ causes! {
     /// assumes for the true velocities, without the part of the slip that the estimation error causes.
     /// In a scene without the large motor it is the whole torque of the coupler.
     Slip: "slip";
-    /// Error of the large motor's estimated velocity: the wrong assumption about the slip,
-    /// `m (w_L - w_L')`, and `(b - m) d`, where d is the velocity that the error causes through the
-    /// velocity loop, by its linear model, and m the measured part of the damping.
+    /// Error of the large motor's estimated velocity: `m (w_L - w_L')` of the tick before, which the small
+    /// motor renders now, and `(b - m) d`, where d is the velocity that the error causes through the
+    /// velocity loop, by its linear model. m is the measured part of the damping.
     Estimate: "estimate";
-    /// Error of the handle's estimated velocity: `-m (w_S - w_S') + f(w_S') - f(w_S)`.
+    /// Error of the handle's estimated velocity: `-m (w_S - w_S') + f(w_S') - f(w_S)` of the tick before,
+    /// which the small motor renders now.
     HandleEstimate: "handle estimate";
     /// `Kt_S (i_S - u0)`: lag of the small motor's amplifier.
     Amplifier: "amplifier";
-    /// `Kt_S (u0 - u)`: the command of this tick has not acted yet.
+    /// `Kt_S (u0 - u)` without the torques of the estimation errors: the command of this tick has not
+    /// acted yet.
     Sampling: "sampling";
     /// `Kt_S (u - c)`: the rounding of the small motor's DAC.
     Dac: "DAC";

@@ -28,6 +28,9 @@ pub struct Ledger {
     measured: f64,
     stage: ContinuousState,
     error: ErrorLoop,
+    /// Torques that the estimation errors of the large motor and of the handle added to what the small
+    /// motor was asked for at the tick before, N.m. They act at this tick.
+    acting: [f64; 2],
 }
 
 /// Response of the velocity loop to the estimation error alone: the regulator without reference, and
@@ -84,6 +87,7 @@ impl Ledger {
                 stage: start(),
                 motor: Plant::new(&smooth, 1.0 / rate_hz),
             },
+            acting: [0.0; 2],
             rig,
         })
     }
@@ -93,18 +97,19 @@ impl Ledger {
         let (action, torques) = (&now.action, &now.torques);
         let error_large = f64::from(action.large_velocity.0) - now.large.omega;
         let error_handle = f64::from(action.handle_velocity.0) - now.handle.omega;
-        let (mut coupled, mut estimate, mut of_handle) = (0.0, 0.0, 0.0);
+        // Torques that the errors of this tick's velocities add to what the small motor is asked for.
+        let mut asked_by_error = [0.0; 2];
+        let (mut coupled, mut caused) = (0.0, 0.0);
         if self.continuous {
             let stage = &self.rig.continuous;
             let (large, handle) = (action.large_velocity, action.handle_velocity);
             let _ = stage.update(&mut self.stage, action.torque, large, handle);
             let slip = RadPerS(large.0 - handle.0);
             coupled = f64::from(stage.coupled(&mut self.stage, slip).0);
-            let caused = self.error.advance(&self.rig, error_large);
-            estimate = (self.damping - self.measured) * caused - self.measured * error_large;
-            of_handle = self.measured * error_handle;
+            caused = (self.damping - self.measured) * self.error.advance(&self.rig, error_large);
+            asked_by_error = [-self.measured * error_large, self.measured * error_handle];
         }
-        let slip = torques.coupler - coupled - estimate - of_handle;
+        let slip = torques.coupler - coupled - caused - asked_by_error[0] - asked_by_error[1];
 
         let (mut fed, mut exact) = (0.0, 0.0);
         if self.transient {
@@ -115,20 +120,25 @@ impl Ledger {
                 exact = correction(RadPerS(now.handle.omega as f32));
             }
         }
+        asked_by_error[1] += fed - exact;
         let asked = f64::from(action.torque.0) - coupled + fed;
         let [before, from_now] = now
             .small_amplifier
             .map(|current| self.torque_constant * current);
         let commanded = self.torque_constant * now.commanded.1;
+        let acting = std::mem::replace(&mut self.acting, asked_by_error);
+        // The command without the errors, of the tick before less that of this tick.
+        let sampling =
+            (before - acting[0] - acting[1]) - (from_now - asked_by_error[0] - asked_by_error[1]);
         let of = |cause| match cause {
             Cause::Inertia => torques.inertia,
             Cause::Friction => torques.friction + exact,
             Cause::Ripple => torques.ripple,
             Cause::Slip => slip,
-            Cause::Estimate => estimate,
-            Cause::HandleEstimate => of_handle + fed - exact,
+            Cause::Estimate => caused + acting[0],
+            Cause::HandleEstimate => acting[1],
             Cause::Amplifier => torques.motor - before,
-            Cause::Sampling => before - from_now,
+            Cause::Sampling => sampling,
             Cause::Dac => from_now - commanded,
             Cause::Limits => commanded - asked,
         };
