@@ -9,7 +9,7 @@ use virtual_board::run::{ControlTick, Outcome, RATE_HZ, Setup};
 use crate::image::{SETTLED_S, end, of_scene, run_image};
 
 /// The image of this file, and the one without the feature.
-pub(crate) const IMAGE: &str = "large-adaptive,current-monitor,index-pulse";
+const IMAGE: &str = "large-adaptive,current-monitor,index-pulse";
 const WITHOUT: &str = "large-adaptive,current-monitor";
 
 /// Any step of the plant, s.

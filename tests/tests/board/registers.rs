@@ -4,7 +4,9 @@
 use virtual_board::run::{CoreAccess, Setup};
 
 use crate::image::run_image;
-use crate::index_pulse::IMAGE;
+
+/// An image with every input.
+const IMAGE: &str = "large-adaptive,current-monitor,index-pulse,supply-monitor";
 
 /// Some bits of a register.
 struct Field {
@@ -32,6 +34,7 @@ const GPIOB: u32 = 0x4002_0400;
 const GPIOC: u32 = 0x4002_0800;
 const GPIOD: u32 = 0x4002_0C00;
 const GPIOE: u32 = 0x4002_1000;
+const GPIOF: u32 = 0x4002_1400;
 const TIM3: u32 = 0x4000_0400;
 const TIM4: u32 = 0x4000_0800;
 const TIM5: u32 = 0x4000_0C00;
@@ -41,6 +44,7 @@ const IWDG: u32 = 0x4000_3000;
 const USART3: u32 = 0x4000_4800;
 const ADC1: u32 = 0x4001_2000;
 const ADC2: u32 = 0x4001_2100;
+const ADC3: u32 = 0x4001_2200;
 const ADC_COMMON: u32 = 0x4001_2300;
 const DBGMCU: u32 = 0xE004_2000;
 const NVIC: u32 = 0xE000_E000;
@@ -194,6 +198,12 @@ const AFTER_BOOT: &[Field] = &[
     field(ADC2 + 0x2C, (20, 4), 0, "ADC2_SQR1.L: one"),
     field(ADC2 + 0x34, (0, 5), 10, "ADC2_SQR3.SQ1: PC0"),
     field(ADC2 + 0x0C, (0, 3), 3, "ADC2_SMPR1.SMP10: 56 cycles"),
+    field(GPIOF, (6, 2), 0b11, "GPIOF_MODER3: analogue"),
+    field(ADC3 + 0x08, (0, 2), 0b11, "ADC3_CR2.ADON, CONT"),
+    field(ADC3 + 0x08, (8, 3), 0, "ADC3_CR2.DMA, DDS, EOCS"),
+    field(ADC3 + 0x2C, (20, 4), 0, "ADC3_SQR1.L: one"),
+    field(ADC3 + 0x34, (0, 5), 9, "ADC3_SQR3.SQ1: PF3"),
+    field(ADC3 + 0x10, (27, 3), 7, "ADC3_SMPR2.SMP9: 480 cycles"),
 ];
 
 #[test]
