@@ -1,6 +1,7 @@
 //! What a closed-loop run has besides the device, the hand and the controller.
 
 use drivers::{DacScale, FULL_SCALES};
+use estimator_core::Amps;
 use haptic_control::Currents;
 
 use super::Faulty;
@@ -52,13 +53,17 @@ impl Dac {
     #[must_use]
     pub fn currents(&self, asked: &Currents) -> (f64, f64) {
         let [large, small] = &self.scales;
-        (rounded(large, asked.large), rounded(small, asked.small))
+        let [large_full, small_full] = FULL_SCALES;
+        (
+            rounded(large, large_full, asked.large),
+            rounded(small, small_full, asked.small),
+        )
     }
 }
 
-/// The current that a converter puts out for a commanded one, A.
-fn rounded(scale: &DacScale, current: estimator_core::Amps) -> f64 {
-    let zero = f64::from(scale.exact_code(estimator_core::Amps::ZERO));
-    let per_amp = f64::from(scale.exact_code(estimator_core::Amps::new(1.0))) - zero;
-    (f64::from(scale.code(current).get()) - zero) / per_amp
+/// The current that a converter with this full scale puts out for a commanded one, A.
+fn rounded(scale: &DacScale, full: Amps, current: Amps) -> f64 {
+    let zero = f64::from(scale.exact_code(Amps::ZERO));
+    let steps = f64::from(scale.exact_code(full)) - zero;
+    (f64::from(scale.code(current).get()) - zero) / steps * f64::from(full.get())
 }
