@@ -133,7 +133,7 @@ fn claims_of_tasks(tasks: &[Task], rows: &[Row]) {
             | "adaptive-held"
             | "adaptive-edge-held"
             | "adaptive-soft" => 33e3..43e3,
-            _ => 43e3..65e3,
+            _ => 43e3..70e3,
         };
         let rate = row.highest_rate_hz;
         assert!(range.contains(&rate), "{}: {rate} Hz", row.name);
