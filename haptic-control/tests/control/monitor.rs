@@ -40,6 +40,28 @@ fn ordinary_motion_over_the_wrap_causes_no_stop() {
     assert_eq!(first(10_000, back), None);
 }
 
+/// Until the slot ends in tick 80.
+#[test]
+fn displacement_equal_to_the_bound_is_no_jump() {
+    for (from, to) in [(5, 1005), (1005, 5)] {
+        let at = |k: u32| if k < 77 { from } else { to };
+        assert_eq!(first(79, |k| sample(at(k), 0, 0.0)), None);
+        assert_eq!(first(79, |k| sample(0, at(k), 0.0)), None);
+    }
+}
+
+#[test]
+fn slot_ends_after_the_ticks_that_are_asked_for() {
+    for ticks in 1..=10 {
+        let mut state = MONITOR.start(&sample(0, 0, 0.0));
+        MONITOR.end_slot_after(&mut state, ticks);
+        // More than the limit of a window, less than a jump.
+        let far = sample(0, 450, 0.0);
+        let found = (1..100).find(|_| MONITOR.check(&mut state, &far).is_some());
+        assert_eq!(found, Some(ticks));
+    }
+}
+
 #[test]
 fn each_cause_is_detected_within_its_time() {
     let runaway = first(1000, |k| {

@@ -6,7 +6,7 @@ use drivers::Settings;
 use estimator_core::{Amps, Count, Sample};
 use firmware_app::ammeter::Measured;
 use firmware_app::commands::{Channel, Commands, Messages};
-use firmware_app::config::{DECIMATION, DEVICE, RATE_HZ};
+use firmware_app::config::{DEVICE, RATE_HZ};
 use firmware_app::control::{Control, Inputs, Message};
 use firmware_app::index::{Indexing, Indices, Pulses, Reported};
 use firmware_app::supply::Reading;
@@ -49,8 +49,6 @@ pub(crate) struct Bench {
     pub(crate) readings: Option<Currents>,
     /// Voltage of the supply, V.
     pub(crate) supply: f32,
-    /// Ticks so far.
-    ticks: u32,
 }
 
 impl Bench {
@@ -75,7 +73,6 @@ impl Bench {
             backwards: false,
             readings: None,
             supply: 24.0,
-            ticks: 0,
         }
     }
 
@@ -100,10 +97,9 @@ impl Bench {
         let flow = self.control.flow(&readings);
         let sample = self.sample(flow.currents.large);
         let currents = self.control.step(&sample, &flow, inputs);
-        if self.ticks.is_multiple_of(DECIMATION) {
+        if self.control.makes_frame() {
             self.control.watch(&supply(self.supply));
         }
-        self.ticks += 1;
         let DualStage { large, damping, .. } = DEVICE;
         let current = f64::from(currents.unwrap_or_default().large.get());
         let rate = f64::from(RATE_HZ);

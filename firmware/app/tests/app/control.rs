@@ -1,3 +1,5 @@
+use core::f64::consts::TAU;
+
 use drivers::{Command, Settings, encode};
 use firmware_app::config::AUTO_ARM;
 use firmware_app::control::{Inputs, Message};
@@ -203,5 +205,23 @@ fn parameter_commands_take_effect_and_count_as_keep_alive() {
                 Some(Request::KeepAlive)
             );
         }
+    }
+}
+
+/// Whenever the device is armed, so that a slot never ends in a tick that makes a frame.
+#[test]
+fn slots_of_the_monitor_end_five_ticks_after_a_frame() {
+    for wait in 0..10 {
+        let mut bench = Bench::new();
+        bench.wait(wait);
+        bench.request(Request::Arm);
+        bench.run(ticks(0.03));
+        // 600 counts of the handle at once: more than the limit of a window, less than a jump.
+        bench.handle += 0.03 * TAU;
+        while bench.state().0 == Mode::Armed {
+            bench.run(1);
+        }
+        assert_eq!(bench.state(), (Mode::Safe, Stop::HandleOverspeed));
+        assert_eq!(bench.record().tick % 10, 5, "armed after {wait} ticks");
     }
 }
