@@ -123,7 +123,7 @@ impl Monitor {
         }
     }
 
-    /// Ends the present slot after this number of ticks, at least 1 and at most [`Self::slot`]. Over a
+    /// Ends the present slot after this number of ticks, at least 1 and at most those of a slot. Over a
     /// slot that is shorter by that a motor may be faster.
     pub const fn end_slot_after(&self, state: &mut MonitorState, ticks: u32) {
         state.ticks = self.slot.saturating_sub(ticks);

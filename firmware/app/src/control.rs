@@ -288,6 +288,12 @@ mod tests {
     #[test]
     fn action_with_one_non_finite_number_is_detected() {
         assert!(is_finite(&Action::default()));
+        // A sum that is too large says nothing.
+        assert!(is_finite(&Action {
+            large_velocity: RadPerS(3e38),
+            handle_velocity: RadPerS(3e38),
+            ..Action::default()
+        }));
         let zero = Action::default;
         for number in [f32::NAN, f32::INFINITY] {
             assert!(!is_finite(&Action {
