@@ -9,7 +9,7 @@ use crate::large::{Large, LargeEstimator as _};
 use crate::reports::Reports;
 use crate::scene::{Parameters, TORQUE_SCENE};
 
-/// Messages that wait for the control task, which takes one a tick.
+/// Messages that wait for the control task, which takes three in ten ticks.
 pub type Messages = Queue<Message, 8>;
 /// Largest number of bytes that one call takes.
 const BYTES: usize = 64;
