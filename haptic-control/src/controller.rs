@@ -2,12 +2,15 @@
 
 use estimator_core::{Count, Sample, Scale, VelocityEstimator};
 
+use crate::anticipation::{Anticipation, AnticipationState};
 use crate::limits::CurrentScale;
 use crate::need::{Need, Senses};
 use crate::rig::{AccelerationScale, AngleScale, Rig};
 use crate::scene::Scene;
 use crate::stage::{ContinuousStage, ContinuousState, TransientStage, TransientState};
-use crate::tick::{Action, Continuous, Estimated, HandleNeed, Parts, Transient, tick};
+use crate::tick::{
+    Action, Anticipating, Continuous, Estimated, HandleNeed, Parts, Transient, tick,
+};
 use crate::units::{RadPerS, Radians};
 
 type Of<N, T> = <N as Need>::Of<T>;
@@ -43,6 +46,7 @@ pub struct Controller<S: Scene, L, H> {
     handle: Of<HandleNeed<S>, (H, Scale)>,
     acceleration: Of<S::Acceleration, AccelerationScale>,
     transient: Of<S::Transient, TransientStage>,
+    anticipation: Of<S::Free, Anticipation>,
     angle: AngleScale,
 }
 
@@ -52,6 +56,7 @@ pub struct ControllerState<S: Scene, L: VelocityEstimator, H: VelocityEstimator>
     continuous: Of<S::Continuous, (L::State, ContinuousState)>,
     handle: Of<HandleNeed<S>, H::State>,
     transient: Of<S::Transient, TransientState>,
+    anticipation: Of<S::Free, AnticipationState>,
     origin: Count,
 }
 
@@ -82,6 +87,7 @@ impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> Clone for ControllerS
             continuous: S::Continuous::copy(&self.continuous),
             handle: HandleNeed::<S>::copy(&self.handle),
             transient: S::Transient::copy(&self.transient),
+            anticipation: S::Free::copy(&self.anticipation),
             origin: self.origin,
         }
     }
@@ -93,6 +99,7 @@ impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> PartialEq for Control
             && S::Continuous::same(&self.continuous, &other.continuous)
             && HandleNeed::<S>::same(&self.handle, &other.handle)
             && S::Transient::same(&self.transient, &other.transient)
+            && S::Free::same(&self.anticipation, &other.anticipation)
             && self.origin == other.origin
     }
 }
@@ -111,6 +118,7 @@ where
             handle: HandleNeed::<S>::make(|| (handle, rig.handle_scale)),
             acceleration: S::Acceleration::make(|| rig.acceleration_scale),
             transient: S::Transient::make(|| rig.transient),
+            anticipation: S::Free::make(|| rig.anticipation),
             angle: rig.angle_scale,
         }
     }
@@ -131,6 +139,7 @@ where
                 S::Transient::as_ref(&self.transient),
                 TransientStage::start,
             ),
+            anticipation: S::Free::map(S::Free::as_ref(&self.anticipation), Anticipation::start),
             origin: first.coupled,
         }
     }
@@ -223,6 +232,14 @@ where
                 S::Transient::as_ref(&self.transient),
                 S::Transient::as_mut(&mut state.transient),
                 |stage, state| Transient { stage, state },
+            ),
+            anticipation: S::Free::zip(
+                S::Free::as_ref(&self.anticipation),
+                S::Free::as_mut(&mut state.anticipation),
+                |anticipation, state| Anticipating {
+                    anticipation,
+                    state,
+                },
             ),
         };
         tick(&self.scene, &mut state.scene, parts, angle, sample)

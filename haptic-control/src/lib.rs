@@ -16,8 +16,10 @@
 )]
 
 mod ammeters;
+mod anticipation;
 mod balance;
 mod controller;
+mod coulomb;
 mod design_error;
 mod device;
 mod fingerprint;
@@ -43,6 +45,7 @@ mod units;
 mod windings;
 
 pub use ammeters::{Ammeters, AmmetersState, Flow};
+pub use anticipation::{Anticipated, Anticipation, AnticipationState};
 pub use balance::{Balance, BalanceState};
 pub use controller::{Controller, ControllerState};
 pub use design_error::DesignError;
@@ -59,7 +62,7 @@ pub use rst::{Rst, RstState};
 pub use rst_design::{LEAST_MODULUS, LoopPoles, RstDesign};
 pub use safety::{Findings, Mode, Order, Request, Safety, SafetyState};
 pub use scene::*;
-pub use stage::{ContinuousStage, ContinuousState, TransientStage, TransientState};
+pub use stage::{ContinuousStage, ContinuousState, Followed, TransientStage, TransientState};
 pub use stop::Stop;
 pub use supply::{Supply, SupplyFinding, SupplyState};
 pub use switchboard::{Switchboard, SwitchboardState};

@@ -5,6 +5,7 @@ use core::f64::consts::PI;
 
 use estimator_core::{Counts, CountsPerTickSquared, Hertz, Scale};
 
+use crate::anticipation::Anticipation;
 use crate::design_error::DesignError;
 use crate::device::DualStage;
 use crate::rst_design::{LoopPoles, RstDesign};
@@ -25,6 +26,8 @@ pub struct Rig {
     pub continuous: ContinuousStage,
     /// The small motor.
     pub transient: TransientStage,
+    /// The anticipation of the handle's motion.
+    pub anticipation: Anticipation,
     /// Scale of the large encoder.
     pub large_scale: Scale,
     /// Scale of the small encoder's velocity.
@@ -92,6 +95,7 @@ impl Rig {
         Ok(Self {
             continuous: ContinuousStage::new(device, &design, (LARGE_SLEW * t) as f32),
             transient: TransientStage::new(device, (SMALL_SLEW * t) as f32),
+            anticipation: Anticipation::new(device, rate, poles),
             large_scale: large,
             handle_scale: handle,
             angle_scale: AngleScale {

@@ -2,6 +2,7 @@
 
 use estimator_core::Amps;
 
+use crate::coulomb::{Coulomb, LARGEST_CONSTANT};
 use crate::device::DualStage;
 use crate::limits::{CurrentLimits, CurrentScale, within};
 use crate::monitor::LARGE_OVERSPEED;
@@ -12,7 +13,8 @@ use crate::units::{NewtonMetres, RadPerS};
 /// The continuous stage: the large motor behind the coupler (fig. 3 of the paper).
 ///
 /// The torque on the handle is `b (ω_L - ω_S)`. A commanded torque therefore is a commanded
-/// velocity `ω_L = ω_S + torque / b`, which an [`Rst`] compensator tracks. The commanded velocity
+/// velocity `ω_L = ω_S + torque / b`, which an [`Rst`] compensator tracks; ω_S is the velocity
+/// [`Followed`]. The commanded velocity
 /// is limited to 85 % of the speed at which [`Monitor::new`](crate::Monitor::new) stops the large
 /// motor; the transient stage renders the missing torque. Two terms are fed forward: Coulomb
 /// friction in the direction of the commanded velocity, and the pull of the coupler on the large
@@ -33,6 +35,15 @@ pub struct ContinuousStage {
     measured: f32,
     /// 1 - m, the gain of each half of the tracking filter.
     tracking_gain: f32,
+}
+
+/// The motion of the handle that the large motor follows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Followed {
+    /// Velocity that it follows where no torque is commanded.
+    pub velocity: RadPerS,
+    /// Inverse of the velocity over which its friction is faded in, 1 / (rad/s).
+    pub(crate) per_fade: f32,
 }
 
 /// State of a [`ContinuousStage`].
@@ -60,21 +71,20 @@ impl ContinuousState {
 const LARGEST_WANTED: f32 = (0.85 * LARGE_OVERSPEED) as f32;
 
 /// Commanded velocity of the large motor below which the friction that is fed forward is reduced,
-/// because its direction is uncertain, rad/s.
+/// because its direction is uncertain, in a scene with a spring, rad/s.
 const FADE: f64 = 0.5;
 
-/// Velocity of the handle below which the friction that is fed forward is reduced, rad/s. It is
-/// lower than that of the large motor, because the handle's encoder is finer.
+/// Velocity of the handle below which the friction that is fed forward is reduced in a scene with a spring,
+/// rad/s. It is lower than that of the large motor was chosen for: the handle's encoder is finer.
 const HANDLE_FADE: f64 = 0.12;
 
-/// Part of the small motor's friction that is fed forward. With all of it, a torque constant 20 %
-/// above that of the description would drive a handle that is not held.
+/// Part of the small motor's friction that is fed forward in a scene with a spring. The rest damps the
+/// spring: with all of it, the largest passive stiffness without damping would be smaller by a seventh.
 const FRICTION_PART: f64 = 0.8;
 
-/// Least damping of the coupler and largest torque constant of the small motor with which the
-/// transient stage is passive, as factors of the values in the description.
+/// Least damping of the coupler with which the transient stage is passive, as a factor of the value in
+/// the description.
 const LEAST_DAMPING: f64 = 0.6;
-const LARGEST_CONSTANT: f64 = 1.2;
 
 /// Part of the measured slip's torque that the small motor compensates. A larger part would drive
 /// the handle, if the small motor is stronger and the coupler weaker than in the description.
@@ -126,6 +136,16 @@ impl ContinuousStage {
         state.largest = scale.large(self.limits.largest);
     }
 
+    /// The motion that the large motor follows in a scene with a spring: that of the handle.
+    #[inline]
+    #[must_use]
+    pub const fn follow(&self, handle: RadPerS) -> Followed {
+        Followed {
+            velocity: handle,
+            per_fade: self.per_fade,
+        }
+    }
+
     /// One tick: the large motor's current for a commanded torque.
     #[must_use]
     pub fn update(
@@ -134,16 +154,17 @@ impl ContinuousStage {
         torque: NewtonMetres,
         large: RadPerS,
         handle: RadPerS,
+        followed: Followed,
     ) -> Amps {
-        let wanted = handle.0 + torque.0 * self.rad_per_s_per_nm;
+        let wanted = followed.velocity.0 + torque.0 * self.rad_per_s_per_nm;
         let limited = within(wanted, -LARGEST_WANTED, LARGEST_WANTED);
         state.asked = if limited == wanted {
             torque.0
         } else {
-            (limited - handle.0) * self.nm_per_rad_per_s
+            (limited - followed.velocity.0) * self.nm_per_rad_per_s
         };
         let looped = self.rst.update(&mut state.rst, RadPerS(limited), large);
-        let direction = within(state.rst.filtered().0 * self.per_fade, -1.0, 1.0);
+        let direction = within(state.rst.filtered().0 * followed.per_fade, -1.0, 1.0);
         let forward = self.friction * direction + self.damping * handle.0;
         let wanted = looped + forward;
         let limits = CurrentLimits {
@@ -175,15 +196,14 @@ impl ContinuousStage {
 /// The transient stage: the small motor on the handle.
 ///
 /// With a continuous stage it renders the torque that the coupler is assumed not to transmit,
-/// without delay (see [`ContinuousStage::coupled`]). Alone it renders the whole torque. Four fifths
-/// of its own Coulomb friction are fed forward in the direction of the handle's velocity, if that
-/// is estimated.
+/// without delay (see [`ContinuousStage::coupled`]). Alone it renders the whole torque. Its own
+/// Coulomb friction is fed forward in the direction of the handle's velocity, if that is estimated:
+/// [`TransientStage::friction_correction`] or [`Anticipated::friction`](crate::Anticipated::friction).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransientStage {
     limits: CurrentLimits,
     amps_per_nm: f32,
-    friction: NewtonMetres,
-    per_fade: f32,
+    friction: Coulomb,
 }
 
 /// State of a [`TransientStage`].
@@ -211,8 +231,7 @@ impl TransientStage {
                 slew,
             },
             amps_per_nm: (1.0 / device.small.torque_constant) as f32,
-            friction: NewtonMetres((FRICTION_PART * device.small.coulomb_friction) as f32),
-            per_fade: (1.0 / HANDLE_FADE) as f32,
+            friction: Coulomb::new(device.small.coulomb_friction, FRICTION_PART, HANDLE_FADE),
         }
     }
 
@@ -235,23 +254,19 @@ impl TransientStage {
         state.largest = scale.small(self.limits.largest);
     }
 
-    /// Torque that is fed forward against the small motor's friction at this velocity of the handle.
+    /// Torque that is fed forward against the small motor's friction at this velocity of the handle, in a
+    /// scene without [anticipation](crate::Anticipation): four fifths of the friction from 0.12 rad/s on,
+    /// half of it from 6 rad/s on.
     #[inline]
     #[must_use]
     pub fn friction_correction(&self, handle: RadPerS) -> NewtonMetres {
-        NewtonMetres(self.friction.0 * within(handle.0 * self.per_fade, -1.0, 1.0))
+        self.friction.at(handle)
     }
 
-    /// One tick: the small motor's current for the torque that is missing.
+    /// One tick: the small motor's current for a torque, that against its friction included.
     #[must_use]
-    pub fn update(
-        &self,
-        state: &mut TransientState,
-        missing: NewtonMetres,
-        handle: RadPerS,
-    ) -> Amps {
-        let friction = self.friction_correction(handle);
-        let wanted = (missing.0 + friction.0) * self.amps_per_nm;
+    pub fn update(&self, state: &mut TransientState, torque: NewtonMetres) -> Amps {
+        let wanted = torque.0 * self.amps_per_nm;
         let limits = CurrentLimits {
             largest: state.largest,
             ..self.limits

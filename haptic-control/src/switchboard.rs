@@ -2,13 +2,16 @@
 
 use estimator_core::{AccelerationEstimator, Amps, Count, Hertz, Sample, VelocityEstimator};
 
+use crate::anticipation::AnticipationState;
 use crate::limits::{CurrentScale, Currents, within};
 use crate::need::{Need, Senses};
 use crate::rig::Rig;
 use crate::scene::*;
 use crate::scenes;
 use crate::stage::{ContinuousState, TransientState};
-use crate::tick::{Action, Continuous, Estimated, HandleNeed, Parts, Transient, tick};
+use crate::tick::{
+    Action, Anticipating, Continuous, Estimated, HandleNeed, Parts, Transient, tick,
+};
 use crate::units::{RadPerS, Radians};
 
 macro_rules! active_scene {
@@ -107,14 +110,15 @@ struct Shared<L: VelocityEstimator, H: VelocityEstimator> {
     continuous: ContinuousState,
     handle: H::State,
     transient: TransientState,
-    /// Whether the continuous stage, the handle's estimator and the transient stage ran in the last
-    /// tick.
-    live: [bool; 3],
+    anticipation: AnticipationState,
+    /// Whether the continuous stage, the handle's estimator, the transient stage and the anticipation
+    /// ran in the last tick.
+    live: [bool; 4],
 }
 
 /// Time constant with which the difference of the currents at a change of scenes fades, s.
 const FADE_S: f64 = 0.02;
-/// Added current below which the fade ends, A. A step of a DAC of 12 bits is some 700 times that for 1.5 A.
+/// Added current below which the fade ends, A. A step of a 12-bit converter for ±1.5 A is 700 times larger.
 const FADED: f32 = 1e-6;
 
 impl<L: VelocityEstimator, H: VelocityEstimator> SwitchboardState<L, H> {
@@ -160,7 +164,8 @@ where
                 continuous: self.rig.continuous.start(RadPerS(0.0)),
                 handle: self.handle.start(&Sample::new(first.coupled)),
                 transient: self.rig.transient.start(),
-                live: [false; 3],
+                anticipation: self.rig.anticipation.start(),
+                live: [false; 4],
             },
             origin: first.coupled,
             change: Change::Over,
@@ -261,6 +266,7 @@ where
             S::Continuous::WANTED,
             HandleNeed::<S>::WANTED,
             S::Transient::WANTED,
+            S::Free::WANTED,
         ];
         if wanted[0] && !shared.live[0] {
             self.large.restart(&mut shared.large, sample);
@@ -272,6 +278,9 @@ where
         }
         if wanted[2] && !shared.live[2] {
             self.rig.transient.restart(&mut shared.transient);
+        }
+        if wanted[3] && !shared.live[3] {
+            shared.anticipation = self.rig.anticipation.start();
         }
         shared.live = wanted;
         // The stages limit their currents, an open loop does not.
@@ -304,6 +313,12 @@ where
             transient: S::Transient::map(S::Transient::lend(&mut shared.transient), |state| {
                 Transient {
                     stage: &self.rig.transient,
+                    state,
+                }
+            }),
+            anticipation: S::Free::map(S::Free::lend(&mut shared.anticipation), |state| {
+                Anticipating {
+                    anticipation: &self.rig.anticipation,
                     state,
                 }
             }),

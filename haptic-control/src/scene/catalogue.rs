@@ -44,6 +44,8 @@ pub struct Needs {
     pub continuous: bool,
     /// The small motor renders the scene's torque.
     pub transient: bool,
+    /// The handle moves freely: the controller anticipates its motion.
+    pub free: bool,
     /// The handle's velocity is estimated: for the scene, for the slip of the coupler, or because
     /// the scene reads the acceleration.
     pub handle_estimator: bool,
@@ -56,6 +58,7 @@ impl Needs {
             acceleration: S::Acceleration::WANTED,
             continuous: S::Continuous::WANTED,
             transient: S::Transient::WANTED,
+            free: S::Free::WANTED,
             handle_estimator: HandleNeed::<S>::WANTED,
         }
     }

@@ -32,6 +32,9 @@ pub trait Scene {
     type Continuous: Need;
     /// Whether the small motor renders the scene's torque.
     type Transient: Need;
+    /// Whether the handle moves freely, so that the controller anticipates its motion
+    /// ([`Anticipation`](crate::Anticipation)): the scene has no spring, and both motors render it.
+    type Free: Need;
     /// State that the scene keeps from tick to tick.
     type State: Clone + PartialEq;
 

@@ -17,6 +17,7 @@ impl Scene for FreeAir {
     type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
+    type Free = Wanted;
     type State = ();
 
     fn start(&self, _: Radians) {}

@@ -54,6 +54,7 @@ impl Scene for Friction {
     type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
+    type Free = Wanted;
     type State = ();
 
     fn start(&self, _: Radians) {}

@@ -15,6 +15,7 @@ impl Scene for Off {
     type Acceleration = Skip;
     type Continuous = Skip;
     type Transient = Skip;
+    type Free = Skip;
     type State = ();
 
     fn start(&self, _: Radians) {}

@@ -61,6 +61,7 @@ impl Scene for Texture {
     type Acceleration = Skip;
     type Continuous = Skip;
     type Transient = Wanted;
+    type Free = Skip;
     /// Phase, in 2^-32 of a period.
     type State = u32;
 

@@ -35,6 +35,7 @@ impl Scene for Torque {
     type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
+    type Free = Skip;
     type State = ();
 
     fn start(&self, _: Radians) {}

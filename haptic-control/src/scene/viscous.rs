@@ -36,6 +36,7 @@ impl Scene for Viscous {
     type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
+    type Free = Wanted;
     type State = ();
 
     fn start(&self, _: Radians) {}

@@ -2,7 +2,8 @@
 
 use estimator_core::Hertz;
 use haptic_control::{
-    ContinuousState, DualStage, LoopPoles, NewtonMetres, RadPerS, Rig, SceneKind,
+    Action, AnticipationState, ContinuousState, DualStage, Followed, LoopPoles, NewtonMetres,
+    RadPerS, Rig, SceneKind,
 };
 use simulation::device::Device;
 use simulation::plant::{Grip, Plant};
@@ -18,6 +19,8 @@ pub struct Ledger {
     continuous: bool,
     /// Whether the small motor renders the scene.
     transient: bool,
+    /// Whether the controller anticipates the motion of the handle.
+    free: bool,
     /// Whether the controller estimates the velocity of the handle.
     handle_estimator: bool,
     /// Torque constant of the small motor, N.m/A.
@@ -27,6 +30,8 @@ pub struct Ledger {
     /// Damping m that the controller takes from the measured slip, N.m.s/rad.
     measured: f64,
     stage: ContinuousState,
+    /// The anticipation by the estimated and by the true velocity of the handle.
+    anticipated: [AnticipationState; 2],
     error: ErrorLoop,
     /// Torques that the estimation errors of the large motor and of the handle added to what the small
     /// motor was asked for at the tick before, N.m. They act at this tick.
@@ -47,12 +52,29 @@ impl ErrorLoop {
         let omega = self.motor.large().omega;
         let seen = RadPerS((error + omega) as f32);
         let zero = RadPerS(0.0);
-        let current = rig
-            .continuous
-            .update(&mut self.stage, NewtonMetres(0.0), seen, zero);
+        let current = rig.continuous.update(
+            &mut self.stage,
+            NewtonMetres(0.0),
+            seen,
+            zero,
+            rig.continuous.follow(zero),
+        );
         self.motor.command(f64::from(current.get()), 0.0);
         self.motor.step(&Grip::Clamped, 0.0, 0.0);
         omega
+    }
+}
+
+/// Torques that the controller feeds forward, N.m.
+#[derive(Clone, Copy, Default)]
+struct FedForward {
+    friction: f64,
+    inertia: f64,
+}
+
+impl FedForward {
+    fn sum(self) -> f64 {
+        self.friction + self.inertia
     }
 }
 
@@ -77,12 +99,14 @@ impl Ledger {
         Ok(Self {
             continuous: needs.continuous,
             transient: needs.transient,
+            free: needs.free,
             handle_estimator: needs.handle_estimator,
             torque_constant: device.stages.small.torque_constant,
             damping: device.stages.damping,
             // From rest nothing else is assumed to come through the coupler.
             measured: f64::from(rig.continuous.coupled(&mut start(), RadPerS(1.0)).0),
             stage: start(),
+            anticipated: [rig.anticipation.start(); 2],
             error: ErrorLoop {
                 stage: start(),
                 motor: Plant::new(&smooth, 1.0 / rate_hz),
@@ -97,13 +121,14 @@ impl Ledger {
         let (action, torques) = (&now.action, &now.torques);
         let error_large = f64::from(action.large_velocity.0) - now.large.omega;
         let error_handle = f64::from(action.handle_velocity.0) - now.handle.omega;
+        let (followed, fed, exact) = self.feed_forward(action, now.handle.omega);
         // Torques that the errors of this tick's velocities add to what the small motor is asked for.
         let mut asked_by_error = [0.0; 2];
         let (mut coupled, mut caused) = (0.0, 0.0);
         if self.continuous {
             let stage = &self.rig.continuous;
             let (large, handle) = (action.large_velocity, action.handle_velocity);
-            let _ = stage.update(&mut self.stage, action.torque, large, handle);
+            let _ = stage.update(&mut self.stage, action.torque, large, handle, followed);
             let slip = RadPerS(large.0 - handle.0);
             coupled = f64::from(stage.coupled(&mut self.stage, slip).0);
             caused = (self.damping - self.measured) * self.error.advance(&self.rig, error_large);
@@ -111,17 +136,8 @@ impl Ledger {
         }
         let slip = torques.coupler - coupled - caused - asked_by_error[0] - asked_by_error[1];
 
-        let (mut fed, mut exact) = (0.0, 0.0);
-        if self.transient {
-            let correction = |omega| f64::from(self.rig.transient.friction_correction(omega).0);
-            fed = correction(action.handle_velocity);
-            // A scene without an estimate of the handle's velocity feeds nothing forward.
-            if self.handle_estimator {
-                exact = correction(RadPerS(now.handle.omega as f32));
-            }
-        }
-        asked_by_error[1] += fed - exact;
-        let asked = f64::from(action.torque.0) - coupled + fed;
+        asked_by_error[1] += fed.sum() - exact.sum();
+        let asked = f64::from(action.torque.0) - coupled + fed.sum();
         let [before, from_now] = now
             .small_amplifier
             .map(|current| self.torque_constant * current);
@@ -131,8 +147,8 @@ impl Ledger {
         let sampling =
             (before - acting[0] - acting[1]) - (from_now - asked_by_error[0] - asked_by_error[1]);
         let of = |cause| match cause {
-            Cause::Inertia => torques.inertia,
-            Cause::Friction => torques.friction + exact,
+            Cause::Inertia => torques.inertia + exact.inertia,
+            Cause::Friction => torques.friction + exact.friction,
             Cause::Ripple => torques.ripple,
             Cause::Slip => slip,
             Cause::Estimate => caused + acting[0],
@@ -143,5 +159,32 @@ impl Ledger {
             Cause::Limits => commanded - asked,
         };
         Cause::ALL.map(of)
+    }
+
+    /// The velocity that the large motor follows, what the controller feeds forward, and what it would feed
+    /// forward with the true velocity of the handle.
+    fn feed_forward(&mut self, action: &Action, omega: f64) -> (Followed, FedForward, FedForward) {
+        let followed = self.rig.continuous.follow(action.handle_velocity);
+        let velocities = [action.handle_velocity, RadPerS(omega as f32)];
+        // A scene without an estimate of the handle's velocity feeds nothing forward.
+        if !(self.transient && self.handle_estimator) {
+            return (followed, FedForward::default(), FedForward::default());
+        }
+        if !self.free {
+            let [fed, exact] = velocities.map(|omega| FedForward {
+                friction: f64::from(self.rig.transient.friction_correction(omega).0),
+                inertia: 0.0,
+            });
+            return (followed, fed, exact);
+        }
+        let [estimated, exact] = [0, 1].map(|i| {
+            let state = &mut self.anticipated[i];
+            self.rig.anticipation.update(state, velocities[i])
+        });
+        let [fed, exactly] = [estimated, exact].map(|ahead| FedForward {
+            friction: f64::from(ahead.friction.0),
+            inertia: f64::from(ahead.inertia.0),
+        });
+        (estimated.followed, fed, exactly)
     }
 }
