@@ -29,6 +29,7 @@ macro_rules! link_features {
             "current-monitor";
             "index-pulse";
             "supply-monitor";
+            "handle-imm";
         }
     };
 }

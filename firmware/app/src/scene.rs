@@ -2,8 +2,8 @@
 //! `cfg`.
 
 use estimator_core::{
-    Confidence as _, Model, NoInput, SteadyKalman, SteadyKalmanTriple, Variance, VelocityEstimator,
-    preset,
+    Confidence as _, Imm, Model, NoInput, SteadyKalman, SteadyKalmanTriple, Variance,
+    VelocityEstimator, preset,
 };
 use haptic_control::{Bounds, LoopPoles, Rig, SceneKind};
 
@@ -37,15 +37,25 @@ impl Estimation {
     }
 }
 
-/// The estimator of the handle.
-pub type Handle = SteadyKalmanTriple;
+/// A steady-state Kalman filter for the handle.
+pub type Filter = SteadyKalmanTriple;
 const HANDLE_MODEL: Model<3, NoInput> = preset!(Model::triple_integrator(
     DEVICE.small.counts_per_rev,
     RATE,
     tuned::image("handle", "kalman-triple-steady", RATE, "jerk")
 ));
-/// The parameters of [`Handle`].
-pub const HANDLE: Handle = preset!(SteadyKalman::new(&HANDLE_MODEL));
+/// The parameters of [`Filter`].
+pub const FILTER: Filter = preset!(SteadyKalman::new(&HANDLE_MODEL));
+
+/// A self-tuning bank of filters for the handle, which has no parameters.
+pub type Bank = Imm;
+/// The design of [`Bank`].
+pub const BANK: Bank = preset!(Imm::new(RATE));
+
+#[cfg(feature = "handle-imm")]
+pub use self::{BANK as HANDLE, Bank as Handle};
+#[cfg(not(feature = "handle-imm"))]
+pub use self::{FILTER as HANDLE, Filter as Handle};
 
 /// Bounds of parameters that commands set. Stiffness and damping are inside the passive region that
 /// `host-sim zwidth` finds for these estimators (docs/telemetry.md). Torque is at most that of the small
