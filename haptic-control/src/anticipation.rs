@@ -81,10 +81,10 @@ impl Anticipation {
         }
     }
 
-    /// State at rest.
+    /// State after a constant velocity of the handle.
     #[must_use]
-    pub const fn start(&self) -> AnticipationState {
-        AnticipationState(0.0)
+    pub const fn start(&self, handle: RadPerS) -> AnticipationState {
+        AnticipationState(handle.0)
     }
 
     /// One tick, with the estimated velocity of the handle.

@@ -139,7 +139,9 @@ where
                 S::Transient::as_ref(&self.transient),
                 TransientStage::start,
             ),
-            anticipation: S::Free::map(S::Free::as_ref(&self.anticipation), Anticipation::start),
+            anticipation: S::Free::map(S::Free::as_ref(&self.anticipation), |part| {
+                part.start(RadPerS(0.0))
+            }),
             origin: first.coupled,
         }
     }

@@ -111,6 +111,8 @@ struct Shared<L: VelocityEstimator, H: VelocityEstimator> {
     handle: H::State,
     transient: TransientState,
     anticipation: AnticipationState,
+    /// Velocity of the handle in the last tick; zero if its estimator did not run.
+    handle_velocity: RadPerS,
     /// Whether the continuous stage, the handle's estimator, the transient stage and the anticipation
     /// ran in the last tick.
     live: [bool; 4],
@@ -164,7 +166,8 @@ where
                 continuous: self.rig.continuous.start(RadPerS(0.0)),
                 handle: self.handle.start(&Sample::new(first.coupled)),
                 transient: self.rig.transient.start(),
-                anticipation: self.rig.anticipation.start(),
+                anticipation: self.rig.anticipation.start(RadPerS(0.0)),
+                handle_velocity: RadPerS(0.0),
                 live: [false; 4],
             },
             origin: first.coupled,
@@ -280,7 +283,7 @@ where
             self.rig.transient.restart(&mut shared.transient);
         }
         if wanted[3] && !shared.live[3] {
-            shared.anticipation = self.rig.anticipation.start();
+            shared.anticipation = self.rig.anticipation.start(shared.handle_velocity);
         }
         shared.live = wanted;
         // The stages limit their currents, an open loop does not.
@@ -325,6 +328,7 @@ where
         };
         let angle = self.rig.angle_scale.of(sample.coupled - origin);
         let mut action = tick(scene, scene_state, parts, angle, sample);
+        shared.handle_velocity = action.handle_velocity;
         if S::open_loop(scene_state).is_some() {
             action.currents = action.currents.within(largest);
         }

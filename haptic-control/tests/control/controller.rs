@@ -5,7 +5,8 @@ use estimator_core::{
     preset,
 };
 use haptic_control::{
-    Controller, ControllerState, Detents, FreeAir, Hold, Off, Scene, Senses, Texture, Viscous,
+    Controller, ControllerState, Detents, FreeAir, Hold, NewtonMetres, Off, RadPerS, Scene, Senses,
+    Texture, Torque, Viscous,
 };
 
 use crate::bench::{DEVICE, HANDLE, LARGE, Large, RATE, RIG};
@@ -126,6 +127,46 @@ fn retuned_parameters_act_at_the_next_tick_and_the_state_goes_on() {
     controller.retune(Hold::new(0.1, 0.0).unwrap());
     let after = controller.step(&mut state, &there).torque.0;
     assert!((after / before - 0.5).abs() < 1e-6 && before < -0.06);
+}
+
+/// A scene of no torque, rendered by both stages as their formulas say: with the anticipation if the
+/// handle moves freely, without if not.
+fn rendered_without_torque<S>(scene: S, free: bool)
+where
+    S: Scene<Acceleration: Senses<FiniteDifference>>,
+{
+    let controller = Controller::new(scene, FiniteDifference, FiniteDifference, &RIG);
+    let mut state = controller.start(&Sample::default());
+    let still = RadPerS(0.0);
+    let (mut large, mut small) = (RIG.continuous.start(still), RIG.transient.start());
+    let mut anticipation = RIG.anticipation.start(still);
+    for k in 0..500 {
+        let action = controller.step(&mut state, &sample(k));
+        let [motor, handle] = [action.large_velocity, action.handle_velocity];
+        let ahead = RIG.anticipation.update(&mut anticipation, handle);
+        let (followed, fed) = if free {
+            (ahead.followed, ahead.friction.0 + ahead.inertia.0)
+        } else {
+            let friction = RIG.transient.friction_correction(handle);
+            (RIG.continuous.follow(handle), friction.0)
+        };
+        let none = NewtonMetres(0.0);
+        let current = RIG
+            .continuous
+            .update(&mut large, none, motor, handle, followed);
+        assert_eq!(action.currents.large, current, "{k}");
+        let slip = RadPerS(motor.0 - handle.0);
+        let coupled = RIG.continuous.coupled(&mut large, slip);
+        let asked = NewtonMetres(0.0 - coupled.0 + fed);
+        let current = RIG.transient.update(&mut small, asked);
+        assert_eq!(action.currents.small, current, "{k}");
+    }
+}
+
+#[test]
+fn motion_is_anticipated_in_scenes_without_a_spring() {
+    rendered_without_torque(FreeAir, true);
+    rendered_without_torque(Torque::new(0.0).unwrap(), false);
 }
 
 /// In free air the small motor takes half of the slip's torque off, and feeds its friction forward. A

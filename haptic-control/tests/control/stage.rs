@@ -138,7 +138,7 @@ fn friction_is_fed_forward_in_the_direction_of_the_handle() {
         (50.0, 0.5, 0.5),
     ] {
         let correction = rig.transient.friction_correction(RadPerS(handle));
-        let mut state = rig.anticipation.start();
+        let mut state = rig.anticipation.start(RadPerS(0.0));
         let ahead = rig.anticipation.update(&mut state, RadPerS(handle));
         assert!((part(correction) - sprung).abs() < 1e-5, "{handle}");
         assert!((part(ahead.friction) - free).abs() < 1e-5, "{handle}");
@@ -153,7 +153,7 @@ fn friction_that_is_fed_forward_drives_a_handle_at_most_at_6_rad_per_s() {
     let settled = |friction: f64, constant: f64, from: f64| {
         let mut speed = from;
         for _ in 0..200_000 {
-            let mut state = rig.anticipation.start();
+            let mut state = rig.anticipation.start(RadPerS(0.0));
             let ahead = rig.anticipation.update(&mut state, RadPerS(speed as f32));
             let push = constant * f64::from(ahead.friction.0);
             let held = friction * DEVICE.small.coulomb_friction;
@@ -179,7 +179,7 @@ fn anticipated_velocity_and_torque_follow_from_the_change_of_velocity() {
     for rate in [1e3, 3e3, 10e3] {
         let rig = Rig::new(&DEVICE, Hertz(rate), LoopPoles::DEFAULT).unwrap();
         let delay = 2.0 / (std::f64::consts::TAU * 60.0);
-        let mut state = rig.anticipation.start();
+        let mut state = rig.anticipation.start(RadPerS(0.0));
         let mut before = 0.0;
         for k in 0..(2.0 * rate) as usize {
             let t = k as f64 / rate;

@@ -214,6 +214,34 @@ fn estimator_that_both_scenes_need_continues() {
     }
 }
 
+/// A handle that turned at a constant velocity before a scene without a spring: nothing is anticipated.
+#[test]
+fn a_scene_without_a_spring_continues_the_velocity() {
+    let (board, even) = (board(), |k: u32| {
+        Sample::new(Count(k)).with_coupled(Count(5 * k))
+    });
+    let mut state = board.start(&even(0));
+    board.select(
+        &mut state,
+        AnyScene::from(Torque::new(0.0).unwrap()),
+        &even(0),
+    );
+    let currents: Vec<f32> = (0..5000)
+        .map(|k| {
+            if k == 4000 {
+                board.select(&mut state, usual(SceneKind::FreeAir), &even(k - 1));
+            }
+            board.step(&mut state, &even(k)).currents.large.get()
+        })
+        .collect();
+    // The regulator integrates its error at a constant rate, before the change as after it.
+    let slope = (currents[3999] - currents[2999]) / 1000.0;
+    for (k, current) in (0_u16..).zip(&currents[3999..]) {
+        let wanted = currents[3999] + slope * f32::from(k);
+        assert!((current - wanted).abs() < 0.01, "{k}: {current} {wanted} A");
+    }
+}
+
 #[test]
 fn restart_equals_a_start_and_unneeded_estimates_are_absent() {
     let board = board();

@@ -48,15 +48,21 @@ fn needs_agree_with_the_types() {
             needs.acceleration,
             needs.continuous,
             needs.transient,
+            needs.free,
             needs.handle_estimator,
         ]
         .map(u8::from)
     };
-    assert_eq!(needs(SceneKind::Off), [0, 0, 0, 0, 0]);
-    assert_eq!(needs(SceneKind::Detents), [0, 0, 0, 1, 0]);
-    assert_eq!(needs(SceneKind::FreeAir), [0, 0, 1, 1, 1]);
-    assert_eq!(needs(SceneKind::Wall), [1, 0, 1, 1, 1]);
-    assert_eq!(needs(SceneKind::Inertia), [0, 1, 1, 1, 1]);
+    assert_eq!(needs(SceneKind::Off), [0, 0, 0, 0, 0, 0]);
+    assert_eq!(needs(SceneKind::Detents), [0, 0, 0, 1, 0, 0]);
+    assert_eq!(needs(SceneKind::FreeAir), [0, 0, 1, 1, 1, 1]);
+    assert_eq!(needs(SceneKind::Wall), [1, 0, 1, 1, 0, 1]);
+    assert_eq!(needs(SceneKind::Inertia), [0, 1, 1, 1, 0, 1]);
+    let free = SceneKind::ALL
+        .into_iter()
+        .filter(|kind| kind.facts().needs.free);
+    let without_spring = [SceneKind::FreeAir, SceneKind::Viscous, SceneKind::Friction];
+    assert!(free.eq(without_spring));
 }
 
 /// The bounds of a scene's parameters, with their numbers.

@@ -106,7 +106,7 @@ impl Ledger {
             // From rest nothing else is assumed to come through the coupler.
             measured: f64::from(rig.continuous.coupled(&mut start(), RadPerS(1.0)).0),
             stage: start(),
-            anticipated: [rig.anticipation.start(); 2],
+            anticipated: [rig.anticipation.start(RadPerS(0.0)); 2],
             error: ErrorLoop {
                 stage: start(),
                 motor: Plant::new(&smooth, 1.0 / rate_hz),
