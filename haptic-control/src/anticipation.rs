@@ -1,23 +1,15 @@
-//! Anticipation of the handle's motion from the change of its velocity.
+//! Anticipation of the motion of a handle that moves freely.
 
 use core::f64::consts::PI;
 
 use estimator_core::Hertz;
 use estimator_core::const_math::exp;
 
-use crate::coulomb::{Coulomb, LARGEST_CONSTANT};
+use crate::coulomb::Coulomb;
 use crate::device::DualStage;
 use crate::rst_design::LoopPoles;
 use crate::stage::Followed;
 use crate::units::{NewtonMetres, RadPerS};
-
-/// Least inertia of the handle, as a factor of that in the description.
-const LEAST_INERTIA: f64 = 0.7;
-
-/// Part of the handle's inertia that the small motor takes away: six sevenths of the largest one that
-/// does not drive a free handle, which is the least inertia over the largest torque constant. The
-/// rest is for the delays of estimator, tick and amplifier.
-const INERTIA_PART: f64 = 6.0 / 7.0 * LEAST_INERTIA / LARGEST_CONSTANT;
 
 /// Acceleration of the handle when a hand turns it back, rad/s²: that of a swing by 40° to both sides once
 /// a second. Below the velocity that it reaches in the delay of the loop, the direction is uncertain.
@@ -32,24 +24,20 @@ const PER_FADE: f32 = 1.0 / 0.15;
 /// Each tick, with the estimated velocity ω of the handle and the delay `τ = 2 / (2π f_t)` of the
 /// velocity loop's tracking filter:
 /// ```text
-/// x ← x + (1 - e^(-T/τ)) (ω - x)      α = (ω - x) / τ
-/// followed = ω + τ α = 2 ω - x         velocity that the large motor follows, rad/s
-/// inertia  = J_S α / 2                 torque of the small motor, N·m
+/// x ← x + (1 - e^(-T/τ)) (ω - x)      followed = ω + (ω - x)
 /// friction = Tc sat(ω / ω_d) (1 - sat(ω / 6 rad/s)⁴ / 2)
 /// ```
-/// The first takes the delay out of the large motor's motion, the second half of the handle's inertia out
-/// of the force that the hand feels, the third the whole friction Tc of the small motor. ω_d is what
-/// 28 rad/s² reach in the delay of the loop: 0.031 rad/s at 10 kHz, 0.056 rad/s at 1 kHz.
+/// `followed` is the velocity that the large motor follows, rad/s: `(ω - x) / τ` is the acceleration of the
+/// handle, and a large motor that leads by the delay does not lag a steady acceleration. `friction` is the torque
+/// of the small motor against its whole friction Tc, N·m. ω_d is what 28 rad/s² reach in the delay of the
+/// loop: 0.031 rad/s at 10 kHz, 0.056 rad/s at 1 kHz.
 ///
-/// Far above `f_t` the handle has its whole inertia. Below, the delay of α is a negative damping. With
-/// a spring of the scene that could be an oscillation, and the friction damps the spring; so only scenes
-/// without a spring have this part ([`Scene::Free`](crate::Scene::Free)).
+/// The friction that is left damps the spring of a scene, so only scenes without a spring have this part
+/// ([`Scene::Free`](crate::Scene::Free)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Anticipation {
     /// 1 - e^(-T/τ).
     gain: f32,
-    /// Torque per difference of velocities, N·m per rad/s.
-    nm_per_rad_per_s: f32,
     friction: Coulomb,
 }
 
@@ -62,8 +50,6 @@ pub struct AnticipationState(f32);
 pub struct Anticipated {
     /// What the large motor follows.
     pub followed: Followed,
-    /// Torque of the small motor against the inertia of the handle.
-    pub inertia: NewtonMetres,
     /// Torque of the small motor against its own friction.
     pub friction: NewtonMetres,
 }
@@ -77,7 +63,6 @@ impl Anticipation {
         Self {
             gain: (1.0 - exp(-rate.period_s() / delay)) as f32,
             friction: Coulomb::new(device.small.coulomb_friction, 1.0, direction),
-            nm_per_rad_per_s: (INERTIA_PART * device.small.inertia / delay) as f32,
         }
     }
 
@@ -92,13 +77,11 @@ impl Anticipation {
     #[must_use]
     pub fn update(&self, state: &mut AnticipationState, handle: RadPerS) -> Anticipated {
         state.0 += self.gain * (handle.0 - state.0);
-        let change = handle.0 - state.0;
         Anticipated {
             followed: Followed {
-                velocity: RadPerS(handle.0 + change),
+                velocity: RadPerS(handle.0 + (handle.0 - state.0)),
                 per_fade: PER_FADE,
             },
-            inertia: NewtonMetres(self.nm_per_rad_per_s * change),
             friction: self.friction.at(handle),
         }
     }

@@ -126,7 +126,7 @@ where
     S::Transient::map(parts.transient, |part| {
         let mut asked = torque.0 - coupled.0;
         if HandleNeed::<S>::WANTED {
-            let ahead = S::Free::map(anticipated, |ahead| ahead.friction.0 + ahead.inertia.0);
+            let ahead = S::Free::map(anticipated, |ahead| ahead.friction.0);
             asked += S::Free::or(ahead, part.stage.friction_correction(handle).0);
         }
         action.currents.small = part.stage.update(part.state, NewtonMetres(asked));

@@ -145,7 +145,7 @@ where
         let [motor, handle] = [action.large_velocity, action.handle_velocity];
         let ahead = RIG.anticipation.update(&mut anticipation, handle);
         let (followed, fed) = if free {
-            (ahead.followed, ahead.friction.0 + ahead.inertia.0)
+            (ahead.followed, ahead.friction.0)
         } else {
             let friction = RIG.transient.friction_correction(handle);
             (RIG.continuous.follow(handle), friction.0)

@@ -175,7 +175,7 @@ fn friction_that_is_fed_forward_drives_a_handle_at_most_at_6_rad_per_s() {
 
 /// The anticipation against its recurrence in f64, at rest, through a swing and at a constant velocity.
 #[test]
-fn anticipated_velocity_and_torque_follow_from_the_change_of_velocity() {
+fn velocity_that_is_followed_leads_by_the_delay() {
     for rate in [1e3, 3e3, 10e3] {
         let rig = Rig::new(&DEVICE, Hertz(rate), LoopPoles::DEFAULT).unwrap();
         let delay = 2.0 / (std::f64::consts::TAU * 60.0);
@@ -188,15 +188,9 @@ fn anticipated_velocity_and_torque_follow_from_the_change_of_velocity() {
             let now = rig.anticipation.update(&mut state, RadPerS(handle as f32));
             let change = handle - before;
             near(now.followed.velocity.0, handle + change, 1e-5);
-            near(
-                now.inertia.0,
-                0.5 * DEVICE.small.inertia * change / delay,
-                1e-8,
-            );
         }
         let steady = rig.anticipation.update(&mut state, RadPerS(3.0));
         near(steady.followed.velocity.0, 3.0, 1e-5);
-        near(steady.inertia.0, 0.0, 1e-8);
     }
 }
 

@@ -20,7 +20,13 @@ fn scenes() -> String {
         };
         let number = facts.number.to_string();
         let words = [&*number, facts.name, facts.summary, facts.torque, velocity];
-        let needs = [needs.acceleration, needs.continuous, needs.transient].map(yes);
+        let needs = [
+            needs.acceleration,
+            needs.continuous,
+            needs.transient,
+            needs.free,
+        ]
+        .map(yes);
         words.into_iter().chain(needs).map(str::to_owned).collect()
     };
     let head = [
@@ -32,6 +38,7 @@ fn scenes() -> String {
         "acceleration",
         "continuous",
         "transient",
+        "free",
     ];
     let rows: Vec<_> = SceneKind::ALL.into_iter().map(row).collect();
     markdown(&head, &rows)

@@ -5,13 +5,13 @@
 //! ```text
 //! felt    = Kt i (1 + ripple) + b slip - friction - J dw/dt
 //! Kt i    = Kt (i - u0) + Kt (u0 - u) + Kt (u - c) + (Kt c - asked) + asked
-//! asked   = wanted - coupled(slip') + f(w') + a(w')
+//! asked   = wanted - coupled(slip') + f(w')
 //! felt - wanted = sum of the terms of [`Cause`]
 //! ```
 //! i is the small motor's current, u the current commanded to its amplifier from this tick on, u0 until
 //! this tick, c the controller's command before the DAC. coupled is the torque that the controller
-//! assumes to come through the coupler, f and a the torques that it feeds forward against friction and
-//! inertia; primes mark estimated velocities. The terms add up to the parasitic force at every tick, up to rounding.
+//! assumes to come through the coupler, f the friction that it feeds forward; primes mark estimated
+//! velocities. The terms add up to the parasitic force at every tick, up to rounding.
 
 mod ledger;
 mod scores;
@@ -52,8 +52,7 @@ macro_rules! causes {
 }
 
 causes! {
-    /// `a(w_S) - J_S dw_S/dt`: inertia of the handle less what the controller would feed forward with the
-    /// true velocity of the handle.
+    /// `-J_S dw_S/dt`: inertia of the handle.
     Inertia: "inertia";
     /// `f(w_S) - friction_S`: friction of the small motor less what the controller would feed forward
     /// with the true velocity of the handle.
@@ -68,8 +67,8 @@ causes! {
     /// motor renders now, and `(b - m) d`, where d is the velocity that the error causes through the
     /// velocity loop, by its linear model. m is the measured part of the damping.
     Estimate: "estimate";
-    /// Error of the handle's estimated velocity: `-m (w_S - w_S') + f(w_S') - f(w_S) + a(w_S') - a(w_S)` of
-    /// the tick before, which the small motor renders now.
+    /// Error of the handle's estimated velocity: `-m (w_S - w_S') + f(w_S') - f(w_S)` of the tick before,
+    /// which the small motor renders now.
     HandleEstimate: "handle estimate";
     /// `Kt_S (i_S - u0)`: lag of the small motor's amplifier.
     Amplifier: "amplifier";

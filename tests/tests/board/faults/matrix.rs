@@ -157,13 +157,17 @@ pub(super) const MATRIX: [Bound; 51] = [
     one_phase(Fault::StuckA),
     one_phase(Fault::StuckB),
     bound(Fault::StuckBoth, 0.5, STALLS.0, STALLS.1),
-    // The loop drives the motor the wrong way until the monitor has seen enough of it.
-    bound(
-        Fault::Swapped,
-        0.3,
-        End::Off([0.0, 6.0], Stop::RunawayDirection),
-        [90.0, 10.0],
-    ),
+    // The loop drives the motor the wrong way until the monitor has seen enough of it, or, when its current
+    // is small at first, until the window of the balance of torques ends.
+    Bound {
+        or: Some((End::Off([0.0, 22.0], Stop::TorqueBalance), [200.0, 10.0])),
+        ..bound(
+            Fault::Swapped,
+            0.3,
+            End::Off([0.0, 6.0], Stop::RunawayDirection),
+            [90.0, 10.0],
+        )
+    },
     // The large motor rests: the coupler's drag of 0.96 mN.m.s/rad at the hand's 2.95 rad/s, 81 mN, and the
     // friction of 23 mN that is not compensated. Or it turns against the handle, with twice of both.
     bound(Fault::SmallStuck, 1.0, End::On, [110.0, 5.0]),

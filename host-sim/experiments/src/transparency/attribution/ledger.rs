@@ -30,8 +30,7 @@ pub struct Ledger {
     /// Damping m that the controller takes from the measured slip, N.m.s/rad.
     measured: f64,
     stage: ContinuousState,
-    /// The anticipation by the estimated and by the true velocity of the handle.
-    anticipated: [AnticipationState; 2],
+    anticipated: AnticipationState,
     error: ErrorLoop,
     /// Torques that the estimation errors of the large motor and of the handle added to what the small
     /// motor was asked for at the tick before, N.m. They act at this tick.
@@ -65,19 +64,6 @@ impl ErrorLoop {
     }
 }
 
-/// Torques that the controller feeds forward, N.m.
-#[derive(Clone, Copy, Default)]
-struct FedForward {
-    friction: f64,
-    inertia: f64,
-}
-
-impl FedForward {
-    fn sum(self) -> f64 {
-        self.friction + self.inertia
-    }
-}
-
 impl Ledger {
     /// The bookkeeping of `scene` on `device`, with a controller for `assumed`.
     ///
@@ -106,7 +92,7 @@ impl Ledger {
             // From rest nothing else is assumed to come through the coupler.
             measured: f64::from(rig.continuous.coupled(&mut start(), RadPerS(1.0)).0),
             stage: start(),
-            anticipated: [rig.anticipation.start(RadPerS(0.0)); 2],
+            anticipated: rig.anticipation.start(RadPerS(0.0)),
             error: ErrorLoop {
                 stage: start(),
                 motor: Plant::new(&smooth, 1.0 / rate_hz),
@@ -121,7 +107,7 @@ impl Ledger {
         let (action, torques) = (&now.action, &now.torques);
         let error_large = f64::from(action.large_velocity.0) - now.large.omega;
         let error_handle = f64::from(action.handle_velocity.0) - now.handle.omega;
-        let (followed, fed, exact) = self.feed_forward(action, now.handle.omega);
+        let (followed, [fed, exact]) = self.feed_forward(action, now.handle.omega);
         // Torques that the errors of this tick's velocities add to what the small motor is asked for.
         let mut asked_by_error = [0.0; 2];
         let (mut coupled, mut caused) = (0.0, 0.0);
@@ -136,8 +122,8 @@ impl Ledger {
         }
         let slip = torques.coupler - coupled - caused - asked_by_error[0] - asked_by_error[1];
 
-        asked_by_error[1] += fed.sum() - exact.sum();
-        let asked = f64::from(action.torque.0) - coupled + fed.sum();
+        asked_by_error[1] += fed - exact;
+        let asked = f64::from(action.torque.0) - coupled + fed;
         let [before, from_now] = now
             .small_amplifier
             .map(|current| self.torque_constant * current);
@@ -147,8 +133,8 @@ impl Ledger {
         let sampling =
             (before - acting[0] - acting[1]) - (from_now - asked_by_error[0] - asked_by_error[1]);
         let of = |cause| match cause {
-            Cause::Inertia => torques.inertia + exact.inertia,
-            Cause::Friction => torques.friction + exact.friction,
+            Cause::Inertia => torques.inertia,
+            Cause::Friction => torques.friction + exact,
             Cause::Ripple => torques.ripple,
             Cause::Slip => slip,
             Cause::Estimate => caused + acting[0],
@@ -161,30 +147,24 @@ impl Ledger {
         Cause::ALL.map(of)
     }
 
-    /// The velocity that the large motor follows, what the controller feeds forward, and what it would feed
-    /// forward with the true velocity of the handle.
-    fn feed_forward(&mut self, action: &Action, omega: f64) -> (Followed, FedForward, FedForward) {
-        let followed = self.rig.continuous.follow(action.handle_velocity);
+    /// What the large motor follows, and the torques that the controller feeds forward against the friction
+    /// of the small motor and would feed forward with the true velocity of the handle, N.m.
+    fn feed_forward(&mut self, action: &Action, omega: f64) -> (Followed, [f64; 2]) {
         let velocities = [action.handle_velocity, RadPerS(omega as f32)];
         // A scene without an estimate of the handle's velocity feeds nothing forward.
         if !(self.transient && self.handle_estimator) {
-            return (followed, FedForward::default(), FedForward::default());
+            return (self.rig.continuous.follow(velocities[0]), [0.0; 2]);
         }
         if !self.free {
-            let [fed, exact] = velocities.map(|omega| FedForward {
-                friction: f64::from(self.rig.transient.friction_correction(omega).0),
-                inertia: 0.0,
-            });
-            return (followed, fed, exact);
+            let friction = |omega| self.rig.transient.friction_correction(omega);
+            let fed = velocities.map(|omega| f64::from(friction(omega).0));
+            return (self.rig.continuous.follow(velocities[0]), fed);
         }
-        let [estimated, exact] = [0, 1].map(|i| {
-            let state = &mut self.anticipated[i];
-            self.rig.anticipation.update(state, velocities[i])
-        });
-        let [fed, exactly] = [estimated, exact].map(|ahead| FedForward {
-            friction: f64::from(ahead.friction.0),
-            inertia: f64::from(ahead.inertia.0),
-        });
-        (estimated.followed, fed, exactly)
+        let anticipation = self.rig.anticipation;
+        let ahead = anticipation.update(&mut self.anticipated, velocities[0]);
+        // The friction has no state.
+        let exact = anticipation.update(&mut { self.anticipated }, velocities[1]);
+        let fed = [ahead, exact].map(|ahead| f64::from(ahead.friction.0));
+        (ahead.followed, fed)
     }
 }
