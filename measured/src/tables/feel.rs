@@ -65,6 +65,24 @@ pub const FEEL_WITHOUT: Table = Table {
     command: DOCUMENTED,
 };
 
+/// Parasitic force in free air by estimator of the handle and by seed.
+pub const FEEL_HANDLE: Table = Table {
+    name: "feel-handle",
+    columns: &[
+        ("handle", "handle"),
+        ("seed", "seed"),
+        ("rms_mn_1000hz", "1 kHz: RMS, mN"),
+        ("p99_mn_1000hz", "99 %, mN"),
+        ("below_pct_1000hz", "below 10 mN, %"),
+        ("tactile_mn_1000hz", "50-500 Hz, mN"),
+        ("rms_mn_10000hz", "10 kHz: RMS, mN"),
+        ("p99_mn_10000hz", "99 %, mN"),
+        ("below_pct_10000hz", "below 10 mN, %"),
+        ("tactile_mn_10000hz", "50-500 Hz, mN"),
+    ],
+    ..FEEL_WITHOUT
+};
+
 const OF_ESTIMATORS: &[Column] = &[
     ("without", "without"),
     ("finite-difference_1000hz", "1 kHz: finite-difference"),

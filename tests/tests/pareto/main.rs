@@ -105,39 +105,6 @@ fn claims_of_tasks(tasks: &[Task], rows: &[Row]) {
         // As firmware/src/tasks.rs has it: an eighth of the period.
         assert!(task.instructions.1 <= 16_800 / 8, "{}", task.scene);
     }
-    // The guide by the rate.
-    let lowest = |is: &dyn Fn(&Task) -> bool| {
-        let of = tasks.iter().filter(|task| is(task));
-        let rates = of.map(|task| task.highest_rates_hz()[3]);
-        rates.fold(f64::INFINITY, f64::min)
-    };
-    for name in ["foaw-end-fit, n = 32", "adaptive", "adaptive-edge"] {
-        let rate = lowest(&|task| task.estimator == name);
-        assert!((36e3..43e3).contains(&rate), "{name}: {rate} Hz");
-    }
-    let without = lowest(&|task| ["detents", "texture"].contains(&&*task.scene));
-    assert!(without > 74e3, "{without} Hz without a velocity");
-    for row in rows.iter().filter(|row| !row.peer) {
-        let range = match &*row.name {
-            "robust-exact, n = 64" => 5e3..10e3,
-            "foaw-best-fit, n = 64"
-            | "imm-motor"
-            | "imm-motor-edge"
-            | "imm-adaptive"
-            | "imm-adaptive-edge" => 10e3..20e3,
-            "foaw-end-fit, n = 64" | "algebraic, n = 64" | "imm" | "imm-edge" => 20e3..33e3,
-            "imm-pair"
-            | "foaw-best-fit, n = 15"
-            | "adaptive"
-            | "adaptive-edge"
-            | "adaptive-held"
-            | "adaptive-edge-held"
-            | "adaptive-soft" => 33e3..43e3,
-            _ => 43e3..70e3,
-        };
-        let rate = row.highest_rate_hz;
-        assert!(range.contains(&rate), "{}: {rate} Hz", row.name);
-    }
     // The rate by exchange of an update is near that of the image, where there is one.
     for name in ["adaptive", "adaptive-edge"] {
         let row = rows.iter().find(|row| row.name == name).expect("a row");
