@@ -1,13 +1,58 @@
-//! Passes the environment variable `SCENE` on: the name of the one scene of the image. Without it the
-//! image has all scenes.
+//! Passes the environment on: `SCENE`, the name of the one scene of the image, without which it has all,
+//! and `RATE`, the control rate in Hz. Refuses a rate at which the longest control task that was counted
+//! takes more than half of the period.
+
+use std::env::{self, VarError};
+
+use measured::control_rate;
+
+/// The control rate without `RATE`, Hz.
+const RATE_HZ: u32 = 10_000;
+
+/// Prefix of the variables in which cargo names the features.
+const FEATURE: &str = "CARGO_FEATURE_";
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    println!("cargo::rerun-if-env-changed=SCENE");
     println!("cargo::rustc-check-cfg=cfg(one_scene)");
     println!("cargo::rustc-check-cfg=cfg(scene, values(any()))");
-    if let Some(scene) = std::env::var("SCENE").ok().filter(|name| !name.is_empty()) {
+    if let Err(error) = pass_on() {
+        println!("cargo::error={error}");
+    }
+}
+
+fn pass_on() -> Result<(), String> {
+    let scene = variable("SCENE")?;
+    if let Some(scene) = &scene {
         println!("cargo::rustc-cfg=one_scene");
         println!("cargo::rustc-cfg=scene={scene:?}");
+    }
+    let rate = match variable("RATE")? {
+        None => RATE_HZ,
+        Some(text) => text.parse().map_err(|_| {
+            format!("RATE={text}: not a whole number of Hz, for example RATE=20000")
+        })?,
+    };
+    println!("cargo::rustc-env=RATE_HZ={rate}");
+    if rate <= RATE_HZ {
+        // Images of this rate are those that are counted.
+        return Ok(());
+    }
+    println!("cargo::rerun-if-changed=../../measured/control.csv");
+    let names = env::vars().filter_map(|(name, _)| {
+        let name = name.strip_prefix(FEATURE)?;
+        Some(name.to_lowercase().replace('_', "-"))
+    });
+    let names: Vec<_> = names.collect();
+    control_rate::check(rate, names.iter().map(String::as_str), scene.as_deref())
+}
+
+/// A variable of the environment; an empty one is none.
+fn variable(name: &str) -> Result<Option<String>, String> {
+    println!("cargo::rerun-if-env-changed={name}");
+    match env::var(name) {
+        Ok(text) => Ok(Some(text).filter(|text| !text.is_empty())),
+        Err(VarError::NotPresent) => Ok(None),
+        Err(VarError::NotUnicode(_)) => Err(format!("{name} is not Unicode")),
     }
 }

@@ -16,9 +16,11 @@
 //! |---|---|
 //! | [`tables`] | the list of the tables |
 //! | [`block`] | blocks of pages, Markdown |
+//! | [`control_rate`] | the control rate that an image allows |
 //! | [`digits`] | figures with so many significant digits |
 
 pub mod block;
+pub mod control_rate;
 pub mod digits;
 mod row;
 pub mod tables;

@@ -5,6 +5,7 @@ pub mod plot;
 pub mod table;
 
 use haptic_control::SceneKind;
+use measured::control_rate::{IMAGES, NONE, STEADY};
 use rayon::prelude::*;
 use serde::Serialize;
 use virtual_board::budget::{self, Budget, highest_rate_hz};
@@ -12,20 +13,6 @@ use virtual_board::image::Image;
 use virtual_board::run::Setup;
 
 use crate::measure::Row;
-
-/// Images by the estimator on the large motor: its name and the firmware's features.
-const IMAGES: [(&str, &str); 4] = [
-    ("foaw-end-fit, n = 32", ""),
-    (STEADY, "large-kalman"),
-    ("adaptive", "large-adaptive"),
-    ("adaptive-edge", "large-adaptive,edge-capture"),
-];
-
-/// The estimator with the same cost of every update.
-const STEADY: &str = "kalman-triple-steady";
-
-/// Name of the estimator in a scene that uses no velocity.
-pub const NONE: &str = "none";
 
 /// Virtual time in each scene, s.
 const SECONDS: f64 = 1.0;

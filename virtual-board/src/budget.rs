@@ -8,14 +8,11 @@ use terminal::failure::Failure;
 
 use crate::board::CORE_HZ;
 use crate::image::Image;
-use crate::run::{ControlTick, Outcome, RATE_HZ, Setup, on_board};
+use crate::run::{ControlTick, Outcome, Setup, on_board};
 use crate::score::Range;
 
 /// Share of the processor's cycles that the control task may use.
 pub const LOAD: f64 = 0.5;
-
-/// Cycles of a control period; also its instructions at one cycle each.
-const PERIOD: f64 = CORE_HZ as f64 / RATE_HZ;
 
 /// Time for boot, arming and settling, s.
 const SETTLED_S: f64 = 0.4;
@@ -100,9 +97,10 @@ pub fn measure(image: &Image, setup: &Setup) -> Result<Budget, Failure> {
     })
 }
 
-/// Mean and largest share of a period as text.
-pub(crate) fn share(cost: Range) -> String {
-    let [mean, most] = [cost.mean, cost.max as f64].map(|n| 100.0 * n / PERIOD);
+/// Mean and largest share of a period as text, at a control rate.
+pub(crate) fn share(cost: Range, rate_hz: f64) -> String {
+    let period = CORE_HZ as f64 / rate_hz;
+    let [mean, most] = [cost.mean, cost.max as f64].map(|n| 100.0 * n / period);
     format!("{mean:.1} % in the mean, {most:.1} % at most, at one cycle an instruction")
 }
 

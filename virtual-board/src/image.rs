@@ -88,8 +88,8 @@ impl Image {
         Self::build_with("", &[("SCENE", scene.name().as_ref())])
     }
 
-    /// As [`Self::build`], with environment variables: `SCENE` names the one scene of the image,
-    /// `DEVICE` and `PRESETS` the files that it is built for. Two builds must not run at once in
+    /// As [`Self::build`], with environment variables: `SCENE` names the one scene of the image, `RATE` is
+    /// the control rate in Hz, `DEVICE` and `PRESETS` name the files that it is built for. Two builds must not run at once in
     /// one process, because they write the same file.
     ///
     /// # Errors
@@ -106,6 +106,7 @@ impl Image {
             .args(["--target", triple, "--target-dir"])
             .arg(&target)
             .env("SCENE", "")
+            .env("RATE", "")
             .envs(variables.iter().copied())
             .status()
             .map_err(|error| format!("cargo does not start: {error}"))?;

@@ -28,7 +28,7 @@ use crate::pins;
 use crate::port::Port;
 use crate::probe::{DebugProbe, schedule};
 use crate::quadrature::{Edge, Generator, LARGE};
-use crate::run::{ControlTick, DacError, MONITOR_AMPS, PlantState, RATE_HZ, Setup};
+use crate::run::{ControlTick, DacError, HAND_HZ, MONITOR_AMPS, PlantState, Setup};
 use crate::stack::Stack;
 use crate::trace::Trace;
 pub use core_access::CoreAccess;
@@ -117,7 +117,7 @@ impl Lockstep {
             &setup.device,
             setup.hand,
             FeedbackEncoder::Own,
-            RATE_HZ,
+            HAND_HZ,
             setup.seed,
             STEP_S,
         );
@@ -140,7 +140,7 @@ impl Lockstep {
             amplifiers: Amplifiers::new(&setup.faults),
             bench,
             reference,
-            motion: setup.hand.motion(1.0 / RATE_HZ, setup.seed),
+            motion: setup.hand.motion(1.0 / HAND_HZ, setup.seed),
             grip: Grip::Free,
             edges: VecDeque::new(),
             fresh: Vec::new(),

@@ -21,8 +21,11 @@ use crate::lockstep::Lockstep;
 use crate::objections;
 pub use setup::{DacError, Setup};
 
-/// Control rate of the image, Hz.
+/// Control rate of an image that is built without `RATE`, Hz.
 pub const RATE_HZ: f64 = 10e3;
+
+/// Rate at which the motion of the hand is given and the state of the plant is recorded, Hz.
+pub const HAND_HZ: f64 = 10e3;
 
 /// Current per DAC code from mid-scale, A: large motor, small motor.
 pub const AMPS_PER_CODE: [f64; 2] = [6.0 / 2047.0, 1.5 / 2047.0];
@@ -135,6 +138,13 @@ impl Outcome {
     /// [`Failure::Check`] with all of [`Self::objections`].
     pub fn check(&self) -> Result<(), Failure> {
         objections::verdict(&self.objections)
+    }
+
+    /// Control rate of the image, Hz, as its log has it; [`RATE_HZ`] if it did not boot.
+    #[must_use]
+    pub fn rate_hz(&self) -> f64 {
+        let booted = self.telemetry.boots.first();
+        booted.map_or(RATE_HZ, |boot| boot.rate_hz)
     }
 
     /// Index in `ticks` of the tick of a frame.

@@ -65,7 +65,10 @@ pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> Str
     };
     if let Some(cost) = outcome.instructions() {
         line("control tick", range(Some(cost), "instructions"));
-        line("share of the period", budget::share(cost));
+        line(
+            "share of the period",
+            budget::share(cost, outcome.rate_hz()),
+        );
     } else {
         let text = "none with both amplifiers enabled";
         line("control tick", text.to_owned());

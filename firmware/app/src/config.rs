@@ -9,12 +9,18 @@ pub const TIMER_HZ: u32 = 84_000_000;
 /// The clock of edge stamps.
 pub const TIMERS: Hertz = Hertz(TIMER_HZ as f64);
 
-/// Control ticks per second, 1000 to 20 000.
-pub const RATE_HZ: u32 = 10_000;
-const _: () = assert!(RATE_HZ >= 1000 && RATE_HZ <= 20_000);
+/// Control ticks per second: the number in the environment variable `RATE` at build time, or 10 000.
+pub const RATE_HZ: u32 = match u32::from_str_radix(env!("RATE_HZ"), 10) {
+    Ok(rate) => rate,
+    Err(_) => panic!("the build script passes a number on"),
+};
 const _: () = assert!(
-    TIMER_HZ.is_multiple_of(RATE_HZ),
-    "the timer's clock must be a multiple of the control rate"
+    RATE_HZ >= 1000
+        && RATE_HZ <= 40_000
+        && RATE_HZ.is_multiple_of(FRAMES_HZ)
+        && TIMER_HZ.is_multiple_of(RATE_HZ),
+    "RATE: 1000 to 40000 Hz, a multiple of 1000 Hz that divides 84 MHz, for example 1000, 2000, 4000, \
+     5000, 8000, 10000, 20000 or 40000"
 );
 
 /// The control rate.
@@ -22,10 +28,6 @@ pub const RATE: Hertz = Hertz(RATE_HZ as f64);
 
 /// Telemetry frames per second.
 const FRAMES_HZ: u32 = 1000;
-const _: () = assert!(
-    RATE_HZ.is_multiple_of(FRAMES_HZ),
-    "the control rate must be a multiple of the frame rate"
-);
 /// Control ticks for one telemetry frame.
 pub const DECIMATION: u32 = RATE_HZ / FRAMES_HZ;
 

@@ -3,7 +3,10 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{IMAGES, NONE, Task};
+use measured::control_rate::{IMAGES, NONE};
+use virtual_board::run::RATE_HZ;
+
+use super::Task;
 
 /// One row per scene with one mark per estimator at the rate of the longest task, and a line to the
 /// rate of the mean.
@@ -16,8 +19,8 @@ pub fn svg(tasks: &[Task]) -> Result<String, String> {
     Ok(text)
 }
 
-/// Control rate of the firmware as it is, kHz.
-const NOW_KHZ: f64 = 10.0;
+/// Control rate of an image that is built without `RATE`, kHz.
+const DEFAULT_KHZ: f64 = RATE_HZ * 1e-3;
 
 /// Colours of the images, then of no estimator, distinguishable with colour-vision deficiencies.
 const COLOURS: [RGBColor; IMAGES.len() + 1] = [
@@ -25,6 +28,7 @@ const COLOURS: [RGBColor; IMAGES.len() + 1] = [
     RGBColor(0, 114, 178),
     RGBColor(0, 158, 115),
     RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
     BLACK,
 ];
 
@@ -57,10 +61,10 @@ fn draw(text: &mut String, tasks: &[Task]) -> Result<(), Box<dyn std::error::Err
         let name = Text::new((*scene).to_owned(), (-8, 0), left.clone());
         chart.draw_series([EmptyElement::at((0.0, row as f64)) + name])?;
     }
-    let now = [(NOW_KHZ, -0.5), (NOW_KHZ, rows - 0.5)];
+    let now = [(DEFAULT_KHZ, -0.5), (DEFAULT_KHZ, rows - 0.5)];
     chart.draw_series(LineSeries::new(now, BLACK.mix(0.4)))?;
-    let what = Text::new("as it is", (4, 0), ("sans-serif", 11));
-    chart.draw_series([EmptyElement::at((NOW_KHZ, -0.45)) + what])?;
+    let what = Text::new("default", (4, 0), ("sans-serif", 11));
+    chart.draw_series([EmptyElement::at((DEFAULT_KHZ, -0.45)) + what])?;
     let names = IMAGES.iter().map(|(name, _)| *name).chain([NONE]);
     for (k, name) in names.enumerate() {
         let colour = COLOURS[k];
@@ -89,7 +93,8 @@ fn draw(text: &mut String, tasks: &[Task]) -> Result<(), Box<dyn std::error::Err
     }
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::LowerRight)
+        // Beside scenes whose lines end before.
+        .position(SeriesLabelPosition::Coordinate(560, 50))
         .background_style(WHITE)
         .border_style(BLACK.mix(0.4))
         .draw()?;

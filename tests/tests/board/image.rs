@@ -52,6 +52,12 @@ pub(crate) fn image_for(device: &Path, presets: &Path) -> Image {
     Image::build_with("", &files).unwrap()
 }
 
+/// The image of all scenes with these features, at a control rate in Hz.
+pub(crate) fn image_at(rate_hz: u32, features: &str) -> Result<Image, String> {
+    let _built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
+    Image::build_with(features, &[("RATE", rate_hz.to_string().as_ref())])
+}
+
 /// Runs the image of one scene alone.
 pub(crate) fn run_one(scene: SceneKind, setup: &Setup) -> Outcome {
     run_checked(image_of_one(scene), setup)
@@ -68,7 +74,7 @@ pub(crate) fn run_image(features: &'static str, setup: &Setup) -> Outcome {
 }
 
 /// Every run of the tests: none may do what the emulator does not model.
-fn run_checked(image: &Image, setup: &Setup) -> Outcome {
+pub(crate) fn run_checked(image: &Image, setup: &Setup) -> Outcome {
     let outcome = on_board(image, setup, |_| ()).unwrap();
     outcome.check().unwrap();
     outcome

@@ -18,6 +18,7 @@ mod learned;
 mod link;
 mod mirror;
 mod own_device;
+mod rates;
 mod record;
 mod recording;
 mod reference;

@@ -1,7 +1,7 @@
 //! The same control on the host, fed with what the image read: the same bits.
 
 use drivers::Settings;
-use estimator_core::{Amps, Count, Sample, Skip, VelocityEstimator};
+use estimator_core::{AccelerationEstimator, Amps, Count, Sample, Skip, VelocityEstimator};
 use experiments::closed_loop::Hand;
 use firmware_app::config::RATE;
 use firmware_app::control::{Control, Inputs, Message, SETTLE};
@@ -236,21 +236,21 @@ fn codes_are_the_hosts(run: &Outcome, host: &[(Option<Currents>, Record)]) -> us
     moved
 }
 
-/// The switchboard of an image with another estimator on the large motor: a build of
-/// `firmware_app` has one choice.
-fn mirrored_with<L>(large: L, run: &Outcome) -> Vec<Action>
+/// The switchboard of an image with another estimator on the large motor or at another control rate: a
+/// build of `firmware_app` has one choice.
+pub(crate) fn mirrored_by<L, H>(switchboard: &Switchboard<L, H>, run: &Outcome) -> Vec<Action>
 where
     L: VelocityEstimator,
+    H: AccelerationEstimator,
 {
-    let switchboard = Switchboard::new(large, HANDLE, RIG, RATE);
     let (mut samples, first) = Samples::new(run);
     let mut state = switchboard.start(&first);
-    let requests = requests(run);
     let mut applied = Amps::ZERO;
-    let armed = requests
-        .iter()
-        .find(|(_, heard)| *heard == Heard::Request(Request::Arm));
-    let settled = armed.expect("the run arms").0 + SETTLE as usize;
+    // How long a command waits depends on the phase of the tick, which depends on the rate.
+    let armed = run.ticks.iter().position(|tick| tick.enabled == [true; 2]);
+    // Settling takes the same time at every rate.
+    let settle = f64::from(SETTLE) * run.rate_hz() / RATE.0;
+    let settled = armed.expect("the run arms") + settle as usize;
     let step = |(k, tick): (usize, &ControlTick)| {
         let sample = samples.next(tick, applied);
         let mut action = switchboard.step(&mut state, &sample);
@@ -265,30 +265,42 @@ where
     run.ticks.iter().enumerate().map(step).collect()
 }
 
-/// Fails unless every frame of `run` says what the host computed.
-fn same_frames(run: &Outcome, host: &[Action]) {
+/// As [`mirrored_by`], at the rate of `firmware_app`.
+fn mirrored_with<L: VelocityEstimator>(large: L, run: &Outcome) -> Vec<Action> {
+    mirrored_by(&Switchboard::new(large, HANDLE, RIG, RATE), run)
+}
+
+/// Fails unless every frame of `run` says what the host computed. Returns the number of frames of a moving
+/// device.
+pub(crate) fn same_frames(run: &Outcome, host: &[Action]) -> usize {
     let mut moving = 0;
-    assert!(run.telemetry.frames.len() > 9980);
     for frame in &run.telemetry.frames {
         let action = &host[run.tick_index(frame).expect("a frame tells of a tick")];
         same_action(frame, action);
         moving += usize::from(action.large_velocity.0 != 0.0);
     }
-    // An observer that knows friction says zero where it holds the rotor.
+    moving
+}
+
+/// Fails unless 10 s of `run` agree and move. An observer that knows friction says zero where it holds
+/// the rotor.
+fn same_ten_seconds(run: &Outcome, host: &[Action]) {
+    assert!(run.telemetry.frames.len() > 9980);
+    let moving = same_frames(run, host);
     assert!(moving > 8000, "{moving} frames of a moving device");
 }
 
 #[test]
 fn kalman_image_agrees_with_the_host_bit_for_bit() {
     for run in [kalman_free_air(), kalman_track()] {
-        same_frames(run, &mirrored_with(large::FILTER, run));
+        same_ten_seconds(run, &mirrored_with(large::FILTER, run));
     }
 }
 
 #[test]
 fn adaptive_image_agrees_with_the_host_bit_for_bit() {
     let run = adaptive_free_air();
-    same_frames(run, &mirrored_with(large::ADAPTIVE, run));
+    same_ten_seconds(run, &mirrored_with(large::ADAPTIVE, run));
 }
 
 /// RMS error of the reported velocity of the large motor, rad/s, after a second.
