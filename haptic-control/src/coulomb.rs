@@ -1,6 +1,6 @@
 //! Feed-forward against the Coulomb friction of the small motor.
 
-use crate::limits::within;
+use crate::limits::at_most;
 use crate::units::{NewtonMetres, RadPerS};
 
 /// Velocity of the handle from which on the friction that is fed forward drives no handle, rad/s: above
@@ -44,8 +44,8 @@ impl Coulomb {
     /// The torque at a velocity of the handle.
     #[inline]
     pub(crate) fn at(&self, handle: RadPerS) -> NewtonMetres {
-        let direction = within(handle.0 * self.per_direction, -1.0, 1.0);
-        let driven = within(handle.0 * self.per_driven, -1.0, 1.0);
+        let direction = at_most(handle.0 * self.per_direction, 1.0);
+        let driven = at_most(handle.0 * self.per_driven, 1.0);
         let square = driven * driven;
         NewtonMetres(self.torque * direction * (1.0 - self.less * square * square))
     }

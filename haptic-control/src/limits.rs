@@ -26,7 +26,17 @@ impl CurrentLimits {
     /// The current to apply for the commanded current `wanted`, if `before` was applied in the last
     /// tick, A.
     #[must_use]
+    #[inline]
     pub fn applied(&self, wanted: f32, before: f32) -> f32 {
+        // Nearly every tick. NaN and infinity are not within.
+        if (wanted - before).abs() <= self.slew && wanted.abs() <= self.largest {
+            return wanted;
+        }
+        self.limited(wanted, before)
+    }
+
+    #[inline(never)]
+    fn limited(&self, wanted: f32, before: f32) -> f32 {
         if !wanted.is_finite() {
             return 0.0;
         }
@@ -122,6 +132,15 @@ impl CurrentScale {
     }
 }
 
+/// `x`, or `bound` with the sign of `x` if its magnitude is larger: one comparison for nearly every `x`.
+pub(crate) fn at_most(x: f32, bound: f32) -> f32 {
+    if x.abs() > bound {
+        bound.copysign(x)
+    } else {
+        x
+    }
+}
+
 /// `clamp` without its panic on bounds in the wrong order.
 pub(crate) fn within(x: f32, low: f32, high: f32) -> f32 {
     if x > high {
@@ -152,5 +171,59 @@ impl Currents {
             large: limited(self.large, large),
             small: limited(self.small, small),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{CurrentLimits, at_most, within};
+
+    const LIMITS: CurrentLimits = CurrentLimits {
+        largest: 6.0,
+        slew: 0.7,
+    };
+
+    /// Both limits one after the other, in f64.
+    fn limited(wanted: f32, before: f32) -> f64 {
+        let [wanted, before] = [wanted, before].map(f64::from);
+        let [largest, slew] = [LIMITS.largest, LIMITS.slew].map(f64::from);
+        let slewed = wanted.clamp(before - slew, before + slew);
+        slewed.clamp(-largest, largest)
+    }
+
+    #[test]
+    fn current_that_is_within_both_limits_is_not_changed() {
+        let mut unchanged = 0;
+        for k in -700..=700_i16 {
+            let before = f32::from(k) * 0.01;
+            for j in -1000..=1000_i16 {
+                let wanted = f32::from(j) * 0.01;
+                let applied = LIMITS.applied(wanted, before);
+                let exact = limited(wanted, before);
+                // A rounding of the bound.
+                assert!(
+                    (f64::from(applied) - exact).abs() < 1e-6,
+                    "{wanted} {before}"
+                );
+                unchanged += u32::from(applied.to_bits() == wanted.to_bits());
+            }
+        }
+        assert!(unchanged > 100_000, "{unchanged}");
+    }
+
+    #[test]
+    fn current_that_is_no_number_is_zero() {
+        for wanted in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            assert_eq!(LIMITS.applied(wanted, 0.2), 0.0);
+        }
+    }
+
+    #[test]
+    fn bound_holds_on_both_sides_and_leaves_what_is_no_number() {
+        for x in [-9.0, -2.0, -1.999, -0.0, 0.5, 2.0, 2.001, f32::MAX] {
+            assert_eq!(at_most(x, 2.0).to_bits(), within(x, -2.0, 2.0).to_bits());
+        }
+        assert!(at_most(f32::NAN, 2.0).is_nan());
+        assert_eq!(at_most(f32::NEG_INFINITY, 2.0), -2.0);
     }
 }

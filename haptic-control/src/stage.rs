@@ -4,7 +4,7 @@ use estimator_core::Amps;
 
 use crate::coulomb::{Coulomb, LARGEST_CONSTANT};
 use crate::device::DualStage;
-use crate::limits::{CurrentLimits, CurrentScale, within};
+use crate::limits::{CurrentLimits, CurrentScale, at_most};
 use crate::monitor::LARGE_OVERSPEED;
 use crate::rst::{Rst, RstState};
 use crate::rst_design::RstDesign;
@@ -157,14 +157,14 @@ impl ContinuousStage {
         followed: Followed,
     ) -> Amps {
         let wanted = followed.velocity.0 + torque.0 * self.rad_per_s_per_nm;
-        let limited = within(wanted, -LARGEST_WANTED, LARGEST_WANTED);
+        let limited = at_most(wanted, LARGEST_WANTED);
         state.asked = if limited == wanted {
             torque.0
         } else {
             (limited - followed.velocity.0) * self.nm_per_rad_per_s
         };
         let looped = self.rst.update(&mut state.rst, RadPerS(limited), large);
-        let direction = within(state.rst.filtered().0 * followed.per_fade, -1.0, 1.0);
+        let direction = at_most(state.rst.filtered().0 * followed.per_fade, 1.0);
         let forward = self.friction * direction + self.damping * handle.0;
         let wanted = looped + forward;
         let limits = CurrentLimits {

@@ -257,6 +257,29 @@ where
         Currents { large, small }
     }
 
+    /// Restarts the parts that this tick wants and the last one did not. It is a function of its own because
+    /// few ticks call it.
+    #[inline(never)]
+    fn wake(&self, shared: &mut Shared<L, H>, wanted: [bool; 4], sample: &Sample) {
+        let [continuous, handle, transient, anticipation] =
+            [0, 1, 2, 3].map(|part| wanted[part] && !shared.live[part]);
+        if continuous {
+            self.large.restart(&mut shared.large, sample);
+            let stage = &self.rig.continuous;
+            stage.restart(&mut shared.continuous, RadPerS(0.0));
+        }
+        if handle {
+            shared.handle = self.handle.start(&Sample::new(sample.coupled));
+        }
+        if transient {
+            self.rig.transient.restart(&mut shared.transient);
+        }
+        if anticipation {
+            shared.anticipation = self.rig.anticipation.start(shared.handle_velocity);
+        }
+        shared.live = wanted;
+    }
+
     fn run<S: Scene<Acceleration: Senses<H>>>(
         &self,
         scene: &S,
@@ -271,21 +294,9 @@ where
             S::Transient::WANTED,
             S::Free::WANTED,
         ];
-        if wanted[0] && !shared.live[0] {
-            self.large.restart(&mut shared.large, sample);
-            let continuous = &self.rig.continuous;
-            continuous.restart(&mut shared.continuous, RadPerS(0.0));
+        if shared.live != wanted {
+            self.wake(shared, wanted, sample);
         }
-        if wanted[1] && !shared.live[1] {
-            shared.handle = self.handle.start(&Sample::new(sample.coupled));
-        }
-        if wanted[2] && !shared.live[2] {
-            self.rig.transient.restart(&mut shared.transient);
-        }
-        if wanted[3] && !shared.live[3] {
-            shared.anticipation = self.rig.anticipation.start(shared.handle_velocity);
-        }
-        shared.live = wanted;
         // The stages limit their currents, an open loop does not.
         let largest = [
             shared.continuous.largest_current(),
