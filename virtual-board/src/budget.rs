@@ -7,6 +7,7 @@ use haptic_control::SceneKind;
 use terminal::failure::Failure;
 
 use crate::board::CORE_HZ;
+use crate::fetch::Fetches;
 use crate::image::Image;
 use crate::run::{ControlTick, Outcome, Setup, on_board};
 use crate::score::Range;
@@ -33,6 +34,9 @@ pub struct Budget {
     /// Largest number of estimated cycles, over the ticks that were followed instruction by
     /// instruction. These ticks include the longest ones.
     pub cycles_most: u32,
+    /// Of the ticks that were followed, the largest number of lines of flash, and of cycles in which the core
+    /// waits for one. These cycles are not in the others.
+    pub fetches_most: Fetches,
 }
 
 /// Control rate at which ticks of this many cycles use [`LOAD`] of the processor, Hz.
@@ -73,20 +77,23 @@ pub fn measure(image: &Image, setup: &Setup) -> Result<Budget, Failure> {
         ..setup.clone()
     };
     let second = on_board(image, &setup, |_| ())?;
-    let followed = |k: usize| -> Result<(f64, u32), String> {
+    let followed = |k: usize| -> Result<(f64, u32, Fetches), String> {
         let tick = second.ticks.get(k).ok_or("a run that ended early")?;
         let same = tick.instructions == first.ticks[k].instructions;
-        let cycles = tick.cycles.filter(|_| same);
-        let cycles = cycles.ok_or_else(|| format!("tick {k} was not followed to its end"))?;
-        Ok((f64::from(tick.instructions), cycles))
+        let both = tick.cycles.zip(tick.fetches).filter(|_| same);
+        let both = both.ok_or_else(|| format!("tick {k} was not followed to its end"));
+        both.map(|(cycles, fetches)| (f64::from(tick.instructions), cycles, fetches))
     };
-    let mut most = 0;
+    let (mut most, mut fetches_most) = (0, Fetches::default());
     for k in follow {
-        most = most.max(followed(k)?.1);
+        let (_, cycles, fetches) = followed(k)?;
+        most = most.max(cycles);
+        fetches_most.lines = fetches_most.lines.max(fetches.lines);
+        fetches_most.waits = fetches_most.waits.max(fetches.waits);
     }
     let (mut of_spread, mut cycles) = (0.0, 0.0);
     for k in spread {
-        let (own, its) = followed(k)?;
+        let (own, its, _) = followed(k)?;
         of_spread += own;
         cycles += f64::from(its);
     }
@@ -94,6 +101,7 @@ pub fn measure(image: &Image, setup: &Setup) -> Result<Budget, Failure> {
         instructions,
         cycles_mean: instructions.mean * cycles / of_spread,
         cycles_most: most,
+        fetches_most,
     })
 }
 
@@ -110,11 +118,12 @@ pub(crate) fn share(cost: Range, rate_hz: f64) -> String {
 /// As [`measure`].
 pub(crate) fn table(image: &Image, seconds: f64, seed: u64) -> Result<String, Failure> {
     let mut text = format!(
-        "{:<16}{:>23}{:>19}{:>18}\n{:<16}{:>7}{:>8}{:>8}{:>11}{:>8}{:>10}{:>8}\n",
+        "{:<16}{:>23}{:>19}{:>18}{:>14}\n{:<16}{:>7}{:>8}{:>8}{:>11}{:>8}{:>10}{:>8}{:>7}{:>7}\n",
         "",
         "instructions",
         "estimated cycles",
         "kHz at 50 % load",
+        "flash, most",
         "scene",
         "least",
         "mean",
@@ -122,7 +131,9 @@ pub(crate) fn table(image: &Image, seconds: f64, seed: u64) -> Result<String, Fa
         "mean",
         "most",
         "mean",
-        "most"
+        "most",
+        "lines",
+        "waits"
     );
     for scene in SceneKind::ALL {
         let setup = Setup {
@@ -136,10 +147,12 @@ pub(crate) fn table(image: &Image, seconds: f64, seed: u64) -> Result<String, Fa
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{:<16}{min:>7}{mean:>8.0}{max:>8}{:>11.0}{:>8.0}{often:>10.1}{always:>8.1}",
+            "{:<16}{min:>7}{mean:>8.0}{max:>8}{:>11.0}{:>8.0}{often:>10.1}{always:>8.1}{:>7}{:>7}",
             scene.name(),
             cycles[0],
-            cycles[1]
+            cycles[1],
+            budget.fetches_most.lines,
+            budget.fetches_most.waits
         );
     }
     Ok(text)

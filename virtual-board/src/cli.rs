@@ -98,8 +98,9 @@ struct Arguments {
     #[arg(long, value_name = "PORT", conflicts_with_all = ["scene", "tune", "estimator", "record", "rtt", "trace", "budget"])]
     link: Option<u16>,
     /// Print only the cost of a control tick in every scene, each run for --seconds, at most 1 s:
-    /// instructions, estimated cycles, and the control rate at which the ticks use half of the
-    /// processor's time
+    /// instructions, estimated cycles, the control rate at which the ticks use half of the
+    /// processor's time, lines of 16 bytes of flash that a tick executes, and estimated cycles in which
+    /// it waits for them, which are not in the estimated cycles
     #[arg(long, conflicts_with_all = ["device", "scene", "hand", "fault", "record", "rtt", "trace", "tune", "estimator", "dac_offset", "blank"])]
     budget: bool,
 }

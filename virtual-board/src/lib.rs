@@ -15,6 +15,7 @@ pub mod command;
 pub mod cycles;
 pub mod dac;
 pub mod fault;
+pub mod fetch;
 pub mod flash;
 pub mod image;
 mod lines;

@@ -14,6 +14,7 @@ use terminal::failure::Failure;
 use crate::board::ControllerBoard;
 use crate::bridge::Live;
 use crate::fault::Fault;
+use crate::fetch::Fetches;
 use crate::flash::{self, Change, Sectors};
 use crate::image::Image;
 pub use crate::lockstep::CoreAccess;
@@ -48,6 +49,8 @@ pub struct ControlTick {
     pub instructions: u32,
     /// Estimated cycles from the interrupt to the end of the call, if the tick was followed.
     pub cycles: Option<u32>,
+    /// Instruction fetches from flash, if the tick was followed.
+    pub fetches: Option<Fetches>,
     /// Values read from the counters of the large and the small encoder.
     pub counts: [Option<u16>; 2],
     /// Time of the last read of the edge clock in the call, ns.

@@ -146,7 +146,8 @@ fn estimator_costs_nothing_in_scenes_without_the_large_velocity() {
                 "{small}: {more} more than off"
             );
         }
-        assert!(air - off > 250.0, "off {off}, free air {air}");
+        // Two estimators, the velocity loop and both friction corrections.
+        assert!(air - off > 200.0, "off {off}, free air {air}");
     }
     // A window costs what the motion makes of it, the filter always the same.
     let mean = |name: &str| {

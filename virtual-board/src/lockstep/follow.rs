@@ -6,6 +6,7 @@ use std::sync::Arc;
 use rigless::emulator::{Host, Watch};
 
 use crate::cycles;
+use crate::fetch::{Fetch, Fetches};
 use crate::image::Image;
 use crate::run::Setup;
 use crate::thumb::is_wide;
@@ -29,6 +30,7 @@ struct Path {
     at: Option<u64>,
     instructions: u32,
     cycles: u32,
+    fetch: Fetch,
 }
 
 impl Follow {
@@ -75,15 +77,20 @@ impl Follow {
             let next = at + if is_wide(*first) { 4 } else { 2 };
             path.cycles += cycles::of(*first, *second, address != next);
         }
+        if let Some([first, _]) = self.code.get(&address) {
+            path.fetch
+                .instruction(address, is_wide(*first), path.cycles);
+        }
     }
 
-    /// Ends the tick with the latest instruction. Returns the cycles from the interrupt on; `None`
-    /// if some of the `instructions` of the tick were not observed.
-    pub(super) fn leave(&mut self, instructions: u32) -> Option<u32> {
+    /// Ends the tick with the latest instruction. Returns the cycles from the interrupt on and the fetches;
+    /// `None` if some of the `instructions` of the tick were not observed.
+    pub(super) fn leave(&mut self, instructions: u32) -> Option<(u32, Fetches)> {
         let path = self.now.take()?;
         let [first, second] = path.at.and_then(|at| self.code.get(&at))?;
         // Instructions after the return are part of the interrupt's cycles.
         let last = cycles::of(*first, *second, false);
-        (path.instructions == instructions).then_some(path.cycles + last + cycles::INTERRUPT)
+        let cycles = path.cycles + last + cycles::INTERRUPT;
+        (path.instructions == instructions).then(|| (cycles, path.fetch.fetches()))
     }
 }

@@ -28,7 +28,7 @@ impl Lockstep {
         {
             // The return instruction has not run yet.
             tick.instructions = (hit.instruction_count - start + 1) as u32;
-            tick.cycles = self.follow.leave(tick.instructions);
+            (tick.cycles, tick.fetches) = self.follow.leave(tick.instructions).unzip();
             let part = &mut session.board_mut().part;
             tick.codes = part.dac_codes();
             tick.enabled = pins::enabled(part);
@@ -48,6 +48,7 @@ impl Lockstep {
             asleep: self.asleep,
             instructions: 0,
             cycles: None,
+            fetches: None,
             counts: [None; 2],
             stamp_clock_read_ns: None,
             codes: [None; 2],
