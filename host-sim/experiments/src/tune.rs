@@ -26,7 +26,7 @@ use terminal::failure::Failure;
 pub use image_section::image_section;
 pub use logs::{LogRow, LogTuning, tune_on_logs};
 
-use search::{best_values, ends_of_ranges};
+use search::{Least, best_values, ends_of_ranges};
 
 /// First tuning seed; seeds below it are for scores.
 pub const FIRST_SEED: u64 = 1 << 32;
@@ -115,11 +115,11 @@ pub fn tune(
     let mut notes = Vec::new();
     let mut estimators = BTreeMap::new();
     for &kind in kinds {
-        let found = best_values(kind, &setups[0], |values| {
-            mean_cost(kind, &setups, &seen, values)
+        let found = best_values(kind, &setups[0], |values, least| {
+            mean_cost(kind, &setups, &seen, values, least)
         });
         let before = shipped.values(kind, &setup, plant);
-        let cost = |values| mean_cost(kind, &setups, &unseen, values);
+        let cost = |values| mean_cost(kind, &setups, &unseen, values, &Least::none());
         let best = if cost(&before) <= cost(&found) {
             if before != found {
                 notes.push(format!(
@@ -168,20 +168,32 @@ fn tracks<'a>(
     traces.iter().map(track).collect()
 }
 
-fn mean_cost(kind: &Kind, setups: &[Setup], tracks: &[Track], values: &Values) -> f64 {
-    let costs = setups.iter().map(|setup| cost(kind, setup, tracks, values));
-    costs.sum::<f64>() / setups.len() as f64
-}
-
-/// Cost of the parameters; infinite if the estimator's design refuses them.
-fn cost(kind: &Kind, setup: &Setup, tracks: &[Track], values: &Values) -> f64 {
-    let Ok(estimator) = kind.build(setup, values) else {
-        return f64::INFINITY;
-    };
-    let of_track = |(trace, truth): &Track| {
-        let score = truth.score(&estimator.run(trace));
-        score.distance_rad_s.unwrap_or(f64::INFINITY)
-            + RMS_WEIGHT * score.rms_rad_s.unwrap_or(f64::INFINITY)
-    };
-    tracks.iter().map(of_track).sum::<f64>() / tracks.len() as f64
+/// Mean cost of the parameters over setups and tracks. It is infinite for parameters that an estimator's
+/// design refuses, and for parameters whose cost is above the `least` one: the terms are not negative,
+/// so that the mean is at least the part of it that is known.
+fn mean_cost(
+    kind: &Kind,
+    setups: &[Setup],
+    tracks: &[Track],
+    values: &Values,
+    least: &Least,
+) -> f64 {
+    let mut sum = 0.0;
+    for setup in setups {
+        let Ok(estimator) = kind.build(setup, values) else {
+            return f64::INFINITY;
+        };
+        let mean = |of_setup: f64| (sum + of_setup / tracks.len() as f64) / setups.len() as f64;
+        let mut of_setup = 0.0;
+        for (trace, truth) in tracks {
+            let score = truth.score(&estimator.run(trace));
+            of_setup += score.distance_rad_s.unwrap_or(f64::INFINITY)
+                + RMS_WEIGHT * score.rms_rad_s.unwrap_or(f64::INFINITY);
+            if least.is_below(mean(of_setup)) {
+                return f64::INFINITY;
+            }
+        }
+        sum += of_setup / tracks.len() as f64;
+    }
+    sum / setups.len() as f64
 }

@@ -100,7 +100,7 @@ pub fn tune_on_logs(
             continue;
         }
         let old = before.values(kind, &setup, PlantKind::Friction);
-        let found = best_values(kind, &setup, |values| {
+        let found = best_values(kind, &setup, |values, _| {
             errors(kind, &setup, &tracks, values)[0]
         });
         let [before, after] = [&old, &found].map(|values| errors(kind, &setup, &tracks, values));

@@ -1,5 +1,7 @@
 //! Search of the parameters with the smallest cost.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use rayon::prelude::*;
 
 use catalogue::estimators::{Kind, Parameter, Search, Setup, Values};
@@ -12,6 +14,27 @@ const DEFAULT_INERTIA: f64 = estimator_core::MotorModel::DCX35L.inertia;
 
 /// Rounds of refinement between the neighbours of the best point.
 const REFINEMENTS: usize = 3;
+
+/// The least cost found so far on one grid. A point whose cost is certain to be above it need not be
+/// evaluated to the end: it is not the best one, whatever the order of the points.
+pub(super) struct Least(AtomicU64);
+
+impl Least {
+    /// No cost yet.
+    pub(super) fn none() -> Self {
+        Self(AtomicU64::new(f64::INFINITY.to_bits()))
+    }
+
+    /// Whether a point has been found whose cost is below `cost`.
+    pub(super) fn is_below(&self, cost: f64) -> bool {
+        f64::from_bits(self.0.load(Ordering::Relaxed)) < cost
+    }
+
+    /// Takes the cost of a point. The bits of floats that are not negative have the order of the floats.
+    fn take(&self, cost: f64) {
+        self.0.fetch_min(cost.to_bits(), Ordering::Relaxed);
+    }
+}
 
 /// One line for each value at a limit of the searched range.
 pub(super) fn ends_of_ranges(kind: &Kind, setup: &Setup, values: &Values) -> Vec<String> {
@@ -36,11 +59,12 @@ pub(super) fn ends_of_ranges(kind: &Kind, setup: &Setup, values: &Values) -> Vec
 }
 
 /// The parameters of `kind` with the smallest cost, on a grid over all parameters for `setup` and then
-/// on finer grids around the best point.
+/// on finer grids around the best point. `cost` is not negative; of a point whose cost is above the least
+/// one it may return any larger value.
 pub(super) fn best_values(
     kind: &Kind,
     setup: &Setup,
-    cost: impl Fn(&Values) -> f64 + Sync,
+    cost: impl Fn(&Values, &Least) -> f64 + Sync,
 ) -> Values {
     let mut axes: Vec<_> = kind
         .parameters
@@ -58,9 +82,12 @@ pub(super) fn best_values(
 }
 
 /// The point of the grid spanned by `axes` with the smallest cost.
-fn evaluate(cost: &(impl Fn(&Values) -> f64 + Sync), axes: &[Vec<f64>]) -> Values {
+fn evaluate(cost: &(impl Fn(&Values, &Least) -> f64 + Sync), axes: &[Vec<f64>]) -> Values {
     let mut points = vec![Vec::new()];
     for axis in axes {
+        // Values rounded to three digits repeat on a fine grid.
+        let mut axis = axis.clone();
+        axis.dedup();
         points = points
             .iter()
             .flat_map(|point: &Values| {
@@ -69,9 +96,18 @@ fn evaluate(cost: &(impl Fn(&Values) -> f64 + Sync), axes: &[Vec<f64>]) -> Value
             })
             .collect();
     }
+    let least = Least::none();
+    let costed = |point: Values| {
+        let cost = cost(&point, &least);
+        least.take(cost);
+        (cost, point)
+    };
+    // The middle of a finer grid is the best point of the grid before: most others are cut off early.
+    let middle = costed(points.swap_remove(points.len() / 2));
     points
         .into_par_iter()
-        .map(|point| (cost(&point), point))
+        .map(costed)
+        .chain(rayon::iter::once(middle))
         // Of equal costs the earlier point wins, so that the result does not depend on threads.
         .min_by(|(a, p), (b, q)| a.total_cmp(b).then_with(|| compare_points(p, q)))
         .map(|(_, point)| point)
@@ -170,6 +206,43 @@ mod tests {
             finer(&window, &[1.0, 5.0, 9.0], 5.0),
             (1..=9).map(f64::from).collect::<Vec<_>>()
         );
+    }
+
+    /// Two terms that are not negative; the second one is left out where the first one decides.
+    #[test]
+    fn points_that_are_cut_off_do_not_change_the_best_one() {
+        use std::sync::atomic::AtomicUsize;
+
+        let axis = |from: i32, to: i32| (from..to).map(f64::from).collect::<Vec<_>>();
+        let axes = [axis(0, 9), axis(-4, 5)];
+        for (x, y) in [(4.0, 0.0), (8.0, -4.0), (0.0, 4.0), (2.2, 1.5)] {
+            let terms = |point: &Values| [(point[0] - x).powi(2), (point[1] - y).powi(2)];
+            let completed = AtomicUsize::new(0);
+            let cut_off = |point: &Values, least: &Least| {
+                let [first, second] = terms(point);
+                if least.is_below(first) {
+                    return f64::INFINITY;
+                }
+                completed.fetch_add(1, Ordering::Relaxed);
+                first + second
+            };
+            let full = |point: &Values, _: &Least| terms(point).iter().sum();
+            assert_eq!(evaluate(&cut_off, &axes), evaluate(&full, &axes));
+            // The middle is the best point: only points as good in the first term are completed.
+            if (x, y) == (4.0, 0.0) {
+                assert_eq!(completed.into_inner(), axes[1].len());
+            }
+        }
+    }
+
+    #[test]
+    fn of_equal_costs_the_earlier_point_is_the_best_one() {
+        let axes = [vec![1.0, 2.0, 2.0, 3.0, 4.0]];
+        let cost = |point: &Values, least: &Least| match least.is_below(7.0) {
+            true => f64::INFINITY,
+            false => 7.0 + f64::from(point[0] < 2.0),
+        };
+        assert_eq!(evaluate(&cost, &axes), [2.0]);
     }
 
     #[test]
