@@ -72,11 +72,11 @@ impl Damping {
     /// Time from one value to the next, s.
     pub const STEP_S: f64 = 0.1;
 
-    fn of(evaluation: &Evaluation, trace: &Trace) -> Option<Self> {
+    fn of(evaluation: &Evaluation, trace: &Trace, estimates: &[Estimate]) -> Option<Self> {
         let every = (Self::STEP_S * trace.rate_hz).round().max(1.0) as usize;
         let thinned = |values: &[f64]| values.iter().copied().step_by(every).collect();
         let learned = evaluation.candidates().iter().filter_map(|candidate| {
-            let damping = evaluation.learned_damping(candidate, trace)?;
+            let damping = evaluation.learned_damping(candidate, trace, estimates)?;
             Some((candidate.kind.name, thinned(&damping)))
         });
         Some(Self {
@@ -176,7 +176,9 @@ fn run(case: &Case, settings: &Settings) -> Result<Outcome, Failure> {
     Ok(Outcome {
         case: case.clone(),
         rows,
-        damping: heats.then(|| Damping::of(&evaluation, &trace)).flatten(),
+        damping: heats
+            .then(|| Damping::of(&evaluation, &trace, &estimates))
+            .flatten(),
         cost: Cost {
             plant_steps: plant_steps(case.rate_hz, case.seconds)?,
             simulation: simulated - begin,

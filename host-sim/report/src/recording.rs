@@ -249,6 +249,7 @@ mod tests {
             estimator: "pll",
             velocity: vec![0.5, 1.5],
             deviation: None,
+            damping_ratio: None,
         }];
         let view = RecordingView {
             recording: &recording,

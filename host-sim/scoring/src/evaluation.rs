@@ -69,6 +69,9 @@ pub struct Estimate {
     pub velocity: Vec<f32>,
     /// Standard deviation of each velocity, rad/s; `None` if the estimator does not report it.
     pub deviation: Option<Vec<f32>>,
+    /// Ratio of the coupler's learned damping to the assumed one at each tick; `None` if the estimator does
+    /// not learn it, or if the ratio is not known.
+    pub damping_ratio: Option<Vec<f32>>,
 }
 
 impl Estimate {
@@ -113,11 +116,12 @@ impl Candidate {
     #[must_use]
     pub fn estimate(&self, trace: &Trace) -> Option<Estimate> {
         self.kind.lack(trace).is_none().then(|| {
-            let (velocity, deviation) = self.estimator.run_confident(trace);
+            let reports = self.estimator.resume(&mut None, trace, 0);
             Estimate {
                 estimator: self.kind.name,
-                velocity,
-                deviation,
+                velocity: reports.velocity,
+                deviation: reports.deviation,
+                damping_ratio: reports.damping_ratio,
             }
         })
     }
@@ -197,11 +201,11 @@ impl Evaluation {
         let mut scoring = Scoring::new(heading.clone(), interval, wanted, false);
         scoring.add(self, trace, estimates)?;
         let learned = |candidate: &Candidate| {
-            let learned = self.learned_damping(candidate, trace)?;
+            let learned = self.learned_damping(candidate, trace, estimates)?;
             Some((last_tenth(&learned), damping_error(&learned, trace)))
         };
         Ok(scoring.rows(self, |candidate| {
-            learned(candidate).filter(|_| wanted.learned)
+            wanted.learned.then(|| learned(candidate)).flatten()
         }))
     }
 
@@ -212,10 +216,25 @@ impl Evaluation {
     }
 
     /// Damping b that `candidate` has learned by each tick of `trace`, N.m.s/rad; `None` if the
-    /// estimator does not learn it.
+    /// estimator does not learn it. The estimator runs over the trace unless its estimate is among the
+    /// `estimates` and has the ratio.
     #[must_use]
-    pub fn learned_damping(&self, candidate: &Candidate, trace: &Trace) -> Option<Vec<f64>> {
-        let ratios = candidate.estimator.damping_ratio(trace)?;
+    pub fn learned_damping(
+        &self,
+        candidate: &Candidate,
+        trace: &Trace,
+        estimates: &[Estimate],
+    ) -> Option<Vec<f64>> {
+        let mut estimates = estimates.iter();
+        let known = estimates.find(|estimate| estimate.estimator == candidate.kind.name);
+        let run;
+        let ratios = match known.and_then(|estimate| estimate.damping_ratio.as_ref()) {
+            Some(ratios) => ratios,
+            None => {
+                run = candidate.estimator.damping_ratio(trace)?;
+                &run
+            }
+        };
         let assumed = self.assumed_damping;
         Some(ratios.iter().map(|&b| assumed * f64::from(b)).collect())
     }
@@ -244,6 +263,36 @@ fn damping_error(learned: &[f64], trace: &Trace) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use simulation::device::Device;
+    use simulation::scenario::ScenarioName;
+    use simulation::simulate::simulate;
+    use simulation::trace::Columns;
+
+    #[test]
+    fn learned_damping_is_that_of_the_estimate_or_of_a_run() {
+        let device = Device::default();
+        let columns = Columns {
+            counts_small: true,
+            edges: false,
+        };
+        let trace = simulate(&device, ScenarioName::Track, 1000.0, 1, 3.0, columns).unwrap();
+        let kinds = ["adaptive", "pll"].map(|name| Kind::named(name).unwrap());
+        let (parameters, setup) = (Parameters::default(), Setup::of(&device, 1000.0));
+        let evaluation = Evaluation::new(&kinds, &parameters, &setup, PlantKind::Friction).unwrap();
+        let [adaptive, pll] = evaluation.candidates() else {
+            panic!("two candidates");
+        };
+        let mut estimates = evaluation.estimates(&trace);
+        let learned =
+            |of, estimates: &[Estimate]| evaluation.learned_damping(of, &trace, estimates);
+        let run = learned(adaptive, &[]).unwrap();
+        assert_ne!(run[0], run[2999], "the damping is learned");
+        assert_eq!(learned(adaptive, &estimates), Some(run));
+        assert_eq!(learned(pll, &estimates), None);
+        estimates[0].damping_ratio = Some(vec![2.0; 3000]);
+        let twice = vec![2.0 * evaluation.assumed_damping(); 3000];
+        assert_eq!(learned(adaptive, &estimates), Some(twice));
+    }
 
     #[test]
     fn within_2_sigma_is_the_share_after_the_start() {
@@ -251,6 +300,7 @@ mod tests {
             estimator: "pll",
             velocity: vec![9.0, 1.0, 1.0, 1.0, 1.0],
             deviation: Some(vec![0.0, 0.5, 0.5, 0.4, 0.0]),
+            damping_ratio: None,
         };
         // At 10 Hz the first 0.1 s, which are not scored, are one sample.
         let truth = [0.0, 2.0, 2.1, 1.5, 1.0];

@@ -23,13 +23,6 @@ impl Estimator {
         self.0.run(trace)
     }
 
-    /// Velocity at each tick of a trace and its standard deviation as reported by the estimator,
-    /// rad/s; `None` if the estimator reports none.
-    #[must_use]
-    pub fn run_confident(&self, trace: &Trace) -> (Vec<f32>, Option<Vec<f32>>) {
-        self.0.run_confident(trace)
-    }
-
     /// What the estimator reports at each tick of a trace from `from` on. `state` is its state after
     /// the tick before, or `None` for a start at `from`, and becomes that after the last tick. A trace
     /// in parts gives the values of the whole trace, if each part begins with a tick of the part
@@ -140,7 +133,6 @@ impl<S: Clone + PartialEq + Send + 'static> ErasedState for S {
 
 trait Erased: Send + Sync {
     fn run(&self, trace: &Trace) -> Vec<f32>;
-    fn run_confident(&self, trace: &Trace) -> (Vec<f32>, Option<Vec<f32>>);
     fn damping_ratio(&self, trace: &Trace) -> Option<Vec<f32>>;
     fn resume(&self, state: &mut Option<State>, trace: &Trace, from: usize) -> Reports;
     fn start(&self, first: &Sample) -> State;
@@ -207,19 +199,6 @@ where
 {
     fn run(&self, trace: &Trace) -> Vec<f32> {
         velocities((&self.estimator, &self.over), trace, &self.scale)
-    }
-
-    fn run_confident(&self, trace: &Trace) -> (Vec<f32>, Option<Vec<f32>>) {
-        let Some(deviation) = self.outputs.deviation else {
-            return (self.run(trace), None);
-        };
-        let subject = (&self.estimator, &self.over);
-        let both = run(subject, trace, [0.0; 2], |state, velocity, period| {
-            let deviation = self.deviation_over(deviation, state, period);
-            [velocity, deviation].map(|v| v.rad_per_s(&self.scale))
-        });
-        let (velocity, deviation) = both.into_iter().map(<(f32, f32)>::from).unzip();
-        (velocity, Some(deviation))
     }
 
     fn damping_ratio(&self, trace: &Trace) -> Option<Vec<f32>> {

@@ -82,6 +82,7 @@ impl Run {
             estimator: kind.name,
             velocity: Vec::new(),
             deviation: None,
+            damping_ratio: None,
         };
         Ok(Self {
             section: Recording::default(),

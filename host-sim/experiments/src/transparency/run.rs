@@ -173,6 +173,7 @@ impl<'a> Prepared<'a> {
             },
             velocity: std::mem::take(&mut recorder.used),
             deviation: None,
+            damping_ratio: None,
         };
         let score = |estimates: &[Estimate]| {
             let (interval, wanted) = (interval(&self.device), self.settings.common.wanted);

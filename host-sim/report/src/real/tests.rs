@@ -90,6 +90,7 @@ fn part_with_the_largest_errors_is_drawn() {
         estimator: "pll",
         velocity: velocity.collect(),
         deviation: None,
+        damping_ratio: None,
     };
     let first = motion::hardest(&truth, &[&estimate], 100.0);
     assert!((260..=320).contains(&first), "{first}");
