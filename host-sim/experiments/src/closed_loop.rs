@@ -14,8 +14,7 @@ use std::cell::Cell;
 
 use estimator_core::{Amps, Count, Hertz, Sample, VelocityEstimator};
 use haptic_control::{
-    Action, AnyScene, Balance, Controller, DualStage, LoopPoles, Monitor, Rig, RstDesign, Scene,
-    Senses, Stop,
+    Action, AnyScene, Balance, Controller, DualStage, LoopPoles, Monitor, Rig, Scene, Senses, Stop,
 };
 
 use catalogue::estimators::{Estimator, Kind, Setup};
@@ -131,14 +130,13 @@ impl Loop {
     pub fn run_under(
         &self,
         ticks: usize,
-        conditions: Conditions,
+        conditions: Conditions<'_>,
         observe: impl FnMut(&TickState),
     ) -> Result<(), String> {
         self.device.validate()?;
         let rate = Hertz(self.rate_hz);
-        let designed = RstDesign::new(&self.assumed, rate, self.poles)
-            .and_then(|_| Rig::new(&self.assumed, rate, self.poles));
-        let mut rig = designed.map_err(|error| format!("control at {} Hz: {error}", rate.0))?;
+        let mut rig = Rig::new(&self.assumed, rate, self.poles)
+            .map_err(|error| format!("control at {} Hz: {error}", rate.0))?;
         if self.encoder == FeedbackEncoder::Reference {
             rig.large_scale =
                 estimator_core::Scale::new(self.device.reference.counts_per_rev, rate)
@@ -171,7 +169,7 @@ struct Running<'a, F> {
     run: &'a Loop,
     rig: &'a Rig,
     ticks: usize,
-    conditions: Conditions,
+    conditions: Conditions<'a>,
     observe: F,
 }
 
@@ -257,7 +255,8 @@ impl<F: FnMut(&TickState)> Running<'_, F> {
             bench
                 .plant
                 .command(large_a + large_zero, small_a + small_zero);
-            let grip = hand.grip(k as u64);
+            let known = self.conditions.grips.and_then(|grips| grips.get(k));
+            let grip = known.copied().unwrap_or_else(|| hand.grip(k as u64));
             let omega = bench.plant.small().omega;
             let torques = bench.plant.handle_torques(&grip, 0.0);
             (self.observe)(&TickState {

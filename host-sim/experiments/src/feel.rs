@@ -128,6 +128,7 @@ fn run(
             false => Some(Dac::board()?),
         },
         true_velocity: removes(Without::removes_estimation_error),
+        grips: None,
     };
     let on = |kind, counts| estimator(kind, &device, counts, rate_hz, &settings.parameters);
     let assumed = device.stages;

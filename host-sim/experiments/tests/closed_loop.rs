@@ -2,7 +2,7 @@
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind};
-use experiments::closed_loop::{FeedbackEncoder, Hand, Loop, Press, estimator, usual};
+use experiments::closed_loop::{Conditions, FeedbackEncoder, Hand, Loop, Press, estimator, usual};
 use experiments::compare::Settings;
 use experiments::transparency::{
     Fingertip, LoopCase, LoopSettings, Parasitic, bandwidth_hz, compare, sweep,
@@ -45,6 +45,30 @@ fn with_kalman(scene: AnyScene, device: &Device, hand: Hand, rate_hz: f64) -> Lo
         late_ticks: 0,
         offsets_a: [0.0; 2],
     }
+}
+
+#[test]
+fn known_grips_are_those_of_the_hand() {
+    let device = Device::default();
+    let scene = usual(SceneKind::Wall, &device.stages, 1000.0).unwrap();
+    let felt = |hand, grips| {
+        let mut felt = Vec::new();
+        let conditions = Conditions {
+            grips,
+            ..Conditions::default()
+        };
+        let run = with_kalman(scene, &device, hand, 1000.0);
+        run.run_under(300, conditions, |now| felt.push(now.felt.to_bits()))
+            .unwrap();
+        felt
+    };
+    for hand in [Hand::Pushing, Hand::Tracking, Hand::Clamp] {
+        // The last hundred ticks have no known grip.
+        let grips = hand.grips(1e-3, 1, 200);
+        assert_eq!(felt(hand, Some(&grips)), felt(hand, None), "{hand:?}");
+    }
+    let other = Hand::Pushing.grips(1e-3, 2, 200);
+    assert_ne!(felt(Hand::Pushing, Some(&other)), felt(Hand::Pushing, None));
 }
 
 #[test]

@@ -3,19 +3,23 @@
 use drivers::{DacScale, FULL_SCALES};
 use estimator_core::Amps;
 use haptic_control::Currents;
+use simulation::plant::Grip;
 
 use super::Faulty;
 
 /// Conditions of a run. The default is a run without faults, with the estimator of the loop, and with
 /// currents that are not rounded.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Conditions {
+pub struct Conditions<'a> {
     /// Fault of an encoder and the tick from which it lasts.
     pub fault: Option<(usize, Faulty)>,
     /// Converters that round the currents; `None` for exact currents.
     pub dac: Option<Dac>,
     /// Whether the controller has the true velocity of the large motor instead of an estimate.
     pub true_velocity: bool,
+    /// The first grips of the loop's hand, one per tick, as [`Hand::grips`](super::Hand::grips) gives them;
+    /// `None` if the run computes them itself.
+    pub grips: Option<&'a [Grip]>,
 }
 
 /// The digital-to-analogue converters of the reference board, one for each amplifier, not calibrated.

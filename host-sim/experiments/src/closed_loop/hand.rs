@@ -90,6 +90,13 @@ impl Hand {
         }
     }
 
+    /// The grips of the first `ticks` ticks of `period_s`, for runs that share a hand.
+    #[must_use]
+    pub fn grips(self, period_s: f64, seed: u64, ticks: usize) -> Vec<Grip> {
+        let mut motion = self.motion(period_s, seed);
+        (0..ticks as u64).map(|k| motion.grip(k)).collect()
+    }
+
     /// The motion for ticks of `period_s`, drawn from `seed`.
     #[must_use]
     pub fn motion(self, period_s: f64, seed: u64) -> Motion {

@@ -7,7 +7,7 @@ use haptic_control::{DualStage, LoopPoles, Stop};
 use super::attribution::CAUSES;
 use super::compare::{DEFAULT_ESTIMATOR, LoopCase, LoopSettings, Run, Signals, device};
 use super::{Attribution, ClosedLoopRow, Fingertip, Ledger, Parasitic, REFERENCE};
-use crate::closed_loop::{Conditions, Dac, FeedbackEncoder, Loop, TickState, usual};
+use crate::closed_loop::{Conditions, Dac, FeedbackEncoder, Hand, Loop, TickState, usual};
 use crate::compare::{Cost, interval};
 use catalogue::estimators::Setup;
 use catalogue::estimators::{Estimator, Kind};
@@ -15,6 +15,7 @@ use catalogue::parameters::PlantKind;
 use scoring::evaluation::{Estimate, Evaluation, Heading, Row};
 use scoring::score::Score;
 use simulation::device::Device;
+use simulation::plant::Grip;
 use simulation::simulate::{plant_steps, ticks};
 use simulation::trace::Trace;
 use terminal::failure::Failure;
@@ -40,6 +41,8 @@ pub(super) struct Prepared<'a> {
     handle: Estimator,
     reference: Estimator,
     ticks: usize,
+    /// The hand's grip in each tick.
+    grips: Vec<Grip>,
 }
 
 /// The estimator `kind` with its parameters, for an encoder of `counts_per_rev`.
@@ -61,6 +64,8 @@ pub(super) fn estimator(
 impl<'a> Prepared<'a> {
     pub(super) fn new(case: &'a LoopCase, settings: &'a LoopSettings) -> Result<Self, Failure> {
         let device = device(settings, case.plant);
+        let ticks = ticks(case.rate_hz, case.seconds)?;
+        let hand = Hand::from(case.scene.facts().hand);
         let on = |kind: &Kind, counts_per_rev| {
             estimator(kind, settings, counts_per_rev, case.rate_hz, case.plant)
         };
@@ -79,7 +84,8 @@ impl<'a> Prepared<'a> {
                 Kind::named(DEFAULT_ESTIMATOR)?,
                 device.reference.counts_per_rev,
             )?,
-            ticks: ticks(case.rate_hz, case.seconds)?,
+            ticks,
+            grips: hand.grips(1.0 / case.rate_hz, case.seed, ticks),
             device,
         })
     }
@@ -124,6 +130,7 @@ impl<'a> Prepared<'a> {
         let mut recorder = Recorder::new(self, &run)?;
         let conditions = Conditions {
             dac: Some(Dac::board()?),
+            grips: Some(&self.grips),
             ..Conditions::default()
         };
         run.run_under(self.ticks, conditions, |moment| recorder.push(moment))?;
