@@ -73,7 +73,10 @@ pub struct Felt {
     pub without: Vec<(Without, Parasitic)>,
 }
 
-/// Runs all cases in parallel; `done` is called after each run.
+/// A case, and what is switched off in it.
+type Job<'a> = (&'a Case, Option<Without>);
+
+/// Runs all cases in parallel; `done` is called after each of the [`runs`].
 ///
 /// # Errors
 /// [`Failure::Input`] of the first run, in order, that is not possible.
@@ -82,13 +85,8 @@ pub fn feel(
     settings: &Settings,
     done: impl Fn() + Sync,
 ) -> Result<Vec<Felt>, Failure> {
-    let jobs: Vec<(&Case, Option<Without>)> = (cases.iter())
-        .flat_map(|case| {
-            let without = settings.without.iter().map(move |what| (case, Some(*what)));
-            std::iter::once((case, None)).chain(without)
-        })
-        .collect();
-    let ran: Vec<(Parasitic, Option<Attribution>)> = jobs
+    let (distinct, places) = distinct(cases, settings);
+    let ran: Vec<(Parasitic, Option<Attribution>)> = distinct
         .par_iter()
         .map(|(case, without)| {
             let ran = run(case, *without, settings);
@@ -96,6 +94,7 @@ pub fn feel(
             ran
         })
         .collect::<Result<_, _>>()?;
+    let ran: Vec<_> = places.into_iter().map(|place| &ran[place]).collect();
     let felt = (cases.iter()).zip(ran.chunks(1 + settings.without.len()));
     Ok(felt
         .map(|(case, runs)| Felt {
@@ -107,6 +106,37 @@ pub fn feel(
                 .collect(),
         })
         .collect())
+}
+
+/// Number of runs of [`feel`].
+#[must_use]
+pub fn runs(cases: &[Case], settings: &Settings) -> usize {
+    distinct(cases, settings).0.len()
+}
+
+/// The jobs without those that are the same run as an earlier one, and the place of each job among them:
+/// case by case, first with every cause.
+fn distinct<'a>(cases: &'a [Case], settings: &Settings) -> (Vec<Job<'a>>, Vec<usize>) {
+    let jobs = cases.iter().flat_map(|case| {
+        let without = settings.without.iter().map(move |what| (case, Some(*what)));
+        std::iter::once((case, None)).chain(without)
+    });
+    let mut distinct: Vec<Job> = Vec::new();
+    let places = jobs.map(|job| {
+        let same = distinct.iter().position(|other| is_same_run(&job, other));
+        same.unwrap_or_else(|| {
+            distinct.push(job);
+            distinct.len() - 1
+        })
+    });
+    let places = places.collect();
+    (distinct, places)
+}
+
+/// Whether both jobs have the true velocity in the same loop: no estimator of the large motor runs in it.
+fn is_same_run((a, without): &Job, (b, other): &Job) -> bool {
+    let has_truth = without.is_some_and(|without| without.removes_estimation_error());
+    has_truth && without == other && (a.scene, a.rate_hz) == (b.scene, b.rate_hz)
 }
 
 /// Runs a case without a cause, if one is given, and attributes the force of a run with every cause.
@@ -180,3 +210,6 @@ fn run(
 fn scene(case: &Case, device: &Device) -> Result<haptic_control::AnyScene, String> {
     usual(case.scene, &device.stages, case.rate_hz)
 }
+
+#[cfg(test)]
+mod tests;

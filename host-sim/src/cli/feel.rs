@@ -96,7 +96,7 @@ pub(super) fn run(options: &Feel, command_line: &str) -> Result<(), Failure> {
         options.seconds,
     )?;
     let folder = page::folder(options.out.as_deref(), options.json.as_deref(), PAGE)?;
-    let bar = progress(cases.len() * (1 + settings.without.len()), "closing loops");
+    let bar = progress(experiments::feel::runs(&cases, &settings), "closing loops");
     let felt = feel(&cases, &settings, || bar.inc(1))?;
     bar.finish_and_clear();
 
