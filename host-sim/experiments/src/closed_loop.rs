@@ -221,6 +221,7 @@ impl<F: FnMut(&TickState)> Running<'_, F> {
         let mut pending = vec![(0.0, 0.0); self.run.late_ticks];
         let mut last_omega = bench.plant.small().omega;
         let mut hand = self.run.hand.motion(period, self.run.seed);
+        let known = (self.conditions.grips).filter(|grips| grips.len() >= self.ticks);
         let mut since = None;
         let mut stopped = None;
         for k in 0..self.ticks {
@@ -255,8 +256,10 @@ impl<F: FnMut(&TickState)> Running<'_, F> {
             bench
                 .plant
                 .command(large_a + large_zero, small_a + small_zero);
-            let known = self.conditions.grips.and_then(|grips| grips.get(k));
-            let grip = known.copied().unwrap_or_else(|| hand.grip(k as u64));
+            let grip = match known {
+                Some(grips) => grips[k],
+                None => hand.grip(k as u64),
+            };
             let omega = bench.plant.small().omega;
             let torques = bench.plant.handle_torques(&grip, 0.0);
             (self.observe)(&TickState {

@@ -10,6 +10,7 @@ use experiments::transparency::{
 use haptic_control::{AnyScene, Inertia, LoopPoles, SceneKind};
 use scoring::score::Wanted;
 use simulation::device::Device;
+use simulation::plant::Grip;
 use std::f64::consts::TAU;
 
 fn settings(names: &[&str]) -> LoopSettings {
@@ -51,7 +52,7 @@ fn with_kalman(scene: AnyScene, device: &Device, hand: Hand, rate_hz: f64) -> Lo
 fn known_grips_are_those_of_the_hand() {
     let device = Device::default();
     let scene = usual(SceneKind::Wall, &device.stages, 1000.0).unwrap();
-    let felt = |hand, grips| {
+    let felt = |hand, grips: Option<&[Grip]>| {
         let mut felt = Vec::new();
         let conditions = Conditions {
             grips,
@@ -63,11 +64,16 @@ fn known_grips_are_those_of_the_hand() {
         felt
     };
     for hand in [Hand::Pushing, Hand::Tracking, Hand::Clamp] {
-        // The last hundred ticks have no known grip.
-        let grips = hand.grips(1e-3, 1, 200);
+        let grips = hand.grips(1e-3, 1, 300);
         assert_eq!(felt(hand, Some(&grips)), felt(hand, None), "{hand:?}");
+        // Too few grips are not used.
+        assert_eq!(
+            felt(hand, Some(&grips[..200])),
+            felt(hand, None),
+            "{hand:?}"
+        );
     }
-    let other = Hand::Pushing.grips(1e-3, 2, 200);
+    let other = Hand::Pushing.grips(1e-3, 2, 300);
     assert_ne!(felt(Hand::Pushing, Some(&other)), felt(Hand::Pushing, None));
 }
 

@@ -17,8 +17,8 @@ pub struct Conditions<'a> {
     pub dac: Option<Dac>,
     /// Whether the controller has the true velocity of the large motor instead of an estimate.
     pub true_velocity: bool,
-    /// The first grips of the loop's hand, one per tick, as [`Hand::grips`](super::Hand::grips) gives them;
-    /// `None` if the run computes them itself.
+    /// The grips of the loop's hand, one per tick, as [`Hand::grips`](super::Hand::grips) gives them. The
+    /// run computes them itself without them, and where they are fewer than its ticks.
     pub grips: Option<&'a [Grip]>,
 }
 
