@@ -261,20 +261,20 @@ where
     /// few ticks call it.
     #[inline(never)]
     fn wake(&self, shared: &mut Shared<L, H>, wanted: [bool; 4], sample: &Sample) {
-        let [continuous, handle, transient, anticipation] =
-            [0, 1, 2, 3].map(|part| wanted[part] && !shared.live[part]);
-        if continuous {
+        let [continuous, handle, transient, anticipation] = wanted;
+        let live = shared.live;
+        if continuous && !live[0] {
             self.large.restart(&mut shared.large, sample);
             let stage = &self.rig.continuous;
             stage.restart(&mut shared.continuous, RadPerS(0.0));
         }
-        if handle {
+        if handle && !live[1] {
             shared.handle = self.handle.start(&Sample::new(sample.coupled));
         }
-        if transient {
+        if transient && !live[2] {
             self.rig.transient.restart(&mut shared.transient);
         }
-        if anticipation {
+        if anticipation && !live[3] {
             shared.anticipation = self.rig.anticipation.start(shared.handle_velocity);
         }
         shared.live = wanted;
