@@ -12,6 +12,7 @@ use terminal::output::note;
 
 use crate::flash::Sectors;
 use crate::image::Image;
+use crate::live::Live;
 use crate::objections;
 use crate::port::Wire;
 use crate::run::{Setup, emulate};
@@ -75,17 +76,20 @@ impl Bridge {
         setup: &Setup,
         stop: Arc<AtomicBool>,
     ) -> Result<(Pace, Sectors), Failure> {
-        let live = Live::new(self.listener, stop);
-        let (session, lockstep, _) = emulate(image, setup, Some(live), |_| ())?;
+        let served = Live::Bridge(Served::new(self.listener, stop));
+        let (session, lockstep, _) = emulate(image, setup, Some(served), |_| ())?;
         objections::verdict(&objections::of(&session))?;
-        let pace = lockstep.live.map(|live| live.pace).unwrap_or_default();
+        let pace = match lockstep.live {
+            Some(Live::Bridge(served)) => served.pace,
+            _ => Pace::default(),
+        };
         Ok((pace, session.board().part.flash.sectors().clone()))
     }
 }
 
 /// The client's side of a run.
 #[derive(Debug)]
-pub(crate) struct Live {
+pub(crate) struct Served {
     listener: TcpListener,
     client: Option<TcpStream>,
     /// Clients that have come and are neither served nor refused.
@@ -100,7 +104,7 @@ pub(crate) struct Live {
     pub(crate) pace: Pace,
 }
 
-impl Live {
+impl Served {
     fn new(listener: TcpListener, stop: Arc<AtomicBool>) -> Self {
         Self {
             listener,
@@ -227,7 +231,7 @@ mod tests {
     fn next_client_is_served_at_the_look_that_sees_the_end_of_the_first() {
         let bridge = Bridge::bind(0).unwrap();
         let address = bridge.address();
-        let mut live = Live::new(bridge.listener, Arc::default());
+        let mut live = Served::new(bridge.listener, Arc::default());
         let mut wire = Wire::default();
         let first = TcpStream::connect(address).unwrap();
         while live.client.is_none() {

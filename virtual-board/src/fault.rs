@@ -303,6 +303,15 @@ impl Fault {
         NAMES.iter().map(|(fault, ..)| *fault)
     }
 
+    /// Whether the board is built with the fault, so that it has no effect on a running one.
+    #[must_use]
+    pub fn acts_from_power_up(self) -> bool {
+        matches!(
+            self,
+            Self::DeadCrystal | Self::SlowWatchdog | Self::FastWatchdog | Self::ReadyAfter(_)
+        )
+    }
+
     /// Name on the command line, and description.
     fn words(self) -> (&'static str, &'static str) {
         let found = NAMES.iter().find(|(fault, ..)| *fault == self);

@@ -19,6 +19,7 @@ pub mod fetch;
 pub mod flash;
 pub mod image;
 mod lines;
+pub mod live;
 mod lockstep;
 mod objections;
 pub mod pins;

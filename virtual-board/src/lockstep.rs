@@ -20,10 +20,10 @@ use simulation::plant::Grip;
 
 use crate::amplifiers::{Amplifiers, Monitor};
 use crate::board::ControllerBoard;
-use crate::bridge::Live;
 use crate::fault::Fault;
 use crate::image::Image;
 use crate::lines::Lines;
+use crate::live::{Acts, Guided, Live, Seen};
 use crate::pins;
 use crate::port::Port;
 use crate::probe::{DebugProbe, schedule};
@@ -82,8 +82,12 @@ pub(crate) struct Lockstep {
     crystal: Option<(u64, u64)>,
     pub(crate) probe: DebugProbe,
     pub(crate) port: Port,
-    /// The client of a run in real time.
+    /// The client of a run.
     pub(crate) live: Option<Live>,
+    /// The hand that the client guides, instead of that of the setup.
+    guided: Option<Guided>,
+    /// Number of the ticks in `recorded` that the client has seen.
+    shown: usize,
     /// The record of the run, if it is traced.
     pub(crate) trace: Option<Trace>,
     stack: Stack,
@@ -154,6 +158,8 @@ impl Lockstep {
             probe: DebugProbe::new(image.rtt, setup),
             port: Port::new(setup),
             live: None,
+            guided: None,
+            shown: 0,
             trace: setup.trace.then(|| Trace::new(image)),
             stack: Stack(image.stack),
             accesses: CoreAccesses::new(&setup.accesses, Stack(image.stack)),
@@ -200,7 +206,7 @@ impl Lockstep {
         (self.steps % STEPS_PER_TICK) as f64 * STEP_S
     }
 
-    /// Serves the client of a run in real time, and forgets what a run without a client records;
+    /// Serves the client of a run, and forgets what a run without a client records;
     /// whether the run goes on.
     fn serve(&mut self, now_ns: u64) -> bool {
         let Some(live) = &mut self.live else {
@@ -209,14 +215,37 @@ impl Lockstep {
         let Recorded {
             ticks,
             plant_states,
+            enables,
             ..
         } = &mut self.recorded;
+        let (large, small) = self.bench.plant.currents();
+        let seen = Seen {
+            at_ns: now_ns,
+            sent: &[],
+            waiting: 0,
+            ticks: &ticks[self.shown.min(ticks.len())..],
+            restarts: self.resets,
+            currents: [large, small],
+            enables,
+            hand: self.guided.as_ref().and_then(Guided::pose),
+        };
+        let mut acts = Acts::default();
+        let goes_on = live.look(&mut self.port.wire(), seen, &mut acts);
         // The latest is compared with the next.
         ticks.drain(..ticks.len().saturating_sub(1));
+        self.shown = ticks.len();
+        enables.drain(..enables.len().saturating_sub(1));
         plant_states.clear();
         self.probe.stream.clear();
         self.probe.link.clear();
-        live.look(&mut self.port.wire(), now_ns)
+        for fault in acts.faults.into_iter().rev() {
+            self.faults.push_front((now_ns, fault));
+        }
+        if let Some(hold) = acts.hand {
+            let handle = self.bench.plant.small();
+            self.guided = Some(Guided::after(self.guided, hold, handle));
+        }
+        goes_on
     }
 
     /// Levels of the pins after a restart.

@@ -12,11 +12,11 @@ use simulation::plant::Pose;
 use terminal::failure::Failure;
 
 use crate::board::ControllerBoard;
-use crate::bridge::Live;
 use crate::fault::Fault;
 use crate::fetch::Fetches;
 use crate::flash::{self, Change, Sectors};
 use crate::image::Image;
+use crate::live::Live;
 pub use crate::lockstep::CoreAccess;
 use crate::lockstep::Lockstep;
 use crate::objections;
@@ -214,7 +214,7 @@ pub fn on_board(
     })
 }
 
-/// The run, with a client on the serial port if there is one: final state of board and plant, and the
+/// The run, with a client if there is one: final state of board and plant, and the
 /// run time.
 pub(crate) fn emulate(
     image: &Image,

@@ -50,7 +50,10 @@ impl Lockstep {
             self.currents[SMALL] * sides[SMALL],
         );
         if self.steps.is_multiple_of(STEPS_PER_TICK) {
-            self.grip = self.motion.grip(self.steps / STEPS_PER_TICK);
+            self.grip = match &mut self.guided {
+                Some(guided) => guided.grip(),
+                None => self.motion.grip(self.steps / STEPS_PER_TICK),
+            };
             self.recorded.plant_states.push(PlantState {
                 felt: self.bench.plant.handle_torque(&self.grip, 0.0),
                 currents: self.currents,
