@@ -1,23 +1,29 @@
 //! Causes of a stop: one table of variants, telemetry numbers and names.
 
+/// The first row is the default.
 macro_rules! stops {
-    ($($(#[$doc:meta])+ $stop:ident = $code:literal, $name:literal;)+) => {
+    (
+        $(#[doc = $first_doc:literal])+ $first:ident = $first_code:literal, $first_name:literal;
+        $($(#[doc = $doc:literal])+ $stop:ident = $code:literal, $name:literal;)+
+    ) => {
         /// Cause of a stop. The numbers and names are those of telemetry.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #[cfg_attr(feature = "defmt", derive(defmt::Format))]
         #[repr(u8)]
         pub enum Stop {
-            $($(#[$doc])+ $stop = $code,)+
+            $(#[doc = $first_doc])+ #[default] $first = $first_code,
+            $($(#[doc = $doc])+ $stop = $code,)+
         }
 
         impl Stop {
             /// All causes, each at its number.
-            pub const ALL: [Self; [$($code),+].len()] = [$(Self::$stop),+];
+            pub const ALL: [Self; [$first_code, $($code),+].len()] = [Self::$first, $(Self::$stop),+];
 
             /// The cause with this number.
             #[must_use]
             pub const fn from_code(code: u8) -> Option<Self> {
                 match code {
+                    $first_code => Some(Self::$first),
                     $($code => Some(Self::$stop),)+
                     _ => None,
                 }
@@ -27,7 +33,17 @@ macro_rules! stops {
             #[must_use]
             pub const fn as_str(self) -> &'static str {
                 match self {
+                    Self::$first => $first_name,
                     $(Self::$stop => $name,)+
+                }
+            }
+
+            /// What happened, in words, for programs on a host.
+            #[must_use]
+            pub const fn meaning(self) -> &'static str {
+                match self {
+                    Self::$first => concat!($($first_doc),+),
+                    $(Self::$stop => concat!($($doc),+),)+
                 }
             }
         }
@@ -36,7 +52,6 @@ macro_rules! stops {
 
 stops! {
     /// The device has not stopped.
-    #[default]
     None = 0, "none";
     /// The handle moved faster than allowed.
     HandleOverspeed = 1, "handle-overspeed";
