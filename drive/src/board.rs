@@ -11,6 +11,7 @@ use terminal::failure::Failure;
 
 use crate::clock::Limit;
 use crate::port::Port;
+use crate::refusal::refusal;
 use crate::watch::is_enabled;
 
 /// Time after which a question is asked again.
@@ -277,55 +278,5 @@ impl Drop for Board {
             let _ = self.send(Command::Request(Request::Disarm));
             self.port.finish();
         }
-    }
-}
-
-/// The reason of a refusal between two counts.
-pub(crate) fn refusal(before: &Rejected, now: &Rejected) -> Option<&'static str> {
-    [
-        (before.not_finite, now.not_finite, "the value is not finite"),
-        (
-            before.out_of_bounds,
-            now.out_of_bounds,
-            "the value is out of bounds",
-        ),
-        (before.unknown, now.unknown, "the image does not have it"),
-        (
-            before.unverified,
-            now.unverified,
-            "the signs of encoders and currents have not been verified; run cargo drive bring-up",
-        ),
-        (before.garbage, now.garbage, "the command arrived damaged"),
-    ]
-    .into_iter()
-    .find_map(|(before, now, reason)| (before != now).then_some(reason))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn refusal_is_named_by_the_count_that_changed() {
-        let none = Rejected {
-            garbage: 1,
-            not_finite: 2,
-            out_of_bounds: 3,
-            unknown: 4,
-            unverified: 5,
-        };
-        assert_eq!(refusal(&none, &none), None);
-        let unknown = Rejected { unknown: 5, ..none };
-        assert!(
-            refusal(&none, &unknown)
-                .unwrap()
-                .contains("does not have it")
-        );
-        // The counts wrap.
-        let most = Rejected {
-            not_finite: u32::MAX,
-            ..none
-        };
-        assert!(refusal(&most, &none).unwrap().contains("not finite"));
     }
 }

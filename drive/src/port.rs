@@ -21,7 +21,7 @@ const LINGER: Duration = Duration::from_millis(300);
 const TCP: &str = "tcp:";
 
 /// An open port.
-pub(crate) struct Port {
+pub struct Port {
     name: String,
     channel: Channel,
 }
@@ -47,7 +47,7 @@ impl Port {
     ///
     /// # Errors
     /// [`Failure::Input`] if it cannot be opened, or if there is no default.
-    pub(crate) fn open(name: Option<&str>) -> Result<Self, Failure> {
+    pub fn open(name: Option<&str>) -> Result<Self, Failure> {
         let name = match name {
             Some(name) => name.to_owned(),
             None => only(&list()?)?,
@@ -73,7 +73,8 @@ impl Port {
     }
 
     /// Name for messages.
-    pub(crate) fn name(&self) -> &str {
+    #[must_use]
+    pub fn name(&self) -> &str {
         &self.name
     }
 
@@ -81,7 +82,7 @@ impl Port {
     ///
     /// # Errors
     /// An error if the connection is lost.
-    pub(crate) fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+    pub fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let read = match &mut self.channel {
             Channel::Serial(port) => port.read(buffer),
             Channel::Tcp(stream) => stream.read(buffer),
@@ -97,7 +98,7 @@ impl Port {
     ///
     /// # Errors
     /// An error if the connection is lost or takes no bytes.
-    pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+    pub fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         match &mut self.channel {
             Channel::Serial(port) => port.write_all(bytes),
             Channel::Tcp(stream) => stream.write_all(bytes),
@@ -106,7 +107,7 @@ impl Port {
 
     /// Waits until the written bytes have left. A TCP connection that is closed while bytes wait to be
     /// read may discard what was written, so that they are read first.
-    pub(crate) fn finish(&mut self) {
+    pub fn finish(&mut self) {
         match &mut self.channel {
             Channel::Serial(port) => drop(port.flush()),
             Channel::Tcp(stream) => {

@@ -8,11 +8,12 @@ use haptic_control::{Mode, Request, SceneKind};
 use terminal::failure::Failure;
 use terminal::output::{note, print_bytes};
 
-use crate::board::{Answer, Board, refusal};
+use crate::board::{Answer, Board};
 use crate::clock::{Clock, Limit};
 use crate::interrupt;
 use crate::pace::Pace;
 use crate::record::Recorder;
+use crate::refusal::refusal;
 use crate::timed::Change;
 use crate::watch::{Every, line, state};
 
