@@ -1,0 +1,63 @@
+// The page's loop: what came is drawn once a frame, what is wanted is sent once a frame.
+
+const scope = { frames: 0, store: null, plots: null, view: null, controls: null, errors: [] };
+window.scope = scope;
+addEventListener("error", (e) => scope.errors.push(String(e.message)));
+
+const link = connect({
+  opened() { $("notice").hidden = true; },
+  closed() {
+    $("notice").hidden = false;
+    $("notice").textContent = "No connection to the server; the device goes safe by itself. Connecting again …";
+    if (scope.controls) scope.controls.role({ commands: false, known: true, why: "the server does not answer" });
+  },
+  rows(buffer) { scope.store?.take(buffer); },
+  facts(facts) {
+    if (scope.store) { scope.store.clear(); scope.store.next = null; scope.store.epoch = null; return; }
+    scope.facts = facts;
+    scope.store = new Store(facts.channels, facts.estimators, facts.interval);
+    scope.plots = new Plots($("plots"), facts, scope.store);
+    scope.view = new DeviceView($("device"), facts, scope.store, (order) => link.send(order));
+    scope.controls = new Controls(facts, link, scope.view, scope.plots);
+    scope.controls.showScene(0);
+    requestAnimationFrame(frame);
+  },
+  role(role) {
+    // The token of a server that has started again is another one.
+    if (!role.known) { location.reload(); return; }
+    scope.role = role;
+    scope.controls.role(role);
+  },
+  status(status) { scope.status = status; scope.controls.status(status); },
+  refused({ why }) { $("summary").textContent = `Refused: ${why}.`; },
+});
+scope.link = link;
+
+function frame() {
+  requestAnimationFrame(frame);
+  const { store, view, controls, plots } = scope;
+  view.flush(); controls.flush();
+  if (!store.count) return;
+  view.draw(); plots.draw();
+  showNumbers(store, controls);
+  scope.frames++;
+}
+
+function showNumbers(store, controls) {
+  const force = store.latest("force"), limit = scope.facts.device.threshold_mn;
+  setText("force", Number.isFinite(force) ? force.toFixed(Math.abs(force) < 100 ? 1 : 0) : "–");
+  $("meter").value = Math.min(40, Math.abs(force) || 0);
+  const parasitic = store.latest("parasitic"), tactile = store.latest("tactile");
+  const words = (value) => `${value.toFixed(1)} mN (${Math.abs(value) < limit ? "below" : "above"} the ${limit} mN that a fingertip notices)`;
+  setText("felt-words", Number.isFinite(parasitic) ? `Not commanded by the scene: ${words(parasitic)}${Number.isFinite(tactile) ? `; roughness ${tactile.toFixed(1)} mN` : ""}.` : "");
+  const number = store.latest("estimator");
+  document.querySelectorAll("#estimators button").forEach((b, k) => {
+    const is = String(k === number);
+    if (b.getAttribute("aria-checked") !== is) b.setAttribute("aria-checked", is);
+  });
+  const c = controls.counts;
+  setText("lost", `Frames lost: ${store.lost} on the way here${Number.isFinite(store.latest("drops")) ? `, ${store.latest("drops")} by the board` : ""}` +
+    (c && (c.garbage || c.flooded) ? `; not followed: ${c.garbage} unreadable, ${c.flooded} too many` : ""));
+}
+
+function setText(id, text) { if ($(id).textContent !== text) $(id).textContent = text; }

@@ -1,0 +1,65 @@
+//! Rows on their way to the pages.
+
+use std::time::{Duration, Instant};
+
+use axum::body::Bytes;
+
+/// Interval of the batches: a page draws at most as often.
+const INTERVAL: Duration = Duration::from_millis(16);
+
+/// Rows of `f64`, little endian, behind a header of 16 bytes: number of rows and epoch as `u32`, and
+/// the number of the first row since the start as `f64`. A page finds lost rows by the latter, and clears
+/// its plots at a new epoch.
+pub(crate) struct Batch {
+    bytes: Vec<u8>,
+    rows: u32,
+    epoch: u32,
+    first: u64,
+    sent: Instant,
+}
+
+/// Bytes of the header.
+pub(crate) const HEADER: usize = 16;
+
+impl Batch {
+    pub(crate) fn new() -> Self {
+        Self {
+            bytes: vec![0; HEADER],
+            rows: 0,
+            epoch: 0,
+            first: 0,
+            sent: Instant::now(),
+        }
+    }
+
+    /// Adds a row.
+    pub(crate) fn add(&mut self, row: &[f64]) {
+        self.bytes
+            .extend(row.iter().flat_map(|value| value.to_le_bytes()));
+        self.rows += 1;
+    }
+
+    /// Begins a new epoch: the next rows do not continue those before.
+    pub(crate) fn cut(&mut self) {
+        self.first += u64::from(self.rows);
+        self.rows = 0;
+        self.bytes.truncate(HEADER);
+        self.epoch += 1;
+    }
+
+    /// The rows since the last batch, if a batch is due.
+    pub(crate) fn due(&mut self) -> Option<Bytes> {
+        (self.rows > 0 && self.sent.elapsed() >= INTERVAL).then(|| {
+            self.bytes[..4].copy_from_slice(&self.rows.to_le_bytes());
+            self.bytes[4..8].copy_from_slice(&self.epoch.to_le_bytes());
+            self.bytes[8..HEADER].copy_from_slice(&(self.first as f64).to_le_bytes());
+            self.first += u64::from(self.rows);
+            self.rows = 0;
+            self.sent = Instant::now();
+            let next = Vec::with_capacity(self.bytes.capacity());
+            let full = std::mem::replace(&mut self.bytes, next);
+            self.bytes.resize(HEADER, 0);
+            Bytes::from(full)
+        })
+    }
+}

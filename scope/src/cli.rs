@@ -1,0 +1,141 @@
+//! The command line.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::thread;
+
+use clap::Parser;
+use simulation::device::Device;
+use terminal::explain;
+use terminal::failure::Failure;
+use terminal::output::{note, print_bytes, write_whole};
+use terminal::wording::WIDTH;
+
+use crate::estimators::Estimators;
+use crate::export;
+use crate::hub::Hub;
+use crate::server::Server;
+use crate::source::{Emulated, RealBoard, Recorded, Source};
+use crate::token::random;
+
+/// Serves a page on which the device runs live: the flash image on an emulated board in real time, a
+/// board over its link, or a recording.
+///
+/// The page is at the loopback interface alone. Ctrl-C ends the server and disarms the board.
+#[derive(Debug, Parser)]
+#[command(
+    name = "cargo scope",
+    bin_name = "cargo scope",
+    version,
+    max_term_width = WIDTH,
+    after_help = "Exit status: 0; 1 if the source fails; 2 if the input cannot be used.\n\nExamples:
+  cargo scope
+  cargo scope --recording run.csv
+  cargo scope --board /dev/ttyACM0
+  cargo scope --export run.csv --mcap run.mcap"
+)]
+struct Arguments {
+    /// TCP port of the page at 127.0.0.1, 0 for a free one
+    #[arg(long, value_name = "PORT", default_value_t = 0)]
+    port: u16,
+    /// Do not open a browser
+    #[arg(long)]
+    no_open: bool,
+    /// ELF file of the flash image for the emulated board [default: the image is built]
+    #[arg(long, value_name = "ELF", conflicts_with_all = ["recording", "board"])]
+    image: Option<PathBuf>,
+    /// Device file, as host-sim identify writes it [default: the default device]
+    #[arg(long, value_name = "FILE.toml")]
+    device: Option<PathBuf>,
+    /// Play a recording instead: a CSV file as cargo sim replay reads it
+    #[arg(long, value_name = "FILE.csv", conflicts_with = "board")]
+    recording: Option<PathBuf>,
+    /// Show and command a board instead: a serial port, or tcp:HOST:PORT
+    #[arg(long, value_name = "PORT")]
+    board: Option<String>,
+    /// Write the rows of a recording, with the estimates, to the file of --mcap, and serve no page
+    #[arg(long, value_name = "FILE.csv", requires = "mcap", conflicts_with_all = ["recording", "board", "image"])]
+    export: Option<PathBuf>,
+    /// The MCAP file of --export
+    #[arg(long, value_name = "FILE.mcap", requires = "export")]
+    mcap: Option<PathBuf>,
+}
+
+/// Runs the command line.
+///
+/// # Errors
+/// [`Failure::Input`] if the input cannot be used, [`Failure::Check`] if the source fails.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => return explain(&error, "cargo scope"),
+    };
+    let device = arguments.device.as_deref();
+    let device = device.map_or_else(|| Ok(Device::default()), Device::read)?;
+    if let (Some(from), Some(to)) = (&arguments.export, &arguments.mcap) {
+        let recorded = Recorded::read(from, device)?;
+        let names: Vec<_> = Estimators::kinds().iter().map(|kind| kind.name).collect();
+        let bytes = export::mcap(recorded.rows.iter().map(Vec::as_slice), &names)?;
+        return write_whole(to, &bytes);
+    }
+    // A port that is taken is told before an image is built.
+    let server = Server::bind(arguments.port)?;
+    let source: Box<dyn Source> = match (arguments.recording, arguments.board) {
+        (Some(path), _) => Box::new(Recorded::read(&path, device)?),
+        (None, Some(port)) => Box::new(RealBoard::open(&port, device)?),
+        (None, None) => {
+            if arguments.image.is_none() {
+                note("building the flash image, which takes a minute the first time");
+            }
+            Box::new(Emulated::new(arguments.image, device)?)
+        }
+    };
+    serve(server, source, !arguments.no_open)
+}
+
+fn serve(server: Server, source: Box<dyn Source>, opens: bool) -> Result<(), Failure> {
+    let (hub, orders) = Hub::new(random()?, source.facts());
+    let stopping = Arc::clone(&hub);
+    ctrlc::set_handler(move || stopping.stop.store(true, Ordering::Relaxed))
+        .map_err(|error| Failure::Check(format!("Ctrl-C: {error}")))?;
+    let url = server.url();
+    print_bytes(format!("{url}\n").as_bytes())?;
+    if opens {
+        open(&url);
+    }
+    let of_source = Arc::clone(&hub);
+    let source = thread::spawn(move || {
+        let ended = source.run(Arc::clone(&of_source), orders);
+        // A source that has failed ends the server.
+        of_source.stop.store(true, Ordering::Relaxed);
+        ended
+    });
+    let served = server.serve(Arc::clone(&hub));
+    hub.stop.store(true, Ordering::Relaxed);
+    let ended = source
+        .join()
+        .unwrap_or_else(|_| Err(Failure::Check("the source panicked".to_owned())));
+    ended.and(served)
+}
+
+/// Opens the page in a browser, if the system has a program for it.
+fn open(url: &str) {
+    let program = if cfg!(target_os = "macos") {
+        "open"
+    } else {
+        "xdg-open"
+    };
+    let mut command = Command::new(program);
+    command
+        .arg(url)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    if let Ok(mut child) = command.spawn() {
+        // Its end is waited for, so that it leaves no process behind.
+        thread::spawn(move || drop(child.wait()));
+    }
+}

@@ -1,0 +1,289 @@
+//! The desk at which the messages of a board become rows for the pages.
+
+use std::collections::VecDeque;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use drive::refusal::refusal;
+use drivers::Command;
+use drivers::link::{Frame, Hello, Message, Rejected};
+use experiments::transparency::Fingertip;
+use haptic_control::{Mode, Request, SceneKind, Stop};
+use scoring::score::TACTILE_BAND_HZ;
+use scoring::spectrum::Welch;
+use serde_json::{Value, json};
+use simulation::device::Device;
+use terminal::failure::Failure;
+
+use crate::batch::Batch;
+use crate::channels::Values;
+use crate::estimators::{Estimators, Reading};
+use crate::fault_watch::{FaultWatch, sentence};
+use crate::hub::Hub;
+use crate::order::Order;
+use crate::recorder::Recorder;
+
+/// Telemetry frames of a second.
+pub(crate) const FRAMES_HZ: f64 = 1e3;
+/// Interval of the status.
+const STATUS: Duration = Duration::from_millis(100);
+/// Frames over which the tactile force is computed, and between its values.
+const TACTILE_FRAMES: usize = 1000;
+const TACTILE_EVERY: u32 = 100;
+
+/// What only the emulated board knows of a frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Truth {
+    /// Virtual time, s.
+    pub(crate) t: f64,
+    pub(crate) large: [f64; 2],
+    pub(crate) handle: [f64; 2],
+    /// Torque on the hand, N.m.
+    pub(crate) felt: f64,
+    /// Currents of the motors, A.
+    pub(crate) currents: [f64; 2],
+    /// Largest number of instructions of a tick since the frame before.
+    pub(crate) instructions: u32,
+    /// Intended angle of the hand, rad.
+    pub(crate) hand: Option<f64>,
+}
+
+/// The desk of a source.
+pub(crate) struct Desk {
+    pub(crate) hub: Arc<Hub>,
+    turn_rad: [f64; 2],
+    fingertip: Fingertip,
+    estimators: Estimators,
+    batch: Batch,
+    recorder: Option<Recorder>,
+    hello: Option<Hello>,
+    last: Option<Frame>,
+    /// Time of the last row, s.
+    t: f64,
+    rejected: Option<Rejected>,
+    /// Why the board refused the latest command that it refused, and how many it refused.
+    refusal: Option<(&'static str, u32)>,
+    scene: u8,
+    parasitic: VecDeque<f64>,
+    tactile: f64,
+    told: Instant,
+    pub(crate) fault: Option<FaultWatch>,
+}
+
+impl Desk {
+    /// The desk for a board with this device.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if an estimator cannot be built.
+    pub(crate) fn new(hub: Arc<Hub>, device: &Device) -> Result<Self, Failure> {
+        let stages = &device.stages;
+        let turns = [stages.large.counts_per_rev, stages.small.counts_per_rev];
+        Ok(Self {
+            hub,
+            turn_rad: turns.map(|counts| TAU / f64::from(counts)),
+            fingertip: Fingertip::new(device),
+            estimators: Estimators::new(device, FRAMES_HZ)?,
+            batch: Batch::new(),
+            recorder: None,
+            hello: None,
+            last: None,
+            t: 0.0,
+            rejected: None,
+            refusal: None,
+            scene: SceneKind::Off.number(),
+            parasitic: VecDeque::new(),
+            tactile: f64::NAN,
+            told: Instant::now(),
+            fault: None,
+        })
+    }
+
+    /// Identity of the image, once it has come.
+    pub(crate) const fn hello(&self) -> Option<&Hello> {
+        self.hello.as_ref()
+    }
+
+    /// Whether an amplifier is enabled, by the latest frame.
+    pub(crate) fn is_on(&self) -> bool {
+        let mode = self.last.and_then(|frame| Mode::from_code(frame.state));
+        mode.is_some_and(Mode::is_enabled)
+    }
+
+    /// Time of the last row, s.
+    pub(crate) const fn t(&self) -> f64 {
+        self.t
+    }
+
+    /// The board has started again.
+    pub(crate) fn restarted(&mut self) {
+        (self.last, self.rejected, self.hello) = (None, None, None);
+        self.scene = SceneKind::Off.number();
+        self.estimators.restart();
+        self.end_recording();
+    }
+
+    /// Follows an order as far as the desk does, and returns the command for the board.
+    pub(crate) fn order(&mut self, order: &Order) -> Option<Command> {
+        match *order {
+            Order::Record { on: true } => {
+                if let (None, Some(hello)) = (&self.recorder, &self.hello) {
+                    self.recorder = Some(Recorder::new(hello));
+                    // So that a replay has the same estimates from its first row on.
+                    self.estimators.restart();
+                }
+            }
+            Order::Record { on: false } => self.end_recording(),
+            Order::Scene { number } => self.scene = number,
+            Order::Disarm => self.scene = SceneKind::Off.number(),
+            _ => {}
+        }
+        let command = order.command()?;
+        if command != Command::Request(Request::KeepAlive) {
+            self.refusal = None;
+        }
+        Some(command)
+    }
+
+    /// Ends a recording, if there is one, and keeps it for downloads.
+    pub(crate) fn end_recording(&mut self) {
+        if let Some(recorder) = self.recorder.take() {
+            self.hub.keep(Arc::new(recorder.finish()));
+        }
+    }
+
+    /// Takes a message of the board, with the truth of a frame if it is known.
+    pub(crate) fn message(&mut self, message: Message, truth: Option<&Truth>) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.take(message);
+        }
+        match message {
+            Message::Hello(hello) => self.hello = Some(hello),
+            Message::Frame(frame) => self.frame(&frame, truth),
+            Message::Rejected(now) => {
+                if let Some(reason) = self.rejected.and_then(|before| refusal(&before, &now)) {
+                    let number = self.refusal.map_or(0, |(_, number)| number) + 1;
+                    self.refusal = Some((reason, number));
+                }
+                self.rejected = Some(now);
+            }
+            _ => {}
+        }
+    }
+
+    fn frame(&mut self, frame: &Frame, truth: Option<&Truth>) {
+        let rate = self.hello.map_or(0.0, |hello| f64::from(hello.rate));
+        if let Some(last) = self.last.filter(|_| rate > 0.0) {
+            let ticks = frame.tick.wrapping_sub(last.tick);
+            self.t += f64::from(ticks.min(hz(rate))) / rate;
+            if frame.seq.wrapping_sub(last.seq) != 1 {
+                self.estimators.restart();
+            }
+        }
+        if let Some(truth) = truth {
+            self.t = truth.t;
+        }
+        self.last = Some(*frame);
+        let mut values = self.values(frame);
+        if let Some(truth) = truth {
+            self.add_truth(&mut values, truth);
+        }
+        if let Some(watch) = &mut self.fault {
+            watch.frame((self.t * 1e9) as u64, frame, values.force);
+        }
+        let estimates = self.estimators.next(&Reading {
+            counts_large: frame.counts_large,
+            counts_small: frame.counts_small,
+            current: frame.current,
+        });
+        let mut row = values.all().to_vec();
+        row.extend(estimates);
+        self.batch.add(&row);
+        if let Some(recorder) = &mut self.recorder {
+            recorder.row(frame.seq, &row, values.true_omega);
+            if recorder.is_full() {
+                self.end_recording();
+            }
+        }
+    }
+
+    fn values(&self, frame: &Frame) -> Values {
+        let angle = |counts: u32, turn: f64| f64::from(counts as i32) * turn;
+        Values {
+            t: self.t,
+            velocity_large: frame.velocity_large.into(),
+            sigma_large: frame.sigma_large.into(),
+            velocity_small: frame.velocity_small.into(),
+            torque: frame.torque.into(),
+            current: frame.current.into(),
+            current_small: frame.current_small.into(),
+            cycles: frame.cycles.into(),
+            large_angle: angle(frame.counts_large, self.turn_rad[0]),
+            handle_angle: angle(frame.counts_small, self.turn_rad[1]),
+            state: frame.state.into(),
+            cause: frame.cause.into(),
+            estimator: frame.estimator.into(),
+            overruns: frame.overruns.into(),
+            drops: frame.drops.into(),
+            ..Values::default()
+        }
+    }
+
+    fn add_truth(&mut self, values: &mut Values, truth: &Truth) {
+        [values.large_angle, values.true_omega] = truth.large;
+        [values.handle_angle, values.true_handle] = truth.handle;
+        [values.current_large_true, values.current_small_true] = truth.currents;
+        values.felt = truth.felt;
+        values.force = truth.felt * self.fingertip.mn_per_nm;
+        values.parasitic = (truth.felt - values.torque) * self.fingertip.mn_per_nm;
+        values.instructions = truth.instructions.into();
+        values.hand_angle = truth.hand.unwrap_or(f64::NAN);
+        self.parasitic.push_back(values.parasitic);
+        if self.parasitic.len() > TACTILE_FRAMES {
+            self.parasitic.pop_front();
+        }
+        let seq = self.last.map_or(0, |frame| frame.seq);
+        if seq.is_multiple_of(TACTILE_EVERY) && self.parasitic.len() == TACTILE_FRAMES {
+            let signal: Vec<f64> = self.parasitic.iter().copied().collect();
+            let density = Welch::new(FRAMES_HZ).density(&signal);
+            let rms = density.and_then(|density| density.rms_within(TACTILE_BAND_HZ));
+            self.tactile = rms.unwrap_or(f64::NAN);
+        }
+        values.tactile = self.tactile;
+    }
+
+    /// Sends the rows and the status that are due. `more` is what the source adds to the status.
+    pub(crate) fn tell(&mut self, more: impl FnOnce() -> Value) {
+        if let Some(bytes) = self.batch.due() {
+            self.hub.tell(crate::hub::Event::Rows(bytes));
+        }
+        if self.told.elapsed() < STATUS {
+            return;
+        }
+        self.told = Instant::now();
+        let mode = self.last.and_then(|frame| Mode::from_code(frame.state));
+        let cause = self.last.and_then(|frame| Stop::from_code(frame.cause));
+        let recording = self.recorder.as_ref();
+        let mut status = json!({
+            "t": self.t,
+            "mode": mode.map(Mode::as_str),
+            "on": self.is_on(),
+            "cause": cause.map(Stop::as_str),
+            "words": cause.filter(|cause| *cause != Stop::None).map(|cause| sentence(cause.meaning())),
+            "scene": self.scene,
+            "refusal": self.refusal.map(|(reason, number)| json!({"reason": reason, "number": number})),
+            "recording": recording.map(Recorder::len),
+            "recorded": self.hub.recording().is_some(),
+            "fault": self.fault.as_ref().map(FaultWatch::json),
+        });
+        if let (Value::Object(status), Value::Object(more)) = (&mut status, more()) {
+            status.extend(more);
+        }
+        self.hub.status(status);
+    }
+}
+
+/// Ticks of a second.
+fn hz(rate: f64) -> u32 {
+    rate as u32
+}

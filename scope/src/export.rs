@@ -1,0 +1,138 @@
+//! Rows as MCAP: a topic for each group of channels, with messages of protobuf and their descriptors.
+
+use std::collections::BTreeMap;
+use std::io::Cursor;
+
+use mcap::records::MessageHeader;
+use prost::Message as _;
+use prost_types::field_descriptor_proto::{Label, Type};
+use prost_types::{DescriptorProto, FieldDescriptorProto, FileDescriptorProto, FileDescriptorSet};
+
+use crate::channels::CHANNELS;
+
+/// Package of the messages.
+const PACKAGE: &str = "limpid";
+/// Topic of the estimators on the host.
+const ESTIMATES: &str = "estimates";
+
+/// A topic: its name, and the column of each field.
+struct Topic {
+    name: &'static str,
+    fields: Vec<(String, usize)>,
+}
+
+/// The topics: those of the channels, and that of the estimators.
+fn topics(estimators: &[&str]) -> Vec<Topic> {
+    let mut topics: Vec<Topic> = Vec::new();
+    for (column, channel) in CHANNELS.iter().enumerate().skip(1) {
+        let at = topics.iter().position(|topic| topic.name == channel.topic);
+        let at = at.unwrap_or_else(|| {
+            topics.push(Topic {
+                name: channel.topic,
+                fields: Vec::new(),
+            });
+            topics.len() - 1
+        });
+        topics[at].fields.push((channel.name.to_owned(), column));
+    }
+    let fields = estimators.iter().zip(CHANNELS.len()..);
+    let fields = fields.map(|(name, column)| (name.replace('-', "_"), column));
+    topics.push(Topic {
+        name: ESTIMATES,
+        fields: fields.collect(),
+    });
+    topics
+}
+
+impl Topic {
+    /// Name of the message.
+    fn message(&self) -> String {
+        let (first, rest) = self.name.split_at(1);
+        first.to_uppercase() + rest
+    }
+
+    /// Descriptors of the message: every field is an optional `double`, numbered from 1.
+    fn descriptors(&self) -> Vec<u8> {
+        let field = |(number, (name, _)): (i32, &(String, usize))| FieldDescriptorProto {
+            name: Some(name.clone()),
+            number: Some(number),
+            label: Some(Label::Optional.into()),
+            r#type: Some(Type::Double.into()),
+            ..FieldDescriptorProto::default()
+        };
+        let message = DescriptorProto {
+            name: Some(self.message()),
+            field: (1..).zip(&self.fields).map(field).collect(),
+            ..DescriptorProto::default()
+        };
+        let file = FileDescriptorProto {
+            name: Some(format!("{PACKAGE}/{}.proto", self.name)),
+            package: Some(PACKAGE.to_owned()),
+            message_type: vec![message],
+            ..FileDescriptorProto::default()
+        };
+        FileDescriptorSet { file: vec![file] }.encode_to_vec()
+    }
+
+    /// A row's message. A value that is not known is left out.
+    fn encode(&self, row: &[f64]) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        for (number, (_, column)) in (1_u32..).zip(&self.fields) {
+            match row.get(*column) {
+                Some(value) if !value.is_nan() => {
+                    prost::encoding::double::encode(number, value, &mut bytes);
+                }
+                _ => {}
+            }
+        }
+        bytes
+    }
+}
+
+/// Rows as the bytes of an MCAP file. The time of a message is that of its row, from zero.
+///
+/// # Errors
+/// One line if a record cannot be written.
+pub(crate) fn mcap<'a>(
+    rows: impl Iterator<Item = &'a [f64]>,
+    estimators: &[&str],
+) -> Result<Vec<u8>, String> {
+    let failed = |error: mcap::McapError| format!("MCAP: {error}");
+    let mut bytes = Cursor::new(Vec::new());
+    let options = mcap::WriteOptions::new()
+        .compression(None)
+        .library("limpid scope");
+    let mut writer = options.create(&mut bytes).map_err(failed)?;
+    let topics = topics(estimators);
+    let mut channels = Vec::new();
+    for topic in &topics {
+        let name = format!("{PACKAGE}.{}", topic.message());
+        let schema = writer
+            .add_schema(&name, "protobuf", &topic.descriptors())
+            .map_err(failed)?;
+        let path = format!("/{}", topic.name);
+        let channel = writer.add_channel(schema, &path, "protobuf", &BTreeMap::new());
+        channels.push(channel.map_err(failed)?);
+    }
+    for (sequence, row) in (0..).zip(rows) {
+        let time = (row.first().copied().unwrap_or_default().max(0.0) * 1e9).round() as u64;
+        for (topic, channel_id) in topics.iter().zip(&channels) {
+            let message = topic.encode(row);
+            if message.is_empty() {
+                continue;
+            }
+            let header = MessageHeader {
+                channel_id: *channel_id,
+                sequence,
+                log_time: time,
+                publish_time: time,
+            };
+            writer
+                .write_to_known_channel(&header, &message)
+                .map_err(failed)?;
+        }
+    }
+    writer.finish().map_err(failed)?;
+    drop(writer);
+    Ok(bytes.into_inner())
+}

@@ -1,0 +1,193 @@
+//! What the source and the pages share: the stream to the pages, their orders, and who commands.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use axum::body::Bytes;
+use axum::extract::ws::Utf8Bytes;
+use serde_json::{Value, json};
+use tokio::sync::broadcast;
+
+use crate::order::Order;
+use crate::recorder::Finished;
+
+/// Events that wait for a page at most. A slower page loses the oldest ones: about a second.
+const EVENTS: usize = 64;
+/// Orders that wait for the source at most.
+const ORDERS: usize = 64;
+/// Silence after which another page may take the command.
+pub(crate) const STALE: Duration = Duration::from_secs(2);
+
+/// What goes to every page.
+#[derive(Clone, Debug)]
+pub(crate) enum Event {
+    /// Rows, see [`Batch`](crate::batch::Batch).
+    Rows(Bytes),
+    /// A message in JSON.
+    Text(Utf8Bytes),
+}
+
+/// Counts of what pages sent and the server did not follow.
+#[derive(Debug, Default)]
+pub(crate) struct Counts {
+    /// Messages that are no orders.
+    pub(crate) garbage: AtomicU64,
+    /// Orders of a page that may not command, or out of bounds.
+    pub(crate) refused: AtomicU64,
+    /// Messages beyond the rate of a page, and orders that found no room.
+    pub(crate) flooded: AtomicU64,
+}
+
+impl Counts {
+    fn json(&self) -> Value {
+        let of = |count: &AtomicU64| count.load(Ordering::Relaxed);
+        json!({
+            "garbage": of(&self.garbage),
+            "refused": of(&self.refused),
+            "flooded": of(&self.flooded),
+        })
+    }
+}
+
+/// A page that commands, and when it was heard last.
+#[derive(Clone, Copy, Debug)]
+struct Commander {
+    page: u64,
+    heard: Instant,
+}
+
+/// What the source and the pages share.
+pub(crate) struct Hub {
+    /// Random; a page that is served has it.
+    pub(crate) token: String,
+    /// What a page needs to know about the source, as JSON.
+    pub(crate) facts: Value,
+    pub(crate) counts: Counts,
+    /// Set to end the source and the server.
+    pub(crate) stop: AtomicBool,
+    events: broadcast::Sender<Event>,
+    orders: SyncSender<Order>,
+    /// Latest order to the hand that the source has not taken.
+    hand: Mutex<Option<Order>>,
+    commander: Mutex<Option<Commander>>,
+    recording: Mutex<Option<Arc<Finished>>>,
+    pages: AtomicU64,
+}
+
+/// A panic of another thread leaves these values whole.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Hub {
+    /// A hub for a source with these facts, and the source's end of the orders.
+    pub(crate) fn new(token: String, facts: Value) -> (Arc<Self>, Receiver<Order>) {
+        let (orders, receiver) = sync_channel(ORDERS);
+        let hub = Self {
+            token,
+            facts,
+            counts: Counts::default(),
+            stop: AtomicBool::new(false),
+            events: broadcast::channel(EVENTS).0,
+            orders,
+            hand: Mutex::new(None),
+            commander: Mutex::new(None),
+            recording: Mutex::new(None),
+            pages: AtomicU64::new(0),
+        };
+        (Arc::new(hub), receiver)
+    }
+
+    /// Sends an event to every page. Without a page it is gone.
+    pub(crate) fn tell(&self, event: Event) {
+        let _ = self.events.send(event);
+    }
+
+    /// Sends a message to every page, with the counts of what the server did not follow.
+    pub(crate) fn status(&self, mut status: Value) {
+        status["type"] = "status".into();
+        status["counts"] = self.counts.json();
+        status["commanded"] = locked(&self.commander).is_some().into();
+        self.tell(Event::Text(status.to_string().into()));
+    }
+
+    /// The events from now on.
+    pub(crate) fn listen(&self) -> broadcast::Receiver<Event> {
+        self.events.subscribe()
+    }
+
+    /// Number for a new page.
+    pub(crate) fn enter(&self) -> u64 {
+        self.pages.fetch_add(1, Ordering::Relaxed)
+    }
+
+    /// Gives the command to a page, if no other page has it and was heard lately; whether the page has
+    /// it.
+    pub(crate) fn join(&self, page: u64) -> bool {
+        let mut commander = locked(&self.commander);
+        let is_free =
+            commander.is_none_or(|other| other.page == page || other.heard.elapsed() > STALE);
+        if is_free {
+            let heard = Instant::now();
+            *commander = Some(Commander { page, heard });
+        }
+        is_free
+    }
+
+    /// Whether a page has the command; if so, it counts as heard.
+    pub(crate) fn commands(&self, page: u64) -> bool {
+        let mut commander = locked(&self.commander);
+        match &mut *commander {
+            Some(now) if now.page == page => {
+                now.heard = Instant::now();
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Takes an order of the page that commands.
+    pub(crate) fn order(&self, order: Order) {
+        if let Order::Hand { .. } = order {
+            *locked(&self.hand) = Some(order);
+        } else if self.orders.try_send(order).is_err() {
+            self.counts.flooded.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+
+    /// The latest order to the hand, once.
+    pub(crate) fn take_hand(&self) -> Option<Order> {
+        locked(&self.hand).take()
+    }
+
+    /// The end of a page: one that commands lets go of the handle and disarms the board.
+    pub(crate) fn leave(&self, page: u64) {
+        if self.commands(page) {
+            *locked(&self.commander) = None;
+            self.order(Order::Hand { at: None });
+            self.order(Order::Disarm);
+        }
+    }
+
+    /// Whether the page that commands was not heard for so long that its hand has to let go.
+    pub(crate) fn is_abandoned(&self) -> bool {
+        locked(&self.commander).is_none_or(|now| now.heard.elapsed() > STALE)
+    }
+
+    /// Keeps a finished recording for downloads, instead of the one before.
+    pub(crate) fn keep(&self, finished: Arc<Finished>) {
+        *locked(&self.recording) = Some(finished);
+    }
+
+    /// The latest finished recording.
+    pub(crate) fn recording(&self) -> Option<Arc<Finished>> {
+        locked(&self.recording).clone()
+    }
+
+    /// Whether source and server are to end.
+    pub(crate) fn stops(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+}

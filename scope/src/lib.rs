@@ -1,0 +1,18 @@
+//! The device live in a browser: a source behind a server at the loopback interface, and one page.
+
+mod batch;
+mod channels;
+pub mod cli;
+mod desk;
+mod estimators;
+mod export;
+mod facts;
+mod fault_watch;
+mod hub;
+mod order;
+mod page;
+mod recorder;
+mod server;
+mod session;
+mod source;
+mod token;

@@ -1,0 +1,185 @@
+//! What a page asks for, in the form of its messages.
+
+use drivers::Command;
+use firmware_app::large;
+use firmware_app::scene::BOUNDS;
+use haptic_control::{Request, SceneKind};
+use serde::Deserialize;
+use virtual_board::fault::Fault;
+
+/// A message of the page.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum Order {
+    /// The page with this token wants to command.
+    Join { token: String },
+    /// The page lives.
+    Alive,
+    /// The hand holds the handle at this angle, rad; `null` lets go.
+    Hand { at: Option<f64> },
+    /// Enables the amplifiers.
+    Arm,
+    /// Disables the amplifiers.
+    Disarm,
+    /// Selects a scene.
+    Scene { number: u8 },
+    /// Sets a parameter of a scene.
+    Tune {
+        scene: u8,
+        parameter: u8,
+        value: f32,
+    },
+    /// Selects an estimator of the image.
+    Estimator { number: u8 },
+    /// Injects a fault.
+    Fault { name: String },
+    /// Starts the virtual board again, with all parts whole.
+    Restart,
+    /// Begins or ends a recording.
+    Record { on: bool },
+    /// Continues or pauses the playback.
+    Play { on: bool },
+    /// Goes to this time of the recording, s.
+    Seek { to: f64 },
+    /// Sets the speed of the playback, 1 is real time.
+    Speed { factor: f64 },
+}
+
+/// Largest angle of the hand, rad: beyond it the handle has turned many times.
+const FARTHEST_RAD: f64 = 100.0;
+
+impl Order {
+    /// Parses a message.
+    ///
+    /// # Errors
+    /// One line on a text that is no order.
+    pub(crate) fn parse(text: &str) -> Result<Self, String> {
+        serde_json::from_str(text).map_err(|error| format!("no order: {error}"))
+    }
+
+    /// Checks what the host knows of the order. The board checks its commands again.
+    ///
+    /// # Errors
+    /// One line with the bounds.
+    pub(crate) fn check(&self) -> Result<(), String> {
+        match self {
+            Self::Hand { at: Some(angle) } if !(angle.abs() <= FARTHEST_RAD) => Err(format!(
+                "hand at {angle} rad: give -{FARTHEST_RAD} to {FARTHEST_RAD} rad"
+            )),
+            Self::Scene { number } => scene(*number).map(|_| ()),
+            Self::Tune {
+                scene: number,
+                parameter,
+                value,
+            } => {
+                let scene = scene(*number)?;
+                let known = scene.facts().parameters.get(usize::from(*parameter));
+                let known =
+                    known.ok_or_else(|| format!("scene {scene} has no parameter {parameter}"))?;
+                let range = known.quantity.range(&BOUNDS);
+                if range.contains(value) {
+                    return Ok(());
+                }
+                let (least, most) = (range.start(), range.end());
+                let (name, unit) = (known.name, known.quantity.unit());
+                Err(format!(
+                    "{scene} {name} {value}: out of bounds; give {least} to {most} {unit}"
+                ))
+            }
+            Self::Estimator { number } if usize::from(*number) >= large::NAMES.len() => Err(
+                format!("estimator {number}: give 0 to {}", large::NAMES.len() - 1),
+            ),
+            Self::Fault { name } => name.parse::<Fault>().and_then(|fault| {
+                if fault.acts_from_power_up() {
+                    return Err(format!("fault {name} acts from power-up on"));
+                }
+                Ok(())
+            }),
+            Self::Seek { to } if !to.is_finite() => Err("seek: not a number".to_owned()),
+            Self::Speed { factor } if !(0.01..=100.0).contains(factor) => {
+                Err("speed: give 0.01 to 100".to_owned())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The command of the link that the order is, if it is one.
+    pub(crate) fn command(&self) -> Option<Command> {
+        Some(match *self {
+            Self::Alive => Command::Request(Request::KeepAlive),
+            Self::Arm => Command::Request(Request::Arm),
+            Self::Disarm => Command::Request(Request::Disarm),
+            Self::Scene { number } => Command::Request(Request::Select(number)),
+            Self::Tune { scene, value, .. } if scene == SceneKind::Torque.number() => {
+                Command::Torque(value)
+            }
+            Self::Tune {
+                scene,
+                parameter,
+                value,
+            } => Command::Tune {
+                scene,
+                parameter,
+                value,
+            },
+            Self::Estimator { number } => Command::Estimator(number),
+            _ => return None,
+        })
+    }
+}
+
+fn scene(number: u8) -> Result<SceneKind, String> {
+    let known = SceneKind::ALL.get(usize::from(number)).copied();
+    known.ok_or_else(|| format!("scene {number}: give 0 to {}", SceneKind::ALL.len() - 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_that_is_no_order_is_refused() {
+        for text in [
+            "",
+            "{}",
+            "[1]",
+            r#"{"do":"fly"}"#,
+            r#"{"do":"arm","now":1}"#,
+        ] {
+            assert!(
+                Order::parse(text).unwrap_err().starts_with("no order"),
+                "{text}"
+            );
+        }
+        assert_eq!(
+            Order::parse(r#"{"do":"hand","at":null}"#),
+            Ok(Order::Hand { at: None })
+        );
+    }
+
+    #[test]
+    fn value_out_of_the_bounds_of_the_firmware_is_refused() {
+        let tune = |value| Order::Tune {
+            scene: SceneKind::Wall.number(),
+            parameter: 1,
+            value,
+        };
+        assert_eq!(tune(BOUNDS.stiffness).check(), Ok(()));
+        for value in [BOUNDS.stiffness + 0.01, -0.01, f32::NAN, f32::INFINITY] {
+            assert!(
+                tune(value).check().unwrap_err().contains("out of bounds"),
+                "{value}"
+            );
+        }
+        assert!(Order::Hand { at: Some(f64::NAN) }.check().is_err());
+        assert!(Order::Scene { number: 200 }.check().is_err());
+        assert!(Order::Estimator { number: 2 }.check().is_err());
+        let fault = |name: &str| {
+            Order::Fault {
+                name: name.to_owned(),
+            }
+            .check()
+        };
+        assert!(fault("stuck-a").is_ok() && fault("dead-crystal").is_err() && fault("x").is_err());
+    }
+}

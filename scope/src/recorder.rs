@@ -1,0 +1,88 @@
+//! Recordings that a page makes.
+
+use std::collections::HashMap;
+
+use drivers::link::{Hello, Message};
+use recordings::record::{choose, csv};
+use recordings::telemetry::Telemetry;
+
+use crate::export;
+
+/// Longest recording, rows: two minutes, so that its memory is bounded.
+pub(crate) const LONGEST: usize = 120_000;
+
+/// A recording in the making.
+pub(crate) struct Recorder {
+    telemetry: Telemetry,
+    rate_hz: f64,
+    truths: HashMap<u32, f64>,
+    rows: Vec<Box<[f64]>>,
+}
+
+/// A finished recording.
+pub(crate) struct Finished(Recorder);
+
+impl Recorder {
+    /// A recording of an image, from the next frame on.
+    pub(crate) fn new(hello: &Hello) -> Self {
+        let mut telemetry = Telemetry::default();
+        telemetry.add(Message::Hello(*hello));
+        Self {
+            telemetry,
+            rate_hz: f64::from(hello.rate),
+            truths: HashMap::new(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// Takes a message.
+    pub(crate) fn take(&mut self, message: Message) {
+        self.telemetry.add(message);
+    }
+
+    /// Takes the row of frame number `seq`, with the true velocity of the large motor if it is known.
+    pub(crate) fn row(&mut self, seq: u32, row: &[f64], true_omega: f64) {
+        if true_omega.is_finite() {
+            self.truths.insert(seq, true_omega);
+        }
+        self.rows.push(row.into());
+    }
+
+    /// Number of rows so far.
+    pub(crate) fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether the recording is as long as one may be.
+    pub(crate) fn is_full(&self) -> bool {
+        self.len() >= LONGEST
+    }
+
+    pub(crate) fn finish(self) -> Finished {
+        Finished(self)
+    }
+}
+
+impl Finished {
+    /// The recording as CSV that `cargo sim replay` reads: its longest run, if the board started again.
+    ///
+    /// # Errors
+    /// One line if there are fewer than two frames.
+    pub(crate) fn csv(&self) -> Result<String, String> {
+        let runs = self.0.telemetry.runs();
+        if runs.is_empty() {
+            return Err("the recording has no frame; record for longer".to_owned());
+        }
+        let run = choose(&runs, None).map_err(|failure| failure.to_string())?;
+        let truth = |frame: &recordings::telemetry::Frame| self.0.truths.get(&frame.seq).copied();
+        Ok(csv(run, self.0.rate_hz, truth))
+    }
+
+    /// All rows as MCAP.
+    ///
+    /// # Errors
+    /// One line if the file cannot be made.
+    pub(crate) fn mcap(&self, estimators: &[&str]) -> Result<Vec<u8>, String> {
+        export::mcap(self.0.rows.iter().map(AsRef::as_ref), estimators)
+    }
+}

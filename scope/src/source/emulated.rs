@@ -1,0 +1,224 @@
+//! The virtual board as a source: the flash image on the emulated board, paced to real time.
+
+use std::mem;
+use std::path::PathBuf;
+use std::sync::mpsc::Receiver;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use drivers::link::{Message, Parser};
+use drivers::{Command, encode};
+use serde_json::{Value, json};
+use simulation::device::Device;
+use terminal::failure::Failure;
+use virtual_board::fault::Fault;
+use virtual_board::image::{HOW_TO_BUILD, Image};
+use virtual_board::live::{self, Acts, Client, Hold, Seen};
+use virtual_board::run::Setup;
+
+use super::Source;
+use super::pacer::Pacer;
+use super::truths::Truths;
+use crate::desk::{Desk, FRAMES_HZ, Truth};
+use crate::facts;
+use crate::fault_watch::FaultWatch;
+use crate::hub::Hub;
+use crate::order::Order;
+
+/// Longest run before the board starts again, s: a year.
+const SECONDS: f64 = 3.2e7;
+/// Bytes on their way to the board while which no order is taken: the line is slower than a page.
+const WAITING: usize = 256;
+
+/// The flash image on the emulated board.
+pub(crate) struct Emulated {
+    image: Image,
+    /// Where the image is from, for the page.
+    from: String,
+    device: Device,
+}
+
+impl Emulated {
+    /// The image of this file, or one that is built now.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if there is no image.
+    pub(crate) fn new(file: Option<PathBuf>, device: Device) -> Result<Self, Failure> {
+        let (image, from) = match file {
+            Some(path) => (Image::read(&path)?, path.display().to_string()),
+            None => (Image::build("")?, HOW_TO_BUILD.to_owned()),
+        };
+        Ok(Self {
+            image,
+            from,
+            device,
+        })
+    }
+}
+
+impl Source for Emulated {
+    fn facts(&self) -> Value {
+        let faults: Vec<_> = Fault::all()
+            .filter(|fault| !fault.acts_from_power_up())
+            .collect();
+        let faults = faults
+            .iter()
+            .map(|fault| json!([fault.as_str(), fault.description()]));
+        let mut all = facts::of_device(&self.device);
+        all["source"] = json!({
+            "kind": "emulated",
+            "title": "virtual board",
+            "text": "The flash image runs on an emulated board with a simulated device. No silicon runs.",
+            "from": self.from,
+        });
+        all["faults"] = faults.collect();
+        all
+    }
+
+    fn run(self: Box<Self>, hub: Arc<Hub>, orders: Receiver<Order>) -> Result<(), Failure> {
+        let desk = Desk::new(Arc::clone(&hub), &self.device)?;
+        let table = Arc::new(Mutex::new(Table {
+            desk,
+            orders,
+            restarts: false,
+            offset_s: 0.0,
+        }));
+        let setup = Setup {
+            device: self.device,
+            hand: experiments::closed_loop::Hand::Gone(0.0),
+            seconds: SECONDS,
+            commands: Vec::new(),
+            keep_alive: false,
+            ..Setup::default()
+        };
+        while !hub.stops() {
+            let seat = Seat {
+                table: Arc::clone(&table),
+                parser: Parser::default(),
+                truths: Truths::default(),
+                pacer: Pacer::new(),
+                restarts: 0,
+                is_held: false,
+                frame_ticks: 1,
+                last_enables: [false; 2],
+            };
+            live::run(&self.image, &setup, Box::new(seat))?;
+            let mut table = table.lock().unwrap_or_else(PoisonError::into_inner);
+            table.restarts = false;
+            table.offset_s = table.desk.t() + 1.0 / FRAMES_HZ;
+            table.desk.restarted();
+        }
+        let mut table = table.lock().unwrap_or_else(PoisonError::into_inner);
+        table.desk.end_recording();
+        Ok(())
+    }
+}
+
+/// What outlives a restart of the run.
+struct Table {
+    desk: Desk,
+    orders: Receiver<Order>,
+    /// Whether the run is to start again.
+    restarts: bool,
+    /// Time of the runs before, s.
+    offset_s: f64,
+}
+
+/// The client of one run.
+struct Seat {
+    table: Arc<Mutex<Table>>,
+    parser: Parser,
+    truths: Truths,
+    pacer: Pacer,
+    restarts: usize,
+    is_held: bool,
+    /// Control ticks of a frame.
+    frame_ticks: usize,
+    last_enables: [bool; 2],
+}
+
+impl Client for Seat {
+    fn look(&mut self, seen: &Seen<'_>, acts: &mut Acts) -> bool {
+        let table = Arc::clone(&self.table);
+        let mut table = table.lock().unwrap_or_else(PoisonError::into_inner);
+        let Table {
+            desk,
+            orders,
+            restarts,
+            offset_s,
+        } = &mut *table;
+        if mem::replace(&mut self.restarts, seen.restarts) != seen.restarts {
+            self.truths = Truths::default();
+            desk.restarted();
+        }
+        self.truths.add(seen.ticks);
+        if let Some((_, on)) = seen.enables.last() {
+            self.last_enables = *on;
+        }
+        if let Some(watch) = &mut desk.fault {
+            watch.enables(&shifted(seen.enables, *offset_s));
+        }
+        let mut messages = Vec::new();
+        for byte in seen.sent {
+            self.parser.take(*byte, |message| messages.push(message));
+        }
+        for message in messages {
+            if let Message::Hello(hello) = message {
+                self.frame_ticks = (f64::from(hello.rate) / FRAMES_HZ) as usize;
+            }
+            let truth = match &message {
+                Message::Frame(frame) => self.truths.of(frame, self.frame_ticks.saturating_sub(1)),
+                _ => None,
+            };
+            let truth = truth.map(|(tick, instructions)| Truth {
+                t: *offset_s + tick.at_ns as f64 * 1e-9,
+                large: [tick.large.angle, tick.large.omega],
+                handle: [tick.handle.angle, tick.handle.omega],
+                felt: tick.felt,
+                currents: seen.currents,
+                instructions,
+                hand: seen.hand.map(|pose| pose.angle),
+            });
+            desk.message(message, truth.as_ref());
+        }
+        if desk.hello().is_none() && seen.at_ns.is_multiple_of(100_000_000) {
+            acts.send.extend(encode(Command::Identify));
+        }
+        while seen.waiting + acts.send.len() < WAITING
+            && let Ok(order) = orders.try_recv()
+        {
+            match &order {
+                Order::Restart => *restarts = true,
+                Order::Fault { name } => {
+                    if let Ok(fault) = name.parse() {
+                        let now = seen.at_ns + (*offset_s * 1e9) as u64;
+                        let was_on = self.last_enables != [false; 2];
+                        desk.fault = Some(FaultWatch::new(fault, now, was_on));
+                        acts.faults.push(fault);
+                    }
+                }
+                _ => {}
+            }
+            if let Some(command) = desk.order(&order) {
+                acts.send.extend(encode(command));
+            }
+        }
+        if let Some(Order::Hand { at }) = desk.hub.take_hand() {
+            self.is_held = at.is_some();
+            acts.hand = Some(at.map_or(Hold::Free, Hold::At));
+        } else if self.is_held && desk.hub.is_abandoned() {
+            self.is_held = false;
+            acts.hand = Some(Hold::Free);
+        }
+        desk.tell(|| self.pacer.json());
+        let goes_on = !desk.hub.stops() && !*restarts;
+        drop(table);
+        self.pacer.wait(seen.at_ns);
+        goes_on
+    }
+}
+
+/// Changes of the enables, in the time of all runs.
+fn shifted(enables: &[(u64, [bool; 2])], offset_s: f64) -> Vec<(u64, [bool; 2])> {
+    let offset = (offset_s * 1e9) as u64;
+    enables.iter().map(|(at, on)| (at + offset, *on)).collect()
+}

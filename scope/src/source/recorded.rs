@@ -1,0 +1,246 @@
+//! A recording as a source, with transport controls.
+
+use std::f64::consts::TAU;
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+use std::time::{Duration, Instant};
+
+use catalogue::parameters::Parameters;
+use experiments::replay::replay;
+use experiments::transparency::Fingertip;
+use recordings::recording::{BoardColumns, Recording};
+use serde_json::{Value, json};
+use simulation::device::Device;
+use terminal::failure::Failure;
+
+use super::Source;
+use crate::batch::Batch;
+use crate::channels::Values;
+use crate::estimators::Estimators;
+use crate::facts;
+use crate::hub::{Event, Hub};
+use crate::order::Order;
+
+/// Interval in which rows are sent.
+const STEP: Duration = Duration::from_millis(16);
+/// Rows of a step at most: a long step at a high speed sends fewer, and takes longer.
+const MOST: usize = 2000;
+/// Interval of the status.
+const STATUS: Duration = Duration::from_millis(100);
+
+/// A recording with its estimates.
+pub(crate) struct Recorded {
+    name: String,
+    device: Device,
+    /// Rows as the page gets them: channels, then estimators.
+    pub(crate) rows: Vec<Vec<f64>>,
+}
+
+impl Recorded {
+    /// Reads a recording and runs the estimators on it.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if it cannot be read.
+    pub(crate) fn read(path: &Path, device: Device) -> Result<Self, Failure> {
+        let name = path.display().to_string();
+        let text = fs::read(path)
+            .map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
+        let recording = Recording::parse(&*text, &name)?;
+        let board = BoardColumns::parse(&*text, &name)?;
+        if recording.t.len() < 2 {
+            return Err(Failure::Input(format!("{name}: fewer than two rows")));
+        }
+        let kinds = Estimators::kinds();
+        let replayed = replay(
+            &recording,
+            &name,
+            &kinds,
+            &device,
+            &Parameters::default(),
+            || (),
+        )?;
+        let velocity = |name: &str, k: usize| {
+            let found = replayed
+                .estimates
+                .iter()
+                .find(|estimate| estimate.estimator == name);
+            found.map_or(f64::NAN, |estimate| estimate.velocity[k].into())
+        };
+        let rows = (0..recording.t.len()).map(|k| {
+            let mut row = values(&recording, &board, &device, k).all().to_vec();
+            row.extend(kinds.iter().map(|kind| velocity(kind.name, k)));
+            row
+        });
+        Ok(Self {
+            rows: rows.collect(),
+            name,
+            device,
+        })
+    }
+}
+
+fn values(recording: &Recording, board: &BoardColumns, device: &Device, k: usize) -> Values {
+    let trace = &recording.trace;
+    let of = |name: &str| board.column(name).map_or(f64::NAN, |column| column[k]);
+    let at = |column: &Option<Vec<f64>>| column.as_ref().map_or(f64::NAN, |column| column[k]);
+    let angle = |counts: u32, turn: u32| f64::from(counts as i32) * TAU / f64::from(turn);
+    let (large, small) = (&device.stages.large, &device.stages.small);
+    let handle = trace.counts_small.as_ref();
+    let torque = of("torque");
+    Values {
+        t: recording.t[k],
+        true_omega: at(&trace.true_omega),
+        velocity_large: of("velocity_large"),
+        sigma_large: of("sigma_large"),
+        velocity_small: of("velocity_small"),
+        torque,
+        force: torque * Fingertip::new(device).mn_per_nm,
+        current: at(&trace.current),
+        current_small: at(&recording.current_small),
+        large_angle: angle(trace.counts_large[k], large.counts_per_rev),
+        handle_angle: handle.map_or(f64::NAN, |counts| angle(counts[k], small.counts_per_rev)),
+        state: of("state"),
+        cause: of("cause"),
+        ..Values::default()
+    }
+}
+
+impl Source for Recorded {
+    fn facts(&self) -> Value {
+        let mut all = facts::of_device(&self.device);
+        let last = self.rows.len() - 1;
+        all["source"] = json!({
+            "kind": "recorded",
+            "title": "recording",
+            "text": "A recording. The force is that of the torque wanted.",
+            "from": self.name,
+            "begin": self.rows[0][0],
+            "end": self.rows[last][0],
+        });
+        all
+    }
+
+    fn run(self: Box<Self>, hub: Arc<Hub>, orders: Receiver<Order>) -> Result<(), Failure> {
+        let mut player = Player {
+            next: 0,
+            at: self.rows[0][0],
+            plays: true,
+            speed: 1.0,
+            batch: Batch::new(),
+        };
+        let (mut last, mut told) = (Instant::now(), Instant::now());
+        while !hub.stops() {
+            while let Ok(order) = orders.try_recv() {
+                player.order(&order, &self.rows);
+            }
+            player.advance(last.elapsed().as_secs_f64(), &self.rows);
+            last = Instant::now();
+            if let Some(bytes) = player.batch.due() {
+                hub.tell(Event::Rows(bytes));
+            }
+            if told.elapsed() >= STATUS {
+                told = Instant::now();
+                hub.status(json!({
+                    "t": player.at,
+                    "plays": player.plays,
+                    "speed": player.speed,
+                }));
+            }
+            std::thread::sleep(STEP);
+        }
+        Ok(())
+    }
+}
+
+/// The position in a recording.
+struct Player {
+    /// The next row.
+    next: usize,
+    /// Time of the recording, s.
+    at: f64,
+    plays: bool,
+    speed: f64,
+    batch: Batch,
+}
+
+impl Player {
+    fn order(&mut self, order: &Order, rows: &[Vec<f64>]) {
+        match *order {
+            Order::Play { on } => {
+                if on && self.next == rows.len() {
+                    self.seek(rows[0][0], rows);
+                }
+                self.plays = on;
+            }
+            Order::Seek { to } => self.seek(to, rows),
+            Order::Speed { factor } => self.speed = factor,
+            _ => {}
+        }
+    }
+
+    fn seek(&mut self, to: f64, rows: &[Vec<f64>]) {
+        self.next = rows.partition_point(|row| row[0] < to);
+        self.at = to.clamp(rows[0][0], rows[rows.len() - 1][0]);
+        self.batch.cut();
+        // A row, so that a paused page shows the place.
+        if let Some(row) = rows.get(self.next) {
+            self.batch.add(row);
+            self.next += 1;
+        }
+    }
+
+    fn advance(&mut self, seconds: f64, rows: &[Vec<f64>]) {
+        if !self.plays {
+            return;
+        }
+        self.at += seconds * self.speed;
+        let due = rows[self.next..]
+            .iter()
+            .take_while(|row| row[0] <= self.at)
+            .take(MOST);
+        let mut number = 0;
+        for row in due {
+            self.batch.add(row);
+            number += 1;
+        }
+        self.next += number;
+        if number == MOST {
+            self.at = rows[self.next - 1][0];
+        }
+        if self.next == rows.len() {
+            self.at = rows[rows.len() - 1][0];
+            self.plays = false;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn player_seeks_pauses_and_ends() {
+        let rows: Vec<Vec<f64>> = (0..100).map(|k| vec![f64::from(k) * 0.01]).collect();
+        let mut player = Player {
+            next: 0,
+            at: 0.0,
+            plays: true,
+            speed: 2.0,
+            batch: Batch::new(),
+        };
+        player.advance(0.1, &rows);
+        assert_eq!(player.next, 21);
+        player.order(&Order::Play { on: false }, &rows);
+        player.advance(1.0, &rows);
+        assert_eq!(player.next, 21);
+        player.order(&Order::Seek { to: 0.5 }, &rows);
+        assert_eq!((player.next, player.at), (51, 0.5));
+        player.order(&Order::Play { on: true }, &rows);
+        player.advance(10.0, &rows);
+        assert!(player.next == 100 && !player.plays);
+        player.order(&Order::Play { on: true }, &rows);
+        assert!(player.next == 1 && player.plays);
+    }
+}

@@ -1,0 +1,263 @@
+//! The page in a real browser, with the flash image behind it.
+
+mod common;
+
+use common::devtools::{Browser, Tab};
+use common::{Server, get, image};
+use serde_json::json;
+
+/// The page is loaded, and this page commands a board that sends frames.
+fn ready(browser: &mut Browser, tab: &Tab) {
+    browser.wait(
+        tab,
+        "scope.role?.commands === true && scope.status?.mode === 'boot' && scope.frames > 2",
+    );
+}
+
+/// Arms the board and selects the scene of this name.
+fn run_scene(browser: &mut Browser, tab: &Tab, name: &str) {
+    browser.click(tab, "#arm");
+    browser.wait(tab, "scope.status.mode === 'armed'");
+    browser.value(tab, &format!(
+        "(() => {{ const s = $('scene'); s.value = [...s.options].find((o) => o.text === '{name}').value; s.onchange(); }})()"
+    ));
+    browser.wait(tab, "scope.status.mode === 'running'");
+}
+
+/// Presses the mouse on the handle, and moves it by this angle around its axis, rad.
+fn drag(browser: &mut Browser, tab: &Tab, by: f64, steps: u32) {
+    let place = browser.value(
+        tab,
+        "(() => { const b = $('device').getBoundingClientRect(), g = scope.view.geometry(); \
+        return [b.left + g.x, b.top + g.y, g.radius, scope.store.latest('handle_angle')]; })()",
+    );
+    let number = |k: usize| place[k].as_f64().expect("a number");
+    let (x, y, radius, from) = (number(0), number(1), number(2), number(3));
+    let at = |angle: f64| {
+        (
+            x + 0.9 * radius * angle.sin(),
+            y - 0.9 * radius * angle.cos(),
+        )
+    };
+    let (px, py) = at(from);
+    browser.mouse(tab, "mousePressed", px, py);
+    for step in 1..=steps {
+        let (px, py) = at(from + by * f64::from(step) / f64::from(steps));
+        browser.mouse(tab, "mouseMoved", px, py);
+    }
+}
+
+#[test]
+fn handle_is_dragged_into_the_wall_and_the_estimator_changes_without_a_step() {
+    let server = Server::emulated();
+    let mut browser = Browser::start();
+    let tab = browser.open(&server.url(), 1300, 900);
+    ready(&mut browser, &tab);
+    run_scene(&mut browser, &tab, "wall");
+    let force = |browser: &mut Browser| {
+        browser
+            .value(&tab, "scope.store.latest('force')")
+            .as_f64()
+            .expect("a force")
+    };
+    assert!(force(&mut browser).abs() < 30.0);
+    drag(&mut browser, &tab, 1.0, 20);
+    // Into the wall: it pushes back with hundreds of mN, and the number on the page says so.
+    browser.wait(
+        &tab,
+        "scope.store.latest('force') < -300 && Number($('force').textContent) < -300",
+    );
+    browser.wait(&tab, "scope.view.latency.length > 0");
+    browser.picture(&tab, "wall.png");
+
+    // The other estimator takes over without a step of the torque that the scene wants.
+    let (now, other) = (0, 1);
+    browser.wait(&tab, &format!("scope.store.latest('estimator') === {now}"));
+    browser.value(&tab, "window.at = scope.store.end, 0");
+    browser.click(&tab, &format!("#estimator-{other}"));
+    browser.wait(
+        &tab,
+        &format!(
+            "scope.store.latest('estimator') === {other} && scope.store.end > window.at + 0.2"
+        ),
+    );
+    let step = browser.value(&tab, "(() => { const s = scope.store, f = s.values[s.column.torque]; let most = 0; \
+        for (let k = s.search(window.at) + 1; k < s.count; k++) most = Math.max(most, Math.abs(f[k % KEPT] - f[(k - 1) % KEPT])); return most; })()");
+    let step = step.as_f64().expect("a torque") * 2e3 / 0.07;
+    assert!(
+        step < 10.0,
+        "the torque steps by {step} mN at the fingertip"
+    );
+
+    // The hand lets go, and the keys move the handle too.
+    browser.mouse(&tab, "mouseReleased", 10.0, 10.0);
+    browser.wait(&tab, "!Number.isFinite(scope.store.latest('hand_angle'))");
+    browser.value(&tab, "$('device').focus()");
+    browser.key(&tab, "ArrowLeft");
+    browser.wait(&tab, "Number.isFinite(scope.store.latest('hand_angle'))");
+    browser.key(&tab, "Escape");
+    browser.wait(&tab, "!Number.isFinite(scope.store.latest('hand_angle'))");
+
+    // A fault ends in the safe state, with its explanation.
+    browser.click(&tab, "[data-fault=emergency-stop]");
+    browser.wait(&tab, "scope.status.mode === 'safe' && /off after [0-9.]+ ms.*interlock.*Largest force/.test($('result').textContent)");
+    browser.picture(&tab, "fault.png");
+
+    assert_eq!(browser.complaints, [""; 0]);
+    let own = [
+        server.url(),
+        format!("ws://127.0.0.1:{}/", server.port),
+        "data:".to_owned(),
+        "about:".to_owned(),
+    ];
+    let foreign = browser
+        .requests
+        .iter()
+        .filter(|url| !own.iter().any(|own| url.starts_with(own)));
+    assert_eq!(foreign.collect::<Vec<_>>(), [""; 0]);
+}
+
+#[test]
+fn downloaded_recording_replays_to_the_estimates_of_the_page() {
+    let server = Server::emulated();
+    let mut browser = Browser::start();
+    let tab = browser.open(&server.url(), 1300, 900);
+    ready(&mut browser, &tab);
+    run_scene(&mut browser, &tab, "free-air");
+    browser.click(&tab, "#record");
+    browser.wait(&tab, "scope.status.recording > 0");
+    drag(&mut browser, &tab, 1.5, 30);
+    browser.wait(&tab, "scope.status.recording > 1500");
+    browser.click(&tab, "#record");
+    browser.wait(
+        &tab,
+        "!$('csv').hidden && $('csv').getAttribute('href').includes('recording.csv')",
+    );
+    let path = browser.value(&tab, "$('csv').getAttribute('href')");
+    let (status, answer) = get(server.port, path.as_str().expect("a path"), &[]);
+    assert_eq!(status, 200);
+    let (_, csv) = answer.split_once("\r\n\r\n").expect("a body");
+    let csv = csv[csv.find("t,").expect("a header")..].to_owned();
+    let recording = recordings::recording::Recording::parse(csv.as_bytes(), "recording.csv")
+        .expect("a recording");
+    let rows = recording.t.len();
+    assert!(
+        rows > 1500 && recording.trace.true_omega.is_some(),
+        "{rows} rows"
+    );
+
+    let kinds: Vec<_> = catalogue::estimators::Kind::all()
+        .iter()
+        .filter(|kind| !kind.needs.edge)
+        .collect();
+    let replayed = experiments::replay::replay(
+        &recording,
+        "recording.csv",
+        &kinds,
+        &simulation::device::Device::default(),
+        &catalogue::parameters::Parameters::default(),
+        || (),
+    );
+    let estimates = replayed.expect("a replay").estimates;
+    assert_eq!(estimates.len(), kinds.len());
+    // The rows of the page with the truth of the recording: the page has all, from before to after.
+    let truth = recording.trace.true_omega.as_ref().expect("the truth");
+    let begin = format!(
+        "{:?}",
+        truth[..50]
+            .iter()
+            .map(|omega| *omega as f32)
+            .collect::<Vec<_>>()
+    );
+    let found = browser.value(&tab, &format!(
+        "(() => {{ const s = scope.store, v = s.values[s.column.true_omega], want = new Float32Array({begin}); \
+         for (let k = s.first; k < s.count; k++) if (want.every((w, j) => v[(k + j) % KEPT] === w)) return k; return -1; }})()"
+    ));
+    let found = found.as_i64().expect("a number");
+    assert!(found >= 0, "the recording is not on the page");
+    for estimate in &estimates {
+        let name = estimate.estimator;
+        let shown = browser.value(
+            &tab,
+            &format!(
+                "(() => {{ const s = scope.store, v = s.values[s.column['estimate:{name}']]; \
+             return Array.from({{ length: {rows} }}, (_, j) => v[({found} + j) % KEPT]); }})()"
+            ),
+        );
+        let shown: Vec<f32> = shown
+            .as_array()
+            .expect("numbers")
+            .iter()
+            .map(|v| v.as_f64().expect("a number") as f32)
+            .collect();
+        assert_eq!(shown, estimate.velocity, "{name}");
+    }
+    assert_eq!(browser.complaints, [""; 0]);
+}
+
+#[test]
+fn second_tab_watches_and_a_page_connects_again_to_a_new_server() {
+    let server = Server::emulated();
+    let mut browser = Browser::start();
+    let first = browser.open(&server.url(), 1300, 900);
+    ready(&mut browser, &first);
+    let second = browser.open(&server.url(), 390, 844);
+    browser.wait(&second, "scope.role?.commands === false && $('commands').disabled && !$('role').hidden && scope.frames > 2");
+    // The narrow page needs no horizontal scroll.
+    browser.wait(&second, "document.documentElement.scrollWidth <= 390");
+    let wide = "[...document.querySelectorAll('main *')].filter((e) => e.getBoundingClientRect().right > 391 && !e.closest('.u-legend, .uplot')).map((e) => e.id || e.className)";
+    assert_eq!(browser.value(&second, wide), json!([]));
+    run_scene(&mut browser, &first, "wall");
+    browser.wait(
+        &second,
+        "scope.status.mode === 'running' && $('scene').selectedOptions[0].text === 'wall'",
+    );
+    browser.picture(&second, "narrow.png");
+    // The page that commands is closed: the board is disarmed, and the other page takes over.
+    browser.close(&first);
+    browser.wait(&second, "scope.status.mode === 'boot'");
+    browser.click(&second, "#take");
+    ready(&mut browser, &second);
+
+    let port = server.port;
+    drop(server);
+    browser.wait(&second, "!$('notice').hidden && $('commands').disabled");
+    browser.value(&second, "window.old = true, 0");
+    let image = image();
+    let image = image.to_str().expect("a path in UTF-8");
+    let _server = Server::start(&["--image", image, "--port", &port.to_string()]);
+    // The new server has another token: the page loads itself again.
+    browser.wait(
+        &second,
+        "window.old === undefined && document.readyState === 'complete'",
+    );
+    ready(&mut browser, &second);
+    let unexpected: Vec<_> = browser
+        .complaints
+        .iter()
+        .filter(|line| !line.contains("ERR_CONNECTION_REFUSED"))
+        .collect();
+    assert_eq!(unexpected, [""; 0]);
+}
+
+#[test]
+fn dark_page_has_dark_plots() {
+    let server = Server::emulated();
+    let mut browser = Browser::start();
+    let tab = browser.open(&server.url(), 1300, 900);
+    ready(&mut browser, &tab);
+    let dark = json!({"features": [{"name": "prefers-color-scheme", "value": "dark"}]});
+    browser.tell(&tab, "Emulation.setEmulatedMedia", &dark);
+    browser.wait(
+        &tab,
+        "getComputedStyle(document.body).backgroundColor === 'rgb(20, 23, 26)'",
+    );
+    run_scene(&mut browser, &tab, "detents");
+    drag(&mut browser, &tab, 1.0, 40);
+    browser.wait(
+        &tab,
+        "scope.plots.plots[0].plot.axes[0].stroke() === '#9aa6b0'",
+    );
+    browser.picture(&tab, "dark.png");
+    assert_eq!(browser.complaints, [""; 0]);
+}

@@ -1,0 +1,224 @@
+//! The server against pages that err, flood, read slowly or vanish, with the flash image behind it.
+
+mod common;
+
+use std::process::Command;
+use std::sync::Mutex;
+
+use common::{Client, Server, get};
+use serde_json::{Value, json};
+
+/// One emulated board at a time: each takes a core.
+static ONE: Mutex<()> = Mutex::new(());
+
+fn is_on(status: &Value) -> bool {
+    status["on"] == true
+}
+
+/// A client that commands a board that runs scene `wall`, and lives.
+fn running(server: &Server) -> Client {
+    let mut client = server.joined();
+    assert_eq!(client.role()["commands"], true);
+    client.lives = true;
+    client.status("the board sends frames", |status| status["mode"] == "boot");
+    client.order(&json!({"do": "arm"}));
+    client.status("armed", |status| status["mode"] == "armed");
+    client.order(&json!({"do": "scene", "number": 2}));
+    client.status("running", |status| {
+        status["mode"] == "running" && status["scene"] == 2
+    });
+    client
+}
+
+#[test]
+fn other_hosts_origins_and_tokens_are_refused() {
+    let _one = ONE
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner);
+    let server = Server::emulated();
+    let port = server.port;
+    assert_eq!(get(port, "/", &[]).0, 200);
+    assert_eq!(get(port, "/", &[("Host", "evil.example")]).0, 421);
+    assert_eq!(get(port, "/", &[("Origin", "http://evil.example")]).0, 403);
+    assert_eq!(get(port, "/recording.csv?token=00", &[]).0, 403);
+    assert_eq!(
+        get(port, &format!("/recording.csv?token={}", server.token), &[]).0,
+        404
+    );
+    let other = format!("http://127.0.0.1:{}", port ^ 1);
+    for origin in ["", "null", "http://evil.example", &other] {
+        let refused = Client::connect(port, origin).err().expect("refused");
+        assert!(refused.contains("403"), "{origin}: {refused}");
+    }
+    let policy = get(port, "/", &[]).1.to_lowercase();
+    let policy = policy
+        .lines()
+        .find(|line| line.starts_with("content-security-policy"))
+        .expect("a policy");
+    assert!(
+        policy.contains("default-src 'none'") && !policy.contains("unsafe"),
+        "{policy}"
+    );
+
+    let mut watcher = server.client();
+    watcher.order(&json!({"do": "arm"}));
+    assert_eq!(watcher.role()["known"], false);
+    watcher.order(&json!({"do": "join", "token": "0".repeat(32)}));
+    assert_eq!(watcher.role()["commands"], false);
+    watcher.order(&json!({"do": "arm"}));
+    let status = watcher.status("refusals are counted", |status| {
+        status["counts"]["refused"] == 3
+    });
+    assert!(!is_on(&status));
+    // It sees the board all the same.
+    assert!(watcher.rows > 0);
+}
+
+#[test]
+fn one_page_commands_and_the_other_watches_until_the_first_has_gone() {
+    let _one = ONE
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner);
+    let server = Server::emulated();
+    let mut first = running(&server);
+    let mut second = server.joined();
+    assert_eq!(second.role()["commands"], false);
+    second.order(&json!({"do": "disarm"}));
+    assert!(
+        second.role()["why"]
+            .as_str()
+            .is_some_and(|why| why.contains("another page"))
+    );
+    for _ in 0..20 {
+        first.next();
+    }
+    assert!(is_on(&first.status("still running", |_| true)));
+    // The page that commands goes away: the board is disarmed, and the other may command.
+    drop(first);
+    second.status("disarmed", |status| {
+        status["mode"] == "boot" && status["commanded"] == false
+    });
+    second.order(&json!({"do": "join", "token": server.token}));
+    assert_eq!(second.role()["commands"], true);
+}
+
+#[test]
+fn device_goes_safe_when_keep_alives_stop() {
+    let _one = ONE
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner);
+    let server = Server::emulated();
+    let mut page = running(&server);
+    page.lives = false;
+    let status = page.status("the scene ends", |status| status["mode"] != "running");
+    assert_eq!(status["cause"], "command-timeout");
+    let status = page.status("the amplifiers are off", |status| !is_on(status));
+    assert_eq!(status["cause"], "command-timeout");
+}
+
+#[test]
+fn garbage_floods_and_slow_readers_do_not_affect_the_board() {
+    let _one = ONE
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner);
+    let server = Server::emulated();
+    let mut page = running(&server);
+    // A page that never reads.
+    let mut slow = server.client();
+    // A page that sends garbage until it is thrown out.
+    let mut vandal = server.joined();
+    for k in 0..2000 {
+        let text = [
+            "{",
+            "\u{0}",
+            "[[[[",
+            "{\"do\":\"tune\",\"scene\":2,\"parameter\":1,\"value\":1e99}",
+        ][k % 4];
+        if vandal
+            .socket
+            .send(tungstenite::Message::text(text))
+            .is_err()
+        {
+            break;
+        }
+    }
+    let counts = page.status("garbage is counted", |status| {
+        status["counts"]["garbage"].as_u64() > Some(100)
+    });
+    assert_eq!(counts["mode"], "running");
+    // A message that is too long ends its page.
+    let mut long = server.client();
+    let _ = long
+        .socket
+        .send(tungstenite::Message::text("x".repeat(100_000)));
+    // The page that commands floods: what is too much is not followed, and counted.
+    for k in 0..5000 {
+        page.order(&json!({"do": "hand", "at": 1e-4 * f64::from(k % 7)}));
+    }
+    let status = page.status("floods are counted", |status| {
+        status["counts"]["flooded"].as_u64() > Some(1000)
+    });
+    assert_eq!(status["mode"], "running", "{status}");
+    // Commands out of bounds are refused by the server.
+    page.order(&json!({"do": "tune", "scene": 2, "parameter": 1, "value": 100.0}));
+    let why = page.wait("a refusal", |_, message| {
+        (message["type"] == "refused")
+            .then(|| message["why"].as_str().unwrap_or_default().to_owned())
+    });
+    assert!(why.contains("out of bounds"), "{why}");
+    // The board has lost no frame and missed no tick, and no page but the slow one lost rows.
+    let before = page.rows;
+    page.wait("more rows", |page, _| {
+        (page.rows > before + 3000).then_some(())
+    });
+    assert_eq!((page.value("drops"), page.lost), (0.0, 0.0));
+    // The slow page finds what it lost: more than its socket and its queue held.
+    slow.wait("rows are lost and counted", |slow, _| {
+        (slow.lost > 0.0).then_some(())
+    });
+}
+
+#[test]
+fn fault_is_told_with_its_time_and_its_cause() {
+    let _one = ONE
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner);
+    let server = Server::emulated();
+    let mut page = running(&server);
+    page.order(&json!({"do": "fault", "name": "emergency-stop"}));
+    let status = page.status("a result", |status| status["fault"]["cause"].is_string());
+    let fault = &status["fault"];
+    assert_eq!(
+        (&fault["name"], &fault["cause"]),
+        (&json!("emergency-stop"), &json!("interlock"))
+    );
+    let off = fault["off_ms"].as_f64().expect("a time");
+    assert!((0.0..5.0).contains(&off), "{off}");
+    assert!(!is_on(
+        &page.status("safe", |status| status["mode"] == "safe")
+    ));
+    // A new board is whole.
+    page.order(&json!({"do": "restart"}));
+    page.status("a new board", |status| status["mode"] == "boot");
+    page.order(&json!({"do": "arm"}));
+    page.status("armed", |status| status["mode"] == "armed");
+}
+
+#[test]
+fn interrupt_ends_the_server_with_status_0() {
+    let _one = ONE
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner);
+    let mut server = Server::emulated();
+    let mut page = running(&server);
+    page.next();
+    let id = server.child.id().to_string();
+    assert!(
+        Command::new("kill")
+            .args(["-INT", &id])
+            .status()
+            .expect("kill")
+            .success()
+    );
+    assert!(server.child.wait().expect("an end").success());
+}
