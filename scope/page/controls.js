@@ -6,8 +6,9 @@ class Controls {
   constructor(facts, link, view, plots) {
     Object.assign(this, { facts, link, view, plots, pending: new Map(), values: new Map(), scene: null });
     const { source } = facts;
-    $("source").textContent = `${source.title}: ${source.text} (${source.from})`;
-    $("footer").textContent = `Hand: a spring of ${facts.hand.stiffness} N·m/rad and a damper of ${facts.hand.damping} N·m·s/rad between the handle and a target, which is followed at ${facts.hand.following} 1/s and at most ${facts.hand.fastest} rad/s. A positive force pushes the hand clockwise.`;
+    $("source").textContent = `${source.title}: ${source.text}`;
+    $("source").title = source.from;
+    $("footer").textContent = `Hand: a spring of ${facts.hand.stiffness} N·m/rad and a damper of ${facts.hand.damping} N·m·s/rad between the handle and a target, which is followed at ${facts.hand.following} 1/s and at most ${facts.hand.fastest} rad/s. A positive force pushes the hand clockwise. Source: ${source.from}`;
     const isRecorded = source.kind === "recorded";
     $("commands").hidden = $("record-card").hidden = isRecorded;
     $("transport").hidden = !isRecorded;

@@ -98,7 +98,9 @@ class DeviceView {
     c.fillText("large motor", motor.x, motor.y + motor.radius + 16);
     c.fillText("coupler", middle, g.y + 38);
     this.drawWall(c, g, ink);
+    c.strokeStyle = ink("--shade"); c.lineWidth = 1.5;
     disc(c, g.x, g.y, g.radius, handle, ink("--card"), ink("--line"), 0);
+    this.drawWallEdge(c, g, ink);
     // The lever with the fingertip.
     const tip = on(g, handle);
     c.strokeStyle = ink("--ink"); c.lineWidth = 5; c.lineCap = "round";
@@ -117,10 +119,15 @@ class DeviceView {
   // The wall of the scene, from its position on.
   drawWall(c, g, ink) {
     if (this.wall === null) return;
-    c.fillStyle = ink("--band"); c.strokeStyle = ink("--good"); c.lineWidth = 3;
+    c.fillStyle = ink("--band");
     const from = this.wall - Math.PI / 2;
     c.beginPath(); c.moveTo(g.x, g.y); c.arc(g.x, g.y, g.radius + 14, from, from + 1); c.closePath(); c.fill();
+  }
+
+  drawWallEdge(c, g, ink) {
+    if (this.wall === null) return;
     const edge = on({ ...g, radius: g.radius + 14 }, this.wall);
+    c.strokeStyle = ink("--good"); c.lineWidth = 3;
     c.beginPath(); c.moveTo(g.x, g.y); c.lineTo(edge.x, edge.y); c.stroke();
   }
 

@@ -7,7 +7,9 @@ function connect(handlers) {
   const link = { socket: null, commands: false, isOpen: false };
   link.send = (order) => {
     // A socket that does not keep up gets no more: what it holds would come too late.
-    if (link.isOpen && link.socket.bufferedAmount < 65536) link.socket.send(JSON.stringify(order));
+    if (!link.isOpen || link.socket.bufferedAmount > 65536) return;
+    const { do: name, ...fields } = order;
+    link.socket.send(JSON.stringify(Object.keys(fields).length ? { [name]: fields } : name));
   };
   link.join = () => link.send({ do: "join", token: TOKEN });
   const open = () => {

@@ -107,13 +107,15 @@ fn serve(server: Server, source: Box<dyn Source>, opens: bool) -> Result<(), Fai
         open(&url);
     }
     let of_source = Arc::clone(&hub);
-    let source = thread::spawn(move || {
+    let named = thread::Builder::new().name("source".to_owned());
+    let source = named.spawn(move || {
         let ended = source.run(Arc::clone(&of_source), orders);
         // A source that has failed ends the server.
         of_source.stop.store(true, Ordering::Relaxed);
         ended
     });
-    let served = server.serve(Arc::clone(&hub));
+    let source = source.map_err(|error| Failure::Check(format!("a thread: {error}")))?;
+    let served = server.serve(&hub);
     hub.stop.store(true, Ordering::Relaxed);
     let ended = source
         .join()

@@ -209,10 +209,15 @@ impl Desk {
 
     fn values(&self, frame: &Frame) -> Values {
         let angle = |counts: u32, turn: f64| f64::from(counts as i32) * turn;
+        // The board sends zeros where the scene needs no velocity.
+        let needed = |value: f32| match frame.sigma_large {
+            0.0 => f64::NAN,
+            _ => value.into(),
+        };
         Values {
             t: self.t,
-            velocity_large: frame.velocity_large.into(),
-            sigma_large: frame.sigma_large.into(),
+            velocity_large: needed(frame.velocity_large),
+            sigma_large: needed(frame.sigma_large),
             velocity_small: frame.velocity_small.into(),
             torque: frame.torque.into(),
             current: frame.current.into(),

@@ -136,3 +136,35 @@ pub(crate) fn mcap<'a>(
     drop(writer);
     Ok(bytes.into_inner())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_channel_has_a_schema_and_unknown_values_are_left_out() {
+        let width = CHANNELS.len() + 1;
+        let mut row = vec![f64::NAN; width];
+        (row[0], row[width - 1]) = (0.25, -1.5);
+        let bytes = mcap([row.as_slice()].into_iter(), &["some-name"]).unwrap();
+        let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+        for channel in summary.channels.values() {
+            let schema = channel.schema.as_ref().expect("a schema");
+            let files = FileDescriptorSet::decode(&*schema.data).unwrap().file;
+            let message = &files[0].message_type[0];
+            assert_eq!(schema.name, format!("{PACKAGE}.{}", message.name()));
+            assert!(!message.field.is_empty());
+        }
+        let messages: Vec<_> = mcap::MessageStream::new(&bytes).unwrap().collect();
+        let [Ok(message)] = &messages[..] else {
+            panic!("one message, of the only topic with a value");
+        };
+        assert_eq!(
+            (message.channel.topic.as_str(), message.log_time),
+            ("/estimates", 250_000_000)
+        );
+        // Field 1 of wire type 1, and the value.
+        let expected: Vec<u8> = [9].into_iter().chain((-1.5_f64).to_le_bytes()).collect();
+        assert_eq!(*message.data, expected);
+    }
+}

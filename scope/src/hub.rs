@@ -71,6 +71,8 @@ pub(crate) struct Hub {
     orders: SyncSender<Order>,
     /// Latest order to the hand that the source has not taken.
     hand: Mutex<Option<Order>>,
+    /// Whether the page that commanded has left, and the source has not disarmed the board yet.
+    left: AtomicBool,
     commander: Mutex<Option<Commander>>,
     recording: Mutex<Option<Arc<Finished>>>,
     pages: AtomicU64,
@@ -93,6 +95,7 @@ impl Hub {
             events: broadcast::channel(EVENTS).0,
             orders,
             hand: Mutex::new(None),
+            left: AtomicBool::new(false),
             commander: Mutex::new(None),
             recording: Mutex::new(None),
             pages: AtomicU64::new(0),
@@ -167,8 +170,14 @@ impl Hub {
         if self.commands(page) {
             *locked(&self.commander) = None;
             self.order(Order::Hand { at: None });
-            self.order(Order::Disarm);
+            // No order: a full queue must not lose it.
+            self.left.store(true, Ordering::Relaxed);
         }
+    }
+
+    /// Whether the board has to be disarmed because the page that commanded has left; once.
+    pub(crate) fn take_left(&self) -> bool {
+        self.left.swap(false, Ordering::Relaxed)
     }
 
     /// Whether the page that commands was not heard for so long that its hand has to let go.
@@ -189,5 +198,63 @@ impl Hub {
     /// Whether source and server are to end.
     pub(crate) fn stops(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hub() -> (Arc<Hub>, Receiver<Order>) {
+        Hub::new("token".to_owned(), Value::Null)
+    }
+
+    #[test]
+    fn page_that_does_not_read_loses_the_oldest_events() {
+        let (hub, _orders) = hub();
+        let mut events = hub.listen();
+        for k in 0..3 * EVENTS {
+            hub.tell(Event::Text(k.to_string().into()));
+        }
+        let lost = events.try_recv();
+        assert!(
+            matches!(lost, Err(broadcast::error::TryRecvError::Lagged(n)) if n == 2 * EVENTS as u64)
+        );
+        let Ok(Event::Text(next)) = events.try_recv() else {
+            panic!("an event");
+        };
+        assert_eq!(next.as_str(), (2 * EVENTS).to_string());
+    }
+
+    #[test]
+    fn orders_are_bounded_and_the_hand_has_its_latest_one() {
+        let (hub, orders) = hub();
+        for k in 0..3 * ORDERS {
+            hub.order(Order::Alive);
+            hub.order(Order::Hand { at: Some(k as f64) });
+        }
+        assert_eq!(orders.try_iter().count(), ORDERS);
+        assert_eq!(
+            hub.counts.flooded.load(Ordering::Relaxed),
+            2 * ORDERS as u64
+        );
+        let last = (3 * ORDERS - 1) as f64;
+        assert_eq!(hub.take_hand(), Some(Order::Hand { at: Some(last) }));
+        assert_eq!(hub.take_hand(), None);
+    }
+
+    #[test]
+    fn page_that_leaves_disarms_the_board_with_a_full_queue_too() {
+        let (hub, _orders) = hub();
+        assert!(hub.join(1) && !hub.join(2));
+        for _ in 0..2 * ORDERS {
+            hub.order(Order::Alive);
+        }
+        hub.leave(2);
+        assert!(!hub.take_left());
+        hub.leave(1);
+        assert!(hub.take_left() && !hub.take_left());
+        assert_eq!(hub.take_hand(), Some(Order::Hand { at: None }));
+        assert!(hub.join(2));
     }
 }

@@ -7,9 +7,11 @@ use haptic_control::{Request, SceneKind};
 use serde::Deserialize;
 use virtual_board::fault::Fault;
 
-/// A message of the page.
+/// A message of the page: `"arm"`, `{"hand": {"at": 0.1}}`. The name is the key and no field, because serde
+/// reads the fields of a variant with a tag twice, and numbers as another crate's feature of `serde_json`
+/// keeps them only once.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Order {
     /// The page with this token wants to command.
     Join { token: String },
@@ -63,9 +65,9 @@ impl Order {
     /// One line with the bounds.
     pub(crate) fn check(&self) -> Result<(), String> {
         match self {
-            Self::Hand { at: Some(angle) } if !(angle.abs() <= FARTHEST_RAD) => Err(format!(
-                "hand at {angle} rad: give -{FARTHEST_RAD} to {FARTHEST_RAD} rad"
-            )),
+            Self::Hand { at: Some(angle) } if angle.is_nan() || angle.abs() > FARTHEST_RAD => Err(
+                format!("hand at {angle} rad: give -{FARTHEST_RAD} to {FARTHEST_RAD} rad"),
+            ),
             Self::Scene { number } => scene(*number).map(|_| ()),
             Self::Tune {
                 scene: number,
@@ -143,18 +145,17 @@ mod tests {
             "",
             "{}",
             "[1]",
-            r#"{"do":"fly"}"#,
-            r#"{"do":"arm","now":1}"#,
+            "\"fly\"",
+            "{\"fly\":{}}",
+            "{\"hand\":{\"at\":0,\"now\":1}}",
         ] {
-            assert!(
-                Order::parse(text).unwrap_err().starts_with("no order"),
-                "{text}"
-            );
+            let refused = Order::parse(text).unwrap_err();
+            assert!(refused.starts_with("no order"), "{text}");
         }
-        assert_eq!(
-            Order::parse(r#"{"do":"hand","at":null}"#),
-            Ok(Order::Hand { at: None })
-        );
+        let hand = |at| Ok(Order::Hand { at });
+        assert_eq!(Order::parse(r#"{"hand":{"at":null}}"#), hand(None));
+        assert_eq!(Order::parse(r#"{"hand":{"at":-0.25}}"#), hand(Some(-0.25)));
+        assert_eq!(Order::parse("\"arm\""), Ok(Order::Arm));
     }
 
     #[test]

@@ -61,10 +61,10 @@ impl Server {
     ///
     /// # Errors
     /// [`Failure::Check`] if the system refuses sockets or threads.
-    pub(crate) fn serve(self, hub: Arc<Hub>) -> Result<(), Failure> {
+    pub(crate) fn serve(self, hub: &Arc<Hub>) -> Result<(), Failure> {
         let failed = |error: std::io::Error| Failure::Check(format!("server: {error}"));
         let shared = Shared {
-            hub: Arc::clone(&hub),
+            hub: Arc::clone(hub),
             port: self.address.port(),
         };
         let router = Router::new()
@@ -83,7 +83,7 @@ impl Server {
             let serving = axum::serve(listener, router);
             tokio::select! {
                 served = async { serving.await } => served.map_err(failed),
-                () = ended(&hub) => Ok(()),
+                () = ended(hub) => Ok(()),
             }
         })
     }

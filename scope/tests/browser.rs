@@ -62,10 +62,11 @@ fn handle_is_dragged_into_the_wall_and_the_estimator_changes_without_a_step() {
     };
     assert!(force(&mut browser).abs() < 30.0);
     drag(&mut browser, &tab, 1.0, 20);
-    // Into the wall: it pushes back with hundreds of mN, and the number on the page says so.
+    // In the wall and at rest: it pushes back, and the number on the page says so.
     browser.wait(
         &tab,
-        "scope.store.latest('force') < -300 && Number($('force').textContent) < -300",
+        "scope.store.latest('handle_angle') > 0.2 && Math.abs(scope.store.latest('true_handle')) < 0.02 \
+         && scope.store.latest('force') < -300 && Number($('force').textContent) < -300",
     );
     browser.wait(&tab, "scope.view.latency.length > 0");
     browser.picture(&tab, "wall.png");
@@ -101,6 +102,7 @@ fn handle_is_dragged_into_the_wall_and_the_estimator_changes_without_a_step() {
     // A fault ends in the safe state, with its explanation.
     browser.click(&tab, "[data-fault=emergency-stop]");
     browser.wait(&tab, "scope.status.mode === 'safe' && /off after [0-9.]+ ms.*interlock.*Largest force/.test($('result').textContent)");
+    browser.value(&tab, "$('fault-card').scrollIntoView()");
     browser.picture(&tab, "fault.png");
 
     assert_eq!(browser.complaints, [""; 0]);

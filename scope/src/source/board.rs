@@ -105,6 +105,12 @@ impl RealBoard {
                     self.send(command)?;
                 }
             }
+            // After the orders of the page that has left.
+            if desk.hub.take_left()
+                && let Some(command) = desk.order(&Order::Disarm)
+            {
+                self.send(command)?;
+            }
             let _ = desk.hub.take_hand();
             desk.tell(|| json!({}));
         }

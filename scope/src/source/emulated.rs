@@ -202,6 +202,12 @@ impl Client for Seat {
                 acts.send.extend(encode(command));
             }
         }
+        // After the orders of the page that has left.
+        if desk.hub.take_left()
+            && let Some(command) = desk.order(&Order::Disarm)
+        {
+            acts.send.extend(encode(command));
+        }
         if let Some(Order::Hand { at }) = desk.hub.take_hand() {
             self.is_held = at.is_some();
             acts.hand = Some(at.map_or(Hold::Free, Hold::At));

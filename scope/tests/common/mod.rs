@@ -9,7 +9,7 @@ use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
-use std::sync::OnceLock;
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
@@ -38,16 +38,21 @@ pub(crate) fn image() -> PathBuf {
     path.clone()
 }
 
+/// One emulated board at a time: each takes a core.
+static ONE: Mutex<()> = Mutex::new(());
+
 /// A server.
 pub(crate) struct Server {
     pub(crate) child: Child,
     pub(crate) port: u16,
     pub(crate) token: String,
+    _one: MutexGuard<'static, ()>,
 }
 
 impl Server {
     /// A server with these arguments.
     pub(crate) fn start(arguments: &[&str]) -> Self {
+        let one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
         let mut command = Command::new(env!("CARGO_BIN_EXE_scope"));
         command
             .arg("--no-open")
@@ -72,7 +77,12 @@ impl Server {
             .nth(1)
             .expect("a token");
         let token = token.split('"').next().expect("a token").to_owned();
-        Self { child, port, token }
+        Self {
+            child,
+            port,
+            token,
+            _one: one,
+        }
     }
 
     /// A server of the virtual board.
@@ -169,6 +179,14 @@ impl Client {
     }
 
     pub(crate) fn order(&mut self, order: &Value) {
+        let mut fields = order.as_object().expect("an order").clone();
+        let name = fields.remove("do").expect("a name");
+        let name = name.as_str().expect("a name");
+        let order = if fields.is_empty() {
+            json!(name)
+        } else {
+            json!({ name: fields })
+        };
         self.text(&order.to_string());
     }
 
