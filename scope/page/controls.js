@@ -174,7 +174,7 @@ class Controls {
     name.textContent = f.what;
     const cause = f.cause ? ` Cause ${f.cause}: ${lower(f.words)}.` : "";
     const off = !f.was_on ? " The amplifiers were off already."
-      : f.off_ms !== null ? ` Amplifiers off after ${f.off_ms.toFixed(1)} ms.`
+      : f.off_ms !== null ? ` Amplifiers off after ${f.off_ms.toFixed(2)} ms.`
       : f.is_over ? " The device stays on: nothing dangerous was found within 1 s." : " …";
     const text = `${off}${cause} Largest force ${f.peak_mn.toFixed(0)} mN.`;
     if (result.dataset.text === f.name + text) return;

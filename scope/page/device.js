@@ -161,7 +161,9 @@ class DeviceView {
   measure() {
     if (!this.moved) return;
     const { at, force, hand } = this.moved;
-    const hasMoved = Math.abs(this.store.latest("hand_angle") - hand) > 1e-4 && Math.abs(this.store.latest("force") - force) > 0.1;
+    // Before the hand took hold it had no angle.
+    const now = this.store.latest("hand_angle");
+    const hasMoved = Number.isFinite(now) && !(Math.abs(now - hand) <= 1e-4) && Math.abs(this.store.latest("force") - force) > 0.1;
     const ms = performance.now() - at;
     if (hasMoved) this.latency.push(ms);
     if (hasMoved || ms > 2000) this.moved = null;

@@ -68,7 +68,6 @@ fn handle_is_dragged_into_the_wall_and_the_estimator_changes_without_a_step() {
         "scope.store.latest('handle_angle') > 0.2 && Math.abs(scope.store.latest('true_handle')) < 0.02 \
          && scope.store.latest('force') < -300 && Number($('force').textContent) < -300",
     );
-    browser.wait(&tab, "scope.view.latency.length > 0");
     browser.picture(&tab, "wall.png");
 
     // The other estimator takes over without a step of the torque that the scene wants.

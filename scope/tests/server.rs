@@ -64,7 +64,7 @@ fn other_hosts_origins_and_tokens_are_refused() {
     });
     assert!(!is_on(&status));
     // It sees the board all the same.
-    assert!(watcher.rows > 0);
+    watcher.wait("rows", |watcher, _| (watcher.rows > 0).then_some(()));
 }
 
 #[test]
