@@ -70,6 +70,11 @@ fn handle_is_dragged_into_the_wall_and_the_estimator_changes_without_a_step() {
     );
     browser.picture(&tab, "wall.png");
 
+    // Scene wall needs no velocity of the large motor; free-air does.
+    browser.value(
+        &tab,
+        "(() => { const s = $('scene'); s.value = [...s.options].find((o) => o.text === 'free-air').value; s.onchange(); })()",
+    );
     // The other estimator takes over without a step of the torque that the scene wants.
     let (now, other) = (0, 1);
     browser.wait(&tab, &format!("scope.store.latest('estimator') === {now}"));
