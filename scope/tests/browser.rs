@@ -77,7 +77,10 @@ fn handle_is_dragged_into_the_wall_and_the_estimator_changes_without_a_step() {
     );
     // The other estimator takes over without a step of the torque that the scene wants.
     let (now, other) = (0, 1);
-    browser.wait(&tab, &format!("scope.store.latest('estimator') === {now}"));
+    browser.wait(
+        &tab,
+        &format!("scope.store.latest('estimator') === {now} && scope.store.latest('torque') === 0"),
+    );
     browser.value(&tab, "window.at = scope.store.end, 0");
     browser.click(&tab, &format!("#estimator-{other}"));
     browser.wait(
