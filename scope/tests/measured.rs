@@ -48,7 +48,9 @@ fn memory(id: u32) -> f64 {
 fn frames_latency_processor_and_memory() {
     let server = Server::emulated();
     let id = server.child.id();
-    let mut browser = Browser::start();
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
     let tab = browser.open(&server.url(), 1300, 900);
     browser.wait(
         &tab,

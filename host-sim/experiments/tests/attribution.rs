@@ -73,7 +73,7 @@ fn rms(signal: &[f64]) -> f64 {
     (signal.iter().map(|x| x * x).sum::<f64>() / signal.len() as f64).sqrt()
 }
 
-fn rounded() -> Conditions {
+fn rounded() -> Conditions<'static> {
     Conditions {
         dac: Some(Dac::board().unwrap()),
         ..Conditions::default()
