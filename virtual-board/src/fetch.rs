@@ -1,7 +1,7 @@
 //! Estimated waits of the instruction fetch from flash, after RM0090, "Adaptive real-time memory
 //! accelerator".
 //!
-//! Flash is read in lines of 128 bits. A read takes [`WAITS`] cycles more than a hit. The cache holds
+//! Flash is read in lines of 128 bits. A read takes 5 cycles more than a hit. The cache holds
 //! [`CACHED`] lines and replaces the least recently used one. While a line is executed, the next one is read
 //! ahead. The cache is empty at the start: other tasks run between two control tasks. Literals, which have a
 //! cache of their own, and stalls of the bus are not in the model.
