@@ -71,7 +71,8 @@ pub(crate) struct Hub {
     orders: SyncSender<Order>,
     /// Latest order to the hand that the source has not taken.
     hand: Mutex<Option<Order>>,
-    /// Whether the page that commanded has left, and the source has not disarmed the board yet.
+    /// Whether the source has to disarm the board: the page that commanded has left, or its order to disarm
+    /// found no room.
     left: AtomicBool,
     commander: Mutex<Option<Commander>>,
     recording: Mutex<Option<Arc<Finished>>>,
@@ -155,8 +156,14 @@ impl Hub {
     pub(crate) fn order(&self, order: Order) {
         if let Order::Hand { .. } = order {
             *locked(&self.hand) = Some(order);
-        } else if self.orders.try_send(order).is_err() {
+            return;
+        }
+        let disarms = order == Order::Disarm;
+        if self.orders.try_send(order).is_err() {
             self.counts.flooded.fetch_add(1, Ordering::Relaxed);
+            if disarms {
+                self.left.store(true, Ordering::Relaxed);
+            }
         }
     }
 
@@ -175,7 +182,8 @@ impl Hub {
         }
     }
 
-    /// Whether the board has to be disarmed because the page that commanded has left; once.
+    /// Whether the board has to be disarmed because the page that commanded has left, or found no room for
+    /// its order; once.
     pub(crate) fn take_left(&self) -> bool {
         self.left.swap(false, Ordering::Relaxed)
     }
@@ -241,6 +249,19 @@ mod tests {
         let last = (3 * ORDERS - 1) as f64;
         assert_eq!(hub.take_hand(), Some(Order::Hand { at: Some(last) }));
         assert_eq!(hub.take_hand(), None);
+    }
+
+    #[test]
+    fn order_to_disarm_is_followed_with_a_full_queue_too() {
+        let (hub, orders) = hub();
+        hub.order(Order::Disarm);
+        assert_eq!(orders.try_recv(), Ok(Order::Disarm));
+        assert!(!hub.take_left());
+        for _ in 0..ORDERS {
+            hub.order(Order::Alive);
+        }
+        hub.order(Order::Disarm);
+        assert!(hub.take_left() && !hub.take_left());
     }
 
     #[test]

@@ -105,11 +105,13 @@ impl Page {
             self.second = (Instant::now(), 0);
         }
         self.second.1 += 1;
-        if self.second.1 > MOST_A_SECOND {
+        let order = Order::parse(&text);
+        // A flood must not keep anybody from disarming the board.
+        if self.second.1 > MOST_A_SECOND && order != Ok(Order::Disarm) {
             self.hub.counts.flooded.fetch_add(1, Ordering::Relaxed);
             return ControlFlow::Continue(());
         }
-        let Ok(order) = Order::parse(&text) else {
+        let Ok(order) = order else {
             return self.garbage();
         };
         if let Order::Join { token } = &order {
