@@ -11,7 +11,7 @@ use terminal::failure::Failure;
 
 use crate::clock::Limit;
 use crate::port::Port;
-use crate::refusal::refusal;
+use crate::refusal::{compatible, refusal};
 use crate::watch::is_enabled;
 
 /// Time after which a question is asked again.
@@ -155,17 +155,8 @@ impl Board {
     /// [`Failure::Input`] if the board speaks another protocol or does not answer.
     pub(crate) fn compatible(&mut self) -> Result<Answer, Failure> {
         let answer = self.identify()?;
-        let hello = &answer.hello;
-        match hello.protocol {
-            PROTOCOL => Ok(answer),
-            other => Err(Failure::Input(format!(
-                "{}: the board speaks protocol {other}, this tool protocol {PROTOCOL}; build both \
-                 from one commit (the board has {}, commit {})",
-                self.port.name(),
-                hello.version,
-                hello.commit
-            ))),
-        }
+        compatible(self.port.name(), &answer.hello)?;
+        Ok(answer)
     }
 
     /// Sends a command and checks that the board takes it. `what` names the command in the message.

@@ -1,6 +1,22 @@
-//! The reason for which a board refused a command.
+//! Why a board refuses a command, and why a program of the host refuses a board.
 
-use drivers::link::Rejected;
+use drivers::link::{Hello, PROTOCOL, Rejected};
+use terminal::failure::Failure;
+
+/// Checks that the board at the port of this name speaks the protocol of this build.
+///
+/// # Errors
+/// [`Failure::Input`] with both protocols if it does not.
+pub fn compatible(port: &str, hello: &Hello) -> Result<(), Failure> {
+    match hello.protocol {
+        PROTOCOL => Ok(()),
+        other => Err(Failure::Input(format!(
+            "{port}: the board speaks protocol {other}, this tool protocol {PROTOCOL}; build both \
+             from one commit (the board has {}, commit {})",
+            hello.version, hello.commit
+        ))),
+    }
+}
 
 /// The reason of a refusal between two counts.
 #[must_use]

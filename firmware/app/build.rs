@@ -4,10 +4,7 @@
 
 use std::env::{self, VarError};
 
-use measured::control_rate;
-
-/// The control rate without `RATE`, Hz.
-const RATE_HZ: u32 = 10_000;
+use measured::control_rate::{self, COUNTED_HZ};
 
 /// Prefix of the variables in which cargo names the features.
 const FEATURE: &str = "CARGO_FEATURE_";
@@ -28,16 +25,17 @@ fn pass_on() -> Result<(), String> {
         println!("cargo::rustc-cfg=scene={scene:?}");
     }
     let rate = match variable("RATE")? {
-        None => RATE_HZ,
+        None => COUNTED_HZ,
         Some(text) => text.parse().map_err(|_| {
             format!("RATE={text}: not a whole number of Hz, for example RATE=20000")
         })?,
     };
     println!("cargo::rustc-env=RATE_HZ={rate}");
-    if rate <= RATE_HZ {
-        // Images of this rate are those that are counted.
+    println!("cargo::rustc-check-cfg=cfg(rate_is_checked)");
+    if rate <= COUNTED_HZ {
         return Ok(());
     }
+    println!("cargo::rustc-cfg=rate_is_checked");
     println!("cargo::rerun-if-changed=../../measured/control.csv");
     let names = env::vars().filter_map(|(name, _)| {
         let name = name.strip_prefix(FEATURE)?;

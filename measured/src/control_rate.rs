@@ -19,6 +19,9 @@ pub const IMAGES: [(&str, &str); 5] = [
     ),
 ];
 
+/// The control rate at which the images are counted, Hz, and that of an image that is built without `RATE`.
+pub const COUNTED_HZ: u32 = 10_000;
+
 /// The estimator with the same cost of every update.
 pub const STEADY: &str = "kalman-triple-steady";
 /// [`STEADY`] in the image with all that can be added to one.
@@ -216,7 +219,7 @@ mod tests {
     #[test]
     fn every_counted_image_allows_the_default_rate() {
         for (_, features) in IMAGES {
-            check(10_000, features.split_terminator(','), None).unwrap();
+            check(COUNTED_HZ, features.split_terminator(','), None).unwrap();
         }
         let error = check(400_000, [], Some("off")).unwrap_err();
         assert!(

@@ -7,9 +7,9 @@ use haptic_control::{Request, SceneKind};
 use serde::Deserialize;
 use virtual_board::fault::Fault;
 
-/// A message of the page: `"arm"`, `{"hand": {"at": 0.1}}`. The name is the key and no field, because serde
-/// reads the fields of a variant with a tag twice, and numbers as another crate's feature of `serde_json`
-/// keeps them only once.
+/// A message of the page: `"arm"`, `{"hand": {"at": 0.1}}`. The key is the name of the order. A field for the
+/// name would lose the numbers beside it: serde buffers the fields of a tagged variant, and a dependency
+/// switches on the feature `arbitrary_precision` of `serde_json`, whose numbers cannot be read from a buffer.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Order {

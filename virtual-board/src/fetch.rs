@@ -52,9 +52,7 @@ impl Fetch {
         self.current = Some(line);
         self.seen.insert(line);
         let now = cycles + self.waits;
-        if self.is_used_again(line) {
-            // A read that has begun goes on.
-        } else {
+        if !self.is_used_again(line) {
             self.waits += match self.ahead {
                 Some((ahead, at)) if ahead == line => at.saturating_sub(now),
                 _ => WAITS,

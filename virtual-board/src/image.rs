@@ -89,8 +89,8 @@ impl Image {
     }
 
     /// As [`Self::build`], with environment variables: `SCENE` names the one scene of the image, `RATE` is
-    /// the control rate in Hz, `DEVICE` and `PRESETS` name the files that it is built for. Two builds must not run at once in
-    /// one process, because they write the same file.
+    /// the control rate in Hz, `DEVICE` and `PRESETS` name the files that it is built for. Two builds must
+    /// not run at once in one process, because they write the same file.
     ///
     /// # Errors
     /// As [`Self::build`].

@@ -9,7 +9,8 @@ pub const TIMER_HZ: u32 = 84_000_000;
 /// The clock of edge stamps.
 pub const TIMERS: Hertz = Hertz(TIMER_HZ as f64);
 
-/// Control ticks per second: the number in the environment variable `RATE` at build time, or 10 000.
+/// Control ticks per second: the number in the environment variable `RATE` at build time, or 10 000, the rate
+/// at which the control task is counted.
 pub const RATE_HZ: u32 = match u32::from_str_radix(env!("RATE_HZ"), 10) {
     Ok(rate) => rate,
     Err(_) => panic!("the build script passes a number on"),

@@ -9,7 +9,7 @@ use estimator_core::{
 };
 
 use crate::ammeter::{Ammeter, Measure};
-use crate::config::{DEVICE, RATE, RATE_HZ, TIMERS};
+use crate::config::{DEVICE, RATE, TIMERS};
 
 /// Names of the estimators of [`Both`] in the catalogue of estimators, each at its number.
 pub const NAMES: [&str; 2] = ["foaw-end-fit", "kalman-triple-steady"];
@@ -17,9 +17,10 @@ pub const NAMES: [&str; 2] = ["foaw-end-fit", "kalman-triple-steady"];
 /// Longest window of [`Window`], intervals.
 pub const INTERVALS: usize = tuned::image("large", NAMES[0], RATE, "n") as usize;
 // The build script knows the count of this window alone.
+#[cfg(rate_is_checked)]
 const _: () = assert!(
-    INTERVALS <= 32 || RATE_HZ <= 10_000,
-    "above 10 kHz, a window n of at most 32 intervals: the control task was counted with it"
+    INTERVALS <= 32,
+    "at this RATE, a window n of at most 32 intervals: the control task was counted with it"
 );
 /// FOAW over at most [`INTERVALS`].
 pub type Window = Foaw<INTERVALS, EndFit>;

@@ -6,7 +6,8 @@ use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
 use drive::port::Port;
-use drivers::link::{Message, PROTOCOL, Parser};
+use drive::refusal::compatible;
+use drivers::link::{Message, Parser};
 use drivers::{Command, encode};
 use haptic_control::Request;
 use serde_json::{Value, json};
@@ -83,17 +84,8 @@ impl RealBoard {
                 parser.take(*byte, |message| messages.push(message));
             }
             for message in messages {
-                if let Message::Hello(hello) = message
-                    && hello.protocol != PROTOCOL
-                {
-                    return Err(Failure::Input(format!(
-                        "{}: the board speaks protocol {}, this tool protocol {PROTOCOL}; build both \
-                         from one commit (the board has {}, commit {})",
-                        self.port.name(),
-                        hello.protocol,
-                        hello.version,
-                        hello.commit
-                    )));
+                if let Message::Hello(hello) = message {
+                    compatible(self.port.name(), &hello)?;
                 }
                 desk.message(message, None);
             }

@@ -4,8 +4,9 @@
 //! anyway, and five commands of it do.
 
 use std::net::TcpStream;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
@@ -40,36 +41,15 @@ pub(crate) struct Tab {
 
 impl Browser {
     pub(crate) fn start() -> Option<Self> {
-        let folder = scratch("browser");
+        // A profile of its own: browsers that share one overwrite each other's port.
+        static STARTED: AtomicUsize = AtomicUsize::new(0);
+        let number = STARTED.fetch_add(1, Ordering::Relaxed);
+        let folder = scratch(&format!("browser-{number}"));
+        let _ = std::fs::remove_dir_all(&folder);
         std::fs::create_dir_all(&folder).expect("a folder");
-        let start = |program: &str| {
-            let profile = format!("--user-data-dir={}", folder.display());
-            Command::new(program)
-                .args([
-                    "--headless=new",
-                    "--no-sandbox",
-                    "--disable-gpu",
-                    "--no-first-run",
-                ])
-                .args([
-                    "--disable-dev-shm-usage",
-                    "--disable-background-networking",
-                    "--disable-component-update",
-                ])
-                .args([
-                    "--disable-background-timer-throttling",
-                    "--disable-renderer-backgrounding",
-                ])
-                .args([
-                    "--disable-backgrounding-occluded-windows",
-                    "--hide-scrollbars",
-                ])
-                .args(["--remote-debugging-port=0", &profile, "about:blank"])
-                .stdout(Stdio::null())
-                .stderr(Stdio::null())
-                .spawn()
-        };
-        let child = PROGRAMS.iter().find_map(|program| start(program).ok());
+        let child = PROGRAMS
+            .iter()
+            .find_map(|program| spawned(program, &folder).ok());
         let Some(child) = child else {
             let missing = "no Chromium; install it: apt-get update && apt-get install -y \
                            --no-install-recommends chromium";
@@ -77,23 +57,7 @@ impl Browser {
             println!("the page is not tested: {missing}");
             return None;
         };
-        let file = folder.join("DevToolsActivePort");
-        let end = Instant::now() + LIMIT;
-        let address = loop {
-            let text = std::fs::read_to_string(&file).unwrap_or_default();
-            if let Some((port, path)) = text.trim().split_once('\n') {
-                break format!("ws://127.0.0.1:{port}{path}");
-            }
-            assert!(Instant::now() < end, "Chromium does not start");
-            std::thread::sleep(Duration::from_millis(50));
-        };
-        let host = address
-            .trim_start_matches("ws://")
-            .split('/')
-            .next()
-            .expect("a host");
-        let stream = TcpStream::connect(host).expect("DevTools");
-        let (socket, _) = tungstenite::client(&address, stream).expect("DevTools");
+        let socket = connected(&folder);
         let patience = Some(Duration::from_millis(20));
         socket
             .get_ref()
@@ -294,11 +258,59 @@ impl Browser {
     /// Writes what a tab shows to a file beside the build.
     pub(crate) fn picture(&mut self, tab: &Tab, name: &str) {
         let shot = self.tell(tab, "Page.captureScreenshot", &json!({"format": "png"}));
-        let bytes = decoded(shot["data"].as_str().expect("a picture"));
+        let text = shot["data"].as_str().expect("a picture");
+        let bytes = data_encoding::BASE64
+            .decode(text.as_bytes())
+            .expect("base 64");
         let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("scope");
         std::fs::create_dir_all(&folder).expect("a folder");
         std::fs::write(folder.join(name), bytes).expect("a file");
     }
+}
+
+/// A browser with this profile.
+fn spawned(program: &str, folder: &Path) -> std::io::Result<Child> {
+    Command::new(program)
+        .args([
+            "--headless=new",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--no-first-run",
+            "--disable-dev-shm-usage",
+            "--disable-background-networking",
+            "--disable-component-update",
+            "--disable-background-timer-throttling",
+            "--disable-renderer-backgrounding",
+            "--disable-backgrounding-occluded-windows",
+            "--hide-scrollbars",
+            "--remote-debugging-port=0",
+        ])
+        .arg(format!("--user-data-dir={}", folder.display()))
+        .arg("about:blank")
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+}
+
+/// A connection to the browser that has this profile, once it has written its port there and listens.
+fn connected(folder: &Path) -> WebSocket<TcpStream> {
+    let end = Instant::now() + LIMIT;
+    let mut last = "it has written no port".to_owned();
+    while Instant::now() < end {
+        let text = std::fs::read_to_string(folder.join("DevToolsActivePort")).unwrap_or_default();
+        if let Some((port, path)) = text.trim().split_once('\n') {
+            let host = format!("127.0.0.1:{port}");
+            match TcpStream::connect(&host) {
+                Ok(stream) => match tungstenite::client(format!("ws://{host}{path}"), stream) {
+                    Ok((socket, _)) => return socket,
+                    Err(error) => last = error.to_string(),
+                },
+                Err(error) => last = error.to_string(),
+            }
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    panic!("Chromium does not start: {last}");
 }
 
 impl Drop for Browser {
@@ -307,21 +319,4 @@ impl Drop for Browser {
         let _ = self.child.wait();
         let _ = std::fs::remove_dir_all(&self.folder);
     }
-}
-
-/// Bytes of a text in base 64.
-fn decoded(text: &str) -> Vec<u8> {
-    const DIGITS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let digit = |byte: u8| DIGITS.iter().position(|digit| *digit == byte);
-    let mut bytes = Vec::new();
-    let (mut bits, mut filled) = (0_usize, 0);
-    for value in text.bytes().filter_map(digit) {
-        bits = (bits << 6 | value) & 0xFFFF;
-        filled += 6;
-        if filled >= 8 {
-            filled -= 8;
-            bytes.push((bits >> filled) as u8);
-        }
-    }
-    bytes
 }
