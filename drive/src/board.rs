@@ -1,6 +1,7 @@
 //! A connection to a board: commands down, messages up.
 
 use std::collections::VecDeque;
+use std::fmt::Display;
 use std::io;
 use std::time::{Duration, Instant};
 
@@ -8,6 +9,7 @@ use drivers::link::{Frame, Hello, Message, PROTOCOL, Parser, Rejected};
 use drivers::{Command, encode};
 use haptic_control::Request;
 use terminal::failure::Failure;
+use terminal::output::{note, print_bytes};
 
 use crate::clock::Limit;
 use crate::port::Port;
@@ -28,7 +30,12 @@ pub(crate) struct Board {
     patience: Duration,
     /// Whether the end has to disarm.
     disarms: bool,
+    /// Where lines for the person go; `None` is the terminal.
+    listener: Option<Listener>,
 }
+
+/// What takes lines for the person in place of the terminal.
+pub(crate) type Listener = Box<dyn FnMut(String)>;
 
 /// The answer to the command `identify`.
 #[derive(Clone, Copy, Debug)]
@@ -49,6 +56,32 @@ impl Board {
             asked: 0,
             patience,
             disarms: false,
+            listener: None,
+        }
+    }
+
+    /// From now on lines for the person go to a listener.
+    pub(crate) fn speak_to(&mut self, listener: Listener) {
+        self.listener = Some(listener);
+    }
+
+    /// Tells the person a result: a line of standard output.
+    ///
+    /// # Errors
+    /// [`Failure`] if standard output takes none.
+    pub(crate) fn print(&mut self, line: &str) -> Result<(), Failure> {
+        if let Some(listener) = &mut self.listener {
+            listener(line.to_owned());
+            return Ok(());
+        }
+        print_bytes(format!("{line}\n").as_bytes())
+    }
+
+    /// Tells the person what to do or what has happened: a note beside the results.
+    pub(crate) fn note(&mut self, text: impl Display) {
+        match &mut self.listener {
+            Some(listener) => listener(text.to_string()),
+            None => note(text),
         }
     }
 

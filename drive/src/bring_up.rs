@@ -5,7 +5,6 @@ use std::f64::consts::TAU;
 use drivers::link::Frame;
 use drivers::{Command, Setting};
 use terminal::failure::Failure;
-use terminal::output::note;
 use tuned::{DEVICE, DEVICE_FINGERPRINT, PRESETS_FINGERPRINT};
 
 use crate::board::{Answer, Board};
@@ -43,14 +42,14 @@ type Check = fn(&'static str, &Seen) -> Vec<Line>;
 pub(crate) fn run(board: &mut Board, turns: bool, store: bool) -> Result<(), Failure> {
     let answer = board.compatible()?;
     let mut lines = vec![identity(&answer)];
-    show(&lines[0])?;
+    show(board, &lines[0])?;
     let mut pulses = Vec::new();
     if turns && failed(&lines) == 0 {
         pulses = turns::by_hand(board, &answer)?;
-        shown(turns::lines(&pulses)?, &mut lines)?;
+        turns::shown(board, &pulses, &mut lines)?;
     }
     if failed(&lines) == 0 {
-        announce();
+        announce(board);
     }
     let moved: Check = match are_measured(&answer.hello) {
         true => |name, seen| [currents::lines(seen), motors(name, seen)].concat(),
@@ -78,10 +77,10 @@ pub(crate) fn run(board: &mut Board, turns: bool, store: bool) -> Result<(), Fai
             Err(Failure::Check(stopped)) => vec![(name, Err(stopped))],
             Err(failure) => return Err(failure),
         };
-        shown(found, &mut lines)?;
+        shown(board, found, &mut lines)?;
     }
     if !turns && turns::are_captured(&answer.hello) {
-        shown(turns::lines(&pulses)?, &mut lines)?;
+        turns::shown(board, &pulses, &mut lines)?;
     }
     let wrong = failed(&lines);
     let verified = Setting::SignsVerified;
@@ -99,14 +98,14 @@ pub(crate) fn run(board: &mut Board, turns: bool, store: bool) -> Result<(), Fai
     if store {
         return settings::store(board);
     }
-    note("signs verified until the next reset; cargo drive settings --store keeps it");
+    board.note("signs verified until the next reset; cargo drive settings --store keeps it");
     Ok(())
 }
 
 /// Prints lines and adds them to those before.
-fn shown(found: Vec<Line>, lines: &mut Vec<Line>) -> Result<(), Failure> {
+fn shown(board: &mut Board, found: Vec<Line>, lines: &mut Vec<Line>) -> Result<(), Failure> {
     for line in found {
-        show(&line)?;
+        show(board, &line)?;
         lines.push(line);
     }
     Ok(())

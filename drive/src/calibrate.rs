@@ -3,7 +3,6 @@
 use drivers::{DacScale, Setting, Settings};
 use estimator_core::Amps;
 use terminal::failure::Failure;
-use terminal::output::note;
 
 use crate::board::{Answer, Board};
 use crate::channels::{CHANNELS, Channel, FEATURE, are_measured};
@@ -33,11 +32,11 @@ pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
         )));
     }
     let before = settings::present(board)?;
-    announce();
+    announce(board);
     let mut seen = measured(board, &answer)?;
     let present = with_zeros(&seen, &before);
     if present != before {
-        note(format_args!(
+        board.note(format_args!(
             "the offsets turned the handle out of its bounds: the strokes are repeated without most of them"
         ));
         settings::change(board, &zeros(&present))?;
@@ -57,7 +56,7 @@ pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
             text
         });
         let line = (channel.motor, result);
-        show(&line)?;
+        show(board, &line)?;
         lines.push(line);
     }
     let wrong = failed(&lines);
@@ -74,7 +73,7 @@ pub(crate) fn run(board: &mut Board, store: bool) -> Result<(), Failure> {
     if store {
         return settings::store(board);
     }
-    note("until the next reset; cargo drive settings --store keeps them");
+    board.note("until the next reset; cargo drive settings --store keeps them");
     Ok(())
 }
 

@@ -1,7 +1,8 @@
 //! Lines of a report on a board.
 
 use terminal::failure::Failure;
-use terminal::output::print_bytes;
+
+use crate::board::Board;
 
 /// A line: what was checked, and what was found.
 pub(crate) type Line = (&'static str, Result<String, String>);
@@ -10,10 +11,10 @@ pub(crate) type Line = (&'static str, Result<String, String>);
 ///
 /// # Errors
 /// [`Failure`] if standard output takes none.
-pub(crate) fn show((name, result): &Line) -> Result<(), Failure> {
+pub(crate) fn show(board: &mut Board, (name, result): &Line) -> Result<(), Failure> {
     match result {
-        Ok(text) => print("pass", name, text),
-        Err(text) => print("FAIL", name, text),
+        Ok(text) => print(board, "pass", name, text),
+        Err(text) => print(board, "FAIL", name, text),
     }
 }
 
@@ -21,12 +22,12 @@ pub(crate) fn show((name, result): &Line) -> Result<(), Failure> {
 ///
 /// # Errors
 /// [`Failure`] if standard output takes none.
-pub(crate) fn skip(name: &str, reason: &str) -> Result<(), Failure> {
-    print("skip", name, reason)
+pub(crate) fn skip(board: &mut Board, name: &str, reason: &str) -> Result<(), Failure> {
+    print(board, "skip", name, reason)
 }
 
-fn print(word: &str, name: &str, text: &str) -> Result<(), Failure> {
-    print_bytes(format!("{word}  {name:<22}{text}\n").as_bytes())
+fn print(board: &mut Board, word: &str, name: &str, text: &str) -> Result<(), Failure> {
+    board.print(&format!("{word}  {name:<22}{text}"))
 }
 
 /// Number of the lines that failed.

@@ -1,8 +1,10 @@
-//! Ports: a serial port, or a TCP connection to an emulated board or a debug server.
+//! Ports: a serial port, a TCP connection to an emulated board or a debug server, or a pipe to another thread.
 
+use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::net::{Shutdown, TcpStream, ToSocketAddrs as _};
 use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
 use drivers::link::BAUD;
@@ -29,6 +31,20 @@ pub struct Port {
 enum Channel {
     Serial(SerialPort),
     Tcp(TcpStream),
+    Pipe {
+        from: Receiver<Vec<u8>>,
+        to: Sender<Vec<u8>>,
+        /// Bytes that have come and were not read.
+        rest: VecDeque<u8>,
+    },
+}
+
+/// The other end of a pipe. When it is dropped, the connection is lost.
+pub struct PipeEnd {
+    /// Takes what the port reads.
+    pub to: Sender<Vec<u8>>,
+    /// Has what the port wrote.
+    pub from: Receiver<Vec<u8>>,
 }
 
 /// The serial ports of this machine.
@@ -72,6 +88,25 @@ impl Port {
         }
     }
 
+    /// A port to another thread, which has the other end.
+    #[must_use]
+    pub fn pipe(name: &str) -> (Self, PipeEnd) {
+        let ((to, theirs), (ours, from)) = (channel(), channel());
+        let port = Self {
+            name: name.to_owned(),
+            channel: Channel::Pipe {
+                from,
+                to,
+                rest: VecDeque::new(),
+            },
+        };
+        let end = PipeEnd {
+            to: ours,
+            from: theirs,
+        };
+        (port, end)
+    }
+
     /// Name for messages.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -86,6 +121,16 @@ impl Port {
         let read = match &mut self.channel {
             Channel::Serial(port) => port.read(buffer),
             Channel::Tcp(stream) => stream.read(buffer),
+            Channel::Pipe { from, rest, .. } => {
+                if rest.is_empty() {
+                    match from.recv_timeout(READ) {
+                        Ok(bytes) => rest.extend(bytes),
+                        Err(RecvTimeoutError::Timeout) => return Ok(0),
+                        Err(RecvTimeoutError::Disconnected) => {}
+                    }
+                }
+                rest.read(buffer)
+            }
         };
         match read {
             Ok(0) => Err(ErrorKind::UnexpectedEof.into()),
@@ -102,6 +147,10 @@ impl Port {
         match &mut self.channel {
             Channel::Serial(port) => port.write_all(bytes),
             Channel::Tcp(stream) => stream.write_all(bytes),
+            Channel::Pipe { to, .. } => {
+                let sent = to.send(bytes.to_vec());
+                sent.map_err(|_| ErrorKind::BrokenPipe.into())
+            }
         }
     }
 
@@ -110,6 +159,7 @@ impl Port {
     pub fn finish(&mut self) {
         match &mut self.channel {
             Channel::Serial(port) => drop(port.flush()),
+            Channel::Pipe { .. } => {}
             Channel::Tcp(stream) => {
                 let _ = stream.shutdown(Shutdown::Write);
                 let end = Instant::now() + LINGER;

@@ -3,7 +3,6 @@
 use drivers::link::Message;
 use drivers::{Command, Saved, Setting, SettingFacts, Settings};
 use terminal::failure::Failure;
-use terminal::output::note;
 use terminal::wording::unknown;
 
 use crate::board::Board;
@@ -28,27 +27,36 @@ pub(crate) fn assignment(text: &str) -> Result<Assignment, String> {
         .iter()
         .find(|setting| setting.facts().name == name)
         .ok_or_else(|| unknown("setting", name, names()))?;
-    let number: Option<f32> = value.parse().ok();
-    let value = number
-        .filter(|value| setting.admits(*value))
-        .ok_or_else(|| {
-            let SettingFacts {
-                unit, least, most, ..
-            } = setting.facts();
-            let whole = if setting.facts().is_whole {
-                "a whole number "
-            } else {
-                ""
-            };
-            format!(
-                "{name} must be {whole}from {least} to {most}{}",
-                with_unit(unit)
-            )
-        })?;
+    // What is no number is outside every range.
+    let value = value.parse().unwrap_or(f32::NAN);
+    admitted(*setting, value)?;
     Ok(Assignment {
         setting: *setting,
         value,
     })
+}
+
+/// Checks that a value is in the range of its setting.
+///
+/// # Errors
+/// One line with the range.
+pub fn admitted(setting: Setting, value: f32) -> Result<(), String> {
+    if setting.admits(value) {
+        return Ok(());
+    }
+    let SettingFacts {
+        name,
+        unit,
+        least,
+        most,
+        is_whole,
+        ..
+    } = setting.facts();
+    let whole = if is_whole { "a whole number " } else { "" };
+    let unit = with_unit(unit);
+    Err(format!(
+        "{name} must be {whole}from {least} to {most}{unit}"
+    ))
 }
 
 /// The unit behind a number.
@@ -144,17 +152,29 @@ pub(crate) fn store(board: &mut Board) -> Result<(), Failure> {
     })?;
     let reason = match outcome {
         Some((_, Some(Saved::Stored))) => {
-            note("settings stored");
+            board.note(outcome_words(Saved::Stored));
             return Ok(());
         }
-        Some((_, Some(Saved::Full))) => "the flash is full; reset the board and store again",
-        Some((_, Some(Saved::Refused))) => "the flash refuses the access",
-        Some((_, Some(Saved::Mismatch))) => "the flash does not hold what was written",
-        Some((code, _)) => return Err(Failure::Check(format!("not stored: outcome {code}"))),
-        None if enabled => "the amplifiers are enabled; disarm first",
+        Some((code, saved)) => saved.map_or_else(
+            || format!("outcome {code}"),
+            |s| outcome_words(s).to_owned(),
+        ),
+        None if enabled => outcome_words(Saved::Enabled).to_owned(),
         None => return Err(board.silent()),
     };
     Err(Failure::Check(format!("not stored: {reason}")))
+}
+
+/// What an outcome of the command `store` means.
+#[must_use]
+pub const fn outcome_words(saved: Saved) -> &'static str {
+    match saved {
+        Saved::Stored => "settings stored",
+        Saved::Enabled => "the amplifiers are enabled; disarm first",
+        Saved::Full => "the flash is full; reset the board and store again",
+        Saved::Refused => "the flash refuses the access",
+        Saved::Mismatch => "the flash does not hold what was written",
+    }
 }
 
 #[cfg(test)]

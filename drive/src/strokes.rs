@@ -3,7 +3,6 @@
 use drivers::link::{Frame, Index, Measured, Message};
 use haptic_control::SceneKind;
 use terminal::failure::Failure;
-use terminal::output::note;
 
 use crate::board::{Answer, Board};
 use crate::session::{self, Plan};
@@ -30,8 +29,8 @@ impl Seen {
 }
 
 /// Asks to leave the handle free.
-pub(crate) fn announce() {
-    note(format_args!(
+pub(crate) fn announce(board: &mut Board) {
+    board.note(format_args!(
         "leave the handle free and do not touch it: the motors move it for {SECONDS} s, by 2 rad at most"
     ));
 }

@@ -2,11 +2,10 @@
 
 use drivers::link::{Hello, Index};
 use terminal::failure::Failure;
-use terminal::output::note;
 use tuned::DEVICE;
 
 use crate::board::{Answer, Board};
-use crate::check::{Line, skip};
+use crate::check::{Line, show, skip};
 use crate::strokes::{observe, plan};
 
 /// Feature of an image that captures index pulses.
@@ -63,7 +62,7 @@ pub(crate) fn by_hand(board: &mut Board, answer: &Answer) -> Result<Vec<Index>, 
              leave --turns out"
         )));
     }
-    note(format_args!(
+    board.note(format_args!(
         "turn the shafts of both motors by hand, through two turns in one direction, within {:.0} s; the \
          amplifiers are disabled",
         PART_S * PARTS as f64
@@ -78,26 +77,40 @@ pub(crate) fn by_hand(board: &mut Board, answer: &Answer) -> Result<Vec<Index>, 
             break;
         }
     }
-    note(format_args!("take your hands off the device"));
+    board.note(format_args!("take your hands off the device"));
     Ok(pulses)
 }
 
-/// The lines on both encoders. An encoder without a turn has a line that is no check.
+/// Prints the lines on both encoders, and adds them to those before. An encoder without a turn has a line that
+/// is no check.
 ///
 /// # Errors
 /// [`Failure`] if standard output takes no line.
-pub(crate) fn lines(pulses: &[Index]) -> Result<Vec<Line>, Failure> {
-    let mut lines = Vec::new();
-    for encoder in &ENCODERS {
-        match counted(&turns(pulses, encoder), encoder) {
-            Some(result) => lines.push((encoder.check, result)),
-            None => skip(
-                encoder.check,
+pub(crate) fn shown(
+    board: &mut Board,
+    pulses: &[Index],
+    lines: &mut Vec<Line>,
+) -> Result<(), Failure> {
+    for (check, result) in found(pulses) {
+        let Some(result) = result else {
+            skip(
+                board,
+                check,
                 "not seen: run cargo drive bring-up --turns, and turn the shaft by hand through two turns",
-            )?,
-        }
+            )?;
+            continue;
+        };
+        let line = (check, result);
+        show(board, &line)?;
+        lines.push(line);
     }
-    Ok(lines)
+    Ok(())
+}
+
+/// The result of each encoder; `None` without a turn.
+fn found(pulses: &[Index]) -> [(&'static str, Option<Result<String, String>>); 2] {
+    let of = |encoder: &Encoder| (encoder.check, counted(&turns(pulses, encoder), encoder));
+    ENCODERS.each_ref().map(of)
 }
 
 /// Counts from each index pulse of an encoder to the next one, in messages in their order. Pulses at one
@@ -241,9 +254,9 @@ mod tests {
             ..NOTHING
         };
         let seen = [(1, 10), (2, 10 + ENCODERS[1].counts_per_turn)].map(of_small);
-        let found = lines(&seen).unwrap();
-        assert_eq!(found.len(), 1, "{found:?}");
-        assert_eq!(found[0].0, "turn, handle encoder");
-        assert!(found[0].1.is_ok(), "{found:?}");
+        let [large, handle] = found(&seen);
+        assert_eq!(large, ("turn, large encoder", None));
+        assert_eq!(handle.0, "turn, handle encoder");
+        assert!(handle.1.expect("a turn").is_ok());
     }
 }

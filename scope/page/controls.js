@@ -136,7 +136,7 @@ class Controls {
 
   role({ commands, known, why }) {
     const watches = !commands;
-    $("commands").disabled = $("transport").disabled = watches;
+    $("commands").disabled = $("transport").disabled = $("bench").disabled = watches;
     for (const id of ["record", ...[...document.querySelectorAll("#faults button")]]) (typeof id === "string" ? $(id) : id).disabled = watches;
     this.view.enabled = commands && this.facts.source.kind === "emulated";
     $("role").hidden = commands;

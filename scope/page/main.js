@@ -20,6 +20,7 @@ const link = connect({
     scope.view = new DeviceView($("device"), facts, scope.store, (order) => link.send(order));
     scope.controls = new Controls(facts, link, scope.view, scope.plots);
     scope.controls.showScene(0);
+    scope.bench = new Bench(facts, link);
     requestAnimationFrame(frame);
   },
   role(role) {
@@ -28,7 +29,10 @@ const link = connect({
     scope.role = role;
     scope.controls.role(role);
   },
-  status(status) { scope.status = status; scope.controls.status(status); },
+  status(status) {
+    scope.status = status; scope.controls.status(status);
+    if (scope.facts.source.kind !== "recorded") scope.bench.status(status);
+  },
   refused({ why }) { $("summary").textContent = `Refused: ${why}.`; },
 });
 scope.link = link;

@@ -17,6 +17,7 @@ use simulation::device::Device;
 use terminal::failure::Failure;
 
 use crate::batch::Batch;
+use crate::bench::Bench;
 use crate::channels::Values;
 use crate::estimators::{Estimators, Reading};
 use crate::fault_watch::{FaultWatch, sentence};
@@ -69,6 +70,7 @@ pub(crate) struct Desk {
     tactile: f64,
     told: Instant,
     pub(crate) fault: Option<FaultWatch>,
+    bench: Bench,
 }
 
 impl Desk {
@@ -96,6 +98,7 @@ impl Desk {
             tactile: f64::NAN,
             told: Instant::now(),
             fault: None,
+            bench: Bench::default(),
         })
     }
 
@@ -120,11 +123,15 @@ impl Desk {
         (self.last, self.rejected, self.hello) = (None, None, None);
         self.scene = SceneKind::Off.number();
         self.estimators.restart();
+        self.bench.restarted();
         self.end_recording();
     }
 
     /// Follows an order as far as the desk does, and returns the command for the board.
     pub(crate) fn order(&mut self, order: &Order) -> Option<Command> {
+        if !self.bench.order(order, self.hello.as_ref()) {
+            return None;
+        }
         match *order {
             Order::Record { on: true } => {
                 if let (None, Some(hello)) = (&self.recorder, &self.hello) {
@@ -152,11 +159,22 @@ impl Desk {
         }
     }
 
+    /// Takes bytes of the board, before their messages.
+    pub(crate) fn heard(&self, bytes: &[u8]) {
+        self.bench.heard(bytes);
+    }
+
+    /// Bytes for the board that are no order of a page: those of a guided procedure.
+    pub(crate) fn take_bytes(&mut self) -> Vec<u8> {
+        self.bench.take_bytes(self.hub.is_abandoned())
+    }
+
     /// Takes a message of the board, with the truth of a frame if it is known.
     pub(crate) fn message(&mut self, message: Message, truth: Option<&Truth>) {
         if let Some(recorder) = &mut self.recorder {
             recorder.take(message);
         }
+        self.bench.message(&message);
         match message {
             Message::Hello(hello) => self.hello = Some(hello),
             Message::Frame(frame) => self.frame(&frame, truth),
@@ -281,8 +299,10 @@ impl Desk {
             "recorded": self.hub.recording().is_some(),
             "fault": self.fault.as_ref().map(FaultWatch::json),
         });
-        if let (Value::Object(status), Value::Object(more)) = (&mut status, more()) {
-            status.extend(more);
+        for more in [self.bench.json(), more()] {
+            if let (Value::Object(status), Value::Object(more)) = (&mut status, more) {
+                status.extend(more);
+            }
         }
         self.hub.status(status);
     }

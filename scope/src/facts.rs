@@ -1,5 +1,7 @@
 //! What a page has to know, from the tables of the firmware and of the catalogue.
 
+use drive::guided::Guided;
+use drivers::Setting;
 use estimator_catalogue::{Colour, Dash};
 use experiments::compare::interval;
 use firmware_app::config::{DEVICE, RATE};
@@ -24,6 +26,8 @@ pub(crate) fn of_device(device: &Device) -> Value {
         "image_estimators": large::NAMES,
         "causes": Stop::ALL.map(|stop| json!([stop.as_str(), sentence(stop.meaning())])),
         "faults": [],
+        "settings": Setting::ALL.iter().map(|setting| setting_facts(*setting)).collect::<Vec<_>>(),
+        "guides": Guided::ALL.map(Guided::as_str),
         "hand": {
             "stiffness": device.hand.stiffness_nm_per_rad,
             "damping": device.hand.damping_nms_per_rad,
@@ -61,6 +65,18 @@ fn scene(scene: SceneKind) -> Value {
         "name": facts.name,
         "summary": facts.summary,
         "parameters": parameters.collect::<Vec<_>>(),
+    })
+}
+
+fn setting_facts(setting: Setting) -> Value {
+    let facts = setting.facts();
+    json!({
+        "name": facts.name,
+        "meaning": facts.meaning,
+        "unit": if facts.unit == "1" { "" } else { facts.unit },
+        "least": facts.least,
+        "most": facts.most,
+        "whole": facts.is_whole,
     })
 }
 

@@ -1,6 +1,7 @@
 //! The device live in a browser: a source behind a server at the loopback interface, and one page.
 
 mod batch;
+mod bench;
 mod channels;
 pub mod cli;
 mod desk;
@@ -8,6 +9,7 @@ mod estimators;
 mod export;
 mod facts;
 mod fault_watch;
+mod guide;
 mod hub;
 mod order;
 mod page;

@@ -1,11 +1,14 @@
 //! What a page asks for, in the form of its messages.
 
-use drivers::Command;
+use drive::settings::admitted;
+use drivers::{Command, Setting};
 use firmware_app::large;
 use firmware_app::scene::BOUNDS;
 use haptic_control::{Request, SceneKind};
 use serde::Deserialize;
 use virtual_board::fault::Fault;
+
+use crate::bench::guided;
 
 /// A message of the page: `"arm"`, `{"hand": {"at": 0.1}}`. The key is the name of the order. A field for the
 /// name would lose the numbers beside it: serde buffers the fields of a tagged variant, and a dependency
@@ -37,6 +40,14 @@ pub(crate) enum Order {
     Fault { name: String },
     /// Starts the virtual board again, with all parts whole.
     Restart,
+    /// Asks for the settings of the board.
+    Settings,
+    /// Sets a setting until the next reset.
+    Set { setting: u8, value: f32 },
+    /// Stores the settings in the flash of the board.
+    Store,
+    /// Begins a guided procedure.
+    Guide { name: String },
     /// Begins or ends a recording.
     Record { on: bool },
     /// Continues or pauses the playback.
@@ -97,6 +108,12 @@ impl Order {
                 }
                 Ok(())
             }),
+            Self::Set { setting, value } => Setting::from_number(*setting)
+                .ok_or_else(|| format!("no setting {setting}"))
+                .and_then(|setting| admitted(setting, *value)),
+            Self::Guide { name } if guided(name).is_none() => {
+                Err(format!("no guided procedure {name}"))
+            }
             Self::Seek { to } if !to.is_finite() => Err("seek: not a number".to_owned()),
             Self::Speed { factor } if !(0.01..=100.0).contains(factor) => {
                 Err("speed: give 0.01 to 100".to_owned())
@@ -125,6 +142,9 @@ impl Order {
                 value,
             },
             Self::Estimator { number } => Command::Estimator(number),
+            Self::Settings => Command::Settings,
+            Self::Set { setting, value } => Command::Set { setting, value },
+            Self::Store => Command::Store,
             _ => return None,
         })
     }
@@ -181,6 +201,25 @@ mod tests {
             }
             .check()
         };
+        let set = |value| Order::Set {
+            setting: Setting::CurrentScale.number(),
+            value,
+        };
+        assert_eq!(set(0.5).check(), Ok(()));
+        let refused = set(1.5).check().unwrap_err();
+        assert_eq!(refused, "current-scale must be from 0 to 1");
+        let unknown = Order::Set {
+            setting: 200,
+            value: 0.0,
+        };
+        assert!(unknown.check().is_err());
+        let guide = |name: &str| {
+            Order::Guide {
+                name: name.to_owned(),
+            }
+            .check()
+        };
+        assert!(guide("bring-up").is_ok() && guide("fly").is_err());
         assert!(fault("stuck-a").is_ok() && fault("dead-crystal").is_err() && fault("x").is_err());
     }
 }

@@ -16,6 +16,7 @@ const PARTS: [(&str, &str); 4] = [
             include_str!("../page/plots.js"),
             include_str!("../page/device.js"),
             include_str!("../page/controls.js"),
+            include_str!("../page/bench.js"),
             include_str!("../page/main.js"),
         ),
     ),

@@ -79,6 +79,7 @@ impl RealBoard {
                 .port
                 .read(&mut bytes)
                 .map_err(|error| self.lost(&error))?;
+            desk.heard(&bytes[..number]);
             let mut messages = Vec::new();
             for byte in &bytes[..number] {
                 parser.take(*byte, |message| messages.push(message));
@@ -103,6 +104,8 @@ impl RealBoard {
             {
                 self.send(command)?;
             }
+            let bytes = desk.take_bytes();
+            self.write(&bytes)?;
             let _ = desk.hub.take_hand();
             desk.tell(|| json!({}));
         }
@@ -110,9 +113,11 @@ impl RealBoard {
     }
 
     fn send(&mut self, command: Command) -> Result<(), Failure> {
-        self.port
-            .write(&encode(command))
-            .map_err(|error| self.lost(&error))
+        self.write(&encode(command))
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> Result<(), Failure> {
+        self.port.write(bytes).map_err(|error| self.lost(&error))
     }
 
     fn lost(&self, error: &io::Error) -> Failure {

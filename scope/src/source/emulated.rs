@@ -157,6 +157,7 @@ impl Client for Seat {
         if let Some(watch) = &mut desk.fault {
             watch.enables(&shifted(seen.enables, *offset_s));
         }
+        desk.heard(seen.sent);
         let mut messages = Vec::new();
         for byte in seen.sent {
             self.parser.take(*byte, |message| messages.push(message));
@@ -208,6 +209,7 @@ impl Client for Seat {
         {
             acts.send.extend(encode(command));
         }
+        acts.send.extend(desk.take_bytes());
         if let Some(Order::Hand { at }) = desk.hub.take_hand() {
             self.is_held = at.is_some();
             acts.hand = Some(at.map_or(Hold::Free, Hold::At));

@@ -18,7 +18,7 @@ use tungstenite::{Message, WebSocket};
 use virtual_board::image::Image;
 
 /// Longest wait for a condition. The board's time decides, so that a slow machine only takes longer.
-pub(crate) const LIMIT: Duration = Duration::from_secs(300);
+pub(crate) const LIMIT: Duration = Duration::from_secs(40);
 
 /// A file of its own for this process in the folder of the build.
 pub(crate) fn scratch(name: &str) -> PathBuf {

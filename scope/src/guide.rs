@@ -1,0 +1,104 @@
+//! A guided procedure of `drive`, run for a page beside the stream of the board.
+
+use std::sync::mpsc::{Receiver, channel};
+use std::thread::{self, JoinHandle};
+
+use drive::guided::Guided;
+use drive::port::{PipeEnd, Port};
+use serde_json::{Value, json};
+use terminal::failure::Failure;
+
+/// A procedure that runs or has ended.
+pub(crate) struct Guide {
+    what: Guided,
+    lines: Vec<String>,
+    run: Option<Run>,
+    /// `None` while it runs and after success.
+    failure: Option<String>,
+}
+
+/// The thread of a procedure, which holds the other end of the pipe.
+struct Run {
+    pipe: PipeEnd,
+    said: Receiver<String>,
+    thread: JoinHandle<Result<(), Failure>>,
+}
+
+impl Guide {
+    /// Begins a procedure.
+    pub(crate) fn start(what: Guided) -> Self {
+        let (port, pipe) = Port::pipe("board");
+        let (say, said) = channel();
+        let named = thread::Builder::new().name(what.as_str().to_owned());
+        let spawned = named.spawn(move || {
+            // A page that has gone needs no lines.
+            what.run(port, move |line| drop(say.send(line)))
+        });
+        let (run, failure) = match spawned {
+            Ok(thread) => (Some(Run { pipe, said, thread }), None),
+            Err(error) => (None, Some(format!("a thread: {error}"))),
+        };
+        Self {
+            what,
+            lines: Vec::new(),
+            run,
+            failure,
+        }
+    }
+
+    /// A procedure that does not begin, and why.
+    pub(crate) const fn refused(what: Guided, why: String) -> Self {
+        Self {
+            what,
+            lines: Vec::new(),
+            run: None,
+            failure: Some(why),
+        }
+    }
+
+    pub(crate) const fn runs(&self) -> bool {
+        self.run.is_some()
+    }
+
+    /// Takes bytes of the board.
+    pub(crate) fn heard(&self, bytes: &[u8]) {
+        if let Some(run) = self.run.as_ref().filter(|_| !bytes.is_empty()) {
+            // A procedure that has ended reads no more.
+            let _ = run.pipe.to.send(bytes.to_vec());
+        }
+    }
+
+    /// The bytes for the board since the last call.
+    pub(crate) fn take_bytes(&mut self) -> Vec<u8> {
+        let Some(run) = &self.run else {
+            return Vec::new();
+        };
+        // In this order: what a procedure does before its end is taken.
+        let is_over = run.thread.is_finished();
+        let bytes = run.pipe.from.try_iter().flatten().collect();
+        self.lines.extend(run.said.try_iter());
+        if is_over && let Some(run) = self.run.take() {
+            let ended = run.thread.join();
+            let ended =
+                ended.unwrap_or_else(|_| Err(Failure::Check("the procedure panicked".to_owned())));
+            self.failure = ended.err().map(|failure| failure.to_string());
+        }
+        bytes
+    }
+
+    /// Ends the procedure where it is. The board has to be disarmed after it.
+    pub(crate) fn abandon(&mut self) {
+        if self.run.take().is_some() {
+            self.failure = Some(format!("{}: ended by the page", self.what.as_str()));
+        }
+    }
+
+    pub(crate) fn json(&self) -> Value {
+        json!({
+            "name": self.what.as_str(),
+            "runs": self.runs(),
+            "lines": self.lines,
+            "failure": self.failure,
+        })
+    }
+}
