@@ -26,7 +26,7 @@ class Bench {
     this.inputs = this.facts.settings.map((setting, number) => {
       const input = document.createElement("input");
       input.type = "number"; input.id = `setting-${setting.name}`; input.title = setting.meaning;
-      input.min = setting.least; input.max = setting.most; input.step = setting.whole ? 1 : "any";
+      input.min = shortest(setting.least); input.max = shortest(setting.most); input.step = setting.whole ? 1 : "any";
       input.disabled = true;
       input.oninput = () => this.edited.add(number);
       input.onchange = () => {
@@ -52,8 +52,7 @@ class Bench {
       const value = settings?.[number];
       input.disabled = value === undefined;
       if (value !== undefined && !this.edited.has(number)) {
-        // The shortest text of an f32.
-        const text = String(Number(value.toPrecision(7)));
+        const text = shortest(value);
         if (input.value !== text) input.value = text;
       }
     });
@@ -62,7 +61,17 @@ class Bench {
     setText("stored", stored && !guide?.runs ? sentence(stored.words) : "");
     if (!guide) return setText("guide", "");
     const end = guide.runs ? "\u2026" : guide.failure ? `FAIL  ${guide.failure}` : "done";
-    setText("guide", [guide.name, ...guide.lines, end].join("\n"));
+    // The columns of a terminal are too wide here.
+    const lines = guide.lines.map((line) => line.replace(/ {2,}/g, "  "));
+    setText("guide", [guide.name, ...lines, end].join("\n"));
+  }
+}
+
+// The shortest text of an f32 that is read as the same f32.
+function shortest(value) {
+  for (let digits = 1; ; digits++) {
+    const text = String(Number(value.toPrecision(digits)));
+    if (digits === 9 || Math.fround(Number(text)) === value) return text;
   }
 }
 

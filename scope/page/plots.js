@@ -11,31 +11,31 @@ function plotList(facts, store, chosen) {
   const has = facts.source.kind === "emulated";
   const limit = facts.device.threshold_mn;
   const list = [
-    { id: "velocity", title: "Velocity of the large motor, rad/s", height: 230, series: [
+    { id: "velocity", title: "Velocity of the large motor, rad/s", height: 230, least: 0.1, series: [
       line("interval", "--band", edge(1), { edge: true }), line("", "--band", edge(-1), { edge: true }),
       ...others.map((e) => line(e.name, e.colour, at("estimate:" + e.name), { dash: e.dash })),
       line("in charge", "#d55e00", at("velocity_large"), { width: 1.6 }), line("true", "--ink", truth, { width: 1.6 }),
     ] },
-    { id: "error", title: `Force of each estimator's error through the coupler, mN (a fingertip notices ${limit} mN)`, height: 170, needsTruth: true, mark: limit, series: [
+    { id: "error", title: `Force of each estimator's error through the coupler, mN (a fingertip notices ${limit} mN)`, height: 170, least: 1, needsTruth: true, mark: limit, series: [
       ...others.map((e) => line(e.name, e.colour, error("estimate:" + e.name), { dash: e.dash })),
       line("in charge", "#d55e00", error("velocity_large"), { width: 1.6 }),
     ] },
-    { id: "force", title: "Force at the fingertip, mN", height: 170, mark: limit, series: [
+    { id: "force", title: "Force at the fingertip, mN", height: 170, least: 1, mark: limit, series: [
       line("felt", "#0072b2", at("force"), { width: 1.6 }), line("parasitic", "#d55e00", at("parasitic")),
       line("50–500 Hz RMS", "#009e73", at("tactile")),
     ] },
-    { id: "torque", title: "Torque on the handle, mN·m", height: 150, series: [
+    { id: "torque", title: "Torque on the handle, mN·m", height: 150, least: 0.1, series: [
       line("wanted", "--ink", times("torque", 1e3)), line("felt", "#0072b2", times("felt", 1e3)),
     ] },
-    { id: "current", title: "Currents, A", height: 150, series: [
+    { id: "current", title: "Currents, A", height: 150, least: 0.01, series: [
       line("large commanded", "#e69f00", at("current")), line("large", "#d55e00", at("current_large_true")),
       line("small commanded", "#56b4e9", at("current_small")), line("small", "#0072b2", at("current_small_true")),
     ] },
-    { id: "cost", title: has ? "Instructions per control tick, most of a frame" : "Cycles of the longest control tick", height: 120, series: [
+    { id: "cost", title: has ? "Instructions per control tick, most of a frame" : "Cycles of the longest control tick", height: 120, least: 10, series: [
       line(has ? "instructions" : "cycles", "#cc79a7", at(has ? "instructions" : "cycles")),
     ] },
   ];
-  return list;
+  return list.filter((plot) => !(plot.needsTruth && facts.source.kind === "board"));
 }
 
 class Plots {
@@ -74,7 +74,7 @@ class Plots {
       const bands = spec.series[0].edge ? [{ series: [1, 2], fill: ink("--band") }] : [];
       const plot = new uPlot({
         width: this.width(card), height: spec.height,
-        scales: { x: { time: false }, y: { range: (_, low, high) => span(low, high, spec.mark) } },
+        scales: { x: { time: false }, y: { range: (_, low, high) => span(low, high, spec) } },
         axes: [{ ...axis, size: 28 }, { ...axis, size: 54 }],
         series: [{ label: "t", value: (_, t) => (t == null ? "–" : t.toFixed(3) + " s") }, ...series], bands,
         legend: { live: true }, cursor: { sync: { key: "scope" }, drag: { x: true, y: false, setScale: false } },
@@ -120,11 +120,12 @@ function isVisible(card) {
   return bottom > 0 && top < innerHeight;
 }
 
-// The range of an axis: not below the mark to both sides, so that small noise looks small.
-function span(low, high, mark) {
+// The range of an axis: not below the mark to both sides, so that small noise looks small, and with the least
+// space around what is constant.
+function span(low, high, { mark, least }) {
   if (low == null || high == null) return mark ? [-mark * 1.3, mark * 1.3] : [-1, 1];
   if (mark) { low = Math.min(low, -mark * 1.3); high = Math.max(high, mark * 1.3); }
-  const pad = Math.max((high - low) * 0.06, Math.abs(high) * 1e-3, 1e-6);
+  const pad = Math.max((high - low) * 0.06, Math.abs(high) * 1e-3, least);
   return [low - pad, high + pad];
 }
 

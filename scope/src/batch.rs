@@ -49,7 +49,12 @@ impl Batch {
 
     /// The rows since the last batch, if a batch is due.
     pub(crate) fn due(&mut self) -> Option<Bytes> {
-        (self.rows > 0 && self.sent.elapsed() >= INTERVAL).then(|| {
+        (self.sent.elapsed() >= INTERVAL).then(|| self.rest())?
+    }
+
+    /// The rows since the last batch, if there are any.
+    pub(crate) fn rest(&mut self) -> Option<Bytes> {
+        (self.rows > 0).then(|| {
             self.bytes[..4].copy_from_slice(&self.rows.to_le_bytes());
             self.bytes[4..8].copy_from_slice(&self.epoch.to_le_bytes());
             self.bytes[8..HEADER].copy_from_slice(&(self.first as f64).to_le_bytes());
@@ -62,4 +67,19 @@ impl Batch {
             Bytes::from(full)
         })
     }
+}
+
+/// The rows of a batch, and the number of the first one.
+pub(crate) fn rows(bytes: &[u8]) -> (u64, Vec<Vec<f64>>) {
+    let (header, values) = bytes.split_at(HEADER);
+    let (words, _) = header.as_chunks::<8>();
+    let number = u64::from_le_bytes(words[0]) as u32 as usize;
+    let first = f64::from_le_bytes(words[1]) as u64;
+    let (values, _) = values.as_chunks::<8>();
+    let values: Vec<f64> = values
+        .iter()
+        .map(|value| f64::from_le_bytes(*value))
+        .collect();
+    let width = (values.len() / number.max(1)).max(1);
+    (first, values.chunks(width).map(<[f64]>::to_vec).collect())
 }

@@ -16,9 +16,10 @@ use terminal::wording::WIDTH;
 
 use crate::estimators::Estimators;
 use crate::export;
-use crate::hub::Hub;
+use crate::hub::{Event, Hub};
 use crate::server::Server;
 use crate::source::{Emulated, RealBoard, Recorded, Source};
+use crate::stream::{Stream, mcap_file};
 use crate::token::random;
 
 /// Serves a page on which the device runs live: the flash image on an emulated board in real time, a
@@ -34,7 +35,7 @@ use crate::token::random;
     after_help = "Exit status: 0; 1 if the source fails; 2 if the input cannot be used.\n\nExamples:
   cargo scope
   cargo scope --recording run.csv
-  cargo scope --board /dev/ttyACM0
+  cargo scope --board /dev/ttyACM0 --record run.mcap
   cargo scope --export run.csv --mcap run.mcap"
 )]
 struct Arguments {
@@ -56,6 +57,9 @@ struct Arguments {
     /// Show and command a board instead: a serial port, or tcp:HOST:PORT
     #[arg(long, value_name = "PORT")]
     board: Option<String>,
+    /// Write all rows from the start to the end of the server to FILE, which is complete after Ctrl-C
+    #[arg(long, value_name = "FILE.mcap", value_parser = mcap_file, conflicts_with_all = ["recording", "export"])]
+    record: Option<PathBuf>,
     /// Write the rows of a recording, with the estimates, to the file of --mcap, and serve no page
     #[arg(long, value_name = "FILE.csv", requires = "mcap", conflicts_with_all = ["recording", "board", "image"])]
     export: Option<PathBuf>,
@@ -77,8 +81,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     let device = device.map_or_else(|| Ok(Device::default()), Device::read)?;
     if let (Some(from), Some(to)) = (&arguments.export, &arguments.mcap) {
         let recorded = Recorded::read(from, device)?;
-        let names: Vec<_> = Estimators::kinds().iter().map(|kind| kind.name).collect();
-        let bytes = export::mcap(recorded.rows.iter().map(Vec::as_slice), &names)?;
+        let bytes = export::mcap(
+            recorded.rows.iter().map(Vec::as_slice),
+            &Estimators::names(),
+        )?;
         return write_whole(to, &bytes);
     }
     // A port that is taken is told before an image is built.
@@ -93,14 +99,20 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
             Box::new(Emulated::new(arguments.image, device)?)
         }
     };
-    serve(server, source, !arguments.no_open)
+    serve(server, source, arguments.record, !arguments.no_open)
 }
 
-fn serve(server: Server, source: Box<dyn Source>, opens: bool) -> Result<(), Failure> {
+fn serve(
+    server: Server,
+    source: Box<dyn Source>,
+    record: Option<PathBuf>,
+    opens: bool,
+) -> Result<(), Failure> {
     let (hub, orders) = Hub::new(random()?, source.facts());
     let stopping = Arc::clone(&hub);
     ctrlc::set_handler(move || stopping.stop.store(true, Ordering::Relaxed))
         .map_err(|error| Failure::Check(format!("Ctrl-C: {error}")))?;
+    let stream = record.map(|path| Stream::start(path, &hub)).transpose()?;
     let url = server.url();
     print_bytes(format!("{url}\n").as_bytes())?;
     if opens {
@@ -120,7 +132,12 @@ fn serve(server: Server, source: Box<dyn Source>, opens: bool) -> Result<(), Fai
     let ended = source
         .join()
         .unwrap_or_else(|_| Err(Failure::Check("the source panicked".to_owned())));
-    ended.and(served)
+    hub.tell(Event::End);
+    let streamed = stream.map_or(Ok(()), Stream::finish);
+    let rescued = hub
+        .recording()
+        .map_or(Ok(()), |recording| recording.rescue(&Estimators::names()));
+    ended.and(served).and(streamed).and(rescued)
 }
 
 /// Opens the page in a browser, if the system has a program for it.

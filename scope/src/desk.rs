@@ -1,6 +1,5 @@
 //! The desk at which the messages of a board become rows for the pages.
 
-use std::collections::VecDeque;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -10,8 +9,6 @@ use drivers::Command;
 use drivers::link::{Frame, Hello, Message, Rejected};
 use experiments::transparency::Fingertip;
 use haptic_control::{Mode, Request, SceneKind, Stop};
-use scoring::score::TACTILE_BAND_HZ;
-use scoring::spectrum::Welch;
 use serde_json::{Value, json};
 use simulation::device::Device;
 use terminal::failure::Failure;
@@ -21,17 +18,15 @@ use crate::bench::Bench;
 use crate::channels::Values;
 use crate::estimators::{Estimators, Reading};
 use crate::fault_watch::{FaultWatch, sentence};
-use crate::hub::Hub;
+use crate::hub::{Event, Hub};
 use crate::order::Order;
 use crate::recorder::Recorder;
+use crate::tactile::Tactile;
 
 /// Telemetry frames of a second.
 pub(crate) const FRAMES_HZ: f64 = 1e3;
 /// Interval of the status.
 const STATUS: Duration = Duration::from_millis(100);
-/// Frames over which the tactile force is computed, and between its values.
-const TACTILE_FRAMES: usize = 1000;
-const TACTILE_EVERY: u32 = 100;
 
 /// What only the emulated board knows of a frame.
 #[derive(Clone, Copy, Debug)]
@@ -66,8 +61,7 @@ pub(crate) struct Desk {
     /// Why the board refused the latest command that it refused, and how many it refused.
     refusal: Option<(&'static str, u32)>,
     scene: u8,
-    parasitic: VecDeque<f64>,
-    tactile: f64,
+    tactile: Tactile,
     told: Instant,
     pub(crate) fault: Option<FaultWatch>,
     bench: Bench,
@@ -94,8 +88,7 @@ impl Desk {
             rejected: None,
             refusal: None,
             scene: SceneKind::Off.number(),
-            parasitic: VecDeque::new(),
-            tactile: f64::NAN,
+            tactile: Tactile::new(),
             told: Instant::now(),
             fault: None,
             bench: Bench::default(),
@@ -153,9 +146,17 @@ impl Desk {
     }
 
     /// Ends a recording, if there is one, and keeps it for downloads.
-    pub(crate) fn end_recording(&mut self) {
+    fn end_recording(&mut self) {
         if let Some(recorder) = self.recorder.take() {
             self.hub.keep(Arc::new(recorder.finish()));
+        }
+    }
+
+    /// The source ends: what is not told is told, and a recording ends.
+    pub(crate) fn close(&mut self) {
+        self.end_recording();
+        if let Some(bytes) = self.batch.rest() {
+            self.hub.tell(Event::Rows(bytes));
         }
     }
 
@@ -261,24 +262,14 @@ impl Desk {
         values.parasitic = (truth.felt - values.torque) * self.fingertip.mn_per_nm;
         values.instructions = truth.instructions.into();
         values.hand_angle = truth.hand.unwrap_or(f64::NAN);
-        self.parasitic.push_back(values.parasitic);
-        if self.parasitic.len() > TACTILE_FRAMES {
-            self.parasitic.pop_front();
-        }
         let seq = self.last.map_or(0, |frame| frame.seq);
-        if seq.is_multiple_of(TACTILE_EVERY) && self.parasitic.len() == TACTILE_FRAMES {
-            let signal: Vec<f64> = self.parasitic.iter().copied().collect();
-            let density = Welch::new(FRAMES_HZ).density(&signal);
-            let rms = density.and_then(|density| density.rms_within(TACTILE_BAND_HZ));
-            self.tactile = rms.unwrap_or(f64::NAN);
-        }
-        values.tactile = self.tactile;
+        values.tactile = self.tactile.next(values.parasitic, seq);
     }
 
     /// Sends the rows and the status that are due. `more` is what the source adds to the status.
     pub(crate) fn tell(&mut self, more: impl FnOnce() -> Value) {
         if let Some(bytes) = self.batch.due() {
-            self.hub.tell(crate::hub::Event::Rows(bytes));
+            self.hub.tell(Event::Rows(bytes));
         }
         if self.told.elapsed() < STATUS {
             return;

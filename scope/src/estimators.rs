@@ -31,6 +31,11 @@ impl Estimators {
         Kind::all().iter().filter(|kind| !kind.needs.edge).collect()
     }
 
+    /// Their names.
+    pub(crate) fn names() -> Vec<&'static str> {
+        Self::kinds().iter().map(|kind| kind.name).collect()
+    }
+
     /// The estimators for a device, with `rate_hz` samples a second.
     ///
     /// # Errors

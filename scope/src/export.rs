@@ -1,9 +1,10 @@
 //! Rows as MCAP: a topic for each group of channels, with messages of protobuf and their descriptors.
 
 use std::collections::BTreeMap;
-use std::io::Cursor;
+use std::io::Write;
 
 use mcap::records::MessageHeader;
+use mcap::write::NoSeek;
 use prost::Message as _;
 use prost_types::field_descriptor_proto::{Label, Type};
 use prost_types::{DescriptorProto, FieldDescriptorProto, FileDescriptorProto, FileDescriptorSet};
@@ -89,7 +90,87 @@ impl Topic {
     }
 }
 
-/// Rows as the bytes of an MCAP file. The time of a message is that of its row, from zero.
+/// A file in the making. The time of a message is that of its row, from zero.
+pub(crate) struct McapWriter<W: Write> {
+    topics: Vec<Topic>,
+    /// Channel of each topic.
+    channels: Vec<u16>,
+    writer: mcap::Writer<NoSeek<W>>,
+    sequence: u32,
+}
+
+impl<W: Write> McapWriter<W> {
+    /// A file of rows that end with these estimators.
+    ///
+    /// # Errors
+    /// One line if a record cannot be written.
+    pub(crate) fn new(out: W, estimators: &[&str]) -> Result<Self, String> {
+        let options = mcap::WriteOptions::new()
+            .compression(None)
+            .disable_seeking(true)
+            .library("limpid scope");
+        let mut writer = options
+            .create(NoSeek::new(out))
+            .map_err(|error| failed(&error))?;
+        let topics = topics(estimators);
+        let mut channels = Vec::new();
+        for topic in &topics {
+            let name = format!("{PACKAGE}.{}", topic.message());
+            let schema = writer
+                .add_schema(&name, "protobuf", &topic.descriptors())
+                .map_err(|error| failed(&error))?;
+            let path = format!("/{}", topic.name);
+            let channel = writer.add_channel(schema, &path, "protobuf", &BTreeMap::new());
+            channels.push(channel.map_err(|error| failed(&error))?);
+        }
+        Ok(Self {
+            topics,
+            channels,
+            writer,
+            sequence: 0,
+        })
+    }
+
+    /// Adds a row.
+    ///
+    /// # Errors
+    /// One line if a record cannot be written.
+    pub(crate) fn row(&mut self, row: &[f64]) -> Result<(), String> {
+        let time = (row.first().copied().unwrap_or_default().max(0.0) * 1e9).round() as u64;
+        for (topic, channel_id) in self.topics.iter().zip(&self.channels) {
+            let message = topic.encode(row);
+            if message.is_empty() {
+                continue;
+            }
+            let header = MessageHeader {
+                channel_id: *channel_id,
+                sequence: self.sequence,
+                log_time: time,
+                publish_time: time,
+            };
+            self.writer
+                .write_to_known_channel(&header, &message)
+                .map_err(|error| failed(&error))?;
+        }
+        self.sequence = self.sequence.wrapping_add(1);
+        Ok(())
+    }
+
+    /// Ends the file; returns what it was written to.
+    ///
+    /// # Errors
+    /// One line if a record cannot be written.
+    pub(crate) fn finish(mut self) -> Result<W, String> {
+        self.writer.finish().map_err(|error| failed(&error))?;
+        Ok(self.writer.into_inner().into_inner())
+    }
+}
+
+fn failed(error: &mcap::McapError) -> String {
+    format!("MCAP: {error}")
+}
+
+/// Rows as the bytes of an MCAP file.
 ///
 /// # Errors
 /// One line if a record cannot be written.
@@ -97,44 +178,11 @@ pub(crate) fn mcap<'a>(
     rows: impl Iterator<Item = &'a [f64]>,
     estimators: &[&str],
 ) -> Result<Vec<u8>, String> {
-    let failed = |error: mcap::McapError| format!("MCAP: {error}");
-    let mut bytes = Cursor::new(Vec::new());
-    let options = mcap::WriteOptions::new()
-        .compression(None)
-        .library("limpid scope");
-    let mut writer = options.create(&mut bytes).map_err(failed)?;
-    let topics = topics(estimators);
-    let mut channels = Vec::new();
-    for topic in &topics {
-        let name = format!("{PACKAGE}.{}", topic.message());
-        let schema = writer
-            .add_schema(&name, "protobuf", &topic.descriptors())
-            .map_err(failed)?;
-        let path = format!("/{}", topic.name);
-        let channel = writer.add_channel(schema, &path, "protobuf", &BTreeMap::new());
-        channels.push(channel.map_err(failed)?);
+    let mut writer = McapWriter::new(Vec::new(), estimators)?;
+    for row in rows {
+        writer.row(row)?;
     }
-    for (sequence, row) in (0..).zip(rows) {
-        let time = (row.first().copied().unwrap_or_default().max(0.0) * 1e9).round() as u64;
-        for (topic, channel_id) in topics.iter().zip(&channels) {
-            let message = topic.encode(row);
-            if message.is_empty() {
-                continue;
-            }
-            let header = MessageHeader {
-                channel_id: *channel_id,
-                sequence,
-                log_time: time,
-                publish_time: time,
-            };
-            writer
-                .write_to_known_channel(&header, &message)
-                .map_err(failed)?;
-        }
-    }
-    writer.finish().map_err(failed)?;
-    drop(writer);
-    Ok(bytes.into_inner())
+    writer.finish()
 }
 
 #[cfg(test)]

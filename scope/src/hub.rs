@@ -27,6 +27,8 @@ pub(crate) enum Event {
     Rows(Bytes),
     /// A message in JSON.
     Text(Utf8Bytes),
+    /// The source has ended: nothing follows.
+    End,
 }
 
 /// Counts of what pages sent and the server did not follow.

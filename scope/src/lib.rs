@@ -17,4 +17,6 @@ mod recorder;
 mod server;
 mod session;
 mod source;
+mod stream;
+mod tactile;
 mod token;

@@ -1,12 +1,20 @@
 //! Recordings that a page makes.
 
 use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use drivers::link::{Hello, Message};
 use recordings::record::{choose, csv};
 use recordings::telemetry::Telemetry;
 
+use terminal::failure::Failure;
+use terminal::output::{note, write_whole};
+
 use crate::export;
+
+/// Kinds of files of a recording.
+const FILES: [&str; 2] = ["csv", "mcap"];
 
 /// Longest recording, rows: two minutes, so that its memory is bounded.
 pub(crate) const LONGEST: usize = 120_000;
@@ -20,7 +28,11 @@ pub(crate) struct Recorder {
 }
 
 /// A finished recording.
-pub(crate) struct Finished(Recorder);
+pub(crate) struct Finished {
+    recorder: Recorder,
+    /// Whether a page has taken it.
+    is_taken: AtomicBool,
+}
 
 impl Recorder {
     /// A recording of an image, from the next frame on.
@@ -59,23 +71,62 @@ impl Recorder {
     }
 
     pub(crate) fn finish(self) -> Finished {
-        Finished(self)
+        Finished {
+            recorder: self,
+            is_taken: AtomicBool::new(false),
+        }
     }
 }
 
 impl Finished {
+    /// A page has taken the recording.
+    pub(crate) fn take(&self) {
+        self.is_taken.store(true, Ordering::Relaxed);
+    }
+
+    /// Writes the recording, if no page has taken it, as CSV and MCAP to new files in the current folder.
+    ///
+    /// # Errors
+    /// [`Failure`] if they cannot be written.
+    pub(crate) fn rescue(&self, estimators: &[&str]) -> Result<(), Failure> {
+        // A recording of one frame is none.
+        let Some(csv) = self
+            .csv()
+            .ok()
+            .filter(|_| !self.is_taken.load(Ordering::Relaxed))
+        else {
+            return Ok(());
+        };
+        let name = (1..).map(|number| format!("scope-{number}")).find(|name| {
+            FILES
+                .iter()
+                .all(|kind| !Path::new(&format!("{name}.{kind}")).exists())
+        });
+        let name = name.unwrap_or_default();
+        let [csv_file, mcap_file] = FILES.map(|kind| PathBuf::from(format!("{name}.{kind}")));
+        write_whole(&csv_file, csv.as_bytes())?;
+        write_whole(&mcap_file, &self.mcap(estimators)?)?;
+        note(format_args!(
+            "the recording that no page has taken is in {} and {}",
+            csv_file.display(),
+            mcap_file.display()
+        ));
+        Ok(())
+    }
+
     /// The recording as CSV that `cargo sim replay` reads: its longest run, if the board started again.
     ///
     /// # Errors
     /// One line if there are fewer than two frames.
     pub(crate) fn csv(&self) -> Result<String, String> {
-        let runs = self.0.telemetry.runs();
+        let runs = self.recorder.telemetry.runs();
         if runs.is_empty() {
             return Err("the recording has no frame; record for longer".to_owned());
         }
         let run = choose(&runs, None).map_err(|failure| failure.to_string())?;
-        let truth = |frame: &recordings::telemetry::Frame| self.0.truths.get(&frame.seq).copied();
-        Ok(csv(run, self.0.rate_hz, truth))
+        let truth =
+            |frame: &recordings::telemetry::Frame| self.recorder.truths.get(&frame.seq).copied();
+        Ok(csv(run, self.recorder.rate_hz, truth))
     }
 
     /// All rows as MCAP.
@@ -83,6 +134,6 @@ impl Finished {
     /// # Errors
     /// One line if the file cannot be made.
     pub(crate) fn mcap(&self, estimators: &[&str]) -> Result<Vec<u8>, String> {
-        export::mcap(self.0.rows.iter().map(AsRef::as_ref), estimators)
+        export::mcap(self.recorder.rows.iter().map(AsRef::as_ref), estimators)
     }
 }

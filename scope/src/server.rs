@@ -160,9 +160,8 @@ async fn csv(State(shared): State<Shared>, RawQuery(query): RawQuery) -> Respons
 }
 
 async fn mcap(State(shared): State<Shared>, RawQuery(query): RawQuery) -> Response {
-    let names: Vec<_> = Estimators::kinds().iter().map(|kind| kind.name).collect();
     download(shared, query, "application/octet-stream", move |finished| {
-        finished.mcap(&names)
+        finished.mcap(&Estimators::names())
     })
     .await
 }
@@ -180,7 +179,12 @@ async fn download(
     let Some(finished) = shared.hub.recording() else {
         return refuse(StatusCode::NOT_FOUND, "no recording");
     };
-    match tokio::task::spawn_blocking(move || make(&finished)).await {
+    let made = tokio::task::spawn_blocking(move || {
+        let bytes = make(&finished)?;
+        finished.take();
+        Ok::<_, String>(bytes)
+    });
+    match made.await {
         Ok(Ok(bytes)) => ([(header::CONTENT_TYPE, kind)], Body::from(bytes)).into_response(),
         Ok(Err(error)) => (StatusCode::CONFLICT, error).into_response(),
         Err(_) => refuse(StatusCode::INTERNAL_SERVER_ERROR, "the file cannot be made"),

@@ -59,7 +59,7 @@ pub(crate) async fn session(socket: WebSocket, hub: Arc<Hub>) {
                     Ok(Event::Text(text)) => page.send(Message::Text(text)).await,
                     // The page finds what it lost by the numbers of the rows.
                     Err(RecvError::Lagged(_)) => ControlFlow::Continue(()),
-                    Err(RecvError::Closed) => ControlFlow::Break(()),
+                    Ok(Event::End) | Err(RecvError::Closed) => ControlFlow::Break(()),
                 },
                 message = page.socket.recv() => match message {
                     Some(Ok(message)) => page.take(message).await,

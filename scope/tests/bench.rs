@@ -150,7 +150,7 @@ fn board_behind_a_link_is_commanded_calibrated_and_disarmed_at_the_end() {
     let _alone = alone();
     let error = |offset, gain| DacError { offset, gain };
     let board = Board::start("current-monitor", [error(6.0, 1.0), error(-4.0, 1.0)]);
-    let server = Server::start(&["--board", &board.port]);
+    let mut server = Server::start(&["--board", &board.port]);
     let mut page = commanding(&server);
     let lines = guided(&mut page, "calibrate");
     let passed = lines.iter().filter(|line| line.starts_with("pass")).count();
@@ -174,13 +174,7 @@ fn board_behind_a_link_is_commanded_calibrated_and_disarmed_at_the_end() {
     assert!(page.value("velocity_large").is_finite() && page.value("cycles") > 0.0);
 
     // The server ends by itself: the next one finds a board that was disarmed and has no cause of a stop.
-    let mut server = server;
-    let id = server.child.id().to_string();
-    let killed = std::process::Command::new("kill")
-        .args(["-INT", &id])
-        .status();
-    assert!(killed.expect("kill").success());
-    assert!(server.child.wait().expect("an end").success());
+    assert!(server.interrupt());
     drop(server);
     let server = Server::start(&["--board", &board.port]);
     let mut page = commanding(&server);

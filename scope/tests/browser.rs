@@ -274,6 +274,44 @@ fn second_tab_watches_and_a_page_connects_again_to_a_new_server() {
 }
 
 #[test]
+fn settings_are_changed_on_the_page_and_the_bring_up_tells_its_lines() {
+    let server = Server::emulated();
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let tab = browser.open(&server.url(), 1300, 900);
+    ready(&mut browser, &tab);
+    browser.value(&tab, "$('bench-card').open = true, 0");
+    browser.wait(&tab, "$('setting-current-scale').value === '1'");
+    let enter = |browser: &mut Browser, value: &str| {
+        browser.value(&tab, &format!(
+            "(() => {{ const i = $('setting-current-scale'); i.value = '{value}'; i.oninput(); i.onchange(); }})()"
+        ))
+    };
+    // A value at its bound is within it.
+    browser.wait(&tab, "$('settings').querySelector(':invalid') === null");
+    // What is out of the bounds stays in its field, and is not sent.
+    enter(&mut browser, "1.5");
+    browser.wait(&tab, "!$('setting-current-scale').checkValidity()");
+    enter(&mut browser, "0.5");
+    browser.wait(&tab, "$('setting-current-scale').value === '0.5'");
+    browser.click(&tab, "[data-guide=bring-up]");
+    browser.wait(
+        &tab,
+        "scope.status.guide?.runs && $('store').disabled && $('guide').textContent.includes('pass')",
+    );
+    browser.wait(
+        &tab,
+        "!scope.status.guide.runs && $('guide').textContent.endsWith('done')",
+    );
+    browser.click(&tab, "#store");
+    browser.wait(&tab, "$('stored').textContent === 'Settings stored.'");
+    browser.value(&tab, "$('bench-card').scrollIntoView()");
+    browser.picture(&tab, "settings.png");
+    assert_eq!(browser.complaints, [""; 0]);
+}
+
+#[test]
 fn dark_page_has_dark_plots() {
     let server = Server::emulated();
     let Some(mut browser) = Browser::start() else {

@@ -1,5 +1,6 @@
 //! Figures of the live page, printed and not judged, because they are those of a machine:
-//! `cargo test --release -p scope --test measured -- --ignored --nocapture`.
+//! `cargo test --release -p scope --test measured -- --ignored --nocapture`. `MINUTES=60` watches the memory for
+//! an hour.
 
 mod common;
 
@@ -9,10 +10,12 @@ use std::time::{Duration, Instant};
 
 use common::Server;
 use common::devtools::Browser;
+use serde_json::json;
 
-/// Time for the frames, and for the memory.
+/// Time for the frames.
 const FRAMES: Duration = Duration::from_secs(10);
-const MEMORY: Duration = Duration::from_secs(120);
+/// Variable of the environment with the minutes for the memory, and its default.
+const MINUTES: (&str, u32) = ("MINUTES", 2);
 /// Ticks of a second in `/proc`.
 const TICKS: f64 = 100.0;
 
@@ -110,14 +113,22 @@ fn frames_latency_processor_and_memory() {
         at(0.5),
         at(0.9)
     );
-    let (since, first) = (Instant::now(), memory(id));
-    println!("memory: {first:.1} MB");
-    while since.elapsed() < MEMORY {
-        sleep(MEMORY / 4);
+    let minutes = std::env::var(MINUTES.0).map_or(MINUTES.1, |text| text.parse().expect(MINUTES.0));
+    let (since, time) = (Instant::now(), 60 * Duration::from_secs(minutes.into()));
+    for _ in 0..=6 {
+        browser.tell(&tab, "HeapProfiler.collectGarbage", &json!({}));
+        let page = browser.value(&tab, "performance.memory.usedJSHeapSize / 1e6");
         println!(
-            "memory after {:.0} s: {:.1} MB",
+            "memory after {:.0} s: server {:.1} MB, scripts of the page {:.1} MB",
             since.elapsed().as_secs_f64(),
-            memory(id)
+            memory(id),
+            page.as_f64().unwrap_or(f64::NAN)
         );
+        // What the browser tells is read, so that it does not wait in the browser.
+        let part = Instant::now();
+        while part.elapsed() < time / 6 {
+            sleep(Duration::from_millis(200));
+            browser.value(&tab, "0");
+        }
     }
 }

@@ -2,9 +2,7 @@
 
 mod common;
 
-use std::process::Command;
-
-use common::{Client, Server, get};
+use common::{Client, Server, get, image};
 use serde_json::{Value, json};
 
 fn is_on(status: &Value) -> bool {
@@ -182,17 +180,40 @@ fn fault_is_told_with_its_time_and_its_cause() {
 }
 
 #[test]
-fn interrupt_ends_the_server_with_status_0() {
-    let mut server = Server::emulated();
+fn interrupt_ends_the_server_and_finishes_its_files() {
+    let image = image();
+    let image = image.to_str().expect("a path in UTF-8");
+    let mut server = Server::start(&["--image", image, "--record", "all.mcap"]);
     let mut page = running(&server);
-    page.next();
-    let id = server.child.id().to_string();
+    page.order(&json!({"do": "record", "on": true}));
+    page.status("a recording", |status| {
+        status["recording"].as_u64() > Some(300)
+    });
+    assert!(server.interrupt());
+    // Complete: with a summary, and all rows since the begin of the server.
+    let messages = |name: &str, topic: &str| {
+        let bytes = std::fs::read(server.folder.join(name)).expect("a file");
+        let summary = mcap::Summary::read(&bytes).expect("a file");
+        assert!(summary.is_some(), "{name} has no end");
+        let messages = mcap::MessageStream::new(&bytes).expect("a file");
+        let of_topic = messages.filter(|it| it.as_ref().expect("a message").channel.topic == topic);
+        of_topic.count() as u64
+    };
     assert!(
-        Command::new("kill")
-            .args(["-INT", &id])
-            .status()
-            .expect("kill")
-            .success()
+        messages("all.mcap", "/device") >= page.rows,
+        "{}",
+        page.rows
     );
-    assert!(server.child.wait().expect("an end").success());
+    // The page cannot take its recording any more.
+    let rows = messages("scope-1.mcap", "/device");
+    assert!((300..page.rows).contains(&rows), "{rows}");
+    let csv = server.folder.join("scope-1.csv");
+    let recording = recordings::recording::Recording::read(&csv).expect("a recording");
+    assert_eq!(recording.t.len() as u64, rows);
+    let mut files: Vec<_> = std::fs::read_dir(&server.folder)
+        .expect("a folder")
+        .map(|file| file.expect("a file").file_name())
+        .collect();
+    files.sort();
+    assert_eq!(files, ["all.mcap", "scope-1.csv", "scope-1.mcap"]);
 }

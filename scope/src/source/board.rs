@@ -60,7 +60,7 @@ impl Source for RealBoard {
         // A lost connection cannot be told again.
         let _ = self.port.write(&encode(Command::Request(Request::Disarm)));
         self.port.finish();
-        desk.end_recording();
+        desk.close();
         followed
     }
 }

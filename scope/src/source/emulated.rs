@@ -108,7 +108,7 @@ impl Source for Emulated {
             table.desk.restarted();
         }
         let mut table = table.lock().unwrap_or_else(PoisonError::into_inner);
-        table.desk.end_recording();
+        table.desk.close();
         Ok(())
     }
 }

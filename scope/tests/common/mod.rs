@@ -18,7 +18,7 @@ use tungstenite::{Message, WebSocket};
 use virtual_board::image::Image;
 
 /// Longest wait for a condition. The board's time decides, so that a slow machine only takes longer.
-pub(crate) const LIMIT: Duration = Duration::from_secs(40);
+pub(crate) const LIMIT: Duration = Duration::from_secs(300);
 
 /// A file of its own for this process in the folder of the build.
 pub(crate) fn scratch(name: &str) -> PathBuf {
@@ -46,6 +46,8 @@ pub(crate) struct Server {
     pub(crate) child: Child,
     pub(crate) port: u16,
     pub(crate) token: String,
+    /// Its current folder.
+    pub(crate) folder: PathBuf,
     _one: MutexGuard<'static, ()>,
 }
 
@@ -53,8 +55,12 @@ impl Server {
     /// A server with these arguments.
     pub(crate) fn start(arguments: &[&str]) -> Self {
         let one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
+        let folder = scratch("folder");
+        let _ = std::fs::remove_dir_all(&folder);
+        std::fs::create_dir_all(&folder).expect("a folder");
         let mut command = Command::new(env!("CARGO_BIN_EXE_scope"));
         command
+            .current_dir(&folder)
             .arg("--no-open")
             .args(arguments)
             .stdout(Stdio::piped());
@@ -81,6 +87,7 @@ impl Server {
             child,
             port,
             token,
+            folder,
             _one: one,
         }
     }
@@ -88,6 +95,14 @@ impl Server {
     /// A server of the virtual board.
     pub(crate) fn emulated() -> Self {
         Self::start(&["--image", image().to_str().expect("a path in UTF-8")])
+    }
+
+    /// Interrupts the server as Ctrl-C does, and waits for its end; whether its status is 0.
+    pub(crate) fn interrupt(&mut self) -> bool {
+        let id = self.child.id().to_string();
+        let sent = Command::new("kill").args(["-INT", &id]).status();
+        assert!(sent.expect("kill").success());
+        self.child.wait().expect("an end").success()
     }
 
     pub(crate) fn url(&self) -> String {
@@ -110,6 +125,7 @@ impl Drop for Server {
     fn drop(&mut self) {
         let _ = self.child.kill();
         let _ = self.child.wait();
+        let _ = std::fs::remove_dir_all(&self.folder);
     }
 }
 
