@@ -11,11 +11,10 @@ use clap::Parser;
 use simulation::device::Device;
 use terminal::explain;
 use terminal::failure::Failure;
-use terminal::output::{note, print_bytes, write_whole};
+use terminal::output::{note, print_bytes};
 use terminal::wording::WIDTH;
 
 use crate::estimators::Estimators;
-use crate::export;
 use crate::hub::{Event, Hub};
 use crate::server::Server;
 use crate::source::{Emulated, RealBoard, Recorded, Source};
@@ -35,8 +34,7 @@ use crate::token::random;
     after_help = "Exit status: 0; 1 if the source fails; 2 if the input cannot be used.\n\nExamples:
   cargo scope
   cargo scope --recording run.csv
-  cargo scope --board /dev/ttyACM0 --record run.mcap
-  cargo scope --export run.csv --mcap run.mcap"
+  cargo scope --board /dev/ttyACM0 --record run.mcap"
 )]
 struct Arguments {
     /// TCP port of the page at 127.0.0.1, 0 for a free one
@@ -58,14 +56,8 @@ struct Arguments {
     #[arg(long, value_name = "PORT")]
     board: Option<String>,
     /// Write all rows from the start to the end of the server to FILE, which is complete after Ctrl-C
-    #[arg(long, value_name = "FILE.mcap", value_parser = mcap_file, conflicts_with_all = ["recording", "export"])]
+    #[arg(long, value_name = "FILE.mcap", value_parser = mcap_file, conflicts_with = "recording")]
     record: Option<PathBuf>,
-    /// Write the rows of a recording, with the estimates, to the file of --mcap, and serve no page
-    #[arg(long, value_name = "FILE.csv", requires = "mcap", conflicts_with_all = ["recording", "board", "image"])]
-    export: Option<PathBuf>,
-    /// The MCAP file of --export
-    #[arg(long, value_name = "FILE.mcap", requires = "export")]
-    mcap: Option<PathBuf>,
 }
 
 /// Runs the command line.
@@ -79,14 +71,6 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     };
     let device = arguments.device.as_deref();
     let device = device.map_or_else(|| Ok(Device::default()), Device::read)?;
-    if let (Some(from), Some(to)) = (&arguments.export, &arguments.mcap) {
-        let recorded = Recorded::read(from, device)?;
-        let bytes = export::mcap(
-            recorded.rows.iter().map(Vec::as_slice),
-            &Estimators::names(),
-        )?;
-        return write_whole(to, &bytes);
-    }
     // A port that is taken is told before an image is built.
     let server = Server::bind(arguments.port)?;
     let source: Box<dyn Source> = match (arguments.recording, arguments.board) {

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use channels::Values;
 use drive::refusal::refusal;
 use drivers::Command;
 use drivers::link::{Frame, Hello, Message, Rejected};
@@ -15,7 +16,6 @@ use terminal::failure::Failure;
 
 use crate::batch::Batch;
 use crate::bench::Bench;
-use crate::channels::Values;
 use crate::estimators::{Estimators, Reading};
 use crate::fault_watch::{FaultWatch, sentence};
 use crate::hub::{Event, Hub};

@@ -1,5 +1,6 @@
 //! What a page has to know, from the tables of the firmware and of the catalogue.
 
+use channels::CHANNELS;
 use drive::guided::Guided;
 use drivers::Setting;
 use estimator_catalogue::{Colour, Dash};
@@ -12,7 +13,6 @@ use serde_json::{Value, json};
 use simulation::device::Device;
 use virtual_board::live::{FASTEST_RAD_S, FOLLOWING_PER_S};
 
-use crate::channels::CHANNELS;
 use crate::estimators::Estimators;
 use crate::fault_watch::sentence;
 

@@ -2,11 +2,9 @@
 
 mod batch;
 mod bench;
-mod channels;
 pub mod cli;
 mod desk;
 mod estimators;
-mod export;
 mod facts;
 mod fault_watch;
 mod guide;

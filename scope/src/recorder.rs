@@ -11,8 +11,6 @@ use recordings::telemetry::Telemetry;
 use terminal::failure::Failure;
 use terminal::output::{note, write_whole};
 
-use crate::export;
-
 /// Kinds of files of a recording.
 const FILES: [&str; 2] = ["csv", "mcap"];
 
@@ -134,6 +132,6 @@ impl Finished {
     /// # Errors
     /// One line if the file cannot be made.
     pub(crate) fn mcap(&self, estimators: &[&str]) -> Result<Vec<u8>, String> {
-        export::mcap(self.recorder.rows.iter().map(AsRef::as_ref), estimators)
+        channels::mcap(self.recorder.rows.iter().map(AsRef::as_ref), estimators)
     }
 }

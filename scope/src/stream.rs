@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::{self, JoinHandle};
 
+use channels::McapWriter;
 use terminal::failure::Failure;
 use terminal::output::{note, write_with};
 use tokio::sync::broadcast::Receiver;
@@ -13,7 +14,6 @@ use tokio::sync::broadcast::error::RecvError;
 
 use crate::batch;
 use crate::estimators::Estimators;
-use crate::export::McapWriter;
 use crate::hub::{Event, Hub};
 
 /// A file in the making. It is complete when the server has ended, after Ctrl-C too.

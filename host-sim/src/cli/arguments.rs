@@ -59,6 +59,11 @@ pub(super) enum Command {
     #[command(after_help = "Example:
   host-sim record firmware.log --out motor.csv")]
     Record(super::record::Record),
+    /// Convert a recording, with estimates, to MCAP for Foxglove, PlotJuggler and Rerun; a part of cargo export,
+    /// which is this program with its MCAP writer
+    #[command(after_help = "Example:
+  cargo export motor.csv --estimator pll --mcap motor.mcap")]
+    Export(super::export::Export),
     /// Draw a recording as SVG: counts, velocities, currents
     #[command(after_help = "Example:
   host-sim plot motor.csv --from 1 --to 2.5 --out motor.svg")]

@@ -4,6 +4,7 @@ mod closed_loop;
 mod coarsen;
 mod compare;
 mod escaping;
+mod export;
 mod identify;
 mod identify_logs;
 mod logs;

@@ -1,6 +1,5 @@
 //! A recording as a source, with transport controls.
 
-use std::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -8,8 +7,8 @@ use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
 use catalogue::parameters::Parameters;
+use channels::CHANNELS;
 use experiments::replay::replay;
-use experiments::transparency::Fingertip;
 use recordings::recording::{BoardColumns, Recording};
 use serde_json::{Value, json};
 use simulation::device::Device;
@@ -17,7 +16,6 @@ use terminal::failure::Failure;
 
 use super::Source;
 use crate::batch::Batch;
-use crate::channels::Values;
 use crate::estimators::Estimators;
 use crate::facts;
 use crate::hub::{Event, Hub};
@@ -61,49 +59,19 @@ impl Recorded {
             &Parameters::default(),
             || (),
         )?;
-        let velocity = |name: &str, k: usize| {
-            let found = replayed
+        let mut rows = channels::rows(&recording, &board, &device, &replayed.estimates);
+        // An estimator that lacks a column has a channel without values.
+        for (k, kind) in kinds.iter().enumerate() {
+            let is_there = replayed
                 .estimates
                 .iter()
-                .find(|estimate| estimate.estimator == name);
-            found.map_or(f64::NAN, |estimate| estimate.velocity[k].into())
-        };
-        let rows = (0..recording.t.len()).map(|k| {
-            let mut row = values(&recording, &board, &device, k).all().to_vec();
-            row.extend(kinds.iter().map(|kind| velocity(kind.name, k)));
-            row
-        });
-        Ok(Self {
-            rows: rows.collect(),
-            name,
-            device,
-        })
-    }
-}
-
-fn values(recording: &Recording, board: &BoardColumns, device: &Device, k: usize) -> Values {
-    let trace = &recording.trace;
-    let of = |name: &str| board.column(name).map_or(f64::NAN, |column| column[k]);
-    let at = |column: &Option<Vec<f64>>| column.as_ref().map_or(f64::NAN, |column| column[k]);
-    let angle = |counts: u32, turn: u32| f64::from(counts as i32) * TAU / f64::from(turn);
-    let (large, small) = (&device.stages.large, &device.stages.small);
-    let handle = trace.counts_small.as_ref();
-    let torque = of("torque");
-    Values {
-        t: recording.t[k],
-        true_omega: at(&trace.true_omega),
-        velocity_large: of("velocity_large"),
-        sigma_large: of("sigma_large"),
-        velocity_small: of("velocity_small"),
-        torque,
-        force: torque * Fingertip::new(device).mn_per_nm,
-        current: at(&trace.current),
-        current_small: at(&recording.current_small),
-        large_angle: angle(trace.counts_large[k], large.counts_per_rev),
-        handle_angle: handle.map_or(f64::NAN, |counts| angle(counts[k], small.counts_per_rev)),
-        state: of("state"),
-        cause: of("cause"),
-        ..Values::default()
+                .any(|it| it.estimator == kind.name);
+            if !is_there {
+                rows.iter_mut()
+                    .for_each(|row| row.insert(CHANNELS.len() + k, f64::NAN));
+            }
+        }
+        Ok(Self { rows, name, device })
     }
 }
 

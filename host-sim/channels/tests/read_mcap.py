@@ -1,6 +1,6 @@
-"""Reads an MCAP file of `cargo scope --export` with the reader of the format's authors.
+"""Reads an MCAP file of `cargo export` with the reader of the format's authors.
 
-Usage: python scope/tests/read_mcap.py run.mcap run.csv
+Usage: python host-sim/channels/tests/read_mcap.py run.mcap run.csv
 
 Needs the packages mcap and mcap-protobuf-support. Checks that every channel has a schema, that there is a
 message for each row of the recording, and that its columns have the values of the recording.

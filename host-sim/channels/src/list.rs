@@ -1,4 +1,4 @@
-//! The channels of the page: the one list of what a row of the stream has.
+//! The channels: the one list of what a row of the stream has.
 
 use serde::Serialize;
 
@@ -6,8 +6,8 @@ macro_rules! channels {
     ($($name:ident: $topic:literal, $unit:literal, $label:literal;)+) => {
         /// A row: the values at one telemetry frame. A value that the source does not have is NaN.
         #[derive(Clone, Copy, Debug)]
-        pub(crate) struct Values {
-            $(#[doc = concat!($label, ", unit: ", $unit)] pub(crate) $name: f64,)+
+        pub struct Values {
+            $(#[doc = concat!($label, ", unit: ", $unit)] pub $name: f64,)+
         }
 
         impl Default for Values {
@@ -18,13 +18,14 @@ macro_rules! channels {
 
         impl Values {
             /// The values in the order of [`CHANNELS`].
-            pub(crate) fn all(&self) -> [f64; CHANNELS.len()] {
+            #[must_use]
+            pub fn all(&self) -> [f64; CHANNELS.len()] {
                 [$(self.$name),+]
             }
         }
 
         /// The channels, before those of the estimators.
-        pub(crate) const CHANNELS: [Channel; [$($label),+].len()] = [$(Channel {
+        pub const CHANNELS: [Channel; [$($label),+].len()] = [$(Channel {
             name: stringify!($name),
             topic: $topic,
             unit: $unit,
@@ -35,15 +36,15 @@ macro_rules! channels {
 
 /// A channel of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub(crate) struct Channel {
-    /// Name in files and in the page's program.
-    pub(crate) name: &'static str,
+pub struct Channel {
+    /// Name in files and in programs.
+    pub name: &'static str,
     /// Topic of an exported file that has the channel.
-    pub(crate) topic: &'static str,
+    pub topic: &'static str,
     /// Unit; empty for a number.
-    pub(crate) unit: &'static str,
+    pub unit: &'static str,
     /// Words for a person.
-    pub(crate) label: &'static str,
+    pub label: &'static str,
 }
 
 channels! {

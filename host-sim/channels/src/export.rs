@@ -9,7 +9,7 @@ use prost::Message as _;
 use prost_types::field_descriptor_proto::{Label, Type};
 use prost_types::{DescriptorProto, FieldDescriptorProto, FileDescriptorProto, FileDescriptorSet};
 
-use crate::channels::CHANNELS;
+use crate::list::CHANNELS;
 
 /// Package of the messages.
 const PACKAGE: &str = "limpid";
@@ -91,7 +91,7 @@ impl Topic {
 }
 
 /// A file in the making. The time of a message is that of its row, from zero.
-pub(crate) struct McapWriter<W: Write> {
+pub struct McapWriter<W: Write> {
     topics: Vec<Topic>,
     /// Channel of each topic.
     channels: Vec<u16>,
@@ -104,11 +104,11 @@ impl<W: Write> McapWriter<W> {
     ///
     /// # Errors
     /// One line if a record cannot be written.
-    pub(crate) fn new(out: W, estimators: &[&str]) -> Result<Self, String> {
+    pub fn new(out: W, estimators: &[&str]) -> Result<Self, String> {
         let options = mcap::WriteOptions::new()
             .compression(None)
             .disable_seeking(true)
-            .library("limpid scope");
+            .library("limpid");
         let mut writer = options
             .create(NoSeek::new(out))
             .map_err(|error| failed(&error))?;
@@ -135,7 +135,7 @@ impl<W: Write> McapWriter<W> {
     ///
     /// # Errors
     /// One line if a record cannot be written.
-    pub(crate) fn row(&mut self, row: &[f64]) -> Result<(), String> {
+    pub fn row(&mut self, row: &[f64]) -> Result<(), String> {
         let time = (row.first().copied().unwrap_or_default().max(0.0) * 1e9).round() as u64;
         for (topic, channel_id) in self.topics.iter().zip(&self.channels) {
             let message = topic.encode(row);
@@ -160,7 +160,7 @@ impl<W: Write> McapWriter<W> {
     ///
     /// # Errors
     /// One line if a record cannot be written.
-    pub(crate) fn finish(mut self) -> Result<W, String> {
+    pub fn finish(mut self) -> Result<W, String> {
         self.writer.finish().map_err(|error| failed(&error))?;
         Ok(self.writer.into_inner().into_inner())
     }
@@ -174,7 +174,7 @@ fn failed(error: &mcap::McapError) -> String {
 ///
 /// # Errors
 /// One line if a record cannot be written.
-pub(crate) fn mcap<'a>(
+pub fn mcap<'a>(
     rows: impl Iterator<Item = &'a [f64]>,
     estimators: &[&str],
 ) -> Result<Vec<u8>, String> {

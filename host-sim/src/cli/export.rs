@@ -1,0 +1,104 @@
+//! `host-sim export`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use experiments::replay;
+use recordings::recording::{BoardColumns, Recording};
+use scoring::evaluation::Estimate;
+use simulation::device::Device;
+use terminal::failure::Failure;
+use terminal::output::{note, write_whole};
+
+use super::arguments::{DeviceFile, ParameterOptions, RecordingOptions, kinds};
+use super::input::{Log, short_name};
+use super::replay::About;
+use super::uneven::Chosen;
+
+#[derive(Debug, Args)]
+pub(super) struct Export {
+    /// Recording: CSV as for host-sim replay; - is standard input
+    #[arg(value_name = "RECORDING.csv")]
+    recording: PathBuf,
+    /// Estimator whose velocity the file has, see host-sim estimators; repeatable [default: all whose
+    /// needed columns are present]
+    #[arg(long = "estimator", value_name = "NAME")]
+    estimators: Vec<String>,
+    #[command(flatten)]
+    read: RecordingOptions,
+    #[command(flatten)]
+    device: DeviceFile,
+    #[command(flatten)]
+    parameters: ParameterOptions,
+    /// Write the file to FILE; - is standard output
+    #[arg(long, value_name = "FILE.mcap")]
+    mcap: PathBuf,
+}
+
+pub(super) fn run(options: &Export) -> Result<(), Failure> {
+    let kinds = kinds(&options.estimators)?;
+    let device = options.device.load()?;
+    let parameters = options.parameters.load()?;
+    let name = short_name(&options.recording);
+    let log = Log::open(&options.recording)?;
+    let path = log.name();
+    let (device, stated) =
+        options
+            .device
+            .with_stated_counts(device, std::slice::from_ref(&log), None)?;
+    let recording = options.read.read(&log, &device)?;
+    recording.check_times(path)?;
+    let uneven = recording.unevenness();
+    let chosen = Chosen::new(
+        &kinds,
+        !options.estimators.is_empty(),
+        &recording.trace,
+        path,
+        uneven.as_deref(),
+    )?;
+    // Rows of another rate are not those of the board.
+    let board = match options.read.keeps_rows() {
+        true => BoardColumns::parse(log.reader()?, path)?,
+        false => BoardColumns::default(),
+    };
+    let replayed = replay::replay(
+        &recording,
+        &name,
+        &chosen.kinds,
+        &device,
+        &parameters,
+        || (),
+    )?;
+    let bytes = mcap(&recording, &board, &device, &replayed.estimates).map_err(Failure::Input)?;
+    write_whole(&options.mcap, &bytes)?;
+    let about = About {
+        notes: recording.notes.clone(),
+        uneven: uneven.map(|uneven| chosen.note(&recording.trace, &uneven)),
+        left_out: &replayed.left_out,
+        mismatched_presets: &replayed.mismatched_presets,
+    };
+    stated.iter().for_each(note);
+    about.note(&name);
+    Ok(())
+}
+
+#[cfg(feature = "mcap")]
+fn mcap(
+    recording: &Recording,
+    board: &BoardColumns,
+    device: &Device,
+    estimates: &[Estimate],
+) -> Result<Vec<u8>, String> {
+    let names: Vec<_> = estimates
+        .iter()
+        .map(|estimate| estimate.estimator)
+        .collect();
+    let rows = channels::rows(recording, board, device, estimates);
+    channels::mcap(rows.iter().map(Vec::as_slice), &names)
+}
+
+#[cfg(not(feature = "mcap"))]
+fn mcap(_: &Recording, _: &BoardColumns, _: &Device, _: &[Estimate]) -> Result<Vec<u8>, String> {
+    Err("MCAP needs a build with its writer: cargo export instead of cargo sim export".to_owned())
+}

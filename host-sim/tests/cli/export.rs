@@ -1,0 +1,58 @@
+//! Recordings as MCAP files, by a build with the writer and by one without.
+
+use crate::Folder;
+
+const LOG: &str = "t,counts_large\n0,0\n0.001,1\n0.002,2\n";
+
+fn folder(name: &str) -> Folder {
+    let folder = Folder::new(name);
+    folder.write("run.csv", LOG);
+    folder
+}
+
+#[cfg(not(feature = "mcap"))]
+#[test]
+fn build_without_the_writer_names_the_one_with_it_and_writes_nothing() {
+    let folder = folder("export-without");
+    let output = folder.run(&["export", "run.csv", "--mcap", "run.mcap"]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        said.contains("cargo export instead of cargo sim export"),
+        "{said}"
+    );
+    assert_eq!(folder.files(), ["run.csv".to_owned()].into());
+}
+
+#[cfg(feature = "mcap")]
+#[test]
+fn estimates_and_columns_are_in_the_file() {
+    let folder = folder("export");
+    let arguments = [
+        "export",
+        "run.csv",
+        "--estimator",
+        "pll",
+        "--mcap",
+        "run.mcap",
+    ];
+    folder.good(&arguments);
+    let bytes = std::fs::read(folder.0.join("run.mcap")).unwrap();
+    let has = |text: &str| bytes.windows(text.len()).any(|at| at == text.as_bytes());
+    assert!(bytes.starts_with(b"\x89MCAP") && bytes.ends_with(b"MCAP0\r\n"));
+    assert!(has("limpid.Estimates") && has("pll") && has("large_angle") && !has("low_pass"));
+}
+
+#[test]
+fn log_that_cannot_be_read_leaves_no_file() {
+    let folder = folder("export-refused");
+    folder.write("bad.csv", "t,counts_large\n0,0\n0.001,x\n");
+    let output = folder.run(&["export", "bad.csv", "--mcap", "bad.mcap"]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        said.contains("line 3") && said.contains("counts_large"),
+        "{said}"
+    );
+    assert_eq!(folder.files().len(), 2);
+}
