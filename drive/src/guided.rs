@@ -2,12 +2,11 @@
 
 use std::time::Duration;
 
-use drivers::link::Hello;
 use terminal::failure::Failure;
 
 use crate::board::Board;
 use crate::port::Port;
-use crate::{bring_up, calibrate, channels};
+use crate::{bring_up, calibrate};
 
 /// Longest wait for an answer: an emulated board may be slow.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -32,13 +31,6 @@ impl Guided {
             Self::BringUp => "bring-up",
             Self::Calibrate => "calibrate",
         }
-    }
-
-    /// Why an image does not admit the procedure.
-    #[must_use]
-    pub fn refusal(self, hello: &Hello) -> Option<String> {
-        let lacks = self == Self::Calibrate && !channels::are_measured(hello);
-        lacks.then(|| format!("the image does not have the feature {}", channels::FEATURE))
     }
 
     /// Runs the procedure on the board at a port, and hands each line to `listener`. It stores nothing.

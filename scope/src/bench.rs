@@ -2,7 +2,7 @@
 
 use drive::guided::Guided;
 use drive::settings::outcome_words;
-use drivers::link::{Hello, Message};
+use drivers::link::Message;
 use drivers::{Command, Saved, encode};
 use haptic_control::Request;
 use serde_json::{Value, json};
@@ -62,8 +62,9 @@ impl Bench {
     }
 
     /// Follows an order as far as it is one of the bench; whether it goes on to the board. While a procedure
-    /// runs, the board has no other commander, but the order to disarm ends both.
-    pub(crate) fn order(&mut self, order: &Order, hello: Option<&Hello>) -> bool {
+    /// runs, the board has no other commander, but the order to disarm ends both. A procedure begins if the board
+    /// `is_known`.
+    pub(crate) fn order(&mut self, order: &Order, is_known: bool) -> bool {
         let is_guided = self.guide.as_ref().is_some_and(Guide::runs);
         match order {
             Order::Disarm => {
@@ -71,13 +72,8 @@ impl Bench {
                 true
             }
             Order::Guide { name } => {
-                if let Some(what) = guided(name)
-                    && let Some(hello) = hello.filter(|_| !is_guided)
-                {
-                    self.guide = Some(match what.refusal(hello) {
-                        Some(why) => Guide::refused(what, why),
-                        None => Guide::start(what),
-                    });
+                if let Some(what) = guided(name).filter(|_| is_known && !is_guided) {
+                    self.guide = Some(Guide::start(what));
                 }
                 false
             }
@@ -166,14 +162,27 @@ mod tests {
             guide: Some(Guide::start(Guided::BringUp)),
             ..Bench::default()
         };
-        assert!(!bench.order(&Order::Alive, None) && !bench.order(&Order::Arm, None));
-        assert!(bench.order(&Order::Record { on: true }, None));
-        assert!(bench.order(&Order::Disarm, None) && bench.order(&Order::Arm, None));
+        assert!(!bench.order(&Order::Alive, true) && !bench.order(&Order::Arm, true));
+        assert!(bench.order(&Order::Record { on: true }, true));
+        assert!(bench.order(&Order::Disarm, true) && bench.order(&Order::Arm, true));
         let ended = &bench.json()["guide"];
         assert!(
             ended["runs"] == false && ended["failure"].is_string(),
             "{ended}"
         );
+    }
+
+    #[test]
+    fn procedure_waits_for_the_identity_of_the_board_and_for_the_one_before() {
+        let mut bench = Bench::default();
+        let guide = |name: &str| Order::Guide {
+            name: name.to_owned(),
+        };
+        assert!(!bench.order(&guide("bring-up"), false));
+        assert!(bench.json()["guide"].is_null());
+        assert!(!bench.order(&guide("bring-up"), true));
+        bench.order(&guide("calibrate"), true);
+        assert_eq!(bench.json()["guide"]["name"], "bring-up");
     }
 
     #[test]

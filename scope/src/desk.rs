@@ -122,7 +122,7 @@ impl Desk {
 
     /// Follows an order as far as the desk does, and returns the command for the board.
     pub(crate) fn order(&mut self, order: &Order) -> Option<Command> {
-        if !self.bench.order(order, self.hello.as_ref()) {
+        if !self.bench.order(order, self.hello.is_some()) {
             return None;
         }
         match *order {

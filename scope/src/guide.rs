@@ -46,16 +46,6 @@ impl Guide {
         }
     }
 
-    /// A procedure that does not begin, and why.
-    pub(crate) const fn refused(what: Guided, why: String) -> Self {
-        Self {
-            what,
-            lines: Vec::new(),
-            run: None,
-            failure: Some(why),
-        }
-    }
-
     pub(crate) const fn runs(&self) -> bool {
         self.run.is_some()
     }

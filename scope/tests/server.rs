@@ -53,7 +53,11 @@ fn other_hosts_origins_and_tokens_are_refused() {
 
     let mut watcher = server.client();
     watcher.order(&json!({"do": "arm"}));
-    assert_eq!(watcher.role()["known"], false);
+    let role = watcher.role();
+    assert!(
+        role["known"] == false && role["why"].to_string().contains("token"),
+        "{role}"
+    );
     watcher.order(&json!({"do": "join", "token": "0".repeat(32)}));
     assert_eq!(watcher.role()["commands"], false);
     watcher.order(&json!({"do": "arm"}));
@@ -177,6 +181,23 @@ fn fault_is_told_with_its_time_and_its_cause() {
     page.status("a new board", |status| status["mode"] == "boot");
     page.order(&json!({"do": "arm"}));
     page.status("armed", |status| status["mode"] == "armed");
+}
+
+#[test]
+fn recording_that_a_page_has_taken_is_not_written_again() {
+    let mut server = Server::emulated();
+    let mut page = running(&server);
+    page.order(&json!({"do": "record", "on": true}));
+    page.status("a recording", |status| {
+        status["recording"].as_u64() > Some(100)
+    });
+    page.order(&json!({"do": "record", "on": false}));
+    page.status("its end", |status| status["recorded"] == true);
+    let path = format!("/recording.csv?token={}", server.token);
+    assert_eq!(get(server.port, &path, &[]).0, 200);
+    assert!(server.interrupt());
+    let files = std::fs::read_dir(&server.folder).expect("a folder");
+    assert_eq!(files.count(), 0);
 }
 
 #[test]

@@ -141,6 +141,11 @@ mod tests {
         let every_other = |n: u64| (0..n).map(|k| 2 * k).collect::<Vec<_>>();
         assert_eq!(waits(&every_other(64), 2), 0);
         assert_eq!(waits(&every_other(65), 2), 65 * 5);
+        // The first line is used again before one line too many: it stays, and the second one goes.
+        let again = [every_other(64), vec![0, 128, 0]].concat();
+        assert_eq!(waits(&again, 1), 65 * 5);
+        let gone = [again, vec![2]].concat();
+        assert_eq!(waits(&gone, 1), 66 * 5);
     }
 
     #[test]

@@ -201,7 +201,11 @@ mod tests {
             let files = FileDescriptorSet::decode(&*schema.data).unwrap().file;
             let message = &files[0].message_type[0];
             assert_eq!(schema.name, format!("{PACKAGE}.{}", message.name()));
-            assert!(!message.field.is_empty());
+            let numbers: Vec<_> = message.field.iter().map(|field| field.number()).collect();
+            assert!(
+                numbers[0] == 1 && numbers.is_sorted_by(|a, b| a + 1 == *b),
+                "{numbers:?}"
+            );
         }
         let messages: Vec<_> = mcap::MessageStream::new(&bytes).unwrap().collect();
         let [Ok(message)] = &messages[..] else {
