@@ -7,7 +7,6 @@ mod compare;
 mod export;
 mod feel;
 mod identify;
-mod input;
 mod limit;
 mod list;
 mod page;

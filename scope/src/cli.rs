@@ -8,7 +8,7 @@ use std::sync::atomic::Ordering;
 use std::thread;
 
 use clap::Parser;
-use simulation::device::Device;
+use recordings::arguments::{DeviceFile, RecordingOptions};
 use terminal::explain;
 use terminal::failure::Failure;
 use terminal::output::{note, print_bytes};
@@ -46,12 +46,13 @@ struct Arguments {
     /// ELF file of the flash image for the emulated board [default: the image is built]
     #[arg(long, value_name = "ELF", conflicts_with_all = ["recording", "board"])]
     image: Option<PathBuf>,
-    /// Device file, as host-sim identify writes it [default: the default device]
-    #[arg(long, value_name = "FILE.toml")]
-    device: Option<PathBuf>,
-    /// Play a recording instead: a CSV file as cargo sim replay reads it
+    #[command(flatten)]
+    device: DeviceFile,
+    /// Play a recording instead: CSV as for cargo sim replay; - is standard input
     #[arg(long, value_name = "FILE.csv", conflicts_with = "board")]
     recording: Option<PathBuf>,
+    #[command(flatten)]
+    read: RecordingOptions,
     /// Show and command a board instead: a serial port, or tcp:HOST:PORT
     #[arg(long, value_name = "PORT")]
     board: Option<String>,
@@ -69,12 +70,17 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Ok(arguments) => arguments,
         Err(error) => return explain(&error, "cargo scope"),
     };
-    let device = arguments.device.as_deref();
-    let device = device.map_or_else(|| Ok(Device::default()), Device::read)?;
+    if arguments.recording.is_none() && arguments.read != RecordingOptions::default() {
+        return Err(Failure::Input(
+            "--column, --modulus, --row-rate and --resample read a recording: give --recording FILE.csv"
+                .to_owned(),
+        ));
+    }
+    let device = arguments.device.load()?;
     // A port that is taken is told before an image is built.
     let server = Server::bind(arguments.port)?;
     let source: Box<dyn Source> = match (arguments.recording, arguments.board) {
-        (Some(path), _) => Box::new(Recorded::read(&path, device)?),
+        (Some(path), _) => Box::new(Recorded::read(&path, &arguments.read, &arguments.device)?),
         (None, Some(port)) => Box::new(RealBoard::open(&port, device)?),
         (None, None) => {
             if arguments.image.is_none() {

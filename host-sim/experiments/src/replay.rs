@@ -4,7 +4,6 @@ mod board;
 mod run;
 
 use std::io::{self, Write};
-use std::path::Path;
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -163,13 +162,6 @@ pub fn table(rows: &[Row], with_coupler: bool, width: usize) -> String {
     };
     let fields: Vec<_> = Score::FIELDS.iter().filter(shown).collect();
     table::details(rows, &fields, width)
-}
-
-/// Name of a recording: that of its file.
-#[must_use]
-pub fn name(path: &Path) -> String {
-    path.file_name()
-        .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
 /// Writes the header of [`csv()`].

@@ -1,18 +1,15 @@
 //! Commands of the command line, and the options that several commands share.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use recordings::recording::{ReadOptions, Recording, Survey, stated_counts_per_rev};
-use simulation::device::Device;
+use recordings::arguments::DeviceFile;
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
 use terminal::wording::WIDTH;
-
-use super::input::{Log, short_name};
 
 /// Velocity estimation for a dual-stage haptic device, simulated and scored.
 ///
@@ -122,13 +119,6 @@ pub(super) enum Command {
 }
 
 #[derive(Clone, Debug, Default, Args)]
-pub(super) struct DeviceFile {
-    /// Device file; a key that is not in the file keeps its default [see host-sim device]
-    #[arg(long, value_name = "FILE.toml")]
-    device: Option<PathBuf>,
-}
-
-#[derive(Clone, Debug, Default, Args)]
 pub(super) struct ParameterOptions {
     /// Presets file written by host-sim tune; its values replace the shipped presets
     #[arg(long, value_name = "FILE.toml")]
@@ -137,150 +127,6 @@ pub(super) struct ParameterOptions {
     /// repeatable
     #[arg(long = "set", value_name = "NAME.PARAM=VALUE")]
     set: Vec<String>,
-}
-
-/// How a recording is read.
-#[derive(Clone, Debug, Default, Args)]
-pub(super) struct RecordingOptions {
-    /// Read a column from the user's column of another name, with its unit: t=time_ms:ms,
-    /// counts_large=angle:deg. The end of the name may be the unit (time_ms); a number is the number
-    /// of the column. Units: s, ms, us, ns; counts, deg, rad, rev; A, mA, N.m; rad/s, deg/s, rev/s,
-    /// rpm. Repeatable
-    #[arg(long = "column", value_name = "OURS=THEIRS[:UNIT]")]
-    columns: Vec<String>,
-    /// Counts of a revolution of an absolute encoder, at which the column counts_large wraps;
-    /// counts_small=M for the other encoder; repeatable
-    #[arg(long, value_name = "M")]
-    modulus: Vec<String>,
-    /// Rate of the rows, for a recording without a column of time
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
-    row_rate: Option<f64>,
-    /// Replace the rows by rows at a constant rate: counts are interpolated and rounded
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
-    resample: Option<f64>,
-}
-
-impl RecordingOptions {
-    /// Whether the recording has the rows of the file.
-    pub(super) fn keeps_rows(&self) -> bool {
-        self.resample.is_none()
-    }
-
-    /// What the options say about the log of `device`.
-    fn options(&self, device: &Device) -> Result<ReadOptions, Failure> {
-        let mut options = ReadOptions::of(device);
-        for text in &self.columns {
-            options.add_columns(text)?;
-        }
-        for text in &self.modulus {
-            options.set_modulus(text)?;
-        }
-        if let Some(hz) = self.row_rate {
-            options.set_row_rate(hz)?;
-        }
-        Ok(options)
-    }
-
-    /// Reads the recording `log` of `device`. Its notes are those of the reader.
-    pub(super) fn read(&self, log: &Log, device: &Device) -> Result<Recording, Failure> {
-        let options = self.options(device)?;
-        let mut recording = Recording::parse_as(log.reader()?, log.name(), &options)?;
-        let unwrapped = recording.unwrap_counts(device);
-        recording.notes.extend(unwrapped);
-        if let Some(hz) = self.resample {
-            recording.notes.extend(recording.unevenness());
-            recording.resample(hz, log.name())?;
-        }
-        Ok(recording)
-    }
-
-    /// Reads all rows of the recording `log` of `device` without keeping them, and returns how to
-    /// read them again.
-    pub(super) fn survey(
-        &self,
-        log: &Log,
-        device: &Device,
-    ) -> Result<(ReadOptions, Survey), Failure> {
-        let options = self.options(device)?;
-        let survey = Survey::new(log.reader()?, log.name(), &options, device, self.resample)?;
-        Ok((options, survey))
-    }
-}
-
-impl DeviceFile {
-    /// The text of the device file; empty if no file is given.
-    pub(super) fn text(&self) -> Result<String, Failure> {
-        let Some(path) = &self.device else {
-            return Ok(String::new());
-        };
-        std::fs::read_to_string(path)
-            .map_err(|error| Failure::Input(format!("{}: cannot read: {error}", path.display())))
-    }
-
-    /// The device of the file; the default device if no file is given.
-    pub(super) fn load(&self) -> Result<Device, Failure> {
-        let name = self.device.as_deref().unwrap_or(Path::new(""));
-        Device::from_toml_str(&self.text()?)
-            .map_err(|error| Failure::Input(format!("{}: {error}", name.display())))
-    }
-
-    /// `device`, as loaded, for recordings, and a line for each one that states its counts per
-    /// revolution. Without a device file, and without `counts_per_rev` of an option, the device has
-    /// these counts.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] that names the recording whose counts differ from those of the first one.
-    pub(super) fn with_stated_counts(
-        &self,
-        mut device: Device,
-        logs: &[Log],
-        counts_per_rev: Option<u32>,
-    ) -> Result<(Device, Vec<String>), Failure> {
-        let counts = &mut device.stages.large.counts_per_rev;
-        let mut is_known = self.is_given();
-        if let Some(given) = counts_per_rev {
-            (*counts, is_known) = (given, true);
-        }
-        let mut lines = Vec::new();
-        let mut first: Option<&str> = None;
-        for log in logs {
-            let Some(stated) = stated_counts_per_rev(&log.head()?, log.name())? else {
-                continue;
-            };
-            let name = short_name(log.path());
-            match first {
-                _ if is_known && stated == *counts => {}
-                _ if is_known => lines.push(format!(
-                    "{name}: {counts} counts/rev of the options are used; the file states {stated}"
-                )),
-                Some(first) if stated != *counts => {
-                    return Err(Failure::Input(format!(
-                        "{}: states {stated} counts/rev and {first} {counts}; give recordings of one \
-                         encoder, or the counts with --device",
-                        log.name()
-                    )));
-                }
-                _ => {
-                    *counts = stated;
-                    first = first.or(Some(log.name()));
-                    lines.push(format!("{name}: {stated} counts/rev, as the file states"));
-                }
-            }
-        }
-        Ok((device, lines))
-    }
-
-    /// Whether a file was given.
-    pub(super) fn is_given(&self) -> bool {
-        self.device.is_some()
-    }
-
-    /// Name of the device in reports: the file's name, or "default device".
-    pub(super) fn name(&self) -> String {
-        self.device
-            .as_deref()
-            .map_or_else(|| "default device".to_owned(), experiments::replay::name)
-    }
 }
 
 impl ParameterOptions {

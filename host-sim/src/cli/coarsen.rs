@@ -8,12 +8,12 @@ use clap::Args;
 use experiments::real::coarsen::Coarse;
 use experiments::real::fine::{Fine, decompressed};
 use experiments::real::sources::Source;
+use recordings::arguments::DeviceFile;
 use recordings::recording::counts_per_rev_line;
 use terminal::failure::Failure;
 use terminal::output::write_whole;
 
-use super::arguments::DeviceFile;
-use super::input::{called, read};
+use recordings::log::{called, read};
 
 #[derive(Debug, Args)]
 pub(super) struct Coarsen {

@@ -10,6 +10,7 @@ use experiments::rows;
 use experiments::table;
 use experiments::table::layout::terminal_width;
 use haptic_control::SceneKind;
+use recordings::arguments::DeviceFile;
 use report::measured;
 use report::{self, CaseReport, ReportInput, Traces};
 use scoring::evaluation::Row;
@@ -19,7 +20,7 @@ use simulation::simulate;
 use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 
-use super::arguments::{DeviceFile, ParameterOptions, kinds, rates, scenarios};
+use super::arguments::{ParameterOptions, kinds, rates, scenarios};
 use super::closed_loop;
 use super::page::{self, progress};
 use super::report_extras::{ReportExtras, report_extras};

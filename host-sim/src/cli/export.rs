@@ -5,16 +5,17 @@ use std::path::PathBuf;
 use clap::Args;
 
 use experiments::replay;
+use recordings::arguments::{DeviceFile, RecordingOptions};
 use recordings::recording::{BoardColumns, Recording};
 use scoring::evaluation::Estimate;
 use simulation::device::Device;
 use terminal::failure::Failure;
 use terminal::output::{note, write_whole};
 
-use super::arguments::{DeviceFile, ParameterOptions, RecordingOptions, kinds};
-use super::input::{Log, short_name};
+use super::arguments::{ParameterOptions, kinds};
 use super::replay::About;
 use super::uneven::Chosen;
+use recordings::log::{Log, short_name};
 
 #[derive(Debug, Args)]
 pub(super) struct Export {

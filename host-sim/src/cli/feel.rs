@@ -10,12 +10,13 @@ use experiments::feel::{Case, Settings, Without, feel, table::table};
 use experiments::rows::{csv, json};
 use experiments::table::layout::{NARROW, terminal_width};
 use haptic_control::SceneKind;
+use recordings::arguments::DeviceFile;
 use report::{self, Printout};
 use simulation::simulate;
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
-use super::arguments::{DeviceFile, ParameterOptions, rates};
+use super::arguments::{ParameterOptions, rates};
 use super::closed_loop;
 use super::compare::longer_than_skipped;
 use super::page::{self, progress};

@@ -6,13 +6,13 @@ use std::path::PathBuf;
 use clap::Args;
 
 use experiments::identify::{self, Known, Quantity};
+use recordings::arguments::{DeviceFile, RecordingOptions};
 use report::{self, Printout};
 use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, note, print_bytes, write_whole};
 
-use super::arguments::{DeviceFile, RecordingOptions};
-use super::input::{Log, short_name};
 use super::page;
+use recordings::log::{Log, short_name};
 
 #[derive(Debug, Args)]
 pub(super) struct Identify {

@@ -9,10 +9,11 @@ use experiments::compare::{Case, Settings};
 use experiments::limit::{SCENARIOS, limit, table::table};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
+use recordings::arguments::DeviceFile;
 use scoring::score::Wanted;
 use terminal::failure::Failure;
 
-use super::arguments::{DeviceFile, ParameterOptions, kinds, rates, scenarios};
+use super::arguments::{ParameterOptions, kinds, rates, scenarios};
 use super::page::{self, progress};
 
 #[derive(Debug, Args)]

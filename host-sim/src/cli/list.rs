@@ -5,12 +5,11 @@ use std::fmt::Write as _;
 use catalogue::estimators::{Kind, Search};
 use catalogue::parameters::{PlantKind, Preset, Presets};
 use device_files::decimal;
+use recordings::arguments::DeviceFile;
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
 use terminal::output::print_bytes;
 use terminal::wording::wrapped;
-
-use super::arguments::DeviceFile;
 
 /// Names, parameters and needs of the estimators.
 pub(super) fn estimators() -> Result<(), Failure> {

@@ -6,15 +6,16 @@ use clap::Args;
 
 use experiments::compare::interval;
 use experiments::replay;
+use recordings::arguments::{DeviceFile, RecordingOptions};
 use recordings::recording::BoardColumns;
 use report::{self, RecordingView};
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, note, print_bytes, write_whole};
 
-use super::arguments::{DeviceFile, ParameterOptions, RecordingOptions, kinds};
-use super::input::{Log, is_stdin, short_name};
+use super::arguments::{ParameterOptions, kinds};
 use super::replay::About;
 use super::uneven::Chosen;
+use recordings::log::{Log, is_stdin, short_name};
 
 /// Estimators that are drawn by default.
 const ESTIMATORS: [&str; 2] = ["finite-difference", "kalman-triple-steady"];

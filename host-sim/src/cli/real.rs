@@ -9,11 +9,12 @@ use experiments::real::run::{Row, Settings, run as run_all};
 use experiments::real::table::table;
 use experiments::rows::{csv, json};
 use experiments::table::layout::{NARROW, terminal_width};
+use recordings::arguments::DeviceFile;
 use report::{self, Printout};
 use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, print_bytes, write_whole};
 
-use super::arguments::{DeviceFile, ParameterOptions, kinds, rates};
+use super::arguments::{ParameterOptions, kinds, rates};
 use super::coarsen::{phase, rate, seconds};
 use super::page::{self, one_to_stdout, progress};
 

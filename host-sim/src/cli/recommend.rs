@@ -8,16 +8,17 @@ use catalogue::estimators::Kind;
 use experiments::recommend::{self, Settings, recommend};
 use experiments::rows::json;
 use experiments::table::layout::{NARROW, terminal_width};
+use recordings::arguments::{DeviceFile, RecordingOptions};
 use recordings::recording::Recording;
 use report::Printout;
 use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, note};
 use terminal::wording::wrapped;
 
-use super::arguments::{DeviceFile, ParameterOptions, RecordingOptions};
-use super::input::{Log, is_stdin, short_name};
+use super::arguments::ParameterOptions;
 use super::page::{self, progress};
 use super::uneven::Chosen;
+use recordings::log::{Log, is_stdin, short_name};
 
 /// Default budget of the cheap estimator, instructions per update.
 const BUDGET: f64 = 100.0;

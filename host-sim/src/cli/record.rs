@@ -9,7 +9,7 @@ use recordings::telemetry::Telemetry;
 use terminal::failure::Failure;
 use terminal::output::{note, write_whole};
 
-use super::input::{called, read};
+use recordings::log::{called, read};
 
 #[derive(Debug, Args)]
 pub(super) struct Record {

@@ -11,16 +11,17 @@ use experiments::reference::Reference;
 use experiments::replay::{self, Against, BoardSummary, Run, section_rows};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
+use recordings::arguments::{DeviceFile, RecordingOptions};
 use recordings::recording::{BoardColumns, BoardReader, Parts, Survey};
 use simulation::device::Device;
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, note, print_bytes, write_whole, write_with};
 use terminal::wording::wrapped;
 
-use super::arguments::{DeviceFile, ParameterOptions, RecordingOptions, kinds};
-use super::input::{Log, called, short_name};
+use super::arguments::{ParameterOptions, kinds};
 use super::page::{one_to_stdout, progress};
 use super::uneven::Chosen;
+use recordings::log::{Log, called, short_name};
 
 #[derive(Debug, Args)]
 pub(super) struct Replay {

@@ -13,11 +13,12 @@ use experiments::robust::{Experiment, Settings, shard, summary};
 use experiments::rows;
 use experiments::table::layout::{NARROW, terminal_width};
 use haptic_control::SceneKind;
+use recordings::arguments::DeviceFile;
 use report::{self, Printout};
 use terminal::failure::Failure;
 use terminal::output::{Folder, print_bytes, write_whole};
 
-use super::arguments::{DeviceFile, ParameterOptions};
+use super::arguments::ParameterOptions;
 use super::page::{self, progress};
 
 /// Default folder of the report.

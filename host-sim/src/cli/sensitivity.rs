@@ -9,13 +9,14 @@ use experiments::compare::{Case, Settings};
 use experiments::rows;
 use experiments::sensitivity::{sensitivity, table::table};
 use experiments::table::layout::{NARROW, terminal_width};
+use recordings::arguments::DeviceFile;
 use report::{self, Printout};
 use scoring::score::Wanted;
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
-use super::arguments::{DeviceFile, ParameterOptions, kinds, rates, scenarios};
+use super::arguments::{ParameterOptions, kinds, rates, scenarios};
 use super::page::{self, progress};
 
 /// Default folder of the page.

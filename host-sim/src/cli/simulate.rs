@@ -8,14 +8,13 @@ use haptic_control::{LoopPoles, SceneKind};
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
 use experiments::closed_loop::{FeedbackEncoder, Hand, Loop, estimator, named, usual};
+use recordings::arguments::DeviceFile;
 use recordings::recording::Recording;
 use simulation::scenario::ScenarioName;
 use simulation::simulate::{simulate, ticks};
 use simulation::trace::Columns;
 use terminal::failure::Failure;
 use terminal::output::write_whole;
-
-use super::arguments::DeviceFile;
 
 /// Load on the handle in a scene.
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -9,15 +9,16 @@ use catalogue::constant_error::ConstantError;
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind, Preset, Presets};
 use experiments::tune::{FIRST_SEED, TuningSet, image_section, tune, tune_on_logs};
+use recordings::arguments::{DeviceFile, RecordingOptions};
 use simulation::scenario::{Role, ScenarioName};
 use simulation::simulate;
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, print_bytes, write_whole};
 
-use super::arguments::{DeviceFile, RecordingOptions, kinds, rates, scenarios};
-use super::input::{Log, short_name};
+use super::arguments::{kinds, rates, scenarios};
 use super::page::progress;
 use super::uneven::Chosen;
+use recordings::log::{Log, short_name};
 
 /// Defaults of the tuning options for one kind of estimators.
 struct Recipe {

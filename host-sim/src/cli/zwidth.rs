@@ -8,11 +8,12 @@ use catalogue::estimators::Kind;
 use experiments::rows::{csv, json};
 use experiments::table::layout::{NARROW, terminal_width};
 use experiments::zwidth::{BOUNDS_A_CASE, LoopSetup, Settings, boundaries, rows, table};
+use recordings::arguments::DeviceFile;
 use report::{self, Printout};
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
-use super::arguments::{DeviceFile, ParameterOptions, kinds, rates};
+use super::arguments::{ParameterOptions, kinds, rates};
 use super::page::{self, progress};
 
 /// Default folder of the page.

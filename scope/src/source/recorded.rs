@@ -1,6 +1,5 @@
 //! A recording as a source, with transport controls.
 
-use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
@@ -9,10 +8,13 @@ use std::time::{Duration, Instant};
 use catalogue::parameters::Parameters;
 use channels::CHANNELS;
 use experiments::replay::replay;
-use recordings::recording::{BoardColumns, Recording};
+use recordings::arguments::{DeviceFile, RecordingOptions};
+use recordings::log::Log;
+use recordings::recording::BoardColumns;
 use serde_json::{Value, json};
 use simulation::device::Device;
 use terminal::failure::Failure;
+use terminal::output::note;
 
 use super::Source;
 use crate::batch::Batch;
@@ -33,7 +35,7 @@ pub(crate) struct Recorded {
     name: String,
     device: Device,
     /// Rows as the page gets them: channels, then estimators.
-    pub(crate) rows: Vec<Vec<f64>>,
+    rows: Vec<Vec<f64>>,
 }
 
 impl Recorded {
@@ -41,15 +43,23 @@ impl Recorded {
     ///
     /// # Errors
     /// [`Failure::Input`] if it cannot be read.
-    pub(crate) fn read(path: &Path, device: Device) -> Result<Self, Failure> {
-        let name = path.display().to_string();
-        let text = fs::read(path)
-            .map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
-        let recording = Recording::parse(&*text, &name)?;
-        let board = BoardColumns::parse(&*text, &name)?;
-        if recording.t.len() < 2 {
-            return Err(Failure::Input(format!("{name}: fewer than two rows")));
-        }
+    pub(crate) fn read(
+        path: &Path,
+        options: &RecordingOptions,
+        file: &DeviceFile,
+    ) -> Result<Self, Failure> {
+        let log = Log::open(path)?;
+        let name = log.name().to_owned();
+        let (device, stated) =
+            file.with_stated_counts(file.load()?, std::slice::from_ref(&log), None)?;
+        let recording = options.read(&log, &device)?;
+        recording.check_times(&name)?;
+        stated.iter().chain(&recording.notes).for_each(note);
+        // Rows of another rate are not those of the board.
+        let board = match options.keeps_rows() {
+            true => BoardColumns::parse(log.reader()?, &name)?,
+            false => BoardColumns::default(),
+        };
         let kinds = Estimators::kinds();
         let replayed = replay(
             &recording,
@@ -60,7 +70,7 @@ impl Recorded {
             || (),
         )?;
         let mut rows = channels::rows(&recording, &board, &device, &replayed.estimates);
-        // An estimator that lacks a column has a channel without values.
+        // An estimator that lacks a column or an even clock has a channel without values.
         for (k, kind) in kinds.iter().enumerate() {
             let is_there = replayed
                 .estimates
@@ -187,6 +197,21 @@ impl Player {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn log_of_an_uneven_clock_has_a_channel_without_values_for_what_needs_an_even_one() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/logs/uneven.csv");
+        let (options, file) = (RecordingOptions::default(), DeviceFile::default());
+        let recorded = Recorded::read(Path::new(path), &options, &file).expect("a recording");
+        let names = Estimators::names();
+        let at = |name: &str| CHANNELS.len() + names.iter().position(|it| *it == name).unwrap();
+        let [even, any] = ["foaw-best-fit", "finite-difference"].map(at);
+        assert!(recorded.rows.len() > 2);
+        for row in &recorded.rows {
+            assert_eq!(row.len(), CHANNELS.len() + names.len());
+            assert!(row[even].is_nan() && row[any].is_finite());
+        }
+    }
 
     #[test]
     fn player_seeks_pauses_and_ends() {

@@ -1,4 +1,4 @@
-//! Input files, one of which can be standard input.
+//! Logs: files, one of which can be standard input.
 
 use std::fs::File;
 use std::io::Read;
@@ -13,23 +13,33 @@ const STDIN: &str = "standard input";
 const HEAD: u64 = 1 << 16;
 
 /// Whether `path` stands for standard input.
-pub(super) fn is_stdin(path: &Path) -> bool {
+#[must_use]
+pub fn is_stdin(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
 /// Name of the file `path` in messages.
-pub(super) fn called(path: &Path) -> String {
+#[must_use]
+pub fn called(path: &Path) -> String {
     match is_stdin(path) {
         true => STDIN.to_owned(),
         false => path.display().to_string(),
     }
 }
 
+/// Name of the file `path` without its folders.
+#[must_use]
+pub fn file_name(path: &Path) -> String {
+    path.file_name()
+        .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}
+
 /// Name of the recording in the file `path`: the file's name.
-pub(super) fn short_name(path: &Path) -> String {
+#[must_use]
+pub fn short_name(path: &Path) -> String {
     match is_stdin(path) {
         true => STDIN.to_owned(),
-        false => experiments::replay::name(path),
+        false => file_name(path),
     }
 }
 
@@ -37,7 +47,7 @@ pub(super) fn short_name(path: &Path) -> String {
 ///
 /// # Errors
 /// [`Failure::Input`] that names the file.
-pub(super) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     let read = match is_stdin(path) {
         false => std::fs::read(path),
         true => {
@@ -50,7 +60,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
 }
 
 /// A recording that can be read more than once.
-pub(super) struct Log {
+pub struct Log {
     name: String,
     path: PathBuf,
     /// The bytes of standard input or of a pipe, which can be read only once.
@@ -62,7 +72,7 @@ impl Log {
     ///
     /// # Errors
     /// [`Failure::Input`] that names the file.
-    pub(super) fn open(path: &Path) -> Result<Self, Failure> {
+    pub fn open(path: &Path) -> Result<Self, Failure> {
         let name = called(path);
         let is_file = std::fs::metadata(path).is_ok_and(|file| file.is_file());
         let bytes = match is_file && !is_stdin(path) {
@@ -77,12 +87,14 @@ impl Log {
     }
 
     /// What messages call the recording.
-    pub(super) fn name(&self) -> &str {
+    #[must_use]
+    pub fn name(&self) -> &str {
         &self.name
     }
 
     /// Where it is.
-    pub(super) fn path(&self) -> &Path {
+    #[must_use]
+    pub fn path(&self) -> &Path {
         &self.path
     }
 
@@ -90,7 +102,7 @@ impl Log {
     ///
     /// # Errors
     /// As [`Log::open`].
-    pub(super) fn reader(&self) -> Result<Box<dyn Read + '_>, Failure> {
+    pub fn reader(&self) -> Result<Box<dyn Read + '_>, Failure> {
         match &self.bytes {
             Some(bytes) => Ok(Box::new(bytes.as_slice())),
             None => match File::open(&self.path) {
@@ -104,7 +116,7 @@ impl Log {
     ///
     /// # Errors
     /// As [`Log::open`].
-    pub(super) fn head(&self) -> Result<Vec<u8>, Failure> {
+    pub fn head(&self) -> Result<Vec<u8>, Failure> {
         let mut head = Vec::new();
         let read = self.reader()?.take(HEAD).read_to_end(&mut head);
         read.map_err(|error| cannot_read(&self.name, &error))?;
