@@ -7,7 +7,7 @@ use simulation::device::Device;
 use terminal::failure::Failure;
 
 use crate::log::{Log, file_name, short_name};
-use crate::recording::{ReadOptions, Recording, Survey, stated_counts_per_rev};
+use crate::recording::{BoardColumns, ReadOptions, Recording, Survey, stated_counts_per_rev};
 
 /// The device file of a command.
 #[derive(Clone, Debug, Default, Args)]
@@ -36,6 +36,19 @@ pub struct RecordingOptions {
     /// Replace the rows by rows at a constant rate: counts are interpolated and rounded
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     resample: Option<f64>,
+}
+
+/// A recording with the columns of the board and its device.
+#[derive(Clone, Debug)]
+pub struct Whole {
+    /// The recording. Its notes are those of the reader.
+    pub recording: Recording,
+    /// The columns of the board, if the recording is from one.
+    pub board: BoardColumns,
+    /// The device, with the counts per revolution that the recording states.
+    pub device: Device,
+    /// A line on the counts per revolution, if the recording states them.
+    pub stated: Vec<String>,
 }
 
 impl RecordingOptions {
@@ -74,6 +87,28 @@ impl RecordingOptions {
             recording.resample(hz, log.name())?;
         }
         Ok(recording)
+    }
+
+    /// Reads a whole recording with the columns that the board has, for the device of `file`.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that names the file, its line and its column, or the option.
+    pub fn whole(&self, log: &Log, file: &DeviceFile) -> Result<Whole, Failure> {
+        let (device, stated) =
+            file.with_stated_counts(file.load()?, std::slice::from_ref(log), None)?;
+        let recording = self.read(log, &device)?;
+        recording.check_times(log.name())?;
+        // Rows of another rate are not those of the board.
+        let board = match self.keeps_rows() {
+            true => BoardColumns::parse(log.reader()?, log.name())?,
+            false => BoardColumns::default(),
+        };
+        Ok(Whole {
+            recording,
+            board,
+            device,
+            stated,
+        })
     }
 
     /// Reads all rows of the recording `log` of `device` without keeping them, and returns how to

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use experiments::replay;
-use recordings::arguments::{DeviceFile, RecordingOptions};
+use recordings::arguments::{DeviceFile, RecordingOptions, Whole};
 use recordings::recording::{BoardColumns, Recording};
 use scoring::evaluation::Estimate;
 use simulation::device::Device;
@@ -39,17 +39,16 @@ pub(super) struct Export {
 
 pub(super) fn run(options: &Export) -> Result<(), Failure> {
     let kinds = kinds(&options.estimators)?;
-    let device = options.device.load()?;
     let parameters = options.parameters.load()?;
     let name = short_name(&options.recording);
     let log = Log::open(&options.recording)?;
     let path = log.name();
-    let (device, stated) =
-        options
-            .device
-            .with_stated_counts(device, std::slice::from_ref(&log), None)?;
-    let recording = options.read.read(&log, &device)?;
-    recording.check_times(path)?;
+    let Whole {
+        recording,
+        board,
+        device,
+        stated,
+    } = options.read.whole(&log, &options.device)?;
     let uneven = recording.unevenness();
     let chosen = Chosen::new(
         &kinds,
@@ -58,11 +57,6 @@ pub(super) fn run(options: &Export) -> Result<(), Failure> {
         path,
         uneven.as_deref(),
     )?;
-    // Rows of another rate are not those of the board.
-    let board = match options.read.keeps_rows() {
-        true => BoardColumns::parse(log.reader()?, path)?,
-        false => BoardColumns::default(),
-    };
     let replayed = replay::replay(
         &recording,
         &name,

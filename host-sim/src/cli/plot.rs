@@ -6,8 +6,7 @@ use clap::Args;
 
 use experiments::compare::interval;
 use experiments::replay;
-use recordings::arguments::{DeviceFile, RecordingOptions};
-use recordings::recording::BoardColumns;
+use recordings::arguments::{DeviceFile, RecordingOptions, Whole};
 use report::{self, RecordingView};
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, note, print_bytes, write_whole};
@@ -52,17 +51,16 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
         [] => kinds(&ESTIMATORS.map(str::to_owned))?,
         names => kinds(names)?,
     };
-    let device = options.device.load()?;
     let parameters = options.parameters.load()?;
     let name = short_name(&options.recording);
     let log = Log::open(&options.recording)?;
     let path = log.name();
-    let (device, stated) =
-        options
-            .device
-            .with_stated_counts(device, std::slice::from_ref(&log), None)?;
-    let recording = options.read.read(&log, &device)?;
-    recording.check_times(path)?;
+    let Whole {
+        recording,
+        board,
+        device,
+        stated,
+    } = options.read.whole(&log, &options.device)?;
     let uneven = recording.unevenness();
     let chosen = Chosen::new(
         &kinds,
@@ -71,12 +69,6 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
         path,
         uneven.as_deref(),
     )?;
-    // Rows of another rate are not those of the board.
-    let board = match options.read.keeps_rows() {
-        true => BoardColumns::parse(log.reader()?, path)?,
-        false => BoardColumns::default(),
-    };
-
     let [first, .., last] = recording.t[..] else {
         unreachable!("a recording has at least two rows");
     };

@@ -8,9 +8,8 @@ use std::time::{Duration, Instant};
 use catalogue::parameters::Parameters;
 use channels::CHANNELS;
 use experiments::replay::replay;
-use recordings::arguments::{DeviceFile, RecordingOptions};
+use recordings::arguments::{DeviceFile, RecordingOptions, Whole};
 use recordings::log::Log;
-use recordings::recording::BoardColumns;
 use serde_json::{Value, json};
 use simulation::device::Device;
 use terminal::failure::Failure;
@@ -50,16 +49,13 @@ impl Recorded {
     ) -> Result<Self, Failure> {
         let log = Log::open(path)?;
         let name = log.name().to_owned();
-        let (device, stated) =
-            file.with_stated_counts(file.load()?, std::slice::from_ref(&log), None)?;
-        let recording = options.read(&log, &device)?;
-        recording.check_times(&name)?;
+        let Whole {
+            recording,
+            board,
+            device,
+            stated,
+        } = options.whole(&log, file)?;
         stated.iter().chain(&recording.notes).for_each(note);
-        // Rows of another rate are not those of the board.
-        let board = match options.keeps_rows() {
-            true => BoardColumns::parse(log.reader()?, &name)?,
-            false => BoardColumns::default(),
-        };
         let kinds = Estimators::kinds();
         let replayed = replay(
             &recording,
