@@ -72,6 +72,9 @@ fn handle_is_dragged_into_the_wall_and_the_estimator_changes_without_a_step() {
     let tab = browser.open(&server.url(), 1300, 900);
     ready(&mut browser, &tab);
     run_scene(&mut browser, &tab, "wall");
+    // The first moments are slow motion: the emulator translates the image. A press would end by overload
+    // after some seconds, and begins after them.
+    browser.wait(&tab, "scope.store.end > 1");
     let force = |browser: &mut Browser| {
         browser
             .value(&tab, "scope.store.latest('force')")
