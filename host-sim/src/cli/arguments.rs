@@ -59,7 +59,7 @@ pub(super) enum Command {
     /// Convert a recording, with estimates, to MCAP for Foxglove, PlotJuggler and Rerun; a part of cargo export,
     /// which is this program with its MCAP writer
     #[command(after_help = "Example:
-  cargo export motor.csv --estimator pll --mcap motor.mcap")]
+  host-sim export motor.csv --estimator pll --mcap motor.mcap")]
     Export(super::export::Export),
     /// Draw a recording as SVG: counts, velocities, currents
     #[command(after_help = "Example:
@@ -215,7 +215,7 @@ mod tests {
                 texts.push((command.get_name().to_owned(), help));
             }
         }
-        assert_eq!(texts.len(), 20);
+        assert_eq!(texts.len(), 21);
         for (name, help) in texts {
             let examples = examples(&help);
             assert!(!examples.is_empty(), "{name}: {help}");
