@@ -20,7 +20,7 @@ mod scaling;
 mod varying;
 
 pub use parameter::{Parameter, Search, WINDOW_LIMIT};
-pub use row::{Colour, Dash, Goal, Reports, Row, Settling, Variant};
+pub use row::{CType, Colour, Dash, Goal, Reports, Row, Settling, Variant};
 pub use rows::{ROWS, design};
 pub use scaling::{Powers, Scaling};
 pub use varying::{AssumesConstantPeriod, UpdateOver, VarianceOver, Varying};

@@ -204,6 +204,13 @@ impl Parameter {
         ..Self::BOUNDARY_NOISE
     };
 
+    /// Whether `value` is in the range, and whole if it must be. NaN is not.
+    #[must_use]
+    pub fn accepts(&self, value: f64) -> bool {
+        let whole = !self.whole || value as i64 as f64 == value;
+        self.lowest <= value && value <= self.highest && whole
+    }
+
     /// Whether the parameter is a torque or a spectral density of a torque.
     #[must_use]
     pub fn is_torque(&self) -> bool {

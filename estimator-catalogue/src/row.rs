@@ -1,5 +1,7 @@
 //! The row of an estimator: the facts that need no type.
 
+use core::fmt;
+
 use estimator_core::Signals;
 
 use crate::parameter::Parameter;
@@ -156,6 +158,46 @@ pub struct Variant {
     pub rate_hz: f64,
     /// Length of the window or of the gain table; 0 if the design has neither.
     pub capacity: usize,
+}
+
+/// The type of a row in C. A row with a window or a gain table has a type per length.
+///
+/// ```
+/// use estimator_catalogue::{CType, ROWS};
+/// let foaw = ROWS.iter().find(|row| row.name == "foaw-end-fit").unwrap();
+/// let names: Vec<_> = CType::of(foaw).map(|c| c.to_string()).collect();
+/// assert_eq!(names, ["foaw_end_fit_15", "foaw_end_fit_64"]);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct CType {
+    /// The row.
+    pub row: &'static Row,
+    /// Length of the window or of the gain table; 0 if the design has neither.
+    pub capacity: usize,
+}
+
+impl CType {
+    /// The types of a row, by increasing length: the lengths of its variants.
+    pub fn of(row: &'static Row) -> impl Iterator<Item = Self> {
+        let lengths = row.variants.iter().map(|variant| variant.capacity);
+        let first = lengths.clone();
+        let repeated = move |k: usize, capacity| first.clone().take(k).any(|one| one == capacity);
+        lengths
+            .enumerate()
+            .filter(move |(k, capacity)| !repeated(*k, *capacity))
+            .map(move |(_, capacity)| Self { row, capacity })
+    }
+}
+
+/// The name between `limpid_` and the suffixes of types and functions.
+impl fmt::Display for CType {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.row.id)?;
+        match self.capacity {
+            0 => Ok(()),
+            n => write!(f, "_{n}"),
+        }
+    }
 }
 
 /// Goals of run time for the variants of one capacity: instructions per update at `opt-level` 3 on

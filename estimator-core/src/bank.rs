@@ -15,6 +15,7 @@ use crate::confidence::{Confidence, Variance};
 use crate::design::DesignError;
 use crate::estimator::{AccelerationEstimator, VaryingPeriod, VelocityEstimator};
 use crate::interval::limited_period;
+use crate::memory::{Memory, memory};
 use crate::observer::{AdaptiveEdgeObserver, AdaptiveObserver};
 use crate::sample::{Sample, Signals};
 use crate::units::{CountsPerTick, CountsPerTickSquared, Hertz};
@@ -111,6 +112,7 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 /// assert!(BANK.variance(&state).std_dev().0 < 0.1);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct ModelBank<const K: usize, S> {
     ladder: Ladder,
     stamps: S,
@@ -119,6 +121,8 @@ pub struct ModelBank<const K: usize, S> {
     /// Probability that q changes in a tick, to one of the other members.
     change: f32,
 }
+
+memory!([const K: usize, S: Memory] ModelBank<K, S> { ladder, stamps, rest, change });
 
 /// Time without a change after which the shaft is at rest, s.
 const REST: f64 = 0.3;

@@ -1,15 +1,19 @@
 //! The clock that stamps encoder edges, relative to the control period.
 
 use crate::design::DesignError;
+use crate::memory::memory;
 use crate::sample::Sample;
 use crate::units::Hertz;
 
 /// Capture clock of edge time stamps.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub(crate) struct EdgeClock {
     /// Control periods per tick of the capture clock.
     period: f32,
 }
+
+memory!(EdgeClock { period });
 
 /// An edge that came since the last sample.
 #[derive(Clone, Copy, Debug, PartialEq)]

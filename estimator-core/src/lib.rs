@@ -51,6 +51,7 @@ mod edge_clock;
 mod estimator;
 mod filters;
 mod interval;
+mod memory;
 mod models;
 mod observer;
 mod sample;
@@ -67,6 +68,7 @@ pub use confidence::{Confidence, Variance};
 pub use design::{DesignError, const_math};
 pub use estimator::{AccelerationEstimator, Skip, VaryingPeriod, VelocityEstimator};
 pub use filters::*;
+pub use memory::Memory;
 pub use models::{CoupledMotor, CurrentInput, Input, Model, MotorModel, NoInput};
 pub use observer::{
     Adaptation, Adaptive, AdaptiveEdgeHeldObserver, AdaptiveEdgeObserver, AdaptiveHeldObserver,

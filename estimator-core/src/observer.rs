@@ -39,6 +39,7 @@ use core::borrow::Borrow;
 
 use crate::design::const_math::limited;
 use crate::estimator::VelocityEstimator;
+use crate::memory::{Memory, memory};
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick};
 use innovation::Prediction;
@@ -129,6 +130,7 @@ const LARGEST_FRICTION_ERROR: f32 = 0.5;
 /// assert!(OBSERVER.update(&mut state, &first.with_current(Amps::new(0.5))).0 > 0.9);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Observer<C, S, M, L> {
     motion: Motion,
     current: C,
@@ -139,6 +141,8 @@ pub struct Observer<C, S, M, L> {
     direction_pole: f32,
     friction_share: f32,
 }
+
+memory!([C: Memory, S: Memory, M: Memory, L: Memory] Observer<C, S, M, L> { motion, current, slip, correction, adaptation, disturbance_decay, direction_pole, friction_share });
 
 /// State of an [`Observer`].
 #[derive(Clone, Copy, Debug, PartialEq)]

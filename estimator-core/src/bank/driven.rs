@@ -9,6 +9,7 @@ use super::{
 use crate::confidence::{Confidence, Variance};
 use crate::design::DesignError;
 use crate::estimator::{AccelerationEstimator, VelocityEstimator};
+use crate::memory::{Memory, memory};
 use crate::observer::{AdaptiveEdgeObserver, AdaptiveObserver};
 use crate::sample::{Sample, Signals};
 use crate::units::{CountsPerTick, CountsPerTickSquared, Hertz};
@@ -38,6 +39,7 @@ const DRIVEN: usize = 2;
 ///
 /// Units: counts and ticks. Valid for the rates of [`ModelBank`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct DrivenBank<S, I> {
     plain: ModelBank<3, S>,
     driven: ModelBank<DRIVEN, S>,
@@ -46,6 +48,8 @@ pub struct DrivenBank<S, I> {
     towards: f32,
     away: f32,
 }
+
+memory!([S: Memory, I: Memory] DrivenBank<S, I> { plain, driven, input, towards, away });
 
 /// State of a [`DrivenBank`].
 #[derive(Clone, Copy, Debug, PartialEq)]

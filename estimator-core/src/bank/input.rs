@@ -2,6 +2,7 @@
 
 use super::state::ModelBankState;
 use crate::estimator::VelocityEstimator;
+use crate::memory::{Memory, memory};
 use crate::observer::{Adaptation, Correction, CurrentSource, Observer, SlipSource};
 use crate::sample::{Sample, Signals};
 use crate::sealed::Sealed;
@@ -31,7 +32,10 @@ pub trait BankInput: Sealed {
 /// The acceleration that an observer predicts for each tick, before it corrects its velocity by the
 /// tick's count or edge: the driven bank corrects by the same measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Followed<E>(pub E);
+
+memory!([E: Memory] Followed<E> { 0 });
 
 impl<E> Sealed for Followed<E> {}
 

@@ -2,6 +2,7 @@
 
 use super::member::Member;
 use crate::design::const_math::{exp, phi1, phi2};
+use crate::memory::memory;
 
 /// Number of rungs.
 pub(super) const RUNGS: usize = 18;
@@ -10,7 +11,7 @@ pub(super) const RUNGS: usize = 18;
 pub(super) const LOWEST: f64 = 10.0;
 
 /// Rung of the first member at the start.
-pub(super) const FIRST_RUNG: usize = 4;
+pub(super) const FIRST_RUNG: u32 = 4;
 
 /// Correlation time τ of the acceleration, s.
 pub(super) const CORRELATION_TIME: f64 = 0.01;
@@ -26,6 +27,7 @@ pub(super) trait Predict {
 
 /// Prediction over one tick of a position, a velocity and an acceleration that decays.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub(super) struct Ladder {
     /// F_02.
     position_by_acceleration: f32,
@@ -40,6 +42,15 @@ pub(super) struct Ladder {
     /// T / τ.
     pub(super) rate: f32,
 }
+
+memory!(Ladder {
+    position_by_acceleration,
+    velocity_by_acceleration,
+    left,
+    noise,
+    densities,
+    rate
+});
 
 impl Ladder {
     /// The ladder for the control period `period`, s.

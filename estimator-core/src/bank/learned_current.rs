@@ -5,6 +5,7 @@ use super::regression::Regression;
 use super::state::ModelBankState;
 use crate::design::DesignError;
 use crate::design::const_math::{exp, limited};
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::sealed::Sealed;
 use crate::units::Hertz;
@@ -34,6 +35,7 @@ const TERMS: usize = 4;
 ///
 /// Units: counts, ticks, A. Valid for the rates of [`ModelBank`](crate::ModelBank).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct LearnedCurrent {
     /// Ticks of a block.
     block: u32,
@@ -42,6 +44,8 @@ pub struct LearnedCurrent {
     /// f.
     kept: f32,
 }
+
+memory!(LearnedCurrent { block, step, kept });
 
 /// State of a [`LearnedCurrent`].
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,6 +2,7 @@
 
 use crate::design::DesignError;
 use crate::edge_clock::{EdgeClock, FreshEdge};
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::sealed::Sealed;
 use crate::units::Hertz;
@@ -24,7 +25,10 @@ pub trait Stamps: Sealed + Copy + PartialEq {
 
 /// Counts alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
 pub struct NoStamps;
+
+memory!(NoStamps {});
 
 impl Sealed for NoStamps {}
 
@@ -45,9 +49,12 @@ impl Stamps for NoStamps {
 
 /// Counts, and edges with time stamps.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Stamped {
     clock: EdgeClock,
 }
+
+memory!(Stamped { clock });
 
 impl Stamped {
     pub(super) const fn new(clock: Hertz, rate: Hertz) -> Result<Self, DesignError> {

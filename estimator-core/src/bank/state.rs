@@ -19,7 +19,7 @@ pub struct ModelBankState<const K: usize> {
     /// Weights of the members; their sum is 1.
     weights: [f32; K],
     /// Rung of the first member.
-    rung: usize,
+    rung: u32,
     /// Variance R of the position of a boundary, counts².
     boundary: f32,
     /// Innovation of the edge before, counts.
@@ -124,7 +124,7 @@ impl<const K: usize> ModelBankState<K> {
     #[inline(always)]
     pub(super) fn predict(&mut self, over: &impl Predict, displacement: f32) {
         for i in 0..K {
-            over.predict(&mut self.members[i], self.rung + i, displacement);
+            over.predict(&mut self.members[i], self.rung as usize + i, displacement);
         }
     }
 
@@ -227,7 +227,7 @@ impl<const K: usize> ModelBankState<K> {
     /// Moves the bank by a rung if its outermost member is heavy.
     #[inline(always)]
     pub(super) fn follow(&mut self) {
-        if self.weights[K - 1] > HEAVY && self.rung + K < RUNGS {
+        if self.weights[K - 1] > HEAVY && self.rung as usize + K < RUNGS {
             self.rung += 1;
             for i in 1..K {
                 self.members[i - 1] = self.members[i].copied();
@@ -264,7 +264,7 @@ impl ModelBankState<3> {
                 self.members[first + 1].copied(),
             ],
             weights: [a * per_sum, b * per_sum],
-            rung: self.rung + first,
+            rung: self.rung + first as u32,
             boundary: self.boundary,
             innovation: self.innovation,
         }

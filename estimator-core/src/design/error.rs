@@ -43,6 +43,9 @@ macro_rules! errors {
 
         /// Every error there is.
         pub const ALL: &'static [Self] = &[$(Self::$name),*];
+
+        /// Names of the constants, in the order of [`DesignError::ALL`].
+        pub const NAMES: &'static [&'static str] = &[$(stringify!($name)),*];
     };
 }
 

@@ -2,6 +2,7 @@
 
 use crate::design::DesignError;
 use crate::estimator::VelocityEstimator;
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick};
 
@@ -35,11 +36,14 @@ use crate::units::{Count, CountsPerTick};
 /// assert!((v - 16.0).abs() < 1e-5);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Algebraic<const N: usize, const KAPPA: u32, const MU: u32> {
     window: u8,
     /// Weights of the steps, the newest first; 0 beyond the window.
     weights: [f32; N],
 }
+
+memory!([const N: usize, const KAPPA: u32, const MU: u32] Algebraic<N, KAPPA, MU> { window, weights });
 
 impl<const N: usize, const KAPPA: u32, const MU: u32> Algebraic<N, KAPPA, MU> {
     /// A differentiator of order 1 over `window` intervals, n.

@@ -2,6 +2,7 @@
 
 use crate::design::DesignError;
 use crate::estimator::{AccelerationEstimator, VelocityEstimator};
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick, CountsPerTickSquared, Hertz};
 
@@ -33,6 +34,7 @@ use super::pole::pole;
 /// assert!((v - 2.0 * 399.0).abs() < 1e-2);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct AlphaBetaGamma {
     /// The part of the innovation that the position gain leaves: p³.
     leftover: f32,
@@ -41,6 +43,12 @@ pub struct AlphaBetaGamma {
     /// Acceleration gain γ, (1 - p)³.
     gamma: f32,
 }
+
+memory!(AlphaBetaGamma {
+    leftover,
+    beta,
+    gamma
+});
 
 impl AlphaBetaGamma {
     /// A filter with its three poles at the frequency `bandwidth`, updated at `rate`.

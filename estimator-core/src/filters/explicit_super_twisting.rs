@@ -2,6 +2,7 @@
 
 use crate::design::DesignError;
 use crate::estimator::VelocityEstimator;
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick, Hertz};
 
@@ -39,12 +40,15 @@ const LARGEST_ERROR: f32 = 32_768.0;
 /// assert!((v - 3.0).abs() <= 0.25);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct ExplicitSuperTwisting {
     /// 1.1 L.
     slope_step: f32,
     /// L.
     bound: f32,
 }
+
+memory!(ExplicitSuperTwisting { slope_step, bound });
 
 impl ExplicitSuperTwisting {
     /// A differentiator for a shaft of `counts_per_rev` whose acceleration stays below `acceleration`,

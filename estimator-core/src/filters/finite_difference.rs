@@ -3,6 +3,7 @@
 use crate::confidence::{Confidence, Variance};
 use crate::estimator::{VaryingPeriod, VelocityEstimator};
 use crate::interval::limited_period;
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick};
 
@@ -19,7 +20,10 @@ use crate::units::{Count, CountsPerTick};
 /// assert_eq!(v, CountsPerTick(2.0));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
 pub struct FiniteDifference;
+
+memory!(FiniteDifference {});
 
 impl VelocityEstimator for FiniteDifference {
     type State = Count;

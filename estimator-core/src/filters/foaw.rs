@@ -9,6 +9,7 @@ use core::marker::PhantomData;
 
 use crate::design::DesignError;
 use crate::estimator::VelocityEstimator;
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::units::CountsPerTick;
 
@@ -56,11 +57,14 @@ use recent::Recent;
 /// assert_eq!((v, state.window()), (0.233_333_33, 8));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
 pub struct Foaw<const N: usize, F> {
     window: u8,
     bound: i32,
     fit: PhantomData<F>,
 }
+
+memory!([const N: usize, F] Foaw<N, F> { window, bound, fit });
 
 impl<const N: usize, F: Fit> Foaw<N, F> {
     /// FOAW over at most `window` intervals, n, with a noise bound d of `bound` counts.

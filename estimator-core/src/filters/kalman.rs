@@ -2,6 +2,7 @@
 
 use crate::design::DesignError;
 use crate::estimator::{AccelerationEstimator, VelocityEstimator};
+use crate::memory::{Memory, memory};
 use crate::models::CurrentInput;
 use crate::models::NoInput;
 use crate::models::{Input, Model};
@@ -46,6 +47,7 @@ const LARGEST_PROCESS_NOISE: f64 = 262_144.0;
 /// assert!((v - 7.0).abs() < 1e-5);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Kalman<const S: usize, U> {
     input: U,
     /// Q / r.
@@ -54,6 +56,8 @@ pub struct Kalman<const S: usize, U> {
     /// Variances of the state before the first sample, over r.
     prior: [f32; S],
 }
+
+memory!([const S: usize, U: Memory] Kalman<S, U> { input, q, r, prior });
 
 impl<const S: usize, U: Copy> Kalman<S, U> {
     /// The filter over `model`.

@@ -8,6 +8,7 @@ use crate::design::const_math::limited;
 use crate::edge_clock::EdgeClock;
 use crate::estimator::{VaryingPeriod, VelocityEstimator};
 use crate::interval::limited_period;
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick, Hertz};
 
@@ -55,9 +56,12 @@ const LARGEST_ERROR: f32 = 2.0;
 /// assert!((M_OVER_T.update(&mut state, &next).0 - 2.5).abs() < 0.1);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct LearnedMOverT<const P: usize> {
     clock: EdgeClock,
 }
+
+memory!([const P: usize] LearnedMOverT<P> { clock });
 
 impl<const P: usize> LearnedMOverT<P> {
     /// The method for time stamps by a clock of frequency `clock`. `P` outside 1 to 255 does not compile.

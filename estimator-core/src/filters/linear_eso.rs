@@ -2,6 +2,7 @@
 
 use crate::design::DesignError;
 use crate::estimator::VelocityEstimator;
+use crate::memory::memory;
 use crate::models::MotorModel;
 use crate::sample::{Sample, Signals};
 use crate::units::{CountsPerTick, Hertz};
@@ -48,11 +49,14 @@ use super::alpha_beta_gamma::{AlphaBetaGamma, AlphaBetaGammaState};
 /// }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct LinearEso {
     filter: AlphaBetaGamma,
     /// b0, counts/tick² per A.
     per_amp: f32,
 }
+
+memory!(LinearEso { filter, per_amp });
 
 impl LinearEso {
     /// An observer of `motor` with its three poles at the frequency `bandwidth`, updated at `rate`. It

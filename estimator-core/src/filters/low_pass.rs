@@ -3,6 +3,7 @@
 use crate::design::DesignError;
 use crate::estimator::{VaryingPeriod, VelocityEstimator};
 use crate::interval::{limited_period, lost};
+use crate::memory::{Memory, memory};
 use crate::sample::{Sample, Signals};
 use crate::units::{CountsPerTick, Hertz};
 
@@ -25,12 +26,15 @@ use super::pole::pole;
 /// assert_eq!(v.0, 0.466_511_92); // 1 - exp(-0.2 π)
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct LowPass<E> {
     inner: E,
     alpha: f32,
     /// 2 π cut-off / rate.
     decay: f32,
 }
+
+memory!([E: Memory] LowPass<E> { inner, alpha, decay });
 
 impl<E: Copy> LowPass<E> {
     /// A low-pass with `cutoff` over `inner`, updated at `rate`.

@@ -5,6 +5,7 @@ use crate::design::const_math::limited;
 use crate::edge_clock::EdgeClock;
 use crate::estimator::{VaryingPeriod, VelocityEstimator};
 use crate::interval::limited_period;
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick, Hertz};
 
@@ -30,9 +31,12 @@ use crate::units::{Count, CountsPerTick, Hertz};
 /// assert!((M_OVER_T.update(&mut state, &next).0 - 2.5).abs() < 1e-6);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct MOverT {
     clock: EdgeClock,
 }
+
+memory!(MOverT { clock });
 
 impl MOverT {
     /// The method for time stamps by a clock of frequency `clock`.

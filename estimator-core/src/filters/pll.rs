@@ -2,6 +2,7 @@
 
 use crate::design::DesignError;
 use crate::estimator::VelocityEstimator;
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick, Hertz};
 
@@ -30,12 +31,15 @@ use super::pole::pole;
 /// assert!((v - 7.0).abs() < 1e-5);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Pll {
     /// Part of the error that the position gain leaves: p².
     leftover: f32,
     /// Velocity gain, (1 - p)².
     gain: f32,
 }
+
+memory!(Pll { leftover, gain });
 
 impl Pll {
     /// A loop of `bandwidth`, updated at `rate`.

@@ -2,6 +2,7 @@
 
 use crate::design::DesignError;
 use crate::estimator::VelocityEstimator;
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick, Hertz};
 
@@ -49,11 +50,14 @@ const FRACTION_BITS: u32 = 24;
 /// }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
 pub struct RobustExact<const N: usize> {
     window: u8,
     /// L in units of 2^-24 counts/tick².
     bound: i64,
 }
+
+memory!([const N: usize] RobustExact<N> { window, bound });
 
 impl<const N: usize> RobustExact<N> {
     /// A differentiator for a shaft of `counts_per_rev` whose acceleration stays below `acceleration`,

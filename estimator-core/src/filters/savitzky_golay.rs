@@ -2,6 +2,7 @@
 
 use crate::design::DesignError;
 use crate::estimator::VelocityEstimator;
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick};
 
@@ -41,6 +42,7 @@ use crate::units::{Count, CountsPerTick};
 /// assert_eq!(v, 16.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct SavitzkyGolay<const N: usize> {
     window: u8,
     /// Weights of the newest step in q1, q2 and q3.
@@ -50,6 +52,8 @@ pub struct SavitzkyGolay<const N: usize> {
     divisor: i64,
     reciprocal: f32,
 }
+
+memory!([const N: usize] SavitzkyGolay<N> { window, newest, weights, divisor, reciprocal });
 
 impl<const N: usize> SavitzkyGolay<N> {
     /// A filter over `window` intervals, n.

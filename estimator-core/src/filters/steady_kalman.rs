@@ -2,6 +2,7 @@
 
 use crate::design::DesignError;
 use crate::estimator::{AccelerationEstimator, VelocityEstimator};
+use crate::memory::{Memory, memory};
 use crate::models::CurrentInput;
 use crate::models::NoInput;
 use crate::models::linear::{Input, Model, as_taken, widened};
@@ -32,6 +33,7 @@ pub type SteadyKalmanMotor = SteadyKalman<2, CurrentInput>;
 /// assert!((v - 7.0).abs() < 1e-5);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct SteadyKalman<const S: usize, U> {
     input: U,
     /// K in the form of [`Input::tick`].
@@ -39,6 +41,8 @@ pub struct SteadyKalman<const S: usize, U> {
     /// P_11 of the limit, after a correction.
     velocity_variance: f32,
 }
+
+memory!([const S: usize, U: Memory] SteadyKalman<S, U> { input, gain, velocity_variance });
 
 impl<const S: usize, U: Copy> SteadyKalman<S, U> {
     /// The filter over `model` with its steady gain.

@@ -2,6 +2,7 @@
 
 use crate::design::DesignError;
 use crate::estimator::VelocityEstimator;
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick, Hertz};
 
@@ -50,6 +51,7 @@ const LARGEST_ERROR: f32 = 32_768.0;
 /// assert_eq!(v, 49.0 * 49.0 - 48.0 * 48.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct SuperTwisting {
     /// c, 1.1 L.
     band: f32,
@@ -58,6 +60,12 @@ pub struct SuperTwisting {
     /// a².
     gain_squared: f32,
 }
+
+memory!(SuperTwisting {
+    band,
+    gain,
+    gain_squared
+});
 
 impl SuperTwisting {
     /// A differentiator for a shaft of `counts_per_rev` whose acceleration stays below `acceleration`,

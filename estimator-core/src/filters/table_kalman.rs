@@ -3,6 +3,7 @@
 use crate::design::DesignError;
 use crate::design::riccati;
 use crate::estimator::{AccelerationEstimator, VelocityEstimator};
+use crate::memory::{Memory, memory};
 use crate::models::CurrentInput;
 use crate::models::NoInput;
 use crate::models::linear::{Input, Model, as_taken, widened};
@@ -43,6 +44,7 @@ const SETTLED: f64 = 1e-6;
 /// }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct TableKalman<const S: usize, const N: usize, U> {
     input: U,
     /// The first ticks.
@@ -51,14 +53,19 @@ pub struct TableKalman<const S: usize, const N: usize, U> {
     steady: Row<S>,
 }
 
+memory!([const S: usize, const N: usize, U: Memory] TableKalman<S, N, U> { input, table, steady });
+
 /// One tick of a [`TableKalman`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 struct Row<const S: usize> {
     /// K in the form of [`Input::tick`].
     gain: [f32; S],
     /// P_11 before the tick.
     velocity_variance: f32,
 }
+
+memory!([const S: usize] Row<S> { gain, velocity_variance });
 
 impl<const S: usize, const N: usize, U: Copy> TableKalman<S, N, U> {
     /// The filter over `model` with the gains of its first N ticks.
@@ -107,7 +114,7 @@ impl<const S: usize, const N: usize, U: Copy> TableKalman<S, N, U> {
 
     /// P_11 of the state.
     pub(crate) fn velocity_variance(&self, state: &TableKalmanState<S>) -> f32 {
-        let row = self.table.get(state.tick).unwrap_or(&self.steady);
+        let row = self.table.get(state.tick as usize).unwrap_or(&self.steady);
         row.velocity_variance
     }
 }
@@ -118,7 +125,7 @@ pub struct TableKalmanState<const S: usize> {
     anchor: Count,
     /// Ticks since the start, at most N. It follows the anchor, so that one instruction reads both
     /// and one writes both.
-    tick: usize,
+    tick: u32,
     /// The state of [`Input::tick`].
     x: [f32; S],
 }
@@ -143,7 +150,7 @@ impl<const S: usize, const N: usize, U: Input<S>> VelocityEstimator for TableKal
                 .tick(&mut state.x, displacement, sample, &row.gain);
         };
         // Each arm has its own step, so that the steady gain is an immediate operand.
-        let tick = match self.table.get(state.tick) {
+        let tick = match self.table.get(state.tick as usize) {
             Some(row) => {
                 step(row);
                 state.tick + 1

@@ -2,6 +2,7 @@
 
 use crate::design::DesignError;
 use crate::estimator::VelocityEstimator;
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick, Hertz};
 
@@ -50,6 +51,7 @@ const LONGEST_FILTER_TIME: f64 = 1e4;
 /// assert!((v - 3.0).abs() < 1e-5);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct TrackingDifferentiator {
     /// r, counts/tick².
     bound: f32,
@@ -61,6 +63,14 @@ pub struct TrackingDifferentiator {
     /// r / d, 1/h².
     slope: f32,
 }
+
+memory!(TrackingDifferentiator {
+    bound,
+    ticks,
+    band,
+    band_root,
+    slope
+});
 
 impl TrackingDifferentiator {
     /// A differentiator for a shaft of `counts_per_rev` that accelerates by at most `acceleration`,

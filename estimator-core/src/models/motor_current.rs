@@ -2,6 +2,7 @@
 
 use crate::design::DesignError;
 use crate::design::const_math::{exp, phi1, phi2};
+use crate::memory::memory;
 use crate::models::MotorModel;
 use crate::models::linear::{Input, Model, PRIOR_VELOCITY, QUANTISATION_VARIANCE, counts_per_rad};
 use crate::sample::{Sample, Signals};
@@ -79,6 +80,7 @@ impl Model<2, CurrentInput> {
 /// ```
 /// which is `A x + B i` with the small increment added last, where rounding costs least.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct CurrentInput {
     /// B_1: counts per tick, per A.
     per_amp: f32,
@@ -88,6 +90,12 @@ pub struct CurrentInput {
     /// damping.
     share: f32,
 }
+
+memory!(CurrentInput {
+    per_amp,
+    loss,
+    share
+});
 
 impl CurrentInput {
     /// B: change of position, counts, and of velocity, counts/tick, per ampere in a tick.

@@ -1,6 +1,7 @@
 //! The triple integrator: only counts are measured, and the acceleration is a state.
 
 use crate::design::DesignError;
+use crate::memory::memory;
 use crate::models::linear::{Input, Model, PRIOR_VELOCITY, QUANTISATION_VARIANCE, counts_per_rad};
 use crate::sample::{Sample, Signals};
 use crate::sealed::Sealed;
@@ -63,7 +64,10 @@ impl Model<3, NoInput> {
 /// v = c + h + (k1 - k2/2) e
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
 pub struct NoInput;
+
+memory!(NoInput {});
 
 impl Sealed for NoInput {}
 

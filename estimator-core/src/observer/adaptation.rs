@@ -5,6 +5,7 @@ use super::innovation::Innovation;
 use super::inputs::TickInput;
 use super::motion::Motion;
 use super::sensitivity::{Tick, Update};
+use crate::memory::memory;
 use crate::sealed::Sealed;
 
 /// Relative parameter errors: estimated over nominal value, less one. 0.1 is 10 % above nominal.
@@ -97,7 +98,10 @@ pub trait Adaptation: Copy + Sealed {
 
 /// No adaptation: the parameters keep their nominal values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
 pub struct Fixed;
+
+memory!(Fixed {});
 
 impl Sealed for Fixed {}
 

@@ -10,6 +10,7 @@ use super::moving_start::MovingStart;
 use super::range::{Narrow, Range};
 use super::sensitivity::{Sensitivity, Tick, Update};
 use crate::branch::unlikely;
+use crate::memory::{Memory, memory};
 use crate::sealed::Sealed;
 use crate::units::Hertz;
 
@@ -41,6 +42,7 @@ use crate::units::Hertz;
 /// If the motor is already moving at start-up, the first innovations are not attributed to parameter
 /// errors: the velocity gain is then that of the mean since the start, and p, U and D stay.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Adaptive<R = Narrow> {
     /// Range of the parameter errors.
     range: R,
@@ -51,6 +53,8 @@ pub struct Adaptive<R = Narrow> {
     /// [`SPACING`] in ticks.
     spacing: f32,
 }
+
+memory!([R: Memory] Adaptive<R> { range, slowest, walk, spacing });
 
 /// State of [`Adaptive`].
 #[derive(Clone, Copy, Debug, PartialEq)]

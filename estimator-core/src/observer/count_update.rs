@@ -4,6 +4,7 @@ use super::correction::{Correction, excess};
 use super::gain::Gain;
 use super::gain_table::GainTable;
 use super::innovation::{Innovation, Prediction};
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::sealed::Sealed;
 
@@ -13,9 +14,12 @@ use crate::sealed::Sealed;
 /// is kept. A prediction outside it is moved to the nearest boundary, with the steady gain of a
 /// filter that is corrected as rarely.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct CountUpdate {
     pub(super) table: GainTable,
 }
+
+memory!(CountUpdate { table });
 
 impl Sealed for CountUpdate {}
 

@@ -1,6 +1,7 @@
 //! Covariance of position and velocity, its propagation, and its truncation by a count.
 
 use crate::design::const_math::{exp, phi1};
+use crate::memory::memory;
 
 /// Covariance P of position and velocity, factored as in
 /// [`QuantisedUpdate`](super::QuantisedUpdate): `p = P_00`, `g = P_01 / P_00`,
@@ -51,6 +52,7 @@ impl Covariance {
 
 /// Propagation of a [`Covariance`] over a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub(super) struct Propagation {
     /// φ0 and φ1.
     left: f32,
@@ -60,6 +62,13 @@ pub(super) struct Propagation {
     /// w, (counts/tick)².
     pub(super) white: f32,
 }
+
+memory!(Propagation {
+    left,
+    moved,
+    mixed,
+    white
+});
 
 impl Propagation {
     pub(super) const fn new(beta: f64, white: f64) -> Self {

@@ -8,6 +8,7 @@ use super::innovation::{Innovation, Prediction};
 use crate::design::DesignError;
 use crate::design::const_math::limited;
 use crate::edge_clock::EdgeClock;
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::sealed::Sealed;
 use crate::units::Hertz;
@@ -22,12 +23,19 @@ use crate::units::Hertz;
 /// is estimated from its innovations, `o += μ e` with μ = 0.02, and limited to ±1/4 count. Without
 /// an edge, hence at rest, no offset changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct EdgeUpdate {
     pub(super) clock: EdgeClock,
     pub(super) table: GainTable,
     /// Ticks added to a gap that ends without an edge.
     pub(super) unstamped: f32,
 }
+
+memory!(EdgeUpdate {
+    clock,
+    table,
+    unstamped
+});
 
 /// State of [`EdgeUpdate`].
 #[derive(Clone, Copy, Debug, PartialEq)]

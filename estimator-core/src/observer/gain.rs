@@ -1,7 +1,10 @@
 //! The gain of one correction.
 
+use crate::memory::memory;
+
 /// Gain of one correction: the change of each state per count of innovation.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Gain {
     /// Gain of the position, a pure number.
     pub position: f32,
@@ -12,3 +15,10 @@ pub struct Gain {
     /// Variance of the innovation, counts².
     pub variance: f32,
 }
+
+memory!(Gain {
+    position,
+    velocity,
+    disturbance,
+    variance
+});

@@ -7,6 +7,7 @@ use crate::design::DesignError;
 use crate::design::const_math::{exp, phi1, phi2};
 use crate::design::matrix::{Matrix, product};
 use crate::design::riccati;
+use crate::memory::memory;
 
 /// Number of gaps that have a row each.
 const EACH: usize = 64;
@@ -28,12 +29,18 @@ fn row_after(more: usize) -> usize {
 /// Steady gain and variance by the gap between corrections. Row n is the steady state of the filter
 /// that is corrected once every n ticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub(super) struct GainTable {
     gains: [Gain; ROWS],
     /// Variance of the velocity before the correction, (counts/tick)². The rows of the gains are a
     /// power of two long without it.
     velocity_variances: [f32; ROWS],
 }
+
+memory!(GainTable {
+    gains,
+    velocity_variances
+});
 
 /// Transition and process noise of position, velocity and disturbance over one tick.
 pub(super) const fn one_tick(beta: f64, noise: &Noise) -> (Matrix<3>, Matrix<3>) {

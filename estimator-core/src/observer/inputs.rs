@@ -2,6 +2,7 @@
 //! without one takes [`NoCurrent`] or [`HeldShaft`], which have no state and no code.
 
 use crate::design::const_math::exp;
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::sealed::Sealed;
 use crate::units::Count;
@@ -55,12 +56,20 @@ pub trait SlipSource: Copy + Sealed {
 /// i = i_command - p Δ
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct AmplifierCurrent {
     per_amp: f32,
     missing: f32,
     lag: f32,
     left: f32,
 }
+
+memory!(AmplifierCurrent {
+    per_amp,
+    missing,
+    lag,
+    left
+});
 
 impl AmplifierCurrent {
     /// `per_amp` is in counts/tick² per A, `lag` is τ / T.
@@ -106,7 +115,10 @@ impl CurrentSource for AmplifierCurrent {
 
 /// No current: the motor's current is not measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
 pub struct NoCurrent;
+
+memory!(NoCurrent {});
 
 impl Sealed for NoCurrent {}
 
@@ -124,10 +136,13 @@ impl CurrentSource for NoCurrent {
 
 /// Encoder on the coupled shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct CoupledEncoder {
     /// Counts of the motor's encoder per count of this encoder.
     pub(super) ratio: f32,
 }
+
+memory!(CoupledEncoder { ratio });
 
 impl Sealed for CoupledEncoder {}
 
@@ -152,7 +167,10 @@ impl SlipSource for CoupledEncoder {
 
 /// Coupled shaft at rest: it is held, or its motion is not measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
 pub struct HeldShaft;
+
+memory!(HeldShaft {});
 
 impl Sealed for HeldShaft {}
 

@@ -1,10 +1,13 @@
 //! Motion of the motor over one tick, with friction that can stop it inside the tick.
 
+use crate::memory::memory;
+
 /// The motor, discretised exactly for a drive that is constant over the tick, with `β = b T / J`:
 /// ```text
 /// φ0 = exp(-β)     φ1 = (1 - φ0) / β     φ2 = (1 - φ1) / β
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Motion {
     pub(super) phi0: f32,
     pub(super) phi1: f32,
@@ -14,6 +17,14 @@ pub struct Motion {
     /// Coulomb friction, counts/tick².
     pub(super) friction: f32,
 }
+
+memory!(Motion {
+    phi0,
+    phi1,
+    phi2,
+    coupling,
+    friction
+});
 
 /// Motion over one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,6 +8,7 @@ use super::innovation::{Innovation, Prediction};
 use super::uncertainty::Noise;
 use crate::design::DesignError;
 use crate::design::riccati;
+use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::sealed::Sealed;
 
@@ -42,6 +43,7 @@ use crate::sealed::Sealed;
 /// negative, and p' is at least w / 3. g is a mean of φ0 g / u, φ0 / φ1 and 3/2 with positive
 /// weights, and 0 at first, so it stays within 0 and 3/2.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct QuantisedUpdate {
     propagation: Propagation,
     /// R, counts².
@@ -51,6 +53,13 @@ pub struct QuantisedUpdate {
     /// λ, 1/tick.
     disturbance_ratio: f32,
 }
+
+memory!(QuantisedUpdate {
+    propagation,
+    boundary,
+    sharp,
+    disturbance_ratio
+});
 
 /// State of [`QuantisedUpdate`].
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,6 +2,7 @@
 
 use super::motion::Motion;
 use crate::design::const_math::limited;
+use crate::memory::memory;
 use crate::sealed::Sealed;
 
 /// Range of the parameter errors that [`Adaptive`](super::Adaptive) learns: [`Narrow`] or [`Wide`].
@@ -25,7 +26,10 @@ pub trait Range: Copy + Sealed {
 /// Range of constants that are known within about half of their values: ±60 % for damping and torque
 /// constant, ±90 % for friction. The standard deviations start at 35, 60 and 35 %.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
 pub struct Narrow;
+
+memory!(Narrow {});
 
 /// Largest errors of damping, friction and torque constant in the range [`Narrow`].
 const LARGEST: [f32; 3] = [0.6, 0.9, 0.6];
@@ -59,12 +63,19 @@ impl Range for Narrow {
 ///
 /// A damping or a torque constant of zero in the model is not learned.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Wide {
     /// Friction of which the error is a part, counts/tick².
     friction: f32,
     least: [f32; 3],
     most: [f32; 3],
 }
+
+memory!(Wide {
+    friction,
+    least,
+    most
+});
 
 /// Largest error in the range [`Wide`].
 const MOST: f32 = 20.0;

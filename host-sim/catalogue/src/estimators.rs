@@ -2,6 +2,7 @@
 
 mod build;
 mod erased;
+mod initialiser;
 mod paste;
 mod run;
 
@@ -202,8 +203,7 @@ impl Kind {
 /// # Errors
 /// [`Failure::Input`] that names the parameter and its range.
 pub fn check(parameter: &Parameter, kind: &str, value: f64) -> Result<(), Failure> {
-    let whole = !parameter.whole || value.fract() == 0.0;
-    if (parameter.lowest..=parameter.highest).contains(&value) && whole {
+    if parameter.accepts(value) {
         return Ok(());
     }
     let number = if parameter.whole {

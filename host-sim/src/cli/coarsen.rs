@@ -115,7 +115,16 @@ pub(super) fn seconds(s: f64) -> Result<f64, Failure> {
     in_range("--seconds", s, [0.2, 1e5], "s")
 }
 
-fn in_range(option: &str, value: f64, [low, high]: [f64; 2], unit: &str) -> Result<f64, Failure> {
+/// A value of an option between two bounds.
+///
+/// # Errors
+/// As [`rate`].
+pub(super) fn in_range(
+    option: &str,
+    value: f64,
+    [low, high]: [f64; 2],
+    unit: &str,
+) -> Result<f64, Failure> {
     match (low..=high).contains(&value) {
         true => Ok(value),
         false => Err(Failure::Input(format!(

@@ -1,18 +1,23 @@
 //! `host-sim export`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use catalogue::estimators::Setup;
+use catalogue::parameters::PlantKind;
+use estimator_core::Hertz;
 use experiments::replay;
 use recordings::arguments::{DeviceFile, RecordingOptions, Whole};
 use recordings::recording::{BoardColumns, Recording};
 use scoring::evaluation::Estimate;
 use simulation::device::Device;
+use simulation::trace::EDGE_CLOCK_HZ;
 use terminal::failure::Failure;
 use terminal::output::{note, write_whole};
 
 use super::arguments::{ParameterOptions, kinds};
+use super::coarsen::in_range;
 use super::replay::About;
 use super::uneven::Chosen;
 use recordings::log::{Log, short_name};
@@ -20,10 +25,10 @@ use recordings::log::{Log, short_name};
 #[derive(Debug, Args)]
 pub(super) struct Export {
     /// Recording: CSV as for host-sim replay; - is standard input
-    #[arg(value_name = "RECORDING.csv")]
-    recording: PathBuf,
+    #[arg(value_name = "RECORDING.csv", required_unless_present = "c")]
+    recording: Option<PathBuf>,
     /// Estimator whose velocity the file has, see host-sim estimators; repeatable [default: all whose
-    /// needed columns are present]
+    /// needed columns are present]. With --c: the estimator whose parameters are written
     #[arg(long = "estimator", value_name = "NAME")]
     estimators: Vec<String>,
     #[command(flatten)]
@@ -33,15 +38,75 @@ pub(super) struct Export {
     #[command(flatten)]
     parameters: ParameterOptions,
     /// Write the file to FILE; - is standard output
-    #[arg(long, value_name = "FILE.mcap")]
-    mcap: PathBuf,
+    #[arg(long, value_name = "FILE.mcap", required_unless_present = "c")]
+    mcap: Option<PathBuf>,
+    /// Write the parameters of --estimator as a C constant for limpid.h, no recording is read
+    #[arg(long, requires = "estimators", conflicts_with_all = ["recording", "mcap", "RecordingOptions"])]
+    c: bool,
+    #[command(flatten)]
+    design: Design,
+}
+
+/// What the parameters of --c are for.
+#[derive(Debug, Args)]
+struct Design {
+    /// With --c: control rate, 100 to 100000 Hz
+    #[arg(
+        long,
+        value_name = "HZ",
+        default_value_t = 1e3,
+        requires = "c",
+        allow_negative_numbers = true
+    )]
+    rate: f64,
+    /// With --c: counts per revolution of the encoder: four times its lines [default: that of the
+    /// device]
+    #[arg(long, value_name = "N", requires = "c", value_parser = clap::value_parser!(u32).range(16..=4_000_000))]
+    counts_per_rev: Option<u32>,
+    /// With --c: clock that stamps edges, Hz
+    #[arg(long, value_name = "HZ", default_value_t = EDGE_CLOCK_HZ, requires = "c", allow_negative_numbers = true)]
+    edge_clock: f64,
+    /// With --c: write the header to FILE; - is standard output
+    #[arg(long, value_name = "FILE.h", default_value = "-", requires = "c")]
+    out: PathBuf,
 }
 
 pub(super) fn run(options: &Export) -> Result<(), Failure> {
+    let (Some(recording), Some(file)) = (&options.recording, &options.mcap) else {
+        return header(options);
+    };
+    write_mcap(options, recording, file)
+}
+
+/// The parameters of one estimator in C.
+fn header(options: &Export) -> Result<(), Failure> {
+    let [kind] = kinds(&options.estimators)?[..] else {
+        let message = "--c: one --estimator at a time, for each has a file of its own";
+        return Err(Failure::Input(message.to_owned()));
+    };
+    let Design {
+        rate,
+        counts_per_rev,
+        edge_clock,
+        out,
+    } = &options.design;
+    let rate = in_range("--rate", *rate, [100.0, 1e5], "Hz")?;
+    let mut device = options.device.load()?;
+    device.stages.large.counts_per_rev =
+        counts_per_rev.unwrap_or(device.stages.large.counts_per_rev);
+    let setup = Setup::of(&device, rate);
+    let values = options
+        .parameters
+        .load()?
+        .values(kind, &setup, PlantKind::Friction);
+    write_whole(out, kind.c(&setup, Hertz(*edge_clock), &values)?.as_bytes())
+}
+
+fn write_mcap(options: &Export, recording: &Path, file: &Path) -> Result<(), Failure> {
     let kinds = kinds(&options.estimators)?;
     let parameters = options.parameters.load()?;
-    let name = short_name(&options.recording);
-    let log = Log::open(&options.recording)?;
+    let name = short_name(recording);
+    let log = Log::open(recording)?;
     let path = log.name();
     let Whole {
         recording,
@@ -66,7 +131,7 @@ pub(super) fn run(options: &Export) -> Result<(), Failure> {
         || (),
     )?;
     let bytes = mcap(&recording, &board, &device, &replayed.estimates).map_err(Failure::Input)?;
-    write_whole(&options.mcap, &bytes)?;
+    write_whole(file, &bytes)?;
     let about = About {
         notes: recording.notes.clone(),
         uneven: uneven.map(|uneven| chosen.note(&recording.trace, &uneven)),

@@ -1,0 +1,20 @@
+/* Velocity from the counts of a quadrature encoder. VERSION_OF_LIMPID
+ *
+ * Written by `cargo c-header`; do not edit.
+ *
+ *   #include "limpid.h"
+ *
+ *   static const limpid_imm_t parameters = LIMPID_IMM_MINE;   // host-sim export --estimator imm --c
+ *   static limpid_imm_state_t state;
+ *
+ *   limpid_imm_start(&parameters, &state, &sample);           // once, with the first sample
+ *   float v = limpid_imm_update(&parameters, &state, &sample);// at every tick, counts per tick
+ *
+ * - A tick is one control period. Velocities are in counts per tick: LIMPID_RAD_PER_S converts them.
+ * - A count is modulo 2^32. Convert a counter of 16 bits with limpid_extended.
+ * - Parameters are constants. State is yours: in static memory, on the stack, one per encoder. To
+ *   reset an estimator, start it again. An interrupt may use one state while a task uses another.
+ * - Pointers must be valid, aligned and not null. A state must have been started.
+ * - No function allocates, locks, fails, or calls a library of floating-point functions.
+ * - A function that ends in _design exists in the library for computers alone.
+ */

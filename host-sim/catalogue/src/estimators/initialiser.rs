@@ -1,0 +1,191 @@
+//! Lines of C that initialise an estimator of `limpid.h`.
+
+use std::fmt::Write as _;
+
+use device_files::decimal;
+use estimator_catalogue::{CType, design};
+use estimator_core::{DesignError, Hertz, Memory};
+use terminal::failure::Failure;
+
+use super::{Kind, Setup, Values, check};
+
+/// The parameters of an estimator in C: their bytes and their alignment.
+type Bytes = (Vec<u8>, usize);
+
+/// Designs the type of this length; `None` if the row has no type of this length.
+type Design = fn(&Setup, Hertz, &Values, usize) -> Option<Result<Bytes, DesignError>>;
+
+macro_rules! initialisers {
+    ($(
+        $id:ident, $name:literal, $reports:ident,
+        ($($parameter:ident: $range:tt),*),
+        ($($variant:ident: $hertz:literal, $capacity:literal;)*),
+        { $($fact:tt)* },
+        |$c:ident, $motor:ident, $rate:ident, $clock:ident, $p:ident, $N:ident| $type:ty => $make:expr;
+    )*) => {
+        $(
+            #[allow(dead_code, unused_mut, unused_variables, reason = "not every design uses everything")]
+            fn $id(
+                setup: &Setup,
+                edge_clock: Hertz,
+                values: &Values,
+                capacity: usize,
+            ) -> Option<Result<Bytes, DesignError>> {
+                use estimator_core as $c;
+                let mut values = values.iter().copied();
+                let $p = design::$id::Parameters {
+                    $($parameter: values.next().unwrap_or(f64::NAN),)*
+                };
+                let motor = setup.stages.coupled_motor();
+                let ($motor, $rate, $clock) = (&motor, setup.rate, edge_clock);
+                $(
+                    if capacity == $capacity {
+                        const $N: usize = $capacity;
+                        let designed: Result<$type, DesignError> = $make;
+                        return Some(designed.map(|estimator| {
+                            let mut bytes = Vec::new();
+                            estimator.bytes(&mut |byte| bytes.push(byte));
+                            (bytes, align_of::<$type>())
+                        }));
+                    }
+                )*
+                None
+            }
+        )*
+
+        /// The designs, in the order of the rows.
+        static DESIGNS: &[Design] = &[$($id),*];
+    };
+}
+
+estimator_catalogue::estimators!(initialisers);
+
+impl Kind {
+    /// A C header: the parameters of the estimator as a constant, with what they are made for. A row with
+    /// several lengths has the shortest that is sufficient.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that names the parameter or the reason of a refused design.
+    pub fn c(&self, setup: &Setup, edge_clock: Hertz, values: &Values) -> Result<String, Failure> {
+        for (parameter, &value) in self.parameters.iter().zip(values) {
+            check(parameter, self.name, value)?;
+            if parameter.name == "literal" && value != 0.0 {
+                return Err(Failure::Input(format!(
+                    "{}.literal = {}: C has no estimator that delays the current; pass the current of the \
+                     tick before, and leave this parameter 0",
+                    self.name,
+                    decimal(value)
+                )));
+            }
+        }
+        let index = Self::all()
+            .iter()
+            .position(|kind| kind.name == self.name)
+            .unwrap_or_default();
+        let designs = CType::of(self.row).filter_map(|c| {
+            let design = DESIGNS[index](setup, edge_clock, values, c.capacity)?;
+            Some(design.map(|bytes| (c, bytes)))
+        });
+        // The last error is that of the longest type.
+        let mut last = None;
+        for design in designs {
+            match design {
+                Ok((c, bytes)) => return Ok(self.header(&c, &bytes, setup, edge_clock, values)),
+                Err(error) => last = Some(error),
+            }
+        }
+        let why = last.map_or_else(String::new, |error| error.to_string());
+        let lengths: Vec<_> = CType::of(self.row)
+            .filter(|c| c.capacity > 0)
+            .map(|c| c.capacity.to_string())
+            .collect();
+        let lengths = match &lengths[..] {
+            [] => String::new(),
+            some => format!("; N in limpid.h is {}", some.join(" or ")),
+        };
+        Err(Failure::Input(format!(
+            "{} at {} Hz: {why}{lengths}",
+            self.name,
+            decimal(setup.rate.0)
+        )))
+    }
+
+    fn header(
+        &self,
+        c: &CType,
+        (bytes, alignment): &Bytes,
+        setup: &Setup,
+        edge_clock: Hertz,
+        values: &Values,
+    ) -> String {
+        let motor = setup.stages.coupled_motor();
+        let mut made_for = vec![
+            format!("{} counts per revolution", motor.motor.counts_per_rev),
+            format!("{} Hz", decimal(setup.rate.0)),
+        ];
+        if self.needs.edge {
+            made_for.push(format!("edges stamped at {} Hz", decimal(edge_clock.0)));
+        }
+        if self.needs_device() {
+            made_for.push(format!("J = {} kg m^2", decimal(motor.motor.inertia)));
+            made_for.push(format!(
+                "Kt = {} N m/A",
+                decimal(motor.motor.torque_constant)
+            ));
+            made_for.push(format!("b = {} N m s/rad", decimal(motor.motor.damping)));
+        }
+        for (parameter, value) in self.parameters.iter().zip(values) {
+            let text = format!(
+                "{} = {} {}",
+                parameter.name,
+                decimal(*value),
+                parameter.unit
+            );
+            made_for.push(text.trim_end().to_owned());
+        }
+        let upper = c.to_string().to_uppercase();
+        format!(
+            "/* {}: {}.\n   For {}.\n   Written by host-sim {}. */\n\
+             #ifndef LIMPID_{upper}_PARAMETERS_H\n\
+             #define LIMPID_{upper}_PARAMETERS_H\n\n\
+             #include \"limpid.h\"\n\n\
+             #define LIMPID_{upper}_COUNTS_PER_REV {}u\n\
+             #define LIMPID_{upper}_RATE_HZ {:?}\n\n\
+             static const limpid_{c}_t limpid_{c}_parameters = {{{{\n{}}}}};\n\n\
+             #endif\n",
+            self.name,
+            self.summary,
+            made_for.join(",\n   "),
+            env!("CARGO_PKG_VERSION"),
+            motor.motor.counts_per_rev,
+            setup.rate.0,
+            words(bytes, *alignment),
+        )
+    }
+}
+
+/// The initialisers of the words, one a line.
+fn words(bytes: &[u8], alignment: usize) -> String {
+    let mut lines = String::new();
+    let mut line =
+        |word: std::fmt::Arguments<'_>| writeln!(lines, "    {word},").expect("a string");
+    if alignment > 4 {
+        for word in bytes.as_chunks().0 {
+            line(format_args!(
+                "UINT64_C({:#018x})",
+                u64::from_le_bytes(*word)
+            ));
+        }
+    } else {
+        let mut padded = bytes.to_vec();
+        padded.resize(bytes.len().next_multiple_of(4).max(4), 0);
+        for word in padded.as_chunks().0 {
+            let word = u32::from_le_bytes(*word);
+            line(format_args!(
+                "UINT32_C({word:#010x}) /* {:?} */",
+                f32::from_bits(word)
+            ));
+        }
+    }
+    lines
+}
