@@ -19,9 +19,9 @@
  * - A function that ends in _design exists in the library for computers alone.
  */
 
-
 #ifndef LIMPID_H
 #define LIMPID_H
+
 
 #include <stdint.h>
 
@@ -2604,8 +2604,6 @@ const char *limpid_status_text(int32_t status);
 }  // extern "C"
 #endif  // __cplusplus
 
-#endif  /* LIMPID_H */
-
 #define LIMPID_VERSION "0.1.0"
 
 /* EACH(name) for every estimator: limpid_##name##_t, limpid_##name##_update and so on. */
@@ -2676,3 +2674,5 @@ static inline uint32_t limpid_extended(uint32_t before, uint16_t counter)
     uint16_t moved = (uint16_t)(counter - (uint16_t)before);
     return before + (moved < 0x8000u ? (uint32_t)moved : (uint32_t)moved - 0x10000u);
 }
+
+#endif

@@ -14,7 +14,7 @@ mod uneven;
 use crate::confidence::{Confidence, Variance};
 use crate::design::DesignError;
 use crate::estimator::{AccelerationEstimator, VaryingPeriod, VelocityEstimator};
-use crate::interval::limited_period;
+use crate::interval::{limited_period, smaller};
 use crate::memory::{Memory, memory};
 use crate::observer::{AdaptiveEdgeObserver, AdaptiveObserver};
 use crate::sample::{Sample, Signals};
@@ -215,7 +215,7 @@ impl<const K: usize, S: Stamps> VaryingPeriod for ModelBank<K, S> {
         let over = Over {
             predict: &Interval::new(&self.ladder, period),
             elapsed: (TICK as f32 * period + 0.5) as u32,
-            edges_within: self.ladder.correlation_time().min(period),
+            edges_within: smaller(self.ladder.correlation_time(), period),
             change: self.change * period,
         };
         match self.advance_over(state, sample, None, &over) {

@@ -21,6 +21,13 @@ pub(crate) fn limited_period(period: f32) -> f32 {
     }
 }
 
+/// The smaller of two numbers, the second if one is NaN. `f32::min` is a call of a mathematical library on
+/// processors without an FPU.
+#[inline(always)]
+pub(crate) fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
 /// `1 - exp(-x)` for x from 0 to 4e6: the part of a quantity that a decay removes.
 ///
 /// The argument is halved until the series is short; then `1 - exp(-2y) = m (2 - m)` with

@@ -48,12 +48,16 @@ struct Places {
 impl Places {
     fn of(image: &Image, subject: &Subject) -> Result<Self, String> {
         let runner = image.function(&subject_path(subject, "run"))?;
-        let entry = image.update(subject)?;
-        Ok(Self {
+        Ok(Self::between(image, runner, image.update(subject)?))
+    }
+
+    /// `runner` calls `entry` through a pointer.
+    fn between(image: &Image, runner: u64, entry: u64) -> Self {
+        Self {
             entry,
             instructions: image.code.instructions(entry),
             returns: thumb::after_indirect_calls(runner, image.code.function(runner)),
-        })
+        }
     }
 
     /// Entry and returns.
@@ -212,38 +216,90 @@ impl Driver<ControllerBoard> for Bench {
     }
 }
 
+/// The mailbox of an image, and the places of what it runs.
+struct Program<'a> {
+    image: &'a Image,
+    places: Vec<Places>,
+    ready: u64,
+    job: u64,
+    trace: u64,
+    velocities: u64,
+}
+
 /// Runs the jobs on the image, in order.
 ///
 /// # Errors
 /// One line on an image with a missing symbol, or an error of the emulator.
 pub fn on_board(image: &Image, jobs: &[Job<'_>]) -> Result<Vec<Ran>, String> {
-    let emulator = |error: &dyn std::fmt::Display| format!("emulator: {error}");
-    let rate = NonZeroU64::new(CORE_HZ).expect("not zero");
-    let board = ControllerBoard::new(8_000_000, rate).map_err(|error| emulator(&error))?;
-    let mut session =
-        Session::new(Box::new(board), 0, VirtualNanos(0)).map_err(|error| emulator(&error))?;
     let mailbox = |name| image.datum(&["bench_image", "mailbox", name]);
     let places: Result<_, String> = SUBJECTS.iter().map(|one| Places::of(image, one)).collect();
-    let bench = Bench {
-        jobs: jobs.iter().rev().map(Order::new).collect(),
+    let program = Program {
+        image,
         places: places?,
         ready: image.function(&["bench_image", "ready"])?,
         job: mailbox("JOB")?,
         trace: mailbox("TRACE")?,
         velocities: mailbox("VELOCITIES")?,
-        running: None,
-        since: None,
-        cycles: 0,
-        at: None,
-        done: Vec::new(),
-        finished: false,
-        problem: None,
     };
-    session.watch(Watch::Instruction(bench.ready));
-    let images = [image.placed.clone()];
-    let finished = run(session, &Start::new(&images), bench).map_err(|error| emulator(&error))?;
-    match finished.driver.problem {
-        Some(problem) => Err(emulator(&problem)),
-        None => Ok(finished.driver.done),
+    program.run(jobs)
+}
+
+/// As [`on_board`] for an image in C, whose subjects are functions `limpid_NAME_update`, called by
+/// `run_NAME`; the index in a job is that of the name. Its mailbox has the names of Rust's in lower case.
+///
+/// # Errors
+/// As [`on_board`].
+pub fn on_board_in_c(
+    image: &Image,
+    names: &[String],
+    jobs: &[Job<'_>],
+) -> Result<Vec<Ran>, String> {
+    let place = |name: &String| -> Result<Places, String> {
+        let runner = image.symbol(&format!("run_{name}"))?;
+        let entry = image.symbol(&format!("limpid_{name}_update"))?;
+        Ok(Places::between(image, runner, entry))
+    };
+    let places: Result<_, String> = names.iter().map(place).collect();
+    let program = Program {
+        image,
+        places: places?,
+        ready: image.symbol("ready")?,
+        job: image.symbol("job")?,
+        trace: image.symbol("trace")?,
+        velocities: image.symbol("velocities")?,
+    };
+    program.run(jobs)
+}
+
+impl Program<'_> {
+    fn run(self, jobs: &[Job<'_>]) -> Result<Vec<Ran>, String> {
+        let emulator = |error: &dyn std::fmt::Display| format!("emulator: {error}");
+        let rate = NonZeroU64::new(CORE_HZ).expect("not zero");
+        let board = ControllerBoard::new(8_000_000, rate).map_err(|error| emulator(&error))?;
+        let mut session =
+            Session::new(Box::new(board), 0, VirtualNanos(0)).map_err(|error| emulator(&error))?;
+        let bench = Bench {
+            jobs: jobs.iter().rev().map(Order::new).collect(),
+            places: self.places,
+            ready: self.ready,
+            job: self.job,
+            trace: self.trace,
+            velocities: self.velocities,
+            running: None,
+            since: None,
+            cycles: 0,
+            at: None,
+            done: Vec::new(),
+            finished: false,
+            problem: None,
+        };
+        session.watch(Watch::Instruction(bench.ready));
+        let images = [self.image.placed.clone()];
+        let finished =
+            run(session, &Start::new(&images), bench).map_err(|error| emulator(&error))?;
+        match finished.driver.problem {
+            Some(problem) => Err(emulator(&problem)),
+            None => Ok(finished.driver.done),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The bench image: build for the board, and addresses of its functions and data.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use bench_image::{SUBJECTS, Subject};
@@ -82,7 +82,11 @@ impl Image {
         Self::read(level, &target.join(TRIPLE).join("release/bench-image"))
     }
 
-    fn read(level: Level, path: &PathBuf) -> Result<Self, String> {
+    /// Reads an image for the same board.
+    ///
+    /// # Errors
+    /// One line on a file that is no such image.
+    pub fn read(level: Level, path: &Path) -> Result<Self, String> {
         let problem = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
         let elf = std::fs::read(path).map_err(|error| problem(&error))?;
         let file = object::File::parse(&*elf).map_err(|error| problem(&error))?;
@@ -124,6 +128,14 @@ impl Image {
     /// Address of the data of this path inside the bench crate.
     pub(crate) fn datum(&self, path: &[&str]) -> Result<u64, String> {
         find(&self.data, path)
+    }
+
+    /// Address of the function or the data of this name in C.
+    pub(crate) fn symbol(&self, name: &str) -> Result<u64, String> {
+        let found = self.names.get(name).or_else(|| self.data.get(name));
+        found
+            .copied()
+            .ok_or_else(|| format!("no {name} in the image"))
     }
 
     /// Mangled name of the function at `address`.

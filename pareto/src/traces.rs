@@ -95,7 +95,8 @@ pub fn all() -> Result<Vec<BenchTrace>, String> {
 
 /// Traces in which only the bits are compared: rest, top speed, ties of the quantiser, wraps of the
 /// counter, random 32-bit counts, currents that are not numbers.
-pub(crate) fn hostile(rate_hz: u32) -> Vec<Sample> {
+#[must_use]
+pub fn hostile(rate_hz: u32) -> Vec<Sample> {
     let mut course = Course::new(SEED, f64::from(rate_hz));
     let mut samples = Vec::with_capacity(bench_image::mailbox::SAMPLES);
     for k in 0..samples.capacity() {

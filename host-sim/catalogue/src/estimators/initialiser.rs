@@ -78,27 +78,16 @@ impl Kind {
                 )));
             }
         }
-        let index = Self::all()
-            .iter()
-            .position(|kind| kind.name == self.name)
-            .unwrap_or_default();
-        let designs = CType::of(self.row).filter_map(|c| {
-            let design = DESIGNS[index](setup, edge_clock, values, c.capacity)?;
-            Some(design.map(|bytes| (c, bytes)))
-        });
-        // The last error is that of the longest type.
-        let mut last = None;
-        for design in designs {
-            match design {
-                Ok((c, bytes)) => return Ok(self.header(&c, &bytes, setup, edge_clock, values)),
-                Err(error) => last = Some(error),
+        let mut lengths = Vec::new();
+        let mut why = None;
+        for c in CType::of(self.row) {
+            match self.c_of(&c, setup, edge_clock, values) {
+                Ok(header) => return Ok(header),
+                Err(error) => why = Some(error),
             }
+            lengths.extend((c.capacity > 0).then(|| c.capacity.to_string()));
         }
-        let why = last.map_or_else(String::new, |error| error.to_string());
-        let lengths: Vec<_> = CType::of(self.row)
-            .filter(|c| c.capacity > 0)
-            .map(|c| c.capacity.to_string())
-            .collect();
+        let why = why.map_or_else(String::new, |error| error.to_string());
         let lengths = match &lengths[..] {
             [] => String::new(),
             some => format!("; N in limpid.h is {}", some.join(" or ")),
@@ -108,6 +97,24 @@ impl Kind {
             self.name,
             decimal(setup.rate.0)
         )))
+    }
+
+    /// As [`Kind::c`] for one type of the row, without a check of the ranges of the values.
+    ///
+    /// # Errors
+    /// The reason of a refused design.
+    pub fn c_of(
+        &self,
+        c: &CType,
+        setup: &Setup,
+        edge_clock: Hertz,
+        values: &Values,
+    ) -> Result<String, DesignError> {
+        let index = Self::all().iter().position(|kind| kind.name == self.name);
+        let design = DESIGNS[index.unwrap_or_default()];
+        let designed =
+            design(setup, edge_clock, values, c.capacity).unwrap_or(Err(DesignError::TABLE));
+        Ok(self.header(c, &designed?, setup, edge_clock, values))
     }
 
     fn header(

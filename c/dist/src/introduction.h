@@ -1,6 +1,6 @@
 /* Velocity from the counts of a quadrature encoder. VERSION_OF_LIMPID
  *
- * Written by `cargo c-header`; do not edit.
+ * Written by `cargo c-library header`; do not edit.
  *
  *   #include "limpid.h"
  *
@@ -18,3 +18,6 @@
  * - No function allocates, locks, fails, or calls a library of floating-point functions.
  * - A function that ends in _design exists in the library for computers alone.
  */
+
+#ifndef LIMPID_H
+#define LIMPID_H

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use cbindgen::{Builder, Config, DocumentationStyle, Language, Style};
 use limpid::source;
 
-/// First lines of the header: how to use it.
+/// First lines of the header: how to use it, and the guard against a second inclusion.
 const INTRODUCTION: &str = include_str!("introduction.h");
 
 /// Last lines of the header: what C alone can say.
@@ -62,7 +62,6 @@ fn generate(files: &[std::path::PathBuf]) -> Result<String, String> {
         documentation_style: DocumentationStyle::C,
         header: Some(INTRODUCTION.to_owned()),
         trailer: Some(CONVENIENCES.to_owned()),
-        include_guard: Some("LIMPID_H".to_owned()),
         no_includes: true,
         sys_includes: vec!["stdint.h".to_owned()],
         line_length: 110,

@@ -25,3 +25,5 @@ static inline uint32_t limpid_extended(uint32_t before, uint16_t counter)
     uint16_t moved = (uint16_t)(counter - (uint16_t)before);
     return before + (moved < 0x8000u ? (uint32_t)moved : (uint32_t)moved - 0x10000u);
 }
+
+#endif

@@ -1,0 +1,96 @@
+/* A sensor for SimpleFOC with the velocity of the self-tuning filter bank `imm`.
+ *
+ *   #include <SimpleFOC.h>
+ *   #include <LimpidSensor.h>
+ *
+ *   MagneticSensorI2C encoder(AS5600_I2C);
+ *   LimpidSensor sensor(encoder, 4096);      // counts per revolution: four per line of an encoder
+ *
+ *   sensor.init();
+ *   motor.linkSensor(&sensor);
+ *
+ * The velocity reaches zero at rest and does not jump at low speed. The loop may be irregular: each update
+ * takes the time since the one before. Let motor.LPF_velocity.Tf be 0: a filter behind this one adds delay.
+ */
+#ifndef LIMPID_SENSOR_H
+#define LIMPID_SENSOR_H
+
+#include "LimpidEstimators.h"
+#include "LimpidMilliseconds.h"
+
+#ifndef SENSOR_H
+#error "LimpidSensor.h: include SimpleFOC.h first"
+#endif
+
+class LimpidSensor : public Sensor {
+public:
+    LimpidSensor(Sensor &inner, uint32_t counts_per_rev) : inner(inner), counts_per_rev(counts_per_rev) {}
+
+    void init() override
+    {
+        inner.update();
+        started = false;
+        update();
+    }
+
+    void update() override
+    {
+        inner.update();
+        const uint32_t now = micros();
+        const uint32_t count = counted();
+        /* The period of the parameters is a millisecond. */
+        const float period = (float)(now - updated) * 1e-3f;
+        if (!started) {
+            const limpid_sample_t first = limpid_count(count);
+            limpid_imm_start(&limpid_imm_parameters, &state, &first);
+            started = true;
+        } else if (period >= SHORTEST) {
+            const limpid_sample_t sample = limpid_count(count);
+            const float per_period = limpid_imm_update_over(&limpid_imm_parameters, &state, &sample, period);
+            velocity = LIMPID_RAD_PER_S(per_period, counts_per_rev, LIMPID_IMM_RATE_HZ);
+        } else {
+            return;
+        }
+        updated = now;
+    }
+
+    float getMechanicalAngle() override { return inner.getMechanicalAngle(); }
+    float getAngle() override { return inner.getAngle(); }
+    double getPreciseAngle() override { return inner.getPreciseAngle(); }
+    int32_t getFullRotations() override { return inner.getFullRotations(); }
+    int needsSearch() override { return inner.needsSearch(); }
+
+    /* Velocity at the latest update, rad/s. */
+    float getVelocity() override { return velocity; }
+
+    /* Standard deviation of the velocity according to the filter, rad/s. */
+    float getVelocityDeviation() const
+    {
+        const float deviation = limpid_std_dev(limpid_imm_variance(&limpid_imm_parameters, &state));
+        return LIMPID_RAD_PER_S(deviation, counts_per_rev, LIMPID_IMM_RATE_HZ);
+    }
+
+protected:
+    float getSensorAngle() override { return inner.getMechanicalAngle(); }
+
+private:
+    /* An update sooner than this, ms, is left to the next one. */
+    static constexpr float SHORTEST = 0.02f;
+
+    /* The angle in counts of the encoder, modulo 2^32. */
+    uint32_t counted()
+    {
+        const float turn = inner.getMechanicalAngle() * (1.0f / 6.28318531f);
+        const uint32_t within = (uint32_t)(int32_t)(turn * (float)counts_per_rev + 0.5f);
+        return (uint32_t)inner.getFullRotations() * counts_per_rev + within;
+    }
+
+    Sensor &inner;
+    const uint32_t counts_per_rev;
+    limpid_imm_state_t state;
+    float velocity = 0.0f;
+    uint32_t updated = 0;
+    bool started = false;
+};
+
+#endif

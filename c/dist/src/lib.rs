@@ -1,0 +1,10 @@
+//! What users of C and C++ take: the header `limpid.h`, a static library per target, and a library folder
+//! for Arduino.
+
+mod arduino;
+mod header;
+mod libraries;
+
+pub use arduino::{arduino, milliseconds};
+pub use header::header;
+pub use libraries::{BOARDS, Build, COMPUTER, build, libraries, write};

@@ -1,0 +1,133 @@
+//! Static libraries.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// A library for a family of processors.
+#[derive(Clone, Copy, Debug)]
+pub struct Build {
+    /// Folder of the library.
+    pub folder: &'static str,
+    /// Target of the compiler; `None` for this computer.
+    pub triple: Option<&'static str>,
+    /// Processor whose instructions are used; `None` for the least one of the target.
+    pub processor: Option<&'static str>,
+    /// Folders of Arduino: the processor, and the float ABI if it has one.
+    pub arduino: &'static [&'static str],
+}
+
+/// The library for computers, with the functions that design.
+pub const COMPUTER: Build = Build {
+    folder: "host",
+    triple: None,
+    processor: None,
+    arduino: &[],
+};
+
+/// The libraries for boards.
+///
+/// The pinned toolchain has no targets for Cortex-M3 and for a Cortex-M4 without FPU. Those have the
+/// instructions of Cortex-M3 on the target of Cortex-M0: the functions are compiled for Cortex-M3, the
+/// compiler's own routines for Cortex-M0, which a Cortex-M3 executes.
+pub const BOARDS: [Build; 4] = [
+    Build {
+        folder: "cortex-m0",
+        triple: Some("thumbv6m-none-eabi"),
+        processor: None,
+        arduino: &["cortex-m0", "cortex-m0plus"],
+    },
+    Build {
+        folder: "cortex-m3",
+        triple: Some("thumbv6m-none-eabi"),
+        processor: Some("cortex-m3"),
+        arduino: &["cortex-m3", "cortex-m4"],
+    },
+    Build {
+        folder: "cortex-m4f",
+        triple: Some("thumbv7em-none-eabihf"),
+        processor: None,
+        arduino: &[
+            "cortex-m4/fpv4-sp-d16-hard",
+            "cortex-m7/fpv4-sp-d16-hard",
+            "cortex-m7/fpv5-sp-d16-hard",
+            "cortex-m7/fpv5-d16-hard",
+        ],
+    },
+    Build {
+        folder: "riscv32imc",
+        triple: Some("riscv32imc-unknown-none-elf"),
+        processor: None,
+        arduino: &["esp32c3"],
+    },
+];
+
+/// The repository.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Builds a library in a target directory below `target` and returns its path.
+///
+/// # Errors
+/// One line if cargo fails; it names the command that installs a missing target.
+pub fn build(one: &Build) -> Result<PathBuf, String> {
+    let target = root().join("target/c-library").join(one.folder);
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command
+        .current_dir(root())
+        .args(["rustc", "--quiet", "--profile", "c-library"])
+        .args(["--package", "limpid-c", "--crate-type", "staticlib"])
+        .arg("--target-dir")
+        .arg(&target);
+    let mut library = target;
+    if let Some(triple) = one.triple {
+        command.args(["--target", triple]);
+        library.push(triple);
+    }
+    if let Some(processor) = one.processor {
+        command.env("RUSTFLAGS", format!("-Ctarget-cpu={processor}"));
+    }
+    let status = command
+        .status()
+        .map_err(|error| format!("cargo does not start: {error}"))?;
+    if !status.success() {
+        let hint = one.triple.map_or_else(String::new, |triple| {
+            format!("; if the target is missing: rustup target add {triple}")
+        });
+        return Err(format!("no library for {}{hint}", one.folder));
+    }
+    Ok(library.join("c-library/liblimpid.a"))
+}
+
+/// Writes header and libraries into a folder: `include/limpid.h` and `FOLDER/liblimpid.a`.
+///
+/// # Errors
+/// One line that names the file or the target.
+pub fn libraries(into: &Path) -> Result<(), String> {
+    write(&into.join("include/limpid.h"), crate::header()?.as_bytes())?;
+    for one in [COMPUTER].iter().chain(&BOARDS) {
+        let library = build(one)?;
+        copy(&library, &into.join(one.folder).join("liblimpid.a"))?;
+    }
+    Ok(())
+}
+
+/// Writes a file and its folders.
+///
+/// # Errors
+/// One line that names the file.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    let problem = |error: std::io::Error| format!("{}: {error}", path.display());
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).map_err(problem)?;
+    }
+    fs::write(path, bytes).map_err(problem)
+}
+
+/// Copies a file, with the folders of the copy.
+pub(crate) fn copy(from: &Path, to: &Path) -> Result<(), String> {
+    let bytes = fs::read(from).map_err(|error| format!("{}: {error}", from.display()))?;
+    write(to, &bytes)
+}

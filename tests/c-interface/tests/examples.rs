@@ -1,0 +1,218 @@
+//! The library for Arduino and the example for STM32: they compile, and the sensor for SimpleFOC keeps its
+//! promises on a simulated motion.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use c_interface::{Compiler, compiled, folder, missing};
+use limpid_dist::{BOARDS, COMPUTER, arduino, build, header, milliseconds, write};
+
+const ARM: Compiler = Compiler {
+    program: "arm-none-eabi-gcc",
+    arguments: &[
+        "-std=c99",
+        "-O2",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-pedantic",
+        "-mcpu=cortex-m4",
+        "-mthumb",
+        "-mfloat-abi=hard",
+        "-mfpu=fpv4-sp-d16",
+        "-c",
+    ],
+};
+
+const CPP11: Compiler = Compiler {
+    program: "g++",
+    arguments: &[
+        "-x",
+        "c++",
+        "-std=c++11",
+        "-O2",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+    ],
+};
+
+fn here(path: &str) -> String {
+    format!("{}/{path}", env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn the_example_for_stm32_compiles() {
+    if missing(ARM.program) {
+        return;
+    }
+    let folder = folder("stm32");
+    write(
+        &folder.join("parameters.h"),
+        milliseconds().expect("a design").as_bytes(),
+    )
+    .expect("target");
+    let stub = format!("-I{}", here("c/stm32_stub"));
+    let source = "../../../c/examples/stm32_hal/main.c";
+    compiled(&ARM, source, &folder, &[&stub], &folder.join("main.o"));
+}
+
+#[test]
+fn the_library_for_arduino_has_an_object_per_processor_and_its_examples_compile() {
+    let folder = folder("Limpid");
+    arduino(&folder).expect("the folder");
+    let properties = std::fs::read_to_string(folder.join("library.properties")).expect("written");
+    let version = format!("version={}\n", env!("CARGO_PKG_VERSION"));
+    assert!(properties.contains(&version) && properties.contains("precompiled=true\n"));
+    assert_eq!(
+        std::fs::read_to_string(folder.join("src/limpid.h")).expect("written"),
+        header().expect("a header")
+    );
+    for processor in BOARDS.iter().flat_map(|one| one.arduino) {
+        let library = folder.join("src").join(processor).join("liblimpid.a");
+        assert!(
+            library.metadata().expect("written").len() > 100_000,
+            "{}",
+            library.display()
+        );
+    }
+    if missing(CPP11.program) {
+        return;
+    }
+    let stub = format!("-I{}", here("c/arduino_stub"));
+    let source = format!("-I{}", folder.join("src").display());
+    for example in ["EncoderVelocity", "SimpleFocSensor"] {
+        let sketch = folder.join(format!("examples/{example}/{example}.ino"));
+        let more = ["-include", "Arduino.h", &stub, &source, "-c"];
+        compiled(
+            &CPP11,
+            &sketch.display().to_string(),
+            &folder,
+            &more,
+            &folder.join("sketch.o"),
+        );
+    }
+}
+
+/// A motion: time in µs and the true angle and velocity at it, rad and rad/s. The loop is irregular: 150 to
+/// 600 µs.
+fn motion(velocities: &[(f64, f64)]) -> Vec<(u64, f64, f64)> {
+    let mut random = 1u32;
+    let (mut now, mut angle) = (1_000_000u64, 0.3);
+    let mut motion = Vec::new();
+    for &(velocity, seconds) in velocities {
+        let end = now + (seconds * 1e6) as u64;
+        while now < end {
+            motion.push((now, angle, velocity));
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let step = 150 + u64::from(random >> 16) % 451;
+            now += step;
+            angle += velocity * step as f64 * 1e-6;
+        }
+    }
+    motion
+}
+
+/// Velocity and standard deviation of the sensor at each time of a motion, with 4096 counts per turn.
+fn sensed(program: &Path, motion: &[(u64, f64, f64)]) -> Vec<[f64; 2]> {
+    let counts = 4096.0 / std::f64::consts::TAU;
+    let mut input = String::new();
+    for (now, angle, _) in motion {
+        let shown = (angle * counts).floor().rem_euclid(4096.0) / counts;
+        writeln!(input, "{now} {shown:.7}").expect("a string");
+    }
+    let mut child = Command::new(program)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut to = child.stdin.take().expect("piped");
+    let writer = std::thread::spawn(move || to.write_all(input.as_bytes()));
+    let output = child.wait_with_output().expect("the program ends");
+    writer
+        .join()
+        .expect("no panic")
+        .expect("the program reads everything");
+    let text = String::from_utf8(output.stdout).expect("text");
+    text.lines()
+        .map(|line| {
+            let mut numbers = line
+                .split(' ')
+                .map(|number| number.parse().expect("a number"));
+            [(); 2].map(|()| numbers.next().expect("two numbers"))
+        })
+        .collect()
+}
+
+/// The sensor of SimpleFOC itself divides the angle by the time since it last changed and keeps its
+/// velocity for ever when the motor has stopped.
+#[test]
+fn velocity_of_the_sensor_reaches_zero_and_does_not_jump() {
+    if missing(CPP11.program) {
+        return;
+    }
+    let folder = folder("sensor");
+    write(
+        &folder.join("LimpidMilliseconds.h"),
+        milliseconds().expect("a design").as_bytes(),
+    )
+    .expect("target");
+    let library = build(&COMPUTER).expect("the library");
+    let library = library.to_str().expect("a path in UTF-8");
+    let program = folder.join("sensor");
+    let stub = format!("-I{}", here("c/arduino_stub"));
+    let sources = format!("-I{}", here("../../c/arduino/src"));
+    let more = [
+        &*stub,
+        &sources,
+        "-x",
+        "none",
+        library,
+        "-lpthread",
+        "-ldl",
+        "-lm",
+    ];
+    compiled(&CPP11, "sensor.cpp", &folder, &more, &program);
+
+    // One count is 1.5 mrad: in a loop of 375 µs it is a jump of 4.1 rad/s of a plain difference.
+    let motion = motion(&[(0.5, 3.0), (0.0, 2.0), (-40.0, 2.0), (0.0, 2.0)]);
+    let sensed = sensed(&program, &motion);
+    assert_eq!(sensed.len(), motion.len());
+    let at = |from_s: f64, to_s: f64| {
+        let us = [from_s, to_s].map(|s| (s * 1e6) as u64 + 1_000_000);
+        let within = move |(now, _, _): &&(u64, f64, f64)| us[0] <= *now && *now < us[1];
+        motion
+            .iter()
+            .zip(&sensed)
+            .filter(move |(one, _)| within(one))
+    };
+    let worst = |from_s, to_s| {
+        at(from_s, to_s)
+            .map(|((_, _, truth), [v, _])| (v - truth).abs())
+            .fold(0.0, f64::max)
+    };
+    println!(
+        "slow {:.3}, fast {:.3} rad/s",
+        worst(1.0, 3.0),
+        worst(5.5, 7.0)
+    );
+    // At a constant velocity the bank is far below a plain difference, also in the irregular loop.
+    assert!(worst(1.0, 3.0) < 0.01, "{}", worst(1.0, 3.0));
+    assert!(worst(5.5, 7.0) < 0.02, "{}", worst(5.5, 7.0));
+    // Half a second after the motor has stopped, the velocity is zero, and it stays so.
+    for rest in [3.5, 7.5] {
+        assert!(at(rest, rest + 1.5).count() > 3000);
+        assert!(
+            at(rest, rest + 1.5).all(|(_, [v, _])| *v == 0.0),
+            "rest after {rest} s"
+        );
+    }
+    // The standard deviation contains the error: below three of it in 95 % of the moving updates.
+    let moving: Vec<_> = at(1.0, 3.0).chain(at(5.5, 7.0)).collect();
+    let within = moving
+        .iter()
+        .filter(|((_, _, truth), [v, deviation])| (v - truth).abs() < 3.0 * deviation);
+    assert!(within.count() * 100 > 95 * moving.len());
+}
