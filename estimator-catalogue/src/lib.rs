@@ -24,3 +24,7 @@ pub use row::{CType, Colour, Dash, Goal, Reports, Row, Settling, Variant};
 pub use rows::{ROWS, design};
 pub use scaling::{Powers, Scaling};
 pub use varying::{AssumesConstantPeriod, UpdateOver, VarianceOver, Varying};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
