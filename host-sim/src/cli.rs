@@ -8,6 +8,7 @@ mod export;
 mod feel;
 mod identify;
 mod limit;
+mod line;
 mod list;
 mod page;
 mod plot;
@@ -18,6 +19,7 @@ mod replay;
 mod report_extras;
 mod robust;
 mod sensitivity;
+mod shard;
 mod simulate;
 mod tune;
 mod uneven;
@@ -28,6 +30,7 @@ use std::ffi::OsString;
 use clap::{CommandFactory as _, Parser as _};
 
 use arguments::{Arguments, Command};
+use line::{command_line, run_line};
 use terminal::explain;
 use terminal::failure::Failure;
 
@@ -38,7 +41,7 @@ use terminal::failure::Failure;
 /// A [`Failure`] with its exit status.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let command_line = command_line(&arguments);
+    let (command_line, run_line) = (command_line(&arguments), run_line(&arguments));
     let parsed = match Arguments::try_parse_from(&arguments) {
         Ok(parsed) => parsed,
         Err(error) => return explain(&error, &program(&arguments)),
@@ -59,12 +62,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Some(Command::Identify(options)) => identify::run(&options, &command_line),
         Some(Command::Simulate(options)) => simulate::run(&options),
         Some(Command::Tune(options)) => tune::run(&options, &command_line),
-        Some(Command::Sensitivity(options)) => sensitivity::run(&options, &command_line),
+        Some(Command::Sensitivity(options)) => sensitivity::run(&options, &run_line),
         Some(Command::Limit(options)) => limit::run(&options),
         Some(Command::Feel(options)) => feel::run(&options, &command_line),
-        Some(Command::Zwidth(options)) => zwidth::run(&options, &command_line),
-        Some(Command::Robust(options)) => robust::run(&options),
-        Some(Command::Merge(options)) => robust::merge(&options),
+        Some(Command::Zwidth(options)) => zwidth::run(&options, &run_line),
+        Some(Command::Robust(options)) => robust::run(&options, &run_line),
+        Some(Command::Merge(options)) => shard::merge(&options),
         Some(Command::Estimators) => list::estimators(),
         Some(Command::Scenarios) => list::scenarios(),
         Some(Command::Device(options)) => list::device(&options),
@@ -79,20 +82,4 @@ fn program(arguments: &[OsString]) -> String {
         Some(name) => format!("host-sim {name}"),
         None => "host-sim".to_owned(),
     }
-}
-
-/// The command line with quotes where a shell needs them.
-fn command_line(arguments: &[OsString]) -> String {
-    let quoted = arguments.iter().skip(1).map(|argument| {
-        let argument = argument.to_string_lossy();
-        let plain = |c: char| c.is_alphanumeric() || "-_./=,:+".contains(c);
-        match !argument.is_empty() && argument.chars().all(plain) {
-            true => argument.into_owned(),
-            false => format!("'{}'", argument.replace('\'', r"'\''")),
-        }
-    });
-    std::iter::once("host-sim".to_owned())
-        .chain(quoted)
-        .collect::<Vec<_>>()
-        .join(" ")
 }

@@ -5,6 +5,7 @@ mod tuned;
 use std::path::Path;
 
 pub use device_files::presets::{PlantKind, Preset, Presets};
+use serde::{Deserialize, Serialize};
 
 use crate::estimators::{Kind, Search, Setup, Values, check};
 use terminal::failure::Failure;
@@ -35,15 +36,17 @@ fn checked(presets: Presets) -> Result<Presets, Failure> {
 
 /// Sources of parameter values in order of rising priority: shipped presets, a presets file, values
 /// set by name.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Parameters {
     layers: Vec<Presets>,
     overrides: Vec<Override>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Override {
-    kind: &'static str,
+    kind: String,
     index: usize,
     value: f64,
 }
@@ -80,7 +83,7 @@ impl Parameters {
         let value = value.trim().parse().map_err(|_| form())?;
         check(&kind.parameters[index], kind.name, value)?;
         self.overrides.push(Override {
-            kind: kind.name,
+            kind: kind.name.to_owned(),
             index,
             value,
         });

@@ -7,7 +7,6 @@ pub mod corners;
 mod high_pass;
 pub mod judge;
 pub mod row;
-pub mod shard;
 pub mod summary;
 pub mod variation;
 
@@ -97,6 +96,20 @@ impl Settings {
             of.collect::<Vec<_>>()
         });
         Ok(jobs.collect())
+    }
+}
+
+impl shards::Experiment for Settings {
+    const COMMAND: &'static str = "host-sim robust";
+    type Job = Job;
+    type Row = RobustRow;
+
+    fn jobs(&self) -> Result<Vec<Job>, Failure> {
+        Ok(Self::jobs(self)?)
+    }
+
+    fn rows(&self, jobs: &[Job], done: impl Fn() + Sync) -> Result<Vec<RobustRow>, Failure> {
+        Experiment::new(self)?.rows(jobs, done)
     }
 }
 

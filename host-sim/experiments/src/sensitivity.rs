@@ -4,16 +4,19 @@
 //! constant: see [`ConstantError`]. Plant, loop and the finite difference as reference stay
 //! unchanged.
 
+mod plan;
 pub mod table;
 
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::compare::{Case, Settings, interval, setup_of, trace};
 use catalogue::constant_error::ConstantError;
 use catalogue::estimators::Kind;
 use scoring::score::{Truth, Wanted};
 use terminal::failure::Failure;
+
+pub use plan::Plan;
 
 /// Errors of a constant, as fractions of its largest error. The correct constants are run too.
 pub const PARTS: [f64; 4] = [-1.0, -0.5, 0.5, 1.0];
@@ -41,6 +44,21 @@ pub struct SensitivityRow {
     pub outside: f64,
 }
 
+/// Errors of one estimator with one wrong constant, or none, in a case.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cell {
+    estimator: String,
+    /// Index of the wrong constant and its error in [`ConstantError::at`] of [`PARTS`].
+    constant_error: Option<usize>,
+    #[serde(with = "shards::exact")]
+    rms_rad_s: f64,
+    #[serde(with = "shards::exact")]
+    rms_pct: f64,
+    #[serde(with = "shards::exact")]
+    outside: f64,
+}
+
 /// Runs all cases in parallel and calls `done` after each.
 ///
 /// # Errors
@@ -50,18 +68,58 @@ pub fn sensitivity(
     settings: &Settings,
     done: impl Fn() + Sync,
 ) -> Result<Vec<SensitivityRow>, Failure> {
-    let rows = cases
-        .par_iter()
-        .map(|case| {
-            let rows = run(case, settings);
-            done();
-            rows
-        })
-        .collect::<Result<Vec<_>, _>>()?;
-    Ok(rows.into_iter().flatten().collect())
+    rows(cases, &cells(cases, settings, done)?)
 }
 
-fn run(case: &Case, settings: &Settings) -> Result<Vec<SensitivityRow>, Failure> {
+/// The cells of each case.
+fn cells(
+    cases: &[Case],
+    settings: &Settings,
+    done: impl Fn() + Sync,
+) -> Result<Vec<Vec<Cell>>, Failure> {
+    let cells = cases.par_iter().map(|case| {
+        let cells = run(case, settings);
+        done();
+        cells
+    });
+    cells.collect()
+}
+
+/// The rows of all cases, in their order.
+///
+/// # Errors
+/// [`Failure::Input`] on a cell of an unknown estimator or constant.
+pub fn rows(cases: &[Case], cells: &[Vec<Cell>]) -> Result<Vec<SensitivityRow>, Failure> {
+    let constant_errors = ConstantError::at(&PARTS);
+    let row = |case: &Case, cell: &Cell| {
+        let constant_error = match cell.constant_error {
+            None => None,
+            Some(index) => {
+                let known = constant_errors.get(index);
+                Some(
+                    known
+                        .ok_or_else(|| Failure::Input(format!("no error of a constant {index}")))?,
+                )
+            }
+        };
+        Ok(SensitivityRow {
+            estimator: Kind::named(&cell.estimator)?.name,
+            scenario: case.scenario.as_str(),
+            rate_hz: case.rate_hz,
+            seed: case.seed,
+            constant: constant_error.map(|constant_error| constant_error.constant.as_str()),
+            error: constant_error.map_or(0.0, |constant_error| constant_error.error),
+            rms_rad_s: cell.rms_rad_s,
+            rms_pct: cell.rms_pct,
+            outside: cell.outside,
+        })
+    };
+    let cases = cases.iter().zip(cells);
+    let rows = cases.flat_map(|(case, cells)| cells.iter().map(move |cell| row(case, cell)));
+    rows.collect()
+}
+
+fn run(case: &Case, settings: &Settings) -> Result<Vec<Cell>, Failure> {
     let trace = trace(case, &settings.device, &settings.estimators)?;
     let wanted = Wanted {
         rms: true,
@@ -86,25 +144,23 @@ fn run(case: &Case, settings: &Settings) -> Result<Vec<SensitivityRow>, Failure>
     };
     let (reference, _) = score(Kind::named("finite-difference")?, None)?;
     let constant_errors = ConstantError::at(&PARTS);
-    let mut rows = Vec::new();
+    let wrong = constant_errors.iter().enumerate();
+    let assumed: Vec<_> = std::iter::once(None).chain(wrong.map(Some)).collect();
+    let mut cells = Vec::new();
     for kind in &settings.estimators {
         if kind.lack(&trace).is_some() {
             continue;
         }
-        for constant_error in std::iter::once(None).chain(constant_errors.iter().map(Some)) {
-            let (rms_rad_s, outside) = score(kind, constant_error)?;
-            rows.push(SensitivityRow {
-                estimator: kind.name,
-                scenario: case.scenario.as_str(),
-                rate_hz: case.rate_hz,
-                seed: case.seed,
-                constant: constant_error.map(|constant_error| constant_error.constant.as_str()),
-                error: constant_error.map_or(0.0, |constant_error| constant_error.error),
+        for constant_error in &assumed {
+            let (rms_rad_s, outside) = score(kind, constant_error.map(|(_, error)| error))?;
+            cells.push(Cell {
+                estimator: kind.name.to_owned(),
+                constant_error: constant_error.map(|(index, _)| index),
                 rms_rad_s,
                 rms_pct: 100.0 * rms_rad_s / reference,
                 outside,
             });
         }
     }
-    Ok(rows)
+    Ok(cells)
 }

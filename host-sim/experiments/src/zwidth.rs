@@ -6,14 +6,17 @@
 
 pub mod contact;
 pub mod criterion;
+mod plan;
 pub mod rows;
 pub mod table;
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
 use contact::{ContactTest, Finding};
+pub use plan::Plan;
 use simulation::device::Device;
 use terminal::failure::Failure;
 
@@ -41,7 +44,8 @@ pub struct LoopSetup {
 }
 
 /// Settings that all loops share.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Settings {
     /// The device; the lines of its large encoder are replaced.
     pub device: Device,
@@ -52,7 +56,7 @@ pub struct Settings {
 }
 
 /// The largest value that passes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bound {
     /// The value; 0 if the smallest value of the search fails.
     pub value: f64,
@@ -61,7 +65,7 @@ pub struct Bound {
 }
 
 /// The boundary of one loop.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Boundary {
     /// Damping (N.m.s/rad) and largest stiffness (N.m/rad) at that damping, in order of damping.
     pub walls: Vec<(f64, Bound)>,

@@ -1,4 +1,4 @@
-//! `host-sim robust` and `host-sim merge`.
+//! `host-sim robust`.
 
 use std::path::{Path, PathBuf};
 
@@ -7,22 +7,26 @@ use clap::Args;
 use catalogue::estimators::Kind;
 use experiments::closed_loop::{environments_with, named};
 use experiments::robust::row::RobustRow;
-use experiments::robust::shard::Part;
 use experiments::robust::variation::Subject;
-use experiments::robust::{Experiment, Settings, shard, summary};
+use experiments::robust::{Settings, summary};
 use experiments::rows;
 use experiments::table::layout::{NARROW, terminal_width};
 use haptic_control::SceneKind;
 use recordings::arguments::DeviceFile;
 use report::{self, Printout};
+use shards::Part;
 use terminal::failure::Failure;
-use terminal::output::{Folder, print_bytes, write_whole};
+use terminal::output::Folder;
 
 use super::arguments::ParameterOptions;
-use super::page::{self, progress};
+use super::page;
+use super::shard::{self, Outputs};
 
 /// Default folder of the report.
 const REPORT: &str = "target/robust";
+
+/// Text before the progress bar.
+const DOING: &str = "simulating";
 
 #[derive(Debug, Args)]
 pub(super) struct Robust {
@@ -61,7 +65,8 @@ pub(super) struct Robust {
     /// Run only one device of each scene, given by its index or the name of a corner
     #[arg(long, value_name = "INDEX", conflicts_with = "shard")]
     pub(super) only: Option<Subject>,
-    /// Run only part K of N, for example 1/4, and write a file for host-sim merge, no report
+    /// Run only every Nth run from the Kth on, for example 1/4, and write a file for host-sim merge, no
+    /// report and no verdict
     #[arg(long, value_name = "K/N", conflicts_with = "json")]
     pub(super) shard: Option<Part>,
     /// Folder of index.html, summary.svg, robust.csv, robust.json, or of the shard's file
@@ -73,61 +78,28 @@ pub(super) struct Robust {
     pub(super) json: Option<PathBuf>,
 }
 
-#[derive(Debug, Args)]
-pub(super) struct Merge {
-    /// All files that host-sim robust --shard wrote for one run, in any order
-    #[arg(value_name = "SHARD", required = true)]
-    pub(super) shards: Vec<PathBuf>,
-    /// Folder of index.html, summary.svg, robust.csv, robust.json [default: target/robust]
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
-    /// Write the rows as JSON to FILE; - is standard output, which then has nothing else
-    #[arg(long, value_name = "FILE")]
-    pub(super) json: Option<PathBuf>,
-}
-
-pub(super) fn run(options: &Robust) -> Result<(), Failure> {
+pub(super) fn run(options: &Robust, run_line: &str) -> Result<(), Failure> {
     let settings = settings(options)?;
     let out = options.out.as_deref();
-    let json_file = options.json.as_deref();
-    let folder = match (options.only, options.shard) {
-        (Some(_), _) => out,
-        (None, Some(_)) => Some(out.unwrap_or(Path::new(REPORT))),
-        (None, None) => page::folder(out, json_file, REPORT)?,
-    };
-    if let Some(folder) = folder {
-        Folder::check("--out", folder)?;
-    }
-    let experiment = Experiment::new(&settings)?;
-    let mut jobs = settings.jobs()?;
-    if let Some(subject) = options.only {
-        jobs = settings
-            .scenes()?
-            .into_iter()
-            .map(|scene| (scene, subject))
-            .collect();
-    }
     if let Some(part) = options.shard {
-        jobs = part.of(&jobs);
+        let folder = out.unwrap_or(Path::new(REPORT));
+        return shard::run_part(&settings, part, run_line, folder, DOING);
     }
-    let bar = progress(jobs.len(), "simulating");
-    let rows = experiment.rows(&jobs, || bar.inc(1))?;
-    bar.finish_and_clear();
-
-    if let (Some(part), Some(folder)) = (options.shard, folder) {
-        let path = folder.join(part.file_name());
-        write_whole(&path, &shard::write(&settings, part, &rows)?)?;
-        print_bytes(format!("{}\n", path.display()).as_bytes())?;
-        return judged(&settings, &rows);
-    }
-    finish(&settings, &rows, folder, json_file)
-}
-
-pub(super) fn merge(options: &Merge) -> Result<(), Failure> {
-    let folder = options.out.as_deref().unwrap_or(Path::new(REPORT));
-    Folder::check("--out", folder)?;
-    let (settings, rows) = shard::merge(&options.shards)?;
-    finish(&settings, &rows, Some(folder), options.json.as_deref())
+    let outputs = Outputs {
+        run_line,
+        out,
+        json: options.json.as_deref(),
+    };
+    let folder = outputs.folder(REPORT)?;
+    let Some(subject) = options.only else {
+        let rows = shard::rows(&settings, &settings.jobs()?, DOING)?;
+        return finish(&settings, &rows, outputs);
+    };
+    let scenes = settings.scenes()?.into_iter();
+    let jobs: Vec<_> = scenes.map(|scene| (scene, subject)).collect();
+    let rows = shard::rows(&settings, &jobs, DOING)?;
+    // The report of a single device is only written where it is asked for.
+    write(&settings, &rows, out.and(folder), outputs.json)
 }
 
 fn settings(options: &Robust) -> Result<Settings, Failure> {
@@ -158,7 +130,15 @@ fn settings(options: &Robust) -> Result<Settings, Failure> {
 }
 
 /// Prints the table and writes report and JSON of all rows, whether they were run now or merged.
-fn finish(
+pub(super) fn finish(
+    settings: &Settings,
+    rows: &[RobustRow],
+    outputs: Outputs<'_>,
+) -> Result<(), Failure> {
+    write(settings, rows, outputs.folder(REPORT)?, outputs.json)
+}
+
+fn write(
     settings: &Settings,
     rows: &[RobustRow],
     folder: Option<&Path>,

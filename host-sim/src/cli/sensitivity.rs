@@ -1,26 +1,28 @@
 //! `host-sim sensitivity`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use catalogue::parameters::PlantKind;
-use experiments::compare::{Case, Settings};
 use experiments::rows;
-use experiments::sensitivity::{sensitivity, table::table};
+use experiments::sensitivity::{self, Cell, Plan, table::table};
 use experiments::table::layout::{NARROW, terminal_width};
 use recordings::arguments::DeviceFile;
 use report::{self, Printout};
-use scoring::score::Wanted;
+use shards::{Experiment as _, Part};
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
 use super::arguments::{ParameterOptions, kinds, rates, scenarios};
-use super::page::{self, progress};
+use super::page;
+use super::shard::{self, Outputs};
 
 /// Default folder of the page.
 const PAGE: &str = "target/sensitivity";
+
+/// Text before the progress bar.
+const DOING: &str = "running";
 
 #[derive(Debug, Args)]
 pub(super) struct Sensitivity {
@@ -44,8 +46,12 @@ pub(super) struct Sensitivity {
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Folder of index.html, figures as SVG, sensitivity.csv, sensitivity.json [default:
-    /// target/sensitivity; no folder with --json -]
+    /// Run only every Nth run of the plant (rate, scenario, seed) from the Kth on, for example 1/4, and
+    /// write a file for host-sim merge, no page
+    #[arg(long, value_name = "K/N", conflicts_with = "json")]
+    pub(super) shard: Option<Part>,
+    /// Folder of index.html, figures as SVG, sensitivity.csv, sensitivity.json, or of the shard's file
+    /// [default: target/sensitivity; no folder with --json -]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
     /// Write the scores as JSON to FILE; - is standard output, which then has nothing else
@@ -53,25 +59,36 @@ pub(super) struct Sensitivity {
     pub(super) json: Option<PathBuf>,
 }
 
-pub(super) fn run(options: &Sensitivity, command_line: &str) -> Result<(), Failure> {
-    let settings = Settings {
-        device: options.device.load()?,
-        estimators: kinds(&options.estimators)?,
-        parameters: options.parameters.load()?,
-        wanted: Wanted::NONE,
+pub(super) fn run(options: &Sensitivity, run_line: &str) -> Result<(), Failure> {
+    let plan = plan(options)?;
+    let out = options.out.as_deref();
+    if let Some(part) = options.shard {
+        let folder = out.unwrap_or(Path::new(PAGE));
+        return shard::run_part(&plan, part, run_line, folder, DOING);
+    }
+    let outputs = Outputs {
+        run_line,
+        out,
+        json: options.json.as_deref(),
     };
-    let cases = cases(options)?;
-    let folder = page::folder(options.out.as_deref(), options.json.as_deref(), PAGE)?;
-    let bar = progress(cases.len(), "running");
-    let rows = sensitivity(&cases, &settings, || bar.inc(1))?;
-    bar.finish_and_clear();
+    let cases = plan.jobs()?;
+    outputs.folder(PAGE)?;
+    finish(&plan, &shard::rows(&plan, &cases, DOING)?, outputs)
+}
 
+/// Prints the table and writes page and JSON of all cases, whether they were run now or merged.
+pub(super) fn finish(
+    plan: &Plan,
+    cells: &[Vec<Cell>],
+    outputs: Outputs<'_>,
+) -> Result<(), Failure> {
+    let rows = sensitivity::rows(&plan.jobs()?, cells)?;
     let json = rows::json(&rows)?;
     let mut text = table(&rows, terminal_width());
-    if let Some(folder) = folder {
+    if let Some(folder) = outputs.folder(PAGE)? {
         let printout = Printout {
-            command: command_line,
-            device: &options.device.name(),
+            command: &outputs.command_line(),
+            device: &plan.device_name,
             table: &table(&rows, NARROW),
         };
         let page = report::sensitivity(&rows, &printout)?;
@@ -81,32 +98,24 @@ pub(super) fn run(options: &Sensitivity, command_line: &str) -> Result<(), Failu
         let index = page::write(files, &page)?;
         text.push_str(&format!("\nPage: {}\n", index.display()));
     }
-    page::print(options.json.as_deref(), &json, &text)
+    page::print(outputs.json, &json, &text)
 }
 
-fn cases(options: &Sensitivity) -> Result<Vec<Case>, Failure> {
+fn plan(options: &Sensitivity) -> Result<Plan, Failure> {
     let scenarios = scenarios(&options.scenarios, &ScenarioName::with_friction())?;
-    let seeds = if options.seeds.is_empty() {
-        vec![1]
-    } else {
-        options.seeds.clone()
+    let seeds = match options.seeds.is_empty() {
+        true => vec![1],
+        false => options.seeds.clone(),
     };
-    let mut cases = Vec::new();
-    for rate_hz in rates(&options.rates, &[1e3]) {
-        for &scenario in &scenarios {
-            let seconds = options
-                .seconds
-                .unwrap_or_else(|| scenario.default_seconds());
-            simulation::simulate::ticks(rate_hz, seconds)?;
-            cases.extend(seeds.iter().map(|&seed| Case {
-                scenario,
-                rate_hz,
-                plant: PlantKind::Friction,
-                seed,
-                seconds,
-                keep: false,
-            }));
-        }
-    }
-    Ok(cases)
+    let kinds = kinds(&options.estimators)?;
+    Ok(Plan {
+        scenarios: scenarios.iter().map(ToString::to_string).collect(),
+        rates_hz: rates(&options.rates, &[1e3]),
+        seeds,
+        seconds: options.seconds,
+        estimators: kinds.iter().map(|kind| kind.name.to_owned()).collect(),
+        parameters: options.parameters.load()?,
+        device: options.device.load()?,
+        device_name: options.device.name(),
+    })
 }

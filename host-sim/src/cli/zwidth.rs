@@ -1,23 +1,27 @@
 //! `host-sim zwidth`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use catalogue::estimators::Kind;
 use experiments::rows::{csv, json};
 use experiments::table::layout::{NARROW, terminal_width};
-use experiments::zwidth::{BOUNDS_A_CASE, LoopSetup, Settings, boundaries, rows, table};
+use experiments::zwidth::{Boundary, Plan, Settings, rows, table};
 use recordings::arguments::DeviceFile;
 use report::{self, Printout};
+use shards::{Experiment as _, Part};
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
 use super::arguments::{ParameterOptions, kinds, rates};
-use super::page::{self, progress};
+use super::page;
+use super::shard::{self, Outputs};
 
 /// Default folder of the page.
 const PAGE: &str = "target/zwidth";
+
+/// Text before the progress bar.
+const DOING: &str = "searching";
 
 #[derive(Debug, Args)]
 pub(super) struct Zwidth {
@@ -42,8 +46,12 @@ pub(super) struct Zwidth {
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Folder of index.html, figures as SVG, zwidth.csv, zwidth.json [default: target/zwidth; no
-    /// folder with --json -]
+    /// Run only every Nth loop (rate, encoder, estimator) from the Kth on, for example 1/4, and write a
+    /// file for host-sim merge, no page
+    #[arg(long, value_name = "K/N", conflicts_with = "json")]
+    pub(super) shard: Option<Part>,
+    /// Folder of index.html, figures as SVG, zwidth.csv, zwidth.json, or of the shard's file [default:
+    /// target/zwidth; no folder with --json -]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
     /// Write the bounds as JSON to FILE; - is standard output, which then has nothing else
@@ -51,26 +59,38 @@ pub(super) struct Zwidth {
     pub(super) json: Option<PathBuf>,
 }
 
-pub(super) fn run(options: &Zwidth, command_line: &str) -> Result<(), Failure> {
-    let settings = Settings {
-        device: options.device.load()?,
-        parameters: options.parameters.load()?,
-        seed: options.seed,
+pub(super) fn run(options: &Zwidth, run_line: &str) -> Result<(), Failure> {
+    let plan = plan(options)?;
+    let out = options.out.as_deref();
+    if let Some(part) = options.shard {
+        let folder = out.unwrap_or(Path::new(PAGE));
+        return shard::run_part(&plan, part, run_line, folder, DOING);
+    }
+    let outputs = Outputs {
+        run_line,
+        out,
+        json: options.json.as_deref(),
     };
-    let cases = cases(options)?;
-    let folder = page::folder(options.out.as_deref(), options.json.as_deref(), PAGE)?;
-    let bar = progress(cases.len() * BOUNDS_A_CASE, "searching");
-    let boundaries = boundaries(&cases, &settings, || bar.inc(1))?;
-    bar.finish_and_clear();
+    let cases = plan.jobs()?;
+    outputs.folder(PAGE)?;
+    finish(&plan, &shard::rows(&plan, &cases, DOING)?, outputs)
+}
 
-    let rows = rows::rows(&cases, &boundaries, settings.seed);
+/// Prints the table and writes page and JSON of all boundaries, whether they were found now or merged.
+pub(super) fn finish(
+    plan: &Plan,
+    boundaries: &[Boundary],
+    outputs: Outputs<'_>,
+) -> Result<(), Failure> {
+    let cases = plan.jobs()?;
+    let rows = rows::rows(&cases, boundaries, plan.settings.seed);
     let json = json(&rows)?;
-    let mut text = table::table(&cases, &boundaries, terminal_width());
-    if let Some(folder) = folder {
+    let mut text = table::table(&cases, boundaries, terminal_width());
+    if let Some(folder) = outputs.folder(PAGE)? {
         let printout = Printout {
-            command: command_line,
-            device: &options.device.name(),
-            table: &table::table(&cases, &boundaries, NARROW),
+            command: &outputs.command_line(),
+            device: &plan.device_name,
+            table: &table::table(&cases, boundaries, NARROW),
         };
         let page = report::zwidth(&rows, &printout)?;
         let mut files = Folder::new(folder);
@@ -79,24 +99,16 @@ pub(super) fn run(options: &Zwidth, command_line: &str) -> Result<(), Failure> {
         let index = page::write(files, &page)?;
         text.push_str(&format!("\nPage: {}\n", index.display()));
     }
-    page::print(options.json.as_deref(), &json, &text)
+    page::print(outputs.json, &json, &text)
 }
 
 /// All combinations of rate, encoder and estimator, in the order of the table.
-fn cases(options: &Zwidth) -> Result<Vec<LoopSetup>, Failure> {
+fn plan(options: &Zwidth) -> Result<Plan, Failure> {
     let mut estimators = kinds(&options.estimators)?;
     if options.estimators.is_empty() {
         // A filter with a steady gain is identical to the full filter once it has settled.
         estimators.retain(|kind| !kind.name.ends_with("-steady") && !kind.needs.edge);
     }
-    if let Some(kind) = estimators.iter().find(|kind| kind.needs.edge) {
-        return Err(Failure::Input(format!(
-            "{}: needs edge time stamps, which the closed loop does not have; choose another estimator",
-            kind.name
-        )));
-    }
-    let handle = options.handle.as_deref().map(Kind::named).transpose()?;
-    let triple = Kind::named("kalman-triple")?;
     let mut lines = Vec::new();
     for &n in if options.lines.is_empty() {
         &[256, 1024, 5000][..]
@@ -107,17 +119,17 @@ fn cases(options: &Zwidth) -> Result<Vec<LoopSetup>, Failure> {
             lines.push(n);
         }
     }
-    let mut cases = Vec::new();
-    for rate_hz in rates(&options.rates, &[1e3, 10e3, 11.6e3]) {
-        simulation::simulate::ticks(rate_hz, 1.0)?;
-        for &lines in &lines {
-            cases.extend(estimators.iter().map(|&large| LoopSetup {
-                large,
-                handle: handle.unwrap_or(if large.needs.current { triple } else { large }),
-                rate_hz,
-                lines,
-            }));
-        }
-    }
-    Ok(cases)
+    let settings = Settings {
+        device: options.device.load()?,
+        parameters: options.parameters.load()?,
+        seed: options.seed,
+    };
+    Ok(Plan {
+        estimators: estimators.iter().map(|kind| kind.name.to_owned()).collect(),
+        handle: options.handle.clone(),
+        rates_hz: rates(&options.rates, &[1e3, 10e3, 11.6e3]),
+        lines,
+        settings,
+        device_name: options.device.name(),
+    })
 }

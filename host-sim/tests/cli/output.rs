@@ -169,12 +169,14 @@ fn dash_and_names_of_standard_output_are_standard_output() {
     let presets = folder.good(&tune.split_whitespace().collect::<Vec<_>>());
     assert!(presets.starts_with("# host-sim tune") && presets.contains("bandwidth_hz = "));
     assert!(!presets.trim_end().ends_with('-'), "{presets}");
+    let shard = "robust --scene off --rate 1000 --seconds 0.05 --devices 0 --shard 1/1 --out o";
+    folder.good(&shard.split_whitespace().collect::<Vec<_>>());
     for arguments in [
         "compare --out -",
         "zwidth --out -",
         "sensitivity --out stdout",
         "robust --out -",
-        "merge x --out -",
+        "merge o/shard-1-of-1.jsonl --out -",
         "identify r.csv --report -",
     ] {
         let error = folder.refused(&arguments.split_whitespace().collect::<Vec<_>>());

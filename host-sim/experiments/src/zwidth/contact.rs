@@ -4,6 +4,8 @@ use std::fmt;
 
 use haptic_control::{AnyScene, LoopPoles, Radians, Viscous, Wall};
 
+use serde::{Deserialize, Serialize};
+
 use super::criterion::{ContactTick, Evaluator, Violation};
 use crate::closed_loop::{FeedbackEncoder, Hand, Loop, Press, estimator};
 use catalogue::estimators::{Estimator, Kind};
@@ -32,7 +34,7 @@ const LIGHT: f64 = 0.1;
 const THROW: f64 = 2.0;
 
 /// Kind of contact with the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Contact {
     /// A hand with a tenth of the stiffness and damping presses and releases.
     LightGrip,
@@ -58,7 +60,7 @@ impl Contact {
 }
 
 /// A violation of the criterion and the contact in which it occurred.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Finding {
     /// Kind of contact.
     pub contact: Contact,

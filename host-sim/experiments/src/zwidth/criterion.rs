@@ -14,8 +14,10 @@
 //!   times the angle turned in contact, which corresponds to a mean torque below the threshold. `E`
 //!   is not checked during contact, where it contains torque errors of the estimator.
 
+use serde::{Deserialize, Serialize};
+
 /// Reason for which a scene fails.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Violation {
     /// The torque on a resting hand has a sustained oscillation.
     LimitCycle,

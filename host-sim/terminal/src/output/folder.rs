@@ -6,7 +6,7 @@ use std::io::{self, ErrorKind, Read as _, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::partial::{Partial, uninterrupted};
-use super::{cannot_write, is_stdout};
+use super::{cannot_write, is_stdout, sum};
 use crate::failure::Failure;
 
 /// Name of the manifest, which lists the files of the latest run. The next run removes them.
@@ -162,13 +162,6 @@ fn list(file: &mut File, files: &BTreeMap<String, u64>) -> io::Result<()> {
     file.rewind()?;
     file.set_len(0)?;
     file.write_all(text.as_bytes())
-}
-
-/// Checksum of a file (64-bit FNV-1a), to detect changes.
-fn sum(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |sum, &byte| {
-        (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    })
 }
 
 #[cfg(test)]

@@ -1,0 +1,63 @@
+//! Floats in JSON that are read back to the same value where they are not finite: `inf`, `-inf` and
+//! `NaN` as text. For fields with `#[serde(with = "shards::exact")]`.
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum Number {
+    Finite(f64),
+    Text(String),
+}
+
+/// A number, or a text if the value is not finite.
+///
+/// # Errors
+/// Those of the serializer.
+pub fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    let number = match value.is_finite() {
+        true => Number::Finite(*value),
+        false => Number::Text(value.to_string()),
+    };
+    number.serialize(serializer)
+}
+
+/// The value of a number or of a text.
+///
+/// # Errors
+/// Those of the deserializer; a text that is no number.
+pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    match Number::deserialize(deserializer)? {
+        Number::Finite(value) => Ok(value),
+        Number::Text(text) => text.parse().map_err(serde::de::Error::custom),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Serialize, Deserialize)]
+    struct Row {
+        #[serde(with = "super")]
+        value: f64,
+    }
+
+    #[test]
+    fn every_float_is_read_back_with_its_bits() {
+        for value in [
+            0.0,
+            -0.0,
+            0.1,
+            5e-324,
+            f64::MAX,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            f64::NAN,
+        ] {
+            let text = serde_json::to_string(&Row { value }).unwrap();
+            let row: Row = serde_json::from_str(&text).unwrap();
+            assert!(row.value.to_bits() == value.to_bits() || value.is_nan() && row.value.is_nan());
+        }
+    }
+}

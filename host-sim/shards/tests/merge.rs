@@ -1,0 +1,144 @@
+//! Files of an experiment whose rows are known.
+
+use std::fs;
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+use shards::file::{self, Run};
+use shards::{Experiment, Part, Shards};
+use terminal::failure::Failure;
+
+/// Squares of the first numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Squares {
+    numbers: usize,
+}
+
+impl Experiment for Squares {
+    const COMMAND: &'static str = "squares";
+    type Job = usize;
+    type Row = usize;
+
+    fn jobs(&self) -> Result<Vec<usize>, Failure> {
+        Ok((0..self.numbers).collect())
+    }
+
+    fn rows(&self, jobs: &[usize], done: impl Fn() + Sync) -> Result<Vec<usize>, Failure> {
+        let row = |job: &usize| {
+            done();
+            job * job
+        };
+        Ok(jobs.iter().map(row).collect())
+    }
+}
+
+/// An experiment of another name.
+#[derive(Serialize, Deserialize)]
+struct Cubes;
+
+impl Experiment for Cubes {
+    const COMMAND: &'static str = "cubes";
+    type Job = usize;
+    type Row = usize;
+
+    fn jobs(&self) -> Result<Vec<usize>, Failure> {
+        Ok(Vec::new())
+    }
+
+    fn rows(&self, _: &[usize], _: impl Fn() + Sync) -> Result<Vec<usize>, Failure> {
+        Ok(Vec::new())
+    }
+}
+
+const RUN: Run<'_> = Run {
+    version: "1",
+    command: "squares --all",
+};
+
+/// The files of all parts in a folder of its own.
+fn written(test: &str, run: Run<'_>, numbers: usize, jobs: usize, n: usize) -> Vec<PathBuf> {
+    let folder = std::env::temp_dir().join(format!("limpid-squares-{test}-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    let squares = Squares { numbers };
+    let all: Vec<usize> = (0..jobs).collect();
+    let write = |k| {
+        let part = Part { k, n };
+        let rows = squares.rows(&part.of(&all), || ()).unwrap();
+        let path = folder.join(part.file_name());
+        fs::write(
+            &path,
+            file::write(&squares, run, part, jobs, &rows).unwrap(),
+        )
+        .unwrap();
+        path
+    };
+    (1..=n).map(write).collect()
+}
+
+fn removed(paths: &[PathBuf]) {
+    fs::remove_dir_all(paths[0].parent().unwrap()).unwrap();
+}
+
+#[test]
+fn rows_have_the_order_of_the_jobs() {
+    for n in [1, 2, 5, 11, 12] {
+        let mut paths = written("order", RUN, 11, 11, n);
+        paths.reverse();
+        let shards = Shards::read(&paths, "1").unwrap();
+        assert_eq!(
+            (shards.shard_of(), shards.command()),
+            ("squares", "squares --all")
+        );
+        assert!(shards.merge::<Cubes>().unwrap().is_none());
+        let (squares, rows) = shards.merge::<Squares>().unwrap().unwrap();
+        assert_eq!(squares, Squares { numbers: 11 });
+        assert_eq!(rows, [0, 1, 4, 9, 16, 25, 36, 49, 64, 81, 100]);
+        removed(&paths);
+    }
+}
+
+#[test]
+fn shard_of_another_version_is_refused() {
+    let paths = written("version", RUN, 4, 4, 2);
+    let said = Shards::read(&paths, "2").unwrap_err().to_string();
+    assert!(
+        said.contains("1-of-2.jsonl: written by version 1, and this is version 2"),
+        "{said}"
+    );
+    let newer = Run {
+        version: "2",
+        ..RUN
+    };
+    let others = written("newer", newer, 4, 4, 2);
+    let mixed = [paths[0].clone(), others[1].clone()];
+    let said = Shards::read(&mixed, "1").unwrap_err().to_string();
+    assert!(
+        said.contains("2-of-2.jsonl: written by version 2, but"),
+        "{said}"
+    );
+    let other = Run {
+        command: "squares --few",
+        ..RUN
+    };
+    let lines = written("line", other, 4, 4, 2);
+    let mixed = [paths[0].clone(), lines[1].clone()];
+    let said = Shards::read(&mixed, "1").unwrap_err().to_string();
+    assert!(said.contains("command line squares --few, but"), "{said}");
+    for paths in [paths, others, lines] {
+        removed(&paths);
+    }
+}
+
+/// Such a file is only possible if two programs of one version have different jobs.
+#[test]
+fn another_number_of_jobs_is_refused() {
+    let paths = written("jobs", RUN, 5, 4, 2);
+    let said = Shards::read(&paths, "1").unwrap().merge::<Squares>();
+    let said = said.unwrap_err().to_string();
+    assert!(
+        said.contains("1-of-2.jsonl: line 1: 4 jobs, where there are 5"),
+        "{said}"
+    );
+    removed(&paths);
+}

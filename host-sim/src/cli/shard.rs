@@ -1,0 +1,109 @@
+//! Shards of the commands, and `host-sim merge`.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use report::version::VERSION;
+use shards::file::{self, Run};
+use shards::{Experiment, Part, Shards};
+use terminal::failure::Failure;
+use terminal::output::{Folder, print_bytes, write_whole};
+
+use super::line::with_outputs;
+use super::page::{self, progress};
+use super::{robust, sensitivity, zwidth};
+
+#[derive(Debug, Args)]
+pub(super) struct Merge {
+    /// All files that a command with --shard wrote for one run, in any order
+    #[arg(value_name = "SHARD", required = true)]
+    shards: Vec<PathBuf>,
+    /// Output of the run, as --out of its command without --shard [default: that of the command]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write the rows as JSON to FILE; - is standard output, which then has nothing else
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// Outputs of a whole run.
+#[derive(Clone, Copy)]
+pub(super) struct Outputs<'a> {
+    /// Command line without outputs and part.
+    pub(super) run_line: &'a str,
+    /// Value of `--out`.
+    pub(super) out: Option<&'a Path>,
+    /// Value of `--json`.
+    pub(super) json: Option<&'a Path>,
+}
+
+impl<'a> Outputs<'a> {
+    /// Folder of the report, `usual` by default.
+    pub(super) fn folder(&self, usual: &'static str) -> Result<Option<&'a Path>, Failure> {
+        page::folder(self.out, self.json, usual)
+    }
+
+    /// Command line of the run without shards.
+    pub(super) fn command_line(&self) -> String {
+        with_outputs(self.run_line, self.out, self.json)
+    }
+}
+
+/// Runs a part of an experiment, writes its file to `folder` and prints the path of the file.
+pub(super) fn run_part<E: Experiment>(
+    experiment: &E,
+    part: Part,
+    run_line: &str,
+    folder: &Path,
+    doing: &'static str,
+) -> Result<(), Failure> {
+    Folder::check("--out", folder)?;
+    let all = experiment.jobs()?;
+    let rows = rows(experiment, &part.of(&all), doing)?;
+    let run = Run {
+        version: VERSION,
+        command: run_line,
+    };
+    let path = folder.join(part.file_name());
+    write_whole(
+        &path,
+        &file::write(experiment, run, part, all.len(), &rows)?,
+    )?;
+    print_bytes(format!("{}\n", path.display()).as_bytes())
+}
+
+/// Runs these jobs behind a progress bar.
+pub(super) fn rows<E: Experiment>(
+    experiment: &E,
+    jobs: &[E::Job],
+    doing: &'static str,
+) -> Result<Vec<E::Row>, Failure> {
+    let bar = progress(jobs.len() * E::STEPS_A_JOB, doing);
+    let rows = experiment.rows(jobs, || bar.inc(1))?;
+    bar.finish_and_clear();
+    Ok(rows)
+}
+
+/// Merges shards: prints and writes what the command without `--shard` does.
+pub(super) fn merge(options: &Merge) -> Result<(), Failure> {
+    let shards = Shards::read(&options.shards, VERSION)?;
+    let outputs = Outputs {
+        run_line: shards.command(),
+        out: options.out.as_deref(),
+        json: options.json.as_deref(),
+    };
+    if let Some((settings, rows)) = shards.merge()? {
+        return robust::finish(&settings, &rows, outputs);
+    }
+    if let Some((plan, cells)) = shards.merge()? {
+        return sensitivity::finish(&plan, &cells, outputs);
+    }
+    if let Some((plan, boundaries)) = shards.merge()? {
+        return zwidth::finish(&plan, &boundaries, outputs);
+    }
+    let program = shards.shard_of();
+    Err(Failure::Input(format!(
+        "shards of {program}, which host-sim does not merge; merge them with {program} --merge"
+    )))
+}

@@ -1,0 +1,247 @@
+//! Commands in shards: merged files give the bytes of a single run, and shards that are no run are
+//! refused by name.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A folder of its own for each test, gone afterwards.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str) -> Self {
+        let path =
+            std::env::temp_dir().join(format!("limpid-shards-{test}-{}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn run(&self, arguments: &str) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_host-sim"))
+            .args(arguments.split_whitespace())
+            .current_dir(&self.0)
+            .output()
+            .unwrap()
+    }
+
+    /// Standard output of a run without a failure.
+    fn good(&self, arguments: &str) -> String {
+        let output = self.run(arguments);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{arguments}: {errors}");
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// The one line of a run that was refused, which must leave every file as it was.
+    fn refused(&self, arguments: &str) -> String {
+        let before = files(&self.0);
+        let output = self.run(arguments);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments}: {errors}");
+        assert_eq!(errors.lines().count(), 1, "{arguments}: {errors}");
+        assert!(
+            output.stdout.is_empty() && files(&self.0) == before,
+            "{arguments}"
+        );
+        errors
+    }
+
+    fn text(&self, name: &str) -> String {
+        fs::read_to_string(self.0.join(name)).unwrap()
+    }
+
+    /// Standard output and files of `arguments`, which write to `here`; the outputs are removed.
+    fn outputs(&self, arguments: &str) -> (String, BTreeMap<PathBuf, Vec<u8>>) {
+        let out = self.good(arguments);
+        let here = self.0.join("here");
+        let files = files(&here);
+        fs::remove_dir_all(here).unwrap();
+        (out, files)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// All files below a folder.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            all.extend(files(&path));
+        } else {
+            all.insert(path.clone(), fs::read(path).unwrap());
+        }
+    }
+    all
+}
+
+/// Runs `command` whole and in `n` shards, which are merged in an order that is not that of the parts.
+fn merged_equals_whole(test: &str, command: &str, outputs: &str, file: &str, counts: &[usize]) {
+    let folder = Folder::new(test);
+    let whole = folder.outputs(&format!("{command} {outputs}"));
+    assert!(
+        whole.1.contains_key(&folder.0.join(file)),
+        "{:?}",
+        whole.1.keys()
+    );
+    for &n in counts {
+        let mut names = Vec::new();
+        for k in 1..=n {
+            let printed = folder.good(&format!("{command} --shard {k}/{n} --out parts"));
+            assert_eq!(printed, format!("parts/shard-{k}-of-{n}.jsonl\n"));
+            names.push(printed.trim().to_owned());
+        }
+        names.rotate_left(n / 2);
+        names.swap(0, n - 1);
+        let merged = folder.outputs(&format!("merge {} {outputs}", names.join(" ")));
+        assert_eq!(merged.0, whole.0, "{n} shards");
+        assert_eq!(
+            merged.1.keys().collect::<Vec<_>>(),
+            whole.1.keys().collect::<Vec<_>>()
+        );
+        for (name, bytes) in &whole.1 {
+            assert!(merged.1[name] == *bytes, "{n} shards: {}", name.display());
+        }
+    }
+}
+
+const ROBUST: &str = "robust --scene hold --scene wall --rate 1000 --seconds 0.2 --devices 20";
+
+#[test]
+fn merged_shards_of_robust_equal_a_single_run() {
+    let outputs = "--out here/page --json here/rows.json";
+    merged_equals_whole(
+        "robust",
+        ROBUST,
+        outputs,
+        "here/page/robust.csv",
+        &[1, 3, 120],
+    );
+}
+
+#[test]
+fn merged_shards_of_sensitivity_equal_a_single_run() {
+    let command = "sensitivity --scenario step --scenario wall --rate 1000 --rate 2000 --seed 3 --seed 4 \
+                   --seconds 0.5 --estimator adaptive --estimator pll --set pll.bandwidth_hz=33.3";
+    let outputs = "--json here/rows.json --out here/page";
+    let file = "here/page/figures/01.svg";
+    merged_equals_whole("sensitivity", command, outputs, file, &[3, 9]);
+}
+
+#[test]
+fn merged_shards_of_zwidth_equal_a_single_run() {
+    let command =
+        "zwidth --estimator pll --estimator kalman-motor --rate 1000 --lines 256 --lines 1024";
+    let file = "here/page/zwidth.csv";
+    merged_equals_whole("zwidth", command, "--out here/page", file, &[3, 5]);
+}
+
+/// Without an option for outputs the merged run writes where the command does.
+#[test]
+fn default_folder_is_that_of_the_command() {
+    let folder = Folder::new("default");
+    let command = "sensitivity --scenario step --seconds 0.5 --estimator pll";
+    let printed = folder.good(&format!("{command} --shard 1/1"));
+    assert_eq!(printed, "target/sensitivity/shard-1-of-1.jsonl\n");
+    folder.good("merge target/sensitivity/shard-1-of-1.jsonl");
+    let page = folder.text("target/sensitivity/index.html");
+    assert!(page.contains(&format!("host-sim {command}<")), "{page}");
+    let json = folder.good("merge target/sensitivity/shard-1-of-1.jsonl --json -");
+    assert_eq!(json, folder.text("target/sensitivity/sensitivity.json"));
+}
+
+#[test]
+fn shards_that_are_no_run_are_refused_by_name() {
+    let folder = Folder::new("refused");
+    let tiny = "robust --scene off --rate 1000 --seconds 0.05 --devices 3";
+    for k in 1..=4 {
+        folder.good(&format!("{tiny} --out . --shard {k}/4"));
+    }
+    folder.good(&format!("{tiny} --out . --shard 1/2"));
+    folder.good(&format!("{tiny} --seed 2 --shard 2/4 --out seed"));
+    folder
+        .good("sensitivity --scenario step --seconds 0.5 --estimator pll --shard 2/4 --out other");
+    let merge = |names: &str, said: &str| {
+        let names = names.split(' ').map(|name| match name.len() {
+            1 => format!("shard-{name}-of-4.jsonl"),
+            _ => name.to_owned(),
+        });
+        let names: Vec<_> = names.collect();
+        let line = folder.refused(&format!("merge {} --out merged", names.join(" ")));
+        assert!(line.contains(said), "{line}");
+    };
+    let again = "run host-sim robust --scene off --rate 1000 --seconds 0.05 --devices 3 --shard 2/4 --out .";
+    merge(
+        "1 3 4",
+        &format!("shard 2/4 is missing; {again} and add its shard-2-of-4.jsonl"),
+    );
+    merge(
+        "1",
+        &format!("shards 2-4 of 4 are missing; {again}, likewise the others"),
+    );
+    merge("3", "shards 1-2,4 of 4 are missing");
+    merge(
+        "1 ./shard-1-of-4.jsonl",
+        "./shard-1-of-4.jsonl: shard 1/4 is already given by shard-1-of-4.jsonl",
+    );
+    merge(
+        "1 shard-1-of-2.jsonl",
+        "shard-1-of-2.jsonl: shard 1/2, but shard-1-of-4.jsonl is shard 1/4",
+    );
+    merge("1 nowhere.jsonl", "nowhere.jsonl: cannot read");
+    merge(
+        "1 seed/shard-2-of-4.jsonl",
+        "seed/shard-2-of-4.jsonl: settings differ from those of shard-1-of-4.jsonl: seed = 2, not 1",
+    );
+    merge(
+        "1 other/shard-2-of-4.jsonl",
+        "other/shard-2-of-4.jsonl: shard of host-sim sensitivity, but shard-1-of-4.jsonl is one of host-sim \
+         robust",
+    );
+
+    // A file that was cut anywhere, or in which anything was changed.
+    let text = folder.text("shard-2-of-4.jsonl");
+    let lines: Vec<_> = text.split_inclusive('\n').collect();
+    assert_eq!(lines.len(), 2 + 8, "{text}");
+    let with = |name: &str, text: &str, said: &str| {
+        fs::write(folder.0.join(name), text).unwrap();
+        merge(&format!("1 3 4 {name}"), &format!("{name}: {said}"));
+        fs::remove_file(folder.0.join(name)).unwrap();
+    };
+    let changed = "changed after it was written: the checksum is ";
+    with("empty.jsonl", "", "line 1: not a shard");
+    with("heading.jsonl", &text[..100], "line 1: not a shard");
+    with(
+        "lines.jsonl",
+        &lines[..5].concat(),
+        "its end is missing; run host-sim robust",
+    );
+    with("row.jsonl", &text[..text.len() / 2], "its end is missing");
+    with("last.jsonl", &text[..text.len() - 1], "its end is missing");
+    with(
+        "hole.jsonl",
+        &[&lines[..3], &lines[4..]].concat().concat(),
+        changed,
+    );
+    with(
+        "twice.jsonl",
+        &[&lines[..4], &lines[3..]].concat().concat(),
+        changed,
+    );
+    with(
+        "digit.jsonl",
+        &text.replacen("\"felt_nm\":", "\"felt_nm\":1", 1),
+        changed,
+    );
+    with(
+        "seed.jsonl",
+        &text.replacen("\"seed\":1", "\"seed\":2", 1),
+        changed,
+    );
+}
