@@ -142,6 +142,21 @@ fn merged_shards_of_zwidth_equal_a_single_run() {
     merged_equals_whole("zwidth", command, "--out here/page", file, &[3, 5]);
 }
 
+/// Two groups with traces of their own, one of which has time stamps of edges; parameters at the limits
+/// of their ranges have notes.
+#[test]
+fn merged_shards_of_tune_equal_a_single_run() {
+    let command = "tune --estimator pll --estimator low-pass --estimator kalman-motor-steady --estimator \
+                   adaptive-edge --rate 1000 --rate 2000 --seconds 0.5 --seeds 1 --scenario texture";
+    merged_equals_whole(
+        "tune",
+        command,
+        "--out here/p.toml",
+        "here/p.toml",
+        &[2, 5, 17],
+    );
+}
+
 /// Without an option for outputs the merged run writes where the command does.
 #[test]
 fn default_folder_is_that_of_the_command() {

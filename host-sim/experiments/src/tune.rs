@@ -6,17 +6,19 @@
 
 mod image_section;
 mod logs;
+mod plan;
 mod search;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::compare::{Case, interval, trace};
 use catalogue::constant_error::ConstantError;
 use catalogue::estimators::{Kind, Setup, Values};
-use catalogue::parameters::{Parameters, PlantKind, Preset};
+use catalogue::parameters::{Parameters, PlantKind};
 use scoring::score::{Truth, Wanted};
 use simulation::device::Device;
 use simulation::scenario::ScenarioName;
@@ -25,6 +27,7 @@ use terminal::failure::Failure;
 
 pub use image_section::image_section;
 pub use logs::{LogRow, LogTuning, tune_on_logs};
+pub use plan::{Group, Plan};
 
 use search::{Least, best_values, ends_of_ranges};
 
@@ -51,18 +54,18 @@ pub struct TuningSet {
     pub constant_errors: Vec<ConstantError>,
 }
 
-/// Result of tuning at one rate on one plant.
-#[derive(Clone, Debug)]
+/// Result of tuning one estimator at one rate on one plant.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Tuned {
-    /// The parameters.
-    pub preset: Preset,
-    /// One line for each parameter at a limit of its range, and for each estimator whose shipped
-    /// parameters are kept.
+    /// Values of the parameters by name.
+    pub values: BTreeMap<String, f64>,
+    /// One line for each parameter at a limit of its range, or if the shipped parameters are kept.
     pub notes: Vec<String>,
 }
 
 /// Tunes the estimators `kinds` at one rate on one plant and calls `done` after each. All of them
-/// must have parameters.
+/// must have parameters. The traces have the columns that the estimators `read` need.
 ///
 /// The cost is the mean distance outside the haptic interval plus a hundredth of the RMS error,
 /// averaged over scenarios and seeds. It is minimised on a grid over all parameters, then on finer
@@ -75,10 +78,11 @@ pub struct Tuned {
 pub fn tune(
     set: &TuningSet,
     kinds: &[&'static Kind],
+    read: &[&'static Kind],
     rate_hz: f64,
     plant: PlantKind,
     done: impl Fn() + Sync,
-) -> Result<Tuned, Failure> {
+) -> Result<Vec<Tuned>, Failure> {
     let traces = |seeds: Range<u64>| {
         let cases: Vec<_> = set
             .scenarios
@@ -93,7 +97,7 @@ pub fn tune(
                 keep: false,
             })
             .collect();
-        let traces = cases.par_iter().map(|case| trace(case, &set.device, kinds));
+        let traces = cases.par_iter().map(|case| trace(case, &set.device, read));
         traces.collect::<Result<Vec<_>, _>>()
     };
     let traces = [traces(0..set.seeds)?, traces(set.seeds..set.seeds + 1)?];
@@ -112,9 +116,9 @@ pub fn tune(
         .map(|constant_error| constant_error.of(&setup));
     let setups: Vec<_> = std::iter::once(setup).chain(wrong).collect();
     let shipped = Parameters::default();
-    let mut notes = Vec::new();
-    let mut estimators = BTreeMap::new();
+    let mut tuned = Vec::new();
     for &kind in kinds {
+        let mut notes = Vec::new();
         let found = best_values(kind, &setups[0], |values, least| {
             mean_cost(kind, &setups, &seen, values, least)
         });
@@ -133,18 +137,13 @@ pub fn tune(
             found
         };
         let names = kind.parameters.iter().map(|p| p.name.to_owned());
-        estimators.insert(kind.name.to_owned(), names.zip(best).collect());
+        tuned.push(Tuned {
+            values: names.zip(best).collect(),
+            notes,
+        });
         done();
     }
-    Ok(Tuned {
-        preset: Preset {
-            rate_hz,
-            plant,
-            counts_per_rev: Some(set.device.stages.large.counts_per_rev),
-            estimators,
-        },
-        notes,
-    })
+    Ok(tuned)
 }
 
 /// A simulated trace and the scores' reference.

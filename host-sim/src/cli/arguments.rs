@@ -100,8 +100,8 @@ pub(super) enum Command {
     #[command(after_help = "Example:
   host-sim robust --scene wall --devices 100")]
     Robust(super::robust::Robust),
-    /// Merge the shards of a run of robust, sensitivity or zwidth: print and write what the command
-    /// without --shard does
+    /// Merge the shards of a run of robust, sensitivity, tune or zwidth: print and write what the
+    /// command without --shard does
     #[command(after_help = "Examples:
   host-sim merge target/robust/shard-*-of-4.jsonl
   host-sim merge parts/shard-*-of-16.jsonl --out target/zwidth")]

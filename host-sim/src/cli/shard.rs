@@ -12,7 +12,7 @@ use terminal::output::{Folder, print_bytes, write_whole};
 
 use super::line::with_outputs;
 use super::page::{self, progress};
-use super::{robust, sensitivity, zwidth};
+use super::{robust, sensitivity, tune, zwidth};
 
 #[derive(Debug, Args)]
 pub(super) struct Merge {
@@ -101,6 +101,9 @@ pub(super) fn merge(options: &Merge) -> Result<(), Failure> {
     }
     if let Some((plan, boundaries)) = shards.merge()? {
         return zwidth::finish(&plan, &boundaries, outputs);
+    }
+    if let Some((plan, tuned)) = shards.merge()? {
+        return tune::finish(&plan, &tuned, outputs);
     }
     let program = shards.shard_of();
     Err(Failure::Input(format!(

@@ -1,24 +1,32 @@
 //! `host-sim tune`.
 
-use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use catalogue::constant_error::ConstantError;
 use catalogue::estimators::Kind;
-use catalogue::parameters::{Parameters, PlantKind, Preset, Presets};
-use experiments::tune::{FIRST_SEED, TuningSet, image_section, tune, tune_on_logs};
+use catalogue::parameters::{Parameters, Presets};
+use experiments::tune::{FIRST_SEED, Group, Plan, Tuned, image_section, tune_on_logs};
 use recordings::arguments::{DeviceFile, RecordingOptions};
+use shards::{Experiment as _, Part};
 use simulation::scenario::{Role, ScenarioName};
-use simulation::simulate;
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, print_bytes, write_whole};
 
 use super::arguments::{kinds, rates, scenarios};
 use super::page::progress;
+use super::shard::{self, Outputs};
 use super::uneven::Chosen;
 use recordings::log::{Log, short_name};
+
+/// Default presets file.
+const PRESETS: &str = "target/presets.toml";
+
+/// Default folder of a shard's file.
+const PARTS: &str = "target/tune";
+
+/// Text before the progress bar.
+const DOING: &str = "tuning";
 
 /// Defaults of the tuning options for one kind of estimators.
 struct Recipe {
@@ -85,29 +93,47 @@ pub(super) struct Tune {
     pub(super) frictionless: bool,
     #[command(flatten)]
     pub(super) device: DeviceFile,
+    /// Run only every Nth search (rate, plant, estimator) from the Kth on, for example 1/4, and write a
+    /// file for host-sim merge, no presets. A search is not divided: its finer grids follow the coarser
+    /// ones
+    #[arg(long, value_name = "K/N", conflicts_with = "recordings")]
+    pub(super) shard: Option<Part>,
     /// Write the parameters to FILE, a presets file for other commands; - is standard output. The
-    /// section [image] of an existing FILE is kept
-    #[arg(long, value_name = "FILE.toml", default_value = "target/presets.toml")]
-    pub(super) out: PathBuf,
+    /// section [image] of an existing FILE is kept. With --shard the folder of the shard's file
+    /// [default: target/presets.toml; with --shard target/tune]
+    #[arg(long, value_name = "FILE.toml")]
+    pub(super) out: Option<PathBuf>,
 }
 
 impl Tune {
-    fn tuning_set(&self, recipe: &Recipe) -> Result<TuningSet, Failure> {
-        let perturbed = self.perturbed || recipe.perturbed && self.scenarios.is_empty();
-        Ok(TuningSet {
-            device: self.device.load()?,
-            scenarios: scenarios(&self.scenarios, &ScenarioName::of(recipe.roles))?,
+    fn group(&self, kinds: &[&Kind], recipe: &Recipe) -> Result<Group, Failure> {
+        let scenarios = scenarios(&self.scenarios, &ScenarioName::of(recipe.roles))?;
+        Ok(Group {
+            estimators: kinds.iter().map(|kind| kind.name.to_owned()).collect(),
+            scenarios: scenarios.iter().map(ToString::to_string).collect(),
             seeds: self.seeds.unwrap_or(recipe.seeds),
             seconds: self.seconds.unwrap_or(recipe.seconds),
-            constant_errors: match perturbed {
-                true => ConstantError::extremes(),
-                false => Vec::new(),
-            },
+            perturbed: self.perturbed || recipe.perturbed && self.scenarios.is_empty(),
+        })
+    }
+
+    fn plan(&self, kinds: &[&Kind]) -> Result<Plan, Failure> {
+        let (observers, others): (Vec<_>, Vec<_>) =
+            kinds.iter().copied().partition(|kind| kind.is_observer());
+        let groups = [(others, Recipe::PLAIN), (observers, Recipe::OBSERVER)];
+        let groups = groups.iter().filter(|(kinds, _)| !kinds.is_empty());
+        Ok(Plan {
+            device: self.device.load()?,
+            groups: groups
+                .map(|(kinds, recipe)| self.group(kinds, recipe))
+                .collect::<Result<_, _>>()?,
+            rates_hz: rates(&self.rates, &[1e3, 10e3, 11.6e3]),
+            frictionless: self.frictionless,
         })
     }
 }
 
-pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
+pub(super) fn run(options: &Tune, run_line: &str) -> Result<(), Failure> {
     let kinds: Vec<_> = kinds(&options.estimators)?
         .into_iter()
         .filter(|kind| kind.is_tunable())
@@ -118,83 +144,65 @@ pub(super) fn run(options: &Tune, command_line: &str) -> Result<(), Failure> {
                 .to_owned(),
         ));
     }
-    if !options.recordings.is_empty() {
-        return on_recordings(options, &kinds, command_line);
-    }
-    let (observers, others): (Vec<_>, Vec<_>) =
-        kinds.iter().copied().partition(|kind| kind.is_observer());
-    let groups: Vec<_> = [(others, Recipe::PLAIN), (observers, Recipe::OBSERVER)]
-        .into_iter()
-        .filter(|(kinds, _)| !kinds.is_empty())
-        .map(|(kinds, recipe)| Ok((kinds, options.tuning_set(&recipe)?)))
-        .collect::<Result<_, Failure>>()?;
-    let rates = rates(&options.rates, &[1e3, 10e3, 11.6e3]);
-    for (_, set) in &groups {
-        for &rate in &rates {
-            simulate::ticks(rate, set.seconds)?;
-        }
-    }
-    let plants: &[_] = match options.frictionless {
-        true => &[PlantKind::Frictionless],
-        false => &[PlantKind::Friction, PlantKind::Frictionless],
+    let out = options.out.as_deref();
+    let outputs = Outputs {
+        run_line,
+        out,
+        json: None,
     };
-    let kept = kept_section(options)?;
-    let bar = progress(rates.len() * plants.len() * kinds.len(), "tuning");
-    let mut presets = Presets::default();
-    let mut notes = Vec::new();
-    for &rate in &rates {
-        for &plant in plants {
-            let mut preset = Preset {
-                rate_hz: rate,
-                plant,
-                counts_per_rev: groups
-                    .first()
-                    .map(|(_, set)| set.device.stages.large.counts_per_rev),
-                estimators: BTreeMap::new(),
-            };
-            for (kinds, set) in &groups {
-                let tuned = tune(set, kinds, rate, plant, || bar.inc(1))?;
-                preset.estimators.extend(tuned.preset.estimators);
-                let at = format!("{rate} Hz, {}", plant.name());
-                notes.extend(tuned.notes.iter().map(|note| format!("{at}: {note}")));
-            }
-            presets.preset.push(preset);
-        }
+    if !options.recordings.is_empty() {
+        return on_recordings(options, &kinds, outputs);
     }
-    bar.finish_and_clear();
-    let tuned_on = groups.iter().map(|(kinds, set)| tuned_on(kinds, set));
-    write_presets(
-        options,
-        command_line,
-        &tuned_on.collect::<String>(),
-        &notes,
-        &presets,
-        &kept,
-    )?;
-    if is_stdout(&options.out) {
-        return Ok(());
+    let plan = options.plan(&kinds)?;
+    if let Some(part) = options.shard {
+        let folder = out.unwrap_or(Path::new(PARTS));
+        return shard::run_part(&plan, part, run_line, folder, DOING);
     }
-    print_bytes(format!("{}\n", options.out.display()).as_bytes())
+    let searches = plan.jobs()?;
+    kept_section(file(outputs))?;
+    finish(&plan, &shard::rows(&plan, &searches, DOING)?, outputs)
+}
+
+/// Writes the presets of all searches, whether they were run now or merged.
+pub(super) fn finish(plan: &Plan, tuned: &[Tuned], outputs: Outputs<'_>) -> Result<(), Failure> {
+    if outputs.json.is_some() {
+        return Err(Failure::Input(
+            "--json: tune has no rows; its presets file is --out FILE.toml".to_owned(),
+        ));
+    }
+    let file = file(outputs);
+    let kept = kept_section(file)?;
+    let (presets, notes) = plan.presets(tuned)?;
+    let tuned_on: String = plan.groups.iter().map(tuned_on).collect();
+    write_presets(outputs, &tuned_on, &notes, &presets, &kept)?;
+    match is_stdout(file) {
+        true => Ok(()),
+        false => print_bytes(format!("{}\n", file.display()).as_bytes()),
+    }
+}
+
+/// The presets file.
+fn file<'a>(outputs: Outputs<'a>) -> &'a Path {
+    outputs.out.unwrap_or(Path::new(PRESETS))
 }
 
 /// The section [image] of an existing presets file.
-fn kept_section(options: &Tune) -> Result<String, Failure> {
-    match is_stdout(&options.out) {
+fn kept_section(file: &Path) -> Result<String, Failure> {
+    match is_stdout(file) {
         true => Ok(String::new()),
-        false => image_section(&options.out).map_err(Failure::Input),
+        false => image_section(file).map_err(Failure::Input),
     }
 }
 
 /// Writes the presets file with its comments and prints the notes.
 fn write_presets(
-    options: &Tune,
-    command_line: &str,
+    outputs: Outputs<'_>,
     tuned_on: &str,
     notes: &[String],
     presets: &Presets,
     kept: &str,
 ) -> Result<(), Failure> {
-    let mut text = format!("# {command_line}\n{tuned_on}");
+    let mut text = format!("# {}\n{tuned_on}", outputs.command_line());
     for note in notes {
         terminal::output::note(format_args!("note: {note}"));
         text += &format!("# {note}\n");
@@ -203,17 +211,17 @@ fn write_presets(
     if !kept.is_empty() {
         text += &format!("\n{kept}");
     }
-    write_whole(&options.out, text.as_bytes())
+    write_whole(file(outputs), text.as_bytes())
 }
 
 /// Tunes on recordings.
 fn on_recordings(
     options: &Tune,
     kinds: &[&'static Kind],
-    command_line: &str,
+    outputs: Outputs<'_>,
 ) -> Result<(), Failure> {
     let device = options.device.load()?;
-    let kept = kept_section(options)?;
+    let kept = kept_section(file(outputs))?;
     let logs = options.recordings.iter().map(|path| Log::open(path));
     let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
     let (device, mut notes) = options.device.with_stated_counts(device, &logs, None)?;
@@ -233,7 +241,7 @@ fn on_recordings(
         kinds = chosen.kinds;
         recordings.push((name, recording));
     }
-    let bar = progress(kinds.len(), "tuning");
+    let bar = progress(kinds.len(), DOING);
     let before = Parameters::default();
     let tuned = tune_on_logs(&recordings, &device, &kinds, &before, || bar.inc(1))?;
     bar.finish_and_clear();
@@ -244,7 +252,7 @@ fn on_recordings(
         preset: vec![tuned.preset],
         ..Presets::default()
     };
-    write_presets(options, command_line, &tuned_on, &notes, &presets, &kept)?;
+    write_presets(outputs, &tuned_on, &notes, &presets, &kept)?;
     let mut table = format!(
         "{:<24}{:>22}{:>22}\n{:<24}{:>11}{:>11}{:>11}{:>11}\n",
         "RMS error, rad/s",
@@ -266,29 +274,24 @@ fn on_recordings(
         let verdict = if row.kept { "  kept" } else { "" };
         table += &format!("{:<24}{numbers}{verdict}\n", row.estimator);
     }
-    match is_stdout(&options.out) {
+    let file = file(outputs);
+    match is_stdout(file) {
         true => Ok(()),
-        false => print_bytes(format!("{table}{}\n", options.out.display()).as_bytes()),
+        false => print_bytes(format!("{table}{}\n", file.display()).as_bytes()),
     }
 }
 
 /// Comment line of the presets file: the tuning set of these estimators.
-fn tuned_on(kinds: &[&Kind], set: &TuningSet) -> String {
-    let names: Vec<_> = kinds.iter().map(|kind| kind.name).collect();
-    let scenarios: Vec<_> = set
-        .scenarios
-        .iter()
-        .map(|scenario| scenario.as_str())
-        .collect();
-    let constants = match set.constant_errors.is_empty() {
-        true => "right constants",
-        false => "right and wrong constants",
+fn tuned_on(group: &Group) -> String {
+    let constants = match group.perturbed {
+        true => "right and wrong constants",
+        false => "right constants",
     };
     format!(
         "# {}: tuned on {}, {} s each, {constants}, seeds {FIRST_SEED} to {}.\n",
-        names.join(", "),
-        scenarios.join(", "),
-        set.seconds,
-        FIRST_SEED + set.seeds - 1,
+        group.estimators.join(", "),
+        group.scenarios.join(", "),
+        group.seconds,
+        FIRST_SEED + group.seeds - 1,
     )
 }
