@@ -33,6 +33,31 @@ pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D:
     }
 }
 
+/// The same for two floats. For fields with `#[serde(with = "shards::exact::two")]`.
+pub mod two {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[derive(Serialize, Deserialize)]
+    struct Exact(#[serde(with = "super")] f64);
+
+    /// Two numbers or texts.
+    ///
+    /// # Errors
+    /// Those of the serializer.
+    pub fn serialize<S: Serializer>(values: &[f64; 2], serializer: S) -> Result<S::Ok, S::Error> {
+        values.map(Exact).serialize(serializer)
+    }
+
+    /// The values of two numbers or texts.
+    ///
+    /// # Errors
+    /// Those of the deserializer; a text that is no number.
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; 2], D::Error> {
+        let values = <[Exact; 2]>::deserialize(deserializer)?;
+        Ok(values.map(|Exact(value)| value))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -41,6 +66,8 @@ mod tests {
     struct Row {
         #[serde(with = "super")]
         value: f64,
+        #[serde(with = "super::two")]
+        pair: [f64; 2],
     }
 
     #[test]
@@ -55,9 +82,13 @@ mod tests {
             f64::NEG_INFINITY,
             f64::NAN,
         ] {
-            let text = serde_json::to_string(&Row { value }).unwrap();
+            let pair = [value, -value];
+            let text = serde_json::to_string(&Row { value, pair }).unwrap();
             let row: Row = serde_json::from_str(&text).unwrap();
-            assert!(row.value.to_bits() == value.to_bits() || value.is_nan() && row.value.is_nan());
+            let read = [row.value, row.pair[0], -row.pair[1]];
+            let is_same =
+                |read: &f64| read.to_bits() == value.to_bits() || read.is_nan() && value.is_nan();
+            assert!(read.iter().all(is_same), "{text}");
         }
     }
 }

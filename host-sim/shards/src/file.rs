@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::{Experiment, Part};
 use terminal::failure::Failure;
-use terminal::output::sum;
+use terminal::output::{sum, write_whole};
 
 /// The run that a part belongs to.
 #[derive(Clone, Copy, Debug)]
@@ -85,6 +85,25 @@ pub fn write<E: Experiment>(
     serde_json::to_writer(&mut text, &end).map_err(failed)?;
     text.push(b'\n');
     Ok(text)
+}
+
+/// Runs a part of an experiment, writes its file to `folder` and returns the path of the file. `done`
+/// is called after each step of a job.
+///
+/// # Errors
+/// [`Failure::Input`] of a job that cannot be run, or that names the file.
+pub fn run_part<E: Experiment>(
+    experiment: &E,
+    run: Run<'_>,
+    part: Part,
+    folder: &Path,
+    done: impl Fn() + Sync,
+) -> Result<PathBuf, Failure> {
+    let all = experiment.jobs()?;
+    let rows = experiment.rows(&part.of(&all), done)?;
+    let path = folder.join(part.file_name());
+    write_whole(&path, &write(experiment, run, part, all.len(), &rows)?)?;
+    Ok(path)
 }
 
 impl File {

@@ -8,7 +8,7 @@ use report::version::VERSION;
 use shards::file::{self, Run};
 use shards::{Experiment, Part, Shards};
 use terminal::failure::Failure;
-use terminal::output::{Folder, print_bytes, write_whole};
+use terminal::output::{Folder, print_bytes};
 
 use super::line::with_outputs;
 use super::page::{self, progress};
@@ -59,17 +59,14 @@ pub(super) fn run_part<E: Experiment>(
     doing: &'static str,
 ) -> Result<(), Failure> {
     Folder::check("--out", folder)?;
-    let all = experiment.jobs()?;
-    let rows = rows(experiment, &part.of(&all), doing)?;
     let run = Run {
         version: VERSION,
         command: run_line,
     };
-    let path = folder.join(part.file_name());
-    write_whole(
-        &path,
-        &file::write(experiment, run, part, all.len(), &rows)?,
-    )?;
+    let jobs = part.count(experiment.jobs()?.len());
+    let bar = progress(jobs * E::STEPS_A_JOB, doing);
+    let path = file::run_part(experiment, run, part, folder, || bar.inc(1))?;
+    bar.finish_and_clear();
     print_bytes(format!("{}\n", path.display()).as_bytes())
 }
 

@@ -31,11 +31,14 @@ pub struct Findings {
     /// Wraps of the 32-bit count.
     pub wraps: u64,
     /// Largest |f32 - f64| while no velocity since the last rest was above 20 rad/s, rad/s.
+    #[serde(with = "shards::exact")]
     pub deviation_rad_s: f64,
     /// Largest |f32 - f64| within the first ticks after a start in motion at up to 20 rad/s, rad/s,
     /// while the covariance decreases from its prior with a loss of digits.
+    #[serde(with = "shards::exact")]
     pub start_deviation_rad_s: f64,
     /// Largest |f32 - f64| over the largest velocity since the last rest, from a count a tick on.
+    #[serde(with = "shards::exact")]
     pub relative_deviation: f64,
     /// Longest time until the output stayed at rest, ticks.
     pub recovery_ticks: u32,

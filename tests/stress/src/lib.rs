@@ -9,6 +9,7 @@
 //! | [`trial`] | one estimator over one course |
 //! | [`findings`] | results and bounds |
 //! | [`parts`] | all estimators over long courses, in parts |
+//! | [`experiment`] | a whole run as jobs that shards divide |
 //! | [`designs`] | designs whose parameters can be refused |
 //! | [`sensitivity`] | parameters at the limits of their ranges |
 //! | [`signals`] | error by f32 on signals of a simulated device |
@@ -18,6 +19,7 @@
 pub mod course;
 pub mod definition;
 pub mod designs;
+pub mod experiment;
 pub mod findings;
 pub mod pair;
 mod pairs;

@@ -6,15 +6,16 @@ use std::process::ExitCode;
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 use measured::tables::{STRESS, STRESS_PARAMETERS, STRESS_SIGNALS};
-use rayon::prelude::*;
+use shards::file::{self, Run};
+use shards::{Experiment as _, Part, Shards};
 use terminal::explain;
 use terminal::failure::{Failure, ended};
 use terminal::output::{print_bytes, write_whole};
 use terminal::wording::WIDTH;
 
-use stress::parts::Plan;
-use stress::tested::{TestedEstimator, at};
-use stress::{sensitivity, signals, table};
+use stress::experiment::{Row, Settings};
+use stress::parts::build;
+use stress::table;
 
 /// Runs every estimator over a long course of extreme motions, in f32 beside its generated f64
 /// twin.
@@ -34,7 +35,10 @@ use stress::{sensitivity, signals, table};
     bin_name = "cargo stress",
     version,
     max_term_width = WIDTH,
-    after_help = "Example:\n  cargo stress --ticks 1e6 --rate 1000 --estimator foaw"
+    after_help = "Examples:
+  cargo stress --ticks 1e6 --rate 1000 --estimator foaw
+  cargo stress --ticks 1e10 --shard 3/64
+  cargo stress --merge target/stress/shard-*-of-64.jsonl"
 )]
 struct Arguments {
     /// Ticks per estimator and rate, 1 to 1e15; 1e9 takes 20 minutes on two free cores
@@ -49,6 +53,24 @@ struct Arguments {
     /// Seed of the course
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// Run only every Nth job from the Kth on, for example 1/4, and write a file for --merge, no tables
+    /// and no verdict. A job is 1e8 ticks of an estimator at a rate, its signals of a device, or an
+    /// estimator at the limits of its parameters
+    #[arg(long, value_name = "K/N", conflicts_with_all = ["json", "markdown"])]
+    shard: Option<Part>,
+    /// Folder of the shard's file
+    #[arg(
+        long,
+        value_name = "DIR",
+        default_value = "target/stress",
+        requires = "shard"
+    )]
+    out: PathBuf,
+    /// Merge all files that --shard wrote for one run, in any order: print and write what the run
+    /// without --shard does. The program is that which wrote them
+    #[arg(long, value_name = "SHARD", num_args = 1.., conflicts_with_all =
+        ["ticks", "rates", "estimator", "seed", "resume", "shard"])]
+    merge: Vec<PathBuf>,
     /// Save finished parts in FILE, and skip parts that the same program has saved there
     #[arg(long, value_name = "FILE")]
     resume: Option<PathBuf>,
@@ -88,34 +110,62 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let golden = measured::update();
-    if golden && (arguments.estimator.is_some() || arguments.rates != RATES_HZ) {
-        return Err(Failure::Input("UPDATE_GOLDEN=1 writes all estimators at 1 and 10 kHz: leave out --estimator and --rate".to_owned()));
+    let version = format!("{} (build {:016x})", env!("CARGO_PKG_VERSION"), build()?);
+    if !arguments.merge.is_empty() {
+        let shards = Shards::read(&arguments.merge, &version)?;
+        let program = shards.shard_of();
+        let other = || {
+            let said =
+                format!("shards of {program}, not of cargo stress; merge them with host-sim merge");
+            Failure::Input(said)
+        };
+        let (settings, rows) = shards.merge::<Settings>()?.ok_or_else(other)?;
+        return finish(arguments, &settings, rows);
     }
-    let tested_estimators = tested_estimators(arguments)?;
-    let bar = ProgressBar::new(
-        arguments
-            .ticks
-            .saturating_mul(tested_estimators.len() as u64),
-    );
-    let style = ProgressStyle::with_template("{bar:40} {percent}% of the ticks, {eta} left");
-    bar.set_style(style.map_err(|error| Failure::Input(error.to_string()))?);
-    let plan = Plan {
-        seed: arguments.seed,
+    let settings = Settings {
         ticks: arguments.ticks,
+        rates_hz: arguments.rates.clone(),
+        estimator: arguments.estimator.clone(),
+        seed: arguments.seed,
+        resume: arguments.resume.clone(),
     };
-    let all = plan
-        .run(&tested_estimators, arguments.resume.as_deref(), |n| {
-            bar.inc(n);
-        })
-        .map_err(Failure::Input)?;
+    is_documented(&settings)?;
+    let jobs = settings.jobs()?;
+    let part = arguments.shard;
+    let count = part.map_or(jobs.len(), |part| part.count(jobs.len()));
+    let bar = ProgressBar::new(count as u64);
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} {eta} left");
+    bar.set_style(style.map_err(|error| Failure::Input(error.to_string()))?);
+    if let Some(part) = part {
+        let run = Run {
+            version: &version,
+            command: &settings.command(),
+        };
+        let path = file::run_part(&settings, run, part, &arguments.out, || bar.inc(1))?;
+        bar.finish_and_clear();
+        return print_bytes(format!("{}\n", path.display()).as_bytes());
+    }
+    let rows = settings.rows(&jobs, || bar.inc(1))?;
     bar.finish_and_clear();
-    let device: Vec<_> = differences(&tested_estimators, arguments);
-    let extremes = sensitivity::all();
+    finish(arguments, &settings, rows)
+}
+
+/// Refuses to write the documented tables from other settings than theirs.
+fn is_documented(settings: &Settings) -> Result<(), Failure> {
+    match measured::update() && (settings.estimator.is_some() || settings.rates_hz != RATES_HZ) {
+        true => Err(Failure::Input("UPDATE_GOLDEN=1 writes all estimators at 1 and 10 kHz: leave out --estimator and --rate".to_owned())),
+        false => Ok(()),
+    }
+}
+
+/// Prints the tables and writes the outputs of all rows, whether they were run now or merged.
+fn finish(arguments: &Arguments, settings: &Settings, rows: Vec<Row>) -> Result<(), Failure> {
+    is_documented(settings)?;
+    let results = settings.results(rows)?;
     let tables = [
-        (STRESS, table::cells(&all)),
-        (STRESS_SIGNALS, table::signals(&device)),
-        (STRESS_PARAMETERS, table::sensitivity(&extremes)),
+        (STRESS, table::cells(&results.findings)),
+        (STRESS_SIGNALS, table::signals(&results.differences)),
+        (STRESS_PARAMETERS, table::sensitivity(&results.limits)),
     ];
     let [found, signals, ends] = tables
         .each_ref()
@@ -123,54 +173,27 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let found = if arguments.markdown {
         found
     } else {
-        table::text(&all)
+        table::text(&results.findings)
     };
     print_bytes(format!("{found}\n{signals}\n{ends}").as_bytes())?;
-    if golden {
+    if measured::update() {
         for (table, rows) in &tables {
             table.write(&[], rows).map_err(Failure::Input)?;
         }
     }
     if let Some(path) = &arguments.json {
-        let json = serde_json::to_vec_pretty(&all);
+        let json = serde_json::to_vec_pretty(&results.findings);
         let json = json.map_err(|error| Failure::Input(error.to_string()))?;
         write_whole(path, &json)?;
     }
-    let failed = all.iter().filter(|one| !one.passed()).count()
-        + extremes.iter().filter(|one| !one.broken.is_empty()).count();
+    let failed = results.findings.iter().filter(|one| !one.passed()).count()
+        + results
+            .limits
+            .iter()
+            .filter(|one| !one.broken.is_empty())
+            .count();
     if failed > 0 {
         return Err(Failure::Check(format!("{failed} rows above did not hold")));
     }
     Ok(())
-}
-
-/// Error by f32 of each estimator on a device's signals.
-fn differences(
-    tested_estimators: &[TestedEstimator],
-    arguments: &Arguments,
-) -> Vec<signals::Difference> {
-    let mut all = Vec::new();
-    for rate in &arguments.rates {
-        let scenarios = signals::at(*rate, arguments.seed);
-        let same_rate = tested_estimators
-            .par_iter()
-            .filter(|one| one.rate_hz.to_bits() == rate.to_bits());
-        all.par_extend(same_rate.map(|one| signals::difference(one, &scenarios)));
-    }
-    all
-}
-
-fn tested_estimators(arguments: &Arguments) -> Result<Vec<TestedEstimator>, Failure> {
-    let mut all: Vec<TestedEstimator> = arguments.rates.iter().flat_map(|rate| at(*rate)).collect();
-    if let Some(wanted) = &arguments.estimator {
-        let names: Vec<String> = at(arguments.rates[0]).into_iter().map(|c| c.name).collect();
-        all.retain(|tested| tested.name.starts_with(wanted));
-        if all.is_empty() {
-            return Err(Failure::Input(format!(
-                "--estimator {wanted}: no such estimator; there are {}",
-                names.join(", ")
-            )));
-        }
-    }
-    Ok(all)
 }

@@ -39,73 +39,61 @@ pub struct Plan {
 
 impl Plan {
     /// Seed and ticks of each part.
-    fn parts(self) -> impl Iterator<Item = (u64, u64)> {
+    pub(crate) fn parts(self) -> impl Iterator<Item = (u64, u64)> {
         let whole = (0..self.ticks / PART).map(|_| PART);
         let rest = Some(self.ticks % PART).filter(|rest| *rest > 0);
         let seeds = (0..).map(move |part| self.seed.wrapping_add(part));
         seeds.zip(whole.chain(rest))
     }
+}
 
-    /// Runs the parts on all cores and calls `progress` with numbers of ticks. With a file `kept`,
-    /// each finished part is added to the file, and parts that this program build finished before
-    /// are read from it.
-    ///
-    /// # Errors
-    /// One line if the file cannot be read, understood or written.
-    pub fn run(
-        self,
-        tested_estimators: &[TestedEstimator],
-        kept: Option<&Path>,
-        progress: impl Fn(u64) + Sync,
-    ) -> Result<Vec<Findings>, String> {
-        let before = kept.map_or(Ok(Vec::new()), read)?;
-        let build = build()?;
-        let file = kept.map(open).transpose()?.map(Mutex::new);
-        let jobs: Vec<_> = tested_estimators
-            .iter()
-            .enumerate()
-            .flat_map(|(at, one)| self.parts().map(move |part| (at, one, part)))
-            .collect();
-        let one = |(at, tested, (seed, ticks)): &(usize, &TestedEstimator, (u64, u64))| {
-            let same = |done: &&Done| {
-                (done.build, done.seed, done.ticks) == (build, *seed, *ticks)
-                    && done.found.estimator == tested.name
-                    && done.found.rate_hz.to_bits() == tested.rate_hz.to_bits()
-            };
-            if let Some(done) = before.iter().find(same) {
-                progress(*ticks);
-                return Ok((*at, done.found.clone()));
-            }
-            let found = trial::run(tested, *seed, *ticks, &progress);
-            if let (Some(path), Some(file)) = (kept, &file) {
-                let done = Done {
-                    build,
-                    seed: *seed,
-                    ticks: *ticks,
-                    found: found.clone(),
-                };
-                let mut line = serde_json::to_string(&done).map_err(|error| error.to_string())?;
-                line.push('\n');
-                let mut file = file.lock().map_err(|error| error.to_string())?;
-                let written = file.write_all(line.as_bytes());
-                written.map_err(|error| format!("{}: cannot write: {error}", path.display()))?;
-            }
-            Ok((*at, found))
+/// A part of the course of one estimator: seed and ticks.
+pub(crate) type Part<'a> = (&'a TestedEstimator, (u64, u64));
+
+/// Runs the parts on all cores and calls `done` after each. With a file `kept`, each finished part is
+/// added to the file, and parts that this program build finished before are read from it.
+///
+/// # Errors
+/// One line if the file cannot be read, understood or written.
+pub(crate) fn run(
+    parts: &[Part<'_>],
+    kept: Option<&Path>,
+    done: impl Fn() + Sync,
+) -> Result<Vec<Findings>, String> {
+    let before = kept.map_or(Ok(Vec::new()), read)?;
+    let build = build()?;
+    let file = kept.map(open).transpose()?.map(Mutex::new);
+    let one = |(tested, (seed, ticks)): &Part<'_>| {
+        let same = |done: &&Done| {
+            (done.build, done.seed, done.ticks) == (build, *seed, *ticks)
+                && done.found.estimator == tested.name
+                && done.found.rate_hz.to_bits() == tested.rate_hz.to_bits()
         };
-        let found: Vec<_> = jobs.par_iter().map(one).collect::<Result<_, String>>()?;
-        let mut all: Vec<Option<Findings>> = vec![None; tested_estimators.len()];
-        for (at, part) in found {
-            match &mut all[at] {
-                Some(whole) => whole.join(part),
-                none => *none = Some(part),
-            }
+        if let Some(known) = before.iter().find(same) {
+            done();
+            return Ok(Findings {
+                bounds: tested.bounds,
+                ..known.found.clone()
+            });
         }
-        let mut all: Vec<Findings> = all.into_iter().flatten().collect();
-        for (found, tested) in all.iter_mut().zip(tested_estimators) {
-            found.bounds = tested.bounds;
+        let found = trial::run(tested, *seed, *ticks, |_| ());
+        if let (Some(path), Some(file)) = (kept, &file) {
+            let done = Done {
+                build,
+                seed: *seed,
+                ticks: *ticks,
+                found: found.clone(),
+            };
+            let mut line = serde_json::to_string(&done).map_err(|error| error.to_string())?;
+            line.push('\n');
+            let mut file = file.lock().map_err(|error| error.to_string())?;
+            let written = file.write_all(line.as_bytes());
+            written.map_err(|error| format!("{}: cannot write: {error}", path.display()))?;
         }
-        Ok(all)
-    }
+        done();
+        Ok(found)
+    };
+    parts.par_iter().map(one).collect()
 }
 
 fn open(path: &Path) -> Result<File, String> {
@@ -130,7 +118,10 @@ fn read(path: &Path) -> Result<Vec<Done>, String> {
 }
 
 /// Tells builds apart: parts of another estimator are not parts of this run.
-fn build() -> Result<u64, String> {
+///
+/// # Errors
+/// One line if the program cannot be read.
+pub fn build() -> Result<u64, String> {
     let program = std::env::current_exe().and_then(fs::read);
     let program = program.map_err(|error| format!("cannot read the program itself: {error}"))?;
     let mut hasher = DefaultHasher::new();
@@ -159,8 +150,8 @@ mod tests {
         let _ = fs::remove_file(&path);
         let tested_estimators: Vec<_> = at(1000.0).into_iter().take(2).collect();
         let run = |seed| {
-            let plan = Plan { seed, ticks: 1000 };
-            plan.run(&tested_estimators, Some(&path), |_| ())
+            let parts = tested_estimators.iter().map(|one| (one, (seed, 1000)));
+            super::run(&parts.collect::<Vec<_>>(), Some(&path), || ())
         };
         let lines = || fs::read_to_string(&path).unwrap().lines().count();
         let first = run(1).unwrap();

@@ -1,6 +1,6 @@
 //! Parameters at the limits of their ranges: a design is stable or refused by name.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::course::Course;
 use crate::designs::{self, Refusable};
@@ -16,7 +16,7 @@ const COUNTS_PER_REV: [u32; 4] = [64, 4096, 65_536, 4_000_000];
 const TICKS: u64 = 4000;
 
 /// Results of one kind of estimator over the whole grid.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Outcome {
     /// Name.
     pub estimator: String,
@@ -25,6 +25,7 @@ pub struct Outcome {
     /// Numbers of refused designs by the parameter that the error names.
     pub refused: std::collections::BTreeMap<String, u32>,
     /// Largest |f32 - f64| of an accepted design, relative to the largest velocity.
+    #[serde(with = "shards::exact")]
     pub relative_deviation: f64,
     /// Failures of accepted designs, with their parameters.
     pub broken: Vec<String>,
@@ -33,24 +34,26 @@ pub struct Outcome {
 /// Every kind of estimator with parameters, over the whole grid.
 #[must_use]
 pub fn all() -> Vec<Outcome> {
-    let mut all = Vec::new();
-    for kind in designs::kinds() {
-        let mut outcome = Outcome {
-            estimator: kind.to_owned(),
-            ..Outcome::default()
-        };
-        for rate in RATES {
-            for counts_per_rev in COUNTS_PER_REV {
-                for parameter in designs::parameters(kind, rate) {
-                    let design = designs::design(kind, rate, counts_per_rev, parameter);
-                    let what = format!("{rate} Hz, {counts_per_rev} counts, {parameter:e}");
-                    outcome.take(design, rate, &what);
-                }
+    designs::kinds().into_iter().map(outcome).collect()
+}
+
+/// One kind of estimator over the whole grid.
+#[must_use]
+pub fn outcome(kind: &str) -> Outcome {
+    let mut outcome = Outcome {
+        estimator: kind.to_owned(),
+        ..Outcome::default()
+    };
+    for rate in RATES {
+        for counts_per_rev in COUNTS_PER_REV {
+            for parameter in designs::parameters(kind, rate) {
+                let design = designs::design(kind, rate, counts_per_rev, parameter);
+                let what = format!("{rate} Hz, {counts_per_rev} counts, {parameter:e}");
+                outcome.take(design, rate, &what);
             }
         }
-        all.push(outcome);
     }
-    all
+    outcome
 }
 
 impl Outcome {

@@ -1,7 +1,7 @@
 //! Error by f32 on signals of a device: every scenario of the simulated device.
 
 use catalogue::estimators::sample;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use simulation::device::Device;
 use simulation::scenario::{Role, ScenarioName};
 use simulation::simulate::simulate;
@@ -55,17 +55,20 @@ pub fn at(rate_hz: f64, seed: u64) -> Vec<Scenario> {
 }
 
 /// Difference of f32 and f64 over all signals.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Difference {
     /// Name and parameters.
     pub estimator: String,
     /// Control rate, Hz.
     pub rate_hz: f64,
     /// Largest |f32 - f64|, rad/s.
+    #[serde(with = "shards::exact")]
     pub largest_rad_s: f64,
     /// RMS of f32 - f64, rad/s.
+    #[serde(with = "shards::exact")]
     pub rms_rad_s: f64,
     /// RMS error in f32 and in f64 against the truth, rad/s.
+    #[serde(with = "shards::exact::two")]
     pub error_rad_s: [f64; 2],
 }
 

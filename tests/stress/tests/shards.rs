@@ -1,0 +1,97 @@
+//! `cargo stress` in shards: the merged files give the bytes of a single run.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+const SHORT: &str = "--ticks 3000 --estimator kalman-triple-s --rate 1000 --rate 2000 --seed 5";
+
+/// A folder of its own, gone afterwards.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str) -> Self {
+        let path =
+            std::env::temp_dir().join(format!("limpid-stress-{test}-{}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn run(&self, arguments: &str) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_stress"))
+            .args(arguments.split_whitespace())
+            .env_remove("UPDATE_GOLDEN")
+            .current_dir(&self.0)
+            .output()
+            .unwrap()
+    }
+
+    fn good(&self, arguments: &str) -> String {
+        let output = self.run(arguments);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{arguments}: {errors}");
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    fn text(&self, name: &str) -> String {
+        fs::read_to_string(self.0.join(name)).unwrap()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+#[test]
+fn merged_shards_equal_a_single_run() {
+    let folder = Folder::new("merge");
+    let whole = folder.good(&format!("{SHORT} --json whole.json"));
+    assert!(
+        whole.contains("kalman-triple-steady") && whole.contains("2000"),
+        "{whole}"
+    );
+    // The course at one rate has been run before, and some shards of 60 are empty.
+    folder.good(&format!("{SHORT} --resume kept.jsonl --shard 2/3"));
+    let kept = folder.text("kept.jsonl");
+    assert!(!kept.is_empty());
+    for (n, more) in [(3, "--resume kept.jsonl"), (60, "")] {
+        for k in 1..=n {
+            let printed = folder.good(&format!("{SHORT} {more} --shard {k}/{n}"));
+            assert_eq!(printed, format!("target/stress/shard-{k}-of-{n}.jsonl\n"));
+        }
+        let names: Vec<_> = (1..=n)
+            .rev()
+            .map(|k| format!("target/stress/shard-{k}-of-{n}.jsonl"))
+            .collect();
+        let merged = folder.good(&format!("--merge {} --json merged.json", names.join(" ")));
+        assert_eq!(merged, whole);
+        assert_eq!(folder.text("merged.json"), folder.text("whole.json"));
+    }
+    let lines = |text: &str| text.lines().count();
+    assert_eq!(lines(&folder.text("kept.jsonl")), 2, "each course once");
+    assert_eq!(lines(&kept), 1, "{kept}");
+}
+
+#[test]
+fn lost_shards_are_named_with_the_command_that_runs_them() {
+    let folder = Folder::new("lost");
+    folder.good(&format!("{SHORT} --shard 2/3 --out parts"));
+    let output = folder.run("--merge parts/shard-2-of-3.jsonl");
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{errors}");
+    let again = "run cargo stress --ticks 3000 --rate 1000 --rate 2000 --estimator kalman-triple-s --seed 5 \
+                 --shard 1/3 --out parts";
+    assert!(
+        errors.contains("shards 1,3 of 3 are missing") && errors.contains(again),
+        "{errors}"
+    );
+    for wrong in [
+        "--merge parts/shard-2-of-3.jsonl --seed 2",
+        "--shard 1/3 --json x.json",
+        "--out parts",
+    ] {
+        assert_eq!(folder.run(wrong).status.code(), Some(2), "{wrong}");
+    }
+}
