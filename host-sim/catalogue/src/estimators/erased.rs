@@ -50,6 +50,8 @@ pub struct Reports {
     /// Ratio of the coupler's learned damping to the assumed one; `None` if the estimator does not
     /// learn it.
     pub damping_ratio: Option<Vec<f32>>,
+    /// Acceleration, rad/s^2; `None` if the estimator gives none.
+    pub acceleration: Option<Vec<f32>>,
 }
 
 /// A control loop calls the estimator through this trait.
@@ -213,8 +215,9 @@ where
         let Outputs {
             deviation,
             damping_ratio,
-            ..
+            acceleration,
         } = self.outputs;
+        let rate_hz = trace.rate_hz as f32;
         // The state of another estimator counts as none.
         let own = state
             .take()
@@ -225,14 +228,17 @@ where
             &mut own,
             trace,
             from,
-            [0.0, 0.0, 1.0],
+            [0.0, 0.0, 1.0, 0.0],
             |state, velocity, period| {
                 let deviation = deviation.map_or(CountsPerTick(0.0), |of| {
                     self.deviation_over(of, state, period)
                 });
                 let ratio = damping_ratio.map_or(1.0, |of| of(&self.estimator, state));
-                let [velocity, deviation] = [velocity, deviation].map(|v| v.rad_per_s(&self.scale));
-                [velocity, deviation, ratio]
+                // A change of the velocity per tick is one per period.
+                let change = acceleration.map_or(0.0, |of| of(&self.estimator, state).0);
+                let [velocity, deviation, change] = [velocity, deviation, CountsPerTick(change)]
+                    .map(|value| value.rad_per_s(&self.scale));
+                [velocity, deviation, ratio, change * rate_hz]
             },
         );
         *state = own.map(|state| State(Box::new(state)));
@@ -241,6 +247,7 @@ where
             velocity: column(0),
             deviation: deviation.map(|_| column(1)),
             damping_ratio: damping_ratio.map(|_| column(2)),
+            acceleration: acceleration.map(|_| column(3)),
         }
     }
 
