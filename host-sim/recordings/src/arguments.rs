@@ -25,17 +25,17 @@ pub struct RecordingOptions {
     /// of the column. Units: s, ms, us, ns; counts, deg, rad, rev; A, mA, N.m; rad/s, deg/s, rev/s,
     /// rpm. Repeatable
     #[arg(long = "column", value_name = "OURS=THEIRS[:UNIT]")]
-    columns: Vec<String>,
+    pub columns: Vec<String>,
     /// Counts of a revolution of an absolute encoder, at which the column counts_large wraps;
     /// counts_small=M for the other encoder; repeatable
     #[arg(long, value_name = "M")]
-    modulus: Vec<String>,
+    pub modulus: Vec<String>,
     /// Rate of the rows, for a recording without a column of time
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
-    row_rate: Option<f64>,
+    pub row_rate: Option<f64>,
     /// Replace the rows by rows at a constant rate: counts are interpolated and rounded
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
-    resample: Option<f64>,
+    pub resample: Option<f64>,
 }
 
 /// A recording with the columns of the board and its device.

@@ -59,6 +59,44 @@ pub struct Recording {
 }
 
 impl Recording {
+    /// A recording that a program has in memory: its times, s, and the columns of `columns`, whose rate
+    /// and periods follow from the times.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that calls the recording `name`, if columns differ in their number of rows, or
+    /// if `t` goes back, does not increase or has fewer than two rows.
+    pub fn of_columns(t: Vec<f64>, columns: Trace, name: &str) -> Result<Self, Failure> {
+        let refused = |why: String| Err(Failure::Input(format!("{name}: {why}")));
+        for (column, rows) in lengths(&columns) {
+            if rows.is_some_and(|rows| rows != t.len()) {
+                let rows = rows.unwrap_or_default();
+                return refused(format!(
+                    "column {column} has {rows} rows where t has {}; give columns of equal length",
+                    t.len()
+                ));
+            }
+        }
+        if let Some(k) = t.windows(2).position(|pair| pair[1] < pair[0]) {
+            return refused(format!(
+                "row {}: column t: {} s is before the {} s above it",
+                k + 1,
+                t[k + 1],
+                t[k]
+            ));
+        }
+        let (rate_hz, uneven_steps) = clock::rate(&t, name)?;
+        Ok(Self {
+            trace: Trace {
+                rate_hz,
+                periods: clock::periods(&t, rate_hz),
+                ..columns
+            },
+            t,
+            uneven_steps,
+            ..Self::default()
+        })
+    }
+
     /// Reads a CSV file with the columns of this project, or a known log, for the default device.
     ///
     /// # Errors
@@ -93,9 +131,48 @@ impl Recording {
     }
 }
 
+/// Names of the optional and the necessary columns of a trace, with their number of rows.
+fn lengths(columns: &Trace) -> [(&'static str, Option<usize>); 5] {
+    [
+        ("counts_large", Some(columns.counts_large.len())),
+        ("counts_small", columns.counts_small.as_ref().map(Vec::len)),
+        ("current", columns.current.as_ref().map(Vec::len)),
+        ("edge_tick", columns.edges.as_ref().map(Vec::len)),
+        ("true_omega", columns.true_omega.as_ref().map(Vec::len)),
+    ]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn columns_in_memory_are_those_of_the_same_file() {
+        let text = "t,counts_large,current,true_omega\n\
+                    0,5,0.5,1\n0.001,6,0.25,2\n0.0023,9,0,3\n0.0033,10,1,4\n0.0043,11,1,5\n";
+        let read = parse(text).unwrap();
+        let columns = Trace {
+            periods: None,
+            rate_hz: 0.0,
+            ..read.trace.clone()
+        };
+        let made = Recording::of_columns(read.t.clone(), columns.clone(), "m").unwrap();
+        assert!(read.trace.periods.is_some());
+        assert_eq!(made.trace.periods, read.trace.periods);
+        assert_eq!(made.trace.rate_hz, read.trace.rate_hz);
+        assert_eq!(made.uneven_steps, read.uneven_steps);
+        let of = |t: &[f64]| {
+            let made = Recording::of_columns(t.to_vec(), columns.clone(), "m");
+            made.unwrap_err().to_string()
+        };
+        assert!(of(&[0.0, 0.001]).contains("m: column counts_large has 5 rows where t has 2"));
+        let back = of(&[0.0, 0.002, 0.001, 0.003, 0.004]);
+        assert!(
+            back.starts_with("m: row 2: column t: 0.001 s is before the 0.002 s"),
+            "{back}"
+        );
+        assert!(of(&[1.0; 5]).contains("does not increase"));
+    }
 
     fn parse(text: &str) -> Result<Recording, String> {
         Recording::parse(text.as_bytes(), "r.csv").map_err(|failure| failure.to_string())

@@ -1,5 +1,7 @@
 //! Sampled signals of a simulated run, or of a recording of a real motor.
 
+use std::ops::Range;
+
 /// Rate of the clock that stamps encoder edges, Hz: a timer at half the board's 168 MHz.
 pub const EDGE_CLOCK_HZ: f64 = 84e6;
 
@@ -47,6 +49,27 @@ impl Trace {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.counts_large.is_empty()
+    }
+
+    /// The rows `rows` of the trace, with the same columns.
+    ///
+    /// # Panics
+    /// If the trace does not have these rows.
+    #[must_use]
+    pub fn rows(&self, rows: Range<usize>) -> Self {
+        fn part<T: Clone>(column: Option<&Vec<T>>, rows: &Range<usize>) -> Option<Vec<T>> {
+            column.map(|column| column[rows.clone()].to_vec())
+        }
+        Self {
+            rate_hz: self.rate_hz,
+            periods: part(self.periods.as_ref(), &rows),
+            counts_large: self.counts_large[rows.clone()].to_vec(),
+            counts_small: part(self.counts_small.as_ref(), &rows),
+            current: part(self.current.as_ref(), &rows),
+            edges: part(self.edges.as_ref(), &rows),
+            true_omega: part(self.true_omega.as_ref(), &rows),
+            true_damping: part(self.true_damping.as_ref(), &rows),
+        }
     }
 
     /// Period of one tick, s.
