@@ -22,7 +22,7 @@ mod sensitivity;
 mod shard;
 mod simulate;
 mod tune;
-mod uneven;
+use experiments::uneven;
 mod zwidth;
 
 use std::ffi::OsString;

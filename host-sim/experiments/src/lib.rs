@@ -17,4 +17,5 @@ pub mod sensitivity;
 pub mod table;
 pub mod transparency;
 pub mod tune;
+pub mod uneven;
 pub mod zwidth;

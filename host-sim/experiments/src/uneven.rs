@@ -5,8 +5,9 @@ use simulation::trace::Trace;
 use terminal::failure::Failure;
 
 /// The estimators that run on a recording, as far as its clock is concerned.
-pub(super) struct Chosen {
-    pub(super) kinds: Vec<&'static Kind>,
+pub struct Chosen {
+    /// The estimators that run.
+    pub kinds: Vec<&'static Kind>,
     /// Those that assume a constant period, on a recording that has none.
     left_out: Vec<&'static str>,
 }
@@ -17,7 +18,7 @@ impl Chosen {
     ///
     /// # Errors
     /// [`Failure::Input`] if an estimator that the user named assumes a constant period.
-    pub(super) fn new(
+    pub fn new(
         kinds: &[&'static Kind],
         are_named: bool,
         trace: &Trace,
@@ -47,7 +48,8 @@ impl Chosen {
     }
 
     /// What is said about a recording with uneven steps.
-    pub(super) fn note(&self, trace: &Trace, unevenness: &str) -> String {
+    #[must_use]
+    pub fn note(&self, trace: &Trace, unevenness: &str) -> String {
         let rate = trace.rate_hz;
         if trace.periods.is_none() {
             return format!(
