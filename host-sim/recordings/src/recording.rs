@@ -28,6 +28,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+pub use absolute::{after, boundary};
 pub use board::{BoardColumns, BoardReader};
 pub use formats::{KnownLog, known_logs};
 pub(crate) use options::MEASURED;

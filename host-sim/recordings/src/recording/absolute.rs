@@ -140,13 +140,17 @@ fn unwrap(counts: &mut Vec<u32>, modulus: u32) -> Result<Vec<u32>, WrapError> {
 
 /// The count after `last` of an encoder that wraps at `modulus` and reads `count`; the first count is
 /// the reading.
-pub(super) fn after(last: Option<Count>, count: u32, modulus: u32) -> Result<Count, WrapError> {
+///
+/// # Errors
+/// Those of [`Count::wrapped`].
+pub fn after(last: Option<Count>, count: u32, modulus: u32) -> Result<Count, WrapError> {
     let reading = i64::from(count as i32).rem_euclid(i64::from(modulus)) as u32;
     last.map_or(Ok(Count(count)), |last| last.wrapped(reading, modulus))
 }
 
 /// The boundary of an edge beside the unwrapped `count`, given that beside its reading `raw`.
-pub(super) fn boundary(boundary: u32, raw: u32, count: u32, modulus: u32) -> u32 {
+#[must_use]
+pub fn boundary(boundary: u32, raw: u32, count: u32, modulus: u32) -> u32 {
     let away = i64::from(boundary as i32) - i64::from(raw as i32);
     count.wrapping_add(centred(away, modulus) as u32)
 }

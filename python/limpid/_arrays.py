@@ -1,0 +1,92 @@
+"""Arguments as arrays, with errors that name the argument and the remedy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+IntLike = Any
+FloatLike = Any
+
+
+def one_dimensional(values: Any, name: str) -> NDArray[Any]:
+    """``values`` as an array of one dimension."""
+    try:
+        array = np.asarray(values)
+    except ValueError as error:
+        raise ValueError(f"{name}: not an array of numbers: {error}") from None
+    if array.ndim != 1:
+        raise ValueError(
+            f"{name}: has the shape {array.shape}; pass one dimension, for example array.ravel() or one column"
+        )
+    return array
+
+
+def as_counts(values: IntLike, name: str) -> NDArray[np.uint32]:
+    """Integers of any type modulo 2^32."""
+    array = one_dimensional(values, name)
+    if array.size == 0:
+        raise ValueError(f"{name}: is empty; pass at least one row")
+    if array.dtype.kind == "O" and all(isinstance(value, int) for value in array):
+        array = np.array([int(value) & 0xFFFFFFFF for value in array], dtype=np.uint32)
+    if array.dtype.kind not in "iu":
+        raise ValueError(
+            f"{name}: has the type {array.dtype}; pass integers, for example "
+            f"numpy.rint({name}).astype(numpy.int64)"
+        )
+    return np.ascontiguousarray(array.astype(np.uint32, copy=False))
+
+
+def as_floats(values: FloatLike, name: str, unit: str, *, nan: bool = False) -> NDArray[np.float64]:
+    """Finite numbers; with ``nan``, also NaN."""
+    array = one_dimensional(values, name)
+    if array.dtype.kind not in "iuf":
+        raise ValueError(f"{name}: has the type {array.dtype}; pass real numbers ({unit})")
+    array = np.ascontiguousarray(array, dtype=np.float64)
+    wrong = np.isinf(array) if nan else ~np.isfinite(array)
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise ValueError(
+            f"{name}: row {row} is {array[row]}; remove the row, or fill it with a finite number ({unit})"
+        )
+    return array
+
+
+def same_rows(columns: dict[str, NDArray[Any] | None]) -> None:
+    """Checks that all columns have the rows of the first one."""
+    names = [name for name, column in columns.items() if column is not None]
+    first = columns[names[0]]
+    assert first is not None
+    for name in names[1:]:
+        column = columns[name]
+        if column is not None and len(column) != len(first):
+            raise ValueError(
+                f"{name}: has {len(column)} rows where {names[0]} has {len(first)}; pass columns of equal length"
+            )
+
+
+def rows(
+    counts: IntLike,
+    coupled: IntLike | None,
+    current: FloatLike | None,
+    edge_age: FloatLike | None,
+    edge_boundary: IntLike | None,
+) -> dict[str, Any]:
+    """The columns that an estimator reads."""
+    if (edge_age is None) != (edge_boundary is None):
+        raise ValueError("edge_age and edge_boundary: pass both or neither")
+    columns: dict[str, Any] = {
+        "counts": as_counts(counts, "counts"),
+        "coupled": None if coupled is None else as_counts(coupled, "coupled"),
+        "current": None if current is None else as_floats(current, "current", "A"),
+        "edge_age": None if edge_age is None else as_floats(edge_age, "edge_age", "s", nan=True),
+        "edge_boundary": None if edge_boundary is None else as_counts(edge_boundary, "edge_boundary"),
+    }
+    age = columns["edge_age"]
+    if age is not None and (age < 0).any():
+        row = int(np.argmax(age < 0))
+        raise ValueError(f"edge_age: row {row} is {age[row]}; the age of an edge is not negative (s)")
+    same_rows(columns)
+    return columns

@@ -1,0 +1,119 @@
+"""The compiled part of the package; its functions are called by the modules beside it."""
+
+from os import PathLike
+from typing import Any, SupportsIndex
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._recording import Recording
+
+_Path = str | PathLike[str]
+_Device = str | PathLike[str] | dict[str, Any]
+_Reports = tuple[
+    NDArray[np.float32],
+    NDArray[np.float32] | None,
+    NDArray[np.float32] | None,
+    NDArray[np.float32] | None,
+]
+
+def estimators() -> list[dict[str, Any]]: ...
+def parameters(
+    estimator: str, rate: float, counts_per_rev: int | None, presets: _Path | None, device: _Device | None
+) -> dict[str, float]: ...
+def scenarios() -> list[tuple[str, str]]: ...
+def device(device: _Device | None) -> str: ...
+def clock(t: NDArray[np.float64], name: str) -> float: ...
+def read_log(
+    path: _Path,
+    columns: list[str],
+    modulus: list[str],
+    row_rate: float | None,
+    resample: float | None,
+    counts_per_rev: int | None,
+    device: _Device | None,
+) -> dict[str, Any]: ...
+def replay(
+    recording: Recording,
+    estimator: str,
+    counts_per_rev: int | None,
+    parameters: dict[str, float],
+    presets: _Path | None,
+    device: _Device | None,
+    resample: float | None,
+) -> tuple[_Reports, NDArray[np.float64] | None, float, dict[str, float], list[str]]: ...
+
+class Estimator:
+    def __new__(
+        cls,
+        estimator: str = "imm",
+        rate: float = 1000.0,
+        *,
+        counts_per_rev: int | None = None,
+        parameters: dict[str, float] | None = None,
+        presets: _Path | None = None,
+        device: _Device | None = None,
+        modulus: int | None = None,
+        varying: bool = False,
+    ) -> Estimator: ...
+    @property
+    def name(self) -> str:
+        """Name of the estimator."""
+
+    @property
+    def rate(self) -> float:
+        """Rate of the rows, Hz."""
+
+    @property
+    def counts_per_rev(self) -> int:
+        """Counts per revolution of the encoder."""
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Values of the parameters by name."""
+
+    @property
+    def notes(self) -> list[str]:
+        """A line if the parameters were tuned for another encoder or rate."""
+
+    @property
+    def std_dev(self) -> float | None:
+        """Standard deviation of the latest velocity, rad/s; None if the estimator reports none."""
+
+    @property
+    def acceleration(self) -> float | None:
+        """Acceleration at the latest row, rad/s^2; None if the estimator reports none."""
+
+    @property
+    def damping_ratio(self) -> float | None:
+        """Learned damping of the coupler over the assumed one; None if it is not learned."""
+
+    def reset(self) -> None:
+        """Forgets all rows: the next row is the first one."""
+
+    def update(
+        self,
+        count: SupportsIndex,
+        *,
+        current: float | None = None,
+        coupled: SupportsIndex | None = None,
+        edge_age: float | None = None,
+        edge_boundary: SupportsIndex | None = None,
+        dt: float | None = None,
+    ) -> float:
+        """Takes the next row and returns the velocity there, rad/s.
+
+        ``current`` is the current of the motor from this row to the next, A; ``coupled`` the count of the
+        small encoder; ``edge_age`` and ``edge_boundary`` the latest edge, as of :class:`Recording`; ``dt``
+        the time since the row before, s, for an estimator made with ``varying=True``.
+        """
+
+    def _process(
+        self,
+        counts: NDArray[np.uint32],
+        coupled: NDArray[np.uint32] | None,
+        current: NDArray[np.float64] | None,
+        edge_age: NDArray[np.float64] | None,
+        edge_boundary: NDArray[np.uint32] | None,
+        dt: NDArray[np.float64] | None,
+    ) -> _Reports: ...

@@ -1,0 +1,106 @@
+"""Recordings in memory."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _arrays, _limpid
+
+
+class Recording:
+    """Samples of an encoder with what was recorded beside them.
+
+    Rows come at a constant ``rate`` (Hz), or at the times ``t`` (s); give one of both. With ``t`` the
+    attribute ``rate`` is one over the mean of the usual steps.
+
+    Parameters
+    ----------
+    counts
+        Counts of the encoder: integers of any type, taken modulo 2^32, so that counters may wrap and be
+        negative.
+    rate, t
+        Rate of the rows, Hz, or the time of each row, s.
+    current
+        Current of the motor from each row to the next, A.
+    coupled
+        Counts of the encoder of the small motor behind the coupler.
+    edge_age, edge_boundary
+        Age of the latest edge of the encoder at each row, s (NaN before the first edge), and the boundary
+        that it crossed: boundary ``e`` lies between the counts ``e - 1`` and ``e``.
+    true_velocity
+        Velocity that scores are against, rad/s.
+    current_small
+        Current of the small motor, A. No estimator reads it.
+    counts_per_rev
+        Counts per revolution of the encoder: four times the lines of a quadrature encoder.
+    name
+        Name in messages.
+    notes
+        What the reader of a log said: conversions, missing rows.
+    """
+
+    def __init__(
+        self,
+        counts: _arrays.IntLike,
+        rate: float | None = None,
+        *,
+        t: _arrays.FloatLike | None = None,
+        current: _arrays.FloatLike | None = None,
+        coupled: _arrays.IntLike | None = None,
+        edge_age: _arrays.FloatLike | None = None,
+        edge_boundary: _arrays.IntLike | None = None,
+        true_velocity: _arrays.FloatLike | None = None,
+        current_small: _arrays.FloatLike | None = None,
+        counts_per_rev: int | None = None,
+        name: str = "recording",
+        notes: Sequence[str] = (),
+    ) -> None:
+        columns = _arrays.rows(counts, coupled, current, edge_age, edge_boundary)
+        self.counts: NDArray[np.uint32] = columns["counts"]
+        self.coupled: NDArray[np.uint32] | None = columns["coupled"]
+        self.current: NDArray[np.float64] | None = columns["current"]
+        self.edge_age: NDArray[np.float64] | None = columns["edge_age"]
+        self.edge_boundary: NDArray[np.uint32] | None = columns["edge_boundary"]
+        self.true_velocity: NDArray[np.float64] | None = (
+            None if true_velocity is None else _arrays.as_floats(true_velocity, "true_velocity", "rad/s")
+        )
+        self.current_small: NDArray[np.float64] | None = (
+            None if current_small is None else _arrays.as_floats(current_small, "current_small", "A")
+        )
+        self._t: NDArray[np.float64] | None = None if t is None else _arrays.as_floats(t, "t", "s")
+        _arrays.same_rows(
+            {
+                "counts": self.counts,
+                "t": self._t,
+                "true_velocity": self.true_velocity,
+                "current_small": self.current_small,
+            }
+        )
+        self.name = name
+        self.notes = list(notes)
+        self.counts_per_rev = counts_per_rev
+        if (rate is None) == (self._t is None):
+            raise ValueError("rate and t: pass one of them: the rate of the rows (Hz), or the time of each row (s)")
+        if self._t is not None:
+            self.rate = _limpid.clock(self._t, name)
+        else:
+            assert rate is not None
+            if not (rate > 0 and np.isfinite(rate)):
+                raise ValueError(f"rate={rate}: must be positive and finite (Hz)")
+            self.rate = float(rate)
+
+    @property
+    def t(self) -> NDArray[np.float64]:
+        """Time of each row, s."""
+        return np.arange(len(self.counts)) / self.rate if self._t is None else self._t
+
+    def __len__(self) -> int:
+        return len(self.counts)
+
+    def __repr__(self) -> str:
+        optional = ("current", "coupled", "edge_age", "true_velocity")
+        there = ", ".join(name for name in optional if getattr(self, name) is not None)
+        return f"<limpid.Recording {self.name}: {len(self)} rows at {self.rate} Hz{'; ' if there else ''}{there}>"

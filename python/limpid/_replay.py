@@ -1,0 +1,178 @@
+"""Estimators over recordings, and the reader of logs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _arrays, _limpid
+from ._recording import Recording
+
+
+@dataclass(frozen=True, eq=False)
+class Replay:
+    """What an estimator reports at each row of a recording.
+
+    At the first row the estimator starts: the velocity is 0 and its standard deviation 0.
+    """
+
+    #: Name of the estimator.
+    estimator: str
+    #: Time of each row, s.
+    t: NDArray[np.float64]
+    #: Rate of the rows, Hz.
+    rate: float
+    #: Velocity, rad/s.
+    velocity: NDArray[np.float32]
+    #: Standard deviation of the velocity, rad/s; None if the estimator reports none.
+    std_dev: NDArray[np.float32] | None
+    #: Acceleration, rad/s^2; None if the estimator reports none.
+    acceleration: NDArray[np.float32] | None
+    #: Learned damping of the coupler over the assumed one; None if the estimator does not learn it.
+    damping_ratio: NDArray[np.float32] | None
+    #: Values of the parameters by name.
+    parameters: dict[str, float]
+    #: What was converted, and whether the parameters were tuned for another encoder or rate.
+    notes: list[str]
+
+
+
+
+def replay(
+    counts: _arrays.IntLike | Recording,
+    rate: float | None = None,
+    *,
+    t: _arrays.FloatLike | None = None,
+    counts_per_rev: int | None = None,
+    estimator: str = "imm",
+    current: _arrays.FloatLike | None = None,
+    coupled: _arrays.IntLike | None = None,
+    edge_age: _arrays.FloatLike | None = None,
+    edge_boundary: _arrays.IntLike | None = None,
+    parameters: Mapping[str, float] | None = None,
+    presets: str | PathLike[str] | None = None,
+    device: str | PathLike[str] | dict[str, Any] | None = None,
+    resample: float | None = None,
+) -> Replay:
+    """Runs an estimator over counts, as ``cargo sim replay`` does, and returns its velocity.
+
+    Parameters
+    ----------
+    counts
+        A :class:`Recording`, or its counts: integers of any type, taken modulo 2^32.
+    rate, t
+        Rate of the rows, Hz, or the time of each row, s.
+    counts_per_rev
+        Counts per revolution of the encoder [default: that of the recording or of the device, otherwise
+        4096].
+    estimator
+        Name of the estimator, see :func:`estimators`.
+    current, coupled, edge_age, edge_boundary
+        Signals that some estimators need, as of :class:`Recording`.
+    parameters
+        Values of parameters by name; they replace the tuned ones, which are scaled to the encoder and the
+        rate.
+    presets
+        Path of a file of tuned parameters, as :func:`tune` writes it.
+    device
+        Path of a device file (TOML), or a dict with its sections; estimators with a model of the motor
+        need it.
+    resample
+        Replace the rows by rows at this rate, Hz: for estimators that need a constant period.
+
+    Raises
+    ------
+    ValueError
+        An argument is wrong; the message names it and the remedy.
+    """
+    if isinstance(counts, Recording):
+        given = (rate, t, current, coupled, edge_age, edge_boundary)
+        if any(argument is not None for argument in given):
+            raise ValueError("rate, t, current, coupled, edge_age, edge_boundary: the recording has its own; leave them out")
+        recording = counts
+    else:
+        recording = Recording(
+            counts,
+            rate,
+            t=t,
+            current=current,
+            coupled=coupled,
+            edge_age=edge_age,
+            edge_boundary=edge_boundary,
+        )
+    reports, times, rate, values, notes = _limpid.replay(
+        recording,
+        estimator,
+        counts_per_rev,
+        dict(parameters or {}),
+        presets,
+        device,
+        resample,
+    )
+    velocity, std_dev, acceleration, damping_ratio = reports
+    return Replay(
+        estimator=estimator,
+        t=recording.t if times is None else times,
+        rate=rate,
+        velocity=velocity,
+        std_dev=std_dev,
+        acceleration=acceleration,
+        damping_ratio=damping_ratio,
+        parameters=values,
+        notes=notes,
+    )
+
+
+def read_log(
+    path: str | PathLike[str],
+    *,
+    columns: Mapping[str, str] | Sequence[str] | str = (),
+    modulus: int | Mapping[str, int] | None = None,
+    row_rate: float | None = None,
+    resample: float | None = None,
+    counts_per_rev: int | None = None,
+    device: str | PathLike[str] | dict[str, Any] | None = None,
+) -> Recording:
+    """Reads a log as the commands of this project read it.
+
+    Its own columns are ``t`` (s) and ``counts_large``; optional are ``counts_small``, ``current`` (A),
+    ``edge_tick``, ``edge_bound`` and ``true_omega`` (rad/s). Logs of moteus, ODrive, VESC Tool, SimpleFOC
+    and PlotJuggler are read by their own names.
+
+    Parameters
+    ----------
+    columns
+        Other names of columns, with their units: ``{"t": "time_ms:ms", "counts_large": "angle:deg"}``.
+    modulus
+        Counts at which an absolute encoder wraps; ``{"counts_small": 4096}`` for the other encoder.
+    row_rate
+        Rate of the rows, Hz, for a log without a column of time.
+    resample
+        Replace the rows by rows at this rate, Hz.
+    counts_per_rev
+        Counts per revolution [default: those that the file states, otherwise that of the device].
+    device
+        Path of a device file (TOML), or a dict with its sections.
+
+    Raises
+    ------
+    ValueError
+        The log cannot be read; the message names its line and its column.
+    OSError
+        The file cannot be opened.
+    """
+    if isinstance(columns, Mapping):
+        columns = [f"{ours}={theirs}" for ours, theirs in columns.items()]
+    elif isinstance(columns, str):
+        columns = [columns]
+    if isinstance(modulus, Mapping):
+        moduli = [f"{column}={number}" for column, number in modulus.items()]
+    else:
+        moduli = [] if modulus is None else [str(modulus)]
+    fields = _limpid.read_log(path, list(columns), moduli, row_rate, resample, counts_per_rev, device)
+    return Recording(**fields)

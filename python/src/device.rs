@@ -1,0 +1,136 @@
+//! The device, the parameters and the estimator that arguments name.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use catalogue::estimators::{Kind, Setup, Values};
+use catalogue::parameters::{Parameters, PlantKind};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use simulation::device::Device;
+use terminal::failure::Failure;
+
+use crate::error::value_error;
+
+/// Counts per revolution of an encoder that the commands accept.
+const COUNTS: std::ops::RangeInclusive<u32> = 16..=4_000_000;
+
+/// A device file: its path, or a mapping with its sections and keys.
+pub(crate) struct DeviceFile {
+    name: String,
+    text: String,
+}
+
+impl<'py> FromPyObject<'_, 'py> for DeviceFile {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if object.is_instance_of::<PyDict>() {
+            let json = object
+                .py()
+                .import("json")?
+                .call_method1("dumps", (object,))?;
+            let table: toml::Table = serde_json::from_str(&json.extract::<String>()?)
+                .map_err(|error| value_error(format!("device: {error}")))?;
+            let text =
+                toml::to_string(&table).map_err(|error| value_error(format!("device: {error}")))?;
+            let name = "device".to_owned();
+            return Ok(Self { name, text });
+        }
+        let path: PathBuf = object.extract().map_err(|_| {
+            PyTypeError::new_err(
+                "device: give the path of a device file, or a dict with its sections",
+            )
+        })?;
+        let name = path.display().to_string();
+        let text = std::fs::read_to_string(&path)?;
+        Ok(Self { name, text })
+    }
+}
+
+/// The device of a file, or the default one; `counts_per_rev` replaces the counts of the large encoder.
+pub(crate) fn device(
+    file: Option<&DeviceFile>,
+    counts_per_rev: Option<u32>,
+) -> Result<Device, Failure> {
+    let mut device = match file {
+        None => Device::default(),
+        Some(DeviceFile { name, text }) => {
+            Device::from_toml_str(text).map_err(|error| format!("{name}: {error}"))?
+        }
+    };
+    if let Some(counts) = counts_per_rev {
+        if !COUNTS.contains(&counts) {
+            return Err(Failure::Input(format!(
+                "counts_per_rev={counts}: must be from {} to {}: four times the lines of a quadrature \
+                 encoder",
+                COUNTS.start(),
+                COUNTS.end()
+            )));
+        }
+        device.stages.large.counts_per_rev = counts;
+    }
+    Ok(device)
+}
+
+/// Values of parameters by name, of one estimator.
+pub(crate) type Named = BTreeMap<String, f64>;
+
+/// An estimator with the values of its parameters, for a device at a rate.
+pub(crate) struct Built {
+    pub(crate) kind: &'static Kind,
+    pub(crate) estimator: catalogue::estimators::Estimator,
+    pub(crate) values: Values,
+    /// A line if the values were tuned for another encoder or rate.
+    pub(crate) notes: Vec<String>,
+}
+
+/// The parameters of a presets file and those set by name.
+pub(crate) fn parameters(
+    presets: Option<&PathBuf>,
+    estimator: &str,
+    named: &Named,
+) -> Result<Parameters, Failure> {
+    let mut parameters = Parameters::default();
+    if let Some(path) = presets {
+        parameters.layer(catalogue::parameters::read(path)?);
+    }
+    for (name, value) in named {
+        parameters.set(&format!("{estimator}.{name}={value}"))?;
+    }
+    Ok(parameters)
+}
+
+impl Built {
+    /// Builds the estimator `name` as `host-sim replay` does: for a device with friction.
+    pub(crate) fn new(
+        name: &str,
+        device: &Device,
+        rate_hz: f64,
+        presets: Option<&PathBuf>,
+        named: &Named,
+    ) -> Result<Self, Failure> {
+        let kind = Kind::named(name)?;
+        if !(rate_hz > 0.0 && rate_hz.is_finite()) {
+            return Err(Failure::Input(format!(
+                "rate={rate_hz}: must be positive and finite (Hz)"
+            )));
+        }
+        let parameters = parameters(presets, name, named)?;
+        let setup = Setup::of(device, rate_hz);
+        let values = parameters.values(kind, &setup, PlantKind::Friction);
+        Ok(Self {
+            kind,
+            estimator: kind.build(&setup, &values)?,
+            values,
+            notes: parameters.used_far_away(&[kind], &setup, PlantKind::Friction),
+        })
+    }
+
+    /// The values by name.
+    pub(crate) fn named(&self) -> BTreeMap<&'static str, f64> {
+        let names = self.kind.parameters.iter().map(|p| p.name);
+        names.zip(self.values.iter().copied()).collect()
+    }
+}

@@ -1,0 +1,45 @@
+//! Failures of the crates as exceptions.
+
+use pyo3::PyErr;
+use pyo3::exceptions::PyValueError;
+use terminal::failure::Failure;
+
+/// A `ValueError` with the message of a failure, in the words of this package.
+pub(crate) fn value_error(failure: impl Into<Failure>) -> PyErr {
+    PyValueError::new_err(in_python(&failure.into().to_string()))
+}
+
+/// A message for the command line with keywords of this package instead of options:
+/// `--resample 1000` is `resample=1000`.
+pub(crate) fn in_python(message: &str) -> String {
+    let mut text = String::new();
+    let mut rest = message;
+    while let Some(at) = rest.find("--") {
+        let (before, option) = rest.split_at(at);
+        text.push_str(before);
+        let option = &option[2..];
+        let is_name = |c: char| c.is_ascii_lowercase() || c == '-';
+        let end = option.find(|c: char| !is_name(c)).unwrap_or(option.len());
+        let (name, after) = option.split_at(end);
+        text.push_str(&match name {
+            "set" => "parameters".to_owned(),
+            "column" => "columns".to_owned(),
+            _ => name.replace('-', "_"),
+        });
+        text.push('=');
+        // The value of an option follows after a space or an equals sign; other words do not.
+        let value = after.strip_prefix([' ', '=']);
+        let is_value = |value: &&str| {
+            value.starts_with(|c: char| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '-')
+                || value
+                    .split(' ')
+                    .next()
+                    .is_some_and(|word| word.contains(['=', '.']))
+        };
+        rest = value.filter(is_value).unwrap_or(after);
+    }
+    text.push_str(rest);
+    text.replace("host-sim estimators", "limpid.estimators()")
+        .replace("host-sim scenarios", "limpid.scenarios()")
+        .replace("host-sim ", "limpid.")
+}

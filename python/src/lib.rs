@@ -1,0 +1,34 @@
+//! The module `limpid._limpid`: the crates of this workspace for Python.
+//!
+//! A function here reads arrays and keywords, calls the crate that has the algorithm, and returns arrays.
+//! The package `limpid` in the folder beside has the documentation for users.
+
+#![allow(
+    clippy::needless_pass_by_value,
+    clippy::too_many_arguments,
+    reason = "arguments and keywords of Python come as owned values"
+)]
+
+mod catalogue_lists;
+mod columns;
+mod device;
+mod error;
+mod log;
+mod replay;
+mod stream;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _limpid {
+    #[pymodule_export]
+    use super::catalogue_lists::{device, estimators, parameters, scenarios};
+    #[pymodule_export]
+    use super::columns::clock;
+    #[pymodule_export]
+    use super::log::read_log;
+    #[pymodule_export]
+    use super::replay::replay;
+    #[pymodule_export]
+    use super::stream::Estimator;
+}

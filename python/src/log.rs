@@ -1,0 +1,91 @@
+//! Logs, read as the commands read them.
+
+use std::path::PathBuf;
+
+use numpy::IntoPyArray;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use recordings::arguments::{DeviceFile as NoFile, RecordingOptions};
+use recordings::log::{Log, short_name};
+use recordings::recording::Recording;
+use terminal::failure::Failure;
+
+use crate::device::{DeviceFile, device};
+use crate::error::{in_python, value_error};
+
+/// Reads a log; the keywords of `limpid.Recording`.
+#[pyfunction]
+#[pyo3(signature = (path, columns, modulus, row_rate, resample, counts_per_rev, device))]
+pub(crate) fn read_log<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    columns: Vec<String>,
+    modulus: Vec<String>,
+    row_rate: Option<f64>,
+    resample: Option<f64>,
+    counts_per_rev: Option<u32>,
+    device: Option<DeviceFile>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let options = RecordingOptions {
+        columns,
+        modulus,
+        row_rate,
+        resample,
+    };
+    let given = device.is_some() || counts_per_rev.is_some();
+    let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
+    // The name of a missing file is in the error of the system.
+    std::fs::metadata(&path)?;
+    let read = py.detach(|| -> Result<_, Failure> {
+        let log = Log::open(&path)?;
+        let known = given.then_some(device.stages.large.counts_per_rev);
+        let (device, stated) =
+            NoFile::default().with_stated_counts(device, std::slice::from_ref(&log), known)?;
+        let recording = options.read(&log, &device)?;
+        Ok((recording, stated, device.stages.large.counts_per_rev))
+    });
+    let (mut recording, stated, counts_per_rev) = read.map_err(value_error)?;
+    let notes = stated
+        .into_iter()
+        .chain(std::mem::take(&mut recording.notes));
+    let notes: Vec<_> = notes.map(|note| in_python(&note)).collect();
+    let fields = fields(py, recording)?;
+    fields.set_item("name", short_name(&path))?;
+    fields.set_item("counts_per_rev", counts_per_rev)?;
+    fields.set_item("notes", notes)?;
+    Ok(fields)
+}
+
+/// The columns of a recording, as keywords of `limpid.Recording`.
+pub(crate) fn fields(py: Python<'_>, recording: Recording) -> PyResult<Bound<'_, PyDict>> {
+    let fields = PyDict::new(py);
+    let trace = recording.trace;
+    fields.set_item("t", recording.t.into_pyarray(py))?;
+    fields.set_item("counts", trace.counts_large.into_pyarray(py))?;
+    if let Some(coupled) = trace.counts_small {
+        fields.set_item("coupled", coupled.into_pyarray(py))?;
+    }
+    if let Some(current) = trace.current {
+        fields.set_item("current", current.into_pyarray(py))?;
+    }
+    if let Some(current) = recording.current_small {
+        fields.set_item("current_small", current.into_pyarray(py))?;
+    }
+    if let Some(edges) = trace.edges {
+        let age = edges
+            .iter()
+            .map(|edge| edge.map_or(f64::NAN, |edge| edge.age_s));
+        let boundary = edges
+            .iter()
+            .map(|edge| edge.map_or(0, |edge| edge.boundary));
+        fields.set_item("edge_age", age.collect::<Vec<_>>().into_pyarray(py))?;
+        fields.set_item(
+            "edge_boundary",
+            boundary.collect::<Vec<_>>().into_pyarray(py),
+        )?;
+    }
+    if let Some(omega) = trace.true_omega {
+        fields.set_item("true_velocity", omega.into_pyarray(py))?;
+    }
+    Ok(fields)
+}

@@ -1,0 +1,92 @@
+//! One estimator over a whole recording.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use experiments::uneven::Chosen;
+use pyo3::prelude::*;
+use recordings::recording::Recording;
+use simulation::device::Device;
+use terminal::failure::Failure;
+
+use crate::columns::Columns;
+use crate::device::{Built, DeviceFile, Named, device};
+use crate::error::{in_python, value_error};
+use crate::stream::{Arrays, Stream, arrays, lack};
+
+/// The arrays, the times if the rows were replaced, the rate, the parameters and the notes.
+type Replayed<'py> = (
+    Arrays<'py>,
+    Option<Vec<f64>>,
+    f64,
+    BTreeMap<&'static str, f64>,
+    Vec<String>,
+);
+
+/// Runs an estimator over a recording as `host-sim replay` does.
+#[pyfunction]
+#[pyo3(signature = (recording, estimator, counts_per_rev, parameters, presets, device, resample))]
+pub(crate) fn replay<'py>(
+    py: Python<'py>,
+    recording: Columns<'py>,
+    estimator: &str,
+    counts_per_rev: Option<u32>,
+    parameters: Named,
+    presets: Option<PathBuf>,
+    device: Option<DeviceFile>,
+    resample: Option<f64>,
+) -> PyResult<Replayed<'py>> {
+    let counts_per_rev = counts_per_rev.or(match device {
+        None => recording.counts_per_rev,
+        Some(_) => None,
+    });
+    let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
+    let name = recording.name.clone();
+    let unchecked = recording.copy()?;
+    let (reports, built, recording, notes) = py.detach(|| {
+        let recording = unchecked.recording().map_err(value_error)?;
+        let prepared = prepared(recording, &name, &device, resample, estimator);
+        let (recording, mut notes) = prepared.map_err(value_error)?;
+        let rate_hz = recording.trace.rate_hz;
+        let built = Built::new(estimator, &device, rate_hz, presets.as_ref(), &parameters);
+        let built = built.map_err(value_error)?;
+        lack(built.kind, &recording.trace, &name).map_err(value_error)?;
+        notes.extend(built.notes.iter().cloned());
+        let mut stream = Stream::new(built.estimator.clone());
+        let look = || Python::attach(|py| py.check_signals());
+        let reports = stream.run(&recording.trace, look)?;
+        PyResult::Ok((reports, built, recording, notes))
+    })?;
+    Ok((
+        arrays(py, reports),
+        resample.map(|_| recording.t),
+        recording.trace.rate_hz,
+        built.named(),
+        notes.iter().map(|note| in_python(note)).collect(),
+    ))
+}
+
+/// The recording with unwrapped counts and, if asked for, even rows, and what is said about it.
+fn prepared(
+    mut recording: Recording,
+    name: &str,
+    device: &Device,
+    resample: Option<f64>,
+    estimator: &str,
+) -> Result<(Recording, Vec<String>), Failure> {
+    let kind = catalogue::estimators::Kind::named(estimator)?;
+    let mut notes = recording.unwrap_counts(device);
+    if let Some(hz) = resample {
+        notes.extend(recording.unevenness());
+        recording.resample(hz, name)?;
+        return Ok((recording, notes));
+    }
+    if recording.trace.periods.is_none() && recording.uneven_steps == 0 {
+        return Ok((recording, notes));
+    }
+    recording.check_times(name)?;
+    let uneven = recording.unevenness();
+    let chosen = Chosen::new(&[kind], true, &recording.trace, name, uneven.as_deref())?;
+    notes.extend(uneven.map(|uneven| chosen.note(&recording.trace, &uneven)));
+    Ok((recording, notes))
+}

@@ -1,0 +1,130 @@
+"""Wrong arguments are refused with a line that names the argument and the remedy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import limpid
+
+COUNTS = np.arange(100)
+CURRENT = np.zeros(100)
+
+
+def replay(**arguments):
+    return limpid.replay(**{"counts": COUNTS, "rate": 1000, **arguments})
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"counts": COUNTS / 2}, ["counts: has the type float64; pass integers", "numpy.rint(counts)"]),
+        ({"counts": COUNTS > 5}, ["counts: has the type bool"]),
+        ({"counts": np.full(100, np.nan)}, ["counts: has the type float64"]),
+        ({"counts": COUNTS.reshape(10, 10)}, ["counts: has the shape (10, 10); pass one dimension"]),
+        ({"counts": np.array(5)}, ["counts: has the shape ()"]),
+        ({"counts": [[1, 2], [3]]}, ["counts: not an array of numbers"]),
+        ({"counts": []}, ["counts: is empty"]),
+        ({"counts": ["a", "b"]}, ["counts: has the type"]),
+        ({"current": CURRENT[:50]}, ["current: has 50 rows where counts has 100; pass columns of equal length"]),
+        ({"current": np.r_[CURRENT[:99], np.nan]}, ["current: row 99 is nan; remove the row, or fill it", "(A)"]),
+        ({"current": np.r_[np.inf, CURRENT[:99]]}, ["current: row 0 is inf"]),
+        ({"current": ["x"] * 100}, ["current: has the type", "(A)"]),
+        ({"coupled": COUNTS / 2}, ["coupled: has the type float64"]),
+        ({"edge_age": CURRENT}, ["edge_age and edge_boundary: pass both or neither"]),
+        ({"edge_age": CURRENT - 1, "edge_boundary": COUNTS}, ["edge_age: row 0 is -1.0", "not negative (s)"]),
+        ({"rate": None}, ["rate and t: pass one of them"]),
+        ({"t": COUNTS / 1000}, ["rate and t: pass one of them"]),
+        ({"rate": 0}, ["rate=0: must be positive and finite (Hz)"]),
+        ({"rate": float("nan")}, ["rate=nan: must be positive and finite (Hz)"]),
+        ({"rate": None, "t": COUNTS[::-1] / 1000}, ["row 1: column t: 0.098 s is before the 0.099 s above it"]),
+        ({"rate": None, "t": COUNTS.astype(float)}, ["1 Hz", "not in ms or us"]),
+        ({"rate": None, "t": np.r_[np.nan, COUNTS[:99]]}, ["t: row 0 is nan", "(s)"]),
+        ({"estimator": "imn"}, ["'imn'; did you mean imm?"]),
+        ({"estimator": "imm-motor"}, ["imm-motor needs the current of the large motor: pass current"]),
+        ({"estimator": "observer", "current": CURRENT}, ["the counts of the small encoder: pass coupled"]),
+        ({"estimator": "m-over-t"}, ["pass edge_age and edge_boundary"]),
+        ({"estimator": "pll", "parameters": {"cutoff": 1}}, ["pll has no parameter 'cutoff'; there are bandwidth_hz"]),
+        ({"estimator": "pll", "parameters": {"bandwidth_hz": -1}}, ["pll.bandwidth_hz = -1", "Hz"]),
+        ({"estimator": "pll", "parameters": {"bandwidth_hz": np.nan}}, ["pll.bandwidth_hz = NaN"]),
+        ({"estimator": "pll", "parameters": {"bandwidth_hz": 900}}, ["pll at 1000 Hz"]),
+        ({"estimator": "imm", "parameters": {"x": 1}}, ["imm has no parameter 'x': it has none at all"]),
+        ({"counts_per_rev": 3}, ["counts_per_rev=3: must be from 16 to 4000000"]),
+        ({"device": {"large": {"inertia": 1}}}, ["device: ", "inertia"]),
+        ({"resample": -5}, ["resample=-5"]),
+    ],
+)
+def test_replay_refuses(arguments, said):
+    with pytest.raises(ValueError) as error:
+        replay(**arguments)
+    text = str(error.value)
+    for part in said:
+        assert part in text
+    assert "--" not in text and "\n" not in text
+
+
+def test_estimator_that_needs_a_constant_period_is_refused_on_uneven_rows():
+    t = np.cumsum(np.random.default_rng(5).uniform(0.5e-3, 1.5e-3, 100))
+    with pytest.raises(ValueError, match="foaw-end-fit needs a constant period: add resample=") as error:
+        replay(rate=None, t=t, estimator="foaw-end-fit")
+    assert "or name one of finite-difference" in str(error.value)
+
+
+def test_recording_has_its_own_columns():
+    recording = limpid.Recording(COUNTS, 1000)
+    with pytest.raises(ValueError, match="the recording has its own"):
+        limpid.replay(recording, 1000)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "kind", "said"),
+    [
+        ({"count": 1.5}, TypeError, "count: must be an integer; round a float"),
+        ({"count": "x"}, TypeError, "count: must be an integer"),
+        ({"count": 1, "dt": 0.001}, ValueError, "make it with varying=True"),
+        ({"count": 1, "current": float("nan")}, ValueError, "current=NaN: must be finite (A)"),
+        ({"count": 1, "edge_age": 0.0}, ValueError, "edge_age and edge_boundary: give both or neither"),
+        ({"count": 1, "edge_age": -1.0, "edge_boundary": 2}, ValueError, "edge_age=-1: must be finite"),
+    ],
+)
+def test_update_refuses(arguments, kind, said):
+    estimator = limpid.Estimator("pll", rate=1000)
+    with pytest.raises(kind) as error:
+        estimator.update(**arguments)
+    assert said in str(error.value)
+
+
+def test_estimator_refuses():
+    for arguments, said in (
+        ({"rate": 0.0}, "rate=0: must be positive"),
+        ({"estimator": "nobody"}, "no estimator 'nobody'"),
+        ({"modulus": 1}, "modulus=1: must be from 2 to 2^31"),
+        ({"estimator": "foaw-end-fit", "varying": True}, "foaw-end-fit needs a constant period"),
+    ):
+        with pytest.raises(ValueError) as error:
+            limpid.Estimator(**arguments)
+        assert said in str(error.value)
+    with pytest.raises(ValueError, match="dt: missing"):
+        limpid.Estimator("imm", varying=True).update(1)
+    with pytest.raises(ValueError, match="imm-motor needs the current"):
+        limpid.Estimator("imm-motor").update(1)
+    with pytest.raises(ValueError, match="current: has 1 rows where counts has 2"):
+        limpid.Estimator("imm").process([1, 2], current=[0.0])
+
+
+def test_refused_rows_leave_the_estimator_as_it_was():
+    estimator = limpid.Estimator("finite-difference", rate=1000, modulus=100)
+    estimator.update(99)
+    with pytest.raises(ValueError):
+        estimator.update(1, current=float("inf"))
+    # From 99 to 1 at a modulus of 100: two counts.
+    assert estimator.update(1) == pytest.approx(2 * 2 * np.pi * 1000 / 4096)
+
+
+def test_missing_files_are_os_errors(tmp_path):
+    with pytest.raises(FileNotFoundError):
+        limpid.read_log(tmp_path / "nothing.csv")
+    with pytest.raises(FileNotFoundError):
+        limpid.device(tmp_path / "nothing.toml")
+    with pytest.raises(TypeError, match="give the path of a device file, or a dict"):
+        limpid.device(5)

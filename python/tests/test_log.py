@@ -1,0 +1,122 @@
+"""Logs, read as the commands read them."""
+
+from __future__ import annotations
+
+import csv
+
+import numpy as np
+import pytest
+
+import limpid
+
+
+def column(path, name):
+    with path.open() as file:
+        return [row[name] for row in csv.DictReader(file)]
+
+
+def test_columns_are_those_of_the_file(data):
+    path = data / "back-and-forth.csv"
+    log = limpid.read_log(path, device=data / "hall-90.toml")
+    np.testing.assert_array_equal(log.t, np.array(column(path, "t"), dtype=float))
+    np.testing.assert_array_equal(log.counts.view(np.int32), np.array(column(path, "counts_large"), dtype=int))
+    np.testing.assert_array_equal(log.true_velocity, np.array(column(path, "true_omega"), dtype=float))
+    edges = np.array([float(text) if text else np.nan for text in column(path, "edge_tick")])
+    # A clock of 84 MHz, in a time of a few seconds.
+    np.testing.assert_allclose(log.edge_age, np.maximum(log.t - edges / 84e6, 0), atol=1e-12)
+    assert log.edge_boundary.view(np.int32)[0] == int(column(path, "edge_bound")[0])
+    assert (log.counts_per_rev, log.rate, log.name) == (90, 1000.0, "back-and-forth.csv")
+    assert log.current is None and log.coupled is None
+    assert len(log) == 1501
+    assert "1501 rows at 1000.0 Hz" in repr(log)
+
+
+def motion(t):
+    """Counts and current of the logs: tests/data/logs/README.md."""
+    counts = np.floor(4096 * (0.8 + 0.6 * t + 0.4 * np.sin(2 * np.pi * 1.5 * t)))
+    return counts, 0.3 * np.cos(0.05 * 1000 * t)
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "says"),
+    [
+        ("own.csv", {}, None),
+        ("odrive.csv", {"counts_per_rev": 4096}, "read as a log of ODrive"),
+        ("vesc-tool.csv", {}, "read as a log of VESC Tool"),
+        ("moteus-tview.csv", {}, "read as a log of moteus"),
+        ("moteus-python.csv", {}, "read as a log of moteus"),
+        ("simplefoc-monitor.txt", {"row_rate": 1000}, "read as a log of SimpleFOC"),
+        ("absolute-deg.csv", {"columns": {"counts_large": "angle:deg"}}, "counts_large from 'angle' (deg with 4096"),
+        ("no-header.csv", {"columns": {"t": "1:ms", "counts_large": "2:rev"}}, "counts_large from column 2"),
+        ("no-header.csv", {"columns": "t=1:ms,counts_large=2:rev"}, "counts_large from column 2"),
+        ("no-time.csv", {"row_rate": 1000, "columns": ["counts_large=encoder"]}, None),
+    ],
+)
+def test_logs_have_the_motion_that_they_were_made_from(name, options, says, data):
+    log = limpid.read_log(data / "logs" / name, **options)
+    t = np.arange(240) / 1000
+    counts, current = motion(t)
+    np.testing.assert_allclose(log.t - log.t[0], t, atol=1e-6)
+    # Logs in turns and degrees round the count, by the digits that they have; whole turns may be left out.
+    off = log.counts.view(np.int32) - counts
+    assert off.std() <= 0.5 and off[0] % 4096 in (0, 1, 4095)
+    if log.current is not None:
+        np.testing.assert_allclose(log.current, current, atol=2e-3)
+    assert says is None or any(says in note for note in log.notes)
+    assert log.counts_per_rev == 4096
+
+
+def test_absolute_encoder_is_unwrapped(data):
+    path = data / "logs" / "absolute-4096.csv"
+    log = limpid.read_log(path)
+    raw = np.array(column(path, "counts_large"), dtype=int)
+    assert np.abs(np.diff(raw)).max() > 3000
+    np.testing.assert_array_equal(log.counts % 4096, raw)
+    assert np.abs(np.diff(log.counts.view(np.int32))).max() < 100
+    by_hand = limpid.read_log(data / "logs" / "absolute-3600.csv", modulus=3600)
+    assert np.abs(np.diff(by_hand.counts.view(np.int32))).max() < 100
+
+
+def test_rows_are_resampled(data):
+    path = data / "logs" / "uneven.csv"
+    log = limpid.read_log(path, resample=500)
+    assert log.rate == 500
+    assert np.diff(log.t) == pytest.approx(0.002)
+    with pytest.raises(ValueError, match="needs a constant period: add resample="):
+        limpid.replay(limpid.read_log(path), estimator="foaw-end-fit")
+    assert len(limpid.replay(log, estimator="foaw-end-fit").velocity) == len(log)
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("unknown-names.csv", ["found: stamp; shaft; speed", "columns='t=stamp:s,"]),
+        ("no-header.csv", ["2 columns of numbers", "columns=t=1:s,counts_large=2:counts"]),
+        ("utf-16.csv", ["line 1", "UTF-16; save it in UTF-8"]),
+        ("not-a-number.csv", ["line 7: column counts_large: 'n/a' is not a number"]),
+        ("time-goes-back.csv", ["line 4: column t: 0.0005 s is before the 0.001 s"]),
+        ("seconds-in-ms.csv", ["column t: rows 1 s apart", "columns=t=NAME:ms"]),
+        ("simplefoc-monitor.txt", ["SimpleFOC", "row_rate=HZ"]),
+        ("broken.jsonl", ["line 2: no JSON object; remove the line"]),
+    ],
+)
+def test_logs_are_refused_with_line_and_remedy(name, said, data):
+    with pytest.raises(ValueError) as error:
+        limpid.read_log(data / "logs" / name)
+    text = str(error.value)
+    for part in said:
+        assert part in text
+    assert "--" not in text
+
+
+def test_wrong_options_are_refused(data):
+    own = data / "logs" / "own.csv"
+    for options, said in (
+        ({"columns": {"time": "t"}}, "columns=time=t: 'time' is no column of a recording"),
+        ({"modulus": 1}, "modulus=1: '1' is no number of counts from 2 to 2^31"),
+        ({"row_rate": 0.0}, "row_rate=0: the rate of the rows must be positive"),
+        ({"resample": 1e9}, "resample=1000000000"),
+    ):
+        with pytest.raises(ValueError) as error:
+            limpid.read_log(own, **options)
+        assert said in str(error.value)
