@@ -14,6 +14,7 @@ pub mod replay;
 pub mod robust;
 pub mod rows;
 pub mod sensitivity;
+pub mod simulated;
 pub mod table;
 pub mod transparency;
 pub mod tune;

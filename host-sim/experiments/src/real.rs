@@ -13,3 +13,4 @@ pub mod rest;
 pub mod run;
 pub mod sources;
 pub mod table;
+pub mod wanted;

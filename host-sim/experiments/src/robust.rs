@@ -14,7 +14,7 @@ use haptic_control::{LoopPoles, SceneKind};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::closed_loop::{FeedbackEncoder, Loop, named, usual};
+use crate::closed_loop::{FeedbackEncoder, Loop, environments_with, named, usual};
 use catalogue::estimators::Setup;
 use catalogue::estimators::{Estimator, Kind};
 use catalogue::parameters::{Parameters, PlantKind};
@@ -71,6 +71,25 @@ impl Settings {
     pub fn values(kind: &Kind, device: &Device, rate_hz: f64, parameters: &Parameters) -> Vec<f64> {
         let setup = Setup::of(device, rate_hz);
         parameters.values(kind, &setup, PlantKind::Friction)
+    }
+
+    /// Names of the scenes `names` without duplicates; of all scenes that the estimator `kind` can run in if
+    /// no name is given.
+    ///
+    /// # Errors
+    /// One line that names an unknown scene.
+    pub fn scene_names(names: &[String], kind: &'static Kind) -> Result<Vec<String>, String> {
+        let mut scenes: Vec<SceneKind> = Vec::new();
+        for name in names {
+            let scene = named(name, SceneKind::environments())?;
+            if !scenes.contains(&scene) {
+                scenes.push(scene);
+            }
+        }
+        if scenes.is_empty() {
+            scenes.extend(environments_with(kind));
+        }
+        Ok(scenes.iter().map(ToString::to_string).collect())
     }
 
     /// The scenes.

@@ -7,6 +7,7 @@
 mod image_section;
 mod logs;
 mod plan;
+mod recipe;
 mod search;
 
 use std::collections::BTreeMap;
@@ -28,6 +29,7 @@ use terminal::failure::Failure;
 pub use image_section::image_section;
 pub use logs::{LogRow, LogTuning, tune_on_logs};
 pub use plan::{Group, Plan};
+pub use recipe::Recipe;
 
 use search::{Least, best_values, ends_of_ranges};
 

@@ -1,19 +1,14 @@
 //! `host-sim coarsen`.
 
-use std::fs;
 use std::path::PathBuf;
 
 use clap::Args;
 
-use experiments::real::coarsen::Coarse;
-use experiments::real::fine::{Fine, decompressed};
-use experiments::real::sources::Source;
+use experiments::real::wanted::Wanted;
 use recordings::arguments::DeviceFile;
 use recordings::recording::counts_per_rev_line;
 use terminal::failure::Failure;
 use terminal::output::write_whole;
-
-use recordings::log::{called, read};
 
 #[derive(Debug, Args)]
 pub(super) struct Coarsen {
@@ -58,77 +53,16 @@ pub(super) struct Coarsen {
 }
 
 pub(super) fn run(options: &Coarsen) -> Result<(), Failure> {
-    let name = called(&options.fine);
-    rate(options.rate)?;
-    phase(options.phase)?;
-    let seconds = options.seconds.map_or(Ok(f64::INFINITY), seconds)?;
-    let known = match options.fine_counts_per_rev {
-        None => Source::of(&options.fine)?.map(|source| source.counts_per_rev),
-        given => given,
-    };
-    if options.fine.as_os_str() != "-"
-        && let Err(error) = fs::metadata(&options.fine)
-    {
-        return Err(Failure::Input(format!("{name}: cannot read: {error}")));
-    }
-    let fine_counts_per_rev = known.ok_or_else(|| {
-        Failure::Input(format!(
-            "{name}: its counts per revolution are not known; give --fine-counts-per-rev, or list the \
-             file in a recordings.toml beside it"
-        ))
-    })?;
-    let coarse = Coarse {
-        fine_counts_per_rev,
+    let wanted = Wanted {
         counts_per_rev: options.counts_per_rev,
+        fine_counts_per_rev: options.fine_counts_per_rev,
         rate_hz: options.rate,
         phase: options.phase,
+        seconds: options.seconds,
         torque_constant: options.device.load()?.stages.large.torque_constant,
     };
-    let text = decompressed(read(&options.fine)?, &name)?;
-    let fine = Fine::parse(&text, &name, seconds)?;
-    let mut text = counts_per_rev_line(coarse.counts_per_rev).into_bytes();
-    text.extend(coarse.recording(&fine, &name)?.to_csv());
+    let recording = wanted.of_file(&options.fine)?;
+    let mut text = counts_per_rev_line(options.counts_per_rev).into_bytes();
+    text.extend(recording.to_csv());
     write_whole(&options.out, &text)
-}
-
-/// A rate that a recording can have.
-///
-/// # Errors
-/// [`Failure::Input`] that names the option.
-pub(super) fn rate(hz: f64) -> Result<f64, Failure> {
-    in_range("--rate", hz, [10.0, 1e5], "Hz")
-}
-
-/// A phase.
-///
-/// # Errors
-/// As [`rate`].
-pub(super) fn phase(counts: f64) -> Result<f64, Failure> {
-    in_range("--phase", counts, [-1e6, 1e6], "counts")
-}
-
-/// A duration.
-///
-/// # Errors
-/// As [`rate`].
-pub(super) fn seconds(s: f64) -> Result<f64, Failure> {
-    in_range("--seconds", s, [0.2, 1e5], "s")
-}
-
-/// A value of an option between two bounds.
-///
-/// # Errors
-/// As [`rate`].
-pub(super) fn in_range(
-    option: &str,
-    value: f64,
-    [low, high]: [f64; 2],
-    unit: &str,
-) -> Result<f64, Failure> {
-    match (low..=high).contains(&value) {
-        true => Ok(value),
-        false => Err(Failure::Input(format!(
-            "{option} {value}: must be from {low} to {high} {unit}"
-        ))),
-    }
 }

@@ -7,6 +7,7 @@ use clap::Args;
 use catalogue::estimators::Setup;
 use catalogue::parameters::PlantKind;
 use estimator_core::Hertz;
+use experiments::real::wanted::in_range;
 use experiments::replay;
 use recordings::arguments::{DeviceFile, RecordingOptions, Whole};
 use recordings::recording::{BoardColumns, Recording};
@@ -17,7 +18,6 @@ use terminal::failure::Failure;
 use terminal::output::{note, write_whole};
 
 use super::arguments::{ParameterOptions, kinds};
-use super::coarsen::in_range;
 use super::replay::About;
 use super::uneven::Chosen;
 use recordings::log::{Log, short_name};

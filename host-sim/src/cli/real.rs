@@ -7,6 +7,7 @@ use clap::Args;
 use experiments::real::cases::{Case, Recordings};
 use experiments::real::run::{Row, Settings, run as run_all};
 use experiments::real::table::table;
+use experiments::real::wanted::{phase, rate, seconds};
 use experiments::rows::{csv, json};
 use experiments::table::layout::{NARROW, terminal_width};
 use recordings::arguments::DeviceFile;
@@ -15,7 +16,6 @@ use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, print_bytes, write_whole};
 
 use super::arguments::{ParameterOptions, kinds, rates};
-use super::coarsen::{phase, rate, seconds};
 use super::page::{self, one_to_stdout, progress};
 
 /// Default folder of the recordings.

@@ -5,13 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use catalogue::estimators::Kind;
-use experiments::closed_loop::{environments_with, named};
 use experiments::robust::row::RobustRow;
 use experiments::robust::variation::Subject;
 use experiments::robust::{Settings, summary};
 use experiments::rows;
 use experiments::table::layout::{NARROW, terminal_width};
-use haptic_control::SceneKind;
 use recordings::arguments::DeviceFile;
 use report::{self, Printout};
 use shards::Part;
@@ -106,19 +104,9 @@ fn settings(options: &Robust) -> Result<Settings, Failure> {
     let kind = Kind::named(&options.estimator)?;
     let device = options.device.load()?;
     let parameters = options.parameters.load()?;
-    let mut scenes: Vec<SceneKind> = Vec::new();
-    for name in &options.scenes {
-        let scene = named(name, SceneKind::environments())?;
-        if !scenes.contains(&scene) {
-            scenes.push(scene);
-        }
-    }
-    if scenes.is_empty() {
-        scenes.extend(environments_with(kind));
-    }
     Ok(Settings {
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        scenes: scenes.iter().map(ToString::to_string).collect(),
+        scenes: Settings::scene_names(&options.scenes, kind)?,
         rate_hz: options.rate,
         estimator: kind.name.to_owned(),
         values: Settings::values(kind, &device, options.rate, &parameters),

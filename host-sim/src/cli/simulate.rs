@@ -3,16 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use haptic_control::{LoopPoles, SceneKind};
 
-use catalogue::estimators::Kind;
-use catalogue::parameters::Parameters;
-use experiments::closed_loop::{FeedbackEncoder, Hand, Loop, estimator, named, usual};
+use experiments::closed_loop::Hand;
+use experiments::simulated::Run;
 use recordings::arguments::DeviceFile;
-use recordings::recording::Recording;
-use simulation::scenario::ScenarioName;
-use simulation::simulate::{simulate, ticks};
-use simulation::trace::Columns;
 use terminal::failure::Failure;
 use terminal::output::write_whole;
 
@@ -66,71 +60,22 @@ pub(super) struct Simulate {
     out: PathBuf,
 }
 
-/// Default duration of a scene, s: a little longer than the excitation.
-const EXCITE_S: f64 = 16.0;
-
 pub(super) fn run(options: &Simulate) -> Result<(), Failure> {
+    let run = Run {
+        device: options.device.load()?,
+        rate_hz: options.rate,
+        seconds: options.seconds,
+        seed: options.seed,
+    };
+    let hand = match options.hand {
+        Holder::Still => Hand::Still,
+        Holder::Clamp => Hand::Clamp,
+        Holder::Nobody => Hand::Gone(0.0),
+        Holder::Moving => Hand::Moving,
+    };
     let recording = match &options.scenario {
-        Some(name) => of_scenario(options, name.parse()?)?,
-        None => of_scene(options)?,
+        Some(name) => run.scenario(name)?,
+        None => run.scene(options.scene.as_deref(), hand, options.every as usize)?,
     };
     write_whole(&options.out, &recording.to_csv())
-}
-
-fn of_scenario(options: &Simulate, name: ScenarioName) -> Result<Recording, Failure> {
-    let device = options.device.load()?;
-    let seconds = options.seconds.unwrap_or_else(|| name.default_seconds());
-    let columns = Columns {
-        counts_small: true,
-        edges: true,
-    };
-    let trace = simulate(&device, name, options.rate, options.seed, seconds, columns)?;
-    Ok(Recording {
-        t: (0..trace.len()).map(|k| k as f64 / options.rate).collect(),
-        trace,
-        current_small: None,
-        uneven_steps: 0,
-        notes: Vec::new(),
-    })
-}
-
-fn of_scene(options: &Simulate) -> Result<Recording, Failure> {
-    let device = options.device.load()?;
-    let scene = match options.scene.as_deref() {
-        None => SceneKind::Excite,
-        // Scenes that need commands of the host are not offered.
-        Some(name) => named(
-            name,
-            [SceneKind::Excite]
-                .into_iter()
-                .chain(SceneKind::environments()),
-        )?,
-    };
-    let ticks = ticks(options.rate, options.seconds.unwrap_or(EXCITE_S))?;
-    let parameters = Parameters::default();
-    let estimator = |counts_per_rev| {
-        let kind = Kind::named("kalman-triple-steady")?;
-        estimator(kind, &device, counts_per_rev, options.rate, &parameters)
-    };
-    let assumed = device.stages;
-    let run = Loop {
-        assumed,
-        scene: usual(scene, &assumed, options.rate)?,
-        hand: match options.hand {
-            Holder::Still => Hand::Still,
-            Holder::Clamp => Hand::Clamp,
-            Holder::Nobody => Hand::Gone(0.0),
-            Holder::Moving => Hand::Moving,
-        },
-        rate_hz: options.rate,
-        seed: options.seed,
-        large: estimator(device.stages.large.counts_per_rev)?,
-        handle: estimator(device.stages.small.counts_per_rev)?,
-        encoder: FeedbackEncoder::Own,
-        poles: LoopPoles::DEFAULT,
-        late_ticks: 0,
-        offsets_a: [0.0; 2],
-        device,
-    };
-    Ok(run.record(ticks, options.every as usize)?)
 }

@@ -6,10 +6,10 @@ use clap::Args;
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, Presets};
-use experiments::tune::{FIRST_SEED, Group, Plan, Tuned, image_section, tune_on_logs};
+use experiments::tune::{FIRST_SEED, Group, Plan, Recipe, Tuned, image_section, tune_on_logs};
 use recordings::arguments::{DeviceFile, RecordingOptions};
 use shards::{Experiment as _, Part};
-use simulation::scenario::{Role, ScenarioName};
+use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, print_bytes, write_whole};
 
@@ -27,33 +27,6 @@ const PARTS: &str = "target/tune";
 
 /// Text before the progress bar.
 const DOING: &str = "tuning";
-
-/// Defaults of the tuning options for one kind of estimators.
-struct Recipe {
-    roles: &'static [Role],
-    seeds: u64,
-    seconds: f64,
-    perturbed: bool,
-}
-
-impl Recipe {
-    /// For filters: the paper's experiment.
-    const PLAIN: Self = Self {
-        roles: &[Role::Tuning],
-        seeds: 3,
-        seconds: 10.0,
-        perturbed: false,
-    };
-    /// For observers. Their error never leaves the haptic interval in the paper's experiment, so
-    /// that experiment does not discriminate between parameters. Observers use constants of the
-    /// device, which may be wrong.
-    const OBSERVER: Self = Self {
-        roles: &[Role::Tuning, Role::Judging],
-        seeds: 1,
-        seconds: 4.0,
-        perturbed: true,
-    };
-}
 
 #[derive(Debug, Args)]
 pub(super) struct Tune {

@@ -1,0 +1,108 @@
+//! A coarse recording that a user asks for, from the file of a fine one.
+
+use std::fs;
+use std::path::Path;
+
+use recordings::log::{called, read};
+use recordings::recording::Recording;
+use terminal::failure::Failure;
+
+use super::coarsen::Coarse;
+use super::fine::{Fine, decompressed};
+use super::sources::Source;
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Wanted {
+    /// Counts per revolution of the coarse encoder.
+    pub counts_per_rev: u32,
+    /// Counts per revolution of the fine encoder; `None` for those in the list beside the file.
+    pub fine_counts_per_rev: Option<u32>,
+    /// Rate of the ticks, Hz.
+    pub rate_hz: f64,
+    /// Position of the coarse encoder's boundaries, coarse counts.
+    pub phase: f64,
+    /// The part that is used, s from its start; `None` for all.
+    pub seconds: Option<f64>,
+    /// Torque constant that turns the motor's torque into its current, N.m/A.
+    pub torque_constant: f64,
+}
+
+impl Wanted {
+    /// The coarse recording of the fine one in the file `path`, which may be compressed by gzip.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that names the option, or the file and what is wrong.
+    pub fn of_file(&self, path: &Path) -> Result<Recording, Failure> {
+        let name = called(path);
+        rate(self.rate_hz)?;
+        phase(self.phase)?;
+        let seconds = self.seconds.map_or(Ok(f64::INFINITY), seconds)?;
+        let known = match self.fine_counts_per_rev {
+            None => Source::of(path)?.map(|source| source.counts_per_rev),
+            given => given,
+        };
+        if path.as_os_str() != "-"
+            && let Err(error) = fs::metadata(path)
+        {
+            return Err(Failure::Input(format!("{name}: cannot read: {error}")));
+        }
+        let fine_counts_per_rev = known.ok_or_else(|| {
+            Failure::Input(format!(
+                "{name}: its counts per revolution are not known; give --fine-counts-per-rev, or list the \
+                 file in a recordings.toml beside it"
+            ))
+        })?;
+        let coarse = Coarse {
+            fine_counts_per_rev,
+            counts_per_rev: self.counts_per_rev,
+            rate_hz: self.rate_hz,
+            phase: self.phase,
+            torque_constant: self.torque_constant,
+        };
+        let text = decompressed(read(path)?, &name)?;
+        coarse.recording(&Fine::parse(&text, &name, seconds)?, &name)
+    }
+}
+
+/// A rate that a recording can have.
+///
+/// # Errors
+/// [`Failure::Input`] that names the option.
+pub fn rate(hz: f64) -> Result<f64, Failure> {
+    in_range("--rate", hz, [10.0, 1e5], "Hz")
+}
+
+/// A phase.
+///
+/// # Errors
+/// As [`rate`].
+pub fn phase(counts: f64) -> Result<f64, Failure> {
+    in_range("--phase", counts, [-1e6, 1e6], "counts")
+}
+
+/// A duration.
+///
+/// # Errors
+/// As [`rate`].
+pub fn seconds(s: f64) -> Result<f64, Failure> {
+    in_range("--seconds", s, [0.2, 1e5], "s")
+}
+
+/// A value of an option between two bounds.
+///
+/// # Errors
+/// As [`rate`].
+pub fn in_range(
+    option: &str,
+    value: f64,
+    [low, high]: [f64; 2],
+    unit: &str,
+) -> Result<f64, Failure> {
+    match (low..=high).contains(&value) {
+        true => Ok(value),
+        false => Err(Failure::Input(format!(
+            "{option} {value}: must be from {low} to {high} {unit}"
+        ))),
+    }
+}
