@@ -10,6 +10,18 @@ True
 """
 
 from ._estimator import Estimator, Reports
+from ._experiments import (
+    Ranked,
+    Recommendation,
+    Tuning,
+    TuningRow,
+    coarsen,
+    recommend,
+    score_fields,
+    scores,
+    simulate,
+    tune,
+)
 from ._lists import EstimatorInfo, ParameterInfo, device, estimators, parameters, scenarios
 from ._recording import Recording
 from ._replay import Replay, read_log, replay
@@ -18,13 +30,23 @@ __all__ = [
     "Estimator",
     "EstimatorInfo",
     "ParameterInfo",
+    "Ranked",
+    "Recommendation",
     "Recording",
     "Replay",
     "Reports",
+    "Tuning",
+    "TuningRow",
+    "coarsen",
     "device",
     "estimators",
     "parameters",
     "read_log",
+    "recommend",
     "replay",
     "scenarios",
+    "score_fields",
+    "scores",
+    "simulate",
+    "tune",
 ]

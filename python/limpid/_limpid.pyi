@@ -117,3 +117,65 @@ class Estimator:
         edge_boundary: NDArray[np.uint32] | None,
         dt: NDArray[np.float64] | None,
     ) -> _Reports: ...
+
+def simulate(
+    scenario: str | None,
+    scene: str | None,
+    rate: float,
+    seconds: float | None,
+    seed: int,
+    hand: str,
+    every: int,
+    counts_per_rev: int | None,
+    device: _Device | None,
+) -> dict[str, Any]: ...
+def coarsen(
+    path: _Path,
+    counts_per_rev: int,
+    fine_counts_per_rev: int | None,
+    rate: float,
+    phase: float,
+    seconds: float | None,
+    device: _Device | None,
+) -> dict[str, Any]: ...
+def scores(
+    velocity: NDArray[np.float32], true_velocity: NDArray[np.float64], rate: float, device: _Device | None
+) -> dict[str, float]: ...
+def score_fields() -> list[tuple[str, str, str]]: ...
+def recommend(
+    logs: list[Recording],
+    instructions: float,
+    counts_per_rev: int | None,
+    presets: _Path | None,
+    device: _Device | None,
+) -> tuple[str, str, list[str]]: ...
+def tune_logs(
+    logs: list[Recording],
+    estimators: list[str],
+    counts_per_rev: int | None,
+    presets: _Path | None,
+    device: _Device | None,
+) -> tuple[str, list[tuple[str, tuple[float, float], tuple[float, float], bool]], list[str]]: ...
+def tune_scenarios(
+    rate: float,
+    estimators: list[str],
+    scenarios: list[str],
+    seeds: int | None,
+    seconds: float | None,
+    perturbed: bool | None,
+    friction: bool,
+    counts_per_rev: int | None,
+    device: _Device | None,
+) -> tuple[str, list[str]]: ...
+def values_of_presets(text: str) -> list[tuple[str, dict[str, float]]]: ...
+def robust_shard(
+    shard: str,
+    scenes: list[str],
+    estimator: str,
+    rate: float,
+    devices: int,
+    seed: int,
+    seconds: float,
+    device: _Device | None,
+) -> bytes: ...
+def robust_merge(paths: list[_Path]) -> tuple[bytes, bytes, str, str | None]: ...

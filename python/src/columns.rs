@@ -52,6 +52,11 @@ impl Columns<'_> {
 }
 
 impl Unchecked {
+    /// Name in messages.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
     /// The recording, with its rate and its periods.
     pub(crate) fn recording(self) -> Result<Recording, Failure> {
         if let Some(t) = self.t {

@@ -9,12 +9,17 @@
     reason = "arguments and keywords of Python come as owned values"
 )]
 
+mod background;
 mod catalogue_lists;
 mod columns;
 mod device;
 mod error;
 mod log;
+mod logs;
 mod replay;
+mod robust;
+mod scores;
+mod simulate;
 mod stream;
 
 use pyo3::prelude::*;
@@ -28,7 +33,15 @@ mod _limpid {
     #[pymodule_export]
     use super::log::read_log;
     #[pymodule_export]
+    use super::logs::{recommend, tune_logs, tune_scenarios, values_of_presets};
+    #[pymodule_export]
     use super::replay::replay;
+    #[pymodule_export]
+    use super::robust::{robust_merge, robust_shard};
+    #[pymodule_export]
+    use super::scores::{score_fields, scores};
+    #[pymodule_export]
+    use super::simulate::{coarsen, simulate};
     #[pymodule_export]
     use super::stream::Estimator;
 }

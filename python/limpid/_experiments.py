@@ -1,0 +1,332 @@
+"""Experiments: simulated and coarse recordings, scores, a recommendation, tuned parameters."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import _arrays, _limpid
+from ._recording import Recording
+from ._replay import Replay
+
+
+def simulate(
+    scenario: str | None = None,
+    *,
+    scene: str | None = None,
+    rate: float = 10_000.0,
+    seconds: float | None = None,
+    seed: int = 1,
+    hand: str = "still",
+    every: int = 1,
+    counts_per_rev: int | None = None,
+    device: str | PathLike[str] | dict[str, Any] | None = None,
+) -> Recording:
+    """Simulates the dual-stage device and returns what its encoders saw, with the true velocity.
+
+    Parameters
+    ----------
+    scenario
+        Motion in open loop, see :func:`scenarios`. It has every signal that an estimator can need.
+    scene
+        Scene in closed loop instead: ``excite``, ``wall``, ``free-air``, ... [default: excite].
+    rate
+        Control rate, Hz, from 100 to 100000.
+    seconds
+        Duration, s [default: 16; scenarios: 10, heating 60].
+    seed
+        Seed of all random numbers.
+    hand
+        Load on the handle in a scene: ``still``, ``clamp``, ``nobody`` or ``moving``.
+    every
+        Keep only every N-th tick of a scene, 1 to 1000.
+    counts_per_rev
+        Counts per revolution of the large encoder [default: those of the device].
+    device
+        Path of a device file (TOML), or a dict with its sections.
+    """
+    if scenario is not None and scene is not None:
+        raise ValueError("scenario and scene: pass one of them")
+    fields = _limpid.simulate(scenario, scene, rate, seconds, seed, hand, every, counts_per_rev, device)
+    if every == 1:
+        # The rate is known: the times say it less exactly.
+        fields["rate"] = rate
+        del fields["t"]
+    return Recording(**fields)
+
+
+def coarsen(
+    path: str | PathLike[str],
+    counts_per_rev: int,
+    *,
+    rate: float = 1000.0,
+    fine_counts_per_rev: int | None = None,
+    phase: float = 0.37,
+    seconds: float | None = None,
+    device: str | PathLike[str] | dict[str, Any] | None = None,
+) -> Recording:
+    """What an encoder of ``counts_per_rev`` would have seen of the recording of a finer one.
+
+    Parameters
+    ----------
+    path
+        CSV, which may be compressed by gzip, with the columns ``time_s`` (s) and ``fine_count``; optional are
+        ``motor_torque_nm`` (N.m) and ``true_omega_rad_s`` (rad/s).
+    counts_per_rev
+        Counts per revolution of the coarse encoder, at most half of those of the fine one.
+    rate
+        Rate of the rows, Hz, at most that of the fine recording.
+    fine_counts_per_rev
+        Counts per revolution of the fine encoder [default: those in the recordings.toml beside the file].
+    phase
+        Position of the boundaries of the coarse encoder, coarse counts.
+    seconds
+        Part of the recording that is used, s from its start [default: all].
+    device
+        Path of a device file or a dict; its torque constant turns torque into current.
+    """
+    fields = _limpid.coarsen(path, counts_per_rev, fine_counts_per_rev, rate, phase, seconds, device)
+    fields["rate"] = rate
+    del fields["t"]
+    return Recording(**fields)
+
+
+def scores(
+    velocity: _arrays.FloatLike | Replay,
+    true_velocity: _arrays.FloatLike | Recording,
+    rate: float | None = None,
+    *,
+    device: str | PathLike[str] | dict[str, Any] | None = None,
+) -> dict[str, float]:
+    """Scores of a velocity against the true one, by name; see :func:`score_fields`.
+
+    The first 0.1 s is not scored, because every estimator begins at rest.
+
+    Parameters
+    ----------
+    velocity
+        A :class:`Replay`, or velocities, rad/s.
+    true_velocity
+        A :class:`Recording` with its true velocity, or velocities, rad/s.
+    rate
+        Rate of the rows, Hz [default: that of the replay or of the recording].
+    device
+        Device whose haptic interval the distances are from.
+    """
+    if isinstance(velocity, Replay):
+        rate = velocity.rate if rate is None else rate
+        velocity = velocity.velocity
+    if isinstance(true_velocity, Recording):
+        rate = true_velocity.rate if rate is None else rate
+        if true_velocity.true_velocity is None:
+            raise ValueError(f"{true_velocity.name}: has no true velocity; pass it as an array")
+        true_velocity = true_velocity.true_velocity
+    if rate is None:
+        raise ValueError("rate: missing; pass the rate of the rows (Hz)")
+    estimate = np.ascontiguousarray(_arrays.one_dimensional(velocity, "velocity"), dtype=np.float32)
+    truth = _arrays.as_floats(true_velocity, "true_velocity", "rad/s")
+    _arrays.same_rows({"velocity": estimate, "true_velocity": truth})
+    return _limpid.scores(estimate, truth, rate, device)
+
+
+def score_fields() -> dict[str, tuple[str, str]]:
+    """Unit and definition of each score."""
+    return {name: (unit, about) for name, unit, about in _limpid.score_fields()}
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """One estimator on the recordings; ``recommended`` is ``best``, ``cheap`` or None."""
+
+    estimator: str
+    recommended: str | None
+    #: Geometric mean over the recordings of the RMS error in % of finite difference.
+    rms_pct: float
+    #: RMS over the recordings of the RMS error, rad/s.
+    rms_rad_s: float
+    #: Largest 99th percentile of the error's magnitude, rad/s.
+    p99_rad_s: float
+    #: Mean delay, ms.
+    delay_ms: float | None
+    #: RMS of the standard deviation that the estimator reports, rad/s.
+    sd_rad_s: float | None
+    #: Instructions per update on a Cortex-M4: mean and largest; None if they were not measured.
+    instructions_mean: float | None
+    instructions_most: float | None
+    reads: list[str]
+    parameters: dict[str, float]
+    #: Lines of Rust to paste.
+    rust: str
+    #: The scores on each recording.
+    logs: list[dict[str, Any]]
+
+
+@dataclass(frozen=True)
+class Recommendation:
+    """The estimators on recordings of a device, the smallest error first."""
+
+    ranked: list[Ranked]
+    #: The recommendation as text, with the lines of Rust.
+    text: str
+    #: What the scores are against, and what was left out.
+    notes: list[str]
+
+    @property
+    def best(self) -> Ranked:
+        """The most accurate estimator; of equal ones the cheapest."""
+        return next(row for row in self.ranked if row.recommended == "best")
+
+    @property
+    def cheap(self) -> Ranked | None:
+        """The most accurate estimator within the budget of instructions, if it is not the best one."""
+        return next((row for row in self.ranked if row.recommended == "cheap"), None)
+
+
+def _logs(logs: Recording | Iterable[Recording]) -> list[Recording]:
+    recordings = [logs] if isinstance(logs, Recording) else list(logs)
+    if not recordings or not all(isinstance(log, Recording) for log in recordings):
+        raise ValueError("logs: pass a limpid.Recording or several, for example limpid.read_log('motor.csv')")
+    return recordings
+
+
+def _counts_per_rev(logs: list[Recording], given: int | None, device: object) -> int | None:
+    if given is not None or device is not None:
+        return given
+    stated = {log.counts_per_rev for log in logs}
+    if len(stated) > 1:
+        raise ValueError(
+            f"logs: their counts per revolution are {sorted(map(str, stated))}; pass recordings of one encoder, or "
+            "counts_per_rev"
+        )
+    return stated.pop()
+
+
+def recommend(
+    logs: Recording | Iterable[Recording],
+    *,
+    instructions: float = 100.0,
+    counts_per_rev: int | None = None,
+    presets: str | PathLike[str] | None = None,
+    device: str | PathLike[str] | dict[str, Any] | None = None,
+) -> Recommendation:
+    """Ranks the estimators on recordings of one device, as ``cargo sim recommend`` does.
+
+    Without a true velocity the scores are against a reference that is smoothed from the counts in both
+    directions of time.
+
+    Parameters
+    ----------
+    logs
+        A :class:`Recording` or several.
+    instructions
+        Largest number of instructions per update on a Cortex-M4 for the second, cheap estimator.
+    counts_per_rev
+        Counts per revolution [default: those of the recordings, otherwise 4096].
+    presets
+        Path of a file of tuned parameters.
+    device
+        Path of a device file or a dict; without it, estimators with constants of the device are left out.
+    """
+    recordings = _logs(logs)
+    counts_per_rev = _counts_per_rev(recordings, counts_per_rev, device)
+    ranked, text, notes = _limpid.recommend(recordings, instructions, counts_per_rev, presets, device)
+    rows = []
+    for row in json.loads(ranked):
+        cost = row.pop("cost") or {}
+        for name in ("instructions_mean", "instructions_most"):
+            row[name] = cost.get(name)
+        rows.append(Ranked(**row))
+    return Recommendation(rows, text, notes)
+
+
+@dataclass(frozen=True)
+class TuningRow:
+    """RMS errors of one estimator, rad/s, each in the tuned and in the held-out seconds."""
+
+    estimator: str
+    before: tuple[float, float]
+    found: tuple[float, float]
+    #: Whether the parameters are kept as they were: the found ones are not better in the held-out seconds.
+    kept: bool
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """Tuned parameters."""
+
+    #: Values of the parameters of each estimator, for ``parameters=`` of :func:`replay`.
+    parameters: dict[str, dict[str, float]]
+    #: The errors on recordings; empty after tuning on scenarios.
+    rows: list[TuningRow]
+    notes: list[str]
+    #: The text of a presets file, for ``presets=`` and for ``cargo sim --presets``.
+    presets: str
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Writes the presets file."""
+        Path(path).write_text(self.presets, encoding="utf-8")
+
+
+def tune(
+    logs: Recording | Iterable[Recording] | None = None,
+    *,
+    rate: float | None = None,
+    estimators: str | Sequence[str] = (),
+    scenarios: Sequence[str] = (),
+    seeds: int | None = None,
+    seconds: float | None = None,
+    perturbed: bool | None = None,
+    friction: bool = True,
+    counts_per_rev: int | None = None,
+    presets: str | PathLike[str] | None = None,
+    device: str | PathLike[str] | dict[str, Any] | None = None,
+) -> Tuning:
+    """Searches the parameters of estimators on recordings, or on simulated motion, as ``cargo sim tune`` does.
+
+    On recordings, every second of them in turn is tuned on and held out; found parameters are kept if their
+    RMS error in the held-out seconds is smaller. On simulated motion they are compared on a further seed.
+
+    Parameters
+    ----------
+    logs
+        A :class:`Recording` or several, each of at least 4 s; None to tune on scenarios at ``rate``.
+    rate
+        Control rate of the scenarios, Hz.
+    estimators
+        Name or names [default: all that have parameters].
+    scenarios, seeds, seconds, perturbed, friction
+        The simulated motion: names of scenarios, number of seeds, duration of each run (s), whether the
+        constants of the device are wrong too, and whether the motor has friction.
+    counts_per_rev
+        Counts per revolution [default: those of the recordings or of the device, otherwise 4096].
+    presets
+        Path of a presets file from which the search on recordings begins.
+    device
+        Path of a device file (TOML), or a dict with its sections.
+    """
+    names = [estimators] if isinstance(estimators, str) else list(estimators)
+    if (logs is None) == (rate is None):
+        raise ValueError("logs and rate: pass recordings, or the rate at which scenarios are simulated (Hz)")
+    rows: list[Any] = []
+    if logs is None:
+        assert rate is not None
+        if presets is not None:
+            raise ValueError("presets: the search on scenarios begins with the shipped ones; leave it out")
+        text, notes = _limpid.tune_scenarios(
+            rate, names, list(scenarios), seeds, seconds, perturbed, friction, counts_per_rev, device
+        )
+    else:
+        if scenarios or seeds or seconds or perturbed or not friction:
+            raise ValueError("scenarios, seeds, seconds, perturbed, friction: are of simulated motion; leave them out")
+        recordings = _logs(logs)
+        counts_per_rev = _counts_per_rev(recordings, counts_per_rev, device)
+        text, rows, notes = _limpid.tune_logs(recordings, names, counts_per_rev, presets, device)
+    values = {name: dict(values) for name, values in _limpid.values_of_presets(text)}
+    tuned = [TuningRow(name, tuple(before), tuple(found), kept) for name, before, found, kept in rows]
+    return Tuning(values, tuned, notes, text)

@@ -1,0 +1,230 @@
+//! Experiments over recordings in memory: a recommendation, and tuned parameters.
+
+use std::path::PathBuf;
+
+use catalogue::constant_error::ConstantError;
+use catalogue::estimators::Kind;
+use catalogue::parameters::{PlantKind, Presets};
+use experiments::recommend::{Settings, lines, recommend as recommend_for};
+use experiments::tune::{Recipe, TuningSet, tune as tune_simulated, tune_on_logs};
+use experiments::uneven::Chosen;
+use pyo3::prelude::*;
+use recordings::recording::Recording;
+use simulation::device::Device;
+use simulation::scenario::ScenarioName;
+use simulation::simulate;
+use terminal::failure::Failure;
+
+use crate::background::interruptible;
+use crate::columns::{Columns, Unchecked};
+use crate::device::Named;
+use crate::device::{DeviceFile, device, parameters as of_presets};
+use crate::error::{in_python, value_error};
+
+/// Recordings with their names.
+type Logs = Vec<(String, Recording)>;
+
+/// The recordings and what their reader says, for the estimators `kinds`. Those that the user did not
+/// name and that need a constant period are left out on uneven rows.
+fn read(
+    columns: Vec<Unchecked>,
+    device: &Device,
+    mut kinds: Vec<&'static Kind>,
+    are_named: bool,
+) -> Result<(Logs, Vec<&'static Kind>, Vec<String>), Failure> {
+    let mut logs = Vec::new();
+    let mut notes = Vec::new();
+    for unchecked in columns {
+        let name = unchecked.name().to_owned();
+        let mut recording = unchecked.recording()?;
+        let unwrapped = recording.unwrap_counts(device);
+        recording.check_times(&name)?;
+        let uneven = recording.unevenness();
+        let trace = &recording.trace;
+        let chosen = Chosen::new(&kinds, are_named, trace, &name, uneven.as_deref())?;
+        let uneven = uneven.map(|uneven| chosen.note(trace, &uneven));
+        let lines = unwrapped.into_iter().chain(uneven);
+        notes.extend(lines.map(|line| format!("{name}: {line}")));
+        kinds = chosen.kinds;
+        logs.push((name, recording));
+    }
+    Ok((logs, kinds, notes))
+}
+
+/// The estimators of these names that have parameters; all of them if no name is given.
+fn tunable(names: &[String]) -> Result<Vec<&'static Kind>, Failure> {
+    let named: Result<Vec<_>, _> = names.iter().map(|name| Kind::named(name)).collect();
+    let kinds = match names {
+        [] => Kind::all().iter().collect(),
+        _ => named?,
+    };
+    let kinds: Vec<_> = kinds.into_iter().filter(|kind| kind.is_tunable()).collect();
+    match kinds.is_empty() {
+        false => Ok(kinds),
+        true => Err(Failure::Input(
+            "estimators: none of them has parameters to tune; see limpid.estimators()".to_owned(),
+        )),
+    }
+}
+
+fn in_words_of_python(notes: &[String]) -> Vec<String> {
+    notes.iter().map(|note| in_python(note)).collect()
+}
+
+/// The ranking as JSON, the lines of Rust, and the notes.
+#[pyfunction]
+#[pyo3(signature = (logs, instructions, counts_per_rev, presets, device))]
+pub(crate) fn recommend(
+    py: Python<'_>,
+    logs: Vec<Columns<'_>>,
+    instructions: f64,
+    counts_per_rev: Option<u32>,
+    presets: Option<PathBuf>,
+    device: Option<DeviceFile>,
+) -> PyResult<(String, String, Vec<String>)> {
+    let is_known = device.is_some();
+    let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
+    if !(instructions > 0.0 && instructions.is_finite()) {
+        return Err(value_error(format!(
+            "instructions={instructions}: must be a number above 0"
+        )));
+    }
+    let parameters = of_presets(presets.as_ref(), "", &Named::new()).map_err(value_error)?;
+    let columns: PyResult<Vec<_>> = logs.iter().map(Columns::copy).collect();
+    let columns = columns?;
+    interruptible(py, |stop| {
+        let (logs, _, mut notes) = read(columns, &device, Kind::all().iter().collect(), false)?;
+        let settings = Settings {
+            device: &device,
+            is_known,
+            parameters: &parameters,
+            budget: instructions,
+            cost: report::measured::cost,
+        };
+        let recommended = recommend_for(&logs, &settings, || stop.look())?;
+        notes.extend(recommended.notes.iter().cloned());
+        let json = serde_json::to_string(&recommended.ranked).map_err(|error| error.to_string())?;
+        let rust = lines(&recommended, instructions);
+        Ok((json, rust, in_words_of_python(&notes)))
+    })
+}
+
+/// RMS errors of one estimator before and with the found parameters, each in the tuned and in the
+/// held-out half, and whether the old parameters are kept.
+type LogRow = (&'static str, [f64; 2], [f64; 2], bool);
+
+/// A presets file, the errors of each estimator, and the notes.
+#[pyfunction]
+#[pyo3(signature = (logs, estimators, counts_per_rev, presets, device))]
+pub(crate) fn tune_logs(
+    py: Python<'_>,
+    logs: Vec<Columns<'_>>,
+    estimators: Vec<String>,
+    counts_per_rev: Option<u32>,
+    presets: Option<PathBuf>,
+    device: Option<DeviceFile>,
+) -> PyResult<(String, Vec<LogRow>, Vec<String>)> {
+    let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
+    let before = of_presets(presets.as_ref(), "", &Named::new()).map_err(value_error)?;
+    let kinds = tunable(&estimators).map_err(value_error)?;
+    let columns: PyResult<Vec<_>> = logs.iter().map(Columns::copy).collect();
+    let columns = columns?;
+    interruptible(py, |stop| {
+        let (logs, kinds, mut notes) = read(columns, &device, kinds, !estimators.is_empty())?;
+        let tuned = tune_on_logs(&logs, &device, &kinds, &before, || stop.look())?;
+        notes.extend(tuned.notes);
+        let rows = tuned.rows.iter();
+        let rows = rows.map(|row| (row.estimator, row.before, row.found, row.kept));
+        let presets = Presets {
+            preset: vec![tuned.preset],
+            ..Presets::default()
+        };
+        Ok((
+            presets.to_toml()?,
+            rows.collect(),
+            in_words_of_python(&notes),
+        ))
+    })
+}
+
+/// A presets file and the notes.
+#[pyfunction]
+#[pyo3(signature = (rate, estimators, scenarios, seeds, seconds, perturbed, friction, counts_per_rev, device))]
+pub(crate) fn tune_scenarios(
+    py: Python<'_>,
+    rate: f64,
+    estimators: Vec<String>,
+    scenarios: Vec<String>,
+    seeds: Option<u64>,
+    seconds: Option<f64>,
+    perturbed: Option<bool>,
+    friction: bool,
+    counts_per_rev: Option<u32>,
+    device: Option<DeviceFile>,
+) -> PyResult<(String, Vec<String>)> {
+    let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
+    let kinds = tunable(&estimators).map_err(value_error)?;
+    let named: Result<Vec<ScenarioName>, String> = scenarios.iter().map(|s| s.parse()).collect();
+    let named = named.map_err(value_error)?;
+    if let Some(seeds) = seeds.filter(|seeds| !(1..=1000).contains(seeds)) {
+        return Err(value_error(format!(
+            "seeds={seeds}: must be from 1 to 1000"
+        )));
+    }
+    let plant = match friction {
+        true => PlantKind::Friction,
+        false => PlantKind::Frictionless,
+    };
+    interruptible(py, |stop| {
+        let mut preset = None;
+        let mut notes = Vec::new();
+        let (observers, others): (Vec<_>, Vec<_>) =
+            kinds.into_iter().partition(|kind| kind.is_observer());
+        for (kinds, recipe) in [(others, Recipe::PLAIN), (observers, Recipe::OBSERVER)] {
+            if kinds.is_empty() {
+                continue;
+            }
+            let perturbed = perturbed.unwrap_or(recipe.perturbed && named.is_empty());
+            let set = TuningSet {
+                device: device.clone(),
+                scenarios: match named.as_slice() {
+                    [] => ScenarioName::of(recipe.roles),
+                    named => named.to_vec(),
+                },
+                seeds: seeds.unwrap_or(recipe.seeds),
+                seconds: seconds.unwrap_or(recipe.seconds),
+                constant_errors: match perturbed {
+                    true => ConstantError::extremes(),
+                    false => Vec::new(),
+                },
+            };
+            simulate::ticks(rate, set.seconds)?;
+            let tuned = tune_simulated(&set, &kinds, rate, plant, || stop.look())?;
+            notes.extend(tuned.notes);
+            match &mut preset {
+                None => preset = Some(tuned.preset),
+                Some(preset) => preset.estimators.extend(tuned.preset.estimators),
+            }
+        }
+        let presets = Presets {
+            preset: preset.into_iter().collect(),
+            ..Presets::default()
+        };
+        Ok((presets.to_toml()?, in_words_of_python(&notes)))
+    })
+}
+
+/// The values of a presets file, by estimator.
+#[pyfunction]
+pub(crate) fn values_of_presets(
+    text: &str,
+) -> PyResult<Vec<(String, std::collections::BTreeMap<String, f64>)>> {
+    let presets = Presets::parse(text, "presets").map_err(value_error)?;
+    let all = presets
+        .preset
+        .into_iter()
+        .flat_map(|preset| preset.estimators);
+    Ok(all
+        .map(|(name, values)| (name, values.into_iter().collect()))
+        .collect())
+}

@@ -1,0 +1,99 @@
+//! Recordings that are simulated, or computed from a finer one.
+
+use std::path::PathBuf;
+
+use experiments::closed_loop::Hand;
+use experiments::real::wanted::Wanted;
+use experiments::simulated::Run;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use recordings::log::short_name;
+use terminal::failure::Failure;
+
+use crate::background::interruptible;
+use crate::device::{DeviceFile, device};
+use crate::error::value_error;
+use crate::log::fields;
+
+/// The load on the handle that `name` means.
+fn hand(name: &str) -> Result<Hand, Failure> {
+    match name {
+        "still" => Ok(Hand::Still),
+        "clamp" => Ok(Hand::Clamp),
+        "nobody" => Ok(Hand::Gone(0.0)),
+        "moving" => Ok(Hand::Moving),
+        _ => Err(Failure::Input(format!(
+            "hand='{name}': must be still, clamp, nobody or moving"
+        ))),
+    }
+}
+
+/// A simulated recording, as keywords of `limpid.Recording`.
+#[pyfunction]
+#[pyo3(signature = (scenario, scene, rate, seconds, seed, hand, every, counts_per_rev, device))]
+pub(crate) fn simulate<'py>(
+    py: Python<'py>,
+    scenario: Option<&str>,
+    scene: Option<&str>,
+    rate: f64,
+    seconds: Option<f64>,
+    seed: u64,
+    hand: &str,
+    every: usize,
+    counts_per_rev: Option<u32>,
+    device: Option<DeviceFile>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
+    if !(1..=1000).contains(&every) {
+        return Err(value_error(format!(
+            "every={every}: must be from 1 to 1000"
+        )));
+    }
+    let hand = self::hand(hand).map_err(value_error)?;
+    let counts_per_rev = device.stages.large.counts_per_rev;
+    let run = Run {
+        device,
+        rate_hz: rate,
+        seconds,
+        seed,
+    };
+    let recording = interruptible(py, |_| match scenario {
+        Some(name) => run.scenario(name),
+        None => run.scene(scene, hand, every),
+    })?;
+    let fields = fields(py, recording)?;
+    fields.set_item("name", scenario.or(scene).unwrap_or("excite"))?;
+    fields.set_item("counts_per_rev", counts_per_rev)?;
+    Ok(fields)
+}
+
+/// What a coarse encoder would have seen of a fine recording, as keywords of `limpid.Recording`.
+#[pyfunction]
+#[pyo3(signature = (path, counts_per_rev, fine_counts_per_rev, rate, phase, seconds, device))]
+pub(crate) fn coarsen<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    counts_per_rev: u32,
+    fine_counts_per_rev: Option<u32>,
+    rate: f64,
+    phase: f64,
+    seconds: Option<f64>,
+    device: Option<DeviceFile>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let device = self::device(device.as_ref(), Some(counts_per_rev)).map_err(value_error)?;
+    // The name of a missing file is in the error of the system.
+    std::fs::metadata(&path)?;
+    let wanted = Wanted {
+        counts_per_rev,
+        fine_counts_per_rev,
+        rate_hz: rate,
+        phase,
+        seconds,
+        torque_constant: device.stages.large.torque_constant,
+    };
+    let recording = interruptible(py, |_| wanted.of_file(&path))?;
+    let fields = fields(py, recording)?;
+    fields.set_item("name", short_name(&path))?;
+    fields.set_item("counts_per_rev", counts_per_rev)?;
+    Ok(fields)
+}

@@ -1,0 +1,228 @@
+"""Simulated and coarse recordings, scores, recommendations and tuned parameters."""
+
+from __future__ import annotations
+
+import csv
+import gzip
+import json
+import signal
+import subprocess
+import time
+
+import numpy as np
+import pytest
+
+import limpid
+
+
+def run(*command):
+    return subprocess.run(command, check=True, capture_output=True, text=True, timeout=300)
+
+
+@pytest.mark.parametrize(
+    ("options", "flags"),
+    [
+        ({"scenario": "track", "rate": 1000, "seconds": 2, "seed": 7}, "--scenario track --seed 7"),
+        ({"scene": "wall", "rate": 1000, "seconds": 2, "hand": "moving", "every": 5}, "--scene wall --hand moving --every 5"),
+    ],
+)
+def test_simulated_recording_is_that_of_the_command(options, flags, host_sim, tmp_path):
+    path = tmp_path / "simulated.csv"
+    run(host_sim, "simulate", *flags.split(), "--rate", "1000", "--seconds", "2", "--out", str(path))
+    simulated, read = limpid.simulate(**options), limpid.read_log(path)
+    np.testing.assert_array_equal(simulated.counts, read.counts)
+    assert simulated.rate == read.rate
+    np.testing.assert_allclose(simulated.t, read.t, atol=1e-12)
+    # The file has as many digits as tell two numbers apart.
+    np.testing.assert_array_equal(simulated.true_velocity, read.true_velocity)
+    np.testing.assert_array_equal(simulated.current, read.current)
+    np.testing.assert_array_equal(simulated.coupled, read.coupled)
+
+
+def test_counts_are_the_integral_of_the_true_velocity():
+    simulated = limpid.simulate("track", rate=10_000, seconds=3)
+    velocity = simulated.true_velocity
+    turned = np.r_[0, np.cumsum((velocity[1:] + velocity[:-1]) / 2)] / 10_000
+    counted = (simulated.counts - simulated.counts[0]).view(np.int32) * 2 * np.pi / 4096
+    # The first count may be anywhere in its cell.
+    assert np.abs(counted - turned).max() < 1.1 * 2 * np.pi / 4096
+
+
+def test_seeds_and_encoders_differ():
+    one = limpid.simulate("track", rate=1000, seconds=1)
+    np.testing.assert_array_equal(limpid.simulate("track", rate=1000, seconds=1).counts, one.counts)
+    assert (limpid.simulate("track", rate=1000, seconds=1, seed=2).counts != one.counts).any()
+    fine = limpid.simulate("track", rate=1000, seconds=1, counts_per_rev=40_960)
+    assert fine.counts_per_rev == 40_960
+    np.testing.assert_array_equal(fine.true_velocity, one.true_velocity)
+
+
+def test_every_estimator_runs_on_a_scenario():
+    simulated = limpid.simulate("free-air", rate=1000, seconds=2)
+    for info in limpid.estimators():
+        replayed = limpid.replay(simulated, estimator=info.name)
+        assert limpid.scores(replayed, simulated)["rms_rad_s"] < 5
+
+
+def test_coarse_recording_is_that_of_the_command_and_of_the_formula(data, host_sim, tmp_path):
+    fine, path = data / "real" / "epfl-paddle-hand.csv.gz", tmp_path / "coarse.csv"
+    run(host_sim, "coarsen", str(fine), "--counts-per-rev", "1024", "--rate", "500", "--out", str(path))
+    coarse, read = limpid.coarsen(fine, 1024, rate=500), limpid.read_log(path)
+    np.testing.assert_array_equal(coarse.counts, read.counts)
+    np.testing.assert_array_equal(coarse.true_velocity, read.true_velocity)
+    assert coarse.counts_per_rev == read.counts_per_rev == 1024
+    with gzip.open(fine, "rt") as file:
+        rows = list(csv.DictReader(file))
+    t = np.array([row["time_s"] for row in rows], dtype=float)
+    count = np.array([row["fine_count"] for row in rows], dtype=float)
+    position = np.interp(coarse.t, t - t[0], count) * 1024 / 30_000 + 0.37
+    # A position that rounds to a boundary may fall on either side of it.
+    assert (np.floor(position).astype(np.int64).astype(np.uint32) == coarse.counts).mean() > 0.999
+
+
+def test_scores_are_those_of_numpy():
+    rng = np.random.default_rng(6)
+    truth = 5 * np.sin(np.arange(3000) / 200)
+    velocity = (truth + rng.normal(0, 0.4, 3000)).astype(np.float32)
+    scores = limpid.scores(velocity, truth, 1000)
+    error = np.abs(velocity[100:].astype(float) - truth[100:])
+    assert scores["rms_rad_s"] == pytest.approx(np.sqrt(np.mean(error**2)), rel=1e-9)
+    assert scores["max_rad_s"] == pytest.approx(error.max(), rel=1e-9)
+    # The haptic interval of the default device: docs/theory/scores.md.
+    outside = np.maximum(0, error - 0.05 * np.abs(truth[100:]) - 0.01 * 0.07 / (2 * 0.96e-3))
+    assert scores["distance_rad_s"] == pytest.approx(outside.mean(), rel=1e-9)
+    assert scores["outside"] == pytest.approx((outside > 0).mean(), rel=1e-9)
+    fields = limpid.score_fields()
+    assert set(scores) <= set(fields) and fields["rms_rad_s"][0] == "rad/s"
+
+
+def test_recommendation_is_that_of_the_command(data, host_sim):
+    path = data / "back-and-forth.csv"
+    printed = run(host_sim, "recommend", str(path), "--counts-per-rev", "90", "--json", "-")
+    expected = json.loads(printed.stdout)
+    found = limpid.recommend(limpid.read_log(path, counts_per_rev=90))
+    assert [row.estimator for row in found.ranked] == [row["estimator"] for row in expected]
+    for ours, theirs in zip(found.ranked, expected):
+        assert ours.rms_rad_s == theirs["rms_rad_s"] and ours.rust == theirs["rust"]
+        assert ours.recommended == theirs["recommended"]
+        cost = theirs["cost"] or {}
+        assert ours.instructions_most == cost.get("instructions_most")
+    assert found.best.estimator in found.text
+    assert found.cheap is None or found.cheap.instructions_most <= 100
+    assert any("left out" in note and "device=FILE.toml" in note for note in found.notes)
+    assert not any("--" in note for note in found.notes)
+
+
+def test_ranking_follows_the_errors():
+    """The scores of the ranking are those of replay and scores."""
+    log = limpid.simulate("track", rate=1000, seconds=4)
+    found = limpid.recommend(log)
+    assert [row.rms_pct for row in found.ranked] == sorted(row.rms_pct for row in found.ranked)
+    for row in found.ranked[:3]:
+        replayed = limpid.replay(log, estimator=row.estimator)
+        assert limpid.scores(replayed, log)["rms_rad_s"] == pytest.approx(row.rms_rad_s, rel=1e-9)
+
+
+def test_tuned_parameters_are_better_and_can_be_used(host_sim, tmp_path):
+    log = limpid.simulate("creep", rate=1000, seconds=8)
+    tuned = limpid.tune(log, estimators=["pll", "low-pass"])
+    (tmp_path / "log.csv").write_text(
+        "t,counts_large,true_omega\n"
+        + "".join(
+            f"{t!r},{count},{omega!r}\n"
+            for t, count, omega in zip(log.t.tolist(), log.counts.tolist(), log.true_velocity.tolist())
+        )
+    )
+    command = [host_sim, "tune", "log.csv", "--estimator", "pll", "--estimator", "low-pass", "--out", "p.toml"]
+    subprocess.run(command, check=True, capture_output=True, cwd=tmp_path, timeout=300)
+    written = [line for line in (tmp_path / "p.toml").read_text().splitlines() if line and line[0] != "#"]
+    assert [line for line in tuned.presets.splitlines() if line] == written
+    before = limpid.scores(limpid.replay(log, estimator="pll"), log)["rms_rad_s"]
+    after = limpid.replay(log, estimator="pll", parameters=tuned.parameters["pll"])
+    assert limpid.scores(after, log)["rms_rad_s"] < 0.8 * before
+    (row,) = [row for row in tuned.rows if row.estimator == "pll"]
+    assert row.found[1] < row.before[1] and not row.kept
+    tuned.save(tmp_path / "mine.toml")
+    by_file = limpid.replay(log, estimator="pll", presets=tmp_path / "mine.toml")
+    assert by_file.parameters == tuned.parameters["pll"]
+    np.testing.assert_array_equal(by_file.velocity, after.velocity)
+
+
+def test_tuning_on_scenarios_has_the_values_of_the_command(host_sim, tmp_path):
+    tuned = limpid.tune(rate=1000, estimators="pll", scenarios=["step"], seeds=1, seconds=1)
+    flags = "--estimator pll --rate 1000 --scenario step --seeds 1 --seconds 1 --out p.toml"
+    subprocess.run([host_sim, "tune", *flags.split()], check=True, capture_output=True, cwd=tmp_path, timeout=300)
+    replayed = limpid.replay([1, 2, 3], 1000, estimator="pll", presets=tmp_path / "p.toml")
+    assert replayed.parameters == tuned.parameters["pll"]
+
+
+def test_tuning_can_be_interrupted():
+    """The run ends with the estimator that is being tuned, long before all of them are."""
+
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    log = limpid.simulate("track", rate=10_000, seconds=5)
+    one = time.process_time()
+    limpid.tune(log, estimators="pll")
+    one = time.process_time() - one
+    old = signal.signal(signal.SIGALRM, interrupt)
+    signal.setitimer(signal.ITIMER_REAL, 0.05)
+    begun = time.process_time()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            limpid.tune(log, estimators=["pll", "foaw-best-fit", "kalman-triple-steady", "low-pass"])
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, old)
+    # FOAW alone takes several times as long as the tracking loop.
+    assert time.process_time() - begun < 2 * one + 1
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: limpid.simulate("trak"), "'trak'; did you mean track?"),
+        (lambda: limpid.simulate("track", scene="wall"), "scenario and scene: pass one of them"),
+        (lambda: limpid.simulate(scene="nowhere"), "nowhere"),
+        (lambda: limpid.simulate("track", rate=1), "rate 1 Hz: must be from 100 to 100000 Hz"),
+        (lambda: limpid.simulate("track", every=0), "every=0: must be from 1 to 1000"),
+        (lambda: limpid.simulate(hand="both"), "hand='both': must be still, clamp, nobody or moving"),
+        (lambda: limpid.recommend([]), "logs: pass a limpid.Recording or several"),
+        (lambda: limpid.recommend([1, 2]), "logs: pass a limpid.Recording or several"),
+        (lambda: limpid.recommend(limpid.Recording(range(50), 1000)), "recording: 50 rows; scores need at least"),
+        (lambda: limpid.recommend(limpid.Recording(range(50), 1000), instructions=0), "instructions=0: must be"),
+        (lambda: limpid.tune(), "logs and rate: pass recordings, or the rate"),
+        (lambda: limpid.tune(rate=1000, estimators="imm"), "none of them has parameters to tune"),
+        (lambda: limpid.tune(rate=1000, seeds=0), "seeds=0: must be from 1 to 1000"),
+        (lambda: limpid.tune(limpid.Recording(range(50), 1000)), "0.05 s are too short; tuning needs 4 s"),
+        (lambda: limpid.tune(limpid.Recording(range(50), 1000), seeds=3), "are of simulated motion"),
+        (lambda: limpid.scores([1.0] * 50, [1.0] * 50, 1000), "the first 0.1 s are not scored"),
+        (lambda: limpid.scores([1.0] * 500, [1.0] * 50, 1000), "true_velocity: has 50 rows where velocity has 500"),
+        (lambda: limpid.scores([1.0] * 500, [1.0] * 500), "rate: missing"),
+    ],
+)
+def test_wrong_arguments_are_refused(call, said):
+    with pytest.raises(ValueError) as error:
+        call()
+    assert said in str(error.value)
+    assert "--" not in str(error.value)
+
+
+def test_recordings_of_two_encoders_are_refused():
+    logs = [limpid.Recording(range(5000), 1000, counts_per_rev=counts) for counts in (90, 4096)]
+    for call in (limpid.recommend, limpid.tune):
+        with pytest.raises(ValueError, match="pass recordings of one encoder, or counts_per_rev"):
+            call(logs)
+
+
+def test_coarsening_is_refused_with_the_reason(data):
+    fine = data / "real" / "epfl-paddle-hand.csv.gz"
+    with pytest.raises(ValueError, match="ask for at most 15000 counts/rev"):
+        limpid.coarsen(fine, 20_000)
+    with pytest.raises(ValueError, match="rate=5: must be from 10 to 100000 Hz"):
+        limpid.coarsen(fine, 1024, rate=5)
+    with pytest.raises(ValueError, match="give fine_counts_per_rev=, or list the file"):
+        limpid.coarsen(data / "back-and-forth.csv", 16)
+    with pytest.raises(FileNotFoundError):
+        limpid.coarsen(data / "nothing.csv", 16)
