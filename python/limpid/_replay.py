@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from os import PathLike
 from typing import Any
 
@@ -23,8 +23,6 @@ class Replay:
 
     #: Name of the estimator.
     estimator: str
-    #: Time of each row, s.
-    t: NDArray[np.float64]
     #: Rate of the rows, Hz.
     rate: float
     #: Velocity, rad/s.
@@ -39,8 +37,13 @@ class Replay:
     parameters: dict[str, float]
     #: What was converted, and whether the parameters were tuned for another encoder or rate.
     notes: list[str]
+    _recording: Recording = field(repr=False)
+    _times: NDArray[np.float64] | None = field(repr=False)
 
-
+    @property
+    def t(self) -> NDArray[np.float64]:
+        """Time of each row, s."""
+        return self._recording.t if self._times is None else self._times
 
 
 def replay(
@@ -105,6 +108,7 @@ def replay(
             edge_age=edge_age,
             edge_boundary=edge_boundary,
         )
+    # Times are made when they are read.
     reports, times, rate, values, notes = _limpid.replay(
         recording,
         estimator,
@@ -117,7 +121,6 @@ def replay(
     velocity, std_dev, acceleration, damping_ratio = reports
     return Replay(
         estimator=estimator,
-        t=recording.t if times is None else times,
         rate=rate,
         velocity=velocity,
         std_dev=std_dev,
@@ -125,6 +128,8 @@ def replay(
         damping_ratio=damping_ratio,
         parameters=values,
         notes=notes,
+        _recording=recording,
+        _times=None if times is None else np.asarray(times),
     )
 
 
