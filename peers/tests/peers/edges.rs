@@ -89,3 +89,28 @@ fn simplefoc_encoder_is_zero_a_tenth_of_a_second_after_the_last_edge() {
     assert_near(&found[199..294], |_| 0.1, 1e-3);
     assert!(found[296..].iter().all(|v| *v == 0.0));
 }
+
+#[test]
+fn dvrk_is_zero_where_four_edges_take_longer_than_the_counter() {
+    // 26 bits at 49.152 MHz are 1.365 s: 43 690 ticks of 32 kHz.
+    for (ticks, moves) in [(43_000.0, true), (44_400.0, false)] {
+        let speed = 4.0 / ticks;
+        let samples = stamped(|t| 0.5 + speed * t, 90_000, FAST);
+        let found = run(&Dvrk::measured(FAST, CLOCK), samples.into_iter());
+        let last = found[89_999];
+        assert!((last - if moves { speed } else { 0.0 }).abs() < 1e-3 * speed);
+    }
+}
+
+#[test]
+fn dvrk_predicts_nothing_where_a_quarter_is_shorter_than_its_threshold() {
+    // 2000 ticks of 49.152 MHz are 1.302 ticks of 32 kHz. Accelerating through 1 / 1.302 = 0.768
+    // counts per tick: three edges of the four and the time since the newest stay well below.
+    let a = 1e-4;
+    let samples = stamped(|t| 0.4 + 0.5 * a * t * t, 9000, FAST);
+    let lagging = run(&Dvrk::measured(FAST, CLOCK), samples.iter().copied());
+    let predicted = run(&Dvrk::predicted(FAST, CLOCK), samples.iter().copied());
+    let differ = |k: &usize| lagging[*k] != predicted[*k];
+    assert!((4000..7600).filter(differ).count() > 3000);
+    assert_eq!((7800..9000).find(differ), None);
+}

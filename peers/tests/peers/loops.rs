@@ -99,16 +99,31 @@ fn velocity_of_odrive_moves_in_steps_of_125_counts_per_second() {
 
 #[test]
 fn odrive_is_exactly_at_rest_after_a_stop() {
-    let loop_ = ODrive::new(ODrive::BANDWIDTH_RAD_S, ODrive::RATE);
-    let mut counts = started(3, 400);
-    counts.extend([1200; 800]);
+    // A step of the velocity that f32 rounds: without the dead band a sum of steps is not zero.
+    let loop_ = ODrive::new(777.0, ODrive::RATE);
+    let mut counts = started(300, 400);
+    counts.extend([120_000; 1200]);
     let found = over(&loop_, &counts);
-    assert!(found[300] > 2.0);
+    assert!(found[300] > 299.0);
     assert!(
-        found[1000..].iter().all(|v| *v == 0.0),
+        found[1200..].iter().all(|v| *v == 0.0),
         "{:?}",
-        &found[1000..1010]
+        &found[1200..1210]
     );
+}
+
+#[test]
+fn phase_detector_of_odrive_is_the_floor_on_both_sides() {
+    // By hand, in steps of the velocity, with kp T = 1/4 and a step of 1/64. Up by a count the loop is
+    // at -1, -0.734, -0.453, -0.156 and 0.156 of the new count: four steps. Down it is at 1 and 0.734:
+    // one step, until it drifts below 0.
+    let loop_ = ODrive::new(ODrive::BANDWIDTH_RAD_S, ODrive::RATE);
+    let steps = |counts: &[i64]| -> Vec<f64> {
+        let found = over(&loop_, counts);
+        found.iter().map(|v| v * 64.0).collect()
+    };
+    assert_eq!(steps(&[0, 1, 1, 1, 1, 1]), [1.0, 2.0, 3.0, 4.0, 4.0]);
+    assert_eq!(steps(&[0, -1, -1, -1, -1]), [-1.0; 4]);
 }
 
 #[test]
@@ -147,4 +162,16 @@ fn vesc_loop_stays_within_three_times_the_fast_speed() {
         reached += i32::from(slow.abs() > 0.999 * most && most > 0.0);
     }
     assert!(reached > 100, "the limit acts after the stop");
+}
+
+#[test]
+fn error_of_vesc_is_the_nearest_in_an_electrical_turn() {
+    // 60 counts of 100 ahead are 40 behind.
+    let first = |count: i64| {
+        let loop_ = VescPll::new(VescPll::KP, VescPll::KI, VescPll::RATE, 100.0);
+        over(&loop_, &[0, count])[0] * VescPll::RATE.0 * VescPll::RATE.0 / VescPll::KI
+    };
+    for (count, error) in [(40, 40.0), (60, -40.0), (-60, 40.0), (-40, -40.0)] {
+        assert!((first(count) - error).abs() < 1e-4, "{count}");
+    }
 }
