@@ -8,6 +8,7 @@
 pub mod cases;
 pub mod coarsen;
 pub mod fine;
+pub mod peers;
 pub mod pool;
 pub mod rest;
 pub mod run;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use experiments::real::cases::{Case, Recordings};
+use experiments::real::peers::{self, PEERS, Tuned};
 use experiments::real::run::{Row, Settings, run as run_all};
 use experiments::real::table::table;
 use experiments::real::wanted::{phase, rate, seconds};
@@ -64,6 +65,11 @@ pub(super) struct Real {
     /// Estimator to run, see host-sim estimators; repeatable [default: all]
     #[arg(long = "estimator", value_name = "NAME")]
     estimators: Vec<String>,
+    /// Also run the velocity algorithms of other projects, rows peer:*, on recordings of a fine encoder:
+    /// with the defaults of the project, and tuned on the recordings that choose constants; not on the
+    /// page of --out
+    #[arg(long)]
+    peers: bool,
     /// Print every score on each recording
     #[arg(long)]
     details: bool,
@@ -115,16 +121,24 @@ pub(super) fn run(options: &Real, command_line: &str) -> Result<(), Failure> {
             (outcome, rows)
         })
         .unzip();
-    let rows: Vec<Row> = rows.into_iter().flatten().collect();
-    let names: Vec<_> = settings.estimators.iter().map(|kind| kind.name).collect();
+    let mut rows: Vec<Row> = rows.into_iter().flatten().collect();
+    let mut names: Vec<_> = settings.estimators.iter().map(|kind| kind.name).collect();
+    let (own_rows, own_names) = (rows.clone(), names.clone());
+    let mut tuned = Vec::new();
+    if options.peers {
+        tuned = peers::tune(&recordings, &cases, &settings, PEERS)?;
+        rows.extend(peers::rows(&recordings, &cases, &settings, PEERS, &tuned)?);
+        names.extend(peers::names(PEERS, &tuned));
+    }
     let mut text = table(&rows, &names, options.details, terminal_width());
+    text.push_str(&tuned_lines(&tuned));
     if let Some(folder) = &options.out {
         let printout = Printout {
             command: command_line,
             device: &options.device.name(),
-            table: &table(&rows, &names, true, NARROW),
+            table: &table(&own_rows, &own_names, true, NARROW),
         };
-        let page = report::real(&rows, &names, shown, &kept, &printout)?;
+        let page = report::real(&own_rows, &own_names, shown, &kept, &printout)?;
         let mut files = Folder::new(folder);
         files.add("real.json", json(&rows)?);
         files.add("real.csv", csv(&rows)?);
@@ -139,6 +153,20 @@ pub(super) fn run(options: &Real, command_line: &str) -> Result<(), Failure> {
         }
     }
     page::print(options.json.as_deref(), &json(&rows)?, &text)
+}
+
+/// The tuned values of the peers, a line for each.
+fn tuned_lines(tuned: &[Tuned]) -> String {
+    let line = |tuned: &Tuned| {
+        format!(
+            "{}-tuned at {} counts/rev and {} Hz: {}\n",
+            tuned.peer,
+            tuned.counts_per_rev,
+            tuned.rate_hz,
+            peers::shown(PEERS, tuned)
+        )
+    };
+    tuned.iter().map(line).collect()
 }
 
 /// The middle one of several values, in the order in which they were given.

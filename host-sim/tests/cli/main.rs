@@ -10,6 +10,7 @@ mod identify_logs;
 mod logs;
 mod output;
 mod real;
+mod real_peers;
 mod recommend;
 mod recordings;
 mod refusals;

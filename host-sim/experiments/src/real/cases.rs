@@ -94,6 +94,28 @@ impl Recordings {
             Data::Coarse(recording) => Ok((**recording).clone()),
         }
     }
+
+    /// The recording of one case at another rate, which may be above that of the rows of a fine
+    /// recording; a coarse recording keeps its own.
+    ///
+    /// # Errors
+    /// As [`Coarse::along`].
+    pub fn recording_at(
+        &self,
+        case: &Case,
+        settings: &Settings,
+        rate_hz: f64,
+    ) -> Result<Recording, Failure> {
+        let (source, data) = &self.0[case.recording];
+        let coarse = Coarse {
+            rate_hz,
+            ..coarse(case, source, settings)
+        };
+        match data {
+            Data::Fine(fine) => coarse.along(fine, &source.file),
+            Data::Coarse(recording) => Ok((**recording).clone()),
+        }
+    }
 }
 
 /// One run: a recording at a resolution, a rate and a phase.

@@ -69,6 +69,15 @@ impl Coarse {
                 self.fine_counts_per_rev, self.counts_per_rev, self.rate_hz
             )));
         }
+        self.along(fine, name)
+    }
+
+    /// As [`Coarse::recording`], also at a resolution or a rate that the rows do not resolve: between
+    /// two rows the position is a straight line.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if the recording lasts less than a tick.
+    pub fn along(&self, fine: &Fine, name: &str) -> Result<Recording, Failure> {
         let start = fine.t[0];
         let last = fine.t[fine.t.len() - 1] - start;
         let ticks = ((last + SAME_INSTANT_S) * self.rate_hz).floor() as usize + 1;
