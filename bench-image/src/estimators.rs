@@ -3,6 +3,10 @@
 use estimator_catalogue::design;
 use estimator_core::{CoupledMotor, DesignError, Hertz, Model, NoInput, Sample, preset};
 
+use peers::{
+    Dvrk, Moteus, ODrive, OpenFfBoard, SimpleFocEncoder, SimpleFocSensor, VescFast, VescPll,
+};
+
 use crate::peers::{AdsKalman, IdspKalman, IdspLowPass, IdspPll, MiniKalman, NalgebraKalman};
 use crate::subject::{Measured, Subject, subject};
 
@@ -75,9 +79,9 @@ macro_rules! rows {
 
 estimator_catalogue::estimators!(rows);
 
-/// Peers: `module, "name", rate: Type = value;`.
+/// Filters of others: `LIST, description: module, "name", rate: Type = value;`.
 macro_rules! peers {
-    ($($module:ident, $name:literal, $rate:ident: $type:ty = $value:expr;)*) => {
+    ($list:ident, $what:literal: $($module:ident, $name:literal, $rate:ident: $type:ty = $value:expr;)*) => {
         $(
             mod $module {
                 use super::*;
@@ -88,12 +92,13 @@ macro_rules! peers {
             }
         )*
 
-        /// Everything of others that is measured.
-        const PEERS: &[Subject] = &[$($module::SUBJECT),*];
+        #[doc = $what]
+        const $list: &[Subject] = &[$($module::SUBJECT),*];
     };
 }
 
 peers! {
+    PEERS, "Filters of other libraries.":
     peer_idsp_1k, "idsp: kalman", SLOW: IdspKalman =
         IdspKalman::new(&preset!(triple(SLOW)));
     peer_idsp_10k, "idsp: kalman", FAST: IdspKalman =
@@ -116,15 +121,38 @@ peers! {
     peer_idsp_low_pass_10k, "idsp: low-pass", FAST: IdspLowPass = IdspLowPass::new(Hertz(175.0), FAST);
 }
 
-/// Everything that is measured: the rows of the catalogue, then the peers.
+/// Counts in an electrical turn, as comparators have it.
+const TURN: f64 = 4096.0 / VescPll::RATIO;
+
+// Their constants have no influence on the instructions of an update.
+peers! {
+    COMPARATORS, "Velocity algorithms of other projects, written anew, with their defaults at the rate of the traces.":
+    comparator_moteus, "peer:moteus", FAST: Moteus = Moteus::new(Moteus::CUTOFF, FAST, 4096);
+    comparator_odrive, "peer:odrive", FAST: ODrive = ODrive::new(ODrive::BANDWIDTH_RAD_S, FAST);
+    comparator_vesc_pll, "peer:vesc-pll", FAST: VescPll =
+        VescPll::new(VescPll::KP, VescPll::KI, FAST, TURN);
+    comparator_vesc_fast, "peer:vesc-fast", FAST: VescFast = VescFast::new(VescFast::SHARE, TURN);
+    comparator_simplefoc_sensor, "peer:simplefoc-sensor", FAST: SimpleFocSensor =
+        SimpleFocSensor::new(SimpleFocSensor::FILTER_TIME_S, FAST);
+    comparator_simplefoc_encoder, "peer:simplefoc-encoder", FAST: SimpleFocEncoder =
+        SimpleFocEncoder::new(SimpleFocEncoder::FILTER_TIME_S, FAST, CLOCK);
+    comparator_openffboard, "peer:openffboard", FAST: OpenFfBoard =
+        OpenFfBoard::new(OpenFfBoard::PROFILES[1], OpenFfBoard::Q, FAST);
+    comparator_dvrk_measured, "peer:dvrk-measured", FAST: Dvrk = Dvrk::measured(FAST, CLOCK);
+    comparator_dvrk_predicted, "peer:dvrk-predicted", FAST: Dvrk = Dvrk::predicted(FAST, CLOCK);
+}
+
+/// Everything that is measured: the rows of the catalogue, the peers, the comparators.
 pub static SUBJECTS: &[Subject] = &{
-    let mut all = [ROWS[0]; ROWS.len() + PEERS.len()];
+    let mut all = [ROWS[0]; ROWS.len() + PEERS.len() + COMPARATORS.len()];
     let mut i = 0;
     while i < all.len() {
         all[i] = if i < ROWS.len() {
             ROWS[i]
-        } else {
+        } else if i < ROWS.len() + PEERS.len() {
             PEERS[i - ROWS.len()]
+        } else {
+            COMPARATORS[i - ROWS.len() - PEERS.len()]
         };
         i += 1;
     }

@@ -61,10 +61,16 @@ impl fmt::Display for Subject {
 }
 
 impl Subject {
-    /// Whether it is a filter of another library.
+    /// Whether it is no estimator of the catalogue: a filter of another library, or a comparator.
     #[must_use]
     pub fn is_peer(&self) -> bool {
-        self.path[0].starts_with("peer_")
+        self.path[0].starts_with("peer_") || self.is_comparator()
+    }
+
+    /// Whether it is the velocity algorithm of another project, written anew.
+    #[must_use]
+    pub fn is_comparator(&self) -> bool {
+        self.path[0].starts_with("comparator_")
     }
 }
 

@@ -3,6 +3,7 @@
 mod board;
 mod closed_loop;
 mod estimators;
+mod evidence;
 mod feel;
 mod stress;
 
@@ -11,6 +12,7 @@ use crate::Table;
 pub use board::*;
 pub use closed_loop::*;
 pub use estimators::*;
+pub use evidence::*;
 pub use feel::*;
 pub use stress::*;
 
@@ -32,6 +34,7 @@ pub const ALL: &[Table] = &[
     ESTIMATORS,
     REAL_MOTION,
     REAL_RESOLUTION,
+    EVIDENCE_COST,
     REFERENCE,
     PAPER,
     FINITE_DIFFERENCE,

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use clap::{Parser, Subcommand};
 use measured::Table;
-use measured::tables::{CONTROL, PARETO};
+use measured::tables::{CONTROL, EVIDENCE_COST, PARETO};
 use terminal::failure::Failure;
 use terminal::output::{print_bytes, write_whole};
 use terminal::wording::WIDTH;
@@ -52,7 +52,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
 }
 
 fn everything() -> Result<(), Failure> {
-    let mut rows = measure::measure().map_err(Failure::Check)?;
+    let (mut rows, comparators) = measure::split(measure::measure().map_err(Failure::Check)?);
     let tasks = control::measure().map_err(Failure::Check)?;
     control::rate(&mut rows, &tasks);
     let estimators = Report {
@@ -71,8 +71,15 @@ fn everything() -> Result<(), Failure> {
         json: json(&tasks)?,
         plot: control::plot::svg(&tasks)?,
     };
+    let comparators = table::cost_cells(&comparators);
     let shown = [&estimators, &control].map(|one| one.table.markdown(&[], &one.cells));
+    let shown = [&shown[..], &[EVIDENCE_COST.markdown(&[], &comparators)]].concat();
     print_bytes(shown.join("\n").as_bytes())?;
+    if measured::update() {
+        EVIDENCE_COST
+            .write(&[], &comparators)
+            .map_err(Failure::Input)?;
+    }
     estimators.write()?;
     control.write()
 }

@@ -39,6 +39,8 @@ pub struct Row {
     pub name: String,
     /// Whether it is a filter of another library.
     pub peer: bool,
+    /// Whether it is the velocity algorithm of another project, written anew.
+    pub comparator: bool,
     /// Costs by [`Level::ALL`].
     pub cost: [Cost; 2],
     /// Bytes of its state.
@@ -87,7 +89,8 @@ pub fn measure() -> Result<Vec<Row>, String> {
                 None => {
                     rows.push(Row {
                         name: subject.to_string(),
-                        peer: subject.is_peer(),
+                        peer: subject.is_peer() && !subject.is_comparator(),
+                        comparator: subject.is_comparator(),
                         state: subject.state,
                         ..Row::default()
                     });
@@ -107,13 +110,20 @@ pub fn measure() -> Result<Vec<Row>, String> {
     for rate in 0..2 {
         for k in 0..rows.len() {
             let better = |other: &Row| {
-                other.cost[0].mean < rows[k].cost[0].mean
+                !other.comparator
+                    && other.cost[0].mean < rows[k].cost[0].mean
                     && other.rms_rad_s[rate] <= rows[k].rms_rad_s[rate]
             };
-            rows[k].front[rate] = !rows.iter().any(better);
+            rows[k].front[rate] = !rows[k].comparator && !rows.iter().any(better);
         }
     }
     Ok(rows)
+}
+
+/// The rows of estimators and libraries, and those of comparators.
+#[must_use]
+pub fn split(rows: Vec<Row>) -> (Vec<Row>, Vec<Row>) {
+    rows.into_iter().partition(|row| !row.comparator)
 }
 
 type Runs<'a> = Vec<(Job<'a>, Ran)>;

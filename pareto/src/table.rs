@@ -41,6 +41,25 @@ pub fn cells(rows: &[Row]) -> Vec<Vec<String>> {
     rows.iter().map(row).collect()
 }
 
+/// The cells of the table of comparators.
+#[must_use]
+pub fn cost_cells(rows: &[Row]) -> Vec<Vec<String>> {
+    let row = |row: &Row| {
+        let [fast, small] = &row.cost;
+        vec![
+            row.name.clone(),
+            format!("{:.0}", fast.mean),
+            fast.most.to_string(),
+            format!("{:.0}", fast.at_rest),
+            format!("{:.0}", small.mean),
+            format!("{:.0}", row.cycles()),
+            fast.code.to_string(),
+            row.state.to_string(),
+        ]
+    };
+    rows.iter().map(row).collect()
+}
+
 /// Everything as CSV.
 #[must_use]
 pub fn csv(rows: &[Row]) -> String {

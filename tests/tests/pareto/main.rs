@@ -6,7 +6,7 @@ mod bound;
 
 use bench_image::SUBJECTS;
 use estimator_catalogue::ROWS;
-use measured::tables::{CONTROL, PARETO};
+use measured::tables::{CONTROL, EVIDENCE_COST, PARETO};
 use pareto::control::{self, Task};
 use pareto::measure::{self, Row};
 use pareto::table;
@@ -14,12 +14,13 @@ use pareto::table;
 #[test]
 fn run_time_error_and_control_rate_agree_with_the_tables() {
     // Also fails where the board and the host differ in a bit of any velocity, at either level.
-    let mut rows = measure::measure().unwrap();
+    let (mut rows, comparators) = measure::split(measure::measure().unwrap());
     let tasks = control::measure().unwrap();
     control::rate(&mut rows, &tasks);
     let estimators = (PARETO, table::cells(&rows));
     let control = (CONTROL, control::table::cells(&tasks));
-    for (table, cells) in [&estimators, &control] {
+    let comparators = (EVIDENCE_COST, table::cost_cells(&comparators));
+    for (table, cells) in [&estimators, &control, &comparators] {
         table
             .check(&[], cells, table::same)
             .unwrap_or_else(|error| panic!("{error}"));
