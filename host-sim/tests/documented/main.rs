@@ -4,6 +4,7 @@
 
 mod constants;
 mod distances;
+mod evidence;
 mod feel;
 mod forces;
 mod in_the_loop;

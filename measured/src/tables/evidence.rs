@@ -1,5 +1,6 @@
 //! Tables of the pages for the maintainers of other projects: `docs/evidence`.
 
+use super::DOCUMENTED;
 use crate::Table;
 
 /// Run time of an update of the velocity algorithms of other projects, written anew.
@@ -18,4 +19,69 @@ pub const EVIDENCE_COST: Table = Table {
     ],
     digits: None,
     command: "cargo pareto",
+};
+
+/// A project beside estimators of this project on the recordings that judge: means, then a column for
+/// the RMS error on each recording, % of finite difference.
+const EVIDENCE: Table = Table {
+    name: "",
+    page: "",
+    columns: &[
+        ("estimator", "estimator"),
+        ("counts_per_rev", "counts/rev"),
+        ("rate_khz", "kHz"),
+        ("parameters", "parameters"),
+        ("rms_pct", "RMS, %"),
+        ("rms_rad_s", "RMS, rad/s"),
+        ("p99_pct", "99th, %"),
+        ("p99_rad_s", "99th, rad/s"),
+        ("delay_ms", "delay, ms"),
+        ("moving_at_rest_pct", "moves, %"),
+        ("instructions", "instructions"),
+        ("state", "state, bytes"),
+    ],
+    digits: Some(3),
+    command: DOCUMENTED,
+};
+
+/// moteus.
+pub const EVIDENCE_MOTEUS: Table = Table {
+    name: "evidence-moteus",
+    page: "docs/evidence/moteus.md",
+    ..EVIDENCE
+};
+
+/// ODrive.
+pub const EVIDENCE_ODRIVE: Table = Table {
+    name: "evidence-odrive",
+    page: "docs/evidence/odrive.md",
+    ..EVIDENCE
+};
+
+/// VESC.
+pub const EVIDENCE_VESC: Table = Table {
+    name: "evidence-vesc",
+    page: "docs/evidence/vesc.md",
+    ..EVIDENCE
+};
+
+/// SimpleFOC.
+pub const EVIDENCE_SIMPLEFOC: Table = Table {
+    name: "evidence-simplefoc",
+    page: "docs/evidence/simplefoc.md",
+    ..EVIDENCE
+};
+
+/// OpenFFBoard.
+pub const EVIDENCE_OPENFFBOARD: Table = Table {
+    name: "evidence-openffboard",
+    page: "docs/evidence/openffboard.md",
+    ..EVIDENCE
+};
+
+/// dVRK.
+pub const EVIDENCE_DVRK: Table = Table {
+    name: "evidence-dvrk",
+    page: "docs/evidence/dvrk.md",
+    ..EVIDENCE
 };
