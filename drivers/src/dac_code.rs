@@ -36,7 +36,7 @@ impl DacCode {
 }
 
 /// Conversion of a current to a code: `code = zero + current / full_scale / gain * 2047`, rounded and
-/// saturated to 1 to 4095.
+/// saturated to 0 to 4095.
 ///
 /// ```
 /// use drivers::{DacCode, DacScale};
@@ -55,6 +55,8 @@ impl DacCode {
 pub struct DacScale {
     /// Code of zero current.
     zero: f32,
+    /// The same plus a half, for rounding.
+    rounded: f32,
     per_amp: f32,
 }
 
@@ -66,10 +68,7 @@ impl DacScale {
         if !(full_scale.get() > 0.0 && per_amp.is_finite()) {
             return None;
         }
-        Some(Self {
-            zero: DacCode::MIDDLE.0 as f32,
-            per_amp,
-        })
+        Some(Self::with(DacCode::MIDDLE.0 as f32, per_amp))
     }
 
     /// The conversion with the code `zero` of zero current, and the change of the current per code over the
@@ -80,7 +79,15 @@ impl DacScale {
         if !(1.0 <= zero && zero <= 4095.0 && gain > 0.0 && per_amp.is_finite()) {
             return None;
         }
-        Some(Self { zero, per_amp })
+        Some(Self::with(zero, per_amp))
+    }
+
+    const fn with(zero: f32, per_amp: f32) -> Self {
+        Self {
+            zero,
+            rounded: zero + 0.5,
+            per_amp,
+        }
     }
 
     /// The code of a current before it is rounded.
@@ -93,8 +100,8 @@ impl DacScale {
     #[must_use]
     pub const fn code(&self, current: Amps) -> DacCode {
         // A cast truncates towards zero, and saturates.
-        DacCode(match (self.exact_code(current) + 0.5) as i32 {
-            ..1 => 1,
+        DacCode(match (self.rounded + current.get() * self.per_amp) as i32 {
+            ..0 => 0,
             4096.. => 4095,
             code => code as u16,
         })
@@ -145,9 +152,9 @@ mod tests {
         let scale = scale(6.0).calibrated(2040.0, 1.0).unwrap();
         for (amps, code) in [
             (7.0, 4095),
-            (-7.0, 1),
+            (-7.0, 0),
             (900.0, 4095),
-            (-900.0, 1),
+            (-900.0, 0),
             (f32::INFINITY, 2040),
             (f32::NAN, 2040),
             (0.0, 2040),

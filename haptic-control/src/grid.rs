@@ -13,9 +13,12 @@
 pub struct Grid<const PERIOD: u32> {
     /// The count at which the next tick is due.
     due: u32,
-    /// Whether the latest tick ended after the next one was due.
-    overran: bool,
+    /// The first lateness of a tick that [`Self::begin`] has to look at: a period, or 0 if the latest tick
+    /// ended after the next one was due.
+    late: u32,
     longest: u32,
+    /// The largest duration that [`Self::end`] need not look at: `longest`, but less than a period.
+    short: u32,
 }
 
 impl<const PERIOD: u32> Grid<PERIOD> {
@@ -25,8 +28,9 @@ impl<const PERIOD: u32> Grid<PERIOD> {
         const { assert!(PERIOD > 0) };
         Self {
             due: now.wrapping_add(PERIOD),
-            overran: false,
+            late: PERIOD,
             longest: 0,
+            short: 0,
         }
     }
 
@@ -41,25 +45,47 @@ impl<const PERIOD: u32> Grid<PERIOD> {
     #[inline]
     pub fn begin(&mut self, now: u32) -> u32 {
         let late = now.wrapping_sub(self.due);
-        // Nearly every tick begins in its own period, and then the division is not executed.
-        let missed = if late < PERIOD { 0 } else { late / PERIOD };
-        self.due = self
-            .due
-            .wrapping_add(PERIOD.wrapping_mul(missed.wrapping_add(1)));
-        missed.max(u32::from(self.overran))
+        if late < self.late {
+            self.due = self.due.wrapping_add(PERIOD);
+            return 0;
+        }
+        self.begin_late(late)
     }
 
-    /// Ends the present tick at the count `now`.
+    #[cold]
+    #[inline(never)]
+    fn begin_late(&mut self, late: u32) -> u32 {
+        let missed = late / PERIOD;
+        let periods = missed.wrapping_add(1);
+        self.due = self.due.wrapping_add(PERIOD.wrapping_mul(periods));
+        let overran = self.late == 0;
+        self.late = PERIOD;
+        missed.max(u32::from(overran))
+    }
+
+    /// Ends the present tick at the count `now`. Returns whether the next tick is due by now.
     #[inline]
-    pub fn end(&mut self, now: u32) {
+    pub fn end(&mut self, now: u32) -> bool {
         let spent = now.wrapping_sub(self.due).wrapping_add(PERIOD);
-        self.overran = spent >= PERIOD;
+        spent > self.short && self.end_long(spent)
+    }
+
+    /// A tick that is the longest one so far, or overran.
+    #[inline(never)]
+    fn end_long(&mut self, spent: u32) -> bool {
         self.longest = self.longest.max(spent);
+        self.short = self.longest.min(PERIOD - 1);
+        let overran = spent >= PERIOD;
+        if overran {
+            self.late = 0;
+        }
+        overran
     }
 
     /// The longest time in counts from the instant at which a tick was due to its end, over the
     /// ticks since the last call.
     pub fn take_longest(&mut self) -> u32 {
+        self.short = 0;
         core::mem::take(&mut self.longest)
     }
 }

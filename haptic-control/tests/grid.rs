@@ -70,6 +70,8 @@ fn tick_just_inside_its_period_is_no_overrun() {
             grid.end(due.wrapping_add(spent));
             let next = grid.due().wrapping_add(10);
             assert_eq!(grid.begin(next), counted, "{spent} from {start}");
+            grid.end(next);
+            assert_eq!(grid.begin(grid.due()), 0, "after {spent} from {start}");
         }
     }
 }
@@ -84,5 +86,37 @@ fn longest_tick_is_kept_until_it_is_read() {
             grid.end(due.wrapping_add(latency + spent));
         }
         assert_eq!((grid.take_longest(), grid.take_longest()), (5009, 0));
+    }
+}
+
+/// The task sets the comparison after it has read the counter. A halt between the two lets the next tick
+/// pass without an interrupt, and the end of the task has to make up for it.
+#[test]
+fn end_of_a_tick_reports_that_the_next_one_is_due_however_long_ago() {
+    for start in STARTS {
+        for halted in [0, 1, PERIOD, 3 * PERIOD, 100_000 * PERIOD] {
+            let mut grid = Grid::<PERIOD>::new(start);
+            let due = grid.due();
+            grid.begin(due);
+            assert!(!grid.end(due.wrapping_add(PERIOD - 1)));
+            grid.begin(grid.due());
+            assert!(grid.end(grid.due().wrapping_add(halted)), "{halted}");
+        }
+    }
+}
+
+#[test]
+fn overrun_that_is_shorter_than_one_before_is_counted() {
+    for start in STARTS {
+        let mut grid = Grid::<PERIOD>::new(start);
+        for spent in [9, 3, 1] {
+            let due = grid.due();
+            grid.begin(due);
+            assert!(grid.end(due.wrapping_add(spent * PERIOD)));
+            let begins = due.wrapping_add(spent * PERIOD + 10);
+            assert_eq!(grid.begin(begins), spent - 1 + u32::from(spent == 1));
+            grid.end(begins.wrapping_add(100));
+        }
+        assert!(grid.take_longest() >= 9 * PERIOD);
     }
 }

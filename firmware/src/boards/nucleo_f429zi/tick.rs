@@ -79,7 +79,11 @@ impl Tick {
 
     /// Last thing in the control task.
     pub(super) fn leave(&mut self) {
-        self.grid.end(self.clock.now());
+        if self.grid.end(self.clock.now()) {
+            // A comparison with a count that had passed before it was set, as after a halt of the core at
+            // the begin of the task, would come after a turn of the counter.
+            self.clock.0.egr().write(|w| w.cc1g().set_bit());
+        }
     }
 
     /// Core cycles of the longest control task since this was last asked for, from the instant at
@@ -90,11 +94,6 @@ impl Tick {
 
     /// Has the clock interrupt at the next tick.
     fn await_next(&self) {
-        let due = self.grid.due();
-        self.clock.0.ccr1().write(|w| w.ccr().set(due));
-        // A comparison with a count that has passed by now would come after a turn of the counter.
-        if self.clock.now().wrapping_sub(due) < PERIOD {
-            self.clock.0.egr().write(|w| w.cc1g().set_bit());
-        }
+        self.clock.0.ccr1().write(|w| w.ccr().set(self.grid.due()));
     }
 }
