@@ -8,6 +8,7 @@
 use drivers::{Saved, Settings};
 use estimator_core::{Amps, Count, Sample};
 use firmware_app::ammeter::Measured;
+use firmware_app::control::Faults;
 use firmware_app::index::Pulses;
 use firmware_app::port::PortFaults;
 use firmware_app::supply::Reading;
@@ -41,14 +42,8 @@ pub(crate) trait Board {
     /// Reads the reference encoder, if the image has one.
     fn reference(&mut self) -> Option<Count>;
 
-    /// Whether both amplifiers are ready. Amplifiers may be not ready while they are disabled.
-    fn amplifiers_ready(&mut self) -> bool;
-
-    /// Whether the interlock loop is open, or was open since the amplifiers were last disabled.
-    fn interlock_was_open(&self) -> bool;
-
-    /// Whether the core does not run on its crystal.
-    fn clock_failure(&self) -> bool;
+    /// Faults of the hardware. Amplifiers may be not ready while they are disabled.
+    fn faults(&mut self) -> Faults;
 
     /// Takes zero and gain of the current outputs from the settings.
     fn calibrate(&mut self, settings: &Settings);

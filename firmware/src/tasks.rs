@@ -5,7 +5,7 @@ use drivers::link::{Hello, Stored};
 use estimator_core::Amps;
 use firmware_app::commands::{Channel, Commands, Messages};
 use firmware_app::config::AUTO_ARM;
-use firmware_app::control::{Control, Inputs, Message};
+use firmware_app::control::{Control, Inputs, Message, Outputs};
 use firmware_app::port::PortFaults;
 use firmware_app::reports::Reports;
 use firmware_app::rest::Rest;
@@ -127,17 +127,16 @@ impl ControlTask {
         let request = control.accept(message);
         let arms = AUTO_ARM || request == Some(Request::Arm);
         let inputs = Inputs {
-            amplifiers_ready: board.amplifiers_ready(),
-            interlock: board.interlock_was_open(),
-            clock_failure: board.clock_failure(),
+            faults: board.faults(),
             missed,
             debugger: arms && firmware_rt::debugger_interferes(),
             pulses: board.pulses(),
             request,
         };
-        board.apply(control.step(&sample, &flow, &inputs));
+        let Outputs { currents, action } = control.step(&sample, &flow, &inputs);
+        board.apply(currents);
         if control.makes_frame() {
-            let record = control.record(&sample);
+            let record = control.record(&sample, &action);
             let (measured, index) = (control.take_measured(), control.take_index(&sample));
             let supply = board.supply();
             control.watch(&supply);

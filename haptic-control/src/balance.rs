@@ -348,9 +348,16 @@ impl Balance {
 
     /// One tick, with the current over the period that ends now. The finding of a window is returned once.
     pub fn check(&self, state: &mut BalanceState, sample: &Sample) -> Option<Stop> {
-        state.charge += sample.current.get();
-        state.area += state.charge;
-        state.left -= 1;
+        state.add(sample);
+        self.pass(state, sample, 1)
+    }
+
+    /// The rest of [`Self::check`] after [`BalanceState::add`], for the last of so many ticks. A caller that
+    /// has a schedule calls it in the ticks in which something may be due: the four that
+    /// [`BalanceState::begin_after`] leads to, and those a quarter of a window later.
+    #[inline]
+    pub fn pass(&self, state: &mut BalanceState, sample: &Sample, ticks: u32) -> Option<Stop> {
+        state.left = state.left.saturating_sub(ticks);
         if state.left > 0 {
             return None;
         }
@@ -503,6 +510,13 @@ impl Balance {
 }
 
 impl BalanceState {
+    /// The part of [`Balance::check`] that is due in every tick.
+    #[inline]
+    pub fn add(&mut self, sample: &Sample) {
+        self.charge += sample.current.get();
+        self.area += self.charge;
+    }
+
     /// Begins a new window after this number of ticks, at least 1, and gives up the present one, for
     /// example because it misses ticks.
     pub const fn begin_after(&mut self, ticks: u32) {

@@ -62,6 +62,14 @@ pub struct MonitorState {
     cause: Option<Stop>,
 }
 
+impl MonitorState {
+    /// The latched cause.
+    #[must_use]
+    pub const fn cause(&self) -> Option<Stop> {
+        self.cause
+    }
+}
+
 const NO_CURRENT: (i32, i32) = (i32::MAX, i32::MIN);
 
 impl Monitor {
@@ -123,43 +131,41 @@ impl Monitor {
         }
     }
 
-    /// Ends the present slot after this number of ticks, at least 1 and at most those of a slot. Over a
-    /// slot that is shorter by that a motor may be faster.
-    pub const fn end_slot_after(&self, state: &mut MonitorState, ticks: u32) {
-        state.ticks = self.slot.saturating_sub(ticks);
+    /// One tick. The first cause is latched.
+    pub fn check(&self, state: &mut MonitorState, sample: &Sample) -> Option<Stop> {
+        self.follow(state, sample);
+        state.ticks += 1;
+        if state.ticks >= self.slot {
+            self.end_slot(state, sample);
+        }
+        state.cause
     }
 
-    /// One tick. The first cause is latched.
+    /// The part of [`Self::check`] that is due in every tick: a jump of a position, and the range of the
+    /// current.
     #[inline]
-    pub fn check(&self, state: &mut MonitorState, sample: &Sample) -> Option<Stop> {
+    pub fn follow(&self, state: &mut MonitorState, sample: &Sample) {
         let now = [sample.count, sample.coupled];
         let moved = [0, 1].map(|i| now[i] - state.last[i]);
         state.last = now;
         let milliamps = (sample.current.get() * 1000.0) as i32;
         let (low, high) = state.currents;
         state.currents = (low.min(milliamps), high.max(milliamps));
-        state.ticks += 1;
         // One test of both: a displacement within the bound is not negative after the bound is added.
         let [large, small] = moved.map(|counts| counts.0.wrapping_add(self.jump as i32) as u32);
-        let far = large.max(small) > self.jump.saturating_mul(2);
-        if state.ticks >= self.slot || far {
-            self.look(state, sample, far);
+        if large.max(small) > self.jump.saturating_mul(2) {
+            state.cause = state.cause.or(Some(Stop::Jump));
         }
-        state.cause
     }
 
-    /// A tick that ends a slot, or in which a position jumped.
-    fn look(&self, state: &mut MonitorState, sample: &Sample, jumped: bool) {
-        let mut found = None;
-        if state.ticks >= self.slot {
-            found = self.slot(state, sample);
-            state.ticks = 0;
-            state.currents = NO_CURRENT;
-        }
-        if jumped {
-            found = Some(Stop::Jump);
-        }
+    /// The rest of [`Self::check`], in the last tick of a slot. A caller that has a schedule calls it once in
+    /// [`Monitor::slot`] ticks. Over a slot that is shorter a motor may be faster.
+    #[inline(never)]
+    pub fn end_slot(&self, state: &mut MonitorState, sample: &Sample) {
+        let found = self.slot(state, sample);
         state.cause = state.cause.or(found);
+        state.ticks = 0;
+        state.currents = NO_CURRENT;
     }
 
     /// Checks at the end of a slot.

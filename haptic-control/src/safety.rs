@@ -185,7 +185,11 @@ pub struct Safety {
 pub struct SafetyState {
     mode: Mode,
     stop: Stop,
+    /// Ticks without a command at the end of the calm ticks.
     silent: u32,
+    /// Number of ticks from now on in which only a finding or a request changes anything. The amplifiers are
+    /// enabled throughout.
+    calm: u32,
     /// Number of missed ticks times 16, less the number of ticks on time, at least 0.
     debt: u32,
     /// Remaining ticks of settling.
@@ -238,6 +242,7 @@ impl Safety {
             },
             stop: reset,
             silent: 0,
+            calm: 0,
             debt: 0,
             settling: 0,
             chosen: 0,
@@ -252,31 +257,47 @@ impl Safety {
         findings: &Findings<S>,
         request: Option<Request>,
     ) -> Order {
-        // Nearly every tick: nothing is wrong, nothing is asked for, no time has passed.
-        let calm = findings.are_well() && request.is_none() && state.debt == 0;
-        if calm && state.mode != Mode::Settling && state.silent < self.shortest() {
-            state.silent += 1;
+        if findings.are_well() && self.pass_calm(state, request) {
             return Order {
-                enable: state.mode.is_enabled(),
+                enable: true,
                 ..Order::default()
             };
         }
         self.eventful(state, findings, request)
     }
 
-    /// The shortest silence that changes the mode, ticks.
-    const fn shortest(&self) -> u32 {
-        let silence = match self.silence {
-            Some(longest) => longest,
-            None => u32::MAX,
-        };
-        match self.disarm {
-            Some(longest) if longest < silence => longest,
-            _ => silence,
+    /// A tick in which nothing is found or missed: whether the amplifiers stay enabled and nothing else
+    /// changes. Otherwise nothing was done, and the tick is left to [`Self::tick`].
+    #[inline]
+    pub fn pass_calm(&self, state: &mut SafetyState, request: Option<Request>) -> bool {
+        match (state.calm.checked_sub(1), request) {
+            (Some(left), None) => state.calm = left,
+            (Some(_), Some(Request::KeepAlive)) => self.begin_calm(state, 0),
+            _ => return false,
         }
+        true
+    }
+
+    /// Begins calm ticks after this number of ticks without a command.
+    fn begin_calm(&self, state: &mut SafetyState, silent: u32) {
+        state.silent = silent;
+        state.calm = self.calm(state);
+        state.silent += state.calm;
+    }
+
+    /// Number of ticks, after one in which something was decided, in which time decides nothing.
+    fn calm(&self, state: &SafetyState) -> u32 {
+        let longest = match state.mode {
+            _ if state.debt > 0 => return 0,
+            Mode::Boot | Mode::Safe | Mode::Settling => return 0,
+            Mode::Running => self.silence,
+            Mode::Armed => self.disarm,
+        };
+        longest.unwrap_or(u32::MAX).saturating_sub(state.silent)
     }
 
     /// A tick of which anything may have to be decided.
+    #[inline(never)]
     fn eventful<S: SupplyFinding + Copy>(
         &self,
         state: &mut SafetyState,
@@ -287,7 +308,7 @@ impl Safety {
         state.debt = state.debt.saturating_sub(1).saturating_add(missed);
         state.silent = match request {
             Some(_) => 0,
-            None => state.silent.saturating_add(1),
+            None => (state.silent - state.calm).saturating_add(1),
         };
         let mut order = Order::default();
         match (state.mode, request) {
@@ -312,6 +333,7 @@ impl Safety {
             }
         }
         order.enable = state.mode.is_enabled();
+        self.begin_calm(state, state.silent);
         order
     }
 

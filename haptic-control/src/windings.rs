@@ -69,6 +69,12 @@ impl WindingsState {
             overload: None,
         }
     }
+
+    /// [`Stop::Overload`] as long as a winding is too hot.
+    #[must_use]
+    pub const fn overload(&self) -> Option<Stop> {
+        self.overload
+    }
 }
 
 impl Winding {
@@ -100,14 +106,26 @@ impl Windings {
     /// One tick, with the currents that were applied over the period that ends now.
     /// [`Stop::Overload`] as long as a winding is too hot.
     pub fn check(&self, state: &mut WindingsState, applied: &Currents) -> Option<Stop> {
+        self.add(state, applied);
+        self.pass(state, 1);
+        state.overload
+    }
+
+    /// The part of [`Self::check`] that is due in every tick.
+    #[inline]
+    pub fn add(&self, state: &mut WindingsState, applied: &Currents) {
         let [large, small] = [applied.large.get(), applied.small.get()];
         state.sums[0] += large * large;
         state.sums[1] += small * small;
-        state.ticks += 1;
+    }
+
+    /// The rest of [`Self::check`], for the last of so many ticks. Ends a slot if it is over. A caller that
+    /// has a schedule calls it once in so many ticks, of which a slot has a multiple.
+    pub fn pass(&self, state: &mut WindingsState, ticks: u32) {
+        state.ticks += ticks;
         if state.ticks >= self.slot {
             self.slot(state);
         }
-        state.overload
     }
 
     /// The end of a slot.

@@ -4,7 +4,7 @@ use drivers::Settings;
 use estimator_core::Sample;
 use haptic_control::{
     Action, Balance, BalanceState, Currents, Findings, Flow, Mode, Monitor, MonitorState, Request,
-    Safety, SafetyState, Stop, Windings, WindingsState,
+    Safety, SafetyState, Stop, SupplyFinding as _, Windings, WindingsState,
 };
 
 use crate::ammeter::{Ammeter, Measure as _, Measured};
@@ -12,7 +12,7 @@ use crate::config::{AUTO_ARM, DEVICE, RATE, RATE_HZ, SILENCE};
 use crate::index::{Indexing as _, Indices, Pulses, Reported};
 use crate::large::{Choice, Large, LargeEstimator as _};
 use crate::scene::{Core, FIRST, SCENES, Tuned};
-use crate::schedule::Phase;
+use crate::schedule::{Due, Phase};
 use crate::supply::{Reading, Voltmeter, Watch as _};
 use crate::telemetry::Record;
 
@@ -36,12 +36,8 @@ const SAFETY: Safety = Safety {
 
 /// Inputs of a tick besides its sample.
 pub struct Inputs {
-    /// Whether both amplifiers are ready.
-    pub amplifiers_ready: bool,
-    /// Whether the interlock loop is open, or was open since the amplifiers were last disabled.
-    pub interlock: bool,
-    /// Whether the core does not run on its crystal.
-    pub clock_failure: bool,
+    /// Faults of the hardware.
+    pub faults: Faults,
     /// Control ticks missed since the last one.
     pub missed: u32,
     /// Debug settings are on that would hold the outputs in a halt.
@@ -50,6 +46,41 @@ pub struct Inputs {
     pub pulses: Pulses,
     /// A request to the safety machine.
     pub request: Option<Request>,
+}
+
+/// Faults of the hardware, of which one comparison tells that there are none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Faults(u32);
+
+impl Faults {
+    /// None.
+    pub const NONE: Self = Self(0);
+    /// An amplifier is not ready.
+    pub const NOT_READY: Self = Self(1);
+    /// The interlock loop is open, or was open since the amplifiers were last disabled.
+    pub const INTERLOCK: Self = Self(2);
+    /// The core does not run on its crystal.
+    pub const CLOCK: Self = Self(4);
+
+    /// These faults, and `fault` if it is `present`.
+    #[must_use]
+    #[inline]
+    pub const fn with(self, fault: Self, present: bool) -> Self {
+        Self(self.0 | fault.0 * present as u32)
+    }
+
+    const fn contain(self, fault: Self) -> bool {
+        self.0 & fault.0 != 0
+    }
+}
+
+/// Outputs of a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outputs {
+    /// The currents to apply; `None` disables the amplifiers.
+    pub currents: Option<Currents>,
+    /// The action, for a [`Record`]. Its currents are those that are applied, zero without.
+    pub action: Action,
 }
 
 /// A command on its way to the control task.
@@ -76,12 +107,12 @@ pub struct Control {
     indices: Indices,
     voltmeter: Voltmeter,
     safety: SafetyState,
-    /// Action of the latest tick.
-    action: Action,
-    /// Ticks so far, modulo 2^32.
-    ticks: u32,
+    /// Currents of the latest tick.
+    applied: Currents,
     /// Of the latest tick.
     phase: Phase,
+    /// Periods of telemetry frames before the latest tick, modulo 2^32.
+    period: u32,
     overruns: u32,
     /// Whether an image that arms without a command does so.
     auto_arm: bool,
@@ -114,17 +145,18 @@ impl Control {
             indices,
             voltmeter: Voltmeter::unread(),
             safety: SAFETY.start(reset),
-            action: Action::default(),
-            ticks: 0,
+            applied: Currents::default(),
             phase,
+            // The first tick begins period 0.
+            period: u32::MAX,
             overruns: 0,
             auto_arm: AUTO_ARM && brown_out_reset && settings.are_signs_verified(),
         }
     }
 
     /// Currents commanded over the period that ends now.
-    pub fn applied(&self) -> Currents {
-        self.action.currents
+    pub const fn applied(&self) -> Currents {
+        self.applied
     }
 
     /// Whether the next tick takes a message, if one waits.
@@ -156,8 +188,7 @@ impl Control {
     /// measures none.
     pub fn flow(&mut self, readings: &Measured) -> Flow {
         let enabled = self.safety.mode().is_enabled();
-        self.ammeter
-            .update(readings, &self.action.currents, enabled)
+        self.ammeter.update(readings, &self.applied, enabled)
     }
 
     /// Applies a message before the tick and returns the request for the safety state machine.
@@ -181,60 +212,106 @@ impl Control {
         }
     }
 
-    /// One tick, after the currents of [`Self::flow`]: the currents to apply, `None` with the
-    /// amplifiers disabled.
-    pub fn step(&mut self, sample: &Sample, flow: &Flow, inputs: &Inputs) -> Option<Currents> {
+    /// One tick, after the currents of [`Self::flow`].
+    #[inline]
+    pub fn step(&mut self, sample: &Sample, flow: &Flow, inputs: &Inputs) -> Outputs {
         let before = self.phase;
         self.phase = before.next();
-        self.overruns = self.overruns.wrapping_add(inputs.missed);
-        let overload = WINDINGS.check(&mut self.windings, &flow.currents);
-        let lost_counts = self.indices.check(&inputs.pulses);
         if inputs.missed > 0 {
+            self.overruns = self.overruns.wrapping_add(inputs.missed);
             self.balance.begin_after(before.until(Phase::BALANCE));
         }
-        let unbalanced = BALANCE.check(&mut self.balance, sample);
-        let mut action = self.core.step(sample);
+        WINDINGS.add(&mut self.windings, &flow.currents);
+        self.balance.add(sample);
+        MONITOR.follow(&mut self.monitor, sample);
+        let mut unbalanced = None;
+        match self.phase.due() {
+            Due::Nothing => {}
+            Due::Frame => self.period = self.period.wrapping_add(1),
+            Due::Balance(ticks) => unbalanced = BALANCE.pass(&mut self.balance, sample, ticks),
+            Due::Slot => MONITOR.end_slot(&mut self.monitor, sample),
+            Due::Windings(ticks) => WINDINGS.pass(&mut self.windings, ticks),
+            Due::All { frame, slot } => {
+                self.period = self.period.wrapping_add(u32::from(frame));
+                unbalanced = BALANCE.pass(&mut self.balance, sample, 1);
+                WINDINGS.pass(&mut self.windings, 1);
+                if slot {
+                    MONITOR.end_slot(&mut self.monitor, sample);
+                }
+            }
+        }
+        let found = [
+            self.monitor.cause(),
+            self.windings.overload(),
+            flow.mismatch,
+            self.indices.check(&inputs.pulses),
+            unbalanced,
+        ];
+        let action = self.core.step(sample);
+        let request = inputs.request.or_else(|| self.auto_arm_request());
+        // Nearly every tick.
+        if inputs.faults == Faults::NONE
+            && inputs.missed == 0
+            && found.iter().all(Option::is_none)
+            && has_finite_sum(&action)
+            && !self.voltmeter.is_outside()
+            && SAFETY.pass_calm(&mut self.safety, request)
+        {
+            self.applied = action.currents;
+            return Outputs {
+                currents: Some(action.currents),
+                action,
+            };
+        }
         let findings = Findings {
-            monitor: MONITOR
-                .check(&mut self.monitor, sample)
-                .or(overload)
-                .or(flow.mismatch)
-                .or(lost_counts)
-                .or(unbalanced),
-            amplifiers_ready: inputs.amplifiers_ready,
-            interlock: inputs.interlock,
-            clock_failure: inputs.clock_failure,
-            finite: is_finite(&action),
+            monitor: found.into_iter().flatten().next(),
+            amplifiers_ready: !inputs.faults.contain(Faults::NOT_READY),
+            interlock: inputs.faults.contain(Faults::INTERLOCK),
+            clock_failure: inputs.faults.contain(Faults::CLOCK),
+            finite: are_finite(&action),
             missed: inputs.missed,
             debugger: inputs.debugger,
             supply: self.voltmeter,
         };
-        let request = inputs.request.or_else(|| self.auto_arm_request());
+        self.decide(*sample, action, findings, request)
+    }
+
+    /// The rest of a tick in which something is found or requested, or which decides something by its time.
+    #[inline(never)]
+    fn decide(
+        &mut self,
+        sample: Sample,
+        mut action: Action,
+        findings: Findings<Voltmeter>,
+        request: Option<Request>,
+    ) -> Outputs {
         let order = SAFETY.tick(&mut self.safety, &findings, request);
         if order.restart {
-            self.core.restart(sample);
-            (self.monitor, self.balance) = checks(sample, self.phase);
+            self.core.restart(&sample);
+            (self.monitor, self.balance) = checks(&sample, self.phase);
             self.ammeter.restart();
             self.indices.forget();
         }
         if let Some(scene) = order.select {
-            self.core.select(scene, sample);
+            self.core.select(scene, &sample);
         }
         if order.restart || !order.enable {
             action.currents = Currents::default();
         }
-        self.action = action;
-        self.ticks = self.ticks.wrapping_add(1);
-        order.enable.then_some(action.currents)
+        self.applied = action.currents;
+        Outputs {
+            currents: order.enable.then_some(action.currents),
+            action,
+        }
     }
 
-    /// Telemetry record of the latest tick, whose sample is given. It is built on demand, because
+    /// Telemetry record of the latest tick, whose sample and action are given. It is built on demand, because
     /// most ticks are not reported.
-    pub fn record(&self, sample: &Sample) -> Record {
+    pub fn record(&self, sample: &Sample, action: &Action) -> Record {
         Record {
-            tick: self.ticks.wrapping_sub(1),
+            tick: self.tick(),
             sample: *sample,
-            action: self.action,
+            action: *action,
             state: self.safety.mode(),
             cause: self.safety.stop(),
             overruns: self.overruns,
@@ -243,15 +320,20 @@ impl Control {
         }
     }
 
+    /// Number of the latest tick from 0, modulo 2^32.
+    const fn tick(&self) -> u32 {
+        self.phase.tick(self.period)
+    }
+
     /// Request of an image that arms without a command. It arms after boot, and not from the mode
     /// safe.
     fn auto_arm_request(&self) -> Option<Request> {
         const ARM: u32 = RATE_HZ / 10;
         const SELECT: u32 = ARM - 1;
-        if !self.auto_arm {
+        if !AUTO_ARM || !self.auto_arm {
             return None;
         }
-        match (self.ticks, self.safety.mode()) {
+        match (self.tick(), self.safety.mode()) {
             (SELECT, Mode::Boot) => Some(Request::Select(FIRST)),
             (ARM, Mode::Boot) => Some(Request::Arm),
             _ => None,
@@ -261,19 +343,17 @@ impl Control {
 
 /// Monitor and balance at rest, at the sample of a tick of this phase.
 fn checks(sample: &Sample, phase: Phase) -> (MonitorState, BalanceState) {
-    let (mut monitor, mut balance) = (MONITOR.start(sample), BALANCE.start(sample));
-    MONITOR.end_slot_after(&mut monitor, phase.until(Phase::SLOT));
+    let (monitor, mut balance) = (MONITOR.start(sample), BALANCE.start(sample));
     balance.begin_after(phase.until(Phase::BALANCE));
     (monitor, balance)
 }
 
-/// Currents cannot be anything else.
-fn is_finite(action: &Action) -> bool {
-    // A sum of finite numbers is finite or too large, that of others never.
-    let sum = action.torque.0 + action.large_velocity.0 + action.handle_velocity.0;
-    sum.is_finite() || are_finite(action)
+/// A sum of finite numbers is finite or too large, that of others never. Currents cannot be anything else.
+fn has_finite_sum(action: &Action) -> bool {
+    (action.torque.0 + action.large_velocity.0 + action.handle_velocity.0).is_finite()
 }
 
+/// Whether torque and velocities are finite.
 fn are_finite(action: &Action) -> bool {
     action.torque.0.is_finite()
         && action.large_velocity.0.is_finite()
@@ -287,27 +367,34 @@ mod tests {
 
     #[test]
     fn action_with_one_non_finite_number_is_detected() {
-        assert!(is_finite(&Action::default()));
+        let both = |action: &Action| [has_finite_sum(action), are_finite(action)];
+        assert_eq!(both(&Action::default()), [true; 2]);
         // A sum that is too large says nothing.
-        assert!(is_finite(&Action {
+        let large = Action {
             large_velocity: RadPerS(3e38),
             handle_velocity: RadPerS(3e38),
             ..Action::default()
-        }));
+        };
+        assert_eq!(both(&large), [false, true]);
         let zero = Action::default;
         for number in [f32::NAN, f32::INFINITY] {
-            assert!(!is_finite(&Action {
-                torque: NewtonMetres(number),
-                ..zero()
-            }));
-            assert!(!is_finite(&Action {
-                large_velocity: RadPerS(number),
-                ..zero()
-            }));
-            assert!(!is_finite(&Action {
-                handle_velocity: RadPerS(number),
-                ..zero()
-            }));
+            let actions = [
+                Action {
+                    torque: NewtonMetres(number),
+                    ..zero()
+                },
+                Action {
+                    large_velocity: RadPerS(number),
+                    ..zero()
+                },
+                Action {
+                    handle_velocity: RadPerS(number),
+                    ..zero()
+                },
+            ];
+            for action in actions {
+                assert_eq!(both(&action), [false; 2]);
+            }
         }
     }
 }

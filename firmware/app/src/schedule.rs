@@ -12,6 +12,28 @@ use crate::config::DECIMATION;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Phase(u32);
 
+/// What a tick does that most others do not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Due {
+    /// Nothing.
+    Nothing,
+    /// A frame.
+    Frame,
+    /// The balance, for this number of ticks.
+    Balance(u32),
+    /// The end of a slot of the monitor.
+    Slot,
+    /// The windings, for this number of ticks.
+    Windings(u32),
+    /// The balance and the windings, for one tick.
+    All {
+        /// Whether a frame is made, too.
+        frame: bool,
+        /// Whether a slot of the monitor ends, too.
+        slot: bool,
+    },
+}
+
 impl Phase {
     /// Makes a frame.
     pub const FRAME: Self = Self(0);
@@ -37,6 +59,42 @@ impl Phase {
         } else {
             Self(self.0 + 1)
         }
+    }
+
+    /// What a tick of this phase does, besides a message.
+    #[must_use]
+    #[allow(
+        unreachable_patterns,
+        reason = "below 10 kHz, where it is not executed"
+    )]
+    pub const fn due(self) -> Due {
+        const FRAME: u32 = Phase::FRAME.0;
+        const BALANCE: [u32; 4] = {
+            let first = Phase::BALANCE.0;
+            [first, first + 1, first + 2, first + 3]
+        };
+        const SLOT: u32 = Phase::SLOT.0;
+        const LAST: u32 = Phase::START.0;
+        if DECIMATION < 10 {
+            return Due::All {
+                frame: self.0 == FRAME,
+                slot: self.0 == SLOT,
+            };
+        }
+        match self.0 {
+            FRAME => Due::Frame,
+            b if b == BALANCE[0] => Due::Balance(DECIMATION - 3),
+            b if b == BALANCE[1] || b == BALANCE[2] || b == BALANCE[3] => Due::Balance(1),
+            SLOT => Due::Slot,
+            LAST => Due::Windings(DECIMATION),
+            _ => Due::Nothing,
+        }
+    }
+
+    /// The number of the tick, of this period of frames.
+    #[must_use]
+    pub const fn tick(self, period: u32) -> u32 {
+        period.wrapping_mul(DECIMATION).wrapping_add(self.0)
     }
 
     /// Number of ticks from this one to the next one of the phase `to`, 1 to [`DECIMATION`].

@@ -50,15 +50,27 @@ fn displacement_equal_to_the_bound_is_no_jump() {
     }
 }
 
+/// A caller with a schedule: [`Monitor::follow`] in every tick, [`Monitor::end_slot`] in the last one of a slot.
 #[test]
-fn slot_ends_after_the_ticks_that_are_asked_for() {
-    for ticks in 1..=10 {
-        let mut state = MONITOR.start(&sample(0, 0, 0.0));
-        MONITOR.end_slot_after(&mut state, ticks);
-        // More than the limit of a window, less than a jump.
-        let far = sample(0, 450, 0.0);
-        let found = (1..100).find(|_| MONITOR.check(&mut state, &far).is_some());
-        assert_eq!(found, Some(ticks));
+fn parts_of_a_tick_find_what_the_whole_tick_finds() {
+    let motions: [&dyn Fn(u32) -> Sample; 4] = [
+        &|k| sample(if k < 77 { 5 } else { 1006 }, 0, 0.0),
+        &|k| sample(0, if k < 80 { 5 } else { 1006 }, 0.0),
+        &|k| sample(0, if k < 200 { 0 } else { 9 * (k - 200) }, 0.0),
+        &|_| sample(3, 0, -0.51),
+    ];
+    for motion in motions {
+        let mut state = MONITOR.start(&motion(0));
+        let parts = (1..5000).find_map(|k| {
+            let sample = motion(k);
+            MONITOR.follow(&mut state, &sample);
+            if k % MONITOR.slot == 0 {
+                MONITOR.end_slot(&mut state, &sample);
+            }
+            state.cause().map(|cause| (k, cause))
+        });
+        assert!(parts.is_some());
+        assert_eq!(parts, first(5000, motion));
     }
 }
 

@@ -4,7 +4,7 @@ use drivers::Settings;
 use estimator_core::{AccelerationEstimator, Amps, Count, Sample, Skip, VelocityEstimator};
 use experiments::closed_loop::Hand;
 use firmware_app::config::RATE;
-use firmware_app::control::{Control, Inputs, Message, SETTLE};
+use firmware_app::control::{Control, Faults, Inputs, Message, SETTLE};
 use firmware_app::large::{self, Large, LargeEstimator as _};
 use firmware_app::scene::{HANDLE, RIG};
 use firmware_app::telemetry::Record;
@@ -80,16 +80,14 @@ pub(crate) fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
         });
         let request = control.accept(message);
         let inputs = Inputs {
-            amplifiers_ready: true,
-            interlock: false,
-            clock_failure: false,
+            faults: Faults::NONE,
             missed: 0,
             debugger: false,
             pulses: Skip,
             request: Some(request.unwrap_or(Request::KeepAlive)),
         };
-        let currents = control.step(&sample, &flow, &inputs);
-        (currents, control.record(&sample))
+        let outputs = control.step(&sample, &flow, &inputs);
+        (outputs.currents, control.record(&sample, &outputs.action))
     };
     run.ticks.iter().enumerate().map(step).collect()
 }

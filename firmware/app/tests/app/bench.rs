@@ -7,11 +7,11 @@ use estimator_core::{Amps, Count, Sample};
 use firmware_app::ammeter::Measured;
 use firmware_app::commands::{Channel, Commands, Messages};
 use firmware_app::config::{DEVICE, RATE_HZ};
-use firmware_app::control::{Control, Inputs, Message};
+use firmware_app::control::{Control, Faults, Inputs, Message, Outputs};
 use firmware_app::index::{Indexing, Indices, Pulses, Reported};
 use firmware_app::supply::Reading;
 use firmware_app::telemetry::Record;
-use haptic_control::{Currents, DualStage, Mode, Request, Stop};
+use haptic_control::{Action, Currents, DualStage, Mode, Request, Stop};
 
 /// Counts per turn of the handle.
 const SMALL: f64 = 20_000.0;
@@ -25,9 +25,7 @@ pub(crate) fn ticks(seconds: f64) -> u32 {
 
 /// A tick at which nothing is wrong and nothing is asked for.
 pub(crate) const CALM: Inputs = Inputs {
-    amplifiers_ready: true,
-    interlock: false,
-    clock_failure: false,
+    faults: Faults::NONE,
     missed: 0,
     debugger: false,
     pulses: <Indices as Indexing>::NONE,
@@ -38,6 +36,8 @@ pub(crate) const CALM: Inputs = Inputs {
 /// drive. The handle turns as the test says.
 pub(crate) struct Bench {
     pub(crate) control: Control,
+    /// Of the latest tick.
+    action: Action,
     pub(crate) handle: f64,
     pub(crate) large: f64,
     velocity: f64,
@@ -66,6 +66,7 @@ impl Bench {
         let first = Sample::new(Count(0)).with_coupled(Count(0));
         Self {
             control: booted(Control::new(&first, reset, brown_out_reset, settings)),
+            action: Action::default(),
             handle: 0.0,
             large: 0.0,
             velocity: 0.0,
@@ -96,7 +97,8 @@ impl Bench {
         let readings = readings(self.readings.unwrap_or(self.control.applied()));
         let flow = self.control.flow(&readings);
         let sample = self.sample(flow.currents.large);
-        let currents = self.control.step(&sample, &flow, inputs);
+        let Outputs { currents, action } = self.control.step(&sample, &flow, inputs);
+        self.action = action;
         if self.control.makes_frame() {
             self.control.watch(&supply(self.supply));
         }
@@ -143,8 +145,8 @@ impl Bench {
     }
 
     pub(crate) fn record(&self) -> Record {
-        self.control
-            .record(&self.sample(self.control.applied().large))
+        let sample = self.sample(self.control.applied().large);
+        self.control.record(&sample, &self.action)
     }
 
     /// What is reported of the indices.

@@ -2,7 +2,7 @@ use core::f64::consts::TAU;
 
 use drivers::{Command, Settings, encode};
 use firmware_app::config::AUTO_ARM;
-use firmware_app::control::{Inputs, Message};
+use firmware_app::control::{Faults, Inputs, Message};
 use firmware_app::scene::FIRST;
 use haptic_control::{Mode, Request, Stop};
 
@@ -57,21 +57,21 @@ fn any_fault_disables_the_amplifiers_in_the_same_tick() {
     let faults = [
         (
             Inputs {
-                amplifiers_ready: false,
+                faults: Faults::NOT_READY,
                 ..calm()
             },
             Stop::AmplifierFault,
         ),
         (
             Inputs {
-                interlock: true,
+                faults: Faults::INTERLOCK,
                 ..calm()
             },
             Stop::Interlock,
         ),
         (
             Inputs {
-                clock_failure: true,
+                faults: Faults::CLOCK,
                 ..calm()
             },
             Stop::ClockFailure,
@@ -84,10 +84,17 @@ fn any_fault_disables_the_amplifiers_in_the_same_tick() {
             Stop::TickOverrun,
         ),
     ];
+    // At every phase of a tick, and whether the command channel is silent or not.
     for (inputs, cause) in faults {
-        let mut bench = Bench::start(FIRST);
-        assert_eq!(bench.step(&inputs), None, "{cause:?}");
-        assert_eq!(bench.state(), (Mode::Safe, cause));
+        for wait in 1..=10 {
+            for request in [None, Some(Request::KeepAlive)] {
+                let mut bench = Bench::start(FIRST);
+                bench.wait(wait);
+                let inputs = Inputs { request, ..inputs };
+                assert_eq!(bench.step(&inputs), None, "{cause:?}");
+                assert_eq!(bench.state(), (Mode::Safe, cause));
+            }
+        }
     }
     // A jump of the large encoder, which the monitor finds.
     let mut bench = Bench::start(FIRST);

@@ -6,11 +6,13 @@ use drivers::{
 use estimator_core::{Amps, Count, Sample};
 use firmware_app::ammeter::Measured;
 use firmware_app::config::{DEVICE, REFERENCE, TIMER_HZ};
+use firmware_app::control::Faults;
 use firmware_app::index::Pulses;
 use firmware_app::supply::Reading;
 use haptic_control::Currents;
 use stm32f4xx_hal::dac::{C1, C2, DacOut, DacPin};
 use stm32f4xx_hal::gpio::{Input, PE2, PE6};
+use stm32f4xx_hal::pac::rcc::cfgr::SWSR;
 use stm32f4xx_hal::pac::{self, TIM1, TIM3, TIM4};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::qei::Qei;
@@ -102,8 +104,12 @@ type Small = Amplifier<DacCurrent<C2>, PE6<Input>>;
 /// The clock tree.
 struct Tree {
     rcc: Rcc,
-    crystal: bool,
+    /// Field `SWS` of the crystal's PLL; [`NO_SOURCE`] without the crystal.
+    source: u8,
 }
+
+/// A value that the field `SWS` never has.
+const NO_SOURCE: u8 = u8::MAX;
 
 /// The parts that the control task works with.
 pub(super) struct Parts {
@@ -158,17 +164,15 @@ impl Board for Parts {
         self.encoders.reference.as_mut().map(Encoder::read)
     }
 
-    fn amplifiers_ready(&mut self) -> bool {
-        self.amplifiers.are_ready()
-    }
-
-    fn interlock_was_open(&self) -> bool {
-        self.amplifiers.enables().interlock_was_open()
-    }
-
-    /// The NMI comes first; this is for when it did not.
-    fn clock_failure(&self) -> bool {
-        !self.clock.crystal || !self.clock.rcc.cfgr().read().sws().is_pll()
+    fn faults(&mut self) -> Faults {
+        let not_ready = !self.amplifiers.are_ready();
+        let interlock = self.amplifiers.enables().interlock_was_open();
+        // The NMI comes first; this is for when it did not.
+        let clock = self.clock.rcc.cfgr().read().sws().bits() != self.clock.source;
+        Faults::NONE
+            .with(Faults::NOT_READY, not_ready)
+            .with(Faults::INTERLOCK, interlock)
+            .with(Faults::CLOCK, clock)
     }
 
     fn calibrate(&mut self, settings: &Settings) {
@@ -314,13 +318,14 @@ pub(super) fn start(chip: pac::Peripherals) -> (Parts, Start<Guard, Usart, Flash
         rcc.clocks.timclk2().raw() == CORE_HZ,
         "the timer of the enables is not clocked like the core"
     );
+    let source = if crystal { SWSR::Pll as u8 } else { NO_SOURCE };
     let mut parts = Parts {
         encoders,
         amplifiers,
         monitors,
         supply,
         tick: Tick::new(timer),
-        clock: Tree { rcc, crystal },
+        clock: Tree { rcc, source },
     };
     parts.calibrate(&settings.unwrap_or_default());
     let start = Start {
