@@ -16,9 +16,9 @@ pub struct Grid<const PERIOD: u32> {
     /// The first lateness of a tick that [`Self::begin`] has to look at: a period, or 0 if the latest tick
     /// ended after the next one was due.
     late: u32,
+    /// The longest time of a tick that ended before the next one was due, and of one that did not.
     longest: u32,
-    /// The largest duration that [`Self::end`] need not look at: `longest`, but less than a period.
-    short: u32,
+    overrun: u32,
 }
 
 impl<const PERIOD: u32> Grid<PERIOD> {
@@ -30,7 +30,7 @@ impl<const PERIOD: u32> Grid<PERIOD> {
             due: now.wrapping_add(PERIOD),
             late: PERIOD,
             longest: 0,
-            short: 0,
+            overrun: 0,
         }
     }
 
@@ -67,25 +67,23 @@ impl<const PERIOD: u32> Grid<PERIOD> {
     #[inline]
     pub fn end(&mut self, now: u32) -> bool {
         let spent = now.wrapping_sub(self.due).wrapping_add(PERIOD);
-        spent > self.short && self.end_long(spent)
-    }
-
-    /// A tick that is the longest one so far, or overran.
-    #[inline(never)]
-    fn end_long(&mut self, spent: u32) -> bool {
-        self.longest = self.longest.max(spent);
-        self.short = self.longest.min(PERIOD - 1);
-        let overran = spent >= PERIOD;
-        if overran {
-            self.late = 0;
+        // An overrun is longer than all ticks that are none.
+        if spent <= self.longest {
+            return false;
         }
-        overran
+        if spent < PERIOD {
+            self.longest = spent;
+            return false;
+        }
+        self.overrun = self.overrun.max(spent);
+        self.late = 0;
+        true
     }
 
     /// The longest time in counts from the instant at which a tick was due to its end, over the
     /// ticks since the last call.
     pub fn take_longest(&mut self) -> u32 {
-        self.short = 0;
-        core::mem::take(&mut self.longest)
+        let longest = core::mem::take(&mut self.longest);
+        longest.max(core::mem::take(&mut self.overrun))
     }
 }

@@ -3,8 +3,8 @@
 use drivers::Settings;
 use estimator_core::Sample;
 use haptic_control::{
-    Action, Balance, BalanceState, Currents, Findings, Flow, Mode, Monitor, MonitorState, Request,
-    Safety, SafetyState, Stop, SupplyFinding as _, Windings, WindingsState,
+    Action, Balance, BalanceState, Currents, Findings, Flow, Mode, Monitor, MonitorState, Order,
+    Request, Safety, SafetyState, Stop, SupplyFinding as _, Windings, WindingsState,
 };
 
 use crate::ammeter::{Ammeter, Measure as _, Measured};
@@ -81,6 +81,17 @@ pub struct Outputs {
     pub currents: Option<Currents>,
     /// The action, for a [`Record`]. Its currents are those that are applied, zero without.
     pub action: Action,
+}
+
+/// What becomes of the currents of a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Decision {
+    /// They are applied.
+    Drive,
+    /// The amplifiers are enabled without current.
+    Enable,
+    /// The amplifiers are disabled.
+    Disable,
 }
 
 /// A command on its way to the control task.
@@ -215,12 +226,7 @@ impl Control {
     /// One tick, after the currents of [`Self::flow`].
     #[inline]
     pub fn step(&mut self, sample: &Sample, flow: &Flow, inputs: &Inputs) -> Outputs {
-        let before = self.phase;
-        self.phase = before.next();
-        if inputs.missed > 0 {
-            self.overruns = self.overruns.wrapping_add(inputs.missed);
-            self.balance.begin_after(before.until(Phase::BALANCE));
-        }
+        self.phase = self.phase.next();
         WINDINGS.add(&mut self.windings, &flow.currents);
         self.balance.add(sample);
         MONITOR.follow(&mut self.monitor, sample);
@@ -247,44 +253,51 @@ impl Control {
             self.indices.check(&inputs.pulses),
             unbalanced,
         ];
-        let action = self.core.step(sample);
+        let mut action = self.core.step(sample);
         let request = inputs.request.or_else(|| self.auto_arm_request());
-        // Nearly every tick.
-        if inputs.faults == Faults::NONE
+        let is_calm = inputs.faults == Faults::NONE
             && inputs.missed == 0
             && found.iter().all(Option::is_none)
             && has_finite_sum(&action)
             && !self.voltmeter.is_outside()
-            && SAFETY.pass_calm(&mut self.safety, request)
-        {
-            self.applied = action.currents;
-            return Outputs {
-                currents: Some(action.currents),
-                action,
+            && SAFETY.pass_calm(&mut self.safety, request);
+        let decision = if is_calm {
+            Decision::Drive
+        } else {
+            let findings = Findings {
+                monitor: found.into_iter().flatten().next(),
+                amplifiers_ready: !inputs.faults.contain(Faults::NOT_READY),
+                interlock: inputs.faults.contain(Faults::INTERLOCK),
+                clock_failure: inputs.faults.contain(Faults::CLOCK),
+                finite: are_finite(&action),
+                missed: inputs.missed,
+                debugger: inputs.debugger,
+                supply: self.voltmeter,
             };
-        }
-        let findings = Findings {
-            monitor: found.into_iter().flatten().next(),
-            amplifiers_ready: !inputs.faults.contain(Faults::NOT_READY),
-            interlock: inputs.faults.contain(Faults::INTERLOCK),
-            clock_failure: inputs.faults.contain(Faults::CLOCK),
-            finite: are_finite(&action),
-            missed: inputs.missed,
-            debugger: inputs.debugger,
-            supply: self.voltmeter,
+            self.decide(*sample, findings, request)
         };
-        self.decide(*sample, action, findings, request)
+        if decision != Decision::Drive {
+            action.currents = Currents::default();
+        }
+        self.applied = action.currents;
+        Outputs {
+            currents: (decision != Decision::Disable).then_some(action.currents),
+            action,
+        }
     }
 
-    /// The rest of a tick in which something is found or requested, or which decides something by its time.
+    /// Decides in a tick in which something is found or requested, or which decides something by its time.
     #[inline(never)]
     fn decide(
         &mut self,
         sample: Sample,
-        mut action: Action,
         findings: Findings<Voltmeter>,
         request: Option<Request>,
-    ) -> Outputs {
+    ) -> Decision {
+        if findings.missed > 0 {
+            self.overruns = self.overruns.wrapping_add(findings.missed);
+            self.balance.begin_after(self.phase.until(Phase::BALANCE));
+        }
         let order = SAFETY.tick(&mut self.safety, &findings, request);
         if order.restart {
             self.core.restart(&sample);
@@ -295,13 +308,10 @@ impl Control {
         if let Some(scene) = order.select {
             self.core.select(scene, &sample);
         }
-        if order.restart || !order.enable {
-            action.currents = Currents::default();
-        }
-        self.applied = action.currents;
-        Outputs {
-            currents: order.enable.then_some(action.currents),
-            action,
+        match order {
+            Order { enable: false, .. } => Decision::Disable,
+            Order { restart: true, .. } => Decision::Enable,
+            Order { .. } => Decision::Drive,
         }
     }
 
