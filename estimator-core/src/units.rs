@@ -127,6 +127,24 @@ impl Amps {
         }
     }
 
+    /// A current of `amps` if its magnitude is at most `largest`; NaN never is.
+    ///
+    /// ```
+    /// use estimator_core::Amps;
+    /// let largest = Amps::new(2.0);
+    /// assert_eq!(Amps::within(-2.0, largest), Some(Amps::new(-2.0)));
+    /// assert!(Amps::within(2.001, largest).is_none() && Amps::within(f32::NAN, largest).is_none());
+    /// ```
+    #[must_use]
+    #[inline]
+    pub const fn within(amps: f32, largest: Self) -> Option<Self> {
+        if amps.abs() <= largest.0 {
+            Some(Self(amps))
+        } else {
+            None
+        }
+    }
+
     /// Slow path for currents that no device carries: NaN, infinities and magnitudes above
     /// [`Amps::MAX`].
     #[cold]

@@ -8,40 +8,47 @@ use crate::device::DualStage;
 /// tick changes the current by at most the slew limit.
 ///
 /// ```
+/// use estimator_core::Amps;
 /// use haptic_control::CurrentLimits;
-/// const LIMITS: CurrentLimits = CurrentLimits { largest: 6.0, slew: 1.0 };
-/// assert_eq!(LIMITS.applied(10.0, 5.5), 6.0);
-/// assert_eq!(LIMITS.applied(-2.0, 0.25), -0.75);
-/// assert_eq!(LIMITS.applied(f32::NAN, 0.25), 0.0);
+/// const LIMITS: CurrentLimits = CurrentLimits { largest: Amps::new(6.0), slew: 1.0 };
+/// let applied = |wanted, before| LIMITS.applied(wanted, Amps::new(before)).get();
+/// assert_eq!(applied(10.0, 5.5), 6.0);
+/// assert_eq!(applied(-2.0, 0.25), -0.75);
+/// assert_eq!(applied(f32::NAN, 0.25), 0.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurrentLimits {
-    /// Largest magnitude, A.
-    pub largest: f32,
+    /// Largest magnitude.
+    pub largest: Amps,
     /// Largest change in a tick, A.
     pub slew: f32,
 }
 
 impl CurrentLimits {
-    /// The current to apply for the commanded current `wanted`, if `before` was applied in the last
-    /// tick, A.
+    /// The current to apply for the commanded current `wanted`, A, if `before` was applied in the last tick.
     #[must_use]
     #[inline]
-    pub fn applied(&self, wanted: f32, before: f32) -> f32 {
-        // Nearly every tick. NaN and infinity are not within.
-        if (wanted - before).abs() <= self.slew && wanted.abs() <= self.largest {
-            return wanted;
-        }
-        self.limited(wanted, before)
+    pub fn applied(&self, wanted: f32, before: Amps) -> Amps {
+        self.unlimited(wanted, before)
+            .unwrap_or_else(|| self.limited(wanted, before))
     }
 
+    /// The commanded current, if no limit changes it: in nearly every tick.
+    #[inline]
+    pub(crate) fn unlimited(&self, wanted: f32, before: Amps) -> Option<Amps> {
+        // NaN and infinity are not within.
+        Amps::within(wanted, self.largest).filter(|_| (wanted - before.get()).abs() <= self.slew)
+    }
+
+    #[cold]
     #[inline(never)]
-    fn limited(&self, wanted: f32, before: f32) -> f32 {
+    pub(crate) fn limited(&self, wanted: f32, before: Amps) -> Amps {
         if !wanted.is_finite() {
-            return 0.0;
+            return Amps::ZERO;
         }
+        let (before, largest) = (before.get(), self.largest.get());
         let slewed = within(wanted, before - self.slew, before + self.slew);
-        within(slewed, -self.largest, self.largest)
+        Amps::new(within(slewed, -largest, largest))
     }
 }
 
@@ -176,17 +183,17 @@ impl Currents {
 
 #[cfg(test)]
 mod tests {
-    use super::{CurrentLimits, at_most, within};
+    use super::{Amps, CurrentLimits, at_most, within};
 
     const LIMITS: CurrentLimits = CurrentLimits {
-        largest: 6.0,
+        largest: Amps::new(6.0),
         slew: 0.7,
     };
 
     /// Both limits one after the other, in f64.
     fn limited(wanted: f32, before: f32) -> f64 {
         let [wanted, before] = [wanted, before].map(f64::from);
-        let [largest, slew] = [LIMITS.largest, LIMITS.slew].map(f64::from);
+        let [largest, slew] = [LIMITS.largest.get(), LIMITS.slew].map(f64::from);
         let slewed = wanted.clamp(before - slew, before + slew);
         slewed.clamp(-largest, largest)
     }
@@ -198,7 +205,7 @@ mod tests {
             let before = f32::from(k) * 0.01;
             for j in -1000..=1000_i16 {
                 let wanted = f32::from(j) * 0.01;
-                let applied = LIMITS.applied(wanted, before);
+                let applied = LIMITS.applied(wanted, Amps::new(before)).get();
                 let exact = limited(wanted, before);
                 // A rounding of the bound.
                 assert!(
@@ -214,7 +221,7 @@ mod tests {
     #[test]
     fn current_that_is_no_number_is_zero() {
         for wanted in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-            assert_eq!(LIMITS.applied(wanted, 0.2), 0.0);
+            assert_eq!(LIMITS.applied(wanted, Amps::new(0.2)), Amps::ZERO);
         }
     }
 

@@ -116,13 +116,25 @@ impl Rst {
         state.errors = [error, e1];
         let [c1, c2] = state.regulated;
         let change = self.r[0] * error + self.r[1] * e1 + self.r[2] * e2 - self.s1 * (c1 - c2);
-        let [d1, d2] = state.cut;
-        state.cut = [0.0, d1];
-        let change = change + (self.relief[0] * d1 + self.relief[1] * d2) + state.carry;
+        // Nearly every tick: no limit acted in the two ticks before.
+        let relief = if state.cut.map(f32::to_bits) == [0; 2] {
+            0.0
+        } else {
+            self.relieved(state)
+        };
+        let change = change + relief + state.carry;
         let regulated = c1 + change;
         state.carry = change - (regulated - c1);
         state.regulated = [regulated, c1];
         state.forward + regulated
+    }
+
+    /// What currents that were cut add, which become a tick older.
+    #[inline(never)]
+    fn relieved(&self, state: &mut RstState) -> f32 {
+        let [d1, d2] = state.cut;
+        state.cut = [0.0, d1];
+        self.relief[0] * d1 + self.relief[1] * d2
     }
 }
 

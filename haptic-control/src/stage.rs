@@ -50,9 +50,9 @@ pub struct Followed {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContinuousState {
     rst: RstState,
-    current: f32,
-    /// Largest current, A.
-    largest: f32,
+    current: Amps,
+    /// Largest current.
+    largest: Amps,
     /// The commanded torque, limited by the largest velocity of the large motor, N·m.
     asked: f32,
     /// Both halves of the tracking filter, for `asked`.
@@ -62,7 +62,7 @@ pub struct ContinuousState {
 impl ContinuousState {
     /// Largest current, A.
     pub(crate) const fn largest_current(&self) -> f32 {
-        self.largest
+        self.largest.get()
     }
 }
 
@@ -98,7 +98,7 @@ impl ContinuousStage {
         Self {
             rst: Rst::new(design),
             limits: CurrentLimits {
-                largest: device.large.current_limit as f32,
+                largest: Amps::new(device.large.current_limit as f32),
                 slew,
             },
             rad_per_s_per_nm: (1.0 / device.damping) as f32,
@@ -116,7 +116,7 @@ impl ContinuousStage {
     pub const fn start(&self, large: RadPerS) -> ContinuousState {
         ContinuousState {
             rst: self.rst.start(large),
-            current: 0.0,
+            current: Amps::ZERO,
             largest: self.limits.largest,
             asked: 0.0,
             expected: [0.0; 2],
@@ -133,7 +133,7 @@ impl ContinuousStage {
 
     /// Scales the limit of the current, from the next tick on.
     pub fn scale(&self, state: &mut ContinuousState, scale: CurrentScale) {
-        state.largest = scale.large(self.limits.largest);
+        state.largest = Amps::new(scale.large(self.limits.largest.get()));
     }
 
     /// The motion that the large motor follows in a scene with a spring: that of the handle.
@@ -148,6 +148,7 @@ impl ContinuousStage {
 
     /// One tick: the large motor's current for a commanded torque.
     #[must_use]
+    #[inline]
     pub fn update(
         &self,
         state: &mut ContinuousState,
@@ -157,12 +158,13 @@ impl ContinuousStage {
         followed: Followed,
     ) -> Amps {
         let wanted = followed.velocity.0 + torque.0 * self.rad_per_s_per_nm;
-        let limited = at_most(wanted, LARGEST_WANTED);
-        state.asked = if limited == wanted {
-            torque.0
+        // NaN is not within.
+        let (limited, asked) = if wanted.abs() <= LARGEST_WANTED {
+            (wanted, torque.0)
         } else {
-            (limited - followed.velocity.0) * self.nm_per_rad_per_s
+            self.limited(wanted, followed)
         };
+        state.asked = asked;
         let looped = self.rst.update(&mut state.rst, RadPerS(limited), large);
         let direction = at_most(state.rst.filtered().0 * followed.per_fade, 1.0);
         let forward = self.friction * direction + self.damping * handle.0;
@@ -171,11 +173,24 @@ impl ContinuousStage {
             largest: state.largest,
             ..self.limits
         };
-        state.current = limits.applied(wanted, state.current);
-        if state.current != wanted {
-            state.rst.limited(state.current - forward);
-        }
-        Amps::new(state.current)
+        let before = state.current;
+        state.current = limits.unlimited(wanted, before).unwrap_or_else(|| {
+            let current = limits.limited(wanted, before);
+            if current.get() != wanted {
+                state.rst.limited(current.get() - forward);
+            }
+            current
+        });
+        state.current
+    }
+
+    /// The limited velocity for a velocity above the largest, and the torque that is commanded by it.
+    #[cold]
+    #[inline(never)]
+    fn limited(&self, wanted: f32, followed: Followed) -> (f32, f32) {
+        let limited = at_most(wanted, LARGEST_WANTED);
+        let asked = (limited - followed.velocity.0) * self.nm_per_rad_per_s;
+        (limited, asked)
     }
 
     /// One tick, after [`Self::update`]: the torque that the coupler is assumed to transmit.
@@ -209,15 +224,15 @@ pub struct TransientStage {
 /// State of a [`TransientStage`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransientState {
-    current: f32,
-    /// Largest current, A.
-    largest: f32,
+    current: Amps,
+    /// Largest current.
+    largest: Amps,
 }
 
 impl TransientState {
     /// Largest current, A.
     pub(crate) const fn largest_current(&self) -> f32 {
-        self.largest
+        self.largest.get()
     }
 }
 
@@ -227,7 +242,7 @@ impl TransientStage {
     pub const fn new(device: &DualStage, slew: f32) -> Self {
         Self {
             limits: CurrentLimits {
-                largest: device.small.current_limit as f32,
+                largest: Amps::new(device.small.current_limit as f32),
                 slew,
             },
             amps_per_nm: (1.0 / device.small.torque_constant) as f32,
@@ -239,19 +254,19 @@ impl TransientStage {
     #[must_use]
     pub const fn start(&self) -> TransientState {
         TransientState {
-            current: 0.0,
+            current: Amps::ZERO,
             largest: self.limits.largest,
         }
     }
 
     /// Starts again with no current. The scale of the limit stays.
     pub fn restart(&self, state: &mut TransientState) {
-        state.current = 0.0;
+        state.current = Amps::ZERO;
     }
 
     /// Scales the limit of the current, from the next tick on.
     pub fn scale(&self, state: &mut TransientState, scale: CurrentScale) {
-        state.largest = scale.small(self.limits.largest);
+        state.largest = Amps::new(scale.small(self.limits.largest.get()));
     }
 
     /// Torque that is fed forward against the small motor's friction at this velocity of the handle, in a
@@ -272,6 +287,6 @@ impl TransientStage {
             ..self.limits
         };
         state.current = limits.applied(wanted, state.current);
-        Amps::new(state.current)
+        state.current
     }
 }

@@ -128,7 +128,7 @@ fn the_first_cause_is_latched() {
 #[test]
 fn outputs_are_within_the_limits_for_every_input() {
     let limits = CurrentLimits {
-        largest: 1.5,
+        largest: Amps::new(1.5),
         slew: 0.06,
     };
     let mut before = 0.0_f32;
@@ -145,13 +145,15 @@ fn outputs_are_within_the_limits_for_every_input() {
     ];
     for k in 0..100_000 {
         let wanted = wild[(k * 7 + k / 13) % wild.len()];
-        let now = limits.applied(wanted, before);
+        let now = limits.applied(wanted, Amps::new(before)).get();
         assert!(now.abs() <= 1.5);
         assert!((now - before).abs() <= 0.060_001 || now == 0.0 && !wanted.is_finite());
         before = now;
     }
     // The bound is reached, not only kept.
-    let risen = (0..100).fold(0.0, |current, _| limits.applied(9.0, current));
+    let risen = (0..100).fold(0.0, |current, _| {
+        limits.applied(9.0, Amps::new(current)).get()
+    });
     assert_eq!(risen, 1.5);
 }
 

@@ -230,7 +230,7 @@ fn currents_are_limited_in_size_and_slew() {
 #[test]
 fn values_within_the_limits_are_unchanged_and_others_are_limited() {
     let limits = CurrentLimits {
-        largest: 2.0,
+        largest: Amps::new(2.0),
         slew: 0.5,
     };
     for (wanted, before, applied) in [
@@ -250,7 +250,8 @@ fn values_within_the_limits_are_unchanged_and_others_are_limited() {
         // What flowed before may be beyond the limit.
         (9.0, 5.0, 2.0),
     ] {
-        assert_eq!(limits.applied(wanted, before), applied, "{wanted} {before}");
+        let found = limits.applied(wanted, Amps::new(before));
+        assert_eq!(found.get(), applied, "{wanted} {before}");
     }
 }
 
