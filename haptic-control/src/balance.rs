@@ -44,7 +44,8 @@ use crate::stop::Stop;
 ///
 /// Nothing is found while the large motor rests: static friction takes up any torque of the coupler below it.
 ///
-/// The work is spread over four ticks. Those of [`Balance::start`] do not end a slot of
+/// The work is spread over five ticks: four in succession, and one a fifth of a quarter after the second of
+/// these. Those of [`Balance::start`] do not end a slot of
 /// [`Monitor`](crate::Monitor).
 ///
 /// ```
@@ -65,8 +66,10 @@ use crate::stop::Stop;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Balance {
-    /// Ticks of a quarter of a window, at least 4.
+    /// Ticks of a quarter of a window, at least 5.
     quarter: u32,
+    /// Ticks from the first part of learning to the second.
+    later: u32,
     /// Ticks until the first window begins.
     first: u32,
     /// Windows in a tick.
@@ -109,6 +112,8 @@ pub struct BalanceState {
     block: Block,
     before: Option<Block>,
     now: Terms,
+    /// What the friction of the present window has to be.
+    remainder: Range,
     /// The terms before those of now, the latest first.
     past: [Terms; PAST],
     /// β.
@@ -131,8 +136,9 @@ enum Event {
     Judge,
     /// Compare them with those before.
     Compare,
-    /// Narrow the ranges.
-    Learn,
+    /// Narrow the range of β, and then those of the friction.
+    LearnDamping,
+    LearnFriction,
 }
 
 /// Sums of a window, all from its begin on.
@@ -283,8 +289,13 @@ impl Balance {
     #[must_use]
     pub const fn new(device: &DualStage, rate: Hertz) -> Self {
         let quarter = match (QUARTER_S * rate.0 + 0.5) as u32 {
-            ticks if ticks > 4 => ticks,
-            _ => 4,
+            ticks if ticks > 5 => ticks,
+            _ => 5,
+        };
+        // In a schedule of a millisecond, the tick after the one that begins and ends windows.
+        let later = match quarter / 5 {
+            ticks if ticks > 3 => ticks - 2,
+            _ => 1,
         };
         let window = 4 * quarter;
         let window_s = window as f64 / rate.0;
@@ -308,6 +319,7 @@ impl Balance {
         let late_s = 2.0 * device.amplifier_lag() + 1.0 / rate.0;
         Self {
             quarter,
+            later,
             first: 1 + (0.0005 * rate.0) as u32,
             per_window: 1.0 / window as f32,
             inertia: inertia as f32,
@@ -340,6 +352,7 @@ impl Balance {
             block: EMPTY,
             before: None,
             now: REST,
+            remainder: self.friction,
             past: [REST; PAST],
             damping: BETA,
             friction: [self.friction; 2],
@@ -401,22 +414,29 @@ impl Balance {
             Event::Judge => {
                 if let Some(before) = state.before {
                     state.now = self.terms(&before, &state.block);
-                    balanced = Self::remainder(state).meets(Self::friction(state));
+                    state.remainder = Self::remainder(state);
+                    balanced = state.remainder.meets(Self::friction(state));
                 }
                 (Event::Compare, 1)
             }
             Event::Compare => {
                 balanced = state.before.is_none() || self.follows(state);
-                (Event::Learn, 1)
+                (Event::LearnDamping, 1)
             }
-            Event::Learn => {
+            Event::LearnDamping => {
                 if state.before.is_some() {
-                    self.learn(state);
+                    self.learn_damping(state);
+                }
+                (Event::LearnFriction, self.later)
+            }
+            Event::LearnFriction => {
+                if state.before.is_some() {
+                    self.learn_friction(state);
                     state.past.copy_within(..PAST - 1, 1);
                     state.past[0] = state.now;
                 }
                 state.before = Some(state.block);
-                (Event::First, self.quarter - 3)
+                (Event::First, self.quarter - 3 - self.later)
             }
         };
         (!balanced).then_some(Stop::TorqueBalance)
@@ -481,9 +501,8 @@ impl Balance {
             .meets(varies)
     }
 
-    fn learn(&self, state: &mut BalanceState) {
+    fn learn_damping(&self, state: &mut BalanceState) {
         let now = state.now;
-        let remainder = Self::remainder(state);
         let friction = Self::friction(state);
         state.damping = state.damping.widened(self.damping_drift, BETA);
         if larger(now.slip, -now.slip) > self.friction.high {
@@ -496,13 +515,17 @@ impl Balance {
                 .damping
                 .narrowed(TIGHT.0 * drag.low, TIGHT.1 * drag.high);
         }
+    }
+
+    /// Uses the remainder with the range of β before this window.
+    fn learn_friction(&self, state: &mut BalanceState) {
         let [forwards, backwards] = &mut state.friction;
         for side in [&mut *forwards, &mut *backwards] {
             *side = side.widened(self.friction_drift, self.friction);
         }
-        let (side, along) = match now.direction {
-            1 => (forwards, remainder),
-            -1 => (backwards, remainder.negative()),
+        let (side, along) = match state.now.direction {
+            1 => (forwards, state.remainder),
+            -1 => (backwards, state.remainder.negative()),
             _ => return,
         };
         *side = side.narrowed(along.low - self.variation, along.high + self.variation);

@@ -300,3 +300,35 @@ fn window_with_missed_ticks_is_not_checked() {
     let at = (1..).find(|_| balance.check(&mut state, &rest).is_some());
     assert_eq!(at, Some(402));
 }
+
+/// A schedule of a millisecond, which calls [`Balance::pass`] in four ticks of ten.
+#[test]
+fn four_ticks_of_ten_find_what_every_tick_finds() {
+    let balance = Balance::new(&DEVICE, Hertz(10e3));
+    // Both shafts turn; the current is that of the friction, and from tick 5000 on not.
+    let sample = |k: u32| {
+        Sample::new(Count(k))
+            .with_coupled(Count(5 * k))
+            .with_current(Amps::new(if k < 5000 { 0.085 } else { 0.715 }))
+    };
+    for start in 0..10 {
+        let mut whole = balance.start(&sample(start));
+        let mut parts = whole;
+        let first = (start..).find(|k| k % 10 == 1).unwrap() - start;
+        whole.begin_after(first + 1);
+        parts.begin_after(first + 1);
+        let mut times = 0;
+        for k in start..10_000 {
+            let found = balance.check(&mut whole, &sample(k));
+            parts.add(&sample(k));
+            let in_parts = match k % 10 {
+                1 => balance.pass(&mut parts, &sample(k), 7),
+                2..=4 => balance.pass(&mut parts, &sample(k), 1),
+                _ => None,
+            };
+            assert_eq!(in_parts, found, "tick {k}, from {start}");
+            times += u32::from(found.is_some());
+        }
+        assert!(times > 5, "{times}");
+    }
+}
