@@ -51,10 +51,11 @@ pub struct MonitorState {
     ticks: u32,
     /// Smallest and largest current in the present slot, mA.
     currents: (i32, i32),
-    /// Positions of the large motor at the ends of the slots of two windows, the latest first.
-    large: [Count; 2 * SLOTS],
-    /// Positions of the handle at the ends of the slots of a window, the latest first.
-    small: [Count; SLOTS],
+    /// Positions of the large motor and of the handle at the ends of slots, from which those of two windows
+    /// are needed.
+    ends: [Ring; 2],
+    /// Number of the latest slot.
+    latest: usize,
     /// Direction of the drive, and the number of slots with this direction.
     push: (i32, u32),
     /// Position of the large motor when it last moved, and the number of driven slots since.
@@ -123,8 +124,8 @@ impl Monitor {
             last: [first.count, first.coupled],
             ticks: 0,
             currents: NO_CURRENT,
-            large: [first.count; 2 * SLOTS],
-            small: [first.coupled; SLOTS],
+            ends: [Ring([first.count; RING]), Ring([first.coupled; RING])],
+            latest: 0,
             push: (0, 0),
             resting: (first.count, 0),
             cause: None,
@@ -170,7 +171,7 @@ impl Monitor {
 
     /// Checks at the end of a slot.
     fn slot(&self, state: &mut MonitorState, sample: &Sample) -> Option<Stop> {
-        let handled = sample.coupled - state.small[0];
+        let handled = sample.coupled - state.ends[1].before(state.latest, 0);
         let push = self.push(state.currents, handled);
         let direction = if push.saturating_abs() > self.push_milliamps {
             push.signum()
@@ -190,21 +191,26 @@ impl Monitor {
             (sample.count, 0)
         };
 
-        let handle = sample.coupled - state.small[SLOTS - 1];
-        let moved = sample.count - state.large[SLOTS - 1];
-        let before = state.large[SLOTS - 1] - state.large[2 * SLOTS - 1];
-        state.small = shifted(state.small, sample.coupled);
-        state.large = shifted(state.large, sample.count);
+        let [large, small] = &mut state.ends;
+        let start = large.before(state.latest, SLOTS - 1);
+        let handle = sample.coupled - small.before(state.latest, SLOTS - 1);
+        let moved = sample.count - start;
+        let before = start - large.before(state.latest, 2 * SLOTS - 1);
+        state.latest = state.latest.wrapping_add(1);
+        large.store(state.latest, sample.count);
+        small.store(state.latest, sample.coupled);
 
         // Displacements along the drive. A negative, decreasing one is an acceleration against it.
-        let [moved_along, before_along] =
-            [moved, before].map(|displacement| displacement.0.saturating_mul(direction));
-        let faster = before_along.saturating_sub(moved_along);
+        let accelerates_against = || {
+            let [moved_along, before_along] =
+                [moved, before].map(|displacement| displacement.0.saturating_mul(direction));
+            moved_along < 0 && before_along.saturating_sub(moved_along) > FASTER
+        };
         if distance(handle) > self.handle_window {
             Some(Stop::HandleOverspeed)
         } else if distance(moved) > self.large_window {
             Some(Stop::LargeOverspeed)
-        } else if state.push.1 > 2 * SLOTS as u32 && moved_along < 0 && faster > FASTER {
+        } else if direction != 0 && state.push.1 > 2 * SLOTS as u32 && accelerates_against() {
             Some(Stop::RunawayDirection)
         } else if state.resting.1 > self.stall {
             Some(Stop::Stall)
@@ -230,11 +236,23 @@ const DITHER: u32 = 2;
 /// rounding at each of three instants, the middle one twice, and one for errors of the disc.
 const FASTER: i32 = 4;
 
-/// The window after a slot that ends at `latest`. Copied by registers: a call to move the memory takes three
-/// times the instructions.
-fn shifted<const N: usize>(window: [Count; N], latest: Count) -> [Count; N] {
-    let mut before = latest;
-    window.map(|count| core::mem::replace(&mut before, count))
+/// Slots that a [`Ring`] holds: at least those of two windows, and a power of two, so that no index is out of
+/// bounds.
+const RING: usize = (2 * SLOTS).next_power_of_two();
+
+/// Positions at the ends of the latest slots, by the number of the slot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Ring([Count; RING]);
+
+impl Ring {
+    /// The position at the end of the slot that was this number of slots before the slot `latest`.
+    fn before(&self, latest: usize, slots: usize) -> Count {
+        self.0[latest.wrapping_sub(slots) % RING]
+    }
+
+    fn store(&mut self, slot: usize, position: Count) {
+        self.0[slot % RING] = position;
+    }
 }
 
 fn distance(displacement: Counts) -> u32 {
