@@ -378,6 +378,7 @@ impl Balance {
     }
 
     /// Does what is due. It is a function of its own because most ticks do not call it.
+    #[cold]
     #[inline(never)]
     fn event(&self, state: &mut BalanceState, sample: &Sample) -> Option<Stop> {
         let mut balanced = true;

@@ -130,6 +130,7 @@ impl Rst {
     }
 
     /// What currents that were cut add, which become a tick older.
+    #[cold]
     #[inline(never)]
     fn relieved(&self, state: &mut RstState) -> f32 {
         let [d1, d2] = state.cut;

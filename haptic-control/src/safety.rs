@@ -297,6 +297,7 @@ impl Safety {
     }
 
     /// A tick of which anything may have to be decided.
+    #[cold]
     #[inline(never)]
     fn eventful<S: SupplyFinding + Copy>(
         &self,

@@ -232,6 +232,7 @@ where
 
     /// The currents plus the rest of the difference at the last change of scenes, within the
     /// limits. It is a function of its own because few ticks call it.
+    #[cold]
     #[inline(never)]
     fn faded(&self, state: &mut SwitchboardState<L, H>, wanted: Currents) -> Currents {
         let wanted = [wanted.large.get(), wanted.small.get()];
@@ -259,6 +260,7 @@ where
 
     /// Restarts the parts that this tick wants and the last one did not. It is a function of its own because
     /// few ticks call it.
+    #[cold]
     #[inline(never)]
     fn wake(&self, shared: &mut Shared<L, H>, wanted: [bool; 4], sample: &Sample) {
         let [continuous, handle, transient, anticipation] = wanted;

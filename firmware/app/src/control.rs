@@ -287,6 +287,7 @@ impl Control {
     }
 
     /// Decides in a tick in which something is found or requested, or which decides something by its time.
+    #[cold]
     #[inline(never)]
     fn decide(
         &mut self,
