@@ -1,10 +1,11 @@
 //! Experiments over recordings in memory: a recommendation, and tuned parameters.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use catalogue::constant_error::ConstantError;
 use catalogue::estimators::Kind;
-use catalogue::parameters::{PlantKind, Presets};
+use catalogue::parameters::{PlantKind, Preset, Presets};
 use experiments::recommend::{Settings, lines, recommend as recommend_for};
 use experiments::tune::{Recipe, TuningSet, tune as tune_simulated, tune_on_logs};
 use experiments::uneven::Chosen;
@@ -176,7 +177,12 @@ pub(crate) fn tune_scenarios(
         false => PlantKind::Frictionless,
     };
     interruptible(py, |stop| {
-        let mut preset = None;
+        let mut preset = Preset {
+            rate_hz: rate,
+            plant,
+            counts_per_rev: Some(device.stages.large.counts_per_rev),
+            estimators: BTreeMap::new(),
+        };
         let mut notes = Vec::new();
         let (observers, others): (Vec<_>, Vec<_>) =
             kinds.into_iter().partition(|kind| kind.is_observer());
@@ -199,15 +205,14 @@ pub(crate) fn tune_scenarios(
                 },
             };
             simulate::ticks(rate, set.seconds)?;
-            let tuned = tune_simulated(&set, &kinds, rate, plant, || stop.look())?;
-            notes.extend(tuned.notes);
-            match &mut preset {
-                None => preset = Some(tuned.preset),
-                Some(preset) => preset.estimators.extend(tuned.preset.estimators),
+            let all = tune_simulated(&set, &kinds, &kinds, rate, plant, || stop.look())?;
+            for (kind, tuned) in kinds.iter().zip(all) {
+                preset.estimators.insert(kind.name.to_owned(), tuned.values);
+                notes.extend(tuned.notes);
             }
         }
         let presets = Presets {
-            preset: preset.into_iter().collect(),
+            preset: vec![preset],
             ..Presets::default()
         };
         Ok((presets.to_toml()?, in_words_of_python(&notes)))
@@ -216,9 +221,7 @@ pub(crate) fn tune_scenarios(
 
 /// The values of a presets file, by estimator.
 #[pyfunction]
-pub(crate) fn values_of_presets(
-    text: &str,
-) -> PyResult<Vec<(String, std::collections::BTreeMap<String, f64>)>> {
+pub(crate) fn values_of_presets(text: &str) -> PyResult<Vec<(String, BTreeMap<String, f64>)>> {
     let presets = Presets::parse(text, "presets").map_err(value_error)?;
     let all = presets
         .preset

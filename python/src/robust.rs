@@ -4,12 +4,14 @@ use std::path::PathBuf;
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
-use experiments::robust::shard::{self, Part};
 use experiments::robust::{Experiment, Settings, summary};
 use experiments::rows;
 use experiments::table::layout::NARROW;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
+use report::version::VERSION;
+use shards::file::{self, Run};
+use shards::{Part, Shards};
 use terminal::failure::Failure;
 
 use crate::background::interruptible;
@@ -69,10 +71,13 @@ pub(crate) fn robust_shard<'py>(
     );
     let settings = settings.map_err(value_error)?;
     let text = interruptible(py, |stop| {
-        let experiment = Experiment::new(&settings)?;
-        let jobs = part.of(&settings.jobs()?);
-        let rows = experiment.rows(&jobs, || stop.look())?;
-        shard::write(&settings, part, &rows)
+        let jobs = settings.jobs()?;
+        let rows = Experiment::new(&settings)?.rows(&part.of(&jobs), || stop.look())?;
+        let run = Run {
+            version: VERSION,
+            command: &summary::command(&settings),
+        };
+        file::write(&settings, run, part, jobs.len(), &rows)
     })?;
     Ok(PyBytes::new(py, &text))
 }
@@ -89,7 +94,14 @@ type Merged<'py> = (
 #[pyfunction]
 pub(crate) fn robust_merge(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<Merged<'_>> {
     let (csv, json, table, complaint) = interruptible(py, |_| {
-        let (settings, all) = shard::merge(&paths)?;
+        let shards = Shards::read(&paths, VERSION)?;
+        let merged = shards.merge::<Settings>()?;
+        let (settings, all) = merged.ok_or_else(|| {
+            Failure::Input(format!(
+                "shards of {}, not of host-sim robust; host-sim merge merges them",
+                shards.shard_of()
+            ))
+        })?;
         let scenes = summary::summaries(&all)?;
         Ok((
             rows::csv(&all)?,

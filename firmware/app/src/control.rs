@@ -66,7 +66,7 @@ impl Faults {
     #[must_use]
     #[inline]
     pub const fn with(self, fault: Self, present: bool) -> Self {
-        Self(self.0 | fault.0 * present as u32)
+        Self(self.0 | (fault.0 * present as u32))
     }
 
     const fn contain(self, fault: Self) -> bool {
