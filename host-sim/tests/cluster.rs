@@ -123,9 +123,10 @@ fn slurm_array_is_merged_and_a_lost_shard_is_run_again() {
 /// The shell command of the only container in a manifest.
 fn command(manifest: &str) -> String {
     let (_, rest) = manifest.split_once("command: [sh, -c]\n").unwrap();
-    let mut lines = rest.lines().map(str::trim);
-    assert_eq!(lines.next(), Some("args:"));
-    lines.next().unwrap().strip_prefix("- ").unwrap().to_owned()
+    let (_, script) = rest.split_once("args:\n            - |\n").unwrap();
+    let lines = script.lines();
+    let lines = lines.map_while(|line| line.strip_prefix("              "));
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 #[test]
@@ -151,11 +152,21 @@ fn commands_of_the_kubernetes_jobs_run_all_shards_and_merge_them() {
     ] {
         assert!(manifest.contains("mountPath: /shards }"), "{manifest}");
     }
-    for index in 0..n {
-        let index = index.to_string();
-        let variables = [("JOB_COMPLETION_INDEX", index.as_str())];
-        folder.good("sh", &["-c", &here(shard.clone())], &variables);
-    }
+    let run_all = || {
+        for index in 0..n {
+            let index = index.to_string();
+            let variables = [("JOB_COMPLETION_INDEX", index.as_str())];
+            folder.good("sh", &["-c", &here(shard.clone())], &variables);
+        }
+    };
+    run_all();
+    // A lost shard is run again, and the others are kept.
+    let file = |k: usize| folder.0.join(format!("vol/shard-{k}-of-{n}.jsonl"));
+    let written = || fs::metadata(file(1)).unwrap().modified().unwrap();
+    let before = written();
+    fs::remove_file(file(2)).unwrap();
+    run_all();
+    assert_eq!(written(), before);
     folder.good("sh", &["-c", &merge], &[]);
     folder.merged_equals_whole("vol/merged");
 }
