@@ -139,10 +139,12 @@ def test_other_threads_run_meanwhile(signals):
     counts = np.tile(signals["counts"], 40)
     estimator = limpid.Estimator("robust-exact", rate=1000)
     started, ended = threading.Event(), threading.Event()
+    columns = [np.ascontiguousarray(counts.astype(np.uint32)), None, None, None, None, None]
 
     def run():
         started.set()
-        estimator.process(counts)
+        # Without the checks of process(), which are those of NumPy and release the lock themselves.
+        estimator._process(*columns)
         ended.set()
 
     thread = threading.Thread(target=run)

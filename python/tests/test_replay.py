@@ -88,6 +88,10 @@ def test_arrays_need_not_be_contiguous(signals):
     table = np.stack([counts, counts], axis=1)
     strided = table[:, 0]
     assert not strided.flags.c_contiguous
+    small = counts.astype(np.uint32)
+    wide = np.stack([small, small], axis=1)[:, 1]
+    assert not wide.flags.c_contiguous
+    np.testing.assert_array_equal(limpid.replay(wide, 1000).velocity, limpid.replay(counts, 1000).velocity)
     for name, more in (("imm", {}), ("imm-motor", {"current": current})):
         expected = limpid.replay(counts, 1000, estimator=name, **more).velocity
         if more:
