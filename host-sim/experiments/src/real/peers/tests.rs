@@ -40,6 +40,19 @@ fn newest_sample_at_or_before_a_tick_is_read() {
 }
 
 #[test]
+fn velocity_at_a_tick_is_in_rad_per_s_at_the_rate_of_the_samples() {
+    // Three counts of 4096 in each sample of 8 kHz, read at 1 kHz.
+    let trace = Trace {
+        rate_hz: 8000.0,
+        counts_large: (0..33).map(|k| 3 * k).collect(),
+        ..Trace::default()
+    };
+    let found = Path::new(&trace, 1000.0, 5, 4096).velocities(&FiniteDifference);
+    let speed = (3.0 * 8000.0 * std::f64::consts::TAU / 4096.0) as f32;
+    assert_eq!(found, [0.0, speed, speed, speed, speed]);
+}
+
+#[test]
 fn rate_of_the_ticks_gives_the_scores_of_real() {
     let settings = settings(&["pll", "imm-edge", "finite-difference"]);
     let (recordings, cases) = recordings(&settings);
