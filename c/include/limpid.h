@@ -1,6 +1,6 @@
 /* Velocity from the counts of a quadrature encoder. 0.1.0
  *
- * Written by `cargo c-header`; do not edit.
+ * Written by `cargo c-library header`; do not edit.
  *
  *   #include "limpid.h"
  *
