@@ -11,7 +11,7 @@
 //! and asserted for every target. A function reads its arguments through references: the caller
 //! passes pointers that are aligned, valid and not null, and states that have been started.
 #![cfg_attr(target_os = "none", no_std)]
-#![deny(unsafe_op_in_unsafe_fn)]
+#![deny(unsafe_code)]
 #![allow(
     non_camel_case_types,
     reason = "these are the names of types in limpid.h"
@@ -31,7 +31,6 @@ use estimator_core::{AccelerationEstimator, Confidence, VaryingPeriod, VelocityE
 pub use sample::limpid_sample_t;
 
 include!(concat!(env!("OUT_DIR"), "/types.rs"));
-include!(concat!(env!("OUT_DIR"), "/functions.rs"));
 
 #[cfg(not(target_os = "none"))]
 mod design;
@@ -39,8 +38,22 @@ mod design;
 #[cfg(not(target_os = "none"))]
 pub use design::limpid_setup_t;
 
-#[cfg(not(target_os = "none"))]
-include!(concat!(env!("OUT_DIR"), "/designs.rs"));
+pub use functions::*;
+
+/// The functions, by their names in C.
+#[allow(
+    unsafe_code,
+    reason = "a name in C is an unsafe attribute, because another function could have the same; all names \
+              begin with that of the library, and no body is unsafe"
+)]
+mod functions {
+    use super::*;
+
+    include!(concat!(env!("OUT_DIR"), "/functions.rs"));
+
+    #[cfg(not(target_os = "none"))]
+    include!(concat!(env!("OUT_DIR"), "/designs.rs"));
+}
 
 /// Text of the generated files, for the generator of `limpid.h`: C declares the types as storage.
 pub mod source {
