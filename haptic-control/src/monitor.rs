@@ -159,8 +159,8 @@ impl Monitor {
         }
     }
 
-    /// The rest of [`Self::check`], in the last tick of a slot. A caller that has a schedule calls it once in
-    /// [`Monitor::slot`] ticks. Over a slot that is shorter a motor may be faster.
+    /// The rest of [`Self::check`], in the last tick of a slot. A caller that has a schedule calls it once
+    /// in the ticks of a slot. Over a slot that is shorter a motor may be faster.
     #[cold]
     #[inline(never)]
     pub fn end_slot(&self, state: &mut MonitorState, sample: &Sample) {

@@ -4,7 +4,7 @@
 //! | module | content |
 //! |---|---|
 //! | [`part`] | part K of N, and its jobs |
-//! | [`file`] | the file of a part: heading, one row a line, checksum |
+//! | [`mod@file`] | the file of a part: heading, one row a line, checksum |
 //! | [`merge`] | the files of all parts, checked, as the rows of a single run |
 //! | [`exact`] | floats that are not finite, in JSON |
 
