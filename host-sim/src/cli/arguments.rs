@@ -56,10 +56,11 @@ pub(super) enum Command {
     #[command(after_help = "Example:
   host-sim record firmware.log --out motor.csv")]
     Record(super::record::Record),
-    /// Convert a recording, with estimates, to MCAP for Foxglove, PlotJuggler and Rerun; a part of cargo export,
-    /// which is this program with its MCAP writer
-    #[command(after_help = "Example:
-  host-sim export motor.csv --estimator pll --mcap motor.mcap")]
+    /// Convert a recording, with estimates, to MCAP for Foxglove, PlotJuggler and Rerun (a part of cargo export,
+    /// which is this program with its MCAP writer), or write the parameters of an estimator for C
+    #[command(after_help = "Examples:
+  host-sim export motor.csv --estimator pll --mcap motor.mcap
+  host-sim export --estimator imm --rate 1000 --c --out parameters.h")]
     Export(super::export::Export),
     /// Draw a recording as SVG: counts, velocities, currents
     #[command(after_help = "Example:

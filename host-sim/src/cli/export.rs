@@ -28,7 +28,7 @@ pub(super) struct Export {
     #[arg(value_name = "RECORDING.csv", required_unless_present = "c")]
     recording: Option<PathBuf>,
     /// Estimator whose velocity the file has, see host-sim estimators; repeatable [default: all whose
-    /// needed columns are present]. With --c: the estimator whose parameters are written
+    /// needed columns are present]. For C: the estimator whose parameters are written
     #[arg(long = "estimator", value_name = "NAME")]
     estimators: Vec<String>,
     #[command(flatten)]
@@ -50,7 +50,7 @@ pub(super) struct Export {
 /// What the parameters of --c are for.
 #[derive(Debug, Args)]
 struct Design {
-    /// With --c: control rate, 100 to 100000 Hz
+    /// For C: control rate, 100 to 100000 Hz
     #[arg(
         long,
         value_name = "HZ",
@@ -59,14 +59,14 @@ struct Design {
         allow_negative_numbers = true
     )]
     rate: f64,
-    /// With --c: counts per revolution of the encoder: four times its lines [default: that of the
+    /// For C: counts per revolution of the encoder: four times its lines [default: that of the
     /// device]
     #[arg(long, value_name = "N", requires = "c", value_parser = clap::value_parser!(u32).range(16..=4_000_000))]
     counts_per_rev: Option<u32>,
-    /// With --c: clock that stamps edges, Hz
+    /// For C: clock that stamps edges, Hz
     #[arg(long, value_name = "HZ", default_value_t = EDGE_CLOCK_HZ, requires = "c", allow_negative_numbers = true)]
     edge_clock: f64,
-    /// With --c: write the header to FILE; - is standard output
+    /// For C: write the header to FILE; - is standard output
     #[arg(long, value_name = "FILE.h", default_value = "-", requires = "c")]
     out: PathBuf,
 }
