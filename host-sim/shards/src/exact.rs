@@ -1,35 +1,34 @@
 //! Floats in JSON that are read back to the same value where they are not finite: `inf`, `-inf` and
 //! `NaN` as text. For fields with `#[serde(with = "shards::exact")]`.
 
+use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-#[derive(Serialize, Deserialize)]
-#[serde(untagged)]
-enum Number {
-    Finite(f64),
-    Text(String),
-}
+use serde_json::Value;
 
 /// A number, or a text if the value is not finite.
 ///
 /// # Errors
 /// Those of the serializer.
 pub fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-    let number = match value.is_finite() {
-        true => Number::Finite(*value),
-        false => Number::Text(value.to_string()),
-    };
-    number.serialize(serializer)
+    match value.is_finite() {
+        true => value.serialize(serializer),
+        false => value.to_string().serialize(serializer),
+    }
 }
 
 /// The value of a number or of a text.
 ///
+/// An untagged enumeration does not read the numbers of `serde_json` if any package of the build has its
+/// feature `arbitrary_precision`; [`Value`] does.
+///
 /// # Errors
 /// Those of the deserializer; a text that is no number.
 pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    match Number::deserialize(deserializer)? {
-        Number::Finite(value) => Ok(value),
-        Number::Text(text) => text.parse().map_err(serde::de::Error::custom),
+    let wrong = || D::Error::custom("neither a number nor inf, -inf or NaN");
+    match Value::deserialize(deserializer)? {
+        Value::Number(number) => number.as_f64().ok_or_else(wrong),
+        Value::String(text) => text.parse().map_err(|_| wrong()),
+        _ => Err(wrong()),
     }
 }
 
