@@ -275,11 +275,6 @@ impl Files {
             true => format!("values.{}", one.name),
             false => "0.0".to_owned(),
         };
-        let all: String = row
-            .parameters
-            .iter()
-            .map(|one| format!("{}: {}, ", one.name, value(one)))
-            .collect();
         let given: String = row
             .parameters
             .iter()
@@ -298,8 +293,9 @@ impl Files {
                 #[allow(dead_code, reason = \"not every type has a length\")]
                 const N: usize = {};
                 let (motor, rate, clock) = (&setup.motor(), c::Hertz(setup.rate_hz), c::Hertz(setup.edge_clock_hz));
-                let p = estimator_catalogue::design::{}::Parameters {{ {all} }};
-                design::write(into, &estimator_catalogue::design::{}::ROW, &[{given}], || {design})
+                let values = [{given}];
+                let p = estimator_catalogue::design::{}::Parameters::from_values(&values);
+                design::write(into, &estimator_catalogue::design::{}::ROW, &values, || {design})
             }}\n",
             row.name, c.capacity, row.id, row.id,
         )

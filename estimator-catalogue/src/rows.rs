@@ -155,6 +155,17 @@ macro_rules! rows {
                             pub $parameter: f64,
                         )*
                     }
+
+                    impl Parameters {
+                        /// The parameters from their values, in the order of the row; NaN, which every
+                        /// design refuses, for a value that is missing.
+                        #[must_use]
+                        #[allow(unused_mut, unused_variables, reason = "a row may have no parameter")]
+                        pub fn from_values(values: &[f64]) -> Self {
+                            let mut values = values.iter().copied();
+                            Self { $($parameter: values.next().unwrap_or(f64::NAN),)* }
+                        }
+                    }
                 }
             )*
         }

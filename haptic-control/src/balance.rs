@@ -1,11 +1,18 @@
 //! Whether the torques on the large motor balance: a check of the handle's encoder while the device runs.
 
+mod judgement;
+mod range;
+mod window;
+
 use core::f64::consts::PI;
 
 use estimator_core::{Count, Hertz, Sample};
 
 use crate::device::DualStage;
 use crate::stop::Stop;
+
+use range::Range;
+use window::{Block, EMPTY, REST, Terms};
 
 /// Balance of the large motor's torques over windows of 20 ms.
 ///
@@ -141,35 +148,6 @@ enum Event {
     LearnFriction,
 }
 
-/// Sums of a window, all from its begin on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Block {
-    /// Direction of the large motor in every quarter; 0 if it is uncertain in one.
-    direction: i32,
-    /// At the end: charge, A, large and small motor, counts.
-    end: [f32; 3],
-    /// Means over the window.
-    mean: [f32; 3],
-}
-
-/// Terms of the balance with the described constants, A.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Terms {
-    current: f32,
-    inertia: f32,
-    slip: f32,
-    /// Largest error of their sum.
-    error: f32,
-    /// Direction of the large motor; 0 if it is uncertain.
-    direction: i32,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Range {
-    low: f32,
-    high: f32,
-}
-
 /// Terms that are kept. Those of two windows in succession have half of their time in common.
 const PAST: usize = 2;
 /// Quarter of a window, s.
@@ -205,83 +183,6 @@ const fn quotient((low, high): (f64, f64)) -> Range {
         low: (low / CONSTANT.1) as f32,
         high: (high / CONSTANT.0) as f32,
     }
-}
-
-const REST: Terms = Terms {
-    current: 0.0,
-    inertia: 0.0,
-    slip: 0.0,
-    error: 0.0,
-    direction: 0,
-};
-
-const EMPTY: Block = Block {
-    direction: 0,
-    end: [0.0; 3],
-    mean: [0.0; 3],
-};
-
-impl Range {
-    /// The products with `x`.
-    fn times(self, x: f32) -> Self {
-        if x < 0.0 {
-            Self {
-                low: self.high * x,
-                high: self.low * x,
-            }
-        } else {
-            Self {
-                low: self.low * x,
-                high: self.high * x,
-            }
-        }
-    }
-
-    /// The differences from a value `x`, whose error is `error`.
-    fn below(self, x: f32, error: f32) -> Self {
-        Self {
-            low: x - self.high - error,
-            high: x - self.low + error,
-        }
-    }
-
-    fn plus(self, other: Self) -> Self {
-        Self {
-            low: self.low + other.low,
-            high: self.high + other.high,
-        }
-    }
-
-    fn negative(self) -> Self {
-        Self {
-            low: -self.high,
-            high: -self.low,
-        }
-    }
-
-    fn meets(self, other: Self) -> bool {
-        self.low <= other.high && other.low <= self.high
-    }
-
-    /// Widened by `by` on both sides, but within `most`.
-    fn widened(self, by: f32, most: Self) -> Self {
-        Self {
-            low: larger(self.low - by, most.low),
-            high: -larger(-self.high - by, -most.high),
-        }
-    }
-
-    /// The common part.
-    fn narrowed(self, low: f32, high: f32) -> Self {
-        Self {
-            low: larger(self.low, low),
-            high: -larger(-self.high, -high),
-        }
-    }
-}
-
-fn larger(x: f32, y: f32) -> f32 {
-    if x > y { x } else { y }
 }
 
 impl Balance {
@@ -441,95 +342,6 @@ impl Balance {
             }
         };
         (!balanced).then_some(Stop::TorqueBalance)
-    }
-
-    /// The terms from the middle of one window to that of the next, averaged over the length of a window.
-    fn terms(&self, before: &Block, now: &Block) -> Terms {
-        let [charge, large, small] =
-            [0, 1, 2].map(|i| before.end[i] - before.mean[i] + now.mean[i]);
-        let moved = [before.end[1], now.end[1]];
-        let direction = if before.direction == now.direction {
-            now.direction
-        } else {
-            0
-        };
-        let later = (now.end[0] - before.end[0]) * self.per_window;
-        Terms {
-            current: charge * self.per_window,
-            inertia: self.inertia * (moved[1] - moved[0]),
-            slip: self.drag[0] * large - self.drag[1] * small,
-            error: self.rounding + self.lag * larger(later, -later),
-            direction,
-        }
-    }
-
-    /// What the friction of the window has to be.
-    fn remainder(state: &BalanceState) -> Range {
-        let now = &state.now;
-        let known = ALPHA.times(now.inertia).plus(state.damping.times(now.slip));
-        known.below(now.current, now.error)
-    }
-
-    /// What the friction of the window can be.
-    fn friction(state: &BalanceState) -> Range {
-        let [forwards, backwards] = state.friction;
-        match state.now.direction {
-            1 => forwards,
-            -1 => backwards.negative(),
-            _ => Range {
-                low: -backwards.high,
-                high: forwards.high,
-            },
-        }
-    }
-
-    /// Whether the window goes on as the latest one.
-    fn follows(&self, state: &BalanceState) -> bool {
-        let BalanceState { now, past, .. } = state;
-        let last = &past[PAST - 1];
-        if now.direction == 0 || now.direction != last.direction {
-            return true;
-        }
-        let known = ALPHA
-            .times(now.inertia - last.inertia)
-            .plus(state.damping.times(now.slip - last.slip));
-        let varies = Range {
-            low: -self.variation,
-            high: self.variation,
-        };
-        known
-            .below(now.current - last.current, now.error + last.error)
-            .meets(varies)
-    }
-
-    fn learn_damping(&self, state: &mut BalanceState) {
-        let now = state.now;
-        let friction = Self::friction(state);
-        state.damping = state.damping.widened(self.damping_drift, BETA);
-        if larger(now.slip, -now.slip) > self.friction.high {
-            let drag = ALPHA
-                .times(now.inertia)
-                .plus(friction)
-                .below(now.current, now.error)
-                .times(1.0 / now.slip);
-            state.damping = state
-                .damping
-                .narrowed(TIGHT.0 * drag.low, TIGHT.1 * drag.high);
-        }
-    }
-
-    /// Uses the remainder with the range of β before this window.
-    fn learn_friction(&self, state: &mut BalanceState) {
-        let [forwards, backwards] = &mut state.friction;
-        for side in [&mut *forwards, &mut *backwards] {
-            *side = side.widened(self.friction_drift, self.friction);
-        }
-        let (side, along) = match state.now.direction {
-            1 => (forwards, state.remainder),
-            -1 => (backwards, state.remainder.negative()),
-            _ => return,
-        };
-        *side = side.narrowed(along.low - self.variation, along.high + self.variation);
     }
 }
 

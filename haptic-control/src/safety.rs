@@ -1,68 +1,13 @@
 //! The safety state machine of the firmware, as a pure step.
 
-use estimator_core::Skip;
+mod findings;
+mod mode;
 
 use crate::stop::Stop;
 use crate::supply::SupplyFinding;
 
-/// State of the device.
-///
-/// ```text
-/// boot -> settling -> armed <-> running     arm; select a scene (before or after), or off again
-///  ^         |          |          |
-///  |         +----------+----------+-> safe  any stop cause; latched until arm or disarm
-///  +---------+----------+----------+         disarm; armed and a long silence
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(u8)]
-pub enum Mode {
-    /// Amplifiers disabled, no fault. The cause is [`Stop::CommandTimeout`] if a silence disarmed
-    /// the device, otherwise [`Stop::None`].
-    #[default]
-    Boot = 0,
-    /// Amplifiers enabled, no scene.
-    Armed = 1,
-    /// Amplifiers enabled, a scene is on.
-    Running = 2,
-    /// Amplifiers disabled because of a fault, which is the cause.
-    Safe = 3,
-    /// Amplifiers enabled, no current commanded until they are ready.
-    Settling = 4,
-}
-
-impl Mode {
-    /// The mode with this number in telemetry.
-    #[must_use]
-    pub const fn from_code(code: u8) -> Option<Self> {
-        Some(match code {
-            0 => Self::Boot,
-            1 => Self::Armed,
-            2 => Self::Running,
-            3 => Self::Safe,
-            4 => Self::Settling,
-            _ => return None,
-        })
-    }
-
-    /// Name in plots and tables.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Boot => "boot",
-            Self::Armed => "armed",
-            Self::Running => "running",
-            Self::Safe => "safe",
-            Self::Settling => "settling",
-        }
-    }
-
-    /// Whether the amplifiers are enabled.
-    #[must_use]
-    pub const fn is_enabled(self) -> bool {
-        matches!(self, Self::Settling | Self::Armed | Self::Running)
-    }
-}
+pub use findings::Findings;
+pub use mode::Mode;
 
 /// A request to the state machine, from a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,64 +21,6 @@ pub enum Request {
     Select(u8),
     /// The host is still connected.
     KeepAlive,
-}
-
-/// Findings of one tick. `S` is the finding on the supply; [`Skip`] takes neither state nor code.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Findings<S = Skip> {
-    /// Cause found by the monitor or by the windings.
-    pub monitor: Option<Stop>,
-    /// Both amplifiers are ready. Amplifiers may be not ready while they are disabled and for some
-    /// time after they are enabled.
-    pub amplifiers_ready: bool,
-    /// The interlock loop is open, or was open since the amplifiers were last disabled: hardware
-    /// has disabled the amplifiers.
-    pub interlock: bool,
-    /// The clock is not that of the crystal.
-    pub clock_failure: bool,
-    /// Torque and velocities are finite.
-    pub finite: bool,
-    /// Control ticks missed since the last one.
-    pub missed: u32,
-    /// Debug settings are on that would hold the outputs in a halt: a vector catch is set, or the
-    /// watchdog is frozen in a halt.
-    pub debugger: bool,
-    /// The supply of the amplifiers.
-    pub supply: S,
-}
-
-impl<S> Findings<S> {
-    /// Findings of a tick without a fault, with this one on the supply.
-    pub const fn well(supply: S) -> Self {
-        Self {
-            monitor: None,
-            amplifiers_ready: true,
-            interlock: false,
-            clock_failure: false,
-            finite: true,
-            missed: 0,
-            debugger: false,
-            supply,
-        }
-    }
-}
-
-impl<S: SupplyFinding> Findings<S> {
-    /// Whether nothing stops a device that is on.
-    fn are_well(&self) -> bool {
-        self.missed == 0
-            && self.monitor.is_none()
-            && self.amplifiers_ready
-            && !self.interlock
-            && !self.clock_failure
-            && self.finite
-            && !self.supply.is_outside()
-    }
-}
-
-impl Findings {
-    /// Findings of a tick without a fault.
-    pub const WELL: Self = Self::well(Skip);
 }
 
 /// Actions at the end of a tick.

@@ -22,7 +22,6 @@ mod sensitivity;
 mod shard;
 mod simulate;
 mod tune;
-use experiments::uneven;
 mod zwidth;
 
 use std::ffi::OsString;

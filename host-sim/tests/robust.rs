@@ -1,67 +1,21 @@
 //! `robust` as somebody types it.
 
+mod common;
+
 use std::fs;
-use std::path::PathBuf;
-use std::process::{Command, Output};
 
-/// A folder of its own for each test, gone afterwards.
-struct Folder(PathBuf);
+use common::{Folder, files};
 
-impl Folder {
-    fn new(test: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("limpid-{test}-{}", std::process::id()));
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn run(&self, arguments: &str) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_host-sim"))
-            .args(arguments.split_whitespace())
-            .current_dir(&self.0)
-            .output()
-            .unwrap()
-    }
-
-    /// Standard output of a run that ended with `status`.
-    fn ends(&self, status: i32, arguments: &str) -> (String, String) {
-        let output = self.run(arguments);
-        let errors = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(status), "{arguments}: {errors}");
-        (String::from_utf8(output.stdout).unwrap(), errors)
-    }
-
-    /// The one line of a run that was refused, which must leave every file as it was.
-    fn refused(&self, arguments: &str) -> String {
-        let before = self.files();
-        let (out, errors) = self.ends(2, arguments);
-        assert!(out.is_empty(), "{arguments}: {out}");
-        assert_eq!(errors.lines().count(), 1, "{arguments}: {errors}");
-        assert_eq!(self.files(), before, "{arguments}");
-        errors
-    }
-
-    fn files(&self) -> Vec<PathBuf> {
-        let entries = fs::read_dir(&self.0).unwrap();
-        let mut files: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
-        files.sort();
-        files
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
+const HOST_SIM: &str = env!("CARGO_BIN_EXE_host-sim");
 
 const SHORT: &str = "robust --scene hold --scene wall --rate 1000 --seconds 0.2 --devices 20";
 
 #[test]
 fn single_device_is_repeated_with_only() {
-    let folder = Folder::new("robust-only");
+    let folder = Folder::new("robust-only", HOST_SIM);
     let (all, _) = folder.ends(0, &format!("{SHORT} --json -"));
     assert!(
-        folder.files().is_empty(),
+        files(&folder.path).is_empty(),
         "no report unless it is asked for"
     );
     let all: Vec<serde_json::Value> = serde_json::from_str(&all).unwrap();
@@ -79,10 +33,10 @@ fn single_device_is_repeated_with_only() {
 
 #[test]
 fn violation_has_exit_status_1_and_the_command_that_repeats_it() {
-    let folder = Folder::new("robust-violated");
+    let folder = Folder::new("robust-violated", HOST_SIM);
     // A handle so heavy that a hand that moves it feels more than the limit.
     fs::write(
-        folder.0.join("heavy.toml"),
+        folder.path.join("heavy.toml"),
         "[hand]\nstiffness_nm_per_rad = 200\ndamping_nms_per_rad = 1\n\
          [small]\ninertia_kg_m2 = 1e-2\n",
     )
@@ -96,7 +50,7 @@ fn violation_has_exit_status_1_and_the_command_that_repeats_it() {
         "{said}"
     );
     assert!(said.contains("--only nominal"), "{said}");
-    assert!(folder.0.join("robust.csv").exists());
+    assert!(folder.path.join("robust.csv").exists());
     folder.ends(1, &format!("{run} --only nominal"));
     // The file of a shard is complete, and the merged run has the verdict.
     folder.ends(0, &format!("{run} --shard 1/1 --out ."));
@@ -105,7 +59,7 @@ fn violation_has_exit_status_1_and_the_command_that_repeats_it() {
 
 #[test]
 fn invalid_arguments_are_refused_with_a_remedy() {
-    let folder = Folder::new("robust-words");
+    let folder = Folder::new("robust-words", HOST_SIM);
     for (arguments, said) in [
         (
             "robust --scene step",

@@ -1,92 +1,31 @@
 //! Commands in shards: merged files give the bytes of a single run, and shards that are no run are
 //! refused by name.
 
+mod common;
+
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::PathBuf;
 
-/// A folder of its own for each test, gone afterwards.
-struct Folder(PathBuf);
+use common::{Folder, files};
 
-impl Folder {
-    fn new(test: &str) -> Self {
-        let path =
-            std::env::temp_dir().join(format!("limpid-shards-{test}-{}", std::process::id()));
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
+const HOST_SIM: &str = env!("CARGO_BIN_EXE_host-sim");
 
-    fn run(&self, arguments: &str) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_host-sim"))
-            .args(arguments.split_whitespace())
-            .current_dir(&self.0)
-            .output()
-            .unwrap()
-    }
-
-    /// Standard output of a run without a failure.
-    fn good(&self, arguments: &str) -> String {
-        let output = self.run(arguments);
-        let errors = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(0), "{arguments}: {errors}");
-        String::from_utf8(output.stdout).unwrap()
-    }
-
-    /// The one line of a run that was refused, which must leave every file as it was.
-    fn refused(&self, arguments: &str) -> String {
-        let before = files(&self.0);
-        let output = self.run(arguments);
-        let errors = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{arguments}: {errors}");
-        assert_eq!(errors.lines().count(), 1, "{arguments}: {errors}");
-        assert!(
-            output.stdout.is_empty() && files(&self.0) == before,
-            "{arguments}"
-        );
-        errors
-    }
-
-    fn text(&self, name: &str) -> String {
-        fs::read_to_string(self.0.join(name)).unwrap()
-    }
-
-    /// Standard output and files of `arguments`, which write to `here`; the outputs are removed.
-    fn outputs(&self, arguments: &str) -> (String, BTreeMap<PathBuf, Vec<u8>>) {
-        let out = self.good(arguments);
-        let here = self.0.join("here");
-        let files = files(&here);
-        fs::remove_dir_all(here).unwrap();
-        (out, files)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
-/// All files below a folder.
-fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut all = BTreeMap::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            all.extend(files(&path));
-        } else {
-            all.insert(path.clone(), fs::read(path).unwrap());
-        }
-    }
-    all
+/// Standard output and files of `arguments`, which write to `here`; the outputs are removed.
+fn outputs(folder: &Folder, arguments: &str) -> (String, BTreeMap<PathBuf, Vec<u8>>) {
+    let out = folder.good(arguments);
+    let here = folder.path.join("here");
+    let files = files(&here);
+    fs::remove_dir_all(here).unwrap();
+    (out, files)
 }
 
 /// Runs `command` whole and in `n` shards, which are merged in an order that is not that of the parts.
-fn merged_equals_whole(test: &str, command: &str, outputs: &str, file: &str, counts: &[usize]) {
-    let folder = Folder::new(test);
-    let whole = folder.outputs(&format!("{command} {outputs}"));
+fn merged_equals_whole(test: &str, command: &str, options: &str, file: &str, counts: &[usize]) {
+    let folder = Folder::new(test, HOST_SIM);
+    let whole = outputs(&folder, &format!("{command} {options}"));
     assert!(
-        whole.1.contains_key(&folder.0.join(file)),
+        whole.1.contains_key(&folder.path.join(file)),
         "{:?}",
         whole.1.keys()
     );
@@ -99,7 +38,7 @@ fn merged_equals_whole(test: &str, command: &str, outputs: &str, file: &str, cou
         }
         names.rotate_left(n / 2);
         names.swap(0, n - 1);
-        let merged = folder.outputs(&format!("merge {} {outputs}", names.join(" ")));
+        let merged = outputs(&folder, &format!("merge {} {options}", names.join(" ")));
         assert_eq!(merged.0, whole.0, "{n} shards");
         assert_eq!(
             merged.1.keys().collect::<Vec<_>>(),
@@ -160,7 +99,7 @@ fn merged_shards_of_tune_equal_a_single_run() {
 /// Without an option for outputs the merged run writes where the command does.
 #[test]
 fn default_folder_is_that_of_the_command() {
-    let folder = Folder::new("default");
+    let folder = Folder::new("default", HOST_SIM);
     let command = "sensitivity --scenario step --seconds 0.5 --estimator pll";
     let printed = folder.good(&format!("{command} --shard 1/1"));
     assert_eq!(printed, "target/sensitivity/shard-1-of-1.jsonl\n");
@@ -173,7 +112,7 @@ fn default_folder_is_that_of_the_command() {
 
 #[test]
 fn shards_that_are_no_run_are_refused_by_name() {
-    let folder = Folder::new("refused");
+    let folder = Folder::new("refused", HOST_SIM);
     let tiny = "robust --scene off --rate 1000 --seconds 0.05 --devices 3";
     for k in 1..=4 {
         folder.good(&format!("{tiny} --out . --shard {k}/4"));
@@ -225,9 +164,9 @@ fn shards_that_are_no_run_are_refused_by_name() {
     let lines: Vec<_> = text.split_inclusive('\n').collect();
     assert_eq!(lines.len(), 2 + 8, "{text}");
     let with = |name: &str, text: &str, said: &str| {
-        fs::write(folder.0.join(name), text).unwrap();
+        fs::write(folder.path.join(name), text).unwrap();
         merge(&format!("1 3 4 {name}"), &format!("{name}: {said}"));
-        fs::remove_file(folder.0.join(name)).unwrap();
+        fs::remove_file(folder.path.join(name)).unwrap();
     };
     let changed = "changed after it was written: the checksum is ";
     with("empty.jsonl", "", "line 1: not a shard");

@@ -22,6 +22,7 @@ const DOCUMENTED: &str = "cargo test --release --package host-sim --test documen
 /// Every table with a page.
 pub const ALL: &[Table] = &[
     PARETO,
+    C_COST,
     CONTROL,
     BOUNDS,
     IMAGE_SIZES,

@@ -14,6 +14,7 @@ mod catalogue_lists;
 mod columns;
 mod device;
 mod error;
+mod estimator;
 mod log;
 mod logs;
 mod replay;
@@ -31,6 +32,8 @@ mod _limpid {
     #[pymodule_export]
     use super::columns::clock;
     #[pymodule_export]
+    use super::estimator::Estimator;
+    #[pymodule_export]
     use super::log::read_log;
     #[pymodule_export]
     use super::logs::{recommend, tune_logs, tune_scenarios, values_of_presets};
@@ -42,6 +45,4 @@ mod _limpid {
     use super::scores::{score_fields, scores};
     #[pymodule_export]
     use super::simulate::{coarsen, simulate};
-    #[pymodule_export]
-    use super::stream::Estimator;
 }

@@ -1,5 +1,7 @@
 //! The control task without I/O: from the inputs of a tick to its outputs.
 
+mod exchange;
+
 use drivers::Settings;
 use estimator_core::Sample;
 use haptic_control::{
@@ -9,12 +11,14 @@ use haptic_control::{
 
 use crate::ammeter::{Ammeter, Measure as _, Measured};
 use crate::config::{AUTO_ARM, DEVICE, RATE, RATE_HZ, SILENCE};
-use crate::index::{Indexing as _, Indices, Pulses, Reported};
-use crate::large::{Choice, Large, LargeEstimator as _};
-use crate::scene::{Core, FIRST, SCENES, Tuned};
+use crate::index::{Indexing as _, Indices, Reported};
+use crate::large::{Large, LargeEstimator as _};
+use crate::scene::{Core, FIRST, SCENES};
 use crate::schedule::{Due, Phase};
 use crate::supply::{Reading, Voltmeter, Watch as _};
 use crate::telemetry::Record;
+
+pub use exchange::{Faults, Inputs, Message, Outputs};
 
 const MONITOR: Monitor = Monitor::new(&DEVICE, RATE);
 const BALANCE: Balance = Balance::new(&DEVICE, RATE);
@@ -34,55 +38,6 @@ const SAFETY: Safety = Safety {
     scenes: SCENES,
 };
 
-/// Inputs of a tick besides its sample.
-pub struct Inputs {
-    /// Faults of the hardware.
-    pub faults: Faults,
-    /// Control ticks missed since the last one.
-    pub missed: u32,
-    /// Debug settings are on that would hold the outputs in a halt.
-    pub debugger: bool,
-    /// Index pulses since the last tick.
-    pub pulses: Pulses,
-    /// A request to the safety machine.
-    pub request: Option<Request>,
-}
-
-/// Faults of the hardware, of which one comparison tells that there are none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Faults(u32);
-
-impl Faults {
-    /// None.
-    pub const NONE: Self = Self(0);
-    /// An amplifier is not ready.
-    pub const NOT_READY: Self = Self(1);
-    /// The interlock loop is open, or was open since the amplifiers were last disabled.
-    pub const INTERLOCK: Self = Self(2);
-    /// The core does not run on its crystal.
-    pub const CLOCK: Self = Self(4);
-
-    /// These faults, and `fault` if it is `present`.
-    #[must_use]
-    #[inline]
-    pub const fn with(self, fault: Self, present: bool) -> Self {
-        Self(self.0 | (fault.0 * present as u32))
-    }
-
-    const fn contain(self, fault: Self) -> bool {
-        self.0 & fault.0 != 0
-    }
-}
-
-/// Outputs of a tick.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outputs {
-    /// The currents to apply; `None` disables the amplifiers.
-    pub currents: Option<Currents>,
-    /// The action, for a [`Record`]. Its currents are those that are applied, zero without.
-    pub action: Action,
-}
-
 /// What becomes of the currents of a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Decision {
@@ -92,19 +47,6 @@ enum Decision {
     Enable,
     /// The amplifiers are disabled.
     Disable,
-}
-
-/// A command on its way to the control task.
-#[derive(Clone, Copy)]
-pub enum Message {
-    /// A request to the safety state machine.
-    Request(Request),
-    /// A change of a scene's parameters.
-    Tuned(Tuned),
-    /// Selection of the large motor's estimator. An image of one estimator has no such message.
-    Estimator(Choice),
-    /// Changed settings.
-    Settings(Settings),
 }
 
 /// The control core under its monitor and safety state.

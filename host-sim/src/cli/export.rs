@@ -19,7 +19,7 @@ use terminal::output::{note, write_whole};
 
 use super::arguments::{ParameterOptions, kinds};
 use super::replay::About;
-use super::uneven::Chosen;
+use experiments::uneven::Chosen;
 use recordings::log::{Log, short_name};
 
 #[derive(Debug, Args)]

@@ -13,7 +13,7 @@ use terminal::output::{is_stdout, note, print_bytes, write_whole};
 
 use super::arguments::{ParameterOptions, kinds};
 use super::replay::About;
-use super::uneven::Chosen;
+use experiments::uneven::Chosen;
 use recordings::log::{Log, is_stdin, short_name};
 
 /// Estimators that are drawn by default.

@@ -17,7 +17,7 @@ use terminal::wording::wrapped;
 
 use super::arguments::ParameterOptions;
 use super::page::{self, progress};
-use super::uneven::Chosen;
+use experiments::uneven::Chosen;
 use recordings::log::{Log, is_stdin, short_name};
 
 /// Default budget of the cheap estimator, instructions per update.

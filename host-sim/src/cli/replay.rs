@@ -20,7 +20,7 @@ use terminal::wording::wrapped;
 
 use super::arguments::{ParameterOptions, kinds};
 use super::page::{one_to_stdout, progress};
-use super::uneven::Chosen;
+use experiments::uneven::Chosen;
 use recordings::log::{Log, called, short_name};
 
 #[derive(Debug, Args)]

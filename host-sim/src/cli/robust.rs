@@ -18,7 +18,7 @@ use terminal::output::Folder;
 
 use super::arguments::ParameterOptions;
 use super::page;
-use super::shard::{self, Outputs};
+use super::shard::{self, Asked, Outputs};
 
 /// Default folder of the report.
 const REPORT: &str = "target/robust";
@@ -78,26 +78,26 @@ pub(super) struct Robust {
 
 pub(super) fn run(options: &Robust, run_line: &str) -> Result<(), Failure> {
     let settings = settings(options)?;
-    let out = options.out.as_deref();
-    if let Some(part) = options.shard {
-        let folder = out.unwrap_or(Path::new(REPORT));
-        return shard::run_part(&settings, part, run_line, folder, DOING);
-    }
     let outputs = Outputs {
         run_line,
-        out,
+        out: options.out.as_deref(),
         json: options.json.as_deref(),
     };
-    let folder = outputs.folder(REPORT)?;
     let Some(subject) = options.only else {
-        let rows = shard::rows(&settings, &settings.jobs()?, DOING)?;
-        return finish(&settings, &rows, outputs);
+        let asked = Asked {
+            outputs,
+            part: options.shard,
+            usual: REPORT,
+            doing: DOING,
+        };
+        return asked.run(&settings, finish);
     };
+    let folder = outputs.folder(REPORT)?;
     let scenes = settings.scenes()?.into_iter();
     let jobs: Vec<_> = scenes.map(|scene| (scene, subject)).collect();
     let rows = shard::rows(&settings, &jobs, DOING)?;
     // The report of a single device is only written where it is asked for.
-    write(&settings, &rows, out.and(folder), outputs.json)
+    write(&settings, &rows, outputs.out.and(folder), outputs.json)
 }
 
 fn settings(options: &Robust) -> Result<Settings, Failure> {

@@ -50,6 +50,42 @@ impl<'a> Outputs<'a> {
     }
 }
 
+/// A run of an experiment, or of a part of it.
+pub(super) struct Asked<'a> {
+    /// Outputs of a whole run.
+    pub(super) outputs: Outputs<'a>,
+    /// Value of `--shard`.
+    pub(super) part: Option<Part>,
+    /// Default folder of the report, and of a shard's file.
+    pub(super) usual: &'static str,
+    /// Text before the progress bar.
+    pub(super) doing: &'static str,
+}
+
+impl Asked<'_> {
+    /// Runs the part and writes its file, or runs the whole experiment and passes the rows to `finish`.
+    pub(super) fn run<E: Experiment>(
+        &self,
+        experiment: &E,
+        finish: impl FnOnce(&E, &[E::Row], Outputs<'_>) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let Self {
+            outputs,
+            part,
+            usual,
+            doing,
+        } = *self;
+        if let Some(part) = part {
+            let folder = outputs.out.unwrap_or(Path::new(usual));
+            return run_part(experiment, part, outputs.run_line, folder, doing);
+        }
+        let jobs = experiment.jobs()?;
+        // A folder that cannot be written is refused before a long run.
+        outputs.folder(usual)?;
+        finish(experiment, &rows(experiment, &jobs, doing)?, outputs)
+    }
+}
+
 /// Runs a part of an experiment, writes its file to `folder` and prints the path of the file.
 pub(super) fn run_part<E: Experiment>(
     experiment: &E,

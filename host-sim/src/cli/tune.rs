@@ -16,7 +16,7 @@ use terminal::output::{is_stdout, print_bytes, write_whole};
 use super::arguments::{kinds, rates, scenarios};
 use super::page::progress;
 use super::shard::{self, Outputs};
-use super::uneven::Chosen;
+use experiments::uneven::Chosen;
 use recordings::log::{Log, short_name};
 
 /// Default presets file.

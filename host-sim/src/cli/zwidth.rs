@@ -1,6 +1,6 @@
 //! `host-sim zwidth`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
@@ -15,7 +15,7 @@ use terminal::output::Folder;
 
 use super::arguments::{ParameterOptions, kinds, rates};
 use super::page;
-use super::shard::{self, Outputs};
+use super::shard::{Asked, Outputs};
 
 /// Default folder of the page.
 const PAGE: &str = "target/zwidth";
@@ -61,19 +61,17 @@ pub(super) struct Zwidth {
 
 pub(super) fn run(options: &Zwidth, run_line: &str) -> Result<(), Failure> {
     let plan = plan(options)?;
-    let out = options.out.as_deref();
-    if let Some(part) = options.shard {
-        let folder = out.unwrap_or(Path::new(PAGE));
-        return shard::run_part(&plan, part, run_line, folder, DOING);
-    }
-    let outputs = Outputs {
-        run_line,
-        out,
-        json: options.json.as_deref(),
+    let asked = Asked {
+        outputs: Outputs {
+            run_line,
+            out: options.out.as_deref(),
+            json: options.json.as_deref(),
+        },
+        part: options.shard,
+        usual: PAGE,
+        doing: DOING,
     };
-    let cases = plan.jobs()?;
-    outputs.folder(PAGE)?;
-    finish(&plan, &shard::rows(&plan, &cases, DOING)?, outputs)
+    asked.run(&plan, finish)
 }
 
 /// Prints the table and writes page and JSON of all boundaries, whether they were found now or merged.

@@ -167,3 +167,19 @@ pub const CONFIDENCE: Table = Table {
     digits: Some(2),
     command: "cargo test --release --package experiments --test confidence",
 };
+
+/// Instructions of an update in C and in Rust.
+pub const C_COST: Table = Table {
+    name: "c-cost",
+    page: "docs/c.md",
+    columns: &[
+        ("estimator", "type"),
+        ("rate_hz", "rate, Hz"),
+        ("at_rest_c", "at rest, C"),
+        ("at_rest_rust", "at rest, Rust"),
+        ("texture_c", "texture, C"),
+        ("texture_rust", "texture, Rust"),
+    ],
+    digits: None,
+    command: "cargo test --release --package c-interface --test board",
+};

@@ -44,44 +44,29 @@ const EVIDENCE: Table = Table {
     command: DOCUMENTED,
 };
 
+const fn evidence(name: &'static str, page: &'static str) -> Table {
+    Table {
+        name,
+        page,
+        ..EVIDENCE
+    }
+}
+
 /// moteus.
-pub const EVIDENCE_MOTEUS: Table = Table {
-    name: "evidence-moteus",
-    page: "docs/evidence/moteus.md",
-    ..EVIDENCE
-};
+pub const EVIDENCE_MOTEUS: Table = evidence("evidence-moteus", "docs/evidence/moteus.md");
 
 /// ODrive.
-pub const EVIDENCE_ODRIVE: Table = Table {
-    name: "evidence-odrive",
-    page: "docs/evidence/odrive.md",
-    ..EVIDENCE
-};
+pub const EVIDENCE_ODRIVE: Table = evidence("evidence-odrive", "docs/evidence/odrive.md");
 
 /// VESC.
-pub const EVIDENCE_VESC: Table = Table {
-    name: "evidence-vesc",
-    page: "docs/evidence/vesc.md",
-    ..EVIDENCE
-};
+pub const EVIDENCE_VESC: Table = evidence("evidence-vesc", "docs/evidence/vesc.md");
 
 /// SimpleFOC.
-pub const EVIDENCE_SIMPLEFOC: Table = Table {
-    name: "evidence-simplefoc",
-    page: "docs/evidence/simplefoc.md",
-    ..EVIDENCE
-};
+pub const EVIDENCE_SIMPLEFOC: Table = evidence("evidence-simplefoc", "docs/evidence/simplefoc.md");
 
 /// OpenFFBoard.
-pub const EVIDENCE_OPENFFBOARD: Table = Table {
-    name: "evidence-openffboard",
-    page: "docs/evidence/openffboard.md",
-    ..EVIDENCE
-};
+pub const EVIDENCE_OPENFFBOARD: Table =
+    evidence("evidence-openffboard", "docs/evidence/openffboard.md");
 
 /// dVRK.
-pub const EVIDENCE_DVRK: Table = Table {
-    name: "evidence-dvrk",
-    page: "docs/evidence/dvrk.md",
-    ..EVIDENCE
-};
+pub const EVIDENCE_DVRK: Table = evidence("evidence-dvrk", "docs/evidence/dvrk.md");

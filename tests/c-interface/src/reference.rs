@@ -104,14 +104,6 @@ macro_rules! cases {
                     vec![$(tuned::value_for($name, rate, capacity, stringify!($parameter)),)*]
                 }
 
-                #[allow(unused_mut, unused_variables, reason = "a row may have no parameter")]
-                fn parameters(values: Vec<f64>) -> design::$id::Parameters {
-                    let mut values = values.into_iter();
-                    design::$id::Parameters {
-                        $($parameter: values.next().expect("one value per parameter"),)*
-                    }
-                }
-
                 $(
                     pub(super) mod $variant {
                         use super::*;
@@ -125,7 +117,7 @@ macro_rules! cases {
 
                         #[allow(unused_variables, reason = "not every design uses everything")]
                         fn run(samples: &[Sample]) -> Vec<f32> {
-                            let $p = parameters(values());
+                            let $p = design::$id::Parameters::from_values(&values());
                             let ($rate, $clock) = (Hertz(f64::from(rate($hertz))), CLOCK);
                             let $motor = &CoupledMotor::DCX35L;
                             let design: Result<$type, DesignError> = $make;

@@ -12,6 +12,22 @@ pub struct Compiler {
     pub arguments: &'static [&'static str],
 }
 
+/// The Arm toolchain for the board, with warnings as errors. What follows says whether it compiles or links.
+pub const CORTEX_M4F: Compiler = Compiler {
+    program: "arm-none-eabi-gcc",
+    arguments: &[
+        "-std=c99",
+        "-O2",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-mcpu=cortex-m4",
+        "-mthumb",
+        "-mfloat-abi=hard",
+        "-mfpu=fpv4-sp-d16",
+    ],
+};
+
 /// Whether a program is missing. A machine that must have all programs sets `REQUIRE_C_TOOLS`.
 #[must_use]
 pub fn missing(program: &str) -> bool {

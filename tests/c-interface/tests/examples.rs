@@ -6,25 +6,8 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use c_interface::{Compiler, compiled, folder, missing};
+use c_interface::{CORTEX_M4F, Compiler, compiled, folder, missing};
 use limpid_dist::{BOARDS, COMPUTER, arduino, build, header, milliseconds, write};
-
-const ARM: Compiler = Compiler {
-    program: "arm-none-eabi-gcc",
-    arguments: &[
-        "-std=c99",
-        "-O2",
-        "-Wall",
-        "-Wextra",
-        "-Werror",
-        "-pedantic",
-        "-mcpu=cortex-m4",
-        "-mthumb",
-        "-mfloat-abi=hard",
-        "-mfpu=fpv4-sp-d16",
-        "-c",
-    ],
-};
 
 const CPP11: Compiler = Compiler {
     program: "g++",
@@ -45,7 +28,7 @@ fn here(path: &str) -> String {
 
 #[test]
 fn the_example_for_stm32_compiles() {
-    if missing(ARM.program) {
+    if missing(CORTEX_M4F.program) {
         return;
     }
     let folder = folder("stm32");
@@ -56,7 +39,8 @@ fn the_example_for_stm32_compiles() {
     .expect("target");
     let stub = format!("-I{}", here("c/stm32_stub"));
     let source = "../../../c/examples/stm32_hal/main.c";
-    compiled(&ARM, source, &folder, &[&stub], &folder.join("main.o"));
+    let more = ["-pedantic", "-c", &stub];
+    compiled(&CORTEX_M4F, source, &folder, &more, &folder.join("main.o"));
 }
 
 #[test]

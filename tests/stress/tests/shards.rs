@@ -1,52 +1,17 @@
 //! `cargo stress` in shards: the merged files give the bytes of a single run.
 
-use std::fs;
-use std::path::PathBuf;
-use std::process::{Command, Output};
+#[path = "../../../host-sim/tests/common/mod.rs"]
+mod common;
+
+use common::Folder;
+
+const STRESS: &str = env!("CARGO_BIN_EXE_stress");
 
 const SHORT: &str = "--ticks 3000 --estimator kalman-triple-s --rate 1000 --rate 2000 --seed 5";
 
-/// A folder of its own, gone afterwards.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(test: &str) -> Self {
-        let path =
-            std::env::temp_dir().join(format!("limpid-stress-{test}-{}", std::process::id()));
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn run(&self, arguments: &str) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_stress"))
-            .args(arguments.split_whitespace())
-            .env_remove("UPDATE_GOLDEN")
-            .current_dir(&self.0)
-            .output()
-            .unwrap()
-    }
-
-    fn good(&self, arguments: &str) -> String {
-        let output = self.run(arguments);
-        let errors = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(0), "{arguments}: {errors}");
-        String::from_utf8(output.stdout).unwrap()
-    }
-
-    fn text(&self, name: &str) -> String {
-        fs::read_to_string(self.0.join(name)).unwrap()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 #[test]
 fn merged_shards_equal_a_single_run() {
-    let folder = Folder::new("merge");
+    let folder = Folder::new("merge", STRESS);
     let whole = folder.good(&format!("{SHORT} --json whole.json"));
     assert!(
         whole.contains("kalman-triple-steady") && whole.contains("2000"),
@@ -76,11 +41,9 @@ fn merged_shards_equal_a_single_run() {
 
 #[test]
 fn lost_shards_are_named_with_the_command_that_runs_them() {
-    let folder = Folder::new("lost");
+    let folder = Folder::new("lost", STRESS);
     folder.good(&format!("{SHORT} --shard 2/3 --out parts"));
-    let output = folder.run("--merge parts/shard-2-of-3.jsonl");
-    let errors = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{errors}");
+    let errors = folder.refused("--merge parts/shard-2-of-3.jsonl");
     let again = "run cargo stress --ticks 3000 --rate 1000 --rate 2000 --estimator kalman-triple-s --seed 5 \
                  --shard 1/3 --out parts";
     assert!(

@@ -56,15 +56,11 @@ macro_rules! kinds {
         |$c:ident, $motor:ident, $rate:ident, $clock:ident, $p:ident, $N:ident| $type:ty => $make:expr;
     )*) => {
         $(
-            #[allow(dead_code, unused_mut, unused_variables, reason = "not every design uses everything")]
+            #[allow(dead_code, unused_variables, reason = "not every design uses everything")]
             fn $id(setup: &Setup, values: &Values) -> Result<Estimator, DesignError> {
                 use estimator_core as $c;
                 const $N: usize = capacity(&design::$id::ROW);
-                let mut values = values.iter().copied();
-                // The values are in the order of the row's parameters.
-                let $p = design::$id::Parameters {
-                    $($parameter: values.next().unwrap_or(f64::NAN),)*
-                };
+                let $p = design::$id::Parameters::from_values(values);
                 let motor = setup.stages.coupled_motor();
                 let ($motor, $rate, $clock) = (&motor, setup.rate, Hertz(EDGE_CLOCK_HZ));
                 let estimator: $type = $make?;

@@ -24,7 +24,7 @@ macro_rules! initialisers {
         |$c:ident, $motor:ident, $rate:ident, $clock:ident, $p:ident, $N:ident| $type:ty => $make:expr;
     )*) => {
         $(
-            #[allow(dead_code, unused_mut, unused_variables, reason = "not every design uses everything")]
+            #[allow(dead_code, unused_variables, reason = "not every design uses everything")]
             fn $id(
                 setup: &Setup,
                 edge_clock: Hertz,
@@ -32,10 +32,7 @@ macro_rules! initialisers {
                 capacity: usize,
             ) -> Option<Result<Bytes, DesignError>> {
                 use estimator_core as $c;
-                let mut values = values.iter().copied();
-                let $p = design::$id::Parameters {
-                    $($parameter: values.next().unwrap_or(f64::NAN),)*
-                };
+                let $p = design::$id::Parameters::from_values(values);
                 let motor = setup.stages.coupled_motor();
                 let ($motor, $rate, $clock) = (&motor, setup.rate, edge_clock);
                 $(

@@ -1,0 +1,320 @@
+//! An estimator that takes rows one by one or in blocks.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Mutex;
+
+use catalogue::estimators::{Estimator as AnyEstimator, Kind, Reports};
+use estimator_core::Count;
+use numpy::PyReadonlyArray1;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::sync::MutexExt;
+use recordings::recording::{after, boundary};
+use simulation::trace::Trace;
+use terminal::failure::Failure;
+
+use crate::columns::{copied, edge, edges};
+use crate::device::{Built, DeviceFile, Named, device};
+use crate::error::{in_python, value_error};
+use crate::stream::{Arrays, Stream, arrays, lack};
+
+/// What an [`Estimator`] changes.
+struct Running {
+    stream: Stream,
+    /// The last counts of both encoders, unwrapped.
+    unwrapped: [Option<Count>; 2],
+    /// Reports of the latest row: standard deviation, acceleration, ratio of the damping.
+    latest: [Option<f32>; 3],
+}
+
+/// An estimator that takes rows as they come.
+///
+/// The docstring for users is in the stub of this module.
+#[pyclass(frozen, subclass, module = "limpid")]
+pub(crate) struct Estimator {
+    kind: &'static Kind,
+    estimator: AnyEstimator,
+    rate_hz: f64,
+    counts_per_rev: u32,
+    values: BTreeMap<&'static str, f64>,
+    notes: Vec<String>,
+    modulus: Option<u32>,
+    varying: bool,
+    running: Mutex<Running>,
+}
+
+impl Estimator {
+    /// Runs over rows and keeps the reports of the last one.
+    fn run(
+        &self,
+        running: &mut Running,
+        mut trace: Trace,
+        look: impl FnMut() -> PyResult<()>,
+    ) -> PyResult<Reports> {
+        lack(self.kind, &trace, self.kind.name).map_err(value_error)?;
+        if let Some(modulus) = self.modulus {
+            unwrap(&mut trace, &mut running.unwrapped[0], modulus).map_err(value_error)?;
+        }
+        let reports = running.stream.run(&trace, look)?;
+        let last = |column: &Option<Vec<f32>>| column.as_ref()?.last().copied();
+        running.latest = [
+            last(&reports.deviation),
+            last(&reports.acceleration),
+            last(&reports.damping_ratio),
+        ];
+        Ok(reports)
+    }
+
+    fn started(estimator: &AnyEstimator) -> Running {
+        Running {
+            stream: Stream::new(estimator.clone()),
+            unwrapped: [None; 2],
+            latest: [None; 3],
+        }
+    }
+
+    /// The periods before rows at `dt` s from one to the next.
+    fn period(&self, dt: Option<f64>) -> PyResult<Option<f32>> {
+        match (self.varying, dt) {
+            (false, None) => Ok(None),
+            (false, Some(_)) => Err(PyValueError::new_err(
+                "dt: this estimator assumes a constant period; make it with varying=True",
+            )),
+            (true, None) => Err(PyValueError::new_err(
+                "dt: missing; an estimator made with varying=True needs the time since the row before (s)",
+            )),
+            (true, Some(dt)) if dt >= 0.0 && dt.is_finite() => Ok(Some((dt * self.rate_hz) as f32)),
+            (true, Some(dt)) => Err(PyValueError::new_err(format!(
+                "dt={dt}: must be finite and not negative (s)"
+            ))),
+        }
+    }
+}
+
+/// Unwraps the counts of the large encoder and the boundaries of its edges.
+fn unwrap(trace: &mut Trace, last: &mut Option<Count>, modulus: u32) -> Result<(), Failure> {
+    // The state is changed once all rows are good.
+    let mut latest = *last;
+    for (k, count) in trace.counts_large.iter_mut().enumerate() {
+        let raw = *count;
+        let next = after(latest, raw, modulus)
+            .map_err(|error| format!("row {k}: counts={raw} with modulus={modulus}: {error}"))?;
+        latest = Some(next);
+        *count = next.0;
+        if let Some(Some(edge)) = trace.edges.as_mut().map(|edges| &mut edges[k]) {
+            edge.boundary = boundary(edge.boundary, raw, next.0, modulus);
+        }
+    }
+    *last = latest;
+    Ok(())
+}
+
+/// A count modulo 2^32.
+fn count(object: &Bound<'_, PyAny>, name: &str) -> PyResult<u32> {
+    if let Ok(count) = object.extract::<i64>() {
+        return Ok(count as u32);
+    }
+    let refused = || {
+        PyTypeError::new_err(format!(
+            "{name}: must be an integer; round a float with round() or numpy.rint"
+        ))
+    };
+    let index = object
+        .py()
+        .import("operator")?
+        .call_method1("index", (object,));
+    let index = index.map_err(|_| refused())?;
+    index.call_method1("__and__", (u32::MAX,))?.extract()
+}
+
+/// A finite current.
+fn amps(current: Option<f64>) -> PyResult<Option<f64>> {
+    match current {
+        Some(current) if !current.is_finite() => Err(PyValueError::new_err(format!(
+            "current={current}: must be finite (A)"
+        ))),
+        current => Ok(current),
+    }
+}
+
+#[pymethods]
+impl Estimator {
+    #[new]
+    #[pyo3(signature = (estimator="imm", rate=1000.0, *, counts_per_rev=None, parameters=None, presets=None,
+        device=None, modulus=None, varying=false))]
+    fn new(
+        estimator: &str,
+        rate: f64,
+        counts_per_rev: Option<u32>,
+        parameters: Option<Named>,
+        presets: Option<PathBuf>,
+        device: Option<DeviceFile>,
+        modulus: Option<u32>,
+        varying: bool,
+    ) -> PyResult<Self> {
+        let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
+        let named = parameters.unwrap_or_default();
+        let built = Built::new(estimator, &device, rate, presets.as_ref(), &named);
+        let built = built.map_err(value_error)?;
+        if let Some(modulus) = modulus.filter(|modulus| !(2..=1 << 31).contains(modulus)) {
+            return Err(PyValueError::new_err(format!(
+                "modulus={modulus}: must be from 2 to 2^31, for example 4096"
+            )));
+        }
+        if varying && !built.kind.varying_period {
+            let able = Kind::all().iter().filter(|kind| kind.varying_period);
+            let able: Vec<_> = able.map(|kind| kind.name).collect();
+            return Err(PyValueError::new_err(format!(
+                "{estimator} needs a constant period: leave out varying=True, or name one of {}",
+                able.join(", ")
+            )));
+        }
+        Ok(Self {
+            kind: built.kind,
+            running: Mutex::new(Self::started(&built.estimator)),
+            rate_hz: rate,
+            counts_per_rev: device.stages.large.counts_per_rev,
+            values: built.named(),
+            notes: built.notes.iter().map(|note| in_python(note)).collect(),
+            estimator: built.estimator,
+            modulus,
+            varying,
+        })
+    }
+
+    #[getter]
+    fn name(&self) -> &'static str {
+        self.kind.name
+    }
+
+    #[getter]
+    fn rate(&self) -> f64 {
+        self.rate_hz
+    }
+
+    #[getter]
+    fn counts_per_rev(&self) -> u32 {
+        self.counts_per_rev
+    }
+
+    #[getter]
+    fn parameters(&self) -> BTreeMap<&'static str, f64> {
+        self.values.clone()
+    }
+
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.notes.clone()
+    }
+
+    #[getter]
+    fn std_dev(&self, py: Python<'_>) -> Option<f32> {
+        locked(self.running.lock_py_attached(py)).latest[0]
+    }
+
+    #[getter]
+    fn acceleration(&self, py: Python<'_>) -> Option<f32> {
+        locked(self.running.lock_py_attached(py)).latest[1]
+    }
+
+    #[getter]
+    fn damping_ratio(&self, py: Python<'_>) -> Option<f32> {
+        locked(self.running.lock_py_attached(py)).latest[2]
+    }
+
+    fn reset(&self, py: Python<'_>) {
+        *locked(self.running.lock_py_attached(py)) = Self::started(&self.estimator);
+    }
+
+    #[pyo3(signature = (count, *, current=None, coupled=None, edge_age=None, edge_boundary=None, dt=None))]
+    fn update(
+        &self,
+        py: Python<'_>,
+        count: &Bound<'_, PyAny>,
+        current: Option<f64>,
+        coupled: Option<&Bound<'_, PyAny>>,
+        edge_age: Option<f64>,
+        edge_boundary: Option<&Bound<'_, PyAny>>,
+        dt: Option<f64>,
+    ) -> PyResult<f32> {
+        let number = |object: Option<&Bound<'_, PyAny>>, name: &str| {
+            object.map(|object| self::count(object, name)).transpose()
+        };
+        let edges = match (edge_age, number(edge_boundary, "edge_boundary")?) {
+            (None, None) => None,
+            (Some(age), Some(_)) if age < 0.0 || age.is_infinite() => {
+                return Err(PyValueError::new_err(format!(
+                    "edge_age={age}: must be finite and not negative (s), or NaN before the first edge"
+                )));
+            }
+            (Some(age), Some(boundary)) => Some(vec![edge(age, boundary)]),
+            _ => {
+                return Err(PyValueError::new_err(
+                    "edge_age and edge_boundary: give both or neither",
+                ));
+            }
+        };
+        let row = Trace {
+            rate_hz: self.rate_hz,
+            periods: self.period(dt)?.map(|period| vec![period]),
+            counts_large: vec![self::count(count, "count")?],
+            counts_small: number(coupled, "coupled")?.map(|count| vec![count]),
+            current: amps(current)?.map(|current| vec![current]),
+            edges,
+            ..Trace::default()
+        };
+        let mut running = locked(self.running.lock_py_attached(py));
+        let reports = self.run(&mut running, row, || Ok(()))?;
+        Ok(reports.velocity[0])
+    }
+
+    #[pyo3(signature = (counts, current, coupled, edge_age, edge_boundary, dt))]
+    fn _process<'py>(
+        &self,
+        py: Python<'py>,
+        counts: PyReadonlyArray1<'py, u32>,
+        current: Option<PyReadonlyArray1<'py, f64>>,
+        coupled: Option<PyReadonlyArray1<'py, u32>>,
+        edge_age: Option<PyReadonlyArray1<'py, f64>>,
+        edge_boundary: Option<PyReadonlyArray1<'py, u32>>,
+        dt: Option<PyReadonlyArray1<'py, f64>>,
+    ) -> PyResult<Arrays<'py>> {
+        let periods = match copied(dt.as_ref())? {
+            None => self.period(None)?.map(|_| Vec::new()),
+            Some(dt) => {
+                let periods = dt.iter().map(|dt| self.period(Some(*dt)));
+                let periods: PyResult<Vec<_>> = periods.collect();
+                Some(periods?.into_iter().flatten().collect())
+            }
+        };
+        let rows = Trace {
+            rate_hz: self.rate_hz,
+            periods,
+            counts_large: counts.as_slice()?.to_vec(),
+            counts_small: copied(coupled.as_ref())?,
+            current: copied(current.as_ref())?,
+            edges: edges(edge_age.as_ref(), edge_boundary.as_ref())?,
+            ..Trace::default()
+        };
+        let reports = py.detach(|| {
+            let mut running = locked(self.running.lock());
+            self.run(&mut running, rows, || {
+                Python::attach(|py| py.check_signals())
+            })
+        })?;
+        Ok(arrays(py, reports))
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "limpid.Estimator('{}', rate={}, counts_per_rev={})",
+            self.kind.name, self.rate_hz, self.counts_per_rev
+        )
+    }
+}
+
+/// The value of a mutex, also after a panic in another thread: no invariant spans two fields.
+fn locked<G>(guard: Result<G, std::sync::PoisonError<G>>) -> G {
+    guard.unwrap_or_else(std::sync::PoisonError::into_inner)
+}
