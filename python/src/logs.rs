@@ -3,17 +3,16 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use catalogue::constant_error::ConstantError;
 use catalogue::estimators::Kind;
-use catalogue::parameters::{PlantKind, Preset, Presets};
+use catalogue::parameters::{PlantKind, Presets};
 use experiments::recommend::{Settings, lines, recommend as recommend_for};
-use experiments::tune::{Recipe, TuningSet, tune as tune_simulated, tune_on_logs};
+use experiments::tune::{Plan, Wishes, tune_on_logs};
 use experiments::uneven::Chosen;
 use pyo3::prelude::*;
 use recordings::recording::Recording;
+use shards::Experiment as _;
 use simulation::device::Device;
 use simulation::scenario::ScenarioName;
-use simulation::simulate;
 use terminal::failure::Failure;
 
 use crate::background::interruptible;
@@ -166,55 +165,29 @@ pub(crate) fn tune_scenarios(
     let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
     let kinds = tunable(&estimators).map_err(value_error)?;
     let named: Result<Vec<ScenarioName>, String> = scenarios.iter().map(|s| s.parse()).collect();
-    let named = named.map_err(value_error)?;
     if let Some(seeds) = seeds.filter(|seeds| !(1..=1000).contains(seeds)) {
         return Err(value_error(format!(
             "seeds={seeds}: must be from 1 to 1000"
         )));
     }
-    let plant = match friction {
-        true => PlantKind::Friction,
-        false => PlantKind::Frictionless,
+    let wishes = Wishes {
+        scenarios: named.map_err(value_error)?,
+        seeds,
+        seconds,
+        perturbed,
+    };
+    let plan = Plan {
+        groups: wishes.groups(&kinds),
+        rates_hz: vec![rate],
+        plants: match friction {
+            true => vec![PlantKind::Friction],
+            false => vec![PlantKind::Frictionless],
+        },
+        device,
     };
     interruptible(py, |stop| {
-        let mut preset = Preset {
-            rate_hz: rate,
-            plant,
-            counts_per_rev: Some(device.stages.large.counts_per_rev),
-            estimators: BTreeMap::new(),
-        };
-        let mut notes = Vec::new();
-        let (observers, others): (Vec<_>, Vec<_>) =
-            kinds.into_iter().partition(|kind| kind.is_observer());
-        for (kinds, recipe) in [(others, Recipe::PLAIN), (observers, Recipe::OBSERVER)] {
-            if kinds.is_empty() {
-                continue;
-            }
-            let perturbed = perturbed.unwrap_or(recipe.perturbed && named.is_empty());
-            let set = TuningSet {
-                device: device.clone(),
-                scenarios: match named.as_slice() {
-                    [] => ScenarioName::of(recipe.roles),
-                    named => named.to_vec(),
-                },
-                seeds: seeds.unwrap_or(recipe.seeds),
-                seconds: seconds.unwrap_or(recipe.seconds),
-                constant_errors: match perturbed {
-                    true => ConstantError::extremes(),
-                    false => Vec::new(),
-                },
-            };
-            simulate::ticks(rate, set.seconds)?;
-            let all = tune_simulated(&set, &kinds, &kinds, rate, plant, || stop.look())?;
-            for (kind, tuned) in kinds.iter().zip(all) {
-                preset.estimators.insert(kind.name.to_owned(), tuned.values);
-                notes.extend(tuned.notes);
-            }
-        }
-        let presets = Presets {
-            preset: vec![preset],
-            ..Presets::default()
-        };
+        let tuned = plan.rows(&plan.jobs()?, || stop.look())?;
+        let (presets, notes) = plan.presets(&tuned)?;
         Ok((presets.to_toml()?, in_words_of_python(&notes)))
     })
 }

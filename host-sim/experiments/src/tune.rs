@@ -29,7 +29,7 @@ use terminal::failure::Failure;
 pub use image_section::image_section;
 pub use logs::{LogRow, LogTuning, tune_on_logs};
 pub use plan::{Group, Plan};
-pub use recipe::Recipe;
+pub use recipe::Wishes;
 
 use search::{Least, best_values, ends_of_ranges};
 

@@ -5,11 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use catalogue::estimators::Kind;
-use catalogue::parameters::{Parameters, Presets};
-use experiments::tune::{FIRST_SEED, Group, Plan, Recipe, Tuned, image_section, tune_on_logs};
+use catalogue::parameters::{Parameters, PlantKind, Presets};
+use experiments::tune::{FIRST_SEED, Group, Plan, Tuned, Wishes, image_section, tune_on_logs};
 use recordings::arguments::{DeviceFile, RecordingOptions};
 use shards::{Experiment as _, Part};
-use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, print_bytes, write_whole};
 
@@ -79,29 +78,21 @@ pub(super) struct Tune {
 }
 
 impl Tune {
-    fn group(&self, kinds: &[&Kind], recipe: &Recipe) -> Result<Group, Failure> {
-        let scenarios = scenarios(&self.scenarios, &ScenarioName::of(recipe.roles))?;
-        Ok(Group {
-            estimators: kinds.iter().map(|kind| kind.name.to_owned()).collect(),
-            scenarios: scenarios.iter().map(ToString::to_string).collect(),
-            seeds: self.seeds.unwrap_or(recipe.seeds),
-            seconds: self.seconds.unwrap_or(recipe.seconds),
-            perturbed: self.perturbed || recipe.perturbed && self.scenarios.is_empty(),
-        })
-    }
-
     fn plan(&self, kinds: &[&Kind]) -> Result<Plan, Failure> {
-        let (observers, others): (Vec<_>, Vec<_>) =
-            kinds.iter().copied().partition(|kind| kind.is_observer());
-        let groups = [(others, Recipe::PLAIN), (observers, Recipe::OBSERVER)];
-        let groups = groups.iter().filter(|(kinds, _)| !kinds.is_empty());
+        let wishes = Wishes {
+            scenarios: scenarios(&self.scenarios, &[])?,
+            seeds: self.seeds,
+            seconds: self.seconds,
+            perturbed: self.perturbed.then_some(true),
+        };
         Ok(Plan {
             device: self.device.load()?,
-            groups: groups
-                .map(|(kinds, recipe)| self.group(kinds, recipe))
-                .collect::<Result<_, _>>()?,
+            groups: wishes.groups(kinds),
             rates_hz: rates(&self.rates, &[1e3, 10e3, 11.6e3]),
-            frictionless: self.frictionless,
+            plants: match self.frictionless {
+                true => vec![PlantKind::Frictionless],
+                false => vec![PlantKind::Friction, PlantKind::Frictionless],
+            },
         })
     }
 }

@@ -23,8 +23,8 @@ pub struct Plan {
     pub groups: Vec<Group>,
     /// Control rates, Hz.
     pub rates_hz: Vec<f64>,
-    /// Whether the plant without Coulomb friction is the only one.
-    pub frictionless: bool,
+    /// Plants.
+    pub plants: Vec<PlantKind>,
     /// The device.
     pub device: Device,
 }
@@ -77,13 +77,6 @@ impl Group {
 }
 
 impl Plan {
-    fn plants(&self) -> &'static [PlantKind] {
-        match self.frictionless {
-            true => &[PlantKind::Frictionless],
-            false => &[PlantKind::Friction, PlantKind::Frictionless],
-        }
-    }
-
     /// The presets of all searches in their order, and the notes.
     ///
     /// # Errors
@@ -122,7 +115,7 @@ impl Experiment for Plan {
     fn jobs(&self) -> Result<Vec<Search>, Failure> {
         let mut searches = Vec::new();
         for &rate_hz in &self.rates_hz {
-            for &plant in self.plants() {
+            for &plant in &self.plants {
                 for (at, group) in self.groups.iter().enumerate() {
                     simulate::ticks(rate_hz, group.seconds)?;
                     searches.extend(group.kinds()?.into_iter().map(|kind| Search {
