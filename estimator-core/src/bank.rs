@@ -53,12 +53,12 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 /// Multiple-model estimator: a moving bank of K Kalman filters. It has no parameter of the device; the
 /// control rate alone fixes it, for any number of counts per revolution.
 ///
-/// Every member models the acceleration a as a process that decays with τ = 10 ms (Singer 1970), and
+/// Every member models the acceleration a as a process that decays with τ = 20 ms (Singer 1970), and
 /// a white acceleration besides:
 /// ```text
 /// dθ/dt = v      dv/dt = a + n      da/dt = -a / τ + m
 /// ```
-/// The spectral density of m is q counts²/s⁵, that of n is q τ² / 10. Members differ by q alone. The
+/// The spectral density of m is q counts²/s⁵, that of n is q τ² / 40. Members differ by q alone. The
 /// values of q are the rungs of a ladder of 18 decades from 10 counts²/s⁵; the members stand on K
 /// neighbouring rungs. One tick is
 /// ```text

@@ -191,16 +191,15 @@ const fn end(u: f32) -> (f32, f32, Likelihood) {
     }
 }
 
-/// `1 / √x` for a positive normal x, to 1e-6.
+/// `1 / √x` for a positive normal x, less at most 5e-6 of it.
 ///
-/// The exponent of x, halved and negated in its bits, gives the root to 12 %. Three steps of Newton's
-/// iteration follow.
+/// The exponent of x, halved and negated in its bits, gives the root to 3.4 %, with the offset that makes
+/// the error after a step of Newton's iteration smallest (Lomont 2003). Two steps follow.
 #[inline(always)]
 fn inverse_root(x: f32) -> f32 {
-    let one = 1.0f32.to_bits();
     let half = 0.5 * x;
-    let mut y = f32::from_bits(one + one / 2 - (x.to_bits() >> 1));
-    for _ in 0..3 {
+    let mut y = f32::from_bits(0x5f37_5a86 - (x.to_bits() >> 1));
+    for _ in 0..2 {
         y *= 1.5 - half * y * y;
     }
     y
@@ -313,13 +312,13 @@ mod tests {
     }
 
     #[test]
-    fn inverse_root_is_exact_to_1e_6() {
+    fn inverse_root_is_exact_to_5e_6() {
         let mut x = 1e-30f32;
         while x < 1e30 {
             let exact = 1.0 / f64::from(x).sqrt();
             let off = f64::from(inverse_root(x)) / exact - 1.0;
-            assert!(off.abs() < 1e-6, "{x}: {off}");
-            x *= 1.37;
+            assert!(off < 1e-6 && off > -5e-6, "{x}: {off}");
+            x *= 1.037;
         }
     }
 }

@@ -14,10 +14,10 @@ pub(super) const LOWEST: f64 = 10.0;
 pub(super) const FIRST_RUNG: u32 = 4;
 
 /// Correlation time τ of the acceleration, s.
-pub(super) const CORRELATION_TIME: f64 = 0.01;
+pub(super) const CORRELATION_TIME: f64 = 0.02;
 
 /// Spectral density of the white part of the acceleration over q τ².
-pub(super) const WHITE_SHARE: f64 = 0.1;
+pub(super) const WHITE_SHARE: f64 = 0.025;
 
 /// Prediction of a member.
 pub(super) trait Predict {

@@ -210,18 +210,24 @@ impl<const K: usize> ModelBankState<K> {
     /// Resets improbable members.
     #[inline(always)]
     pub(super) fn reset(&mut self) {
+        for i in 0..K {
+            if self.weights[i] < IMPROBABLE {
+                self.members[i] = self.members[self.heaviest()].copied();
+                self.weights[i] = RESET_WEIGHT;
+            }
+        }
+    }
+
+    /// The member with the largest weight.
+    #[inline(always)]
+    fn heaviest(&self) -> usize {
         let mut heaviest = 0;
         for i in 1..K {
             if self.weights[i] > self.weights[heaviest % K] {
                 heaviest = i;
             }
         }
-        for i in 0..K {
-            if self.weights[i] < IMPROBABLE {
-                self.members[i] = self.members[heaviest % K].copied();
-                self.weights[i] = RESET_WEIGHT;
-            }
-        }
+        heaviest % K
     }
 
     /// Moves the bank by a rung if its outermost member is heavy.

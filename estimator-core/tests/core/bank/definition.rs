@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
-const TAU: f64 = 0.01;
-const WHITE_SHARE: f64 = 0.1;
+const TAU: f64 = 0.02;
+const WHITE_SHARE: f64 = 0.025;
 const LOWEST: f64 = 10.0;
 const RUNGS: usize = 18;
 
