@@ -5,8 +5,9 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 target=$(realpath --canonicalize-missing "${CARGO_TARGET_DIR:-target}")
 
-# The tests compare with the command line of the project.
+# The tests compare with the programs of the project.
 cargo build --release --package host-sim
+[ -x "$target/release/stress" ] || cargo build --release --package stress
 
 python3 -m venv "$target/python"
 python=$target/python/bin
@@ -17,4 +18,4 @@ rm -rf "$target/wheels"
 
 cd python
 "$python/mypy" --cache-dir "$target/python/mypy" limpid
-HOST_SIM=$target/release/host-sim "$python/pytest" -p no:cacheprovider "$@"
+HOST_SIM=$target/release/host-sim STRESS=$target/release/stress "$python/pytest" -p no:cacheprovider "$@"

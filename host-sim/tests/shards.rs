@@ -21,9 +21,14 @@ fn outputs(folder: &Folder, arguments: &str) -> (String, BTreeMap<PathBuf, Vec<u
 }
 
 /// Runs `command` whole and in `n` shards, which are merged in an order that is not that of the parts.
-fn merged_equals_whole(test: &str, command: &str, options: &str, file: &str, counts: &[usize]) {
-    let folder = Folder::new(test, HOST_SIM);
-    let whole = outputs(&folder, &format!("{command} {options}"));
+fn merged_equals_whole(
+    folder: &Folder,
+    command: &str,
+    options: &str,
+    file: &str,
+    counts: &[usize],
+) {
+    let whole = outputs(folder, &format!("{command} {options}"));
     assert!(
         whole.1.contains_key(&folder.path.join(file)),
         "{:?}",
@@ -38,7 +43,7 @@ fn merged_equals_whole(test: &str, command: &str, options: &str, file: &str, cou
         }
         names.rotate_left(n / 2);
         names.swap(0, n - 1);
-        let merged = outputs(&folder, &format!("merge {} {options}", names.join(" ")));
+        let merged = outputs(folder, &format!("merge {} {options}", names.join(" ")));
         assert_eq!(merged.0, whole.0, "{n} shards");
         assert_eq!(
             merged.1.keys().collect::<Vec<_>>(),
@@ -55,13 +60,9 @@ const ROBUST: &str = "robust --scene hold --scene wall --rate 1000 --seconds 0.2
 #[test]
 fn merged_shards_of_robust_equal_a_single_run() {
     let outputs = "--out here/page --json here/rows.json";
-    merged_equals_whole(
-        "robust",
-        ROBUST,
-        outputs,
-        "here/page/robust.csv",
-        &[1, 3, 120],
-    );
+    let folder = Folder::new("robust", HOST_SIM);
+    let file = "here/page/robust.csv";
+    merged_equals_whole(&folder, ROBUST, outputs, file, &[1, 3, 120]);
 }
 
 #[test]
@@ -70,7 +71,8 @@ fn merged_shards_of_sensitivity_equal_a_single_run() {
                    --seconds 0.5 --estimator adaptive --estimator pll --set pll.bandwidth_hz=33.3";
     let outputs = "--json here/rows.json --out here/page";
     let file = "here/page/figures/01.svg";
-    merged_equals_whole("sensitivity", command, outputs, file, &[3, 9]);
+    let folder = Folder::new("sensitivity", HOST_SIM);
+    merged_equals_whole(&folder, command, outputs, file, &[3, 9]);
 }
 
 #[test]
@@ -78,7 +80,8 @@ fn merged_shards_of_zwidth_equal_a_single_run() {
     let command =
         "zwidth --estimator pll --estimator kalman-motor --rate 1000 --lines 256 --lines 1024";
     let file = "here/page/zwidth.csv";
-    merged_equals_whole("zwidth", command, "--out here/page", file, &[3, 5]);
+    let folder = Folder::new("zwidth", HOST_SIM);
+    merged_equals_whole(&folder, command, "--out here/page", file, &[3, 5]);
 }
 
 /// Two groups with traces of their own, one of which has time stamps of edges; parameters at the limits
@@ -87,13 +90,81 @@ fn merged_shards_of_zwidth_equal_a_single_run() {
 fn merged_shards_of_tune_equal_a_single_run() {
     let command = "tune --estimator pll --estimator low-pass --estimator kalman-motor-steady --estimator \
                    adaptive-edge --rate 1000 --rate 2000 --seconds 0.5 --seeds 1 --scenario texture";
-    merged_equals_whole(
-        "tune",
-        command,
-        "--out here/p.toml",
-        "here/p.toml",
-        &[2, 5, 17],
-    );
+    let folder = Folder::new("tune", HOST_SIM);
+    let file = "here/p.toml";
+    merged_equals_whole(&folder, command, "--out here/p.toml", file, &[2, 5, 17]);
+}
+
+const SIMULATE: &str = "simulate --scenario track --rate 1000 --seconds 6 --out log.csv";
+
+/// One recording has no true velocity and not all columns: there are notes on recordings, and an
+/// estimator is left out.
+#[test]
+fn merged_shards_of_tune_on_recordings_equal_a_single_run() {
+    let folder = Folder::new("tune-logs", HOST_SIM);
+    folder.good(SIMULATE);
+    let counts = folder.text("log.csv");
+    let counts = counts.lines().filter(|line| !line.starts_with('#'));
+    let counts: String = counts
+        .map(|line| line.split(',').take(2).collect::<Vec<_>>().join(",") + "\n")
+        .collect();
+    assert!(counts.starts_with("t,counts_large\n"), "{counts}");
+    fs::write(folder.path.join("counts.csv"), counts).unwrap();
+    let command = "tune log.csv counts.csv --estimator pll --estimator kalman-motor --estimator low-pass \
+                   --estimator foaw-best-fit";
+    let file = "here/p.toml";
+    merged_equals_whole(&folder, command, "--out here/p.toml", file, &[1, 2, 5]);
+    folder.good(&format!("{command} --out p.toml"));
+    let text = folder.text("p.toml");
+    for said in [
+        "# host-sim tune log.csv counts.csv --estimator pll",
+        "# Tuned on every second second of log.csv, counts.csv.",
+        "# counts.csv: no column true_omega",
+        "# kalman-motor: left out, it needs other columns",
+        "pll]",
+        "low-pass]",
+        "foaw-best-fit]",
+    ] {
+        assert!(text.contains(said), "{said}: {text}");
+    }
+}
+
+#[test]
+fn shards_of_another_recording_are_refused() {
+    let folder = Folder::new("tune-refused", HOST_SIM);
+    folder.good(SIMULATE);
+    let tune = "tune log.csv --estimator pll --estimator low-pass";
+    folder.good(&format!("{tune} --shard 1/2 --out parts"));
+    // The name, the columns and the number of rows are as before.
+    let text = folder.text("log.csv");
+    let (head, last) = text.trim_end().rsplit_once('\n').unwrap();
+    let (t, fields) = last.split_once(',').unwrap();
+    let (count, others) = fields.split_once(',').unwrap();
+    let count: i64 = count.parse().unwrap();
+    let changed = format!("{head}\n{t},{},{others}\n", count + 1);
+    fs::write(folder.path.join("log.csv"), changed).unwrap();
+    folder.good(&format!("{tune} --shard 2/2 --out parts"));
+    let both = "parts/shard-1-of-2.jsonl parts/shard-2-of-2.jsonl";
+    let line = folder.refused(&format!("merge {both} --out merged.toml"));
+    let said = "parts/shard-2-of-2.jsonl: settings differ from those of parts/shard-1-of-2.jsonl: logs = \
+                [{\"name\":\"log.csv\",\"sum\":\"";
+    assert!(line.contains(said), "{line}");
+
+    let line = folder.refused("merge parts/shard-1-of-2.jsonl --out merged.toml");
+    let again = format!("shard 2/2 is missing; run host-sim {tune} --shard 2/2 --out parts");
+    assert!(line.contains(&again), "{line}");
+    folder.good(&format!("{tune} --shard 1/2 --out parts"));
+    let line = folder.refused(&format!("merge {both} --json rows.json"));
+    assert!(line.contains("--json: tune has no rows"), "{line}");
+
+    let motion = "tune --rate 1000 --seconds 0.5 --seeds 1 --scenario texture --estimator pll";
+    folder.good(&format!("{motion} --shard 1/2 --out motion"));
+    let names = "motion/shard-1-of-2.jsonl parts/shard-2-of-2.jsonl";
+    let line = folder.refused(&format!("merge {names} --out merged.toml"));
+    let said = "shard of host-sim tune on recordings, but motion/shard-1-of-2.jsonl is one of host-sim tune";
+    assert!(line.contains(said), "{line}");
+    let line = folder.refused("tune none.csv --shard 1/2 --out parts");
+    assert!(line.contains("none.csv: cannot read"), "{line}");
 }
 
 /// Without an option for outputs the merged run writes where the command does.

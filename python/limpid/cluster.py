@@ -1,135 +1,156 @@
-"""Experiments on the workers of a Dask cluster.
+"""Commands of the project in shards on the workers of a Dask cluster.
 
-An experiment is divided into shards. Each shard is a task: a worker that is lost loses its tasks, and the
-scheduler gives them to other workers. The result of each shard is a file with its settings; the merge of the
-Rust code refuses a file that is missing, given twice, incomplete or of other settings, by its name. The merged
-rows are those of one run, byte for byte.
+A shard is a task. Its worker runs the command with ``--shard K/N`` as a process and returns the shard's file. A
+worker that is lost loses its tasks, and the scheduler gives them to other workers. The merge of the program refuses
+a shard that is missing, incomplete or of another run, by its name. The outputs are those of the command without
+shards, byte for byte.
 
 It needs the package ``distributed``: ``pip install limpid[cluster]``.
 """
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-from . import _limpid
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from distributed import Client
 
-__all__ = ["Robust", "merge_robust", "robust", "robust_shard"]
+__all__ = ["Merged", "run"]
 
 
 @dataclass(frozen=True)
-class Robust:
-    """The closed loop on many devices."""
+class Merged:
+    """What the command without shards prints; its files are there."""
 
-    #: The table of the command line.
-    table: str
-    #: What violates a criterion; None if no run does.
+    #: Standard output: the tables.
+    text: str
+    #: Lines of standard error.
+    notes: list[str]
+    #: What violates a criterion (exit status 1 of the command); None if nothing does.
     complaint: str | None
-    #: ``robust.csv`` and ``robust.json`` as ``cargo sim robust`` writes them.
-    csv: bytes
-    json: bytes
 
 
-def robust_shard(shard: str, **options: Any) -> bytes:
-    """Runs one shard, ``K/N``, and returns the content of its file; the options are those of :func:`robust`.
-
-    The content is that of the file which ``cargo sim robust --shard K/N`` writes.
-    """
-    defaults: dict[str, Any] = {
-        "scenes": [],
-        "estimator": "kalman-triple-steady",
-        "rate": 10_000.0,
-        "devices": 1000,
-        "seed": 1,
-        "seconds": 2.0,
-        "device": None,
-    }
-    unknown = set(options) - set(defaults)
-    if unknown:
-        raise TypeError(f"{', '.join(sorted(unknown))}: no such option; there are {', '.join(defaults)}")
-    return _limpid.robust_shard(shard, **(defaults | options))
+def _process(program: str | None, arguments: Sequence[str], folder: str) -> subprocess.CompletedProcess[str]:
+    """Runs a program, by default the command line that is in this package, in ``folder`` if it is there."""
+    words = [sys.executable, "-m", "limpid"] if program is None else [program]
+    # The tasks share the cores of a worker, not the threads of one process. A module in the working folder is not
+    # the package.
+    variables = {"RAYON_NUM_THREADS": "1", "PYTHONSAFEPATH": "1"} | os.environ
+    cwd = folder if os.path.isdir(folder) else None
+    return subprocess.run([*words, *arguments], cwd=cwd, env=variables, capture_output=True, text=True)
 
 
-def merge_robust(shards: Sequence[str | PathLike[str]], out: str | PathLike[str] | None = None) -> Robust:
-    """Merges the files of all shards of one run, in any order; ``out`` is a folder for robust.csv and robust.json.
-
-    Raises
-    ------
-    ValueError
-        A shard is missing, given twice, incomplete or of another run; the message names it.
-    """
-    csv, json, table, complaint = _limpid.robust_merge(list(shards))
-    if out is not None:
-        folder = Path(out)
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / "robust.csv").write_bytes(csv)
-        (folder / "robust.json").write_bytes(json)
-    return Robust(table, complaint, csv, json)
+def _failure(line: str) -> str:
+    return line.removeprefix("error: ")
 
 
-def robust(
+def _shard(program: str | None, command: Sequence[str], part: str, folder: str) -> bytes | ValueError:
+    """The file of a shard; an error, which is not raised, if the program refuses the command: again it would."""
+    from distributed import get_worker
+
+    # The folder of the worker is removed with it.
+    with tempfile.TemporaryDirectory(dir=get_worker().local_directory) as out:
+        try:
+            done = _process(program, [*command, "--shard", part, "--out", out], folder)
+        except OSError as error:
+            return ValueError(f"program: {error}")
+        lines = done.stderr.splitlines() or [""]
+        if done.returncode == 2:
+            return ValueError(_failure(lines[-1]))
+        if done.returncode != 0:
+            raise RuntimeError(f"shard {part}: ended with status {done.returncode}: {lines[-1]}")
+        (file,) = Path(out).iterdir()
+        return file.read_bytes()
+
+
+def run(
     client: Client,
+    command: Sequence[str],
     out: str | PathLike[str],
     *,
     shards: int = 16,
+    program: str | PathLike[str] | None = None,
     retries: int = 3,
-    scenes: Sequence[str] = (),
-    estimator: str = "kalman-triple-steady",
-    rate: float = 10_000.0,
-    devices: int = 1000,
-    seed: int = 1,
-    seconds: float = 2.0,
-    device: dict[str, Any] | None = None,
-) -> Robust:
-    """Checks the closed loop on devices that differ from the controller's, as ``cargo sim robust`` does.
+) -> Merged:
+    """Runs a command in shards and merges them, for example ``["zwidth", "--lines", "1024"]``.
 
-    Each shard is written into the folder ``out`` as soon as it has ended, under the name that the command line
-    gives it. A run that is started again takes the shards that are there and runs the others.
+    Each shard is written into the folder ``OUT.shards`` as soon as it has ended, under the name that the command
+    line gives it. A run that is started again takes the shards that are there and runs the others.
 
     Parameters
     ----------
     client
-        Client of the cluster; its workers need this package.
+        Client of the cluster; its workers need this package, of the same version.
+    command
+        The words after ``cargo sim`` of a command that has ``--shard``, without its options for outputs. Files that
+        it names are read by the workers: relative paths begin at the working folder of the client.
     out
-        Folder of the shards, and of robust.csv and robust.json.
+        The option ``--out`` of the command; of ``stress`` its option ``--json``.
     shards
-        Number of parts into which the devices of each scene are divided: several per worker.
+        Number of parts: several for each thread of a worker.
+    program
+        Another program, where the workers find it: ``target/release/stress`` for the words after ``cargo stress``.
+        [default: the command line that is in this package]
     retries
-        How often a shard is tried again after an error. A shard whose worker is lost is tried again anyway.
-    scenes, estimator, rate, devices, seed, seconds, device
-        The options of ``cargo sim robust``.
+        How often a shard is run again after an error. A shard whose worker is lost is run again anyway.
+
+    Raises
+    ------
+    ValueError
+        The program refuses the command or a shard; the message is the line that it prints.
     """
     from distributed import as_completed
 
-    options = {
-        "scenes": list(scenes),
-        "estimator": estimator,
-        "rate": rate,
-        "devices": devices,
-        "seed": seed,
-        "seconds": seconds,
-        "device": device,
-    }
-    folder = Path(out)
+    if isinstance(command, str):
+        raise ValueError(f"command={command!r}: pass a list of words, for example {command.split()}")
+    if shards < 1:
+        raise ValueError(f"shards={shards}: must be at least 1")
+    name = None if program is None else os.fspath(program)
+    if name is not None and os.path.dirname(name):
+        name = os.path.abspath(name)
+    folder = Path(f"{os.fspath(out)}.shards")
     folder.mkdir(parents=True, exist_ok=True)
     files = {part: folder / f"shard-{part}-of-{shards}.jsonl" for part in range(1, shards + 1)}
     parts = {}
     for part, file in files.items():
         if not file.exists():
-            future = client.submit(robust_shard, f"{part}/{shards}", **options, retries=retries, pure=False)
+            future = client.submit(
+                _shard, name, list(command), f"{part}/{shards}", os.getcwd(), retries=retries, pure=False
+            )
             parts[future] = part
-    for future in as_completed(parts):  # type: ignore[no-untyped-call]
-        file = files[parts[future]]
-        # A file is there as a whole or not at all.
-        partial = file.with_suffix(".partial")
-        partial.write_bytes(future.result())
-        partial.replace(file)
-        future.release()
-    return merge_robust(list(files.values()), out)
+    try:
+        for future in as_completed(parts):  # type: ignore[no-untyped-call]
+            result = future.result()
+            if isinstance(result, ValueError):
+                raise result
+            file = files[parts[future]]
+            # A file is there as a whole or not at all.
+            partial = file.with_suffix(".partial")
+            partial.write_bytes(result)
+            partial.replace(file)
+            future.release()
+    except BaseException:
+        client.cancel(list(parts))  # type: ignore[no-untyped-call]
+        raise
+    return _merge(name, list(files.values()), os.fspath(out))
+
+
+def _merge(program: str | None, files: Sequence[Path], out: str) -> Merged:
+    is_stress = program is not None and Path(program).stem == "stress"
+    words, option = (["--merge"], "--json") if is_stress else (["merge"], "--out")
+    done = _process(program, [*words, *map(str, files), option, out], os.getcwd())
+    lines = done.stderr.splitlines()
+    complaint = _failure(lines.pop()) if done.returncode and lines else None
+    if done.returncode == 2:
+        raise ValueError(complaint)
+    if done.returncode not in (0, 1):
+        raise RuntimeError(f"merge: ended with status {done.returncode}: {complaint}")
+    return Merged(done.stdout, lines, complaint)

@@ -10,10 +10,8 @@ pub(crate) fn value_error(failure: impl Into<Failure>) -> PyErr {
 }
 
 /// A message for the command line with keywords of this package instead of options:
-/// `--resample 1000` is `resample=1000`. A command that is to be run stays one.
+/// `--resample 1000` is `resample=1000`.
 pub(crate) fn in_python(message: &str) -> String {
-    let command = message.find("run host-sim ").unwrap_or(message.len());
-    let (message, command) = message.split_at(command);
     let mut text = String::new();
     let mut rest = message;
     while let Some(at) = rest.find("--") {
@@ -44,5 +42,4 @@ pub(crate) fn in_python(message: &str) -> String {
     text.replace("host-sim estimators", "limpid.estimators()")
         .replace("host-sim scenarios", "limpid.scenarios()")
         .replace("host-sim ", "limpid.")
-        + command
 }

@@ -12,13 +12,13 @@
 mod background;
 mod catalogue_lists;
 mod columns;
+mod command;
 mod device;
 mod error;
 mod estimator;
 mod log;
 mod logs;
 mod replay;
-mod robust;
 mod scores;
 mod simulate;
 mod stream;
@@ -32,6 +32,8 @@ mod _limpid {
     #[pymodule_export]
     use super::columns::clock;
     #[pymodule_export]
+    use super::command::command;
+    #[pymodule_export]
     use super::estimator::Estimator;
     #[pymodule_export]
     use super::log::read_log;
@@ -39,8 +41,6 @@ mod _limpid {
     use super::logs::{recommend, tune_logs, tune_scenarios, values_of_presets};
     #[pymodule_export]
     use super::replay::replay;
-    #[pymodule_export]
-    use super::robust::{robust_merge, robust_shard};
     #[pymodule_export]
     use super::scores::{score_fields, scores};
     #[pymodule_export]

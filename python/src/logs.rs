@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use catalogue::estimators::Kind;
 use catalogue::parameters::{PlantKind, Presets};
 use experiments::recommend::{Settings, lines, recommend as recommend_for};
-use experiments::tune::{Plan, Wishes, tune_on_logs};
+use experiments::tune::{LogFile, LogPlan, Plan, Wishes};
 use experiments::uneven::Chosen;
 use pyo3::prelude::*;
 use recordings::recording::Recording;
@@ -111,7 +111,7 @@ pub(crate) fn recommend(
 
 /// RMS errors of one estimator before and with the found parameters, each in the tuned and in the
 /// held-out half, and whether the old parameters are kept.
-type LogRow = (&'static str, [f64; 2], [f64; 2], bool);
+type LogRow = (String, [f64; 2], [f64; 2], bool);
 
 /// A presets file, the errors of each estimator, and the notes.
 #[pyfunction]
@@ -130,15 +130,17 @@ pub(crate) fn tune_logs(
     let columns: PyResult<Vec<_>> = logs.iter().map(Columns::copy).collect();
     let columns = columns?;
     interruptible(py, |stop| {
-        let (logs, kinds, mut notes) = read(columns, &device, kinds, !estimators.is_empty())?;
-        let tuned = tune_on_logs(&logs, &device, &kinds, &before, || stop.look())?;
-        notes.extend(tuned.notes);
-        let rows = tuned.rows.iter();
-        let rows = rows.map(|row| (row.estimator, row.before, row.found, row.kept));
-        let presets = Presets {
-            preset: vec![tuned.preset],
-            ..Presets::default()
-        };
+        let (logs, kinds, notes) = read(columns, &device, kinds, !estimators.is_empty())?;
+        let logs = logs.into_iter().map(|(name, recording)| {
+            let sum = String::new();
+            (LogFile { name, sum }, recording)
+        });
+        let plan = LogPlan::new(logs.collect(), device, &kinds, &before)?.with_notes(notes);
+        let searches = plan.jobs()?;
+        let tuned = plan.rows(&searches, || stop.look())?;
+        let rows = searches.into_iter().zip(&tuned);
+        let rows = rows.map(|(search, row)| (search.estimator, row.before, row.found, row.kept));
+        let (presets, notes) = plan.presets(&tuned);
         Ok((
             presets.to_toml()?,
             rows.collect(),

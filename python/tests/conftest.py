@@ -16,13 +16,22 @@ def data() -> Path:
     return DATA
 
 
+def program(variable: str, name: str) -> str:
+    """A program of the project, which test.sh builds."""
+    path = os.environ.get(variable)
+    if path is None:
+        pytest.fail(f"{variable} is not set: run python/test.sh, or set it to target/release/{name}")
+    return path
+
+
 @pytest.fixture
 def host_sim() -> str:
-    """The command line of the project, which test.sh builds."""
-    program = os.environ.get("HOST_SIM")
-    if program is None:
-        pytest.fail("HOST_SIM is not set: run python/test.sh, or set it to target/release/host-sim")
-    return program
+    return program("HOST_SIM", "host-sim")
+
+
+@pytest.fixture
+def stress() -> str:
+    return program("STRESS", "stress")
 
 
 @pytest.fixture

@@ -1,14 +1,15 @@
-"""Experiments on worker processes."""
+"""Commands in shards on worker processes."""
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 import subprocess
+import sys
 import threading
 import time
 import warnings
+from pathlib import Path
 
 import pytest
 
@@ -20,18 +21,10 @@ with warnings.catch_warnings():
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 
-RUN = {"scenes": ["off", "wall"], "rate": 1000, "devices": 40, "seconds": 0.5, "seed": 3}
-FLAGS = "--scene off --scene wall --rate 1000 --devices 40 --seconds 0.5 --seed 3"
+# A handle so heavy that a hand that moves it feels more than the limit.
+HEAVY = "[hand]\nstiffness_nm_per_rad = 200\ndamping_nms_per_rad = 1\n[small]\ninertia_kg_m2 = 1e-2\n"
 
-
-@pytest.fixture
-def one_run(host_sim, tmp_path):
-    """robust.csv and robust.json of a run of the command line."""
-    folder = tmp_path / "one"
-    # Exit status 1 says that a device violates a criterion.
-    done = subprocess.run([host_sim, "robust", *FLAGS.split(), "--out", str(folder)], capture_output=True, timeout=300)
-    assert done.returncode in (0, 1), done.stderr
-    return (folder / "robust.csv").read_bytes(), (folder / "robust.json").read_bytes()
+TINY = "robust --scene off --rate 1000 --devices 2 --seconds 0.05".split()
 
 
 @pytest.fixture
@@ -43,78 +36,159 @@ def client():
         yield client
 
 
-def test_shard_is_that_of_the_command(host_sim, tmp_path):
-    subprocess.run([host_sim, "robust", *FLAGS.split(), "--shard", "2/5", "--out", str(tmp_path)], capture_output=True)
-    ours, theirs = (
-        text.splitlines() for text in (cluster.robust_shard("2/5", **RUN), (tmp_path / "shard-2-of-5.jsonl").read_bytes())
-    )
-    headings = [json.loads(lines[0]) for lines in (ours, theirs)]
-    # Of the command line, ours has all options and theirs those that were given; the last line is a checksum.
-    assert all(heading.pop("command").startswith("host-sim robust --scene off") for heading in headings)
-    assert headings[0] == headings[1]
-    assert ours[1:-1] == theirs[1:-1] and len(ours) > 10
+@pytest.fixture
+def folders(tmp_path, monkeypatch):
+    """A folder for a run of the command line, and one for shards, which is the working folder."""
+    one, many = tmp_path / "one", tmp_path / "many"
+    one.mkdir()
+    many.mkdir()
+    monkeypatch.chdir(many)
+    return one, many
 
 
-def test_worker_that_is_killed_loses_nothing(client, one_run, tmp_path):
-    out = tmp_path / "out"
+def single_run(folder, program, *words, status=0):
+    done = subprocess.run([program, *words], cwd=folder, capture_output=True, text=True, timeout=300)
+    assert done.returncode == status, done.stderr
+    return done
+
+
+def files(folder):
+    return {path.relative_to(folder): path.read_bytes() for path in Path(folder).rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize(
+    ("command", "shards", "file", "status"),
+    [
+        ("robust --scene off --rate 1000 --devices 80 --seconds 0.5 --device heavy.toml", 12, "robust.csv", 1),
+        ("zwidth --rate 1000 --lines 256 --lines 512 --lines 1024 --estimator pll --estimator low-pass", 6, "zwidth.csv", 0),
+    ],
+    ids=["robust", "zwidth"],
+)
+def test_worker_that_is_killed_loses_nothing(command, shards, file, status, client, host_sim, folders):
+    one, many = folders
+    for folder in folders:
+        (folder / "heavy.toml").write_text(HEAVY)
+    command = command.split()
+    whole = single_run(one, host_sim, *command, "--out", "page", status=status)
+    parts = many / "page.shards"
     pids = client.run(os.getpid)
     assert len(set(pids.values())) == 2
     there = []
 
     def kill():
         # Once some shards are there, and others are not.
-        while not any(out.glob("shard-*.jsonl")):
+        while not any(parts.glob("shard-*.jsonl")):
             time.sleep(0.005)
         os.kill(next(iter(pids.values())), signal.SIGKILL)
-        there.append(len(list(out.glob("shard-*.jsonl"))))
+        there.append(len(list(parts.glob("shard-*.jsonl"))))
 
     thread = threading.Thread(target=kill)
     thread.start()
-    found = cluster.robust(client, out, shards=24, **RUN)
+    found = cluster.run(client, command, "page", shards=shards)
     thread.join()
-    assert 1 <= there[0] < 24
+    assert 1 <= there[0] < shards
     assert set(client.run(os.getpid).values()) != set(pids.values())
-    assert len(list(out.glob("shard-*-of-24.jsonl"))) == 24
-    assert (found.csv, found.json) == one_run
-    assert (out / "robust.csv").read_bytes() == found.csv
-    assert "wall" in found.table
-    # A run that is started again takes what is there: one lost shard is made again.
-    lost = out / "shard-7-of-24.jsonl"
-    text = lost.read_bytes()
+    assert found.text == whole.stdout
+    assert [f"error: {found.complaint}"] * status == whole.stderr.splitlines()
+    assert Path(file) in files("page") and files("page") == files(one / "page")
+
+    # The shard is that of the command line, and a run that is started again takes what is there.
+    single_run(one, host_sim, *command, "--shard", f"2/{shards}", "--out", "parts")
+    lost = parts / f"shard-2-of-{shards}.jsonl"
+    assert files(one / "parts") == {Path(lost.name): lost.read_bytes()}
     lost.unlink()
-    others = {path: path.stat().st_mtime_ns for path in out.glob("shard-*.jsonl")}
-    again = cluster.robust(client, out, shards=24, **RUN)
-    assert again.csv == found.csv and lost.read_bytes() == text
+    others = {path: path.stat().st_mtime_ns for path in parts.iterdir()}
+    assert len(others) == shards - 1
+    assert cluster.run(client, command, "page", shards=shards).text == found.text
+    assert files(one / "parts") == {Path(lost.name): lost.read_bytes()}
     assert others == {path: path.stat().st_mtime_ns for path in others}
 
 
-def test_shards_that_are_lost_twice_or_of_another_run_are_refused_by_name(tmp_path):
-    few = RUN | {"devices": 2, "seconds": 0.1}
-    paths = []
-    for part in (1, 2, 3):
-        path = tmp_path / f"shard-{part}-of-3.jsonl"
-        path.write_bytes(cluster.robust_shard(f"{part}/3", **few))
-        paths.append(path)
-    whole = cluster.merge_robust(paths)
-    assert cluster.merge_robust(reversed(paths)).csv == whole.csv
-    with pytest.raises(ValueError, match="shard 2/3 is missing"):
-        cluster.merge_robust([paths[0], paths[2]])
-    with pytest.raises(ValueError, match="shard-3-of-3.jsonl: shard 3/3 is already given by"):
-        cluster.merge_robust([*paths, paths[2]])
-    other = tmp_path / "other.jsonl"
-    other.write_bytes(cluster.robust_shard("2/3", **(few | {"seed": 4})))
-    with pytest.raises(ValueError, match="other.jsonl: settings differ"):
-        cluster.merge_robust([paths[0], other, paths[2]])
-    cut = paths[1].read_bytes().splitlines(keepends=True)
-    paths[1].write_bytes(b"".join(cut[:-1]))
-    with pytest.raises(ValueError, match=r"shard-2-of-3.jsonl: its end is missing; run host-sim robust --scene off .*--shard 2/3"):
-        cluster.merge_robust(paths)
+def test_recordings_are_tuned_on_in_shards(client, host_sim, folders):
+    one, many = folders
+    for folder in folders:
+        single_run(folder, host_sim, *"simulate --scenario track --rate 1000 --seconds 6 --out log.csv".split())
+    command = "tune log.csv --estimator pll --estimator low-pass --estimator kalman-triple-steady".split()
+    whole = single_run(one, host_sim, *command, "--out", "presets.toml")
+    found = cluster.run(client, command, "presets.toml", shards=2)
+    assert found.text == whole.stdout and found.notes == whole.stderr.splitlines()
+    assert (many / "presets.toml").read_bytes() == (one / "presets.toml").read_bytes()
 
 
-def test_wrong_options_are_refused():
-    with pytest.raises(TypeError, match="scene: no such option; there are scenes, "):
-        cluster.robust_shard("1/2", scene="wall")
-    with pytest.raises(ValueError, match="shard='3/2': must be K/N"):
-        cluster.robust_shard("3/2")
-    with pytest.raises(ValueError, match="choose another one"):
-        cluster.robust_shard("1/2", estimator="adaptive")
+def test_stress_runs_in_shards(client, stress, folders):
+    one, many = folders
+    command = "--ticks 3000 --estimator kalman-triple-s --rate 1000".split()
+    whole = single_run(one, stress, *command, "--json", "findings.json")
+    found = cluster.run(client, command, "findings.json", shards=3, program=stress)
+    assert found.text == whole.stdout and "kalman-triple-steady" in found.text
+    assert (many / "findings.json").read_bytes() == (one / "findings.json").read_bytes()
+
+
+def test_shard_whose_process_is_killed_is_run_again(client, host_sim, folders):
+    one, many = folders
+    program = many / "killed-once"
+    program.write_text(f'#!/bin/sh\nmkdir "{one}/${{2#--}}" 2> /dev/null && kill -9 $$\nexec {host_sim} "$@"\n')
+    program.chmod(0o755)
+    whole = single_run(one, host_sim, *TINY, "--out", "page")
+    found = cluster.run(client, TINY, "page", shards=2, program="./killed-once")
+    assert (one / "scene").is_dir() and found.text == whole.stdout
+    program.write_text("#!/bin/sh\nkill -9 $$\n")
+    with pytest.raises(RuntimeError, match="shard [12]/2: ended with status -9"):
+        cluster.run(client, TINY, "other", shards=2, program="./killed-once", retries=1)
+
+
+def test_wrong_command_is_refused_in_one_line(client, folders):
+    for command, said in [
+        (["zwidth", "--linse", "256"], "unexpected argument '--linse' found .*; see host-sim zwidth --help"),
+        (["compare"], "unexpected argument '--shard' found; see host-sim compare --help"),
+        (["robust", "--estimator", "adaptive"], "choose another one"),
+        (["robust", "--out", "page"], "'--out <DIR>' cannot be used multiple times"),
+        (["tune", "log.csv"], "log.csv: cannot read"),
+        ("robust --devices 2", r"command='robust --devices 2': pass a list of words, for example \['robust', '--devices', '2'\]"),
+    ]:
+        with pytest.raises(ValueError, match=said) as error:
+            cluster.run(client, command, "out", shards=2)
+        assert len(str(error.value).splitlines()) == 1
+    with pytest.raises(ValueError, match="program: .*nowhere/stress"):
+        cluster.run(client, TINY, "out", program="nowhere/stress")
+    with pytest.raises(ValueError, match="shards=0: must be at least 1"):
+        cluster.run(client, TINY, "out", shards=0)
+    assert not files(folders[1])
+
+
+def test_shards_of_another_run_are_refused_by_name(client, folders):
+    cluster.run(client, TINY, "page", shards=2)
+    Path("page.shards/shard-1-of-2.jsonl").unlink()
+    before = files("page")
+    with pytest.raises(ValueError, match="page.shards/shard-2-of-2.jsonl: settings differ .*: seed = 1, not 4; merge"):
+        cluster.run(client, [*TINY, "--seed", "4"], "page", shards=2)
+    assert files("page") == before
+
+
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="Python 3.10 has no PYTHONSAFEPATH")
+def test_module_in_the_working_folder_is_not_the_package(client, folders):
+    Path("limpid.py").write_text("raise SystemExit('another module')\n")
+    assert "off" in cluster.run(client, TINY, "page", shards=1).text
+
+
+def test_package_is_the_command_line(host_sim, tmp_path):
+    for words, status in [(["scenarios"], 0), (["merge", "none.jsonl"], 2), (["--version"], 0)]:
+        ours, theirs = (
+            subprocess.run([*program, *words], cwd=tmp_path, capture_output=True)
+            for program in ([sys.executable, "-m", "limpid"], [host_sim])
+        )
+        assert ours.returncode == status
+        assert (ours.returncode, ours.stdout, ours.stderr) == (theirs.returncode, theirs.stdout, theirs.stderr)
+
+
+def test_interrupt_ends_a_command(tmp_path):
+    words = ["robust", "--devices", "1000000", "--out", "page"]
+    process = subprocess.Popen([sys.executable, "-m", "limpid", *words], cwd=tmp_path, stderr=subprocess.PIPE)
+    time.sleep(2)
+    process.send_signal(signal.SIGINT)
+    try:
+        process.communicate(timeout=30)
+    finally:
+        process.kill()
+    assert process.returncode in (-signal.SIGINT, 130)
+    assert not files(tmp_path)

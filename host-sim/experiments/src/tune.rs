@@ -27,7 +27,7 @@ use simulation::trace::Trace;
 use terminal::failure::Failure;
 
 pub use image_section::image_section;
-pub use logs::{LogRow, LogTuning, tune_on_logs};
+pub use logs::{LogFile, LogPlan, LogSearch, LogTuned};
 pub use plan::{Group, Plan};
 pub use recipe::Wishes;
 

@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use terminal::failure::Failure;
+use terminal::output::sum;
 
 /// Name of standard input in messages, and as a recording.
 const STDIN: &str = "standard input";
@@ -110,6 +111,17 @@ impl Log {
                 Err(error) => Err(cannot_read(&self.name, &error)),
             },
         }
+    }
+
+    /// Checksum of its bytes.
+    ///
+    /// # Errors
+    /// As [`Log::open`].
+    pub fn sum(&self) -> Result<u64, Failure> {
+        let mut bytes = Vec::new();
+        let read = self.reader()?.read_to_end(&mut bytes);
+        read.map_err(|error| cannot_read(&self.name, &error))?;
+        Ok(sum(&bytes))
     }
 
     /// Its first bytes, which hold the header.

@@ -138,6 +138,9 @@ pub(super) fn merge(options: &Merge) -> Result<(), Failure> {
     if let Some((plan, tuned)) = shards.merge()? {
         return tune::finish(&plan, &tuned, outputs);
     }
+    if let Some((plan, tuned)) = shards.merge()? {
+        return tune::finish_logs(&plan, &tuned, outputs);
+    }
     let program = shards.shard_of();
     Err(Failure::Input(format!(
         "shards of {program}, which host-sim does not merge; merge them with {program} --merge"

@@ -6,14 +6,15 @@ use clap::Args;
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind, Presets};
-use experiments::tune::{FIRST_SEED, Group, Plan, Tuned, Wishes, image_section, tune_on_logs};
+use experiments::tune::{
+    FIRST_SEED, Group, LogFile, LogPlan, LogSearch, LogTuned, Plan, Tuned, Wishes, image_section,
+};
 use recordings::arguments::{DeviceFile, RecordingOptions};
-use shards::{Experiment as _, Part};
+use shards::{Experiment, Part};
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, print_bytes, write_whole};
 
 use super::arguments::{kinds, rates, scenarios};
-use super::page::progress;
 use super::shard::{self, Outputs};
 use experiments::uneven::Chosen;
 use recordings::log::{Log, short_name};
@@ -65,10 +66,10 @@ pub(super) struct Tune {
     pub(super) frictionless: bool,
     #[command(flatten)]
     pub(super) device: DeviceFile,
-    /// Run only every Nth search (rate, plant, estimator) from the Kth on, for example 1/4, and write a
-    /// file for host-sim merge, no presets. A search is not divided: its finer grids follow the coarser
-    /// ones
-    #[arg(long, value_name = "K/N", conflicts_with = "recordings")]
+    /// Run only every Nth search (rate, plant, estimator; on recordings estimator) from the Kth on, for
+    /// example 1/4, and write a file for host-sim merge, no presets. A search is not divided: its finer
+    /// grids follow the coarser ones
+    #[arg(long, value_name = "K/N")]
     pub(super) shard: Option<Part>,
     /// Write the parameters to FILE, a presets file for other commands; - is standard output. The
     /// section [image] of an existing FILE is kept. With --shard the folder of the shard's file
@@ -108,41 +109,50 @@ pub(super) fn run(options: &Tune, run_line: &str) -> Result<(), Failure> {
                 .to_owned(),
         ));
     }
-    let out = options.out.as_deref();
     let outputs = Outputs {
         run_line,
-        out,
+        out: options.out.as_deref(),
         json: None,
     };
-    if !options.recordings.is_empty() {
-        return on_recordings(options, &kinds, outputs);
+    match options.recordings.is_empty() {
+        true => searched(options, &options.plan(&kinds)?, outputs, finish),
+        false => searched(options, &log_plan(options, kinds)?, outputs, finish_logs),
     }
-    let plan = options.plan(&kinds)?;
+}
+
+/// Runs a part of the searches and writes its file, or runs all of them and passes the results to
+/// `finish`.
+fn searched<E: Experiment>(
+    options: &Tune,
+    plan: &E,
+    outputs: Outputs<'_>,
+    finish: impl FnOnce(&E, &[E::Row], Outputs<'_>) -> Result<(), Failure>,
+) -> Result<(), Failure> {
     if let Some(part) = options.shard {
-        let folder = out.unwrap_or(Path::new(PARTS));
-        return shard::run_part(&plan, part, run_line, folder, DOING);
+        let folder = outputs.out.unwrap_or(Path::new(PARTS));
+        return shard::run_part(plan, part, outputs.run_line, folder, DOING);
     }
     let searches = plan.jobs()?;
     kept_section(file(outputs))?;
-    finish(&plan, &shard::rows(&plan, &searches, DOING)?, outputs)
+    finish(plan, &shard::rows(plan, &searches, DOING)?, outputs)
 }
 
 /// Writes the presets of all searches, whether they were run now or merged.
 pub(super) fn finish(plan: &Plan, tuned: &[Tuned], outputs: Outputs<'_>) -> Result<(), Failure> {
-    if outputs.json.is_some() {
-        return Err(Failure::Input(
-            "--json: tune has no rows; its presets file is --out FILE.toml".to_owned(),
-        ));
-    }
-    let file = file(outputs);
-    let kept = kept_section(file)?;
-    let (presets, notes) = plan.presets(tuned)?;
     let tuned_on: String = plan.groups.iter().map(tuned_on).collect();
-    write_presets(outputs, &tuned_on, &notes, &presets, &kept)?;
-    match is_stdout(file) {
-        true => Ok(()),
-        false => print_bytes(format!("{}\n", file.display()).as_bytes()),
-    }
+    write(outputs, &tuned_on, plan.presets(tuned)?, "")
+}
+
+/// Writes the presets of all searches on recordings, and prints their errors.
+pub(super) fn finish_logs(
+    plan: &LogPlan,
+    tuned: &[LogTuned],
+    outputs: Outputs<'_>,
+) -> Result<(), Failure> {
+    let names: Vec<_> = plan.logs().iter().map(|log| log.name.as_str()).collect();
+    let tuned_on = format!("# Tuned on every second second of {}.\n", names.join(", "));
+    let table = error_table(&plan.jobs()?, tuned);
+    write(outputs, &tuned_on, plan.presets(tuned), &table)
 }
 
 /// The presets file.
@@ -158,14 +168,20 @@ fn kept_section(file: &Path) -> Result<String, Failure> {
     }
 }
 
-/// Writes the presets file with its comments and prints the notes.
-fn write_presets(
+/// Writes the presets file with its comments, and prints the notes, `table` and the path of the file.
+fn write(
     outputs: Outputs<'_>,
     tuned_on: &str,
-    notes: &[String],
-    presets: &Presets,
-    kept: &str,
+    (presets, notes): (Presets, Vec<String>),
+    table: &str,
 ) -> Result<(), Failure> {
+    if outputs.json.is_some() {
+        return Err(Failure::Input(
+            "--json: tune has no rows; its presets file is --out FILE.toml".to_owned(),
+        ));
+    }
+    let file = file(outputs);
+    let kept = kept_section(file)?;
     let mut text = format!("# {}\n{tuned_on}", outputs.command_line());
     for note in notes {
         terminal::output::note(format_args!("note: {note}"));
@@ -175,22 +191,20 @@ fn write_presets(
     if !kept.is_empty() {
         text += &format!("\n{kept}");
     }
-    write_whole(file(outputs), text.as_bytes())
+    write_whole(file, text.as_bytes())?;
+    match is_stdout(file) {
+        true => Ok(()),
+        false => print_bytes(format!("{table}{}\n", file.display()).as_bytes()),
+    }
 }
 
-/// Tunes on recordings.
-fn on_recordings(
-    options: &Tune,
-    kinds: &[&'static Kind],
-    outputs: Outputs<'_>,
-) -> Result<(), Failure> {
+/// The searches on recordings.
+fn log_plan(options: &Tune, mut kinds: Vec<&'static Kind>) -> Result<LogPlan, Failure> {
     let device = options.device.load()?;
-    let kept = kept_section(file(outputs))?;
     let logs = options.recordings.iter().map(|path| Log::open(path));
     let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
     let (device, mut notes) = options.device.with_stated_counts(device, &logs, None)?;
     let mut recordings = Vec::new();
-    let mut kinds = kinds.to_vec();
     for log in &logs {
         let name = short_name(log.path());
         let recording = options.read.read(log, &device)?;
@@ -203,20 +217,15 @@ fn on_recordings(
         let lines = recording.notes.iter().chain(&uneven);
         notes.extend(lines.map(|line| format!("{name}: {line}")));
         kinds = chosen.kinds;
-        recordings.push((name, recording));
+        let sum = format!("{:016x}", log.sum()?);
+        recordings.push((LogFile { name, sum }, recording));
     }
-    let bar = progress(kinds.len(), DOING);
-    let before = Parameters::default();
-    let tuned = tune_on_logs(&recordings, &device, &kinds, &before, || bar.inc(1))?;
-    bar.finish_and_clear();
-    notes.extend(tuned.notes);
-    let names: Vec<_> = recordings.iter().map(|(name, _)| name.as_str()).collect();
-    let tuned_on = format!("# Tuned on every second second of {}.\n", names.join(", "));
-    let presets = Presets {
-        preset: vec![tuned.preset],
-        ..Presets::default()
-    };
-    write_presets(outputs, &tuned_on, &notes, &presets, &kept)?;
+    let plan = LogPlan::new(recordings, device, &kinds, &Parameters::default())?;
+    Ok(plan.with_notes(notes))
+}
+
+/// The errors on recordings as a table.
+fn error_table(searches: &[LogSearch], tuned: &[LogTuned]) -> String {
     let mut table = format!(
         "{:<24}{:>22}{:>22}\n{:<24}{:>11}{:>11}{:>11}{:>11}\n",
         "RMS error, rad/s",
@@ -228,7 +237,7 @@ fn on_recordings(
         "before",
         "found"
     );
-    for row in &tuned.rows {
+    for (search, row) in searches.iter().zip(tuned) {
         let [seen, unseen] = [0, 1].map(|half| [row.before[half], row.found[half]]);
         let numbers: String = [seen, unseen]
             .concat()
@@ -236,13 +245,9 @@ fn on_recordings(
             .map(|rms| format!("{rms:>11.4}"))
             .collect();
         let verdict = if row.kept { "  kept" } else { "" };
-        table += &format!("{:<24}{numbers}{verdict}\n", row.estimator);
+        table += &format!("{:<24}{numbers}{verdict}\n", search.estimator);
     }
-    let file = file(outputs);
-    match is_stdout(file) {
-        true => Ok(()),
-        false => print_bytes(format!("{table}{}\n", file.display()).as_bytes()),
-    }
+    table
 }
 
 /// Comment line of the presets file: the tuning set of these estimators.

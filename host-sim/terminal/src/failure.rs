@@ -25,17 +25,23 @@ impl Failure {
     }
 }
 
-/// The exit code of a program that ends with `done`. A failure is printed on standard error in one
+/// The exit status of a program that ends with `done`. A failure is printed on standard error in one
 /// line.
 #[must_use]
-pub fn ended(done: Result<(), Failure>) -> ExitCode {
+pub fn status(done: Result<(), Failure>) -> u8 {
     match done {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(failure) => {
             note(format_args!("error: {failure}"));
-            ExitCode::from(failure.status())
+            failure.status()
         }
     }
+}
+
+/// [`status`] as the exit code of `main`.
+#[must_use]
+pub fn ended(done: Result<(), Failure>) -> ExitCode {
+    ExitCode::from(status(done))
 }
 
 impl fmt::Display for Failure {

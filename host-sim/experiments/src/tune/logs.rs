@@ -5,12 +5,16 @@
 //! estimator runs over the whole recording. The first [`WARM_UP_S`] of each block are not scored, so
 //! that no error of a block is due to the motion of the block before it.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use shards::Experiment;
 
 use super::search::{best_values, ends_of_ranges};
 use crate::reference::Reference;
 use catalogue::estimators::{Kind, Lack, Setup, Values};
-use catalogue::parameters::{Parameters, PlantKind, Preset};
+use catalogue::parameters::{Parameters, PlantKind, Preset, Presets};
 use recordings::recording::Recording;
 use simulation::device::Device;
 use simulation::trace::Trace;
@@ -28,123 +32,208 @@ const FEWEST_BLOCKS: f64 = 4.0;
 /// Largest relative difference between the rates of the recordings.
 const SAME_RATE: f64 = 0.01;
 
-/// Result of tuning on recordings.
-#[derive(Clone, Debug)]
-pub struct LogTuning {
-    /// The parameters, those of the estimators whose old ones are kept too.
-    pub preset: Preset,
-    /// The errors of each estimator.
-    pub rows: Vec<LogRow>,
-    /// One line for each parameter at a limit of its range, each estimator that is left out, and each
-    /// recording without a true velocity.
-    pub notes: Vec<String>,
+/// All inputs of the searches on recordings. A job is the search of one estimator.
+///
+/// The recordings themselves are not serialised: a plan that was read back has the jobs and the results
+/// of the run, and no rows can be computed from it.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LogPlan {
+    logs: Vec<LogFile>,
+    rate_hz: f64,
+    device: Device,
+    searches: Vec<LogSearch>,
+    notes: Vec<String>,
+    #[serde(skip)]
+    tracks: Vec<Track>,
 }
 
-/// RMS errors of one estimator, rad/s, in the tuned and in the held-out half.
-#[derive(Clone, Debug)]
-pub struct LogRow {
+/// A recording as messages and shards know it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LogFile {
+    /// Name of the recording.
+    pub name: String,
+    /// Checksum of its file, in hexadecimal digits; empty for a recording that has no file.
+    pub sum: String,
+}
+
+/// The search of one estimator on the recordings.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LogSearch {
     /// Name of the estimator.
-    pub estimator: &'static str,
-    /// With the parameters as they were.
+    pub estimator: String,
+    /// Values of its parameters before the search.
+    before: Values,
+}
+
+/// Result of tuning one estimator on recordings. The errors are RMS errors, rad/s, in the tuned and in
+/// the held-out half.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LogTuned {
+    /// Values of the parameters by name.
+    pub values: BTreeMap<String, f64>,
+    /// Errors with the parameters as they were.
+    #[serde(with = "shards::exact::two")]
     pub before: [f64; 2],
-    /// With the parameters that the search found.
+    /// Errors with the parameters that the search found.
+    #[serde(with = "shards::exact::two")]
     pub found: [f64; 2],
     /// Whether the parameters are kept as they were, because the found ones are not better in the
     /// held-out half.
     pub kept: bool,
+    /// One line for each parameter at a limit of its range, or if the parameters are kept.
+    pub notes: Vec<String>,
 }
 
 /// A recording and the velocity that estimates are compared with, rad/s.
-struct Track<'a> {
-    trace: &'a Trace,
+#[derive(Debug)]
+struct Track {
+    trace: Trace,
     omega: Vec<f64>,
 }
 
-/// Tunes the estimators `kinds`, which must have parameters, on recordings with their names, beginning
-/// with the parameters `before`. Calls `done` after each.
-///
-/// # Errors
-/// [`Failure::Input`] if a recording is too short, has another rate than the first or has neither a
-/// true velocity nor enough motion to estimate one, or if no estimator has the columns that it needs.
-pub fn tune_on_logs(
-    recordings: &[(String, Recording)],
-    device: &Device,
-    kinds: &[&'static Kind],
-    before: &Parameters,
-    done: impl Fn() + Sync,
-) -> Result<LogTuning, Failure> {
-    let mut notes = Vec::new();
-    let rate_hz = recordings.first().map_or(0.0, |(_, r)| r.trace.rate_hz);
-    let mut tracks = Vec::new();
-    for (name, recording) in recordings {
-        let (trace, said) = track(name, recording, rate_hz, device)?;
-        tracks.push(trace);
-        notes.extend(said);
-    }
-    let setup = Setup::of(device, rate_hz);
-    let mut rows = Vec::new();
-    let mut preset = Preset {
-        rate_hz,
-        plant: PlantKind::Friction,
-        counts_per_rev: Some(device.stages.large.counts_per_rev),
-        estimators: Default::default(),
-    };
-    for &kind in kinds {
-        if let Some(lack) = tracks.iter().find_map(|track| kind.lack(track.trace)) {
-            let why = match lack {
-                Lack::Column(_) => "it needs other columns",
-                Lack::ConstantPeriod => "it assumes a constant period",
-            };
-            notes.push(format!("{}: left out, {why}", kind.name));
-            done();
-            continue;
+impl LogPlan {
+    /// The searches of those of the estimators `kinds`, which must have parameters, that run on all
+    /// recordings. They begin with the parameters `before`.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if a recording is too short, has another rate than the first or has neither a
+    /// true velocity nor enough motion to estimate one, or if no estimator has the columns that it needs.
+    pub fn new(
+        recordings: Vec<(LogFile, Recording)>,
+        device: Device,
+        kinds: &[&'static Kind],
+        before: &Parameters,
+    ) -> Result<Self, Failure> {
+        let rate_hz = recordings.first().map_or(0.0, |(_, r)| r.trace.rate_hz);
+        let setup = Setup::of(&device, rate_hz);
+        let mut plan = Self {
+            logs: Vec::new(),
+            rate_hz,
+            device,
+            searches: Vec::new(),
+            notes: Vec::new(),
+            tracks: Vec::new(),
+        };
+        for (log, recording) in recordings {
+            let (track, said) = track(&log.name, recording, rate_hz, &plan.device)?;
+            plan.tracks.push(track);
+            plan.notes.extend(said);
+            plan.logs.push(log);
         }
-        let old = before.values(kind, &setup, PlantKind::Friction);
-        let found = best_values(kind, &setup, |values, _| {
-            errors(kind, &setup, &tracks, values)[0]
-        });
-        let [before, after] = [&old, &found].map(|values| errors(kind, &setup, &tracks, values));
-        let kept = after[1] >= before[1];
-        if !kept {
-            notes.extend(ends_of_ranges(kind, &setup, &found));
-        } else if old != found {
-            notes.push(format!(
+        for kind in kinds {
+            let lack = plan.tracks.iter().find_map(|track| kind.lack(&track.trace));
+            let why = match lack {
+                None => {
+                    plan.searches.push(LogSearch {
+                        estimator: kind.name.to_owned(),
+                        before: before.values(kind, &setup, PlantKind::Friction),
+                    });
+                    continue;
+                }
+                Some(Lack::Column(_)) => "it needs other columns",
+                Some(Lack::ConstantPeriod) => "it assumes a constant period",
+            };
+            plan.notes.push(format!("{}: left out, {why}", kind.name));
+        }
+        match plan.searches.is_empty() {
+            false => Ok(plan),
+            true => Err(Failure::Input(format!(
+                "{}: no estimator to tune has the columns that it needs; see host-sim estimators",
+                plan.logs.first().map_or("", |log| &log.name)
+            ))),
+        }
+    }
+
+    /// Adds what the reader of the recordings said, before all other notes.
+    #[must_use]
+    pub fn with_notes(mut self, mut notes: Vec<String>) -> Self {
+        notes.append(&mut self.notes);
+        self.notes = notes;
+        self
+    }
+
+    /// The recordings.
+    #[must_use]
+    pub fn logs(&self) -> &[LogFile] {
+        &self.logs
+    }
+
+    /// The presets of all searches, also of those whose parameters are kept, and all notes.
+    #[must_use]
+    pub fn presets(&self, tuned: &[LogTuned]) -> (Presets, Vec<String>) {
+        let named = self.searches.iter().zip(tuned);
+        let named = named.map(|(search, tuned)| (search.estimator.clone(), tuned.values.clone()));
+        let preset = Preset {
+            rate_hz: self.rate_hz,
+            plant: PlantKind::Friction,
+            counts_per_rev: Some(self.device.stages.large.counts_per_rev),
+            estimators: named.collect(),
+        };
+        let presets = Presets {
+            preset: vec![preset],
+            ..Presets::default()
+        };
+        let found = tuned.iter().flat_map(|tuned| &tuned.notes);
+        (presets, self.notes.iter().chain(found).cloned().collect())
+    }
+
+    fn search(&self, search: &LogSearch) -> Result<LogTuned, Failure> {
+        let kind = Kind::named(&search.estimator)?;
+        let setup = Setup::of(&self.device, self.rate_hz);
+        let old = search.before.clone();
+        let errors = |values: &Values| errors(kind, &setup, &self.tracks, values);
+        let new = best_values(kind, &setup, |values, _| errors(values)[0]);
+        let [before, found] = [&old, &new].map(errors);
+        let kept = found[1] >= before[1];
+        let notes = match kept {
+            false => ends_of_ranges(kind, &setup, &new),
+            true if old != new => vec![format!(
                 "{}: the parameters are kept; the ones found are not better in the held-out half",
                 kind.name
-            ));
-        }
+            )],
+            true => Vec::new(),
+        };
         let names = kind.parameters.iter().map(|p| p.name.to_owned());
-        let values = if kept { old } else { found };
-        let values = names.zip(values).collect();
-        preset.estimators.insert(kind.name.to_owned(), values);
-        rows.push(LogRow {
-            estimator: kind.name,
+        Ok(LogTuned {
+            values: names.zip(if kept { old } else { new }).collect(),
             before,
-            found: after,
+            found,
             kept,
-        });
-        done();
-    }
-    match rows.is_empty() {
-        false => Ok(LogTuning {
-            preset,
-            rows,
             notes,
-        }),
-        true => Err(Failure::Input(format!(
-            "{}: no estimator to tune has the columns that it needs; see host-sim estimators",
-            recordings.first().map_or("", |(name, _)| name)
-        ))),
+        })
+    }
+}
+
+impl Experiment for LogPlan {
+    const COMMAND: &'static str = "host-sim tune on recordings";
+    type Job = LogSearch;
+    type Row = LogTuned;
+
+    fn jobs(&self) -> Result<Vec<LogSearch>, Failure> {
+        Ok(self.searches.clone())
+    }
+
+    fn rows(&self, jobs: &[LogSearch], done: impl Fn() + Sync) -> Result<Vec<LogTuned>, Failure> {
+        let rows = jobs.iter().map(|search| {
+            let tuned = self.search(search);
+            done();
+            tuned
+        });
+        rows.collect()
     }
 }
 
 /// The recording's track, with a note if the velocity is not in the recording.
-fn track<'a>(
+fn track(
     name: &str,
-    recording: &'a Recording,
+    recording: Recording,
     rate_hz: f64,
     device: &Device,
-) -> Result<(Track<'a>, Option<String>), Failure> {
+) -> Result<(Track, Option<String>), Failure> {
     let trace = &recording.trace;
     let refused = |why: String| Err(Failure::Input(format!("{name}: {why}")));
     if (trace.rate_hz / rate_hz - 1.0).abs() > SAME_RATE {
@@ -163,7 +252,7 @@ fn track<'a>(
     }
     let (omega, note) = match &trace.true_omega {
         Some(omega) => (omega.clone(), None),
-        None => match Reference::of(recording, device.stages.large.counts_per_rev) {
+        None => match Reference::of(&recording, device.stages.large.counts_per_rev) {
             Err(why) => return refused(format!("no column true_omega, and no reference: {why}")),
             Ok(reference) => {
                 let sd = reference.rms_sd(rate_hz);
@@ -175,6 +264,7 @@ fn track<'a>(
             }
         },
     };
+    let trace = recording.trace;
     Ok((Track { trace, omega }, note))
 }
 
@@ -185,7 +275,7 @@ fn errors(kind: &Kind, setup: &Setup, tracks: &[Track], values: &Values) -> [f64
         return [f64::INFINITY; 2];
     };
     let of_track = |track: &Track| {
-        let velocity = estimator.run(track.trace);
+        let velocity = estimator.run(&track.trace);
         halves(&velocity, &track.omega, setup.rate.0)
     };
     let sums: Vec<_> = tracks.par_iter().map(of_track).collect();
