@@ -100,6 +100,25 @@ pub const FEEL_WITHOUT_ESTIMATORS: Table = Table {
     ..FEEL_WITHOUT
 };
 
+/// Parasitic force of every scene with a small motor beside its bounds, RMS, mN.
+pub const FEEL_BOUNDS: Table = Table {
+    name: "feel-bounds",
+    columns: &[
+        ("scene", "scene"),
+        ("adaptive_1000hz", "1 kHz: adaptive"),
+        ("true_velocities_1000hz", "true velocities"),
+        ("inertia_1000hz", "all but inertia"),
+        ("future_1000hz", "all but the future"),
+        ("limits_1000hz", "all but DAC and limits"),
+        ("adaptive_10000hz", "10 kHz: adaptive"),
+        ("true_velocities_10000hz", "true velocities"),
+        ("inertia_10000hz", "all but inertia"),
+        ("future_10000hz", "all but the future"),
+        ("limits_10000hz", "all but DAC and limits"),
+    ],
+    ..FEEL_WITHOUT
+};
+
 /// Parasitic force of the scenes that the small motor alone renders, without each cause.
 pub const FEEL_SMALL_MOTOR: Table = Table {
     name: "feel-small-motor",
