@@ -64,6 +64,7 @@ pub const ALL: &[Table] = &[
     FEEL_BOUNDS,
     ROBUSTNESS,
     Z_WIDTH,
+    Z_WIDTH_SEEDS,
     PARAMETER_BOUNDS,
     CONFIDENCE,
     VELOCITY_LOOP,

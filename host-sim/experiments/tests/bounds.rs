@@ -57,6 +57,12 @@ fn judged(run: &Loop, oracle: Oracle) -> Vec<TickState> {
     run.run_under(ticks(run), conditions(Some(oracle)), observe)
         .unwrap();
     assert!(all.iter().all(|now| now.stopped.is_none()));
+    // 600 A/s and 1.5 A, up to the rounding to f32.
+    let slope = 600.0 / run.rate_hz + 1e-6;
+    for pair in all.windows(2) {
+        let [before, now] = [&pair[0], &pair[1]].map(|now| now.commanded.1);
+        assert!((now - before).abs() <= slope && now.abs() <= 1.5);
+    }
     all.split_off((SKIP_S * run.rate_hz) as usize)
 }
 
