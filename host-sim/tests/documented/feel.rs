@@ -3,8 +3,8 @@
 use measured::Table;
 use measured::digits::within_a_tenth;
 use measured::tables::{
-    FEEL_BOUNDS, FEEL_CAUSES, FEEL_CAUSES_TACTILE, FEEL_ESTIMATORS, FEEL_HANDLE, FEEL_SMALL_MOTOR,
-    FEEL_WITHOUT, FEEL_WITHOUT_ESTIMATORS,
+    FEEL_BOUNDS, FEEL_CAUSES, FEEL_CAUSES_TACTILE, FEEL_ESTIMATORS, FEEL_HANDLE,
+    FEEL_HANDLE_SCENES, FEEL_SMALL_MOTOR, FEEL_WITHOUT, FEEL_WITHOUT_ESTIMATORS,
 };
 use serde_json::Value;
 
@@ -164,6 +164,29 @@ fn table_of_the_handles_estimators_has_every_judging_seed() {
         }
     }
     check(&FEEL_HANDLE, &[], &cells);
+}
+
+#[test]
+fn table_of_the_handles_estimators_has_three_scenes() {
+    let scenes = ["viscous", "spring-damper", "wall"];
+    let mut run = vec!["--causes-only", "--estimator", "adaptive"];
+    run.extend(["--rate", "1000", "--rate", "10000"]);
+    run.extend(scenes.iter().flat_map(|scene| ["--scene", scene]));
+    let mut cells = Vec::new();
+    for handle in ["kalman-triple-steady", "imm"] {
+        for seed in JUDGING {
+            let rows = feel(&[&run[..], &["--handle-estimator", handle, "--seed", seed]].concat());
+            let mut row = vec![handle.to_owned(), seed.to_owned()];
+            for rows in RATES_HZ.map(|rate_hz| at(&rows, rate_hz)) {
+                row.extend(scenes.map(|scene| {
+                    let row = find(&rows, &[("scenario", scene), ("without", "nothing")]);
+                    cell(number(row, RMS.0))
+                }));
+            }
+            cells.push(row);
+        }
+    }
+    check(&FEEL_HANDLE_SCENES, &[], &cells);
 }
 
 #[test]

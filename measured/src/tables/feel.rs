@@ -83,6 +83,22 @@ pub const FEEL_HANDLE: Table = Table {
     ..FEEL_WITHOUT
 };
 
+/// Parasitic force of three scenes by estimator of the handle and by seed, RMS, mN.
+pub const FEEL_HANDLE_SCENES: Table = Table {
+    name: "feel-handle-scenes",
+    columns: &[
+        ("handle", "handle"),
+        ("seed", "seed"),
+        ("viscous_1000hz", "1 kHz: viscous"),
+        ("spring-damper_1000hz", "spring-damper"),
+        ("wall_1000hz", "wall"),
+        ("viscous_10000hz", "10 kHz: viscous"),
+        ("spring-damper_10000hz", "spring-damper"),
+        ("wall_10000hz", "wall"),
+    ],
+    ..FEEL_WITHOUT
+};
+
 const OF_ESTIMATORS: &[Column] = &[
     ("without", "without"),
     ("finite-difference_1000hz", "1 kHz: finite-difference"),
