@@ -4,31 +4,34 @@ mod bench;
 mod conditions;
 mod fault;
 mod hand;
+mod oracle;
 mod press;
 mod record;
 mod scene;
 mod tracking;
 mod truth;
 
-use std::cell::Cell;
-
 use estimator_core::{Amps, Count, Hertz, Sample, VelocityEstimator};
 use haptic_control::{
-    Action, AnyScene, Balance, Controller, DualStage, LoopPoles, Monitor, Rig, Scene, Senses, Stop,
+    Action, AnyScene, Balance, Controller, Currents, DualStage, LoopPoles, Monitor, Need,
+    NewtonMetres, Rig, Scene, Senses, Stop,
 };
 
 use catalogue::estimators::{Estimator, Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
+use oracle::{Foresight, Present};
 use simulation::device::Device;
 use simulation::plant::{HandleTorques, Pose, steps_per_tick};
-use truth::TrueVelocity;
+use truth::{TrueMotion, Truth};
 
 pub use bench::Bench;
-pub use conditions::{Conditions, Dac};
+pub use conditions::{Conditions, Dac, Exact};
 pub use fault::{EncoderFault, Faulty};
 pub use hand::{Hand, Motion};
+pub use oracle::Oracle;
 pub use press::Press;
-pub use scene::{Visit, environments_with, named, usual};
+use scene::Visit;
+pub use scene::{environments_with, named, usual};
 
 /// Encoder of the large motor that closes the loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,6 +94,8 @@ pub struct TickState {
     pub action: Action,
     /// Currents after the monitor, large then small motor, A; zero after a stop.
     pub commanded: (f64, f64),
+    /// Parasitic torque that the oracle expects at the next tick, N.m, if one commands the small motor.
+    pub expected: Option<f64>,
     /// Current that the small motor's amplifier was commanded until this tick, and from it on, A.
     pub small_amplifier: [f64; 2],
     /// Reason for which the monitor stopped the device, if it did.
@@ -174,40 +179,52 @@ struct Running<'a, F> {
 }
 
 impl<F: FnMut(&TickState)> Visit for Running<'_, F> {
-    fn visit<S: Scene<Acceleration: Senses<Estimator>>>(self, scene: S) {
-        let truth = Cell::new(0.0);
-        if self.conditions.true_velocity {
-            self.close(scene, TrueVelocity(&truth), &truth);
-        } else {
-            let large = self.run.large.clone();
-            self.close(scene, large, &truth);
+    fn visit<S>(self, scene: S)
+    where
+        S: Scene<Acceleration: Senses<Estimator> + for<'a> Senses<TrueMotion<'a>>> + Clone,
+    {
+        let truth = [Truth::default(), Truth::default()];
+        let exact = truth.each_ref().map(TrueMotion);
+        let (large, handle) = (self.run.large.clone(), self.run.handle.clone());
+        let [exact_large, exact_handle] = exact;
+        match self.conditions.exact {
+            Exact::Neither => self.close(scene, large, handle, &truth),
+            Exact::Large => self.close(scene, exact_large, handle, &truth),
+            Exact::Both => self.close(scene, exact_large, exact_handle, &truth),
         }
     }
 }
 
 impl<F: FnMut(&TickState)> Running<'_, F> {
-    /// Runs with `large` as the estimator of the large motor; `truth` gets its true velocity before
-    /// each tick, counts per tick.
-    fn close<S, L>(mut self, scene: S, large: L, truth: &Cell<f32>)
+    /// Runs with the estimators `large` and `handle`; `truth` gets the true motion of the large motor and of
+    /// the handle before each tick.
+    fn close<S, L, H>(mut self, scene: S, large: L, handle: H, truth: &[Truth; 2])
     where
-        S: Scene<Acceleration: Senses<Estimator>>,
+        S: Scene<Acceleration: Senses<H>> + Clone,
         L: VelocityEstimator,
+        H: VelocityEstimator,
     {
         let Loop {
             device,
             assumed,
             rate_hz,
-            handle,
             ..
         } = self.run;
-        let Conditions { fault, dac, .. } = self.conditions;
-        let counts_per_tick = 1.0 / f64::from(self.rig.large_scale.rad_per_s_per_count_per_tick);
+        let Conditions {
+            fault, dac, oracle, ..
+        } = self.conditions;
+        let scales = [self.rig.large_scale, self.rig.handle_scale];
+        let per_count = scales.map(|scale| f64::from(scale.rad_per_s_per_count_per_tick));
         let period = 1.0 / rate_hz;
         let steps = steps_per_tick(period);
         let step = period / f64::from(steps);
         let run = self.run;
         let mut bench = Bench::new(device, run.hand, run.encoder, *rate_hz, run.seed, step);
-        let controller = Controller::new(scene, large, handle.clone(), self.rig);
+        let oracle = oracle.filter(|_| S::Transient::WANTED);
+        let start = (bench.plant.small().angle, period, steps);
+        let foresight = |oracle| Foresight::new(oracle, scene.clone(), device, self.rig, start);
+        let mut foresight = oracle.map(foresight);
+        let controller = Controller::new(scene, large, handle, self.rig);
         let mut monitored = *assumed;
         if self.run.encoder == FeedbackEncoder::Reference {
             monitored.large.counts_per_rev = device.reference.counts_per_rev;
@@ -232,36 +249,55 @@ impl<F: FnMut(&TickState)> Running<'_, F> {
                 };
                 *count = fault.counted(*count, *since.get_or_insert(*count));
             }
-            truth.set((bench.plant.large().omega * counts_per_tick) as f32);
-            let action = controller.step(&mut state, &sample);
+            let grip = match known {
+                Some(grips) => grips[k],
+                None => hand.grip(k as u64),
+            };
+            let torques = bench.plant.handle_torques(&grip, 0.0);
+            let omega = bench.plant.small().omega;
+            // The controller uses no acceleration of the large motor.
+            truth[0].set(bench.plant.large().omega, 0.0, per_count[0], period);
+            let acceleration = -torques.inertia / device.stages.small.inertia;
+            truth[1].set(omega, acceleration, per_count[1], period);
+            let mut action = controller.step(&mut state, &sample);
             stopped = stopped
                 .or(monitor.check(&mut watch, &sample))
                 .or(balance.check(&mut balanced, &sample));
+            if let Some(foresight) = &mut foresight {
+                let torque = foresight.wanted(bench.plant.small(), &torques);
+                action.torque = NewtonMetres(torque as f32);
+                let (large_a, _) = applied(dac.as_ref(), &action.currents);
+                let now = Present {
+                    plant: &bench.plant,
+                    grip: &grip,
+                    large_a,
+                };
+                action.currents.small = foresight.current(now);
+            }
             let wanted = match stopped {
                 None => action.currents,
-                Some(_) => haptic_control::Currents::default(),
+                Some(_) => Currents::default(),
             };
-            let commanded = (f64::from(wanted.large.get()), f64::from(wanted.small.get()));
-            pending.push(match &dac {
-                Some(dac) => dac.currents(&wanted),
-                None => commanded,
-            });
+            let commanded = applied(None, &wanted);
+            pending.push(applied(dac.as_ref(), &wanted));
             let (large_a, small_a) = pending.remove(0);
             // A disabled amplifier has no current, whatever its zero.
             let [large_zero, small_zero] = match stopped {
                 None => self.run.offsets_a,
                 Some(_) => [0.0; 2],
             };
+            let expected = foresight.as_ref().map(|foresight| {
+                let now = Present {
+                    plant: &bench.plant,
+                    grip: &grip,
+                    large_a,
+                };
+                foresight.parasitic(now, small_a)
+            });
             let (_, small_before) = bench.plant.commands();
             bench
                 .plant
                 .command(large_a + large_zero, small_a + small_zero);
-            let grip = match known {
-                Some(grips) => grips[k],
-                None => hand.grip(k as u64),
-            };
-            let omega = bench.plant.small().omega;
-            let torques = bench.plant.handle_torques(&grip, 0.0);
             (self.observe)(&TickState {
                 t: k as f64 * period,
                 large: bench.plant.large(),
@@ -273,6 +309,7 @@ impl<F: FnMut(&TickState)> Running<'_, F> {
                 own_count: Count(bench.own.as_ref().unwrap_or(&bench.large).count()),
                 action,
                 commanded,
+                expected,
                 small_amplifier: [small_before, bench.plant.commands().1],
                 stopped,
             });
@@ -282,6 +319,17 @@ impl<F: FnMut(&TickState)> Running<'_, F> {
             }
             sample = bench.sample(wanted.large);
         }
+    }
+}
+
+/// Currents that the amplifiers are commanded, large then small, A.
+fn applied(dac: Option<&Dac>, currents: &Currents) -> (f64, f64) {
+    match dac {
+        Some(dac) => dac.currents(currents),
+        None => (
+            f64::from(currents.large.get()),
+            f64::from(currents.small.get()),
+        ),
     }
 }
 

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 pub use without::Without;
 
-use crate::closed_loop::{Conditions, Dac, FeedbackEncoder, Loop, estimator, usual};
+use crate::closed_loop::{Conditions, Dac, Exact, FeedbackEncoder, Loop, estimator, usual};
 use crate::transparency::attribution::CAUSES;
 use crate::transparency::{Attribution, Fingertip, Ledger, Parasitic};
 use catalogue::estimators::Kind;
@@ -135,17 +135,21 @@ fn distinct<'a>(cases: &'a [Case], settings: &Settings) -> (Vec<Job<'a>>, Vec<us
 
 /// Whether both jobs have the true velocity in the same loop: no estimator of the large motor runs in it.
 fn is_same_run((a, without): &Job, (b, other): &Job) -> bool {
-    let has_truth = without.is_some_and(|without| without.removes_estimation_error());
+    let has_truth = without.is_some_and(|without| without.exact() != Exact::Neither);
     has_truth && without == other && (a.scene, a.rate_hz) == (b.scene, b.rate_hz)
 }
 
-/// Runs a case without a cause, if one is given, and attributes the force of a run with every cause.
+/// Runs a case without a cause, if one is given, and attributes the force of a run with every cause. A run
+/// that is not possible has no scores.
 fn run(
     case: &Case,
     without: Option<Without>,
     settings: &Settings,
 ) -> Result<(Parasitic, Option<Attribution>), Failure> {
     let rate_hz = case.rate_hz;
+    if without.is_some_and(|without| !without.is_possible_in(case.scene)) {
+        return Ok((Parasitic::default(), None));
+    }
     let device = match without {
         Some(without) => without.of(&settings.device),
         None => settings.device.clone(),
@@ -157,7 +161,8 @@ fn run(
             true => None,
             false => Some(Dac::board()?),
         },
-        true_velocity: removes(Without::removes_estimation_error),
+        exact: without.map_or(Exact::Neither, Without::exact),
+        oracle: without.and_then(Without::oracle),
         grips: None,
     };
     let on = |kind, counts| estimator(kind, &device, counts, rate_hz, &settings.parameters);

@@ -41,6 +41,23 @@ pub struct LoopSetup {
     pub rate_hz: f64,
     /// Lines of the large encoder, a quarter of its counts per revolution.
     pub lines: u32,
+    /// Whether the loop has the true velocities of both motors in the place of the estimates.
+    pub exact: bool,
+}
+
+/// Name of a loop with the true velocities of both motors.
+pub const EXACT: &str = "exact velocity";
+
+impl LoopSetup {
+    /// Names of the estimators of the large motor's velocity and of the handle's, or [`EXACT`].
+    #[must_use]
+    pub fn names(&self) -> [&'static str; 2] {
+        if self.exact {
+            [EXACT; 2]
+        } else {
+            [self.large.name, self.handle.name]
+        }
+    }
 }
 
 /// Settings that all loops share.
@@ -142,13 +159,7 @@ pub fn boundaries(
 pub fn contact_test(case: &LoopSetup, settings: &Settings) -> Result<ContactTest, Failure> {
     let mut device = settings.device.clone();
     device.stages.large.counts_per_rev = case.lines.saturating_mul(4);
-    ContactTest::new(
-        device,
-        case.rate_hz,
-        settings.seed,
-        [case.large, case.handle],
-        &settings.parameters,
-    )
+    ContactTest::new(device, settings.seed, case, &settings.parameters)
 }
 
 /// The largest value from `low` to `high` below which no value fails. The value is doubled from

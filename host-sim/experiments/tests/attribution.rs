@@ -3,7 +3,7 @@
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
 use experiments::closed_loop::{
-    Conditions, Dac, FeedbackEncoder, Hand, Loop, environments_with, estimator, usual,
+    Conditions, Dac, Exact, FeedbackEncoder, Hand, Loop, environments_with, estimator, usual,
 };
 use experiments::feel::{Case, Settings, Without, feel};
 use experiments::transparency::attribution::CAUSES;
@@ -156,7 +156,7 @@ fn cause_that_is_switched_off_has_no_term() {
     assert!(largest(&quick, Cause::Amplifier) < 1e-15);
     assert!(largest(&all, Cause::Amplifier) > 1e-5);
     let conditions = Conditions {
-        true_velocity: true,
+        exact: Exact::Large,
         ..rounded()
     };
     // The true velocity is rounded to f32, 1e-7 of 10 rad/s, times 0.96 mN.m.s/rad.
@@ -184,14 +184,14 @@ fn velocity_that_the_estimation_error_causes_is_attributed_to_it() {
     let measured = 0.5 * damping;
     // The small motor renders the error of the tick before.
     let mut direct = 0.0;
-    for (of_run, true_velocity) in omega.iter_mut().zip([false, true]) {
+    for (of_run, exact) in omega.iter_mut().zip([Exact::Neither, Exact::Large]) {
         let conditions = Conditions {
-            true_velocity,
+            exact,
             ..Conditions::default()
         };
         run.run_under(ticks, conditions, |now| {
             of_run.push(now.large.omega);
-            if !true_velocity {
+            if exact == Exact::Neither {
                 let terms = ledger.terms(now).map(|term| vec![term]);
                 estimate.push((of(&terms, Cause::Estimate)[0] - direct) / (damping - measured));
                 let error = f64::from(now.action.large_velocity.0) - now.large.omega;

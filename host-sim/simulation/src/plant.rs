@@ -132,6 +132,12 @@ impl Plant {
         of(&self.large) + of(&self.small)
     }
 
+    /// Coulomb friction of the small motor at its present angle, N.m.
+    #[must_use]
+    pub fn small_friction(&self) -> f64 {
+        self.small.friction()
+    }
+
     fn hand_torque(&self, intended: Pose, small: Pose) -> f64 {
         self.hand_stiffness * (intended.angle - small.angle)
             + self.hand_damping * (intended.omega - small.omega)

@@ -61,6 +61,9 @@ pub(super) struct Feel {
     /// Only divide the force among its causes; switch nothing off
     #[arg(long)]
     pub(super) causes_only: bool,
+    /// Switch nothing off; instead run controllers that know more than a board: the bounds of the force
+    #[arg(long, conflicts_with = "causes_only")]
+    pub(super) bounds: bool,
     #[command(flatten)]
     pub(super) device: DeviceFile,
     #[command(flatten)]
@@ -83,9 +86,10 @@ pub(super) fn run(options: &Feel, command_line: &str) -> Result<(), Failure> {
         handle,
         seed: options.seed,
         seconds: options.seconds,
-        without: match options.causes_only {
-            true => Vec::new(),
-            false => Without::ALL.to_vec(),
+        without: match (options.causes_only, options.bounds) {
+            (true, _) => Vec::new(),
+            (_, true) => Without::BOUNDS.to_vec(),
+            _ => Without::ALL.to_vec(),
         },
     };
     longer_than_skipped(options.seconds)?;

@@ -33,6 +33,9 @@ pub(super) struct Zwidth {
     /// that one needs the current]
     #[arg(long, value_name = "NAME")]
     pub(super) handle: Option<String>,
+    /// Search also with the true velocities of both motors in the place of estimates
+    #[arg(long)]
+    pub(super) exact: bool,
     /// Control rate, 100 to 100000 Hz; repeatable [default: 1000, 10000 and 11600]
     #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
     pub(super) rates: Vec<f64>,
@@ -125,6 +128,7 @@ fn plan(options: &Zwidth) -> Result<Plan, Failure> {
     Ok(Plan {
         estimators: estimators.iter().map(|kind| kind.name.to_owned()).collect(),
         handle: options.handle.clone(),
+        exact: options.exact,
         rates_hz: rates(&options.rates, &[1e3, 10e3, 11.6e3]),
         lines,
         settings,

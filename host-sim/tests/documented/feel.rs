@@ -3,8 +3,8 @@
 use measured::Table;
 use measured::digits::within_a_tenth;
 use measured::tables::{
-    FEEL_CAUSES, FEEL_CAUSES_TACTILE, FEEL_ESTIMATORS, FEEL_HANDLE, FEEL_SMALL_MOTOR, FEEL_WITHOUT,
-    FEEL_WITHOUT_ESTIMATORS,
+    FEEL_BOUNDS, FEEL_CAUSES, FEEL_CAUSES_TACTILE, FEEL_ESTIMATORS, FEEL_HANDLE,
+    FEEL_HANDLE_SCENES, FEEL_SMALL_MOTOR, FEEL_WITHOUT, FEEL_WITHOUT_ESTIMATORS,
 };
 use serde_json::Value;
 
@@ -167,6 +167,29 @@ fn table_of_the_handles_estimators_has_every_judging_seed() {
 }
 
 #[test]
+fn table_of_the_handles_estimators_has_three_scenes() {
+    let scenes = ["viscous", "spring-damper", "wall"];
+    let mut run = vec!["--causes-only", "--estimator", "adaptive"];
+    run.extend(["--rate", "1000", "--rate", "10000"]);
+    run.extend(scenes.iter().flat_map(|scene| ["--scene", scene]));
+    let mut cells = Vec::new();
+    for handle in ["kalman-triple-steady", "imm"] {
+        for seed in JUDGING {
+            let rows = feel(&[&run[..], &["--handle-estimator", handle, "--seed", seed]].concat());
+            let mut row = vec![handle.to_owned(), seed.to_owned()];
+            for rows in RATES_HZ.map(|rate_hz| at(&rows, rate_hz)) {
+                row.extend(scenes.map(|scene| {
+                    let row = find(&rows, &[("scenario", scene), ("without", "nothing")]);
+                    cell(number(row, RMS.0))
+                }));
+            }
+            cells.push(row);
+        }
+    }
+    check(&FEEL_HANDLE_SCENES, &[], &cells);
+}
+
+#[test]
 fn table_of_the_small_motors_scenes_has_every_cause() {
     let scenes = ["--scene", "detents", "--scene", "texture"];
     let rows = feel(&[&scenes[..], &["--rate", "1000", "--rate", "10000"]].concat());
@@ -181,4 +204,25 @@ fn table_of_the_small_motors_scenes_has_every_cause() {
     };
     let cells: Vec<_> = switched_off(&rows).into_iter().map(row).collect();
     check(&FEEL_SMALL_MOTOR, &[], &cells);
+}
+
+/// Every scene but `off`, which commands no current.
+#[test]
+fn table_of_the_bounds_has_every_scene_with_a_small_motor() {
+    let rates = ["--rate", "1000", "--rate", "10000"];
+    let rows = feel(&[&["--bounds", "--estimator", "adaptive"], &rates[..]].concat());
+    let scenes = values(&rows, "scenario");
+    let scenes = scenes.into_iter().filter(|scene| *scene != "off");
+    let row = |scene: &str| {
+        let mut cells = vec![scene.to_owned()];
+        for rows in RATES_HZ.map(|rate_hz| at(&rows, rate_hz)) {
+            cells.extend(switched_off(&rows).into_iter().map(|without| {
+                let row = find(&rows, &[("scenario", scene), ("without", without)]);
+                row[RMS.0].as_f64().map_or_else(|| "-".to_owned(), cell)
+            }));
+        }
+        cells
+    };
+    let cells: Vec<_> = scenes.map(row).collect();
+    check(&FEEL_BOUNDS, &[], &cells);
 }

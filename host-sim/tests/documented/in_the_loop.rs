@@ -9,7 +9,7 @@ use experiments::robust::summary::{self, Spread};
 use experiments::zwidth;
 use haptic_control::SceneKind;
 use measured::digits::within_a_tenth;
-use measured::tables::{PARAMETER_BOUNDS, ROBUSTNESS, Z_WIDTH};
+use measured::tables::{PARAMETER_BOUNDS, ROBUSTNESS, Z_WIDTH, Z_WIDTH_SEEDS};
 use serde_json::Value;
 use simulation::device::Device;
 
@@ -147,9 +147,9 @@ fn z_width(rows: &[Value], estimator: &str, rate_hz: f64) -> [f64; 4] {
     [plain, best, damping, viscous]
 }
 
-const Z_WIDTH_COMMAND: [&str; 3] = ["zwidth", "--lines", "1024"];
+const Z_WIDTH_COMMAND: [&str; 4] = ["zwidth", "--lines", "1024", "--exact"];
 
-/// Two estimators at 1 kHz, of all in the table. The step of the search is 3 %.
+/// Two estimators and the true velocities at 1 kHz, of all in the table. The step of the search is 3 %.
 #[test]
 fn documented_z_width_is_reproduced() {
     if measured::update() {
@@ -165,7 +165,7 @@ fn documented_z_width_is_reproduced() {
     let estimators = names.map(|name| ["--estimator", name]).concat();
     let found = json(&[&Z_WIDTH_COMMAND[..], &["--rate", "1000"], &estimators].concat());
     let rows = Z_WIDTH.read().unwrap();
-    for name in names {
+    for name in names.into_iter().chain([zwidth::EXACT]) {
         let row = rows
             .iter()
             .find(|row| row.text("estimator").unwrap() == name);
@@ -177,6 +177,30 @@ fn documented_z_width_is_reproduced() {
             );
         }
     }
+}
+
+/// Seeds draw the phases of the encoders, so when the handle enters the wall between two ticks.
+#[test]
+fn table_of_the_stiffest_walls_has_six_seeds() {
+    let names = ["foaw-end-fit", "kalman-motor", "imm-pair", "adaptive"];
+    let estimators = names.map(|name| ["--estimator", name]).concat();
+    let found = ["1", "2", "3", "4", "5", "6"].map(|seed| {
+        let seed = ["--rate", "1000", "--seed", seed];
+        json(&[&Z_WIDTH_COMMAND[..], &seed, &estimators].concat())
+    });
+    let best = |name: &str| found.each_ref().map(|rows| z_width(rows, name, 1e3)[1]);
+    for (exact, foaw) in best(zwidth::EXACT).into_iter().zip(best("foaw-end-fit")) {
+        assert!(exact > foaw, "{exact} {foaw}");
+    }
+    let row = |name: &str| {
+        let best = best(name);
+        let mean = best.iter().sum::<f64>() / best.len() as f64;
+        let least = best.iter().copied().fold(f64::INFINITY, f64::min);
+        let figures = best.into_iter().chain([mean, least]).map(cell);
+        [name.to_owned()].into_iter().chain(figures).collect()
+    };
+    let rows: Vec<Vec<String>> = names.into_iter().chain([zwidth::EXACT]).map(row).collect();
+    check(&Z_WIDTH_SEEDS, &[], &rows);
 }
 
 /// What parameters of scenes may be set to on the board is inside what is passive with either of
@@ -209,6 +233,7 @@ fn bounds_of_the_boards_parameters_are_within_the_z_width() {
             handle: Kind::named(handle).unwrap(),
             rate_hz: 1e4,
             lines: 1024,
+            exact: false,
         };
         for seed in [1, 2] {
             let settings = zwidth::Settings {

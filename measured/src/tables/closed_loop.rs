@@ -107,6 +107,23 @@ pub const Z_WIDTH: Table = Table {
     command: DOCUMENTED,
 };
 
+/// The stiffest wall at 1 kHz with 1024 lines by seed.
+pub const Z_WIDTH_SEEDS: Table = Table {
+    name: "z-width-seeds",
+    columns: &[
+        ("estimator", "estimator"),
+        ("best_nm_per_rad_seed_1", "best K, seed 1"),
+        ("best_nm_per_rad_seed_2", "2"),
+        ("best_nm_per_rad_seed_3", "3"),
+        ("best_nm_per_rad_seed_4", "4"),
+        ("best_nm_per_rad_seed_5", "5"),
+        ("best_nm_per_rad_seed_6", "6"),
+        ("mean_nm_per_rad", "mean"),
+        ("least_nm_per_rad", "least"),
+    ],
+    ..Z_WIDTH
+};
+
 /// The Z-width with the estimators of the firmware at 10 kHz.
 pub const PARAMETER_BOUNDS: Table = Table {
     name: "parameter-bounds",

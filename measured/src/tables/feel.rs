@@ -83,6 +83,22 @@ pub const FEEL_HANDLE: Table = Table {
     ..FEEL_WITHOUT
 };
 
+/// Parasitic force of three scenes by estimator of the handle and by seed, RMS, mN.
+pub const FEEL_HANDLE_SCENES: Table = Table {
+    name: "feel-handle-scenes",
+    columns: &[
+        ("handle", "handle"),
+        ("seed", "seed"),
+        ("viscous_1000hz", "1 kHz: viscous"),
+        ("spring-damper_1000hz", "spring-damper"),
+        ("wall_1000hz", "wall"),
+        ("viscous_10000hz", "10 kHz: viscous"),
+        ("spring-damper_10000hz", "spring-damper"),
+        ("wall_10000hz", "wall"),
+    ],
+    ..FEEL_WITHOUT
+};
+
 const OF_ESTIMATORS: &[Column] = &[
     ("without", "without"),
     ("finite-difference_1000hz", "1 kHz: finite-difference"),
@@ -97,6 +113,25 @@ const OF_ESTIMATORS: &[Column] = &[
 pub const FEEL_WITHOUT_ESTIMATORS: Table = Table {
     name: "feel-without-estimators",
     columns: OF_ESTIMATORS,
+    ..FEEL_WITHOUT
+};
+
+/// Parasitic force of every scene with a small motor beside its bounds, RMS, mN.
+pub const FEEL_BOUNDS: Table = Table {
+    name: "feel-bounds",
+    columns: &[
+        ("scene", "scene"),
+        ("adaptive_1000hz", "1 kHz: adaptive"),
+        ("true_velocities_1000hz", "true velocities"),
+        ("inertia_1000hz", "all but inertia"),
+        ("future_1000hz", "all but the future"),
+        ("limits_1000hz", "all but DAC and limits"),
+        ("adaptive_10000hz", "10 kHz: adaptive"),
+        ("true_velocities_10000hz", "true velocities"),
+        ("inertia_10000hz", "all but inertia"),
+        ("future_10000hz", "all but the future"),
+        ("limits_10000hz", "all but DAC and limits"),
+    ],
     ..FEEL_WITHOUT
 };
 

@@ -5,7 +5,19 @@ use estimator_core::Amps;
 use haptic_control::Currents;
 use simulation::plant::Grip;
 
-use super::Faulty;
+use super::{Faulty, Oracle};
+
+/// Velocities that the controller has without error, in the place of estimates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Exact {
+    /// None.
+    #[default]
+    Neither,
+    /// That of the large motor.
+    Large,
+    /// Those of both motors, and the acceleration of the handle.
+    Both,
+}
 
 /// Conditions of a run. The default is a run without faults, with the estimator of the loop, and with
 /// currents that are not rounded.
@@ -15,8 +27,11 @@ pub struct Conditions<'a> {
     pub fault: Option<(usize, Faulty)>,
     /// Converters that round the currents; `None` for exact currents.
     pub dac: Option<Dac>,
-    /// Whether the controller has the true velocity of the large motor instead of an estimate.
-    pub true_velocity: bool,
+    /// Velocities that the controller has without error.
+    pub exact: Exact,
+    /// What commands the small motor in the place of the controller, in a scene with the small motor and a
+    /// run without late ticks.
+    pub oracle: Option<Oracle>,
     /// The grips of the loop's hand, one per tick, as [`Hand::grips`](super::Hand::grips) gives them. The
     /// run computes them itself without them, and where they are fewer than its ticks.
     pub grips: Option<&'a [Grip]>,

@@ -5,10 +5,14 @@ use estimator_core::Hertz;
 use haptic_control::{AnyScene, DualStage, Scene, SceneKind, Senses, scenes};
 use terminal::wording::unknown;
 
+use super::truth::TrueMotion;
+
 /// Operation that is generic over the type of the scene.
-pub trait Visit {
+pub(super) trait Visit {
     /// Performs the operation.
-    fn visit<S: Scene<Acceleration: Senses<Estimator>>>(self, scene: S);
+    fn visit<S>(self, scene: S)
+    where
+        S: Scene<Acceleration: Senses<Estimator> + for<'a> Senses<TrueMotion<'a>>> + Clone;
 }
 
 macro_rules! visit {

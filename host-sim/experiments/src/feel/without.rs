@@ -1,7 +1,10 @@
 //! What is switched off.
 
 use estimator_core::Hertz;
+use haptic_control::SceneKind;
 use simulation::device::Device;
+
+use crate::closed_loop::{Exact, Oracle};
 
 /// Share of the handle's inertia that is left without it. The plant cannot integrate a handle without
 /// inertia.
@@ -33,10 +36,28 @@ pub enum Without {
     FrictionInertiaAndError,
     /// All of them.
     Everything,
+    /// Errors of the velocities of both motors and of the acceleration of the handle: the controller has the
+    /// true ones.
+    BothErrors,
+    /// All but the inertia of the handle: [`Oracle::InertiaLeft`].
+    AllButInertia,
+    /// All but what the hand changes until the next tick: [`Oracle::Present`].
+    AllButFuture,
+    /// All but DAC and limits: [`Oracle::NextTick`].
+    AllButLimits,
 }
 
 impl Without {
-    /// All, in the order of tables.
+    /// Knowledge that no controller of a board has, for the bounds of the force. The device and the converters
+    /// stay as they are.
+    pub const BOUNDS: [Self; 4] = [
+        Self::BothErrors,
+        Self::AllButInertia,
+        Self::AllButFuture,
+        Self::AllButLimits,
+    ];
+
+    /// All causes, in the order of tables.
     pub const ALL: [Self; 10] = [
         Self::SmallFriction,
         Self::LargeFriction,
@@ -64,6 +85,10 @@ impl Without {
             Self::FrictionAndInertia => "small friction, inertia",
             Self::FrictionInertiaAndError => "small friction, inertia, error",
             Self::Everything => "all of them",
+            Self::BothErrors => "errors of both velocities",
+            Self::AllButInertia => "all but inertia",
+            Self::AllButFuture => "all but the future",
+            Self::AllButLimits => "all but DAC and limits",
         }
     }
 
@@ -104,10 +129,40 @@ impl Without {
         self.removes(&[Self::Dac])
     }
 
-    /// Whether the loop has the true velocity.
+    /// The velocities that the loop has without error.
     #[must_use]
-    pub fn removes_estimation_error(&self) -> bool {
-        self.removes(&[Self::EstimationError, Self::FrictionInertiaAndError])
+    pub fn exact(self) -> Exact {
+        if Self::BOUNDS.contains(&self) {
+            Exact::Both
+        } else if self.removes(&[Self::EstimationError, Self::FrictionInertiaAndError]) {
+            Exact::Large
+        } else {
+            Exact::Neither
+        }
+    }
+
+    /// What commands the small motor in the place of the controller.
+    #[must_use]
+    pub const fn oracle(self) -> Option<Oracle> {
+        match self {
+            Self::AllButInertia => Some(Oracle::InertiaLeft),
+            Self::AllButFuture => Some(Oracle::Present),
+            Self::AllButLimits => Some(Oracle::NextTick),
+            _ => None,
+        }
+    }
+
+    /// Whether a scene can be run so. An oracle commands the small motor, which a scene may not have. In a
+    /// scene that reads the acceleration the current itself changes the torque that the oracle is to reach,
+    /// and currents that reach it at every tick grow without bound.
+    #[must_use]
+    pub fn is_possible_in(self, scene: SceneKind) -> bool {
+        let needs = scene.facts().needs;
+        match self.oracle() {
+            None => true,
+            Some(Oracle::InertiaLeft) => needs.transient,
+            Some(Oracle::Present | Oracle::NextTick) => needs.transient && !needs.acceleration,
+        }
     }
 
     /// Whether this is one of `those`, or everything.

@@ -6,9 +6,10 @@ use haptic_control::{AnyScene, LoopPoles, Radians, Viscous, Wall};
 
 use serde::{Deserialize, Serialize};
 
+use super::LoopSetup;
 use super::criterion::{ContactTick, Evaluator, Violation};
-use crate::closed_loop::{FeedbackEncoder, Hand, Loop, Press, estimator};
-use catalogue::estimators::{Estimator, Kind};
+use crate::closed_loop::{Conditions, Exact, FeedbackEncoder, Hand, Loop, Press, estimator};
+use catalogue::estimators::Estimator;
 use catalogue::parameters::Parameters;
 use simulation::device::Device;
 use terminal::failure::Failure;
@@ -81,25 +82,30 @@ pub struct ContactTest {
     seed: u64,
     large: Estimator,
     handle: Estimator,
+    exact: Exact,
 }
 
 impl ContactTest {
-    /// Prepares the device with the estimators `large` and `handle` and their `parameters`.
+    /// Prepares the device for a loop, with the parameters of its estimators.
     ///
     /// # Errors
     /// As [`estimator`].
     pub fn new(
         device: Device,
-        rate_hz: f64,
         seed: u64,
-        [large, handle]: [&Kind; 2],
+        case: &LoopSetup,
         parameters: &Parameters,
     ) -> Result<Self, Failure> {
         device.validate()?;
+        let rate_hz = case.rate_hz;
         let build = |kind, counts| estimator(kind, &device, counts, rate_hz, parameters);
         Ok(Self {
-            large: build(large, device.stages.large.counts_per_rev)?,
-            handle: build(handle, device.stages.small.counts_per_rev)?,
+            large: build(case.large, device.stages.large.counts_per_rev)?,
+            handle: build(case.handle, device.stages.small.counts_per_rev)?,
+            exact: match case.exact {
+                true => Exact::Both,
+                false => Exact::Neither,
+            },
             device,
             rate_hz,
             seed,
@@ -153,7 +159,12 @@ impl ContactTest {
             offsets_a: [0.0; 2],
         };
         let rest = SETTLED_S..PRESS.moving_s + PRESS.rest_s;
-        run.run((SECONDS * self.rate_hz) as usize, |moment| {
+        let conditions = Conditions {
+            exact: self.exact,
+            ..Conditions::default()
+        };
+        let ticks = (SECONDS * self.rate_hz) as usize;
+        run.run_under(ticks, conditions, |moment| {
             evaluator.update(ContactTick {
                 resting: rests && rest.contains(&moment.t),
                 contact: k == 0.0 || moment.handle.angle > WALL,

@@ -17,6 +17,8 @@ pub struct Plan {
     /// Estimator of the handle's velocity; `None` for that of the large motor, or `kalman-triple` if
     /// that one needs the current.
     pub handle: Option<String>,
+    /// Whether each rate and encoder also has a loop with the true velocities of both motors.
+    pub exact: bool,
     /// Control rates, Hz.
     pub rates_hz: Vec<f64>,
     /// Numbers of lines of the large encoder.
@@ -54,6 +56,15 @@ impl Experiment for Plan {
                     handle: handle.unwrap_or(if large.needs.current { triple } else { large }),
                     rate_hz,
                     lines,
+                    exact: false,
+                }));
+                // The estimators of this loop do not run.
+                cases.extend(self.exact.then_some(LoopSetup {
+                    large: triple,
+                    handle: triple,
+                    rate_hz,
+                    lines,
+                    exact: true,
                 }));
             }
         }

@@ -7,9 +7,9 @@ use super::{Bound, Boundary, LoopSetup};
 /// One bound of one case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ZwidthRow {
-    /// Estimator of the large motor.
+    /// Estimator of the large motor, or [`EXACT`](super::EXACT).
     pub estimator: &'static str,
-    /// Estimator of the handle.
+    /// Estimator of the handle, or [`EXACT`](super::EXACT).
     pub handle_estimator: &'static str,
     /// Control rate, Hz.
     pub rate_hz: f64,
@@ -37,9 +37,10 @@ pub struct ZwidthRow {
 pub fn rows(cases: &[LoopSetup], boundaries: &[Boundary], seed: u64) -> Vec<ZwidthRow> {
     let mut rows = Vec::new();
     for (case, boundary) in cases.iter().zip(boundaries) {
+        let [estimator, handle_estimator] = case.names();
         let row = |what, found: Bound, stiffness, damping| ZwidthRow {
-            estimator: case.large.name,
-            handle_estimator: case.handle.name,
+            estimator,
+            handle_estimator,
             rate_hz: case.rate_hz,
             lines: case.lines,
             seed,

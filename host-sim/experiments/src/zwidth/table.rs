@@ -41,7 +41,7 @@ pub fn table(cases: &[LoopSetup], boundaries: &[Boundary], width: usize) -> Stri
             numbers("B at K = 0", "mN.m.s/rad", &|of| shown(of.viscous, 1e3)),
             fails("", &|of| of.viscous),
         ];
-        let names = block.iter().map(|(case, _)| case.large.name.to_owned());
+        let names = block.iter().map(|(case, _)| case.names()[0].to_owned());
         text += &layout::table(&Column::text("", "estimator", names), &columns, width);
     }
     text
