@@ -159,8 +159,9 @@ impl Safety {
         self.eventful(state, findings, request)
     }
 
-    /// A tick in which nothing is found or missed, or a finding has called [`SafetyState::end_calm`]: whether the amplifiers stay enabled and nothing else
-    /// changes. Otherwise nothing was done, and the tick is left to [`Self::tick`].
+    /// A tick in which nothing is missed, and nothing is found without a call of [`SafetyState::end_calm`]:
+    /// whether the amplifiers stay enabled and nothing else changes. Otherwise nothing was done, and the tick
+    /// is left to [`Self::tick`].
     #[inline]
     pub fn pass_calm(&self, state: &mut SafetyState, request: Option<Request>) -> bool {
         let Some(left) = state.calm.checked_sub(1) else {
