@@ -10,7 +10,6 @@ use firmware_app::port::PortFaults;
 use firmware_app::reports::Reports;
 use firmware_app::rest::Rest;
 use firmware_app::telemetry::{Frame, Frames, Sender};
-use haptic_control::Request;
 use heapless::spsc::Consumer;
 
 use crate::boards::{Board, Memory, Port, Start, Watchdog};
@@ -34,11 +33,11 @@ impl Queues {
 }
 
 /// Both tasks, on a board that has just started.
-pub(crate) fn tasks<W: Watchdog, P: Port, M: Memory>(
-    board: &mut impl Board,
+pub(crate) fn tasks<B: Board, W: Watchdog, P: Port, M: Memory>(
+    mut board: B,
     start: Start<W, P, M>,
     queues: &'static mut Queues,
-) -> (ControlTask, IdleTask<W, P, M>) {
+) -> (ControlTask<B>, IdleTask<W, P, M>) {
     let Start {
         watchdog,
         port,
@@ -76,6 +75,7 @@ pub(crate) fn tasks<W: Watchdog, P: Port, M: Memory>(
         defmt::warn!("auto-arm waits for a command: the brown-out level is not 3");
     }
     let control = ControlTask {
+        board,
         messages,
         sender: Sender::new(to_log),
         control: Control::new(&first, reset, brown_out_reset, &settings),
@@ -96,19 +96,21 @@ pub(crate) fn tasks<W: Watchdog, P: Port, M: Memory>(
 }
 
 /// The control task: reads, steps, writes, enqueues.
-pub(crate) struct ControlTask {
+pub(crate) struct ControlTask<B> {
+    board: B,
     messages: Consumer<'static, Message>,
     sender: Sender<'static>,
     control: Control,
 }
 
-impl ControlTask {
+impl<B: Board> ControlTask<B> {
     /// One tick. Its deadline is the next tick, 100 us or 16 800 cycles; on the emulated board it
     /// takes an eighth of these as instructions at most (docs/benchmarks.md), and a quarter while
     /// one estimator takes over from another.
     #[inline(always)]
-    pub(crate) fn run(&mut self, board: &mut impl Board) {
+    pub(crate) fn run(&mut self) {
         let Self {
+            board,
             messages,
             sender,
             control,
@@ -116,7 +118,8 @@ impl ControlTask {
         let missed = board.begin_tick();
         let flow = control.flow(&board.currents());
         let sample = board.sample(flow.currents.large);
-        let message = if control.takes_message() {
+        let takes_message = control.check(&sample, &flow, &board.pulses());
+        let message = if takes_message {
             messages.dequeue()
         } else {
             None
@@ -125,15 +128,13 @@ impl ControlTask {
             board.calibrate(settings);
         }
         let request = control.accept(message);
-        let arms = AUTO_ARM || request == Some(Request::Arm);
         let inputs = Inputs {
             faults: board.faults(),
             missed,
-            debugger: arms && firmware_rt::debugger_interferes(),
-            pulses: board.pulses(),
+            debugger: firmware_rt::debugger_interferes,
             request,
         };
-        let Outputs { currents, action } = control.step(&sample, &flow, &inputs);
+        let Outputs { currents, action } = control.step(&sample, &inputs);
         board.apply(currents);
         if control.makes_frame() {
             let record = control.record(&sample, &action);

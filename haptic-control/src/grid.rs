@@ -11,6 +11,8 @@
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid<const PERIOD: u32> {
+    /// The count at which the present tick was due.
+    begun: u32,
     /// The count at which the next tick is due.
     due: u32,
     /// The first lateness of a tick that [`Self::begin`] has to look at: a period, or 0 if the latest tick
@@ -27,6 +29,7 @@ impl<const PERIOD: u32> Grid<PERIOD> {
     pub const fn new(now: u32) -> Self {
         const { assert!(PERIOD > 0) };
         Self {
+            begun: now,
             due: now.wrapping_add(PERIOD),
             late: PERIOD,
             longest: 0,
@@ -46,7 +49,7 @@ impl<const PERIOD: u32> Grid<PERIOD> {
     pub fn begin(&mut self, now: u32) -> u32 {
         let late = now.wrapping_sub(self.due);
         if late < self.late {
-            self.due = self.due.wrapping_add(PERIOD);
+            self.advance(PERIOD);
             return 0;
         }
         self.begin_late(late)
@@ -57,16 +60,22 @@ impl<const PERIOD: u32> Grid<PERIOD> {
     fn begin_late(&mut self, late: u32) -> u32 {
         let missed = late / PERIOD;
         let periods = missed.wrapping_add(1);
-        self.due = self.due.wrapping_add(PERIOD.wrapping_mul(periods));
+        self.advance(PERIOD.wrapping_mul(periods));
         let overran = self.late == 0;
         self.late = PERIOD;
         missed.max(u32::from(overran))
     }
 
+    /// Begins the last tick that is due within this number of counts after the latest one.
+    fn advance(&mut self, counts: u32) {
+        let due = self.due.wrapping_add(counts);
+        (self.begun, self.due) = (due.wrapping_sub(PERIOD), due);
+    }
+
     /// Ends the present tick at the count `now`. Returns whether the next tick is due by now.
     #[inline]
     pub fn end(&mut self, now: u32) -> bool {
-        let spent = now.wrapping_sub(self.due).wrapping_add(PERIOD);
+        let spent = now.wrapping_sub(self.begun);
         // An overrun is longer than all ticks that are none.
         if spent <= self.longest {
             return false;

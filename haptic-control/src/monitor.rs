@@ -143,9 +143,9 @@ impl Monitor {
     }
 
     /// The part of [`Self::check`] that is due in every tick: a jump of a position, and the range of the
-    /// current.
+    /// current. Returns the latched cause in a tick with a jump.
     #[inline]
-    pub fn follow(&self, state: &mut MonitorState, sample: &Sample) {
+    pub fn follow(&self, state: &mut MonitorState, sample: &Sample) -> Option<Stop> {
         let now = [sample.count, sample.coupled];
         let moved = [0, 1].map(|i| now[i] - state.last[i]);
         state.last = now;
@@ -156,18 +156,21 @@ impl Monitor {
         let [large, small] = moved.map(|counts| counts.0.wrapping_add(self.jump as i32) as u32);
         if large.max(small) > self.jump.saturating_mul(2) {
             state.cause = state.cause.or(Some(Stop::Jump));
+            return state.cause;
         }
+        None
     }
 
     /// The rest of [`Self::check`], in the last tick of a slot. A caller that has a schedule calls it once
-    /// in the ticks of a slot. Over a slot that is shorter a motor may be faster.
+    /// in the ticks of a slot. Over a slot that is shorter a motor may be faster. Returns the latched cause.
     #[cold]
     #[inline(never)]
-    pub fn end_slot(&self, state: &mut MonitorState, sample: &Sample) {
+    pub fn end_slot(&self, state: &mut MonitorState, sample: &Sample) -> Option<Stop> {
         let found = self.slot(state, sample);
         state.cause = state.cause.or(found);
         state.ticks = 0;
         state.currents = NO_CURRENT;
+        state.cause
     }
 
     /// Checks at the end of a slot.

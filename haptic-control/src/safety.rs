@@ -98,6 +98,12 @@ impl SafetyState {
         self.stop
     }
 
+    /// Ends the calm ticks, because something is found: this tick is left to [`Safety::tick`].
+    pub const fn end_calm(&mut self) {
+        self.silent -= self.calm;
+        self.calm = 0;
+    }
+
     /// Whether the amplifiers have to be ready: from the last tick of settling on.
     const fn needs_amplifiers(&self) -> bool {
         match self.mode {
@@ -153,19 +159,24 @@ impl Safety {
         self.eventful(state, findings, request)
     }
 
-    /// A tick in which nothing is found or missed: whether the amplifiers stay enabled and nothing else
-    /// changes. Otherwise nothing was done, and the tick is left to [`Self::tick`].
+    /// A tick in which nothing is missed, and nothing is found without a call of [`SafetyState::end_calm`]:
+    /// whether the amplifiers stay enabled and nothing else changes. Otherwise nothing was done, and the tick
+    /// is left to [`Self::tick`].
     #[inline]
     pub fn pass_calm(&self, state: &mut SafetyState, request: Option<Request>) -> bool {
-        match (state.calm.checked_sub(1), request) {
-            (Some(left), None) => state.calm = left,
-            (Some(_), Some(Request::KeepAlive)) => self.begin_calm(state, 0),
-            _ => return false,
+        let Some(left) = state.calm.checked_sub(1) else {
+            return false;
+        };
+        match request {
+            None => state.calm = left,
+            Some(Request::KeepAlive) => self.begin_calm(state, 0),
+            Some(_) => return false,
         }
         true
     }
 
     /// Begins calm ticks after this number of ticks without a command.
+    #[cold]
     fn begin_calm(&self, state: &mut SafetyState, silent: u32) {
         state.silent = silent;
         state.calm = self.calm(state);

@@ -81,16 +81,18 @@ pub struct Switchboard<L, H> {
 }
 
 /// State of a [`Switchboard`].
+// What may be large comes last, so that a float load, which reaches 1020 bytes, reaches the rest.
 #[derive(Clone)]
+#[repr(C)]
 pub struct SwitchboardState<L: VelocityEstimator, H: VelocityEstimator> {
-    active: Active,
-    shared: Shared<L, H>,
-    origin: Count,
-    change: Change,
+    applied: Currents,
     /// Currents that are added to those of the large and the small motor after a change of scenes,
     /// A.
     added: [f32; 2],
-    applied: Currents,
+    change: Change,
+    origin: Count,
+    active: Active,
+    shared: Shared<L, H>,
 }
 
 /// What a change of scenes has left to do.
@@ -105,17 +107,18 @@ enum Change {
 }
 
 #[derive(Clone)]
+#[repr(C)]
 struct Shared<L: VelocityEstimator, H: VelocityEstimator> {
-    large: L::State,
-    continuous: ContinuousState,
-    handle: H::State,
-    transient: TransientState,
-    anticipation: AnticipationState,
-    /// Velocity of the handle in the last tick; zero if its estimator did not run.
-    handle_velocity: RadPerS,
     /// Whether the continuous stage, the handle's estimator, the transient stage and the anticipation
     /// ran in the last tick.
     live: [bool; 4],
+    /// Velocity of the handle in the last tick; zero if its estimator did not run.
+    handle_velocity: RadPerS,
+    transient: TransientState,
+    anticipation: AnticipationState,
+    continuous: ContinuousState,
+    handle: H::State,
+    large: L::State,
 }
 
 /// Time constant with which the difference of the currents at a change of scenes fades, s.
@@ -124,6 +127,17 @@ const FADE_S: f64 = 0.02;
 const FADED: f32 = 1e-6;
 
 impl<L: VelocityEstimator, H: VelocityEstimator> SwitchboardState<L, H> {
+    /// Currents of the latest tick.
+    #[must_use]
+    pub const fn applied(&self) -> Currents {
+        self.applied
+    }
+
+    /// States that the currents of the latest tick were not applied, but none.
+    pub fn withhold(&mut self) {
+        self.applied = Currents::default();
+    }
+
     /// State of the large motor's estimator. It does not change while no scene needs it.
     #[must_use]
     pub const fn large(&self) -> &L::State {
@@ -273,6 +287,9 @@ where
         if handle && !live[1] {
             shared.handle = self.handle.start(&Sample::new(sample.coupled));
         }
+        if !handle {
+            shared.handle_velocity = RadPerS(0.0);
+        }
         if transient && !live[2] {
             self.rig.transient.restart(&mut shared.transient);
         }
@@ -341,7 +358,9 @@ where
         };
         let angle = self.rig.angle_scale.of(sample.coupled - origin);
         let mut action = tick(scene, scene_state, parts, angle, sample);
-        shared.handle_velocity = action.handle_velocity;
+        if HandleNeed::<S>::WANTED {
+            shared.handle_velocity = action.handle_velocity;
+        }
         if S::open_loop(scene_state).is_some() {
             action.currents = action.currents.within(largest);
         }

@@ -107,8 +107,7 @@ impl Windings {
     /// [`Stop::Overload`] as long as a winding is too hot.
     pub fn check(&self, state: &mut WindingsState, applied: &Currents) -> Option<Stop> {
         self.add(state, applied);
-        self.pass(state, 1);
-        state.overload
+        self.pass(state, 1)
     }
 
     /// The part of [`Self::check`] that is due in every tick.
@@ -121,11 +120,12 @@ impl Windings {
 
     /// The rest of [`Self::check`], for the last of so many ticks. Ends a slot if it is over. A caller that
     /// has a schedule calls it once in so many ticks, of which a slot has a multiple.
-    pub fn pass(&self, state: &mut WindingsState, ticks: u32) {
+    pub fn pass(&self, state: &mut WindingsState, ticks: u32) -> Option<Stop> {
         state.ticks += ticks;
         if state.ticks >= self.slot {
             self.slot(state);
         }
+        state.overload
     }
 
     /// The end of a slot.

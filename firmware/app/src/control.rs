@@ -11,7 +11,7 @@ use haptic_control::{
 
 use crate::ammeter::{Ammeter, Measure as _, Measured};
 use crate::config::{AUTO_ARM, DEVICE, RATE, RATE_HZ, SILENCE};
-use crate::index::{Indexing as _, Indices, Reported};
+use crate::index::{Indexing as _, Indices, Pulses, Reported};
 use crate::large::{Large, LargeEstimator as _};
 use crate::scene::{Core, FIRST, SCENES};
 use crate::schedule::{Due, Phase};
@@ -50,25 +50,27 @@ enum Decision {
 }
 
 /// The control core under its monitor and safety state.
+// The core may be large and comes last, so that a float load, which reaches 1020 bytes, reaches the rest.
+#[repr(C)]
 pub struct Control {
-    core: Core,
-    monitor: MonitorState,
-    balance: BalanceState,
-    /// Outlives every restart.
-    windings: WindingsState,
-    ammeter: Ammeter,
-    indices: Indices,
-    voltmeter: Voltmeter,
-    safety: SafetyState,
-    /// Currents of the latest tick.
-    applied: Currents,
     /// Of the latest tick.
     phase: Phase,
     /// Periods of telemetry frames before the latest tick, modulo 2^32.
     period: u32,
     overruns: u32,
+    safety: SafetyState,
+    /// Finding of [`Self::check`] in the present tick, which is not calm then.
+    found: Option<Stop>,
     /// Whether an image that arms without a command does so.
     auto_arm: bool,
+    monitor: MonitorState,
+    /// Outlives every restart.
+    windings: WindingsState,
+    balance: BalanceState,
+    ammeter: Ammeter,
+    indices: Indices,
+    voltmeter: Voltmeter,
+    core: Core,
 }
 
 impl Control {
@@ -98,7 +100,7 @@ impl Control {
             indices,
             voltmeter: Voltmeter::unread(),
             safety: SAFETY.start(reset),
-            applied: Currents::default(),
+            found: None,
             phase,
             // The first tick begins period 0.
             period: u32::MAX,
@@ -109,12 +111,7 @@ impl Control {
 
     /// Currents commanded over the period that ends now.
     pub const fn applied(&self) -> Currents {
-        self.applied
-    }
-
-    /// Whether the next tick takes a message, if one waits.
-    pub const fn takes_message(&self) -> bool {
-        self.phase.next().takes_message()
+        self.core.applied()
     }
 
     /// Whether the latest tick makes a telemetry frame.
@@ -141,7 +138,8 @@ impl Control {
     /// measures none.
     pub fn flow(&mut self, readings: &Measured) -> Flow {
         let enabled = self.safety.mode().is_enabled();
-        self.ammeter.update(readings, &self.applied, enabled)
+        let applied = self.applied();
+        self.ammeter.update(readings, &applied, enabled)
     }
 
     /// Applies a message before the tick and returns the request for the safety state machine.
@@ -165,41 +163,76 @@ impl Control {
         }
     }
 
-    /// One tick, after the currents of [`Self::flow`].
+    /// The checks of a tick, after the currents of [`Self::flow`]. Returns whether the tick takes a message, if
+    /// one waits.
     #[inline]
-    pub fn step(&mut self, sample: &Sample, flow: &Flow, inputs: &Inputs) -> Outputs {
+    pub fn check(&mut self, sample: &Sample, flow: &Flow, pulses: &Pulses) -> bool {
         self.phase = self.phase.next();
         WINDINGS.add(&mut self.windings, &flow.currents);
         self.balance.add(sample);
-        MONITOR.follow(&mut self.monitor, sample);
-        let mut unbalanced = None;
+        let jump = MONITOR.follow(&mut self.monitor, sample);
+        self.note(jump);
+        let mut takes_message = false;
         match self.phase.due() {
             Due::Nothing => {}
             Due::Frame => self.period = self.period.wrapping_add(1),
-            Due::Balance(ticks) => unbalanced = BALANCE.pass(&mut self.balance, sample, ticks),
-            Due::Slot => MONITOR.end_slot(&mut self.monitor, sample),
-            Due::Windings(ticks) => WINDINGS.pass(&mut self.windings, ticks),
+            Due::Balance(ticks) => self.pass_balance(sample, ticks),
+            Due::Slot => self.end_slot(sample),
+            Due::Message => takes_message = true,
+            Due::Windings(ticks) => self.pass_windings(ticks),
             Due::All { frame, slot } => {
                 self.period = self.period.wrapping_add(u32::from(frame));
-                unbalanced = BALANCE.pass(&mut self.balance, sample, 1);
-                WINDINGS.pass(&mut self.windings, 1);
+                self.pass_balance(sample, 1);
+                self.pass_windings(1);
                 if slot {
-                    MONITOR.end_slot(&mut self.monitor, sample);
+                    self.end_slot(sample);
                 }
+                takes_message = true;
             }
         }
-        let found = [
-            self.monitor.cause(),
-            self.windings.overload(),
-            flow.mismatch,
-            self.indices.check(&inputs.pulses),
-            unbalanced,
-        ];
+        self.note(flow.mismatch);
+        let lost = self.indices.check(pulses);
+        self.note(lost);
+        takes_message
+    }
+
+    fn pass_balance(&mut self, sample: &Sample, ticks: u32) {
+        let found = BALANCE.pass(&mut self.balance, sample, ticks);
+        self.note(found);
+    }
+
+    fn end_slot(&mut self, sample: &Sample) {
+        let found = MONITOR.end_slot(&mut self.monitor, sample);
+        self.note(found);
+    }
+
+    fn pass_windings(&mut self, ticks: u32) {
+        let found = WINDINGS.pass(&mut self.windings, ticks);
+        self.note(found);
+    }
+
+    /// Has [`Self::step`] decide, if something is found.
+    fn note(&mut self, found: Option<Stop>) {
+        if let Some(cause) = found {
+            self.keep(cause);
+        }
+    }
+
+    /// It is a function of its own because few ticks call it.
+    #[cold]
+    #[inline(never)]
+    fn keep(&mut self, cause: Stop) {
+        self.found = self.found.or(Some(cause));
+        self.safety.end_calm();
+    }
+
+    /// One tick, after [`Self::check`].
+    #[inline]
+    pub fn step(&mut self, sample: &Sample, inputs: &Inputs) -> Outputs {
         let mut action = self.core.step(sample);
         let request = inputs.request.or_else(|| self.auto_arm_request());
         let is_calm = inputs.faults == Faults::NONE
             && inputs.missed == 0
-            && found.iter().all(Option::is_none)
             && has_finite_sum(&action)
             && !self.voltmeter.is_outside()
             && SAFETY.pass_calm(&mut self.safety, request);
@@ -207,21 +240,23 @@ impl Control {
             Decision::Drive
         } else {
             let findings = Findings {
-                monitor: found.into_iter().flatten().next(),
+                monitor: (self.monitor.cause())
+                    .or(self.windings.overload())
+                    .or(self.found.take()),
                 amplifiers_ready: !inputs.faults.contain(Faults::NOT_READY),
                 interlock: inputs.faults.contain(Faults::INTERLOCK),
                 clock_failure: inputs.faults.contain(Faults::CLOCK),
                 finite: are_finite(&action),
                 missed: inputs.missed,
-                debugger: inputs.debugger,
+                debugger: request == Some(Request::Arm) && (inputs.debugger)(),
                 supply: self.voltmeter,
             };
             self.decide(*sample, findings, request)
         };
         if decision != Decision::Drive {
-            action.currents = Currents::default();
+            self.core.withhold();
+            action.currents = self.applied();
         }
-        self.applied = action.currents;
         Outputs {
             currents: (decision != Decision::Disable).then_some(action.currents),
             action,

@@ -12,7 +12,7 @@ use crate::config::DECIMATION;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Phase(u32);
 
-/// What a tick does that most others do not.
+/// What a tick does that others do not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Due {
     /// Nothing.
@@ -23,9 +23,11 @@ pub enum Due {
     Balance(u32),
     /// The end of a slot of the monitor.
     Slot,
+    /// A message, if one waits.
+    Message,
     /// The windings, for this number of ticks.
     Windings(u32),
-    /// The balance and the windings, for one tick.
+    /// The balance and the windings, for one tick, and a message, if one waits.
     All {
         /// Whether a frame is made, too.
         frame: bool,
@@ -61,7 +63,7 @@ impl Phase {
         }
     }
 
-    /// What a tick of this phase does, besides a message.
+    /// What a tick of this phase does.
     #[must_use]
     #[allow(
         unreachable_patterns,
@@ -74,6 +76,7 @@ impl Phase {
             [first, first + 1, first + 2, first + 3]
         };
         const SLOT: u32 = Phase::SLOT.0;
+        const MESSAGE: u32 = Phase::FIRST_MESSAGE.0;
         const LAST: u32 = Phase::START.0;
         if DECIMATION < 10 {
             return Due::All {
@@ -87,6 +90,7 @@ impl Phase {
             b if b == BALANCE[1] || b == BALANCE[2] || b == BALANCE[3] => Due::Balance(1),
             SLOT => Due::Slot,
             LAST => Due::Windings(DECIMATION),
+            MESSAGE..LAST => Due::Message,
             _ => Due::Nothing,
         }
     }
@@ -106,12 +110,6 @@ impl Phase {
             to.0 + DECIMATION - self.0
         }
     }
-
-    /// Whether a tick of this phase takes a message, if one waits.
-    #[must_use]
-    pub const fn takes_message(self) -> bool {
-        Self::FIRST_MESSAGE.0 <= self.0 && (DECIMATION < 10 || self.0 + 1 < DECIMATION)
-    }
 }
 
 #[cfg(test)]
@@ -127,7 +125,7 @@ mod tests {
             *due += u32::from(phase == Phase::FRAME)
                 + u32::from(phase == Phase::SLOT)
                 + u32::from(phase == Phase::START)
-                + u32::from(phase.takes_message());
+                + u32::from(phase.due() == Due::Message);
         }
         let (balance, _) = phases
             .enumerate()

@@ -32,27 +32,21 @@ mod app {
 
     #[local]
     struct Local {
-        parts: Parts,
-        control: ControlTask,
-
+        control: ControlTask<Parts>,
         idle: IdleTask<Guard, Usart, Flash>,
     }
 
     #[init(local = [queues: Queues = Queues::new()])]
     fn init(cx: init::Context) -> (Shared, Local, init::Monotonics) {
-        let (mut parts, start) = start(cx.device);
-        let (control, idle) = tasks(&mut parts, start, cx.local.queues);
-        let local = Local {
-            parts,
-            control,
-            idle,
-        };
-        (Shared {}, local, init::Monotonics())
+        let (parts, start) = start(cx.device);
+        let (control, idle) = tasks(parts, start, cx.local.queues);
+        (Shared {}, Local { control, idle }, init::Monotonics())
     }
 
-    #[task(binds = TIM5, priority = 15, local = [parts, control])]
+    // The only interrupt. At priority 1 there is none to restore at its end.
+    #[task(binds = TIM5, priority = 1, local = [control])]
     fn control(cx: control::Context) {
-        cx.local.control.run(cx.local.parts);
+        cx.local.control.run();
     }
 
     #[idle(local = [idle])]

@@ -78,15 +78,15 @@ pub(crate) fn mirrored(run: &Outcome) -> Vec<(Option<Currents>, Record)> {
                 Message::Estimator(Large::choice(*number).expect("it is there"))
             }
         });
+        control.check(&sample, &flow, &Skip);
         let request = control.accept(message);
         let inputs = Inputs {
             faults: Faults::NONE,
             missed: 0,
-            debugger: false,
-            pulses: Skip,
+            debugger: || false,
             request: Some(request.unwrap_or(Request::KeepAlive)),
         };
-        let outputs = control.step(&sample, &flow, &inputs);
+        let outputs = control.step(&sample, &inputs);
         (outputs.currents, control.record(&sample, &outputs.action))
     };
     run.ticks.iter().enumerate().map(step).collect()

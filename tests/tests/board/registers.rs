@@ -166,7 +166,7 @@ const AFTER_BOOT: &[Field] = &[
     field(TIM5 + 0x0C, (0, 15), 1 << 1, "TIM5_DIER: CC1IE alone"),
     field(TIM5 + 0x28, (0, 16), 0, "TIM5_PSC: 84 MHz"),
     field(TIM5 + 0x2C, (0, 32), u32::MAX, "TIM5_ARR"),
-    // Interrupt 50 is the only one, at the highest priority that tasks have.
+    // Interrupt 50 is the only one.
     field(NVIC + 0x100, (0, 32), 0, "NVIC_ISER0"),
     field(
         NVIC + 0x104,

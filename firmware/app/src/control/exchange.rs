@@ -3,7 +3,6 @@
 use drivers::Settings;
 use haptic_control::{Action, Currents, Request};
 
-use crate::index::Pulses;
 use crate::large::Choice;
 use crate::scene::Tuned;
 
@@ -13,10 +12,8 @@ pub struct Inputs {
     pub faults: Faults,
     /// Control ticks missed since the last one.
     pub missed: u32,
-    /// Debug settings are on that would hold the outputs in a halt.
-    pub debugger: bool,
-    /// Index pulses since the last tick.
-    pub pulses: Pulses,
+    /// Whether debug settings are on that would hold the outputs in a halt; asked when the device is armed.
+    pub debugger: fn() -> bool,
     /// A request to the safety machine.
     pub request: Option<Request>,
 }

@@ -1,7 +1,9 @@
 //! An image of all scenes, one of which is on.
 
 use estimator_core::{Sample, preset};
-use haptic_control::{Action, AnyScene, CurrentScale, Refusal, Switchboard, SwitchboardState};
+use haptic_control::{
+    Action, AnyScene, CurrentScale, Currents, Refusal, Switchboard, SwitchboardState,
+};
 
 use super::{BOUNDS, Estimation, HANDLE, Handle, RIG, SCENES, TORQUE_SCENE};
 use crate::config::{DEVICE, RATE};
@@ -43,6 +45,8 @@ impl Parameters {
 }
 
 /// The control core: a switchboard and the parameters of its scenes.
+// A tick needs the state alone, which comes first (see `Control`).
+#[repr(C)]
 pub struct Core {
     state: SwitchboardState<Large, Handle>,
     scenes: Scenes,
@@ -99,6 +103,16 @@ impl Core {
     /// One tick.
     pub fn step(&mut self, sample: &Sample) -> Action {
         SWITCHBOARD.step(&mut self.state, sample)
+    }
+
+    /// Currents of the latest tick.
+    pub const fn applied(&self) -> Currents {
+        self.state.applied()
+    }
+
+    /// States that the currents of the latest tick are not applied, but none.
+    pub fn withhold(&mut self) {
+        self.state.withhold();
     }
 
     /// Confidence and number of the large motor's estimator after the latest tick.

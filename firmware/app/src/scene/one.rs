@@ -2,7 +2,7 @@
 
 use estimator_core::Sample;
 use haptic_control::{
-    Action, Controller, ControllerState, CurrentScale, Refusal, SceneKind, Tunable,
+    Action, Controller, ControllerState, CurrentScale, Currents, Refusal, SceneKind, Tunable,
 };
 
 use super::{BOUNDS, Estimation, FIRST, HANDLE, Handle, RIG, THE_SCENE, TORQUE_SCENE, TheScene};
@@ -40,6 +40,7 @@ pub struct Core {
     state: ControllerState<TheScene, Large, Handle>,
     on: bool,
     scale: CurrentScale,
+    applied: Currents,
 }
 
 /// Whether the scene commands its currents by itself. The stages limit all others.
@@ -54,6 +55,7 @@ impl Core {
             controller,
             on: false,
             scale: CurrentScale::FULL,
+            applied: Currents::default(),
         }
     }
 
@@ -95,14 +97,25 @@ impl Core {
 
     /// One tick.
     pub fn step(&mut self, sample: &Sample) -> Action {
-        if !self.on {
-            return Action::default();
+        let mut action = Action::default();
+        if self.on {
+            action = self.controller.step(&mut self.state, sample);
         }
-        let mut action = self.controller.step(&mut self.state, sample);
         if OPEN_LOOP {
             action.currents = self.scale.within(&DEVICE, action.currents);
         }
+        self.applied = action.currents;
         action
+    }
+
+    /// Currents of the latest tick.
+    pub const fn applied(&self) -> Currents {
+        self.applied
+    }
+
+    /// States that the currents of the latest tick are not applied, but none.
+    pub fn withhold(&mut self) {
+        self.applied = Currents::default();
     }
 
     /// Confidence and number of the large motor's estimator after the latest tick.

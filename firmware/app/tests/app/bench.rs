@@ -27,8 +27,7 @@ pub(crate) fn ticks(seconds: f64) -> u32 {
 pub(crate) const CALM: Inputs = Inputs {
     faults: Faults::NONE,
     missed: 0,
-    debugger: false,
-    pulses: <Indices as Indexing>::NONE,
+    debugger: || false,
     request: None,
 };
 
@@ -49,7 +48,12 @@ pub(crate) struct Bench {
     pub(crate) readings: Option<Currents>,
     /// Voltage of the supply, V.
     pub(crate) supply: f32,
+    /// Index pulses since the latest tick.
+    pub(crate) pulses: Pulses,
 }
+
+/// No index pulse.
+pub(crate) const NO_PULSE: Pulses = <Indices as Indexing>::NONE;
 
 impl Bench {
     /// After a reset without a cause, with the brown-out reset on.
@@ -74,6 +78,7 @@ impl Bench {
             backwards: false,
             readings: None,
             supply: 24.0,
+            pulses: NO_PULSE,
         }
     }
 
@@ -97,7 +102,9 @@ impl Bench {
         let readings = readings(self.readings.unwrap_or(self.control.applied()));
         let flow = self.control.flow(&readings);
         let sample = self.sample(flow.currents.large);
-        let Outputs { currents, action } = self.control.step(&sample, &flow, inputs);
+        self.control.check(&sample, &flow, &self.pulses);
+        self.pulses = NO_PULSE;
+        let Outputs { currents, action } = self.control.step(&sample, inputs);
         self.action = action;
         if self.control.makes_frame() {
             self.control.watch(&supply(self.supply));

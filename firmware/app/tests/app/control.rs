@@ -111,7 +111,7 @@ fn any_fault_disables_the_amplifiers_in_the_same_tick() {
 fn debug_settings_refuse_to_arm() {
     let mut bench = Bench::new();
     let inputs = Inputs {
-        debugger: true,
+        debugger: || true,
         request: Some(Request::Arm),
         ..CALM
     };

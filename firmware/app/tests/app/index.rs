@@ -2,7 +2,7 @@
 
 use drivers::{Setting, Settings};
 use estimator_core::{Count, Counts};
-use firmware_app::control::{Inputs, Message};
+use firmware_app::control::Message;
 use firmware_app::index::{Indexing, Indication, Indications as _, Indices};
 use haptic_control::{Mode, Request, Stop};
 
@@ -12,10 +12,8 @@ const WANTED: bool = <Indices as Indexing>::WANTED;
 
 /// One tick with these pulses of the large and the small encoder.
 fn pulse(bench: &mut Bench, large: Option<u32>, small: Option<u32>) {
-    bench.step(&Inputs {
-        pulses: pulses([large, small].map(|count| count.map(Count))),
-        ..CALM
-    });
+    bench.pulses = pulses([large, small].map(|count| count.map(Count)));
+    bench.step(&CALM);
 }
 
 /// 4096 and 20 000 counts a turn; an image that captures no index goes on.

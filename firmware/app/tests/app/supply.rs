@@ -7,7 +7,7 @@ use firmware_app::control::Control;
 use firmware_app::supply::{Voltmeter, Watch};
 use haptic_control::{Mode, Request, Stop};
 
-use crate::bench::{Bench, CALM, ZERO, readings, supply, ticks};
+use crate::bench::{Bench, CALM, NO_PULSE, ZERO, readings, supply, ticks};
 
 const WANTED: bool = <Voltmeter as Watch>::WANTED;
 /// Ticks of three readings.
@@ -88,7 +88,8 @@ fn device_whose_supply_was_not_read_three_times_cannot_be_armed() {
             ..CALM
         };
         let flow = control.flow(&readings(ZERO));
-        let is_enabled = control.step(&first, &flow, &inputs).currents.is_some();
+        control.check(&first, &flow, &NO_PULSE);
+        let is_enabled = control.step(&first, &inputs).currents.is_some();
         assert_eq!(is_enabled, is_seen || !WANTED, "{number} readings");
     }
 }
