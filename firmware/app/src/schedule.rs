@@ -67,6 +67,7 @@ impl Phase {
     #[must_use]
     #[allow(
         unreachable_patterns,
+        clippy::match_overlapping_arm,
         reason = "below 10 kHz, where it is not executed"
     )]
     pub const fn due(self) -> Due {
@@ -90,7 +91,7 @@ impl Phase {
             b if b == BALANCE[1] || b == BALANCE[2] || b == BALANCE[3] => Due::Balance(1),
             SLOT => Due::Slot,
             LAST => Due::Windings(DECIMATION),
-            MESSAGE..LAST => Due::Message,
+            MESSAGE.. => Due::Message,
             _ => Due::Nothing,
         }
     }
