@@ -198,7 +198,7 @@ const fn end(u: f32) -> (f32, f32, Likelihood) {
 #[inline(always)]
 fn inverse_root(x: f32) -> f32 {
     let one = 1.0f32.to_bits();
-    let offset = 1.067_549_9f32.to_bits() - one;
+    let offset = 1.067_55_f32.to_bits() - one;
     let half = 0.5 * x;
     let mut y = f32::from_bits(one + one / 2 - offset - (x.to_bits() >> 1));
     for _ in 0..2 {
