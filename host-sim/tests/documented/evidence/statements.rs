@@ -76,10 +76,13 @@ fn statements_of_the_pages_hold() {
         let ratio = board("peer:openffboard-tuned", counts) / board("pll-tuned", counts);
         assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
     }
+    let delay = |name, counts, khz| figure(&EVIDENCE_ODRIVE, name, counts, khz, "delay_ms");
+    let default = [4096, 8192].map(|counts| delay("peer:odrive", counts, "8"));
+    assert!(default[0] < 0.8 * delay("imm", 4096, "1"));
+    assert!((default[1] / delay("imm", 8192, "1") - 1.0).abs() < 0.15);
+    assert!(delay("imm", 4096, "8") < 0.8 * default[0]);
+    assert!(delay("imm", 8192, "8") < 0.8 * default[1]);
     let odrive = |name, khz, column| figure(&EVIDENCE_ODRIVE, name, 4096, khz, column);
-    let delay = odrive("peer:odrive", "8", "delay_ms");
-    assert!(delay < 0.8 * odrive("imm", "1", "delay_ms"));
-    assert!((delay / odrive("imm", "8", "delay_ms") - 1.0).abs() < 0.15);
     let tuned = odrive("peer:odrive-tuned", "8", "rms_pct");
     assert!(tuned < 0.9 * odrive("pll-tuned", "8", "rms_pct"));
     let vesc = |name, khz, column| figure(&EVIDENCE_VESC, name, 4096, khz, column);
