@@ -98,7 +98,8 @@ impl SafetyState {
         self.stop
     }
 
-    /// Ends the calm ticks, because something is found: this tick is left to [`Safety::tick`].
+    /// Ends the calm ticks because something is found: [`Safety::pass_calm`] leaves this tick to
+    /// [`Safety::tick`].
     pub const fn end_calm(&mut self) {
         self.silent -= self.calm;
         self.calm = 0;
@@ -159,9 +160,9 @@ impl Safety {
         self.eventful(state, findings, request)
     }
 
-    /// A tick in which nothing is missed, and nothing is found without a call of [`SafetyState::end_calm`]:
-    /// whether the amplifiers stay enabled and nothing else changes. Otherwise nothing was done, and the tick
-    /// is left to [`Self::tick`].
+    /// Passes a tick without findings. Returns whether the amplifiers stay enabled and nothing else changes. If
+    /// not, nothing was done, and the tick is left to [`Self::tick`]. A caller that has found something in this
+    /// tick calls [`SafetyState::end_calm`] before.
     #[inline]
     pub fn pass_calm(&self, state: &mut SafetyState, request: Option<Request>) -> bool {
         let Some(left) = state.calm.checked_sub(1) else {

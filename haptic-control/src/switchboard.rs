@@ -133,7 +133,7 @@ impl<L: VelocityEstimator, H: VelocityEstimator> SwitchboardState<L, H> {
         self.applied
     }
 
-    /// States that the currents of the latest tick were not applied, but none.
+    /// Records that the latest tick applies no current.
     pub fn withhold(&mut self) {
         self.applied = Currents::default();
     }

@@ -211,14 +211,14 @@ impl Control {
         self.note(found);
     }
 
-    /// Has [`Self::step`] decide, if something is found.
+    /// Keeps a finding, so that [`Self::step`] decides on it in this tick.
     fn note(&mut self, found: Option<Stop>) {
         if let Some(cause) = found {
             self.keep(cause);
         }
     }
 
-    /// It is a function of its own because few ticks call it.
+    /// A function of its own, because few ticks call it.
     #[cold]
     #[inline(never)]
     fn keep(&mut self, cause: Stop) {

@@ -146,46 +146,49 @@ fn tables_without_each_cause_have_every_cause() {
 /// Seeds 1 and 7001 chose the constants of the anticipation; these did not.
 const JUDGING: [&str; 5] = ["2", "3", "4", "5", "6"];
 
-#[test]
-fn table_of_the_handles_estimators_has_every_judging_seed() {
-    let run = "--causes-only --scene free-air --estimator adaptive --rate 1000 --rate 10000";
-    let run: Vec<&str> = run.split(' ').collect();
-    let mut cells = Vec::new();
+/// A row for each estimator of the handle and each judging seed, with these cells of the scenes at a rate.
+fn by_handle_and_seed<const N: usize>(
+    scenes: &[&str],
+    cells: impl Fn(&[Value]) -> [String; N],
+) -> Vec<Vec<String>> {
+    let mut run = vec!["--causes-only", "--estimator", "adaptive"];
+    run.extend(["--rate", "1000", "--rate", "10000"]);
+    run.extend(scenes.iter().flat_map(|scene| ["--scene", scene]));
+    let mut table = Vec::new();
     for handle in ["kalman-triple-steady", "imm"] {
         for seed in JUDGING {
             let rows = feel(&[&run[..], &["--handle-estimator", handle, "--seed", seed]].concat());
             let mut row = vec![handle.to_owned(), seed.to_owned()];
-            for rows in RATES_HZ.map(|rate_hz| at(&rows, rate_hz)) {
-                let nothing = find(&rows, &[("without", "nothing")]);
-                let figures = [RMS, P99, BELOW, (TACTILE[0], 1.0)];
-                row.extend(figures.map(|(field, factor)| cell(factor * number(nothing, field))));
-            }
-            cells.push(row);
+            row.extend(
+                RATES_HZ
+                    .into_iter()
+                    .flat_map(|rate_hz| cells(&at(&rows, rate_hz))),
+            );
+            table.push(row);
         }
     }
+    table
+}
+
+#[test]
+fn table_of_the_handles_estimators_has_every_judging_seed() {
+    let cells = by_handle_and_seed(&["free-air"], |rows| {
+        let nothing = find(rows, &[("without", "nothing")]);
+        let figures = [RMS, P99, BELOW, (TACTILE[0], 1.0)];
+        figures.map(|(field, factor)| cell(factor * number(nothing, field)))
+    });
     check(&FEEL_HANDLE, &[], &cells);
 }
 
 #[test]
 fn table_of_the_handles_estimators_has_three_scenes() {
     let scenes = ["viscous", "spring-damper", "wall"];
-    let mut run = vec!["--causes-only", "--estimator", "adaptive"];
-    run.extend(["--rate", "1000", "--rate", "10000"]);
-    run.extend(scenes.iter().flat_map(|scene| ["--scene", scene]));
-    let mut cells = Vec::new();
-    for handle in ["kalman-triple-steady", "imm"] {
-        for seed in JUDGING {
-            let rows = feel(&[&run[..], &["--handle-estimator", handle, "--seed", seed]].concat());
-            let mut row = vec![handle.to_owned(), seed.to_owned()];
-            for rows in RATES_HZ.map(|rate_hz| at(&rows, rate_hz)) {
-                row.extend(scenes.map(|scene| {
-                    let row = find(&rows, &[("scenario", scene), ("without", "nothing")]);
-                    cell(number(row, RMS.0))
-                }));
-            }
-            cells.push(row);
-        }
-    }
+    let cells = by_handle_and_seed(&scenes, |rows| {
+        scenes.map(|scene| {
+            let row = find(rows, &[("scenario", scene), ("without", "nothing")]);
+            cell(number(row, RMS.0))
+        })
+    });
     check(&FEEL_HANDLE_SCENES, &[], &cells);
 }
 

@@ -110,7 +110,7 @@ impl Core {
         self.state.applied()
     }
 
-    /// States that the currents of the latest tick are not applied, but none.
+    /// Records that the latest tick applies no current.
     pub fn withhold(&mut self) {
         self.state.withhold();
     }

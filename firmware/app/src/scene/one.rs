@@ -113,7 +113,7 @@ impl Core {
         self.applied
     }
 
-    /// States that the currents of the latest tick are not applied, but none.
+    /// Records that the latest tick applies no current.
     pub fn withhold(&mut self) {
         self.applied = Currents::default();
     }
