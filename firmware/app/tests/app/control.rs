@@ -51,6 +51,33 @@ fn amplifiers_are_enabled_from_arm_to_disarm() {
     assert_eq!(bench.control.applied(), ZERO);
 }
 
+/// Observers and telemetry take the currents of the latest tick for those that flow.
+#[test]
+fn a_tick_that_disables_reports_no_current() {
+    for inputs in [
+        Inputs {
+            request: Some(Request::Disarm),
+            ..CALM
+        },
+        Inputs {
+            faults: Faults::INTERLOCK,
+            ..CALM
+        },
+    ] {
+        // The scene of an image of one, or free air.
+        let mut bench = Bench::start(FIRST.max(1));
+        while bench.handle < 0.15 {
+            bench.handle += 4e-4;
+            bench.request(Request::KeepAlive);
+        }
+        let is_off = cfg!(one_scene) && FIRST == 0;
+        assert_eq!(bench.control.applied() == ZERO, is_off);
+        assert_eq!(bench.step(&inputs), None);
+        assert_eq!(bench.control.applied(), ZERO);
+        assert_eq!(bench.record().action.currents, ZERO);
+    }
+}
+
 #[test]
 fn any_fault_disables_the_amplifiers_in_the_same_tick() {
     let calm = || Inputs { ..CALM };

@@ -4,12 +4,11 @@
 use drivers::{Command, encode};
 use estimator_core::ParameterErrors;
 use firmware_app::config::EDGES;
-use firmware_app::control::{Faults, Inputs};
 use firmware_app::large::Learnable as _;
 use firmware_app::scene::SCENES;
 use haptic_control::{Mode, Request, Stop};
 
-use crate::bench::{Bench, CALM, ZERO, messages, ticks};
+use crate::bench::{Bench, messages, ticks};
 
 /// A set-point beyond what the small motor renders, 1.5 A at 27.5 mN.m/A, is refused.
 #[test]
@@ -151,28 +150,6 @@ fn free_air_estimates_and_off_does_not() {
     near(air.record().action.handle_velocity.0.into(), 4.0, 0.4);
     assert_ne!(air.control.applied().large.get(), 0.0);
     assert!(air.record().estimation.variance.0 > 0.0);
-}
-
-/// Observers and telemetry take the currents of the latest tick for those that flow.
-#[test]
-fn a_tick_that_disables_reports_no_current() {
-    for inputs in [
-        Inputs {
-            request: Some(Request::Disarm),
-            ..CALM
-        },
-        Inputs {
-            faults: Faults::INTERLOCK,
-            ..CALM
-        },
-    ] {
-        let mut air = Bench::start(1);
-        turn(&mut air, 0.1, 4.0);
-        assert_ne!(air.control.applied(), ZERO);
-        assert_eq!(air.step(&inputs), None);
-        assert_eq!(air.control.applied(), ZERO);
-        assert_eq!(air.record().action.currents, ZERO);
-    }
 }
 
 #[test]
