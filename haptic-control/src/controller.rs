@@ -2,15 +2,13 @@
 
 use estimator_core::{Count, Sample, Scale, VelocityEstimator};
 
-use crate::anticipation::{Anticipation, AnticipationState};
+use crate::compensation::{Compensation, CompensationState};
 use crate::limits::CurrentScale;
 use crate::need::{Need, Senses};
 use crate::rig::{AccelerationScale, AngleScale, Rig};
 use crate::scene::Scene;
 use crate::stage::{ContinuousStage, ContinuousState, TransientStage, TransientState};
-use crate::tick::{
-    Action, Anticipating, Continuous, Estimated, HandleNeed, Parts, Transient, tick,
-};
+use crate::tick::{Action, Continuous, Estimated, HandleNeed, Parts, Transient, tick};
 use crate::units::{RadPerS, Radians};
 
 type Of<N, T> = <N as Need>::Of<T>;
@@ -42,21 +40,19 @@ type Of<N, T> = <N as Need>::Of<T>;
 /// ```
 pub struct Controller<S: Scene, L, H> {
     scene: S,
-    continuous: Of<S::Continuous, (L, Scale, ContinuousStage)>,
+    continuous: Of<S::Continuous, (L, Scale, ContinuousStage, Compensation)>,
     handle: Of<HandleNeed<S>, (H, Scale)>,
     acceleration: Of<S::Acceleration, AccelerationScale>,
     transient: Of<S::Transient, TransientStage>,
-    anticipation: Of<S::Free, Anticipation>,
     angle: AngleScale,
 }
 
 /// State of a [`Controller`].
 pub struct ControllerState<S: Scene, L: VelocityEstimator, H: VelocityEstimator> {
     scene: S::State,
-    continuous: Of<S::Continuous, (L::State, ContinuousState)>,
+    continuous: Of<S::Continuous, (L::State, ContinuousState, CompensationState)>,
     handle: Of<HandleNeed<S>, H::State>,
     transient: Of<S::Transient, TransientState>,
-    anticipation: Of<S::Free, AnticipationState>,
     origin: Count,
 }
 
@@ -64,7 +60,7 @@ impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> ControllerState<S, L,
     /// State of the large motor's estimator, if the scene needs one.
     #[must_use]
     pub fn large(&self) -> Option<&L::State> {
-        let large = S::Continuous::map(S::Continuous::as_ref(&self.continuous), |(large, _)| {
+        let large = S::Continuous::map(S::Continuous::as_ref(&self.continuous), |(large, ..)| {
             Some(large)
         });
         S::Continuous::or(large, None)
@@ -72,10 +68,10 @@ impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> ControllerState<S, L,
 
     /// State of the large motor's estimator, to change the choice among several estimators.
     pub fn large_mut(&mut self) -> Option<&mut L::State> {
-        let large =
-            S::Continuous::map(S::Continuous::as_mut(&mut self.continuous), |(large, _)| {
-                Some(large)
-            });
+        let large = S::Continuous::map(
+            S::Continuous::as_mut(&mut self.continuous),
+            |(large, ..)| Some(large),
+        );
         S::Continuous::or(large, None)
     }
 }
@@ -87,7 +83,6 @@ impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> Clone for ControllerS
             continuous: S::Continuous::copy(&self.continuous),
             handle: HandleNeed::<S>::copy(&self.handle),
             transient: S::Transient::copy(&self.transient),
-            anticipation: S::Free::copy(&self.anticipation),
             origin: self.origin,
         }
     }
@@ -99,7 +94,6 @@ impl<S: Scene, L: VelocityEstimator, H: VelocityEstimator> PartialEq for Control
             && S::Continuous::same(&self.continuous, &other.continuous)
             && HandleNeed::<S>::same(&self.handle, &other.handle)
             && S::Transient::same(&self.transient, &other.transient)
-            && S::Free::same(&self.anticipation, &other.anticipation)
             && self.origin == other.origin
     }
 }
@@ -114,11 +108,17 @@ where
     pub fn new(scene: S, large: L, handle: H, rig: &Rig) -> Self {
         Self {
             scene,
-            continuous: S::Continuous::make(|| (large, rig.large_scale, rig.continuous)),
+            continuous: S::Continuous::make(|| {
+                (
+                    large,
+                    rig.large_scale,
+                    rig.continuous,
+                    *rig.compensation::<S>(),
+                )
+            }),
             handle: HandleNeed::<S>::make(|| (handle, rig.handle_scale)),
             acceleration: S::Acceleration::make(|| rig.acceleration_scale),
             transient: S::Transient::make(|| rig.transient),
-            anticipation: S::Free::make(|| rig.anticipation),
             angle: rig.angle_scale,
         }
     }
@@ -130,7 +130,14 @@ where
             scene: self.scene.start(Radians(0.0)),
             continuous: S::Continuous::map(
                 S::Continuous::as_ref(&self.continuous),
-                |(large, _, stage)| (large.start(first), stage.start(RadPerS(0.0))),
+                |(large, _, stage, compensation)| {
+                    let still = RadPerS(0.0);
+                    (
+                        large.start(first),
+                        stage.start(still),
+                        compensation.start(still),
+                    )
+                },
             ),
             handle: HandleNeed::<S>::map(HandleNeed::<S>::as_ref(&self.handle), |(handle, _)| {
                 handle.start(&handle_sample)
@@ -139,9 +146,6 @@ where
                 S::Transient::as_ref(&self.transient),
                 TransientStage::start,
             ),
-            anticipation: S::Free::map(S::Free::as_ref(&self.anticipation), |part| {
-                part.start(RadPerS(0.0))
-            }),
             origin: first.coupled,
         }
     }
@@ -157,7 +161,7 @@ where
                 |fresh, before| (fresh, before),
             ),
             S::Continuous::as_ref(&self.continuous),
-            |(fresh, before), (large, _, stage)| {
+            |(fresh, before), (large, _, stage, _)| {
                 large.restart(&mut before.0, first);
                 fresh.0.clone_from(&before.0);
                 stage.restart(&mut before.1, RadPerS(0.0));
@@ -185,7 +189,7 @@ where
         S::Continuous::zip(
             S::Continuous::as_ref(&self.continuous),
             S::Continuous::as_mut(&mut state.continuous),
-            |(_, _, stage), (_, state)| stage.scale(state, scale),
+            |(_, _, stage, _), (_, state, _)| stage.scale(state, scale),
         );
         S::Transient::zip(
             S::Transient::as_ref(&self.transient),
@@ -207,14 +211,18 @@ where
             continuous: S::Continuous::zip(
                 S::Continuous::as_ref(&self.continuous),
                 S::Continuous::as_mut(&mut state.continuous),
-                |(estimator, scale, stage), (estimated, state)| Continuous {
-                    large: Estimated {
-                        estimator,
-                        state: estimated,
-                        scale: *scale,
-                    },
-                    stage,
-                    state,
+                |(estimator, scale, stage, compensation), (estimated, state, compensated)| {
+                    Continuous {
+                        large: Estimated {
+                            estimator,
+                            state: estimated,
+                            scale: *scale,
+                        },
+                        compensation,
+                        compensated,
+                        stage,
+                        state,
+                    }
                 },
             ),
             handle: HandleNeed::<S>::zip(
@@ -234,14 +242,6 @@ where
                 S::Transient::as_ref(&self.transient),
                 S::Transient::as_mut(&mut state.transient),
                 |stage, state| Transient { stage, state },
-            ),
-            anticipation: S::Free::zip(
-                S::Free::as_ref(&self.anticipation),
-                S::Free::as_mut(&mut state.anticipation),
-                |anticipation, state| Anticipating {
-                    anticipation,
-                    state,
-                },
             ),
         };
         tick(&self.scene, &mut state.scene, parts, angle, sample)

@@ -16,8 +16,8 @@
 )]
 
 mod ammeters;
-mod anticipation;
 mod balance;
+mod compensation;
 mod controller;
 mod coulomb;
 mod design_error;
@@ -45,8 +45,8 @@ mod units;
 mod windings;
 
 pub use ammeters::{Ammeters, AmmetersState, Flow};
-pub use anticipation::{Anticipated, Anticipation, AnticipationState};
 pub use balance::{Balance, BalanceState};
+pub use compensation::{Compensated, Compensation, CompensationState};
 pub use controller::{Controller, ControllerState};
 pub use design_error::DesignError;
 pub use device::{DualStage, Motor};
@@ -62,7 +62,7 @@ pub use rst::{Rst, RstState};
 pub use rst_design::{LEAST_MODULUS, LoopPoles, RstDesign};
 pub use safety::{Findings, Mode, Order, Request, Safety, SafetyState};
 pub use scene::*;
-pub use stage::{ContinuousStage, ContinuousState, Followed, TransientStage, TransientState};
+pub use stage::{ContinuousStage, ContinuousState, CoupledParts, TransientStage, TransientState};
 pub use stop::Stop;
 pub use supply::{Supply, SupplyFinding, SupplyState};
 pub use switchboard::{Switchboard, SwitchboardState};

@@ -5,10 +5,11 @@ use core::f64::consts::PI;
 
 use estimator_core::{Counts, CountsPerTickSquared, Hertz, Scale};
 
-use crate::anticipation::Anticipation;
+use crate::compensation::Compensation;
 use crate::design_error::DesignError;
 use crate::device::DualStage;
 use crate::rst_design::{LoopPoles, RstDesign};
+use crate::scene::Scene;
 use crate::stage::{ContinuousStage, TransientStage};
 use crate::units::{RadPerS2, Radians};
 
@@ -26,8 +27,10 @@ pub struct Rig {
     pub continuous: ContinuousStage,
     /// The small motor.
     pub transient: TransientStage,
-    /// The anticipation of the handle's motion.
-    pub anticipation: Anticipation,
+    /// What is compensated beside a spring.
+    pub sprung: Compensation,
+    /// What is compensated for a handle that moves freely.
+    pub free: Compensation,
     /// Scale of the large encoder.
     pub large_scale: Scale,
     /// Scale of the small encoder's velocity.
@@ -72,6 +75,11 @@ const LARGE_SLEW: f64 = 1200.0;
 const SMALL_SLEW: f64 = 600.0;
 
 impl Rig {
+    /// What is compensated in a scene.
+    pub(crate) const fn compensation<S: Scene>(&self) -> &Compensation {
+        if S::FREE { &self.free } else { &self.sprung }
+    }
+
     /// Designs the loop of `device` at `rate`.
     ///
     /// # Errors
@@ -95,7 +103,8 @@ impl Rig {
         Ok(Self {
             continuous: ContinuousStage::new(device, &design, (LARGE_SLEW * t) as f32),
             transient: TransientStage::new(device, (SMALL_SLEW * t) as f32),
-            anticipation: Anticipation::new(device, rate, poles),
+            sprung: Compensation::sprung(device, rate, poles),
+            free: Compensation::free(device, rate, poles),
             large_scale: large,
             handle_scale: handle,
             angle_scale: AngleScale {

@@ -2,7 +2,6 @@
 
 use estimator_core::Amps;
 
-use crate::coulomb::{Coulomb, LARGEST_CONSTANT};
 use crate::device::DualStage;
 use crate::limits::{CurrentLimits, CurrentScale, at_most};
 use crate::monitor::LARGE_OVERSPEED;
@@ -13,8 +12,8 @@ use crate::units::{NewtonMetres, RadPerS};
 /// The continuous stage: the large motor behind the coupler (fig. 3 of the paper).
 ///
 /// The torque on the handle is `b (ω_L - ω_S)`. A commanded torque therefore is a commanded
-/// velocity `ω_L = ω_S + torque / b`, which an [`Rst`] compensator tracks; ω_S is the velocity
-/// [`Followed`]. The commanded velocity
+/// velocity `ω_L = ω_S + torque / b`, which an [`Rst`] compensator tracks; for ω_S it takes
+/// [`Compensated::followed`](crate::Compensated::followed). The commanded velocity
 /// is limited to 85 % of the speed at which [`Monitor::new`](crate::Monitor::new) stops the large
 /// motor; the transient stage renders the missing torque. Two terms are fed forward: Coulomb
 /// friction in the direction of the commanded velocity, and the pull of the coupler on the large
@@ -29,21 +28,20 @@ pub struct ContinuousStage {
     damping: f32,
     /// Current fed forward for friction, A.
     friction: f32,
-    /// Inverse of the velocity over which the friction is faded in, 1 / (rad/s).
-    per_fade: f32,
-    /// Torque that is compensated per measured slip, N·m per rad/s.
-    measured: f32,
+    /// Largest drag that is compensated, N·m.
+    largest_drag: f32,
     /// 1 - m, the gain of each half of the tracking filter.
     tracking_gain: f32,
 }
 
-/// The motion of the handle that the large motor follows.
+/// Parts of the coupler's torque beside the commanded one that the small motor takes as transmitted, and so
+/// compensates, from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Followed {
-    /// Velocity that it follows where no torque is commanded.
-    pub velocity: RadPerS,
-    /// Inverse of the velocity over which its friction is faded in, 1 / (rad/s).
-    pub(crate) per_fade: f32,
+pub struct CoupledParts {
+    /// Of the torque by the tracking error of the large motor.
+    pub tracking: f32,
+    /// Of the drag: the torque by the lag of the large motor behind the handle.
+    pub drag: f32,
 }
 
 /// State of a [`ContinuousStage`].
@@ -70,26 +68,14 @@ impl ContinuousState {
 /// overshoot on a device whose parameters differ from the description.
 const LARGEST_WANTED: f32 = (0.85 * LARGE_OVERSPEED) as f32;
 
-/// Commanded velocity of the large motor below which the friction that is fed forward is reduced,
-/// because its direction is uncertain, in a scene with a spring, rad/s.
-const FADE: f64 = 0.5;
+/// Inverse of the commanded velocity of the large motor below which the friction that is fed forward is
+/// reduced, because its direction is uncertain, 1 / (rad/s).
+const PER_FADE: f32 = 1.0 / 0.15;
 
-/// Velocity of the handle below which the friction that is fed forward is reduced in a scene with a spring,
-/// rad/s. It is lower than that of the large motor was chosen for: the handle's encoder is finer.
-const HANDLE_FADE: f64 = 0.12;
-
-/// Part of the small motor's friction that is fed forward in a scene with a spring. The rest damps the
-/// spring: with all of it, the largest passive stiffness without damping would be smaller by a seventh.
-const FRICTION_PART: f64 = 0.8;
-
-/// Least damping of the coupler with which the transient stage is passive, as a factor of the value in
-/// the description.
-const LEAST_DAMPING: f64 = 0.6;
-
-/// Part of the measured slip's torque that the small motor compensates. A larger part would drive
-/// the handle, if the small motor is stronger and the coupler weaker than in the description.
-const MEASURED_PART: f64 = LEAST_DAMPING / LARGEST_CONSTANT;
-const EXPECTED_PART: f32 = (1.0 - MEASURED_PART) as f32;
+/// Lag of the large motor behind the handle whose drag is compensated at most, rad/s. It bounds the torque that
+/// the compensation adds to a handle which oscillates slowly, on a device with a weaker coupler or a stronger small
+/// motor than in the description. A hand that turns back at 28 rad/s² makes the motor lag by 0.15 rad/s.
+const LARGEST_LAG: f64 = 0.5;
 
 impl ContinuousStage {
     /// The stage of a device, with its designed loop; a tick may change the current by `slew` A.
@@ -105,8 +91,7 @@ impl ContinuousStage {
             nm_per_rad_per_s: device.damping as f32,
             damping: (-device.damping / device.large.torque_constant) as f32,
             friction: (device.large.coulomb_friction / device.large.torque_constant) as f32,
-            per_fade: (1.0 / FADE) as f32,
-            measured: (MEASURED_PART * device.damping) as f32,
+            largest_drag: (LARGEST_LAG * device.damping) as f32,
             tracking_gain: (1.0 - design.tracking_pole) as f32,
         }
     }
@@ -136,17 +121,7 @@ impl ContinuousStage {
         state.largest = Amps::new(scale.large(self.limits.largest.get()));
     }
 
-    /// The motion that the large motor follows in a scene with a spring: that of the handle.
-    #[inline]
-    #[must_use]
-    pub const fn follow(&self, handle: RadPerS) -> Followed {
-        Followed {
-            velocity: handle,
-            per_fade: self.per_fade,
-        }
-    }
-
-    /// One tick: the large motor's current for a commanded torque.
+    /// One tick: the large motor's current for a commanded torque, while it follows a velocity.
     #[must_use]
     #[inline]
     pub fn update(
@@ -155,9 +130,9 @@ impl ContinuousStage {
         torque: NewtonMetres,
         large: RadPerS,
         handle: RadPerS,
-        followed: Followed,
+        followed: RadPerS,
     ) -> Amps {
-        let wanted = followed.velocity.0 + torque.0 * self.rad_per_s_per_nm;
+        let wanted = followed.0 + torque.0 * self.rad_per_s_per_nm;
         // NaN is not within.
         let (limited, asked) = if wanted.abs() <= LARGEST_WANTED {
             (wanted, torque.0)
@@ -166,7 +141,7 @@ impl ContinuousStage {
         };
         state.asked = asked;
         let looped = self.rst.update(&mut state.rst, RadPerS(limited), large);
-        let direction = at_most(state.rst.filtered().0 * followed.per_fade, 1.0);
+        let direction = at_most(state.rst.filtered().0 * PER_FADE, 1.0);
         let forward = self.friction * direction + self.damping * handle.0;
         let wanted = looped + forward;
         let limits = CurrentLimits {
@@ -187,24 +162,36 @@ impl ContinuousStage {
     /// The limited velocity for a velocity above the largest, and the torque that is commanded by it.
     #[cold]
     #[inline(never)]
-    fn limited(&self, wanted: f32, followed: Followed) -> (f32, f32) {
+    fn limited(&self, wanted: f32, followed: RadPerS) -> (f32, f32) {
         let limited = at_most(wanted, LARGEST_WANTED);
-        let asked = (limited - followed.velocity.0) * self.nm_per_rad_per_s;
+        let asked = (limited - followed.0) * self.nm_per_rad_per_s;
         (limited, asked)
     }
 
     /// One tick, after [`Self::update`]: the torque that the coupler is assumed to transmit.
     ///
-    /// It is the average of the torque of the measured slip and of the commanded torque after the
-    /// tracking filter F and the limit of the velocity, `b slip / 2 + F torque / 2`. Both are equal
-    /// once the large motor follows. Only half of an uncommanded slip torque is compensated, which
-    /// keeps the loop passive.
+    /// ```text
+    /// c = F τ + p_t b (ω_L - ω_f) + p_d sat(b (ω_f - ω_S) - F τ, b 0.5 rad/s)
+    /// ```
+    /// τ is the commanded torque and ω_f the commanded velocity, both after the tracking filter F and the limit of the
+    /// velocity. The three terms are the commanded torque, that of the tracking error, and the drag: once the
+    /// large motor follows the handle, the latter are zero.
     #[must_use]
-    pub fn coupled(&self, state: &mut ContinuousState, slip: RadPerS) -> NewtonMetres {
+    pub fn coupled(
+        &self,
+        state: &mut ContinuousState,
+        large: RadPerS,
+        handle: RadPerS,
+        parts: CoupledParts,
+    ) -> NewtonMetres {
         let [lag, expected] = &mut state.expected;
         *lag += self.tracking_gain * (state.asked - *lag);
         *expected += self.tracking_gain * (*lag - *expected);
-        NewtonMetres(EXPECTED_PART * *expected + self.measured * slip.0)
+        let commanded = state.rst.filtered().0;
+        let tracking = self.nm_per_rad_per_s * (large.0 - commanded);
+        let drag = self.nm_per_rad_per_s * (commanded - handle.0) - *expected;
+        let drag = at_most(drag, self.largest_drag);
+        NewtonMetres(*expected + parts.tracking * tracking + parts.drag * drag)
     }
 }
 
@@ -213,12 +200,11 @@ impl ContinuousStage {
 /// With a continuous stage it renders the torque that the coupler is assumed not to transmit,
 /// without delay (see [`ContinuousStage::coupled`]). Alone it renders the whole torque. Its own
 /// Coulomb friction is fed forward in the direction of the handle's velocity, if that is estimated:
-/// [`TransientStage::friction_correction`] or [`Anticipated::friction`](crate::Anticipated::friction).
+/// [`Compensated::friction`](crate::Compensated::friction).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransientStage {
     limits: CurrentLimits,
     amps_per_nm: f32,
-    friction: Coulomb,
 }
 
 /// State of a [`TransientStage`].
@@ -246,7 +232,6 @@ impl TransientStage {
                 slew,
             },
             amps_per_nm: (1.0 / device.small.torque_constant) as f32,
-            friction: Coulomb::new(device.small.coulomb_friction, FRICTION_PART, HANDLE_FADE),
         }
     }
 
@@ -267,15 +252,6 @@ impl TransientStage {
     /// Scales the limit of the current, from the next tick on.
     pub fn scale(&self, state: &mut TransientState, scale: CurrentScale) {
         state.largest = Amps::new(scale.small(self.limits.largest.get()));
-    }
-
-    /// Torque that is fed forward against the small motor's friction at this velocity of the handle, in a
-    /// scene without [anticipation](crate::Anticipation): four fifths of the friction from 0.12 rad/s on,
-    /// half of it from 6 rad/s on.
-    #[inline]
-    #[must_use]
-    pub fn friction_correction(&self, handle: RadPerS) -> NewtonMetres {
-        self.friction.at(handle)
     }
 
     /// One tick: the small motor's current for a torque, that against its friction included.

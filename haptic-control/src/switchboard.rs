@@ -2,16 +2,14 @@
 
 use estimator_core::{AccelerationEstimator, Amps, Count, Hertz, Sample, VelocityEstimator};
 
-use crate::anticipation::AnticipationState;
+use crate::compensation::CompensationState;
 use crate::limits::{CurrentScale, Currents, within};
 use crate::need::{Need, Senses};
 use crate::rig::Rig;
 use crate::scene::*;
 use crate::scenes;
 use crate::stage::{ContinuousState, TransientState};
-use crate::tick::{
-    Action, Anticipating, Continuous, Estimated, HandleNeed, Parts, Transient, tick,
-};
+use crate::tick::{Action, Continuous, Estimated, HandleNeed, Parts, Transient, tick};
 use crate::units::{RadPerS, Radians};
 
 macro_rules! active_scene {
@@ -109,13 +107,10 @@ enum Change {
 #[derive(Clone)]
 #[repr(C)]
 struct Shared<L: VelocityEstimator, H: VelocityEstimator> {
-    /// Whether the continuous stage, the handle's estimator, the transient stage and the anticipation
-    /// ran in the last tick.
-    live: [bool; 4],
-    /// Velocity of the handle in the last tick; zero if its estimator did not run.
-    handle_velocity: RadPerS,
+    /// Whether the continuous stage, the handle's estimator and the transient stage ran in the last tick.
+    live: [bool; 3],
     transient: TransientState,
-    anticipation: AnticipationState,
+    compensated: CompensationState,
     continuous: ContinuousState,
     handle: H::State,
     large: L::State,
@@ -180,9 +175,8 @@ where
                 continuous: self.rig.continuous.start(RadPerS(0.0)),
                 handle: self.handle.start(&Sample::new(first.coupled)),
                 transient: self.rig.transient.start(),
-                anticipation: self.rig.anticipation.start(RadPerS(0.0)),
-                handle_velocity: RadPerS(0.0),
-                live: [false; 4],
+                compensated: self.rig.free.start(RadPerS(0.0)),
+                live: [false; 3],
             },
             origin: first.coupled,
             change: Change::Over,
@@ -276,25 +270,20 @@ where
     /// few ticks call it.
     #[cold]
     #[inline(never)]
-    fn wake(&self, shared: &mut Shared<L, H>, wanted: [bool; 4], sample: &Sample) {
-        let [continuous, handle, transient, anticipation] = wanted;
+    fn wake(&self, shared: &mut Shared<L, H>, wanted: [bool; 3], sample: &Sample) {
+        let [continuous, handle, transient] = wanted;
         let live = shared.live;
         if continuous && !live[0] {
             self.large.restart(&mut shared.large, sample);
             let stage = &self.rig.continuous;
             stage.restart(&mut shared.continuous, RadPerS(0.0));
+            shared.compensated = self.rig.free.start(RadPerS(0.0));
         }
         if handle && !live[1] {
             shared.handle = self.handle.start(&Sample::new(sample.coupled));
         }
-        if !handle {
-            shared.handle_velocity = RadPerS(0.0);
-        }
         if transient && !live[2] {
             self.rig.transient.restart(&mut shared.transient);
-        }
-        if anticipation && !live[3] {
-            shared.anticipation = self.rig.anticipation.start(shared.handle_velocity);
         }
         shared.live = wanted;
     }
@@ -311,7 +300,6 @@ where
             S::Continuous::WANTED,
             HandleNeed::<S>::WANTED,
             S::Transient::WANTED,
-            S::Free::WANTED,
         ];
         if shared.live != wanted {
             self.wake(shared, wanted, sample);
@@ -323,14 +311,20 @@ where
         ];
         let parts: Parts<'_, S, L, H> = Parts {
             continuous: S::Continuous::zip(
-                S::Continuous::lend(&mut shared.large),
+                S::Continuous::zip(
+                    S::Continuous::lend(&mut shared.large),
+                    S::Continuous::lend(&mut shared.compensated),
+                    |estimated, compensated| (estimated, compensated),
+                ),
                 S::Continuous::lend(&mut shared.continuous),
-                |estimated, state| Continuous {
+                |(estimated, compensated), state| Continuous {
                     large: Estimated {
                         estimator: &self.large,
                         state: estimated,
                         scale: self.rig.large_scale,
                     },
+                    compensation: self.rig.compensation::<S>(),
+                    compensated,
                     stage: &self.rig.continuous,
                     state,
                 },
@@ -349,18 +343,9 @@ where
                     state,
                 }
             }),
-            anticipation: S::Free::map(S::Free::lend(&mut shared.anticipation), |state| {
-                Anticipating {
-                    anticipation: &self.rig.anticipation,
-                    state,
-                }
-            }),
         };
         let angle = self.rig.angle_scale.of(sample.coupled - origin);
         let mut action = tick(scene, scene_state, parts, angle, sample);
-        if HandleNeed::<S>::WANTED {
-            shared.handle_velocity = action.handle_velocity;
-        }
         if S::open_loop(scene_state).is_some() {
             action.currents = action.currents.within(largest);
         }

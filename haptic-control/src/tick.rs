@@ -2,7 +2,7 @@
 
 use estimator_core::{Sample, Scale, VelocityEstimator};
 
-use crate::anticipation::{Anticipation, AnticipationState};
+use crate::compensation::{Compensation, CompensationState};
 use crate::limits::Currents;
 use crate::need::{Need, Senses};
 use crate::rig::AccelerationScale;
@@ -34,9 +34,11 @@ impl<E: VelocityEstimator> Estimated<'_, E> {
     }
 }
 
-/// The continuous stage with the large motor's estimator.
+/// The continuous stage with the large motor's estimator, and what both motors compensate.
 pub(crate) struct Continuous<'a, L: VelocityEstimator> {
     pub(crate) large: Estimated<'a, L>,
+    pub(crate) compensation: &'a Compensation,
+    pub(crate) compensated: &'a mut CompensationState,
     pub(crate) stage: &'a ContinuousStage,
     pub(crate) state: &'a mut ContinuousState,
 }
@@ -47,19 +49,12 @@ pub(crate) struct Transient<'a> {
     pub(crate) state: &'a mut TransientState,
 }
 
-/// The anticipation of the handle's motion with its state.
-pub(crate) struct Anticipating<'a> {
-    pub(crate) anticipation: &'a Anticipation,
-    pub(crate) state: &'a mut AnticipationState,
-}
-
 /// The parts that a scene needs. A part that it does not need is `()`.
 pub(crate) struct Parts<'a, S: Scene, L: VelocityEstimator, H: VelocityEstimator> {
     pub(crate) continuous: <S::Continuous as Need>::Of<Continuous<'a, L>>,
     pub(crate) handle: <HandleNeed<S> as Need>::Of<Estimated<'a, H>>,
     pub(crate) acceleration: <S::Acceleration as Need>::Of<AccelerationScale>,
     pub(crate) transient: <S::Transient as Need>::Of<Transient<'a>>,
-    pub(crate) anticipation: <S::Free as Need>::Of<Anticipating<'a>>,
 }
 
 /// Result of a control tick.
@@ -109,27 +104,23 @@ where
         handle_velocity: handle,
         ..Action::default()
     };
-    let anticipated = S::Free::map(parts.anticipation, |part| {
-        part.anticipation.update(part.state, handle)
+    let less = S::Continuous::map(parts.continuous, |mut part| {
+        let large = part.large.velocity(sample);
+        let compensated = part.compensation.update(part.compensated, handle);
+        let followed = compensated.followed;
+        let current = part
+            .stage
+            .update(part.state, torque, large, handle, followed);
+        let coupled = part
+            .stage
+            .coupled(part.state, large, handle, compensated.parts);
+        action.large_velocity = large;
+        action.currents.large = current;
+        coupled.0 - compensated.friction.0
     });
-    let followed = S::Free::map(S::Free::as_ref(&anticipated), |ahead| ahead.followed);
-    let coupled = S::Continuous::map(parts.continuous, |mut part| {
-        action.large_velocity = part.large.velocity(sample);
-        let followed = S::Free::or(followed, part.stage.follow(handle));
-        action.currents.large =
-            part.stage
-                .update(part.state, torque, action.large_velocity, handle, followed);
-        let slip = RadPerS(action.large_velocity.0 - handle.0);
-        part.stage.coupled(part.state, slip)
-    });
-    let coupled = S::Continuous::or(coupled, NewtonMetres(0.0));
+    let asked = NewtonMetres(torque.0 - S::Continuous::or(less, 0.0));
     S::Transient::map(parts.transient, |part| {
-        let mut asked = torque.0 - coupled.0;
-        if HandleNeed::<S>::WANTED {
-            let ahead = S::Free::map(anticipated, |ahead| ahead.friction.0);
-            asked += S::Free::or(ahead, part.stage.friction_correction(handle).0);
-        }
-        action.currents.small = part.stage.update(part.state, NewtonMetres(asked));
+        action.currents.small = part.stage.update(part.state, asked);
     });
     if let Some(currents) = S::open_loop(scene_state) {
         action.currents = currents;

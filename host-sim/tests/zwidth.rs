@@ -47,12 +47,12 @@ fn z_width_is_smaller_at_a_slow_rate_and_with_a_coarse_encoder() {
         .collect();
     // Twice as stiff at ten times the rate; half of what a count is worth counts, in any wall.
     assert!(plain[0] > 2.0 * plain[1], "{plain:?}");
-    assert!(plain[1] > 0.15 && plain[2] < 0.8 * plain[1], "{plain:?}");
+    assert!(plain[1] > 0.15 && plain[2] < 0.9 * plain[1], "{plain:?}");
 }
 
 #[test]
 fn largest_stiffness_rises_and_falls_with_damping() {
-    let boundary = &found(&[case("foaw-best-fit", 10e3, 1024)])[0];
+    let boundary = &found(&[case("foaw-best-fit", 1e3, 1024)])[0];
     let plain = boundary.walls[0].1.value;
     let (damping, best) = boundary.stiffest().unwrap();
     assert!(damping > 0.0 && best.value > 1.1 * plain, "{boundary:?}");
@@ -60,17 +60,16 @@ fn largest_stiffness_rises_and_falls_with_damping() {
 }
 
 /// With the true velocity the undamped wall is limited by its delay of half a tick and the lag of the
-/// amplifier: as a damping of `-K (T / 2 + τa)`, against the half of the coupler's that is not compensated.
-/// Friction that is left, a fifth of 0.8 mN.m, and the allowance of the criterion, 0.35 mN.m, add damping that
-/// this condition does not have: at 0.5 rad/s, the friction alone 0.4 mN.m.s/rad. Entries between two ticks
-/// take some away.
+/// amplifier: as a damping of `-K (T / 2 + τa)`, against that of the coupler, which is not compensated right after a
+/// reversal. The coupler's is smaller below 60 Hz, where the large motor follows in part, and is compensated on the way
+/// into the wall, so that the bound is below the condition.
 #[test]
 fn undamped_wall_with_the_true_velocity_is_limited_by_its_delay() {
     for (rate_hz, amplifier_hz) in [(1e3, 2000.0), (1e3, 500.0), (2e3, 2000.0)] {
         let mut settings = settings(0);
         settings.device.stages.amplifier_bandwidth = Hertz(amplifier_hz);
         let stages = settings.device.stages;
-        let wanted = 0.5 * stages.damping / (0.5 / rate_hz + stages.amplifier_lag());
+        let wanted = stages.damping / (0.5 / rate_hz + stages.amplifier_lag());
         let case = LoopSetup {
             exact: true,
             ..case("kalman-triple", rate_hz, 1024)
@@ -84,7 +83,7 @@ fn undamped_wall_with_the_true_velocity_is_limited_by_its_delay() {
         let mean = found.iter().sum::<f64>() / found.len() as f64;
         println!("{rate_hz} Hz, amplifier {amplifier_hz} Hz: {mean}, derived {wanted}");
         assert!(
-            (0.85..1.4).contains(&(mean / wanted)),
+            (0.7..1.1).contains(&(mean / wanted)),
             "{rate_hz} Hz, amplifier {amplifier_hz} Hz: {found:?}, derived {wanted}"
         );
     }

@@ -44,7 +44,7 @@ pub struct Needs {
     pub continuous: bool,
     /// The small motor renders the scene's torque.
     pub transient: bool,
-    /// The handle moves freely: the controller anticipates its motion.
+    /// The handle moves freely: the scene has no spring, and the controller compensates more.
     pub free: bool,
     /// The handle's velocity is estimated: for the scene, for the slip of the coupler, or because
     /// the scene reads the acceleration.
@@ -58,7 +58,7 @@ impl Needs {
             acceleration: S::Acceleration::WANTED,
             continuous: S::Continuous::WANTED,
             transient: S::Transient::WANTED,
-            free: S::Free::WANTED,
+            free: S::FREE,
             handle_estimator: HandleNeed::<S>::WANTED,
         }
     }

@@ -62,7 +62,6 @@ impl Scene for Detents {
     type Acceleration = Skip;
     type Continuous = Skip;
     type Transient = Wanted;
-    type Free = Skip;
     type State = ();
 
     fn start(&self, _: Radians) {}

@@ -32,11 +32,12 @@ pub trait Scene {
     type Continuous: Need;
     /// Whether the small motor renders the scene's torque.
     type Transient: Need;
-    /// Whether the handle moves freely, so that the controller anticipates its motion
-    /// ([`Anticipation`](crate::Anticipation)): the scene has no spring, and both motors render it.
-    type Free: Need;
     /// State that the scene keeps from tick to tick.
     type State: Clone + PartialEq;
+
+    /// Whether the handle moves freely: the scene has no spring, and both motors render it. The controller
+    /// [compensates](crate::Compensation) more then.
+    const FREE: bool = false;
 
     /// State when the handle is at `angle`.
     fn start(&self, angle: Radians) -> Self::State;

@@ -151,7 +151,6 @@ impl Scene for Excite {
     type Acceleration = Skip;
     type Continuous = Skip;
     type Transient = Skip;
-    type Free = Skip;
     type State = ExciteState;
 
     fn start(&self, angle: Radians) -> ExciteState {

@@ -54,8 +54,8 @@ impl Scene for Friction {
     type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
-    type Free = Wanted;
     type State = ();
+    const FREE: bool = true;
 
     fn start(&self, _: Radians) {}
 

@@ -36,7 +36,6 @@ impl Scene for Hold {
     type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
-    type Free = Skip;
     /// The angle at which the scene began.
     type State = Radians;
 

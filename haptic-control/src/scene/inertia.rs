@@ -44,7 +44,6 @@ impl Scene for Inertia {
     type Acceleration = Wanted;
     type Continuous = Wanted;
     type Transient = Wanted;
-    type Free = Skip;
     type State = ();
 
     fn start(&self, _: crate::units::Radians) {}

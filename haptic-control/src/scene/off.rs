@@ -15,7 +15,6 @@ impl Scene for Off {
     type Acceleration = Skip;
     type Continuous = Skip;
     type Transient = Skip;
-    type Free = Skip;
     type State = ();
 
     fn start(&self, _: Radians) {}

@@ -39,7 +39,6 @@ impl Scene for SpringDamper {
     type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
-    type Free = Skip;
     type State = ();
 
     fn start(&self, _: Radians) {}

@@ -61,7 +61,6 @@ impl Scene for Texture {
     type Acceleration = Skip;
     type Continuous = Skip;
     type Transient = Wanted;
-    type Free = Skip;
     /// Phase, in 2^-32 of a period.
     type State = u32;
 

@@ -35,7 +35,6 @@ impl Scene for Torque {
     type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
-    type Free = Skip;
     type State = ();
 
     fn start(&self, _: Radians) {}

@@ -36,8 +36,8 @@ impl Scene for Viscous {
     type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
-    type Free = Wanted;
     type State = ();
+    const FREE: bool = true;
 
     fn start(&self, _: Radians) {}
 

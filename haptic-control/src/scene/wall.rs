@@ -42,7 +42,6 @@ impl Scene for Wall {
     type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
-    type Free = Skip;
     type State = ();
 
     fn start(&self, _: Radians) {}

@@ -124,13 +124,7 @@ fn does_not_wind_up(held: RadPerS, scale: CurrentScale, largest: f64) {
         stage.scale(&mut state, scale);
         let mut current = |torque| {
             stage
-                .update(
-                    &mut state,
-                    NewtonMetres(torque),
-                    held,
-                    held,
-                    stage.follow(held),
-                )
+                .update(&mut state, NewtonMetres(torque), held, held, held)
                 .get()
         };
         for _ in 0..saturated {

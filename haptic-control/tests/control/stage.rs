@@ -2,14 +2,19 @@
 
 use estimator_core::{Amps, Counts, CountsPerTickSquared, Hertz};
 use haptic_control::{
-    ContinuousStage, CurrentLimits, DesignError, DualStage, LoopPoles, NewtonMetres, RadPerS, Rig,
-    Rst, RstDesign, TransientStage,
+    ContinuousStage, CoupledParts, CurrentLimits, DesignError, DualStage, LoopPoles, NewtonMetres,
+    RadPerS, Rig, Rst, RstDesign, TransientStage,
 };
 
 const RATE: Hertz = Hertz(1e3);
 const DEVICE: DualStage = DualStage::DEFAULT;
 /// Wide enough for everything but what is tested.
 const WIDE: f32 = 1e3;
+/// Half of the tracking error and of the drag.
+const HALVES: CoupledParts = CoupledParts {
+    tracking: 0.5,
+    drag: 0.5,
+};
 
 fn design() -> RstDesign {
     RstDesign::new(&DEVICE, RATE, LoopPoles::DEFAULT).unwrap()
@@ -35,7 +40,7 @@ fn wanted_velocity_and_feed_forward_follow_from_the_wanted_torque() {
         let torque = 0.02 * (1.7 * phase).sin();
         let large = 15.0 * (0.6 * phase).sin();
         let ahead = handle + (2.3 * phase).sin();
-        let followed = stage.follow(RadPerS(ahead as f32));
+        let followed = RadPerS(ahead as f32);
         let current = stage.update(
             &mut state,
             NewtonMetres(torque as f32),
@@ -45,7 +50,7 @@ fn wanted_velocity_and_feed_forward_follow_from_the_wanted_torque() {
         );
         let wanted = ahead + torque / DEVICE.damping;
         let asked = rst.update(&mut looped, RadPerS(wanted as f32), RadPerS(large as f32));
-        let direction = (f64::from(looped.filtered().0) / 0.5).clamp(-1.0, 1.0);
+        let direction = (f64::from(looped.filtered().0) / 0.15).clamp(-1.0, 1.0);
         let forward = DEVICE.large.coulomb_friction * direction - DEVICE.damping * handle;
         let applied = f64::from(asked) + forward / DEVICE.large.torque_constant;
         near(current.get(), applied, 1e-3);
@@ -67,11 +72,10 @@ fn wanted_velocity_saturates_at_85_percent_of_the_monitors_limit() {
                 for _ in 0..3000 {
                     let (torque, large) = (NewtonMetres((sign * torque) as f32), sign * limit);
                     let (large, handle) = (RadPerS(large as f32), RadPerS(handle));
-                    let followed = stage.follow(RadPerS(followed as f32));
+                    let followed = RadPerS(followed as f32);
                     current = stage.update(&mut state, torque, large, handle, followed);
-                    // The large motor at the limit, relative to the followed velocity.
-                    let slip = RadPerS(large.0 - followed.velocity.0);
-                    coupled = stage.coupled(&mut state, slip);
+                    // The large motor at the limit, the handle at the followed velocity.
+                    coupled = stage.coupled(&mut state, large, followed, HALVES);
                 }
                 (f64::from(current.get()), coupled)
             };
@@ -83,29 +87,41 @@ fn wanted_velocity_saturates_at_85_percent_of_the_monitors_limit() {
     }
 }
 
+/// The three terms of the coupler's torque, against the tracking filter in f64, with a large motor that lags the
+/// commanded velocity by less and by more than what is compensated.
 #[test]
-fn coupler_torque_is_the_mean_of_measured_and_commanded() {
+fn coupler_torque_is_that_of_command_tracking_error_and_drag() {
     let stage = ContinuousStage::new(&DEVICE, &design(), WIDE);
-    let mut state = stage.start(RadPerS(0.0));
     let gain = 1.0 - (-std::f64::consts::TAU * 60.0 / RATE.0).exp();
-    let (mut lag, mut expected) = (0.0, 0.0);
-    for k in 0..200 {
-        let torque = if k < 100 { 0.03 } else { -0.01 };
-        let (large, handle) = (f64::from(k) / 10.0, 3.0);
-        let (large_now, handle_now) = (RadPerS(large as f32), RadPerS(handle as f32));
-        let asked = NewtonMetres(torque as f32);
-        let _ = stage.update(
-            &mut state,
-            asked,
-            large_now,
-            handle_now,
-            stage.follow(handle_now),
-        );
-        let coupled = stage.coupled(&mut state, RadPerS((large - handle) as f32));
-        lag += gain * (torque - lag);
-        expected += gain * (lag - expected);
-        let wanted = 0.5 * expected + 0.5 * DEVICE.damping * (large - handle);
-        near(coupled.0, wanted, 1e-8);
+    for parts in [[0.5, 0.0], [0.7, 1.0], [0.5, 0.25]] {
+        let mut state = stage.start(RadPerS(0.0));
+        let (mut expected, mut followed) = ([0.0; 2], [0.0; 2]);
+        let mut largest: f64 = 0.0;
+        for k in 0..400 {
+            let torque = if k < 200 { 0.03 } else { -0.01 };
+            let handle = 6.0 * (f64::from(k) / 30.0).sin();
+            let large = f64::from(k) / 100.0;
+            let [large_now, handle_now] = [large, handle].map(|speed| RadPerS(speed as f32));
+            let asked = NewtonMetres(torque as f32);
+            let _ = stage.update(&mut state, asked, large_now, handle_now, handle_now);
+            let part = |k: usize| parts[k] as f32;
+            let shares = CoupledParts {
+                tracking: part(0),
+                drag: part(1),
+            };
+            let coupled = stage.coupled(&mut state, large_now, handle_now, shares);
+            for (filter, input) in [(&mut expected, torque), (&mut followed, handle)] {
+                filter[0] += gain * (input - filter[0]);
+                filter[1] += gain * (filter[0] - filter[1]);
+            }
+            let tracking = DEVICE.damping * (large - followed[1]) - expected[1];
+            let lag = followed[1] - handle;
+            largest = largest.max(lag.abs());
+            let drag = DEVICE.damping * lag.clamp(-0.5, 0.5);
+            let wanted = expected[1] + parts[0] * tracking + parts[1] * drag;
+            near(coupled.0, wanted, 2e-8);
+        }
+        assert!(largest > 0.75, "{largest} rad/s");
     }
 }
 
@@ -121,27 +137,79 @@ fn small_current_is_that_of_the_torque() {
     }
 }
 
-/// Torques against the friction, as parts of it: with a spring in the scene, and without at 1 kHz, where
-/// 28 rad/s^2 reach 0.056 rad/s in a tick and 1 ms.
+/// Torques against the friction at 1 kHz, where 28 rad/s^2 reach 0.056 rad/s in a tick and 1 ms.
 #[test]
 fn friction_is_fed_forward_in_the_direction_of_the_handle() {
     let rig = Rig::new(&DEVICE, RATE, LoopPoles::DEFAULT).unwrap();
-    let part = |torque: NewtonMetres| f64::from(torque.0) / DEVICE.small.coulomb_friction;
-    for (handle, sprung, free) in [
-        (0.0, 0.0, 0.0),
-        (0.028, 0.8 * 0.028 / 0.12, 0.5),
-        (-0.056, -0.8 * 0.056 / 0.12, -1.0),
-        (0.12, 0.8, 1.0),
+    for (handle, part) in [
+        (0.0, 0.0),
+        (0.028, 0.5),
+        (-0.056, -1.0),
+        (0.12, 1.0),
         // (3 / 6)^4 = 1 / 16 of what is more than a half.
-        (3.0, 0.8 - 0.3 / 16.0, 1.0 - 0.5 / 16.0),
-        (-6.0, -0.5, -0.5),
-        (50.0, 0.5, 0.5),
+        (3.0, 1.0 - 0.5 / 16.0),
+        (-6.0, -0.5),
+        (50.0, 0.5),
     ] {
-        let correction = rig.transient.friction_correction(RadPerS(handle));
-        let mut state = rig.anticipation.start(RadPerS(0.0));
-        let ahead = rig.anticipation.update(&mut state, RadPerS(handle));
-        assert!((part(correction) - sprung).abs() < 1e-5, "{handle}");
-        assert!((part(ahead.friction) - free).abs() < 1e-5, "{handle}");
+        for compensation in [rig.free, rig.sprung] {
+            let mut state = compensation.start(RadPerS(handle));
+            let now = compensation.update(&mut state, RadPerS(handle));
+            let friction = f64::from(now.friction.0) / DEVICE.small.coulomb_friction;
+            assert!((friction - part).abs() < 1e-5, "{handle}: {friction}");
+        }
+    }
+}
+
+/// What is compensated at each tick of a motion with reversals, quick and slow ones, against the formulas in f64.
+#[test]
+fn compensation_follows_the_time_since_the_last_reversal() {
+    for rate in [Hertz(1e3), Hertz(10e3)] {
+        let rig = Rig::new(&DEVICE, rate, LoopPoles::DEFAULT).unwrap();
+        let period_ms = 1e3 / rate.0;
+        let gain = 1.0 - (-std::f64::consts::TAU * 60.0 / rate.0 / 2.0).exp();
+        let direction = 28.0 * (period_ms * 1e-3 + 1e-3);
+        for (compensation, free) in [(rig.free, true), (rig.sprung, false)] {
+            let mut state = compensation.start(RadPerS(0.0));
+            let (mut before, mut latest, mut since_ms) = (0.0, 0.0, 1e3_f64);
+            let mut seen = [0; 3];
+            for k in 0..(200.0 / period_ms) as u32 {
+                let t_ms = f64::from(k) * period_ms;
+                // Half periods of 5 ms, then of 40 ms, and a rest, in which the sign is that of before.
+                let handle = match t_ms {
+                    ..50.0 => 3.0 * (t_ms / 5.0 * std::f64::consts::PI).sin(),
+                    ..170.0 => 4.0 * ((t_ms - 50.0) / 40.0 * std::f64::consts::PI).cos(),
+                    _ => 0.0,
+                };
+                let handle = f64::from(handle as f32);
+                before += gain * (handle - before);
+                if handle * latest < 0.0 {
+                    since_ms = 0.0;
+                }
+                if handle != 0.0 {
+                    latest = handle;
+                }
+                let now = compensation.update(&mut state, RadPerS(handle as f32));
+                let slow = 1.0 - (handle / 6.0).clamp(-1.0, 1.0).powi(4);
+                let drag = ((since_ms - 10.0) / 8.0).clamp(0.0, 1.0);
+                let whole = ((since_ms - 4.0) / 2.0).clamp(0.0, 1.0);
+                let (lead, part) = if free {
+                    (1.0, 1.0)
+                } else {
+                    (drag, (1.0 + whole) / 2.0)
+                };
+                near(now.followed.0, handle + lead * (handle - before), 2e-5);
+                near(now.parts.drag, drag * slow, 1e-4);
+                near(now.parts.tracking, 0.5 + 0.2 * drag * slow, 1e-4);
+                let sat = (handle / direction).clamp(-1.0, 1.0);
+                let friction = DEVICE.small.coulomb_friction * sat * (1.0 + slow) / 2.0 * part;
+                near(now.friction.0, friction, 1e-7);
+                for (seen, weight) in seen.iter_mut().zip([0.0, 0.5, 1.0]) {
+                    *seen += i32::from((drag - weight).abs() < 0.2);
+                }
+                since_ms += period_ms;
+            }
+            assert!(seen.iter().all(|seen| *seen > 5), "{seen:?}");
+        }
     }
 }
 
@@ -153,8 +221,8 @@ fn friction_that_is_fed_forward_drives_a_handle_at_most_at_6_rad_per_s() {
     let settled = |friction: f64, constant: f64, from: f64| {
         let mut speed = from;
         for _ in 0..200_000 {
-            let mut state = rig.anticipation.start(RadPerS(0.0));
-            let ahead = rig.anticipation.update(&mut state, RadPerS(speed as f32));
+            let mut state = rig.free.start(RadPerS(0.0));
+            let ahead = rig.free.update(&mut state, RadPerS(speed as f32));
             let push = constant * f64::from(ahead.friction.0);
             let held = friction * DEVICE.small.coulomb_friction;
             let change = 1e-4 / DEVICE.small.inertia;
@@ -173,27 +241,6 @@ fn friction_that_is_fed_forward_drives_a_handle_at_most_at_6_rad_per_s() {
     }
 }
 
-/// The anticipation against its recurrence in f64, at rest, through a swing and at a constant velocity.
-#[test]
-fn velocity_that_is_followed_leads_by_the_delay() {
-    for rate in [1e3, 3e3, 10e3] {
-        let rig = Rig::new(&DEVICE, Hertz(rate), LoopPoles::DEFAULT).unwrap();
-        let delay = 2.0 / (std::f64::consts::TAU * 60.0);
-        let mut state = rig.anticipation.start(RadPerS(0.0));
-        let mut before = 0.0;
-        for k in 0..(2.0 * rate) as usize {
-            let t = k as f64 / rate;
-            let handle = if t < 1.0 { (6.0 * t).sin() } else { 3.0 };
-            before += (1.0 - (-1.0 / (rate * delay)).exp()) * (handle - before);
-            let now = rig.anticipation.update(&mut state, RadPerS(handle as f32));
-            let change = handle - before;
-            near(now.followed.velocity.0, handle + change, 1e-5);
-        }
-        let steady = rig.anticipation.update(&mut state, RadPerS(3.0));
-        near(steady.followed.velocity.0, 3.0, 1e-5);
-    }
-}
-
 #[test]
 fn currents_are_limited_in_size_and_slew() {
     for (rate, slews) in [(1e3, [1.2, 0.6]), (10e3, [0.12, 0.06])] {
@@ -209,7 +256,7 @@ fn currents_are_limited_in_size_and_slew() {
                 let still = RadPerS(0.0);
                 let now = [
                     rig.continuous
-                        .update(&mut large, push, wrong, still, rig.continuous.follow(still))
+                        .update(&mut large, push, wrong, still, still)
                         .get(),
                     rig.transient.update(&mut small, push).get(),
                 ];

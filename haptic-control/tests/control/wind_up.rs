@@ -12,13 +12,7 @@ fn turned(saturated: u32) -> Vec<f32> {
     let held = RadPerS(0.0);
     let mut state = stage.start(held);
     let mut current = |torque: f32| {
-        let current = stage.update(
-            &mut state,
-            NewtonMetres(torque),
-            held,
-            held,
-            stage.follow(held),
-        );
+        let current = stage.update(&mut state, NewtonMetres(torque), held, held, held);
         current.get()
     };
     for _ in 0..saturated {

