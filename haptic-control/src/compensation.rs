@@ -87,7 +87,7 @@ impl Weight {
 /// u(t) = sat01((t - 10 ms) / 8 ms)       v(t) = sat01((t - 4 ms) / 2 ms)       s(ω) = 1 - sat(ω / 6 rad/s)⁴
 /// followed = ω + (ω - x)        beside a spring: ω + u (ω - x)
 /// friction = Tc sat(ω / ω_d) (1 + s) / 2        beside a spring: times (1 + v) / 2
-/// drag     = u s                tracking = 0.5 + 0.2 u s
+/// drag     = u s                tracking = 0.5 + 0.2 u s        sat01(x) = max(0, min(x, 1))
 /// ```
 /// `followed` is the velocity that the large motor follows, rad/s: `(ω - x) / τ` is the acceleration of the
 /// handle, and a large motor that leads by the delay does not lag a steady acceleration. `friction` is the torque
@@ -107,7 +107,7 @@ pub struct Compensation {
     reversing: f32,
     friction_after: Weight,
     drag_after: Weight,
-    /// Whether the large motor leads right after a reversal too, as a weight.
+    /// Least weight of the lead of the large motor: 1 for a lead right after a reversal too.
     lead: f32,
     /// Ticks after a reversal at which both weights are 1.
     oldest: f32,

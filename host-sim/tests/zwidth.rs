@@ -41,13 +41,17 @@ fn z_width_is_smaller_at_a_slow_rate_and_with_a_coarse_encoder() {
         case("pll", 1e3, 1024),
         case("pll", 1e3, 256),
     ];
-    let plain: Vec<f64> = found(&[fine, slow, coarse])
-        .iter()
-        .map(|boundary| boundary.walls[0].1.value)
-        .collect();
+    // Sums over seeds, which draw the phases of the encoders.
+    let mut plain = [0.0; 3];
+    for seed in 1..=4 {
+        let found = boundaries(&[fine, slow, coarse], &settings(seed), || ()).unwrap();
+        for (sum, boundary) in plain.iter_mut().zip(found) {
+            *sum += boundary.walls[0].1.value;
+        }
+    }
     // Twice as stiff at ten times the rate; half of what a count is worth counts, in any wall.
     assert!(plain[0] > 2.0 * plain[1], "{plain:?}");
-    assert!(plain[1] > 0.15 && plain[2] < 0.9 * plain[1], "{plain:?}");
+    assert!(plain[1] > 0.6 && plain[2] < 0.8 * plain[1], "{plain:?}");
 }
 
 #[test]
