@@ -5,8 +5,9 @@ use core::f64::consts::PI;
 use estimator_core::Hertz;
 use estimator_core::const_math::exp;
 
-use crate::coulomb::{Coulomb, driven};
+use crate::coulomb::{Coulomb, slow};
 use crate::device::DualStage;
+use crate::limits::within;
 use crate::rst_design::LoopPoles;
 use crate::stage::CoupledParts;
 use crate::units::{NewtonMetres, RadPerS};
@@ -64,17 +65,9 @@ impl Ramp {
 }
 
 impl Weight {
-    #[expect(clippy::manual_clamp, reason = "clamp has a panic path")]
     #[inline]
     fn of(self, age: f32) -> f32 {
-        let weight = self.per_tick * age - self.offset;
-        if weight < 0.0 {
-            0.0
-        } else if weight > 1.0 {
-            1.0
-        } else {
-            weight
-        }
+        within(self.per_tick * age - self.offset, 0.0, 1.0)
     }
 }
 
@@ -93,7 +86,7 @@ impl Weight {
 /// handle, and a large motor that leads by the delay does not lag a steady acceleration. `friction` is the torque
 /// of the small motor against its friction Tc, N·m. ω_d is what 28 rad/s² reach in the delay of the
 /// loop: 0.031 rad/s at 10 kHz, 0.056 rad/s at 1 kHz. `drag` and `tracking` are the parts of the coupler's torque
-/// that the small motor takes as transmitted ([`ContinuousStage::coupled`](crate::ContinuousStage::coupled)).
+/// that the small motor takes as transmitted ([`ContinuousStage::update`](crate::ContinuousStage::update)).
 ///
 /// **Right after a reversal nothing is taken off the drag.** A handle that oscillates with a half period below
 /// 10 ms therefore has the whole damping of the coupler, which makes a stiff spring passive. A hand turns back
@@ -109,8 +102,8 @@ pub struct Compensation {
     drag_after: Weight,
     /// Least weight of the lead of the large motor: 1 for a lead right after a reversal too.
     lead: f32,
-    /// Ticks after a reversal at which both weights are 1.
-    oldest: f32,
+    /// Ticks from a reversal until both weights are 1.
+    settling: u32,
 }
 
 /// State of a [`Compensation`].
@@ -118,10 +111,10 @@ pub struct Compensation {
 pub struct CompensationState {
     /// x, the velocity of the handle a delay before, rad/s.
     before: f32,
-    /// Velocity of the handle at the latest tick at which it was not zero, rad/s.
-    latest: f32,
-    /// Ticks since the velocity changed its sign, at most [`Compensation::oldest`].
-    age: f32,
+    /// Direction of the latest motion, 1 or -1; 0 before any motion.
+    direction: f32,
+    /// Ticks until both weights are 1.
+    unsettled: u32,
 }
 
 /// What a tick compensates.
@@ -133,6 +126,21 @@ pub struct Compensated {
     pub friction: NewtonMetres,
     /// Parts of the coupler's torque that the small motor takes as transmitted.
     pub parts: CoupledParts,
+}
+
+impl Compensated {
+    /// Nothing but this velocity to follow.
+    #[must_use]
+    pub const fn following(followed: RadPerS) -> Self {
+        Self {
+            followed,
+            friction: NewtonMetres(0.0),
+            parts: CoupledParts {
+                tracking: 0.0,
+                drag: 0.0,
+            },
+        }
+    }
 }
 
 impl Compensation {
@@ -149,7 +157,7 @@ impl Compensation {
             friction_after: FRICTION_AFTER.at(period),
             drag_after: DRAG_AFTER.at(period),
             lead: 1.0,
-            oldest: (DRAG_AFTER.end_s() / period) as f32 + 1.0,
+            settling: (DRAG_AFTER.end_s() / period) as u32 + 1,
         }
     }
 
@@ -168,38 +176,90 @@ impl Compensation {
     pub const fn start(&self, handle: RadPerS) -> CompensationState {
         CompensationState {
             before: handle.0,
-            latest: handle.0,
-            age: self.oldest,
+            direction: direction(handle),
+            unsettled: 0,
         }
     }
 
     /// One tick, with the estimated velocity of the handle.
-    #[inline]
     #[must_use]
+    // As ContinuousStage::update.
+    #[inline(always)]
     pub fn update(&self, state: &mut CompensationState, handle: RadPerS) -> Compensated {
         state.before += self.gain * (handle.0 - state.before);
-        if handle.0 * state.latest < 0.0 {
-            state.age = 0.0;
+        // At rest, at the first motion or at a reversal.
+        if handle.0 * state.direction <= 0.0 {
+            self.turn(state, handle);
         }
-        if handle.0 != 0.0 {
-            state.latest = handle.0;
-        }
-        let drag = self.drag_after.of(state.age);
-        let whole = self.friction_after.of(state.age);
-        if state.age < self.oldest {
-            state.age += 1.0;
-        }
-        let slow = 1.0 - driven(handle);
-        let drag_part = drag * slow;
-        let lead = if self.lead > drag { self.lead } else { drag };
-        let part = self.reversing + (1.0 - self.reversing) * whole;
+        // Most ticks are long after a reversal.
+        let weights = if state.unsettled == 0 {
+            Weights::SETTLED
+        } else {
+            self.soon(state)
+        };
+        let slow = slow(handle);
+        let drag = weights.drag * slow;
         Compensated {
-            followed: RadPerS(handle.0 + lead * (handle.0 - state.before)),
-            friction: NewtonMetres(part * self.friction.at(handle, slow)),
+            followed: RadPerS(handle.0 + weights.lead * (handle.0 - state.before)),
+            friction: NewtonMetres(
+                weights.friction * self.friction.at(handle, state.direction, slow),
+            ),
             parts: CoupledParts {
-                tracking: TRACKING_PART + MORE_TRACKING * drag_part,
-                drag: drag_part,
+                tracking: TRACKING_PART + MORE_TRACKING * drag,
+                drag,
             },
         }
     }
+
+    #[cold]
+    fn turn(&self, state: &mut CompensationState, handle: RadPerS) {
+        let direction = direction(handle);
+        if direction * state.direction < 0.0 {
+            state.unsettled = self.settling;
+        }
+        if direction != 0.0 {
+            state.direction = direction;
+        }
+    }
+
+    /// The weights soon after a reversal.
+    #[inline]
+    fn soon(&self, state: &mut CompensationState) -> Weights {
+        let age = self.settling.wrapping_sub(state.unsettled) as f32;
+        state.unsettled -= 1;
+        let drag = self.drag_after.of(age);
+        let whole = self.friction_after.of(age);
+        Weights {
+            drag,
+            lead: self.lead + (1.0 - self.lead) * drag,
+            friction: self.reversing + (1.0 - self.reversing) * whole,
+        }
+    }
+}
+
+/// 1 or -1; 0 at rest.
+const fn direction(handle: RadPerS) -> f32 {
+    if handle.0 > 0.0 {
+        1.0
+    } else if handle.0 < 0.0 {
+        -1.0
+    } else {
+        0.0
+    }
+}
+
+/// Weights of drag, lead and friction, from 0 to 1.
+struct Weights {
+    drag: f32,
+    lead: f32,
+    friction: f32,
+}
+
+impl Weights {
+    /// Long after a reversal.
+    const SETTLED: Self = Self {
+        drag: 1.0,
+        lead: 1.0,
+        friction: 1.0,
+    };
 }

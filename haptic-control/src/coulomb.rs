@@ -1,6 +1,5 @@
 //! Feed-forward against the Coulomb friction of the small motor.
 
-use crate::limits::at_most;
 use crate::units::RadPerS;
 
 /// Velocity of the handle from which on the friction that is fed forward drives no handle, rad/s: above
@@ -9,9 +8,9 @@ const PER_DRIVEN: f32 = 1.0 / 6.0;
 
 /// Least friction and largest torque constant of the small motor with which the feed-forward drives no
 /// faster handle, as factors of the values in the description.
-const LEAST_FRICTION: f32 = 0.6;
-const LARGEST_CONSTANT: f32 = 1.2;
-const PASSIVE_PART: f32 = LEAST_FRICTION / LARGEST_CONSTANT;
+const LEAST_FRICTION: f64 = 0.6;
+const LARGEST_CONSTANT: f64 = 1.2;
+const PASSIVE_PART: f64 = LEAST_FRICTION / LARGEST_CONSTANT;
 
 /// Torque in the direction of the handle's velocity ω, N·m:
 /// ```text
@@ -24,31 +23,37 @@ const PASSIVE_PART: f32 = LEAST_FRICTION / LARGEST_CONSTANT;
 /// the torque constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Coulomb {
-    torque: f32,
+    /// T p, N·m.
+    passive: f32,
+    /// T (1 - p), N·m.
+    driving: f32,
     per_direction: f32,
 }
 
-/// `sat(ω / 6 rad/s)⁴`: 0 at rest, 1 from the velocity on from which the compensation drives no handle.
+/// `1 - sat(ω / 6 rad/s)⁴`: 1 at rest, 0 from the velocity on from which the compensation drives no handle.
 #[inline]
-pub(crate) fn driven(handle: RadPerS) -> f32 {
-    let driven = at_most(handle.0 * PER_DRIVEN, 1.0);
+pub(crate) fn slow(handle: RadPerS) -> f32 {
+    let driven = handle.0 * PER_DRIVEN;
     let square = driven * driven;
-    square * square
+    let slow = 1.0 - square * square;
+    if slow < 0.0 { 0.0 } else { slow }
 }
 
 impl Coulomb {
     /// Against a friction, N·m, with ω_d in rad/s.
     pub(crate) const fn new(friction: f64, direction: f64) -> Self {
         Self {
-            torque: friction as f32,
+            passive: (PASSIVE_PART * friction) as f32,
+            driving: ((1.0 - PASSIVE_PART) * friction) as f32,
             per_direction: (1.0 / direction) as f32,
         }
     }
 
-    /// The torque at a velocity of the handle, with s at this velocity.
+    /// The torque at a velocity of the handle, with its direction, 1 or -1, and s at this velocity.
     #[inline]
-    pub(crate) fn at(&self, handle: RadPerS, slow: f32) -> f32 {
-        let direction = at_most(handle.0 * self.per_direction, 1.0);
-        self.torque * direction * (PASSIVE_PART + (1.0 - PASSIVE_PART) * slow)
+    pub(crate) fn at(&self, handle: RadPerS, direction: f32, slow: f32) -> f32 {
+        let part = handle.0 * self.per_direction;
+        let part = if part.abs() > 1.0 { direction } else { part };
+        part * (self.passive + self.driving * slow)
     }
 }

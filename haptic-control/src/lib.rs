@@ -62,7 +62,9 @@ pub use rst::{Rst, RstState};
 pub use rst_design::{LEAST_MODULUS, LoopPoles, RstDesign};
 pub use safety::{Findings, Mode, Order, Request, Safety, SafetyState};
 pub use scene::*;
-pub use stage::{ContinuousStage, ContinuousState, CoupledParts, TransientStage, TransientState};
+pub use stage::{
+    ContinuousStage, ContinuousState, CoupledParts, Driven, TransientStage, TransientState,
+};
 pub use stop::Stop;
 pub use supply::{Supply, SupplyFinding, SupplyState};
 pub use switchboard::{Switchboard, SwitchboardState};

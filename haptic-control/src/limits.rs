@@ -148,6 +148,23 @@ pub(crate) fn at_most(x: f32, bound: f32) -> f32 {
     }
 }
 
+/// [`at_most`] for an `x` that is within in nearly every tick: a branch, where a selection would compute both.
+#[inline]
+pub(crate) fn seldom_more(x: f32, bound: f32) -> f32 {
+    // NaN is not within.
+    if x.abs() <= bound {
+        x
+    } else {
+        bounded(x, bound)
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn bounded(x: f32, bound: f32) -> f32 {
+    at_most(x, bound)
+}
+
 /// `clamp` without its panic on bounds in the wrong order.
 pub(crate) fn within(x: f32, low: f32, high: f32) -> f32 {
     if x > high {

@@ -100,6 +100,8 @@ impl Rst {
 
     /// One tick: the commanded current, A. Call [`RstState::limited`] with the applied current.
     #[must_use]
+    // As ContinuousStage::update.
+    #[inline(always)]
     pub fn update(&self, state: &mut RstState, wanted: RadPerS, measured: RadPerS) -> f32 {
         let [w1, w2] = state.wanted;
         let error = self.share[0] * w1 + self.share[1] * w2 - measured.0;

@@ -2,8 +2,9 @@
 
 use estimator_core::Amps;
 
+use crate::compensation::Compensated;
 use crate::device::DualStage;
-use crate::limits::{CurrentLimits, CurrentScale, at_most};
+use crate::limits::{CurrentLimits, CurrentScale, at_most, seldom_more};
 use crate::monitor::LARGE_OVERSPEED;
 use crate::rst::{Rst, RstState};
 use crate::rst_design::RstDesign;
@@ -28,8 +29,6 @@ pub struct ContinuousStage {
     damping: f32,
     /// Current fed forward for friction, A.
     friction: f32,
-    /// Largest drag that is compensated, N·m.
-    largest_drag: f32,
     /// 1 - m, the gain of each half of the tracking filter.
     tracking_gain: f32,
 }
@@ -44,6 +43,15 @@ pub struct CoupledParts {
     pub drag: f32,
 }
 
+/// Result of a tick of a [`ContinuousStage`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Driven {
+    /// Current of the large motor.
+    pub current: Amps,
+    /// Torque that the coupler is assumed to transmit to the handle.
+    pub coupled: NewtonMetres,
+}
+
 /// State of a [`ContinuousStage`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContinuousState {
@@ -51,9 +59,7 @@ pub struct ContinuousState {
     current: Amps,
     /// Largest current.
     largest: Amps,
-    /// The commanded torque, limited by the largest velocity of the large motor, N·m.
-    asked: f32,
-    /// Both halves of the tracking filter, for `asked`.
+    /// Both halves of the tracking filter, for the slip of the commanded torque, rad/s.
     expected: [f32; 2],
 }
 
@@ -75,7 +81,15 @@ const PER_FADE: f32 = 1.0 / 0.15;
 /// Lag of the large motor behind the handle whose drag is compensated at most, rad/s. It bounds the torque that
 /// the compensation adds to a handle which oscillates slowly, on a device with a weaker coupler or a stronger small
 /// motor than in the description. A hand that turns back at 28 rad/s² makes the motor lag by 0.15 rad/s.
-const LARGEST_LAG: f64 = 0.5;
+const LARGEST_LAG: f32 = 0.5;
+
+/// The limited velocity for a velocity above the largest, and the slip that is commanded by it.
+#[cold]
+#[inline(never)]
+fn limited(wanted: f32, followed: RadPerS) -> (f32, f32) {
+    let limited = at_most(wanted, LARGEST_WANTED);
+    (limited, limited - followed.0)
+}
 
 impl ContinuousStage {
     /// The stage of a device, with its designed loop; a tick may change the current by `slew` A.
@@ -91,7 +105,6 @@ impl ContinuousStage {
             nm_per_rad_per_s: device.damping as f32,
             damping: (-device.damping / device.large.torque_constant) as f32,
             friction: (device.large.coulomb_friction / device.large.torque_constant) as f32,
-            largest_drag: (LARGEST_LAG * device.damping) as f32,
             tracking_gain: (1.0 - design.tracking_pole) as f32,
         }
     }
@@ -103,7 +116,6 @@ impl ContinuousStage {
             rst: self.rst.start(large),
             current: Amps::ZERO,
             largest: self.limits.largest,
-            asked: 0.0,
             expected: [0.0; 2],
         }
     }
@@ -121,27 +133,37 @@ impl ContinuousStage {
         state.largest = Amps::new(scale.large(self.limits.largest.get()));
     }
 
-    /// One tick: the large motor's current for a commanded torque, while it follows a velocity.
+    /// One tick for a commanded torque and the velocities of the large motor and of the handle.
+    ///
+    /// ```text
+    /// c = F τ + p_t b (ω_L - ω_f) + p_d sat(b (ω_f - ω_S) - F τ, b 0.5 rad/s)
+    /// ```
+    /// is the torque that the coupler is assumed to transmit. τ is the commanded torque and ω_f the commanded velocity,
+    /// both after the tracking filter F and the limit of the velocity. The three terms are the commanded torque, that of
+    /// the tracking error, and the drag: once the large motor follows the handle, the latter are zero. p_t and p_d are
+    /// the compensated [`CoupledParts`].
     #[must_use]
-    #[inline]
+    // A call of its own costs a tick 20 instructions.
+    #[inline(always)]
     pub fn update(
         &self,
         state: &mut ContinuousState,
         torque: NewtonMetres,
         large: RadPerS,
         handle: RadPerS,
-        followed: RadPerS,
-    ) -> Amps {
-        let wanted = followed.0 + torque.0 * self.rad_per_s_per_nm;
+        compensated: &Compensated,
+    ) -> Driven {
+        let slip = torque.0 * self.rad_per_s_per_nm;
+        let wanted = compensated.followed.0 + slip;
         // NaN is not within.
         let (limited, asked) = if wanted.abs() <= LARGEST_WANTED {
-            (wanted, torque.0)
+            (wanted, slip)
         } else {
-            self.limited(wanted, followed)
+            limited(wanted, compensated.followed)
         };
-        state.asked = asked;
         let looped = self.rst.update(&mut state.rst, RadPerS(limited), large);
-        let direction = at_most(state.rst.filtered().0 * PER_FADE, 1.0);
+        let commanded = state.rst.filtered().0;
+        let direction = at_most(commanded * PER_FADE, 1.0);
         let forward = self.friction * direction + self.damping * handle.0;
         let wanted = looped + forward;
         let limits = CurrentLimits {
@@ -149,56 +171,34 @@ impl ContinuousStage {
             ..self.limits
         };
         let before = state.current;
-        state.current = limits.unlimited(wanted, before).unwrap_or_else(|| {
+        let current = limits.unlimited(wanted, before).unwrap_or_else(|| {
             let current = limits.limited(wanted, before);
             if current.get() != wanted {
                 state.rst.limited(current.get() - forward);
             }
             current
         });
-        state.current
-    }
+        state.current = current;
 
-    /// The limited velocity for a velocity above the largest, and the torque that is commanded by it.
-    #[cold]
-    #[inline(never)]
-    fn limited(&self, wanted: f32, followed: RadPerS) -> (f32, f32) {
-        let limited = at_most(wanted, LARGEST_WANTED);
-        let asked = (limited - followed.0) * self.nm_per_rad_per_s;
-        (limited, asked)
-    }
-
-    /// One tick, after [`Self::update`]: the torque that the coupler is assumed to transmit.
-    ///
-    /// ```text
-    /// c = F τ + p_t b (ω_L - ω_f) + p_d sat(b (ω_f - ω_S) - F τ, b 0.5 rad/s)
-    /// ```
-    /// τ is the commanded torque and ω_f the commanded velocity, both after the tracking filter F and the limit of the
-    /// velocity. The three terms are the commanded torque, that of the tracking error, and the drag: once the
-    /// large motor follows the handle, the latter are zero.
-    #[must_use]
-    pub fn coupled(
-        &self,
-        state: &mut ContinuousState,
-        large: RadPerS,
-        handle: RadPerS,
-        parts: CoupledParts,
-    ) -> NewtonMetres {
         let [lag, expected] = &mut state.expected;
-        *lag += self.tracking_gain * (state.asked - *lag);
+        *lag += self.tracking_gain * (asked - *lag);
         *expected += self.tracking_gain * (*lag - *expected);
-        let commanded = state.rst.filtered().0;
-        let tracking = self.nm_per_rad_per_s * (large.0 - commanded);
-        let drag = self.nm_per_rad_per_s * (commanded - handle.0) - *expected;
-        let drag = at_most(drag, self.largest_drag);
-        NewtonMetres(*expected + parts.tracking * tracking + parts.drag * drag)
+        let error = large.0 - commanded;
+        let drag = seldom_more(commanded - handle.0 - *expected, LARGEST_LAG);
+        let CoupledParts {
+            tracking,
+            drag: part,
+        } = compensated.parts;
+        let slip = *expected + tracking * error + part * drag;
+        let coupled = NewtonMetres(self.nm_per_rad_per_s * slip);
+        Driven { current, coupled }
     }
 }
 
 /// The transient stage: the small motor on the handle.
 ///
 /// With a continuous stage it renders the torque that the coupler is assumed not to transmit,
-/// without delay (see [`ContinuousStage::coupled`]). Alone it renders the whole torque. Its own
+/// without delay (see [`ContinuousStage::update`]). Alone it renders the whole torque. Its own
 /// Coulomb friction is fed forward in the direction of the handle's velocity, if that is estimated:
 /// [`Compensated::friction`](crate::Compensated::friction).
 #[derive(Clone, Copy, Debug, PartialEq)]

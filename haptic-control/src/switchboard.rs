@@ -104,11 +104,46 @@ enum Change {
     New,
 }
 
+/// Parts that a tick runs, a bit each: one comparison finds a change.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Live(u8);
+
+impl Live {
+    const NONE: Self = Self(0);
+    const CONTINUOUS: u8 = 1;
+    const HANDLE: u8 = 2;
+    const TRANSIENT: u8 = 4;
+
+    /// The parts that a scene needs.
+    const fn of<S: Scene>() -> Self {
+        let mut parts = 0;
+        if S::Continuous::WANTED {
+            parts |= Self::CONTINUOUS;
+        }
+        if HandleNeed::<S>::WANTED {
+            parts |= Self::HANDLE;
+        }
+        if S::Transient::WANTED {
+            parts |= Self::TRANSIENT;
+        }
+        Self(parts)
+    }
+
+    const fn has(self, part: u8) -> bool {
+        self.0 & part != 0
+    }
+
+    /// Those of these parts that did not run in the tick `before`.
+    const fn new_since(self, before: Self) -> Self {
+        Self(self.0 & !before.0)
+    }
+}
+
 #[derive(Clone)]
 #[repr(C)]
 struct Shared<L: VelocityEstimator, H: VelocityEstimator> {
-    /// Whether the continuous stage, the handle's estimator and the transient stage ran in the last tick.
-    live: [bool; 3],
+    /// The parts that ran in the last tick.
+    live: Live,
     transient: TransientState,
     compensated: CompensationState,
     continuous: ContinuousState,
@@ -147,7 +182,7 @@ impl<L: VelocityEstimator, H: VelocityEstimator> SwitchboardState<L, H> {
     /// Whether the large motor's estimator ran in the latest tick.
     #[must_use]
     pub const fn estimates_large(&self) -> bool {
-        self.shared.live[0]
+        self.shared.live.has(Live::CONTINUOUS)
     }
 }
 
@@ -176,7 +211,7 @@ where
                 handle: self.handle.start(&Sample::new(first.coupled)),
                 transient: self.rig.transient.start(),
                 compensated: self.rig.free.start(RadPerS(0.0)),
-                live: [false; 3],
+                live: Live::NONE,
             },
             origin: first.coupled,
             change: Change::Over,
@@ -270,19 +305,18 @@ where
     /// few ticks call it.
     #[cold]
     #[inline(never)]
-    fn wake(&self, shared: &mut Shared<L, H>, wanted: [bool; 3], sample: &Sample) {
-        let [continuous, handle, transient] = wanted;
-        let live = shared.live;
-        if continuous && !live[0] {
+    fn wake(&self, shared: &mut Shared<L, H>, wanted: Live, sample: &Sample) {
+        let new = wanted.new_since(shared.live);
+        if new.has(Live::CONTINUOUS) {
             self.large.restart(&mut shared.large, sample);
             let stage = &self.rig.continuous;
             stage.restart(&mut shared.continuous, RadPerS(0.0));
             shared.compensated = self.rig.free.start(RadPerS(0.0));
         }
-        if handle && !live[1] {
+        if new.has(Live::HANDLE) {
             shared.handle = self.handle.start(&Sample::new(sample.coupled));
         }
-        if transient && !live[2] {
+        if new.has(Live::TRANSIENT) {
             self.rig.transient.restart(&mut shared.transient);
         }
         shared.live = wanted;
@@ -296,11 +330,7 @@ where
         origin: Count,
         sample: &Sample,
     ) -> Action {
-        let wanted = [
-            S::Continuous::WANTED,
-            HandleNeed::<S>::WANTED,
-            S::Transient::WANTED,
-        ];
+        let wanted = const { Live::of::<S>() };
         if shared.live != wanted {
             self.wake(shared, wanted, sample);
         }

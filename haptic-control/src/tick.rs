@@ -107,16 +107,12 @@ where
     let less = S::Continuous::map(parts.continuous, |mut part| {
         let large = part.large.velocity(sample);
         let compensated = part.compensation.update(part.compensated, handle);
-        let followed = compensated.followed;
-        let current = part
+        let driven = part
             .stage
-            .update(part.state, torque, large, handle, followed);
-        let coupled = part
-            .stage
-            .coupled(part.state, large, handle, compensated.parts);
+            .update(part.state, torque, large, handle, &compensated);
         action.large_velocity = large;
-        action.currents.large = current;
-        coupled.0 - compensated.friction.0
+        action.currents.large = driven.current;
+        driven.coupled.0 - compensated.friction.0
     });
     let asked = NewtonMetres(torque.0 - S::Continuous::or(less, 0.0));
     S::Transient::map(parts.transient, |part| {

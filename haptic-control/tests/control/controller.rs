@@ -145,14 +145,11 @@ where
         let [motor, handle] = [action.large_velocity, action.handle_velocity];
         let ahead = compensation.update(&mut compensated, handle);
         let none = NewtonMetres(0.0);
-        let current = RIG
+        let driven = RIG
             .continuous
-            .update(&mut large, none, motor, handle, ahead.followed);
-        assert_eq!(action.currents.large, current, "{k}");
-        let coupled = RIG
-            .continuous
-            .coupled(&mut large, motor, handle, ahead.parts);
-        let asked = NewtonMetres(0.0 - (coupled.0 - ahead.friction.0));
+            .update(&mut large, none, motor, handle, &ahead);
+        assert_eq!(action.currents.large, driven.current, "{k}");
+        let asked = NewtonMetres(0.0 - (driven.coupled.0 - ahead.friction.0));
         let current = RIG.transient.update(&mut small, asked);
         assert_eq!(action.currents.small, current, "{k}");
     }

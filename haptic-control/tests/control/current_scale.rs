@@ -2,8 +2,8 @@
 
 use estimator_core::{Amps, SteadyKalmanTriple};
 use haptic_control::{
-    AnyScene, Controller, CurrentScale, Currents, NewtonMetres, RadPerS, Scene, SceneKind, Senses,
-    Switchboard, scenes,
+    AnyScene, Compensated, Controller, CurrentScale, Currents, NewtonMetres, RadPerS, Scene,
+    SceneKind, Senses, Switchboard, scenes,
 };
 
 use crate::bench::{DEVICE, HANDLE, LARGE, RATE, RIG, motion, usual};
@@ -120,11 +120,13 @@ fn time_at_the_scaled_limit_does_not_wind_up() {
 fn does_not_wind_up(held: RadPerS, scale: CurrentScale, largest: f64) {
     let turned = |saturated: u32| -> Vec<f32> {
         let stage = &RIG.continuous;
+        let following = Compensated::following(held);
         let mut state = stage.start(held);
         stage.scale(&mut state, scale);
         let mut current = |torque| {
             stage
-                .update(&mut state, NewtonMetres(torque), held, held, held)
+                .update(&mut state, NewtonMetres(torque), held, held, &following)
+                .current
                 .get()
         };
         for _ in 0..saturated {

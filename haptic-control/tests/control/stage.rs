@@ -2,8 +2,8 @@
 
 use estimator_core::{Amps, Counts, CountsPerTickSquared, Hertz};
 use haptic_control::{
-    ContinuousStage, CoupledParts, CurrentLimits, DesignError, DualStage, LoopPoles, NewtonMetres,
-    RadPerS, Rig, Rst, RstDesign, TransientStage,
+    Compensated, ContinuousStage, CoupledParts, CurrentLimits, DesignError, DualStage, LoopPoles,
+    NewtonMetres, RadPerS, Rig, Rst, RstDesign, TransientStage,
 };
 
 const RATE: Hertz = Hertz(1e3);
@@ -15,6 +15,13 @@ const HALVES: CoupledParts = CoupledParts {
     tracking: 0.5,
     drag: 0.5,
 };
+
+fn following(followed: f64, parts: CoupledParts) -> Compensated {
+    Compensated {
+        parts,
+        ..Compensated::following(RadPerS(followed as f32))
+    }
+}
 
 fn design() -> RstDesign {
     RstDesign::new(&DEVICE, RATE, LoopPoles::DEFAULT).unwrap()
@@ -40,20 +47,19 @@ fn wanted_velocity_and_feed_forward_follow_from_the_wanted_torque() {
         let torque = 0.02 * (1.7 * phase).sin();
         let large = 15.0 * (0.6 * phase).sin();
         let ahead = handle + (2.3 * phase).sin();
-        let followed = RadPerS(ahead as f32);
-        let current = stage.update(
+        let driven = stage.update(
             &mut state,
             NewtonMetres(torque as f32),
             RadPerS(large as f32),
             RadPerS(handle as f32),
-            followed,
+            &following(ahead, HALVES),
         );
         let wanted = ahead + torque / DEVICE.damping;
         let asked = rst.update(&mut looped, RadPerS(wanted as f32), RadPerS(large as f32));
         let direction = (f64::from(looped.filtered().0) / 0.15).clamp(-1.0, 1.0);
         let forward = DEVICE.large.coulomb_friction * direction - DEVICE.damping * handle;
         let applied = f64::from(asked) + forward / DEVICE.large.torque_constant;
-        near(current.get(), applied, 1e-3);
+        near(driven.current.get(), applied, 1e-3);
     }
 }
 
@@ -65,22 +71,18 @@ fn wanted_velocity_saturates_at_85_percent_of_the_monitors_limit() {
         for (handle, followed) in [(0.0, 0.0), (20.0, 20.0), (-20.0, -20.0), (5.0, 8.0)] {
             // What the followed velocity leaves of it, just below and far above.
             let most = (limit - sign * followed) * DEVICE.damping;
+            let compensated = following(followed, HALVES);
             let settled = |torque: f64| {
                 let mut state = stage.start(RadPerS(0.0));
-                let mut coupled = NewtonMetres(0.0);
-                let mut current = Amps::ZERO;
-                for _ in 0..3000 {
-                    let (torque, large) = (NewtonMetres((sign * torque) as f32), sign * limit);
-                    let (large, handle) = (RadPerS(large as f32), RadPerS(handle));
-                    let followed = RadPerS(followed as f32);
-                    current = stage.update(&mut state, torque, large, handle, followed);
-                    // The large motor at the limit, the handle at the followed velocity.
-                    coupled = stage.coupled(&mut state, large, followed, HALVES);
-                }
-                (f64::from(current.get()), coupled)
+                let torque = NewtonMetres((sign * torque) as f32);
+                // The large motor is at the limit.
+                let [large, handle] = [sign * limit, handle].map(|speed| RadPerS(speed as f32));
+                let mut tick = || stage.update(&mut state, torque, large, handle, &compensated);
+                (0..3000).map(|_| tick()).last().unwrap()
             };
-            let (_, coupled) = settled(10.0 * most);
-            near(coupled.0, sign * most, 1e-6);
+            let lag: f64 = followed - handle;
+            let drag = 0.5 * DEVICE.damping * lag.clamp(-0.5, 0.5);
+            near(settled(10.0 * most).coupled.0, sign * most + drag, 1e-6);
             assert_eq!(settled(10.0 * most), settled(100.0 * most));
             assert_ne!(settled(0.99 * most), settled(most));
         }
@@ -102,14 +104,14 @@ fn coupler_torque_is_that_of_command_tracking_error_and_drag() {
             let handle = 6.0 * (f64::from(k) / 30.0).sin();
             let large = f64::from(k) / 100.0;
             let [large_now, handle_now] = [large, handle].map(|speed| RadPerS(speed as f32));
-            let asked = NewtonMetres(torque as f32);
-            let _ = stage.update(&mut state, asked, large_now, handle_now, handle_now);
             let part = |k: usize| parts[k] as f32;
             let shares = CoupledParts {
                 tracking: part(0),
                 drag: part(1),
             };
-            let coupled = stage.coupled(&mut state, large_now, handle_now, shares);
+            let asked = NewtonMetres(torque as f32);
+            let compensated = following(f64::from(handle_now.0), shares);
+            let driven = stage.update(&mut state, asked, large_now, handle_now, &compensated);
             for (filter, input) in [(&mut expected, torque), (&mut followed, handle)] {
                 filter[0] += gain * (input - filter[0]);
                 filter[1] += gain * (filter[0] - filter[1]);
@@ -119,7 +121,7 @@ fn coupler_torque_is_that_of_command_tracking_error_and_drag() {
             largest = largest.max(lag.abs());
             let drag = DEVICE.damping * lag.clamp(-0.5, 0.5);
             let wanted = expected[1] + parts[0] * tracking + parts[1] * drag;
-            near(coupled.0, wanted, 2e-8);
+            near(driven.coupled.0, wanted, 2e-8);
         }
         assert!(largest > 0.75, "{largest} rad/s");
     }
@@ -168,8 +170,13 @@ fn compensation_follows_the_time_since_the_last_reversal() {
         let period_ms = 1e3 / rate.0;
         let gain = 1.0 - (-std::f64::consts::TAU * 60.0 / rate.0 / 2.0).exp();
         let direction = 28.0 * (period_ms * 1e-3 + 1e-3);
-        for (compensation, free) in [(rig.free, true), (rig.sprung, false)] {
+        for (compensation, free, side) in [
+            (rig.free, true, 1.0),
+            (rig.sprung, false, 1.0),
+            (rig.sprung, false, -1.0),
+        ] {
             let mut state = compensation.start(RadPerS(0.0));
+            // The first motion is no reversal.
             let (mut before, mut latest, mut since_ms) = (0.0, 0.0, 1e3_f64);
             let mut seen = [0; 3];
             for k in 0..(200.0 / period_ms) as u32 {
@@ -180,7 +187,7 @@ fn compensation_follows_the_time_since_the_last_reversal() {
                     ..170.0 => 4.0 * ((t_ms - 50.0) / 40.0 * std::f64::consts::PI).cos(),
                     _ => 0.0,
                 };
-                let handle = f64::from(handle as f32);
+                let handle = side * f64::from(handle as f32);
                 before += gain * (handle - before);
                 if handle * latest < 0.0 {
                     since_ms = 0.0;
@@ -256,7 +263,14 @@ fn currents_are_limited_in_size_and_slew() {
                 let still = RadPerS(0.0);
                 let now = [
                     rig.continuous
-                        .update(&mut large, push, wrong, still, still)
+                        .update(
+                            &mut large,
+                            push,
+                            wrong,
+                            still,
+                            &Compensated::following(still),
+                        )
+                        .current
                         .get(),
                     rig.transient.update(&mut small, push).get(),
                 ];

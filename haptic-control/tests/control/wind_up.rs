@@ -1,7 +1,9 @@
 //! Saturation of the large motor's current, and its effect on the state of the velocity loop.
 
 use estimator_core::Hertz;
-use haptic_control::{ContinuousStage, DualStage, LoopPoles, NewtonMetres, RadPerS, RstDesign};
+use haptic_control::{
+    Compensated, ContinuousStage, DualStage, LoopPoles, NewtonMetres, RadPerS, RstDesign,
+};
 
 /// Currents behind so many ticks at the limit against a large motor that is held: the wanted torque
 /// turns round.
@@ -10,10 +12,11 @@ fn turned(saturated: u32) -> Vec<f32> {
     let design = RstDesign::new(&device, Hertz(1e3), LoopPoles::DEFAULT).unwrap();
     let stage = ContinuousStage::new(&device, &design, 1e3);
     let held = RadPerS(0.0);
+    let following = Compensated::following(held);
     let mut state = stage.start(held);
     let mut current = |torque: f32| {
-        let current = stage.update(&mut state, NewtonMetres(torque), held, held, held);
-        current.get()
+        let driven = stage.update(&mut state, NewtonMetres(torque), held, held, &following);
+        driven.current.get()
     };
     for _ in 0..saturated {
         current(0.1);

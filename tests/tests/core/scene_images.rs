@@ -180,7 +180,7 @@ fn a_scene_contains_what_it_needs_and_nothing_else() {
             // These are methods of types that are not generic, in another crate, and not inlined: where
             // a stage is needed the image has their symbols.
             for (update, needed) in [
-                ("15ContinuousStage7limited", needs.continuous),
+                ("5stage7limited", needs.continuous),
                 ("14TransientStage6update", needs.transient),
             ] {
                 let found = symbols.iter().any(|symbol| symbol.contains(update));

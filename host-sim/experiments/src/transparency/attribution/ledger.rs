@@ -43,11 +43,10 @@ impl ErrorLoop {
     fn advance(&mut self, rig: &Rig, error: f64) -> f64 {
         let omega = self.motor.large().omega;
         let seen = RadPerS((error + omega) as f32);
-        let zero = RadPerS(0.0);
-        let current = rig
-            .continuous
-            .update(&mut self.stage, NewtonMetres(0.0), seen, zero, zero);
-        self.motor.command(f64::from(current.get()), 0.0);
+        let still = RadPerS(0.0);
+        let (stage, none) = (&rig.continuous, Compensated::following(still));
+        let driven = stage.update(&mut self.stage, NewtonMetres(0.0), seen, still, &none);
+        self.motor.command(f64::from(driven.current.get()), 0.0);
         self.motor.step(&Grip::Clamped, 0.0, 0.0);
         omega
     }
@@ -101,10 +100,9 @@ impl Ledger {
             let (large, handle) = (action.large_velocity, action.handle_velocity);
             let (ahead, friction) = self.compensated(handle, now.handle.omega);
             (fed, exact) = (f64::from(ahead.friction.0), friction);
-            let followed = ahead.followed;
             let stage = &self.rig.continuous;
-            let _ = stage.update(&mut self.stage, action.torque, large, handle, followed);
-            coupled = f64::from(stage.coupled(&mut self.stage, large, handle, ahead.parts).0);
+            let driven = stage.update(&mut self.stage, action.torque, large, handle, &ahead);
+            coupled = f64::from(driven.coupled.0);
             let measured =
                 [ahead.parts.tracking, ahead.parts.drag].map(|part| self.damping * f64::from(part));
             caused = (self.damping - measured[0]) * self.error.advance(&self.rig, error_large);
