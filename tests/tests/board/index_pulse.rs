@@ -8,9 +8,9 @@ use virtual_board::run::{ControlTick, Outcome, RATE_HZ, Setup};
 
 use crate::image::{SETTLED_S, end, of_scene, run_image};
 
-/// The image of this file, and the one without the feature.
-const IMAGE: &str = "large-adaptive,current-monitor,index-pulse";
-const WITHOUT: &str = "large-adaptive,current-monitor";
+/// The image of this file, with all that watches the board, and the one without the feature.
+const IMAGE: &str = "large-adaptive,current-monitor,supply-monitor,index-pulse";
+const WITHOUT: &str = "large-adaptive,current-monitor,supply-monitor";
 
 /// Any step of the plant, s.
 const STEP_S: f64 = 1e-5;
@@ -27,10 +27,11 @@ fn lines(run: &Outcome) -> Vec<(f64, [IndexLine; 2])> {
     lines.collect()
 }
 
-/// An index of one count that is aligned with A and B is captured at the same count in both directions.
-/// In these hands the large motor slips by whole turns in two scenes, and no other shaft passes its index.
+/// Measured currents, supply and pulses agree. An index of one count that is aligned with A and B is captured at
+/// the same count in both directions. In these hands the large motor slips by whole turns in two scenes, and no
+/// other shaft passes its index.
 #[test]
-fn healthy_pulses_are_whole_turns_apart_in_every_scene() {
+fn nothing_that_is_watched_stops_a_healthy_device_in_any_scene() {
     for scene in SceneKind::ALL {
         let run = run_image(IMAGE, &Setup::playing(scene, 1.0));
         let expected = match scene {
@@ -38,6 +39,14 @@ fn healthy_pulses_are_whole_turns_apart_in_every_scene() {
             _ => Mode::Running,
         };
         assert_eq!(end(&run), (expected, Stop::None), "{scene:?}");
+        let beside = run
+            .telemetry
+            .frames
+            .iter()
+            .skip(100)
+            .map(|frame| &frame.side_lines);
+        let watched = beside.filter(|lines| lines.measured.is_some() && lines.supply.is_some());
+        assert!(watched.count() > 850, "{scene:?}");
         let lines = lines(&run);
         let exact = |(_, pair): &(f64, [IndexLine; 2])| pair.iter().all(|one| one.deviation == 0);
         assert!(lines.iter().all(exact), "{scene:?}: {lines:?}");

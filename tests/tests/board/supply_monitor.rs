@@ -51,18 +51,6 @@ fn logged_voltage_is_that_of_the_supply() {
     }
 }
 
-#[test]
-fn healthy_supply_stops_no_scene() {
-    for scene in SceneKind::ALL {
-        let run = run_image(IMAGE, &Setup::playing(scene, 0.7));
-        let expected = match scene {
-            SceneKind::Off => Mode::Armed,
-            _ => Mode::Running,
-        };
-        assert_eq!(end(&run), (expected, Stop::None), "{scene:?}");
-    }
-}
-
 /// Three readings, 1 ms apart, of which the first comes within 1 ms; then the next tick, and a step of the
 /// lockstep.
 #[test]
