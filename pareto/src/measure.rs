@@ -11,8 +11,9 @@ use crate::board::{Job, Ran, on_board};
 use crate::image::{Image, Level};
 use crate::traces::{self, BenchTrace, RATES_HZ};
 
-/// Updates that are followed instruction by instruction, at the end of each trace.
-const FOLLOWED: usize = 40;
+/// Updates that are followed instruction by instruction, which is slow: at the end of one trace at each rate.
+const FOLLOWED: usize = 200;
+const FOLLOWED_IN: &str = "chirp and reversals";
 
 /// Updates at the start of each trace that the errors ignore.
 const SKIPPED: usize = 200;
@@ -26,7 +27,7 @@ pub struct Cost {
     pub most: u32,
     /// Mean at rest.
     pub at_rest: f64,
-    /// Estimated cycles for one instruction, at the ends of the traces.
+    /// Estimated cycles for one instruction, over the updates that are followed.
     pub cycles_per_instruction: f64,
     /// Bytes of code and literals that an update reaches.
     pub code: usize,
@@ -135,24 +136,27 @@ fn run<'a>(
     traces: &'a [BenchTrace],
     hostile: &'a [(u32, Vec<Sample>)],
 ) -> Result<Runs<'a>, String> {
-    let jobs_of = |traces: &[(u32, &'a [Sample])], follow: usize| -> Vec<Job<'a>> {
+    let jobs_of = |traces: &[(u32, &'a [Sample], usize)]| -> Vec<Job<'a>> {
         let subjects = SUBJECTS.iter().enumerate();
         let pairs = subjects.flat_map(|pair| traces.iter().map(move |trace| (pair, *trace)));
         pairs
-            .filter(|((_, subject), (rate_hz, _))| [0, *rate_hz].contains(&subject.rate_hz))
-            .map(|((subject, _), (_, samples))| Job {
+            .filter(|((_, subject), (rate_hz, ..))| [0, *rate_hz].contains(&subject.rate_hz))
+            .map(|((subject, _), (_, samples, follow))| Job {
                 subject,
                 samples,
                 follow,
             })
             .collect()
     };
-    let counted = traces.iter().map(|one| (one.rate_hz, &one.samples[..]));
-    let jobs = jobs_of(&counted.collect::<Vec<_>>(), FOLLOWED);
+    let counted = traces.iter().map(|one| {
+        let follow = if one.name == FOLLOWED_IN { FOLLOWED } else { 0 };
+        (one.rate_hz, &one.samples[..], follow)
+    });
+    let jobs = jobs_of(&counted.collect::<Vec<_>>());
     let compared = hostile
         .iter()
-        .map(|(rate_hz, samples)| (*rate_hz, &samples[..]));
-    let compared = jobs_of(&compared.collect::<Vec<_>>(), 0);
+        .map(|(rate_hz, samples)| (*rate_hz, &samples[..], 0));
+    let compared = jobs_of(&compared.collect::<Vec<_>>());
     let mut ran = on_board(image, &[&jobs[..], &compared[..]].concat())?;
     let compared: Vec<_> = compared
         .into_iter()
@@ -192,8 +196,8 @@ fn cost_of(image: &Image, subject: &Subject, own: &[&(Job<'_>, Ran)]) -> Result<
     let still = |(job, _): &&&(Job<'_>, Ran)| job.samples.iter().all(|s| s == &job.samples[0]);
     let settled = |(_, ran): &(Job<'_>, Ran)| mean_count(&ran.instructions[SKIPPED..]);
     let followed = |counts: fn(&Ran) -> &[u32]| -> f64 {
-        let all = own.iter().map(|(_, ran)| counts(ran));
-        let ends = all.flat_map(|counts| &counts[counts.len() - FOLLOWED..]);
+        let all = own.iter().filter(|(job, _)| job.follow > 0);
+        let ends = all.flat_map(|(job, ran)| &counts(ran)[counts(ran).len() - job.follow..]);
         ends.copied().map(f64::from).sum()
     };
     let reached = image.code.reached(image.update(subject)?);
