@@ -179,13 +179,14 @@ fn compensation_follows_the_time_since_the_last_reversal() {
             // The first motion is no reversal.
             let (mut before, mut latest, mut since_ms) = (0.0, 0.0, 1e3_f64);
             let mut seen = [0; 3];
-            for k in 0..(200.0 / period_ms) as u32 {
+            for k in 0..(230.0 / period_ms) as u32 {
                 let t_ms = f64::from(k) * period_ms;
-                // Half periods of 5 ms, then of 40 ms, and a rest, in which the sign is that of before.
+                // Half periods of 5 ms, then of 40 ms, and a rest, in which the sign is that of before, and back.
                 let handle = match t_ms {
                     ..50.0 => 3.0 * (t_ms / 5.0 * std::f64::consts::PI).sin(),
                     ..170.0 => 4.0 * ((t_ms - 50.0) / 40.0 * std::f64::consts::PI).cos(),
-                    _ => 0.0,
+                    ..200.0 => 0.0,
+                    _ => 2.0,
                 };
                 let handle = side * f64::from(handle as f32);
                 before += gain * (handle - before);

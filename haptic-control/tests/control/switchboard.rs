@@ -145,16 +145,16 @@ fn far(k: u32) -> Sample {
     Sample::new(Count(k.wrapping_mul(7))).with_coupled(Count(k.wrapping_mul(100)))
 }
 
-/// The first actions of `scene` after ticks without one, in which both encoders move.
-fn after_off(scene: AnyScene, before: Option<AnyScene>) -> Vec<Action> {
+/// The first actions of `scene` after ticks of one without a velocity, in which both encoders move.
+fn after_idle(scene: AnyScene, idle: SceneKind, before: Option<AnyScene>) -> Vec<Action> {
     let board = board();
     let mut state = board.start(&far(0));
     for k in 0..4000 {
         if k == 500 {
-            board.select(&mut state, before.unwrap_or(usual(SceneKind::Off)), &far(k));
+            board.select(&mut state, before.unwrap_or(usual(idle)), &far(k));
         }
         if k == 1000 {
-            board.select(&mut state, usual(SceneKind::Off), &far(k));
+            board.select(&mut state, usual(idle), &far(k));
         }
         board.step(&mut state, &far(k));
     }
@@ -174,31 +174,34 @@ fn estimator_that_was_not_needed_starts_at_rest() {
         usual(SceneKind::Viscous),
         usual(SceneKind::Inertia),
     ] {
-        for before in [
-            None,
-            Some(usual(SceneKind::FreeAir)),
-            Some(usual(SceneKind::SpringDamper)),
-            Some(usual(SceneKind::Inertia)),
-        ] {
-            let actions = after_off(scene, before);
-            // Less than 2e-6 A are left of what an earlier change added.
-            for (action, other) in actions.iter().zip(after_off(scene, None)) {
-                let [found, fresh] = [action, &other].map(|action| action.currents.large.get());
-                assert!(
-                    (found - fresh).abs() < 1e-5,
-                    "{scene:?} {before:?}: {found} {fresh} A"
-                );
-            }
-            let first = &actions[0];
-            assert_eq!(
-                (first.large_velocity.0, first.handle_velocity.0),
-                (0.0, 0.0),
-                "{scene:?}"
-            );
-            // What the currents fade by is over.
-            let large = first.currents.large.get();
-            assert!(large.abs() < 1e-4, "{scene:?} {before:?}: {large} A");
+        // No part runs in off, and the small motor alone in detents.
+        for idle in [SceneKind::Off, SceneKind::Detents] {
+            starts_at_rest(scene, idle);
         }
+    }
+}
+
+fn starts_at_rest(scene: AnyScene, idle: SceneKind) {
+    let fresh = after_idle(scene, idle, None);
+    for before in [
+        None,
+        Some(usual(SceneKind::FreeAir)),
+        Some(usual(SceneKind::SpringDamper)),
+        Some(usual(SceneKind::Inertia)),
+    ] {
+        let name = format!("{scene:?} after {idle:?} after {before:?}");
+        let actions = after_idle(scene, idle, before);
+        // Less than 2e-6 A are left of what an earlier change added.
+        for (action, other) in actions.iter().zip(&fresh) {
+            let [found, fresh] = [action, other].map(|action| action.currents.large.get());
+            assert!((found - fresh).abs() < 1e-5, "{name}: {found} {fresh} A");
+        }
+        let first = &actions[0];
+        let velocities = (first.large_velocity.0, first.handle_velocity.0);
+        assert_eq!(velocities, (0.0, 0.0), "{name}");
+        // What the currents fade by is over.
+        let large = first.currents.large.get();
+        assert!(large.abs() < 1e-4, "{name}: {large} A");
     }
 }
 
