@@ -2,8 +2,8 @@
 
 use crate::units::RadPerS;
 
-/// Velocity of the handle from which on the friction that is fed forward drives no handle, rad/s: above
-/// the 4.4 rad/s of a swing by 40° to both sides once a second.
+/// Inverse of the velocity of the handle from which on the friction that is fed forward drives no handle,
+/// 1 / (rad/s). The velocity is above the 4.4 rad/s of a swing by 40° to both sides once a second.
 const PER_DRIVEN: f32 = 1.0 / 6.0;
 
 /// Least friction and largest torque constant of the small motor with which the feed-forward drives no
@@ -14,9 +14,9 @@ const PASSIVE_PART: f64 = LEAST_FRICTION / LARGEST_CONSTANT;
 
 /// Torque in the direction of the handle's velocity ω, N·m:
 /// ```text
-/// T sat(ω / ω_d) (p + (1 - p) s)      s = 1 - sat(ω / 6 rad/s)⁴      sat(x) = max(-1, min(x, 1))
+/// T sat(ω / ω_d) (p + (1 - p) s)      sat(x) = max(-1, min(x, 1))
 /// ```
-/// T is the friction, ω_d the velocity below which its direction is uncertain. From 6 rad/s
+/// T is the friction, ω_d the velocity below which its direction is uncertain, and s is [`slow`]. From 6 rad/s
 /// on, half of the friction is left, which is p. A handle that nothing holds is driven, if its friction is
 /// less or the torque constant is more than in the description: up to the velocity at which the torque
 /// fed forward is the friction. That is at most 6 rad/s down to 60 % of the friction and up to 120 % of

@@ -200,7 +200,7 @@ impl Currents {
 
 #[cfg(test)]
 mod tests {
-    use super::{Amps, CurrentLimits, at_most, within};
+    use super::{Amps, CurrentLimits, at_most, seldom_more, within};
 
     const LIMITS: CurrentLimits = CurrentLimits {
         largest: Amps::new(6.0),
@@ -246,8 +246,9 @@ mod tests {
     fn bound_holds_on_both_sides_and_leaves_what_is_no_number() {
         for x in [-9.0, -2.0, -1.999, -0.0, 0.5, 2.0, 2.001, f32::MAX] {
             assert_eq!(at_most(x, 2.0).to_bits(), within(x, -2.0, 2.0).to_bits());
+            assert_eq!(seldom_more(x, 2.0).to_bits(), at_most(x, 2.0).to_bits());
         }
-        assert!(at_most(f32::NAN, 2.0).is_nan());
+        assert!(at_most(f32::NAN, 2.0).is_nan() && seldom_more(f32::NAN, 2.0).is_nan());
         assert_eq!(at_most(f32::NEG_INFINITY, 2.0), -2.0);
     }
 }

@@ -9,11 +9,10 @@ use serde::Serialize;
 
 use crate::board::{Job, Ran, on_board};
 use crate::image::{Image, Level};
-use crate::traces::{self, BenchTrace, RATES_HZ};
+use crate::traces::{self, BenchTrace, CHIRP, RATES_HZ};
 
-/// Updates that are followed instruction by instruction, which is slow: at the end of one trace at each rate.
+/// Updates that are followed instruction by instruction, which is slow: at the end of [`CHIRP`] at each rate.
 const FOLLOWED: usize = 200;
-const FOLLOWED_IN: &str = "chirp and reversals";
 
 /// Updates at the start of each trace that the errors ignore.
 const SKIPPED: usize = 200;
@@ -149,7 +148,7 @@ fn run<'a>(
             .collect()
     };
     let counted = traces.iter().map(|one| {
-        let follow = if one.name == FOLLOWED_IN { FOLLOWED } else { 0 };
+        let follow = if one.name == CHIRP { FOLLOWED } else { 0 };
         (one.rate_hz, &one.samples[..], follow)
     });
     let jobs = jobs_of(&counted.collect::<Vec<_>>());

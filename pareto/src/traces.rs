@@ -9,6 +9,9 @@ use simulation::simulate::simulate;
 use simulation::trace::{Columns, Trace};
 use stress::course::Course;
 
+/// Name of the trace with all frequencies and reversals of a hand.
+pub(crate) const CHIRP: &str = "chirp and reversals";
+
 /// Samples of each trace.
 const SAMPLES: usize = 2500;
 
@@ -73,7 +76,7 @@ pub fn all() -> Result<Vec<BenchTrace>, String> {
             ("creep", ScenarioName::Creep),
             ("constant", ScenarioName::Permanent),
             ("steps", ScenarioName::Step),
-            ("chirp and reversals", ScenarioName::Track),
+            (CHIRP, ScenarioName::Track),
             ("texture", ScenarioName::Texture),
         ] {
             let first = (FROM_S * rate) as usize;

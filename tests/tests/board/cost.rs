@@ -166,7 +166,7 @@ fn estimator_costs_nothing_in_scenes_without_the_large_velocity() {
 /// does not hold are read ahead.
 #[test]
 fn lines_of_flash_are_more_than_the_cache_holds_and_most_are_read_ahead() {
-    for (scene, lines) in [(SceneKind::Off, 72..95), (SceneKind::Wall, 125..155)] {
+    for (scene, lines) in [(SceneKind::Off, 65..90), (SceneKind::Wall, 130..160)] {
         let found = budget::measure(image("large-kalman"), &Setup::playing(scene, 0.7)).unwrap();
         let Fetches { lines: all, waits } = found.fetches_most;
         println!(
