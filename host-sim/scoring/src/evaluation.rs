@@ -311,4 +311,98 @@ mod tests {
         };
         assert_eq!(without_deviation.within_2_sigma(&truth, 10.0), None);
     }
+
+    #[test]
+    fn two_sigma_are_twice_the_deviation_either_way() {
+        for (velocity, inside) in [(3.0, true), (7.0, true), (2.99, false), (7.01, false)] {
+            assert_eq!(is_within_2_sigma(velocity, 1.0, 5.0), inside, "{velocity}");
+        }
+    }
+
+    #[test]
+    fn damping_is_the_mean_of_the_last_tenth() {
+        // Of 25 values the last three.
+        let mut values = vec![100.0; 25];
+        values[22..].copy_from_slice(&[1.0, 2.0, 6.0]);
+        assert_eq!(last_tenth(&values), 3.0);
+        assert_eq!(last_tenth(&[7.0]), 7.0);
+    }
+
+    #[test]
+    fn error_of_the_damping_is_relative_and_without_the_start() {
+        let mut trace = Trace {
+            rate_hz: 10.0,
+            counts_large: vec![0; 32],
+            ..Trace::default()
+        };
+        assert_eq!(damping_error(&[1.0; 32], &trace), None);
+        // The first 3 s are 30 samples. After them the errors are 30 and -40 % of the truth.
+        let mut truth = vec![1e-9; 30];
+        truth.extend([2.0, 5.0]);
+        trace.true_damping = Some(truth);
+        let mut learned = vec![1.0; 30];
+        learned.extend([2.6, 3.0]);
+        let error = damping_error(&learned, &trace).unwrap();
+        assert!((error - 1250.0_f64.sqrt()).abs() < 1e-9, "{error}");
+        assert_eq!(damping_error(&learned[..30], &trace), None);
+    }
+
+    #[test]
+    fn rows_name_the_values_of_the_parameters() {
+        let (device, kind) = (Device::default(), Kind::named("pll").unwrap());
+        let (parameters, setup) = (Parameters::default(), Setup::of(&device, 1000.0));
+        let candidate = Candidate::new(kind, &parameters, &setup, PlantKind::Friction).unwrap();
+        let values = candidate.named_values();
+        assert_eq!(values.len(), kind.parameters.len());
+        for (parameter, value) in kind.parameters.iter().zip(&candidate.values) {
+            assert_eq!(values.get(parameter.name), Some(value));
+        }
+    }
+
+    #[test]
+    fn rows_are_those_of_the_estimates_relative_to_finite_difference() {
+        let device = Device::default();
+        let columns = Columns {
+            counts_small: true,
+            edges: false,
+        };
+        let trace = simulate(&device, ScenarioName::Track, 1000.0, 1, 4.0, columns).unwrap();
+        let kinds = ["pll", "adaptive", "finite-difference"].map(|name| Kind::named(name).unwrap());
+        let (parameters, setup) = (Parameters::default(), Setup::of(&device, 1000.0));
+        let heading = Heading {
+            scenario: "track".to_owned(),
+            rate_hz: 1000.0,
+            plant: PlantKind::Friction,
+            seed: 7,
+        };
+        let interval = HapticInterval::new(0.1, 0.01, 0.07, 1e-3);
+        let rows = |kinds: &[&'static Kind], trace: &Trace| {
+            let evaluation = Evaluation::new(kinds, &parameters, &setup, heading.plant).unwrap();
+            let estimates = evaluation.estimates(trace);
+            evaluation
+                .rows(&heading, trace, &estimates, interval, Wanted::ALL)
+                .unwrap()
+        };
+        let found = rows(&kinds, &trace);
+        let names: Vec<_> = found.iter().map(|row| row.estimator).collect();
+        assert_eq!(names, ["pll", "adaptive", "finite-difference"]);
+        let rms = |row: &Row| row.score.rms_rad_s.unwrap();
+        for row in &found {
+            assert_eq!((&*row.scenario, row.seed), ("track", 7));
+            let expected = 100.0 * rms(row) / rms(&found[2]);
+            assert_eq!(row.score.rms_pct, Some(expected), "{}", row.estimator);
+            // The adaptive observer alone learns the damping, which the trace has.
+            let learns = row.estimator == "adaptive";
+            assert_eq!(row.score.learned_damping_nms_per_rad.is_some(), learns);
+            assert_eq!(row.score.learned_damping_pct.is_some(), learns);
+        }
+        assert!(rms(&found[1]) < rms(&found[0]) && rms(&found[0]) < rms(&found[2]));
+        // The reference is computed where it is not among the estimators.
+        assert_eq!(rows(&kinds[..1], &trace)[0].score, found[0].score);
+        let unknown = Trace {
+            true_omega: None,
+            ..trace
+        };
+        assert!(rows(&kinds, &unknown).is_empty());
+    }
 }

@@ -190,4 +190,28 @@ mod tests {
         assert_eq!(slow.rms_within([50.0, 500.0]), None);
         assert_eq!(slow.rms_within([40.0, 500.0]), Some(0.0));
     }
+
+    #[test]
+    fn density_is_the_mean_of_those_of_half_overlapping_segments() {
+        let welch = Welch::new(1000.0);
+        // Louder from segment to segment, so that none can stand for another.
+        let wave = sine(1000.0, 100.0, 500);
+        let signal: Vec<f64> = wave.iter().enumerate().map(|(i, x)| i as f64 * x).collect();
+        let starts = [0, 125, 250];
+        let parts = starts.map(|start| welch.density(&signal[start..start + 250]).unwrap());
+        for (count, samples) in [(1, 374), (2, 375), (3, 500)] {
+            let whole = welch.density(&signal[..samples]).unwrap();
+            for (bin, power) in whole.power_per_hz.iter().enumerate() {
+                let sum: f64 = parts[..count]
+                    .iter()
+                    .map(|part| part.power_per_hz[bin])
+                    .sum();
+                let mean = sum / count as f64;
+                assert!(
+                    (power - mean).abs() <= 1e-9 * mean.max(1.0),
+                    "{count}: bin {bin}"
+                );
+            }
+        }
+    }
 }

@@ -162,4 +162,12 @@ mod tests {
         let (truth, estimate) = lagging(130.0, 4000);
         assert_eq!(samples(&truth, &estimate, 100), None);
     }
+
+    #[test]
+    fn smallest_margin_is_of_two_samples() {
+        let (truth, late) = lagging(1.0, 50);
+        assert_eq!(samples(&truth, &late, 1), None);
+        let found = samples(&truth, &late, 2).unwrap();
+        assert!((found - 1.0).abs() < 0.01, "{found}");
+    }
 }

@@ -171,4 +171,17 @@ mod tests {
         let damping = sentence("learned_damping_nms_per_rad");
         assert!(damping.ends_with("last tenth, N.m.s/rad"), "{damping}");
     }
+
+    #[test]
+    fn tables_show_a_share_in_percent_and_other_values_as_they_are() {
+        let row = Score {
+            outside: Some(0.25),
+            delay_ms: Some(0.25),
+            ..Score::default()
+        };
+        let shown = |name: &str| Score::field(name).unwrap().shown(&row);
+        assert_eq!(shown("outside"), Some(25.0));
+        assert_eq!(shown("delay_ms"), Some(0.25));
+        assert_eq!(shown("noise_rad_s"), None);
+    }
 }
