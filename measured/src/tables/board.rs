@@ -105,23 +105,6 @@ pub const SCENE_INSTRUCTIONS: Table = Table {
     command: BOARD,
 };
 
-/// Instructions of the control task in the image of all scenes.
-pub const TICK_INSTRUCTIONS: Table = Table {
-    name: "tick-instructions",
-    page: "docs/benchmarks.md",
-    columns: &[
-        ("scene", "scene"),
-        ("foaw_least", "FOAW, least"),
-        ("foaw_mean", "mean"),
-        ("foaw_most", "most"),
-        ("kalman_least", "Kalman, least"),
-        ("kalman_mean", "mean"),
-        ("kalman_most", "most"),
-    ],
-    digits: None,
-    command: BOARD,
-};
-
 /// What faults do on the virtual board.
 pub const FAULTS: Table = Table {
     name: "faults",

@@ -3,7 +3,9 @@
 use std::sync::OnceLock;
 
 use haptic_control::{Mode, SceneKind, Stop};
-use measured::tables::{SCENE_INSTRUCTIONS, TICK_INSTRUCTIONS};
+use measured::Row;
+use measured::control_rate::NONE;
+use measured::tables::{CONTROL, SCENE_INSTRUCTIONS};
 use virtual_board::budget;
 use virtual_board::fetch::{CACHED, Fetches};
 use virtual_board::run::{ControlTick, Outcome, Setup};
@@ -63,21 +65,6 @@ fn healthy(scene: SceneKind, run: Outcome) -> Outcome {
     run
 }
 
-/// Instructions of each scene in an image of all of them.
-fn by_scene(features: &'static str) -> Vec<(SceneKind, Range)> {
-    let of = |scene| {
-        let run = playing(features, scene);
-        (scene, between(&run, SETTLED_S, f64::INFINITY))
-    };
-    SceneKind::environments().map(of).collect()
-}
-
-/// Those of the images with either estimator on the large motor.
-fn of_both() -> &'static [Vec<(SceneKind, Range)>; 2] {
-    static BOTH: OnceLock<[Vec<(SceneKind, Range)>; 2]> = OnceLock::new();
-    BOTH.get_or_init(|| ["", "large-kalman"].map(by_scene))
-}
-
 /// Mean, rounded, and largest.
 fn figures(range: Range) -> [u64; 2] {
     [range.mean.round() as u64, range.max]
@@ -98,67 +85,25 @@ fn instructions_of_a_single_scene_agree_with_the_table() {
     checked.unwrap_or_else(|error| panic!("{error}"));
 }
 
+/// What a scene does not need it does not pay for: a scene without the velocity loop costs the same whoever
+/// would estimate, but for the choice between two.
 #[test]
-fn costs_of_scenes_and_estimators_agree_with_the_table() {
-    let [foaw, kalman] = of_both();
-    let rows: Vec<Vec<String>> = foaw
-        .iter()
-        .zip(kalman)
-        .map(|((scene, foaw), (_, kalman))| {
-            let figures = [*foaw, *kalman].map(|range| [range.min, figures(range)[0], range.max]);
-            let figures = figures.as_flattened().iter().map(u64::to_string);
-            [scene.name().to_owned()]
-                .into_iter()
-                .chain(figures)
-                .collect()
-        })
+fn image_of_two_estimators_costs_scenes_without_the_large_velocity_no_more_than_the_choice() {
+    let rows = CONTROL.read().unwrap();
+    let small: Vec<_> = SceneKind::environments()
+        .filter(|scene| !scene.facts().needs.continuous)
         .collect();
-    let checked = TICK_INSTRUCTIONS.check(&[], &rows, same);
-    checked.unwrap_or_else(|error| panic!("{error}"));
-}
-
-/// What a scene does not need it does not pay for. Differences, because every scene pays for the
-/// task around the controller: off, the same whoever estimates, but for the choice; detents and
-/// texture, besides, for a table or a phase and no estimator; the others for the whole loop, a wall
-/// or a spring being little of it.
-#[test]
-fn estimator_costs_nothing_in_scenes_without_the_large_velocity() {
-    let [foaw, kalman] = of_both();
-    for ((scene, foaw), (_, kalman)) in foaw.iter().zip(kalman) {
-        if scene.facts().needs.continuous {
-            let (foaw, kalman) = (foaw.max, kalman.max);
-            assert!(kalman < foaw, "{scene}: {kalman}, {foaw}");
-        } else {
-            // The image of two looks at which of them is in charge. The rest is laid out
-            // differently by the linker's optimisation, which moves instructions: 7 of 470 were seen.
-            let more = foaw.mean - kalman.mean;
-            assert!((-10.0..40.0).contains(&more), "{scene}: {more} more");
-        }
-    }
-    for scenes in [foaw, kalman] {
-        let mean = |name: &str| {
-            let found = scenes.iter().find(|(scene, _)| scene.name() == name);
-            found.expect("a scene").1.mean
-        };
-        let (off, air) = (mean("off"), mean("free-air"));
-        for small in ["detents", "texture"] {
-            let more = mean(small) - off;
-            assert!(
-                (10.0..200.0).contains(&more),
-                "{small}: {more} more than off"
-            );
-        }
-        // Two estimators, the velocity loop and both friction corrections.
-        assert!(air - off > 200.0, "off {off}, free air {air}");
-    }
-    // A window costs what the motion makes of it, the filter always the same.
-    let mean = |name: &str| {
-        let found = kalman.iter().find(|(scene, _)| scene.name() == name);
-        found.expect("a scene").1.mean
-    };
-    for large in ["wall", "spring-damper", "viscous", "hold", "inertia"] {
-        let ratio = mean(large) / mean("free-air");
-        assert!((0.9..1.1).contains(&ratio), "{large}: {ratio} of free air");
+    assert!(small.len() > 2, "{small:?}");
+    for scene in small {
+        let is_own = |row: &&Row| row.text("scene") == Ok(scene.name());
+        let one = rows.iter().find(is_own).expect("a row");
+        assert_eq!(one.text("estimator"), Ok(NONE));
+        let run = playing("large-kalman", scene);
+        let more =
+            between(&run, SETTLED_S, f64::INFINITY).mean - one.number("instructions_mean").unwrap();
+        // The rest is laid out differently by the linker's optimisation, which moves instructions: 7 of 470
+        // were seen.
+        assert!((-10.0..40.0).contains(&more), "{scene}: {more} more");
     }
 }
 

@@ -6,6 +6,7 @@ mod bound;
 
 use bench_image::SUBJECTS;
 use estimator_catalogue::ROWS;
+use measured::control_rate::{IMAGES, NONE, STEADY};
 use measured::tables::{CONTROL, EVIDENCE_COST, PARETO};
 use pareto::control::{self, Task};
 use pareto::measure::{self, Row};
@@ -105,6 +106,33 @@ fn claims_of_tasks(tasks: &[Task], rows: &[Row]) {
         assert!(most > 10e3, "{} with {}", task.scene, task.estimator);
         // As firmware/src/tasks.rs has it: an eighth of the period.
         assert!(task.instructions.1 <= 16_800 / 8, "{}", task.scene);
+    }
+    let mean = |name: &str, scene: &str| {
+        let is_it = |task: &&Task| task.estimator == name && task.scene == scene;
+        tasks.iter().find(is_it).expect("a task").instructions.0
+    };
+    // What a scene does not need it does not pay for. Detents and texture pay for a table or a phase and no
+    // estimator; free air for two estimators, the velocity loop and both friction corrections.
+    let off = mean(NONE, "off");
+    for small in ["detents", "texture"] {
+        let more = mean(NONE, small) - off;
+        assert!(
+            (10.0..200.0).contains(&more),
+            "{small}: {more} more than off"
+        );
+    }
+    let air = mean(STEADY, "free-air");
+    assert!(air - off > 200.0, "off {off}, free air {air}");
+    // A wall or a spring is little of the loop. The filter always costs the same, a window more than it.
+    for large in tasks.iter().filter(|task| task.estimator == STEADY) {
+        let ratio = large.instructions.0 / air;
+        assert!(
+            (0.9..1.1).contains(&ratio),
+            "{}: {ratio} of free air",
+            large.scene
+        );
+        let window = mean(IMAGES[0].0, &large.scene);
+        assert!(large.instructions.0 < window, "{}: {window}", large.scene);
     }
     // The rate by exchange of an update is near that of the image, where there is one.
     for name in ["adaptive", "adaptive-edge"] {
