@@ -189,7 +189,7 @@ pub fn on_board(
     } = lockstep;
     let sent_by_port = std::mem::take(&mut port.wire().up);
     let flash = &session.board().part.flash;
-    let telemetry = Telemetry::decode(&image.elf, &probe.stream)?;
+    let telemetry = rtt::decode(&image.elf, &probe.stream)?;
     Ok(Outcome {
         first_tick: first_tick(&telemetry.frames, &recorded.ticks),
         rtt: probe.stream,

@@ -2,8 +2,6 @@
 
 mod frame;
 mod link;
-#[cfg(feature = "rtt")]
-mod rtt;
 mod run;
 mod side_lines;
 mod text;
@@ -43,7 +41,7 @@ pub struct Boot {
 
 impl Telemetry {
     /// Adds one message of the firmware.
-    fn line(&mut self, line: &str) {
+    pub fn line(&mut self, line: &str) {
         if line.starts_with(frame::START) {
             match line.parse() {
                 Ok(frame) => self.frames.push(frame),

@@ -84,7 +84,7 @@ pub(super) fn run(options: &Record) -> Result<(), Failure> {
 
 #[cfg(feature = "rtt")]
 fn decode(elf: &[u8], bytes: &[u8]) -> Result<Telemetry, String> {
-    Telemetry::decode(elf, bytes)
+    rtt::decode(elf, bytes)
 }
 
 #[cfg(not(feature = "rtt"))]

@@ -8,7 +8,7 @@ use experiments::replay::replay;
 use haptic_control::{Mode, SceneKind, Stop};
 use recordings::record::{choose, csv};
 use recordings::recording::{BoardColumns, Recording};
-use recordings::telemetry::{Frame, Telemetry};
+use recordings::telemetry::Frame;
 use simulation::device::Device;
 use virtual_board::command::Command;
 use virtual_board::fault::Fault;
@@ -18,7 +18,7 @@ use crate::image::{free_air, image, of_scene, run, run_image};
 
 /// The recording made of raw bytes, as `host-sim record --image` makes it.
 fn recorded(bytes: &[u8], rate_hz: Option<f64>) -> String {
-    let telemetry = Telemetry::decode(image("").elf(), bytes).unwrap();
+    let telemetry = rtt::decode(image("").elf(), bytes).unwrap();
     let runs = telemetry.runs();
     let run = choose(&runs, None).unwrap();
     csv(run, run.rate_hz.or(rate_hz).unwrap(), |_| None)
@@ -70,7 +70,7 @@ fn recording_from_rtt_bytes_equals_that_of_the_run() {
 fn edge_stamps_of_the_board_are_recorded_and_replayed() {
     const IMAGE: &str = "edge-capture";
     let run = run_image(IMAGE, &of_scene(SceneKind::FreeAir, Hand::Moving, 3.0));
-    let telemetry = Telemetry::decode(image(IMAGE).elf(), &run.rtt).unwrap();
+    let telemetry = rtt::decode(image(IMAGE).elf(), &run.rtt).unwrap();
     let runs = telemetry.runs();
     let chosen = choose(&runs, None).unwrap();
     let truth = |frame: &Frame| run.tick(frame).map(|tick| tick.large.omega);
@@ -95,7 +95,7 @@ fn incomplete_stream_loses_only_the_missing_frames() {
     let whole = parse(&run.csv().unwrap());
     let (from, hole, end) = (run.rtt.len() / 3, run.rtt.len() / 2, run.rtt.len());
     let bytes = [&run.rtt[from..hole], &run.rtt[hole + 1001..end - 5]].concat();
-    let telemetry = Telemetry::decode(image("").elf(), &bytes).unwrap();
+    let telemetry = rtt::decode(image("").elf(), &bytes).unwrap();
     let runs = telemetry.runs();
     let run = choose(&runs, None).unwrap();
     assert_eq!((run.rate_hz, run.gaps.places), (None, 1));
