@@ -26,15 +26,9 @@ impl<'py> FromPyObject<'_, 'py> for DeviceFile {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        if object.is_instance_of::<PyDict>() {
-            let json = object
-                .py()
-                .import("json")?
-                .call_method1("dumps", (object,))?;
-            let table: toml::Table = serde_json::from_str(&json.extract::<String>()?)
+        if let Ok(sections) = object.cast::<PyDict>() {
+            let text = toml::to_string(&table(&sections, "")?)
                 .map_err(|error| value_error(format!("device: {error}")))?;
-            let text =
-                toml::to_string(&table).map_err(|error| value_error(format!("device: {error}")))?;
             let name = "device".to_owned();
             return Ok(Self { name, text });
         }
@@ -47,6 +41,31 @@ impl<'py> FromPyObject<'_, 'py> for DeviceFile {
         let text = std::fs::read_to_string(&path)?;
         Ok(Self { name, text })
     }
+}
+
+/// The table of a device file with the content of a dict; `within` is the name of the section and a full
+/// stop.
+fn table(dict: &Bound<'_, PyDict>, within: &str) -> PyResult<toml::Table> {
+    let mut table = toml::Table::new();
+    for (key, value) in dict.iter() {
+        let wrong = |what: &str| PyTypeError::new_err(format!("device: {within}{key}: {what}"));
+        let name: String = key.extract().map_err(|_| wrong("a key must be a str"))?;
+        let value = if let Ok(section) = value.cast::<PyDict>() {
+            toml::Value::Table(self::table(section, &format!("{within}{name}."))?)
+        } else if let Ok(text) = value.extract::<String>() {
+            toml::Value::String(text)
+        } else if let Ok(flag) = value.extract::<bool>() {
+            toml::Value::Boolean(flag)
+        } else if let Ok(whole) = value.extract::<i64>() {
+            toml::Value::Integer(whole)
+        } else if let Ok(number) = value.extract::<f64>() {
+            toml::Value::Float(number)
+        } else {
+            return Err(wrong("give a number"));
+        };
+        table.insert(name, value);
+    }
+    Ok(table)
 }
 
 /// The device of a file, or the default one; `counts_per_rev` replaces the counts of the large encoder.

@@ -128,3 +128,26 @@ def test_missing_files_are_os_errors(tmp_path):
         limpid.device(tmp_path / "nothing.toml")
     with pytest.raises(TypeError, match="give the path of a device file, or a dict"):
         limpid.device(5)
+
+
+@pytest.mark.parametrize(
+    ("sections", "error", "names"),
+    [
+        ({"large": {"inertia_kg_m2": [1]}}, TypeError, r"large\.inertia_kg_m2: give a number"),
+        ({"large": {"inertia_kg_m2": None}}, TypeError, r"large\.inertia_kg_m2: give a number"),
+        ({"large": {1: 2}}, TypeError, r"large\.1: a key must be a str"),
+        ({"large": {"inertia_kg_m2": "heavy"}}, ValueError, "inertia_kg_m2"),
+        ({"large": {"inertia_kg_m2": float("nan")}}, ValueError, "inertia"),
+        ({"large": {"inertia": 1}}, ValueError, "inertia"),
+        ({"large": 1}, ValueError, "large"),
+    ],
+)
+def test_device_that_is_wrong_is_named(sections, error, names):
+    with pytest.raises(error, match=names):
+        limpid.device(sections)
+
+
+def test_device_takes_numbers_of_numpy():
+    device = limpid.device({"large": {"counts_per_rev": np.int32(90), "inertia_kg_m2": np.float64(2e-5)}})
+    assert device["large"]["counts_per_rev"] == 90
+    assert device["large"]["inertia_kg_m2"] == 2e-5
