@@ -76,7 +76,7 @@ impl Row {
 /// One line if an image does not build or run, or differs from the host in any bit.
 pub fn measure() -> Result<Vec<Row>, String> {
     let traces = traces::all()?;
-    let images: Result<Vec<_>, String> = Level::ALL.into_iter().map(Image::build).collect();
+    let images: Result<Vec<_>, String> = Level::ALL.into_par_iter().map(Image::build).collect();
     let images = images?;
     let hostile = RATES_HZ.map(|rate_hz| (rate_hz, traces::hostile(rate_hz)));
     let run = |image| run(image, &traces, &hostile);
