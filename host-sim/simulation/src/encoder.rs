@@ -250,11 +250,11 @@ mod tests {
         for (_, boundary) in edges {
             // Boundary e separates counts e - 1 and e.
             count = if boundary == count {
-                count - 1
+                count.wrapping_sub(1)
             } else {
-                count + 1
+                count.wrapping_add(1)
             };
-            assert!(boundary == count || boundary == count + 1);
+            assert!(boundary == count || boundary == count.wrapping_add(1));
         }
         assert_eq!(count, encoder.count());
     }
