@@ -31,6 +31,7 @@ pub(crate) fn read_log<'py>(
         modulus,
         row_rate,
         resample,
+        ..RecordingOptions::default()
     };
     let given = device.is_some() || counts_per_rev.is_some();
     let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;

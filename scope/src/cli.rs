@@ -70,11 +70,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Ok(arguments) => arguments,
         Err(error) => return explain(&error, "cargo scope"),
     };
-    if arguments.recording.is_none() && arguments.read != RecordingOptions::default() {
-        return Err(Failure::Input(
-            "--column, --modulus, --row-rate and --resample read a recording: give --recording FILE.csv"
-                .to_owned(),
-        ));
+    if arguments.recording.is_none() {
+        arguments.read.check_unused("--recording FILE.csv")?;
     }
     let device = arguments.device.load()?;
     // A port that is taken is told before an image is built.

@@ -17,6 +17,15 @@ pub struct DeviceFile {
     device: Option<PathBuf>,
 }
 
+/// The encoder of a recording.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Args)]
+pub struct EncoderOptions {
+    /// Counts per revolution of the encoder: four times its lines [default: as the recording states
+    /// them, or those of the device]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=4_000_000))]
+    pub counts_per_rev: Option<u32>,
+}
+
 /// How a recording is read.
 #[derive(Clone, Debug, Default, PartialEq, Args)]
 pub struct RecordingOptions {
@@ -36,6 +45,9 @@ pub struct RecordingOptions {
     /// Replace the rows by rows at a constant rate: counts are interpolated and rounded
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub resample: Option<f64>,
+    /// The encoder.
+    #[command(flatten)]
+    pub encoder: EncoderOptions,
 }
 
 /// A recording with the columns of the board and its device.
@@ -73,6 +85,33 @@ impl RecordingOptions {
         Ok(options)
     }
 
+    /// `device`, as loaded from `file`, with the counts per revolution of the recordings, as
+    /// [`DeviceFile::with_stated_counts`].
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that names the recording.
+    pub fn counted(
+        &self,
+        file: &DeviceFile,
+        device: Device,
+        logs: &[Log],
+    ) -> Result<(Device, Vec<String>), Failure> {
+        file.with_stated_counts(device, logs, self.encoder.counts_per_rev)
+    }
+
+    /// Checks that no option is given, for a command without a recording, which `give` tells to give.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] with all the options.
+    pub fn check_unused(&self, give: &str) -> Result<(), Failure> {
+        if *self == Self::default() {
+            return Ok(());
+        }
+        Err(Failure::Input(format!(
+            "--column, --modulus, --row-rate, --resample and --counts-per-rev read a recording: give {give}"
+        )))
+    }
+
     /// Reads the recording `log` of `device`. Its notes are those of the reader.
     ///
     /// # Errors
@@ -94,8 +133,7 @@ impl RecordingOptions {
     /// # Errors
     /// [`Failure::Input`] that names the file, its line and its column, or the option.
     pub fn whole(&self, log: &Log, file: &DeviceFile) -> Result<Whole, Failure> {
-        let (device, stated) =
-            file.with_stated_counts(file.load()?, std::slice::from_ref(log), None)?;
+        let (device, stated) = self.counted(file, file.load()?, std::slice::from_ref(log))?;
         let recording = self.read(log, &device)?;
         recording.check_times(log.name())?;
         // Rows of another rate are not those of the board.
@@ -178,7 +216,7 @@ impl DeviceFile {
                 Some(first) if stated != *counts => {
                     return Err(Failure::Input(format!(
                         "{}: states {stated} counts/rev and {first} {counts}; give recordings of one \
-                         encoder, or the counts with --device",
+                         encoder, or the counts with --counts-per-rev",
                         log.name()
                     )));
                 }

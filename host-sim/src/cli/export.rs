@@ -59,10 +59,6 @@ struct Design {
         allow_negative_numbers = true
     )]
     rate: f64,
-    /// For C: counts per revolution of the encoder: four times its lines [default: that of the
-    /// device]
-    #[arg(long, value_name = "N", requires = "c", value_parser = clap::value_parser!(u32).range(16..=4_000_000))]
-    counts_per_rev: Option<u32>,
     /// For C: clock that stamps edges, Hz
     #[arg(long, value_name = "HZ", default_value_t = EDGE_CLOCK_HZ, requires = "c", allow_negative_numbers = true)]
     edge_clock: f64,
@@ -86,14 +82,14 @@ fn header(options: &Export) -> Result<(), Failure> {
     };
     let Design {
         rate,
-        counts_per_rev,
         edge_clock,
         out,
     } = &options.design;
     let rate = in_range("--rate", *rate, [100.0, 1e5], "Hz")?;
     let mut device = options.device.load()?;
-    device.stages.large.counts_per_rev =
-        counts_per_rev.unwrap_or(device.stages.large.counts_per_rev);
+    if let Some(counts) = options.read.encoder.counts_per_rev {
+        device.stages.large.counts_per_rev = counts;
+    }
     let setup = Setup::of(&device, rate);
     let values = options
         .parameters

@@ -56,13 +56,13 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
     let device = options.device.load()?;
     let logs = options.recordings.iter().map(|path| Log::open(path));
     let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
-    let (device, mut notes) = options.device.with_stated_counts(device, &logs, None)?;
+    let (device, mut notes) = options.read.counted(&options.device, device, &logs)?;
     let known = match &options.known {
         Some(text) => Known::parse(text)?,
         None => Known::TorqueConstant(device.stages.large.torque_constant),
     };
     let mut recordings = Vec::new();
-    let states_counts = !notes.is_empty();
+    let counts_are_known = !notes.is_empty() || options.read.encoder.counts_per_rev.is_some();
     for log in &logs {
         let name = short_name(log.path());
         let recording = options.read.read(log, &device)?;
@@ -70,7 +70,7 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
         recordings.push((name, recording));
     }
     let mut found = identify::identify(&recordings, &device, known, options.clamped)?;
-    if !options.device.is_given() && !states_counts {
+    if !options.device.is_given() && !counts_are_known {
         found.assumed.insert(0, identify::default_counts(&device));
     }
     if let Some(out) = &options.out {
@@ -86,7 +86,9 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
         let text = options.device.text()?;
         let names: Vec<_> = recordings.iter().map(|(name, _)| name.as_str()).collect();
         let given = options.known.is_some();
-        let text = identify::updated(&text, &found.quantities, known, given, &names.join(", "))
+        let counts = device.stages.large.counts_per_rev;
+        let names = names.join(", ");
+        let text = identify::updated(&text, &found.quantities, known, given, counts, &names)
             .map_err(|error| Failure::Input(format!("{}: {error}", out.display())))?;
         write_whole(out, text.as_bytes())?;
     }

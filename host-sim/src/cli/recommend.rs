@@ -30,9 +30,6 @@ pub(super) struct Recommend {
     /// reference that is smoothed from the counts; - is standard input
     #[arg(value_name = "LOG", required = true)]
     logs: Vec<PathBuf>,
-    /// Counts per revolution of the encoder: four times its lines [default: that of the device]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=4_000_000))]
-    counts_per_rev: Option<u32>,
     /// Largest number of instructions per update on a Cortex-M4 for the second, cheap estimator
     #[arg(long, value_name = "N", default_value_t = BUDGET, allow_negative_numbers = true)]
     instructions: f64,
@@ -72,10 +69,7 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
     let parameters = options.parameters.load()?;
     let logs = options.logs.iter().map(|path| Log::open(path));
     let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
-    let (device, stated) =
-        options
-            .device
-            .with_stated_counts(device, &logs, options.counts_per_rev)?;
+    let (device, stated) = options.recording.counted(&options.device, device, &logs)?;
     let read = |log: &Log| -> Result<(String, Recording), Failure> {
         let recording = options.recording.read(log, &device)?;
         recording.check_times(log.name())?;
@@ -95,7 +89,10 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
 
     let counts_per_rev = device.stages.large.counts_per_rev;
     let mut notes = stated;
-    if notes.is_empty() && options.counts_per_rev.is_none() && !options.device.is_given() {
+    if notes.is_empty()
+        && options.recording.encoder.counts_per_rev.is_none()
+        && !options.device.is_given()
+    {
         notes.push(format!(
             "{counts_per_rev} counts/rev assumed: give --counts-per-rev or --device"
         ));

@@ -77,10 +77,8 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let parameters = options.parameters.load()?;
     let name = short_name(&options.trace);
     let log = Log::open(&options.trace)?;
-    let (device, stated) =
-        options
-            .device
-            .with_stated_counts(device, std::slice::from_ref(&log), None)?;
+    let logs = std::slice::from_ref(&log);
+    let (device, stated) = options.recording.counted(&options.device, device, logs)?;
     let (read, survey) = options.recording.survey(&log, &device)?;
     survey.check_times(log.name())?;
     let chosen = Chosen::new(
@@ -152,11 +150,16 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     for line in passes.summary.lines(&device) {
         note(format_args!("{name}: {line}"));
     }
+    let counts_of = match options.recording.encoder.counts_per_rev {
+        Some(_) => "of --counts-per-rev; ",
+        None if !stated.is_empty() && !options.device.is_given() => "of the file; ",
+        None => "",
+    };
     let device_name = match options.device.is_given() {
         true => options.device.name(),
-        false if stated.is_empty() => "the default device: no --device given".to_owned(),
-        false => "of the file; the default device: no --device given".to_owned(),
+        false => "the default device: no --device given".to_owned(),
     };
+    let device_name = format!("{counts_of}{device_name}");
     if let Some(why) = without {
         note(format_args!("{name}: no scores: {why}"));
     }

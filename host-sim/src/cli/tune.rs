@@ -115,7 +115,10 @@ pub(super) fn run(options: &Tune, run_line: &str) -> Result<(), Failure> {
         json: None,
     };
     match options.recordings.is_empty() {
-        true => searched(options, &options.plan(&kinds)?, outputs, finish),
+        true => {
+            options.read.check_unused("RECORDING")?;
+            searched(options, &options.plan(&kinds)?, outputs, finish)
+        }
         false => searched(options, &log_plan(options, kinds)?, outputs, finish_logs),
     }
 }
@@ -203,7 +206,7 @@ fn log_plan(options: &Tune, mut kinds: Vec<&'static Kind>) -> Result<LogPlan, Fa
     let device = options.device.load()?;
     let logs = options.recordings.iter().map(|path| Log::open(path));
     let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
-    let (device, mut notes) = options.device.with_stated_counts(device, &logs, None)?;
+    let (device, mut notes) = options.read.counted(&options.device, device, &logs)?;
     let mut recordings = Vec::new();
     for log in &logs {
         let name = short_name(log.path());

@@ -78,3 +78,41 @@ fn recordings_of_different_encoders_are_refused() {
         assert!(error.contains(said), "{command}: {error}");
     }
 }
+
+#[test]
+fn counts_of_an_option_are_those_of_a_device_file() {
+    let (folder, text) = coarse("option-of-counts", "1000");
+    let unstated = text.split_once('\n').expect("a line of counts").1;
+    folder.write("c.csv", unstated);
+    folder.write("half.toml", "[large]\ncounts_per_rev = 500\n");
+    for command in [
+        "replay c.csv --estimator pll --out",
+        "plot c.csv --estimator pll --out",
+    ] {
+        let command: Vec<_> = command.split(' ').collect();
+        let by_file = folder.good(&[&command[..], &["-", "--device", "half.toml"]].concat());
+        let by_option = folder.good(&[&command[..], &["-", "--counts-per-rev", "500"]].concat());
+        assert_eq!(by_option, by_file, "{command:?}");
+        let default = folder.good(&[&command[..], &["-"]].concat());
+        assert_ne!(by_option, default, "{command:?}");
+    }
+    let table = folder.good(&[
+        "replay",
+        "c.csv",
+        "--counts-per-rev",
+        "500",
+        "--out",
+        "v.csv",
+    ]);
+    let said = "500 counts/rev (of --counts-per-rev; the default device: no --device given)";
+    let words: Vec<_> = table.split_whitespace().collect();
+    assert!(words.join(" ").contains(said), "{table}");
+    for wrong in ["15", "4000001", "many"] {
+        folder.refused(&["replay", "c.csv", "--counts-per-rev", wrong]);
+    }
+    let error = folder.refused(&["tune", "--counts-per-rev", "500", "--estimator", "pll"]);
+    assert!(
+        error.contains("read a recording: give RECORDING"),
+        "{error}"
+    );
+}

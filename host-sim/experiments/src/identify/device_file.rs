@@ -7,7 +7,8 @@ use simulation::device::Device;
 
 /// `text` with the identified values replaced or added; everything else is unchanged. A comment
 /// beside each value has its interval and its source. `known` is written if it was `given` on the
-/// command line, because the other values depend on it.
+/// command line, because the other values depend on it. So are the counts per revolution, unless they are
+/// those of `text`.
 ///
 /// # Errors
 /// One line if `text` or the result is not a device file.
@@ -16,12 +17,17 @@ pub fn updated(
     quantities: &[Quantity],
     known: Known,
     given: bool,
+    counts_per_rev: u32,
     source: &str,
 ) -> Result<String, String> {
     let mut document: DocumentMut = text.parse().map_err(|error| format!("{error}"))?;
+    if Device::from_toml_str(text)?.stages.large.counts_per_rev != counts_per_rev {
+        let (key, counts) = ("large.counts_per_rev", i64::from(counts_per_rev));
+        put(&mut document, key, counts.into(), &format!("of {source}"))?;
+    }
     if given {
         let (key, value) = known.entry();
-        put(&mut document, key, value, "given as known")?;
+        put(&mut document, key, rounded(value), "given as known")?;
     }
     for quantity in quantities.iter().filter(|q| q.rejected.is_none()) {
         // The estimate of a small friction can be negative.
@@ -30,19 +36,27 @@ pub fn updated(
             "identified from {source} within {} (95 %), with {known} as exact",
             quantity.half_text(),
         );
-        put(&mut document, quantity.key, value, &comment)?;
+        put(&mut document, quantity.key, rounded(value), &comment)?;
     }
     let text = document.to_string();
     Device::from_toml_str(&text)?;
     Ok(text)
 }
 
-/// Sets `section.name`. Its section can be a table, an inline table, or missing.
-fn put(document: &mut DocumentMut, key: &str, value: f64, comment: &str) -> Result<(), String> {
-    let (section, name) = key.split_once('.').unwrap_or(("", key));
+/// A value with six digits.
+fn rounded(value: f64) -> Value {
     let digits = format!("{value:.5e}");
-    let digits: f64 = digits.parse().unwrap_or(value);
-    let mut value = Value::from(digits);
+    Value::from(digits.parse().unwrap_or(value))
+}
+
+/// Sets `section.name`. Its section can be a table, an inline table, or missing.
+fn put(
+    document: &mut DocumentMut,
+    key: &str,
+    mut value: Value,
+    comment: &str,
+) -> Result<(), String> {
+    let (section, name) = key.split_once('.').unwrap_or(("", key));
     let section = document
         .entry(section)
         .or_insert_with(|| Item::Table(Table::new()));
@@ -94,7 +108,7 @@ mod tests {
         let text = "# mine\n[large]\ncounts_per_rev = 2000 # coarse\ninertia_kg_m2 = 1e-5 # old\n\n[hand]\nstiffness_nm_per_rad = 0.4\n";
         let quantities = [quantity(INERTIA, 1.234567e-5), quantity(DAMPING, 0.9e-3)];
         let known = Known::TorqueConstant(0.05);
-        let new = updated(text, &quantities, known, true, "a.csv").unwrap();
+        let new = updated(text, &quantities, known, true, 2000, "a.csv").unwrap();
         assert!(
             new.starts_with("# mine\n[large]\ncounts_per_rev = 2000 # coarse\ninertia_kg_m2 = ")
         );
@@ -114,7 +128,7 @@ mod tests {
         assert_eq!(device, expected);
         // Once more changes nothing but the same values.
         assert_eq!(
-            updated(&new, &quantities, known, true, "a.csv").unwrap(),
+            updated(&new, &quantities, known, true, 2000, "a.csv").unwrap(),
             new
         );
     }
@@ -126,7 +140,20 @@ mod tests {
         rejected.rejected = Some("vague".to_owned());
         let quantities = [quantity(INERTIA, 2e-5), rejected];
         let known = Known::TorqueConstant(0.05);
-        let new = updated(text, &quantities, known, false, "a.csv").unwrap();
+        let new = updated(text, &quantities, known, false, 4096, "a.csv").unwrap();
         assert_eq!(new, "large = { inertia_kg_m2 = 0.00002 }\n");
+    }
+
+    #[test]
+    fn other_counts_are_written_as_a_whole_number() {
+        let known = Known::TorqueConstant(0.05);
+        let quantities = [quantity(INERTIA, 2e-5)];
+        let new = updated("", &quantities, known, false, 1000, "a.csv").unwrap();
+        assert!(new.contains("counts_per_rev = 1000 # of a.csv\n"), "{new}");
+        let read = Device::from_toml_str(&new).unwrap();
+        assert_eq!(read.stages.large.counts_per_rev, 1000);
+        let default = Device::default().stages.large.counts_per_rev;
+        let new = updated("", &quantities, known, false, default, "a.csv").unwrap();
+        assert!(!new.contains("counts_per_rev"), "{new}");
     }
 }
