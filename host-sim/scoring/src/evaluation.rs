@@ -376,14 +376,21 @@ mod tests {
             seed: 7,
         };
         let interval = HapticInterval::new(0.1, 0.01, 0.07, 1e-3);
-        let rows = |kinds: &[&'static Kind], trace: &Trace| {
+        let evaluated = |kinds: &[&'static Kind], trace: &Trace| {
             let evaluation = Evaluation::new(kinds, &parameters, &setup, heading.plant).unwrap();
             let estimates = evaluation.estimates(trace);
-            evaluation
-                .rows(&heading, trace, &estimates, interval, Wanted::ALL)
-                .unwrap()
+            let rows = evaluation.rows(&heading, trace, &estimates, interval, Wanted::ALL);
+            (rows.unwrap(), estimates)
         };
-        let found = rows(&kinds, &trace);
+        let rows = |kinds: &[&'static Kind], trace: &Trace| evaluated(kinds, trace).0;
+        let (found, estimates) = evaluated(&kinds, &trace);
+        let omega = trace.true_omega.as_deref().unwrap();
+        for (row, estimate) in found.iter().zip(&estimates) {
+            let within = estimate.within_2_sigma(omega, 1000.0);
+            assert_eq!(row.score.within_2_sigma, within, "{}", row.estimator);
+        }
+        let reports = |row: &Row| row.score.within_2_sigma.is_some();
+        assert!(reports(&found[1]) && !reports(&found[0]));
         let names: Vec<_> = found.iter().map(|row| row.estimator).collect();
         assert_eq!(names, ["pll", "adaptive", "finite-difference"]);
         let rms = |row: &Row| row.score.rms_rad_s.unwrap();

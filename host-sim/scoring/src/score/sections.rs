@@ -198,4 +198,22 @@ mod tests {
         }
         assert_eq!([score.delay_ms, score.noise_rad_s], [None; 2]);
     }
+
+    #[test]
+    fn share_within_2_sigma_counts_every_scored_sample_once() {
+        let interval = HapticInterval::new(0.05, 0.010, 0.070, 0.96e-3);
+        let mut sections = Sections::default();
+        // 100 samples of each section are its start, so that 900 and 300 are scored.
+        for (samples, share) in [(1000, 1.0), (400, 0.6)] {
+            let (truth, estimate) = signals(samples);
+            let truth = Truth::new(&truth, 1000.0, interval, Wanted::ALL).unwrap();
+            let score = Score {
+                within_2_sigma: Some(share),
+                ..truth.score(&estimate)
+            };
+            sections.add(&truth, &estimate, score, true);
+        }
+        let share = sections.score().within_2_sigma.unwrap();
+        assert!((share - 0.9).abs() < 1e-12, "{share}");
+    }
 }
