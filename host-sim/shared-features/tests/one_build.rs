@@ -57,9 +57,9 @@ fn commands_share_the_crates_of_host_sim() {
     let normal = ["--edges", "normal,build"];
     let sim = features(&[&normal[..], &["--package", "host-sim"]].concat());
     assert!(sim.len() > 60, "{} crates", sim.len());
-    // The tests, the default members, and the programs that the documents run first.
+    // The tests, the default members, and programs of crates that a build of the tests has downloaded.
     let of = |package: &'static str| [&normal[..], &["--package", package]].concat();
-    let programs = ["scope", "virtual-board", "limpid-python"].map(of);
+    let programs = ["scope", "virtual-board"].map(of);
     let commands = [vec![], normal.to_vec()];
     for command in commands.iter().chain(&programs) {
         let twice = compiled_twice(&sim, &features(command));
