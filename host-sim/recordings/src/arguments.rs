@@ -17,7 +17,7 @@ pub struct DeviceFile {
     device: Option<PathBuf>,
 }
 
-/// The encoder of a recording.
+/// The encoder of a recording: a group of its own, because `export --c` takes it without a recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Args)]
 pub struct EncoderOptions {
     /// Counts per revolution of the encoder: four times its lines [default: as the recording states

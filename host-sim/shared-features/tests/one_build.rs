@@ -31,7 +31,7 @@ fn features(arguments: &[&str]) -> Features {
     );
     let mut features = Features::new();
     // An empty line stands between the trees of two packages.
-    let trees = String::from_utf8_lossy(&run.stdout).into_owned();
+    let trees = String::from_utf8_lossy(&run.stdout);
     for line in trees.lines().filter(|line| !line.is_empty()) {
         let (package, list) = line.split_once(" features: ").expect("package, features");
         features

@@ -41,7 +41,7 @@ use stress::table;
   cargo stress --merge target/stress/shard-*-of-64.jsonl"
 )]
 struct Arguments {
-    /// Ticks per estimator and rate, 1 to 1e15; 1e9 takes 20 minutes on two free cores
+    /// Ticks per estimator and rate, 1 to 1e15; 1e9 takes more than an hour on two free cores
     #[arg(long, value_name = "N", default_value = "1e9", value_parser = ticks)]
     ticks: u64,
     /// Control rate, 100 to 100000 Hz; repeatable
