@@ -1,22 +1,10 @@
 //! Steady Kalman gain of `x_k = A x_{k-1} + w`, `y_k = [1 0 ..] x_k + n`, at compile time.
 
-use super::matrix::{Matrix, identity, inverted, norm, product, sum, transposed};
+use super::matrix::{IDENTITY, Matrix, inverted, matrix, norm, product, sum, transposed};
 use crate::design::DesignError;
 
 /// Doublings until a filter that has not settled, in 2^20 ticks, is refused.
 const DOUBLINGS: usize = 20;
-
-/// See [`Model::steady_gain`](crate::Model::steady_gain).
-pub(crate) const fn steady_gain<const S: usize>(
-    a: &Matrix<S>,
-    q: &Matrix<S>,
-    r: f64,
-) -> Result<[f32; S], DesignError> {
-    match steady(a, q, r) {
-        Ok(steady) => Ok(steady.gain),
-        Err(error) => Err(error),
-    }
-}
 
 /// Limit of the recursion.
 #[derive(Clone, Copy)]
@@ -29,20 +17,43 @@ pub(crate) struct Steady<const S: usize> {
     pub(crate) velocity: [f64; 2],
 }
 
-/// The limit of the recursion.
+/// The limit of the recursion. See [`Model::steady_gain`](crate::Model::steady_gain).
 pub(crate) const fn steady<const S: usize>(
-    a: &Matrix<S>,
-    q: &Matrix<S>,
+    a: &[[f64; S]; S],
+    q: &[[f64; S]; S],
     r: f64,
 ) -> Result<Steady<S>, DesignError> {
+    let limit = match steady_of_three(&matrix(a), &matrix(q), r) {
+        Ok(limit) => limit,
+        Err(error) => return Err(error),
+    };
+    let mut gain = [0.0; S];
+    let mut i = 0;
+    while i < S {
+        gain[i] = limit.gain[i];
+        i += 1;
+    }
+    Ok(Steady {
+        gain,
+        innovation: limit.innovation,
+        velocity: limit.velocity,
+    })
+}
+
+/// [`steady`] of three states, of which the third may be none.
+pub(crate) const fn steady_of_three(
+    a: &Matrix,
+    q: &Matrix,
+    r: f64,
+) -> Result<Steady<3>, DesignError> {
     let Some(covariance) = predicted_covariance(a, q, r) else {
         return Err(DesignError::NOT_CONVERGED);
     };
     let exact = gain(&covariance, r);
     let further = gain(&next_covariance(a, q, r, &covariance), r);
-    let mut rounded = [0.0; S];
+    let mut rounded = [0.0; 3];
     let mut i = 0;
-    while i < S {
+    while i < 3 {
         if !((further[i] - exact[i]).abs() <= 1e-9 * exact[i].abs()) {
             return Err(DesignError::NOT_CONVERGED);
         }
@@ -50,16 +61,11 @@ pub(crate) const fn steady<const S: usize>(
         i += 1;
     }
     if shrinks(closed_loop(a, &rounded)) {
-        let before = if S > 1 { covariance[1][1] } else { 0.0 };
-        let corrected = if S > 1 {
-            exact[1] * covariance[0][1]
-        } else {
-            0.0
-        };
+        let [p00, p01, _, _, p11, ..] = covariance;
         Ok(Steady {
             gain: rounded,
-            innovation: covariance[0][0] + r,
-            velocity: [before, before - corrected],
+            innovation: p00 + r,
+            velocity: [p11, p11 - exact[1] * p01],
         })
     } else {
         Err(DesignError::NOT_STABLE)
@@ -69,15 +75,16 @@ pub(crate) const fn steady<const S: usize>(
 /// The gains of the first N ticks after a start with uncorrelated variances `prior`, and the
 /// variance P_11 of the velocity before each, from the correction before.
 pub(crate) const fn first_gains<const S: usize, const N: usize>(
-    a: &Matrix<S>,
-    q: &Matrix<S>,
+    a: &[[f64; S]; S],
+    q: &[[f64; S]; S],
     r: f64,
     prior: &[f64; S],
 ) -> ([[f64; S]; N], [f64; N]) {
-    let mut covariance = [[0.0; S]; S];
+    let (a, q) = (&matrix(a), &matrix(q));
+    let mut covariance = [0.0; 9];
     let mut i = 0;
     while i < S {
-        covariance[i][i] = prior[i];
+        covariance[4 * i] = prior[i];
         i += 1;
     }
     covariance = later_noise(a, q, &covariance);
@@ -87,9 +94,13 @@ pub(crate) const fn first_gains<const S: usize, const N: usize>(
     let mut tick = 0;
     while tick < N {
         let k = gain(&covariance, r);
-        gains[tick] = k;
+        let mut i = 0;
+        while i < S {
+            gains[tick][i] = k[i];
+            i += 1;
+        }
         velocity[tick] = corrected;
-        corrected = covariance[1][1] - k[1] * covariance[0][1];
+        corrected = covariance[4] - k[1] * covariance[1];
         covariance = next_covariance(a, q, r, &covariance);
         tick += 1;
     }
@@ -97,37 +108,29 @@ pub(crate) const fn first_gains<const S: usize, const N: usize>(
 }
 
 /// Process noise of n + 1 ticks from that of n: `A Q_n Aᵀ + Q`.
-pub(crate) const fn later_noise<const S: usize>(
-    a: &Matrix<S>,
-    q: &Matrix<S>,
-    q_n: &Matrix<S>,
-) -> Matrix<S> {
-    sum(&product(&product(a, q_n), &transposed(a)), q)
+pub(crate) const fn later_noise(a: &Matrix, q: &Matrix, q_n: &Matrix) -> Matrix {
+    sum(&product(&product(a, q_n), &transposed(*a)), q)
 }
 
 /// Limit of the predicted covariance, by the doubling algorithm (Anderson 1978) in its
 /// structure-preserving form: after k doublings `h` is the covariance after 2^k ticks from certainty, and `e` the
 /// transition of the estimation error over them.
-const fn predicted_covariance<const S: usize>(
-    a: &Matrix<S>,
-    q: &Matrix<S>,
-    r: f64,
-) -> Option<Matrix<S>> {
-    let mut e = transposed(a);
-    let mut g = [[0.0; S]; S];
-    g[0][0] = 1.0 / r;
+const fn predicted_covariance(a: &Matrix, q: &Matrix, r: f64) -> Option<Matrix> {
+    let mut e = transposed(*a);
+    let mut g = [0.0; 9];
+    g[0] = 1.0 / r;
     let mut h = *q;
     let mut doubling = 0;
     while doubling < DOUBLINGS {
-        let Some(inverse) = inverted(sum(&identity(), &product(&g, &h))) else {
+        let Some(inverse) = inverted(sum(&IDENTITY, &product(&g, &h))) else {
             return None;
         };
         let we = product(&inverse, &e);
         let g_next = sum(
             &g,
-            &product(&product(&e, &product(&inverse, &g)), &transposed(&e)),
+            &product(&product(&e, &product(&inverse, &g)), &transposed(e)),
         );
-        let h_next = sum(&h, &product(&product(&transposed(&e), &h), &we));
+        let h_next = sum(&h, &product(&product(&transposed(e), &h), &we));
         e = product(&e, &we);
         if settled(&h, &h_next) {
             return Some(h_next);
@@ -140,54 +143,36 @@ const fn predicted_covariance<const S: usize>(
 }
 
 /// `K = P Hᵀ / (H P Hᵀ + r)`.
-const fn gain<const S: usize>(covariance: &Matrix<S>, r: f64) -> [f64; S] {
-    let mut k = [0.0; S];
-    let mut i = 0;
-    while i < S {
-        k[i] = covariance[i][0] / (covariance[0][0] + r);
-        i += 1;
-    }
-    k
+const fn gain(covariance: &Matrix, r: f64) -> [f64; 3] {
+    let [p00, _, _, p10, _, _, p20, ..] = *covariance;
+    let innovation = p00 + r;
+    [p00 / innovation, p10 / innovation, p20 / innovation]
 }
 
 /// One tick of the plain recursion: update, then predict.
-const fn next_covariance<const S: usize>(
-    a: &Matrix<S>,
-    q: &Matrix<S>,
-    r: f64,
-    covariance: &Matrix<S>,
-) -> Matrix<S> {
-    let k = gain(covariance, r);
-    let mut updated = *covariance;
-    let mut i = 0;
-    while i < S {
-        let mut j = 0;
-        while j < S {
-            updated[i][j] -= k[i] * covariance[0][j];
-            j += 1;
-        }
-        i += 1;
-    }
-    sum(&product(&product(a, &updated), &transposed(a)), q)
+const fn next_covariance(a: &Matrix, q: &Matrix, r: f64, covariance: &Matrix) -> Matrix {
+    let updated = without_first_row(covariance, gain(covariance, r));
+    sum(&product(&product(a, &updated), &transposed(*a)), q)
 }
 
 /// `(I - K H) A`: transition of the estimation error over one tick.
-const fn closed_loop<const S: usize>(a: &Matrix<S>, k: &[f32; S]) -> Matrix<S> {
-    let mut m = *a;
-    let mut i = 0;
-    while i < S {
-        let mut j = 0;
-        while j < S {
-            m[i][j] -= k[i] as f64 * a[0][j];
-            j += 1;
-        }
-        i += 1;
-    }
-    m
+const fn closed_loop(a: &Matrix, [k0, k1, k2]: &[f32; 3]) -> Matrix {
+    without_first_row(a, [*k0 as f64, *k1 as f64, *k2 as f64])
+}
+
+/// `(I - K H) M`.
+#[rustfmt::skip]
+const fn without_first_row(m: &Matrix, [k0, k1, k2]: [f64; 3]) -> Matrix {
+    let [a, b, c, d, e, f, g, h, i] = *m;
+    [
+        a - k0 * a, b - k0 * b, c - k0 * c,
+        d - k1 * a, e - k1 * b, f - k1 * c,
+        g - k2 * a, h - k2 * b, i - k2 * c,
+    ]
 }
 
 /// Whether some power `m^(2^k)` has a norm below 1/2, which proves a spectral radius below 1.
-const fn shrinks<const S: usize>(mut m: Matrix<S>) -> bool {
+const fn shrinks(mut m: Matrix) -> bool {
     let mut squaring = 0;
     while squaring <= DOUBLINGS {
         if norm(&m) < 0.5 {
@@ -201,13 +186,13 @@ const fn shrinks<const S: usize>(mut m: Matrix<S>) -> bool {
 
 /// Whether no element changed by more than 1e-12 of the geometric mean of its diagonal elements, a
 /// measure that does not depend on the units of the states.
-const fn settled<const S: usize>(old: &Matrix<S>, new: &Matrix<S>) -> bool {
+const fn settled(old: &Matrix, new: &Matrix) -> bool {
     let mut i = 0;
-    while i < S {
+    while i < 3 {
         let mut j = 0;
-        while j < S {
-            let change = new[i][j] - old[i][j];
-            if !(change * change <= 1e-24 * new[i][i] * new[j][j]) {
+        while j < 3 {
+            let change = new[3 * i + j] - old[3 * i + j];
+            if !(change * change <= 1e-24 * new[4 * i] * new[4 * j]) {
                 return false;
             }
             j += 1;
@@ -219,7 +204,15 @@ const fn settled<const S: usize>(old: &Matrix<S>, new: &Matrix<S>) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{settled, shrinks};
+    use super::super::matrix::matrix;
+
+    fn settled(old: &[[f64; 2]; 2], new: &[[f64; 2]; 2]) -> bool {
+        super::settled(&matrix(old), &matrix(new))
+    }
+
+    fn shrinks(m: [[f64; 2]; 2]) -> bool {
+        super::shrinks(matrix(&m))
+    }
 
     #[test]
     fn settled_means_a_change_below_1e_12_of_the_diagonal() {

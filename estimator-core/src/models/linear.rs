@@ -71,7 +71,10 @@ impl<const S: usize, U: Copy> Model<S, U> {
     /// # Errors
     /// [`DesignError::NOT_CONVERGED`], [`DesignError::NOT_STABLE`].
     pub const fn steady_gain(&self) -> Result<[f32; S], DesignError> {
-        riccati::steady_gain(&self.a, &self.q, self.r)
+        match self.steady() {
+            Ok(steady) => Ok(steady.gain),
+            Err(error) => Err(error),
+        }
     }
 
     /// The steady gain with its variances.

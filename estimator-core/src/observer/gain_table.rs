@@ -43,18 +43,19 @@ memory!(GainTable {
 });
 
 /// Transition and process noise of position, velocity and disturbance over one tick.
-pub(super) const fn one_tick(beta: f64, noise: &Noise) -> (Matrix<3>, Matrix<3>) {
+#[rustfmt::skip]
+pub(super) const fn one_tick(beta: f64, noise: &Noise) -> (Matrix, Matrix) {
     let white = noise.white;
     (
         [
-            [1.0, phi1(beta), phi2(beta)],
-            [0.0, exp(-beta), phi1(beta)],
-            [0.0, 0.0, noise.decay],
+            1.0, phi1(beta), phi2(beta),
+            0.0, exp(-beta), phi1(beta),
+            0.0, 0.0, noise.decay,
         ],
         [
-            [white / 3.0, white / 2.0, 0.0],
-            [white / 2.0, white, 0.0],
-            [0.0, 0.0, noise.disturbance],
+            white / 3.0, white / 2.0, 0.0,
+            white / 2.0, white, 0.0,
+            0.0, 0.0, noise.disturbance,
         ],
     )
 }
@@ -78,9 +79,11 @@ impl GainTable {
             velocity_variances: [0.0; ROWS],
         };
         let (mut a_n, mut q_n) = (a, q);
-        let (mut row, mut ticks) = (0, 1);
+        // Over a step between rows that longer gaps share.
+        let (mut a_step, mut q_step) = (a, q);
+        let mut row = 0;
         while row < ROWS {
-            let steady = match riccati::steady(&a_n, &q_n, r) {
+            let steady = match riccati::steady_of_three(&a_n, &q_n, r) {
                 Ok(steady) => steady,
                 Err(error) => return Err(error),
             };
@@ -92,16 +95,17 @@ impl GainTable {
             };
             table.velocity_variances[row] = steady.velocity[0] as f32;
             row += 1;
-            let next = if row < EACH {
-                row + 1
-            } else {
-                EACH + 1 + (row - EACH) * STEP
-            };
-            while ticks < next {
-                q_n = riccati::later_noise(&a, &q, &q_n);
-                a_n = product(&a, &a_n);
-                ticks += 1;
+            if row == STEP {
+                (a_step, q_step) = (a_n, q_n);
             }
+            // Row n has n ticks, then one more, then a step more each.
+            let (a, q) = if row <= EACH {
+                (&a, &q)
+            } else {
+                (&a_step, &q_step)
+            };
+            q_n = riccati::later_noise(a, q, &q_n);
+            a_n = product(a, &a_n);
         }
         Ok(table)
     }
@@ -152,7 +156,7 @@ mod tests {
                 q_n = riccati::later_noise(&a, &q, &q_n);
                 a_n = product(&a, &a_n);
             }
-            let steady = riccati::steady(&a_n, &q_n, 0.0625 * 0.0625).expect("settles");
+            let steady = riccati::steady_of_three(&a_n, &q_n, 0.0625 * 0.0625).expect("settles");
             for gap in gaps {
                 assert_eq!(table.gain(gap).velocity, steady.gain[1], "{gap}");
             }

@@ -98,7 +98,7 @@ impl QuantisedUpdate {
         }
         let r = noise.boundary * noise.boundary;
         let (a, q) = one_tick(beta, noise);
-        let steady = match riccati::steady(&a, &q, r) {
+        let steady = match riccati::steady_of_three(&a, &q, r) {
             Ok(steady) => steady,
             Err(error) => return Err(error),
         };
