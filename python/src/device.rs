@@ -8,13 +8,10 @@ use catalogue::parameters::{Parameters, PlantKind};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use simulation::device::Device;
+use simulation::device::{COUNTS_PER_REV, Device};
 use terminal::failure::Failure;
 
 use crate::error::value_error;
-
-/// Counts per revolution of an encoder that the commands accept.
-const COUNTS: std::ops::RangeInclusive<u32> = 16..=4_000_000;
 
 /// A device file: its path, or a mapping with its sections and keys.
 pub(crate) struct DeviceFile {
@@ -80,12 +77,12 @@ pub(crate) fn device(
         }
     };
     if let Some(counts) = counts_per_rev {
-        if !COUNTS.contains(&counts) {
+        if !COUNTS_PER_REV.contains(&counts) {
             return Err(Failure::Input(format!(
                 "counts_per_rev={counts}: must be from {} to {}: four times the lines of a quadrature \
                  encoder",
-                COUNTS.start(),
-                COUNTS.end()
+                COUNTS_PER_REV.start(),
+                COUNTS_PER_REV.end()
             )));
         }
         device.stages.large.counts_per_rev = counts;

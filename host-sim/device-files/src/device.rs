@@ -4,6 +4,7 @@
 //! torque constants, friction, ripple, amplifier and hand are *assumed*: catalogue values good to
 //! about 15 %, to be replaced by a data sheet or by identification.
 
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use haptic_control::DualStage;
@@ -16,6 +17,9 @@ mod sections;
 
 /// Longest step of the plant, s. It must be short against every time constant of a device.
 pub const LONGEST_STEP_S: f64 = 10e-6;
+
+/// Counts per revolution that an encoder may have: in a device, a recording or an option of a command.
+pub const COUNTS_PER_REV: RangeInclusive<u32> = 16..=4_000_000;
 
 /// The device: constants for the design of controllers and estimators, and constants that only a
 /// simulation needs. `Device::default()` is the default device; a TOML file can override any value.

@@ -3,11 +3,19 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use simulation::device::Device;
+use clap::builder::RangedI64ValueParser;
+use simulation::device::{COUNTS_PER_REV, Device};
 use terminal::failure::Failure;
 
 use crate::log::{Log, file_name, short_name};
 use crate::recording::{BoardColumns, ReadOptions, Recording, Survey, stated_counts_per_rev};
+
+/// The parser of an option with counts per revolution.
+#[must_use]
+pub fn counts_per_rev() -> RangedI64ValueParser<u32> {
+    let (least, most) = (*COUNTS_PER_REV.start(), *COUNTS_PER_REV.end());
+    clap::value_parser!(u32).range(i64::from(least)..=i64::from(most))
+}
 
 /// The device file of a command.
 #[derive(Clone, Debug, Default, Args)]
@@ -22,7 +30,7 @@ pub struct DeviceFile {
 pub struct EncoderOptions {
     /// Counts per revolution of the encoder: four times its lines [default: as the recording states
     /// them, or those of the device]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=4_000_000))]
+    #[arg(long, value_name = "N", value_parser = counts_per_rev())]
     pub counts_per_rev: Option<u32>,
 }
 

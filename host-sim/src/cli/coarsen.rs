@@ -18,7 +18,7 @@ pub(super) struct Coarsen {
     #[arg(value_name = "FINE.csv")]
     fine: PathBuf,
     /// Counts per revolution of the coarse encoder, at most half of those of the fine one
-    #[arg(long, value_name = "C", value_parser = clap::value_parser!(u32).range(16..=4_000_000))]
+    #[arg(long, value_name = "C", value_parser = recordings::arguments::counts_per_rev())]
     counts_per_rev: u32,
     /// Counts per revolution of the fine encoder [default: those in the recordings.toml beside the
     /// file]

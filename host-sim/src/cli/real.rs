@@ -33,7 +33,7 @@ pub(super) struct Real {
     /// Counts per revolution to which recordings of a fine encoder are coarsened, a comma between
     /// two; those of a coarse encoder keep their own
     #[arg(long, value_name = "C,...", value_delimiter = ',', default_value = "4096",
-        value_parser = clap::value_parser!(u32).range(16..=4_000_000))]
+        value_parser = recordings::arguments::counts_per_rev())]
     counts_per_rev: Vec<u32>,
     /// Rate of the ticks, 10 to 100000 Hz, a comma between two; recordings of a coarse encoder run at
     /// their own rate only

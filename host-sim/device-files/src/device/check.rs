@@ -2,7 +2,7 @@
 
 use haptic_control::Motor;
 
-use super::{Device, LONGEST_STEP_S, Ripple};
+use super::{COUNTS_PER_REV, Device, LONGEST_STEP_S, Ripple};
 use crate::decimal;
 
 /// Allowed range of one value.
@@ -52,11 +52,13 @@ fn in_usual_unit(value: f64, range: &Range) -> String {
 }
 
 fn check_counts(key: &str, counts: u32) -> Result<(), String> {
-    if (16..=4_000_000).contains(&counts) {
+    if COUNTS_PER_REV.contains(&counts) {
         return Ok(());
     }
     Err(format!(
-        "{key} = {counts}: must be from 16 to 4000000 counts per revolution"
+        "{key} = {counts}: must be from {} to {} counts per revolution",
+        COUNTS_PER_REV.start(),
+        COUNTS_PER_REV.end()
     ))
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-
+use simulation::device::COUNTS_PER_REV;
 use terminal::failure::Failure;
 
 /// The list of a folder.
@@ -105,10 +105,12 @@ pub fn read(folder: &Path) -> Result<Vec<Source>, Failure> {
                 source.name()
             )));
         }
-        if !(16..=4_000_000).contains(&source.counts_per_rev) {
+        if !COUNTS_PER_REV.contains(&source.counts_per_rev) {
             return Err(Failure::Input(format!(
-                "{name}: {file}: counts_per_rev = {}: must be from 16 to 4000000",
-                source.counts_per_rev
+                "{name}: {file}: counts_per_rev = {}: must be from {} to {}",
+                source.counts_per_rev,
+                COUNTS_PER_REV.start(),
+                COUNTS_PER_REV.end()
             )));
         }
         if !folder.join(file).is_file() {

@@ -1,16 +1,12 @@
 //! Counts per revolution that a recording states in a comment.
 
-use std::ops::RangeInclusive;
-
+use simulation::device::COUNTS_PER_REV;
 use terminal::failure::Failure;
 
 use super::separator::comment;
 
 /// Word that begins the comment.
 const KEY: &str = "counts_per_rev";
-
-/// Counts per revolution that a comment may state.
-const RANGE: RangeInclusive<u32> = 16..=4_000_000;
 
 /// The line that states the counts per revolution of `counts_large`, for [`stated_counts_per_rev`].
 #[must_use]
@@ -22,8 +18,8 @@ pub fn counts_per_rev_line(counts_per_rev: u32) -> String {
 /// comment: `# counts_per_rev = 1024`. `None` without such a comment.
 ///
 /// # Errors
-/// [`Failure::Input`] that names file, line and key, if the number is not a whole one from 16 to
-/// 4 000 000.
+/// [`Failure::Input`] that names file, line and key, if the number is not a whole one in
+/// [`COUNTS_PER_REV`].
 pub fn stated_counts_per_rev(head: &[u8], name: &str) -> Result<Option<u32>, Failure> {
     let text = String::from_utf8_lossy(head);
     for (index, line) in text.lines().enumerate() {
@@ -34,15 +30,15 @@ pub fn stated_counts_per_rev(head: &[u8], name: &str) -> Result<Option<u32>, Fai
             continue;
         };
         let number = value.trim().parse().ok();
-        return match number.filter(|number| RANGE.contains(number)) {
+        return match number.filter(|number| COUNTS_PER_REV.contains(number)) {
             Some(number) => Ok(Some(number)),
             None => Err(Failure::Input(format!(
                 "{name}: line {}: {KEY}: '{}' is not a whole number from {} to {}; correct or remove \
                  the comment",
                 index + 1,
                 value.trim().escape_debug(),
-                RANGE.start(),
-                RANGE.end()
+                COUNTS_PER_REV.start(),
+                COUNTS_PER_REV.end()
             ))),
         };
     }
