@@ -1,7 +1,10 @@
 //! The command line as somebody types it.
 
 mod closed_loop;
+mod cluster;
 mod coarsen;
+#[path = "../common/mod.rs"]
+mod common;
 mod compare;
 mod escaping;
 mod export;
@@ -12,16 +15,20 @@ mod output;
 mod real;
 mod real_peers;
 mod recommend;
+mod record;
 mod recordings;
 mod refusals;
 mod replay;
 mod replay_reference;
+mod robust;
+mod shards;
 mod tables;
 mod tune;
 mod tune_logs;
 mod uneven;
 mod version;
 mod words;
+mod zwidth;
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -72,7 +72,7 @@ pub const REFERENCE: Table = Table {
         ("resolved", "resolved"),
     ],
     digits: Some(2),
-    command: "cargo test --release --package experiments --test reference",
+    command: "cargo test --release --package experiments --test experiments reference",
 };
 
 /// The paper's experiment beside an independent simulation: distance outside the haptic interval.
@@ -165,7 +165,7 @@ pub const CONFIDENCE: Table = Table {
         ("track_sigma_over_error", "sigma over the error, RMS"),
     ],
     digits: Some(2),
-    command: "cargo test --release --package experiments --test confidence",
+    command: "cargo test --release --package experiments --test experiments confidence",
 };
 
 /// Instructions of an update in C and in Rust.
@@ -181,5 +181,5 @@ pub const C_COST: Table = Table {
         ("texture_rust", "texture, Rust"),
     ],
     digits: None,
-    command: "cargo test --release --package c-interface --test board",
+    command: "cargo test --release --package c-interface --test interface board",
 };

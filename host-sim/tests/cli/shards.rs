@@ -1,13 +1,11 @@
 //! Commands in shards: merged files give the bytes of a single run, and shards that are no run are
 //! refused by name.
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;
 
-use common::{Folder, files};
+use crate::common::{Folder, files};
 
 const HOST_SIM: &str = env!("CARGO_BIN_EXE_host-sim");
 

@@ -102,7 +102,7 @@ impl Tally {
         }
     }
 
-    /// For docs/theory/identification.md: `cargo test --release -p experiments --test identify --
+    /// For docs/theory/identification.md: `cargo test --release -p experiments --test experiments identify --
     /// --nocapture`.
     fn print(&self, what: &str) {
         println!(

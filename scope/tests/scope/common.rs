@@ -1,8 +1,5 @@
 //! A server as a process, and a client of its socket.
 
-// Each test program uses a part.
-#![allow(dead_code)]
-
 pub(crate) mod devtools;
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};

@@ -1,10 +1,8 @@
 //! `robust` as somebody types it.
 
-mod common;
-
 use std::fs;
 
-use common::{Folder, files};
+use crate::common::{Folder, files};
 
 const HOST_SIM: &str = env!("CARGO_BIN_EXE_host-sim");
 
