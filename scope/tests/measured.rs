@@ -1,13 +1,15 @@
 //! Figures of the live page, printed and not judged, because they are those of a machine:
-//! `cargo test --release -p scope --test scope measured -- --ignored --nocapture`. `MINUTES=60` watches the memory for
+//! `cargo test --release -p scope --test measured -- --ignored --nocapture`. `MINUTES=60` watches the memory for
 //! an hour.
+
+mod common;
 
 use std::fs;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::common::Server;
-use crate::common::devtools::Browser;
+use common::Server;
+use common::devtools::Browser;
 use serde_json::json;
 
 /// Time for the frames.

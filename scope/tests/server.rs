@@ -1,6 +1,8 @@
 //! The server against pages that err, flood, read slowly or vanish, with the flash image behind it.
 
-use crate::common::{Client, Server, get, image};
+mod common;
+
+use common::{Client, Server, get, image};
 use serde_json::{Value, json};
 
 fn is_on(status: &Value) -> bool {

@@ -1,7 +1,9 @@
 //! The page in a real browser, with the flash image behind it.
 
-use crate::common::devtools::{Browser, Tab};
-use crate::common::{Server, get, image};
+mod common;
+
+use common::devtools::{Browser, Tab};
+use common::{Server, get, image};
 use serde_json::json;
 
 /// The page is loaded, and this page commands a board that sends frames.

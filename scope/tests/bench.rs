@@ -1,10 +1,12 @@
 //! Settings and guided procedures over the server, on its own emulated board and on one behind a link.
 
+mod common;
+
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
-use crate::common::{Client, Server};
+use common::{Client, Server};
 use drivers::{Setting, Settings};
 use experiments::closed_loop::Hand;
 use serde_json::{Value, json};

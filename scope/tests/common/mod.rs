@@ -1,5 +1,8 @@
 //! A server as a process, and a client of its socket.
 
+// Each test program uses a part.
+#![allow(dead_code)]
+
 pub(crate) mod devtools;
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
