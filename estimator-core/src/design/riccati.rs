@@ -151,18 +151,18 @@ const fn gain(covariance: &Matrix, r: f64) -> [f64; 3] {
 
 /// One tick of the plain recursion: update, then predict.
 const fn next_covariance(a: &Matrix, q: &Matrix, r: f64, covariance: &Matrix) -> Matrix {
-    let updated = without_first_row(covariance, gain(covariance, r));
+    let updated = corrected_by(covariance, gain(covariance, r));
     sum(&product(&product(a, &updated), &transposed(*a)), q)
 }
 
 /// `(I - K H) A`: transition of the estimation error over one tick.
 const fn closed_loop(a: &Matrix, [k0, k1, k2]: &[f32; 3]) -> Matrix {
-    without_first_row(a, [*k0 as f64, *k1 as f64, *k2 as f64])
+    corrected_by(a, [*k0 as f64, *k1 as f64, *k2 as f64])
 }
 
 /// `(I - K H) M`.
 #[rustfmt::skip]
-const fn without_first_row(m: &Matrix, [k0, k1, k2]: [f64; 3]) -> Matrix {
+const fn corrected_by(m: &Matrix, [k0, k1, k2]: [f64; 3]) -> Matrix {
     let [a, b, c, d, e, f, g, h, i] = *m;
     [
         a - k0 * a, b - k0 * b, c - k0 * c,

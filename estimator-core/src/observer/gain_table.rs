@@ -79,9 +79,7 @@ impl GainTable {
             velocity_variances: [0.0; ROWS],
         };
         let (mut a_n, mut q_n) = (a, q);
-        // Over a step between rows that longer gaps share.
-        let (mut a_step, mut q_step) = (a, q);
-        let mut row = 0;
+        let (mut row, mut ticks) = (0, 1);
         while row < ROWS {
             let steady = match riccati::steady_of_three(&a_n, &q_n, r) {
                 Ok(steady) => steady,
@@ -95,17 +93,16 @@ impl GainTable {
             };
             table.velocity_variances[row] = steady.velocity[0] as f32;
             row += 1;
-            if row == STEP {
-                (a_step, q_step) = (a_n, q_n);
-            }
-            // Row n has n ticks, then one more, then a step more each.
-            let (a, q) = if row <= EACH {
-                (&a, &q)
+            let next = if row < EACH {
+                row + 1
             } else {
-                (&a_step, &q_step)
+                EACH + 1 + (row - EACH) * STEP
             };
-            q_n = riccati::later_noise(a, q, &q_n);
-            a_n = product(a, &a_n);
+            while ticks < next {
+                q_n = riccati::later_noise(&a, &q, &q_n);
+                a_n = product(&a, &a_n);
+                ticks += 1;
+            }
         }
         Ok(table)
     }
