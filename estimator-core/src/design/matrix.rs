@@ -139,6 +139,8 @@ mod tests {
             [0.0, 1.0, 0.0, 0.0, 0.0, 2.0, 4.0, 0.0, 0.0],
             [1e-18, 1.0, 2.0, 3.0, -1.0, 0.5, -2.0, 7.0, 1.0],
             [2.0, 0.0, 1.0, 0.0, 1e-17, 3.0, 1.0, 5.0, -1.0],
+            [2.0, -1.0, 3.0, 0.5, 4.0, -2.0, 1.0, 7.0, 5.0],
+            [0.25, 4.0, -2.0, -7.0, 3.0, 1.0, 0.5, -1.0, 9.0],
         ] {
             let inverse = inverted(m).expect("regular");
             for one in [product(&inverse, &m), product(&m, &inverse)] {
@@ -176,10 +178,11 @@ mod tests {
     fn norm_is_the_largest_sum_of_a_row() {
         assert_eq!(norm(&matrix(&[[1.0, -2.0], [3.0, 4.0]])), 7.0);
         assert_eq!(norm(&matrix(&[[-5.0, -4.0], [3.0, 4.0]])), 9.0);
-        assert_eq!(
-            norm(&transposed([1.0, 0.0, -2.0, 0.0, 0.0, 2.0, -4.0, 0.0, 3.0])),
-            7.0
-        );
+        for element in 0..9 {
+            let mut m = [-1.0; 9];
+            m[element] = -4.0;
+            assert_eq!(norm(&m), 6.0);
+        }
     }
 
     #[test]
