@@ -50,7 +50,6 @@ impl<const S: usize, U: Copy> SteadyKalman<S, U> {
     /// # Errors
     /// The errors of [`Model::steady_gain`].
     pub const fn new(model: &Model<S, U>) -> Result<Self, DesignError> {
-        const { assert!(S >= 2, "position and velocity at least") };
         let steady = match model.steady() {
             Ok(steady) => steady,
             Err(error) => return Err(error),

@@ -74,7 +74,6 @@ impl<const S: usize, const N: usize, U: Copy> TableKalman<S, N, U> {
     /// The errors of [`Model::steady_gain`]. [`DesignError::TABLE`] if the gain is not within 1e-6 of the
     /// steady gain at the N-th tick.
     pub const fn new(model: &Model<S, U>) -> Result<Self, DesignError> {
-        const { assert!(S >= 2, "position and velocity at least") };
         let limit = match model.steady() {
             Ok(limit) => limit,
             Err(error) => return Err(error),

@@ -104,7 +104,8 @@ fn measure(measured: &[pareto::measure::Row]) -> Result<Vec<Row>, String> {
             let most = most.max().ok_or("nothing ran")?;
             let name = subject.to_string();
             let simulated = measured.iter().find(|row| row.name == name);
-            let most = most.max(simulated.ok_or("has a row")?.cost[at].most);
+            let simulated = simulated.ok_or("an estimator without a measured row")?;
+            let most = most.max(simulated.cost[at].most);
             if !rows.iter().any(|row| row.name == name) {
                 let found = [Found::default(); 2];
                 rows.push(Row {
