@@ -2,8 +2,8 @@
 
 mod common;
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
 use common::{Client, Server};
@@ -13,13 +13,6 @@ use serde_json::{Value, json};
 use virtual_board::bridge::Bridge;
 use virtual_board::image::Image;
 use virtual_board::run::{DacError, Setup};
-
-/// One test at a time: all images are built to one file.
-static ALONE: Mutex<()> = Mutex::new(());
-
-fn alone() -> MutexGuard<'static, ()> {
-    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 /// A client that commands and lives, of a server whose board sends frames.
 fn commanding(server: &Server) -> Client {
@@ -65,7 +58,6 @@ fn guided(client: &mut Client, name: &str) -> Vec<String> {
 
 #[test]
 fn settings_are_shown_set_and_stored_and_a_frozen_page_ends_a_procedure() {
-    let _alone = alone();
     let server = Server::emulated();
     let mut page = commanding(&server);
     let scale = Setting::CurrentScale;
@@ -149,7 +141,6 @@ impl Board {
 
 #[test]
 fn board_behind_a_link_is_commanded_calibrated_and_disarmed_at_the_end() {
-    let _alone = alone();
     let error = |offset, gain| DacError { offset, gain };
     let board = Board::start("current-monitor", [error(6.0, 1.0), error(-4.0, 1.0)]);
     let mut server = Server::start(&["--board", &board.port]);

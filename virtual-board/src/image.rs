@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
@@ -70,6 +71,16 @@ const LOOP: u16 = 0xE7FE;
 pub const HOW_TO_BUILD: &str =
     "cargo build --profile firmware --package firmware --target thumbv7em-none-eabihf";
 
+/// A lock of the builds in this folder, held until it is dropped: from the first line of cargo until the image
+/// is read.
+fn alone(target: &Path) -> Result<File, String> {
+    let path = target.join("image.lock");
+    let locked = fs::create_dir_all(target)
+        .and_then(|()| File::create(&path))
+        .and_then(|file| file.lock().map(|()| file));
+    locked.map_err(|error| format!("{}: {error}", path.display()))
+}
+
 impl Image {
     /// Builds the firmware of this repository with these features, separated by commas, and reads
     /// it. The build has its own target directory, so that other builds do not wait for it.
@@ -89,14 +100,15 @@ impl Image {
     }
 
     /// As [`Self::build`], with environment variables: `SCENE` names the one scene of the image, `RATE` is
-    /// the control rate in Hz, `DEVICE` and `PRESETS` name the files that it is built for. Two builds must
-    /// not run at once in one process, because they write the same file.
+    /// the control rate in Hz, `DEVICE` and `PRESETS` name the files that it is built for. All builds write
+    /// the same file: one waits for another, in whatever process.
     ///
     /// # Errors
-    /// As [`Self::build`].
+    /// As [`Self::build`]; one line if the folder of the build cannot be written.
     pub fn build_with(features: &str, variables: &[(&str, &OsStr)]) -> Result<Self, String> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
         let target: PathBuf = root.join("target/firmware-image");
+        let _alone = alone(&target)?;
         let triple = "thumbv7em-none-eabihf";
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let status = Command::new(cargo)
@@ -123,7 +135,7 @@ impl Image {
     /// # Errors
     /// One line with a remedy, if the file is missing or is not an image of this firmware.
     pub fn read(path: &Path) -> Result<Self, String> {
-        let elf = std::fs::read(path).map_err(|error| {
+        let elf = fs::read(path).map_err(|error| {
             format!(
                 "no image at {}: {error}; build it with `{HOW_TO_BUILD}`",
                 path.display()

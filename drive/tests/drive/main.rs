@@ -1,7 +1,9 @@
-//! The tool's binary against a board that a script plays over TCP.
+//! The tool's binary against a board that a script plays over TCP, and against the emulated board.
 
 mod calibrate;
 mod commands;
+mod documented;
+mod emulated;
 mod ends;
 mod failures;
 mod identity;

@@ -9,7 +9,8 @@ use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
-use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
@@ -17,7 +18,8 @@ use tungstenite::client::IntoClientRequest as _;
 use tungstenite::{Message, WebSocket};
 use virtual_board::image::Image;
 
-/// Longest wait for a condition. The board's time decides, so that a slow machine only takes longer.
+/// Longest wait for a condition. The board's time decides, so that a slow machine, or one on which several
+/// boards run, only takes longer.
 pub(crate) const LIMIT: Duration = Duration::from_secs(300);
 
 /// A file of its own for this process in the folder of the build.
@@ -38,8 +40,8 @@ pub(crate) fn image() -> PathBuf {
     path.clone()
 }
 
-/// One emulated board at a time: each takes a core.
-static ONE: Mutex<()> = Mutex::new(());
+/// Servers that were started.
+static STARTED: AtomicUsize = AtomicUsize::new(0);
 
 /// A server.
 pub(crate) struct Server {
@@ -48,14 +50,13 @@ pub(crate) struct Server {
     pub(crate) token: String,
     /// Its current folder.
     pub(crate) folder: PathBuf,
-    _one: MutexGuard<'static, ()>,
 }
 
 impl Server {
     /// A server with these arguments.
     pub(crate) fn start(arguments: &[&str]) -> Self {
-        let one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
-        let folder = scratch("folder");
+        let number = STARTED.fetch_add(1, Ordering::Relaxed);
+        let folder = scratch(&format!("folder-{number}"));
         let _ = std::fs::remove_dir_all(&folder);
         std::fs::create_dir_all(&folder).expect("a folder");
         let mut command = Command::new(env!("CARGO_BIN_EXE_scope"));
@@ -88,7 +89,6 @@ impl Server {
             port,
             token,
             folder,
-            _one: one,
         }
     }
 

@@ -16,7 +16,7 @@ pub(crate) const SETTLED_S: f64 = 0.4;
 /// Images by their features and their one scene.
 type Images = HashMap<(&'static str, Option<SceneKind>), &'static Image>;
 
-/// The images built so far. The lock is held while cargo builds one: all are written to one file.
+/// The images built so far.
 static BUILT: Mutex<Option<Images>> = Mutex::new(None);
 
 fn built(
@@ -44,7 +44,6 @@ pub(crate) fn image_of_one(scene: SceneKind) -> &'static Image {
 
 /// The image of all scenes, built for a device file and a presets file.
 pub(crate) fn image_for(device: &Path, presets: &Path) -> Image {
-    let _built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
     let files = [
         ("DEVICE", device.as_os_str()),
         ("PRESETS", presets.as_os_str()),
@@ -54,7 +53,6 @@ pub(crate) fn image_for(device: &Path, presets: &Path) -> Image {
 
 /// The image of all scenes with these features, at a control rate in Hz.
 pub(crate) fn image_at(rate_hz: u32, features: &str) -> Result<Image, String> {
-    let _built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
     Image::build_with(features, &[("RATE", rate_hz.to_string().as_ref())])
 }
 

@@ -6,8 +6,8 @@ use std::io::Read as _;
 use std::net::{SocketAddr, TcpStream};
 use std::path::Path;
 use std::process::{Command as Process, Output};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
 use drivers::link::{Message, PROTOCOL, Parser};
@@ -26,7 +26,7 @@ use virtual_board::run::{DacError, RATE_HZ, Setup, on_board};
 /// The feature of an image that `calibrate` asks for.
 const MONITORS: &str = "current-monitor";
 
-/// Runs the tool. The computer may be busy, and the board slow.
+/// Runs the tool. Other boards run beside this one, so that the computer is busy and a board may be slow.
 fn tool(address: SocketAddr, arguments: &[&str]) -> Output {
     let port = format!("tcp:{address}");
     Process::new(env!("CARGO_BIN_EXE_drive"))
@@ -36,16 +36,8 @@ fn tool(address: SocketAddr, arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-/// Each test has the computer for itself: a board runs in real time, and all images are built to one file.
-static ALONE: Mutex<()> = Mutex::new(());
-
-fn alone() -> MutexGuard<'static, ()> {
-    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 /// A board that runs until it is ended.
 struct EmulatedBoard {
-    _alone: MutexGuard<'static, ()>,
     stop: Arc<AtomicBool>,
     runs: JoinHandle<Sectors>,
 }
@@ -58,7 +50,6 @@ impl EmulatedBoard {
 
     /// Starts a board whose image has these features.
     fn with(features: &str, setup: Setup) -> (SocketAddr, Self) {
-        let alone = alone();
         let image = Image::build(features).unwrap();
         let bridge = Bridge::bind(0).unwrap();
         let address = bridge.address();
@@ -72,11 +63,7 @@ impl EmulatedBoard {
         let stop = Arc::new(AtomicBool::new(false));
         let until = Arc::clone(&stop);
         let runs = std::thread::spawn(move || bridge.run(&image, &setup, until).unwrap().1);
-        let board = Self {
-            _alone: alone,
-            stop,
-            runs,
-        };
+        let board = Self { stop, runs };
         (address, board)
     }
 
@@ -313,7 +300,6 @@ fn parasitic_mn(errors: [(f64, f64); 2], flash: Option<Sectors>) -> f64 {
         seconds: 2.4,
         ..with_dac_errors(errors)
     };
-    let _alone = alone();
     let run = on_board(&Image::build(MONITORS).unwrap(), &setup, |_| ()).unwrap();
     run.check().unwrap();
     let last = run.telemetry.frames.last().unwrap();

@@ -1,6 +1,6 @@
 //! The tables of docs/link.md, made from the messages of the link.
 //!
-//! `UPDATE_GOLDEN=1 cargo test --release --package drive --test documented` writes them.
+//! `UPDATE_GOLDEN=1 cargo test --release --package drive --test drive documented` writes them.
 
 use drivers::link::{FEATURES, FieldFacts, MessageFacts, SCHEMA};
 use measured::block::{Block, markdown};
