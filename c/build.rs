@@ -345,7 +345,7 @@ fn main() {
     }
     files.statuses();
     files.functions.push_str(
-        "/// Standard deviation of a variance, correct to the last digit, by four divisions.
+        "/// Standard deviation of a variance, correct to the last digit; at most four divisions for a normal number.
         #[must_use]
         #[unsafe(no_mangle)]
         pub extern \"C\" fn limpid_std_dev(variance: f32) -> f32 { c::Variance(variance).std_dev().0 }\n",

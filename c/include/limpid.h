@@ -2308,7 +2308,7 @@ float limpid_observer_edge_blind_variance(const limpid_observer_edge_blind_t *pa
                                           const limpid_observer_edge_blind_state_t *state);
 
 /*
- Standard deviation of a variance, correct to the last digit, by four divisions.
+ Standard deviation of a variance, correct to the last digit; at most four divisions for a normal number.
  */
 float limpid_std_dev(float variance);
 

@@ -59,7 +59,7 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 /// dθ/dt = v      dv/dt = a + n      da/dt = -a / τ + m
 /// ```
 /// The spectral density of m is q counts²/s⁵, that of n is q τ² / 40. Members differ by q alone. The
-/// values of q are the rungs of a ladder of 18 decades from 10 counts²/s⁵; the members stand on K
+/// values of q are the 18 rungs of a ladder from 10 to 1e18 counts²/s⁵; the members stand on K
 /// neighbouring rungs. One tick is
 /// ```text
 /// reset      a member with w < 0.003 takes state and covariance of the heaviest one, and w = 0.06

@@ -19,6 +19,9 @@ use crate::units::{Count, CountsPerTick};
 /// | Kalman, table | P_11 after the same number of ticks, computed at compile time |
 /// | Kalman, steady | P_11 of the limit, computed at compile time |
 /// | observer | n ticks after the last correction, P_11 before a correction of the filter that is corrected every n ticks |
+/// | bank | variance of the mixture of its members, `Σ w_i (P_11,i + (v_i - v)²)` |
+/// | driven bank | variance of the mixture of the bank and the driven bank |
+/// | late current | that of the filter that gets the current a tick late |
 /// | handover | the larger of the two while both run |
 ///
 /// The variance covers the errors that the model contains, and no others: with friction that the

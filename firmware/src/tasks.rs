@@ -104,8 +104,8 @@ pub(crate) struct ControlTask<B> {
 }
 
 impl<B: Board> ControlTask<B> {
-    /// One tick. Its deadline is the next tick, 100 us or 16 800 cycles; on the emulated board it
-    /// takes an eighth of these as instructions at most (docs/benchmarks.md), and a quarter while
+    /// One tick. Its deadline is the next tick: 16 800 cycles at 10 kHz, the default rate. On the emulated
+    /// board it takes an eighth of these as instructions at most (docs/benchmarks.md), and a quarter while
     /// one estimator takes over from another.
     #[inline(always)]
     pub(crate) fn run(&mut self) {

@@ -95,7 +95,7 @@ impl Ladder {
     /// q T⁵ of a rung, counts².
     #[inline(always)]
     pub(super) fn density(&self, rung: usize) -> f32 {
-        // `min` is no limit, as no rung lies above: it removes the panic of an index.
+        // No rung lies above: the comparison removes the panic of an index.
         self.densities[if rung < RUNGS { rung } else { RUNGS - 1 }]
     }
 }

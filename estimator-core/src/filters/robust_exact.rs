@@ -24,7 +24,7 @@ const FRACTION_BITS: u32 = 24;
 /// stays within `2 sqrt(2 N L) + L/2`. No exact differentiator has a smaller bound. It holds for n from
 /// `sqrt(2 N / L) + 1`; a longer window costs run time alone.
 ///
-/// Let `p_j = d_j + L j²/2`. The term of the pair (j, l) without the magnitude is `j (p_l/l - p_j/j)`, and
+/// Let `p_j = d_j + L j²/2`. The term of the pair (j, l) without the magnitude is `j (p_j/j - p_l/l)`, and
 /// with `-d_j` in place of `d_j` the negative sign. So one pass from the oldest sample on, which keeps the
 /// least `p_l/l`, finds the maximum in a time proportional to n. All comparisons are exact, in integers
 /// with L in units of 2^-24 counts/tick²; m follows from `m² L >= 4 N` without a square root.
