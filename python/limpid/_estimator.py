@@ -62,7 +62,7 @@ class Estimator(_Estimator):
     ) -> Reports:
         """Takes several rows and returns what is reported at each of them.
 
-        The arguments are arrays of what :meth:`update` takes.
+        The arguments are arrays of what :meth:`update` takes. A call that Ctrl-C ends has taken no row.
         """
         columns = _arrays.rows(counts, coupled, current, edge_age, edge_boundary)
         columns["dt"] = None if dt is None else _arrays.as_floats(dt, "dt", "s")

@@ -20,10 +20,11 @@ use crate::error::{in_python, value_error};
 use crate::stream::{Arrays, Stream, arrays, lack};
 
 /// What an [`Estimator`] changes.
+#[derive(Clone)]
 struct Running {
     stream: Stream,
-    /// The last counts of both encoders, unwrapped.
-    unwrapped: [Option<Count>; 2],
+    /// The last count of the large encoder, unwrapped.
+    unwrapped: Option<Count>,
     /// Reports of the latest row: standard deviation, acceleration, ratio of the damping.
     latest: [Option<f32>; 3],
 }
@@ -54,7 +55,7 @@ impl Estimator {
     ) -> PyResult<Reports> {
         lack(self.kind, &trace, self.kind.name).map_err(value_error)?;
         if let Some(modulus) = self.modulus {
-            unwrap(&mut trace, &mut running.unwrapped[0], modulus).map_err(value_error)?;
+            unwrap(&mut trace, &mut running.unwrapped, modulus).map_err(value_error)?;
         }
         let reports = running.stream.run(&trace, look)?;
         let last = |column: &Option<Vec<f32>>| column.as_ref()?.last().copied();
@@ -69,7 +70,7 @@ impl Estimator {
     fn started(estimator: &AnyEstimator) -> Running {
         Running {
             stream: Stream::new(estimator.clone()),
-            unwrapped: [None; 2],
+            unwrapped: None,
             latest: [None; 3],
         }
     }
@@ -299,9 +300,14 @@ impl Estimator {
         };
         let reports = py.detach(|| {
             let mut running = locked(self.running.lock());
-            self.run(&mut running, rows, || {
-                Python::attach(|py| py.check_signals())
-            })
+            let before = running.clone();
+            let look = || Python::attach(|py| py.check_signals());
+            let reports = self.run(&mut running, rows, look);
+            if reports.is_err() {
+                // The rows can be given again.
+                *running = before;
+            }
+            reports
         })?;
         Ok(arrays(py, reports))
     }

@@ -29,6 +29,7 @@ pub(crate) fn arrays(py: Python<'_>, reports: Reports) -> Arrays<'_> {
 }
 
 /// An estimator and its state.
+#[derive(Clone)]
 pub(crate) struct Stream {
     estimator: Estimator,
     state: Option<State>,

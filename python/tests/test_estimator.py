@@ -186,3 +186,24 @@ def test_interrupt_ends_the_run(signals):
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, old)
+
+
+def test_interrupted_rows_can_be_given_again(signals):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    counts = np.tile(signals["counts"], 60) % 4096
+    first, rest = counts[:1000], counts[1000:]
+    once, again = (limpid.Estimator("robust-exact", 1000, modulus=4096) for _ in range(2))
+    for estimator in (once, again):
+        estimator.process(first)
+    old = signal.signal(signal.SIGALRM, interrupt)
+    signal.setitimer(signal.ITIMER_REAL, 0.02)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            again.process(rest)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, old)
+    few = rest[:5000]
+    np.testing.assert_array_equal(again.process(few).velocity, once.process(few).velocity)

@@ -30,6 +30,7 @@ public:
     {
         inner.update();
         started = false;
+        velocity = 0.0f;
         update();
     }
 

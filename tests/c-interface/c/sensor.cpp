@@ -1,5 +1,6 @@
 // The sensor for SimpleFOC over a motion: standard input has the time in microseconds and the angle in
-// radians, standard output the velocity and its standard deviation after each update.
+// radians, standard output the velocity and its standard deviation after each update. At time 0 the sensor is
+// initialised again.
 #include <stdio.h>
 
 #include "SimpleFOC.h"
@@ -29,7 +30,7 @@ int main()
     bool started = false;
     while (scanf("%lu %f", &now, &given.shown) == 2) {
         clock_now = (uint32_t)now;
-        if (started)
+        if (started && now > 0)
             sensor.update();
         else
             sensor.init();

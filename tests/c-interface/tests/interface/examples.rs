@@ -160,6 +160,18 @@ fn velocity_of_the_sensor_reaches_zero_and_does_not_jump() {
     ];
     compiled(&CPP11, "sensor.cpp", &folder, &more, &program);
 
+    // A sensor that is initialised again knows no motion.
+    let mut again = motion(&[(3.0, 0.2)]);
+    again.push((0, again[again.len() - 1].1, 0.0));
+    let velocities = sensed(&program, &again);
+    let [.., [before, _], [after, _]] = velocities[..] else {
+        panic!("{velocities:?}");
+    };
+    assert!(
+        (before - 3.0).abs() < 0.1 && after == 0.0,
+        "{before} {after}"
+    );
+
     // One count is 1.5 mrad: in a loop of 375 µs it is a jump of 4.1 rad/s of a plain difference.
     let motion = motion(&[(0.5, 3.0), (0.0, 2.0), (-40.0, 2.0), (0.0, 2.0)]);
     let sensed = sensed(&program, &motion);
