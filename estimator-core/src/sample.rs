@@ -54,6 +54,9 @@ impl Sample {
     }
 }
 
+/// Largest offset of a boundary that is learned, counts: boundaries within it keep their order.
+pub(crate) const LARGEST_OFFSET: f32 = 0.25;
+
 /// One encoder edge with its age.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

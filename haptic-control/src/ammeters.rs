@@ -162,12 +162,12 @@ impl Ammeters {
         for i in 0..2 {
             let measured = readings[i] - state.zeros[i];
             state.sums[i] += measured;
-            let mut believed = measured;
+            let mut taken = measured;
             if !((measured - commands[i]).abs() <= state.tolerances[i]) {
-                (believed, agrees) = (commands[i], false);
+                (taken, agrees) = (commands[i], false);
             }
-            means[i] = 0.5 * (state.last[i] + believed);
-            state.last[i] = believed;
+            means[i] = 0.5 * (state.last[i] + taken);
+            state.last[i] = taken;
         }
         state.ticks = state.ticks.wrapping_add(1);
         if !agrees {

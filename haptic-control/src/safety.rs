@@ -176,23 +176,21 @@ impl Safety {
         true
     }
 
-    /// Begins calm ticks after this number of ticks without a command.
+    /// Begins the ticks in which time decides nothing, after this number of ticks without a command.
     #[cold]
     fn begin_calm(&self, state: &mut SafetyState, silent: u32) {
-        state.silent = silent;
-        state.calm = self.calm(state);
-        state.silent += state.calm;
-    }
-
-    /// Number of ticks, after one in which something was decided, in which time decides nothing.
-    fn calm(&self, state: &SafetyState) -> u32 {
         let longest = match state.mode {
-            _ if state.debt > 0 => return 0,
-            Mode::Boot | Mode::Safe | Mode::Settling => return 0,
+            _ if state.debt > 0 => Some(0),
+            Mode::Boot | Mode::Safe | Mode::Settling => Some(0),
             Mode::Running => self.silence,
             Mode::Armed => self.disarm,
         };
-        longest.unwrap_or(u32::MAX).saturating_sub(state.silent)
+        // Silence that may last for ever is not counted: its number would end.
+        (state.silent, state.calm) = match longest {
+            Some(longest) => (silent, longest.saturating_sub(silent)),
+            None => (0, u32::MAX),
+        };
+        state.silent += state.calm;
     }
 
     /// A tick of which anything may have to be decided.
@@ -347,6 +345,31 @@ impl Safety {
             Stop::NonFinite
         } else {
             Stop::None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Without limits of silence a tick without command is calm after any time. The number of silent ticks
+    /// ends after 5 days at 10 kHz.
+    #[test]
+    fn silence_without_a_limit_is_calm_for_ever() {
+        let safety = Safety {
+            settle: 0,
+            silence: None,
+            disarm: None,
+            missed: 4,
+            scenes: 8,
+        };
+        let mut state = safety.start(Stop::None);
+        for request in [Request::Arm, Request::Select(1)] {
+            safety.tick(&mut state, &Findings::WELL, Some(request));
+            (state.silent, state.calm) = (u32::MAX, 0);
+            assert!(safety.tick(&mut state, &Findings::WELL, None).enable);
+            assert!(safety.pass_calm(&mut state, None), "{:?}", state.mode);
         }
     }
 }

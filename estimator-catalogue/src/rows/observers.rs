@@ -76,7 +76,7 @@ macro_rules! observer_rows {
             ($($uncertainty)*, boundary_noise: BOUNDARY_NOISE),
             $rates,
             {
-                summary: "bank that also follows adaptive, and distrusts it for a wrong device",
+                summary: "bank that also follows adaptive, with a small probability for a wrong device",
                 needs: COUNT_CURRENT_AND_SLIP,
                 settling: Settling::Within(0.3),
                 colour: Colour::PURPLE,

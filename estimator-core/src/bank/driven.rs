@@ -21,15 +21,14 @@ const DRIVEN: usize = 2;
 /// acceleration. The output is the mean of both banks, weighted by their probabilities:
 /// ```text
 /// driven     as ModelBank, but x_0 += u/2  x_1 += u  after the prediction
-/// trust      p += (1 - p) c_to - p c_from
+/// weight     p += (1 - p) c_to - p c_from
 ///            p = p L_driven / (p L_driven + (1 - p) L_plain)
 /// output     v = (1 - p) v_plain + p v_driven
 /// ```
 /// L is the likelihood that a bank found for the edge or for the quantisation interval: the sum over
-/// its members of weight times likelihood. A wrong u makes the driven bank improbable, and the plain
-/// bank has the say: the error is then that of [`Imm`](crate::Imm). While the input knows nothing, the
-/// driven bank does not run; it begins with the two neighbouring members of the plain bank that have
-/// the larger weights.
+/// its members of weight times likelihood. A wrong u makes the driven bank improbable: the output is then
+/// that of the plain bank, [`Imm`](crate::Imm). While the input knows nothing, the driven bank does not run;
+/// it begins with the two neighbouring members of the plain bank that have the larger weights.
 ///
 /// An edge of age t is compared with the position at its instant, `x_0 - t x_1 + t² (x_2 + u) / 2`.
 ///
@@ -57,14 +56,14 @@ pub struct DrivenBankState<I> {
     plain: ModelBankState<3>,
     driven: ModelBankState<DRIVEN>,
     input: I,
-    trust: f32,
+    probability: f32,
 }
 
 impl<I> DrivenBankState<I> {
     /// The probability of the driven bank; 0 while the input knows nothing.
     #[must_use]
-    pub const fn trust(&self) -> f32 {
-        self.trust
+    pub const fn probability(&self) -> f32 {
+        self.probability
     }
 
     /// The state of the input.
@@ -76,7 +75,7 @@ impl<I> DrivenBankState<I> {
     /// The mean of a quantity of both banks.
     #[inline(always)]
     fn mean(&self, plain: f32, driven: f32) -> f32 {
-        plain + self.trust * (driven - plain)
+        plain + self.probability * (driven - plain)
     }
 }
 
@@ -206,33 +205,33 @@ impl<S: Stamps, I: BankInput> VelocityEstimator for DrivenBank<S, I> {
             plain: self.plain.start(first),
             driven: self.driven.start(first),
             input: self.input.start(first),
-            trust: 0.0,
+            probability: 0.0,
         }
     }
 
     fn update(&self, state: &mut Self::State, sample: &Sample) -> CountsPerTick {
         let Some(input) = self.input.input(&mut state.input, sample, &state.plain) else {
-            state.trust = 0.0;
+            state.probability = 0.0;
             return self.plain.update(&mut state.plain, sample);
         };
-        if state.trust == 0.0 {
+        if state.probability == 0.0 {
             state.driven = state.plain.narrowed();
-            state.trust = START;
+            state.probability = START;
         }
         let plain = self.plain.advance(&mut state.plain, sample, None);
         let driven = self.driven.advance(&mut state.driven, sample, Some(input));
         let (Some(plain), Some(driven)) = (plain, driven) else {
             return CountsPerTick(0.0);
         };
-        state.trust = self.trust(state.trust, &plain, &driven);
+        state.probability = self.probability(state.probability, &plain, &driven);
         CountsPerTick(state.mean(state.plain.velocity(), state.driven.velocity()))
     }
 }
 
 impl<S: Stamps, I: BankInput> DrivenBank<S, I> {
-    /// The probability of the driven bank after the measurement of a tick, with `trust` before.
+    /// The probability of the driven bank after the measurement of a tick, with `probability` before.
     #[inline(always)]
-    fn trust(&self, trust: f32, plain: &Evidence, driven: &Evidence) -> f32 {
+    fn probability(&self, probability: f32, plain: &Evidence, driven: &Evidence) -> f32 {
         let smallest = if plain.likelihood.divisor < driven.likelihood.divisor {
             plain.likelihood.divisor
         } else {
@@ -240,7 +239,7 @@ impl<S: Stamps, I: BankInput> DrivenBank<S, I> {
         };
         // Both ends are constants: the panic of `clamp` is removed.
         let ratio = (plain.deviation / driven.deviation).clamp(RATIOS[0], RATIOS[1]);
-        let prior = trust + (1.0 - trust) * self.towards - trust * self.away;
+        let prior = probability + (1.0 - probability) * self.towards - probability * self.away;
         let for_plain = (1.0 - prior) * plain.likelihood.relative(smallest);
         let for_driven = prior * driven.likelihood.relative(smallest) * root(ratio);
         for_driven / (for_plain + for_driven)
@@ -258,10 +257,10 @@ impl<S: Stamps, I: BankInput> Confidence for DrivenBank<S, I> {
     /// The variance of the mixture of both banks.
     fn variance(&self, state: &Self::State) -> Variance {
         let apart = state.driven.velocity() - state.plain.velocity();
-        let trust = state.trust;
+        let probability = state.probability;
         let plain = state.plain.velocity_variance();
         let driven = state.driven.velocity_variance();
-        Variance(state.mean(plain, driven) + trust * (1.0 - trust) * apart * apart)
+        Variance(state.mean(plain, driven) + probability * (1.0 - probability) * apart * apart)
     }
 }
 

@@ -1,8 +1,12 @@
-//! The bound on the acceleration, which designs a differentiator.
+//! The bound on the acceleration, which designs a differentiator, and that on its error.
 
 use crate::design::DesignError;
 use crate::models::linear::counts_per_rad;
 use crate::units::Hertz;
+
+/// Largest distance of the position of a differentiator from the count, counts. A larger one restarts the
+/// differentiator.
+pub(super) const LARGEST_ERROR: f32 = 32_768.0;
 
 /// The bound L in counts/tick² of `acceleration`, rad/s².
 ///

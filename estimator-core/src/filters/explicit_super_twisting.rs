@@ -6,11 +6,8 @@ use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick, Hertz};
 
-use super::acceleration_bound::counts_per_tick_squared;
+use super::acceleration_bound::{LARGEST_ERROR, counts_per_tick_squared};
 use super::square_root::square_root;
-
-/// Largest error of the predicted count, counts. A larger error restarts the differentiator.
-const LARGEST_ERROR: f32 = 32_768.0;
 
 /// Levant's super-twisting differentiator, discretised by explicit Euler steps as it was published.
 ///

@@ -157,7 +157,8 @@ where
                     *to = wanted;
                     *ticks = self.turned(*ticks);
                 }
-                *ticks += 1;
+                // The longest change that is taken back at once is at the end already.
+                *ticks = ticks.saturating_add(1);
                 let (va, vb) = (
                     self.first.update(a, sample).0,
                     self.second.update(b, sample).0,

@@ -9,14 +9,11 @@ use crate::edge_clock::EdgeClock;
 use crate::estimator::{VaryingPeriod, VelocityEstimator};
 use crate::interval::limited_period;
 use crate::memory::memory;
-use crate::sample::{Sample, Signals};
+use crate::sample::{LARGEST_OFFSET, Sample, Signals};
 use crate::units::{Count, CountsPerTick, Hertz};
 
 /// Gain of an offset by the error of a prediction.
 const OFFSET_GAIN: f32 = 0.05;
-
-/// Largest offset, counts: boundaries within it keep their order.
-const LARGEST_OFFSET: f32 = 0.25;
 
 /// Distances between two edges from which the place of the newer one is learned, counts. Two boundaries
 /// are at least half a count apart; over more than two counts the error is one of the motion.
@@ -40,9 +37,9 @@ const LARGEST_ERROR: f32 = 2.0;
 /// with d the distance from the last edge to the next boundary in the direction of v, at most 1.5 counts.
 /// A prediction at constant velocity, corrected at every edge with gains 0.3 and 0.05, gives the error r
 /// of each stamped edge, and `o = o - 0.05 (r - r̄)`, limited to ±1/4 count. r̄ is the mean of r over P
-/// edges, which an acceleration causes. Nothing
-/// is learned from an edge more than two counts after the last one, where the motion dominates r. The offset of an edge without time stamp, and of the boundary that
-/// was crossed last, does not change; at rest none does. P = 12 serves encoder lines and Hall sensors.
+/// edges, which an acceleration causes. Nothing is learned from an edge more than two counts after the last
+/// one, where the motion dominates r. The offset of an edge without time stamp, and of the boundary that was
+/// crossed last, does not change; at rest none does. P = 12 serves encoder lines and Hall sensors.
 ///
 /// ```
 /// use estimator_core::*;

@@ -6,12 +6,8 @@ use crate::memory::memory;
 use crate::sample::{Sample, Signals};
 use crate::units::{Count, CountsPerTick, Hertz};
 
-use super::acceleration_bound::counts_per_tick_squared;
+use super::acceleration_bound::{LARGEST_ERROR, counts_per_tick_squared};
 use super::square_root::square_root;
-
-/// Largest distance of the tracked position from the count, counts. A larger one restarts the
-/// differentiator.
-const LARGEST_ERROR: f32 = 32_768.0;
 
 /// Longest filter time, ticks.
 const LONGEST_FILTER_TIME: f64 = 1e4;

@@ -11,6 +11,7 @@ use super::range::{Narrow, Range};
 use super::sensitivity::{Sensitivity, Tick, Update};
 use crate::branch::unlikely;
 use crate::memory::{Memory, memory};
+use crate::models::linear::counts_per_rad;
 use crate::sealed::Sealed;
 use crate::units::Hertz;
 
@@ -84,7 +85,7 @@ impl AdaptiveState {
     }
 }
 
-/// Growth of a standard deviation in a second of motion, in parts of [`PRIOR`].
+/// Growth of a standard deviation in a second of motion, in parts of [`Range::PRIOR`].
 const WALK: f64 = 0.1;
 
 /// Largest relative error of the damping that does not indicate a moving start.
@@ -107,7 +108,7 @@ const DENSE_CAUTION: f32 = 2.0;
 impl<R: Range> Adaptive<R> {
     /// The adaptation for an encoder of `counts_per_rev` at this control rate; both are above 0.
     pub(super) const fn new(range: R, counts_per_rev: u32, rate: Hertz) -> Self {
-        let per_rad = counts_per_rev as f64 / (2.0 * core::f64::consts::PI);
+        let per_rad = counts_per_rad(counts_per_rev);
         let mut walk = [0.0; 3];
         let mut i = 0;
         while i < 3 {

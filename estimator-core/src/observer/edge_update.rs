@@ -9,7 +9,7 @@ use crate::design::DesignError;
 use crate::design::const_math::limited;
 use crate::edge_clock::EdgeClock;
 use crate::memory::memory;
-use crate::sample::{Sample, Signals};
+use crate::sample::{LARGEST_OFFSET, Sample, Signals};
 use crate::sealed::Sealed;
 use crate::units::Hertz;
 
@@ -50,9 +50,6 @@ pub struct EdgeUpdateState {
 
 /// Gain μ of an offset.
 const OFFSET_GAIN: f32 = 0.02;
-
-/// Largest offset, counts: boundaries within it keep their order.
-const LARGEST_OFFSET: f32 = 0.25;
 
 /// Time added to a gap that ends without an edge, s.
 const UNSTAMPED: f64 = 3e-3;

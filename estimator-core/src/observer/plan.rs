@@ -11,6 +11,7 @@ use super::{CountObserver, Observer, QuantisedObserver};
 use crate::design::DesignError;
 use crate::design::const_math::{exp, phi1, phi2};
 use crate::models::CoupledMotor;
+use crate::models::linear::counts_per_rad;
 use crate::units::Hertz;
 
 /// Time over which the direction of motion is averaged to separate friction from the rest of the
@@ -43,8 +44,7 @@ impl Plan {
         let t = rate.period_s();
         let beta = motor.damping * t / motor.inertia;
         // Counts/tick² per N·m.
-        let per_torque =
-            motor.counts_per_rev as f64 / (2.0 * core::f64::consts::PI) * t * t / motor.inertia;
+        let per_torque = counts_per_rad(motor.counts_per_rev) * t * t / motor.inertia;
         let noise = match Noise::new(uncertainty, per_torque, t) {
             Ok(noise) => noise,
             Err(error) => return Err(error),

@@ -38,6 +38,22 @@ where
         .collect()
 }
 
+/// Taken back before its first tick, a change ends with the estimator that was in charge, even the longest one.
+#[test]
+fn change_that_is_taken_back_at_once_is_none() {
+    for (settle, fade) in [(SETTLE, FADE), ((1 << 15) - 1, 1 << 15)] {
+        let estimator = Handover::new(FiniteDifference, filter(), settle, fade).unwrap();
+        let samples: Vec<Sample> = (0..100).map(|k| Sample::new(Count(7 * k))).collect();
+        let velocities = run(&estimator, &samples, |k, state| match k {
+            50 => state.select(Side::Second),
+            51 => state.select(Side::First),
+            52 => assert_eq!(state.in_charge(), Some(Side::First), "{settle} {fade}"),
+            _ => {}
+        });
+        assert!(velocities.iter().all(|v| *v == 7.0), "{settle} {fade}");
+    }
+}
+
 #[test]
 fn change_of_estimator_does_not_alter_a_constant_velocity() {
     let samples: Vec<Sample> = (0..1000).map(|k| Sample::new(Count(7 * k))).collect();

@@ -183,7 +183,7 @@ fn ratio_of_the_damping_is_by_the_torque_constant() {
     assert!((learned.damping_ratio() - 2.0).abs() < 1e-6);
 }
 
-/// A late current changes nothing in what the estimator believes of its error.
+/// A late current changes nothing in its standard deviation.
 #[test]
 fn late_current_has_the_variance_of_its_estimator() {
     let model = Model::triple_integrator(4096, Hertz(1000.0), 2e4).expect("valid");

@@ -45,7 +45,7 @@ pub struct ExciteState {
     /// Angle of the handle at the start, and a millisecond ago.
     start: Radians,
     before: Radians,
-    /// Thousandths of a tick, times the rate, into the millisecond.
+    /// Time into the millisecond, in parts of 1/1000 of a tick: a millisecond has as many as the rate in Hz.
     part: u32,
     section: u8,
     pass: u8,

@@ -225,7 +225,7 @@ fn current_of_a_period_is_the_mean_of_its_ends() {
 
 /// A device that is armed right after its boot does not know the zeros.
 #[test]
-fn currents_are_not_believed_before_the_zeros_are_known() {
+fn currents_are_not_taken_before_the_zeros_are_known() {
     let mut state = AmmetersState::START;
     let command = currents([0.25, -0.1]);
     let mut update = |readings| AMMETERS.update(&mut state, &readings, Some(&command));

@@ -111,23 +111,6 @@ impl Loop {
         self.run_under(ticks, Conditions::default(), observe)
     }
 
-    /// Runs for `ticks`; one encoder is faulty from the tick of `fault` on.
-    ///
-    /// # Errors
-    /// As [`Self::run`].
-    pub fn run_with(
-        &self,
-        ticks: usize,
-        fault: Option<(usize, Faulty)>,
-        observe: impl FnMut(&TickState),
-    ) -> Result<(), String> {
-        let conditions = Conditions {
-            fault,
-            ..Conditions::default()
-        };
-        self.run_under(ticks, conditions, observe)
-    }
-
     /// Runs for `ticks` under these conditions.
     ///
     /// # Errors

@@ -156,7 +156,7 @@ fn device_with_a_broken_monitor_wire_drives_no_current() {
 }
 
 /// An amplifier that gives 5 % less than commanded looks like a motor that is weaker by as much to an
-/// image that believes its commands.
+/// image that takes its commands for the currents.
 #[test]
 fn observer_takes_the_measured_current() {
     const GAIN: f64 = 0.95;

@@ -10,7 +10,7 @@ use virtual_board::run::Setup;
 
 use crate::image::{of_scene, run};
 
-/// A device that is not the one that the image believes in, excited by the image's own scene while
+/// A device that is not the one that the image assumes, excited by the image's own scene while
 /// a hand holds it: its constants come out of the frames.
 #[test]
 fn device_is_identified_from_the_images_excitation() {

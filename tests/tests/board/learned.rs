@@ -32,7 +32,7 @@ fn smaller_damping_is_learned_and_logged() {
         let run = run_image("large-adaptive", &setup(part));
         let line = last_learned(&run).expect("a line");
         let learned = (1.0 + line.damping) / (1.0 + line.torque_constant);
-        println!("damping {part} of what is believed: learned {learned}");
+        println!("damping {part} of what is assumed: learned {learned}");
         assert!((learned - part).abs() < 0.05, "{part}: {learned}");
         // The health line reports a change relative to the device of the image, and none relative to
         // the simulated device.

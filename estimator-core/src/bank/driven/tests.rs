@@ -108,15 +108,15 @@ fn exact_input_leaves_the_error_of_a_motion_without_acceleration() {
         assert!(driven < 100.0 * steady / RATE.0, "{name}: {driven}");
         // The plain bank does not know the velocity before a tick, uniform over 2 counts/tick.
         assert!(plain > 0.1, "{name}: {plain}");
-        assert!(after.last().unwrap().1.trust() > 0.99, "{name}");
+        assert!(after.last().unwrap().1.probability() > 0.99, "{name}");
     }
 }
 
 #[test]
-fn trust_is_the_probability_by_the_densities_of_both_banks() {
+fn probability_is_the_probability_by_the_densities_of_both_banks() {
     let bank = DrivenBank::on_counts(Known, [20.0, 5.0], RATE).unwrap();
     // Error and variance of each bank's innovation, counts and counts².
-    for (trust, plain, driven) in [
+    for (probability, plain, driven) in [
         (0.5, (0.1, 0.02), (0.1, 0.02)),
         (0.5, (0.1, 0.04), (0.05, 0.005)),
         (0.2, (0.3, 0.01), (0.3, 0.09)),
@@ -127,13 +127,13 @@ fn trust_is_the_probability_by_the_densities_of_both_banks() {
             likelihood: Likelihood::new(1.0, 0.5 * error * error / variance),
             deviation: variance,
         };
-        let found = bank.trust(trust, &evidence(plain), &evidence(driven));
+        let found = bank.probability(probability, &evidence(plain), &evidence(driven));
         let density = |(error, variance): (f32, f32)| {
             let [error, variance] = [error, variance].map(f64::from);
             (1.0 + error * error / (32.0 * variance)).powi(-16) / variance.sqrt()
         };
-        let trust = f64::from(trust);
-        let prior = trust + (1.0 - trust) * 0.02 - trust * 0.005;
+        let probability = f64::from(probability);
+        let prior = probability + (1.0 - probability) * 0.02 - probability * 0.005;
         let odds = prior / (1.0 - prior) * density(driven) / density(plain);
         let found = f64::from(found / (1.0 - found));
         // The root is approximated to 8 %.
@@ -155,9 +155,9 @@ fn bank_without_input_is_alone_while_the_input_is_unknown() {
         let plain = alone.update(&mut state, sample).0;
         if (200..400).contains(&tick) {
             assert_eq!(*found, plain, "{tick}");
-            assert_eq!(driven.trust(), 0.0, "{tick}");
+            assert_eq!(driven.probability(), 0.0, "{tick}");
         } else {
-            assert!(driven.trust() > 0.0, "{tick}");
+            assert!(driven.probability() > 0.0, "{tick}");
         }
     }
 }
@@ -176,7 +176,11 @@ fn driven_bank_begins_with_the_likelier_members_of_the_plain_bank() {
     let (velocity, state) = after[400];
     assert!((velocity - 3.5).abs() < 0.05, "{velocity}");
     assert!((state.driven.velocity() - 3.5).abs() < 0.05);
-    assert!((state.trust() - START).abs() < 0.1, "{}", state.trust());
+    assert!(
+        (state.probability() - START).abs() < 0.1,
+        "{}",
+        state.probability()
+    );
     // The acceleration is that of the mixture too.
     let parts = [state.plain.acceleration(), state.driven.acceleration()];
     let mean = 0.5 * (parts[0] + parts[1]);
@@ -189,7 +193,7 @@ fn mean_acceleration_and_variance_are_those_of_the_mixture() {
     let (samples, _) = erratic(300);
     let bank = DrivenBank::on_counts(Known, FOLLOWED, RATE).unwrap();
     let (_, mut state) = run(&bank, &samples)[299];
-    state.trust = 0.25;
+    state.probability = 0.25;
     state.driven.drive(3.0);
     let parts = |of: &dyn Fn(&DrivenBankState<()>) -> [f32; 2]| of(&state).map(f64::from);
     let v = parts(&|s| [s.plain.velocity(), s.driven.velocity()]);
@@ -215,7 +219,7 @@ fn root_of_the_ratio_is_limited() {
         deviation,
     };
     for (ratio, limit) in [(1e6, 10.0), (1e-6, 0.1)] {
-        let found = bank.trust(0.5, &certain(ratio), &certain(1.0));
+        let found = bank.probability(0.5, &certain(ratio), &certain(1.0));
         let odds = root(limit);
         assert!((found - odds / (1.0 + odds)).abs() < 1e-6, "{found}");
     }

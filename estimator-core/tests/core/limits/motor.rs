@@ -206,7 +206,7 @@ fn motor_model_has_a_range() {
     assert_eq!(moved, Some(DesignError::RATE_FOR_CURRENT));
 }
 
-/// A rotor at rest leaves as soon as the torque of its current is above the friction believed in.
+/// A rotor at rest leaves as soon as the torque of its current is above the assumed friction.
 #[test]
 fn rotor_leaves_at_the_friction_of_the_design() {
     let device = CoupledMotor {

@@ -12,14 +12,14 @@ use super::{CLOCK, UNSURE, at};
 #[test]
 fn wrong_parameters_are_estimated() {
     let rate = Hertz(1000.0);
-    let believed = CoupledMotor::DCX35L;
+    let assumed = CoupledMotor::DCX35L;
     for (damping, inertia, friction) in [(0.7, 1.0, 1.0), (1.3, 1.2, 0.7), (0.8, 0.8, 1.4)] {
-        let mut device = believed;
+        let mut device = assumed;
         device.motor.damping *= damping;
         device.motor.inertia *= inertia;
         device.coulomb_friction *= friction;
         let (samples, truth) = modelled(rate.0, 12.0, 0.3, device);
-        let edges = ObserverDesign::new(&believed, rate, &UNSURE).with_edges(CLOCK);
+        let edges = ObserverDesign::new(&assumed, rate, &UNSURE).with_edges(CLOCK);
         let fixed = at(rate.0);
         let fixed = fixed
             .iter()
@@ -55,17 +55,17 @@ fn model_of_another_device_is_learned() {
         sample.with_current(current)
     });
     let turned: Vec<Sample> = turned.collect();
-    let design = |believed: &CoupledMotor| ObserverDesign::new(believed, rate, &UNSURE).held();
+    let design = |assumed: &CoupledMotor| ObserverDesign::new(assumed, rate, &UNSURE).held();
     let with = |inertia: f64, torque_constant: f64, damping: f64, friction: f64| {
-        let mut believed = device;
-        believed.motor.inertia *= inertia;
-        believed.motor.torque_constant *= torque_constant;
-        believed.motor.damping *= damping;
-        believed.coulomb_friction *= friction;
-        believed
+        let mut assumed = device;
+        assumed.motor.inertia *= inertia;
+        assumed.motor.torque_constant *= torque_constant;
+        assumed.motor.damping *= damping;
+        assumed.coulomb_friction *= friction;
+        assumed
     };
     let from = 4000;
-    for (believed, sign, what) in [
+    for (assumed, sign, what) in [
         (with(10.0, 1.0, 1.0, 1.0), 1.0, "inertia 10"),
         (with(0.1, 1.0, 1.0, 1.0), 1.0, "inertia 0.1"),
         (with(1.0, 3.0, 1.0, 1.0), 1.0, "torque constant 3"),
@@ -74,12 +74,12 @@ fn model_of_another_device_is_learned() {
         (with(1.0, 1.0, 1.0, 1.0), -1.0, "sign"),
     ] {
         let samples = if sign > 0.0 { &samples } else { &turned };
-        let right = sign * believed.motor.inertia / believed.motor.torque_constant
+        let right = sign * assumed.motor.inertia / assumed.motor.torque_constant
             * device.motor.torque_constant
             / device.motor.inertia;
-        let fixed = run(&design(&believed).build().expect("valid"), samples).0;
+        let fixed = run(&design(&assumed).build().expect("valid"), samples).0;
         let fixed = rms(&fixed, &truth, from);
-        let counts = design(&believed).widely_adaptive();
+        let counts = design(&assumed).widely_adaptive();
         let edges = run(&counts.with_edges(CLOCK).build().expect("valid"), samples);
         let counts = run(&counts.build().expect("valid"), samples);
         for ((velocities, gain), part) in [(counts, 0.7), (edges, 0.35)] {

@@ -191,7 +191,7 @@ fn variances_of_the_parameters_at_rest_stay_below_the_prior() {
     let counts = counts.build().expect("valid");
     let mut state = counts.start(&Sample::default());
     assert_eq!(*state.adaptation().diagonal(), prior);
-    // 0.3 A over 0.4 s: the parameters believed in are nearly right.
+    // 0.3 A over 0.4 s: the assumed parameters are nearly right.
     let (samples, _) = modelled(rate.0, 3.0, 0.3, CoupledMotor::DCX35L);
     for sample in &samples {
         counts.update(&mut state, sample);

@@ -27,7 +27,7 @@ fn other_device() -> CoupledMotor {
 }
 
 /// The same, but for constants that are all off: there is something to learn.
-fn believed(device: &CoupledMotor) -> CoupledMotor {
+fn assumed(device: &CoupledMotor) -> CoupledMotor {
     CoupledMotor {
         motor: MotorModel {
             damping: 0.7 * device.motor.damping,
@@ -151,9 +151,9 @@ fn observers_agree_with_their_definition() {
     for rate in [1000.0, 8000.0] {
         let hertz = Hertz(rate);
         let device = other_device();
-        let belief = believed(&device);
-        let counts = ObserverDesign::new(&belief, hertz, &SURE);
-        let quantised = ObserverDesign::quantised(&belief, hertz, &SURE);
+        let assumed = assumed(&device);
+        let counts = ObserverDesign::new(&assumed, hertz, &SURE);
+        let quantised = ObserverDesign::quantised(&assumed, hertz, &SURE);
         let edges = counts.with_edges(CLOCK);
         let learns = (
             counts.adaptive().build().expect("valid"),
@@ -165,7 +165,7 @@ fn observers_agree_with_their_definition() {
         let edges = edges.build().expect("valid");
         for (name, samples) in samples(rate, &device) {
             let new =
-                |kind, learns| Definition::new(kind, learns, &belief, rate, &SURE, &samples[0]);
+                |kind, learns| Definition::new(kind, learns, &assumed, rate, &SURE, &samples[0]);
             let mut compare = |what: &str, kind, learner, difference: &Difference<'_>| {
                 let off = difference(&mut new(kind, learner), &samples);
                 assert_rounding(off, name, &format!("{what} at {rate} Hz"));
@@ -304,11 +304,11 @@ fn gains_agree_with_a_filter_corrected_every_n_ticks() {
 fn covariances_agree_with_the_definition() {
     let rate = 1000.0;
     let hertz = Hertz(rate);
-    let belief = believed(&other_device());
-    let quantised = ObserverDesign::quantised(&belief, hertz, &SURE);
+    let assumed = assumed(&other_device());
+    let quantised = ObserverDesign::quantised(&assumed, hertz, &SURE);
     let learns = quantised.adaptive().build().expect("valid");
     let (_, samples) = samples(rate, &other_device()).swap_remove(0);
-    let mut definition = Definition::new(Kind::Quantised, true, &belief, rate, &SURE, &samples[0]);
+    let mut definition = Definition::new(Kind::Quantised, true, &assumed, rate, &SURE, &samples[0]);
     let mut state = learns.start(&samples[0]);
     let mut off = 0.0f64;
     for sample in &samples[1..] {

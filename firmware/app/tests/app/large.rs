@@ -51,7 +51,7 @@ fn single_estimator_is_number_0_and_cannot_be_changed() {
 #[test]
 fn learned_parameters_are_those_of_the_estimator() {
     let mut state = ADAPTIVE.start(&Sample::new(Count(0)));
-    // A motor that turns ever faster without a current fits no believed damping.
+    // A motor that turns ever faster without a current fits no damping in the range.
     for k in 0..20_000_u32 {
         ADAPTIVE.update(
             &mut state,

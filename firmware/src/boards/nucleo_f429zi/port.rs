@@ -84,18 +84,21 @@ impl Port for Usart {
     fn look(&mut self) {
         let mut errors = u32::from(line_error());
         if self.receiver.flags().contains(DmaFlag::TransferError) {
-            // The stream has stopped; the ring and the place in it stay.
+            // The stream has stopped; it and its reader begin at the start of the ring.
             self.receiver.clear_all_flags();
             self.receiver.start(|_| ());
             self.inbox = Inbox::default();
             errors += 1;
         }
+        if self.sending {
+            let flags = self.transmitter.flags();
+            errors += u32::from(flags.contains(DmaFlag::TransferError));
+            self.sending = !flags.intersects(DmaFlag::TransferComplete | DmaFlag::TransferError);
+        }
         self.errors = self.errors.wrapping_add(errors);
-        let ended = DmaFlag::TransferComplete | DmaFlag::TransferError;
-        if self.sending && !self.transmitter.flags().intersects(ended) {
+        if self.sending {
             return;
         }
-        self.sending = false;
         if let Some((start, length)) = self.outbox.chunk() {
             self.transmitter.clear_all_flags();
             self.sending = self

@@ -162,16 +162,16 @@ pub fn velocities(
             model.step(p, drive, &mut random);
             p.x -= counts + behind;
             let outside = (-p.x).max(p.x - 1.0).max(0.0) / BLUR;
-            let mut doubt = 0.5 * outside * outside;
+            let mut exponent = 0.5 * outside * outside;
             if let Some(stamp) = stamp {
                 let passed = 1.0 - age(stamp.age_s);
                 let bend = 0.5 * (p.v - before.1);
                 let there = before.0 + passed * (p.x - before.0 - bend + bend * passed);
                 let boundary = f64::from(stamp.boundary.wrapping_sub(trace.counts_large[k]) as i32);
                 let miss = (there - boundary) / EDGE_BLUR;
-                doubt += 0.5 * miss * miss;
+                exponent += 0.5 * miss * miss;
             }
-            *weight *= (-doubt).exp();
+            *weight *= (-exponent).exp();
         }
         let mut total: f64 = weights.iter().sum();
         if total < 1e-200 {

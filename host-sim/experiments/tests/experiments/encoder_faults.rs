@@ -3,7 +3,7 @@
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
 use experiments::closed_loop::{
-    EncoderFault, Faulty, FeedbackEncoder, Hand, Loop, Press, estimator, usual,
+    Conditions, EncoderFault, Faulty, FeedbackEncoder, Hand, Loop, Press, estimator, usual,
 };
 use experiments::robust::corners::corners;
 use haptic_control::{LoopPoles, SceneKind, SimulatedHand, Stop};
@@ -52,7 +52,11 @@ fn with(run: &Loop, fault: Faulty, seconds: f64) -> Ended {
         spurious_nm: 0.0,
     };
     let mut k = 0;
-    run.run_with(ticks, Some((from, fault)), |now| {
+    let conditions = Conditions {
+        fault: Some((from, fault)),
+        ..Conditions::default()
+    };
+    run.run_under(ticks, conditions, |now| {
         if ended.stop.is_none() {
             ended.spurious_nm = ended.spurious_nm.max((now.felt - healthy[k]).abs());
             ended.stop = now.stopped.map(|cause| (now.t - FAULT_S, cause));
