@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::read::one_line;
 
 mod check;
+mod range;
 mod sections;
 
 /// Longest step of the plant, s. It must be short against every time constant of a device.

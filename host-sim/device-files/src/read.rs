@@ -8,11 +8,12 @@ use std::path::Path;
 /// One line that names the path, if it is not a readable file of UTF-8 text.
 pub fn text(path: &Path) -> Result<String, String> {
     let named = |what: &dyn std::fmt::Display| format!("{}: {what}", path.display());
-    let metadata = std::fs::metadata(path).map_err(|error| named(&error))?;
+    let unread = |error| named(&format_args!("cannot read: {error}"));
+    let metadata = std::fs::metadata(path).map_err(unread)?;
     if !metadata.is_file() {
         return Err(named(&"not a regular file; give a TOML file"));
     }
-    std::fs::read_to_string(path).map_err(|error| named(&format_args!("cannot read: {error}")))
+    std::fs::read_to_string(path).map_err(unread)
 }
 
 /// The parser's error in one line, with the line's number and its key.
