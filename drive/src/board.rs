@@ -7,13 +7,14 @@ use std::time::{Duration, Instant};
 
 use drivers::link::{Frame, Hello, Message, PROTOCOL, Parser, Rejected};
 use drivers::{Command, encode};
-use haptic_control::Request;
+use haptic_control::{Request, SceneKind};
 use terminal::failure::Failure;
 use terminal::output::{note, print_bytes};
 
 use crate::clock::Limit;
+use crate::named::explained;
 use crate::port::Port;
-use crate::refusal::{compatible, refusal};
+use crate::refusal::{compatible, refusal, silent};
 use crate::watch::is_enabled;
 
 /// Time after which a question is asked again.
@@ -200,9 +201,14 @@ impl Board {
         let before = self.identify()?.rejected;
         self.send(command)?;
         let after = self.identify()?.rejected;
+        let scene = match command {
+            Command::Tune { scene, .. } => SceneKind::ALL.get(usize::from(scene)).copied(),
+            _ => None,
+        };
         match before.zip(after).and_then(|(a, b)| refusal(&a, &b)) {
             Some(reason) => Err(Failure::Check(format!(
-                "{what}: the board refuses it: {reason}"
+                "{what}: the board refuses it: {}",
+                explained(reason, scene)
             ))),
             None => Ok(()),
         }
@@ -271,27 +277,16 @@ impl Board {
 
     /// The failure of a board that sends nothing that is understood.
     pub(crate) fn silent(&self) -> Failure {
-        let bytes = self.parser.garbage();
-        let heard = match (bytes, self.parser.foreign()) {
-            (0, 0) => "sends nothing".to_owned(),
-            (_, 0) => format!("does not answer; {bytes} bytes were no message"),
-            (_, frames) => format!("does not answer; {frames} messages are of another protocol"),
-        };
-        Failure::Input(format!(
-            "{}: the board {heard}; check the port, the power and that the image has the link",
-            self.port.name()
-        ))
+        Failure::Input(silent(self.port.name(), &self.parser))
     }
 
     fn lost(&self, error: &io::Error) -> Failure {
-        let end = match self.disarms {
+        // Another program may keep the scene alive.
+        let end = match self.disarms && !self.port.is_taken() {
             true => "; the board ends the scene by itself when no command comes",
             false => "",
         };
-        Failure::Input(format!(
-            "{}: connection lost: {error}; check cable and power, then run the command again{end}",
-            self.port.name()
-        ))
+        Failure::Input(self.port.lost(error) + end)
     }
 }
 

@@ -4,7 +4,9 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory as _, Parser, Subcommand};
+use drivers::{Command, Setting};
+use firmware_app::large;
 use haptic_control::SceneKind;
 use terminal::explain;
 use terminal::failure::Failure;
@@ -22,7 +24,6 @@ use crate::session::{self, Plan};
 use crate::settings::{self, Assignment, assignment};
 use crate::timed::{Change, Timed, timed};
 use crate::watch::state;
-use drivers::Command;
 
 /// Commands a board over its link, and shows and records its telemetry.
 ///
@@ -71,8 +72,7 @@ enum Action {
   cargo drive select wall
   cargo drive select wall --tune stiffness=0.2 --tune stiffness=0.1@2 --seconds 4")]
     Select {
-        /// Scene
-        #[arg(value_name = "SCENE", value_parser = named::scene)]
+        #[arg(value_name = "SCENE", value_parser = named::scene, help = scenes())]
         scene: SceneKind,
         /// Set a parameter of the scene, S seconds after the scene begins; repeatable
         #[arg(long, value_name = "NAME=VALUE[@S]", value_parser = timed)]
@@ -84,15 +84,18 @@ enum Action {
         hold: Hold,
     },
     /// Set a parameter of a scene until the next reset; arms nothing
-    #[command(after_help = "Example:\n  cargo drive tune wall stiffness 0.2")]
+    #[command(after_help = format!(
+        "Scenes and their parameters:\n{}\nExample:\n  cargo drive tune wall stiffness 0.2",
+        named::parameters()
+    ))]
     Tune {
-        /// Scene
+        /// Scene of the list below
         #[arg(value_name = "SCENE", value_parser = named::scene)]
         scene: SceneKind,
-        /// Parameter of the scene
+        /// Parameter of the scene, of the list below
         #[arg(value_name = "PARAMETER")]
         parameter: String,
-        /// Value in the unit of docs/telemetry.md
+        /// Value; units and bounds are in docs/telemetry.md
         #[arg(value_name = "VALUE", allow_negative_numbers = true)]
         value: f32,
     },
@@ -108,8 +111,7 @@ enum Action {
     /// Put an estimator in charge of the large motor's velocity until the next reset
     #[command(after_help = "Example:\n  cargo drive estimator kalman-triple-steady")]
     Estimator {
-        /// Name of the estimator
-        #[arg(value_name = "NAME", value_parser = named::estimator)]
+        #[arg(value_name = "NAME", value_parser = named::estimator, help = estimators())]
         number: u8,
     },
     /// Keep a board alive that another program has armed; disarm at the end
@@ -200,6 +202,19 @@ impl Hold {
     }
 }
 
+/// Help on a scene.
+fn scenes() -> String {
+    format!("Scene: {}", SceneKind::ALL.map(SceneKind::name).join(", "))
+}
+
+/// Help on an estimator.
+fn estimators() -> String {
+    format!(
+        "Name of the estimator, of an image that has both: {}",
+        large::NAMES.join(", ")
+    )
+}
+
 /// A duration above 0.
 fn seconds(text: &str) -> Result<f64, String> {
     let seconds: Option<f64> = text.parse().ok();
@@ -218,9 +233,20 @@ fn patience(text: &str) -> Result<f64, String> {
 /// # Errors
 /// A [`Failure`] with its exit status.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
-    match Arguments::try_parse_from(arguments) {
+    let arguments: Vec<_> = arguments.into_iter().collect();
+    match Arguments::try_parse_from(&arguments) {
         Ok(arguments) => act(arguments),
-        Err(error) => explain(&error, "cargo drive"),
+        Err(error) => explain(&error, &asked(&arguments)),
+    }
+}
+
+/// The program, with the command among the arguments, whose help has the usage.
+fn asked(arguments: &[OsString]) -> String {
+    let commands = Arguments::command();
+    let command = |argument: &OsString| commands.find_subcommand(argument);
+    match arguments.iter().skip(1).find_map(command) {
+        Some(command) => format!("cargo drive {}", command.get_name()),
+        None => "cargo drive".to_owned(),
     }
 }
 
@@ -285,7 +311,7 @@ fn act(arguments: Arguments) -> Result<(), Failure> {
             if tuning.scene() == SceneKind::Torque {
                 // The set-point is zero each time its scene is selected.
                 return Err(Failure::Input(format!(
-                    "{tuning}: lasts only while the scene runs; use cargo drive torque {value}"
+                    "{tuning}: lasts only while the scene runs; use cargo drive torque VALUE"
                 )));
             }
             let mut board = open()?;
@@ -297,14 +323,20 @@ fn act(arguments: Arguments) -> Result<(), Failure> {
         Action::Estimator { number } => {
             let mut board = open()?;
             board.compatible()?;
-            let name = format!("estimator {number}");
+            let name = format!("estimator {}", large::NAMES[usize::from(number)]);
             board.change(Command::Estimator(number), &name)?;
             note(format_args!("{name}, until the next reset"));
             Ok(())
         }
         Action::Settings { assignments, store } => {
             let mut board = open()?;
-            board.compatible()?;
+            let hello = board.compatible()?.hello;
+            for it in &assignments {
+                if it.setting == Setting::Estimator {
+                    named::numbered(it.value as u8, &hello)
+                        .map_err(|error| format!("estimator={}: {error}", it.value))?;
+                }
+            }
             settings::change(&mut board, &assignments)?;
             print_bytes(settings::table(&mut board)?.as_bytes())?;
             if store {

@@ -4,10 +4,12 @@ use drivers::Command;
 use drivers::link::Hello;
 use firmware_app::large;
 use firmware_app::scene::BOUNDS;
-use haptic_control::{Parameter, SceneKind};
+use haptic_control::{Parameter, Quantity, SceneKind};
 use terminal::failure::Failure;
 use terminal::wording::unknown;
 use tuned::DEVICE_FINGERPRINT;
+
+use crate::refusal::OUT_OF_BOUNDS;
 
 /// The scene of this name.
 ///
@@ -28,9 +30,82 @@ pub(crate) fn estimator(name: &str) -> Result<u8, String> {
     number.ok_or_else(|| unknown("estimator", name, large::NAMES))
 }
 
+/// Names of the estimators of an image, each at its number.
+#[must_use]
+pub fn estimators(hello: &Hello) -> &'static [&'static str] {
+    const ADAPTIVE: [&str; 2] = ["adaptive", "adaptive-edge"];
+    let has = |feature| hello.features.names().any(|name| name == feature);
+    if has("large-foaw") {
+        &large::NAMES[..1]
+    } else if has("large-kalman") {
+        &large::NAMES[1..]
+    } else if has("large-adaptive") {
+        let edge = usize::from(has("edge-capture"));
+        &ADAPTIVE[edge..=edge]
+    } else {
+        &large::NAMES
+    }
+}
+
+/// Checks that an image has an estimator of this number.
+///
+/// # Errors
+/// One line with the numbers and names of its estimators.
+pub fn numbered(number: u8, hello: &Hello) -> Result<(), String> {
+    let names = estimators(hello);
+    if usize::from(number) < names.len() {
+        return Ok(());
+    }
+    let all: Vec<_> = (0..)
+        .zip(names)
+        .map(|(number, name): (u8, _)| format!("{number} ({name})"))
+        .collect();
+    Err(format!(
+        "the image has no estimator {number}; there are {}",
+        all.join(", ")
+    ))
+}
+
+/// Checks that an image takes the command that selects this estimator.
+///
+/// # Errors
+/// One line as [`numbered`], or that the image has one estimator alone.
+pub fn chosen(number: u8, hello: &Hello) -> Result<(), String> {
+    match estimators(hello) {
+        [one] => Err(format!("the image has {one} alone, and no choice")),
+        _ => numbered(number, hello),
+    }
+}
+
+/// The reason of a refusal, with the bound that a scene has beside those of its parameters.
+pub(crate) fn explained(reason: &str, scene: Option<SceneKind>) -> String {
+    match scene {
+        Some(SceneKind::Detents) if reason == OUT_OF_BOUNDS => format!(
+            "{reason}; amplitude times per-turn is at most {} {}",
+            BOUNDS.stiffness,
+            Quantity::Stiffness.unit()
+        ),
+        _ => reason.to_owned(),
+    }
+}
+
+/// The scenes with the names of their parameters, one line each.
+pub(crate) fn parameters() -> String {
+    let tuned = SceneKind::ALL.into_iter().filter(|scene| {
+        // The set-point of the torque is no parameter that lasts.
+        *scene != SceneKind::Torque && !scene.facts().parameters.is_empty()
+    });
+    let line = |scene: SceneKind| {
+        let names = scene.facts().parameters.iter().map(|it| it.name);
+        let names: Vec<_> = names.collect();
+        format!("  {:<15}{}\n", scene.name(), names.join(", "))
+    };
+    tuned.map(line).collect()
+}
+
 /// A value for a parameter of a scene.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Tuning {
+pub struct Tuning {
     scene: SceneKind,
     number: u8,
     parameter: Parameter,
@@ -42,7 +117,7 @@ impl Tuning {
     ///
     /// # Errors
     /// [`Failure::Input`] with the names that the scene has.
-    pub(crate) fn new(scene: SceneKind, name: &str, value: f32) -> Result<Self, Failure> {
+    pub fn new(scene: SceneKind, name: &str, value: f32) -> Result<Self, Failure> {
         let parameters = scene.facts().parameters;
         let known = scene
             .parameter(name)
@@ -86,37 +161,102 @@ impl Tuning {
     ///
     /// # Errors
     /// [`Failure::Input`] with the bounds.
-    pub(crate) fn check(&self, hello: &Hello) -> Result<(), Failure> {
-        let range = self.parameter.quantity.range(&BOUNDS);
+    pub fn check(&self, hello: &Hello) -> Result<(), Failure> {
+        let quantity = self.parameter.quantity;
+        let range = quantity.range(&BOUNDS);
         let inside = match hello.device == DEVICE_FINGERPRINT.0 {
             true => range.contains(&self.value),
             false => self.value.is_finite(),
         };
-        if inside {
+        let is_whole = quantity == Quantity::DetentsPerTurn;
+        if inside && !(is_whole && self.value.fract() != 0.0) {
             return Ok(());
         }
+        let whole = if is_whole { "a whole number from " } else { "" };
         let (least, most) = (range.start(), range.end());
-        let unit = self.parameter.quantity.unit();
+        let unit = quantity.unit();
         let unit = if unit.is_empty() {
             String::new()
         } else {
             format!(" {unit}")
         };
         Err(Failure::Input(format!(
-            "{self}: out of bounds; give {least} to {most}{unit}"
+            "{self}: out of bounds; give {whole}{least} to {most}{unit}"
         )))
     }
 }
 
-/// Scene, parameter, value and unit.
+/// Scene, parameter, value and unit. The only parameter of the scene torque has its name.
 impl std::fmt::Display for Tuning {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (scene, name, value) = (self.scene, self.parameter.name, self.value);
+        if scene.name() != name {
+            write!(f, "{scene} ")?;
+        }
         let unit = self.parameter.quantity.unit();
-        write!(
-            f,
-            "{scene} {name} {value}{}{unit}",
-            if unit.is_empty() { "" } else { " " }
-        )
+        let space = if unit.is_empty() { "" } else { " " };
+        write!(f, "{name} {value}{space}{unit}")
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use drivers::link::{FEATURES, Features, Label, PROTOCOL};
+
+    use super::*;
+
+    /// The identity of an image with these features.
+    pub(crate) fn hello(features: &[&str]) -> Hello {
+        let flags: Vec<_> = FEATURES.iter().map(|it| features.contains(it)).collect();
+        assert_eq!(flags.iter().filter(|it| **it).count(), features.len());
+        Hello {
+            protocol: PROTOCOL,
+            version: Label::default(),
+            commit: Label::default(),
+            features: Features::from_flags(&flags),
+            rate: 10_000,
+            device: DEVICE_FINGERPRINT.0,
+            presets: 0,
+            cause: 0,
+            brown_out_reset: true,
+        }
+    }
+
+    #[test]
+    fn estimators_are_those_of_the_image() {
+        let of = |features: &[&str]| estimators(&hello(features));
+        assert_eq!(of(&["edge-capture"]), large::NAMES);
+        assert_eq!(of(&["large-foaw"]), ["foaw-end-fit"]);
+        assert_eq!(of(&["large-kalman"]), ["kalman-triple-steady"]);
+        assert_eq!(of(&["large-adaptive"]), ["adaptive"]);
+        let both = ["edge-capture", "large-adaptive"];
+        assert_eq!(of(&both), ["adaptive-edge"]);
+        assert_eq!(
+            numbered(7, &hello(&[])).unwrap_err(),
+            "the image has no estimator 7; there are 0 (foaw-end-fit), 1 (kalman-triple-steady)"
+        );
+        assert_eq!(
+            chosen(0, &hello(&["large-foaw"])).unwrap_err(),
+            "the image has foaw-end-fit alone, and no choice"
+        );
+        for number in 0..2 {
+            assert_eq!(chosen(number, &hello(&[])), Ok(()));
+        }
+        assert!(numbered(1, &hello(&["large-foaw"])).is_err());
+    }
+
+    #[test]
+    fn number_of_detents_is_whole() {
+        let check = |value| {
+            let tuning = Tuning::new(SceneKind::Detents, "per-turn", value).unwrap();
+            tuning.check(&hello(&[])).map_err(|it| it.to_string())
+        };
+        assert_eq!(check(24.0), Ok(()));
+        for value in [24.5, 1001.0, f32::NAN] {
+            let said = format!(
+                "detents per-turn {value}: out of bounds; give a whole number from 1 to 1000"
+            );
+            assert_eq!(check(value), Err(said));
+        }
     }
 }

@@ -20,12 +20,16 @@ const CONNECT: Duration = Duration::from_secs(2);
 /// Longest time that the other end of a TCP connection gets to take the last bytes.
 const LINGER: Duration = Duration::from_millis(300);
 /// Begin of the name of a TCP port.
-const TCP: &str = "tcp:";
+pub const TCP: &str = "tcp:";
+/// What the server of a board sends to a client while it serves another one, before it closes the connection.
+pub const TAKEN: &[u8] = b"the board has a client already; one client at a time\n";
 
 /// An open port.
 pub struct Port {
     name: String,
     channel: Channel,
+    /// The first bytes that were read, as many as [`TAKEN`] has.
+    begin: Vec<u8>,
 }
 
 enum Channel {
@@ -78,10 +82,15 @@ impl Port {
             (Err(error), false) if error.kind() == ErrorKind::PermissionDenied => {
                 "add the user to the group of the port (dialout) and log in again"
             }
+            (Err(_), false) if is_address(&name) => "for a TCP port, write tcp: before the address",
             (Err(_), false) => "cargo drive list shows the ports",
         };
         match opened {
-            Ok(channel) => Ok(Self { name, channel }),
+            Ok(channel) => Ok(Self {
+                name,
+                channel,
+                begin: Vec::new(),
+            }),
             Err(error) => Err(Failure::Input(format!(
                 "{name}: cannot open: {error}; {remedy}"
             ))),
@@ -99,6 +108,7 @@ impl Port {
                 to,
                 rest: VecDeque::new(),
             },
+            begin: Vec::new(),
         };
         let end = PipeEnd {
             to: ours,
@@ -134,8 +144,31 @@ impl Port {
         };
         match read {
             Ok(0) => Err(ErrorKind::UnexpectedEof.into()),
+            Ok(count) => {
+                let lacks = TAKEN.len() - self.begin.len();
+                self.begin.extend(&buffer[..count.min(lacks)]);
+                Ok(count)
+            }
             Err(error) if is_silence(&error) => Ok(0),
             other => other,
+        }
+    }
+
+    /// Whether the server of the board has told that it serves another client.
+    #[must_use]
+    pub fn is_taken(&self) -> bool {
+        self.begin == TAKEN
+    }
+
+    /// The message about an error of this connection.
+    #[must_use]
+    pub fn lost(&self, error: &io::Error) -> String {
+        let name = &self.name;
+        match self.is_taken() {
+            true => format!("{name}: another program has this port; end it first"),
+            false => format!(
+                "{name}: connection lost: {error}; check cable and power, then run the command again"
+            ),
         }
     }
 
@@ -191,6 +224,12 @@ fn only(ports: &[PathBuf]) -> Result<String, Failure> {
     }
 }
 
+/// Whether a name looks like `HOST:PORT`.
+fn is_address(name: &str) -> bool {
+    let number = name.rsplit_once(':').map(|(_, port)| port.parse::<u16>());
+    number.is_some_and(|number| number.is_ok())
+}
+
 fn is_silence(error: &io::Error) -> bool {
     let kinds = [
         ErrorKind::TimedOut,
@@ -228,6 +267,16 @@ fn connect(address: &str) -> io::Result<TcpStream> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn address_is_told_from_the_name_of_a_serial_port() {
+        for name in ["127.0.0.1:36907", "localhost:9090", "[::1]:80"] {
+            assert!(is_address(name), "{name}");
+        }
+        for name in ["/dev/ttyACM0", "COM3", "tcp", "usb:x"] {
+            assert!(!is_address(name), "{name}");
+        }
+    }
 
     #[test]
     fn only_port_is_the_default() {

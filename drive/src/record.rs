@@ -8,6 +8,8 @@ use recordings::telemetry::Telemetry;
 use terminal::failure::Failure;
 use terminal::output::{note, write_whole};
 
+use crate::place;
+
 /// Telemetry that becomes a file at the end of a session.
 pub(crate) struct Recorder {
     telemetry: Telemetry,
@@ -27,25 +29,12 @@ impl Recorder {
         }
     }
 
-    /// Checks that the file has a place, so that a session does not find out at its end.
+    /// Checks that the file has a place.
     ///
     /// # Errors
-    /// [`Failure::Input`] if the name is that of a folder, or lies in something that is none.
+    /// Those of [`place::check`].
     pub(crate) fn check(&self) -> Result<(), Failure> {
-        let name = self.out.display();
-        if self.out.is_dir() {
-            return Err(Failure::Input(format!(
-                "{name}: is a folder; choose the name of a file"
-            )));
-        }
-        let above = self.out.ancestors().skip(1).find(|path| path.exists());
-        match above {
-            Some(path) if !path.is_dir() => Err(Failure::Input(format!(
-                "{name}: {} is no folder; choose another path",
-                path.display()
-            ))),
-            _ => Ok(()),
-        }
+        place::check(&self.out)
     }
 
     /// Takes a message.
@@ -56,7 +45,8 @@ impl Recorder {
     /// Writes the file, the longest run if the firmware started again.
     ///
     /// # Errors
-    /// [`Failure::Input`] if there are fewer than two frames, or the file cannot be written.
+    /// [`Failure::Input`] if there are fewer than two frames, or the file cannot be written;
+    /// [`Failure::Check`] after a start of the firmware, as the other runs are lost.
     pub(crate) fn write(self) -> Result<(), Failure> {
         let name = self.out.display();
         let runs = self.telemetry.runs();
@@ -71,7 +61,13 @@ impl Recorder {
         for line in report(&self.telemetry, &runs, run) {
             note(format_args!("{name}: {line}"));
         }
-        Ok(())
+        match runs.len() {
+            1 => Ok(()),
+            starts => Err(Failure::Check(format!(
+                "{name}: the firmware started {starts} times, and only the longest run is in the file; find the \
+                 cause of the reset, then record again"
+            ))),
+        }
     }
 }
 

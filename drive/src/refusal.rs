@@ -1,7 +1,10 @@
 //! Why a board refuses a command, and why a program of the host refuses a board.
 
-use drivers::link::{Hello, PROTOCOL, Rejected};
+use drivers::link::{Hello, PROTOCOL, Parser, Rejected};
 use terminal::failure::Failure;
+
+/// Reason of the refusal of a value.
+pub(crate) const OUT_OF_BOUNDS: &str = "the value is out of bounds";
 
 /// Checks that the board at the port of this name speaks the protocol of this build.
 ///
@@ -18,16 +21,24 @@ pub fn compatible(port: &str, hello: &Hello) -> Result<(), Failure> {
     }
 }
 
+/// The message about a board at the port of this name that sends nothing that the parser understands.
+#[must_use]
+pub fn silent(port: &str, parser: &Parser) -> String {
+    let bytes = parser.garbage();
+    let heard = match (bytes, parser.foreign()) {
+        (0, 0) => "sends nothing".to_owned(),
+        (_, 0) => format!("does not answer; {bytes} bytes were no message"),
+        (_, frames) => format!("does not answer; {frames} messages are of another protocol"),
+    };
+    format!("{port}: the board {heard}; check the port, the power and that the image has the link")
+}
+
 /// The reason of a refusal between two counts.
 #[must_use]
 pub fn refusal(before: &Rejected, now: &Rejected) -> Option<&'static str> {
     [
         (before.not_finite, now.not_finite, "the value is not finite"),
-        (
-            before.out_of_bounds,
-            now.out_of_bounds,
-            "the value is out of bounds",
-        ),
+        (before.out_of_bounds, now.out_of_bounds, OUT_OF_BOUNDS),
         (before.unknown, now.unknown, "the image does not have it"),
         (
             before.unverified,

@@ -11,11 +11,16 @@ use terminal::output::{note, print_bytes};
 use crate::board::{Answer, Board};
 use crate::clock::{Clock, Limit};
 use crate::interrupt;
+use crate::named::explained;
 use crate::pace::Pace;
 use crate::record::Recorder;
 use crate::refusal::refusal;
 use crate::timed::Change;
 use crate::watch::{Every, line, state};
+
+/// Earliest time at which a board is armed, ms of its time: current monitors of the amplifiers need it until
+/// they are near zero.
+const EARLIEST_MS: u32 = 10;
 
 /// Parts of a session.
 pub(crate) struct Plan {
@@ -94,6 +99,14 @@ pub(crate) fn observed(
 /// Arms the board, and waits until it is.
 fn arm(board: &mut Board, answer: &Answer) -> Result<(), Failure> {
     board.disarm_at_the_end();
+    // A board that starts with this connection is younger.
+    let earliest = answer.hello.rate / 1000 * EARLIEST_MS;
+    let refusal = |frame: &Frame| format!("not armed: it starts again and again, {}", state(frame));
+    let is_due = |frame: &Frame| frame.tick >= earliest || interrupt::came();
+    board.wait(answer.hello.rate, is_due, refusal)?;
+    if interrupt::came() {
+        return Ok(());
+    }
     board.send(Command::Request(Request::Arm))?;
     board.wait(
         answer.hello.rate,
@@ -218,7 +231,8 @@ fn follow(
             && let Some(reason) = refusal(before, &now)
         {
             return Err(Failure::Check(format!(
-                "the board refuses a command: {reason}"
+                "the board refuses a command: {}",
+                explained(reason, scene)
             )));
         }
         if let Message::Supply(now) = message {
@@ -233,7 +247,7 @@ fn follow(
         }
         mode = Mode::from_code(frame.state);
         if every.as_mut().is_some_and(|every| every.selects(&frame)) {
-            let text = line(&frame, supply, hello.rate);
+            let text = line(&frame, supply, hello);
             print_bytes(format!("{text}\n").as_bytes())?;
         }
         // The select command takes its time, and may be lost.

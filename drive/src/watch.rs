@@ -1,7 +1,9 @@
 //! Telemetry as lines of text.
 
-use drivers::link::Frame;
+use drivers::link::{Frame, Hello};
 use haptic_control::{Mode, Stop};
+
+use crate::named::estimators;
 
 /// Number of the estimator of a frame without one.
 const NOBODY: u8 = u8::MAX;
@@ -24,13 +26,14 @@ pub(crate) fn cause(code: u8) -> String {
     Stop::from_code(code).map_or_else(|| code.to_string(), |cause| cause.as_str().to_owned())
 }
 
-/// A frame as a line with units; the time is that of the board. The voltage of the supply ends the line, if
-/// the board has told one, V.
-pub(crate) fn line(frame: &Frame, supply: Option<f32>, rate_hz: u32) -> String {
-    let t = f64::from(frame.tick) / f64::from(rate_hz.max(1));
+/// A frame of an image as a line with units; the time is that of the board. The voltage of the supply ends the
+/// line, if the board has told one, V.
+pub(crate) fn line(frame: &Frame, supply: Option<f32>, hello: &Hello) -> String {
+    let t = f64::from(frame.tick) / f64::from(hello.rate.max(1));
     let estimator = match frame.estimator {
         NOBODY => "-".to_owned(),
-        number => number.to_string(),
+        number => (estimators(hello).get(usize::from(number)))
+            .map_or_else(|| number.to_string(), |name| (*name).to_owned()),
     };
     let supply = supply.map_or_else(String::new, |volts| format!(", supply {volts:.2} V"));
     format!(
@@ -80,6 +83,7 @@ impl Every {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::named::tests::hello;
 
     pub(crate) const FRAME: Frame = Frame {
         seq: 5,
@@ -104,12 +108,12 @@ pub(crate) mod tests {
     #[test]
     fn line_has_every_quantity_with_its_unit() {
         assert_eq!(
-            line(&FRAME, None, 10_000),
+            line(&FRAME, None, &hello(&[])),
             "1.234 s, state running, cause none; torque 0.0100 N·m; large -1 counts, 1.500 rad/s \
-             (sigma 0.125), -0.500 A, estimator 1; handle 7 counts, -2.250 rad/s, 0.250 A; \
+             (sigma 0.125), -0.500 A, estimator kalman-triple-steady; handle 7 counts, -2.250 rad/s, 0.250 A; \
              overruns 3, lost frames 4"
         );
-        let with_supply = line(&FRAME, Some(23.996), 10_000);
+        let with_supply = line(&FRAME, Some(23.996), &hello(&[]));
         assert!(
             with_supply.ends_with(", lost frames 4, supply 24.00 V"),
             "{with_supply}"

@@ -128,6 +128,11 @@ fn tune_and_estimator_change_a_board_without_arming_it() {
     let (output, commands) = board().run(&["estimator", "kalman-triple-steady"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert_eq!(sorted(&commands), (vec![Command::Estimator(1)], 0));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(
+        said,
+        "estimator kalman-triple-steady, until the next reset\n"
+    );
 }
 
 #[test]
@@ -141,7 +146,7 @@ fn watch_sends_questions_alone() {
         let seq = begin.parse::<f64>().unwrap() * 1e3;
         let counts = [3.0 * seq, -seq].map(f64::round);
         let expected = format!(
-            "torque 0.0100 N·m; large {} counts, 1.500 rad/s (sigma 0.125), 0.500 A, estimator 0; \
+            "torque 0.0100 N·m; large {} counts, 1.500 rad/s (sigma 0.125), 0.500 A, estimator foaw-end-fit; \
              handle {} counts, -2.500 rad/s, -0.250 A; overruns 0, lost frames 0",
             counts[0], counts[1]
         );
@@ -164,6 +169,12 @@ fn refused_value_is_told_and_ends_a_session_with_disarm() {
     assert_eq!(
         said,
         "wall stiffness 0.2 N·m/rad: the board refuses it: the value is out of bounds"
+    );
+    let (output, _) = refuses().run(&["tune", "detents", "per-turn", "1000"]);
+    assert_eq!(
+        error(&output),
+        "detents per-turn 1000: the board refuses it: the value is out of bounds; amplitude times per-turn is \
+         at most 0.35 N·m/rad"
     );
     let (output, commands) = refuses().run(&[
         "select",

@@ -272,6 +272,20 @@ fn stored_settings_are_there_when_the_board_is_started_again() {
     board.end();
 }
 
+/// The time of the board begins with the tool, and the current monitors are not settled yet.
+#[test]
+fn first_command_arms_a_board_with_current_monitors() {
+    for arguments in [
+        &["arm", "--seconds", "0.2"][..],
+        &["select", "free-air", "--seconds", "0.2"],
+    ] {
+        let (address, board) = EmulatedBoard::with(MONITORS, with_dac_errors([(0.0, 1.0); 2]));
+        let output = tool(address, arguments);
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        board.end();
+    }
+}
+
 /// The value of a setting in the table of the tool.
 fn setting(address: SocketAddr, name: &str) -> f64 {
     let (text, _) = said(address, &["settings"]);

@@ -1,5 +1,10 @@
 //! Ports and boards that cannot be used, and input that is refused: one line with a remedy, status 2.
 
+use std::io::{Read as _, Write as _};
+use std::net::{Shutdown, TcpListener};
+use std::thread;
+
+use drive::port::TAKEN;
 use drivers::Command;
 use drivers::link::Hello;
 use haptic_control::Request;
@@ -13,11 +18,40 @@ fn port_that_cannot_be_opened_is_named() {
         ("/dev/no-such-port", "/dev/no-such-port: cannot open"),
         ("tcp:127.0.0.1:1", "start the board's server first"),
         ("tcp:nonsense", "tcp:nonsense: cannot open"),
+        (
+            "127.0.0.1:36907",
+            "for a TCP port, write tcp: before the address",
+        ),
     ] {
         let output = tool(&["info", "--port", port]).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{port}");
         let error = error(&output);
         assert!(error.contains(said), "{error}");
+    }
+}
+
+/// Nothing is said of the scene, which the other program may keep alive.
+#[test]
+fn port_that_another_program_has_is_told() {
+    for arguments in [
+        &["info"][..],
+        &["disarm"],
+        &["watch", "--seconds", "1"],
+        &["arm", "--seconds", "1"],
+    ] {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let port = format!("tcp:{}", listener.local_addr().unwrap());
+        let server = thread::spawn(move || {
+            let (mut stream, _) = listener.accept().unwrap();
+            stream.write_all(TAKEN).unwrap();
+            stream.shutdown(Shutdown::Write).unwrap();
+            let _ = stream.read_to_end(&mut Vec::new());
+        });
+        let output = tool(arguments).args(["--port", &port]).output().unwrap();
+        server.join().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let said = format!("{port}: another program has this port; end it first");
+        assert_eq!(error(&output), said, "{arguments:?}");
     }
 }
 
@@ -79,7 +113,7 @@ fn input_is_refused_before_the_board_gets_a_command() {
         ),
         (
             &["tune", "torque", "torque", "0"],
-            "use cargo drive torque 0",
+            "use cargo drive torque VALUE",
         ),
         (&["estimator", "pll"], "no estimator 'pll'"),
         (&["select", "wall", "--tune", "stiffness"], "NAME=VALUE@S"),
@@ -94,7 +128,8 @@ fn input_is_refused_before_the_board_gets_a_command() {
         (&["select", "wall", "--seconds", "-1"], "above 0 s"),
         (&["watch", "--every", "nan"], "above 0 s"),
         (&["info", "--timeout", "0"], "0.1 to 60 s"),
-        (&["fly"], "cargo drive --help"),
+        (&["fly"], "see cargo drive --help"),
+        (&["torque"], "see cargo drive torque --help"),
     ] {
         let mut tool = tool(arguments);
         let output = tool.args(["--port", "/dev/no-such-port"]).output().unwrap();
@@ -123,7 +158,7 @@ fn value_out_of_bounds_is_refused_with_the_bounds() {
     let (output, commands) =
         Board::new(Script::default()).run(&["torque", "-0.05", "--seconds", "1"]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(error(&output).contains("torque torque -0.05 N·m: out of bounds"));
+    assert!(error(&output).starts_with("torque -0.05 N·m: out of bounds"));
     assert!(!commands.contains(&Command::Request(Request::Arm)));
 }
 
@@ -145,4 +180,33 @@ fn bounds_of_another_device_are_left_to_the_board() {
     assert!(commands.iter().any(|it| matches!(it, Command::Tune { .. })));
     let (output, _) = other().run(&["tune", "texture", "amplitude", "inf"]);
     assert_eq!(output.status.code(), Some(2));
+}
+
+/// The image has two estimators, as its features tell.
+#[test]
+fn setting_of_an_estimator_that_the_image_has_not_is_refused() {
+    let arguments = ["settings", "estimator=7", "--store"];
+    let (output, commands) = Board::new(Script::default()).run(&arguments);
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    let said = error(&output);
+    assert!(
+        said.starts_with("estimator=7: the image has no estimator 7; there are 0 (foaw"),
+        "{said}"
+    );
+    assert!(commands.iter().all(|it| *it == Command::Identify));
+}
+
+#[test]
+fn help_names_scenes_parameters_and_estimators() {
+    for (command, said) in [
+        ("select", "<SCENE>  Scene: off, free-air, wall"),
+        ("tune", "detents        amplitude, per-turn"),
+        ("estimator", "foaw-end-fit, kalman-triple-steady"),
+    ] {
+        let output = tool(&[command, "--help"]).output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        // Lines are wrapped.
+        let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words(&text).contains(&words(said)), "{text}");
+    }
 }

@@ -255,6 +255,9 @@ impl<'a> Player<'a> {
             }
         }
         self.seq += 1;
+        if number.is_some() && number == self.script.starts_again {
+            (self.seq, self.asked) = (0, None);
+        }
     }
 
     /// Whether the board has sent its last frame.

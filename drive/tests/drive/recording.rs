@@ -157,6 +157,23 @@ fn recording_reads_back_and_lost_frames_are_told() {
     assert_eq!(read.trace.current, Some(vec![0.5; 371]));
 }
 
+/// The longest run is written.
+#[test]
+fn runs_that_are_not_in_the_file_are_told_by_the_exit_status() {
+    let out = folder("reset").join("run.csv");
+    let path = out.to_str().unwrap();
+    let starts = Script {
+        starts_again: Some(99),
+        ..Script::default()
+    };
+    let (output, _) = Board::new(starts).run(&["record", "--out", path, "--seconds", "0.4"]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let said = String::from_utf8(output.stderr).unwrap();
+    let expected = "the firmware started 2 times, and only the longest run is in the file";
+    assert!(said.contains(expected), "{said}");
+    assert!(Recording::read(&out).unwrap().t.len() > 250);
+}
+
 /// A pipe stays a pipe, and its reader gets the recording.
 #[cfg(unix)]
 #[test]

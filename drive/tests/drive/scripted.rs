@@ -36,6 +36,8 @@ pub(super) struct Script {
     pub(super) pause: Option<(u32, Duration)>,
     /// So many frames are sent from the first of this command on; then the board closes its end.
     pub(super) hang_up: Option<(Command, u32)>,
+    /// Frame, by its number from the first question on, after which the firmware starts again.
+    pub(super) starts_again: Option<u32>,
     /// Frames that are lost: first and last, by their number from the first question on.
     pub(super) lost: Option<(u32, u32)>,
     /// Whether each answer is sent at the next question only.
@@ -81,6 +83,7 @@ impl Default for Script {
             starts_after: Some(0),
             pause: None,
             hang_up: None,
+            starts_again: None,
             lost: None,
             answers_late: false,
             refuses: false,
