@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use drive::port::TAKEN;
 use terminal::failure::Failure;
 use terminal::output::note;
 
@@ -25,8 +26,6 @@ const WAITING: usize = 256;
 const STARTED: Duration = Duration::from_millis(100);
 /// Lag behind real time from which on it is told, s; then each time that it has doubled.
 pub(crate) const LAG_S: f64 = 0.05;
-/// What a second client is told.
-const REFUSAL: &[u8] = b"the board has a client already; one client at a time\n";
 
 /// A TCP port of this machine that is to be the serial port of an emulated board. One client is served
 /// at a time, and one after the other.
@@ -178,8 +177,7 @@ impl Served {
             if self.client.is_none() {
                 let _ = stream.set_nodelay(true);
                 self.client = Some(stream);
-            } else if stream.write_all(REFUSAL).is_ok() && stream.shutdown(Shutdown::Write).is_ok()
-            {
+            } else if stream.write_all(TAKEN).is_ok() && stream.shutdown(Shutdown::Write).is_ok() {
                 self.refused.push(stream);
             }
         }

@@ -1,11 +1,16 @@
 //! The command line.
 
+mod checks;
+#[cfg(test)]
+mod tests;
+
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Parser;
+use drive::port::TCP;
 use drivers::Settings;
 use experiments::closed_loop::Hand;
 use haptic_control::SceneKind;
@@ -15,6 +20,7 @@ use terminal::failure::Failure;
 use terminal::output::{print_bytes, write_whole};
 use terminal::wording::WIDTH;
 
+use self::checks::{in_bounds, in_place, in_time};
 use crate::bridge::{Bridge, LAG_S, Pace};
 use crate::budget;
 use crate::command::Command;
@@ -56,14 +62,19 @@ struct Arguments {
     #[arg(long, value_name = "NUMBER@S", value_parser = timed::<Number>)]
     estimator: Vec<(f64, Number)>,
     /// Hand on the handle: moving; pushing (into the wall and back); still; tracking (chirps and
-    /// reversals); pressing (once with 10 N); none (a free handle)
-    #[arg(long, value_name = "NAME", default_value = "moving", value_parser = holder)]
-    hand: HandChoice,
+    /// reversals); pressing (once with 10 N); none (a free handle) [default: moving; none with --blank]
+    #[arg(long, value_name = "NAME", value_parser = holder)]
+    hand: Option<HandChoice>,
     /// Virtual duration, above 0, at most 3600 s [default: 3; 3600 with --link]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// Seed of the hand's motion and of the encoders' phases
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true
+    )]
     seed: u64,
     /// Offset of both DAC outputs, -100 to 100 codes
     #[arg(long, value_name = "CODES", default_value_t = 0, allow_negative_numbers = true,
@@ -95,7 +106,7 @@ struct Arguments {
     trace: Option<PathBuf>,
     /// Serve the board's serial port over TCP at this port of 127.0.0.1, 0 for a free one, in real
     /// time; print the address. The client commands the board. One client at a time
-    #[arg(long, value_name = "PORT", conflicts_with_all = ["scene", "tune", "estimator", "record", "rtt", "trace", "budget"])]
+    #[arg(long, value_name = "PORT", allow_negative_numbers = true, conflicts_with_all = ["scene", "tune", "estimator", "record", "rtt", "trace", "budget"])]
     link: Option<u16>,
     /// Print only the cost of a control tick in every scene, each run for --seconds, at most 1 s:
     /// instructions, estimated cycles, the control rate at which the ticks use half of the
@@ -113,6 +124,16 @@ impl Arguments {
     fn seconds(&self) -> f64 {
         let usual = if self.link.is_some() { LONGEST_S } else { 3.0 };
         self.seconds.unwrap_or(usual)
+    }
+
+    /// The hand. A board before its bring-up has a handle that is left free.
+    fn hand(&self, device: &Device) -> Hand {
+        match self.hand {
+            Some(HandChoice::Hand(hand)) => hand,
+            Some(HandChoice::Pressing) => scene::press(self.scene, device),
+            None if self.blank => Hand::Gone(0.0),
+            None => Hand::Moving,
+        }
     }
 }
 
@@ -209,7 +230,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     if !arguments.budget {
         in_time(&arguments)?;
     }
+    in_place(&arguments)?;
     let image = Image::read(&path)?;
+    in_bounds(&arguments, &image)?;
     if arguments.budget {
         let table = budget::table(&image, seconds.min(1.0), arguments.seed)?;
         return print_bytes(table.as_bytes());
@@ -219,10 +242,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         .as_deref()
         .map_or_else(|| Ok(Device::default()), Device::read)?;
     let setup = Setup {
-        hand: match arguments.hand {
-            HandChoice::Hand(hand) => hand,
-            HandChoice::Pressing => scene::press(scene, &device),
-        },
+        hand: arguments.hand(&device),
         device,
         seed: arguments.seed,
         seconds,
@@ -257,7 +277,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
 fn serve(port: u16, image: &Image, setup: Setup) -> Result<(), Failure> {
     let bridge = Bridge::bind(port).map_err(Failure::Input)?;
     let address = bridge.address();
-    print_bytes(format!("serial port of the board at {address}\n").as_bytes())?;
+    print_bytes(format!("serial port of the board at {TCP}{address}\n").as_bytes())?;
     let setup = Setup {
         commands: Vec::new(),
         keep_alive: false,
@@ -270,25 +290,6 @@ fn serve(port: u16, image: &Image, setup: Setup) -> Result<(), Failure> {
         format!("up to {lag_s:.3} s behind real time: this computer is busy or too slow")
     };
     print_bytes(format!("{seconds:.3} s of virtual time, {lag}\n").as_bytes())
-}
-
-/// Refuses events after the end of the run.
-fn in_time(arguments: &Arguments) -> Result<(), Failure> {
-    let end = arguments.seconds();
-    let faults = arguments.fault.iter();
-    let faults = faults.map(|(at, fault)| ("fault", *at, fault.as_str().to_owned()));
-    let tunes = arguments.tune.iter();
-    let tunes = tunes.map(|(at, what)| ("tune", *at, what.clone()));
-    let estimators = arguments.estimator.iter();
-    let estimators = estimators.map(|(at, number)| ("estimator", *at, number.0.to_string()));
-    let late = faults
-        .chain(tunes)
-        .chain(estimators)
-        .find(|(_, at, _)| *at > end);
-    late.map_or(Ok(()), |(option, at, what)| {
-        let what = format!("--{option} {what}@{at}: the run ends at {end} s");
-        Err(Failure::Input(format!("{what}; give a longer --seconds")))
-    })
 }
 
 /// A progress bar over virtual time; it shows only on a terminal.

@@ -17,6 +17,7 @@ pub mod dac;
 pub mod fault;
 pub mod fetch;
 pub mod flash;
+mod identity;
 pub mod image;
 mod lines;
 pub mod live;

@@ -1,5 +1,7 @@
 //! Scenes of the image: their simulated hands, and the commands that set their parameters.
 
+use drive::named::Tuning;
+use drivers::link::Hello;
 use estimator_core::Hertz;
 use experiments::closed_loop::{self, Hand, Press};
 use haptic_control::{DualStage, SceneKind};
@@ -41,8 +43,8 @@ pub fn stiffness(scene: SceneKind, device: &DualStage) -> Option<f32> {
     usual.value(scene.parameter("stiffness")?, RATE)
 }
 
-/// Parses `stiffness=0.2` to the command that sets the parameter. The image checks the value's
-/// bounds.
+/// Parses `stiffness=0.2` to the command that sets the parameter. [`check`] and the image check the bounds of
+/// the value.
 ///
 /// # Errors
 /// One line on another text, or on a name that is not a parameter of the scene.
@@ -68,6 +70,20 @@ pub fn tune(scene: SceneKind, text: &str) -> Result<Command, String> {
             value,
         },
     })
+}
+
+/// Checks that the image takes the value of a text that [`tune`] has parsed.
+///
+/// # Errors
+/// One line with the bounds.
+pub(crate) fn check(scene: SceneKind, text: &str, hello: &Hello) -> Result<(), String> {
+    let value = |(name, value): (_, &str)| Some((name, value.parse().ok()?));
+    let Some((name, value)) = text.split_once('=').and_then(value) else {
+        return Ok(());
+    };
+    Tuning::new(scene, name, value)
+        .and_then(|tuning| tuning.check(hello))
+        .map_err(|failure| format!("--tune {text}: {failure}"))
 }
 
 #[cfg(test)]

@@ -1,0 +1,77 @@
+//! Tests of the command line.
+
+use super::*;
+
+/// The error of these arguments.
+fn error(arguments: &[&str]) -> String {
+    let all = ["cargo board"].iter().chain(arguments);
+    let failure = run(all.map(OsString::from)).expect_err("an error");
+    assert_eq!(failure.status(), 2);
+    failure.to_string()
+}
+
+#[test]
+fn options_that_cannot_be_used_are_named_before_the_image_is_read() {
+    let folder = env!("CARGO_MANIFEST_DIR");
+    for (arguments, said) in [
+        (["--seconds", "-1"], "--seconds -1: must be above 0"),
+        (["--seed", "-1"], "invalid value '-1' for '--seed <N>'"),
+        (["--link", "-1"], "invalid value '-1' for '--link <PORT>'"),
+        (
+            ["--record", folder],
+            "is a folder; choose the name of a file",
+        ),
+        (["--rtt", folder], "is a folder; choose the name of a file"),
+        (
+            ["--trace", folder],
+            "is a folder; choose the name of a file",
+        ),
+    ] {
+        let all = [&arguments[..], &["--image", "/nope.elf"]].concat();
+        let error = error(&all);
+        assert!(error.contains(said), "{arguments:?}: {error}");
+    }
+}
+
+#[test]
+fn handle_of_a_board_before_its_bring_up_is_free() {
+    let hand = |arguments: &[&str]| {
+        let all = ["cargo board"].iter().chain(arguments);
+        Arguments::parse_from(all).hand(&Device::default())
+    };
+    assert_eq!(hand(&[]), Hand::Moving);
+    assert_eq!(hand(&["--blank"]), Hand::Gone(0.0));
+    assert_eq!(hand(&["--blank", "--hand", "still"]), Hand::Still);
+}
+
+#[test]
+fn values_and_estimators_that_the_image_does_not_take_are_refused_before_the_run() {
+    let image = Image::build("").unwrap();
+    let refused = |arguments: &[&str]| {
+        let all = ["cargo board", "--scene", "wall"].iter().chain(arguments);
+        in_bounds(&Arguments::parse_from(all), &image).map_err(|error| error.to_string())
+    };
+    for (arguments, said) in [
+        (
+            ["--tune", "stiffness=9@0.2"],
+            "out of bounds; give 0 to 0.35 N·m/rad",
+        ),
+        (
+            ["--tune", "stiffness=nan@0.2"],
+            "out of bounds; give 0 to 0.35 N·m/rad",
+        ),
+        (
+            ["--estimator", "7@0.2"],
+            "--estimator 7: the image has no estimator 7",
+        ),
+    ] {
+        let error = refused(&arguments).unwrap_err();
+        assert!(error.contains(said), "{error}");
+    }
+    let all = ["--tune", "stiffness=0.35@0.2", "--estimator", "1@0.2"];
+    assert_eq!(refused(&all), Ok(()));
+    let image = Image::build("large-foaw").unwrap();
+    let arguments = Arguments::parse_from(["cargo board", "--estimator", "0@0.2"]);
+    let error = in_bounds(&arguments, &image).unwrap_err().to_string();
+    assert!(error.contains("has foaw-end-fit alone"), "{error}");
+}
