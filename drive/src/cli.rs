@@ -18,6 +18,7 @@ use crate::bring_up;
 use crate::calibrate;
 use crate::identity;
 use crate::named::{self, Tuning};
+use crate::patience::{USUAL, patience};
 use crate::port::{Port, list};
 use crate::record::Recorder;
 use crate::session::{self, Plan};
@@ -47,7 +48,7 @@ struct Arguments {
     #[arg(long, global = true, value_name = "PORT")]
     port: Option<String>,
     /// Longest wait for an answer of the board, and longest silence of it, 0.1 to 60 s
-    #[arg(long, global = true, value_name = "S", default_value = "2", allow_negative_numbers = true, value_parser = patience)]
+    #[arg(long, global = true, value_name = "S", default_value = USUAL, allow_negative_numbers = true, value_parser = patience)]
     timeout: f64,
     #[command(subcommand)]
     action: Action,
@@ -220,12 +221,6 @@ fn seconds(text: &str) -> Result<f64, String> {
     let seconds: Option<f64> = text.parse().ok();
     let seconds = seconds.filter(|seconds| *seconds > 0.0 && *seconds <= 1e5);
     seconds.ok_or_else(|| "must be above 0 s, at most 100000 s".to_owned())
-}
-
-fn patience(text: &str) -> Result<f64, String> {
-    let seconds: Option<f64> = text.parse().ok();
-    let seconds = seconds.filter(|seconds| (0.1..=60.0).contains(seconds));
-    seconds.ok_or_else(|| "must be 0.1 to 60 s".to_owned())
 }
 
 /// Runs the command line `arguments`, whose first element is the program's name.

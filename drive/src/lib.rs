@@ -16,6 +16,7 @@ mod identity;
 mod interrupt;
 pub mod named;
 mod pace;
+pub mod patience;
 pub mod place;
 pub mod port;
 mod record;
