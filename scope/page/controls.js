@@ -134,10 +134,25 @@ class Controls {
     this.pending.clear();
   }
 
+  // A page that watches has no controls, nor has one whose board is silent.
+  lock() {
+    const locked = this.watches || this.silent;
+    $("commands").disabled = $("transport").disabled = $("bench").disabled = locked;
+    for (const id of ["record", ...[...document.querySelectorAll("#faults button")]]) (typeof id === "string" ? $(id) : id).disabled = locked;
+  }
+
+  // The board sends nothing: the text says so, or is null.
+  silence(text) {
+    if (!text && !this.silent) return;
+    this.silent = Boolean(text);
+    this.lock();
+    $("notice").hidden = !text;
+    setText("notice", text ? `${text}. The board gets no command until it sends again.` : "");
+  }
+
   role({ commands, known, why }) {
-    const watches = !commands;
-    $("commands").disabled = $("transport").disabled = $("bench").disabled = watches;
-    for (const id of ["record", ...[...document.querySelectorAll("#faults button")]]) (typeof id === "string" ? $(id) : id).disabled = watches;
+    this.watches = !commands;
+    this.lock();
     this.view.enabled = commands && this.facts.source.kind === "emulated";
     $("role").hidden = commands;
     $("take").hidden = !known;
@@ -157,8 +172,9 @@ class Controls {
       $("at").textContent = `${s.t.toFixed(2)} s`;
       return;
     }
-    $("mode").className = `pill ${s.mode === "safe" ? "safe" : s.on ? "on" : ""}`;
-    $("mode").textContent = s.mode === null ? "starting" : `${s.mode}${s.words ? ": " + s.words : ""}`;
+    this.silence(s.silent);
+    $("mode").className = `pill ${s.silent || s.mode === "safe" ? "safe" : s.on ? "on" : ""}`;
+    $("mode").textContent = s.silent ? "no answer" : s.mode === null ? "starting" : `${s.mode}${s.words ? ": " + s.words : ""}`;
     if (s.scene !== this.scene && s.scene !== undefined) this.showScene(s.scene);
     const refused = s.refusal ? `The board refused a command: ${s.refusal.reason}.` : "";
     if (refused) $("summary").textContent = refused;

@@ -6,8 +6,10 @@ use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread;
+use std::time::Duration;
 
 use clap::Parser;
+use drive::patience::{USUAL, patience};
 use recordings::arguments::{DeviceFile, RecordingOptions};
 use terminal::explain;
 use terminal::failure::Failure;
@@ -31,14 +33,20 @@ use crate::token::random;
     bin_name = "cargo scope",
     version,
     max_term_width = WIDTH,
-    after_help = "Exit status: 0; 1 if the source fails; 2 if the input cannot be used.\n\nExamples:
+    after_help = "Exit status: 0; 1 if the source fails, or the board is not disarmed at the end; 2 if the input \
+cannot be used, or the board does not answer.\n\nExamples:
   cargo scope
   cargo scope --recording run.csv
   cargo scope --board /dev/ttyACM0 --record run.mcap"
 )]
 struct Arguments {
     /// TCP port of the page at 127.0.0.1, 0 for a free one
-    #[arg(long, value_name = "PORT", default_value_t = 0)]
+    #[arg(
+        long,
+        value_name = "PORT",
+        default_value_t = 0,
+        allow_negative_numbers = true
+    )]
     port: u16,
     /// Do not open a browser
     #[arg(long)]
@@ -56,6 +64,9 @@ struct Arguments {
     /// Show and command a board instead: a serial port, or tcp:HOST:PORT
     #[arg(long, value_name = "PORT")]
     board: Option<String>,
+    /// Longest wait for an answer of the board, and longest silence of it, 0.1 to 60 s [default: 2]
+    #[arg(long, value_name = "S", requires = "board", allow_negative_numbers = true, value_parser = patience)]
+    timeout: Option<f64>,
     /// Write all rows from the start to the end of the server to FILE, which is complete after Ctrl-C
     #[arg(long, value_name = "FILE.mcap", value_parser = mcap_file, conflicts_with = "recording")]
     record: Option<PathBuf>,
@@ -78,7 +89,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     let server = Server::bind(arguments.port)?;
     let source: Box<dyn Source> = match (arguments.recording, arguments.board) {
         (Some(path), _) => Box::new(Recorded::read(&path, &arguments.read, &arguments.device)?),
-        (None, Some(port)) => Box::new(RealBoard::open(&port, device)?),
+        (None, Some(port)) => {
+            let usual = || patience(USUAL);
+            let patience = arguments.timeout.map_or_else(usual, Ok)?;
+            let patience = Duration::from_secs_f64(patience);
+            Box::new(RealBoard::open(&port, device, patience)?)
+        }
         (None, None) => {
             if arguments.image.is_none() {
                 note("building the flash image, which takes a minute the first time");

@@ -78,7 +78,10 @@ pub(crate) struct Hub {
     left: AtomicBool,
     commander: Mutex<Option<Commander>>,
     recording: Mutex<Option<Arc<Finished>>>,
+    /// Pages that have come.
     pages: AtomicU64,
+    /// Pages that are there.
+    present: AtomicU64,
 }
 
 /// A panic of another thread leaves these values whole.
@@ -102,6 +105,7 @@ impl Hub {
             commander: Mutex::new(None),
             recording: Mutex::new(None),
             pages: AtomicU64::new(0),
+            present: AtomicU64::new(0),
         };
         (Arc::new(hub), receiver)
     }
@@ -126,6 +130,7 @@ impl Hub {
 
     /// Number for a new page.
     pub(crate) fn enter(&self) -> u64 {
+        self.present.fetch_add(1, Ordering::Relaxed);
         self.pages.fetch_add(1, Ordering::Relaxed)
     }
 
@@ -176,6 +181,7 @@ impl Hub {
 
     /// The end of a page: one that commands lets go of the handle and disarms the board.
     pub(crate) fn leave(&self, page: u64) {
+        self.present.fetch_sub(1, Ordering::Relaxed);
         if self.commands(page) {
             *locked(&self.commander) = None;
             self.order(Order::Hand { at: None });
@@ -203,6 +209,11 @@ impl Hub {
     /// The latest finished recording.
     pub(crate) fn recording(&self) -> Option<Arc<Finished>> {
         locked(&self.recording).clone()
+    }
+
+    /// Whether a page is there.
+    pub(crate) fn is_seen(&self) -> bool {
+        self.present.load(Ordering::Relaxed) > 0
     }
 
     /// Whether source and server are to end.
@@ -269,6 +280,9 @@ mod tests {
     #[test]
     fn page_that_leaves_disarms_the_board_with_a_full_queue_too() {
         let (hub, _orders) = hub();
+        for _ in 0..3 {
+            hub.enter();
+        }
         assert!(hub.join(1) && !hub.join(2));
         for _ in 0..2 * ORDERS {
             hub.order(Order::Alive);

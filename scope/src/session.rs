@@ -38,8 +38,9 @@ struct Page {
 
 /// Serves a page until it goes.
 pub(crate) async fn session(socket: WebSocket, hub: Arc<Hub>) {
-    let number = hub.enter();
+    // A page that is there misses no event.
     let mut events = hub.listen();
+    let number = hub.enter();
     let mut page = Page {
         socket,
         number,

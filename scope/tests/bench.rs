@@ -143,7 +143,7 @@ impl Board {
 fn board_behind_a_link_is_commanded_calibrated_and_disarmed_at_the_end() {
     let error = |offset, gain| DacError { offset, gain };
     let board = Board::start("current-monitor", [error(6.0, 1.0), error(-4.0, 1.0)]);
-    let mut server = Server::start(&["--board", &board.port]);
+    let mut server = Server::start(&["--board", &board.port, "--timeout", "60"]);
     let mut page = commanding(&server);
     let lines = guided(&mut page, "calibrate");
     let passed = lines.iter().filter(|line| line.starts_with("pass")).count();
@@ -169,7 +169,7 @@ fn board_behind_a_link_is_commanded_calibrated_and_disarmed_at_the_end() {
     // The server ends by itself: the next one finds a board that was disarmed and has no cause of a stop.
     assert!(server.interrupt());
     drop(server);
-    let server = Server::start(&["--board", &board.port]);
+    let server = Server::start(&["--board", &board.port, "--timeout", "60"]);
     let mut page = commanding(&server);
     let status = page.status("a status", |status| status["mode"] == "boot");
     assert_eq!(status["cause"], "none", "by an order, not by a silence");

@@ -5,14 +5,15 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
+use drive::patience::disarm;
 use drive::port::Port;
-use drive::refusal::compatible;
-use drivers::link::{Message, Parser};
+use drive::refusal::{compatible, silent};
+use drivers::link::{Hello, Message, Parser};
 use drivers::{Command, encode};
-use haptic_control::Request;
 use serde_json::{Value, json};
 use simulation::device::Device;
 use terminal::failure::Failure;
+use terminal::output::note;
 
 use super::Source;
 use crate::desk::Desk;
@@ -26,20 +27,68 @@ const AGAIN: Duration = Duration::from_millis(200);
 /// A board at a port.
 pub(crate) struct RealBoard {
     port: Port,
+    parser: Parser,
+    /// What the board has told of itself.
+    hello: Hello,
     device: Device,
+    /// Longest silence.
+    patience: Duration,
 }
 
 impl RealBoard {
-    /// The board at the port of this name: a serial port, or `tcp:HOST:PORT`.
+    /// The board at the port of this name: a serial port, or `tcp:HOST:PORT`. It has told its identity.
     ///
     /// # Errors
-    /// [`Failure::Input`] if the port cannot be opened.
-    pub(crate) fn open(port: &str, device: Device) -> Result<Self, Failure> {
+    /// [`Failure::Input`] if the port cannot be opened, or if the board speaks another protocol or does not
+    /// answer.
+    pub(crate) fn open(port: &str, device: Device, patience: Duration) -> Result<Self, Failure> {
+        let mut port = Port::open(Some(port))?;
+        let mut parser = Parser::default();
+        let hello = identity(&mut port, &mut parser, patience)?;
+        compatible(port.name(), &hello)?;
         Ok(Self {
-            port: Port::open(Some(port))?,
+            port,
+            parser,
+            hello,
             device,
+            patience,
         })
     }
+}
+
+/// Asks a board for its identity until it answers.
+fn identity(port: &mut Port, parser: &mut Parser, patience: Duration) -> Result<Hello, Failure> {
+    let lost = |port: &Port, error| Failure::Input(port.lost(&error));
+    let (begin, mut asked) = (Instant::now(), None);
+    while begin.elapsed() < patience {
+        if asked.is_none_or(|at: Instant| at.elapsed() >= AGAIN) {
+            asked = Some(Instant::now());
+            let sent = port.write(&encode(Command::Identify));
+            sent.map_err(|error| lost(port, error))?;
+        }
+        let mut found = None;
+        for message in read(port, parser).map_err(|error| lost(port, error))?.1 {
+            if let Message::Hello(hello) = message {
+                found = Some(hello);
+            }
+        }
+        if let Some(hello) = found {
+            return Ok(hello);
+        }
+    }
+    Err(Failure::Input(silent(port.name(), parser)))
+}
+
+/// The bytes that have come, and their messages.
+fn read(port: &mut Port, parser: &mut Parser) -> io::Result<(Vec<u8>, Vec<Message>)> {
+    let mut bytes = vec![0; 4096];
+    let number = port.read(&mut bytes)?;
+    bytes.truncate(number);
+    let mut messages = Vec::new();
+    for byte in &bytes {
+        parser.take(*byte, |message| messages.push(message));
+    }
+    Ok((bytes, messages))
 }
 
 impl Source for RealBoard {
@@ -56,60 +105,70 @@ impl Source for RealBoard {
 
     fn run(mut self: Box<Self>, hub: Arc<Hub>, orders: Receiver<Order>) -> Result<(), Failure> {
         let mut desk = Desk::new(Arc::clone(&hub), &self.device)?;
+        desk.message(Message::Hello(self.hello), None);
         let followed = self.follow(&mut desk, &orders);
-        // A lost connection cannot be told again.
-        let _ = self.port.write(&encode(Command::Request(Request::Disarm)));
-        self.port.finish();
         desk.close();
-        followed
+        // A lost connection cannot be told again.
+        let disarmed = disarm(self.port, self.patience);
+        followed.and(disarmed)
     }
 }
 
 impl RealBoard {
     fn follow(&mut self, desk: &mut Desk, orders: &Receiver<Order>) -> Result<(), Failure> {
-        let mut parser = Parser::default();
-        let mut asked: Option<Instant> = None;
+        let (mut heard, mut was_silent) = (Instant::now(), None);
         while !desk.hub.stops() {
-            if desk.hello().is_none() && asked.is_none_or(|at| at.elapsed() >= AGAIN) {
-                asked = Some(Instant::now());
-                self.send(Command::Identify)?;
-            }
-            let mut bytes = [0; 4096];
-            let number = self
-                .port
-                .read(&mut bytes)
-                .map_err(|error| self.lost(&error))?;
-            desk.heard(&bytes[..number]);
-            let mut messages = Vec::new();
-            for byte in &bytes[..number] {
-                parser.take(*byte, |message| messages.push(message));
-            }
+            let read = read(&mut self.port, &mut self.parser);
+            let (bytes, messages) = read.map_err(|error| self.lost(&error))?;
+            desk.heard(&bytes);
             for message in messages {
+                heard = Instant::now();
                 if let Message::Hello(hello) = message {
                     compatible(self.port.name(), &hello)?;
                 }
                 desk.message(message, None);
             }
+            let is_silent = heard.elapsed() >= self.patience;
+            if is_silent != was_silent.is_some() {
+                was_silent = self.turned(is_silent, desk)?;
+            }
             while let Ok(order) = orders.try_recv() {
-                // A board that is not identified gets no command but the one that disarms.
+                // A board that is not heard gets no command but the one that disarms: it ends a scene by itself.
                 let command = desk.order(&order);
-                let is_known = desk.hello().is_some() || order == Order::Disarm;
-                if let Some(command) = command.filter(|_| is_known) {
+                if let Some(command) = command.filter(|_| !is_silent || order == Order::Disarm) {
                     self.send(command)?;
                 }
             }
             // After the orders of the page that has left.
-            if desk.hub.take_left()
-                && let Some(command) = desk.order(&Order::Disarm)
-            {
-                self.send(command)?;
+            if desk.hub.take_left() {
+                self.disarm(desk)?;
             }
             let bytes = desk.take_bytes();
             self.write(&bytes)?;
             let _ = desk.hub.take_hand();
-            desk.tell(|| json!({}));
+            desk.tell(|| json!({ "silent": was_silent }));
         }
         Ok(())
+    }
+
+    /// The board has become silent, or sends again: tells it, and disarms a silent board. Returns the message
+    /// about the silence.
+    fn turned(&mut self, is_silent: bool, desk: &mut Desk) -> Result<Option<String>, Failure> {
+        if !is_silent {
+            note(format_args!("{}: the board sends again", self.port.name()));
+            return Ok(None);
+        }
+        let told = silent(self.port.name(), &self.parser);
+        note(&told);
+        self.disarm(desk)?;
+        Ok(Some(told))
+    }
+
+    fn disarm(&mut self, desk: &mut Desk) -> Result<(), Failure> {
+        match desk.order(&Order::Disarm) {
+            Some(command) => self.send(command),
+            None => Ok(()),
+        }
     }
 
     fn send(&mut self, command: Command) -> Result<(), Failure> {
@@ -121,9 +180,6 @@ impl RealBoard {
     }
 
     fn lost(&self, error: &io::Error) -> Failure {
-        Failure::Input(format!(
-            "{}: connection lost: {error}; check cable and power, then run the command again",
-            self.port.name()
-        ))
+        Failure::Input(self.port.lost(error))
     }
 }

@@ -100,12 +100,22 @@ impl Source for Recorded {
         let mut player = Player {
             next: 0,
             at: self.rows[0][0],
-            plays: true,
+            plays: false,
             speed: 1.0,
             batch: Batch::new(),
         };
         let (mut last, mut told) = (Instant::now(), Instant::now());
+        let mut was_seen = false;
         while !hub.stops() {
+            // The playback begins with the first page, and again with the first one after the others have gone.
+            if was_seen != hub.is_seen() {
+                was_seen = !was_seen;
+                if was_seen {
+                    player.seek(self.rows[0][0], &self.rows);
+                }
+                player.plays = was_seen;
+                last = Instant::now();
+            }
             while let Ok(order) = orders.try_recv() {
                 player.order(&order, &self.rows);
             }
@@ -193,6 +203,7 @@ impl Player {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::batch::rows as batch_rows;
 
     #[test]
     fn log_of_an_uneven_clock_has_a_channel_without_values_for_what_needs_an_even_one() {
@@ -207,6 +218,35 @@ mod tests {
             assert_eq!(row.len(), CHANNELS.len() + names.len());
             assert!(row[even].is_nan() && row[any].is_finite());
         }
+    }
+
+    /// A recording on which a source has waited for some time without a page.
+    #[test]
+    fn playback_begins_with_the_first_page() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/logs/uneven.csv");
+        let (options, file) = (RecordingOptions::default(), DeviceFile::default());
+        let recorded = Recorded::read(Path::new(path), &options, &file).expect("a recording");
+        let begin = recorded.rows[0][0];
+        let (hub, orders) = Hub::new("token".to_owned(), Value::Null);
+        let of_source = Arc::clone(&hub);
+        let source = std::thread::spawn(move || Box::new(recorded).run(of_source, orders));
+        std::thread::sleep(20 * STEP);
+        for _ in 0..2 {
+            let mut events = hub.listen();
+            let page = hub.enter();
+            let first = loop {
+                match events.try_recv() {
+                    Ok(Event::Rows(bytes)) => break batch_rows(&bytes).1[0][0],
+                    _ => std::thread::sleep(STEP),
+                }
+            };
+            assert_eq!(first, begin);
+            hub.leave(page);
+            // The source sees that the page has gone.
+            std::thread::sleep(20 * STEP);
+        }
+        hub.stop.store(true, std::sync::atomic::Ordering::Relaxed);
+        assert_eq!(source.join().expect("a source"), Ok(()));
     }
 
     #[test]

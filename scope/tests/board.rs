@@ -1,0 +1,185 @@
+//! The server with a board at a port that does not answer, belongs to another program, or falls silent.
+
+mod common;
+
+use std::io::{ErrorKind, Read as _, Write as _};
+use std::net::{Shutdown, TcpListener, TcpStream};
+use std::process::{Command as Process, Output};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread;
+use std::time::Duration;
+
+use common::Server;
+use common::devtools::Browser;
+use drive::port::TAKEN;
+use drivers::link::{Features, Frame, Hello, LONGEST, Label, Message, PROTOCOL};
+use drivers::{Command, Parser};
+use haptic_control::{Mode, Request};
+use serde_json::json;
+
+/// A port at which `serve` has the connection.
+fn port(serve: impl FnOnce(TcpStream) + Send + 'static) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let port = format!("tcp:{}", listener.local_addr().expect("an address"));
+    thread::spawn(move || serve(listener.accept().expect("a client").0));
+    port
+}
+
+/// The server with a board at this port, to its end.
+fn run(port: &str) -> Output {
+    let mut process = Process::new(env!("CARGO_BIN_EXE_scope"));
+    process.args(["--no-open", "--timeout", "0.5", "--board", port]);
+    process.output().expect("the server ends")
+}
+
+#[test]
+fn port_without_an_answer_is_told_before_a_page_is_served() {
+    let silent = port(|mut stream| {
+        let _ = stream.read_to_end(&mut Vec::new());
+    });
+    let taken = port(|mut stream| {
+        stream.write_all(TAKEN).expect("a client");
+        stream.shutdown(Shutdown::Write).expect("a client");
+        let _ = stream.read_to_end(&mut Vec::new());
+    });
+    for (port, said) in [
+        (
+            silent,
+            "the board sends nothing; check the port, the power and that the image has the link",
+        ),
+        (taken, "another program has this port; end it first"),
+    ] {
+        let output = run(&port);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        assert!(output.stdout.is_empty(), "{output:?}");
+        let text = String::from_utf8(output.stderr).expect("UTF-8");
+        assert_eq!(text, format!("error: {port}: {said}\n"));
+    }
+}
+
+/// What a board of this test has got, and whether it sends.
+#[derive(Default)]
+struct Shared {
+    is_frozen: AtomicBool,
+    commands: Mutex<Vec<Command>>,
+}
+
+/// Sends the identity and a frame of a running scene again and again, but while it is frozen.
+fn play(mut stream: TcpStream, shared: &Shared) {
+    let hello = Hello {
+        protocol: PROTOCOL,
+        version: Label::new("0.1.0"),
+        commit: Label::new("a1b2c3d"),
+        features: Features(0),
+        rate: 10_000,
+        device: 0,
+        presets: 0,
+        cause: 0,
+        brown_out_reset: true,
+    };
+    let mut frame = Frame {
+        seq: 0,
+        tick: 0,
+        counts_large: 0,
+        counts_small: 0,
+        current: 0.0,
+        current_small: 0.0,
+        torque: 0.0,
+        velocity_large: 0.0,
+        velocity_small: 0.0,
+        state: Mode::Running as u8,
+        cause: 0,
+        sigma_large: 0.0,
+        estimator: u8::MAX,
+        overruns: 0,
+        drops: 0,
+        rtt_drops: 0,
+        cycles: 0,
+    };
+    let mut parser = Parser::default();
+    let wait = Some(Duration::from_millis(5));
+    stream.set_read_timeout(wait).expect("a socket");
+    loop {
+        let mut bytes = [0; 256];
+        match stream.read(&mut bytes) {
+            Ok(0) => return,
+            Ok(count) => {
+                let commands = bytes[..count].iter().filter_map(|byte| parser.take(*byte));
+                shared.commands.lock().expect("a list").extend(commands);
+            }
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
+            Err(_) => return,
+        }
+        if shared.is_frozen.load(Ordering::Relaxed) {
+            continue;
+        }
+        frame.seq += 1;
+        frame.tick += 10;
+        for message in [Message::from(hello), frame.into()] {
+            let mut buffer = [0; LONGEST];
+            let bytes = message.encode(&mut buffer).expect("a message");
+            if stream.write_all(bytes).is_err() {
+                return;
+            }
+        }
+    }
+}
+
+#[test]
+fn page_of_a_silent_board_says_so_and_has_no_controls() {
+    let shared = Arc::new(Shared::default());
+    let of_board = Arc::clone(&shared);
+    let port = port(move |stream| play(stream, &of_board));
+    let server = Server::start(&["--board", &port, "--timeout", "2"]);
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let tab = browser.open(&server.url(), 1300, 900);
+    let free =
+        "$('mode').textContent === 'running' && $('notice').hidden && !$('commands').disabled";
+    browser.wait(&tab, free);
+    shared.is_frozen.store(true, Ordering::Relaxed);
+    browser.wait(
+        &tab,
+        "$('mode').textContent === 'no answer' && $('notice').textContent.includes('sends nothing') \
+         && !$('notice').hidden && $('commands').disabled && $('bench').disabled",
+    );
+    shared.is_frozen.store(false, Ordering::Relaxed);
+    browser.wait(&tab, free);
+    assert_eq!(browser.complaints, [""; 0]);
+}
+
+#[test]
+fn board_that_falls_silent_is_told_and_gets_no_command_but_disarm() {
+    let shared = Arc::new(Shared::default());
+    let of_board = Arc::clone(&shared);
+    let port = port(move |stream| play(stream, &of_board));
+    let mut server = Server::start(&["--board", &port, "--timeout", "2"]);
+    let mut page = server.joined();
+    page.lives = true;
+    page.status("running", |status| {
+        status["mode"] == "running" && status["silent"].is_null()
+    });
+    shared.is_frozen.store(true, Ordering::Relaxed);
+    let status = page.status("a silence", |status| !status["silent"].is_null());
+    let said = format!("{port}: the board sends nothing; check the port");
+    assert!(status["silent"].to_string().contains(&said), "{status}");
+    let commands = || std::mem::take(&mut *shared.commands.lock().expect("a list"));
+    commands();
+    page.order(&json!({"do": "arm"}));
+    page.order(&json!({"do": "disarm"}));
+    // After both orders.
+    let disarm = Command::Request(Request::Disarm);
+    let got = page.wait("an order to disarm", |_, _| {
+        let got = commands();
+        got.contains(&disarm).then_some(got)
+    });
+    assert!(got.iter().all(|it| *it == disarm), "{got:?}");
+
+    shared.is_frozen.store(false, Ordering::Relaxed);
+    page.status("it sends again", |status| status["silent"].is_null());
+    shared.is_frozen.store(true, Ordering::Relaxed);
+    // The disarm is not confirmed.
+    assert!(!server.interrupt());
+}
