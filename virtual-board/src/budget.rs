@@ -24,6 +24,9 @@ const LONGEST: usize = 2;
 const ROWS: usize = 2;
 const ROW: usize = 10;
 
+/// Time that a tick is followed for at most, s: after it nothing is looked at.
+const AFTER_S: f64 = 0.01;
+
 /// Cost of the control task in a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
@@ -52,7 +55,7 @@ fn settled(outcome: &Outcome) -> impl Iterator<Item = (usize, &ControlTick)> {
     ticks.filter(move |(_, tick)| late(tick) && tick.enabled == [true; 2])
 }
 
-/// Runs `setup` twice, the second time following the instructions of some ticks.
+/// Runs `setup` twice, the second time following the instructions of some ticks, until the last of them.
 ///
 /// # Errors
 /// As [`on_board`] and [`Outcome::check`]; one line if the amplifiers are never enabled long
@@ -72,8 +75,10 @@ pub fn measure(image: &Image, setup: &Setup) -> Result<Budget, Failure> {
     longest.sort_by_key(|(k, tick)| (std::cmp::Reverse(tick.instructions), *k));
     let longest = longest.iter().take(LONGEST).map(|(k, _)| *k);
     let follow: BTreeSet<usize> = longest.chain(spread.iter().copied()).collect();
+    let last = follow.last().map_or(0, |k| first.ticks[*k].at_ns);
     let setup = Setup {
         follow: follow.clone(),
+        seconds: (last as f64 * 1e-9 + AFTER_S).min(setup.seconds),
         ..setup.clone()
     };
     let second = on_board(image, &setup, |_| ())?;
