@@ -6,6 +6,7 @@ mod clock;
 mod columns;
 mod currents;
 mod encoder;
+mod endings;
 mod formats;
 mod header;
 mod json;

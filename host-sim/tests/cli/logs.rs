@@ -5,6 +5,7 @@ mod commands;
 mod motion;
 mod notes;
 mod refused;
+mod units;
 
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};

@@ -251,10 +251,9 @@ impl<'a> Columns<'a> {
         notes
     }
 
-    /// The columns and units that the recording is read from; `None` if they are its own.
+    /// The columns and units that the recording is read from; `None` if all are its own by name.
     fn sources(&self, places: &Places, layout: &Layout) -> Option<String> {
-        let own = |place: &Place| *place.unit == place.column.quantity().units()[0];
-        if places.format.is_none() && places.all().iter().all(own) {
+        if places.format.is_none() && self.options.columns.is_empty() {
             return None;
         }
         let [counts_large, counts_small] = self.options.counts_per_rev;

@@ -2,9 +2,10 @@
 
 use terminal::failure::Failure;
 
+use super::endings::Ending;
 use super::formats::Format;
 use super::layout::Layout;
-use super::options::Column;
+use super::options::{Column, Mapping};
 use super::units::Quantity;
 
 /// Characters of a header that a message shows.
@@ -31,15 +32,40 @@ pub(super) fn missing(column: Column, layout: &Layout, name: &str) -> Failure {
     ))
 }
 
-/// Error for a `--column` whose name is not in the header.
-pub(super) fn unknown(theirs: &str, column: Column, layout: &Layout, name: &str) -> Failure {
-    let theirs = short(theirs);
+/// Error for a `--column` whose name is not in the header, or whose unit is none.
+pub(super) fn unknown(mapping: &Mapping, layout: &Layout, name: &str) -> Failure {
+    let (theirs, ours) = (&mapping.theirs, mapping.column.name());
+    if let Some((column, unit)) = theirs.rsplit_once(':')
+        && layout.place(column).is_some()
+    {
+        let units = mapping.column.quantity().list();
+        return Failure::Input(format!(
+            "{name}: --column {ours}={}: '{}' is no unit of {ours}; there are {units}",
+            short(theirs),
+            short(unit)
+        ));
+    }
     Failure::Input(format!(
-        "{name}: line {}: no column '{theirs}', which --column names for {}; {}; write one of these \
+        "{name}: line {}: no column '{}', which --column names for {ours}; {}; write one of these \
          names, or the number of the column",
         layout.line.max(1),
-        column.name(),
+        short(theirs),
         found(layout)
+    ))
+}
+
+/// Error for a `--column` without a unit, whose column's name ends as if it had another `unit`.
+pub(super) fn unknown_unit(mapping: &Mapping, unit: &str, layout: &Layout, name: &str) -> Failure {
+    let (theirs, ours) = (&mapping.theirs, mapping.column.name());
+    let quantity = mapping.column.quantity();
+    Failure::Input(format!(
+        "{name}: line {}: '{}' at the end of the name is no unit of {ours}; there are {}; state the unit, \
+         for example --column '{ours}={}:{}'",
+        layout.line.max(1),
+        short(unit),
+        quantity.list(),
+        short(theirs),
+        quantity_example(quantity)
     ))
 }
 
@@ -113,10 +139,9 @@ fn hint(layout: &Layout) -> String {
         let theirs = here.or_else(|| names.find(like)).map(|name| short(name));
         let theirs = theirs.unwrap_or_else(|| place.to_owned());
         let quantity = column.quantity();
-        let unit = match quantity.suffix(&theirs) {
-            // The end of the name says the unit.
-            Some(_) => String::new(),
-            None => format!(":{}", quantity_example(quantity)),
+        let unit = match Ending::of(quantity, &theirs) {
+            Ending::Unit(_) => String::new(),
+            _ => format!(":{}", quantity_example(quantity)),
         };
         let ours = column.name();
         match theirs == ours {

@@ -2,6 +2,7 @@
 
 use terminal::failure::Failure;
 
+use super::endings::Ending;
 use super::formats::{Format, SIMPLEFOC, SIMPLEFOC_COLUMNS};
 use super::header;
 use super::options::{Column, ReadOptions};
@@ -49,7 +50,7 @@ impl Layout {
     }
 
     /// Place of the column that the user calls `name`: its name in the header, or its number.
-    fn place(&self, name: &str) -> Option<usize> {
+    pub(super) fn place(&self, name: &str) -> Option<usize> {
         let named = self.names.iter().position(|known| known == name);
         named.or_else(|| {
             let number: usize = name.parse().ok()?;
@@ -84,10 +85,15 @@ impl Layout {
             if let Some(mapping) = options.mapping(column) {
                 let place = self
                     .place(&mapping.theirs)
-                    .ok_or_else(|| header::unknown(&mapping.theirs, column, self, name))?;
+                    .ok_or_else(|| header::unknown(mapping, self, name))?;
                 let quantity = column.quantity();
-                let unit = mapping.unit.or_else(|| quantity.suffix(&mapping.theirs));
-                let unit = unit.unwrap_or(&quantity.units()[0]);
+                let unit = match (mapping.unit, Ending::of(quantity, &self.names[place])) {
+                    (Some(unit), _) | (None, Ending::Unit(unit)) => unit,
+                    (None, Ending::Nothing) => &quantity.units()[0],
+                    (None, Ending::Unknown(unit)) => {
+                        return Err(header::unknown_unit(mapping, unit, self, name));
+                    }
+                };
                 places.columns.push(Place {
                     column,
                     place,

@@ -49,50 +49,66 @@ const fn unit(names: &'static [&'static str], scale: Scale) -> Unit {
     Unit { names, scale }
 }
 
+const SECONDS: &[&str] = &["s", "sec", "second", "seconds"];
+const MILLISECONDS: &[&str] = &["ms", "msec", "millis", "milliseconds"];
+const MICROSECONDS: &[&str] = &["us", "usec", "micros", "microseconds", "µs", "μs"];
+const NANOSECONDS: &[&str] = &["ns", "nsec", "nanos", "nanoseconds"];
+
 const TIME: &[Unit] = &[
-    unit(&["s", "sec", "second", "seconds"], Scale::Over(1.0)),
-    unit(&["ms", "msec", "millis", "milliseconds"], Scale::Over(1e3)),
-    unit(
-        &["us", "usec", "micros", "microseconds", "µs", "μs"],
-        Scale::Over(1e6),
-    ),
-    unit(&["ns", "nsec", "nanos", "nanoseconds"], Scale::Over(1e9)),
+    unit(SECONDS, Scale::Over(1.0)),
+    unit(MILLISECONDS, Scale::Over(1e3)),
+    unit(MICROSECONDS, Scale::Over(1e6)),
+    unit(NANOSECONDS, Scale::Over(1e9)),
 ];
 
 const POSITION: &[Unit] = &[
-    unit(&["counts", "count", "ticks"], Scale::Counts),
-    unit(&["deg", "degree", "degrees"], Scale::PerRev(360.0)),
+    unit(&["counts", "count", "ticks", "pulses"], Scale::Counts),
+    unit(&["deg", "degree", "degrees", "°"], Scale::PerRev(360.0)),
     unit(&["rad", "radian", "radians"], Scale::PerRev(TAU)),
     unit(
         &["rev", "revs", "revolutions", "turn", "turns"],
         Scale::PerRev(1.0),
     ),
+    unit(&["mdeg", "millidegrees"], Scale::PerRev(360e3)),
+    unit(&["mrad", "milliradians"], Scale::PerRev(1e3 * TAU)),
 ];
 
 const CURRENT: &[Unit] = &[
     unit(&["A", "amp", "amps", "ampere"], Scale::Over(1.0)),
     unit(&["mA", "milliamps"], Scale::Over(1e3)),
-    unit(&["N.m", "Nm", "N*m"], Scale::Torque),
+    unit(&["N.m", "Nm", "N*m", "N·m"], Scale::Torque),
 ];
 
 const EDGE: &[Unit] = &[
     unit(&["ticks"], Scale::Over(1.0)),
-    unit(&["s"], Scale::Times(EDGE_CLOCK_HZ)),
-    unit(&["ms"], Scale::Times(EDGE_CLOCK_HZ / 1e3)),
-    unit(&["us"], Scale::Times(EDGE_CLOCK_HZ / 1e6)),
-    unit(&["ns"], Scale::Times(EDGE_CLOCK_HZ / 1e9)),
+    unit(SECONDS, Scale::Times(EDGE_CLOCK_HZ)),
+    unit(MILLISECONDS, Scale::Times(EDGE_CLOCK_HZ / 1e3)),
+    unit(MICROSECONDS, Scale::Times(EDGE_CLOCK_HZ / 1e6)),
+    unit(NANOSECONDS, Scale::Times(EDGE_CLOCK_HZ / 1e9)),
 ];
 
 const BOUNDARY: &[Unit] = &[unit(&["counts", "count"], Scale::Counts)];
 
 const VELOCITY: &[Unit] = &[
-    unit(&["rad/s"], Scale::Over(1.0)),
-    unit(&["deg/s"], Scale::Times(TAU / 360.0)),
-    unit(&["rev/s"], Scale::Times(TAU)),
-    unit(&["rpm", "rev/min"], Scale::Times(TAU / 60.0)),
+    unit(&["rad/s", "rads", "radps"], Scale::Over(1.0)),
+    unit(&["deg/s", "dps", "degps", "°/s"], Scale::Times(TAU / 360.0)),
+    unit(&["rev/s", "rps"], Scale::Times(TAU)),
+    unit(
+        &["rpm", "rev/min", "1/min", "r/min", "U/min"],
+        Scale::Times(TAU / 60.0),
+    ),
 ];
 
 impl Quantity {
+    pub(super) const ALL: [Self; 6] = [
+        Self::Time,
+        Self::Position,
+        Self::Current,
+        Self::Edge,
+        Self::Boundary,
+        Self::Velocity,
+    ];
+
     /// The units of this quantity; the first is that of the columns of a recording.
     pub(super) const fn units(self) -> &'static [Unit] {
         match self {
@@ -105,19 +121,38 @@ impl Quantity {
         }
     }
 
-    /// The unit called `name`, in upper or lower case.
+    /// The unit called `name`, in upper or lower case; `rad_s`, `rad per s` and `rad s^-1` are `rad/s`.
     pub(super) fn unit(self, name: &str) -> Option<&'static Unit> {
-        let name = name.to_lowercase();
+        let name = quotient(&name.trim().to_lowercase());
         let called = |unit: &&Unit| unit.names.iter().any(|known| known.to_lowercase() == name);
         self.units().iter().find(called)
     }
 
-    /// The unit at the end of a column's name: `time_ms`, `angle [deg]`, `Time (us)`.
-    pub(super) fn suffix(self, column: &str) -> Option<&'static Unit> {
-        let column = column.trim_end_matches([')', ']']);
-        let (_, last) = column.rsplit_once(['_', ' ', '(', '[', '.'])?;
-        self.unit(last)
+    /// Names of the units, for messages.
+    pub(super) fn list(self) -> String {
+        let names: Vec<_> = self.units().iter().map(Unit::name).collect();
+        names.join(", ")
     }
+}
+
+/// The name of a quotient of units with one `/`, and `s` and `min` below it.
+fn quotient(name: &str) -> String {
+    for (over, unit) in [("sec", "s"), ("s", "s"), ("min", "min")] {
+        for sign in ["^-1", "-1", "⁻¹", "**-1"] {
+            let Some(above) = name.strip_suffix(&format!("{over}{sign}")) else {
+                continue;
+            };
+            let above = above.trim_end_matches([' ', '*', '·', '.', '_']);
+            let above = if above.is_empty() { "1" } else { above };
+            return format!("{above}/{unit}");
+        }
+        for sign in ["_per_", " per ", "_", "/", " / "] {
+            if let Some(above) = name.strip_suffix(&format!("{sign}{over}")) {
+                return format!("{above}/{unit}");
+            }
+        }
+    }
+    name.to_owned()
 }
 
 #[cfg(test)]
@@ -125,37 +160,28 @@ mod tests {
     use super::*;
 
     #[test]
-    fn units_are_found_by_name_and_at_the_end_of_a_column() {
+    fn units_are_found_by_name() {
         let shown = |unit: Option<&Unit>| unit.map(Unit::name);
         assert_eq!(shown(Quantity::Time.unit("MS")), Some("ms"));
         assert_eq!(shown(Quantity::Current.unit("N.m")), Some("N.m"));
         assert_eq!(shown(Quantity::Time.unit("deg")), None);
-        for (quantity, column, unit) in [
-            (Quantity::Time, "time_ms", Some("ms")),
-            (Quantity::Time, "Time (us)", Some("us")),
-            (Quantity::Time, "time [µs]", Some("us")),
-            (Quantity::Time, "ms", None),
-            (Quantity::Time, "time", None),
-            (Quantity::Position, "joint angle [deg]", Some("deg")),
-            (Quantity::Position, "pos_turns", Some("rev")),
-            (Quantity::Position, "time_ms", None),
-            (Quantity::Current, "i_mA", Some("mA")),
-            (Quantity::Current, "torque_Nm", Some("N.m")),
+        for (name, unit) in [
+            ("rad_s", "rad/s"),
+            ("deg_per_sec", "deg/s"),
+            ("rad s^-1", "rad/s"),
+            ("rad·s⁻¹", "rad/s"),
+            ("min^-1", "rpm"),
+            ("1/min", "rpm"),
+            ("dps", "deg/s"),
+            ("rev / s", "rev/s"),
         ] {
-            assert_eq!(shown(quantity.suffix(column)), unit, "{column}");
+            assert_eq!(shown(Quantity::Velocity.unit(name)), Some(unit), "{name}");
         }
     }
 
     #[test]
     fn no_unit_of_a_quantity_has_the_name_of_another() {
-        for quantity in [
-            Quantity::Time,
-            Quantity::Position,
-            Quantity::Current,
-            Quantity::Edge,
-            Quantity::Boundary,
-            Quantity::Velocity,
-        ] {
+        for quantity in Quantity::ALL {
             for unit in quantity.units() {
                 for name in unit.names {
                     assert_eq!(quantity.unit(name), Some(unit), "{name}");

@@ -1,0 +1,129 @@
+//! Units at the end of a column's name: `time_ms`, `angle [deg]`, `Time (us)`, `theta/deg`.
+
+use super::units::{Quantity, Unit};
+
+/// Units that no quantity of a recording has, for the endings that are no part of a name.
+const FOREIGN: [&str; 20] = [
+    "hz", "khz", "mm", "cm", "um", "inch", "mv", "ua", "ka", "mdps", "gon", "arcmin", "arcsec",
+    "mnm", "ncm", "hours", "hrs", "minutes", "lsb", "percent",
+];
+
+/// What the end of a column's name says about its unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Ending<'a> {
+    Nothing,
+    Unit(&'static Unit),
+    /// It looks like a unit, and is none of the quantity.
+    Unknown(&'a str),
+}
+
+impl Ending<'_> {
+    /// What the name `column` says about the unit of `quantity`.
+    pub(super) fn of(quantity: Quantity, column: &str) -> Ending<'_> {
+        let column = column.trim();
+        let Some((before, inside)) = bracketed(column) else {
+            return plain(quantity, column);
+        };
+        let is_index = inside.chars().all(|c| c.is_ascii_digit());
+        match (quantity.unit(inside), plain(quantity, before)) {
+            (Some(unit), _) => Ending::Unit(unit),
+            (None, Ending::Nothing) if !is_index => Ending::Unknown(inside),
+            (None, before) => before,
+        }
+    }
+}
+
+/// The text before the brackets at the end of `column`, and the text in them.
+fn bracketed(column: &str) -> Option<(&str, &str)> {
+    let (text, open) = match column.strip_suffix(']') {
+        Some(text) => (text, '['),
+        None => (column.strip_suffix(')')?, '('),
+    };
+    let (before, inside) = text.rsplit_once(open)?;
+    Some((before.trim_end(), inside.trim()))
+}
+
+/// The longest end of a name without brackets that is a unit.
+fn plain(quantity: Quantity, column: &str) -> Ending<'_> {
+    let is_separator = |c: char| matches!(c, '_' | ' ' | '.' | '/' | '-');
+    let after = column
+        .match_indices(is_separator)
+        .map(|(at, separator)| &column[at + separator.len()..]);
+    let ends: Vec<_> = std::iter::once(column).chain(after).collect();
+    if let Some(unit) = ends.iter().find_map(|end| quantity.unit(end)) {
+        return Ending::Unit(unit);
+    }
+    match ends[1..].iter().find(|end| is_other_unit(end)) {
+        Some(end) => Ending::Unknown(end),
+        None => Ending::Nothing,
+    }
+}
+
+/// Whether `end` is a unit of some quantity. A single letter is also a name: motor A, axis s.
+fn is_other_unit(end: &str) -> bool {
+    let is_known = || Quantity::ALL.iter().any(|known| known.unit(end).is_some());
+    let is_foreign = || FOREIGN.contains(&end.to_lowercase().as_str());
+    end.chars().count() > 1 && (is_known() || is_foreign())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_is_the_end_of_a_name() {
+        for (quantity, column, unit) in [
+            (Quantity::Time, "time_ms", "ms"),
+            (Quantity::Time, "Time (us)", "us"),
+            (Quantity::Time, "time [µs]", "us"),
+            (Quantity::Time, "time/ms", "ms"),
+            (Quantity::Time, "ms", "ms"),
+            (Quantity::Position, "joint angle [deg]", "deg"),
+            (Quantity::Position, "pos_turns", "rev"),
+            (Quantity::Position, "theta/deg", "deg"),
+            (Quantity::Position, "angle_mrad", "mrad"),
+            (Quantity::Position, "angle_mdeg", "mdeg"),
+            (Quantity::Position, "Winkel [°]", "deg"),
+            (Quantity::Position, "pos_deg (filtered)", "deg"),
+            (Quantity::Position, "pos_deg[0]", "deg"),
+            (Quantity::Current, "i_mA", "mA"),
+            (Quantity::Current, "torque_Nm", "N.m"),
+            (Quantity::Current, "torque [N.m]", "N.m"),
+            (Quantity::Velocity, "omega_deg_s", "deg/s"),
+            (Quantity::Velocity, "gyro_dps", "deg/s"),
+            (Quantity::Velocity, "speed/rpm", "rpm"),
+            (Quantity::Velocity, "n [1/min]", "rpm"),
+            (Quantity::Velocity, "omega [rad s^-1]", "rad/s"),
+            (Quantity::Velocity, "omega / (rad/s)", "rad/s"),
+            (Quantity::Edge, "edge_us", "us"),
+        ] {
+            match Ending::of(quantity, column) {
+                Ending::Unit(found) => assert_eq!(found.name(), unit, "{column}"),
+                other => panic!("{column}: {other:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn end_that_is_another_unit_is_unknown() {
+        for (quantity, column, end) in [
+            (Quantity::Position, "angle [grad]", "grad"),
+            (Quantity::Position, "pos_mm", "mm"),
+            (Quantity::Position, "angle_ms", "ms"),
+            (Quantity::Time, "t (h)", "h"),
+            (Quantity::Velocity, "omega [mrad/s]", "mrad/s"),
+            (Quantity::Velocity, "vel_deg", "deg"),
+        ] {
+            assert_eq!(Ending::of(quantity, column), Ending::Unknown(end));
+        }
+        for (quantity, column) in [
+            (Quantity::Position, "motor_A"),
+            (Quantity::Position, "pos[0]"),
+            (Quantity::Position, "/a/position"),
+            (Quantity::Time, "time"),
+            (Quantity::Time, "t_min"),
+        ] {
+            assert_eq!(Ending::of(quantity, column), Ending::Nothing, "{column}");
+        }
+    }
+}
