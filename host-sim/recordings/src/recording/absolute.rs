@@ -7,6 +7,9 @@ use simulation::device::Device;
 /// Modulus of a 16-bit counter.
 const SHORT: u32 = 1 << 16;
 
+/// Smallest span of counts whose jumps are judged by it: few counts are passed in one row.
+const LEAST_SPAN: i64 = 15;
+
 /// Longest step over which a jump counts, in periods.
 pub(super) const LONGEST: f64 = 1.5;
 
@@ -72,14 +75,23 @@ impl Found {
             ),
             Self::Jumps(jump, span) => format!(
                 "{column} jumps by {jump} from one row to the next and spans {span} counts, with {per_rev} \
-                 counts per revolution: if the encoder is absolute, give its counts as \
-                 {motor}.counts_per_rev in the file of --device{}",
+                 counts per revolution: if the encoder is absolute, give its counts {}{}",
+                counts_option(motor),
                 modulus_option(column, jump, span)
             ),
             Self::Refused(modulus, error) => {
                 format!("{column} wraps at {modulus} and is not unwrapped: {error}")
             }
         }
+    }
+}
+
+/// How the counts per revolution of a motor's encoder are given.
+pub(super) fn counts_option(motor: &str) -> String {
+    let device = format!("{motor}.counts_per_rev in the file of --device");
+    match motor {
+        "large" => format!("with --counts-per-rev, or as {device}"),
+        _ => format!("as {device}"),
     }
 }
 
@@ -115,6 +127,8 @@ pub(super) fn found(jump: i64, span: i64, per_rev: u32) -> Option<Found> {
     };
     let wraps = moduli(per_rev).into_iter().find(wraps);
     let far = 2 * jump.abs() > i64::from(per_rev) && span < i64::from(SHORT);
+    // An encoder of another modulus: one row passes most of the counts of the whole log.
+    let far = far || (span >= LEAST_SPAN && 4 * jump.abs() >= 3 * (span + 1));
     wraps
         .map(Found::Wraps)
         .or(far.then_some(Found::Jumps(jump, span + 1)))
@@ -228,13 +242,25 @@ mod tests {
         let before = recording.trace.counts_large.clone();
         let said = recording.unwrap_counts(&device(4096));
         let words = "counts, with 4096 counts per revolution: if the encoder is absolute, give its counts \
-                     as large.counts_per_rev in the file of --device";
+                     with --counts-per-rev, or as large.counts_per_rev in the file of --device, or \
+                     --modulus counts_large=16384 if";
         assert!(said[0].contains(words), "{said:?}");
         assert!(
             said[0].starts_with("counts_large jumps by -16373 "),
             "{said:?}"
         );
         assert_eq!(recording.trace.counts_large, before);
+    }
+
+    #[test]
+    fn encoder_of_fewer_counts_than_the_device_is_reported() {
+        for (modulus, step) in [(1024, 4), (64, 1), (1 << 24, 40_000)] {
+            let (mut recording, _) = recording(step, modulus, 0);
+            let said = recording.unwrap_counts(&device(4096));
+            let option = format!("or --modulus counts_large={modulus} if");
+            assert!(said[0].starts_with("counts_large jumps by -"), "{said:?}");
+            assert!(said[0].contains(&option), "{said:?}");
+        }
     }
 
     #[test]

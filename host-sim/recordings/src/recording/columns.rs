@@ -11,6 +11,8 @@ use super::lines::LineNumbers;
 use super::options::{Column, ReadOptions};
 use super::records::Records;
 use super::row::Row;
+use super::sources::sources;
+use super::stamps::Stamps;
 use super::units::Scale;
 use super::{Recording, absolute, clock};
 
@@ -30,6 +32,7 @@ pub(super) struct Columns<'a> {
     current: Current,
     current_small: Current,
     edges: Vec<Option<EdgeStamp>>,
+    stamps: Stamps,
     true_omega: Vec<f64>,
     /// Number of rows left out.
     left_out: usize,
@@ -50,6 +53,7 @@ impl<'a> Columns<'a> {
             current: Current::default(),
             current_small: Current::default(),
             edges: Vec::new(),
+            stamps: Stamps::default(),
             true_omega: Vec::new(),
             left_out: 0,
         }
@@ -92,7 +96,8 @@ impl<'a> Columns<'a> {
         if let (Some(tick), Some(bound)) =
             (self.place(Column::EdgeTick), self.place(Column::EdgeBound))
         {
-            self.edges.push(self.edge(row, tick, bound, t)?);
+            let edge = self.edge(row, tick, bound, t)?;
+            self.edges.push(edge);
         }
         if let Some(at) = self.place(Column::TrueOmega) {
             self.true_omega.push(scaled(row, at, 1.0)?);
@@ -109,7 +114,7 @@ impl<'a> Columns<'a> {
 
     /// The latest edge; `None` if both fields are empty, before the first edge.
     fn edge(
-        &self,
+        &mut self,
         row: &Row,
         tick: Place,
         bound: Place,
@@ -119,12 +124,13 @@ impl<'a> Columns<'a> {
         if text(tick)?.is_empty() && text(bound)?.is_empty() {
             return Ok(None);
         }
-        let age_s = now - scaled(row, tick, 1.0)? / EDGE_CLOCK_HZ;
+        let at_s = scaled(row, tick, 1.0)? / EDGE_CLOCK_HZ;
         let boundary = row.count(bound.column.name(), bound.place)?;
+        self.stamps.add(at_s, boundary, now, row.line);
         let large = &self.counts_large;
         Ok(Some(EdgeStamp {
             // `t` has fewer digits than the stamp, so an edge at the tick can appear after it.
-            age_s: age_s.max(0.0),
+            age_s: (now - at_s).max(0.0),
             boundary: match self.options.modulus[0] {
                 None => boundary as u32,
                 Some(modulus) => {
@@ -182,7 +188,7 @@ impl<'a> Columns<'a> {
         layout: &Layout,
     ) -> Result<Recording, Failure> {
         let (rate_hz, uneven_steps) = clock::rate(&self.t, name)?;
-        let mut notes = self.notes(places, layout);
+        let mut notes = self.checked(name, places, layout)?;
         let mut gaps = Gaps::default();
         for (k, step) in self.t.windows(2).enumerate() {
             gaps.add(step[1] - step[0], rate_hz, step[1], || self.lines.of(k + 1));
@@ -229,9 +235,20 @@ impl<'a> Columns<'a> {
     }
 
     /// Notes on the rows that were taken: their columns, rows left out, and rounded positions.
-    pub(super) fn notes(&self, places: &Places, layout: &Layout) -> Vec<String> {
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if the time stamps of edges are not those of the rows.
+    pub(super) fn checked(
+        &self,
+        name: &str,
+        places: &Places,
+        layout: &Layout,
+    ) -> Result<Vec<String>, Failure> {
+        if let Some(at) = self.place(Column::EdgeTick) {
+            self.stamps.check(name, &layout.names[at.place])?;
+        }
         let mut notes = Vec::new();
-        notes.extend(self.sources(places, layout));
+        notes.extend(sources(self.options, places, layout));
         notes.extend(
             self.measured()
                 .map(|(column, lack)| measured_note(column, lack)),
@@ -242,56 +259,13 @@ impl<'a> Columns<'a> {
                 self.left_out
             ));
         }
-        for (encoder, column, motor) in [
-            (&self.counts_large, Column::CountsLarge, 0),
-            (&self.counts_small, Column::CountsSmall, 1),
-        ] {
-            notes.extend(encoder.note(column.name(), self.options.counts_per_rev[motor]));
-        }
-        notes
-    }
-
-    /// The columns and units that the recording is read from; `None` if all are its own by name.
-    fn sources(&self, places: &Places, layout: &Layout) -> Option<String> {
-        if places.format.is_none() && self.options.columns.is_empty() {
-            return None;
-        }
-        let [counts_large, counts_small] = self.options.counts_per_rev;
-        let [kt_large, kt_small] = self.options.torque_constant;
-        let small = |column| {
-            matches!(
-                column,
-                Column::CountsSmall | Column::CurrentSmall | Column::CurrentSmallMeasured
-            )
-        };
-        let part = |place: &Place| {
-            let counts = if small(place.column) {
-                counts_small
-            } else {
-                counts_large
-            };
-            let kt = if small(place.column) {
-                kt_small
-            } else {
-                kt_large
-            };
-            let with = match place.unit.scale {
-                Scale::PerRev(_) => format!(" with {counts} counts/rev"),
-                Scale::Torque => format!(" with {kt} N.m/A"),
-                _ => String::new(),
-            };
-            let (name, unit) = (place.column.name(), place.unit.name());
-            let theirs = match layout.has_header() {
-                true => format!("'{}'", layout.names[place.place].escape_debug()),
-                false => format!("column {}", place.place + 1),
-            };
-            format!("{name} from {theirs} ({unit}{with})")
-        };
-        let parts: Vec<_> = places.all().iter().map(part).collect();
-        let log = places.format.map_or_else(String::new, |format| {
-            format!("read as a log of {}: ", format.name)
-        });
-        Some(format!("{log}{}", parts.join(", ")))
+        let [large, small] = self.options.counts_per_rev;
+        let (column, encoder) = (Column::CountsLarge, &self.counts_large);
+        notes.extend(encoder.note(column.name(), "large", large));
+        let (column, encoder) = (Column::CountsSmall, &self.counts_small);
+        notes.extend(encoder.note(column.name(), "small", small));
+        notes.extend(self.stamps.note());
+        Ok(notes)
     }
 }
 

@@ -3,6 +3,7 @@
 use estimator_core::Count;
 use terminal::failure::Failure;
 
+use super::absolute::counts_option;
 use super::layout::Place;
 use super::options::ReadOptions;
 use super::row::Row;
@@ -69,13 +70,13 @@ impl Encoder {
     }
 
     /// Note on positions that are far from whole counts; `None` if none is.
-    pub(super) fn note(&self, column: &str, counts_per_rev: u32) -> Option<String> {
+    pub(super) fn note(&self, column: &str, motor: &str, counts_per_rev: u32) -> Option<String> {
         (self.rounded > ROUNDED).then(|| {
             format!(
                 "{column}: positions are up to {:.2} counts from a whole count with {counts_per_rev} \
-                 counts/rev and are rounded to the nearest; if the encoder has more counts, give them \
-                 with --device",
-                self.rounded
+                 counts/rev and are rounded to the nearest; if the encoder has more counts, give them {}",
+                self.rounded,
+                counts_option(motor)
             )
         })
     }

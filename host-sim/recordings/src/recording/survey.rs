@@ -122,7 +122,7 @@ impl Survey {
             }
         }
         let (period, rate_hz) = steps.period(name)?;
-        let mut notes = columns.notes(&places, &records.layout);
+        let mut notes = columns.checked(name, &places, &records.layout)?;
         let mut wraps = [None; 2];
         let names = [("counts_large", "large"), ("counts_small", "small")];
         for (motor, (column, stage)) in names.into_iter().enumerate() {

@@ -1,0 +1,48 @@
+//! The note on the columns and units that a recording was read from.
+
+use super::layout::{Layout, Place, Places};
+use super::options::{Column, ReadOptions};
+use super::units::Scale;
+
+/// The columns and units that the recording is read from; `None` if all are its own by name.
+pub(super) fn sources(options: &ReadOptions, places: &Places, layout: &Layout) -> Option<String> {
+    if places.format.is_none() && options.columns.is_empty() {
+        return None;
+    }
+    let [counts_large, counts_small] = options.counts_per_rev;
+    let [kt_large, kt_small] = options.torque_constant;
+    let small = |column| {
+        matches!(
+            column,
+            Column::CountsSmall | Column::CurrentSmall | Column::CurrentSmallMeasured
+        )
+    };
+    let part = |place: &Place| {
+        let counts = if small(place.column) {
+            counts_small
+        } else {
+            counts_large
+        };
+        let kt = if small(place.column) {
+            kt_small
+        } else {
+            kt_large
+        };
+        let with = match place.unit.scale {
+            Scale::PerRev(_) => format!(" with {counts} counts/rev"),
+            Scale::Torque => format!(" with {kt} N.m/A"),
+            _ => String::new(),
+        };
+        let (name, unit) = (place.column.name(), place.unit.name());
+        let theirs = match layout.has_header() {
+            true => format!("'{}'", layout.names[place.place].escape_debug()),
+            false => format!("column {}", place.place + 1),
+        };
+        format!("{name} from {theirs} ({unit}{with})")
+    };
+    let parts: Vec<_> = places.all().iter().map(part).collect();
+    let log = places.format.map_or_else(String::new, |format| {
+        format!("read as a log of {}: ", format.name)
+    });
+    Some(format!("{log}{}", parts.join(", ")))
+}
