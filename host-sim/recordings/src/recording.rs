@@ -7,8 +7,10 @@ mod columns;
 mod currents;
 mod encoder;
 mod endings;
+mod fields;
 mod formats;
 mod header;
+mod hint;
 mod json;
 mod layout;
 mod lines;
@@ -25,6 +27,7 @@ mod stamps;
 mod stated;
 mod steps;
 mod survey;
+mod times;
 mod units;
 mod write;
 
@@ -206,10 +209,9 @@ mod tests {
             let error = parse(&format!("t,counts_large\n0,0\n0.001,{fraction}\n")).unwrap_err();
             let said = "r.csv: line 3: column counts_large: ";
             assert!(error.starts_with(said), "{error}");
-            assert!(
-                error.ends_with("is not a whole number of counts"),
-                "{error}"
-            );
+            let remedy = "is not a whole number of counts; if it is an angle, state its unit, for example \
+                          --column 'counts_large=counts_large:deg', or :rad or :rev";
+            assert!(error.ends_with(remedy), "{error}");
         }
     }
 

@@ -153,7 +153,8 @@ fn recordings_come_from_standard_input() {
     assert_eq!(status, Some(2));
     assert_eq!(
         said,
-        "error: standard input: line 2: column counts_large: 'x' is not a number\n"
+        "error: standard input: line 2: column counts_large: 'x' is not a number; remove the line if it has \
+         the units, and state them with --column\n"
     );
     assert_eq!(folder.files().len(), 1);
 }

@@ -147,7 +147,7 @@ mod tests {
         let text = "t,torque,counts_large,state\n0,0.5,1,2\n1,-0.25,1,3\n";
         let bad = text.replace("-0.25", "x");
         let error = BoardColumns::parse(bad.as_bytes(), "r.csv").unwrap_err();
-        let said = "r.csv: line 3: column torque: 'x' is not a number";
+        let said = "r.csv: line 3: column torque: 'x' is not a number; correct the field, or remove the row";
         assert_eq!(error.to_string(), said);
     }
 }

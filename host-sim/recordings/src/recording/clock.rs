@@ -1,6 +1,7 @@
 //! Rate of a recording's rows, its uneven steps, and gaps in which rows are missing.
 
 use super::Recording;
+use super::numbers::shown;
 use super::steps::{EVEN, Steps, differs, to_digits};
 use terminal::failure::Failure;
 
@@ -88,11 +89,14 @@ pub(super) struct Gaps {
     number: u64,
     rows: f64,
     most: f64,
+    /// Time that all steps have more than a period each, in periods.
+    excess: f64,
 }
 
 impl Gaps {
     /// Adds a step that ends at `t` in a line of the file.
     pub(super) fn add(&mut self, step: f64, rate_hz: f64, t: f64, line: impl FnOnce() -> u64) {
+        self.excess += step * rate_hz - 1.0;
         let missing = (step * rate_hz).round() - 1.0;
         if missing >= 1.0 {
             self.first = self.first.or_else(|| Some((line(), t)));
@@ -102,13 +106,16 @@ impl Gaps {
         }
     }
 
-    /// Description; `None` if there is no gap.
+    /// Description; `None` if there is no gap, or if the short steps after late rows make up for all of
+    /// them.
     pub(super) fn note(&self) -> Option<String> {
         let (line, t) = self.first?;
+        let t = shown(t);
         let Self {
             number, rows, most, ..
         } = self;
-        Some(format!(
+        let are_late = *most == 1.0 && self.excess < rows / 2.0;
+        (!are_late).then(|| format!(
             "{rows} rows are missing in {number} gaps of at most {most}, the first before line {line} at \
              {t} s"
         ))
@@ -182,6 +189,36 @@ mod tests {
         let (rate_hz, uneven) = rate(&t, "r").unwrap();
         assert!((rate_hz / 11_600.0 - 1.0).abs() < 1e-4, "{rate_hz}");
         assert_eq!(uneven, 20_000 / 7);
+    }
+
+    #[test]
+    fn late_rows_are_not_missing_rows() {
+        let note = |times: &[f64]| {
+            let mut gaps = Gaps::default();
+            for pair in times.windows(2) {
+                gaps.add(pair[1] - pair[0], 1000.0, pair[1], || 7);
+            }
+            gaps.note()
+        };
+        let late = |k: u32| if k % 10 == 5 { 0.6e-3 } else { 0.0 };
+        let times: Vec<_> = (0..100).map(|k| f64::from(k) * 1e-3 + late(k)).collect();
+        assert_eq!(note(&times), None);
+        let mut cut = times.clone();
+        cut.drain(50..53);
+        assert!(
+            note(&cut)
+                .unwrap()
+                .contains("gaps of at most 3, the first before line 7")
+        );
+        let even: Vec<_> = (0..100)
+            .filter(|k| k % 10 != 5)
+            .map(|k| f64::from(k) * 1e-3)
+            .collect();
+        assert!(
+            note(&even)
+                .unwrap()
+                .starts_with("10 rows are missing in 10 gaps of at most 1")
+        );
     }
 
     #[test]

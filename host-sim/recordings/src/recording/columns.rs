@@ -13,6 +13,7 @@ use super::records::Records;
 use super::row::Row;
 use super::sources::sources;
 use super::stamps::Stamps;
+use super::times::{self, Replaced};
 use super::units::Scale;
 use super::{Recording, absolute, clock};
 
@@ -20,10 +21,14 @@ use super::{Recording, absolute, clock};
 pub(super) struct Columns<'a> {
     options: &'a ReadOptions,
     places: [Option<Place>; Column::ALL.len()],
+    /// The log's own times, which --row-rate replaces.
+    replaced_place: Option<Place>,
+    replaced: Replaced,
     /// Whether a row without a position is left out.
     sparse: bool,
     /// Number of rows that were taken, and the time of the last one, s.
     taken: usize,
+    first_t: f64,
     last_t: f64,
     t: Vec<f64>,
     lines: LineNumbers,
@@ -43,8 +48,11 @@ impl<'a> Columns<'a> {
         Self {
             options,
             places: Column::ALL.map(|column| places.get(column)),
+            replaced_place: places.replaced_time,
+            replaced: Replaced::default(),
             sparse: places.format.is_some_and(|format| format.sparse),
             taken: 0,
+            first_t: f64::NAN,
             last_t: f64::NEG_INFINITY,
             t: Vec::new(),
             lines: LineNumbers::default(),
@@ -73,10 +81,17 @@ impl<'a> Columns<'a> {
         }
         let t = self.time(row)?;
         if t < self.last_t {
-            let last = self.last_t;
-            return Err(row.failure("t", &format!("{t} s is before the {last} s above it")));
+            let per_s = self.place(Column::T).map_or(1.0, |at| at.unit.per_s());
+            return Err(times::back(row, t, [self.first_t, self.last_t], per_s));
+        }
+        if self.taken == 0 {
+            self.first_t = t;
         }
         self.last_t = t;
+        let replaced = self.replaced_place.and_then(|at| scaled(row, at, 1.0).ok());
+        if let Some(own) = replaced {
+            self.replaced.add(own);
+        }
         self.taken += 1;
         self.t.push(t);
         self.lines.push(row.line);
@@ -96,7 +111,7 @@ impl<'a> Columns<'a> {
         if let (Some(tick), Some(bound)) =
             (self.place(Column::EdgeTick), self.place(Column::EdgeBound))
         {
-            let edge = self.edge(row, tick, bound, t)?;
+            let edge = self.edge(row, tick, bound, replaced.unwrap_or(t))?;
             self.edges.push(edge);
         }
         if let Some(at) = self.place(Column::TrueOmega) {
@@ -248,6 +263,9 @@ impl<'a> Columns<'a> {
             self.stamps.check(name, &layout.names[at.place])?;
         }
         let mut notes = Vec::new();
+        if let (Some(at), Some(hz)) = (self.replaced_place, self.options.row_rate_hz) {
+            notes.extend(self.replaced.check(name, &layout.names[at.place], hz)?);
+        }
         notes.extend(sources(self.options, places, layout));
         notes.extend(
             self.measured()

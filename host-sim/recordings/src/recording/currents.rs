@@ -112,10 +112,15 @@ mod tests {
 
     #[test]
     fn measured_current_that_is_no_number_is_reported() {
-        for (good, bad, line) in [("1.5", "x", 3), ("3.5", "nan", 5)] {
+        let optional = "remove the rows without a value, or rename the column current_measured, which is optional";
+        for (good, bad, line, remedy) in [
+            ("1.5", "x", 3, "correct the field, or remove the row"),
+            ("3.5", "nan", 5, optional),
+        ] {
             let error = read(&LOG.replace(good, bad), "").unwrap_err();
-            let said =
-                format!("r.csv: line {line}: column current_measured: '{bad}' is not a number");
+            let said = format!(
+                "r.csv: line {line}: column current_measured: '{bad}' is not a number; {remedy}"
+            );
             assert_eq!(error, said);
         }
     }

@@ -5,6 +5,7 @@ use terminal::failure::Failure;
 
 use super::absolute::counts_option;
 use super::layout::Place;
+use super::numbers::shown;
 use super::options::ReadOptions;
 use super::row::Row;
 use super::units::Scale;
@@ -39,7 +40,11 @@ impl Encoder {
                 let position = row.number(column, at.place)?;
                 let exact = position * f64::from(options.counts_per_rev[motor]) / per_rev;
                 if exact.abs() > 9e15 {
-                    return Err(row.failure(column, &format!("{position} is too far from zero")));
+                    let position = shown(position);
+                    return Err(row.failure(
+                        column,
+                        &format!("{position} is too large; correct the field, or remove the row"),
+                    ));
                 }
                 let whole = (exact + 0.5).floor();
                 self.rounded = self.rounded.max((exact - whole).abs());

@@ -187,36 +187,76 @@ impl Format {
     /// The log with this header.
     pub(super) fn of(header: &[String]) -> Option<&'static Self> {
         FORMATS.iter().find(|format| {
-            let has = |column| {
-                format
-                    .find(header)
-                    .iter()
-                    .any(|found| found.column == column)
-            };
-            let marked = format.mark.is_empty() || header.iter().any(|name| name == format.mark);
-            marked && has(Column::T) && has(Column::CountsLarge)
+            let found = format.find(header);
+            let has = |column| found.iter().any(|found| found.column == column);
+            format.is_marked(header) && has(Column::T) && has(Column::CountsLarge)
         })
+    }
+
+    fn is_marked(&self, header: &[String]) -> bool {
+        self.mark.is_empty() || header.iter().any(|name| name == self.mark)
     }
 
     /// The columns of this log in `header`.
     pub(super) fn find(&self, header: &[String]) -> Vec<Found> {
         let mut found: Vec<Found> = Vec::new();
         for foreign in self.columns {
-            let here = |name: &String| match foreign.called {
-                Name(whole) => name == whole,
-                End(end) => name.ends_with(end),
-            };
-            let mut places = (0..header.len()).filter(|&place| here(&header[place]));
             let known = found.iter().any(|found| found.column == foreign.column);
-            if let (Some(place), None, false) = (places.next(), places.next(), known) {
+            if let ([place], false) = (&foreign.places(header)[..], known) {
                 found.push(Found {
                     column: foreign.column,
-                    place,
+                    place: *place,
                     unit: foreign.unit,
                 });
             }
         }
         found
+    }
+}
+
+impl Foreign {
+    /// The places in `header` that have this column.
+    fn places(&self, header: &[String]) -> Vec<usize> {
+        let here = |name: &String| match self.called {
+            Name(whole) => name == whole,
+            End(end) => name.ends_with(end),
+        };
+        (0..header.len())
+            .filter(|&place| here(&header[place]))
+            .collect()
+    }
+}
+
+/// A header of a known log in which several columns fit the position.
+#[derive(Debug)]
+pub(super) struct Ambiguous {
+    pub(super) format: &'static Format,
+    pub(super) time: Found,
+    /// Places of the positions, at least two.
+    pub(super) positions: Vec<usize>,
+    /// Unit of the positions.
+    pub(super) unit: &'static str,
+}
+
+impl Ambiguous {
+    /// The ambiguous log with this header.
+    pub(super) fn of(header: &[String]) -> Option<Self> {
+        FORMATS.iter().find_map(|format| {
+            let found = format.find(header);
+            let time = found.into_iter().find(|found| found.column == Column::T)?;
+            let mut positions = format.columns.iter().filter_map(|foreign| {
+                let places = foreign.places(header);
+                let fit = foreign.column == Column::CountsLarge && places.len() > 1;
+                fit.then_some((places, foreign.unit))
+            });
+            let (positions, unit) = positions.next().filter(|_| format.is_marked(header))?;
+            Some(Self {
+                format,
+                time,
+                positions,
+                unit,
+            })
+        })
     }
 }
 
@@ -250,5 +290,8 @@ mod tests {
         );
         let two = header(&["__time", "/joints/a/position", "/joints/b/position"]);
         assert!(Format::of(&two).is_none());
+        let ambiguous = Ambiguous::of(&two).unwrap();
+        assert_eq!((ambiguous.positions, ambiguous.unit), (vec![1, 2], "rad"));
+        assert!(Ambiguous::of(&one).is_none());
     }
 }

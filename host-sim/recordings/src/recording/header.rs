@@ -2,11 +2,10 @@
 
 use terminal::failure::Failure;
 
-use super::endings::Ending;
 use super::formats::Format;
-use super::layout::Layout;
+use super::hint::{self, example, theirs};
+use super::layout::{Layout, Places};
 use super::options::{Column, Mapping};
-use super::units::Quantity;
 
 /// Characters of a header that a message shows.
 const SHOWN: usize = 60;
@@ -15,13 +14,17 @@ const SHOWN: usize = 60;
 const NAME: usize = 30;
 
 /// Error for a log without `column`, with the header as found and a hint at the remedy.
-pub(super) fn missing(column: Column, layout: &Layout, name: &str) -> Failure {
+pub(super) fn missing(column: Column, layout: &Layout, places: &Places, name: &str) -> Failure {
     let ours = column.name();
+    let is_needed = matches!(column, Column::T | Column::CountsLarge);
+    if let (true, Some(why)) = (is_needed, hint::reason(layout, places)) {
+        return Failure::Input(format!("{name}: line {}: {why}", layout.line.max(1)));
+    }
     let found = found(layout);
     let remedy = match column {
         Column::T | Column::CountsLarge => format!(
             "{}; read without options are t with counts_large, and the logs of {}",
-            hint(layout),
+            hint::option(layout),
             known()
         ),
         _ => format!("name it with --column {ours}=THEIRS, or rename a column"),
@@ -56,16 +59,17 @@ pub(super) fn unknown(mapping: &Mapping, layout: &Layout, name: &str) -> Failure
 
 /// Error for a `--column` without a unit, whose column's name ends as if it had another `unit`.
 pub(super) fn unknown_unit(mapping: &Mapping, unit: &str, layout: &Layout, name: &str) -> Failure {
-    let (theirs, ours) = (&mapping.theirs, mapping.column.name());
+    let ours = mapping.column.name();
     let quantity = mapping.column.quantity();
+    let place = layout.place(&mapping.theirs).unwrap_or_default();
     Failure::Input(format!(
         "{name}: line {}: '{}' at the end of the name is no unit of {ours}; there are {}; state the unit, \
          for example --column '{ours}={}:{}'",
         layout.line.max(1),
         short(unit),
         quantity.list(),
-        short(theirs),
-        quantity_example(quantity)
+        theirs(layout, place),
+        example(quantity)
     ))
 }
 
@@ -85,7 +89,7 @@ fn known() -> String {
     names.join(", ")
 }
 
-fn short(name: &str) -> String {
+pub(super) fn short(name: &str) -> String {
     name.chars()
         .take(NAME)
         .flat_map(char::escape_debug)
@@ -112,62 +116,6 @@ fn found(layout: &Layout) -> String {
             layout.separator.name()
         ),
     }
-}
-
-/// Options that would read the log.
-fn hint(layout: &Layout) -> String {
-    if layout.names.iter().all(String::is_empty) {
-        return "the file has no names of columns; write t,counts_large in its first line"
-            .to_owned();
-    }
-    if !layout.has_header() {
-        return "give the numbers of the columns, for example --column t=1:s,counts_large=2:counts"
-            .to_owned();
-    }
-    let guess = |column: Column, words: &[&str], place: &str| {
-        let own = |name: &&String| name.as_str() == column.name();
-        let lower = |name: &&String| name.to_lowercase() == column.name();
-        let like = |name: &&String| {
-            let name = name.to_lowercase();
-            words.iter().any(|word| name.contains(word))
-        };
-        let mut names = layout.names.iter();
-        let here = names
-            .clone()
-            .find(own)
-            .or_else(|| names.clone().find(lower));
-        let theirs = here.or_else(|| names.find(like)).map(|name| short(name));
-        let theirs = theirs.unwrap_or_else(|| place.to_owned());
-        let quantity = column.quantity();
-        let unit = match Ending::of(quantity, &theirs) {
-            Ending::Unit(_) => String::new(),
-            _ => format!(":{}", quantity_example(quantity)),
-        };
-        let ours = column.name();
-        match theirs == ours {
-            true => None,
-            false => Some(format!("{ours}={theirs}{unit}")),
-        }
-    };
-    let parts: Vec<_> = [
-        guess(Column::T, &["time", "stamp", "sec", "ms"], "TIME"),
-        guess(
-            Column::CountsLarge,
-            &["count", "enc", "pos", "angle", "theta"],
-            "POSITION",
-        ),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
-    format!(
-        "name the columns and units, for example --column '{}'",
-        parts.join(",")
-    )
-}
-
-const fn quantity_example(quantity: Quantity) -> &'static str {
-    quantity.units()[0].name()
 }
 
 #[cfg(test)]
@@ -210,6 +158,24 @@ mod tests {
                 "# a log\nsome text\n\nstamp angle\n0 1\n1 2\n",
                 "line 4: no column t; found: stamp; angle, separated by spaces; name the columns and \
                  units, for example --column 't=stamp:s,counts_large=angle:counts'",
+            ),
+            (
+                "__time,/a/position,/b/position\n0,0.1,0.2\n",
+                "line 1: 2 positions fit a log of PlotJuggler: /a/position; /b/position; name one, for \
+                 example --column 't=__time:s,counts_large=/a/position:rad'",
+            ),
+            (
+                "stamp,robot/joint_states/left_arm/shoulder_lift/counts_raw\n0,1\n",
+                "--column 't=stamp:s,counts_large=robot/joint_states/left_arm/shoulder_lift/counts_raw:counts'",
+            ),
+            (
+                "stamp,the user's count\n0,1\n",
+                "--column 't=stamp:s,counts_large=2'",
+            ),
+            (
+                "target:0.5\tangle:0.01\ntarget:0.5\tangle:0.02\n",
+                "line 1: each row has the names of its numbers: 'target:0.5'; write the names in the first \
+                 line alone",
             ),
             (
                 "a,b\n1,2\n",

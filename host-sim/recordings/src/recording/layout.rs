@@ -80,6 +80,7 @@ impl Layout {
         let mut places = Places {
             format: self.format(options),
             columns: Vec::new(),
+            replaced_time: None,
         };
         for column in Column::ALL {
             if let Some(mapping) = options.mapping(column) {
@@ -128,12 +129,24 @@ impl Layout {
                 }
             }
         }
-        if options.row_rate_hz.is_some() {
+        if let Some(hz) = options.row_rate_hz {
+            if options.mapping(Column::T).is_some() {
+                return Err(Failure::Input(format!(
+                    "{name}: --row-rate {hz}: --column names a column of time; leave one of the two out"
+                )));
+            }
+            places.replaced_time = places.get(Column::T);
             places.columns.retain(|place| place.column != Column::T);
+        }
+        if let (Some(modulus), None) = (options.modulus[1], places.get(Column::CountsSmall)) {
+            return Err(Failure::Input(format!(
+                "{name}: --modulus counts_small={modulus}: there is no column counts_small; name it with \
+                 --column counts_small=THEIRS, or leave the option out"
+            )));
         }
         let needs = |column| match places.get(column) {
             Some(_) => Ok(()),
-            None => Err(header::missing(column, self, name)),
+            None => Err(header::missing(column, self, &places, name)),
         };
         if options.row_rate_hz.is_none() {
             if places
@@ -173,6 +186,8 @@ pub(super) struct Places {
     /// The program that wrote the log, if it is known.
     pub(super) format: Option<&'static Format>,
     columns: Vec<Place>,
+    /// The column of time that --row-rate replaces.
+    pub(super) replaced_time: Option<Place>,
 }
 
 impl Places {

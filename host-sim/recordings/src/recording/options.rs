@@ -3,6 +3,7 @@
 use simulation::device::Device;
 use terminal::failure::Failure;
 
+use super::steps::SLOWEST_HZ;
 use super::units::{Quantity, Unit};
 
 /// A column of a recording.
@@ -166,6 +167,11 @@ impl ReadOptions {
                 "--row-rate {hz}: the rate of the rows must be positive and finite (Hz)"
             )));
         }
+        if hz < SLOWEST_HZ {
+            return Err(Failure::Input(format!(
+                "--row-rate {hz}: the rate of the rows must be at least {SLOWEST_HZ} Hz"
+            )));
+        }
         self.row_rate_hz = Some(hz);
         Ok(())
     }
@@ -186,6 +192,9 @@ impl ReadOptions {
             }
         };
         match number.trim().parse() {
+            Ok(_) if self.modulus[encoder].is_some() => Err(Failure::Input(format!(
+                "--modulus {text}: the modulus of this column is given twice; keep one"
+            ))),
             Ok(modulus @ 2..=0x8000_0000) => {
                 self.modulus[encoder] = Some(modulus);
                 Ok(())
@@ -300,12 +309,14 @@ mod tests {
             let error = ReadOptions::default().set_modulus(text).unwrap_err();
             assert!(error.to_string().starts_with("--modulus "), "{error}");
         }
-        for hz in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        for hz in [0.0, -1.0, 5.0, f64::NAN, f64::INFINITY] {
             assert!(ReadOptions::default().set_row_rate(hz).is_err(), "{hz}");
         }
         let mut options = ReadOptions::default();
         options.set_modulus("2147483648").unwrap();
         options.set_modulus("counts_small=360").unwrap();
         assert_eq!(options.modulus, [Some(1 << 31), Some(360)]);
+        let twice = options.set_modulus("200").unwrap_err().to_string();
+        assert!(twice.contains("--modulus 200: the modulus of this column is given twice"));
     }
 }

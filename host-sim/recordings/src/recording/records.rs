@@ -109,6 +109,8 @@ impl<'a> Records<'a> {
             name: self.name,
             line,
             record: &self.record,
+            names: &self.layout.names,
+            is_first: self.layout.has_header() && line == self.layout.line + 1,
             decimal_comma: self.layout.separator.allows_decimal_comma(),
         }))
     }

@@ -4,6 +4,7 @@ use simulation::trace::EdgeStamp;
 use terminal::failure::Failure;
 
 use super::Recording;
+use super::numbers::shown;
 
 /// Largest number of new rows for each row of the recording.
 const MOST_ROWS: f64 = 100.0;
@@ -92,8 +93,9 @@ pub(super) fn resampled_rows(
     rate_hz: f64,
     name: &str,
 ) -> Result<usize, Failure> {
-    let seconds = last - first;
-    let wanted = (seconds * rate_hz).floor() + 1.0;
+    let duration_s = last - first;
+    let wanted = (duration_s * rate_hz).floor() + 1.0;
+    let seconds = shown(duration_s);
     if !(rate_hz >= super::steps::SLOWEST_HZ && wanted >= 2.0) {
         return Err(Failure::Input(format!(
             "--resample {rate_hz}: {name} has {seconds} s, of which at least two rows at {} Hz or more \

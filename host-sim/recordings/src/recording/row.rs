@@ -4,11 +4,18 @@ use csv::ByteRecord;
 
 use terminal::failure::Failure;
 
+use super::fields::not_a_number;
+use super::numbers::shown;
+
 /// One row, to read fields from.
 pub(super) struct Row<'a> {
     pub(super) name: &'a str,
     pub(super) line: u64,
     pub(super) record: &'a ByteRecord,
+    /// Names of the columns as the log has them.
+    pub(super) names: &'a [String],
+    /// Whether the row is the first one below the header.
+    pub(super) is_first: bool,
     /// Whether a comma in a number is a decimal comma.
     pub(super) decimal_comma: bool,
 }
@@ -30,7 +37,7 @@ impl Row<'_> {
         let text = self.text(column, place)?;
         match self.parse(text) {
             Some(number) if number.is_finite() => Ok(number),
-            _ => Err(self.failure(column, &not_a_number(text))),
+            _ => Err(self.failure(column, &not_a_number(text, column, self.is_first))),
         }
     }
 
@@ -56,27 +63,23 @@ impl Row<'_> {
         match self.parse(text) {
             Some(number) if number.fract() == 0.0 && number.abs() < 9e15 => Ok(number as i64),
             Some(number) if number.is_finite() => {
-                Err(self.failure(column, &format!("{number} is not a whole number of counts")))
+                Err(self.failure(column, &self.not_whole(number, column, place)))
             }
-            _ => Err(self.failure(column, &not_a_number(text))),
+            _ => Err(self.failure(column, &not_a_number(text, column, self.is_first))),
         }
     }
-}
 
-fn not_a_number(text: &str) -> String {
-    let hint = match text {
-        "" => "; remove the row, or fill the field",
-        _ if text.contains(',') && text.contains('.') => {
-            "; write it without separators of thousands"
+    fn not_whole(&self, number: f64, column: &str, place: usize) -> String {
+        let number_text = shown(number);
+        if number.fract() == 0.0 {
+            return format!(
+                "{number_text} is too large for a count; correct the field, or remove the row"
+            );
         }
-        _ if text.contains(',') => "; write it with a decimal point",
-        _ => "",
-    };
-    format!("{} is not a number{hint}", quoted(text))
-}
-
-/// A field for a message: shortened, without control characters.
-fn quoted(text: &str) -> String {
-    let short: String = text.chars().take(20).flat_map(char::escape_debug).collect();
-    format!("'{short}'")
+        let theirs = self.names.get(place).map_or(column, String::as_str);
+        format!(
+            "{number_text} is not a whole number of counts; if it is an angle, state its unit, for example \
+             --column '{column}={theirs}:deg', or :rad or :rev"
+        )
+    }
 }

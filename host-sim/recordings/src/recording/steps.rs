@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use terminal::failure::Failure;
 
+use super::numbers::shown;
+
 /// Largest relative difference of an even step from the period.
 pub(super) const EVEN: f64 = 0.1;
 
@@ -117,9 +119,10 @@ impl Steps {
         let rate_hz = to_digits(1.0 / period, 7);
         if rate_hz < SLOWEST_HZ {
             return Err(Failure::Input(format!(
-                "{name}: column t: rows {period} s apart are {rate_hz} Hz, which is below {SLOWEST_HZ} \
+                "{name}: column t: rows {} s apart are {rate_hz} Hz, which is below {SLOWEST_HZ} \
                  Hz; t must be in seconds, check that it is not in ms or us, which --column t=NAME:ms \
-                 states"
+                 states",
+                shown(to_digits(period, 7))
             )));
         }
         Ok((period, rate_hz))

@@ -43,6 +43,14 @@ impl Unit {
     pub(super) const fn name(&self) -> &'static str {
         self.names[0]
     }
+
+    /// Number of units of time in a second; 1 for another quantity.
+    pub(super) const fn per_s(&self) -> f64 {
+        match self.scale {
+            Scale::Over(by) => by,
+            _ => 1.0,
+        }
+    }
 }
 
 const fn unit(names: &'static [&'static str], scale: Scale) -> Unit {

@@ -55,7 +55,7 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
     (
         "time-goes-back.csv",
         "",
-        &["line 4: column t: 0.0005 s is before the 0.001 s"],
+        &["line 4: column t: 0.0005 s is before the 0.001 s above it; sort the rows by time"],
     ),
     (
         "seconds-in-ms.csv",
@@ -65,7 +65,10 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
     (
         "two-joints.csv",
         "",
-        &["found: __time; /a/position; /b/position", "--column"],
+        &[
+            "line 1: 2 positions fit a log of PlotJuggler: /a/position; /b/position; name one",
+            "--column 't=__time:s,counts_large=/a/position:rad'",
+        ],
     ),
     (
         "two-controllers.jsonl",
@@ -91,6 +94,21 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
         "own.csv",
         "--column t=time",
         &["no column 'time', which --column names for t; found: t; counts_large"],
+    ),
+    (
+        "own.csv",
+        "--row-rate 500",
+        &["--row-rate 500: column 't' has 1000 rows a second; leave the option out"],
+    ),
+    (
+        "own.csv",
+        "--column t=t:s --row-rate 1000",
+        &["--row-rate 1000: --column names a column of time; leave one of the two out"],
+    ),
+    (
+        "own.csv",
+        "--modulus counts_small=4096",
+        &["--modulus counts_small=4096: there is no column counts_small"],
     ),
     (
         "own.csv",

@@ -1,0 +1,127 @@
+//! What is wrong with a field that is no number, and the remedy.
+
+use super::options::Column;
+
+/// Characters of a field that a message shows.
+const SHOWN: usize = 40;
+
+/// The error for `text` in `column`, the first line of data or a later one.
+pub(super) fn not_a_number(text: &str, column: &str, is_first: bool) -> String {
+    format!(
+        "{} is not a number; {}",
+        quoted(text),
+        remedy(text, column, is_first)
+    )
+}
+
+fn remedy(text: &str, column: &str, is_first: bool) -> String {
+    let digits = |c: char| c.is_ascii_digit();
+    let lower = text.to_lowercase();
+    let is_needed = [Column::T, Column::CountsLarge]
+        .map(Column::name)
+        .contains(&column);
+    match lower.trim_start_matches(['+', '-']) {
+        "" => "remove the row, or fill the field".to_owned(),
+        "nan" | "null" | "none" | "na" | "n/a" | "inf" | "infinity" if is_needed => {
+            "remove the rows without a value".to_owned()
+        }
+        "nan" | "null" | "none" | "na" | "n/a" | "inf" | "infinity" => format!(
+            "remove the rows without a value, or rename the column {column}, which is optional"
+        ),
+        hex if hex.starts_with("0x") => "it is hexadecimal: write it in decimal".to_owned(),
+        list if list.starts_with(['[', '{']) => {
+            "write one JSON object a line, with one number a field".to_owned()
+        }
+        time if time.contains(':') && time.starts_with(digits) => {
+            "it is a time of day or a date: write seconds".to_owned()
+        }
+        minus if minus.starts_with('\u{2212}') => "write the minus sign as '-'".to_owned(),
+        _ if has_thousands(text) => "write it without separators of thousands".to_owned(),
+        _ if text.contains(',') => "write it with a decimal point".to_owned(),
+        _ if is_first && !text.contains(digits) => {
+            "remove the line if it has the units, and state them with --column".to_owned()
+        }
+        _ => "correct the field, or remove the row".to_owned(),
+    }
+}
+
+/// Whether groups of three digits follow the first one: 1,000 or 1'234.5; or `,` and `.` both occur.
+fn has_thousands(text: &str) -> bool {
+    let marks = [',', '\'', '_', ' ', '\u{2019}', '\u{a0}', '\u{202f}'];
+    let whole = text.split('.').next().unwrap_or_default();
+    let mut groups = whole.trim_start_matches(['+', '-']).split(marks);
+    let first = groups.next().unwrap_or_default();
+    let is_number = |group: &str| !group.is_empty() && group.chars().all(|c| c.is_ascii_digit());
+    let groups: Vec<_> = groups.collect();
+    let in_threes = is_number(first)
+        && first.len() <= 3
+        && !groups.is_empty()
+        && groups
+            .iter()
+            .all(|group| is_number(group) && group.len() == 3);
+    in_threes || (text.contains(',') && text.contains('.'))
+}
+
+/// A field for a message: shortened, without control characters.
+fn quoted(text: &str) -> String {
+    let mut short: String = text
+        .chars()
+        .take(SHOWN)
+        .flat_map(char::escape_debug)
+        .collect();
+    if text.chars().count() > SHOWN {
+        short += "...";
+    }
+    format!("'{short}'")
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::recording::Recording;
+
+    #[test]
+    fn field_that_is_no_number_is_reported_with_a_remedy() {
+        for (field, remedy) in [
+            ("nan", "remove the rows without a value"),
+            ("0x1F", "it is hexadecimal: write it in decimal"),
+            (
+                "2025-03-01T12:00:00Z",
+                "it is a time of day or a date: write seconds",
+            ),
+            ("12:00:00.5", "it is a time of day or a date: write seconds"),
+            ("\u{2212}5", "write the minus sign as '-'"),
+            ("\"1,000\"", "write it without separators of thousands"),
+            ("1'000", "write it without separators of thousands"),
+            ("\"1.234,5\"", "write it without separators of thousands"),
+            ("\"1,5\"", "write it with a decimal point"),
+            (
+                "\"[1,2]\"",
+                "write one JSON object a line, with one number a field",
+            ),
+            ("x", "correct the field, or remove the row"),
+        ] {
+            let text = format!("t,counts_large\n0,0\n0.001,{field}\n");
+            let error = Recording::parse(text.as_bytes(), "r.csv").unwrap_err();
+            let said = format!(
+                "r.csv: line 3: column counts_large: '{}' is not a number; {remedy}",
+                field.trim_matches('"').escape_debug()
+            );
+            assert_eq!(error.to_string(), said);
+        }
+        for (text, said) in [
+            (
+                "t,counts_large\ns,counts\n0,0\n",
+                "line 2: column t: 's' is not a number; remove the line if it has the units, and state \
+                 them with --column",
+            ),
+            (
+                "t,counts_large,current\n0,0,NaN\n",
+                "'NaN' is not a number; remove the rows without a value, or rename the column current, \
+                 which is optional",
+            ),
+        ] {
+            let error = Recording::parse(text.as_bytes(), "r.csv").unwrap_err();
+            assert!(error.to_string().contains(said), "{error}");
+        }
+    }
+}

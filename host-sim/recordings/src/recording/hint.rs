@@ -1,0 +1,127 @@
+//! Options that would read a log without a needed column.
+
+use super::endings::Ending;
+use super::formats::Ambiguous;
+use super::header::short;
+use super::layout::{Layout, Places};
+use super::options::Column;
+use super::units::Quantity;
+
+/// Characters of the longest name that a hint repeats; a longer one is called by its number.
+const LONGEST: usize = 80;
+
+/// Positions that a message lists.
+const LISTED: usize = 4;
+
+/// The option `--column`, with names and units.
+pub(super) fn option(layout: &Layout) -> String {
+    if layout.names.iter().all(String::is_empty) {
+        return "the file has no names of columns; write t,counts_large in its first line"
+            .to_owned();
+    }
+    if !layout.has_header() {
+        return "give the numbers of the columns, for example --column t=1:s,counts_large=2:counts"
+            .to_owned();
+    }
+    let time = ["time", "stamp", "sec", "ms"];
+    let position = ["count", "enc", "pos", "angle", "theta"];
+    let parts = [
+        guess(layout, Column::T, &time, "TIME"),
+        guess(layout, Column::CountsLarge, &position, "POSITION"),
+    ];
+    let parts: Vec<_> = parts.into_iter().flatten().collect();
+    format!(
+        "name the columns and units, for example --column '{}'",
+        parts.join(",")
+    )
+}
+
+/// The part of `--column` for `column`, whose name probably has one of the `words`; `None` if the
+/// column has its own name.
+fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Option<String> {
+    let (ours, quantity) = (column.name(), column.quantity());
+    let place = |is: &dyn Fn(&str) -> bool| layout.names.iter().position(|name| is(name));
+    let like = |name: &str| {
+        let name = name.to_lowercase();
+        words.iter().any(|word| name.contains(word))
+    };
+    let place = place(&|name| name == ours)
+        .or_else(|| place(&|name| name.to_lowercase() == ours))
+        .or_else(|| place(&like));
+    let Some(place) = place else {
+        return Some(format!("{ours}={unknown}:{}", example(quantity)));
+    };
+    let name = &layout.names[place];
+    let unit = match Ending::of(quantity, name) {
+        Ending::Unit(_) => String::new(),
+        _ => format!(":{}", example(quantity)),
+    };
+    (name != ours).then(|| format!("{ours}={}{unit}", theirs(layout, place)))
+}
+
+/// What an option calls the column at `place`: its name, or its number where the name is too long or
+/// needs more than quotes in a shell.
+pub(super) fn theirs(layout: &Layout, place: usize) -> String {
+    let name = &layout.names[place];
+    let is_plain = |c: char| !c.is_control() && c != '\'' && c != '\u{fffd}';
+    match name.chars().count() <= LONGEST && name.chars().all(is_plain) {
+        true => name.clone(),
+        false => (place + 1).to_string(),
+    }
+}
+
+/// A reason for a missing column that is better than its name.
+pub(super) fn reason(layout: &Layout, places: &Places) -> Option<String> {
+    ambiguous(layout, places).or_else(|| labelled(layout))
+}
+
+/// Several positions in a known log.
+fn ambiguous(layout: &Layout, places: &Places) -> Option<String> {
+    let found =
+        Ambiguous::of(&layout.names).filter(|_| places.get(Column::CountsLarge).is_none())?;
+    let names = found
+        .positions
+        .iter()
+        .map(|&place| short(&layout.names[place]));
+    let mut names: Vec<_> = names.take(LISTED).collect();
+    if found.positions.len() > LISTED {
+        names.push("...".to_owned());
+    }
+    let time = match places.get(Column::T) {
+        Some(_) => String::new(),
+        None => format!(
+            "t={}:{},",
+            theirs(layout, found.time.place),
+            found.time.unit
+        ),
+    };
+    Some(format!(
+        "{} positions fit a log of {}: {}; name one, for example --column '{time}counts_large={}:{}'",
+        found.positions.len(),
+        found.format.name,
+        names.join("; "),
+        theirs(layout, found.positions[0]),
+        found.unit
+    ))
+}
+
+/// Rows whose fields are `name:number`.
+fn labelled(layout: &Layout) -> Option<String> {
+    let is_labelled = |field: &String| {
+        let label = field.split_once(':');
+        label.is_some_and(|(name, number)| !name.is_empty() && number.trim().parse::<f64>().is_ok())
+    };
+    let first = layout.names.first()?;
+    layout.names.iter().all(is_labelled).then(|| {
+        format!(
+            "each row has the names of its numbers: '{}'; write the names in the first line alone, and \
+             numbers below",
+            short(first)
+        )
+    })
+}
+
+/// A unit for an example.
+pub(super) const fn example(quantity: Quantity) -> &'static str {
+    quantity.units()[0].name()
+}

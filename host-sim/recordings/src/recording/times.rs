@@ -1,0 +1,168 @@
+//! Times of the rows while they are read.
+
+use terminal::failure::Failure;
+
+use super::numbers::shown;
+use super::row::Row;
+use super::steps::to_digits;
+
+/// Largest difference of the mean rate of the rows from that of --row-rate, relative.
+const SAME_RATE: f64 = 0.05;
+
+/// Number of values of a counter of 32 bits.
+const WRAP: f64 = 4_294_967_296.0;
+
+/// A day, s.
+const DAY_S: f64 = 86_400.0;
+
+/// Part of a distance from which the time at a wrap, at midnight or at a new run may differ.
+const NEAR: f64 = 0.01;
+
+/// Error for a row at `t` below one at `last`, s. `first` is the first time of the log, and its column
+/// has `per_s` units a second.
+pub(super) fn back(row: &Row, t: f64, [first, last]: [f64; 2], per_s: f64) -> Failure {
+    let back = last - t;
+    let is = |distance: f64| (back - distance).abs() < NEAR * distance;
+    let remedy = if is(WRAP / per_s) {
+        "a counter of 32 bits wraps: add 2^32 to the times from there on"
+    } else if is(DAY_S) {
+        "midnight has passed: add a day to the times from there on"
+    } else if (t - first).abs() <= NEAR * (last - first) {
+        "a second run begins: cut the log there"
+    } else {
+        "sort the rows by time, or remove the row"
+    };
+    let [t, last] = [t, last].map(shown);
+    row.failure(
+        "t",
+        &format!("{t} s is before the {last} s above it; {remedy}"),
+    )
+}
+
+/// The log's own times, which --row-rate replaces.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Replaced {
+    first: Option<f64>,
+    last: f64,
+    rows: u64,
+}
+
+impl Replaced {
+    /// Adds a time of the log, s.
+    pub(super) fn add(&mut self, t: f64) {
+        self.first.get_or_insert(t);
+        self.last = t;
+        self.rows += 1;
+    }
+
+    /// Note on the column `theirs` that is not used; `None` if there are no times in it.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if the rows of the recording `name` come at another rate than `rate_hz`.
+    pub(super) fn check(
+        &self,
+        name: &str,
+        theirs: &str,
+        rate_hz: f64,
+    ) -> Result<Option<String>, Failure> {
+        let duration_s = self.last - self.first.unwrap_or(self.last);
+        if self.rows < 2 || duration_s <= 0.0 {
+            return Ok(None);
+        }
+        let own_hz = (self.rows - 1) as f64 / duration_s;
+        if (own_hz / rate_hz - 1.0).abs() > SAME_RATE {
+            return Err(Failure::Input(format!(
+                "{name}: --row-rate {rate_hz}: column '{theirs}' has {} rows a second; leave the \
+                 option out, or rename the column if it is no time",
+                shown(to_digits(own_hz, 6))
+            )));
+        }
+        Ok(Some(format!(
+            "rows are 1/{rate_hz} s apart, as --row-rate states; the times of column '{theirs}' are not used"
+        )))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::recording::{ReadOptions, Recording};
+
+    fn read(text: &str, columns: &str, row_rate_hz: Option<f64>) -> Result<Recording, String> {
+        let mut options = ReadOptions::default();
+        if !columns.is_empty() {
+            options.add_columns(columns).unwrap();
+        }
+        if let Some(hz) = row_rate_hz {
+            options.set_row_rate(hz).unwrap();
+        }
+        Recording::parse_as(text.as_bytes(), "r.csv", &options).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn time_that_goes_back_is_reported_with_the_reason() {
+        for (unit, times, said) in [
+            (
+                "us",
+                &[4_294_965_296_u64, 4_294_966_296, 0][..],
+                "a counter of 32 bits wraps: add 2^32",
+            ),
+            (
+                "ms",
+                &[86_399_980, 86_399_990, 0],
+                "midnight has passed: add a day",
+            ),
+            (
+                "ms",
+                &[5, 6, 7, 8, 5],
+                "a second run begins: cut the log there",
+            ),
+            (
+                "ms",
+                &[5, 6, 8, 7],
+                "sort the rows by time, or remove the row",
+            ),
+        ] {
+            let rows: String = times.iter().map(|t| format!("{t},0\n")).collect();
+            let error = read(
+                &format!("t,counts_large\n{rows}"),
+                &format!("t=t:{unit}"),
+                None,
+            );
+            let error = error.unwrap_err();
+            let line = format!("r.csv: line {}: column t: ", times.len() + 1);
+            assert!(error.starts_with(&line) && error.contains(said), "{error}");
+        }
+    }
+
+    #[test]
+    fn rate_of_the_rows_that_differs_from_their_times_is_refused() {
+        let mut text = String::from("t,counts_large,edge_tick,edge_bound\n");
+        for k in 0..50 {
+            // Times that are up to 0.4 ms late, and an edge 0.2 ms before each.
+            let t = f64::from(k) * 1e-3 + 0.1e-3 * f64::from(k % 5);
+            text += &format!("{t},{k},{},{k}\n", 84e6 * (t - 0.2e-3));
+        }
+        let error = read(&text, "", Some(500.0)).unwrap_err();
+        let said = "r.csv: --row-rate 500: column 't' has 99";
+        assert!(
+            error.starts_with(said) && error.contains("leave the option out"),
+            "{error}"
+        );
+        let recording = read(&text, "", Some(1000.0)).unwrap();
+        assert_eq!(recording.t[49], 0.049);
+        let said =
+            "rows are 1/1000 s apart, as --row-rate states; the times of column 't' are not used";
+        assert_eq!(recording.notes, [said]);
+        // The age of an edge follows from the log's own times.
+        let ages = recording.trace.edges.unwrap();
+        assert!(
+            ages.iter()
+                .all(|edge| (edge.unwrap().age_s - 0.2e-3).abs() < 1e-9)
+        );
+        let error = read(&text, "t=t", Some(1000.0)).unwrap_err();
+        assert!(
+            error.contains("--row-rate 1000: --column names a column of time"),
+            "{error}"
+        );
+    }
+}
