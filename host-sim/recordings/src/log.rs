@@ -1,14 +1,18 @@
 //! Logs: files, one of which can be standard input.
 
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Cursor, Read};
 use std::path::{Path, PathBuf};
 
+use flate2::read::MultiGzDecoder;
 use terminal::failure::Failure;
 use terminal::output::sum;
 
 /// Name of standard input in messages, and as a recording.
 const STDIN: &str = "standard input";
+
+/// First bytes of a gzip file.
+const GZIP: [u8; 2] = [0x1F, 0x8B];
 
 /// Number of first bytes that hold a header.
 const HEAD: u64 = 1 << 16;
@@ -99,18 +103,31 @@ impl Log {
         &self.path
     }
 
-    /// Its bytes from the begin.
+    /// Its bytes from the begin, unpacked if they are those of gzip.
     ///
     /// # Errors
     /// As [`Log::open`].
     pub fn reader(&self) -> Result<Box<dyn Read + '_>, Failure> {
-        match &self.bytes {
-            Some(bytes) => Ok(Box::new(bytes.as_slice())),
-            None => match File::open(&self.path) {
-                Ok(file) => Ok(Box::new(file)),
-                Err(error) => Err(cannot_read(&self.name, &error)),
-            },
-        }
+        let mut packed: Box<dyn Read> = match &self.bytes {
+            Some(bytes) => Box::new(bytes.as_slice()),
+            None => Box::new(File::open(&self.path).map_err(|error| self.failure(&error))?),
+        };
+        let mut begin = Vec::new();
+        let read = packed
+            .by_ref()
+            .take(GZIP.len() as u64)
+            .read_to_end(&mut begin);
+        read.map_err(|error| self.failure(&error))?;
+        let is_gzip = begin == GZIP;
+        let whole = Cursor::new(begin).chain(packed);
+        Ok(match is_gzip {
+            true => Box::new(Unpacked(MultiGzDecoder::new(whole))),
+            false => Box::new(whole),
+        })
+    }
+
+    fn failure(&self, error: &io::Error) -> Failure {
+        cannot_read(&self.name, error)
     }
 
     /// Checksum of its bytes.
@@ -136,6 +153,17 @@ impl Log {
     }
 }
 
-fn cannot_read(name: &str, error: &std::io::Error) -> Failure {
+/// Bytes that are unpacked.
+struct Unpacked<R>(MultiGzDecoder<R>);
+
+impl<R: Read> Read for Unpacked<R> {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        let broken =
+            |error| io::Error::other(format!("not a complete gzip file: {error}; copy it again"));
+        self.0.read(to).map_err(broken)
+    }
+}
+
+fn cannot_read(name: &str, error: &io::Error) -> Failure {
     Failure::Input(format!("{name}: cannot read: {error}"))
 }

@@ -12,6 +12,7 @@ mod formats;
 mod header;
 mod hint;
 mod json;
+mod kinds;
 mod layout;
 mod lines;
 mod numbers;
@@ -31,7 +32,6 @@ mod times;
 mod units;
 mod write;
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -44,6 +44,7 @@ pub use parts::Parts;
 pub use stated::{counts_per_rev_line, stated_counts_per_rev};
 pub use survey::Survey;
 
+use crate::log::Log;
 use columns::Columns;
 use records::Records;
 
@@ -110,10 +111,8 @@ impl Recording {
     /// # Errors
     /// [`Failure::Input`], one line that names file, line and column.
     pub fn read(path: &Path) -> Result<Self, Failure> {
-        let name = path.display().to_string();
-        let file = File::open(path)
-            .map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
-        Self::parse(file, &name)
+        let log = Log::open(path)?;
+        Self::parse(log.reader()?, log.name())
     }
 
     /// Reads text called `name` in messages, as [`Recording::read`].

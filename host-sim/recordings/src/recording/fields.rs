@@ -5,13 +5,14 @@ use super::options::Column;
 /// Characters of a field that a message shows.
 const SHOWN: usize = 40;
 
-/// The error for `text` in `column`, the first line of data or a later one.
-pub(super) fn not_a_number(text: &str, column: &str, is_first: bool) -> String {
-    format!(
-        "{} is not a number; {}",
-        quoted(text),
-        remedy(text, column, is_first)
-    )
+/// The error for `text` in `column`, which the log calls `theirs`. `is_first` is true for the row below
+/// the header.
+pub(super) fn not_a_number(text: &str, [column, theirs]: [&str; 2], is_first: bool) -> String {
+    let remedy = match text == theirs {
+        true => "the header is repeated: cut the log there".to_owned(),
+        false => remedy(text, column, is_first),
+    };
+    format!("{} is not a number; {remedy}", quoted(text))
 }
 
 fn remedy(text: &str, column: &str, is_first: bool) -> String {
@@ -109,6 +110,10 @@ mod tests {
             assert_eq!(error.to_string(), said);
         }
         for (text, said) in [
+            (
+                "x,counts_large,t\n0,0,0\nx,counts_large,t\n",
+                "line 3: column t: 't' is not a number; the header is repeated: cut the log there",
+            ),
             (
                 "t,counts_large\ns,counts\n0,0\n",
                 "line 2: column t: 's' is not a number; remove the line if it has the units, and state \

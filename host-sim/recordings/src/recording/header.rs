@@ -169,6 +169,10 @@ mod tests {
                 "--column 't=stamp:s,counts_large=robot/joint_states/left_arm/shoulder_lift/counts_raw:counts'",
             ),
             (
+                "t_us,joint [deg]\n0,1\n",
+                "--column 't=t_us,counts_large=joint [deg]'",
+            ),
+            (
                 "stamp,the user's count\n0,1\n",
                 "--column 't=stamp:s,counts_large=2'",
             ),

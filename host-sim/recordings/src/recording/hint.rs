@@ -47,7 +47,8 @@ fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Opti
     };
     let place = place(&|name| name == ours)
         .or_else(|| place(&|name| name.to_lowercase() == ours))
-        .or_else(|| place(&like));
+        .or_else(|| place(&like))
+        .or_else(|| place(&|name| matches!(Ending::of(quantity, name), Ending::Unit(_))));
     let Some(place) = place else {
         return Some(format!("{ours}={unknown}:{}", example(quantity)));
     };

@@ -89,6 +89,26 @@ impl<R: BufRead> Json<R> {
     }
 }
 
+/// Checks that the text that begins with `head` has no other layout of JSON than one object a line.
+///
+/// # Errors
+/// [`Failure::Input`] with the remedy.
+pub(super) fn check(head: &str, name: &str) -> Result<(), Failure> {
+    let text = head.trim_start();
+    let inside = text.strip_prefix('[').map(str::trim_start);
+    let is_array = inside.is_some_and(|inside| inside.starts_with(['{', '[']));
+    let first = text.lines().next().unwrap_or_default();
+    let is_row = first.starts_with('[') && serde_json::from_str::<Vec<Value>>(first).is_ok();
+    let what = match (is_array || is_row, first.trim_end()) {
+        (true, _) => "a JSON array",
+        (_, "{") => "a JSON object of several lines",
+        _ => return Ok(()),
+    };
+    Err(Failure::Input(format!(
+        "{name}: line 1: {what}; write one JSON object a line, for example {{\"t\": 0.001, \"counts_large\": 8}}"
+    )))
+}
+
 /// Names of the fields of the first object in `head` that is read.
 pub(super) fn names(head: &str) -> Vec<String> {
     let objects = || head.lines().filter_map(|line| fields(line.as_bytes()));
@@ -178,5 +198,30 @@ mod tests {
         assert_eq!(text(fields.get("b")), "");
         assert_eq!(text(fields.get("c")), "NaN \" NaN");
         assert_eq!(text(fields.get("d")), "[null,1]");
+    }
+
+    #[test]
+    fn other_layouts_of_json_are_refused() {
+        for (text, what) in [
+            ("[{\"t\": 0.0, \"counts_large\": 0},", "a JSON array"),
+            ("[\n {\n  \"t\": 0.0,\n", "a JSON array"),
+            ("[0.0, 0]\n[0.001, 8]\n", "a JSON array"),
+            (
+                "{\n  \"t\": [0, 0.001],\n",
+                "a JSON object of several lines",
+            ),
+        ] {
+            let error = check(text, "r.json").unwrap_err().to_string();
+            let said =
+                format!("r.json: line 1: {what}; write one JSON object a line, for example ");
+            assert!(error.starts_with(&said), "{error}");
+        }
+        for text in [
+            "{\"t\": 0}\n",
+            "[info] a log\nt,counts_large\n0,1\n",
+            "t,x\n",
+        ] {
+            check(text, "r").unwrap();
+        }
     }
 }

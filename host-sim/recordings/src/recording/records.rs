@@ -7,6 +7,7 @@ use csv::ByteRecord;
 use terminal::failure::Failure;
 
 use super::json::{self, Json};
+use super::kinds;
 use super::layout::Layout;
 use super::options::ReadOptions;
 use super::row::Row;
@@ -14,6 +15,10 @@ use super::separator::{Lines, Separator};
 
 /// Bytes at the begin of a log in which its layout is searched.
 const HEAD: u64 = 1 << 16;
+
+/// Bytes and lines of a row from which a quote is taken as one that has no end.
+const QUOTED: usize = 256;
+const QUOTED_LINES: usize = 20;
 
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
@@ -42,11 +47,7 @@ impl<'a> Records<'a> {
         let mut head = Vec::new();
         let read = input.by_ref().take(HEAD).read_to_end(&mut head);
         read.map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
-        if head.starts_with(b"\xFF\xFE") || head.starts_with(b"\xFE\xFF") {
-            return Err(Failure::Input(format!(
-                "{name}: line 1: the text is in UTF-16; save it in UTF-8"
-            )));
-        }
+        kinds::check(&head, name)?;
         if head.starts_with(BYTE_ORDER_MARK) {
             head.drain(..BYTE_ORDER_MARK.len());
         }
@@ -54,6 +55,7 @@ impl<'a> Records<'a> {
         let end = if head.contains(&b'\n') { b'\n' } else { b'\r' };
         let text = String::from_utf8_lossy(&head).replace(char::from(end), "\n");
         let is_json = text.trim_start().starts_with('{');
+        json::check(&text, name)?;
         let layout = match is_json {
             true => Layout {
                 separator: Separator::Comma,
@@ -90,11 +92,14 @@ impl<'a> Records<'a> {
             Source::Text(reader) => {
                 let read = reader.read_byte_record(&mut self.record);
                 let read = read.map_err(|error| {
-                    let line = error.position().map_or(1, csv::Position::line);
-                    Failure::Input(format!("{}: line {line}: cannot read: {error}", self.name))
+                    let line = error.position().map(|at| format!("line {}: ", at.line()));
+                    let line = line.unwrap_or_default();
+                    Failure::Input(format!("{}: {line}cannot read: {error}", self.name))
                 })?;
                 // The reader is at the begin of the next line.
-                read.then(|| reader.position().line() - 1)
+                let line = read.then(|| reader.position().line() - 1);
+                closed(&self.record, line, self.name)?;
+                line
             }
         };
         let Some(line) = line else {
@@ -128,5 +133,28 @@ impl<'a> Records<'a> {
             false => "; remove the line if the log was cut there",
         };
         format!("{name}: line {line}: {fields} fields where {model} has {names}{remedy}")
+    }
+}
+
+/// Checks that the quotes of `record`, which ends in `line`, end near where they begin.
+///
+/// # Errors
+/// [`Failure::Input`] with the line of the quote.
+fn closed(record: &ByteRecord, line: Option<u64>, name: &str) -> Result<(), Failure> {
+    if record.as_slice().len() < QUOTED {
+        return Ok(());
+    }
+    let ends = record
+        .as_slice()
+        .iter()
+        .filter(|byte| **byte == b'\n')
+        .count();
+    match ends > QUOTED_LINES {
+        false => Ok(()),
+        true => Err(Failure::Input(format!(
+            "{name}: line {}: a quote (\") begins a field that has no end within {QUOTED_LINES} lines; close \
+             it, or remove it",
+            line.unwrap_or_default().saturating_sub(ends as u64)
+        ))),
     }
 }

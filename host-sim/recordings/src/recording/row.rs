@@ -37,7 +37,7 @@ impl Row<'_> {
         let text = self.text(column, place)?;
         match self.parse(text) {
             Some(number) if number.is_finite() => Ok(number),
-            _ => Err(self.failure(column, &not_a_number(text, column, self.is_first))),
+            _ => Err(self.failure(column, &self.not_a_number(text, column, place))),
         }
     }
 
@@ -65,8 +65,17 @@ impl Row<'_> {
             Some(number) if number.is_finite() => {
                 Err(self.failure(column, &self.not_whole(number, column, place)))
             }
-            _ => Err(self.failure(column, &not_a_number(text, column, self.is_first))),
+            _ => Err(self.failure(column, &self.not_a_number(text, column, place))),
         }
+    }
+
+    fn not_a_number(&self, text: &str, column: &str, place: usize) -> String {
+        not_a_number(text, [column, self.theirs(column, place)], self.is_first)
+    }
+
+    /// The name of a column in the log.
+    fn theirs<'b>(&'b self, column: &'b str, place: usize) -> &'b str {
+        self.names.get(place).map_or(column, String::as_str)
     }
 
     fn not_whole(&self, number: f64, column: &str, place: usize) -> String {
@@ -76,7 +85,7 @@ impl Row<'_> {
                 "{number_text} is too large for a count; correct the field, or remove the row"
             );
         }
-        let theirs = self.names.get(place).map_or(column, String::as_str);
+        let theirs = self.theirs(column, place);
         format!(
             "{number_text} is not a whole number of counts; if it is an angle, state its unit, for example \
              --column '{column}={theirs}:deg', or :rad or :rev"

@@ -4,6 +4,7 @@ use simulation::trace::EDGE_CLOCK_HZ;
 use terminal::failure::Failure;
 
 use super::numbers::shown;
+use super::units::Quantity;
 
 /// Largest share of the stamps that may lie beside their rows: more have another unit or another origin.
 const MOST_BESIDE: f64 = 0.1;
@@ -84,8 +85,9 @@ impl Stamps {
         let remedy = match first.wraps {
             true => "a counter of 32 bits wraps: add 2^32 to the stamps after each wrap".to_owned(),
             false => format!(
-                "stamps are on the scale of t; state their unit, for example --column \
-                 'edge_tick={theirs}:us'"
+                "stamps are on the scale of t; state their unit ({}), for example --column \
+                 'edge_tick={theirs}:us'",
+                Quantity::Edge.list()
             ),
         };
         Err(Failure::Input(format!(
@@ -132,7 +134,8 @@ mod tests {
             "{error}"
         );
         let said = "s, where the row before is at 5 s and the row at 5.001 s (99 of 99 new stamps); stamps \
-                    are on the scale of t; state their unit, for example --column 'edge_tick=edge_tick:us'";
+                    are on the scale of t; state their unit (ticks, s, ms, us, ns), for example --column \
+                    'edge_tick=edge_tick:us'";
         assert!(error.contains(said), "{error}");
         let recording = read(&seconds, "edge_tick=edge_tick:s").unwrap();
         let age = recording.trace.edges.unwrap()[50].unwrap().age_s;
