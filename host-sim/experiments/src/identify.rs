@@ -53,12 +53,14 @@ const MOST_UNEXPLAINED: f64 = 0.10;
 const WINDOW_S: f64 = 0.04;
 
 /// Identifies a device from its recordings, each with its name for messages. `clamped` states that
-/// the handle was clamped in recordings without `counts_small`.
+/// the handle was clamped in recordings without `counts_small`. `current_options` are the parts of `--column`
+/// that name the current of each recording, for messages.
 ///
 /// # Errors
 /// [`Failure::Input`] if the recordings are not sufficient: what is missing, and how to record it.
 pub fn identify(
     recordings: &[(String, Recording)],
+    current_options: &[Option<String>],
     device: &Device,
     known: Known,
     clamped: bool,
@@ -68,7 +70,9 @@ pub fn identify(
         if recording.trace.counts_small.is_none() && !clamped {
             return Err(unseen(name, device));
         }
-        gathered.add(name, recording, (index, recordings.len()), device)?;
+        let current_option = current_options.get(index).and_then(Option::as_deref);
+        let place = (index, recordings.len());
+        gathered.add(name, recording, place, current_option, device)?;
     }
     let fit = gathered.fit(device).map_err(|why| {
         let name = recordings.first().map_or("", |(name, _)| name);

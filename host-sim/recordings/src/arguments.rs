@@ -8,7 +8,9 @@ use simulation::device::{COUNTS_PER_REV, Device};
 use terminal::failure::Failure;
 
 use crate::log::{Log, file_name, short_name};
-use crate::recording::{BoardColumns, ReadOptions, Recording, Survey, stated_counts_per_rev};
+use crate::recording::{
+    BoardColumns, ReadOptions, Recording, Survey, current_option, stated_counts_per_rev,
+};
 
 /// The parser of an option with counts per revolution.
 #[must_use]
@@ -134,6 +136,14 @@ impl RecordingOptions {
             recording.resample(hz, log.name())?;
         }
         Ok(recording)
+    }
+
+    /// The part of `--column` that names the motor current, as [`current_option`].
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that names the file, or the option.
+    pub fn current_option(&self, log: &Log, device: &Device) -> Result<Option<String>, Failure> {
+        current_option(log.reader()?, log.name(), &self.options(device)?)
     }
 
     /// Reads a whole recording with the columns that the board has, for the device of `file`.

@@ -138,6 +138,21 @@ impl Recording {
     }
 }
 
+/// `current=NAME`: the part of `--column` that names the motor current of a log called `name`, with the
+/// columns of `options`; or the part for the column that probably has it, if none is read. `None` if there
+/// is no such column.
+///
+/// # Errors
+/// As [`Recording::read`].
+pub fn current_option(
+    input: impl Read,
+    name: &str,
+    options: &ReadOptions,
+) -> Result<Option<String>, Failure> {
+    let layout = Records::open(input, name, options)?.layout;
+    Ok(hint::current(&layout.places(options, name)?, &layout))
+}
+
 /// Names of the optional and the necessary columns of a trace, with their number of rows.
 fn lengths(columns: &Trace) -> [(&'static str, Option<usize>); 5] {
     [

@@ -61,15 +61,17 @@ pub(super) fn run(options: &Identify, command_line: &str) -> Result<(), Failure>
         Some(text) => Known::parse(text)?,
         None => Known::TorqueConstant(device.stages.large.torque_constant),
     };
-    let mut recordings = Vec::new();
+    let (mut recordings, mut current_options) = (Vec::new(), Vec::new());
     let counts_are_known = !notes.is_empty() || options.read.encoder.counts_per_rev.is_some();
     for log in &logs {
         let name = short_name(log.path());
         let recording = options.read.read(log, &device)?;
         notes.extend(recording.notes.iter().map(|line| format!("{name}: {line}")));
         recordings.push((name, recording));
+        current_options.push(options.read.current_option(log, &device)?);
     }
-    let mut found = identify::identify(&recordings, &device, known, options.clamped)?;
+    let clamped = options.clamped;
+    let mut found = identify::identify(&recordings, &current_options, &device, known, clamped)?;
     if !options.device.is_given() && !counts_are_known {
         found.assumed.insert(0, identify::default_counts(&device));
     }

@@ -149,8 +149,25 @@ fn logs_that_tell_nothing_are_refused_for_their_reason() {
     let rows: String = rows.collect();
     folder.write("log.csv", format!("t,counts_large,current\n{rows}"));
     let line = folder.refused(&CLAMPED);
-    assert!(line.contains("give --column current=current:mA"), "{line}");
+    assert!(
+        line.contains("give --column 'current=current:mA'"),
+        "{line}"
+    );
     folder.good(&[&CLAMPED[..], &["--column", "current=current:mA"]].concat());
+
+    // The option names the column of the log.
+    let named = |name: &str| format!("t,counts_large,{name}\n{rows}");
+    folder.write("log.csv", named("current_mA"));
+    let line = folder.refused(&CLAMPED);
+    let said = "no column current; torques cannot be identified from counts alone: name it, for example \
+                --column 'current=current_mA'";
+    assert!(line.contains(said), "{line}");
+    folder.good(&[&CLAMPED[..], &["--column", "current=current_mA"]].concat());
+    let line = folder.refused(&[&CLAMPED[..], &["--column", "current=current_mA:A"]].concat());
+    assert!(
+        line.contains("give --column 'current=current_mA:mA'"),
+        "{line}"
+    );
 
     let steady = |k: u32| format!("{},{},0.5\n", f64::from(k) * 1e-3, 7 * k);
     let rows: String = (0..8000).map(steady).collect();

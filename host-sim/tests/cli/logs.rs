@@ -4,6 +4,7 @@
 mod commands;
 mod motion;
 mod notes;
+mod packed;
 mod refused;
 mod units;
 

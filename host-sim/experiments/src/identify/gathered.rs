@@ -30,6 +30,8 @@ pub(super) struct Gathered {
     /// The longest travel of each shaft, rad.
     pub(super) travel: [f64; 2],
     pub(super) largest_current: f64,
+    /// The part of `--column` that names the current of the first recording.
+    current_option: Option<String>,
     slowest_hz: Option<f64>,
     /// The smallest and largest velocity of a window, rad/s.
     velocities: Option<[f64; 2]>,
@@ -40,20 +42,25 @@ pub(super) struct Gathered {
 }
 
 impl Gathered {
-    /// Adds a recording; `place` is its index and the number of recordings.
+    /// Adds a recording; `place` is its index and the number of recordings, and `current_option` the part
+    /// of `--column` that names its current.
     pub(super) fn add(
         &mut self,
         name: &str,
         recording: &Recording,
         place: (usize, usize),
+        current_option: Option<&str>,
         device: &Device,
     ) -> Result<(), Failure> {
         let trace = &recording.trace;
         let period_s = trace.period_s();
         let Some(current) = &trace.current else {
+            let remedy = match current_option {
+                Some(option) => format!("name it, for example --column '{option}'"),
+                None => "record scene excite with the large motor's current".to_owned(),
+            };
             return Err(Failure::Input(format!(
-                "{name}: line 1: no column current; torques cannot be identified from counts alone: \
-                 record scene excite with the large motor's current"
+                "{name}: line 1: no column current; torques cannot be identified from counts alone: {remedy}"
             )));
         };
         let motion = |counts: &[u32], counts_per_rev| Motion::new(counts, counts_per_rev, period_s);
@@ -76,6 +83,9 @@ impl Gathered {
         self.large.add(&shaft, place.0, place.1);
         self.velocities = own.velocities(WINDOW_S, period_s, self.velocities);
         self.travel[0] = self.travel[0].max(own.travel());
+        if let (Some(option), None) = (current_option, &self.current_option) {
+            self.current_option = Some(option.to_owned());
+        }
         let largest = current.iter().fold(0.0_f64, |m, i| m.max(i.abs()));
         self.largest_current = self.largest_current.max(largest);
         let slowest = self.slowest_hz.unwrap_or(trace.rate_hz);
@@ -123,9 +133,10 @@ impl Gathered {
         }
         let (largest, limit) = (self.largest_current, device.stages.large.current_limit);
         if largest > IMPLAUSIBLE_CURRENT * limit {
+            let option = self.current_option.as_deref().unwrap_or("current=current");
             return Err(format!(
                 "column current reaches {largest} A, where large.current_limit_a is {limit}; if it is in mA, \
-                 give --column current=current:mA"
+                 give --column '{option}:mA'"
             ));
         }
         let Some(fit) = Fit::new(&self.large.usable) else {

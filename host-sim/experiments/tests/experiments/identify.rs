@@ -65,7 +65,7 @@ fn torque_constant(device: &Device) -> Known {
 fn found(recordings: Vec<Recording>, known: Known) -> Result<Identification, String> {
     let named = recordings.into_iter().map(|r| ("r.csv".to_owned(), r));
     let named: Vec<_> = named.collect();
-    identify(&named, &Device::default(), known, false).map_err(|failure| failure.to_string())
+    identify(&named, &[], &Device::default(), known, false).map_err(|failure| failure.to_string())
 }
 
 fn truth(device: &Device, key: &str) -> f64 {

@@ -36,6 +36,17 @@ pub(super) fn option(layout: &Layout) -> String {
     )
 }
 
+/// The part of `--column` without a unit that names the column of the motor current, or the part for a
+/// column that probably has it; `None` if there is no such column.
+pub(super) fn current(places: &Places, layout: &Layout) -> Option<String> {
+    let read = [Column::CurrentMeasured, Column::Current].map(|column| places.get(column));
+    if let Some(at) = read.into_iter().flatten().next() {
+        return Some(format!("{}={}", at.column.name(), theirs(layout, at.place)));
+    }
+    let words = ["current", "iq", "i_q", "amp", "torque", "effort"];
+    guess(layout, Column::Current, &words, "").filter(|part| !part.starts_with("current=:"))
+}
+
 /// The part of `--column` for `column`, whose name probably has one of the `words`; `None` if the
 /// column has its own name.
 fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Option<String> {

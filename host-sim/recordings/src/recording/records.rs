@@ -144,11 +144,10 @@ fn closed(record: &ByteRecord, line: Option<u64>, name: &str) -> Result<(), Fail
     if record.as_slice().len() < QUOTED {
         return Ok(());
     }
-    let ends = record
-        .as_slice()
-        .iter()
-        .filter(|byte| **byte == b'\n')
-        .count();
+    // The end of the last line is in the field too where the quote has no end.
+    let text = record.as_slice();
+    let text = text.strip_suffix(b"\n").unwrap_or(text);
+    let ends = text.iter().filter(|byte| **byte == b'\n').count();
     match ends > QUOTED_LINES {
         false => Ok(()),
         true => Err(Failure::Input(format!(
