@@ -22,6 +22,9 @@ const KINDS: [(&[u8], &str, &str); 9] = [
 /// Bytes that are searched for the encoding.
 const SEARCHED: usize = 256;
 
+/// The file is no text if more than one of this many bytes is a control character.
+const CONTROL_PART: usize = 20;
+
 /// Checks that the log called `name` with the first bytes `head` is text in UTF-8.
 ///
 /// # Errors
@@ -35,6 +38,11 @@ pub(super) fn check(head: &[u8], name: &str) -> Result<(), Failure> {
         return refused(&format!(
             "the text is in UTF-16; save it in UTF-8, for example with iconv -f {encoding} -t UTF-8"
         ));
+    }
+    let head = &head[..head.len().min(SEARCHED)];
+    let is_control = |byte: &&u8| byte.is_ascii_control() && !byte.is_ascii_whitespace();
+    if head.iter().filter(is_control).count() > head.len() / CONTROL_PART {
+        return refused("the file is not text; write it as CSV");
     }
     Ok(())
 }
@@ -73,6 +81,11 @@ mod tests {
             "r.csv: line 1: this is a zip file; unpack it with unzip -p, or give the text as -"
         );
         assert!(error(b"\x28\xB5\x2F\xFDxyz").contains("unpack it with zstd -dc"));
+        let binary: Vec<u8> = (0..=255).collect();
+        assert_eq!(
+            error(&binary),
+            "r.csv: line 1: the file is not text; write it as CSV"
+        );
     }
 
     #[test]

@@ -15,6 +15,9 @@ const WRAP: f64 = 4_294_967_296.0;
 /// A day, s.
 const DAY_S: f64 = 86_400.0;
 
+/// Longest run of a log, s: beyond it a time is wrong.
+const LONGEST_RUN_S: f64 = 1e8;
+
 /// Part of a distance from which the time at a wrap, at midnight or at a new run may differ.
 const NEAR: f64 = 0.01;
 
@@ -27,7 +30,7 @@ pub(super) fn back(row: &Row, t: f64, [first, last]: [f64; 2], per_s: f64) -> Fa
         "a counter of 32 bits wraps: add 2^32 to the times from there on"
     } else if is(DAY_S) {
         "midnight has passed: add a day to the times from there on"
-    } else if (t - first).abs() <= NEAR * (last - first) {
+    } else if (t - first).abs() <= NEAR * (last - first) && back < LONGEST_RUN_S {
         "a second run begins: cut the log there"
     } else {
         "sort the rows by time, or remove the row"
