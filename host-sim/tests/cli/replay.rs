@@ -95,7 +95,7 @@ fn invalid_recordings_are_refused_by_file_line_and_column() {
         (
             "binary.csv",
             b"\x7fELF\x00\xff\xfe\n\x00\x01\x02",
-            "binary.csv: line 1: no column t",
+            "binary.csv: line 1: the file is not text; write it as CSV",
         ),
         (
             "bits.csv",
