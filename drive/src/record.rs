@@ -58,7 +58,7 @@ impl Recorder {
         let run = choose(&runs, None)
             .map_err(|error| Failure::Input(format!("{name}: not written: {error}")))?;
         write_whole(&self.out, csv(run, self.rate_hz, |_| None).as_bytes())?;
-        for line in report(&self.telemetry, &runs, run) {
+        for line in report(&self.telemetry, &runs, run, "") {
             note(format_args!("{name}: {line}"));
         }
         match runs.len() {

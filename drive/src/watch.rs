@@ -1,12 +1,10 @@
 //! Telemetry as lines of text.
 
+use drivers::NO_ESTIMATOR;
 use drivers::link::{Frame, Hello};
 use haptic_control::{Mode, Stop};
 
 use crate::named::estimators;
-
-/// Number of the estimator of a frame without one.
-const NOBODY: u8 = u8::MAX;
 
 /// Whether the amplifiers are enabled in a frame.
 pub(crate) fn is_enabled(frame: &Frame) -> bool {
@@ -31,7 +29,7 @@ pub(crate) fn cause(code: u8) -> String {
 pub(crate) fn line(frame: &Frame, supply: Option<f32>, hello: &Hello) -> String {
     let t = f64::from(frame.tick) / f64::from(hello.rate.max(1));
     let estimator = match frame.estimator {
-        NOBODY => "-".to_owned(),
+        NO_ESTIMATOR => "-".to_owned(),
         number => (estimators(hello).get(usize::from(number)))
             .map_or_else(|| number.to_string(), |name| (*name).to_owned()),
     };

@@ -20,3 +20,4 @@ pub use divider::Divider;
 pub use pwm::PwmCurrent;
 pub use settings::{SETTINGS_BYTES, Saved, Setting, SettingFacts, Settings, SettingsError};
 pub use store::{SaveError, Store};
+pub use telemetry::NO_ESTIMATOR;

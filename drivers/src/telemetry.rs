@@ -2,6 +2,9 @@
 //! its decoder and the columns of a recording, and the link the payload of
 //! [`Frame`](crate::link::Frame).
 
+/// Number of the estimator in a frame where none is in charge.
+pub const NO_ESTIMATOR: u8 = u8::MAX;
+
 /// Hands the list of fields to the macro `$then`: the format of the log line, then a row for each
 /// field in the order of the format.
 ///

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use drivers::NO_ESTIMATOR;
 use haptic_control::SceneKind;
-use recordings::telemetry::NOBODY;
 
 use crate::budget;
 use crate::run::{Outcome, Setup};
@@ -85,7 +85,7 @@ pub(crate) fn summary(scene: SceneKind, setup: &Setup, outcome: &Outcome) -> Str
         );
         if let (Some(estimator), Some(sigma)) = (last.estimator, last.sigma_large) {
             let name = match estimator {
-                NOBODY => "none in charge".to_owned(),
+                NO_ESTIMATOR => "none in charge".to_owned(),
                 number => {
                     format!(
                         "number {number}, which gives its standard deviation as {sigma:.3} rad/s"

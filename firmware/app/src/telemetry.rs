@@ -1,5 +1,6 @@
 //! Telemetry frames: made by the control task, logged at the lowest priority.
 
+use drivers::NO_ESTIMATOR;
 use estimator_core::{Count, Edge, ParameterErrors, Sample};
 use haptic_control::{Action, Currents, Mode, Stop, Volts};
 use heapless::spsc::{Producer, Queue};
@@ -99,9 +100,6 @@ impl<'q> Sender<'q> {
     }
 }
 
-/// Number of the estimator in a frame where none is in charge.
-const NOBODY: u8 = u8::MAX;
-
 /// Frames for one line of what changes slowly.
 const SLOWLY: u32 = 128;
 
@@ -122,7 +120,7 @@ impl Frame {
     /// Number of the estimator in charge of the large motor; 255 for none.
     #[must_use]
     pub fn estimator(&self) -> u8 {
-        self.record.estimation.number.unwrap_or(NOBODY)
+        self.record.estimation.number.unwrap_or(NO_ESTIMATOR)
     }
 
     /// The latest stamped edge of the large encoder.

@@ -17,7 +17,7 @@ const LINK: usize = 4096;
 /// Bytes of commands that wait, and that one look takes at most.
 const DOWN: usize = 64;
 /// Owner while no frame is being written.
-const NOBODY: u32 = u32::MAX;
+const UNOWNED: u32 = u32::MAX;
 
 /// A channel as the probe reads it; references have the layout of its pointers.
 #[repr(C)]
@@ -118,7 +118,7 @@ pub fn lost() -> u32 {
 /// Frees the stage from any owner, for a caller after which no other task runs. A frame that is being
 /// written is dropped: its bytes were not published.
 pub(crate) fn take_over() {
-    if OWNER.swap(NOBODY, Ordering::Relaxed) != NOBODY {
+    if OWNER.swap(UNOWNED, Ordering::Relaxed) != UNOWNED {
         LOST.fetch_add(1, Ordering::Relaxed);
         // SAFETY: the owner does not run again, and nobody else has the cell.
         unsafe { (*STAGE.0.get()).encoder = defmt::Encoder::new() };
@@ -127,7 +127,7 @@ pub(crate) fn take_over() {
 
 static LOST: AtomicU32 = AtomicU32::new(0);
 /// Exception number of the task that writes a frame.
-static OWNER: AtomicU32 = AtomicU32::new(NOBODY);
+static OWNER: AtomicU32 = AtomicU32::new(UNOWNED);
 static STAGE: Stage = Stage(UnsafeCell::new(Staged {
     encoder: defmt::Encoder::new(),
     cursor: Cursor { at: 0, fits: true },
@@ -193,7 +193,7 @@ struct Logger;
 // methods do nothing.
 unsafe impl defmt::Logger for Logger {
     fn acquire() {
-        let owned = OWNER.compare_exchange(NOBODY, context(), Ordering::Acquire, Ordering::Relaxed);
+        let owned = OWNER.compare_exchange(UNOWNED, context(), Ordering::Acquire, Ordering::Relaxed);
         if owned.is_err() {
             LOST.fetch_add(1, Ordering::Relaxed);
             return;
@@ -225,7 +225,7 @@ unsafe impl defmt::Logger for Logger {
             } else {
                 LOST.fetch_add(1, Ordering::Relaxed);
             }
-            OWNER.store(NOBODY, Ordering::Release);
+            OWNER.store(UNOWNED, Ordering::Release);
         });
     }
 }

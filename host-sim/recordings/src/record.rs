@@ -125,9 +125,10 @@ pub fn choose<'a, 'b>(runs: &'b [Run<'a>], number: Option<usize>) -> Result<&'b 
     Ok(run)
 }
 
-/// Lines on the recorded run: missing frames, other runs, unreadable pieces, late ticks.
+/// Lines on the recorded run: missing frames, other runs, unreadable pieces, late ticks. `remedy` ends the line
+/// on runs that were left out.
 #[must_use]
-pub fn report(telemetry: &Telemetry, runs: &[Run], run: &Run) -> Vec<String> {
+pub fn report(telemetry: &Telemetry, runs: &[Run], run: &Run, remedy: &str) -> Vec<String> {
     let mut lines = Vec::new();
     let frames = run.frames.len();
     let gaps = &run.gaps;
@@ -148,11 +149,7 @@ pub fn report(telemetry: &Telemetry, runs: &[Run], run: &Run) -> Vec<String> {
             plural(unmeasured as u64, "frame")
         ));
     }
-    if let Some((device, presets)) = telemetry
-        .boots
-        .last()
-        .and_then(|boot| boot.device.zip(boot.presets))
-    {
+    if let Some((device, presets)) = run.boot.and_then(|boot| boot.device.zip(boot.presets)) {
         lines.push(format!(
             "image built for device {device}, presets {presets}"
         ));
@@ -161,7 +158,7 @@ pub fn report(telemetry: &Telemetry, runs: &[Run], run: &Run) -> Vec<String> {
     let left: Vec<_> = runs.iter().filter(others).map(|r| r.frames.len()).collect();
     if !left.is_empty() {
         lines.push(format!(
-            "the firmware started {} times; left out: runs of {left:?} frames (--run N selects another)",
+            "the firmware started {} times; left out: runs of {left:?} frames{remedy}",
             runs.len(),
         ));
     }
@@ -215,7 +212,7 @@ mod tests {
         let telemetry = Telemetry::text(log(0..4).as_bytes());
         let runs = telemetry.runs();
         let run = choose(&runs, None).unwrap();
-        let text = csv(run, run.rate_hz.unwrap(), |_| None);
+        let text = csv(run, run.rate_hz().unwrap(), |_| None);
         assert_eq!(
             text.lines().nth(1),
             Some("0,4294967295,0,0.5,-0.125,0.01,1.5,-0.25,2,0")
@@ -227,7 +224,7 @@ mod tests {
         assert_eq!(recording.trace.current, Some(vec![0.5; 4]));
         assert_eq!(recording.trace.true_omega, None);
         assert_eq!(
-            report(&telemetry, &runs, run),
+            report(&telemetry, &runs, run, ""),
             ["4 frames recorded, 0 missing at 0 places"]
         );
     }
@@ -237,7 +234,7 @@ mod tests {
         let text = log(0..4).replace("overruns=0", "overruns=5");
         let telemetry = Telemetry::text(text.as_bytes());
         let runs = telemetry.runs();
-        assert_eq!(report(&telemetry, &runs, &runs[0]).len(), 1);
+        assert_eq!(report(&telemetry, &runs, &runs[0], "").len(), 1);
         let (first, last) = text.split_once("frame seq=3").unwrap();
         let text = format!(
             "{first}frame seq=3{}",
@@ -245,7 +242,7 @@ mod tests {
         );
         let telemetry = Telemetry::text(text.as_bytes());
         let runs = telemetry.runs();
-        let said = report(&telemetry, &runs, &runs[0]);
+        let said = report(&telemetry, &runs, &runs[0], "");
         assert!(
             said[1].starts_with("2 control ticks missed or late"),
             "{said:?}"
@@ -289,7 +286,7 @@ mod tests {
         let said = |log: &str| {
             let telemetry = Telemetry::text(log.as_bytes());
             let runs = telemetry.runs();
-            report(&telemetry, &runs, &runs[0])
+            report(&telemetry, &runs, &runs[0], "")
         };
         let lack = "2 frames without measured currents: their columns are empty there";
         assert_eq!(said(&beside(3))[1], lack);
@@ -339,9 +336,9 @@ mod tests {
         assert_eq!(choose(&runs, None).unwrap().frames.len(), 5);
         let second = choose(&runs, Some(2)).unwrap();
         assert_eq!(second.frames.len(), 3);
-        let said = report(&telemetry, &runs, second);
+        let said = report(&telemetry, &runs, second, "; give --run");
         assert!(
-            said[1].contains("started 2 times; left out: runs of [5]"),
+            said[1].ends_with("started 2 times; left out: runs of [5] frames; give --run"),
             "{said:?}"
         );
         assert!(
@@ -352,5 +349,22 @@ mod tests {
         let one = Telemetry::text(log(0..1).as_bytes());
         assert!(choose(&one.runs(), None).is_err());
         assert!(choose(&[], None).is_err());
+    }
+
+    /// After another image was flashed during a recording, the image is that of the run.
+    #[test]
+    fn image_of_the_recorded_run_is_told() {
+        let of = |device: &str, log: String| {
+            let boot = format!("boot rate=10000 cause=0 device={device} presets=00000001");
+            log.replace("boot rate=10000 cause=0", &boot)
+        };
+        let text = of("0000000a", log(0..5)) + &of("0000000b", log(0..3));
+        let telemetry = Telemetry::text(text.as_bytes());
+        let runs = telemetry.runs();
+        for (run, device) in runs.iter().zip(["0000000a", "0000000b"]) {
+            let said = report(&telemetry, &runs, run, "");
+            let line = format!("image built for device {device}, presets 00000001");
+            assert_eq!(said[1], line);
+        }
     }
 }

@@ -9,7 +9,7 @@ mod text;
 use haptic_control::Fingerprint;
 
 pub(crate) use frame::{COLUMNS, Column};
-pub use frame::{Frame, NOBODY};
+pub use frame::Frame;
 pub use run::{Gaps, Run};
 pub use side_lines::{EdgeLine, IndexLine, LearnedLine, MeasuredLine, SideLines};
 

@@ -56,7 +56,7 @@ pub(super) fn run(options: &Record) -> Result<(), Failure> {
     }
     let runs = telemetry.runs();
     let run = choose(&runs, options.run).map_err(|error| failure(&error.to_string()))?;
-    let rate_hz = match (options.rate, run.rate_hz) {
+    let rate_hz = match (options.rate, run.rate_hz()) {
         (Some(given), Some(said)) if given != said => {
             let said = format!("its boot line says rate={said}; leave out --rate {given}");
             return Err(failure(&said));
@@ -76,7 +76,7 @@ pub(super) fn run(options: &Record) -> Result<(), Failure> {
     let text = csv(run, rate_hz, |_| None);
     let out = options.out.as_deref().unwrap_or(Path::new("-"));
     write_whole(out, text.as_bytes())?;
-    for line in report(&telemetry, &runs, run) {
+    for line in report(&telemetry, &runs, run, " (--run N selects another)") {
         note(format_args!("{name}: {line}"));
     }
     Ok(())

@@ -1,14 +1,14 @@
 //! The large motor's estimator, exchanged by command while the board runs.
 
-use haptic_control::{Mode, Stop};
 use std::sync::OnceLock;
 
+use drivers::NO_ESTIMATOR;
 use estimator_core::{Confidence as _, VelocityEstimator as _};
 use experiments::closed_loop::Hand;
 use firmware_app::large;
 use firmware_app::scene::RIG;
-use haptic_control::SceneKind;
-use recordings::telemetry::{Frame, NOBODY};
+use haptic_control::{Mode, SceneKind, Stop};
+use recordings::telemetry::Frame;
 use virtual_board::command::Command;
 use virtual_board::run::{ControlTick, Outcome, Setup};
 
@@ -47,11 +47,11 @@ fn telemetry_has_the_number_of_the_active_estimator() {
     for run in runs() {
         let told: Vec<_> = run.telemetry.frames.iter().collect();
         let mut told: Vec<_> = told.iter().map(|frame| frame.estimator.unwrap()).collect();
-        let taking_over = told.iter().filter(|number| **number == NOBODY).count();
+        let taking_over = told.iter().filter(|number| **number == NO_ESTIMATOR).count();
         told.dedup();
         // No estimator is active before the scene starts (100 ms until arming, 20 ms of settling)
         // and during a handover (40 ms each).
-        assert_eq!(told, [NOBODY, 0, NOBODY, 1, NOBODY, 0]);
+        assert_eq!(told, [NO_ESTIMATOR, 0, NO_ESTIMATOR, 1, NO_ESTIMATOR, 0]);
         assert!(
             (120 + 78..=125 + 82).contains(&taking_over),
             "{taking_over}"
@@ -233,7 +233,7 @@ fn selected_estimator_persists() {
         frame.unwrap().estimator
     };
     assert_eq!(at(0.29), Some(0));
-    assert_eq!(at(0.55), Some(NOBODY));
+    assert_eq!(at(0.55), Some(NO_ESTIMATOR));
     // At once: there was nothing to fade from.
     assert_eq!(at(0.61), Some(1));
     assert_eq!(at(1.15), Some(1));

@@ -122,13 +122,15 @@ fn lagged(terms: &[f64; LAG_TERMS], lag_s: f64) -> (f64, f64) {
     (value, slope)
 }
 
-/// The 97.5 % quantile of Student's distribution (expansion about that of the normal distribution; 4
-/// digits from 10 degrees of freedom on).
+/// The 97.5 % quantile of Student's distribution: expansion about that of the normal distribution (Abramowitz
+/// and Stegun, 26.7.5), 3 digits from 5 degrees of freedom on and 4 from 10 on.
 fn student(freedom: f64) -> f64 {
     let z: f64 = 1.959_964;
     let first = (z.powi(3) + z) / 4.0;
     let second = (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / 96.0;
-    z + first / freedom + second / (freedom * freedom)
+    let third = (3.0 * z.powi(7) + 19.0 * z.powi(5) + 17.0 * z.powi(3) - 15.0 * z) / 384.0;
+    let per = 1.0 / freedom;
+    z + per * (first + per * (second + per * third))
 }
 
 /// Normal equations.

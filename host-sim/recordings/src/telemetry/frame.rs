@@ -10,9 +10,6 @@ use super::side_lines::SideLines;
 /// Begin of a frame's line.
 pub(super) const START: &str = "frame seq=";
 
-/// Code of a missing estimator.
-pub const NOBODY: u8 = u8::MAX;
-
 /// A column of recordings: its name, and the value of a frame as text, if the frame has one.
 pub(crate) type Column = (&'static str, fn(&Frame) -> Option<String>);
 
@@ -214,7 +211,7 @@ pub(super) mod tests {
         let said: Frame = said.parse().unwrap();
         assert_eq!(
             (said.sigma_large, said.estimator),
-            (Some(0.5), Some(NOBODY))
+            (Some(0.5), Some(drivers::NO_ESTIMATOR))
         );
         assert!(
             LINE.replace("torque", "sl=x torque")

@@ -202,7 +202,7 @@ mod tests {
         let [run] = &telemetry.runs()[..] else {
             panic!("one run");
         };
-        assert_eq!((run.frames.len(), run.rate_hz), (2, Some(1e4)));
+        assert_eq!((run.frames.len(), run.rate_hz()), (2, Some(1e4)));
     }
 
     #[test]

@@ -1,12 +1,12 @@
 //! Frames of one start of the firmware.
 
-use super::{Frame, Telemetry};
+use super::{Boot, Frame, Telemetry};
 
 /// The frames between two resets.
 #[derive(Clone, Debug)]
 pub struct Run<'a> {
-    /// Control rate from the boot line, Hz; `None` if the stream begins after that line.
-    pub rate_hz: Option<f64>,
+    /// The start of the firmware; `None` if the stream begins after its boot line.
+    pub boot: Option<Boot>,
     /// Frames, with their ticks from the first.
     pub frames: Vec<(u64, &'a Frame)>,
     /// Missing frames.
@@ -37,7 +37,7 @@ impl Telemetry {
         for (at, frame) in self.frames.iter().enumerate() {
             let mut booted = None;
             while let Some(boot) = boots.next_if(|boot| boot.after <= at) {
-                booted = Some(boot.rate_hz);
+                booted = Some(*boot);
             }
             if let (None, Some(run)) = (booted, runs.last_mut()) {
                 if run.take(frame, decimation) {
@@ -54,9 +54,9 @@ impl Telemetry {
                 }
             }
             // Without a boot line the image has not changed.
-            let rate_hz = booted.or_else(|| runs.last().and_then(|run| run.rate_hz));
+            let boot = booted.or_else(|| runs.last().and_then(|run| run.boot));
             runs.push(Run {
-                rate_hz,
+                boot,
                 frames: vec![(0, frame)],
                 gaps: Gaps::default(),
             });
@@ -78,6 +78,12 @@ impl Telemetry {
 }
 
 impl<'a> Run<'a> {
+    /// Control rate from the boot line, Hz.
+    #[must_use]
+    pub fn rate_hz(&self) -> Option<f64> {
+        self.boot.map(|boot| boot.rate_hz)
+    }
+
     /// Adds the next frame if it belongs to this run.
     fn take(&mut self, frame: &'a Frame, decimation: u32) -> bool {
         let Some((tick, last)) = self.frames.last().copied() else {
@@ -175,7 +181,7 @@ mod tests {
         let runs = telemetry.runs();
         let lengths: Vec<_> = runs.iter().map(|run| run.frames.len()).collect();
         assert_eq!(lengths, [2, 2, 3]);
-        assert_eq!([0, 1, 2].map(|n| runs[n].rate_hz), [None, None, Some(1e4)]);
+        assert_eq!([0, 1, 2].map(|n| runs[n].rate_hz()), [None, None, Some(1e4)]);
     }
 
     #[test]
