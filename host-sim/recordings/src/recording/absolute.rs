@@ -7,8 +7,9 @@ use simulation::device::Device;
 /// Modulus of a 16-bit counter.
 const SHORT: u32 = 1 << 16;
 
-/// Smallest span of counts whose jumps are judged by it: few counts are passed in one row.
-const LEAST_SPAN: i64 = 15;
+/// Spans of counts whose jumps are judged by them. Fewer counts are passed in one row, and counts that wrap
+/// at 2^32 span more.
+const SPANS: std::ops::Range<i64> = 15..1 << 31;
 
 /// Longest step over which a jump counts, in periods.
 pub(super) const LONGEST: f64 = 1.5;
@@ -128,7 +129,7 @@ pub(super) fn found(jump: i64, span: i64, per_rev: u32) -> Option<Found> {
     let wraps = moduli(per_rev).into_iter().find(wraps);
     let far = 2 * jump.abs() > i64::from(per_rev) && span < i64::from(SHORT);
     // An encoder of another modulus: one row passes most of the counts of the whole log.
-    let far = far || (span >= LEAST_SPAN && 4 * jump.abs() >= 3 * (span + 1));
+    let far = far || (SPANS.contains(&span) && 4 * jump.abs() >= 3 * (span + 1));
     wraps
         .map(Found::Wraps)
         .or(far.then_some(Found::Jumps(jump, span + 1)))
@@ -271,5 +272,10 @@ mod tests {
         let before = recording.trace.counts_large.clone();
         assert_eq!(recording.unwrap_counts(&device(4096)), Vec::<String>::new());
         assert_eq!(recording.trace.counts_large, before);
+        // Over 2^31, where a signed count wraps.
+        let row = |k: i64| format!("{},{}\n", k as f64 * 1e-3, (1_i64 << 31) - 90 + 3 * k);
+        let text = format!("t,counts_large\n{}", (0..60).map(row).collect::<String>());
+        let mut recording = Recording::parse(text.as_bytes(), "r").unwrap();
+        assert_eq!(recording.unwrap_counts(&device(4096)), Vec::<String>::new());
     }
 }
