@@ -12,7 +12,7 @@ impl Outcome {
     pub fn csv(&self) -> Result<String, String> {
         let runs = self.telemetry.runs();
         let run = choose(&runs, None).map_err(|failure| failure.to_string())?;
-        let rate_hz = run.rate_hz.unwrap_or_else(|| self.rate_hz());
+        let rate_hz = run.rate_hz().unwrap_or_else(|| self.rate_hz());
         let true_omega = |frame: &_| self.tick(frame).map(|tick| tick.large.omega);
         Ok(csv(run, rate_hz, true_omega))
     }

@@ -193,7 +193,8 @@ struct Logger;
 // methods do nothing.
 unsafe impl defmt::Logger for Logger {
     fn acquire() {
-        let owned = OWNER.compare_exchange(UNOWNED, context(), Ordering::Acquire, Ordering::Relaxed);
+        let owned =
+            OWNER.compare_exchange(UNOWNED, context(), Ordering::Acquire, Ordering::Relaxed);
         if owned.is_err() {
             LOST.fetch_add(1, Ordering::Relaxed);
             return;

@@ -8,8 +8,8 @@ mod text;
 
 use haptic_control::Fingerprint;
 
-pub(crate) use frame::{COLUMNS, Column};
 pub use frame::Frame;
+pub(crate) use frame::{COLUMNS, Column};
 pub use run::{Gaps, Run};
 pub use side_lines::{EdgeLine, IndexLine, LearnedLine, MeasuredLine, SideLines};
 

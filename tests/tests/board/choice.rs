@@ -47,7 +47,10 @@ fn telemetry_has_the_number_of_the_active_estimator() {
     for run in runs() {
         let told: Vec<_> = run.telemetry.frames.iter().collect();
         let mut told: Vec<_> = told.iter().map(|frame| frame.estimator.unwrap()).collect();
-        let taking_over = told.iter().filter(|number| **number == NO_ESTIMATOR).count();
+        let taking_over = told
+            .iter()
+            .filter(|number| **number == NO_ESTIMATOR)
+            .count();
         told.dedup();
         // No estimator is active before the scene starts (100 ms until arming, 20 ms of settling)
         // and during a handover (40 ms each).

@@ -29,6 +29,7 @@ fn device_is_identified_from_the_images_excitation() {
     let known = Known::TorqueConstant(device.stages.large.torque_constant);
     let found = identify(
         &[("board".to_owned(), recording)],
+        &[],
         &Device::default(),
         known,
         false,

@@ -21,7 +21,7 @@ fn recorded(bytes: &[u8], rate_hz: Option<f64>) -> String {
     let telemetry = rtt::decode(image("").elf(), bytes).unwrap();
     let runs = telemetry.runs();
     let run = choose(&runs, None).unwrap();
-    csv(run, run.rate_hz.or(rate_hz).unwrap(), |_| None)
+    csv(run, run.rate_hz().or(rate_hz).unwrap(), |_| None)
 }
 
 fn parse(text: &str) -> Recording {
@@ -74,7 +74,7 @@ fn edge_stamps_of_the_board_are_recorded_and_replayed() {
     let runs = telemetry.runs();
     let chosen = choose(&runs, None).unwrap();
     let truth = |frame: &Frame| run.tick(frame).map(|tick| tick.large.omega);
-    let recording = parse(&csv(chosen, chosen.rate_hz.unwrap(), truth));
+    let recording = parse(&csv(chosen, chosen.rate_hz().unwrap(), truth));
     let edges = recording.trace.edges.as_ref().unwrap();
     assert!(edges.iter().flatten().count() * 10 > 9 * edges.len());
     let kinds = ["observer", "observer-edge"].map(|name| Kind::named(name).unwrap());
@@ -98,7 +98,7 @@ fn incomplete_stream_loses_only_the_missing_frames() {
     let telemetry = rtt::decode(image("").elf(), &bytes).unwrap();
     let runs = telemetry.runs();
     let run = choose(&runs, None).unwrap();
-    assert_eq!((run.rate_hz, run.gaps.places), (None, 1));
+    assert_eq!((run.rate_hz(), run.gaps.places), (None, 1));
     assert!((20..40).contains(&run.gaps.frames), "{:?}", run.gaps);
     let part = parse(&csv(run, 1e4, |_| None));
     let first = whole.t.len() - run.frames.len() - run.gaps.frames as usize - 1;

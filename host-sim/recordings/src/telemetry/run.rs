@@ -181,7 +181,10 @@ mod tests {
         let runs = telemetry.runs();
         let lengths: Vec<_> = runs.iter().map(|run| run.frames.len()).collect();
         assert_eq!(lengths, [2, 2, 3]);
-        assert_eq!([0, 1, 2].map(|n| runs[n].rate_hz()), [None, None, Some(1e4)]);
+        assert_eq!(
+            [0, 1, 2].map(|n| runs[n].rate_hz()),
+            [None, None, Some(1e4)]
+        );
     }
 
     #[test]
