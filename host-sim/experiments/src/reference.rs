@@ -4,7 +4,8 @@
 //! position, with sensor noise, is in the cell of the row's count; a stamped edge observes that it is
 //! the boundary at the edge's instant. Intervals may be uneven. The density of the jerk and the
 //! variance of the sensor are those that make the innovations most likely. The velocity is smoothed
-//! in both directions of time, so it needs the future: no estimator can be as good.
+//! in both directions of time, so it needs the future: no estimator can be as good. It starts anew
+//! after a long gap and after a jump of the counter, and passes over a single bad count.
 //!
 //! # What it does not resolve
 //! * Motion within a cell without an edge. Its standard deviation grows with the time between edges.
@@ -16,6 +17,7 @@
 mod cell;
 mod events;
 mod noises;
+mod sections;
 mod state;
 mod sweeps;
 
@@ -28,6 +30,7 @@ use scoring::score::SKIP_S;
 
 use crate::table::number;
 
+use sections::Motion;
 use sweeps::Model;
 
 /// Smallest number of rows of a recording with a reference.
@@ -75,10 +78,20 @@ impl Reference {
     ///
     /// # Errors
     /// If the recording has fewer than [`FEWEST_ROWS`] rows, or its count changes at fewer than
-    /// [`FEWEST_CHANGES`] of them: the noises cannot be estimated.
+    /// [`FEWEST_CHANGES`] of them: the noises cannot be estimated. If a velocity or a standard
+    /// deviation is not finite.
     pub fn of(recording: &Recording, counts_per_rev: u32) -> Result<Self, String> {
         let noises = Noises::of(recording)?;
-        Ok(Self::with(recording, counts_per_rev, noises))
+        let reference = Self::with(recording, counts_per_rev, noises);
+        let mut values = reference.omega.iter().chain(&reference.sd);
+        match values.all(|value| value.is_finite()) {
+            true => Ok(reference),
+            false => Err(
+                "counts_large is no motion of a shaft: the reference of a log without true_omega, \
+                 which is smoothed from it, is not finite"
+                    .to_owned(),
+            ),
+        }
     }
 
     /// The reference with given noises.
@@ -97,15 +110,16 @@ impl Reference {
     ) -> Self {
         let rows = recording.t.len();
         let period = recording.trace.period_s();
+        let motion = Motion::of(recording);
         let model = Model {
             jerk: noises.jerk * period.powi(5),
             sensor: noises.sensor,
-            fastest: fastest(recording),
+            fastest: motion.fastest,
         };
         let smoothed = |first: usize| {
             let inner = first..(first + piece).min(rows);
             let outer = first.saturating_sub(overlap)..(inner.end + overlap).min(rows);
-            let events = events::events(recording, outer.clone(), period);
+            let events = events::events(recording, &motion.rows, outer.clone(), period);
             let (velocities, sites) = sweeps::smoothed(&events, model);
             let precision: f64 = sites.iter().map(|site| site.precision).sum();
             let of_inner = inner.start - outer.start..inner.end - outer.start;
@@ -179,19 +193,12 @@ impl Noises {
             ));
         }
         let period = recording.trace.period_s();
-        let model = noises::most_likely(recording, period, fastest(recording));
+        let model = noises::most_likely(recording, &Motion::of(recording), period);
         Ok(Self {
             jerk: model.jerk / period.powi(5),
             sensor: model.sensor,
         })
     }
-}
-
-/// Largest displacement from row to row, counts.
-fn fastest(recording: &Recording) -> f64 {
-    let steps = recording.trace.counts_large.windows(2);
-    let steps = steps.map(|pair| (pair[1].wrapping_sub(pair[0]) as i32).unsigned_abs());
-    f64::from(steps.max().unwrap_or_default())
 }
 
 #[cfg(test)]

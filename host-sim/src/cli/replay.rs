@@ -196,7 +196,6 @@ fn reference(
 ) -> Result<(Option<Reference>, Option<String>), Failure> {
     let has_truth = survey.columns.true_omega.is_some();
     let called = called(&options.trace);
-    let unasked = options.reference.is_none();
     match options.reference {
         Some(ReferenceUse::Off) if !has_truth && options.json.is_some() => {
             return Err(Failure::Input(format!(
@@ -219,8 +218,12 @@ fn reference(
     match Reference::of(&recording, device.stages.large.counts_per_rev) {
         Ok(reference) => Ok((Some(reference), None)),
         // Velocities alone need no reference.
-        Err(why) if options.json.is_none() && unasked => Ok((None, Some(why))),
-        Err(why) => Err(Failure::Input(format!("{called}: {why}"))),
+        Err(why) if options.json.is_none() && options.reference != Some(ReferenceUse::Columns) => {
+            Ok((None, Some(format!("{why}; --reference off computes none"))))
+        }
+        Err(why) => Err(Failure::Input(format!(
+            "{called}: {why}; --reference off without --json writes velocities alone"
+        ))),
     }
 }
 

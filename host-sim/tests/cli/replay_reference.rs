@@ -118,3 +118,47 @@ fn recording_without_a_truth_is_scored_against_a_reference() {
     );
     assert!(!off.contains("rms") && !off.contains("reference"), "{off}");
 }
+
+#[test]
+fn gap_and_bad_count_leave_the_scores_of_other_rows() {
+    let folder = Folder::new("reference-faults");
+    let text = sine(false);
+    let lines: Vec<_> = text.lines().collect();
+    let gap = [&lines[..1000], &lines[2000..]].concat().join("\n");
+    let mut bad = lines.clone();
+    bad[1500] = "1.499,16777216";
+    let (late, bad) = (format!("{gap}\n"), bad.join("\n"));
+    for (name, text) in [("even.csv", &text), ("gap.csv", &late), ("bad.csv", &bad)] {
+        folder.write(name, text);
+        let arguments = ["replay", name, "--estimator", "low-pass", "--json", "-"];
+        let row = &json(&folder.good(&arguments))[0];
+        assert_eq!(row["against"], "reference", "{name}");
+        // One row beside the fault has a standard deviation of its own.
+        let sd = row["reference_sd_rad_s"].as_f64().unwrap();
+        assert!(sd > 0.0 && sd < 0.05, "{name}: {sd}");
+    }
+}
+
+#[test]
+fn log_without_a_reference_has_velocities_and_a_note() {
+    let folder = Folder::new("no-reference");
+    folder.write("short.csv", "t,counts_large\n0,0\n1e-3,1\n2e-3,1\n");
+    for more in [&[][..], &["--reference", "scores"]] {
+        let arguments = [
+            "replay",
+            "short.csv",
+            "--estimator",
+            "pll",
+            "--out",
+            "v.csv",
+        ];
+        let output = folder.run(&[&arguments[..], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{more:?}");
+        let notes = words(&String::from_utf8(output.stderr).unwrap());
+        let said = "short.csv: no scores: 3 rows; a reference without true_omega needs at least 100; \
+                    --reference off computes none";
+        assert!(notes.contains(said), "{notes}");
+        let written = std::fs::read_to_string(folder.0.join("v.csv")).unwrap();
+        assert_eq!(written.lines().count(), 4);
+    }
+}

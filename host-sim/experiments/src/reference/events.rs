@@ -1,12 +1,18 @@
 //! The observations of a recording in the order of time.
 
+use std::ops::Range;
+
 use recordings::recording::Recording;
+
+use super::sections::{LONGEST, Row};
 
 /// What was observed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// A row: the count.
     Row,
+    /// A row with a bad count: nothing.
+    Bad,
     /// A stamped edge: the position is the boundary.
     Edge,
 }
@@ -18,45 +24,72 @@ pub(super) struct Event {
     pub since: f64,
     /// Origin of the event before less that of this one, counts.
     pub shift: f64,
+    /// Whether nothing is known of the motion since the event before.
+    pub restarts: bool,
     pub kind: Kind,
 }
 
-/// The observations of the rows `rows`, with times in periods of `period_s`.
-pub(super) fn events(
-    recording: &Recording,
-    rows: std::ops::Range<usize>,
+/// The events so far.
+struct Events {
+    events: Vec<Event>,
+    /// Time, s, and origin of the latest event.
+    last: Option<(f64, u32)>,
     period_s: f64,
-) -> Vec<Event> {
-    let trace = &recording.trace;
-    let counts = &trace.counts_large;
-    let mut events = Vec::with_capacity(rows.len());
-    let mut last: Option<(f64, u32)> = None;
-    let mut push = |t: f64, origin: u32, kind: Kind| {
-        let (since, shift) = match last {
+}
+
+impl Events {
+    fn push(&mut self, t: f64, origin: u32, kind: Kind, jumped: bool) {
+        let (since, shift) = match self.last {
             Some((before, from)) => (
                 (t - before).max(0.0),
                 f64::from(from.wrapping_sub(origin) as i32),
             ),
             None => (0.0, 0.0),
         };
-        last = Some((t, origin));
-        events.push(Event {
-            since: since / period_s,
+        self.last = Some((t, origin));
+        let since = since / self.period_s;
+        self.events.push(Event {
+            since,
             shift,
+            restarts: jumped || since > LONGEST,
             kind,
         });
+    }
+}
+
+/// The observations of the rows `range`, which say of the motion what `rows` states, with times in
+/// periods of `period_s`.
+pub(super) fn events(
+    recording: &Recording,
+    rows: &[Row],
+    range: Range<usize>,
+    period_s: f64,
+) -> Vec<Event> {
+    let trace = &recording.trace;
+    let counts = &trace.counts_large;
+    let mut events = Events {
+        events: Vec::with_capacity(range.len()),
+        last: None,
+        period_s,
     };
-    for k in rows.clone() {
+    for k in range.clone() {
         let t = recording.t[k];
-        let stamps = trace.edges.as_ref().filter(|_| k > rows.start);
+        if rows[k] == Row::Bad {
+            let origin = events.last.map_or(counts[k], |(_, origin)| origin);
+            events.push(t, origin, Kind::Bad, false);
+            continue;
+        }
+        let jumped = rows[k] == Row::Jumped;
+        // It is not known on which side of a jump an edge is.
+        let stamps = trace.edges.as_ref().filter(|_| k > range.start && !jumped);
         if let Some((edge, before)) = stamps.and_then(|e| Some((e[k]?, recording.t[k - 1]))) {
             // An edge of this interval; an older one was observed with an earlier row.
             let at = t - edge.age_s;
             if at > before && edge.age_s >= 0.0 {
-                push(at, edge.boundary, Kind::Edge);
+                events.push(at, edge.boundary, Kind::Edge, false);
             }
         }
-        push(t, counts[k], Kind::Row);
+        events.push(t, counts[k], Kind::Row, jumped);
     }
-    events
+    events.events
 }

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use recordings::recording::Recording;
 
 use super::events::{Event, events};
+use super::sections::Motion;
 use super::sweeps::{Model, log_likelihood};
 
 /// Rows of a piece over which the likelihood is computed.
@@ -44,16 +45,16 @@ type Logarithms = [f64; 2];
 
 /// The model whose noises make the innovations of `recording` most likely, with times in periods of
 /// `period_s`.
-pub(super) fn most_likely(recording: &Recording, period_s: f64, fastest: f64) -> Model {
+pub(super) fn most_likely(recording: &Recording, motion: &Motion, period_s: f64) -> Model {
     let pieces = pieces(recording.t.len());
     let pieces: Vec<Vec<Event>> = pieces
         .into_iter()
-        .map(|rows| events(recording, rows, period_s))
+        .map(|range| events(recording, &motion.rows, range, period_s))
         .collect();
     let model = |[jerk, sensor]: Logarithms| Model {
         jerk: jerk.clamp(JERK[0], JERK[1]).exp(),
         sensor: sensor.clamp(SENSOR[0], SENSOR[1]).exp(),
-        fastest,
+        fastest: motion.fastest,
     };
     let loss = |[jerk, sensor]: Logarithms| {
         let outside = |x: f64, [low, high]: [f64; 2]| (low - x).max(x - high).max(0.0);
@@ -62,7 +63,9 @@ pub(super) fn most_likely(recording: &Recording, period_s: f64, fastest: f64) ->
         // The order of the sum does not depend on the number of threads.
         let logs: Vec<f64> =
             (pieces.par_iter().map(|piece| log_likelihood(piece, model))).collect();
-        1e6 * beyond - logs.iter().sum::<f64>()
+        let loss = 1e6 * beyond - logs.iter().sum::<f64>();
+        // The order of the losses has no place for a NaN of either sign.
+        if loss.is_nan() { f64::INFINITY } else { loss }
     };
     model(minimum(loss, start(loss)))
 }

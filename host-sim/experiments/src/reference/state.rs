@@ -66,14 +66,41 @@ fn inverse(m: &Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| cofactor(j, i) / determinant))
 }
 
-/// The inverse of a symmetric positive definite matrix. It is scaled to a diagonal of ones, because
-/// the units of the state make the diagonal uneven.
-fn inverse_of_positive(a: &Matrix) -> Matrix {
-    let scale: Vector = std::array::from_fn(|i| 1.0 / a[i][i].max(f64::MIN_POSITIVE).sqrt());
-    let scaled = |m: &Matrix| -> Matrix {
-        std::array::from_fn(|i| std::array::from_fn(|j| scale[i] * m[i][j] * scale[j]))
-    };
-    symmetric(scaled(&inverse(&scaled(a))))
+/// The lower triangular `l` with `l l' = a`, for a symmetric `a` without negative eigenvalues.
+fn root(a: &Matrix) -> Matrix {
+    let mut l = Matrix::default();
+    for j in 0..3 {
+        let square = a[j][j] - dot(l[j], l[j]);
+        // A direction that rounding makes negative has no variance.
+        l[j][j] = square.max(0.0).sqrt();
+        for i in j + 1..3 {
+            let rest = a[i][j] - dot(l[i], l[j]);
+            l[i][j] = if l[j][j] > 0.0 { rest / l[j][j] } else { 0.0 };
+        }
+    }
+    l
+}
+
+/// `(a^-1 + b)^-1` of symmetric matrices without negative eigenvalues; `a` may be singular.
+///
+/// With `l l' = a` it is `l (1 + l' b l)^-1 l'`. The matrix to invert has eigenvalues of 1 and more,
+/// so the result has none that is negative, however different the units of the state are.
+fn parallel(a: &Matrix, b: &Matrix) -> Matrix {
+    let l = root(a);
+    let columns = transposed(l);
+    let mut sum = times(&columns, &times(b, &l));
+    (0..3).for_each(|i| sum[i][i] += 1.0);
+    // r r' = 1 + l' b l, and the rows of `half` are r^-1 l'.
+    let r = root(&symmetric(sum));
+    let mut half = columns;
+    for i in 0..3 {
+        for j in 0..i {
+            half[i] = std::array::from_fn(|k| half[i][k] - r[i][j] * half[j][k]);
+        }
+        half[i] = half[i].map(|x| x / r[i][i]);
+    }
+    let half = transposed(half);
+    half.map(|row| half.map(|column| dot(row, column)))
 }
 
 impl Moments {
@@ -108,14 +135,12 @@ impl Moments {
 
     /// The state with what later observations say.
     pub(super) fn joined(&self, later: &Message) -> Self {
-        let own = inverse_of_positive(&self.covariance);
-        let sum = |i: usize, j: usize| own[i][j] + later.precision[i][j];
-        let precision: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| sum(i, j)));
-        let covariance = inverse_of_positive(&precision);
-        let information: Vector =
-            std::array::from_fn(|i| dot(own[i], self.mean) + later.information[i]);
+        let covariance = parallel(&self.covariance, &later.precision);
+        let known = later.precision.map(|row| dot(row, self.mean));
+        let innovation: Vector = std::array::from_fn(|i| later.information[i] - known[i]);
+        let correction = covariance.map(|row| dot(row, innovation));
         Self {
-            mean: covariance.map(|row| dot(row, information)),
+            mean: std::array::from_fn(|i| self.mean[i] + correction[i]),
             covariance,
         }
     }

@@ -6,6 +6,8 @@ use simulation::trace::{EdgeStamp, Trace};
 
 use super::*;
 
+mod faults;
+
 /// Noises per period and count of the synthetic recordings.
 const JERK: f64 = 1e-8;
 const SENSOR: f64 = 0.05;

@@ -1,0 +1,177 @@
+//! Where the motion of a recording is lost: long gaps, jumps of the counter and single bad counts.
+//!
+//! After a gap of more than [`LONGEST`] periods little of the motion before it is known, and the
+//! variances of the smoother are too far apart for its arithmetic. A jump of the counter is no motion.
+//! The smoother starts anew after both: rows before and after do not depend on each other. It passes
+//! over a single bad count.
+
+use recordings::recording::Recording;
+
+/// Longest interval over which the motion is followed, periods.
+pub(super) const LONGEST: f64 = 200.0;
+
+/// A displacement is no motion if it is this number of times larger than the displacements beside it,
+/// plus one count, and than [`USUAL`] of all. An impact has large displacements beside it, and a count
+/// that is held for several rows has many of its size.
+const JUMP: f64 = 30.0;
+
+/// Share of the displacements, of those that are not 0, that are usual.
+const USUAL: f64 = 0.9;
+
+/// What a row says of the motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Row {
+    /// It continues the motion of the row before.
+    Next,
+    /// It begins another motion: the counter has jumped.
+    Jumped,
+    /// Nothing: its count is bad.
+    Bad,
+}
+
+/// The motion of a recording.
+#[derive(Clone, Debug)]
+pub(super) struct Motion {
+    /// What each row says of it, as far as its count shows. The length of gaps is not part of it.
+    pub rows: Vec<Row>,
+    /// Largest displacement from a row to one that continues its motion, counts.
+    pub fastest: f64,
+}
+
+impl Motion {
+    /// The motion of `recording`.
+    pub(super) fn of(recording: &Recording) -> Self {
+        let rows = rows(recording);
+        let fastest = fastest(recording, &rows);
+        Self { rows, fastest }
+    }
+}
+
+/// What each row of `recording` says of the motion.
+fn rows(recording: &Recording) -> Vec<Row> {
+    let period = recording.trace.period_s();
+    let rows = recording.t.len();
+    // Counts per period; rows closer than a period are those of a late clock.
+    let speed = |from: usize, to: usize| {
+        let periods = (recording.t[to] - recording.t[from]) / period;
+        f64::from(displacement(recording, from, to)) / periods.max(1.0)
+    };
+    let usual = usual((1..rows).map(|k| speed(k - 1, k)).collect());
+    let jumps = |step: f64, beside: f64| step > JUMP * (1.0 + beside).max(usual);
+    let mut kinds = vec![Row::Next; rows];
+    let (mut last, mut before) = (0, 0.0);
+    for (k, kind) in kinds.iter_mut().enumerate().skip(1) {
+        let step = speed(last, k);
+        let is_last = k + 1 == rows;
+        if !jumps(step, before) {
+            (last, before) = (k, step);
+        } else if is_last || jumps(speed(k, k + 1), before) && !jumps(speed(last, k + 1), before) {
+            *kind = Row::Bad;
+        } else if jumps(step, speed(k, k + 1)) {
+            *kind = Row::Jumped;
+            last = k;
+        } else {
+            (last, before) = (k, step);
+        }
+    }
+    kinds
+}
+
+/// Magnitude of the displacement between two rows, counts.
+fn displacement(recording: &Recording, from: usize, to: usize) -> u32 {
+    let counts = &recording.trace.counts_large;
+    (counts[to].wrapping_sub(counts[from]) as i32).unsigned_abs()
+}
+
+/// The largest usual speed; 0 for a count that does not change.
+fn usual(mut speeds: Vec<f64>) -> f64 {
+    speeds.retain(|speed| *speed > 0.0);
+    speeds.sort_by(f64::total_cmp);
+    let share = (speeds.len() as f64 * USUAL) as usize;
+    speeds.get(share).copied().unwrap_or_default()
+}
+
+/// Largest displacement from a row to one that continues its motion, counts.
+fn fastest(recording: &Recording, rows: &[Row]) -> f64 {
+    let (mut last, mut fastest) = (0, 0);
+    for (k, row) in rows.iter().enumerate() {
+        if *row == Row::Next {
+            fastest = fastest.max(displacement(recording, last, k));
+        }
+        if *row != Row::Bad {
+            last = k;
+        }
+    }
+    f64::from(fastest)
+}
+
+#[cfg(test)]
+mod tests {
+    use simulation::trace::Trace;
+
+    use super::*;
+
+    fn recording(counts: &[i64]) -> Recording {
+        Recording {
+            t: (0..counts.len()).map(|k| k as f64 * 1e-3).collect(),
+            trace: Trace {
+                rate_hz: 1e3,
+                counts_large: counts.iter().map(|count| *count as u32).collect(),
+                ..Trace::default()
+            },
+            ..Recording::default()
+        }
+    }
+
+    /// The rows that do not continue a motion.
+    fn marked(counts: &[i64]) -> Vec<(usize, Row)> {
+        let rows = Motion::of(&recording(counts)).rows.into_iter().enumerate();
+        rows.filter(|(_, row)| *row != Row::Next).collect()
+    }
+
+    /// A motion of three counts a row.
+    fn steady() -> Vec<i64> {
+        (0..100).map(|k| 3 * k).collect()
+    }
+
+    #[test]
+    fn single_bad_counts_are_passed_over() {
+        let mut counts = steady();
+        for k in [10, 20, 22, 99] {
+            counts[k] = 1 << 24;
+        }
+        let bad = [10, 20, 22, 99].map(|k| (k, Row::Bad));
+        assert_eq!(marked(&counts), bad);
+        // Two rows of three counts.
+        assert_eq!(Motion::of(&recording(&counts)).fastest, 6.0);
+    }
+
+    #[test]
+    fn jump_that_stays_begins_another_motion() {
+        let mut counts = steady();
+        counts[25..].iter_mut().for_each(|count| *count += 1 << 20);
+        assert_eq!(marked(&counts), [(25, Row::Jumped)]);
+        assert_eq!(Motion::of(&recording(&counts)).fastest, 3.0);
+    }
+
+    #[test]
+    fn abrupt_motion_is_no_jump() {
+        // From rest to 50 counts a row, and back.
+        let counts: Vec<_> = (0..40).map(|k| 50 * (k - 20).clamp(0, 4)).collect();
+        assert_eq!(marked(&counts), []);
+        // A count that is held for ten rows at a time.
+        let held: Vec<_> = (0..400).map(|k| k / 10 * 80).collect();
+        assert_eq!(marked(&held), []);
+        assert_eq!(marked(&vec![7; 40]), []);
+    }
+
+    #[test]
+    fn displacement_over_a_gap_is_no_jump() {
+        let counts: Vec<_> = (0..40)
+            .map(|k| if k < 20 { 3 * k } else { 3 * k + 180 })
+            .collect();
+        let mut recording = recording(&counts);
+        recording.t[20..].iter_mut().for_each(|t| *t += 60e-3);
+        assert!(rows(&recording).iter().all(|row| *row == Row::Next));
+    }
+}
