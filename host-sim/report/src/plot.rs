@@ -7,6 +7,12 @@ use super::style::Style;
 use super::text::number;
 use plotters::style::RGBColor;
 
+/// Smallest length of an axis, of its largest value: a thousand roundings of its ticks are shorter.
+const RESOLVED: f64 = 1e-12;
+
+/// Most further ticks that are tried for an axis that would have fewer than two.
+const FURTHER: usize = 20;
+
 /// One axis, from its low to its high end.
 #[derive(Clone, Copy)]
 pub(super) struct Axis {
@@ -16,9 +22,15 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// Even divisions; `high` is moved away from `low` if they are equal.
+    /// Even divisions; `high` is moved away from `low` if they are equal, or so near that numbers
+    /// between them do not differ.
     pub(super) fn linear([low, high]: [f64; 2]) -> Self {
-        let high = if high > low { high } else { low + 1.0 };
+        let resolved = RESOLVED * low.abs().max(high.abs());
+        let high = if high - low > resolved {
+            high
+        } else {
+            low + resolved.max(1.0)
+        };
         Self {
             low,
             high,
@@ -77,10 +89,10 @@ impl Axis {
             };
         }
         // One label alone is no scale.
-        (wanted..)
+        (wanted..wanted + FURTHER)
             .map(|wanted| self.even(wanted))
             .find(|ticks| wanted == 0 || ticks.len() > 1)
-            .unwrap_or_default()
+            .unwrap_or_else(|| vec![self.low, self.high])
     }
 
     /// The ends, and the round values between them.
@@ -289,6 +301,25 @@ mod tests {
                 assert!(log.len() > 1 && log.is_sorted_by(|a, b| a < b), "{log:?}");
             }
         }
+    }
+
+    #[test]
+    fn axis_of_equal_or_huge_values_has_labels() {
+        for value in [0.0, 1.0, 1e15, 1e16, 1.7e18, 1e30, 1e300, f64::MAX] {
+            for ends in [
+                [value, value],
+                [-value, -value],
+                [-value, value],
+                [0.0, value],
+            ] {
+                let axis = Axis::linear(ends);
+                let ticks = axis.ticks(5);
+                assert!((2..=10).contains(&ticks.len()), "{ends:?}: {ticks:?}");
+                assert!(ticks.is_sorted_by(|a, b| a < b), "{ends:?}: {ticks:?}");
+            }
+        }
+        // Three seconds of a clock from 1970 keep their ends.
+        assert_eq!(Axis::linear([1.7e9, 1.7e9 + 3.0]).high, 1.7e9 + 3.0);
     }
 
     #[test]
