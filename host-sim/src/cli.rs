@@ -6,6 +6,7 @@ mod coarsen;
 mod compare;
 mod export;
 mod feel;
+mod files;
 mod identify;
 mod limit;
 mod line;
@@ -26,7 +27,7 @@ mod zwidth;
 
 use std::ffi::OsString;
 
-use clap::{CommandFactory as _, Parser as _};
+use clap::{CommandFactory as _, FromArgMatches as _};
 
 use arguments::{Arguments, Command};
 use line::{command_line, run_line};
@@ -41,10 +42,17 @@ use terminal::failure::Failure;
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let (command_line, run_line) = (command_line(&arguments), run_line(&arguments));
-    let parsed = match Arguments::try_parse_from(&arguments) {
+    let mut root = Arguments::command();
+    let matches = root.try_get_matches_from_mut(&arguments);
+    let parsed = matches.and_then(|matches| {
+        let parsed = Arguments::from_arg_matches(&matches);
+        Ok((parsed.map_err(|error| error.format(&mut root))?, matches))
+    });
+    let (parsed, matches) = match parsed {
         Ok(parsed) => parsed,
         Err(error) => return explain(&error, &program(&arguments)),
     };
+    files::check(&root, &matches)?;
     match parsed.command {
         None => compare::run(&compare::Compare::default(), "host-sim compare"),
         Some(Command::Compare(options)) if options.closed_loop => {

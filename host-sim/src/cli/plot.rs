@@ -12,6 +12,7 @@ use terminal::failure::Failure;
 use terminal::output::{is_stdout, note, print_bytes, write_whole};
 
 use super::arguments::{ParameterOptions, kinds};
+use super::files::refuse_input;
 use super::replay::About;
 use experiments::uneven::Chosen;
 use recordings::log::{Log, is_stdin, short_name};
@@ -47,6 +48,12 @@ pub(super) struct Plot {
 }
 
 pub(super) fn run(options: &Plot) -> Result<(), Failure> {
+    let beside = match is_stdin(&options.recording) {
+        true => PathBuf::from("-"),
+        false => options.recording.with_extension("svg"),
+    };
+    let out = options.out.as_ref().unwrap_or(&beside);
+    refuse_input("--out", out, &options.recording)?;
     let kinds = match options.estimators.as_slice() {
         [] => kinds(&ESTIMATORS.map(str::to_owned))?,
         names => kinds(names)?,
@@ -104,11 +111,6 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
         interval: interval(&device),
         window,
     })?;
-    let beside = match is_stdin(&options.recording) {
-        true => PathBuf::from("-"),
-        false => options.recording.with_extension("svg"),
-    };
-    let out = options.out.as_ref().unwrap_or(&beside);
     write_whole(out, svg.as_bytes())?;
     let about = About {
         notes: recording.notes.clone(),

@@ -26,6 +26,38 @@ pub fn is_stdout(path: &Path) -> bool {
     links(path).any(|path| names.iter().any(|name| path.as_os_str() == *name))
 }
 
+/// Whether two paths are one file or folder, or will be one when it is written: also through links,
+/// or with other folders in the path. Devices and pipes are no files.
+#[must_use]
+pub fn is_same(a: &Path, b: &Path) -> bool {
+    place(a).is_some_and(|place_a| place(b) == Some(place_a))
+}
+
+/// The only name of a file or folder, which may not exist; `None` for a device, a pipe or standard
+/// output.
+fn place(path: &Path) -> Option<PathBuf> {
+    if is_stdout(path) {
+        return None;
+    }
+    let path = link_target(path).ok()?;
+    match fs::canonicalize(&path) {
+        Ok(place) => {
+            let kind = fs::metadata(&place).ok()?;
+            (kind.is_file() || kind.is_dir()).then_some(place)
+        }
+        Err(_) => {
+            let path = std::path::absolute(&path).ok()?;
+            let folder = path
+                .parent()
+                .and_then(|folder| fs::canonicalize(folder).ok());
+            Some(match (folder, path.file_name()) {
+                (Some(folder), Some(name)) => folder.join(name),
+                _ => path,
+            })
+        }
+    }
+}
+
 /// Writes `bytes` to `path`, creating its folder; see [`write_with`].
 ///
 /// # Errors
@@ -153,7 +185,36 @@ fn link_target(path: &Path) -> io::Result<PathBuf> {
 
 #[cfg(test)]
 mod tests {
-    use super::write_whole;
+    use std::path::Path;
+
+    use super::{is_same, write_whole};
+
+    #[test]
+    fn paths_of_one_file_are_the_same() {
+        let folder = std::env::temp_dir().join(format!("limpid-same-{}", std::process::id()));
+        let file = folder.join("a.csv");
+        write_whole(&file, b"x").unwrap();
+        for other in ["./a.csv", "none.csv"] {
+            let is_there = folder.join(other).exists();
+            assert_eq!(is_same(&file, &folder.join(other)), is_there, "{other}");
+        }
+        // A file that is not there yet.
+        let [new, same] = ["new.csv", "./new.csv"].map(|name| folder.join(name));
+        assert!(is_same(&new, &same) && !is_same(&new, &file));
+        #[cfg(unix)]
+        {
+            let link = folder.join("link.csv");
+            std::os::unix::fs::symlink("a.csv", &link).unwrap();
+            assert!(is_same(&link, &file));
+            for no_file in ["/dev/null", "-", "/dev/stdout"] {
+                assert!(
+                    !is_same(Path::new(no_file), Path::new(no_file)),
+                    "{no_file}"
+                );
+            }
+        }
+        std::fs::remove_dir_all(folder).unwrap();
+    }
 
     #[test]
     fn failed_write_leaves_nothing() {

@@ -8,6 +8,7 @@ mod common;
 mod compare;
 mod escaping;
 mod export;
+mod files;
 mod identify;
 mod identify_logs;
 mod logs;

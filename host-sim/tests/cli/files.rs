@@ -1,0 +1,99 @@
+//! Outputs that are inputs, and outputs that are one file.
+
+use std::fs;
+
+use crate::Folder;
+
+/// 2 s at 1 kHz of a shaft that turns back and forth.
+fn log() -> String {
+    let count = |k: i32| (2000.0 * (1.0 - (f64::from(k) * 5e-3).cos())).floor();
+    let row = |k: i32| format!("{},{}\n", f64::from(k) * 1e-3, count(k));
+    "t,counts_large\n".to_owned() + &(0..2000).map(row).collect::<String>()
+}
+
+#[test]
+fn output_over_its_input_is_refused_and_the_input_is_kept() {
+    let folder = Folder::new("over-input");
+    folder.write("log.csv", log());
+    folder.write("log.svg", log());
+    folder.write("d.toml", "large.counts_per_rev = 4096\n");
+    fs::create_dir(folder.0.join("deep")).unwrap();
+    let absolute = folder.0.join("log.csv").display().to_string();
+    let mut outputs = vec!["log.csv", "./log.csv", "deep/../log.csv", &absolute];
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("log.csv", folder.0.join("link.csv")).unwrap();
+        outputs.push("link.csv");
+    }
+    for output in outputs {
+        let line = folder.refused(&["replay", "log.csv", "--estimator", "pll", "--out", output]);
+        let said = format!("--out {output}: would overwrite the input log.csv; name another file");
+        assert!(line.contains(&said), "{line}");
+    }
+    let coarsen = "coarsen log.csv --counts-per-rev 1024 --fine-counts-per-rev 4096 --out log.csv";
+    for command in [
+        "replay log.csv --json log.csv",
+        "replay log.csv --device d.toml --out d.toml",
+        "recommend log.csv --json log.csv",
+        "plot log.csv --out log.csv",
+        "plot log.svg",
+        "tune log.csv --out log.csv",
+        "identify log.csv --clamped --out log.csv",
+        "identify log.csv --clamped --device d.toml --json d.toml",
+        "export log.csv --mcap log.csv",
+        "record log.csv --out log.csv",
+        coarsen,
+    ] {
+        let line = folder.refused(&command.split(' ').collect::<Vec<_>>());
+        assert!(
+            line.contains(": would overwrite the input "),
+            "{command}: {line}"
+        );
+    }
+    for name in ["log.csv", "log.svg"] {
+        assert_eq!(
+            fs::read_to_string(folder.0.join(name)).unwrap(),
+            log(),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn device_file_of_identify_may_be_its_output() {
+    let folder = Folder::new("own-device");
+    folder.write("d.toml", "large.counts_per_rev = 4096\n");
+    folder.write("log.csv", log());
+    let command = "identify log.csv --clamped --device d.toml --out d.toml";
+    let line = folder.refused(&command.split(' ').collect::<Vec<_>>());
+    // The log has no column current.
+    assert!(
+        !line.contains("overwrite") && line.contains("current"),
+        "{line}"
+    );
+}
+
+#[test]
+fn two_outputs_of_one_file_are_refused() {
+    let folder = Folder::new("one-file");
+    folder.write("log.csv", log());
+    for command in [
+        "replay log.csv --out new --json ./new",
+        "identify log.csv --clamped --json new --out new",
+        "real --json new --csv new",
+    ] {
+        let line = folder.refused(&command.split(' ').collect::<Vec<_>>());
+        assert!(line.contains("new: is the file of --"), "{command}: {line}");
+    }
+    let (out, json) = (["--out", "/dev/null"], ["--json", "/dev/null"]);
+    if cfg!(unix) {
+        folder.good(
+            &[
+                &["replay", "log.csv", "--estimator", "pll"][..],
+                &out,
+                &json,
+            ]
+            .concat(),
+        );
+    }
+}
