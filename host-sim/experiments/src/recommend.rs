@@ -15,6 +15,7 @@ use scoring::score::SKIP_S;
 use simulation::device::Device;
 use terminal::failure::Failure;
 
+use crate::rates::{check_same, refuses};
 use crate::reference::{FEWEST_ROWS, Reference};
 use crate::replay;
 
@@ -143,16 +144,24 @@ pub struct Recommendation<'a> {
     pub notes: Vec<String>,
 }
 
-/// Runs all estimators whose signals every one of `logs` has, as shipped, and ranks them.
+/// Runs all estimators whose signals and whose rate every one of `logs` has, as shipped, and ranks
+/// them.
 ///
 /// # Errors
-/// [`Failure::Input`] that names the recording, if it is too short or determines no reference.
+/// [`Failure::Input`] that names the recording, if it is too short, has another rate than the first one
+/// or determines no reference.
 pub fn recommend<'a>(
     logs: &'a [(String, Recording)],
     settings: &Settings,
     done: impl Fn() + Sync,
 ) -> Result<Recommendation<'a>, Failure> {
-    let has = |kind: &Kind| logs.iter().all(|(_, log)| kind.lack(&log.trace).is_none());
+    check_same((logs.iter()).map(|(name, log)| (name.as_str(), log.trace.rate_hz)))?;
+    let runs = |kind: &Kind, log: &Recording| {
+        let rate_hz = log.trace.rate_hz;
+        let is_off = refuses(kind, rate_hz, settings.device, settings.parameters);
+        kind.lack(&log.trace).is_none() && !is_off
+    };
+    let has = |kind: &Kind| logs.iter().all(|(_, log)| runs(kind, log));
     let able: Vec<&'static Kind> = Kind::all().iter().filter(|kind| has(kind)).collect();
     let (kinds, of_device): (Vec<_>, Vec<_>) = able
         .into_iter()

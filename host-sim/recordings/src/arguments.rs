@@ -207,7 +207,8 @@ impl DeviceFile {
     /// these counts.
     ///
     /// # Errors
-    /// [`Failure::Input`] that names the recording whose counts differ from those of the first one.
+    /// [`Failure::Input`] that names the recording whose counts differ from those of the first one, or
+    /// that does not state them.
     pub fn with_stated_counts(
         &self,
         mut device: Device,
@@ -215,6 +216,8 @@ impl DeviceFile {
         counts_per_rev: Option<u32>,
     ) -> Result<(Device, Vec<String>), Failure> {
         let counts = &mut device.stages.large.counts_per_rev;
+        let assumed = *counts;
+        let mut unstated: Option<&str> = None;
         let mut is_known = self.is_given();
         if let Some(given) = counts_per_rev {
             (*counts, is_known) = (given, true);
@@ -223,6 +226,7 @@ impl DeviceFile {
         let mut first: Option<&str> = None;
         for log in logs {
             let Some(stated) = stated_counts_per_rev(&log.head()?, log.name())? else {
+                unstated = unstated.or(Some(log.name()));
                 continue;
             };
             let name = short_name(log.path());
@@ -245,7 +249,13 @@ impl DeviceFile {
                 }
             }
         }
-        Ok((device, lines))
+        match (first, unstated) {
+            (Some(first), Some(other)) if *counts != assumed => Err(Failure::Input(format!(
+                "{first}: states {counts} counts/rev and {other} none; give the counts of both with \
+                 --counts-per-rev"
+            ))),
+            _ => Ok((device, lines)),
+        }
     }
 
     /// Whether a file was given.

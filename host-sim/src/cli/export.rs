@@ -7,6 +7,7 @@ use clap::Args;
 use catalogue::estimators::Setup;
 use catalogue::parameters::PlantKind;
 use estimator_core::Hertz;
+use experiments::rates::EVERY_HZ;
 use experiments::real::wanted::in_range;
 use experiments::replay;
 use recordings::arguments::{DeviceFile, RecordingOptions, Whole};
@@ -19,7 +20,7 @@ use terminal::output::{note, write_whole};
 
 use super::arguments::{ParameterOptions, kinds};
 use super::replay::About;
-use experiments::uneven::Chosen;
+use experiments::uneven::{Chosen, Recorded};
 use recordings::log::{Log, short_name};
 
 #[derive(Debug, Args)]
@@ -85,7 +86,7 @@ fn header(options: &Export) -> Result<(), Failure> {
         edge_clock,
         out,
     } = &options.design;
-    let rate = in_range("--rate", *rate, [100.0, 1e5], "Hz")?;
+    let rate = in_range("--rate", *rate, EVERY_HZ, "Hz")?;
     let mut device = options.device.load()?;
     if let Some(counts) = options.read.encoder.counts_per_rev {
         device.stages.large.counts_per_rev = counts;
@@ -103,7 +104,6 @@ fn write_mcap(options: &Export, recording: &Path, file: &Path) -> Result<(), Fai
     let parameters = options.parameters.load()?;
     let name = short_name(recording);
     let log = Log::open(recording)?;
-    let path = log.name();
     let Whole {
         recording,
         board,
@@ -111,13 +111,14 @@ fn write_mcap(options: &Export, recording: &Path, file: &Path) -> Result<(), Fai
         stated,
     } = options.read.whole(&log, &options.device)?;
     let uneven = recording.unevenness();
-    let chosen = Chosen::new(
-        &kinds,
-        !options.estimators.is_empty(),
-        &recording.trace,
-        path,
-        uneven.as_deref(),
-    )?;
+    let recorded = Recorded {
+        path: log.name(),
+        trace: &recording.trace,
+        unevenness: uneven.as_deref(),
+        device: &device,
+        parameters: &parameters,
+    };
+    let chosen = Chosen::new(&kinds, !options.estimators.is_empty(), &recorded)?;
     let replayed = replay::replay(
         &recording,
         &name,
@@ -130,7 +131,7 @@ fn write_mcap(options: &Export, recording: &Path, file: &Path) -> Result<(), Fai
     write_whole(file, &bytes)?;
     let about = About {
         notes: recording.notes.clone(),
-        uneven: uneven.map(|uneven| chosen.note(&recording.trace, &uneven)),
+        clock: chosen.notes(&recording.trace, uneven.as_deref()),
         left_out: &replayed.left_out,
         mismatched_presets: &replayed.mismatched_presets,
     };

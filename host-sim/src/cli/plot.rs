@@ -14,7 +14,7 @@ use terminal::output::{is_stdout, note, print_bytes, write_whole};
 use super::arguments::{ParameterOptions, kinds};
 use super::files::refuse_input;
 use super::replay::About;
-use experiments::uneven::Chosen;
+use experiments::uneven::{Chosen, Recorded};
 use recordings::log::{Log, is_stdin, short_name};
 
 /// Estimators that are drawn by default.
@@ -69,13 +69,14 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
         stated,
     } = options.read.whole(&log, &options.device)?;
     let uneven = recording.unevenness();
-    let chosen = Chosen::new(
-        &kinds,
-        !options.estimators.is_empty(),
-        &recording.trace,
-        path,
-        uneven.as_deref(),
-    )?;
+    let recorded = Recorded {
+        path: log.name(),
+        trace: &recording.trace,
+        unevenness: uneven.as_deref(),
+        device: &device,
+        parameters: &parameters,
+    };
+    let chosen = Chosen::new(&kinds, !options.estimators.is_empty(), &recorded)?;
     let [first, .., last] = recording.t[..] else {
         unreachable!("a recording has at least two rows");
     };
@@ -114,7 +115,7 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
     write_whole(out, svg.as_bytes())?;
     let about = About {
         notes: recording.notes.clone(),
-        uneven: uneven.map(|uneven| chosen.note(&recording.trace, &uneven)),
+        clock: chosen.notes(&recording.trace, uneven.as_deref()),
         left_out: &replayed.left_out,
         mismatched_presets: &replayed.mismatched_presets,
     };

@@ -17,7 +17,7 @@ use terminal::wording::wrapped;
 
 use super::arguments::ParameterOptions;
 use super::page::{self, progress};
-use experiments::uneven::Chosen;
+use experiments::uneven::{Chosen, Recorded};
 use recordings::log::{Log, is_stdin, short_name};
 
 /// Default budget of the cheap estimator, instructions per update.
@@ -99,10 +99,17 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
     }
     for (name, recording) in &logs {
         let kinds: Vec<_> = Kind::all().iter().collect();
-        let chosen = Chosen::new(&kinds, false, &recording.trace, name, None)?;
         let uneven = recording.unevenness();
-        let uneven = uneven.map(|uneven| chosen.note(&recording.trace, &uneven));
-        let all = recording.notes.iter().chain(&uneven);
+        let recorded = Recorded {
+            path: name,
+            trace: &recording.trace,
+            unevenness: uneven.as_deref(),
+            device: &device,
+            parameters: &parameters,
+        };
+        let chosen = Chosen::new(&kinds, false, &recorded)?;
+        let clock = chosen.notes(&recording.trace, uneven.as_deref());
+        let all = recording.notes.iter().chain(&clock);
         notes.extend(all.map(|line| format!("{name}: {line}")));
     }
     notes.extend(recommended.notes.iter().cloned());

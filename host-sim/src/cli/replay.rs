@@ -20,7 +20,7 @@ use terminal::wording::wrapped;
 
 use super::arguments::{ParameterOptions, kinds};
 use super::page::{one_to_stdout, progress};
-use experiments::uneven::Chosen;
+use experiments::uneven::{Chosen, Recorded};
 use recordings::log::{Log, called, short_name};
 
 #[derive(Debug, Args)]
@@ -81,13 +81,15 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let (device, stated) = options.recording.counted(&options.device, device, logs)?;
     let (read, survey) = options.recording.survey(&log, &device)?;
     survey.check_times(log.name())?;
-    let chosen = Chosen::new(
-        &kinds,
-        !options.estimators.is_empty(),
-        &survey.columns,
-        log.name(),
-        survey.unevenness().as_deref(),
-    )?;
+    let uneven = survey.unevenness();
+    let recorded = Recorded {
+        path: log.name(),
+        trace: &survey.columns,
+        unevenness: uneven.as_deref(),
+        device: &device,
+        parameters: &parameters,
+    };
+    let chosen = Chosen::new(&kinds, !options.estimators.is_empty(), &recorded)?;
     let (reference, without) = reference(options, &log, &survey, &device)?;
     let against = match &reference {
         Some(reference) if survey.columns.true_omega.is_none() => Against::Reference(reference),
@@ -136,10 +138,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     }
     let about = About {
         notes: [survey.notes.clone(), passes.parts.notes()].concat(),
-        uneven: passes
-            .parts
-            .unevenness()
-            .map(|uneven| chosen.note(&survey.columns, &uneven)),
+        clock: chosen.notes(&survey.columns, passes.parts.unevenness().as_deref()),
         left_out: &run.left_out,
         mismatched_presets: &run.mismatched_presets,
     };
@@ -309,15 +308,15 @@ fn write_rows(out: &Path, passes: &mut Passes, run: &mut Run) -> Result<(), Fail
 pub(super) struct About<'a> {
     /// Notes of the reader.
     pub(super) notes: Vec<String>,
-    /// What is said about an uneven clock.
-    pub(super) uneven: Option<String>,
+    /// What is said about uneven steps and the rate.
+    pub(super) clock: Vec<String>,
     pub(super) left_out: &'a [(&'static str, &'static str)],
     pub(super) mismatched_presets: &'a [String],
 }
 
 impl About<'_> {
     /// Prints notes: those of the reader, one line per missing column with the estimators left out,
-    /// parameters that were tuned for another encoder or rate, and an uneven clock.
+    /// parameters that were tuned for another encoder or rate, and the clock.
     pub(super) fn note(&self, name: &str) {
         for line in &self.notes {
             note(format_args!("{name}: {line}"));
@@ -335,8 +334,8 @@ impl About<'_> {
         for line in self.mismatched_presets {
             note(format_args!("{name}: {line}"));
         }
-        if let Some(uneven) = &self.uneven {
-            note(wrapped(&format!("{name}: {uneven}"), 2));
+        for line in &self.clock {
+            note(wrapped(&format!("{name}: {line}"), 2));
         }
     }
 }

@@ -16,7 +16,7 @@ use terminal::output::{is_stdout, print_bytes, write_whole};
 
 use super::arguments::{kinds, rates, scenarios};
 use super::shard::{self, Outputs};
-use experiments::uneven::Chosen;
+use experiments::uneven::{Chosen, Recorded};
 use recordings::log::{Log, short_name};
 
 /// Default presets file.
@@ -207,6 +207,7 @@ fn log_plan(options: &Tune, mut kinds: Vec<&'static Kind>) -> Result<LogPlan, Fa
     let logs = options.recordings.iter().map(|path| Log::open(path));
     let logs: Vec<_> = logs.collect::<Result<_, _>>()?;
     let (device, mut notes) = options.read.counted(&options.device, device, &logs)?;
+    let parameters = Parameters::default();
     let mut recordings = Vec::new();
     for log in &logs {
         let name = short_name(log.path());
@@ -215,15 +216,22 @@ fn log_plan(options: &Tune, mut kinds: Vec<&'static Kind>) -> Result<LogPlan, Fa
         let uneven = recording.unevenness();
         let trace = &recording.trace;
         let are_named = !options.estimators.is_empty();
-        let chosen = Chosen::new(&kinds, are_named, trace, log.name(), uneven.as_deref())?;
-        let uneven = uneven.map(|uneven| chosen.note(trace, &uneven));
-        let lines = recording.notes.iter().chain(&uneven);
+        let recorded = Recorded {
+            path: log.name(),
+            trace,
+            unevenness: uneven.as_deref(),
+            device: &device,
+            parameters: &parameters,
+        };
+        let chosen = Chosen::new(&kinds, are_named, &recorded)?;
+        let clock = chosen.notes(trace, uneven.as_deref());
+        let lines = recording.notes.iter().chain(&clock);
         notes.extend(lines.map(|line| format!("{name}: {line}")));
         kinds = chosen.kinds;
         let sum = format!("{:016x}", log.sum()?);
         recordings.push((LogFile { name, sum }, recording));
     }
-    let plan = LogPlan::new(recordings, device, &kinds, &Parameters::default())?;
+    let plan = LogPlan::new(recordings, device, &kinds, &parameters)?;
     Ok(plan.with_notes(notes))
 }
 

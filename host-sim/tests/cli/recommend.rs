@@ -220,6 +220,27 @@ fn unsuitable_logs_are_refused() {
         line.contains("--instructions 0: must be a number above 0"),
         "{line}"
     );
+    let fast = swing()
+        .replace("\n0.", "\n0.0")
+        .replace("\n1.", "\n0.1")
+        .replace("\n2.", "\n0.2");
+    folder.write("fast.csv", fast);
+    for [first, second] in [["swing.csv", "fast.csv"], ["fast.csv", "swing.csv"]] {
+        let line = folder.refused(&["recommend", first, second]);
+        let said = format!("{second}: its rate is ");
+        assert!(line.contains(&said) && line.contains(first), "{line}");
+    }
+    folder.write(
+        "stated.csv",
+        format!("# counts_per_rev = 16384\n{}", swing()),
+    );
+    for logs in [["swing.csv", "stated.csv"], ["stated.csv", "swing.csv"]] {
+        let line = folder.refused(&["recommend", logs[0], logs[1]]);
+        let said =
+            "stated.csv: states 16384 counts/rev and swing.csv none; give the counts of both";
+        assert!(line.contains(said), "{line}");
+        folder.good(&["recommend", logs[0], logs[1], "--counts-per-rev", "4096"]);
+    }
     let line = folder.refused(&["recommend", "-", "-"]);
     assert!(line.contains("standard input can be read once"), "{line}");
 }

@@ -221,3 +221,47 @@ fn memory_does_not_grow_with_the_rows() {
         "{short} and {long} kB"
     );
 }
+
+/// Rows at `rate_hz` of a shaft that swings, for 10 000 rows at most and 12 s.
+fn at_rate(rate_hz: f64) -> String {
+    let rows = (12.0 * rate_hz).min(10_000.0) as u32;
+    let row = |k: u32| {
+        let t = f64::from(k) / rate_hz;
+        format!("{t},{}\n", (3000.0 * (1.0 - (2.0 * t).cos())).floor())
+    };
+    "t,counts_large\n".to_owned() + &(0..rows).map(row).collect::<String>()
+}
+
+#[test]
+fn estimators_that_are_not_made_for_the_rate_are_left_out() {
+    let folder = Folder::new("rates");
+    folder.write("slow.csv", at_rate(50.0));
+    folder.write("fast.csv", at_rate(2e6));
+    for (name, rate, nearest) in [("slow.csv", "50", "100"), ("fast.csv", "2000000", "100000")] {
+        let output = folder.run(&["replay", name, "--out", "v.csv"]);
+        assert_eq!(output.status.code(), Some(0), "{name}");
+        let notes = String::from_utf8(output.stderr).unwrap();
+        let notes = notes.split_whitespace().collect::<Vec<_>>().join(" ");
+        let said = format!("{name}: {rate} rows/s; estimators that need 100 to 100000 left out:");
+        assert!(notes.contains(&said), "{notes}");
+        let header = fs::read_to_string(folder.0.join("v.csv")).unwrap();
+        let header = header.lines().next().unwrap();
+        assert!(
+            header.contains(",pll,") && !header.contains(",imm,"),
+            "{header}"
+        );
+        let line = folder.refused(&["replay", name, "--estimator", "imm", "--out", "w.csv"]);
+        let said =
+            format!("{name}: {rate} rows/s; imm needs 100 to 100000: add --resample {nearest}");
+        assert!(line.contains(&said), "{line}");
+    }
+    let ranked = json(&folder.good(&["recommend", "slow.csv", "--json", "-"]));
+    assert!(ranked.iter().all(|row| row["estimator"] != "imm"));
+    let resampled = ["--estimator", "imm", "--resample", "100", "--out", "w.csv"];
+    folder.good(&[&["replay", "slow.csv"][..], &resampled].concat());
+    // A wrong value of the user is an error at any rate.
+    for name in ["slow.csv", "fast.csv"] {
+        let line = folder.refused(&["replay", name, "--set", "imm.no=1", "--out", "w.csv"]);
+        assert!(line.contains("imm"), "{line}");
+    }
+}

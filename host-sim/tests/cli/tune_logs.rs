@@ -186,7 +186,7 @@ fn recordings_that_do_not_suffice_are_refused() {
         ),
         (
             &["log.csv", "slow.csv"],
-            "slow.csv: its rate is 500 Hz and that of the first recording 1000",
+            "slow.csv: its rate is 500 Hz and that of log.csv 1000",
         ),
         (
             &["still.csv"],

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use shards::Experiment;
 
 use super::search::{best_values, ends_of_ranges};
+use crate::rates::check_same;
 use crate::reference::Reference;
 use catalogue::estimators::{Kind, Lack, Setup, Values};
 use catalogue::parameters::{Parameters, PlantKind, Preset, Presets};
@@ -28,9 +29,6 @@ const WARM_UP_S: f64 = 0.1;
 
 /// Shortest recording, in blocks.
 const FEWEST_BLOCKS: f64 = 4.0;
-
-/// Largest relative difference between the rates of the recordings.
-const SAME_RATE: f64 = 0.01;
 
 /// All inputs of the searches on recordings. A job is the search of one estimator.
 ///
@@ -108,6 +106,10 @@ impl LogPlan {
         kinds: &[&'static Kind],
         before: &Parameters,
     ) -> Result<Self, Failure> {
+        let rates = recordings
+            .iter()
+            .map(|(log, r)| (log.name.as_str(), r.trace.rate_hz));
+        check_same(rates)?;
         let rate_hz = recordings.first().map_or(0.0, |(_, r)| r.trace.rate_hz);
         let setup = Setup::of(&device, rate_hz);
         let mut plan = Self {
@@ -236,13 +238,6 @@ fn track(
 ) -> Result<(Track, Option<String>), Failure> {
     let trace = &recording.trace;
     let refused = |why: String| Err(Failure::Input(format!("{name}: {why}")));
-    if (trace.rate_hz / rate_hz - 1.0).abs() > SAME_RATE {
-        return refused(format!(
-            "its rate is {} Hz and that of the first recording {rate_hz} Hz; give --resample, or tune each \
-             rate on its own",
-            trace.rate_hz
-        ));
-    }
     let seconds = trace.len() as f64 / trace.rate_hz;
     if seconds < FEWEST_BLOCKS * BLOCK_S {
         return refused(format!(
