@@ -6,9 +6,10 @@ use clap::Args;
 
 use experiments::real::wanted::Wanted;
 use recordings::arguments::DeviceFile;
+use recordings::log::short_name;
 use recordings::recording::counts_per_rev_line;
 use terminal::failure::Failure;
-use terminal::output::write_whole;
+use terminal::output::{note, write_whole};
 
 #[derive(Debug, Args)]
 pub(super) struct Coarsen {
@@ -21,7 +22,7 @@ pub(super) struct Coarsen {
     #[arg(long, value_name = "C", value_parser = recordings::arguments::counts_per_rev())]
     counts_per_rev: u32,
     /// Counts per revolution of the fine encoder [default: those in the recordings.toml beside the
-    /// file]
+    /// file, or those that the file states]
     #[arg(long, value_name = "F", value_parser = clap::value_parser!(u32).range(16..))]
     fine_counts_per_rev: Option<u32>,
     /// Rate of the coarse recording, 10 to 100000 Hz, at most that of the fine one
@@ -64,5 +65,10 @@ pub(super) fn run(options: &Coarsen) -> Result<(), Failure> {
     let recording = wanted.of_file(&options.fine)?;
     let mut text = counts_per_rev_line(options.counts_per_rev).into_bytes();
     text.extend(recording.to_csv());
-    write_whole(&options.out, &text)
+    write_whole(&options.out, &text)?;
+    let name = short_name(&options.fine);
+    for line in &recording.notes {
+        note(format_args!("{name}: {line}"));
+    }
+    Ok(())
 }

@@ -116,3 +116,62 @@ fn counts_of_an_option_are_those_of_a_device_file() {
         "{error}"
     );
 }
+
+#[test]
+fn coarse_recording_is_coarsened_again() {
+    let (folder, _) = coarse("coarse-again", "1000");
+    folder.good(&[
+        "coarsen",
+        "c.csv",
+        "--counts-per-rev",
+        "250",
+        "--out",
+        "d.csv",
+    ]);
+    let text = std::fs::read_to_string(folder.0.join("d.csv")).unwrap();
+    assert!(text.starts_with("# counts_per_rev = 250\n"), "{text}");
+    // 5 rad/s of 250 counts for a second.
+    let last = text.lines().last().unwrap().split(',').nth(1).unwrap();
+    assert!(
+        (last.parse::<f64>().unwrap() - 199.0).abs() <= 1.0,
+        "{last}"
+    );
+}
+
+#[test]
+fn gap_is_bridged_with_a_note_and_an_unsuitable_clock_is_named() {
+    let folder = Folder::new("coarse-clock");
+    let options = "--counts-per-rev 1000 --fine-counts-per-rev 100000 --out c.csv";
+    let arguments = |more: &str| -> Vec<String> {
+        let line = format!("coarsen f.csv {options} {more}");
+        line.split_whitespace().map(str::to_owned).collect()
+    };
+    let run = |more: &str| {
+        let arguments = arguments(more);
+        folder.run(&arguments.iter().map(String::as_str).collect::<Vec<_>>())
+    };
+    let lines: Vec<_> = fine().lines().map(str::to_owned).collect();
+    folder.write("f.csv", [&lines[..801], &lines[1201..]].concat().join("\n"));
+    let output = run("--rate 500");
+    assert_eq!(output.status.code(), Some(0));
+    let notes = String::from_utf8(output.stderr).unwrap();
+    let said = "f.csv: rows are missing in 1 gaps, the longest of 0.2005 s before t = 0.6 s";
+    assert!(notes.contains(said), "{notes}");
+    for (text, said) in [
+        (
+            fine().replacen("1,79577\n", "1.003,79577\n", 1),
+            "f.csv: its rows come at 1994.02 Hz on the average, which is less than the 2000 Hz of --rate; \
+             ask for at most --rate 1994",
+        ),
+        (
+            "t,counts_large\n0,0\n1000,1\n2000,2\n".to_owned(),
+            "f.csv: column time_s or t: rows 1000 s apart are below 10 Hz; write it in s, not in ms or us",
+        ),
+    ] {
+        folder.write("f.csv", text);
+        let output = run("--rate 2000");
+        assert_eq!(output.status.code(), Some(2));
+        let line = String::from_utf8(output.stderr).unwrap();
+        assert!(line.contains(said), "{line}");
+    }
+}

@@ -154,11 +154,11 @@ fn invalid_input_of_real_and_coarsen_is_one_line() {
         ),
         (
             "coarsen f.csv --counts-per-rev 60000",
-            "do not resolve 60000 counts/rev at 1000 Hz; ask for at most 50000",
+            "do not resolve 60000 counts/rev; ask for at most 50000",
         ),
         (
             "coarsen f.csv --counts-per-rev 64 --rate 4000",
-            "ask for at most 50000 counts/rev and 2000 Hz",
+            "which is less than the 4000 Hz of --rate; ask for at most --rate 2000",
         ),
         (
             "coarsen f.csv --counts-per-rev 64 --rate 0",

@@ -15,6 +15,7 @@ use simulation::trace::{EdgeStamp, Trace};
 use terminal::failure::Failure;
 
 use super::fine::Fine;
+use super::wanted::LOWEST_HZ;
 
 /// Largest distance of a tick from a row that counts as the same instant, s.
 const SAME_INSTANT_S: f64 = 1e-9;
@@ -22,6 +23,9 @@ const SAME_INSTANT_S: f64 = 1e-9;
 /// Smallest number of fine counts in a coarse one. Below it the staircase of the fine encoder
 /// decides where the edges are.
 pub const FEWEST_FINE_COUNTS: f64 = 2.0;
+
+/// Largest rate, in mean rates of the rows: times in a file are rounded.
+const ROUNDED: f64 = 1.0001;
 
 /// The coarse encoder.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,8 +47,15 @@ impl Coarse {
     /// a row a tick on the average.
     #[must_use]
     pub fn is_resolved_by(&self, fine: &Fine) -> bool {
+        self.has_counts() && self.has_rows(fine)
+    }
+
+    fn has_counts(&self) -> bool {
         f64::from(self.fine_counts_per_rev) >= FEWEST_FINE_COUNTS * f64::from(self.counts_per_rev)
-            && self.rate_hz <= 1.0001 * fine.mean_rate_hz()
+    }
+
+    fn has_rows(&self, fine: &Fine) -> bool {
+        self.rate_hz <= ROUNDED * fine.mean_rate_hz()
     }
 
     /// Position in coarse counts.
@@ -60,14 +71,28 @@ impl Coarse {
     /// [`Failure::Input`] if the recording does not resolve the coarse encoder or the rate, or lasts
     /// less than a tick.
     pub fn recording(&self, fine: &Fine, name: &str) -> Result<Recording, Failure> {
-        if !self.is_resolved_by(fine) {
-            let rows_hz = fine.mean_rate_hz();
+        let refused = |why: String| Err(Failure::Input(format!("{name}: {why}")));
+        let rows_hz = fine.mean_rate_hz();
+        if rows_hz < LOWEST_HZ {
+            return refused(format!(
+                "column time_s or t: rows {} s apart are below {LOWEST_HZ} Hz; write it in s, not in ms or us",
+                1.0 / rows_hz
+            ));
+        }
+        if !self.has_rows(fine) {
+            return refused(format!(
+                "its rows come at {rows_hz:.2} Hz on the average, which is less than the {} Hz of --rate; ask \
+                 for at most --rate {:.0}",
+                self.rate_hz,
+                (ROUNDED * rows_hz).floor()
+            ));
+        }
+        if !self.has_counts() {
             let most = (f64::from(self.fine_counts_per_rev) / FEWEST_FINE_COUNTS).floor();
-            return Err(Failure::Input(format!(
-                "{name}: {} fine counts/rev at {rows_hz:.0} Hz do not resolve {} counts/rev at {} Hz; \
-                 ask for at most {most} counts/rev and {rows_hz:.0} Hz",
-                self.fine_counts_per_rev, self.counts_per_rev, self.rate_hz
-            )));
+            return refused(format!(
+                "{} fine counts/rev do not resolve {} counts/rev; ask for at most {most} counts/rev",
+                self.fine_counts_per_rev, self.counts_per_rev
+            ));
         }
         self.along(fine, name)
     }

@@ -16,12 +16,15 @@ const COLUMNS: [(&str, &[&str]); 4] = [
     ("true_omega_rad_s", &["true_omega_rad_s", "true_omega"]),
 ];
 
+/// Shortest gap, in usual intervals or ticks.
+const GAP: f64 = 1.5;
+
 /// Position of a shaft as a fine encoder saw it. Times need not be even.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Fine {
     /// Time of each row, s, rising.
     pub t: Vec<f64>,
-    /// Counts of the fine encoder.
+    /// Counts of the fine encoder, without the steps of a counter of 32 bits.
     pub counts: Vec<i64>,
     /// Torque of the motor from a row to the next one, N.m; `None` without column
     /// `motor_torque_nm`.
@@ -61,14 +64,13 @@ impl Fine {
     /// # Errors
     /// As [`Fine::read`].
     pub fn parse(text: &[u8], name: &str, seconds: f64) -> Result<Self, Failure> {
-        let failed = |error: &csv::Error| {
-            let line = error.position().map_or(1, csv::Position::line);
-            Failure::Input(format!("{name}: line {line}: {error}"))
-        };
+        let failed = |error: &csv::Error| wrong_line(name, error);
         let mut reader = csv::ReaderBuilder::new()
             .trim(csv::Trim::All)
+            .comment(Some(b'#'))
             .from_reader(text);
-        let places = places(reader.byte_headers().map_err(|e| failed(&e))?, name)?;
+        let header = reader.byte_headers().map_err(|e| failed(&e))?.clone();
+        let places = places(&header, name)?;
         let [Some(time), Some(count), torque, omega] = places else {
             let missing = if places[0].is_none() { 0 } else { 1 };
             let (column, names) = COLUMNS[missing];
@@ -91,19 +93,23 @@ impl Fine {
             let row = Row {
                 name,
                 line,
+                header: &header,
                 record: &record,
             };
-            let t: f64 = row.number(0, time)?;
+            let t: f64 = row.number(time)?;
             if let Some(last) = fine.t.last().filter(|last| t <= **last) {
-                return Err(row.wrong(0, &format!("{t} s is not after the {last} s above it")));
+                let said =
+                    format!("{t} s is not after the {last} s above it; correct or remove the row");
+                return Err(row.wrong(time, &said));
             }
             fine.t.push(t);
-            fine.counts.push(row.count(1, count)?);
-            for (values, column, place) in
-                [(&mut fine.torque, 2, torque), (&mut fine.omega, 3, omega)]
-            {
+            let count = row.count(count)?;
+            // A counter of 32 bits wraps.
+            let moved = |last: &i64| last + i64::from((count - last) as i32);
+            fine.counts.push(fine.counts.last().map_or(count, moved));
+            for (values, place) in [(&mut fine.torque, torque), (&mut fine.omega, omega)] {
                 if let (Some(values), Some(place)) = (values, place) {
-                    values.push(row.number(column, place)?);
+                    values.push(row.number(place)?);
                 }
             }
             if t - fine.t[0] >= seconds {
@@ -116,6 +122,24 @@ impl Fine {
             )));
         }
         Ok(fine)
+    }
+
+    /// The intervals in which a tick is lost at this period and that are longer than usual: their number,
+    /// and duration and end of the longest one, s. `None` if there are none.
+    #[must_use]
+    pub fn gaps(&self, period_s: f64) -> Option<(usize, [f64; 2])> {
+        let steps = self.t.windows(2).map(|pair| pair[1] - pair[0]);
+        let mut sorted: Vec<f64> = steps.clone().collect();
+        sorted.sort_by(f64::total_cmp);
+        let longest_usual = GAP * sorted[sorted.len() / 2].max(period_s);
+        let gaps = || {
+            steps
+                .clone()
+                .zip(&self.t[1..])
+                .filter(|(step, _)| *step > longest_usual)
+        };
+        let (step, end) = gaps().max_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some((gaps().count(), [step, *end]))
     }
 
     /// Mean rate of the rows, Hz.
@@ -145,42 +169,59 @@ fn places(header: &ByteRecord, name: &str) -> Result<[Option<usize>; COLUMNS.len
     Ok(places)
 }
 
-/// One row, to read fields from.
+/// The failure of a line that is no row.
+fn wrong_line(name: &str, error: &csv::Error) -> Failure {
+    let line = error.position().map_or(1, csv::Position::line);
+    let said = match error.kind() {
+        csv::ErrorKind::UnequalLengths {
+            expected_len, len, ..
+        } => format!("fields: {len}, in the header {expected_len}; correct or remove the line"),
+        _ => error.to_string(),
+    };
+    Failure::Input(format!("{name}: line {line}: {said}"))
+}
+
+/// One row, to read fields from. Its places are those of the header.
 struct Row<'a> {
     name: &'a str,
     line: u64,
+    header: &'a ByteRecord,
     record: &'a ByteRecord,
 }
 
 impl Row<'_> {
-    fn wrong(&self, column: usize, what: &str) -> Failure {
-        let column = COLUMNS[column].0;
+    fn wrong(&self, place: usize, what: &str) -> Failure {
         Failure::Input(format!(
-            "{}: line {}: column {column}: {what}",
-            self.name, self.line
+            "{}: line {}: column {}: {what}",
+            self.name,
+            self.line,
+            text(self.header, place)
         ))
     }
 
-    fn text(&self, place: usize) -> String {
-        String::from_utf8_lossy(self.record.get(place).unwrap_or_default()).into_owned()
-    }
-
-    fn number(&self, column: usize, place: usize) -> Result<f64, Failure> {
-        let text = self.text(place);
+    fn number(&self, place: usize) -> Result<f64, Failure> {
+        let text = text(self.record, place);
         let number = text.parse().ok().filter(|number: &f64| number.is_finite());
         number.ok_or_else(|| {
             let short: String = text.chars().take(20).flat_map(char::escape_debug).collect();
-            self.wrong(column, &format!("'{short}' is not a number"))
+            let said = format!("'{short}' is not a number; correct or remove the row");
+            self.wrong(place, &said)
         })
     }
 
-    fn count(&self, column: usize, place: usize) -> Result<i64, Failure> {
-        let number = self.number(column, place)?;
+    fn count(&self, place: usize) -> Result<i64, Failure> {
+        let number = self.number(place)?;
         if number.fract() != 0.0 || number.abs() >= 2.0_f64.powi(53) {
-            return Err(self.wrong(column, &format!("{number} is not a whole number of counts")));
+            return Err(self.wrong(place, &format!("{number} is not a whole number of counts")));
         }
         Ok(number as i64)
     }
+}
+
+/// A field of a line as text, without a byte order mark.
+fn text(record: &ByteRecord, place: usize) -> String {
+    let text = String::from_utf8_lossy(record.get(place).unwrap_or_default());
+    text.trim_start_matches('\u{feff}').to_owned()
 }
 
 #[cfg(test)]
@@ -213,7 +254,7 @@ mod tests {
             ),
             (
                 "t,fine_count\n0,1\n0,2\n",
-                "f.csv: line 3: column time_s: 0 s is not after",
+                "f.csv: line 3: column t: 0 s is not after the 0 s above it; correct",
             ),
             (
                 "t,fine_count\n0,1\n1,1.5\n",
@@ -223,7 +264,18 @@ mod tests {
                 "t,fine_count\n0,one\n",
                 "f.csv: line 2: column fine_count: 'one' is not a number",
             ),
-            ("t,fine_count\n0\n", "f.csv: line 2: "),
+            (
+                "t,counts_large\n0,nan\n",
+                "f.csv: line 2: column counts_large: 'nan' is not a number; correct or remove the row",
+            ),
+            (
+                "# note\nt,fine_count,true_omega\n0,1,x\n",
+                "f.csv: line 3: column true_omega: 'x' is not a number",
+            ),
+            (
+                "t,fine_count\n0,1\n1\n",
+                "f.csv: line 3: fields: 1, in the header 2; correct or remove the line",
+            ),
             ("t,fine_count\n0,1\n", "f.csv: fewer than two rows"),
         ] {
             let error = Fine::parse(text.as_bytes(), "f.csv", 1.0)
@@ -231,6 +283,28 @@ mod tests {
                 .to_string();
             assert!(error.starts_with(said), "{error}");
         }
+    }
+
+    #[test]
+    fn counter_of_32_bits_goes_on_where_it_wraps() {
+        let text = b"t,counts_large\n0,4294967290\n1,2\n2,4294967295\n";
+        let fine = Fine::parse(text, "f.csv", 9.0).unwrap();
+        assert_eq!(fine.counts, [4294967290, 4294967298, 4294967295]);
+    }
+
+    #[test]
+    fn gaps_are_longer_than_usual_and_than_a_tick() {
+        let t = |gap: f64| (0..10).map(move |k| f64::from(k) + if k > 5 { gap } else { 0.0 });
+        let gaps = |gap: f64, period_s: f64| {
+            let fine = Fine {
+                t: t(gap).collect(),
+                ..Fine::default()
+            };
+            fine.gaps(period_s)
+        };
+        assert_eq!(gaps(0.0, 1.0), None);
+        assert_eq!(gaps(2.0, 1.0), Some((1, [3.0, 8.0])));
+        assert_eq!(gaps(2.0, 2.0), None);
     }
 
     #[test]

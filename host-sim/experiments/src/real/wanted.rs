@@ -4,12 +4,18 @@ use std::fs;
 use std::path::Path;
 
 use recordings::log::{called, read};
-use recordings::recording::Recording;
+use recordings::recording::{Recording, stated_counts_per_rev};
 use terminal::failure::Failure;
 
 use super::coarsen::Coarse;
 use super::fine::{Fine, decompressed};
 use super::sources::Source;
+
+/// Number of first bytes in which a file states its counts per revolution.
+const HEAD: usize = 1 << 16;
+
+/// Lowest rate of a recording, Hz.
+pub const LOWEST_HZ: f64 = 10.0;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -38,30 +44,49 @@ impl Wanted {
         rate(self.rate_hz)?;
         phase(self.phase)?;
         let seconds = self.seconds.map_or(Ok(f64::INFINITY), seconds)?;
-        let known = match self.fine_counts_per_rev {
-            None => Source::of(path)?.map(|source| source.counts_per_rev),
-            given => given,
-        };
         if path.as_os_str() != "-"
             && let Err(error) = fs::metadata(path)
         {
             return Err(Failure::Input(format!("{name}: cannot read: {error}")));
         }
-        let fine_counts_per_rev = known.ok_or_else(|| {
-            Failure::Input(format!(
-                "{name}: its counts per revolution are not known; give --fine-counts-per-rev, or list the \
-                 file in a recordings.toml beside it"
-            ))
-        })?;
+        let text = decompressed(read(path)?, &name)?;
         let coarse = Coarse {
-            fine_counts_per_rev,
+            fine_counts_per_rev: self.fine_counts(path, &text, &name)?,
             counts_per_rev: self.counts_per_rev,
             rate_hz: self.rate_hz,
             phase: self.phase,
             torque_constant: self.torque_constant,
         };
-        let text = decompressed(read(path)?, &name)?;
-        coarse.recording(&Fine::parse(&text, &name, seconds)?, &name)
+        let fine = Fine::parse(&text, &name, seconds)?;
+        let mut recording = coarse.recording(&fine, &name)?;
+        let gaps = fine.gaps(1.0 / self.rate_hz);
+        recording.notes.extend(gaps.map(|(number, ends)| {
+            let [longest_s, end_s] = ends.map(|s| (s * 1e6).round() / 1e6);
+            format!(
+                "rows are missing in {number} gaps, the longest of {longest_s} s before t = {end_s} s: the \
+                 position is a straight line there"
+            )
+        }));
+        Ok(recording)
+    }
+
+    /// Counts per revolution of the fine encoder: those of the option, of the list beside the file, or
+    /// those that the text states.
+    fn fine_counts(&self, path: &Path, text: &[u8], name: &str) -> Result<u32, Failure> {
+        let known = match self.fine_counts_per_rev {
+            None => Source::of(path)?.map(|source| source.counts_per_rev),
+            given => given,
+        };
+        let known = match known {
+            None => stated_counts_per_rev(&text[..text.len().min(HEAD)], name)?,
+            known => known,
+        };
+        known.ok_or_else(|| {
+            Failure::Input(format!(
+                "{name}: its counts per revolution are not known; give --fine-counts-per-rev, or state them \
+                 in a first line: # counts_per_rev = N"
+            ))
+        })
     }
 }
 
@@ -70,7 +95,7 @@ impl Wanted {
 /// # Errors
 /// [`Failure::Input`] that names the option.
 pub fn rate(hz: f64) -> Result<f64, Failure> {
-    in_range("--rate", hz, [10.0, 1e5], "Hz")
+    in_range("--rate", hz, [LOWEST_HZ, 1e5], "Hz")
 }
 
 /// A phase.
