@@ -123,6 +123,13 @@ pub(super) fn run(options: &Real, command_line: &str) -> Result<(), Failure> {
         .unzip();
     let mut rows: Vec<Row> = rows.into_iter().flatten().collect();
     let mut names: Vec<_> = settings.estimators.iter().map(|kind| kind.name).collect();
+    if rows.is_empty() {
+        return Err(Failure::Input(format!(
+            "{}: no recording has the columns that {} reads; see host-sim estimators",
+            options.data.display(),
+            names.join(", ")
+        )));
+    }
     let (own_rows, own_names) = (rows.clone(), names.clone());
     let mut tuned = Vec::new();
     if options.peers {

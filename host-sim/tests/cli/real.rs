@@ -199,4 +199,9 @@ fn invalid_input_of_real_and_coarsen_is_one_line() {
         error.contains("ask for a lower --rate or --counts-per-rev"),
         "{error}"
     );
+    let outputs = ["--json", "r.json", "--csv", "r.csv", "--out", "page"];
+    let observer = ["real", "--data", ".", "--estimator", "observer"];
+    let error = folder.refused(&[&observer[..], &outputs].concat());
+    let said = ".: no recording has the columns that observer reads; see host-sim estimators";
+    assert!(error.contains(said), "{error}");
 }
