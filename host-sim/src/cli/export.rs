@@ -42,7 +42,8 @@ pub(super) struct Export {
     #[arg(long, value_name = "FILE.mcap", required_unless_present = "c")]
     mcap: Option<PathBuf>,
     /// Write the parameters of --estimator as a C constant for limpid.h, no recording is read
-    #[arg(long, requires = "estimators", conflicts_with_all = ["recording", "mcap", "RecordingOptions"])]
+    #[arg(long, requires = "estimators", conflicts_with_all =
+        ["recording", "mcap", "columns", "modulus", "row_rate", "resample"])]
     c: bool,
     #[command(flatten)]
     design: Design,

@@ -56,3 +56,27 @@ fn log_that_cannot_be_read_leaves_no_file() {
     );
     assert_eq!(folder.files().len(), 2);
 }
+
+#[test]
+fn options_of_a_recording_are_refused_without_one() {
+    let folder = folder("export-c");
+    for option in [
+        "--column t=t",
+        "--modulus 4096",
+        "--row-rate 1000",
+        "--resample 1000",
+    ] {
+        let arguments = format!("export --c --estimator pll {option}");
+        let error = folder.refused(&arguments.split(' ').collect::<Vec<_>>());
+        assert!(error.contains("cannot be used with"), "{error}");
+    }
+    let counts = [
+        "export",
+        "--c",
+        "--estimator",
+        "pll",
+        "--counts-per-rev",
+        "500",
+    ];
+    assert!(folder.good(&counts).contains("500 counts per revolution"));
+}
