@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use catalogue::estimators::Kind;
-use catalogue::parameters::{PlantKind, Presets};
+use catalogue::parameters::{Parameters, PlantKind, Presets};
 use experiments::recommend::{Settings, lines, recommend as recommend_for};
 use experiments::tune::{LogFile, LogPlan, Plan, Wishes};
-use experiments::uneven::Chosen;
+use experiments::uneven::{Chosen, Recorded};
 use pyo3::prelude::*;
 use recordings::recording::Recording;
 use shards::Experiment as _;
@@ -25,10 +25,11 @@ use crate::error::{in_python, value_error};
 type Logs = Vec<(String, Recording)>;
 
 /// The recordings and what their reader says, for the estimators `kinds`. Those that the user did not
-/// name and that need a constant period are left out on uneven rows.
+/// name and that need a constant period or another rate are left out.
 fn read(
     columns: Vec<Unchecked>,
     device: &Device,
+    parameters: &Parameters,
     mut kinds: Vec<&'static Kind>,
     are_named: bool,
 ) -> Result<(Logs, Vec<&'static Kind>, Vec<String>), Failure> {
@@ -41,9 +42,16 @@ fn read(
         recording.check_times(&name)?;
         let uneven = recording.unevenness();
         let trace = &recording.trace;
-        let chosen = Chosen::new(&kinds, are_named, trace, &name, uneven.as_deref())?;
-        let uneven = uneven.map(|uneven| chosen.note(trace, &uneven));
-        let lines = unwrapped.into_iter().chain(uneven);
+        let recorded = Recorded {
+            path: &name,
+            trace,
+            unevenness: uneven.as_deref(),
+            device,
+            parameters,
+        };
+        let chosen = Chosen::new(&kinds, are_named, &recorded)?;
+        let clock = chosen.notes(trace, uneven.as_deref());
+        let lines = unwrapped.into_iter().chain(clock);
         notes.extend(lines.map(|line| format!("{name}: {line}")));
         kinds = chosen.kinds;
         logs.push((name, recording));
@@ -93,7 +101,13 @@ pub(crate) fn recommend(
     let columns: PyResult<Vec<_>> = logs.iter().map(Columns::copy).collect();
     let columns = columns?;
     interruptible(py, |stop| {
-        let (logs, _, mut notes) = read(columns, &device, Kind::all().iter().collect(), false)?;
+        let (logs, _, mut notes) = read(
+            columns,
+            &device,
+            &parameters,
+            Kind::all().iter().collect(),
+            false,
+        )?;
         let settings = Settings {
             device: &device,
             is_known,
@@ -130,7 +144,7 @@ pub(crate) fn tune_logs(
     let columns: PyResult<Vec<_>> = logs.iter().map(Columns::copy).collect();
     let columns = columns?;
     interruptible(py, |stop| {
-        let (logs, kinds, notes) = read(columns, &device, kinds, !estimators.is_empty())?;
+        let (logs, kinds, notes) = read(columns, &device, &before, kinds, !estimators.is_empty())?;
         let logs = logs.into_iter().map(|(name, recording)| {
             let sum = String::new();
             (LogFile { name, sum }, recording)

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use experiments::uneven::Chosen;
+use catalogue::parameters::Parameters;
+use experiments::uneven::{Chosen, Recorded};
 use pyo3::prelude::*;
 use recordings::recording::Recording;
 use simulation::device::Device;
@@ -86,7 +87,14 @@ fn prepared(
     }
     recording.check_times(name)?;
     let uneven = recording.unevenness();
-    let chosen = Chosen::new(&[kind], true, &recording.trace, name, uneven.as_deref())?;
-    notes.extend(uneven.map(|uneven| chosen.note(&recording.trace, &uneven)));
+    let recorded = Recorded {
+        path: name,
+        trace: &recording.trace,
+        unevenness: uneven.as_deref(),
+        device,
+        parameters: &Parameters::default(),
+    };
+    let chosen = Chosen::new(&[kind], true, &recorded)?;
+    notes.extend(chosen.notes(&recording.trace, uneven.as_deref()));
     Ok((recording, notes))
 }
