@@ -25,7 +25,7 @@ use crate::error::{in_python, value_error};
 type Logs = Vec<(String, Recording)>;
 
 /// The recordings and what their reader says, for the estimators `kinds`. Those that the user did not
-/// name and that need a constant period or another rate are left out.
+/// name are left out where they need a constant period or another rate.
 fn read(
     columns: Vec<Unchecked>,
     device: &Device,
@@ -101,13 +101,8 @@ pub(crate) fn recommend(
     let columns: PyResult<Vec<_>> = logs.iter().map(Columns::copy).collect();
     let columns = columns?;
     interruptible(py, |stop| {
-        let (logs, _, mut notes) = read(
-            columns,
-            &device,
-            &parameters,
-            Kind::all().iter().collect(),
-            false,
-        )?;
+        let kinds = Kind::all().iter().collect();
+        let (logs, _, mut notes) = read(columns, &device, &parameters, kinds, false)?;
         let settings = Settings {
             device: &device,
             is_known,
@@ -144,7 +139,8 @@ pub(crate) fn tune_logs(
     let columns: PyResult<Vec<_>> = logs.iter().map(Columns::copy).collect();
     let columns = columns?;
     interruptible(py, |stop| {
-        let (logs, kinds, notes) = read(columns, &device, &before, kinds, !estimators.is_empty())?;
+        let are_named = !estimators.is_empty();
+        let (logs, kinds, notes) = read(columns, &device, &before, kinds, are_named)?;
         let logs = logs.into_iter().map(|(name, recording)| {
             let sum = String::new();
             (LogFile { name, sum }, recording)

@@ -11,7 +11,7 @@ use simulation::device::Device;
 use terminal::failure::Failure;
 
 use crate::columns::Columns;
-use crate::device::{Built, DeviceFile, Named, device};
+use crate::device::{Built, DeviceFile, Named, device, parameters as of_presets};
 use crate::error::{in_python, value_error};
 use crate::stream::{Arrays, Stream, arrays, lack};
 
@@ -46,7 +46,8 @@ pub(crate) fn replay<'py>(
     let unchecked = recording.copy()?;
     let (reports, built, recording, notes) = py.detach(|| {
         let recording = unchecked.recording().map_err(value_error)?;
-        let prepared = prepared(recording, &name, &device, resample, estimator);
+        let of_user = || of_presets(presets.as_ref(), estimator, &parameters);
+        let prepared = prepared(recording, &name, &device, resample, estimator, of_user);
         let (recording, mut notes) = prepared.map_err(value_error)?;
         let rate_hz = recording.trace.rate_hz;
         let built = Built::new(estimator, &device, rate_hz, presets.as_ref(), &parameters);
@@ -67,32 +68,31 @@ pub(crate) fn replay<'py>(
     ))
 }
 
-/// The recording with unwrapped counts and, if asked for, even rows, and what is said about it.
+/// The recording with unwrapped counts and, if asked for, even rows, and what is said about it. The
+/// estimator must be one for its clock.
 fn prepared(
     mut recording: Recording,
     name: &str,
     device: &Device,
     resample: Option<f64>,
     estimator: &str,
+    parameters: impl FnOnce() -> Result<Parameters, Failure>,
 ) -> Result<(Recording, Vec<String>), Failure> {
     let kind = catalogue::estimators::Kind::named(estimator)?;
     let mut notes = recording.unwrap_counts(device);
     if let Some(hz) = resample {
         notes.extend(recording.unevenness());
         recording.resample(hz, name)?;
-        return Ok((recording, notes));
+    } else if recording.trace.periods.is_some() || recording.uneven_steps > 0 {
+        recording.check_times(name)?;
     }
-    if recording.trace.periods.is_none() && recording.uneven_steps == 0 {
-        return Ok((recording, notes));
-    }
-    recording.check_times(name)?;
-    let uneven = recording.unevenness();
+    let uneven = recording.unevenness().filter(|_| resample.is_none());
     let recorded = Recorded {
         path: name,
         trace: &recording.trace,
         unevenness: uneven.as_deref(),
         device,
-        parameters: &Parameters::default(),
+        parameters: &parameters()?,
     };
     let chosen = Chosen::new(&[kind], true, &recorded)?;
     notes.extend(chosen.notes(&recording.trace, uneven.as_deref()));

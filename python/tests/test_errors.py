@@ -52,6 +52,7 @@ def replay(**arguments):
         ({"counts_per_rev": 3}, ["counts_per_rev=3: must be from 16 to 4000000"]),
         ({"device": {"large": {"inertia": 1}}}, ["device: ", "inertia"]),
         ({"resample": -5}, ["resample=-5"]),
+        ({"rate": 50}, ["50 rows/s; imm needs 100 to 100000: add resample=100"]),
     ],
 )
 def test_replay_refuses(arguments, said):

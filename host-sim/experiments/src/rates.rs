@@ -19,7 +19,7 @@ pub fn nearest(rate_hz: f64) -> f64 {
 }
 
 /// Whether an estimator refuses the rate of a recording: it cannot be built, and could with the same
-/// parameters at the rate [`nearest`] to it.
+/// parameters at the rate [`nearest`] to it. A rate that none can have is refused elsewhere.
 #[must_use]
 pub fn refuses(kind: &Kind, rate_hz: f64, device: &Device, parameters: &Parameters) -> bool {
     let builds = |rate_hz: f64| {
@@ -28,7 +28,11 @@ pub fn refuses(kind: &Kind, rate_hz: f64, device: &Device, parameters: &Paramete
         kind.build(&setup, &values).is_ok()
     };
     let nearest = nearest(rate_hz);
-    nearest != rate_hz && !builds(rate_hz) && builds(nearest)
+    rate_hz > 0.0
+        && rate_hz.is_finite()
+        && nearest != rate_hz
+        && !builds(rate_hz)
+        && builds(nearest)
 }
 
 /// Checks that recordings, each with its name and its rate in Hz, have one rate.
@@ -61,8 +65,8 @@ mod tests {
             let kinds = kinds.filter(|kind| refuses(kind, rate_hz, &device, &parameters));
             kinds.map(|kind| kind.name).collect()
         };
-        for rate_hz in EVERY_HZ {
-            assert!(refused(rate_hz).is_empty());
+        for rate_hz in [EVERY_HZ[0], EVERY_HZ[1], 0.0, f64::NAN, f64::INFINITY] {
+            assert!(refused(rate_hz).is_empty(), "{rate_hz}");
         }
         for rate_hz in [10.0, 50.0, 2e6] {
             let refused = refused(rate_hz);

@@ -83,8 +83,8 @@ impl Wanted {
         };
         known.ok_or_else(|| {
             Failure::Input(format!(
-                "{name}: its counts per revolution are not known; give --fine-counts-per-rev, or state them \
-                 in a first line: # counts_per_rev = N"
+                "{name}: its counts per revolution are not known; give --fine-counts-per-rev, or list the \
+                 file in a recordings.toml beside it, or state them in its first line: # counts_per_rev = N"
             ))
         })
     }
