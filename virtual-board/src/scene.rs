@@ -43,7 +43,7 @@ pub fn stiffness(scene: SceneKind, device: &DualStage) -> Option<f32> {
     usual.value(scene.parameter("stiffness")?, RATE)
 }
 
-/// Parses `stiffness=0.2` to the command that sets the parameter. [`check`] and the image check the bounds of
+/// Parses `stiffness=0.2` to the command that sets the parameter. `check` and the image check the bounds of
 /// the value.
 ///
 /// # Errors

@@ -53,13 +53,7 @@ fn sign(value: f32) -> f32 {
     }
 }
 
-/// The part of `friction` that can hold a rotor.
-#[inline]
-fn holding(friction: f32) -> f32 {
-    if friction > 0.0 { friction } else { 0.0 }
-}
-
-/// Direction in which `drive` moves a rotor at rest: -1, 1, or 0 if friction, not negative, holds the rotor.
+/// Direction in which `drive` moves a rotor at rest: -1, 1, or 0 if friction holds the rotor.
 #[inline]
 fn leaving(drive: f32, friction: f32) -> f32 {
     if drive > friction {
@@ -83,10 +77,6 @@ impl Motion {
     /// Damping acts during that rest too: over the part l of a tick φ1 is `φ1 / (φ1 + l (1 - φ1))`,
     /// which is exact at both ends. Without it a drive in proportion to the velocity, as that of an
     /// adapted damping, would increase the speed from `β = 4.6` on.
-    ///
-    /// What an adaptation has learned of the friction and what corrects it can add up to less than zero. Such
-    /// a friction acts on a motion, where it stands for other errors of the model, but neither holds nor moves
-    /// a rotor at rest.
     #[inline(always)]
     pub(super) fn step(&self, velocity: f32, drive: f32, friction: f32) -> Step {
         let (direction, net) = if velocity > 0.0 {
@@ -94,7 +84,6 @@ impl Motion {
         } else if velocity < 0.0 {
             (-1.0, drive + friction)
         } else {
-            let friction = holding(friction);
             if !(drive.abs() > friction) {
                 return Step {
                     moved: 0.0,
@@ -124,7 +113,6 @@ impl Motion {
             velocity / (velocity - end)
         };
         let stopped = 0.5 * part * velocity;
-        let friction = holding(friction);
         let leaving = leaving(drive, friction);
         if leaving == 0.0 {
             return Step {
@@ -178,21 +166,6 @@ mod tests {
         assert!(step(0.0, 2.0).stuck && step(0.0, -2.0).stuck);
         let left = step(0.0, 3.0);
         assert_eq!((left.moved, left.velocity, left.direction), (0.5, 1.0, 1.0));
-    }
-
-    /// A friction below zero drives a motion, and no rotor at rest: the tick is the mirror image of its own.
-    #[test]
-    fn negative_friction_moves_no_rotor_at_rest() {
-        let with = |velocity, drive| MOTION.step(velocity, drive, -0.75);
-        let resting = with(0.0, 0.0);
-        assert_eq!((resting.moved, resting.velocity), (0.0, 0.0));
-        assert!(resting.stuck);
-        assert_eq!(with(3.0, 0.0).velocity, 3.75);
-        for (velocity, drive) in [(0.0, 0.25), (0.0, 2.0), (1.0, -2.0), (2.0, -2.5)] {
-            let (forth, back) = (with(velocity, drive), with(-velocity, -drive));
-            assert_eq!((forth.moved, forth.velocity), (-back.moved, -back.velocity));
-            assert_eq!(forth.against, -back.against, "{velocity} {drive}");
-        }
     }
 
     /// What friction acts against at the end of a tick: the motion, the drive of a rotor that has

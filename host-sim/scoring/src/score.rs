@@ -18,6 +18,7 @@ mod truth;
 pub use field::{Better, Field, Form, Over};
 pub use fields::{Score, Wanted};
 pub use sections::Sections;
+pub use transient::HALF_SPAN_S;
 pub use truth::Truth;
 
 /// Duration at the start of a trace that is not scored, s.

@@ -186,14 +186,13 @@ impl Definition {
     /// whether it rests.
     pub(super) fn motion(&self, v: f64, u: f64, friction: f64) -> (f64, f64, f64, f64, bool) {
         let (phi0, phi1, phi2) = (self.a[(1, 1)], self.a[(0, 1)], self.a[(0, 2)]);
-        let holding = friction.max(0.0);
-        let leaves = if u.abs() > holding { u.signum() } else { 0.0 };
+        let leaves = if u.abs() > friction { u.signum() } else { 0.0 };
         let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
         let direction = if v == 0.0 { leaves } else { v.signum() };
         if direction == 0.0 {
             return (0.0, 0.0, 0.0, sign(u), true);
         }
-        let n = u - direction * if v == 0.0 { holding } else { friction };
+        let n = u - direction * friction;
         let end = phi0 * v + phi1 * n;
         if end * direction > 0.0 {
             return (phi1 * v + phi2 * n, end, direction, direction, false);
@@ -204,7 +203,7 @@ impl Definition {
             return (stopped, 0.0, direction * part, sign(u), true);
         }
         let left = 1.0 - part;
-        let v = left * (u - leaves * holding) / (1.0 + left * (1.0 / phi1 - 1.0));
+        let v = left * (u - leaves * friction) / (1.0 + left * (1.0 / phi1 - 1.0));
         let direction = direction * part + leaves * left;
         (stopped + left * v / 2.0, v, direction, direction, false)
     }

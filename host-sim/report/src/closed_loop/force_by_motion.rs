@@ -9,7 +9,7 @@ use super::charts::{Curve, Green, Panel, panels};
 use super::{ClosedLoop, find};
 use catalogue::parameters::PlantKind;
 use experiments::transparency::{Outcome, Signals};
-use scoring::score::SKIP_S;
+use scoring::score::{HALF_SPAN_S, SKIP_S};
 use simulation::device::Device;
 
 /// Bins across each axis, and the least share of the ticks that a bin needs to be drawn.
@@ -17,8 +17,6 @@ const BINS: usize = 32;
 const LEAST_SHARE: f64 = 0.002;
 /// Where the force axis begins, mN.
 const LOWEST_MN: f64 = 1.0;
-/// Half of the span over which acceleration is taken, s: that of the transient score.
-const HALF_SPAN_S: f64 = 0.002;
 
 /// One figure, velocity above acceleration, rates side by side; `None` without scene `free-air`.
 pub(super) fn figures(

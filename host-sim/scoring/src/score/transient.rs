@@ -5,7 +5,7 @@ use std::ops::Range;
 /// Acceleration above which a transient begins, rad/s^2.
 const THRESHOLD_RAD_S2: f64 = 100.0;
 /// Half of the central difference that measures acceleration, s.
-const HALF_SPAN_S: f64 = 0.002;
+pub const HALF_SPAN_S: f64 = 0.002;
 /// Duration of a transient after the acceleration was last above the threshold, s.
 const HOLD_S: f64 = 0.020;
 
