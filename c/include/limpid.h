@@ -708,7 +708,7 @@ typedef struct {
 } limpid_adaptive_edge_state_t;
 
 /*
- `imm-adaptive`: bank that also follows adaptive, and distrusts it for a wrong device. Parameters, which may be in flash.
+ `imm-adaptive`: bank that also follows adaptive, with a small probability for a wrong device. Parameters, which may be in flash.
  */
 typedef struct {
   uint32_t words[545];
