@@ -40,17 +40,9 @@ fn read(
         let mut recording = unchecked.recording()?;
         let unwrapped = recording.unwrap_counts(device);
         recording.check_times(&name)?;
-        let uneven = recording.unevenness();
-        let trace = &recording.trace;
-        let recorded = Recorded {
-            path: &name,
-            trace,
-            unevenness: uneven.as_deref(),
-            device,
-            parameters,
-        };
+        let recorded = Recorded::new(&name, &recording, device, parameters);
         let chosen = Chosen::new(&kinds, are_named, &recorded)?;
-        let clock = chosen.notes(trace, uneven.as_deref());
+        let clock = chosen.notes(&recorded);
         let lines = unwrapped.into_iter().chain(clock);
         notes.extend(lines.map(|line| format!("{name}: {line}")));
         kinds = chosen.kinds;

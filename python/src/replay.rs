@@ -86,15 +86,12 @@ fn prepared(
     } else if recording.trace.periods.is_some() || recording.uneven_steps > 0 {
         recording.check_times(name)?;
     }
-    let uneven = recording.unevenness().filter(|_| resample.is_none());
-    let recorded = Recorded {
-        path: name,
-        trace: &recording.trace,
-        unevenness: uneven.as_deref(),
-        device,
-        parameters: &parameters()?,
-    };
+    let parameters = parameters()?;
+    let mut recorded = Recorded::new(name, &recording, device, &parameters);
+    if resample.is_some() {
+        recorded.unevenness = None;
+    }
     let chosen = Chosen::new(&[kind], true, &recorded)?;
-    notes.extend(chosen.notes(&recording.trace, uneven.as_deref()));
+    notes.extend(chosen.notes(&recorded));
     Ok((recording, notes))
 }

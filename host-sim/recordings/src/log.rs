@@ -130,15 +130,20 @@ impl Log {
         cannot_read(&self.name, error)
     }
 
+    /// All its bytes, unpacked.
+    ///
+    /// # Errors
+    /// As [`Log::open`].
+    pub fn bytes(&self) -> Result<Vec<u8>, Failure> {
+        self.first(u64::MAX)
+    }
+
     /// Checksum of its bytes.
     ///
     /// # Errors
     /// As [`Log::open`].
     pub fn sum(&self) -> Result<u64, Failure> {
-        let mut bytes = Vec::new();
-        let read = self.reader()?.read_to_end(&mut bytes);
-        read.map_err(|error| cannot_read(&self.name, &error))?;
-        Ok(sum(&bytes))
+        Ok(sum(&self.bytes()?))
     }
 
     /// Its first bytes, which hold the header.
@@ -146,10 +151,14 @@ impl Log {
     /// # Errors
     /// As [`Log::open`].
     pub fn head(&self) -> Result<Vec<u8>, Failure> {
-        let mut head = Vec::new();
-        let read = self.reader()?.take(HEAD).read_to_end(&mut head);
-        read.map_err(|error| cannot_read(&self.name, &error))?;
-        Ok(head)
+        self.first(HEAD)
+    }
+
+    fn first(&self, number: u64) -> Result<Vec<u8>, Failure> {
+        let mut bytes = Vec::new();
+        let read = self.reader()?.take(number).read_to_end(&mut bytes);
+        read.map_err(|error| self.failure(&error))?;
+        Ok(bytes)
     }
 }
 

@@ -111,14 +111,7 @@ fn write_mcap(options: &Export, recording: &Path, file: &Path) -> Result<(), Fai
         device,
         stated,
     } = options.read.whole(&log, &options.device)?;
-    let uneven = recording.unevenness();
-    let recorded = Recorded {
-        path: log.name(),
-        trace: &recording.trace,
-        unevenness: uneven.as_deref(),
-        device: &device,
-        parameters: &parameters,
-    };
+    let recorded = Recorded::new(log.name(), &recording, &device, &parameters);
     let chosen = Chosen::new(&kinds, !options.estimators.is_empty(), &recorded)?;
     let replayed = replay::replay(
         &recording,
@@ -132,7 +125,7 @@ fn write_mcap(options: &Export, recording: &Path, file: &Path) -> Result<(), Fai
     write_whole(file, &bytes)?;
     let about = About {
         notes: recording.notes.clone(),
-        clock: chosen.notes(&recording.trace, uneven.as_deref()),
+        clock: chosen.notes(&recorded),
         left_out: &replayed.left_out,
         mismatched_presets: &replayed.mismatched_presets,
     };

@@ -68,14 +68,7 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
         device,
         stated,
     } = options.read.whole(&log, &options.device)?;
-    let uneven = recording.unevenness();
-    let recorded = Recorded {
-        path: log.name(),
-        trace: &recording.trace,
-        unevenness: uneven.as_deref(),
-        device: &device,
-        parameters: &parameters,
-    };
+    let recorded = Recorded::new(log.name(), &recording, &device, &parameters);
     let chosen = Chosen::new(&kinds, !options.estimators.is_empty(), &recorded)?;
     let [first, .., last] = recording.t[..] else {
         unreachable!("a recording has at least two rows");
@@ -115,7 +108,7 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
     write_whole(out, svg.as_bytes())?;
     let about = About {
         notes: recording.notes.clone(),
-        clock: chosen.notes(&recording.trace, uneven.as_deref()),
+        clock: chosen.notes(&recorded),
         left_out: &replayed.left_out,
         mismatched_presets: &replayed.mismatched_presets,
     };

@@ -99,16 +99,9 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
     }
     for (name, recording) in &logs {
         let kinds: Vec<_> = Kind::all().iter().collect();
-        let uneven = recording.unevenness();
-        let recorded = Recorded {
-            path: name,
-            trace: &recording.trace,
-            unevenness: uneven.as_deref(),
-            device: &device,
-            parameters: &parameters,
-        };
+        let recorded = Recorded::new(name, recording, &device, &parameters);
         let chosen = Chosen::new(&kinds, false, &recorded)?;
-        let clock = chosen.notes(&recording.trace, uneven.as_deref());
+        let clock = chosen.notes(&recorded);
         let all = recording.notes.iter().chain(&clock);
         notes.extend(all.map(|line| format!("{name}: {line}")));
     }

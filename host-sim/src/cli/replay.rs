@@ -81,11 +81,10 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     let (device, stated) = options.recording.counted(&options.device, device, logs)?;
     let (read, survey) = options.recording.survey(&log, &device)?;
     survey.check_times(log.name())?;
-    let uneven = survey.unevenness();
     let recorded = Recorded {
         path: log.name(),
         trace: &survey.columns,
-        unevenness: uneven.as_deref(),
+        unevenness: survey.unevenness(),
         device: &device,
         parameters: &parameters,
     };
@@ -138,7 +137,10 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     }
     let about = About {
         notes: [survey.notes.clone(), passes.parts.notes()].concat(),
-        clock: chosen.notes(&survey.columns, passes.parts.unevenness().as_deref()),
+        clock: chosen.notes(&Recorded {
+            unevenness: passes.parts.unevenness(),
+            ..recorded
+        }),
         left_out: &run.left_out,
         mismatched_presets: &run.mismatched_presets,
     };

@@ -213,18 +213,10 @@ fn log_plan(options: &Tune, mut kinds: Vec<&'static Kind>) -> Result<LogPlan, Fa
         let name = short_name(log.path());
         let recording = options.read.read(log, &device)?;
         recording.check_times(log.name())?;
-        let uneven = recording.unevenness();
-        let trace = &recording.trace;
         let are_named = !options.estimators.is_empty();
-        let recorded = Recorded {
-            path: log.name(),
-            trace,
-            unevenness: uneven.as_deref(),
-            device: &device,
-            parameters: &parameters,
-        };
+        let recorded = Recorded::new(log.name(), &recording, &device, &parameters);
         let chosen = Chosen::new(&kinds, are_named, &recorded)?;
-        let clock = chosen.notes(trace, uneven.as_deref());
+        let clock = chosen.notes(&recorded);
         let lines = recording.notes.iter().chain(&clock);
         notes.extend(lines.map(|line| format!("{name}: {line}")));
         kinds = chosen.kinds;

@@ -4,11 +4,12 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
+use recordings::log::Log;
 use recordings::recording::Recording;
 use terminal::failure::Failure;
 
 use super::coarsen::Coarse;
-use super::fine::{Fine, decompressed};
+use super::fine::Fine;
 use super::run::Settings;
 use super::sources::{self, Role, Source};
 
@@ -154,10 +155,7 @@ fn data(folder: &Path, source: &Source, seconds: f64) -> Result<Data, Failure> {
                 .ok_or_else(missing)
         }
         sources::Kind::Coarse => {
-            let bytes = std::fs::read(&path)
-                .map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
-            let text = decompressed(bytes, &name)?;
-            let mut recording = Recording::parse(text.as_slice(), &name)?;
+            let mut recording = Recording::parse(Log::open(&path)?.reader()?, &name)?;
             if recording.trace.true_omega.is_none() {
                 return Err(missing());
             }

@@ -1,11 +1,9 @@
 //! Recordings of a fine encoder, read from CSV.
 
-use std::io::Read;
 use std::path::Path;
 
 use csv::ByteRecord;
-use flate2::read::MultiGzDecoder;
-
+use recordings::log::Log;
 use terminal::failure::Failure;
 
 /// Columns that are read, each with the names under which it is found; others are ignored.
@@ -33,30 +31,14 @@ pub struct Fine {
     pub omega: Option<Vec<f64>>,
 }
 
-/// The bytes of a file, decompressed if they are those of gzip.
-///
-/// # Errors
-/// [`Failure::Input`] that calls the file `name`.
-pub fn decompressed(bytes: Vec<u8>, name: &str) -> Result<Vec<u8>, Failure> {
-    if !bytes.starts_with(&[0x1f, 0x8b]) {
-        return Ok(bytes);
-    }
-    let mut text = Vec::new();
-    let read = MultiGzDecoder::new(bytes.as_slice()).read_to_end(&mut text);
-    read.map_err(|error| Failure::Input(format!("{name}: not a complete gzip file: {error}")))?;
-    Ok(text)
-}
-
 impl Fine {
     /// Reads the first `seconds` of a CSV file, which may be compressed by gzip.
     ///
     /// # Errors
     /// [`Failure::Input`], one line that names file, line and column.
     pub fn read(path: &Path, seconds: f64) -> Result<Self, Failure> {
-        let name = path.display().to_string();
-        let bytes = std::fs::read(path)
-            .map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
-        Self::parse(&decompressed(bytes, &name)?, &name, seconds)
+        let log = Log::open(path)?;
+        Self::parse(&log.bytes()?, log.name(), seconds)
     }
 
     /// Reads the first `seconds` of CSV text called `name` in messages.
@@ -305,16 +287,5 @@ mod tests {
         assert_eq!(gaps(0.0, 1.0), None);
         assert_eq!(gaps(2.0, 1.0), Some((1, [3.0, 8.0])));
         assert_eq!(gaps(2.0, 2.0), None);
-    }
-
-    #[test]
-    fn incomplete_gzip_is_refused_and_plain_text_is_kept() {
-        assert_eq!(decompressed(b"t,x\n".to_vec(), "f").unwrap(), b"t,x\n");
-        let error = decompressed(vec![0x1f, 0x8b, 8, 0], "f.gz").unwrap_err();
-        assert!(
-            error
-                .to_string()
-                .starts_with("f.gz: not a complete gzip file: ")
-        );
     }
 }

@@ -1,18 +1,14 @@
 //! A coarse recording that a user asks for, from the file of a fine one.
 
-use std::fs;
 use std::path::Path;
 
-use recordings::log::{called, read};
+use recordings::log::Log;
 use recordings::recording::{Recording, stated_counts_per_rev};
 use terminal::failure::Failure;
 
 use super::coarsen::Coarse;
-use super::fine::{Fine, decompressed};
+use super::fine::Fine;
 use super::sources::Source;
-
-/// Number of first bytes in which a file states its counts per revolution.
-const HEAD: usize = 1 << 16;
 
 /// Lowest rate of a recording, Hz.
 pub const LOWEST_HZ: f64 = 10.0;
@@ -40,25 +36,19 @@ impl Wanted {
     /// # Errors
     /// [`Failure::Input`] that names the option, or the file and what is wrong.
     pub fn of_file(&self, path: &Path) -> Result<Recording, Failure> {
-        let name = called(path);
         rate(self.rate_hz)?;
         phase(self.phase)?;
         let seconds = self.seconds.map_or(Ok(f64::INFINITY), seconds)?;
-        if path.as_os_str() != "-"
-            && let Err(error) = fs::metadata(path)
-        {
-            return Err(Failure::Input(format!("{name}: cannot read: {error}")));
-        }
-        let text = decompressed(read(path)?, &name)?;
+        let log = Log::open(path)?;
         let coarse = Coarse {
-            fine_counts_per_rev: self.fine_counts(path, &text, &name)?,
+            fine_counts_per_rev: self.fine_counts(&log)?,
             counts_per_rev: self.counts_per_rev,
             rate_hz: self.rate_hz,
             phase: self.phase,
             torque_constant: self.torque_constant,
         };
-        let fine = Fine::parse(&text, &name, seconds)?;
-        let mut recording = coarse.recording(&fine, &name)?;
+        let fine = Fine::parse(&log.bytes()?, log.name(), seconds)?;
+        let mut recording = coarse.recording(&fine, log.name())?;
         let gaps = fine.gaps(1.0 / self.rate_hz);
         recording.notes.extend(gaps.map(|(number, ends)| {
             let [longest_s, end_s] = ends.map(|s| (s * 1e6).round() / 1e6);
@@ -72,19 +62,20 @@ impl Wanted {
 
     /// Counts per revolution of the fine encoder: those of the option, of the list beside the file, or
     /// those that the text states.
-    fn fine_counts(&self, path: &Path, text: &[u8], name: &str) -> Result<u32, Failure> {
+    fn fine_counts(&self, log: &Log) -> Result<u32, Failure> {
         let known = match self.fine_counts_per_rev {
-            None => Source::of(path)?.map(|source| source.counts_per_rev),
+            None => Source::of(log.path())?.map(|source| source.counts_per_rev),
             given => given,
         };
         let known = match known {
-            None => stated_counts_per_rev(&text[..text.len().min(HEAD)], name)?,
+            None => stated_counts_per_rev(&log.head()?, log.name())?,
             known => known,
         };
         known.ok_or_else(|| {
             Failure::Input(format!(
-                "{name}: its counts per revolution are not known; give --fine-counts-per-rev, or list the \
-                 file in a recordings.toml beside it, or state them in its first line: # counts_per_rev = N"
+                "{}: its counts per revolution are not known; give --fine-counts-per-rev, or list the \
+                 file in a recordings.toml beside it, or state them in its first line: # counts_per_rev = N",
+                log.name()
             ))
         })
     }

@@ -3,8 +3,7 @@
 use terminal::failure::Failure;
 
 /// First bytes of a file, what it is, and the remedy.
-const KINDS: [(&[u8], &str, &str); 9] = [
-    (b"\x1F\x8B", "a gzip file", "unpack it with gzip -dc"),
+const KINDS: [(&[u8], &str, &str); 8] = [
     (b"PK\x03\x04", "a zip file", "unpack it with unzip -p"),
     (
         b"\x28\xB5\x2F\xFD",
