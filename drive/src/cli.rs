@@ -1,194 +1,30 @@
 //! The command line.
 
+mod arguments;
+
 use std::ffi::OsString;
-use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, CommandFactory as _, Parser, Subcommand};
+use clap::{CommandFactory as _, Parser as _};
 use drivers::{Command, Setting};
 use firmware_app::large;
 use haptic_control::SceneKind;
 use terminal::explain;
 use terminal::failure::Failure;
 use terminal::output::{note, print_bytes};
-use terminal::wording::WIDTH;
 
+use self::arguments::{Action, Arguments, Hold};
 use crate::board::{Answer, Board};
 use crate::bring_up;
 use crate::calibrate;
 use crate::identity;
 use crate::named::{self, Tuning};
-use crate::patience::{USUAL, patience};
 use crate::port::{Port, list};
 use crate::record::Recorder;
 use crate::session::{self, Plan};
-use crate::settings::{self, Assignment, assignment};
-use crate::timed::{Change, Timed, timed};
+use crate::settings;
+use crate::timed::Change;
 use crate::watch::state;
-
-/// Commands a board over its link, and shows and records its telemetry.
-///
-/// A command that arms the board keeps it alive and disarms it at its end: after --seconds, at Ctrl-C,
-/// and after an error. If the tool is killed, the board switches the scene off by itself.
-#[derive(Debug, Parser)]
-#[command(
-    name = "cargo drive",
-    bin_name = "cargo drive",
-    version,
-    max_term_width = WIDTH,
-    after_help = "Exit status: 0; 1 if the board refuses or stops; 2 if the input cannot be used, or \
-the board does not answer or speaks another protocol.\n\nExamples:
-  cargo drive info
-  cargo drive select wall --tune stiffness=0.2 --record wall.csv
-  cargo drive --port tcp:127.0.0.1:9090 watch --seconds 5"
-)]
-struct Arguments {
-    /// Serial port, for example /dev/ttyACM0, or tcp:HOST:PORT of an emulated board or a debug server
-    /// [default: the only serial port]
-    #[arg(long, global = true, value_name = "PORT")]
-    port: Option<String>,
-    /// Longest wait for an answer of the board, and longest silence of it, 0.1 to 60 s
-    #[arg(long, global = true, value_name = "S", default_value = USUAL, allow_negative_numbers = true, value_parser = patience)]
-    timeout: f64,
-    #[command(subcommand)]
-    action: Action,
-}
-
-#[derive(Debug, Subcommand)]
-enum Action {
-    /// Print the serial ports of this machine
-    #[command(after_help = "Example:\n  cargo drive list")]
-    List,
-    /// Print the identity of the board: protocol, version, features, device
-    #[command(after_help = "Example:\n  cargo drive info --port /dev/ttyACM0")]
-    Info,
-    /// Enable the amplifiers without a scene; disarm at the end
-    #[command(after_help = "Example:\n  cargo drive arm --seconds 3")]
-    Arm(Hold),
-    /// Disable the amplifiers and clear the cause of a stop
-    #[command(after_help = "Example:\n  cargo drive disarm")]
-    Disarm,
-    /// Arm and render a scene; disarm at the end
-    #[command(after_help = "Examples:
-  cargo drive select wall
-  cargo drive select wall --tune stiffness=0.2 --tune stiffness=0.1@2 --seconds 4")]
-    Select {
-        #[arg(value_name = "SCENE", value_parser = named::scene, help = scenes())]
-        scene: SceneKind,
-        /// Set a parameter of the scene, S seconds after the scene begins; repeatable
-        #[arg(long, value_name = "NAME=VALUE[@S]", value_parser = timed)]
-        tune: Vec<Timed>,
-        /// Put an estimator in charge of the large motor's velocity, S seconds after the scene begins; repeatable
-        #[arg(long, value_name = "NAME[@S]", value_parser = timed)]
-        estimator: Vec<Timed>,
-        #[command(flatten)]
-        hold: Hold,
-    },
-    /// Set a parameter of a scene until the next reset; arms nothing
-    #[command(after_help = format!(
-        "Scenes and their parameters:\n{}\nExample:\n  cargo drive tune wall stiffness 0.2",
-        named::parameters()
-    ))]
-    Tune {
-        /// Scene of the list below
-        #[arg(value_name = "SCENE", value_parser = named::scene)]
-        scene: SceneKind,
-        /// Parameter of the scene, of the list below
-        #[arg(value_name = "PARAMETER")]
-        parameter: String,
-        /// Value; units and bounds are in docs/telemetry.md
-        #[arg(value_name = "VALUE", allow_negative_numbers = true)]
-        value: f32,
-    },
-    /// Arm and render a constant torque on the handle, N·m; disarm at the end
-    #[command(after_help = "Example:\n  cargo drive torque 0.01 --seconds 2")]
-    Torque {
-        /// Torque, N·m
-        #[arg(value_name = "VALUE", allow_negative_numbers = true)]
-        value: f32,
-        #[command(flatten)]
-        hold: Hold,
-    },
-    /// Put an estimator in charge of the large motor's velocity until the next reset
-    #[command(after_help = "Example:\n  cargo drive estimator kalman-triple-steady")]
-    Estimator {
-        #[arg(value_name = "NAME", value_parser = named::estimator, help = estimators())]
-        number: u8,
-    },
-    /// Keep a board alive that another program has armed; disarm at the end
-    #[command(after_help = "Example:\n  cargo drive keep-alive --seconds 10")]
-    KeepAlive(Hold),
-    /// Show the settings of the board; change some until the next reset, or store them
-    #[command(after_help = "Examples:
-  cargo drive settings
-  cargo drive settings current-scale=0.5
-  cargo drive settings zero-large=2051.5 gain-large=1.01 --store")]
-    Settings {
-        /// New values, in the setting's unit; they act at once
-        #[arg(value_name = "NAME=VALUE", value_parser = assignment)]
-        assignments: Vec<Assignment>,
-        /// Store the settings in the board's flash; the amplifiers have to be disabled
-        #[arg(long)]
-        store: bool,
-    },
-    /// Check a new board and its motors step by step, and verify the signs of encoders and currents: scenes
-    /// in closed loop are refused before. Moves the motors, at most with 0.3 A and 0.15 A
-    #[command(
-        after_help = "Examples:\n  cargo drive bring-up --turns\n  cargo drive bring-up --store"
-    )]
-    BringUp {
-        /// Turn both shafts by hand at first, to measure the counts of a turn; the image has the feature
-        /// index-pulse
-        #[arg(long)]
-        turns: bool,
-        /// Store the settings in the board's flash if all checks pass
-        #[arg(long)]
-        store: bool,
-    },
-    /// Find zero and gain of both current outputs by measured currents, and set them; the image has the
-    /// feature current-monitor. Moves the motors, at most with 0.3 A and 0.15 A
-    #[command(after_help = "Examples:\n  cargo drive calibrate\n  cargo drive calibrate --store")]
-    Calibrate {
-        /// Store the settings in the board's flash if both motors pass
-        #[arg(long)]
-        store: bool,
-    },
-    /// Record the telemetry as CSV, as cargo sim record does; arms nothing
-    #[command(after_help = "Example:\n  cargo drive record --seconds 5 --out run.csv")]
-    Record {
-        /// Write the recording to FILE when it ends; - is standard output
-        #[arg(long, value_name = "FILE.csv")]
-        out: PathBuf,
-        /// Record for S seconds of the board's time [default: until Ctrl-C]
-        #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
-        seconds: Option<f64>,
-    },
-    /// Print the telemetry as lines with units; arms nothing
-    #[command(after_help = "Example:\n  cargo drive watch --every 0.5")]
-    Watch {
-        /// Print a line every S seconds of the board's time
-        #[arg(long, value_name = "S", default_value = "0.1", allow_negative_numbers = true, value_parser = seconds)]
-        every: f64,
-        /// Watch for S seconds of the board's time [default: until Ctrl-C]
-        #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
-        seconds: Option<f64>,
-    },
-}
-
-/// Options of the commands that hold the board armed.
-#[derive(Debug, Args)]
-struct Hold {
-    /// End after S seconds of the board's time; those of a scene count from its begin [default: at
-    /// Ctrl-C]
-    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
-    seconds: Option<f64>,
-    /// Print a line of telemetry every S seconds of the board's time
-    #[arg(long, value_name = "S", default_value = "0.5", allow_negative_numbers = true, value_parser = seconds)]
-    every: f64,
-    /// Write a recording to FILE at the end
-    #[arg(long, value_name = "FILE.csv")]
-    record: Option<PathBuf>,
-}
 
 impl Hold {
     fn plan(self, answer: &Answer) -> Plan {
@@ -201,26 +37,6 @@ impl Hold {
             keeps_alive: true,
         }
     }
-}
-
-/// Help on a scene.
-fn scenes() -> String {
-    format!("Scene: {}", SceneKind::ALL.map(SceneKind::name).join(", "))
-}
-
-/// Help on an estimator.
-fn estimators() -> String {
-    format!(
-        "Name of the estimator, of an image that has both: {}",
-        large::NAMES.join(", ")
-    )
-}
-
-/// A duration above 0.
-fn seconds(text: &str) -> Result<f64, String> {
-    let seconds: Option<f64> = text.parse().ok();
-    let seconds = seconds.filter(|seconds| *seconds > 0.0 && *seconds <= 1e5);
-    seconds.ok_or_else(|| "must be above 0 s, at most 100000 s".to_owned())
 }
 
 /// Runs the command line `arguments`, whose first element is the program's name.

@@ -17,7 +17,6 @@ mod interrupt;
 pub mod named;
 mod pace;
 pub mod patience;
-pub mod place;
 pub mod port;
 mod record;
 pub mod refusal;

@@ -33,7 +33,6 @@ pub(crate) fn estimator(name: &str) -> Result<u8, String> {
 /// Names of the estimators of an image, each at its number.
 #[must_use]
 pub fn estimators(hello: &Hello) -> &'static [&'static str] {
-    const ADAPTIVE: [&str; 2] = ["adaptive", "adaptive-edge"];
     let has = |feature| hello.features.names().any(|name| name == feature);
     if has("large-foaw") {
         &large::NAMES[..1]
@@ -41,7 +40,7 @@ pub fn estimators(hello: &Hello) -> &'static [&'static str] {
         &large::NAMES[1..]
     } else if has("large-adaptive") {
         let edge = usize::from(has("edge-capture"));
-        &ADAPTIVE[edge..=edge]
+        &large::LEARNING[edge..=edge]
     } else {
         &large::NAMES
     }
@@ -201,7 +200,7 @@ impl std::fmt::Display for Tuning {
 
 #[cfg(test)]
 pub(crate) mod tests {
-    use drivers::link::{FEATURES, Features, Label, PROTOCOL};
+    use drivers::link::{FEATURES, Features};
 
     use super::*;
 
@@ -210,15 +209,10 @@ pub(crate) mod tests {
         let flags: Vec<_> = FEATURES.iter().map(|it| features.contains(it)).collect();
         assert_eq!(flags.iter().filter(|it| **it).count(), features.len());
         Hello {
-            protocol: PROTOCOL,
-            version: Label::default(),
-            commit: Label::default(),
             features: Features::from_flags(&flags),
             rate: 10_000,
             device: DEVICE_FINGERPRINT.0,
-            presets: 0,
-            cause: 0,
-            brown_out_reset: true,
+            ..Hello::default()
         }
     }
 

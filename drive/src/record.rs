@@ -6,9 +6,7 @@ use drivers::link::{Hello, Message};
 use recordings::record::{choose, csv, report};
 use recordings::telemetry::Telemetry;
 use terminal::failure::Failure;
-use terminal::output::{note, write_whole};
-
-use crate::place;
+use terminal::output::{check_place, note, write_whole};
 
 /// Telemetry that becomes a file at the end of a session.
 pub(crate) struct Recorder {
@@ -32,9 +30,9 @@ impl Recorder {
     /// Checks that the file has a place.
     ///
     /// # Errors
-    /// Those of [`place::check`].
+    /// As [`check_place`].
     pub(crate) fn check(&self) -> Result<(), Failure> {
-        place::check(&self.out)
+        check_place(&self.out)
     }
 
     /// Takes a message.
@@ -74,20 +72,12 @@ impl Recorder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use drivers::link::{Features, Label, PROTOCOL};
 
     #[test]
     fn older_file_stays_if_no_frame_came() {
         let hello = Hello {
-            protocol: PROTOCOL,
-            version: Label::default(),
-            commit: Label::default(),
-            features: Features(0),
             rate: 10_000,
-            device: 0,
-            presets: 0,
-            cause: 0,
-            brown_out_reset: true,
+            ..Hello::default()
         };
         let out = std::env::temp_dir().join(format!("no-frame-{}.csv", std::process::id()));
         std::fs::write(&out, "old").unwrap();

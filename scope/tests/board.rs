@@ -13,8 +13,8 @@ use std::time::Duration;
 use common::Server;
 use common::devtools::Browser;
 use drive::port::TAKEN;
-use drivers::link::{Features, Frame, Hello, LONGEST, Label, Message, PROTOCOL};
-use drivers::{Command, Parser};
+use drivers::link::{Frame, Hello, LONGEST, Message, PROTOCOL};
+use drivers::{Command, NO_ESTIMATOR, Parser};
 use haptic_control::{Mode, Request};
 use serde_json::json;
 
@@ -69,33 +69,13 @@ struct Shared {
 fn play(mut stream: TcpStream, shared: &Shared) {
     let hello = Hello {
         protocol: PROTOCOL,
-        version: Label::new("0.1.0"),
-        commit: Label::new("a1b2c3d"),
-        features: Features(0),
         rate: 10_000,
-        device: 0,
-        presets: 0,
-        cause: 0,
-        brown_out_reset: true,
+        ..Hello::default()
     };
     let mut frame = Frame {
-        seq: 0,
-        tick: 0,
-        counts_large: 0,
-        counts_small: 0,
-        current: 0.0,
-        current_small: 0.0,
-        torque: 0.0,
-        velocity_large: 0.0,
-        velocity_small: 0.0,
         state: Mode::Running as u8,
-        cause: 0,
-        sigma_large: 0.0,
-        estimator: u8::MAX,
-        overruns: 0,
-        drops: 0,
-        rtt_drops: 0,
-        cycles: 0,
+        estimator: NO_ESTIMATOR,
+        ..Frame::default()
     };
     let mut parser = Parser::default();
     let wait = Some(Duration::from_millis(5));

@@ -41,7 +41,7 @@ macro_rules! messages {
     )+) => {
         $(
             $(#[doc = $doc])+
-            #[derive(Clone, Copy, Debug, PartialEq)]
+            #[derive(Clone, Copy, Debug, Default, PartialEq)]
             pub struct $name {
                 $($(#[doc = $field_doc])+ pub $field: $type,)+
             }

@@ -14,6 +14,9 @@ use crate::config::{DEVICE, RATE, TIMERS};
 /// Names of the estimators of [`Both`] in the catalogue of estimators, each at its number.
 pub const NAMES: [&str; 2] = ["foaw-end-fit", "kalman-triple-steady"];
 
+/// Names of [`Adaptive`] and [`AdaptiveEdge`] in the catalogue of estimators.
+pub const LEARNING: [&str; 2] = ["adaptive", "adaptive-edge"];
+
 /// Longest window of [`Window`], intervals.
 pub const INTERVALS: usize = tuned::image("large", NAMES[0], RATE, "n") as usize;
 // The build script knows the count of this window alone.
@@ -61,17 +64,13 @@ const fn observer(tuned_as: &str) -> ObserverDesign {
 /// An observer that learns damping, friction and torque constant from counts.
 pub type Adaptive = AdaptiveObserver;
 /// The parameters of [`Adaptive`], as tuned for the plant with friction.
-pub const ADAPTIVE: Adaptive = preset!(observer("adaptive").adaptive().build());
+pub const ADAPTIVE: Adaptive = preset!(observer(LEARNING[0]).adaptive().build());
 
 /// An observer that learns damping, friction and torque constant from stamped edges.
 pub type AdaptiveEdge = AdaptiveEdgeObserver;
 /// The parameters of [`AdaptiveEdge`], as tuned for the plant with friction.
-pub const ADAPTIVE_EDGE: AdaptiveEdge = preset!(
-    observer("adaptive-edge")
-        .with_edges(TIMERS)
-        .adaptive()
-        .build()
-);
+pub const ADAPTIVE_EDGE: AdaptiveEdge =
+    preset!(observer(LEARNING[1]).with_edges(TIMERS).adaptive().build());
 
 #[cfg(all(feature = "large-adaptive", not(feature = "edge-capture")))]
 pub use self::{ADAPTIVE as LARGE, Adaptive as Large};

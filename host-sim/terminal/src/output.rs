@@ -58,6 +58,27 @@ fn place(path: &Path) -> Option<PathBuf> {
     }
 }
 
+/// Checks that the file `path` has a place, so that a long run does not find out at its end.
+///
+/// # Errors
+/// [`Failure::Input`] if the name is that of a folder, or lies in something that is none.
+pub fn check_place(path: &Path) -> Result<(), Failure> {
+    let name = path.display();
+    if path.is_dir() {
+        return Err(Failure::Input(format!(
+            "{name}: is a folder; choose the name of a file"
+        )));
+    }
+    let above = path.ancestors().skip(1).find(|path| path.exists());
+    match above {
+        Some(above) if !above.is_dir() => Err(Failure::Input(format!(
+            "{name}: {} is no folder; choose another path",
+            above.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
 /// Writes `bytes` to `path`, creating its folder; see [`write_with`].
 ///
 /// # Errors
@@ -187,7 +208,7 @@ fn link_target(path: &Path) -> io::Result<PathBuf> {
 mod tests {
     use std::path::Path;
 
-    use super::{is_same, write_whole};
+    use super::{check_place, is_same, write_whole};
 
     #[test]
     fn paths_of_one_file_are_the_same() {
@@ -213,6 +234,20 @@ mod tests {
                 );
             }
         }
+        std::fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn file_without_a_place_is_refused() {
+        let folder = std::env::temp_dir().join(format!("limpid-place-{}", std::process::id()));
+        let file = folder.join("a.csv");
+        write_whole(&file, b"x").unwrap();
+        let said = |path: &Path| check_place(path).map_err(|error| error.to_string());
+        assert_eq!(said(&file), Ok(()));
+        assert_eq!(said(&folder.join("new/b.csv")), Ok(()));
+        assert!(said(&folder).unwrap_err().contains("is a folder"));
+        let inside = said(&file.join("b.csv")).unwrap_err();
+        assert!(inside.contains("a.csv is no folder"), "{inside}");
         std::fs::remove_dir_all(folder).unwrap();
     }
 

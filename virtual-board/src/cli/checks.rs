@@ -1,8 +1,8 @@
 //! Checks of the arguments before the run.
 
 use drive::named::chosen;
-use drive::place;
 use terminal::failure::Failure;
+use terminal::output::check_place;
 
 use super::Arguments;
 use crate::identity;
@@ -15,7 +15,7 @@ pub(super) fn in_place(arguments: &Arguments) -> Result<(), Failure> {
     files
         .into_iter()
         .flatten()
-        .try_for_each(|file| place::check(file))
+        .try_for_each(|file| check_place(file))
 }
 
 /// Refuses events after the end of the run.
