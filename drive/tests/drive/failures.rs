@@ -47,7 +47,9 @@ fn port_that_another_program_has_is_told() {
             stream.shutdown(Shutdown::Write).unwrap();
             let _ = stream.read_to_end(&mut Vec::new());
         });
-        let output = tool(arguments).args(["--port", &port]).output().unwrap();
+        let mut process = tool(arguments);
+        process.args(["--port", &port, "--timeout", "30"]);
+        let output = process.output().unwrap();
         server.join().unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         let said = format!("{port}: another program has this port; end it first");

@@ -42,6 +42,7 @@ pub(crate) use options::MEASURED;
 pub use options::ReadOptions;
 pub use parts::Parts;
 pub use stated::{counts_per_rev_line, stated_counts_per_rev};
+pub use steps::SLOWEST_HZ;
 pub use survey::Survey;
 
 use crate::log::Log;

@@ -10,12 +10,11 @@
 //! rows, as at a rate that does not divide that of the rows or where the rows are uneven, takes the
 //! position and the truth by linear interpolation.
 
-use recordings::recording::Recording;
+use recordings::recording::{Recording, SLOWEST_HZ};
 use simulation::trace::{EdgeStamp, Trace};
 use terminal::failure::Failure;
 
 use super::fine::Fine;
-use super::wanted::LOWEST_HZ;
 
 /// Largest distance of a tick from a row that counts as the same instant, s.
 const SAME_INSTANT_S: f64 = 1e-9;
@@ -73,9 +72,9 @@ impl Coarse {
     pub fn recording(&self, fine: &Fine, name: &str) -> Result<Recording, Failure> {
         let refused = |why: String| Err(Failure::Input(format!("{name}: {why}")));
         let rows_hz = fine.mean_rate_hz();
-        if rows_hz < LOWEST_HZ {
+        if rows_hz < SLOWEST_HZ {
             return refused(format!(
-                "column time_s or t: rows {} s apart are below {LOWEST_HZ} Hz; write it in s, not in ms or us",
+                "column time_s or t: rows {} s apart are below {SLOWEST_HZ} Hz; write it in s, not in ms or us",
                 1.0 / rows_hz
             ));
         }

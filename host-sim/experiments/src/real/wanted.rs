@@ -3,15 +3,12 @@
 use std::path::Path;
 
 use recordings::log::Log;
-use recordings::recording::{Recording, stated_counts_per_rev};
+use recordings::recording::{Recording, SLOWEST_HZ, stated_counts_per_rev};
 use terminal::failure::Failure;
 
 use super::coarsen::Coarse;
 use super::fine::Fine;
 use super::sources::Source;
-
-/// Lowest rate of a recording, Hz.
-pub const LOWEST_HZ: f64 = 10.0;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -86,7 +83,7 @@ impl Wanted {
 /// # Errors
 /// [`Failure::Input`] that names the option.
 pub fn rate(hz: f64) -> Result<f64, Failure> {
-    in_range("--rate", hz, [LOWEST_HZ, 1e5], "Hz")
+    in_range("--rate", hz, [SLOWEST_HZ, 1e5], "Hz")
 }
 
 /// A phase.

@@ -21,7 +21,7 @@ const IRREGULAR_SHARE: f64 = 0.1;
 const SAME: f64 = 1e-3;
 
 /// Slowest rate of a recording, Hz.
-pub(super) const SLOWEST_HZ: f64 = 10.0;
+pub const SLOWEST_HZ: f64 = 10.0;
 
 /// Steps of `t` by their length, in memory that does not grow with their number.
 ///
