@@ -256,8 +256,12 @@ where
         let driven = self
             .adaptation
             .drive(&state.adaptation, &self.motion, input, coupled, before);
-        let friction =
-            self.adaptation.friction(&state.adaptation, &self.motion) + state.friction_correction;
+        let friction = self.adaptation.friction(
+            &state.adaptation,
+            &self.motion,
+            state.friction_correction,
+            before,
+        );
         let drive = driven.mean + state.disturbance;
         let step = self.motion.step(before, drive, friction);
         let sensitivity = self.adaptation.propagate(
@@ -298,10 +302,14 @@ where
             };
         };
         let gain = gain.borrow();
-        let moving_start =
-            self.adaptation
-                .moving_start(&mut state.adaptation, &innovation, gain, step.velocity);
-        let gain = moving_start.as_ref().unwrap_or(gain);
+        let unexplained = self.adaptation.unexplained(
+            &mut state.adaptation,
+            &innovation,
+            gain,
+            step.velocity,
+            M::DENSE,
+        );
+        let gain = unexplained.as_ref().unwrap_or(gain);
         let error = limited(innovation.error, LARGEST_INNOVATION);
         // The age is zero without time stamps: then the compiler drops it.
         let position_gain = innovation.position_gain + innovation.age * gain.velocity;
@@ -320,7 +328,7 @@ where
             gain,
             error,
             dense: M::DENSE,
-            moving_start: moving_start.is_some(),
+            unexplained: unexplained.is_some(),
             position_gain,
             velocity,
         };

@@ -67,17 +67,19 @@ pub trait Adaptation: Copy + Sealed {
         velocity: f32,
     ) -> TickInput;
 
-    /// Coulomb friction, counts/tick².
-    fn friction(&self, state: &Self::State, motion: &Motion) -> f32;
+    /// Coulomb friction at this velocity with its `correction`, counts/tick².
+    fn friction(&self, state: &Self::State, motion: &Motion, correction: f32, velocity: f32)
+    -> f32;
 
-    /// The gain that replaces `gain` after a moving start, if the innovation shows one; `velocity`
-    /// is the predicted velocity.
-    fn moving_start(
+    /// The gain that replaces `gain`, if the model does not explain the innovation; `velocity` is the
+    /// predicted velocity, `dense` whether every tick may have an innovation.
+    fn unexplained(
         &self,
         state: &mut Self::State,
         innovation: &Innovation,
         gain: &Gain,
         velocity: f32,
+        dense: bool,
     ) -> Option<Gain>;
 
     /// Propagates the sensitivity over a tick.
@@ -128,12 +130,12 @@ impl Adaptation for Fixed {
     }
 
     #[inline(always)]
-    fn friction(&self, (): &(), motion: &Motion) -> f32 {
-        motion.friction
+    fn friction(&self, (): &(), motion: &Motion, correction: f32, _: f32) -> f32 {
+        motion.friction + correction
     }
 
     #[inline(always)]
-    fn moving_start(&self, (): &mut (), _: &Innovation, _: &Gain, _: f32) -> Option<Gain> {
+    fn unexplained(&self, (): &mut (), _: &Innovation, _: &Gain, _: f32, _: bool) -> Option<Gain> {
         None
     }
 

@@ -40,6 +40,13 @@ use crate::units::Hertz;
 /// deviations grow by a tenth of those at the start in a second of motion, and never exceed them.
 /// Below 0.5 rad/s friction hides the other parameters, and all stay.
 ///
+/// In the range [`Wide`](super::Wide) the model can be unlike the device, and three rules bound what its
+/// innovations do. The variance in the gain k is `hᵀ P h + c S + e² / 4`, that of an innovation with heavy tails
+/// (Student's t), so that a few large ones turn neither p nor P. With time stamps, an innovation beyond
+/// four standard deviations, `e² > 16 S`, corrects the velocity by the mean since the last one, `K_v = 1 / max(1, n)`,
+/// where that is above the gain of the model. Below 0.5 rad/s a friction that is learned below zero is zero:
+/// in motion it is the push of a hand, at rest it would be a drive.
+///
 /// If the motor is already moving at start-up, the first innovations are not attributed to parameter
 /// errors: the velocity gain is then that of the mean since the start, and p, U and D stay.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,6 +97,13 @@ const WALK: f64 = 0.1;
 
 /// Largest relative error of the damping that does not indicate a moving start.
 const EXPLAINED: f32 = 0.6;
+
+/// Square of the largest innovation that a model in the range [`Wide`](super::Wide) explains, in
+/// parts of its variance.
+const OUTLIER: f32 = 16.0;
+
+/// Part of an innovation's square that is added to its variance in the range [`Wide`](super::Wide).
+const SURPRISE: f32 = 0.25;
 
 /// Velocity below which the parameters stay, rad/s.
 const SLOWEST: f64 = 0.5;
@@ -179,19 +193,43 @@ impl<R: Range> Adaptation for Adaptive<R> {
     }
 
     #[inline(always)]
-    fn friction(&self, state: &AdaptiveState, motion: &Motion) -> f32 {
-        motion.friction + state.parameters[1] * self.range.friction(motion)
+    fn friction(
+        &self,
+        state: &AdaptiveState,
+        motion: &Motion,
+        correction: f32,
+        velocity: f32,
+    ) -> f32 {
+        let learned = motion.friction + state.parameters[1] * self.range.friction(motion);
+        let friction = learned + correction;
+        // In motion a friction below zero is that of a hand that pushes. At rest it would be a drive.
+        if R::LARGE && friction < 0.0 && velocity.abs() < self.slowest {
+            0.0
+        } else {
+            friction
+        }
     }
 
     #[inline(always)]
-    fn moving_start(
+    fn unexplained(
         &self,
         state: &mut AdaptiveState,
         innovation: &Innovation,
         gain: &Gain,
         velocity: f32,
+        dense: bool,
     ) -> Option<Gain> {
-        state.start.gain(innovation, gain, velocity, EXPLAINED)
+        let start = state.start.gain(innovation, gain, velocity, EXPLAINED);
+        if !(R::LARGE && dense) || start.is_some() {
+            return start;
+        }
+        let beyond = innovation.error * innovation.error > OUTLIER * gain.variance;
+        let waited = innovation.waited;
+        let mean = if waited > 1.0 { 1.0 / waited } else { 1.0 };
+        (beyond && mean > gain.velocity).then_some(Gain {
+            velocity: mean,
+            ..*gain
+        })
     }
 
     #[inline(always)]
@@ -250,9 +288,15 @@ impl<R: Range> Adaptation for Adaptive<R> {
         };
         let waiting = state.waiting + gap;
         state.waiting = waiting;
+        // In the narrow range nothing but a start is unexplained, and the flag is at hand.
+        let starting = if R::LARGE {
+            state.start.is_moving()
+        } else {
+            update.unexplained
+        };
         let early = update.dense && waiting < self.spacing;
         let slow = update.velocity.abs() < self.slowest;
-        if update.moving_start || gap == 0.0 || early || slow {
+        if starting || gap == 0.0 || early || slow {
             return None;
         }
         state.waiting = 0.0;
@@ -263,7 +307,12 @@ impl<R: Range> Adaptation for Adaptive<R> {
         };
         let caution = if update.dense { DENSE_CAUTION } else { CAUTION };
         let mut diagonal = [grown(0), grown(1), grown(2)];
-        let r = caution * gain.variance;
+        let caution = caution * gain.variance;
+        let r = if R::LARGE {
+            caution + SURPRISE * update.error * update.error
+        } else {
+            caution
+        };
         let Some(k) = bierman(&mut state.upper, &mut diagonal, h, r) else {
             unlikely();
             // A loop would clear a known zero or an array, and the bound on the instructions of an

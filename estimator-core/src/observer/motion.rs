@@ -53,16 +53,11 @@ fn sign(value: f32) -> f32 {
     }
 }
 
-/// Direction in which `drive` moves a rotor at rest: -1, 1, or 0 if friction holds the rotor.
+/// Whether `friction` holds a rotor at rest under a `drive` of this sign. A friction below zero, which
+/// learning can find, holds nothing, but chooses no direction either.
 #[inline]
-fn leaving(drive: f32, friction: f32) -> f32 {
-    if drive > friction {
-        1.0
-    } else if drive < -friction {
-        -1.0
-    } else {
-        0.0
-    }
+fn holds(friction: f32, drive: f32, along: f32) -> bool {
+    !(drive.abs() > friction) || along == 0.0
 }
 
 impl Motion {
@@ -84,17 +79,17 @@ impl Motion {
         } else if velocity < 0.0 {
             (-1.0, drive + friction)
         } else {
-            if !(drive.abs() > friction) {
+            let along = sign(drive);
+            if holds(friction, drive, along) {
                 return Step {
                     moved: 0.0,
                     velocity: 0.0,
                     direction: 0.0,
-                    against: sign(drive),
+                    against: along,
                     stuck: true,
                 };
             }
-            let leaving = leaving(drive, friction);
-            (leaving, drive - leaving * friction)
+            (along, drive - along * friction)
         };
         let end = self.phi0 * velocity + self.phi1 * net;
         if end * direction > 0.0 {
@@ -113,20 +108,20 @@ impl Motion {
             velocity / (velocity - end)
         };
         let stopped = 0.5 * part * velocity;
-        let leaving = leaving(drive, friction);
-        if leaving == 0.0 {
+        let along = sign(drive);
+        if holds(friction, drive, along) {
             return Step {
                 moved: stopped,
                 velocity: 0.0,
                 direction: direction * part,
-                against: sign(drive),
+                against: along,
                 stuck: true,
             };
         }
         let left = 1.0 - part;
         let shorter = self.phi1 + left * (1.0 - self.phi1);
-        let away = left * (drive - leaving * friction) * (self.phi1 / shorter);
-        let direction = direction * part + leaving * left;
+        let away = left * (drive - along * friction) * (self.phi1 / shorter);
+        let direction = direction * part + along * left;
         Step {
             moved: stopped + 0.5 * left * away,
             velocity: away,
@@ -166,6 +161,16 @@ mod tests {
         assert!(step(0.0, 2.0).stuck && step(0.0, -2.0).stuck);
         let left = step(0.0, 3.0);
         assert_eq!((left.moved, left.velocity, left.direction), (0.5, 1.0, 1.0));
+    }
+
+    /// Learning can find a friction below zero. The rotor leaves along the drive, and rests without one.
+    #[test]
+    fn friction_below_zero_does_not_choose_the_direction() {
+        for (velocity, drive) in [(0.0, 1.0), (0.0, -1.0), (0.1, -3.0), (-0.1, 3.0)] {
+            let left = MOTION.step(velocity, drive, -0.5);
+            assert!(left.velocity * drive > 0.0, "{velocity} {drive}: {left:?}");
+        }
+        assert!(MOTION.step(0.0, 0.0, -0.5).stuck);
     }
 
     /// What friction acts against at the end of a tick: the motion, the drive of a rotor that has

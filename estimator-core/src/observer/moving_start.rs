@@ -45,6 +45,11 @@ impl MovingStart {
         }
     }
 
+    /// Whether a moving start was detected and its velocity is not found yet.
+    pub(super) fn is_moving(&self) -> bool {
+        self.phase == Phase::Moving
+    }
+
     /// The gain that replaces `gain` after a moving start. `velocity` is the predicted velocity,
     /// `largest_error` the largest relative error of the damping.
     #[inline(always)]

@@ -54,8 +54,8 @@ impl Range for Narrow {
 /// Range of constants that can be wrong by a factor of ten, and a torque constant whose sign can be
 /// wrong.
 ///
-/// Damping and friction are from 0 to 21 times those of the model, the torque constant is from -19 to
-/// 21 times that of the model. The friction is learned in parts of the larger of the model's friction
+/// The damping is from 0.05 to 21 times that of the model, the friction from 0 to 21 times, the torque
+/// constant from -19 to 21 times. The friction is learned in parts of the larger of the model's friction
 /// and the standard deviation of the disturbance: a model without friction learns one. The damping is
 /// further limited to `φ0 / (1 - φ0)` times that of the model, and not below 1.6 times: under a damping
 /// that is constant over a tick a larger one would turn the motion round. The standard deviations start
@@ -76,6 +76,10 @@ memory!(Wide {
     least,
     most
 });
+
+/// Least damping in the range [`Wide`], in parts of that of the model: without any damping and friction
+/// nothing would end the motion of a rotor inside its quantisation interval.
+const LEAST_DAMPING: f32 = 0.05;
 
 /// Largest error in the range [`Wide`].
 const MOST: f32 = 20.0;
@@ -103,7 +107,7 @@ impl Wide {
         };
         Self {
             friction,
-            least: [-1.0, none, -MOST],
+            least: [LEAST_DAMPING - 1.0, none, -MOST],
             most: [damping, MOST, MOST],
         }
     }

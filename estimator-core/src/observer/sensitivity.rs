@@ -26,8 +26,8 @@ pub struct Update<'a> {
     pub(super) error: f32,
     /// Whether every tick may have an innovation.
     pub(super) dense: bool,
-    /// Whether the gain is that of a moving start.
-    pub(super) moving_start: bool,
+    /// Whether the model does not explain the innovation, and the gain is another one for it.
+    pub(super) unexplained: bool,
     /// Gain of the position at the tick's end.
     pub(super) position_gain: f32,
     /// Velocity after the correction, counts/tick.

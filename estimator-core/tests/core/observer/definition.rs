@@ -186,8 +186,8 @@ impl Definition {
     /// whether it rests.
     pub(super) fn motion(&self, v: f64, u: f64, friction: f64) -> (f64, f64, f64, f64, bool) {
         let (phi0, phi1, phi2) = (self.a[(1, 1)], self.a[(0, 1)], self.a[(0, 2)]);
-        let leaves = if u.abs() > friction { u.signum() } else { 0.0 };
         let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
+        let leaves = if u.abs() > friction { sign(u) } else { 0.0 };
         let direction = if v == 0.0 { leaves } else { v.signum() };
         if direction == 0.0 {
             return (0.0, 0.0, 0.0, sign(u), true);
@@ -206,6 +206,11 @@ impl Definition {
         let v = left * (u - leaves * friction) / (1.0 + left * (1.0 / phi1 - 1.0));
         let direction = direction * part + leaves * left;
         (stopped + left * v / 2.0, v, direction, direction, false)
+    }
+
+    /// Whether this velocity is below 0.5 rad/s.
+    pub(super) fn is_slow(&self, v: f64) -> bool {
+        v.abs() < 0.5 * self.counts_per_rad / self.rate
     }
 
     pub(super) fn update(&mut self, sample: &Sample) -> f64 {
@@ -235,18 +240,19 @@ impl Definition {
             slip += self.beta * p[0] * (coupled - v);
             friction += learner.span.friction * p[1];
         }
-        let (moved, after, direction, against, rests) = self.motion(
-            v,
-            push + slip + self.x[2],
-            friction + self.friction_correction,
-        );
+        friction += self.friction_correction;
+        let wide = self.learner.as_ref().is_some_and(|l| l.span.wide);
+        if wide && self.is_slow(v) {
+            friction = friction.max(0.0);
+        }
+        let (moved, after, direction, against, rests) =
+            self.motion(v, push + slip + self.x[2], friction);
         if let Some(learner) = &mut self.learner {
             let force = Vector3::new(
                 self.beta * (coupled - (v + after) / 2.0),
                 -direction * learner.span.friction,
                 assumed_push,
             );
-            let wide = learner.span.wide;
             // A motor that moved before the tick is stopped by the model alone.
             let rests = rests && !(wide && v != 0.0);
             let damping = if wide {

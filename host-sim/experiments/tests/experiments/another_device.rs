@@ -1,9 +1,13 @@
 //! Observers without the handle's encoder whose model is that of another device: the table of
 //! docs/theory/adaptive-observer.md, on seeds outside the tuning set.
 
+use std::path::Path;
+
 use catalogue::estimators::{Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
 use experiments::compare::{Case, interval, setup_of, trace};
+use experiments::real::cases::Recordings;
+use experiments::real::run::{Settings, run};
 use rayon::prelude::*;
 use scoring::score::{Truth, Wanted};
 use simulation::device::Device;
@@ -132,4 +136,38 @@ fn adaptation_corrects_the_model_of_another_device() {
         }
     }
     assert!(missed.is_empty(), "{missed:#?}");
+}
+
+/// The constants of the default device are those of another device on every recording. From 256 to 4096
+/// counts per revolution no phase of the encoder and no rate may give an estimate that is worse than
+/// finite difference.
+#[test]
+fn no_recording_turns_the_learned_model_away() {
+    let seconds = 10.0;
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/real");
+    let recordings = Recordings::read(&folder, seconds).unwrap();
+    let settings = Settings {
+        estimators: PAIRS
+            .map(|[_, name]| name)
+            .into_iter()
+            .chain(["finite-difference"])
+            .map(|name| Kind::named(name).unwrap())
+            .collect(),
+        parameters: Parameters::default(),
+        device: Device::default(),
+        counts_per_rev: vec![256, 1024, 4096],
+        rates_hz: vec![500.0, 1000.0, 2000.0],
+        phases: vec![0.12, 0.37, 0.55, 0.81],
+        seconds,
+    };
+    let cases = recordings.cases(&settings);
+    let outcomes = run(&recordings, &cases, &settings, |_| false, || ()).unwrap();
+    let rows = outcomes.iter().flat_map(|outcome| &outcome.rows);
+    let learned: Vec<_> = rows
+        .filter(|row| row.estimator != "finite-difference" && row.score.rms_pct.is_some())
+        .collect();
+    assert!(learned.len() >= 2 * 5 * 9 * 4, "{}", learned.len());
+    for row in learned {
+        assert!(row.score.rms_pct.unwrap() < 100.0, "{row:#?}");
+    }
 }

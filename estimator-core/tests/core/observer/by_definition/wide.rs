@@ -50,11 +50,11 @@ fn observers_in_the_wide_range_agree_with_their_definition() {
 }
 
 /// As [`assert_rounding`], for errors of a parameter up to 20; where the definition is more sensitive to
-/// its own rounding, twenty times that spread.
+/// its own rounding, fifty times that spread: a gain beyond that of the model takes the rounding of one tick whole.
 #[track_caller]
 fn assert_rounding_or_spread(off: [f64; 3], spread: [f64; 3], samples: &str, what: &str) {
     let explained = |i: usize| {
-        if off[i] <= 20.0 * spread[i] {
+        if off[i] <= 50.0 * spread[i] {
             0.0
         } else {
             off[i]

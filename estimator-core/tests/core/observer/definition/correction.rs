@@ -131,6 +131,12 @@ impl Definition {
         if let Some(velocity) = starting {
             k = Vector3::new(k[0], velocity, 0.0);
         }
+        let wide = self.learner.as_ref().is_some_and(|l| l.span.wide);
+        let edges = self.kind == Kind::EdgeUpdate;
+        // A model that may be wrong does not explain more than four standard deviations.
+        if wide && edges && starting.is_none() && e.abs() > 4.0 * gain.variance.sqrt() {
+            k[1] = k[1].max(1.0 / self.waited.max(1.0));
+        }
         let to_position = position + age * k[1];
         self.x[0] += to_position * e;
         self.x[1] += k[1] * within;
@@ -139,8 +145,7 @@ impl Definition {
         self.friction_correction = self
             .friction_correction
             .clamp(-0.5 * self.friction, 0.5 * self.friction);
-        let slow = self.x[1].abs() < 0.5 * self.counts_per_rad / self.rate;
-        let edges = self.kind == Kind::EdgeUpdate;
+        let slow = self.is_slow(self.x[1]);
         let rate = self.rate;
         let Some(learner) = &mut self.learner else {
             return;
@@ -152,7 +157,7 @@ impl Definition {
         let gap = if learner.span.wide { self.waited } else { gap };
         learner.waiting += gap;
         let early = edges && learner.waiting < 3.5e-3 * rate;
-        if starting.is_some() || gap == 0.0 || early || slow {
+        if learner.is_moving() || gap == 0.0 || early || slow {
             return;
         }
         let (mut d, u) = factors(&learner.p);
@@ -164,7 +169,9 @@ impl Definition {
         let p = u * Matrix3::from_diagonal(&d) * u.transpose();
         let caution = if edges { 2.0 } else { 8.0 };
         let to_p = p * h;
-        let k = to_p / (h.dot(&to_p) + caution * gain.variance);
+        // Heavy tails, where the model may be wrong.
+        let tail = if wide { within * within / 4.0 } else { 0.0 };
+        let k = to_p / (h.dot(&to_p) + caution * gain.variance + tail);
         learner.p = p - k * to_p.transpose();
         let mut change = Vector3::zeros();
         let span = &learner.span;

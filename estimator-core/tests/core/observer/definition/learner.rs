@@ -44,7 +44,7 @@ impl Span {
         let unit = friction.max(load);
         Self {
             prior: [1.0; 3],
-            least: [-1.0, -friction / unit, -20.0],
+            least: [-0.95, -friction / unit, -20.0],
             most: [(left / (1.0 - left)).clamp(0.6, 20.0), 20.0, 20.0],
             friction: unit,
             wide: true,
@@ -76,6 +76,11 @@ impl Learner {
             over: false,
             in_motion: false,
         }
+    }
+
+    /// Whether the start was in motion and is not over.
+    pub(super) fn is_moving(&self) -> bool {
+        self.in_motion && !self.over
     }
 
     /// The gain of the velocity instead of `gain`, if this innovation belongs to a start in motion.
