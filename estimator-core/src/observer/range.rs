@@ -13,7 +13,8 @@ pub trait Range: Copy + Sealed {
     const PRIOR: [f32; 3];
     /// Whether the errors can be so large that the motion by the model is unlike that of the device.
     /// The sensitivities then include the error of the damping, a rotor that only the model stops is
-    /// taken as moving, and a count that an edge was expected to change is an innovation too.
+    /// taken as moving, a count that an edge was expected to change is an innovation too, and large
+    /// innovations are believed less.
     const LARGE: bool;
 
     /// The friction of which the error of the friction is a part, counts/tick².

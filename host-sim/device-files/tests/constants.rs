@@ -212,3 +212,28 @@ fn files_reach_the_constants() {
     let presets = file("both.toml", &presets.concat());
     assert_eq!(text(Some(&device), Some(&presets)).warning, None);
 }
+
+/// The plant without friction is one of the simulation only.
+#[test]
+fn images_have_the_presets_for_the_plant_with_friction() {
+    let of = |plant: &str| {
+        let preset = format!(
+            "[[preset]]\nrate_hz = 1e3\nplant = \"{plant}\"\ncounts_per_rev = 4096\n\
+             [preset.estimators.pll]\nbandwidth_hz = 123.25\n"
+        );
+        constants(None, Some(&file(&format!("{plant}.toml"), &preset))).unwrap()
+    };
+    assert!(of("friction").text.contains("123.25"));
+    assert!(!of("frictionless").text.contains("123.25"));
+}
+
+/// Tuned values are scaled without a warning to an encoder with up to 1.5 times as many counts, or as few.
+#[test]
+fn an_encoder_far_from_the_tuned_one_is_reported() {
+    for (counts_per_rev, far) in [(2700, true), (2800, false), (6100, false), (6200, true)] {
+        let device = format!("[large]\ncounts_per_rev = {counts_per_rev}\n");
+        let device = file(&format!("encoder-{counts_per_rev}.toml"), &device);
+        let warning = constants(Some(&device), None).unwrap().warning;
+        assert_eq!(warning.is_some(), far, "{counts_per_rev}: {warning:?}");
+    }
+}
