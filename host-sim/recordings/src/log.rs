@@ -176,3 +176,51 @@ impl<R: Read> Read for Unpacked<R> {
 fn cannot_read(name: &str, error: &io::Error) -> Failure {
     Failure::Input(format!("{name}: cannot read: {error}"))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write as _;
+
+    use flate2::Compression;
+    use flate2::write::GzEncoder;
+
+    use super::*;
+
+    fn packed(text: &str) -> Vec<u8> {
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
+        encoder.write_all(text.as_bytes()).unwrap();
+        encoder.finish().unwrap()
+    }
+
+    fn log(bytes: Vec<u8>) -> Log {
+        Log {
+            name: "log.gz".to_owned(),
+            path: PathBuf::from("log.gz"),
+            bytes: Some(bytes),
+        }
+    }
+
+    /// Parts that were packed one after the other are one log, as for gunzip.
+    #[test]
+    fn packed_logs_are_unpacked_whole() {
+        let both = [packed("t,counts_large\n0,1\n"), packed("0.001,2\n")].concat();
+        assert_eq!(
+            log(both).bytes().unwrap(),
+            b"t,counts_large\n0,1\n0.001,2\n"
+        );
+        assert_eq!(log(b"t".to_vec()).bytes().unwrap(), b"t");
+    }
+
+    #[test]
+    fn a_cut_packed_log_is_not_taken_for_a_whole_one() {
+        let mut cut = packed("t,counts_large\n0,1\n");
+        cut.truncate(cut.len() - 6);
+        let error = log(cut).bytes().unwrap_err().to_string();
+        for part in [
+            "log.gz: cannot read: not a complete gzip file",
+            "copy it again",
+        ] {
+            assert!(error.contains(part), "{error}");
+        }
+    }
+}

@@ -207,6 +207,16 @@ mod tests {
         log
     }
 
+    /// A rate needs two frames, and two are enough.
+    #[test]
+    fn a_run_of_one_frame_is_refused() {
+        for (frames, enough) in [(1, false), (2, true)] {
+            let telemetry = Telemetry::text(log(0..frames).as_bytes());
+            let runs = telemetry.runs();
+            assert_eq!(choose(&runs, None).is_ok(), enough, "{frames} frames");
+        }
+    }
+
     #[test]
     fn log_is_converted_to_a_recording_that_can_be_read() {
         let telemetry = Telemetry::text(log(0..4).as_bytes());
