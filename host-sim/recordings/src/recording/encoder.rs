@@ -86,3 +86,119 @@ impl Encoder {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::recording::{ReadOptions, Recording};
+
+    /// Rows of time, motor and handle, with columns and modulus as on the command line. The default
+    /// device has 4096 counts per revolution on the motor and 20000 on the handle.
+    fn read(rows: &[(&str, &str)], columns: &str, modulus: &[&str]) -> Result<Recording, String> {
+        let mut options = ReadOptions::default();
+        if !columns.is_empty() {
+            options.add_columns(columns).unwrap();
+        }
+        for text in modulus {
+            options.set_modulus(text).unwrap();
+        }
+        let mut text = "t,counts_large,counts_small\n".to_owned();
+        for (k, (large, small)) in rows.iter().enumerate() {
+            text += &format!("{},{large},{small}\n", k as f64 / 1000.0);
+        }
+        let read = Recording::parse_as(text.as_bytes(), "r.csv", &options);
+        read.map_err(|error| error.to_string())
+    }
+
+    fn counts(of: &[u32]) -> Vec<i32> {
+        of.iter().map(|&count| count as i32).collect()
+    }
+
+    /// A whole turn of 4096 counts is 360 degrees; halves are rounded up.
+    #[test]
+    fn angles_are_counts_to_the_nearest() {
+        let degrees = "counts_large=counts_large:deg,counts_small=counts_small:rev";
+        let rows = [("0", "0"), ("90", "0.5"), ("-90", "-2"), ("45.02", "1")];
+        let recording = read(&rows, degrees, &[]).unwrap();
+        // 45.02 degrees are 512.2276 counts.
+        let large = counts(&recording.trace.counts_large);
+        assert_eq!(large, [0, 1024, -1024, 512]);
+        let small = counts(recording.trace.counts_small.as_ref().unwrap());
+        assert_eq!(small, [0, 10_000, -40_000, 20_000]);
+        let rounded = |recording: &Recording| {
+            let said = recording.notes.iter();
+            said.filter(|note| note.contains("are rounded to the nearest"))
+                .count()
+        };
+        assert_eq!(rounded(&recording), 0, "{:?}", recording.notes);
+        // 45.03 degrees are 512.3413 counts.
+        let rows = [("0", "0"), ("45.03", "0.5")];
+        let recording = read(&rows, degrees, &[]).unwrap();
+        assert_eq!(rounded(&recording), 1);
+        let note =
+            "counts_large: positions are up to 0.34 counts from a whole count with 4096 counts/rev";
+        assert!(
+            recording.notes.iter().any(|n| n.starts_with(note)),
+            "{:?}",
+            recording.notes
+        );
+    }
+
+    #[test]
+    fn angles_beyond_any_count_are_refused() {
+        let turns = "counts_large=counts_large:rev";
+        // 9e15 counts are 2.1973e12 turns.
+        assert!(read(&[("0", "0"), ("2.197e12", "0")], turns, &[]).is_ok());
+        let error = read(&[("0", "0"), ("-2.198e12", "0")], turns, &[]).unwrap_err();
+        for part in ["r.csv: line 3: column counts_large: ", "is too large"] {
+            assert!(error.contains(part), "{error}");
+        }
+    }
+
+    /// Both encoders wrap at their own modulus, in both directions, and a counter may count from its
+    /// modulus down to 0 below zero.
+    #[test]
+    fn readings_are_unwrapped_at_the_modulus() {
+        let both = ["1000", "counts_small=360"];
+        let rows = [("990", "5"), ("998", "1"), ("6", "357"), ("-990", "-1")];
+        let recording = read(&rows, "", &both).unwrap();
+        let large = counts(&recording.trace.counts_large);
+        assert_eq!(large, [990, 998, 1006, 1010]);
+        let small = counts(recording.trace.counts_small.as_ref().unwrap());
+        assert_eq!(small, [5, 1, -3, -1]);
+        assert!(read(&[("-1000", "0"), ("999", "0")], "", &both).is_ok());
+        for reading in ["1000", "-1001"] {
+            let error = read(&[("0", "0"), (reading, "0")], "", &both).unwrap_err();
+            for part in [
+                "r.csv: line 3: column counts_large: ",
+                reading,
+                "with --modulus 1000: raw must be below modulus",
+            ] {
+                assert!(error.contains(part), "{error}");
+            }
+        }
+    }
+
+    /// Every unit of a column has its factor.
+    #[test]
+    fn numbers_are_converted_to_the_units_of_a_recording() {
+        let mut options = ReadOptions::default();
+        options
+            .add_columns("t=t:ms,current=i:mA,true_omega=w:deg/s,counts_large=n")
+            .unwrap();
+        let text = "t,n,i,w\n0,0,1500,180\n1,1,-250,-90\n";
+        let recording = Recording::parse_as(text.as_bytes(), "r.csv", &options).unwrap();
+        let near = |ours: &[f64], exact: [f64; 2]| {
+            assert!(
+                (ours.iter().zip(exact)).all(|(a, b)| (a - b).abs() < 1e-12),
+                "{ours:?} {exact:?}"
+            );
+        };
+        near(&recording.t, [0.0, 1e-3]);
+        near(recording.trace.current.as_ref().unwrap(), [1.5, -0.25]);
+        let pi = std::f64::consts::PI;
+        near(
+            recording.trace.true_omega.as_ref().unwrap(),
+            [pi, -pi / 2.0],
+        );
+    }
+}
