@@ -40,12 +40,15 @@ use crate::units::Hertz;
 /// deviations grow by a tenth of those at the start in a second of motion, and never exceed them.
 /// Below 0.5 rad/s friction hides the other parameters, and all stay.
 ///
-/// In the range [`Wide`](super::Wide) the model can be unlike the device, and three rules bound what its
-/// innovations do. The variance in the gain k is `hᵀ P h + c S + e² / 4`, that of an innovation with heavy tails
-/// (Student's t), so that a few large ones turn neither p nor P. With time stamps, an innovation beyond
-/// four standard deviations, `e² > 16 S`, corrects the velocity by the mean since the last one, `K_v = 1 / max(1, n)`,
-/// where that is above the gain of the model. Below 0.5 rad/s a friction that is learned below zero is zero:
-/// in motion it is the push of a hand, at rest it would be a drive.
+/// In the range [`Wide`](super::Wide) the model can be unlike the device. Three more rules hold there:
+/// ```text
+/// each tick      |v| < 0.5 rad/s: friction below 0 is 0
+/// innovation e   k = P h / (hᵀ P h + c S + e² / 4)
+/// with stamps    e² > 16 S: K_v = max(K_v, 1 / max(1, n)), n ticks after the last innovation
+/// ```
+/// A friction below zero is the push of a hand in motion, and would be a drive at rest. The variance of an
+/// innovation is that of heavy tails (Student's t): a few large ones turn neither p nor P. Where one is beyond
+/// four standard deviations, the velocity becomes the mean since the last one.
 ///
 /// If the motor is already moving at start-up, the first innovations are not attributed to parameter
 /// errors: the velocity gain is then that of the mean since the start, and p, U and D stay.
