@@ -53,8 +53,8 @@ fn sign(value: f32) -> f32 {
     }
 }
 
-/// Whether `friction` holds a rotor at rest under a `drive` of this sign. A friction below zero, which
-/// learning can find, holds nothing, but chooses no direction either.
+/// Whether `friction` holds a rotor at rest under `drive`, whose sign is `along`. A friction below zero,
+/// which learning can find, holds it only where there is no drive.
 #[inline]
 fn holds(friction: f32, drive: f32, along: f32) -> bool {
     !(drive.abs() > friction) || along == 0.0

@@ -65,13 +65,21 @@ fn model_of_another_device_is_learned() {
         assumed
     };
     let from = 4000;
-    for (assumed, sign, what) in [
-        (with(10.0, 1.0, 1.0, 1.0), 1.0, "inertia 10"),
-        (with(0.1, 1.0, 1.0, 1.0), 1.0, "inertia 0.1"),
-        (with(1.0, 3.0, 1.0, 1.0), 1.0, "torque constant 3"),
-        (with(1.0, 1.0, 5.0, 1.0), 1.0, "damping 5"),
-        (with(1.0, 1.0, 1.0, 0.0), 1.0, "no friction"),
-        (with(1.0, 1.0, 1.0, 1.0), -1.0, "sign"),
+    // The largest error that learning may leave, in parts of that without: a twentieth, from counts and with
+    // edges. The gains stay those of the model: with a tenth of the inertia they are too large. Without friction the
+    // model is wrong by one parameter of three, and the error without learning is small.
+    for (assumed, sign, what, parts) in [
+        (with(10.0, 1.0, 1.0, 1.0), 1.0, "inertia 10", [0.05; 2]),
+        (with(0.1, 1.0, 1.0, 1.0), 1.0, "inertia 0.1", [0.75, 0.05]),
+        (
+            with(1.0, 3.0, 1.0, 1.0),
+            1.0,
+            "torque constant 3",
+            [0.05; 2],
+        ),
+        (with(1.0, 1.0, 5.0, 1.0), 1.0, "damping 5", [0.05; 2]),
+        (with(1.0, 1.0, 1.0, 0.0), 1.0, "no friction", [0.6, 0.35]),
+        (with(1.0, 1.0, 1.0, 1.0), -1.0, "sign", [0.05; 2]),
     ] {
         let samples = if sign > 0.0 { &samples } else { &turned };
         let right = sign * assumed.motor.inertia / assumed.motor.torque_constant
@@ -82,7 +90,7 @@ fn model_of_another_device_is_learned() {
         let counts = design(&assumed).widely_adaptive();
         let edges = run(&counts.with_edges(CLOCK).build().expect("valid"), samples);
         let counts = run(&counts.build().expect("valid"), samples);
-        for ((velocities, gain), part) in [(counts, 0.75), (edges, 0.35)] {
+        for ((velocities, gain), part) in [(counts, parts[0]), (edges, parts[1])] {
             let error = rms(&velocities, &truth, from);
             assert!(error < part * fixed, "{what}: {error} of {fixed}");
             // Within 30 % of the larger of the true and the assumed one.

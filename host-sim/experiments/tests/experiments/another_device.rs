@@ -139,20 +139,15 @@ fn adaptation_corrects_the_model_of_another_device() {
 }
 
 /// The constants of the default device are those of another device on every recording. From 256 to 4096
-/// counts per revolution no phase of the encoder and no rate may give an estimate that is worse than
-/// finite difference.
+/// counts per revolution and from 500 Hz to 2 kHz the estimate is better than finite difference at every
+/// phase of the encoder.
 #[test]
-fn no_recording_turns_the_learned_model_away() {
+fn learned_models_are_better_than_finite_difference_on_recordings() {
     let seconds = 10.0;
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/real");
     let recordings = Recordings::read(&folder, seconds).unwrap();
     let settings = Settings {
-        estimators: PAIRS
-            .map(|[_, name]| name)
-            .into_iter()
-            .chain(["finite-difference"])
-            .map(|name| Kind::named(name).unwrap())
-            .collect(),
+        estimators: PAIRS.map(|[_, name]| Kind::named(name).unwrap()).to_vec(),
         parameters: Parameters::default(),
         device: Device::default(),
         counts_per_rev: vec![256, 1024, 4096],

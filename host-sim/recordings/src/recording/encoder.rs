@@ -130,6 +130,10 @@ mod tests {
                 .count()
         };
         assert_eq!(rounded(&recording), 0, "{:?}", recording.notes);
+        // A quarter of a turn and half a count.
+        let halves = [("90.0439453125", "0"), ("-90.0439453125", "0")];
+        let recording = read(&halves, degrees, &[]).unwrap();
+        assert_eq!(counts(&recording.trace.counts_large), [1025, -1024]);
         // 45.03 degrees are 512.3413 counts.
         let rows = [("0", "0"), ("45.03", "0.5")];
         let recording = read(&rows, degrees, &[]).unwrap();
@@ -178,7 +182,7 @@ mod tests {
         }
     }
 
-    /// Every unit of a column has its factor.
+    /// Milliseconds, milliamperes and degrees a second.
     #[test]
     fn numbers_are_converted_to_the_units_of_a_recording() {
         let mut options = ReadOptions::default();
