@@ -79,11 +79,11 @@ mod tests {
             rate: 10_000,
             ..Hello::default()
         };
-        let out = std::env::temp_dir().join(format!("no-frame-{}.csv", std::process::id()));
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("no-frame.csv");
         std::fs::write(&out, "old").unwrap();
         let failed = Recorder::new(&hello, out.clone()).write();
         let left = std::fs::read_to_string(&out).unwrap();
-        std::fs::remove_file(&out).unwrap();
         assert!(
             failed
                 .unwrap_err()

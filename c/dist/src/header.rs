@@ -16,9 +16,8 @@ const CONVENIENCES: &str = include_str!("conveniences.h");
 /// # Errors
 /// One line if cbindgen cannot read the sources.
 pub fn header() -> Result<String, String> {
-    let folder = std::env::temp_dir().join(format!("limpid-header-{}", std::process::id()));
-    let written = write_sources(&folder).and_then(|files| generate(&files));
-    let _ = std::fs::remove_dir_all(&folder);
+    let folder = tempfile::tempdir().map_err(|error| format!("no temporary folder: {error}"))?;
+    let written = write_sources(folder.path()).and_then(|files| generate(&files));
     Ok(written?
         .replace("VERSION_OF_LIMPID", env!("CARGO_PKG_VERSION"))
         .replace("LIST_OF_ESTIMATORS", &list()))

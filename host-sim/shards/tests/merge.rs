@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 use shards::file::{self, Run};
 use shards::{Experiment, Part, Shards};
+use tempfile::TempDir;
 use terminal::failure::Failure;
 
 /// Squares of the first numbers.
@@ -56,16 +57,15 @@ const RUN: Run<'_> = Run {
     command: "squares --all",
 };
 
-/// The files of all parts in a folder of its own.
-fn written(test: &str, run: Run<'_>, numbers: usize, jobs: usize, n: usize) -> Vec<PathBuf> {
-    let folder = std::env::temp_dir().join(format!("limpid-squares-{test}-{}", std::process::id()));
-    fs::create_dir_all(&folder).unwrap();
+/// The files of all parts, and their folder.
+fn written(run: Run<'_>, numbers: usize, jobs: usize, n: usize) -> (TempDir, Vec<PathBuf>) {
+    let folder = tempfile::tempdir().unwrap();
     let squares = Squares { numbers };
     let all: Vec<usize> = (0..jobs).collect();
     let write = |k| {
         let part = Part { k, n };
         let rows = squares.rows(&part.of(&all), || ()).unwrap();
-        let path = folder.join(part.file_name());
+        let path = folder.path().join(part.file_name());
         fs::write(
             &path,
             file::write(&squares, run, part, jobs, &rows).unwrap(),
@@ -73,17 +73,14 @@ fn written(test: &str, run: Run<'_>, numbers: usize, jobs: usize, n: usize) -> V
         .unwrap();
         path
     };
-    (1..=n).map(write).collect()
-}
-
-fn removed(paths: &[PathBuf]) {
-    fs::remove_dir_all(paths[0].parent().unwrap()).unwrap();
+    let paths = (1..=n).map(write).collect();
+    (folder, paths)
 }
 
 #[test]
 fn rows_have_the_order_of_the_jobs() {
     for n in [1, 2, 5, 11, 12] {
-        let mut paths = written("order", RUN, 11, 11, n);
+        let (_folder, mut paths) = written(RUN, 11, 11, n);
         paths.reverse();
         let shards = Shards::read(&paths, "1").unwrap();
         assert_eq!(
@@ -94,13 +91,12 @@ fn rows_have_the_order_of_the_jobs() {
         let (squares, rows) = shards.merge::<Squares>().unwrap().unwrap();
         assert_eq!(squares, Squares { numbers: 11 });
         assert_eq!(rows, [0, 1, 4, 9, 16, 25, 36, 49, 64, 81, 100]);
-        removed(&paths);
     }
 }
 
 #[test]
 fn shard_of_another_version_is_refused() {
-    let paths = written("version", RUN, 4, 4, 2);
+    let (_folder, paths) = written(RUN, 4, 4, 2);
     let said = Shards::read(&paths, "2").unwrap_err().to_string();
     assert!(
         said.contains("1-of-2.jsonl: written by version 1, and this is version 2"),
@@ -110,7 +106,7 @@ fn shard_of_another_version_is_refused() {
         version: "2",
         ..RUN
     };
-    let others = written("newer", newer, 4, 4, 2);
+    let (_folder, others) = written(newer, 4, 4, 2);
     let mixed = [paths[0].clone(), others[1].clone()];
     let said = Shards::read(&mixed, "1").unwrap_err().to_string();
     assert!(
@@ -121,24 +117,20 @@ fn shard_of_another_version_is_refused() {
         command: "squares --few",
         ..RUN
     };
-    let lines = written("line", other, 4, 4, 2);
+    let (_folder, lines) = written(other, 4, 4, 2);
     let mixed = [paths[0].clone(), lines[1].clone()];
     let said = Shards::read(&mixed, "1").unwrap_err().to_string();
     assert!(said.contains("command line squares --few, but"), "{said}");
-    for paths in [paths, others, lines] {
-        removed(&paths);
-    }
 }
 
 /// Such a file is only possible if two programs of one version have different jobs.
 #[test]
 fn another_number_of_jobs_is_refused() {
-    let paths = written("jobs", RUN, 5, 4, 2);
+    let (_folder, paths) = written(RUN, 5, 4, 2);
     let said = Shards::read(&paths, "1").unwrap().merge::<Squares>();
     let said = said.unwrap_err().to_string();
     assert!(
         said.contains("1-of-2.jsonl: line 1: 4 jobs, where there are 5"),
         "{said}"
     );
-    removed(&paths);
 }

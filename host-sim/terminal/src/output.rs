@@ -212,7 +212,8 @@ mod tests {
 
     #[test]
     fn paths_of_one_file_are_the_same() {
-        let folder = std::env::temp_dir().join(format!("limpid-same-{}", std::process::id()));
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
         let file = folder.join("a.csv");
         write_whole(&file, b"x").unwrap();
         for other in ["./a.csv", "none.csv"] {
@@ -234,34 +235,33 @@ mod tests {
                 );
             }
         }
-        std::fs::remove_dir_all(folder).unwrap();
     }
 
     #[test]
     fn file_without_a_place_is_refused() {
-        let folder = std::env::temp_dir().join(format!("limpid-place-{}", std::process::id()));
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
         let file = folder.join("a.csv");
         write_whole(&file, b"x").unwrap();
         let said = |path: &Path| check_place(path).map_err(|error| error.to_string());
         assert_eq!(said(&file), Ok(()));
         assert_eq!(said(&folder.join("new/b.csv")), Ok(()));
-        assert!(said(&folder).unwrap_err().contains("is a folder"));
+        assert!(said(folder).unwrap_err().contains("is a folder"));
         let inside = said(&file.join("b.csv")).unwrap_err();
         assert!(inside.contains("a.csv is no folder"), "{inside}");
-        std::fs::remove_dir_all(folder).unwrap();
     }
 
     #[test]
     fn failed_write_leaves_nothing() {
-        let folder = std::env::temp_dir().join(format!("limpid-output-{}", std::process::id()));
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
         let file = folder.join("deep/er/file.txt");
         write_whole(&file, b"whole").unwrap();
         assert_eq!(std::fs::read(&file).unwrap(), b"whole");
         // A folder of that name cannot be replaced by a file.
         let error = write_whole(&folder.join("deep"), b"x").unwrap_err();
         assert!(error.to_string().contains("deep: cannot write"), "{error}");
-        let left: Vec<_> = std::fs::read_dir(&folder).unwrap().collect();
+        let left: Vec<_> = std::fs::read_dir(folder).unwrap().collect();
         assert_eq!(left.len(), 1);
-        std::fs::remove_dir_all(folder).unwrap();
     }
 }

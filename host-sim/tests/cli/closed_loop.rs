@@ -1,14 +1,12 @@
 //! `host-sim compare --closed-loop`.
 
-use std::fs;
-
 use haptic_control::SceneKind;
 use serde_json::Value;
 
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
 fn good(arguments: &[&str]) -> String {
-    Folder::new("loop").good(arguments)
+    Folder::new(HOST_SIM).good(arguments)
 }
 
 fn rows(arguments: &[&str]) -> Vec<Value> {
@@ -26,7 +24,7 @@ fn page_of(folder: &Folder, arguments: &[&str]) -> String {
     let mut all = vec!["compare", "--out", "page"];
     all.extend(arguments);
     folder.good(&all);
-    fs::read_to_string(folder.0.join("page/index.html")).unwrap()
+    folder.text("page/index.html")
 }
 
 const TWO: [&str; 8] = [
@@ -154,7 +152,7 @@ fn better_velocity_gives_less_parasitic_force_at_a_high_rate() {
 
 #[test]
 fn invalid_arguments_are_refused_with_one_line() {
-    let folder = Folder::new("loop-words");
+    let folder = Folder::new(HOST_SIM);
     for (arguments, said) in [
         (
             &["--closed-loop", "--scenario", "step"][..],
@@ -224,7 +222,7 @@ fn assert_sound(page: &str) {
 
 #[test]
 fn report_has_all_figures_and_only_finite_numbers() {
-    let folder = Folder::new("loop-report");
+    let folder = Folder::new(HOST_SIM);
     let mut arguments = TWO.to_vec();
     arguments.push("--closed-loop");
     let page = page_of(&folder, &arguments);
@@ -232,7 +230,7 @@ fn report_has_all_figures_and_only_finite_numbers() {
         assert!(page.contains(text), "{text}");
     }
     assert_sound(&page);
-    let csv = fs::read_to_string(folder.0.join("page/closed-loop.csv")).unwrap();
+    let csv = folder.text("page/closed-loop.csv");
     assert_eq!(
         csv.lines().count(),
         1 + 4 * SceneKind::environments().count()
@@ -257,7 +255,7 @@ fn report_has_all_figures_and_only_finite_numbers() {
 
 #[test]
 fn full_comparison_includes_the_closed_loop_and_one_of_a_scenario_does_not() {
-    let folder = Folder::new("loop-beside");
+    let folder = Folder::new(HOST_SIM);
     let page = page_of(&folder, &TWO);
     assert!(page.contains("figure 8)") && page.contains(FIGURES[1]));
     let mut named = TWO.to_vec();

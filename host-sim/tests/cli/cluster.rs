@@ -5,7 +5,9 @@ use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-const HOST_SIM: &str = env!("CARGO_BIN_EXE_host-sim");
+use tempfile::TempDir;
+
+use crate::HOST_SIM;
 
 /// A run that takes milliseconds.
 const SHORT: &str = "robust --scene hold --rate 1000 --seconds 0.05 --devices 3";
@@ -37,24 +39,24 @@ done
 echo '17;cluster'
 "#;
 
-struct Folder(PathBuf);
+struct Folder(TempDir);
 
 impl Folder {
-    fn new(test: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("limpid-{test}-{}", std::process::id()));
-        fs::create_dir_all(path.join("bin")).unwrap();
-        Self(path)
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir(folder.path().join("bin")).unwrap();
+        Self(folder)
     }
 
     /// Runs a program with `bin` first on the PATH.
     fn run(&self, program: &str, arguments: &[&str], variables: &[(&str, &str)]) -> Output {
         let old = std::env::var("PATH").unwrap();
-        let path = format!("{}:{old}", self.0.join("bin").display());
+        let path = format!("{}:{old}", self.0.path().join("bin").display());
         Command::new(program)
             .args(arguments)
             .env("PATH", path)
             .envs(variables.iter().copied())
-            .current_dir(&self.0)
+            .current_dir(self.0.path())
             .output()
             .unwrap()
     }
@@ -66,7 +68,8 @@ impl Folder {
     }
 
     fn text(&self, name: &str) -> String {
-        fs::read_to_string(self.0.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+        fs::read_to_string(self.0.path().join(name))
+            .unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
     /// Compares the merged outputs with those of a single run.
@@ -80,12 +83,6 @@ impl Folder {
     }
 }
 
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 fn cluster(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../cluster")
@@ -94,8 +91,8 @@ fn cluster(name: &str) -> PathBuf {
 
 #[test]
 fn slurm_array_is_merged_and_a_lost_shard_is_run_again() {
-    let folder = Folder::new("slurm");
-    let sbatch = folder.0.join("bin/sbatch");
+    let folder = Folder::new();
+    let sbatch = folder.0.path().join("bin/sbatch");
     fs::write(&sbatch, SBATCH).unwrap();
     fs::set_permissions(&sbatch, fs::Permissions::from_mode(0o755)).unwrap();
     let script = cluster("slurm.sh");
@@ -108,14 +105,14 @@ fn slurm_array_is_merged_and_a_lost_shard_is_run_again() {
             &[&[("PROGRAM", HOST_SIM)], shards].concat(),
         );
     };
-    fs::write(folder.0.join("lost"), "2\n4\n").unwrap();
+    fs::write(folder.0.path().join("lost"), "2\n4\n").unwrap();
     submit(&[]);
     let said = folder.text("run/merge.log");
     assert!(said.contains("shards 2,4 of 5 are missing"), "{said}");
-    fs::write(folder.0.join("lost"), "").unwrap();
-    let kept = fs::metadata(folder.0.join("run/parts/shard-1-of-5.jsonl")).unwrap();
+    fs::write(folder.0.path().join("lost"), "").unwrap();
+    let kept = fs::metadata(folder.0.path().join("run/parts/shard-1-of-5.jsonl")).unwrap();
     submit(&[("SHARDS", "2,4-4")]);
-    let same = fs::metadata(folder.0.join("run/parts/shard-1-of-5.jsonl")).unwrap();
+    let same = fs::metadata(folder.0.path().join("run/parts/shard-1-of-5.jsonl")).unwrap();
     assert_eq!(kept.modified().unwrap(), same.modified().unwrap());
     folder.merged_equals_whole("run/merged");
 }
@@ -131,8 +128,8 @@ fn command(manifest: &str) -> String {
 
 #[test]
 fn commands_of_the_kubernetes_jobs_run_all_shards_and_merge_them() {
-    let folder = Folder::new("kubernetes");
-    std::os::unix::fs::symlink(HOST_SIM, folder.0.join("bin/host-sim")).unwrap();
+    let folder = Folder::new();
+    std::os::unix::fs::symlink(HOST_SIM, folder.0.path().join("bin/host-sim")).unwrap();
     let [shards, merge] = ["kubernetes.yaml", "kubernetes-merge.yaml"]
         .map(|name| fs::read_to_string(cluster(name)).unwrap());
     let (_, n) = shards.split_once("\n  completions: ").unwrap();
@@ -161,7 +158,7 @@ fn commands_of_the_kubernetes_jobs_run_all_shards_and_merge_them() {
     };
     run_all();
     // A lost shard is run again, and the others are kept.
-    let file = |k: usize| folder.0.join(format!("vol/shard-{k}-of-{n}.jsonl"));
+    let file = |k: usize| folder.0.path().join(format!("vol/shard-{k}-of-{n}.jsonl"));
     let written = || fs::metadata(file(1)).unwrap().modified().unwrap();
     let before = written();
     fs::remove_file(file(2)).unwrap();

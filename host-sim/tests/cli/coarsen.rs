@@ -1,6 +1,6 @@
 //! A coarsened recording states its counts per revolution.
 
-use crate::{Folder, json};
+use crate::{Folder, HOST_SIM, json};
 
 /// 1 s at 2 kHz and 5 rad/s, of an encoder of 100 000 counts per revolution.
 fn fine() -> String {
@@ -13,23 +13,23 @@ fn fine() -> String {
     text
 }
 
-fn coarse(name: &str, counts: &str) -> (Folder, String) {
-    let folder = Folder::new(name);
+fn coarse(counts: &str) -> (Folder, String) {
+    let folder = Folder::new(HOST_SIM);
     folder.write("f.csv", fine());
     let command = "coarsen f.csv --fine-counts-per-rev 100000 --rate 1000 --out c.csv";
     let mut arguments: Vec<_> = command.split(' ').collect();
     arguments.extend(["--counts-per-rev", counts]);
     folder.good(&arguments);
-    let text = std::fs::read_to_string(folder.0.join("c.csv")).unwrap();
+    let text = folder.text("c.csv");
     (folder, text)
 }
 
 #[test]
 fn counts_per_revolution_of_a_coarsened_recording_need_no_option() {
-    let (folder, text) = coarse("coarse-counts", "1000");
+    let (folder, text) = coarse("1000");
     assert!(text.starts_with("# counts_per_rev = 1000\nt,counts_large,edge_tick,edge_bound\n"));
     let velocity = |arguments: &str| {
-        let text = folder.good(&arguments.split(' ').collect::<Vec<_>>());
+        let text = folder.good(arguments);
         let last = text.lines().last().unwrap();
         last.split_once(',').unwrap().1.parse::<f64>().unwrap()
     };
@@ -54,7 +54,7 @@ fn counts_per_revolution_of_a_coarsened_recording_need_no_option() {
         ),
         ("recommend c.csv", "1000 counts/rev, as the file states"),
     ] {
-        let output = folder.run(&command.split(' ').collect::<Vec<_>>());
+        let output = folder.run(command);
         let notes = String::from_utf8(output.stderr).unwrap();
         assert!(notes.contains(said), "{command}: {notes}");
         assert!(!notes.contains("assumed"), "{command}: {notes}");
@@ -66,7 +66,7 @@ fn counts_per_revolution_of_a_coarsened_recording_need_no_option() {
 
 #[test]
 fn recordings_of_different_encoders_are_refused() {
-    let (folder, text) = coarse("two-encoders", "1000");
+    let (folder, text) = coarse("1000");
     folder.write("d.csv", text.replacen("= 1000", "= 500", 1));
     let error = folder.refused(&["recommend", "c.csv", "d.csv"]);
     let said = "d.csv: states 500 counts/rev and c.csv 1000; give recordings of one encoder";
@@ -81,7 +81,7 @@ fn recordings_of_different_encoders_are_refused() {
 
 #[test]
 fn counts_of_an_option_are_those_of_a_device_file() {
-    let (folder, text) = coarse("option-of-counts", "1000");
+    let (folder, text) = coarse("1000");
     let unstated = text.split_once('\n').expect("a line of counts").1;
     folder.write("c.csv", unstated);
     folder.write("half.toml", "[large]\ncounts_per_rev = 500\n");
@@ -119,7 +119,7 @@ fn counts_of_an_option_are_those_of_a_device_file() {
 
 #[test]
 fn coarse_recording_is_coarsened_again() {
-    let (folder, _) = coarse("coarse-again", "1000");
+    let (folder, _) = coarse("1000");
     folder.good(&[
         "coarsen",
         "c.csv",
@@ -128,7 +128,7 @@ fn coarse_recording_is_coarsened_again() {
         "--out",
         "d.csv",
     ]);
-    let text = std::fs::read_to_string(folder.0.join("d.csv")).unwrap();
+    let text = folder.text("d.csv");
     assert!(text.starts_with("# counts_per_rev = 250\n"), "{text}");
     // 5 rad/s of 250 counts for a second.
     let last = text.lines().last().unwrap().split(',').nth(1).unwrap();
@@ -140,7 +140,7 @@ fn coarse_recording_is_coarsened_again() {
 
 #[test]
 fn gap_is_bridged_with_a_note_and_an_unsuitable_clock_is_named() {
-    let folder = Folder::new("coarse-clock");
+    let folder = Folder::new(HOST_SIM);
     let options = "--counts-per-rev 1000 --fine-counts-per-rev 100000 --out c.csv";
     let arguments = |more: &str| -> Vec<String> {
         let line = format!("coarsen f.csv {options} {more}");

@@ -4,7 +4,7 @@ use std::fs;
 
 use scoring::score::Score;
 
-use crate::{Folder, SHORT, json};
+use crate::{Folder, HOST_SIM, SHORT, json};
 
 /// Scores that need more than the velocity: a standard deviation, or a damping that is learned.
 const REPORTED: [&str; 3] = [
@@ -15,7 +15,7 @@ const REPORTED: [&str; 3] = [
 
 #[test]
 fn json_on_standard_output_has_the_contracts_fields() {
-    let folder = Folder::new("json");
+    let folder = Folder::new(HOST_SIM);
     let rows = json(&folder.good(&SHORT));
     let names: Vec<_> = rows
         .iter()
@@ -54,19 +54,19 @@ fn json_on_standard_output_has_the_contracts_fields() {
     assert_eq!(difference["estimator"], "finite-difference");
     assert_eq!(difference["rms_pct"], 100.0);
     assert!(
-        folder.files().is_empty(),
+        folder.names().is_empty(),
         "no report unless it is asked for"
     );
 }
 
 #[test]
 fn output_is_reproducible_and_depends_on_the_seed() {
-    let folder = Folder::new("same");
+    let folder = Folder::new(HOST_SIM);
     let report = |out| {
         let mut arguments = SHORT[..7].to_vec();
         arguments.extend(["--out", out]);
         folder.good(&arguments);
-        let read = |name| fs::read(folder.0.join(out).join(name)).unwrap();
+        let read = |name| fs::read(folder.path().join(out).join(name)).unwrap();
         // The page shows its own command, which names the folder.
         let page = String::from_utf8(read("index.html"))
             .unwrap()
@@ -83,7 +83,7 @@ fn output_is_reproducible_and_depends_on_the_seed() {
 
 #[test]
 fn frictionless_plant_gives_other_scores() {
-    let folder = Folder::new("frictionless");
+    let folder = Folder::new(HOST_SIM);
     let mut arguments = SHORT.to_vec();
     arguments.push("--frictionless");
     let rows = json(&folder.good(&arguments));
@@ -96,7 +96,7 @@ fn frictionless_plant_gives_other_scores() {
 
 #[test]
 fn scores_that_are_not_requested_are_null() {
-    let folder = Folder::new("wanted");
+    let folder = Folder::new(HOST_SIM);
     let mut arguments = SHORT.to_vec();
     arguments.extend(["--estimator", "pll", "--score", "rms_rad_s"]);
     let rows = json(&folder.good(&arguments));
@@ -106,7 +106,7 @@ fn scores_that_are_not_requested_are_null() {
 
 #[test]
 fn set_parameter_changes_the_scores() {
-    let folder = Folder::new("set");
+    let folder = Folder::new(HOST_SIM);
     let rms = |set| {
         let mut arguments = SHORT.to_vec();
         arguments.extend(["--estimator", "foaw-end-fit", "--set", set]);

@@ -1,8 +1,6 @@
 //! Names from the user's files on the pages and in figures.
 
-use std::fs;
-
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
 const DEVICE: &str = "d<&\".toml";
 const RECORDING: &str = "r<&\".csv";
@@ -10,14 +8,14 @@ const COLUMN: &str = "c<&\"";
 
 #[test]
 fn names_of_files_and_columns_are_escaped_on_every_page() {
-    let folder = Folder::new("escaping");
+    let folder = Folder::new(HOST_SIM);
     let run = |arguments: &str, names: &[&str]| {
         let words = arguments.split_whitespace().chain(names.iter().copied());
         folder.good(&words.collect::<Vec<_>>());
     };
     folder.write(DEVICE, "");
     run("simulate --every 10 --out plain.csv", &[]);
-    let plain = fs::read_to_string(folder.0.join("plain.csv")).unwrap();
+    let plain = folder.text("plain.csv");
     let more = |(i, line): (usize, &str)| match i {
         0 => format!("{line},{COLUMN}\n"),
         _ => format!("{line},0\n"),
@@ -58,7 +56,7 @@ fn names_of_files_and_columns_are_escaped_on_every_page() {
             ),
         };
         run(command, names);
-        let page = fs::read_to_string(folder.0.join(file)).unwrap();
+        let page = folder.text(file);
         if page.contains("<&") || page.contains("&\"") {
             wrong.push(format!("{command}: a name is not escaped"));
         }

@@ -1,11 +1,11 @@
 //! Recordings as MCAP files, by a build with the writer and by one without.
 
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
 const LOG: &str = "t,counts_large\n0,0\n0.001,1\n0.002,2\n";
 
-fn folder(name: &str) -> Folder {
-    let folder = Folder::new(name);
+fn folder() -> Folder {
+    let folder = Folder::new(HOST_SIM);
     folder.write("run.csv", LOG);
     folder
 }
@@ -13,7 +13,7 @@ fn folder(name: &str) -> Folder {
 #[cfg(not(feature = "mcap"))]
 #[test]
 fn build_without_the_writer_names_the_one_with_it_and_writes_nothing() {
-    let folder = folder("export-without");
+    let folder = folder();
     let output = folder.run(&["export", "run.csv", "--mcap", "run.mcap"]);
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8(output.stderr).unwrap();
@@ -21,13 +21,13 @@ fn build_without_the_writer_names_the_one_with_it_and_writes_nothing() {
         said.contains("cargo export instead of cargo sim export"),
         "{said}"
     );
-    assert_eq!(folder.files(), ["run.csv".to_owned()].into());
+    assert_eq!(folder.names(), ["run.csv".to_owned()].into());
 }
 
 #[cfg(feature = "mcap")]
 #[test]
 fn estimates_and_columns_are_in_the_file() {
-    let folder = folder("export");
+    let folder = folder();
     let arguments = [
         "export",
         "run.csv",
@@ -37,7 +37,7 @@ fn estimates_and_columns_are_in_the_file() {
         "run.mcap",
     ];
     folder.good(&arguments);
-    let bytes = std::fs::read(folder.0.join("run.mcap")).unwrap();
+    let bytes = std::fs::read(folder.path().join("run.mcap")).unwrap();
     let has = |text: &str| bytes.windows(text.len()).any(|at| at == text.as_bytes());
     assert!(bytes.starts_with(b"\x89MCAP") && bytes.ends_with(b"MCAP0\r\n"));
     assert!(has("limpid.Estimates") && has("pll") && has("large_angle") && !has("low_pass"));
@@ -45,7 +45,7 @@ fn estimates_and_columns_are_in_the_file() {
 
 #[test]
 fn log_that_cannot_be_read_leaves_no_file() {
-    let folder = folder("export-refused");
+    let folder = folder();
     folder.write("bad.csv", "t,counts_large\n0,0\n0.001,x\n");
     let output = folder.run(&["export", "bad.csv", "--mcap", "bad.mcap"]);
     assert_eq!(output.status.code(), Some(2));
@@ -54,12 +54,12 @@ fn log_that_cannot_be_read_leaves_no_file() {
         said.contains("line 3") && said.contains("counts_large"),
         "{said}"
     );
-    assert_eq!(folder.files().len(), 2);
+    assert_eq!(folder.names().len(), 2);
 }
 
 #[test]
 fn options_of_a_recording_are_refused_without_one() {
-    let folder = folder("export-c");
+    let folder = folder();
     for option in [
         "--column t=t",
         "--modulus 4096",
@@ -67,7 +67,7 @@ fn options_of_a_recording_are_refused_without_one() {
         "--resample 1000",
     ] {
         let arguments = format!("export --c --estimator pll {option}");
-        let error = folder.refused(&arguments.split(' ').collect::<Vec<_>>());
+        let error = folder.refused(&arguments);
         assert!(error.contains("cannot be used with"), "{error}");
     }
     let counts = [

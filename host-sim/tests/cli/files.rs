@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
 /// 2 s at 1 kHz of a shaft that turns back and forth.
 fn log() -> String {
@@ -13,16 +13,16 @@ fn log() -> String {
 
 #[test]
 fn output_over_its_input_is_refused_and_the_input_is_kept() {
-    let folder = Folder::new("over-input");
+    let folder = Folder::new(HOST_SIM);
     folder.write("log.csv", log());
     folder.write("log.svg", log());
     folder.write("d.toml", "large.counts_per_rev = 4096\n");
-    fs::create_dir(folder.0.join("deep")).unwrap();
-    let absolute = folder.0.join("log.csv").display().to_string();
+    fs::create_dir(folder.path().join("deep")).unwrap();
+    let absolute = folder.path().join("log.csv").display().to_string();
     let mut outputs = vec!["log.csv", "./log.csv", "deep/../log.csv", &absolute];
     #[cfg(unix)]
     {
-        std::os::unix::fs::symlink("log.csv", folder.0.join("link.csv")).unwrap();
+        std::os::unix::fs::symlink("log.csv", folder.path().join("link.csv")).unwrap();
         outputs.push("link.csv");
     }
     for output in outputs {
@@ -44,28 +44,24 @@ fn output_over_its_input_is_refused_and_the_input_is_kept() {
         "record log.csv --out log.csv",
         coarsen,
     ] {
-        let line = folder.refused(&command.split(' ').collect::<Vec<_>>());
+        let line = folder.refused(command);
         assert!(
             line.contains(": would overwrite the input "),
             "{command}: {line}"
         );
     }
     for name in ["log.csv", "log.svg"] {
-        assert_eq!(
-            fs::read_to_string(folder.0.join(name)).unwrap(),
-            log(),
-            "{name}"
-        );
+        assert_eq!(folder.text(name), log(), "{name}");
     }
 }
 
 #[test]
 fn device_file_of_identify_may_be_its_output() {
-    let folder = Folder::new("own-device");
+    let folder = Folder::new(HOST_SIM);
     folder.write("d.toml", "large.counts_per_rev = 4096\n");
     folder.write("log.csv", log());
     let command = "identify log.csv --clamped --device d.toml --out d.toml";
-    let line = folder.refused(&command.split(' ').collect::<Vec<_>>());
+    let line = folder.refused(command);
     // The log has no column current.
     assert!(
         !line.contains("overwrite") && line.contains("current"),
@@ -75,14 +71,14 @@ fn device_file_of_identify_may_be_its_output() {
 
 #[test]
 fn two_outputs_of_one_file_are_refused() {
-    let folder = Folder::new("one-file");
+    let folder = Folder::new(HOST_SIM);
     folder.write("log.csv", log());
     for command in [
         "replay log.csv --out new --json ./new",
         "identify log.csv --clamped --json new --out new",
         "real --json new --csv new",
     ] {
-        let line = folder.refused(&command.split(' ').collect::<Vec<_>>());
+        let line = folder.refused(command);
         assert!(line.contains("new: is the file of --"), "{command}: {line}");
     }
     let (out, json) = (["--out", "/dev/null"], ["--json", "/dev/null"]);

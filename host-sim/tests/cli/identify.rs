@@ -1,10 +1,8 @@
 //! `host-sim identify`.
 
-use std::fs;
-
 use simulation::device::Device;
 
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
 fn words(arguments: &str) -> Vec<&str> {
     arguments.split_whitespace().collect()
@@ -12,7 +10,7 @@ fn words(arguments: &str) -> Vec<&str> {
 
 #[test]
 fn identify_replaces_only_the_identified_values_of_the_device_file() {
-    let folder = Folder::new("identify");
+    let folder = Folder::new(HOST_SIM);
     let good = |arguments: &str| folder.good(&words(arguments));
     let truth = "[large]\ninertia_kg_m2 = 1.3e-5\n[coupler]\ndamping_nms_per_rad = 0.8e-3\n";
     folder.write("truth.toml", truth);
@@ -38,7 +36,7 @@ fn identify_replaces_only_the_identified_values_of_the_device_file() {
     assert!((file / (1e-7 * shown) - 1.0).abs() < 1e-4, "{inertia:?}");
     let table: Vec<_> = table.split_whitespace().collect();
     let table = table.join(" ");
-    let page = fs::read_to_string(folder.0.join("page/index.html")).unwrap();
+    let page = folder.text("page/index.html");
     assert_eq!(page.matches("<figure>").count(), 2);
     for said in [
         "excite.csv: velocity of the large motor",
@@ -56,7 +54,7 @@ fn identify_replaces_only_the_identified_values_of_the_device_file() {
     ] {
         assert!(table.contains(said), "{said}\n{table}");
     }
-    let text = fs::read_to_string(folder.0.join("mine.toml")).unwrap();
+    let text = folder.text("mine.toml");
     assert!(text.starts_with(mine), "{text}");
     assert!(
         !text.contains("bandwidth") && !text.contains("\ntorque_constant"),
@@ -90,7 +88,7 @@ fn identify_replaces_only_the_identified_values_of_the_device_file() {
     );
 
     // An uneven clock is what is wrong, not the motion.
-    let recorded = fs::read_to_string(folder.0.join("excite.csv")).unwrap();
+    let recorded = folder.text("excite.csv");
     let mut uneven = String::new();
     for (k, line) in recorded.lines().enumerate() {
         let Some((t, rest)) = line.split_once(',').filter(|_| k > 0) else {

@@ -1,6 +1,6 @@
 //! `host-sim identify` on logs of ordinary motion.
 
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
 const CLAMPED: [&str; 3] = ["identify", "log.csv", "--clamped"];
 
@@ -66,7 +66,7 @@ fn assert_near(json: &str, name: &str, truth: f64, widest: f64) {
 
 #[test]
 fn ratios_of_ordinary_motion_are_those_of_the_motor() {
-    let folder = Folder::new("identify-ordinary");
+    let folder = Folder::new(HOST_SIM);
     folder.write("log.csv", log(back_and_forth, |_| 0.0));
     let json = folder.good(&[&CLAMPED[..], &["--json", "-"]].concat());
     let per_a = TORQUE_CONSTANT / INERTIA;
@@ -80,7 +80,7 @@ fn ratios_of_ordinary_motion_are_those_of_the_motor() {
         "simulate --scenario track --rate 1000 --seconds 5 --out log.csv",
         "simulate --scene free-air --hand moving --every 10 --seconds 8 --out log.csv",
     ] {
-        folder.good(&simulated.split(' ').collect::<Vec<_>>());
+        folder.good(simulated);
         let json = folder.good(&["identify", "log.csv", "--json", "-"]);
         assert_near(&json, "torque constant / inertia", 46.8e-3 / 115e-7, 0.02);
     }
@@ -88,7 +88,7 @@ fn ratios_of_ordinary_motion_are_those_of_the_motor() {
 
 #[test]
 fn motion_one_way_determines_friction_only_with_a_constant_torque() {
-    let folder = Folder::new("identify-one-way");
+    let folder = Folder::new(HOST_SIM);
     folder.write("log.csv", log(|t| 0.7 + 0.5 * back_and_forth(t), |_| 0.0));
     let table = folder.good(&CLAMPED);
     assert!(
@@ -111,7 +111,7 @@ fn motion_one_way_determines_friction_only_with_a_constant_torque() {
 
 #[test]
 fn unknown_torque_is_reported_and_no_value_is_written() {
-    let folder = Folder::new("identify-torque");
+    let folder = Folder::new(HOST_SIM);
     // A fifth of the motor's torque comes from elsewhere.
     let unknown = |t: f64| 4.5e-3 * (31.0 * t + 2.0 * (5.0 * t).sin()).sin();
     folder.write("log.csv", log(back_and_forth, unknown));
@@ -137,10 +137,10 @@ fn unknown_torque_is_reported_and_no_value_is_written() {
 
 #[test]
 fn logs_that_tell_nothing_are_refused_for_their_reason() {
-    let folder = Folder::new("identify-refused");
+    let folder = Folder::new(HOST_SIM);
     let milliamps = |t| (1e3 * back_and_forth(t)).round();
     folder.write("log.csv", log(back_and_forth, |_| 0.0));
-    let recorded = std::fs::read_to_string(folder.0.join("log.csv")).unwrap();
+    let recorded = folder.text("log.csv");
     let rows = recorded.lines().skip(1).enumerate();
     let rows = rows.map(|(k, line)| {
         let (before, _) = line.rsplit_once(',').unwrap();

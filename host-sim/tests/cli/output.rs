@@ -8,15 +8,15 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
 const RECORDING: &str = "t,counts_large\n0,1\n0.001,2\n0.002,3\n";
 const REPLAY: [&str; 4] = ["replay", "r.csv", "--estimator", "finite-difference"];
 /// What [`REPLAY`] writes.
 const ESTIMATES: &str = "t,finite-difference\n0,0\n0.001,1.5339808\n0.002,1.5339808\n";
 
-fn folder(test: &str) -> Folder {
-    let folder = Folder::new(test);
+fn folder() -> Folder {
+    let folder = Folder::new(HOST_SIM);
     folder.write("r.csv", RECORDING);
     folder
 }
@@ -26,16 +26,15 @@ fn replay_to(out: &str) -> Vec<&str> {
 }
 
 fn spawn(folder: &Folder, arguments: &[&str]) -> Child {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_host-sim"));
-    command.args(arguments).current_dir(&folder.0);
+    let mut command = folder.command(arguments);
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     command.spawn().unwrap()
 }
 
 fn sh(folder: &Folder, script: &str) -> std::process::Output {
     let mut command = Command::new("bash");
-    command.args(["-c", script, env!("CARGO_BIN_EXE_host-sim")]);
-    command.current_dir(&folder.0).output().unwrap()
+    command.args(["-c", script, HOST_SIM]);
+    command.current_dir(folder.path()).output().unwrap()
 }
 
 /// Standard output of a script in which `$0` is the program.
@@ -48,8 +47,8 @@ fn good_sh(folder: &Folder, script: &str) -> String {
 
 #[test]
 fn symbolic_link_is_kept_and_its_target_is_replaced() {
-    let folder = folder("links");
-    let path = |name: &str| folder.0.join(name);
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
     fs::create_dir(path("deep")).unwrap();
     folder.write("deep/target.csv", "old");
     fs::set_permissions(path("deep/target.csv"), fs::Permissions::from_mode(0o640)).unwrap();
@@ -96,20 +95,20 @@ fn symbolic_link_is_kept_and_its_target_is_replaced() {
 
 #[test]
 fn pipes_and_devices_are_written_in_place() {
-    let folder = folder("pipes");
+    let folder = folder();
     assert!(
         Command::new("mkfifo")
-            .arg(folder.0.join("fifo"))
+            .arg(folder.path().join("fifo"))
             .status()
             .unwrap()
             .success()
     );
     let reader = {
-        let path = folder.0.join("fifo");
+        let path = folder.path().join("fifo");
         std::thread::spawn(move || fs::read_to_string(path).unwrap())
     };
     folder.good(&replay_to("fifo"));
-    let kind = fs::symlink_metadata(folder.0.join("fifo"))
+    let kind = fs::symlink_metadata(folder.path().join("fifo"))
         .unwrap()
         .file_type();
     assert!(kind.is_fifo(), "{kind:?}");
@@ -118,7 +117,7 @@ fn pipes_and_devices_are_written_in_place() {
 
     // Links to devices: a program that replaces them does no harm outside of this folder.
     for device in ["null", "full"] {
-        symlink(Path::new("/dev").join(device), folder.0.join(device)).unwrap();
+        symlink(Path::new("/dev").join(device), folder.path().join(device)).unwrap();
     }
     folder.good(&replay_to("null"));
     let error = folder.refused(&replay_to("full"));
@@ -127,7 +126,7 @@ fn pipes_and_devices_are_written_in_place() {
         "{error}"
     );
     for device in ["null", "full"] {
-        let link = fs::symlink_metadata(folder.0.join(device)).unwrap();
+        let link = fs::symlink_metadata(folder.path().join(device)).unwrap();
         let target = fs::metadata(Path::new("/dev").join(device))
             .unwrap()
             .file_type();
@@ -137,10 +136,10 @@ fn pipes_and_devices_are_written_in_place() {
 
 #[test]
 fn dash_and_names_of_standard_output_are_standard_output() {
-    let folder = folder("dash");
+    let folder = folder();
     // By links: a program that replaces what they name harms only them.
-    symlink("/dev/stdout", folder.0.join("stdout")).unwrap();
-    symlink("/dev/fd/1", folder.0.join("one")).unwrap();
+    symlink("/dev/stdout", folder.path().join("stdout")).unwrap();
+    symlink("/dev/fd/1", folder.path().join("one")).unwrap();
     for out in ["-", "stdout", "one"] {
         assert_eq!(folder.good(&replay_to(out)), ESTIMATES, "{out}");
         // Redirected to a file, which is not replaced under the shell's feet.
@@ -149,15 +148,12 @@ fn dash_and_names_of_standard_output_are_standard_output() {
             REPLAY.join(" ")
         );
         good_sh(&folder, &script);
-        let written = fs::read_to_string(folder.0.join("o.csv")).unwrap();
+        let written = folder.text("o.csv");
         assert_eq!(written, format!("first\n{ESTIMATES}"), "{out}");
     }
     let substituted = format!("\"$0\" {} --out >(cat > p.csv); wait $!", REPLAY.join(" "));
     good_sh(&folder, &substituted);
-    assert_eq!(
-        fs::read_to_string(folder.0.join("p.csv")).unwrap(),
-        ESTIMATES
-    );
+    assert_eq!(folder.text("p.csv"), ESTIMATES);
 
     let svg = folder.good(&["plot", "r.csv", "--out", "-"]);
     assert!(
@@ -166,11 +162,11 @@ fn dash_and_names_of_standard_output_are_standard_output() {
     );
     let tune = "tune --rate 1000 --seeds 1 --seconds 1 --scenario step --estimator pll \
                 --frictionless --out -";
-    let presets = folder.good(&tune.split_whitespace().collect::<Vec<_>>());
+    let presets = folder.good(tune);
     assert!(presets.starts_with("# host-sim tune") && presets.contains("bandwidth_hz = "));
     assert!(!presets.trim_end().ends_with('-'), "{presets}");
     let shard = "robust --scene off --rate 1000 --seconds 0.05 --devices 0 --shard 1/1 --out o";
-    folder.good(&shard.split_whitespace().collect::<Vec<_>>());
+    folder.good(shard);
     for arguments in [
         "compare --out -",
         "zwidth --out -",
@@ -179,14 +175,14 @@ fn dash_and_names_of_standard_output_are_standard_output() {
         "merge o/shard-1-of-1.jsonl --out -",
         "identify r.csv --report -",
     ] {
-        let error = folder.refused(&arguments.split_whitespace().collect::<Vec<_>>());
+        let error = folder.refused(arguments);
         assert!(error.contains("name a folder"), "{arguments}: {error}");
     }
     for arguments in [
         "identify r.csv --out - --json -",
         "replay r.csv --out - --json -",
     ] {
-        let error = folder.refused(&arguments.split_whitespace().collect::<Vec<_>>());
+        let error = folder.refused(arguments);
         assert!(
             error.contains("--out - and --json -: only one"),
             "{arguments}: {error}"
@@ -196,7 +192,7 @@ fn dash_and_names_of_standard_output_are_standard_output() {
 
 #[test]
 fn every_file_option_says_that_a_dash_is_standard_output() {
-    let folder = Folder::new("dash-help");
+    let folder = Folder::new(HOST_SIM);
     let commands = folder.good(&["--help"]);
     let commands = commands
         .lines()
@@ -228,14 +224,14 @@ fn every_file_option_says_that_a_dash_is_standard_output() {
 
 #[test]
 fn interrupted_write_leaves_the_old_file_alone() {
-    let folder = Folder::new("interrupt");
+    let folder = Folder::new(HOST_SIM);
     let mut text = String::from("t,counts_large\n");
     for k in 0..300_000 {
         text += &format!("{}.{:03},{}\n", k / 1000, k % 1000, k / 7);
     }
     folder.write("r.csv", text);
     folder.write("v.csv", "old");
-    let before = folder.files();
+    let before = folder.names();
     let mut interrupted = 0;
     for signal in ["-INT", "-TERM"].into_iter().cycle().take(40) {
         let mut child = spawn(&folder, &["replay", "r.csv", "--out", "v.csv"]);
@@ -243,7 +239,7 @@ fn interrupted_write_leaves_the_old_file_alone() {
             if let Some(status) = child.try_wait().unwrap() {
                 break Some(status);
             }
-            if folder.files() != before {
+            if folder.names() != before {
                 break None;
             }
             std::thread::sleep(Duration::from_micros(200));
@@ -259,13 +255,13 @@ fn interrupted_write_leaves_the_old_file_alone() {
         );
         let status = child.wait().unwrap();
         assert_eq!(status.signal(), None, "{signal}");
-        assert_eq!(folder.files(), before, "{signal}: {status}");
+        assert_eq!(folder.names(), before, "{signal}: {status}");
         match status.code() {
             Some(130) => interrupted += 1,
             // The signal came after the last byte.
             code => assert_eq!(code, Some(0), "{signal}"),
         }
-        let now = fs::read_to_string(folder.0.join("v.csv")).unwrap();
+        let now = folder.text("v.csv");
         assert_eq!(now == "old", status.code() == Some(130));
         if interrupted == 4 {
             return;
@@ -277,36 +273,40 @@ fn interrupted_write_leaves_the_old_file_alone() {
 
 #[test]
 fn report_folder_holds_the_files_of_one_run() {
-    let folder = Folder::new("one-run");
+    let folder = Folder::new(HOST_SIM);
     let run = |more: &str| {
         let arguments = "compare --out page --seconds 1 --rate 1000 --estimator pll ".to_owned();
         let arguments = arguments + more;
-        folder.good(&arguments.split_whitespace().collect::<Vec<_>>());
+        folder.good(&arguments);
     };
-    let figures = || fs::read_dir(folder.0.join("page/figures")).unwrap().count();
+    let figures = || {
+        fs::read_dir(folder.path().join("page/figures"))
+            .unwrap()
+            .count()
+    };
     run("--closed-loop --scene free-air --scene wall");
-    assert!(folder.0.join("page/closed-loop.csv").exists());
+    assert!(folder.path().join("page/closed-loop.csv").exists());
     folder.write("page/notes.txt", "mine");
     let first = figures();
     run("--scenario hold");
     let second = figures();
     assert!(second < first, "{second} figures after {first}");
-    let page = fs::read_to_string(folder.0.join("page/index.html")).unwrap();
+    let page = folder.text("page/index.html");
     assert_eq!(page.matches("<svg ").count(), second);
-    assert!(!folder.0.join("page/closed-loop.csv").exists());
-    assert!(!folder.0.join("page/closed-loop.json").exists());
-    assert!(folder.0.join("page/notes.txt").exists());
+    assert!(!folder.path().join("page/closed-loop.csv").exists());
+    assert!(!folder.path().join("page/closed-loop.json").exists());
+    assert!(folder.path().join("page/notes.txt").exists());
 
     // A run that fails keeps the old page with its scores.
-    let old = fs::read(folder.0.join("page/scores.csv")).unwrap();
-    fs::create_dir(folder.0.join("page/closed-loop.json")).unwrap();
+    let old = fs::read(folder.path().join("page/scores.csv")).unwrap();
+    fs::create_dir(folder.path().join("page/closed-loop.json")).unwrap();
     let failing = "compare --out page --seconds 1 --rate 1000 --estimator pll --closed-loop \
                    --scene off";
-    let error = folder.refused(&failing.split_whitespace().collect::<Vec<_>>());
+    let error = folder.refused(failing);
     assert!(error.contains("closed-loop.json: cannot write"), "{error}");
-    assert_eq!(fs::read(folder.0.join("page/scores.csv")).unwrap(), old);
     assert_eq!(
-        fs::read_to_string(folder.0.join("page/index.html")).unwrap(),
-        page
+        fs::read(folder.path().join("page/scores.csv")).unwrap(),
+        old
     );
+    assert_eq!(folder.text("page/index.html"), page);
 }

@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;
-use std::process::Command;
 
-use crate::{Folder, json};
+use crate::{Folder, HOST_SIM, json};
 
 /// The shipped recordings.
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real");
@@ -28,14 +27,14 @@ fn fine() -> String {
 
 #[test]
 fn coarse_recording_has_the_scores_of_real_in_replay() {
-    let folder = Folder::new("coarsen");
+    let folder = Folder::new(HOST_SIM);
     let source = format!("{DATA}/tue-q1c-free-motion.csv.gz");
     let coarsen = "--counts-per-rev 1024 --rate 2000 --phase 0.25 --seconds 2 --out c.csv";
     let coarsen: Vec<_> = coarsen.split(' ').collect();
     folder.good(&[&["coarsen", &source], &coarsen[..]].concat());
     folder.write("d.toml", "[large]\ncounts_per_rev = 1024\n");
     let replay = "replay c.csv --device d.toml --json -";
-    let replay = json(&folder.good(&replay.split(' ').collect::<Vec<_>>()));
+    let replay = json(&folder.good(replay));
     let real = "--counts-per-rev 1024 --rate 2000 --phase 0.25 --seconds 2 --json -";
     let real: Vec<_> = real.split(' ').collect();
     let real = json(&folder.good(&[&["real", "--data", DATA], &real[..]].concat()));
@@ -54,11 +53,11 @@ fn coarse_recording_has_the_scores_of_real_in_replay() {
 
 #[test]
 fn errors_at_constant_speed_and_rest_are_those_of_the_definition() {
-    let folder = Folder::new("real");
+    let folder = Folder::new(HOST_SIM);
     folder.write("f.csv", fine());
     folder.write("recordings.toml", LIST);
     let arguments = "real --data . --counts-per-rev 1000 --phase 0.5 --json -";
-    let rows = json(&folder.good(&arguments.split(' ').collect::<Vec<_>>()));
+    let rows = json(&folder.good(arguments));
     let row = rows
         .iter()
         .find(|row| row["estimator"] == "finite-difference")
@@ -82,22 +81,20 @@ fn errors_at_constant_speed_and_rest_are_those_of_the_definition() {
 
 /// Standard output and every file of a run with so many threads.
 fn files_of(threads: &str, kind: &str) -> (Vec<u8>, BTreeMap<PathBuf, Vec<u8>>) {
-    let folder = Folder::new("threads");
-    let arguments = "--seconds 1 --counts-per-rev 256,4096 --rate 500,1000 --out page";
-    let output = Command::new(env!("CARGO_BIN_EXE_host-sim"))
-        .args(["real", "--data", DATA, kind, "-"])
-        .args(arguments.split(' '))
+    let folder = Folder::new(HOST_SIM);
+    let output = folder
+        .command(&["real", "--data", DATA, kind, "-"])
+        .args("--seconds 1 --counts-per-rev 256,4096 --rate 500,1000 --out page".split(' '))
         .env("RAYON_NUM_THREADS", threads)
-        .current_dir(&folder.0)
         .output()
         .unwrap();
     assert!(output.status.success(), "{output:?}");
     let mut files = BTreeMap::new();
     for part in ["page", "page/figures"] {
-        for entry in fs::read_dir(folder.0.join(part)).unwrap() {
+        for entry in fs::read_dir(folder.path().join(part)).unwrap() {
             let path = entry.unwrap().path();
             if path.is_file() {
-                let name = path.strip_prefix(&folder.0).unwrap().to_owned();
+                let name = path.strip_prefix(folder.path()).unwrap().to_owned();
                 files.insert(name, fs::read(&path).unwrap());
             }
         }
@@ -121,7 +118,7 @@ fn output_does_not_depend_on_the_number_of_threads() {
 
 #[test]
 fn estimators_without_their_signals_are_shown_as_dashes() {
-    let folder = Folder::new("dashes");
+    let folder = Folder::new(HOST_SIM);
     folder.write("f.csv", fine());
     folder.write("recordings.toml", LIST);
     let table = folder.good(&["real", "--data", ".", "--details"]);
@@ -139,7 +136,7 @@ fn estimators_without_their_signals_are_shown_as_dashes() {
 
 #[test]
 fn invalid_input_of_real_and_coarsen_is_one_line() {
-    let folder = Folder::new("refused");
+    let folder = Folder::new(HOST_SIM);
     folder.write("f.csv", fine());
     folder.write("broken.csv", "time_s,fine_count\n0,1\nx,2\n");
     let fine = ["--fine-counts-per-rev", "100000", "--out", "c.csv"];

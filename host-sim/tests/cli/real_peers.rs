@@ -1,6 +1,6 @@
 //! `real --peers`: velocity algorithms of other projects.
 
-use crate::{Folder, json};
+use crate::{Folder, HOST_SIM, json};
 
 /// Two recordings of 100 000 counts per revolution, of which the first one chooses constants.
 const LIST: &str = "[[recording]]\nfile = 'chooses.csv'\nwhat = 'x'\nkind = 'fine'\n\
@@ -20,8 +20,8 @@ fn sine(frequency: f64) -> String {
     text
 }
 
-fn recordings(test: &str, judged_hz: f64) -> Folder {
-    let folder = Folder::new(test);
+fn recordings(judged_hz: f64) -> Folder {
+    let folder = Folder::new(HOST_SIM);
     folder.write("chooses.csv", sine(3.0));
     folder.write("judges.csv", sine(judged_hz));
     folder.write("recordings.toml", LIST);
@@ -35,8 +35,8 @@ fn peers_are_rows_and_are_tuned_on_recordings_that_choose_alone() {
         let lines = text.lines().filter(|line| line.contains("-tuned at "));
         lines.map(str::to_owned).collect()
     };
-    let slow = recordings("peers-slow", 3.0);
-    let fast = recordings("peers-fast", 30.0);
+    let slow = recordings(3.0);
+    let fast = recordings(30.0);
     let tuned = of(slow.good(&real));
     assert_eq!(tuned.len(), 7);
     assert!(
@@ -61,7 +61,7 @@ fn peers_are_rows_and_are_tuned_on_recordings_that_choose_alone() {
 
 #[test]
 fn peers_are_only_default_where_no_recording_chooses() {
-    let folder = recordings("peers-default", 3.0);
+    let folder = recordings(3.0);
     folder.write("recordings.toml", LIST.replace("role = 'chooses'\n", ""));
     let text = folder.good(&["real", "--data", ".", "--peers", "--estimator", "pll"]);
     assert!(text.contains("peer:odrive "), "{text}");

@@ -1,12 +1,10 @@
 //! `host-sim recommend`: which estimator to use on a user's device.
 
 use std::fmt::Write as _;
-use std::fs;
-use std::process::Command;
 
 use serde_json::Value;
 
-use crate::{Folder, json};
+use crate::{Folder, HOST_SIM, json};
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
 
@@ -31,7 +29,7 @@ fn recommended<'a>(rows: &'a [Value], why: &str) -> &'a Value {
 
 #[test]
 fn real_motor_gets_estimators_ranked_against_its_truth() {
-    let folder = Folder::new("recommend-real");
+    let folder = Folder::new(HOST_SIM);
     let log = format!("{DATA}/back-and-forth.csv");
     let arguments = ["recommend", &log, "--counts-per-rev", "90"];
     let text = folder.good(&arguments);
@@ -88,7 +86,7 @@ fn real_motor_gets_estimators_ranked_against_its_truth() {
 
 #[test]
 fn log_without_a_truth_is_ranked_against_a_reference() {
-    let folder = Folder::new("recommend-log");
+    let folder = Folder::new(HOST_SIM);
     folder.write("swing.csv", swing());
     let output = folder.run(&["recommend", "swing.csv", "--json", "-"]);
     assert_eq!(output.status.code(), Some(0));
@@ -132,7 +130,7 @@ fn log_without_a_truth_is_ranked_against_a_reference() {
 
 #[test]
 fn device_file_admits_estimators_with_its_constants() {
-    let folder = Folder::new("recommend-device");
+    let folder = Folder::new(HOST_SIM);
     let mut text = String::from("t,counts_large,current\n");
     for (k, line) in swing().lines().skip(1).enumerate() {
         let _ = writeln!(text, "{line},{}", (10.0 * k as f64 * 1e-3).cos());
@@ -165,7 +163,7 @@ fn device_file_admits_estimators_with_its_constants() {
 
 #[test]
 fn several_logs_are_ranked_by_the_geometric_mean() {
-    let folder = Folder::new("recommend-several");
+    let folder = Folder::new(HOST_SIM);
     folder.write("swing.csv", swing());
     let log = format!("{DATA}/logs/own.csv");
     let text = folder.good(&["recommend", "swing.csv", &log]);
@@ -189,7 +187,7 @@ fn several_logs_are_ranked_by_the_geometric_mean() {
 
 #[test]
 fn unsuitable_logs_are_refused() {
-    let folder = Folder::new("recommend-bad");
+    let folder = Folder::new(HOST_SIM);
     let line = folder.refused(&["recommend", "none.csv"]);
     assert!(line.contains("none.csv: cannot read"), "{line}");
     folder.write("no-counts.csv", "t,speed\n0,0\n1e-3,1\n");
@@ -247,12 +245,12 @@ fn unsuitable_logs_are_refused() {
 
 #[test]
 fn page_has_every_section_and_escapes_the_name_of_the_log() {
-    let folder = Folder::new("recommend-page");
+    let folder = Folder::new(HOST_SIM);
     let name = "a<b>&c.csv";
     folder.write(name, swing());
     let arguments = ["recommend", name, "--report", "page", "--json", "-"];
     let rows = json(&folder.good(&arguments));
-    let page = fs::read_to_string(folder.0.join("page/index.html")).unwrap();
+    let page = folder.text("page/index.html");
     assert!(!page.contains("a<b>"));
     let escaped = "a&lt;b&gt;&amp;c.csv";
     let blocks: Vec<_> = page.split("<pre class=\"scroll\">").collect();
@@ -272,7 +270,7 @@ fn page_has_every_section_and_escapes_the_name_of_the_log() {
     assert_eq!(page.matches("<figure>").count(), 2);
     let velocity = format!("{escaped}: the second with the largest errors");
     assert!(lines.contains(&velocity), "{lines}");
-    assert!(folder.0.join("page/figures/02.svg").is_file());
+    assert!(folder.path().join("page/figures/02.svg").is_file());
     for row in rows {
         let estimator = row["estimator"].as_str().unwrap();
         assert!(table.contains(&format!("\n  {estimator} ")), "{estimator}");
@@ -281,14 +279,13 @@ fn page_has_every_section_and_escapes_the_name_of_the_log() {
 
 #[test]
 fn bytes_do_not_depend_on_the_number_of_threads() {
-    let folder = Folder::new("recommend-threads");
+    let folder = Folder::new(HOST_SIM);
     folder.write("swing.csv", swing());
     let log = format!("{DATA}/back-and-forth.csv");
     let run = |threads: &str| {
-        let output = Command::new(env!("CARGO_BIN_EXE_host-sim"))
-            .args(["recommend", "swing.csv", &log, "--json", "-"])
+        let output = folder
+            .command(&["recommend", "swing.csv", &log, "--json", "-"])
             .env("RAYON_NUM_THREADS", threads)
-            .current_dir(&folder.0)
             .output()
             .unwrap();
         assert_eq!(output.status.code(), Some(0));

@@ -1,62 +1,8 @@
 //! `record` and `plot` as somebody types them.
 
 use std::fmt::Write as _;
-use std::fs;
-use std::io::Write as _;
-use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
 
-/// A folder of its own for each test, gone afterwards.
-struct Folder(PathBuf);
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
-impl Folder {
-    fn new(test: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("limpid-{test}-{}", std::process::id()));
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn run(&self, arguments: &[&str], input: &[u8]) -> Output {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_host-sim"))
-            .args(arguments)
-            .current_dir(&self.0)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        // One that refuses its arguments does not read.
-        let _ = child.stdin.take().unwrap().write_all(input);
-        child.wait_with_output().unwrap()
-    }
-
-    /// Standard output and error of a run that ended well.
-    fn good(&self, arguments: &[&str], input: &[u8]) -> [String; 2] {
-        let output = self.run(arguments, input);
-        let texts = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
-        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {texts:?}");
-        texts
-    }
-
-    /// The one line of a run that was refused and left no file.
-    fn refused(&self, arguments: &[&str], input: &[u8]) -> String {
-        let files = || fs::read_dir(&self.0).unwrap().count();
-        let before = files();
-        let output = self.run(arguments, input);
-        let errors = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {errors}");
-        assert_eq!(errors.lines().count(), 1, "{arguments:?}: {errors}");
-        assert!(errors.starts_with("error: ") && output.stdout.is_empty());
-        assert_eq!(files(), before, "{arguments:?}");
-        errors
-    }
-}
+use crate::{Folder, HOST_SIM};
 
 /// A log as `cargo firmware` prints it: 1 rad/s, over the wrap of the counts, in steps of `every`.
 fn log(frames: impl Iterator<Item = u32>, boots: bool) -> String {
@@ -82,9 +28,9 @@ fn log(frames: impl Iterator<Item = u32>, boots: bool) -> String {
 
 #[test]
 fn log_is_converted_replayed_and_drawn() {
-    let folder = Folder::new("record");
+    let folder = Folder::new(HOST_SIM);
     let log = log((0..200).filter(|k| !(50..60).contains(k)), true) + "frame seq=200 tick=2000 la";
-    let [_, said] = folder.good(&["record", "--out", "run.csv"], log.as_bytes());
+    let (_, said) = folder.good_on(&["record", "--out", "run.csv"], log.as_bytes());
     assert!(
         said.contains("190 frames recorded, 10 missing at 1 place"),
         "{said}"
@@ -93,24 +39,21 @@ fn log_is_converted_replayed_and_drawn() {
         said.contains("1 piece of the stream not readable, the first: incomplete line"),
         "{said}"
     );
-    fs::write(folder.0.join("run.log"), &log).unwrap();
-    let [printed, _] = folder.good(&["record", "run.log"], b"");
-    assert_eq!(
-        printed,
-        fs::read_to_string(folder.0.join("run.csv")).unwrap()
-    );
+    folder.write("run.log", &log);
+    let (printed, _) = folder.good_on(&["record", "run.log"], b"");
+    assert_eq!(printed, folder.text("run.csv"));
     let replay = ["replay", "run.csv", "--estimator"];
     let uneven = "t is uneven in 0.53 % of steps (1 of 189), by up to 10000 us";
-    let refused = folder.refused(&[&replay[..], &["pll"]].concat(), b"");
+    let refused = folder.refused(&[&replay[..], &["pll"]].concat());
     assert!(
         refused.contains(uneven) && refused.contains("add --resample 1000"),
         "{refused}"
     );
-    let [estimates, said] = folder.good(&[&replay[..], &["low-pass"]].concat(), b"");
+    let (estimates, said) = folder.good_on(&[&replay[..], &["low-pass"]].concat(), b"");
     assert_eq!(estimates.lines().count(), 191);
     assert!(said.contains(uneven), "{said}");
     let even = [&replay[..], &["pll", "--resample", "1000"]].concat();
-    let [estimates, said] = folder.good(&even, b"");
+    let (estimates, said) = folder.good_on(&even, b"");
     // The ten missing rows are interpolated.
     assert_eq!(estimates.lines().count(), 201);
     assert!(said.contains("200 rows at 1000 Hz"), "{said}");
@@ -120,9 +63,9 @@ fn log_is_converted_replayed_and_drawn() {
     let mean = velocities.map(Result::unwrap).sum::<f64>() / 100.0;
     assert!((mean - 1.0).abs() < 0.1, "{mean} rad/s");
 
-    let [path, _] = folder.good(&["plot", "run.csv"], b"");
+    let (path, _) = folder.good_on(&["plot", "run.csv"], b"");
     assert_eq!(path, "run.svg\n");
-    let svg = fs::read_to_string(folder.0.join("run.svg")).unwrap();
+    let svg = folder.text("run.svg");
     assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"));
     for word in [
         "angle, rad",
@@ -139,7 +82,7 @@ fn log_is_converted_replayed_and_drawn() {
 /// Stamps and what the board learned go from the log to the recording, and replay tells of both.
 #[test]
 fn side_lines_are_columns_and_health_lines() {
-    let folder = Folder::new("record-beside");
+    let folder = Folder::new(HOST_SIM);
     let mut text = String::new();
     for (k, line) in log(0..200, true).lines().enumerate() {
         text += line;
@@ -151,8 +94,8 @@ fn side_lines_are_columns_and_health_lines() {
     }
     text += "learned seq=199 damping=-0.25 friction=0 torque_constant=0\n";
     let text = text.replace("torque=0.01", "sl=0.5 estimator=0 torque=0.01");
-    folder.good(&["record", "--out", "run.csv"], text.as_bytes());
-    let csv = fs::read_to_string(folder.0.join("run.csv")).unwrap();
+    folder.good_on(&["record", "--out", "run.csv"], text.as_bytes());
+    let csv = folder.text("run.csv");
     let head = "sigma_large,edge_tick,edge_bound,learned_damping,learned_friction,\
         learned_torque_constant";
     assert!(csv.lines().next().unwrap().ends_with(head), "{csv}");
@@ -163,14 +106,14 @@ fn side_lines_are_columns_and_health_lines() {
             .ends_with(",0.5,16711800,29,-0.25,0,0"),
         "{csv}"
     );
-    let [_, said] = folder.good(&["replay", "run.csv", "--estimator", "observer-edge"], b"");
+    let (_, said) = folder.good_on(&["replay", "run.csv", "--estimator", "observer-edge"], b"");
     assert_eq!(said.matches("run.csv: health: ").count(), 4, "{said}");
     let damping =
         "health: damping b, N.m.s/rad: learned 7.2000e-4, identified 9.6000e-4, -25.0 %: changed";
     assert!(said.contains(damping), "{said}");
     // A device with the learned damping has not changed.
     let device = "[coupler]\ndamping_nms_per_rad = 0.72e-3\n";
-    fs::write(folder.0.join("found.toml"), device).unwrap();
+    folder.write("found.toml", device);
     let found = [
         "replay",
         "run.csv",
@@ -179,7 +122,7 @@ fn side_lines_are_columns_and_health_lines() {
         "--device",
         "found.toml",
     ];
-    let [_, said] = folder.good(&found, b"");
+    let (_, said) = folder.good_on(&found, b"");
     assert!(
         said.contains("+0.0 %") && !said.contains("changed"),
         "{said}"
@@ -189,14 +132,14 @@ fn side_lines_are_columns_and_health_lines() {
         .replace("sigma_large", "x")
         .replace("learned_", "y_")
         .replace(",2,0,", ",run,none,");
-    fs::write(folder.0.join("foreign.csv"), foreign).unwrap();
-    let [_, said] = folder.good(&["replay", "foreign.csv", "--estimator", "pll"], b"");
+    folder.write("foreign.csv", foreign);
+    let (_, said) = folder.good_on(&["replay", "foreign.csv", "--estimator", "pll"], b"");
     assert!(!said.contains("health"), "{said}");
 }
 
 #[test]
 fn measured_currents_are_columns_that_replay_and_plot_use_and_tell() {
-    let folder = Folder::new("record-measured");
+    let folder = Folder::new(HOST_SIM);
     let mut text = String::new();
     for (k, line) in log(0..200, true).lines().enumerate() {
         writeln!(text, "{line}").unwrap();
@@ -204,14 +147,14 @@ fn measured_currents_are_columns_that_replay_and_plot_use_and_tell() {
             writeln!(text, "measured seq={seq} large=0.25 small=-0.5").unwrap();
         }
     }
-    folder.good(&["record", "--out", "run.csv"], text.as_bytes());
-    let csv = fs::read_to_string(folder.0.join("run.csv")).unwrap();
+    folder.good_on(&["record", "--out", "run.csv"], text.as_bytes());
+    let csv = folder.text("run.csv");
     assert!(csv.lines().last().unwrap().ends_with(",0.25,-0.5"), "{csv}");
     for command in [
         &["replay", "run.csv", "--estimator", "pll"][..],
         &["plot", "run.csv"],
     ] {
-        let [_, said] = folder.good(command, b"");
+        let (_, said) = folder.good_on(command, b"");
         for (measured, command) in [
             ("current_measured", "current"),
             ("current_small_measured", "current_small"),
@@ -226,7 +169,7 @@ fn measured_currents_are_columns_that_replay_and_plot_use_and_tell() {
 
 #[test]
 fn streams_that_cannot_be_recorded_or_drawn_are_refused_with_one_line() {
-    let folder = Folder::new("record-refused");
+    let folder = Folder::new(HOST_SIM);
     let whole = log(0..3, true);
     let middle = log(7..20, false);
     let one = log(0..1, true);
@@ -251,13 +194,13 @@ fn streams_that_cannot_be_recorded_or_drawn_are_refused_with_one_line() {
     ];
     for (arguments, input, said) in cases {
         let arguments = [&["record", "--out", "run.csv"], arguments].concat();
-        let error = folder.refused(&arguments, input.as_bytes());
+        let error = folder.refused_on(&arguments, input.as_bytes());
         assert!(error.contains(said), "{arguments:?}: {error}");
     }
-    let [text, _] = folder.good(&["record", "--rate", "10000"], middle.as_bytes());
+    let (text, _) = folder.good_on(&["record", "--rate", "10000"], middle.as_bytes());
     assert_eq!(text.lines().count(), 14);
 
-    fs::write(folder.0.join("r.csv"), &text).unwrap();
+    folder.write("r.csv", &text);
     for (arguments, said) in [
         (&["nowhere.csv"][..], "nowhere.csv: cannot read"),
         (
@@ -267,11 +210,11 @@ fn streams_that_cannot_be_recorded_or_drawn_are_refused_with_one_line() {
         (&["r.csv", "--estimator", "x"], "no estimator 'x'"),
         (&["r.csv", "--out", "r.csv/x.svg"], "cannot write"),
     ] {
-        let error = folder.refused(&[&["plot"], arguments].concat(), b"");
+        let error = folder.refused(&[&["plot"], arguments].concat());
         assert!(error.contains(said), "{arguments:?}: {error}");
     }
-    fs::write(folder.0.join("r.csv"), text.replace("0.01,1.1", "wet,1.1")).unwrap();
-    let error = folder.refused(&["plot", "r.csv"], b"");
+    folder.write("r.csv", text.replace("0.01,1.1", "wet,1.1"));
+    let error = folder.refused(&["plot", "r.csv"]);
     assert!(
         error.contains("r.csv: line 2: column torque: 'wet' is not a number"),
         "{error}"

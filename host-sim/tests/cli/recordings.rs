@@ -1,8 +1,6 @@
 //! Recordings as other tools write them, and what replay and plot say about them.
 
-use std::process::{Command, Stdio};
-
-use crate::{Folder, json};
+use crate::{Folder, HOST_SIM, json};
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
 
@@ -17,7 +15,7 @@ fn notes(folder: &Folder, arguments: &str) -> String {
 
 #[test]
 fn absolute_encoder_is_unwrapped_with_a_note() {
-    let folder = Folder::new("absolute");
+    let folder = Folder::new(HOST_SIM);
     let mut text = String::from("t,counts_large,true_omega\n");
     let per_count = std::f64::consts::TAU / 4096.0;
     for k in 0..2000_u32 {
@@ -58,7 +56,7 @@ fn absolute_encoder_is_unwrapped_with_a_note() {
 
 #[test]
 fn presets_for_another_encoder_or_rate_are_reported() {
-    let folder = Folder::new("far");
+    let folder = Folder::new(HOST_SIM);
     let replay = format!("replay {DATA}/back-and-forth.csv --device {DATA}/hall-90.toml");
     let estimators = "--estimator pll --estimator finite-difference";
     let said = notes(&folder, &format!("{replay} {estimators}"));
@@ -108,11 +106,11 @@ fn presets_for_another_encoder_or_rate_are_reported() {
 
 #[test]
 fn tuned_presets_name_their_encoder() {
-    let folder = Folder::new("tuned-for");
+    let folder = Folder::new(HOST_SIM);
     folder.write("mine.toml", "large.counts_per_rev = 512\n");
     let tune = "tune --rate 1000 --seeds 1 --seconds 1 --scenario step --estimator pll --device \
                 mine.toml --out mine-presets.toml";
-    folder.good(&tune.split_whitespace().collect::<Vec<_>>());
+    folder.good(tune);
     folder.write("r.csv", "t,counts_large\n0,1\n0.001,2\n");
     let replay = "replay r.csv --estimator pll --presets mine-presets.toml";
     assert!(notes(&folder, replay).contains("for 512 counts/rev at 1000 Hz are scaled to 4096"));
@@ -122,21 +120,11 @@ fn tuned_presets_name_their_encoder() {
 
 #[test]
 fn recordings_come_from_standard_input() {
-    let folder = Folder::new("stdin");
+    let folder = Folder::new(HOST_SIM);
     let recording = "t,counts_large\n0,1\n0.001,2\n0.002,3\n";
     folder.write("r.csv", recording);
     let from_stdin = |arguments: &[&str], text: &str| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_host-sim"));
-        command.args(arguments).current_dir(&folder.0);
-        command
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped());
-        let mut child = command.spawn().unwrap();
-        let mut input = child.stdin.take().unwrap();
-        std::io::Write::write_all(&mut input, text.as_bytes()).unwrap();
-        drop(input);
-        let output = child.wait_with_output().unwrap();
+        let output = folder.run_on(arguments, text.as_bytes());
         let texts = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
         (output.status.code(), texts)
     };
@@ -156,12 +144,12 @@ fn recordings_come_from_standard_input() {
         "error: standard input: line 2: column counts_large: 'x' is not a number; remove the line if it has \
          the units, and state them with --column\n"
     );
-    assert_eq!(folder.files().len(), 1);
+    assert_eq!(folder.names().len(), 1);
 }
 
 #[test]
 fn scores_of_a_coupler_need_a_recording_with_both_encoders() {
-    let folder = Folder::new("columns");
+    let folder = Folder::new(HOST_SIM);
     let recording = |small: bool| {
         let mut text = String::from(if small {
             "t,counts_large,true_omega,counts_small\n"

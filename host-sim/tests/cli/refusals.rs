@@ -1,10 +1,10 @@
 //! Words that no command knows.
 
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
 #[test]
 fn invalid_arguments_are_refused_with_a_remedy() {
-    let folder = Folder::new("words");
+    let folder = Folder::new(HOST_SIM);
     folder.write("device.toml", "[large]\ninertia = 1\n");
     folder.write("negative.toml", "[large]\ninertia_kg_m2 = -1\n");
     folder.write("file", "");

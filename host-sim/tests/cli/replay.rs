@@ -2,15 +2,15 @@
 
 use std::fs;
 use std::io::Write as _;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
-use crate::{Folder, json};
+use crate::{Folder, HOST_SIM, json};
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
 
 #[test]
 fn recording_of_a_real_motor_is_replayed() {
-    let folder = Folder::new("replay");
+    let folder = Folder::new(HOST_SIM);
     let recording = format!("{DATA}/back-and-forth.csv");
     let device = format!("{DATA}/hall-90.toml");
     let arguments = [
@@ -34,7 +34,7 @@ fn recording_of_a_real_motor_is_replayed() {
         "{notes}"
     );
 
-    let mut reader = csv::Reader::from_path(folder.0.join("v.csv")).unwrap();
+    let mut reader = csv::Reader::from_path(folder.path().join("v.csv")).unwrap();
     let header = reader.headers().unwrap().clone();
     assert_eq!(&header[0], "t");
     let foaw = header
@@ -55,7 +55,7 @@ fn recording_of_a_real_motor_is_replayed() {
         );
     }
 
-    let scores = json(&fs::read_to_string(folder.0.join("v.json")).unwrap());
+    let scores = json(&folder.text("v.json"));
     let rms = |name: &str| {
         let row = scores.iter().find(|row| row["estimator"] == name).unwrap();
         assert_eq!(row["scenario"], "back-and-forth.csv");
@@ -69,7 +69,7 @@ fn recording_of_a_real_motor_is_replayed() {
 
 #[test]
 fn invalid_recordings_are_refused_by_file_line_and_column() {
-    let folder = Folder::new("bad");
+    let folder = Folder::new(HOST_SIM);
     for (name, text, said) in [
         ("empty.csv", &b""[..], "empty.csv: line 1: no column t"),
         (
@@ -135,7 +135,7 @@ fn invalid_recordings_are_refused_by_file_line_and_column() {
 
 #[test]
 fn error_at_the_end_of_a_hundred_megabytes_is_reported_with_its_line() {
-    let folder = Folder::new("large");
+    let folder = Folder::new(HOST_SIM);
     let mut text = b"t,counts_large\n".to_vec();
     let mut row = 0_u32;
     while text.len() < 100_000_000 {
@@ -161,16 +161,14 @@ fn error_at_the_end_of_a_hundred_megabytes_is_reported_with_its_line() {
 
 #[test]
 fn closed_standard_error_does_not_end_the_command() {
-    let folder = Folder::new("notes");
+    let folder = Folder::new(HOST_SIM);
     folder.write("r.csv", "t,counts_large\n0,1\n0.001,2\n");
-    let mut replay = Command::new(env!("CARGO_BIN_EXE_host-sim"));
-    replay.args(["replay", "r.csv", "--out", "v.csv"]);
-    replay.current_dir(&folder.0);
+    let mut replay = folder.command("replay r.csv --out v.csv");
     let (reader, writer) = std::io::pipe().unwrap();
     drop(reader);
     let status = replay.stdout(Stdio::null()).stderr(writer).status();
     assert_eq!(status.unwrap().code(), Some(0));
-    assert!(folder.files().contains("v.csv"));
+    assert!(folder.names().contains("v.csv"));
 }
 
 /// Rows of a shaft that turns back and forth, at 1 kHz, with its true velocity.
@@ -189,13 +187,12 @@ fn long_recording(rows: u32) -> Vec<u8> {
 #[cfg(target_os = "linux")]
 #[test]
 fn memory_does_not_grow_with_the_rows() {
-    let folder = Folder::new("memory");
+    let folder = Folder::new(HOST_SIM);
     let peak_kb = |rows: u32| {
         folder.write("long.csv", long_recording(rows));
-        let mut replay = Command::new(env!("CARGO_BIN_EXE_host-sim"))
-            .args(["replay", "long.csv", "--out", "v.csv", "--json", "v.json"])
+        let mut replay = folder
+            .command("replay long.csv --out v.csv --json v.json")
             .args(["--estimator", "finite-difference", "--estimator", "pll"])
-            .current_dir(&folder.0)
             .stdout(Stdio::null())
             .spawn()
             .unwrap();
@@ -209,7 +206,7 @@ fn memory_does_not_grow_with_the_rows() {
             std::thread::sleep(std::time::Duration::from_millis(1));
         }
         assert!(replay.wait().unwrap().success());
-        let written = fs::read_to_string(folder.0.join("v.csv")).unwrap();
+        let written = folder.text("v.csv");
         assert_eq!(written.lines().count(), 1 + rows as usize);
         f64::from(peak)
     };
@@ -234,7 +231,7 @@ fn at_rate(rate_hz: f64) -> String {
 
 #[test]
 fn estimators_that_are_not_made_for_the_rate_are_left_out() {
-    let folder = Folder::new("rates");
+    let folder = Folder::new(HOST_SIM);
     folder.write("slow.csv", at_rate(50.0));
     folder.write("fast.csv", at_rate(2e6));
     for (name, rate, nearest) in [("slow.csv", "50", "100"), ("fast.csv", "2000000", "100000")] {
@@ -244,7 +241,7 @@ fn estimators_that_are_not_made_for_the_rate_are_left_out() {
         let notes = notes.split_whitespace().collect::<Vec<_>>().join(" ");
         let said = format!("{name}: {rate} rows/s; estimators that need 100 to 100000 left out:");
         assert!(notes.contains(&said), "{notes}");
-        let header = fs::read_to_string(folder.0.join("v.csv")).unwrap();
+        let header = folder.text("v.csv");
         let header = header.lines().next().unwrap();
         assert!(
             header.contains(",pll,") && !header.contains(",imm,"),

@@ -1,6 +1,6 @@
 //! `host-sim replay` of recordings without a true velocity.
 
-use crate::{Folder, json};
+use crate::{Folder, HOST_SIM, json};
 
 /// Counts of an encoder with 4096 counts/rev at 1 kHz on a shaft whose velocity is
 /// `20 sin(10 t)` rad/s, with the column `true_omega` if asked.
@@ -30,7 +30,7 @@ fn words(text: &str) -> String {
 
 #[test]
 fn recording_without_a_truth_is_scored_against_a_reference() {
-    let folder = Folder::new("reference");
+    let folder = Folder::new(HOST_SIM);
     folder.write("truth.csv", sine(true));
     folder.write("plain.csv", sine(false));
     let estimators = ["--estimator", "finite-difference", "--estimator", "imm"];
@@ -77,7 +77,7 @@ fn recording_without_a_truth_is_scored_against_a_reference() {
         notes.contains("no column true_omega; scores are against a reference"),
         "{notes}"
     );
-    let mut reader = csv::Reader::from_path(folder.0.join("v.csv")).unwrap();
+    let mut reader = csv::Reader::from_path(folder.path().join("v.csv")).unwrap();
     let header: Vec<_> = reader
         .headers()
         .unwrap()
@@ -121,7 +121,7 @@ fn recording_without_a_truth_is_scored_against_a_reference() {
 
 #[test]
 fn gap_and_bad_count_leave_the_scores_of_other_rows() {
-    let folder = Folder::new("reference-faults");
+    let folder = Folder::new(HOST_SIM);
     let text = sine(false);
     let lines: Vec<_> = text.lines().collect();
     let gap = [&lines[..1000], &lines[2000..]].concat().join("\n");
@@ -141,7 +141,7 @@ fn gap_and_bad_count_leave_the_scores_of_other_rows() {
 
 #[test]
 fn log_without_a_reference_has_velocities_and_a_note() {
-    let folder = Folder::new("no-reference");
+    let folder = Folder::new(HOST_SIM);
     folder.write("short.csv", "t,counts_large\n0,0\n1e-3,1\n2e-3,1\n");
     for more in [&[][..], &["--reference", "scores"]] {
         let arguments = [
@@ -158,7 +158,7 @@ fn log_without_a_reference_has_velocities_and_a_note() {
         let said = "short.csv: no scores: 3 rows; a reference without true_omega needs at least 100; \
                     --reference off computes none";
         assert!(notes.contains(said), "{notes}");
-        let written = std::fs::read_to_string(folder.0.join("v.csv")).unwrap();
+        let written = folder.text("v.csv");
         assert_eq!(written.lines().count(), 4);
     }
 }

@@ -2,18 +2,17 @@
 
 use std::fs;
 
+use crate::HOST_SIM;
 use crate::common::{Folder, files};
-
-const HOST_SIM: &str = env!("CARGO_BIN_EXE_host-sim");
 
 const SHORT: &str = "robust --scene hold --scene wall --rate 1000 --seconds 0.2 --devices 20";
 
 #[test]
 fn single_device_is_repeated_with_only() {
-    let folder = Folder::new("robust-only", HOST_SIM);
+    let folder = Folder::new(HOST_SIM);
     let (all, _) = folder.ends(0, &format!("{SHORT} --json -"));
     assert!(
-        files(&folder.path).is_empty(),
+        files(folder.path()).is_empty(),
         "no report unless it is asked for"
     );
     let all: Vec<serde_json::Value> = serde_json::from_str(&all).unwrap();
@@ -31,10 +30,10 @@ fn single_device_is_repeated_with_only() {
 
 #[test]
 fn violation_has_exit_status_1_and_the_command_that_repeats_it() {
-    let folder = Folder::new("robust-violated", HOST_SIM);
+    let folder = Folder::new(HOST_SIM);
     // A handle so heavy that a hand that moves it feels more than the limit.
     fs::write(
-        folder.path.join("heavy.toml"),
+        folder.path().join("heavy.toml"),
         "[hand]\nstiffness_nm_per_rad = 200\ndamping_nms_per_rad = 1\n\
          [small]\ninertia_kg_m2 = 1e-2\n",
     )
@@ -48,7 +47,7 @@ fn violation_has_exit_status_1_and_the_command_that_repeats_it() {
         "{said}"
     );
     assert!(said.contains("--only nominal"), "{said}");
-    assert!(folder.path.join("robust.csv").exists());
+    assert!(folder.path().join("robust.csv").exists());
     folder.ends(1, &format!("{run} --only nominal"));
     // The file of a shard is complete, and the merged run has the verdict.
     folder.ends(0, &format!("{run} --shard 1/1 --out ."));
@@ -57,7 +56,7 @@ fn violation_has_exit_status_1_and_the_command_that_repeats_it() {
 
 #[test]
 fn invalid_arguments_are_refused_with_a_remedy() {
-    let folder = Folder::new("robust-words", HOST_SIM);
+    let folder = Folder::new(HOST_SIM);
     for (arguments, said) in [
         (
             "robust --scene step",

@@ -5,14 +5,13 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;
 
+use crate::HOST_SIM;
 use crate::common::{Folder, files};
-
-const HOST_SIM: &str = env!("CARGO_BIN_EXE_host-sim");
 
 /// Standard output and files of `arguments`, which write to `here`; the outputs are removed.
 fn outputs(folder: &Folder, arguments: &str) -> (String, BTreeMap<PathBuf, Vec<u8>>) {
     let out = folder.good(arguments);
-    let here = folder.path.join("here");
+    let here = folder.path().join("here");
     let files = files(&here);
     fs::remove_dir_all(here).unwrap();
     (out, files)
@@ -28,7 +27,7 @@ fn merged_equals_whole(
 ) {
     let whole = outputs(folder, &format!("{command} {options}"));
     assert!(
-        whole.1.contains_key(&folder.path.join(file)),
+        whole.1.contains_key(&folder.path().join(file)),
         "{:?}",
         whole.1.keys()
     );
@@ -58,7 +57,7 @@ const ROBUST: &str = "robust --scene hold --scene wall --rate 1000 --seconds 0.2
 #[test]
 fn merged_shards_of_robust_equal_a_single_run() {
     let outputs = "--out here/page --json here/rows.json";
-    let folder = Folder::new("robust", HOST_SIM);
+    let folder = Folder::new(HOST_SIM);
     let file = "here/page/robust.csv";
     merged_equals_whole(&folder, ROBUST, outputs, file, &[1, 3, 120]);
 }
@@ -69,7 +68,7 @@ fn merged_shards_of_sensitivity_equal_a_single_run() {
                    --seconds 0.5 --estimator adaptive --estimator pll --set pll.bandwidth_hz=33.3";
     let outputs = "--json here/rows.json --out here/page";
     let file = "here/page/figures/01.svg";
-    let folder = Folder::new("sensitivity", HOST_SIM);
+    let folder = Folder::new(HOST_SIM);
     merged_equals_whole(&folder, command, outputs, file, &[3, 9]);
 }
 
@@ -78,7 +77,7 @@ fn merged_shards_of_zwidth_equal_a_single_run() {
     let command =
         "zwidth --estimator pll --estimator kalman-motor --rate 1000 --lines 256 --lines 1024";
     let file = "here/page/zwidth.csv";
-    let folder = Folder::new("zwidth", HOST_SIM);
+    let folder = Folder::new(HOST_SIM);
     merged_equals_whole(&folder, command, "--out here/page", file, &[3, 5]);
 }
 
@@ -88,7 +87,7 @@ fn merged_shards_of_zwidth_equal_a_single_run() {
 fn merged_shards_of_tune_equal_a_single_run() {
     let command = "tune --estimator pll --estimator low-pass --estimator kalman-motor-steady --estimator \
                    adaptive-edge --rate 1000 --rate 2000 --seconds 0.5 --seeds 1 --scenario texture";
-    let folder = Folder::new("tune", HOST_SIM);
+    let folder = Folder::new(HOST_SIM);
     let file = "here/p.toml";
     merged_equals_whole(&folder, command, "--out here/p.toml", file, &[2, 5, 17]);
 }
@@ -99,7 +98,7 @@ const SIMULATE: &str = "simulate --scenario track --rate 1000 --seconds 6 --out 
 /// estimator is left out.
 #[test]
 fn merged_shards_of_tune_on_recordings_equal_a_single_run() {
-    let folder = Folder::new("tune-logs", HOST_SIM);
+    let folder = Folder::new(HOST_SIM);
     folder.good(SIMULATE);
     let counts = folder.text("log.csv");
     let counts = counts.lines().filter(|line| !line.starts_with('#'));
@@ -107,7 +106,7 @@ fn merged_shards_of_tune_on_recordings_equal_a_single_run() {
         .map(|line| line.split(',').take(2).collect::<Vec<_>>().join(",") + "\n")
         .collect();
     assert!(counts.starts_with("t,counts_large\n"), "{counts}");
-    fs::write(folder.path.join("counts.csv"), counts).unwrap();
+    fs::write(folder.path().join("counts.csv"), counts).unwrap();
     let command = "tune log.csv counts.csv --estimator pll --estimator kalman-motor --estimator low-pass \
                    --estimator foaw-best-fit";
     let file = "here/p.toml";
@@ -129,7 +128,7 @@ fn merged_shards_of_tune_on_recordings_equal_a_single_run() {
 
 #[test]
 fn shards_of_another_recording_are_refused() {
-    let folder = Folder::new("tune-refused", HOST_SIM);
+    let folder = Folder::new(HOST_SIM);
     folder.good(SIMULATE);
     let tune = "tune log.csv --estimator pll --estimator low-pass";
     folder.good(&format!("{tune} --shard 1/2 --out parts"));
@@ -140,7 +139,7 @@ fn shards_of_another_recording_are_refused() {
     let (count, others) = fields.split_once(',').unwrap();
     let count: i64 = count.parse().unwrap();
     let changed = format!("{head}\n{t},{},{others}\n", count + 1);
-    fs::write(folder.path.join("log.csv"), changed).unwrap();
+    fs::write(folder.path().join("log.csv"), changed).unwrap();
     folder.good(&format!("{tune} --shard 2/2 --out parts"));
     let both = "parts/shard-1-of-2.jsonl parts/shard-2-of-2.jsonl";
     let line = folder.refused(&format!("merge {both} --out merged.toml"));
@@ -168,7 +167,7 @@ fn shards_of_another_recording_are_refused() {
 /// Without an option for outputs the merged run writes where the command does.
 #[test]
 fn default_folder_is_that_of_the_command() {
-    let folder = Folder::new("default", HOST_SIM);
+    let folder = Folder::new(HOST_SIM);
     let command = "sensitivity --scenario step --seconds 0.5 --estimator pll";
     let printed = folder.good(&format!("{command} --shard 1/1"));
     assert_eq!(printed, "target/sensitivity/shard-1-of-1.jsonl\n");
@@ -181,7 +180,7 @@ fn default_folder_is_that_of_the_command() {
 
 #[test]
 fn shards_that_are_no_run_are_refused_by_name() {
-    let folder = Folder::new("refused", HOST_SIM);
+    let folder = Folder::new(HOST_SIM);
     let tiny = "robust --scene off --rate 1000 --seconds 0.05 --devices 3";
     for k in 1..=4 {
         folder.good(&format!("{tiny} --out . --shard {k}/4"));
@@ -233,9 +232,9 @@ fn shards_that_are_no_run_are_refused_by_name() {
     let lines: Vec<_> = text.split_inclusive('\n').collect();
     assert_eq!(lines.len(), 2 + 8, "{text}");
     let with = |name: &str, text: &str, said: &str| {
-        fs::write(folder.path.join(name), text).unwrap();
+        fs::write(folder.path().join(name), text).unwrap();
         merge(&format!("1 3 4 {name}"), &format!("{name}: {said}"));
-        fs::remove_file(folder.path.join(name)).unwrap();
+        fs::remove_file(folder.path().join(name)).unwrap();
     };
     let changed = "changed after it was written: the checksum is ";
     with("empty.jsonl", "", "line 1: not a shard");

@@ -1,11 +1,10 @@
 //! Tables on standard output, and the files of the same scores.
 
 use std::collections::BTreeSet;
-use std::fs;
 
 use scoring::score::Score;
 
-use crate::{Folder, json};
+use crate::{Folder, HOST_SIM, json};
 
 /// Two estimators at 1 kHz, long enough for a score of the learned damping.
 const RUN: [&str; 10] = [
@@ -32,7 +31,7 @@ fn cells<'a>(text: &'a str, estimator: &str) -> Vec<&'a str> {
 
 #[test]
 fn every_score_can_be_requested_and_has_a_number() {
-    let folder = Folder::new("scores");
+    let folder = Folder::new(HOST_SIM);
     for field in Score::FIELDS {
         for scenarios in [&["step"][..], &["step", "track", "stochastic"]] {
             let mut arguments = RUN.to_vec();
@@ -60,7 +59,7 @@ fn every_score_can_be_requested_and_has_a_number() {
 
 #[test]
 fn help_names_every_score() {
-    let folder = Folder::new("score-help");
+    let folder = Folder::new(HOST_SIM);
     let help = folder.good(&["compare", "--help"]);
     let words: BTreeSet<_> = help
         .split(|c: char| !c.is_alphanumeric() && c != '_')
@@ -76,11 +75,11 @@ fn help_names_every_score() {
 
 #[test]
 fn csv_and_json_have_the_same_fields() {
-    let folder = Folder::new("fields");
+    let folder = Folder::new(HOST_SIM);
     let run = ["--rate", "1000", "--seconds", "1", "--estimator", "pll"];
     let same = |name: &str, nested: &str, arguments: &[&str]| {
         folder.good(&[arguments, &["--out", "out"]].concat());
-        let read = |end| fs::read_to_string(folder.0.join(format!("out/{name}.{end}"))).unwrap();
+        let read = |end| folder.text(&format!("out/{name}.{end}"));
         let csv = read("csv");
         let header: BTreeSet<_> = csv.lines().next().unwrap().split(',').collect();
         let rows = json(&read("json"));
@@ -114,7 +113,7 @@ fn csv_and_json_have_the_same_fields() {
 
 #[test]
 fn no_line_of_a_table_is_wider_than_80_characters() {
-    let folder = Folder::new("width");
+    let folder = Folder::new(HOST_SIM);
     let short = ["--rate", "1000", "--seconds", "0.4"];
     let two = ["--estimator", "pll", "--estimator", "kalman-triple-steady"];
     let all: [&[&str]; 9] = [

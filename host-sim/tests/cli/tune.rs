@@ -1,8 +1,6 @@
 //! `host-sim tune`.
 
-use std::fs;
-
-use crate::{Folder, SHORT, json};
+use crate::{Folder, HOST_SIM, SHORT, json};
 
 /// Tunes one estimator quickly and writes `tuned.toml`.
 const QUICK: [&str; 13] = [
@@ -23,9 +21,9 @@ const QUICK: [&str; 13] = [
 
 #[test]
 fn tuned_parameters_are_written_and_used() {
-    let folder = Folder::new("tune");
+    let folder = Folder::new(HOST_SIM);
     folder.good(&[&QUICK[..], &["--estimator", "foaw-end-fit"]].concat());
-    let text = fs::read_to_string(folder.0.join("tuned.toml")).unwrap();
+    let text = folder.text("tuned.toml");
     assert!(text.contains("[preset.estimators.pll]"), "{text}");
     let rms = |more: &[&str]| {
         let mut arguments = SHORT.to_vec();
@@ -43,7 +41,7 @@ fn tuned_parameters_are_written_and_used() {
 
 #[test]
 fn section_image_of_an_existing_file_stays_with_its_comments() {
-    let folder = Folder::new("tune-image");
+    let folder = Folder::new(HOST_SIM);
     let shipped = include_str!("../../presets.toml");
     let image = &shipped[shipped.find("# Values of the flash image").unwrap()..];
     // The section stands last in the shipped file, and first in this one.
@@ -51,7 +49,7 @@ fn section_image_of_an_existing_file_stays_with_its_comments() {
     for file in [shipped.to_owned(), format!("{image}\n{tuned}")] {
         folder.write("tuned.toml", file);
         folder.good(&QUICK);
-        let text = fs::read_to_string(folder.0.join("tuned.toml")).unwrap();
+        let text = folder.text("tuned.toml");
         assert!(text.trim_end().ends_with(image.trim_end()), "{text}");
         // The tuned presets are those of this run alone.
         let before = &text[..text.len() - image_first];
@@ -63,7 +61,7 @@ fn section_image_of_an_existing_file_stays_with_its_comments() {
 
 #[test]
 fn file_that_is_no_presets_file_is_not_overwritten() {
-    let folder = Folder::new("tune-foreign");
+    let folder = Folder::new(HOST_SIM);
     for (text, expected) in [
         ("[image.large\n", "tuned.toml: line 1, [image.large: "),
         (
@@ -75,7 +73,7 @@ fn file_that_is_no_presets_file_is_not_overwritten() {
         let error = folder.refused(&QUICK);
         assert!(error.contains(expected), "{error}");
         assert!(error.contains("correct or remove the file"), "{error}");
-        let after = fs::read_to_string(folder.0.join("tuned.toml")).unwrap();
+        let after = folder.text("tuned.toml");
         assert_eq!(after, text);
     }
 }
@@ -83,7 +81,7 @@ fn file_that_is_no_presets_file_is_not_overwritten() {
 /// The search ends at half the rate, where a low-pass filter loses least on fast vibration.
 #[test]
 fn end_of_a_range_is_reported() {
-    let folder = Folder::new("tune-end");
+    let folder = Folder::new(HOST_SIM);
     let output = folder.run(&[
         "tune",
         "--estimator",
@@ -103,14 +101,14 @@ fn end_of_a_range_is_reported() {
     let errors = String::from_utf8(output.stderr).unwrap();
     let note = "low-pass.cutoff_hz = 500 Hz is the upper limit of the searched range";
     assert!(errors.contains(note), "{errors}");
-    let text = fs::read_to_string(folder.0.join("tuned.toml")).unwrap();
+    let text = folder.text("tuned.toml");
     assert!(text.contains(note), "{text}");
 }
 
 /// On the seed after the tuning seeds, which decides, no estimator is worse than it was before.
 #[test]
 fn tuned_parameters_are_no_worse_than_the_shipped_ones() {
-    let folder = Folder::new("tune-kept");
+    let folder = Folder::new(HOST_SIM);
     let names = [
         "foaw-end-fit",
         "kalman-motor-steady",

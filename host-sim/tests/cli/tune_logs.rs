@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
 const NAMES: [&str; 4] = ["pll", "low-pass", "foaw-best-fit", "observer-held"];
 
@@ -38,7 +38,7 @@ fn held_out(folder: &Folder, names: &[&str], more: &[&str]) -> Vec<f64> {
     arguments.extend(more);
     folder.good(&arguments);
     let column = |file: &str, name: &str| -> Vec<f64> {
-        let mut reader = csv::Reader::from_path(folder.0.join(file)).unwrap();
+        let mut reader = csv::Reader::from_path(folder.path().join(file)).unwrap();
         let place = reader.headers().unwrap().iter().position(|n| n == name);
         let place = place.unwrap();
         let rows = reader.records().map(Result::unwrap);
@@ -65,9 +65,9 @@ fn notes_of_tuning(folder: &Folder, estimator: &str) -> String {
 
 #[test]
 fn found_parameters_are_better_in_the_held_out_seconds() {
-    let folder = Folder::new("tune-log");
+    let folder = Folder::new(HOST_SIM);
     let simulate = "simulate --scenario track --rate 1000 --seconds 6 --out log.csv";
-    folder.good(&simulate.split(' ').collect::<Vec<_>>());
+    folder.good(simulate);
     let mut tune = vec!["tune", "log.csv", "--out", "tuned.toml"];
     tune.extend(NAMES.iter().flat_map(|name| ["--estimator", name]));
     let table = folder.good(&tune);
@@ -90,7 +90,7 @@ fn found_parameters_are_better_in_the_held_out_seconds() {
     assert!(after[3] < 0.9 * before[3], "{before:?} became {after:?}");
 
     // Without the truth the log's own reference takes its place, and that is said.
-    let text = std::fs::read_to_string(folder.0.join("log.csv")).unwrap();
+    let text = folder.text("log.csv");
     let rows = text
         .lines()
         .map(|line| line.rsplit_once(',').unwrap().0.to_owned() + "\n");
@@ -104,12 +104,12 @@ fn found_parameters_are_better_in_the_held_out_seconds() {
 
 #[test]
 fn errors_are_those_of_all_recordings_together() {
-    let [folder, other] = ["tune-log-first", "tune-log-second"].map(Folder::new);
+    let [folder, other] = [HOST_SIM; 2].map(Folder::new);
     folder.write("log.csv", log(now_slow_now_fast));
     // The low-pass lags behind this motion.
     let fast = |t: f64| (10.0 * (1.0 - (9.0 * t).cos()), 90.0 * (9.0 * t).sin());
     other.write("log.csv", log(fast));
-    let second = other.0.join("log.csv");
+    let second = other.path().join("log.csv");
     let tune = [
         "tune",
         "log.csv",
@@ -132,7 +132,7 @@ fn errors_are_those_of_all_recordings_together() {
 
 #[test]
 fn parameters_that_fail_in_the_held_out_seconds_are_not_written() {
-    let folder = Folder::new("tune-overfit");
+    let folder = Folder::new(HOST_SIM);
     let names = ["low-pass"];
     folder.write("log.csv", log(now_slow_now_fast));
     let errors = notes_of_tuning(&folder, "low-pass");
@@ -148,7 +148,7 @@ fn parameters_that_fail_in_the_held_out_seconds_are_not_written() {
 
 #[test]
 fn end_of_the_range_is_reported_on_a_log() {
-    let folder = Folder::new("tune-log-end");
+    let folder = Folder::new(HOST_SIM);
     folder.write("log.csv", log(|t| (0.3 * t, 0.3)));
     let errors = notes_of_tuning(&folder, "low-pass");
     assert!(
@@ -159,7 +159,7 @@ fn end_of_the_range_is_reported_on_a_log() {
 
 #[test]
 fn recordings_that_do_not_suffice_are_refused() {
-    let folder = Folder::new("tune-log-refused");
+    let folder = Folder::new(HOST_SIM);
     let text = log(now_slow_now_fast);
     let first = |rows: usize| text.lines().take(rows).collect::<Vec<_>>().join("\n");
     folder.write("log.csv", &text);

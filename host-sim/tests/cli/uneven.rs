@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::fs;
 
-use crate::{Folder, json};
+use crate::{Folder, HOST_SIM, json};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/logs");
 
@@ -58,7 +58,7 @@ fn velocities(folder: &Folder, arguments: &[&str]) -> Vec<[f64; 2]> {
 
 #[test]
 fn finite_difference_is_the_displacement_over_the_true_step() {
-    let folder = Folder::new("true-steps");
+    let folder = Folder::new(HOST_SIM);
     for name in ["uneven.csv", "jittered.csv"] {
         let rows = velocities(
             &folder,
@@ -80,7 +80,7 @@ fn finite_difference_is_the_displacement_over_the_true_step() {
 
 #[test]
 fn true_steps_have_a_smaller_error_than_a_constant_period() {
-    let folder = Folder::new("jittered");
+    let folder = Folder::new(HOST_SIM);
     let text = fs::read_to_string(log("jittered.csv")).unwrap();
     let times: Vec<f64> = text
         .lines()
@@ -107,7 +107,7 @@ fn true_steps_have_a_smaller_error_than_a_constant_period() {
 
 #[test]
 fn estimators_that_assume_a_constant_period_are_left_out_with_one_note() {
-    let folder = Folder::new("left-out");
+    let folder = Folder::new(HOST_SIM);
     let path = log("jittered.csv");
     let output = folder.run(&["replay", &path]);
     assert_eq!(output.status.code(), Some(0));
@@ -139,7 +139,7 @@ fn estimators_that_assume_a_constant_period_are_left_out_with_one_note() {
 
 #[test]
 fn list_of_estimators_says_which_take_uneven_times() {
-    let text = Folder::new("list-uneven").good(&["estimators"]);
+    let text = Folder::new(HOST_SIM).good(&["estimators"]);
     let mut name = "";
     let mut found = Vec::new();
     for line in text.lines() {
@@ -157,7 +157,7 @@ fn list_of_estimators_says_which_take_uneven_times() {
 
 #[test]
 fn named_estimator_that_assumes_a_constant_period_is_refused() {
-    let folder = Folder::new("refused-uneven");
+    let folder = Folder::new(HOST_SIM);
     let path = log("jittered.csv");
     for command in ["replay", "plot", "tune"] {
         let named = [
@@ -185,7 +185,7 @@ fn named_estimator_that_assumes_a_constant_period_is_refused() {
 
 #[test]
 fn recommend_and_plot_say_what_they_leave_out() {
-    let folder = Folder::new("recommend-uneven");
+    let folder = Folder::new(HOST_SIM);
     let path = log("jittered.csv");
     let arguments = ["recommend", &path, "--report", "page", "--json", "-"];
     let ranked = json(&folder.good(&arguments));
@@ -197,20 +197,20 @@ fn recommend_and_plot_say_what_they_leave_out() {
         );
         assert_eq!(row["logs"][0]["period"], "varying");
     }
-    let page = fs::read_to_string(folder.0.join("page/index.html")).unwrap();
+    let page = folder.text("page/index.html");
     assert!(page.contains("estimators that assume a constant period left out: foaw-end-fit"));
     let output = folder.run(&["plot", &path, "--out", "p.svg"]);
     let notes = String::from_utf8(output.stderr).unwrap();
     let notes = notes.split_whitespace().collect::<Vec<_>>().join(" ");
     let said = "estimators that assume a constant period left out: kalman-triple-steady;";
     assert!(notes.contains(said), "{notes}");
-    let svg = fs::read_to_string(folder.0.join("p.svg")).unwrap();
+    let svg = folder.text("p.svg");
     assert!(svg.contains("finite-difference") && !svg.contains("kalman-triple-steady"));
 }
 
 #[test]
 fn tune_searches_the_estimators_that_use_true_steps() {
-    let folder = Folder::new("tune-uneven");
+    let folder = Folder::new(HOST_SIM);
     let (mut text, mut t) = (String::from("t,counts_large,true_omega\n"), 0.0);
     for k in 0..5000_u32 {
         text += &format!("{t:.6},{},{}\n", counts(t), omega(t));
@@ -236,7 +236,7 @@ fn tune_searches_the_estimators_that_use_true_steps() {
 #[test]
 fn steps_that_the_digits_of_t_explain_are_a_constant_period() {
     // 3.33 ms are 3 or 4 whole milliseconds.
-    let folder = Folder::new("rounded-steps");
+    let folder = Folder::new(HOST_SIM);
     let path = log("milliseconds-at-300-hz.csv");
     let base = ["replay", &path, "--column", "t=t_ms"];
     let output = folder.run(&[&base[..], &["--json", "-"]].concat());

@@ -1,9 +1,8 @@
 //! Which source the program and its pages were built from.
 
-use std::fs;
 use std::process::Command;
 
-use crate::{Folder, SHORT};
+use crate::{Folder, HOST_SIM, SHORT};
 
 /// The commit of this folder, or `None` outside of a repository.
 fn head() -> Option<String> {
@@ -18,7 +17,7 @@ fn head() -> Option<String> {
 
 #[test]
 fn version_and_pages_name_the_commit_and_the_command() {
-    let folder = Folder::new("version");
+    let folder = Folder::new(HOST_SIM);
     let version = folder.good(&["--version"]);
     let version = version.trim().strip_prefix("host-sim ").unwrap();
     let (number, source) = version.split_once(" (commit ").unwrap();
@@ -48,11 +47,7 @@ fn version_and_pages_name_the_commit_and_the_command() {
         (&robust, "host-sim robust --scene off".to_owned()),
     ] {
         folder.good(arguments);
-        let page = folder
-            .0
-            .join(arguments[arguments.len() - 1])
-            .join("index.html");
-        let page = fs::read_to_string(page).unwrap();
+        let page = folder.text(&format!("{}/index.html", arguments[arguments.len() - 1]));
         assert!(page.contains(version), "{arguments:?}");
         assert!(page.contains(&format!("<code>{command}")), "{command}");
     }

@@ -1,10 +1,10 @@
 //! Names that are nearly right, and text that fits a terminal.
 
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
 #[test]
 fn misspelled_names_are_answered_with_a_suggestion() {
-    let folder = Folder::new("nearly");
+    let folder = Folder::new(HOST_SIM);
     for (arguments, said) in [
         (
             "compare --estimator kalman-tripel",
@@ -23,7 +23,7 @@ fn misspelled_names_are_answered_with_a_suggestion() {
         ("comapre", "'compare'"),
         ("replay r.csv --estimater pll", "'--estimator'"),
     ] {
-        let error = folder.refused(&arguments.split_whitespace().collect::<Vec<_>>());
+        let error = folder.refused(arguments);
         assert!(error.contains(said), "{arguments}: {error}");
     }
     let error = folder.refused(&["simulate", "--scene", "stepp", "--out", "x.csv"]);
@@ -36,7 +36,7 @@ fn misspelled_names_are_answered_with_a_suggestion() {
 
 #[test]
 fn lists_fit_80_columns_and_name_tuned_values() {
-    let folder = Folder::new("lists");
+    let folder = Folder::new(HOST_SIM);
     for list in ["estimators", "scenarios"] {
         let text = folder.good(&[list]);
         let long: Vec<_> = text
@@ -68,7 +68,7 @@ fn lists_fit_80_columns_and_name_tuned_values() {
 
 #[test]
 fn extreme_numbers_are_printed_with_few_digits() {
-    let folder = Folder::new("extreme");
+    let folder = Folder::new(HOST_SIM);
     folder.write("tiny.toml", "large.inertia_kg_m2 = 1e-300\n");
     folder.write("grams.toml", "large.inertia_kg_m2 = 115\n");
     for (arguments, said) in [
@@ -87,7 +87,7 @@ fn extreme_numbers_are_printed_with_few_digits() {
             "grams.toml: large.inertia_kg_m2 = 115: must be at most 0.1 kg.m2; did you mean 115e-7",
         ),
     ] {
-        let error = folder.refused(&arguments.split_whitespace().collect::<Vec<_>>());
+        let error = folder.refused(arguments);
         assert!(
             error.contains(said) && error.len() < 250,
             "{arguments}: {error}"

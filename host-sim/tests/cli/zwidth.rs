@@ -1,8 +1,5 @@
 //! Z-width as somebody asks for it, and whether its bounds are bounds.
 
-use std::path::PathBuf;
-use std::process::{Command, Output};
-
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
 use estimator_core::Hertz;
@@ -10,6 +7,8 @@ use experiments::zwidth::{
     Boundary, LoopSetup, STIFFNESS, Settings, bound, boundaries, contact_test,
 };
 use simulation::device::Device;
+
+use crate::{Folder, HOST_SIM};
 
 fn case(name: &str, rate_hz: f64, lines: u32) -> LoopSetup {
     let kind = Kind::named(name).unwrap();
@@ -121,37 +120,8 @@ fn values_below_a_bound_pass_and_values_beyond_fail() {
     assert!(strange.len() * 10 <= tried, "of {tried}: {strange:?}");
 }
 
-/// A folder of its own for each test, gone afterwards.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(test: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("limpid-zw-{test}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn run(&self, arguments: &[&str]) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_host-sim"))
-            .arg("zwidth")
-            .args(arguments)
-            .current_dir(&self.0)
-            .output()
-            .unwrap()
-    }
-
-    fn is_empty(&self) -> bool {
-        std::fs::read_dir(&self.0).unwrap().next().is_none()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
-const SHORT: [&str; 6] = [
+const SHORT: [&str; 7] = [
+    "zwidth",
     "--estimator",
     "kalman-motor",
     "--rate",
@@ -162,12 +132,12 @@ const SHORT: [&str; 6] = [
 
 #[test]
 fn json_is_alone_on_standard_output_and_reproducible() {
-    let folder = Folder::new("json");
+    let folder = Folder::new(HOST_SIM);
     let mut arguments = SHORT.to_vec();
     arguments.extend(["--json", "-"]);
     let output = folder.run(&arguments);
     assert_eq!(output.status.code(), Some(0));
-    assert!(folder.is_empty(), "no page unless it is asked for");
+    assert!(folder.names().is_empty(), "no page unless it is asked for");
     let rows: Vec<serde_json::Value> = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(rows.len(), 6);
     for row in &rows {
@@ -203,7 +173,7 @@ fn json_is_alone_on_standard_output_and_reproducible() {
 
 #[test]
 fn page_has_figures_and_table() {
-    let folder = Folder::new("page");
+    let folder = Folder::new(HOST_SIM);
     let mut arguments = SHORT.to_vec();
     arguments.extend(["--out", "z"]);
     let output = folder.run(&arguments);
@@ -214,7 +184,7 @@ fn page_has_figures_and_table() {
         "{table}"
     );
     assert!(table.contains("  kalman-motor "), "{table}");
-    let read = |name| std::fs::read_to_string(folder.0.join("z").join(name)).unwrap();
+    let read = |name| std::fs::read_to_string(folder.path().join("z").join(name)).unwrap();
     assert!(read("index.html").contains(read("figures/01.svg").as_str()));
     let csv = read("zwidth.csv");
     assert!(
@@ -227,7 +197,7 @@ fn page_has_figures_and_table() {
 
 #[test]
 fn invalid_arguments_are_refused_in_one_line_and_write_nothing() {
-    let folder = Folder::new("bad");
+    let folder = Folder::new(HOST_SIM);
     for (arguments, said) in [
         (&["--estimator", "kalmann"][..], "no estimator 'kalmann'"),
         (&["--handle", "pl"], "no estimator 'pl'"),
@@ -239,14 +209,7 @@ fn invalid_arguments_are_refused_in_one_line_and_write_nothing() {
         (&["--device", "none.toml"], "none.toml: cannot read"),
         (&["--seconds", "1"], "--seconds"),
     ] {
-        let output = folder.run(arguments);
-        let errors = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {errors}");
-        assert_eq!(errors.lines().count(), 1, "{arguments:?}: {errors}");
-        assert!(errors.contains(said), "{arguments:?}: {errors}");
-        assert!(
-            output.stdout.is_empty() && folder.is_empty(),
-            "{arguments:?}"
-        );
+        let error = folder.refused(&[&["zwidth"], arguments].concat());
+        assert!(error.contains(said), "{arguments:?}: {error}");
     }
 }

@@ -144,10 +144,8 @@ mod tests {
 
     #[test]
     fn saved_parts_are_skipped_and_others_are_run() {
-        let directory = std::env::temp_dir().join(format!("stress-{}", std::process::id()));
-        fs::create_dir_all(&directory).unwrap();
-        let path = directory.join("kept.jsonl");
-        let _ = fs::remove_file(&path);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("kept.jsonl");
         let tested_estimators: Vec<_> = at(1000.0).into_iter().take(2).collect();
         let run = |seed| {
             let parts = tested_estimators.iter().map(|one| (one, (seed, 1000)));
@@ -173,6 +171,5 @@ mod tests {
         fs::write(&path, "{").unwrap();
         let said = run(1).unwrap_err();
         assert!(said.contains("kept.jsonl: line 1: "), "{said}");
-        fs::remove_dir_all(&directory).unwrap();
     }
 }

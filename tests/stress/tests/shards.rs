@@ -11,7 +11,7 @@ const SHORT: &str = "--ticks 3000 --estimator kalman-triple-s --rate 1000 --rate
 
 #[test]
 fn merged_shards_equal_a_single_run() {
-    let folder = Folder::new("merge", STRESS);
+    let folder = Folder::new(STRESS);
     let whole = folder.good(&format!("{SHORT} --json whole.json"));
     assert!(
         whole.contains("kalman-triple-steady") && whole.contains("2000"),
@@ -41,7 +41,7 @@ fn merged_shards_equal_a_single_run() {
 
 #[test]
 fn lost_shards_are_named_with_the_command_that_runs_them() {
-    let folder = Folder::new("lost", STRESS);
+    let folder = Folder::new(STRESS);
     folder.good(&format!("{SHORT} --shard 2/3 --out parts"));
     let errors = folder.refused("--merge parts/shard-2-of-3.jsonl");
     let again = "run cargo stress --ticks 3000 --rate 1000 --rate 2000 --estimator kalman-triple-s --seed 5 \

@@ -127,17 +127,16 @@ pub fn read(folder: &Path) -> Result<Vec<Source>, Failure> {
 
 #[cfg(test)]
 mod tests {
-    use std::path::PathBuf;
+    use tempfile::TempDir;
 
     use super::*;
 
     /// A folder with this list and one file `a.csv`.
-    fn folder(test: &str, list: &str) -> PathBuf {
-        let path = std::env::temp_dir().join(format!("limpid-{test}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        std::fs::write(path.join("a.csv"), "").unwrap();
-        std::fs::write(path.join(LIST), list).unwrap();
-        path
+    fn folder(list: &str) -> TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("a.csv"), "").unwrap();
+        std::fs::write(folder.path().join(LIST), list).unwrap();
+        folder
     }
 
     fn entry(more: &str) -> String {
@@ -146,15 +145,15 @@ mod tests {
 
     #[test]
     fn recording_without_a_role_judges() {
-        let path = folder("list", &entry("counts_per_rev = 3000"));
-        let sources = read(&path).unwrap();
+        let folder = folder(&entry("counts_per_rev = 3000"));
+        let path = folder.path();
+        let sources = read(path).unwrap();
         assert_eq!((sources[0].role, sources[0].name()), (Role::Judges, "a"));
         assert_eq!(
             Source::of(&path.join("a.csv")).unwrap(),
             Some(sources[0].clone())
         );
         assert_eq!(Source::of(&path.join("b.csv")).unwrap(), None);
-        std::fs::remove_dir_all(path).unwrap();
     }
 
     #[test]
@@ -179,10 +178,10 @@ mod tests {
             ),
             ("recording = []".to_owned(), "recordings.toml: no recording"),
         ] {
-            let path = folder("bad-list", &list);
-            let error = read(&path).unwrap_err().to_string();
+            let folder = folder(&list);
+            let path = folder.path();
+            let error = read(path).unwrap_err().to_string();
             assert!(error.contains(said), "{error}");
-            std::fs::remove_dir_all(path).unwrap();
         }
     }
 }

@@ -168,12 +168,6 @@ fn list(file: &mut File, files: &BTreeMap<String, u64>) -> io::Result<()> {
 mod tests {
     use super::*;
 
-    fn folder(test: &str) -> PathBuf {
-        let path = std::env::temp_dir().join(format!("limpid-{test}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        path
-    }
-
     fn write(path: &Path, files: &[(&str, &str)]) -> Result<(), Failure> {
         let mut folder = Folder::new(path);
         for (name, text) in files {
@@ -184,7 +178,8 @@ mod tests {
 
     #[test]
     fn files_of_an_earlier_run_are_removed_and_others_are_kept() {
-        let path = folder("two-runs");
+        let outside = tempfile::tempdir().unwrap();
+        let path = outside.path().join("out");
         let old = [
             ("index.html", "1"),
             ("figures/01.svg", "1"),
@@ -209,12 +204,12 @@ mod tests {
             left, 5,
             "index.html, more, notes.txt, b.csv and the manifest"
         );
-        fs::remove_dir_all(path).unwrap();
     }
 
     #[test]
     fn failed_run_keeps_the_old_report() {
-        let path = folder("failed-run");
+        let outside = tempfile::tempdir().unwrap();
+        let path = outside.path().join("out");
         write(&path, &[("index.html", "1"), ("z.csv", "1")]).unwrap();
         fs::create_dir(path.join("scores.csv")).unwrap();
         let error = write(&path, &[("index.html", "2"), ("scores.csv", "2")]).unwrap_err();
@@ -228,7 +223,6 @@ mod tests {
             ("1".into(), "1".into())
         );
         assert_eq!(fs::read_dir(&path).unwrap().count(), 4);
-        fs::remove_dir_all(&path).unwrap();
         // A folder that did not exist is not left behind.
         fs::write(&path, "a file").unwrap();
         assert!(write(&path.join("deep"), &[("a", "1")]).is_err());
@@ -237,7 +231,8 @@ mod tests {
 
     #[test]
     fn manifest_with_a_path_outside_the_folder_removes_nothing() {
-        let path = folder("manifest");
+        let outside = tempfile::tempdir().unwrap();
+        let path = outside.path().join("out");
         let inside = path.join("in");
         fs::create_dir_all(&inside).unwrap();
         fs::write(path.join("precious"), "x").unwrap();
@@ -245,6 +240,5 @@ mod tests {
         fs::write(inside.join(MANIFEST), line).unwrap();
         write(&inside, &[("a", "1")]).unwrap();
         assert!(path.join("precious").exists());
-        fs::remove_dir_all(path).unwrap();
     }
 }

@@ -3,16 +3,16 @@
 use std::fs;
 
 use super::LOGS;
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
 #[test]
 fn every_command_on_recordings_takes_the_columns() {
-    let folder = Folder::new("commands");
+    let folder = Folder::new(HOST_SIM);
     let log = format!("{LOGS}/semicolons-decimal-commas.csv");
     let columns = ["--column", "t=time_ms,counts_large=angle_deg"];
     let plot = [&["plot", &log, "--out", "p.svg"][..], &columns].concat();
     folder.good(&plot);
-    assert!(folder.files().contains("p.svg"));
+    assert!(folder.names().contains("p.svg"));
     // Read, and refused because this log has no other encoder.
     let line = folder.refused(&[&["identify", &log][..], &columns].concat());
     assert!(line.contains("no column counts_small"), "{line}");
@@ -20,12 +20,11 @@ fn every_command_on_recordings_takes_the_columns() {
     assert!(line.contains("no column t; found: time_ms"), "{line}");
     // A pipe can be read once.
     let script = format!(
-        "cat '{LOGS}/own.csv' | '{}' replay /dev/stdin --estimator pll --out v.csv",
-        env!("CARGO_BIN_EXE_host-sim")
+        "cat '{LOGS}/own.csv' | '{HOST_SIM}' replay /dev/stdin --estimator pll --out v.csv",
     );
     let shell = std::process::Command::new("sh")
         .args(["-c", &script])
-        .current_dir(&folder.0)
+        .current_dir(folder.path())
         .status();
     assert!(shell.unwrap().success());
     folder.good(&[
@@ -37,6 +36,6 @@ fn every_command_on_recordings_takes_the_columns() {
         "w.csv",
     ]);
     let [from_pipe, from_file] =
-        ["v.csv", "w.csv"].map(|file| fs::read(folder.0.join(file)).unwrap());
+        ["v.csv", "w.csv"].map(|file| fs::read(folder.path().join(file)).unwrap());
     assert_eq!(from_pipe, from_file);
 }

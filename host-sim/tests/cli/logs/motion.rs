@@ -1,7 +1,7 @@
 //! Logs that read to the motion that they were written from.
 
 use super::{LOGS, ROWS, counts, replay, split, steps};
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
 /// Logs that read to the motion, and the options that they need.
 pub(super) const READ: &[(&str, &str)] = &[
@@ -44,7 +44,7 @@ pub(super) const READ: &[(&str, &str)] = &[
 
 #[test]
 fn logs_read_to_the_motion_that_they_were_written_from() {
-    let folder = Folder::new("logs");
+    let folder = Folder::new(HOST_SIM);
     for (log, options) in READ {
         let (rows, _) = replay(&folder, log, options);
         assert_eq!(rows.len(), ROWS, "{log}");
@@ -65,7 +65,7 @@ fn logs_read_to_the_motion_that_they_were_written_from() {
 
 #[test]
 fn uneven_rows_become_even() {
-    let folder = Folder::new("uneven");
+    let folder = Folder::new(HOST_SIM);
     for (log, options) in [
         ("uneven.csv", "--resample 1000"),
         ("missing-rows.csv", "--resample 1000"),
@@ -95,7 +95,7 @@ fn uneven_rows_become_even() {
 #[test]
 fn torque_is_divided_by_the_torque_constant() {
     // The files have 0.05 times the current as torque; a device with 0.05 N.m/A has the current again.
-    let folder = Folder::new("torque");
+    let folder = Folder::new(HOST_SIM);
     folder.write("mine.toml", "large.torque_constant_nm_per_a = 0.05\n");
     let torque = "--column|t=time, ns:ns,counts_large=shaft angle (rev),current=torque (Nm)";
     let milliamps =

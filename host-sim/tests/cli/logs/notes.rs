@@ -1,11 +1,11 @@
 //! What is reported about a log that is read.
 
 use super::replay;
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
 #[test]
 fn columns_and_units_that_were_converted_are_reported() {
-    let folder = Folder::new("sources");
+    let folder = Folder::new(HOST_SIM);
     for (log, options, said) in [
         (
             "moteus-tview.csv",
@@ -55,7 +55,7 @@ fn columns_and_units_that_were_converted_are_reported() {
 
 #[test]
 fn positions_off_whole_counts_are_reported() {
-    let folder = Folder::new("fine");
+    let folder = Folder::new(HOST_SIM);
     folder.write("coarse.toml", "large.counts_per_rev = 1000\n");
     let device = "--column counts_large=angle:deg --device coarse.toml";
     let (_, notes) = replay(&folder, "absolute-deg.csv", device);

@@ -1,18 +1,21 @@
 //! Logs that are compressed, or no text.
 
 use super::LOGS;
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
 /// Runs a command of the shell in `folder`.
 fn shell(folder: &Folder, script: &str) {
     let mut shell = std::process::Command::new("sh");
-    let status = shell.args(["-c", script]).current_dir(&folder.0).status();
+    let status = shell
+        .args(["-c", script])
+        .current_dir(folder.path())
+        .status();
     assert!(status.unwrap().success(), "{script}");
 }
 
 #[test]
 fn compressed_log_is_read_as_its_text() {
-    let folder = Folder::new("gzip");
+    let folder = Folder::new(HOST_SIM);
     shell(
         &folder,
         &format!("gzip -c '{LOGS}/own.csv' > own.csv.gz; head -c 900 own.csv.gz > cut.gz"),
@@ -40,7 +43,7 @@ fn compressed_log_is_read_as_its_text() {
 
 #[test]
 fn quote_without_an_end_is_reported_by_its_line() {
-    let folder = Folder::new("quote");
+    let folder = Folder::new(HOST_SIM);
     let rows: String = (1..100)
         .map(|k| format!("{},{k},n\n", f64::from(k) * 1e-3))
         .collect();

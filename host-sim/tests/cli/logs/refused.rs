@@ -1,7 +1,7 @@
 //! Logs that are refused with one line.
 
 use super::{LOGS, split};
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
 /// Logs that are refused, the options, and parts of the line.
 pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
@@ -119,7 +119,7 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
 
 #[test]
 fn unreadable_logs_are_refused_with_one_line() {
-    let folder = Folder::new("refused-logs");
+    let folder = Folder::new(HOST_SIM);
     for (log, options, said) in REFUSED {
         let path = format!("{LOGS}/{log}");
         for command in ["replay", "plot"] {

@@ -1,10 +1,10 @@
 //! Units at the end of a column's name.
 
-use crate::Folder;
+use crate::{Folder, HOST_SIM};
 
 /// Notes and status of replay on a log with a column called `name`, which is read as `ours`.
 fn replay(name: &str, ours: &str) -> (Option<i32>, String) {
-    let folder = Folder::new("units");
+    let folder = Folder::new(HOST_SIM);
     let other = if ours == "counts_large" {
         "x"
     } else {
@@ -65,7 +65,7 @@ fn end_of_a_name_that_is_no_unit_is_refused_with_the_units() {
 
 #[test]
 fn unit_that_is_stated_and_is_none_is_reported() {
-    let folder = Folder::new("stated");
+    let folder = Folder::new(HOST_SIM);
     folder.write("r.csv", "t,counts_large\n0,1\n0.001,2\n");
     for (column, said) in [
         (
