@@ -74,7 +74,7 @@ impl Recording {
     ///
     /// # Errors
     /// [`Failure::Input`] that calls the recording `name`, if columns differ in their number of rows, or
-    /// if `t` goes back, does not increase or has fewer than two rows.
+    /// if `t` does not increase from row to row or has fewer than two rows.
     pub fn of_columns(t: Vec<f64>, columns: Trace, name: &str) -> Result<Self, Failure> {
         let refused = |why: String| Err(Failure::Input(format!("{name}: {why}")));
         for (column, rows) in lengths(&columns) {
@@ -86,9 +86,14 @@ impl Recording {
                 ));
             }
         }
-        if let Some(k) = t.windows(2).position(|pair| pair[1] < pair[0]) {
+        if let Some(k) = t.windows(2).position(|pair| pair[1] <= pair[0]) {
+            let is = if t[k + 1] < t[k] {
+                "before"
+            } else {
+                "not after"
+            };
             return refused(format!(
-                "row {}: column t: {} s is before the {} s above it",
+                "row {}: column t: {} s is {is} the {} s above it",
                 k + 1,
                 t[k + 1],
                 t[k]
@@ -194,7 +199,7 @@ mod tests {
             back.starts_with("m: row 2: column t: 0.001 s is before the 0.002 s"),
             "{back}"
         );
-        assert!(of(&[1.0; 5]).contains("does not increase"));
+        assert!(of(&[1.0; 5]).contains("m: row 1: column t: 1 s is not after the 1 s"));
     }
 
     fn parse(text: &str) -> Result<Recording, String> {
@@ -282,7 +287,7 @@ mod tests {
             ("t,counts_large\n0,0\n", "r.csv: fewer than two rows"),
             (
                 "t,counts_large\n1,0\n1,0\n1,0\n",
-                "r.csv: column t: does not increase",
+                "r.csv: column t: 67 % of the rows have the time of the row before, the first in line 3",
             ),
             (
                 "t,counts_large,current\n0,0,inf\n",

@@ -1,6 +1,7 @@
 //! Absolute encoders and short counters: counts that wrap at a revolution or at 16 bits.
 
 use super::Recording;
+use super::steps::Steps;
 use estimator_core::{Count, WrapError};
 use simulation::device::Device;
 
@@ -11,9 +12,6 @@ const SHORT: u32 = 1 << 16;
 /// at 2^32 span more.
 const SPANS: std::ops::Range<i64> = 15..1 << 31;
 
-/// Longest step over which a jump counts, in periods.
-pub(super) const LONGEST: f64 = 1.5;
-
 impl Recording {
     /// Unwraps counts that wrap at a revolution or at 16 bits to counts modulo 2^32. Returns one line
     /// per changed column, and per column whose jumps do not fit the counts per revolution of
@@ -21,10 +19,10 @@ impl Recording {
     #[must_use]
     pub fn unwrap_counts(&mut self, device: &Device) -> Vec<String> {
         let trace = &mut self.trace;
-        let longest = LONGEST * trace.period_s();
+        let period = trace.period_s();
         let mut said = Vec::new();
         let per_rev = device.stages.large.counts_per_rev;
-        let mut found = look(&trace.counts_large, &self.t, longest, per_rev);
+        let mut found = look(&trace.counts_large, &self.t, period, per_rev);
         if let Some(Found::Wraps(modulus)) = found {
             match unwrap(&mut trace.counts_large, modulus) {
                 Err(error) => found = Some(Found::Refused(modulus, error)),
@@ -41,7 +39,7 @@ impl Recording {
         said.extend(found.map(|found| found.note("counts_large", "large", per_rev)));
         if let Some(counts) = &mut trace.counts_small {
             let per_rev = device.stages.small.counts_per_rev;
-            let mut found = look(counts, &self.t, longest, per_rev);
+            let mut found = look(counts, &self.t, period, per_rev);
             if let Some(Found::Wraps(modulus)) = found
                 && let Err(error) = unwrap(counts, modulus)
             {
@@ -106,13 +104,14 @@ fn modulus_option(column: &str, jump: i64, span: i64) -> String {
     }
 }
 
-/// Looks for jumps between rows at most `longest` seconds apart.
-fn look(counts: &[u32], t: &[f64], longest: f64, per_rev: u32) -> Option<Found> {
+/// Looks for jumps between rows of this `period`, s.
+fn look(counts: &[u32], t: &[f64], period: f64, per_rev: u32) -> Option<Found> {
     let signed = |count: u32| i64::from(count as i32);
-    let jumps = counts.windows(2).zip(t.windows(2));
-    let jumps = jumps.filter(|(_, t)| t[1] - t[0] <= longest);
-    let jump = jumps.map(|(pair, _)| signed(pair[1]) - signed(pair[0]));
-    let jump = jump.max_by_key(|jump| jump.abs())?;
+    let mut steps = Steps::default();
+    for (pair, t) in counts.windows(2).zip(t.windows(2)) {
+        steps.add(t[1] - t[0], [signed(pair[1]) - signed(pair[0]), 0]);
+    }
+    let jump = steps.largest_jump(period, 0);
     let values = || counts.iter().map(|&count| signed(count));
     let span = values().max()? - values().min()?;
     found(jump, span, per_rev)
@@ -227,6 +226,48 @@ mod tests {
                 "{said:?}"
             );
         }
+    }
+
+    /// Rows of an encoder of 4096 counts, without the row at its wrap, and the counts of one without a wrap.
+    fn wrap_in_a_gap(missing: std::ops::Range<usize>) -> [Vec<u32>; 2] {
+        let rows = (0..200).filter(|k| !missing.contains(k));
+        let text: String = rows
+            .clone()
+            .map(|k| format!("{},{}\n", k as f64 * 1e-3, (4000 + 2 * k) % 4096))
+            .collect();
+        let text = format!("t,counts_large\n{text}");
+        let mut recording = Recording::parse(text.as_bytes(), "r").unwrap();
+        let said = recording.unwrap_counts(&device(4096));
+        let is_said = said.iter().any(|note| note.contains("wraps at 4096"));
+        assert_eq!(is_said, missing.len() < 20, "{said:?}");
+        let truth = rows.map(|k| 4000 + 2 * k as u32).collect();
+        [recording.trace.counts_large, truth]
+    }
+
+    #[test]
+    fn wrap_over_a_few_missing_rows_is_found() {
+        for missing in [48..49, 40..58] {
+            let [counts, truth] = wrap_in_a_gap(missing.clone());
+            assert_eq!(counts, truth, "{missing:?}");
+        }
+        // Over more of them a shaft may have turned so far.
+        let [counts, truth] = wrap_in_a_gap(40..70);
+        assert_ne!(counts, truth);
+    }
+
+    #[test]
+    fn fast_shaft_does_not_wrap_in_a_gap() {
+        // 300 counts from row to row, and 3300 over ten missing rows, within a revolution.
+        let text: String = (0..12_u32)
+            .filter(|k| *k == 0 || *k == 11)
+            .chain(12..14)
+            .map(|k| format!("{},{}\n", f64::from(k) * 1e-3, 300 * k))
+            .collect();
+        let text = format!("t,counts_large\n{text}");
+        let mut recording = Recording::parse(text.as_bytes(), "r").unwrap();
+        let before = recording.trace.counts_large.clone();
+        let _ = recording.unwrap_counts(&device(4096));
+        assert_eq!(recording.trace.counts_large, before);
     }
 
     #[test]

@@ -13,7 +13,7 @@ use super::records::Records;
 use super::row::Row;
 use super::sources::sources;
 use super::stamps::Stamps;
-use super::times::{self, Replaced};
+use super::times::{self, Repeated, Replaced};
 use super::units::Scale;
 use super::{Recording, absolute, clock};
 
@@ -24,6 +24,7 @@ pub(super) struct Columns<'a> {
     /// The log's own times, which --row-rate replaces.
     replaced_place: Option<Place>,
     replaced: Replaced,
+    repeated: Repeated,
     /// Whether a row without a position is left out.
     sparse: bool,
     /// Number of rows that were taken, and the time of the last one, s.
@@ -50,6 +51,7 @@ impl<'a> Columns<'a> {
             places: Column::ALL.map(|column| places.get(column)),
             replaced_place: places.replaced_time,
             replaced: Replaced::default(),
+            repeated: Repeated::default(),
             sparse: places.format.is_some_and(|format| format.sparse),
             taken: 0,
             first_t: f64::NAN,
@@ -83,6 +85,10 @@ impl<'a> Columns<'a> {
         if t < self.last_t {
             let per_s = self.place(Column::T).map_or(1.0, |at| at.unit.per_s());
             return Err(times::back(row, t, [self.first_t, self.last_t], per_s));
+        }
+        if t == self.last_t {
+            self.repeated.add(row.line, t);
+            return Ok(());
         }
         if self.taken == 0 {
             self.first_t = t;
@@ -202,8 +208,8 @@ impl<'a> Columns<'a> {
         places: &Places,
         layout: &Layout,
     ) -> Result<Recording, Failure> {
-        let (rate_hz, uneven_steps) = clock::rate(&self.t, name)?;
         let mut notes = self.checked(name, places, layout)?;
+        let (rate_hz, uneven_steps) = clock::rate(&self.t, name)?;
         let mut gaps = Gaps::default();
         for (k, step) in self.t.windows(2).enumerate() {
             gaps.add(step[1] - step[0], rate_hz, step[1], || self.lines.of(k + 1));
@@ -252,13 +258,15 @@ impl<'a> Columns<'a> {
     /// Notes on the rows that were taken: their columns, rows left out, and rounded positions.
     ///
     /// # Errors
-    /// [`Failure::Input`] if the time stamps of edges are not those of the rows.
+    /// [`Failure::Input`] if many rows have the time of the row before, or if the time stamps of edges
+    /// are not those of the rows.
     pub(super) fn checked(
         &self,
         name: &str,
         places: &Places,
         layout: &Layout,
     ) -> Result<Vec<String>, Failure> {
+        let repeated = self.repeated.check(name, self.taken)?;
         if let Some(at) = self.place(Column::EdgeTick) {
             self.stamps.check(name, &layout.names[at.place])?;
         }
@@ -271,6 +279,7 @@ impl<'a> Columns<'a> {
             self.measured()
                 .map(|(column, lack)| measured_note(column, lack)),
         );
+        notes.extend(repeated);
         if self.left_out > 0 {
             notes.push(format!(
                 "{} rows without a position are left out",

@@ -20,6 +20,10 @@ const IRREGULAR_SHARE: f64 = 0.1;
 /// Relative difference of two steps of the same length, which floats round.
 const SAME: f64 = 1e-3;
 
+/// Longest step from a row to the next, and over a few missing rows, in periods.
+const NEXT: f64 = 1.5;
+const FEW: f64 = 20.0;
+
 /// Slowest rate of a recording, Hz.
 pub const SLOWEST_HZ: f64 = 10.0;
 
@@ -55,10 +59,9 @@ impl Steps {
     /// Bits of a length that do not distinguish classes.
     const SHARED_BITS: u32 = 52 - 12;
 
-    /// Adds a step of `length` s, not negative, over which the counts change by `jump`.
+    /// Adds a step of `length` s, above zero, over which the counts change by `jump`.
     pub(super) fn add(&mut self, length: f64, jump: [i64; 2]) {
-        // A zero has a sign.
-        let key = (length + 0.0).to_bits() >> Self::SHARED_BITS;
+        let key = length.to_bits() >> Self::SHARED_BITS;
         let class = self.classes.entry(key).or_default();
         class.least = match class.number {
             0 => length,
@@ -79,11 +82,22 @@ impl Steps {
         self.classes.values()
     }
 
-    /// The largest jump of an encoder's counts over steps of at most `longest` s.
-    pub(super) fn largest_jump(&self, longest: f64, motor: usize) -> i64 {
-        let short = self.classes().filter(|class| class.mean() <= longest);
-        let jumps = short.map(|class| class.jump[motor]);
-        jumps.max_by_key(|jump| jump.abs()).unwrap_or_default()
+    /// The largest jump of an encoder's counts from one row of this `period`, s, to the next; or over a few
+    /// missing rows, if the shaft was not fast enough for it in any other row.
+    pub(super) fn largest_jump(&self, period: f64, motor: usize) -> i64 {
+        let next = |class: &&Class| class.mean() <= NEXT * period;
+        let jumps = self.classes().filter(next).map(|class| class.jump[motor]);
+        let jump = jumps.max_by_key(|jump| jump.abs()).unwrap_or_default();
+        let over_missing = self.classes().filter(|class| {
+            let rows = class.mean() / period;
+            let fastest = 2.0 * rows * jump.unsigned_abs().max(1) as f64;
+            (NEXT..=FEW).contains(&rows) && class.jump[motor].unsigned_abs() as f64 > fastest
+        });
+        let jumps = over_missing.map(|class| class.jump[motor]);
+        jumps
+            .chain([jump])
+            .max_by_key(|jump| jump.abs())
+            .unwrap_or_default()
     }
 
     /// Period of the rows, s, and the rate, Hz.
@@ -102,12 +116,6 @@ impl Steps {
             below > self.number / 2
         });
         let median = median.map_or(0.0, Class::mean);
-        if median <= 0.0 {
-            return Err(Failure::Input(format!(
-                "{name}: column t: does not increase in most rows; write it in seconds with enough \
-                 digits to distinguish rows"
-            )));
-        }
         let regular = self
             .classes()
             .filter(|class| differs(class.mean(), median) <= REGULAR);

@@ -121,12 +121,12 @@ impl Survey {
                 ends = Some([ends.map_or(t, |[first, _]| first), t]);
             }
         }
-        let (period, rate_hz) = steps.period(name)?;
         let mut notes = columns.checked(name, &places, &records.layout)?;
+        let (period, rate_hz) = steps.period(name)?;
         let mut wraps = [None; 2];
         let names = [("counts_large", "large"), ("counts_small", "small")];
         for (motor, (column, stage)) in names.into_iter().enumerate() {
-            let jump = steps.largest_jump(absolute::LONGEST / rate_hz, motor);
+            let jump = steps.largest_jump(1.0 / rate_hz, motor);
             let found = seen[motor].found(jump, per_rev[motor]);
             if let Some(Found::Wraps(modulus)) = found {
                 wraps[motor] = Some(modulus);

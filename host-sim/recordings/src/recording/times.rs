@@ -42,6 +42,53 @@ pub(super) fn back(row: &Row, t: f64, [first, last]: [f64; 2], per_s: f64) -> Fa
     )
 }
 
+/// Largest share of the rows that may have the time of the row before.
+const REPEATED_SHARE: f64 = 0.1;
+
+/// Rows that have the time of the row before, and are left out: a velocity over no time is none.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Repeated {
+    /// Line and time of the first one.
+    first: Option<(u64, f64)>,
+    rows: usize,
+}
+
+impl Repeated {
+    /// Adds a row at `t`, s.
+    pub(super) fn add(&mut self, line: u64, t: f64) {
+        self.first.get_or_insert((line, t));
+        self.rows += 1;
+    }
+
+    /// Note on the rows of the recording `name` that are left out beside `taken` ones; `None` if there
+    /// are none.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if they are more than a tenth of the rows.
+    pub(super) fn check(&self, name: &str, taken: usize) -> Result<Option<String>, Failure> {
+        let Some((line, t)) = self.first else {
+            return Ok(None);
+        };
+        let (rows, t) = (self.rows, shown(t));
+        let share = rows as f64 / (rows + taken) as f64;
+        if share > REPEATED_SHARE {
+            return Err(Failure::Input(format!(
+                "{name}: column t: {:.0} % of the rows have the time of the row before, the first in line \
+                 {line} at {t} s; log t with more digits, or give the rate of the rows with --row-rate HZ",
+                100.0 * share
+            )));
+        }
+        let (are, have) = if rows == 1 {
+            ("row is", "has")
+        } else {
+            ("rows are", "have")
+        };
+        Ok(Some(format!(
+            "{rows} {are} left out that {have} the time of the row before, the first in line {line} at {t} s"
+        )))
+    }
+}
+
 /// The log's own times, which --row-rate replaces.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Replaced {
@@ -135,6 +182,40 @@ mod tests {
             let line = format!("r.csv: line {}: column t: ", times.len() + 1);
             assert!(error.starts_with(&line) && error.contains(said), "{error}");
         }
+    }
+
+    /// Times of 1 kHz, of which every `nth` row has that of the row before.
+    fn repeated(nth: usize, first: usize) -> String {
+        let mut text = String::from("t,counts_large\n");
+        for k in 0..100 {
+            let late = usize::from(k >= first && (k - first).is_multiple_of(nth));
+            text += &format!("{},{}\n", 20.0 + 1e-3 * (k - late) as f64, 2 * k);
+        }
+        text
+    }
+
+    #[test]
+    fn rows_at_the_time_of_the_row_before_are_left_out() {
+        let recording = read(&repeated(100, 50), "", None).unwrap();
+        assert!(recording.t.windows(2).all(|pair| pair[1] > pair[0]));
+        // The counts are those of the first row at a time, so the velocity is right on both sides.
+        assert_eq!(recording.t.len(), 99);
+        assert_eq!(recording.trace.counts_large[48..52], [96, 98, 102, 104]);
+        assert_eq!(recording.trace.periods.unwrap()[50], 2.0);
+        let note = "1 row is left out that has the time of the row before, the first in line 52 at 20.049 s";
+        assert_eq!(recording.notes[0], note);
+        let several = read(&repeated(20, 10), "", None).unwrap();
+        assert!(several.notes[0].starts_with("5 rows are left out that have the time"));
+        let rated = read(&repeated(100, 50), "", Some(1000.0)).unwrap();
+        assert_eq!(rated.t.len(), 100);
+    }
+
+    #[test]
+    fn log_with_few_digits_of_time_is_refused() {
+        let error = read(&repeated(2, 10), "", None).unwrap_err();
+        let said = "r.csv: column t: 45 % of the rows have the time of the row before, the first in line \
+                    12 at 20.009 s; log t with more digits, or give the rate of the rows with --row-rate HZ";
+        assert_eq!(error, said);
     }
 
     #[test]
