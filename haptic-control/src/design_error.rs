@@ -19,6 +19,8 @@ pub enum DesignError {
     Margins,
     /// A parameter of a scene is out of its range.
     Scene,
+    /// The control rate is not in the range of the scene `excite`.
+    ExciteRate,
 }
 
 impl DesignError {
@@ -32,8 +34,12 @@ impl DesignError {
             }
             Self::Bandwidth => "bandwidth must be above 0 and at most a tenth of the control rate",
             Self::Singular => "pole placement has no solution for this device and rate",
-            Self::Margins => "velocity loop misses its margins: lower the regulation bandwidth",
+            Self::Margins => {
+                "velocity loop misses its margins: the amplifier or the estimator is too slow for the \
+                 bandwidth of regulation"
+            }
             Self::Scene => "scene parameter out of its range",
+            Self::ExciteRate => "scene excite needs a control rate of 1 to 100 kHz",
         }
     }
 }

@@ -4,11 +4,12 @@
 //! ```text
 //! plant       A ω = B i + ..   A = (1 - e^(-T/τm) z⁻¹) (1 - e^(-T/τa) z⁻¹)   B = b1 z⁻¹ + b2 z⁻²
 //! law         S i = T ω_f - R ω            S = (1 - z⁻¹) (1 + s1 z⁻¹)       integral action
-//! regulation  A S + B R = P                P = (1 - p z⁻¹)³ (1 - e^(-T/τa) z⁻¹)
+//! regulation  A S + B R = P                P = (1 - p z⁻¹)² (1 - q z⁻¹) (1 - e^(-T/τa) z⁻¹)
 //! tracking    T = P / B(1)                 ω_f = ((1 - m) / (1 - m z⁻¹))² ω_wanted
 //! ```
 //! so that ω follows `B / B(1) ω_f`, a delay of about one tick, for any regulation poles.
-//! `p = e^(-2π f_r T)`, `m = e^(-2π f_t T)`.
+//! `p = e^(-2π f_r T)`, `m = e^(-2π f_t T)`. `q = p`, or `q = e^(-T/τm)` if the motor on its coupler is
+//! more than twice as fast as f_r.
 
 use crate::design_error::DesignError;
 use crate::device::DualStage;
@@ -56,13 +57,16 @@ pub struct RstDesign {
     pub mechanical_pole: f64,
     /// Pole e^(-T/τa) of the amplifier.
     pub electrical_pole: f64,
-    /// Pole p of regulation, three times.
+    /// Pole p of regulation.
     pub regulation_pole: f64,
     /// Pole m of each half of the tracking filter.
     pub tracking_pole: f64,
     /// Margins, the estimator's delay included.
     pub margins: Margins,
 }
+
+/// Bandwidth of the motor on its coupler, in regulation bandwidths, above which its pole is kept.
+const FAST: f64 = 2.0;
 
 /// Least modulus margin that is accepted: the distance of the open loop from -1.
 pub const LEAST_MODULUS: f64 = 0.5;
@@ -114,7 +118,13 @@ impl RstDesign {
 
         let pole = exp(-tau * poles.regulation.0 * t);
         let pair = multiply([1.0, -pole, 0.0], [1.0, -pole, 0.0]);
-        let rest = multiply([1.0, -pole, 0.0], [1.0, -pa, 0.0]);
+        // A motor that settles fast by itself keeps its pole: to slow it down costs the margin.
+        let third = if FAST * tau * poles.regulation.0 * mechanical < 1.0 {
+            pm
+        } else {
+            pole
+        };
+        let rest = multiply([1.0, -third, 0.0], [1.0, -pa, 0.0]);
         let p = multiply([pair[0], pair[1], pair[2]], [rest[0], rest[1], rest[2]]);
         // A (1 - z⁻¹) =: 1 + c1 z⁻¹ + c2 z⁻² + c3 z⁻³; unknown s1, r0, r1, r2.
         let c = multiply(a, [1.0, -1.0, 0.0]);

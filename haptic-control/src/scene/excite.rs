@@ -19,22 +19,25 @@ use pattern::{LARGEST, LARGEST_OF_STROKES, SECTIONS, Segment};
 /// ends at zero current and does not repeat. Levels change at whole milliseconds, so that a
 /// recording at 1 kHz contains the exact currents.
 ///
-/// The pattern bounds the currents (0.9 A large, 0.15 A small). The speed of the large motor is
-/// bounded by its largest current against the coupler of a held handle; the constructor checks it.
-/// The excitation ends when the handle is more than 2 rad from its angle at the start, or faster
-/// than 25 rad/s over a millisecond.
+/// The currents are at most 0.9 A (large) and 0.15 A (small). A motor gets a part of them, the same in
+/// the whole pattern, where its current limit is lower, or where 0.9 A against the coupler of a held
+/// handle would drive the large motor beyond 60 rad/s. The excitation ends when the handle is more
+/// than 2 rad from its angle at the start, or faster than 25 rad/s over a millisecond.
 ///
 /// ```
-/// use estimator_core::Hertz;
+/// use estimator_core::{Amps, Hertz};
 /// use haptic_control::{DualStage, Excite};
-/// assert!(Excite::new(&DualStage::DEFAULT, Hertz(10e3)).is_ok());
-/// // With half the damping, 0.9 A could drive the large motor at 88 rad/s.
+/// let largest = |device| Excite::new(device, Hertz(10e3)).unwrap().largest().large;
+/// assert_eq!(largest(&DualStage::DEFAULT), Amps::new(0.9));
+/// // With half the damping, 0.9 A would drive the large motor at 88 rad/s.
 /// let weak = DualStage { damping: 0.48e-3, ..DualStage::DEFAULT };
-/// assert!(Excite::new(&weak, Hertz(10e3)).is_err());
+/// assert!((largest(&weak).get() - 0.9 * 60.0 / 87.75).abs() < 1e-6);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Excite {
     rate_hz: u32,
+    /// Part of the pattern's current that each motor gets, large and small.
+    share: [f32; 2],
 }
 
 parameters! { Excite }
@@ -78,20 +81,42 @@ impl Excite {
     /// The excitation of `device` by a controller that runs at `rate`.
     ///
     /// # Errors
-    /// [`DesignError::Scene`] unless the rate is 1 to 100 kHz, the device's current limits allow
-    /// the pattern, and the pattern's largest current cannot drive the large motor beyond 60 rad/s.
+    /// [`DesignError::ExciteRate`] unless the rate is 1 to 100 kHz.
     pub const fn new(device: &DualStage, rate: Hertz) -> Result<Self, DesignError> {
+        if !(rate.0 >= 1e3 && rate.0 <= 100e3) {
+            return Err(DesignError::ExciteRate);
+        }
         let [large, small] = [LARGEST[0] as f64 / 1000.0, LARGEST[1] as f64 / 1000.0];
-        let speed = device.large.torque_constant * large / device.damping;
-        let in_limits = large <= device.large.current_limit && small <= device.small.current_limit;
-        if in_limits && speed <= LARGE_SPEED && rate.0 >= 1e3 && rate.0 <= 100e3 {
-            Ok(Self {
-                rate_hz: (rate.0 + 0.5) as u32,
-            })
-        } else {
-            Err(DesignError::Scene)
+        let at_speed = LARGE_SPEED * device.damping / device.large.torque_constant;
+        let limit = least(device.large.current_limit, at_speed);
+        Ok(Self {
+            rate_hz: (rate.0 + 0.5) as u32,
+            share: [
+                least(1.0, limit / large) as f32,
+                least(1.0, device.small.current_limit / small) as f32,
+            ],
+        })
+    }
+
+    /// Largest currents of the pattern.
+    #[must_use]
+    pub fn largest(&self) -> Currents {
+        let [large, small] = LARGEST;
+        self.currents(f32::from(large), f32::from(small))
+    }
+
+    /// The currents where the pattern has these, mA.
+    fn currents(&self, large: f32, small: f32) -> Currents {
+        let amps = |milliamps: f32, share: f32| Amps::new(share * (milliamps / 1000.0));
+        Currents {
+            large: amps(large, self.share[0]),
+            small: amps(small, self.share[1]),
         }
     }
+}
+
+const fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 impl ExciteState {
@@ -133,16 +158,13 @@ impl ExciteState {
         }
     }
 
-    fn drive(&mut self) {
+    fn drive(&mut self, excite: &Excite) {
         let Some(segment) = self.segment() else {
             return self.end();
         };
         let sign = if self.pass % 2 == 0 { 1.0 } else { -1.0 };
-        let amps = |milliamps: f32| Amps::new(sign * milliamps / 1000.0);
-        self.currents = Currents {
-            large: amps(segment.large(self.step)),
-            small: amps(f32::from(segment.small)),
-        };
+        let (large, small) = (segment.large(self.step), f32::from(segment.small));
+        self.currents = excite.currents(sign * large, sign * small);
     }
 }
 
@@ -169,7 +191,7 @@ impl Scene for Excite {
 
     fn torque(&self, state: &mut ExciteState, handle: &Handle<()>) -> NewtonMetres {
         // The first tick is the start of the first millisecond.
-        state.drive();
+        state.drive(self);
         state.part += 1000;
         if state.part >= self.rate_hz {
             state.part -= self.rate_hz;

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use estimator_core::{CoupledMotor, Hertz};
-use haptic_control::{DesignError, DualStage, LEAST_MODULUS, LoopPoles, Rig, RstDesign};
+use haptic_control::{DesignError, DualStage, LEAST_MODULUS, LoopPoles, Rig, RstDesign, SceneKind};
 
 pub(crate) const RATES: [f64; 5] = [800.0, 1e3, 10e3, 11.6e3, 20e3];
 
@@ -151,6 +151,81 @@ fn loop_below_the_least_modulus_margin_is_refused() {
     assert_eq!(LEAST_MODULUS, 0.5);
 }
 
+/// Light motors and strong couplers settle faster than the regulation, which must not slow them down.
+#[test]
+fn fast_motors_keep_their_pole_and_the_margins() {
+    let default = RstDesign::new(&DualStage::DEFAULT, Hertz(1e3), LoopPoles::DEFAULT).unwrap();
+    for rate in RATES {
+        for (inertia, damping) in [
+            (1.0, 1.7),
+            (1.0, 1.9),
+            (1.0, 4.0),
+            (0.3, 1.0),
+            (0.1, 1.0),
+            (0.1, 10.0),
+            (0.01, 1.0),
+        ] {
+            let mut device = DualStage::DEFAULT;
+            device.large.inertia *= inertia;
+            device.damping *= damping;
+            let design = RstDesign::new(&device, Hertz(rate), LoopPoles::DEFAULT).unwrap();
+            let p = (-TAU * LoopPoles::DEFAULT.regulation.0 / rate).exp();
+            let own = (-device.damping / device.large.inertia / rate).exp();
+            // 13.3 Hz of the default device are 1.11 times the regulation.
+            let q = if 1.11 * damping / inertia > 2.0 {
+                own
+            } else {
+                p
+            };
+            let electrical = design.electrical_pole;
+            let wanted = product(
+                &product(&[1.0, -p], &[1.0, -p]),
+                &product(&[1.0, -q], &[1.0, -electrical]),
+            );
+            for (found, wanted) in design.p.iter().zip(wanted) {
+                assert!((found - wanted).abs() < 1e-12, "{rate} {inertia} {damping}");
+            }
+            let modulus = design.margins.modulus;
+            println!("{rate} Hz, J {inertia}, b {damping}: {modulus:.3}");
+            assert!(
+                modulus > default.margins.modulus - 0.01,
+                "{rate} {inertia} {damping}: {modulus}"
+            );
+        }
+    }
+}
+
+#[test]
+fn devices_within_a_factor_of_ten_have_a_loop_and_every_scene() {
+    let keys: [fn(&mut DualStage) -> &mut f64; 7] = [
+        |device| &mut device.damping,
+        |device| &mut device.large.inertia,
+        |device| &mut device.large.torque_constant,
+        |device| &mut device.large.current_limit,
+        |device| &mut device.small.inertia,
+        |device| &mut device.small.torque_constant,
+        |device| &mut device.small.current_limit,
+    ];
+    for k in 0..3_usize.pow(keys.len() as u32) {
+        let mut device = DualStage::DEFAULT;
+        for (place, key) in keys.iter().enumerate() {
+            *key(&mut device) *= [0.1, 1.0, 10.0][k / 3_usize.pow(place as u32) % 3];
+        }
+        for rate in [Hertz(1e3), Hertz(10e3)] {
+            let rig = Rig::new(&device, rate, LoopPoles::DEFAULT);
+            assert!(rig.is_ok(), "{rate:?}: {device:?}: {:?}", rig.err());
+            for scene in SceneKind::ALL {
+                let usual = scene.usual(&device, rate);
+                assert!(
+                    usual.is_ok(),
+                    "{rate:?}: {device:?}: {scene}: {:?}",
+                    usual.err()
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn impossible_designs_are_refused() {
     let late = LoopPoles {
@@ -174,6 +249,7 @@ fn messages_name_parameter_and_requirement() {
         (DesignError::Singular, "no solution"),
         (DesignError::Margins, "misses its margins"),
         (DesignError::Scene, "scene parameter"),
+        (DesignError::ExciteRate, "1 to 100 kHz"),
     ] {
         assert!(error.message().contains(words), "{error:?}");
         assert_eq!(error.to_string(), error.message());

@@ -5,7 +5,7 @@ use estimator_core::{
     preset,
 };
 use haptic_control::{
-    AnyScene, Controller, Currents, DualStage, Excite, LoopPoles, Rig, Switchboard,
+    AnyScene, Controller, Currents, DesignError, DualStage, Excite, LoopPoles, Rig, Switchboard,
 };
 
 const DEVICE: DualStage = DualStage::DEFAULT;
@@ -15,9 +15,18 @@ const LEVELS_MS: usize = 3050;
 
 /// The currents of `ticks` at a rate, with the handle where `handle` says it is, counts.
 fn run(rate_hz: f64, ticks: u32, handle: impl Fn(u32) -> i32) -> Vec<Currents> {
+    run_on(&DEVICE, rate_hz, ticks, handle)
+}
+
+fn run_on(
+    device: &DualStage,
+    rate_hz: f64,
+    ticks: u32,
+    handle: impl Fn(u32) -> i32,
+) -> Vec<Currents> {
     let rate = Hertz(rate_hz);
-    let rig = Rig::new(&DEVICE, rate, LoopPoles::DEFAULT).unwrap();
-    let excite = Excite::new(&DEVICE, rate).unwrap();
+    let rig = Rig::new(device, rate, LoopPoles::DEFAULT).unwrap();
+    let excite = Excite::new(device, rate).unwrap();
     let controller = Controller::new(excite, FiniteDifference, FiniteDifference, &rig);
     let mut state = controller.start(&Sample::default());
     (0..ticks)
@@ -215,8 +224,7 @@ fn excitation_is_the_same_alone_and_in_the_switchboard() {
 }
 
 #[test]
-fn devices_and_rates_are_accepted_at_the_limits_and_refused_beyond() {
-    let taken = |device: &DualStage, rate_hz| Excite::new(device, Hertz(rate_hz)).is_ok();
+fn rates_are_accepted_at_the_limits_and_refused_beyond() {
     for (rate_hz, is_taken) in [
         (999.9, false),
         (1e3, true),
@@ -224,23 +232,56 @@ fn devices_and_rates_are_accepted_at_the_limits_and_refused_beyond() {
         (100.1e3, false),
         (f64::NAN, false),
     ] {
-        assert_eq!(taken(&DEVICE, rate_hz), is_taken, "{rate_hz}");
+        let excite = Excite::new(&DEVICE, Hertz(rate_hz));
+        let refused = Err(DesignError::ExciteRate);
+        assert!(
+            if is_taken {
+                excite.is_ok()
+            } else {
+                excite == refused
+            },
+            "{rate_hz}"
+        );
     }
-    for (amps, is_taken) in [(0.9, true), (0.899, false)] {
-        let mut device = DEVICE;
-        device.large.current_limit = amps;
-        assert_eq!(taken(&device, 10e3), is_taken, "{amps}");
-    }
-    for (amps, is_taken) in [(0.15, true), (0.149, false)] {
-        let mut device = DEVICE;
-        device.small.current_limit = amps;
-        assert_eq!(taken(&device, 10e3), is_taken, "{amps}");
-    }
+}
+
+#[test]
+fn currents_are_those_that_the_device_allows() {
+    let largest = |device: &DualStage| {
+        let largest = Excite::new(device, Hertz(10e3)).unwrap().largest();
+        [largest.large, largest.small].map(|amps| f64::from(amps.get()))
+    };
+    let near = |[a, b]: [f64; 2], [c, d]: [f64; 2]| {
+        assert!(
+            (a - c).abs() < 1e-6 && (b - d).abs() < 1e-7,
+            "{a} {b}: {c} {d}"
+        );
+    };
+    near(largest(&DEVICE), [0.9, 0.15]);
+    let mut device = DEVICE;
+    (device.large.current_limit, device.small.current_limit) = (0.3, 0.05);
+    near(largest(&device), [0.3, 0.05]);
     // 0.9 A drive the large motor of a held handle to 60 rad/s.
-    for (part, is_taken) in [(1.001, true), (0.999, false)] {
+    for (part, amps) in [(1.001, 0.9), (0.5, 0.45), (1e-3, 0.9e-3)] {
         let mut device = DEVICE;
         device.damping = part * 0.9 * device.large.torque_constant / 60.0;
-        assert_eq!(taken(&device, 10e3), is_taken, "{part}");
+        near(largest(&device), [amps, 0.15]);
+        let speed = device.large.torque_constant * largest(&device)[0] / device.damping;
+        assert!(speed < 60.001, "{speed} rad/s");
+    }
+}
+
+/// Every current of the pattern is the same part of that for the default device.
+#[test]
+fn smaller_currents_have_the_same_pattern() {
+    let mut device = DEVICE;
+    (device.large.current_limit, device.small.current_limit) = (0.45, 0.05);
+    let whole = run(1e3, 17_000, |_| 0);
+    let parts = run_on(&device, 1e3, 17_000, |_| 0);
+    for (k, (whole, part)) in whole.iter().zip(&parts).enumerate() {
+        let large = part.large.get() - 0.5 * whole.large.get();
+        let small = part.small.get() - whole.small.get() / 3.0;
+        assert!(large.abs() < 1e-6 && small.abs() < 1e-6, "{k} ms");
     }
 }
 
