@@ -35,8 +35,8 @@ impl DesignError {
             Self::Bandwidth => "bandwidth must be above 0 and at most a tenth of the control rate",
             Self::Singular => "pole placement has no solution for this device and rate",
             Self::Margins => {
-                "velocity loop misses its margins: the amplifier or the estimator is too slow for the \
-                 bandwidth of regulation"
+                "velocity loop misses its margins: lower the bandwidth of regulation or the delay of the \
+                 estimator"
             }
             Self::Scene => "scene parameter out of its range",
             Self::ExciteRate => "scene excite needs a control rate of 1 to 100 kHz",
