@@ -175,3 +175,62 @@ fn gap_is_bridged_with_a_note_and_an_unsuitable_clock_is_named() {
         assert!(line.contains(said), "{line}");
     }
 }
+
+/// 4 s at 5 kHz of a shaft that swings slowly, of an encoder of 65536 counts per revolution: its counts,
+/// and the text with times from `start` s on.
+fn swing(start: u64, count: impl Fn(i64) -> i64) -> String {
+    let mut text = String::from("t,counts_large\n");
+    for k in 0..=20_000_u64 {
+        let us = 200 * k;
+        let angle = 20_000.0 * (1e-6 * us as f64).sin();
+        let count = count(30_000 + angle.floor() as i64);
+        let s = start + us / 1_000_000;
+        text += &format!("{s}.{:06},{count}\n", us % 1_000_000);
+    }
+    text
+}
+
+const SWING: &str = "--fine-counts-per-rev 65536 --counts-per-rev 1024";
+
+/// The fields of the rows of a coarse recording: time, count, stamp and boundary.
+fn rows(text: &str) -> Vec<[Option<f64>; 4]> {
+    let lines = text.lines().skip(2);
+    let rows = lines.map(|line| {
+        let mut fields = line.split(',').map(|field| field.parse().ok());
+        std::array::from_fn(|_| fields.next().flatten())
+    });
+    rows.collect()
+}
+
+#[test]
+fn times_since_1970_give_the_stamps_of_times_from_zero() {
+    let folder = Folder::new(HOST_SIM);
+    folder.write("zero.csv", swing(0, |count| count));
+    folder.write("epoch.csv", swing(1_700_000_000, |count| count));
+    for name in ["zero", "epoch"] {
+        folder.good(format!("coarsen {name}.csv {SWING} --out {name}-c.csv").as_str());
+    }
+    let replay = "replay epoch-c.csv --estimator imm-edge --estimator m-over-t --out v.csv";
+    folder.good(replay);
+    let [zero, epoch] = ["zero-c.csv", "epoch-c.csv"].map(|name| rows(&folder.text(name)));
+    assert_eq!(zero.len(), epoch.len());
+    for all in [&zero, &epoch] {
+        for pair in all.windows(2) {
+            // The shaft does not cross a boundary and return within a row.
+            if pair[0][1] == pair[1][1] {
+                assert_eq!(pair[0][2..], pair[1][2..], "{pair:?}");
+            }
+        }
+    }
+    let mut compared = 0;
+    for (zero, epoch) in zero.iter().zip(&epoch) {
+        assert_eq!(zero[0], epoch[0]);
+        if let (true, [_, _, Some(a), _], [_, _, Some(b), _]) = (zero[3] == epoch[3], zero, epoch) {
+            // A time since 1970 is a multiple of 2^-22 s, 20 ticks of 84 MHz. An edge lies between two
+            // times, less the first one.
+            assert!((a - b).abs() <= 21.0, "{zero:?} {epoch:?}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 3900, "{compared}");
+}

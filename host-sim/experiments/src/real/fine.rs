@@ -20,8 +20,10 @@ const GAP: f64 = 1.5;
 /// Position of a shaft as a fine encoder saw it. Times need not be even.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Fine {
-    /// Time of each row, s, rising.
+    /// Time of each row from the first one, s, rising: a time since 1970 has too few digits for edges.
     pub t: Vec<f64>,
+    /// Time of the first row in the file, s.
+    pub start: f64,
     /// Counts of the fine encoder, without the steps of a counter of 32 bits.
     pub counts: Vec<i64>,
     /// Torque of the motor from a row to the next one, N.m; `None` without column
@@ -66,6 +68,7 @@ impl Fine {
             omega: omega.map(|_| Vec::new()),
             ..Self::default()
         };
+        let mut last: Option<f64> = None;
         let mut record = ByteRecord::new();
         while reader
             .read_byte_record(&mut record)
@@ -79,11 +82,15 @@ impl Fine {
                 record: &record,
             };
             let t: f64 = row.number(time)?;
-            if let Some(last) = fine.t.last().filter(|last| t <= **last) {
+            if let Some(last) = last.filter(|last| t <= *last) {
                 let said =
                     format!("{t} s is not after the {last} s above it; correct or remove the row");
                 return Err(row.wrong(time, &said));
             }
+            if last.replace(t).is_none() {
+                fine.start = t;
+            }
+            let t = t - fine.start;
             fine.t.push(t);
             let count = row.count(count)?;
             // A counter of 32 bits wraps.
@@ -94,7 +101,7 @@ impl Fine {
                     values.push(row.number(place)?);
                 }
             }
-            if t - fine.t[0] >= seconds {
+            if t >= seconds {
                 break;
             }
         }
@@ -107,7 +114,7 @@ impl Fine {
     }
 
     /// The intervals in which a tick is lost at this period and that are longer than usual: their number,
-    /// and duration and end of the longest one, s. `None` if there are none.
+    /// and duration and end of the longest one, s, the end as in the file. `None` if there are none.
     #[must_use]
     pub fn gaps(&self, period_s: f64) -> Option<(usize, [f64; 2])> {
         let steps = self.t.windows(2).map(|pair| pair[1] - pair[0]);
@@ -121,7 +128,7 @@ impl Fine {
                 .filter(|(step, _)| *step > longest_usual)
         };
         let (step, end) = gaps().max_by(|a, b| a.0.total_cmp(&b.0))?;
-        Some((gaps().count(), [step, *end]))
+        Some((gaps().count(), [step, self.start + *end]))
     }
 
     /// Mean rate of the rows, Hz.
@@ -265,6 +272,14 @@ mod tests {
                 .to_string();
             assert!(error.starts_with(said), "{error}");
         }
+    }
+
+    #[test]
+    fn times_are_those_from_the_first_row() {
+        let text = b"t,fine_count\n1700000000.0,1\n1700000000.5,2\n1700000003,3\n1700000004,3\n";
+        let fine = Fine::parse(text, "f.csv", 3.0).unwrap();
+        assert_eq!((fine.t.clone(), fine.start), (vec![0.0, 0.5, 3.0], 1.7e9));
+        assert_eq!(fine.gaps(1.0), Some((1, [2.5, 1_700_000_003.0])));
     }
 
     #[test]

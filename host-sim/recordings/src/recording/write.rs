@@ -23,6 +23,7 @@ impl Recording {
             text += name;
         }
         text += "\n";
+        let mut last = None;
         for (k, t) in self.t.iter().enumerate() {
             // Writing to a string cannot fail.
             let _ = write!(text, "{t},{}", trace.counts_large[k]);
@@ -37,6 +38,8 @@ impl Recording {
                     None => write!(text, ",,"),
                     Some(edge) => {
                         let tick = ((t - edge.age_s) * EDGE_CLOCK_HZ).round();
+                        let tick = same_edge(last, tick, edge.boundary).unwrap_or(tick);
+                        last = Some((tick, edge.boundary));
                         write!(text, ",{tick},{}", edge.boundary)
                     }
                 };
@@ -47,5 +50,45 @@ impl Recording {
             text += "\n";
         }
         text.into_bytes()
+    }
+}
+
+/// The stamp of the row before, if its edge is the one at `tick` over `boundary`: the sum of time and age
+/// is rounded, so that it may lie in the next tick.
+fn same_edge(last: Option<(f64, u32)>, tick: f64, boundary: u32) -> Option<f64> {
+    let (stamp, of) = last?;
+    (of == boundary && (stamp - tick).abs() <= 1.0).then_some(stamp)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use simulation::trace::{EdgeStamp, Trace};
+
+    #[test]
+    fn edge_has_one_stamp_however_old_it_is() {
+        // In the middle between two ticks; then hours at rest.
+        let edge_s = (84_000_000.0 + 0.5) / EDGE_CLOCK_HZ;
+        let t: Vec<_> = (1..500).map(|k| 1.3 + f64::from(k) * 17.7).collect();
+        let stamp = |t: &f64| {
+            Some(EdgeStamp {
+                age_s: t - edge_s,
+                boundary: 5,
+            })
+        };
+        let recording = Recording {
+            trace: Trace {
+                counts_large: vec![5; t.len()],
+                edges: Some(t.iter().map(stamp).collect()),
+                ..Trace::default()
+            },
+            t,
+            ..Recording::default()
+        };
+        let text = String::from_utf8(recording.to_csv()).unwrap();
+        let stamp = |line: &str| line.split(',').nth(2).map(str::to_owned);
+        let mut stamps: Vec<_> = text.lines().skip(1).map(stamp).collect();
+        stamps.dedup();
+        assert_eq!(stamps.len(), 1, "{stamps:?}");
     }
 }

@@ -44,8 +44,7 @@ impl Path {
         Fine {
             t: self.us.iter().map(|us| 2.5 + 1e-6 * *us as f64).collect(),
             counts: self.counts.iter().map(|count| *count as i64).collect(),
-            torque: None,
-            omega: None,
+            ..Fine::default()
         }
     }
 }
@@ -198,6 +197,7 @@ fn truth_is_interpolated_and_torque_becomes_the_current_of_the_row_before() {
         counts: vec![0, 7, 14, 14],
         torque: Some(vec![0.5, -0.25, 1.0, 2.0]),
         omega: Some(vec![0.0, 7.0, 17.5, 10.5]),
+        ..Fine::default()
     };
     let coarse = Coarse {
         fine_counts_per_rev: 1000,
