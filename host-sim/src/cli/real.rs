@@ -14,7 +14,7 @@ use experiments::table::layout::{NARROW, terminal_width};
 use recordings::arguments::DeviceFile;
 use report::{self, Printout};
 use terminal::failure::Failure;
-use terminal::output::{Folder, is_stdout, print_bytes, write_whole};
+use terminal::output::{Folder, is_stdout, note, print_bytes, write_whole};
 
 use super::arguments::{ParameterOptions, kinds, rates};
 use super::page::{self, one_to_stdout, progress};
@@ -96,6 +96,9 @@ pub(super) fn run(options: &Real, command_line: &str) -> Result<(), Failure> {
     }
     let settings = settings(options)?;
     let recordings = Recordings::read(&options.data, settings.seconds)?;
+    for line in recordings.notes() {
+        note(line);
+    }
     let cases = recordings.cases(&settings);
     if cases.is_empty() {
         return Err(Failure::Input(format!(

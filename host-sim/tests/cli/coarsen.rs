@@ -234,3 +234,41 @@ fn times_since_1970_give_the_stamps_of_times_from_zero() {
     }
     assert!(compared > 3900, "{compared}");
 }
+
+#[test]
+fn absolute_encoder_is_unwrapped_with_a_note() {
+    let folder = Folder::new(HOST_SIM);
+    // The swing from 30 000 counts down to 10 000 passes the zero of this encoder.
+    let modulus = |modulus: i64| move |count: i64| (count - 20_000).rem_euclid(modulus);
+    folder.write("a.csv", swing(0, |count| count - 20_000));
+    folder.write("b.csv", swing(0, modulus(65_536)));
+    folder.write("c.csv", swing(0, modulus(16_384)));
+    folder.write(
+        "d.csv",
+        folder.text("b.csv").replace("counts_large", "fine_count"),
+    );
+    let coarse = |name: &str, note: Option<&str>| {
+        let command = format!("coarsen {name}.csv {SWING} --rate 700 --out out.csv");
+        let output = folder.run(command.as_str());
+        assert_eq!(output.status.code(), Some(0));
+        let errors = String::from_utf8(output.stderr).unwrap();
+        match note {
+            None => assert_eq!(errors, ""),
+            Some(note) => assert!(errors.contains(note), "{errors}"),
+        }
+        folder.text("out.csv")
+    };
+    let straight = coarse("a", None);
+    let note = "wraps at 65536 and is unwrapped: a revolution of an absolute encoder";
+    assert_eq!(
+        coarse("b", Some(&format!("b.csv: counts_large {note}\n"))),
+        straight
+    );
+    assert_eq!(
+        coarse("d", Some(&format!("d.csv: fine_count {note}\n"))),
+        straight
+    );
+    let jumps = " from one row to the next and spans 16382 counts, with 65536 counts per revolution: if the \
+                 encoder is absolute, give its counts with --fine-counts-per-rev\n";
+    assert_ne!(coarse("c", Some(jumps)), straight);
+}

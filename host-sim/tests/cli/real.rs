@@ -202,3 +202,38 @@ fn invalid_input_of_real_and_coarsen_is_one_line() {
     let said = ".: no recording has the columns that observer reads; see host-sim estimators";
     assert!(error.contains(said), "{error}");
 }
+
+#[test]
+fn absolute_encoder_of_real_is_unwrapped_with_a_note() {
+    let folder = Folder::new(HOST_SIM);
+    folder.write("recordings.toml", LIST);
+    let shifted = |wrap: bool| {
+        let lines = fine();
+        let mut text = String::new();
+        for line in lines.lines() {
+            let fields: Vec<_> = line.split(',').collect();
+            text += &match fields[1].parse::<i64>() {
+                Err(_) => format!("{line}\n"),
+                Ok(count) => {
+                    let count = count + 90_000;
+                    let count = if wrap { count % 100_000 } else { count };
+                    format!("{},{count},{}\n", fields[0], fields[2])
+                }
+            };
+        }
+        text
+    };
+    let run = |wrap: bool| {
+        folder.write("f.csv", shifted(wrap));
+        let output = folder.run("real --data . --counts-per-rev 1000 --json -");
+        assert_eq!(output.status.code(), Some(0));
+        (output.stdout, String::from_utf8(output.stderr).unwrap())
+    };
+    let (straight, said) = run(false);
+    assert_eq!(said, "");
+    let (unwrapped, said) = run(true);
+    assert!(unwrapped == straight);
+    let note =
+        "f.csv: fine_count wraps at 100000 and is unwrapped: a revolution of an absolute encoder\n";
+    assert_eq!(said, note);
+}

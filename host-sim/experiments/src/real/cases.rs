@@ -44,6 +44,17 @@ impl Recordings {
         self.0.iter().map(|(source, _)| source)
     }
 
+    /// What is said about the counts of fine recordings, one line each.
+    pub fn notes(&self) -> impl Iterator<Item = String> {
+        self.0.iter().flat_map(|(source, data)| {
+            let notes = match data {
+                Data::Fine(fine) => fine.notes.as_slice(),
+                Data::Coarse(_) => &[],
+            };
+            notes.iter().map(|note| format!("{}: {note}", source.file))
+        })
+    }
+
     /// The runs of `settings`, by rate, resolution, recording and phase; those of coarse recordings,
     /// at their own resolution and rate, are the last ones of that rate. What a fine recording does
     /// not resolve is left out.
@@ -148,7 +159,9 @@ fn data(folder: &Path, source: &Source, seconds: f64) -> Result<Data, Failure> {
     };
     match source.kind {
         sources::Kind::Fine => {
-            let fine = Fine::read(&path, seconds)?;
+            let mut fine = Fine::read(&path, seconds)?;
+            let remedy = format!("in {}", sources::LIST);
+            fine.unwrap_counts(source.counts_per_rev, &remedy);
             fine.omega
                 .is_some()
                 .then_some(Data::Fine(fine))

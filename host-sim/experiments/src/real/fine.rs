@@ -4,6 +4,7 @@ use std::path::Path;
 
 use csv::ByteRecord;
 use recordings::log::Log;
+use recordings::recording::unwrap_long_counts;
 use terminal::failure::Failure;
 
 /// Columns that are read, each with the names under which it is found; others are ignored.
@@ -26,11 +27,15 @@ pub struct Fine {
     pub start: f64,
     /// Counts of the fine encoder, without the steps of a counter of 32 bits.
     pub counts: Vec<i64>,
+    /// Name of the column of the counts.
+    pub count_column: String,
     /// Torque of the motor from a row to the next one, N.m; `None` without column
     /// `motor_torque_nm`.
     pub torque: Option<Vec<f64>>,
     /// True velocity at each row, rad/s; `None` without column `true_omega_rad_s`.
     pub omega: Option<Vec<f64>>,
+    /// What is said about the counts, one line each.
+    pub notes: Vec<String>,
 }
 
 impl Fine {
@@ -66,6 +71,7 @@ impl Fine {
         let mut fine = Self {
             torque: torque.map(|_| Vec::new()),
             omega: omega.map(|_| Vec::new()),
+            count_column: self::text(&header, count),
             ..Self::default()
         };
         let mut last: Option<f64> = None;
@@ -111,6 +117,14 @@ impl Fine {
             )));
         }
         Ok(fine)
+    }
+
+    /// Unwraps the counts of an absolute encoder with `per_rev` counts per revolution, and notes it. `remedy`
+    /// says how other counts per revolution are given.
+    pub fn unwrap_counts(&mut self, per_rev: u32, remedy: &str) {
+        let (counts, column) = (&mut self.counts, &self.count_column);
+        let said = unwrap_long_counts(counts, &self.t, per_rev, column, remedy);
+        self.notes.extend(said);
     }
 
     /// The intervals in which a tick is lost at this period and that are longer than usual: their number,
@@ -223,6 +237,7 @@ mod tests {
         let fine = Fine::parse(text, "f.csv", 1.0).unwrap();
         assert_eq!((fine.t, fine.counts), (vec![0.0, 0.5, 1.0], vec![-5, 7, 8]));
         assert_eq!((fine.torque, fine.omega), (None, None));
+        assert_eq!(fine.count_column, "fine_count");
         let text = b"t,counts_large,true_omega,motor_torque_nm\n0,1,2.5,-0.5\n1,2,3.5,0.25\n";
         let fine = Fine::parse(text, "f.csv", 9.0).unwrap();
         assert_eq!(fine.omega, Some(vec![2.5, 3.5]));

@@ -44,8 +44,10 @@ impl Wanted {
             phase: self.phase,
             torque_constant: self.torque_constant,
         };
-        let fine = Fine::parse(&log.bytes()?, log.name(), seconds)?;
+        let mut fine = Fine::parse(&log.bytes()?, log.name(), seconds)?;
+        fine.unwrap_counts(coarse.fine_counts_per_rev, "with --fine-counts-per-rev");
         let mut recording = coarse.recording(&fine, log.name())?;
+        recording.notes.extend(fine.notes.iter().cloned());
         let gaps = fine.gaps(1.0 / self.rate_hz);
         recording.notes.extend(gaps.map(|(number, ends)| {
             let [longest_s, end_s] = ends.map(|s| (s * 1e6).round() / 1e6);
