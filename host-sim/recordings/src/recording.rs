@@ -38,6 +38,7 @@ use std::path::Path;
 
 pub use absolute::{after, boundary};
 pub use board::{BoardColumns, BoardReader};
+pub use currents::implausible_current;
 pub use formats::{KnownLog, known_logs};
 pub use long_counts::unwrap_long_counts;
 pub(crate) use options::MEASURED;
@@ -49,6 +50,7 @@ pub use survey::Survey;
 
 use crate::log::Log;
 use columns::Columns;
+use currents::largest;
 use records::Records;
 
 use simulation::trace::Trace;
@@ -142,7 +144,12 @@ impl Recording {
         while let Some(row) = records.next()? {
             columns.take(&row)?;
         }
-        columns.into_recording(name, &places, &records.layout)
+        let mut recording = columns.into_recording(name, &places, &records.layout)?;
+        let current = recording.trace.current.as_deref().map_or(0.0, largest);
+        let option = || hint::current(&places, &records.layout);
+        let implausible = implausible_current(current, options.current_limit, option);
+        recording.notes.extend(implausible);
+        Ok(recording)
     }
 }
 

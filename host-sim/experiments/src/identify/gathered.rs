@@ -4,14 +4,12 @@ use super::equations::{Equations, Shaft, TURNS};
 use super::fit::{Equation, Fit};
 use super::motion::Motion;
 use super::{MOST_UNEXPLAINED, WINDOW_S, breaks, handle, quantity};
-use recordings::recording::Recording;
+use recordings::recording::{Recording, implausible_current};
 use simulation::device::Device;
 use terminal::failure::Failure;
 
 /// Share of the motor's torque from which a model that lacks it tells nothing.
 const REFUSED_UNEXPLAINED: f64 = 0.30;
-/// Current that no amplifier of the device delivers, relative to its limit.
-const IMPLAUSIBLE_CURRENT: f64 = 20.0;
 /// Largest relative spread of a velocity that is constant.
 const CONSTANT_SPREAD: f64 = 0.05;
 /// Mean number of uneven steps per window from which the error of too few windows names the clock.
@@ -131,13 +129,10 @@ impl Gathered {
         if self.largest_current == 0.0 {
             return Err("column current is zero throughout; record scene excite".to_owned());
         }
-        let (largest, limit) = (self.largest_current, device.stages.large.current_limit);
-        if largest > IMPLAUSIBLE_CURRENT * limit {
-            let option = self.current_option.as_deref().unwrap_or("current=current");
-            return Err(format!(
-                "column current reaches {largest} A, where large.current_limit_a is {limit}; if it is in mA, \
-                 give --column '{option}:mA'"
-            ));
+        let limit = device.stages.large.current_limit;
+        let option = || self.current_option.clone();
+        if let Some(why) = implausible_current(self.largest_current, limit, option) {
+            return Err(why);
         }
         let Some(fit) = Fit::new(&self.large.usable) else {
             return Err(match &self.uneven {

@@ -4,8 +4,36 @@ use terminal::failure::Failure;
 
 use super::columns::scaled;
 use super::layout::Place;
+use super::numbers::shown;
 use super::options::Column;
 use super::row::Row;
+
+/// Current that no amplifier of the device delivers, relative to its limit.
+const IMPLAUSIBLE: f64 = 20.0;
+
+/// The largest size of a current, A.
+pub(super) fn largest(current: &[f64]) -> f64 {
+    current.iter().fold(0.0, |most, i| most.max(i.abs()))
+}
+
+/// A line on a large motor's current of up to `largest_a` that no amplifier with the limit `limit_a`
+/// delivers; `None` for a plausible one. `option` is the part of `--column` without a unit that names its
+/// column.
+#[must_use]
+pub fn implausible_current(
+    largest_a: f64,
+    limit_a: f64,
+    option: impl FnOnce() -> Option<String>,
+) -> Option<String> {
+    (largest_a > IMPLAUSIBLE * limit_a).then(|| {
+        format!(
+            "column current reaches {} A, where large.current_limit_a is {limit_a}; if it is in mA, give \
+             --column '{}:mA'",
+            shown(largest_a),
+            option().unwrap_or_else(|| "current=current".to_owned())
+        )
+    })
+}
 
 /// Current of a motor from each row to the next one, A: the measured one where it is known, otherwise the
 /// command.

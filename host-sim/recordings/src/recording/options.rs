@@ -101,6 +101,8 @@ pub struct ReadOptions {
     pub(super) counts_per_rev: [u32; 2],
     /// Torque constants of the large and of the small motor, N.m/A.
     pub(super) torque_constant: [f64; 2],
+    /// Limit of the large motor's current, A.
+    pub(super) current_limit: f64,
     /// Modulus of the raw counts of each encoder.
     pub(super) modulus: [Option<u32>; 2],
     /// Rate of the rows, for a recording without a column of time.
@@ -116,6 +118,7 @@ impl ReadOptions {
             columns: Vec::new(),
             counts_per_rev: [stages.large.counts_per_rev, stages.small.counts_per_rev],
             torque_constant: [stages.large.torque_constant, stages.small.torque_constant],
+            current_limit: stages.large.current_limit,
             modulus: [None; 2],
             row_rate_hz: None,
         }

@@ -10,6 +10,8 @@ use terminal::failure::Failure;
 use super::absolute::{self, Found};
 use super::clock;
 use super::columns::Columns;
+use super::currents::{implausible_current, largest};
+use super::hint;
 use super::options::ReadOptions;
 use super::parts::BLOCK;
 use super::records::Records;
@@ -105,12 +107,14 @@ impl Survey {
         let mut seen = [Seen::NOTHING; 2];
         let mut ends: Option<[f64; 2]> = None;
         let mut rows = 0;
+        let mut current: f64 = 0.0;
         loop {
             let block = columns.read(&mut records, BLOCK, |_, _, _| ())?;
             if block.t.is_empty() {
                 break;
             }
             rows += block.t.len();
+            current = current.max(block.trace.current.as_deref().map_or(0.0, largest));
             for (k, &t) in block.t.iter().enumerate() {
                 let large = seen[0].add(block.trace.counts_large[k], moduli[0]);
                 let small = block.trace.counts_small.as_ref();
@@ -122,6 +126,8 @@ impl Survey {
             }
         }
         let mut notes = columns.checked(name, &places, &records.layout)?;
+        let option = || hint::current(&places, &records.layout);
+        notes.extend(implausible_current(current, options.current_limit, option));
         let (period, rate_hz) = steps.period(name)?;
         let mut wraps = [None; 2];
         let names = [("counts_large", "large"), ("counts_small", "small")];

@@ -63,3 +63,69 @@ fn positions_off_whole_counts_are_reported() {
     let said = "counts from a whole count with 1000 counts/rev and are rounded to the nearest";
     assert!(notes.contains(said), "{notes}");
 }
+
+/// 5 s at 1 kHz of a shaft that swings, with its current as `ampere` writes 0.9 A.
+fn with_current(column: &str, ampere: &str) -> String {
+    let mut text = format!("t,counts_large,{column}\n");
+    for k in 0..5000 {
+        let t = f64::from(k) * 1e-3;
+        let count = (3000.0 * (4.0 * t).sin()).floor();
+        let sign = if (4.0 * t).sin() > 0.0 { "-" } else { "" };
+        text += &format!("{t},{count},{sign}{ampere}\n");
+    }
+    text
+}
+
+#[test]
+fn current_that_no_amplifier_delivers_is_reported_once_a_file() {
+    let folder = Folder::new(HOST_SIM);
+    folder.write("ma.csv", with_current("iq", "900"));
+    folder.write("own.csv", with_current("current", "900"));
+    folder.write("a.csv", with_current("current", "0.9"));
+    folder.write("d.toml", "large.current_limit_a = 50\n");
+    let said = |name: &str, theirs: &str| {
+        format!(
+            "{name}.csv: column current reaches 900 A, where large.current_limit_a is 6; if it is in mA, \
+             give --column 'current={theirs}:mA'"
+        )
+    };
+    let notes = |command: &str| {
+        let output = folder.run(command);
+        let notes = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{command}: {notes}");
+        notes.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    for command in [
+        "replay LOG --estimator pll --out v.csv",
+        "replay LOG --estimator pll --resample 500 --out v.csv",
+        "recommend LOG",
+        "tune LOG --estimator low-pass --out p.toml",
+        "plot LOG --out p.svg",
+    ] {
+        let of = |log: &str| notes(&command.replace("LOG", log));
+        for (log, name, theirs) in [
+            ("own.csv", "own", "current"),
+            ("ma.csv --column current=iq", "ma", "iq"),
+        ] {
+            let notes = of(log);
+            let said = said(name, theirs);
+            assert_eq!(notes.matches(&said).count(), 1, "{command}: {notes}");
+        }
+        for log in [
+            "a.csv",
+            "ma.csv",
+            "ma.csv --column current=iq:mA",
+            "own.csv --device d.toml",
+        ] {
+            let notes = of(log);
+            assert!(!notes.contains("in mA"), "{command}, {log}: {notes}");
+        }
+    }
+    let both = notes("recommend own.csv own.csv");
+    assert_eq!(both.matches("if it is in mA").count(), 2, "{both}");
+    let line = folder.refused("identify own.csv --clamped");
+    assert!(
+        line.contains(&said("own", "current")["own.csv: ".len()..]),
+        "{line}"
+    );
+}
