@@ -19,6 +19,12 @@ pub fn counts_per_rev() -> RangedI64ValueParser<u32> {
     clap::value_parser!(u32).range(i64::from(least)..=i64::from(most))
 }
 
+/// A line on counts per revolution of `source` that are `used` where a recording has `stated` others.
+#[must_use]
+pub fn differing_counts(used: u32, source: &str, stated: u32) -> String {
+    format!("{used} counts/rev of {source} are used; the file states {stated}")
+}
+
 /// The device file of a command.
 #[derive(Clone, Debug, Default, Args)]
 pub struct DeviceFile {
@@ -233,7 +239,8 @@ impl DeviceFile {
             match first {
                 _ if is_known && stated == *counts => {}
                 _ if is_known => lines.push(format!(
-                    "{name}: {counts} counts/rev of the options are used; the file states {stated}"
+                    "{name}: {}",
+                    differing_counts(*counts, "the options", stated)
                 )),
                 Some(first) if stated != *counts => {
                     return Err(Failure::Input(format!(

@@ -272,3 +272,24 @@ fn absolute_encoder_is_unwrapped_with_a_note() {
                  encoder is absolute, give its counts with --fine-counts-per-rev\n";
     assert_ne!(coarse("c", Some(jumps)), straight);
 }
+
+#[test]
+fn fine_counts_that_differ_from_the_stated_ones_are_reported() {
+    let folder = Folder::new(HOST_SIM);
+    let stated = format!("# counts_per_rev = 65536\n{}", swing(0, |count| count));
+    folder.write("f.csv", stated);
+    let notes = |option: &str| {
+        let command = format!("coarsen f.csv {option} --counts-per-rev 1024 --out c.csv");
+        let output = folder.run(command.as_str());
+        assert_eq!(output.status.code(), Some(0));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let said = "f.csv: 32768 counts/rev of the options are used; the file states 65536\n";
+    assert_eq!(notes("--fine-counts-per-rev 32768"), said);
+    assert_eq!(notes("--fine-counts-per-rev 65536"), "");
+    assert_eq!(notes(""), "");
+    let list = "[[recording]]\nfile = 'f.csv'\nwhat = 'x'\nkind = 'fine'\ncounts_per_rev = 32768\n";
+    folder.write("recordings.toml", list);
+    let said = "f.csv: 32768 counts/rev of recordings.toml are used; the file states 65536\n";
+    assert_eq!(notes(""), said);
+}

@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
+use recordings::arguments::differing_counts;
 use recordings::log::Log;
 use recordings::recording::{Recording, SLOWEST_HZ, stated_counts_per_rev};
 use terminal::failure::Failure;
 
 use super::coarsen::Coarse;
 use super::fine::Fine;
-use super::sources::Source;
+use super::sources::{LIST, Source};
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -37,16 +38,18 @@ impl Wanted {
         phase(self.phase)?;
         let seconds = self.seconds.map_or(Ok(f64::INFINITY), seconds)?;
         let log = Log::open(path)?;
+        let (fine_counts_per_rev, differing) = self.fine_counts(&log)?;
         let coarse = Coarse {
-            fine_counts_per_rev: self.fine_counts(&log)?,
+            fine_counts_per_rev,
             counts_per_rev: self.counts_per_rev,
             rate_hz: self.rate_hz,
             phase: self.phase,
             torque_constant: self.torque_constant,
         };
         let mut fine = Fine::parse(&log.bytes()?, log.name(), seconds)?;
-        fine.unwrap_counts(coarse.fine_counts_per_rev, "with --fine-counts-per-rev");
+        fine.unwrap_counts(fine_counts_per_rev, "with --fine-counts-per-rev");
         let mut recording = coarse.recording(&fine, log.name())?;
+        recording.notes.extend(differing);
         recording.notes.extend(fine.notes.iter().cloned());
         let gaps = fine.gaps(1.0 / self.rate_hz);
         recording.notes.extend(gaps.map(|(number, ends)| {
@@ -60,23 +63,26 @@ impl Wanted {
     }
 
     /// Counts per revolution of the fine encoder: those of the option, of the list beside the file, or
-    /// those that the text states.
-    fn fine_counts(&self, log: &Log) -> Result<u32, Failure> {
-        let known = match self.fine_counts_per_rev {
-            None => Source::of(log.path())?.map(|source| source.counts_per_rev),
-            given => given,
+    /// those that the text states; and a line if the text states others.
+    fn fine_counts(&self, log: &Log) -> Result<(u32, Option<String>), Failure> {
+        let stated = stated_counts_per_rev(&log.head()?, log.name())?;
+        let (counts, source) = match self.fine_counts_per_rev {
+            Some(given) => (Some(given), "the options"),
+            None => match Source::of(log.path())? {
+                Some(source) => (Some(source.counts_per_rev), LIST),
+                None => (stated, ""),
+            },
         };
-        let known = match known {
-            None => stated_counts_per_rev(&log.head()?, log.name())?,
-            known => known,
-        };
-        known.ok_or_else(|| {
+        let counts = counts.ok_or_else(|| {
             Failure::Input(format!(
                 "{}: its counts per revolution are not known; give --fine-counts-per-rev, or list the \
                  file in a recordings.toml beside it, or state them in its first line: # counts_per_rev = N",
                 log.name()
             ))
-        })
+        })?;
+        let differing = stated.filter(|stated| *stated != counts);
+        let line = differing.map(|stated| differing_counts(counts, source, stated));
+        Ok((counts, line))
     }
 }
 
