@@ -69,7 +69,8 @@ impl Parameters {
     /// Sets a value from `NAME.PARAM=VALUE`.
     ///
     /// # Errors
-    /// [`Failure::Input`] that names the wrong part and the possible ones.
+    /// [`Failure::Input`] that names the wrong part and the possible ones, or a parameter that is set
+    /// already.
     pub fn set(&mut self, text: &str) -> Result<(), Failure> {
         let form = || {
             Failure::Input(format!(
@@ -82,6 +83,13 @@ impl Parameters {
         let index = kind.parameter(parameter.trim())?;
         let value = value.trim().parse().map_err(|_| form())?;
         check(&kind.parameters[index], kind.name, value)?;
+        let is_same = |known: &Override| known.kind == kind.name && known.index == index;
+        if self.overrides.iter().any(is_same) {
+            return Err(Failure::Input(format!(
+                "--set {text}: {}.{} is given twice; keep one",
+                kind.name, kind.parameters[index].name
+            )));
+        }
         self.overrides.push(Override {
             kind: kind.name.to_owned(),
             index,

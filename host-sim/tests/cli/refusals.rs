@@ -20,6 +20,17 @@ fn invalid_arguments_are_refused_with_a_remedy() {
         (&["compare", "--set", "foaw-end-fit.n=129"], "from 1 to 128"),
         (
             &[
+                "replay",
+                "file",
+                "--set",
+                "pll.bandwidth_hz=200",
+                "--set",
+                "pll.bandwidth_hz = 200",
+            ],
+            "--set pll.bandwidth_hz = 200: pll.bandwidth_hz is given twice; keep one",
+        ),
+        (
+            &[
                 "compare",
                 "--set",
                 "low-pass.cutoff_hz=600",
