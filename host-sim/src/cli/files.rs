@@ -1,12 +1,12 @@
-//! The files of a command line: an output that is an input, or two outputs that are one file, are
-//! refused before the command runs.
+//! The files of a command line: an output that is an input, that has no place, or that is the file of
+//! another output, is refused before the command runs.
 
 use std::any::TypeId;
 use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgMatches, Command};
 use terminal::failure::Failure;
-use terminal::output::is_same;
+use terminal::output::{check_place, is_same, is_stdout};
 
 /// Options that name an output. All other paths are inputs.
 const OUTPUTS: [&str; 5] = ["out", "json", "csv", "report", "mcap"];
@@ -19,12 +19,15 @@ struct Named {
     id: String,
     name: String,
     path: PathBuf,
+    /// Whether it is a file and no folder.
+    is_file: bool,
 }
 
 /// Checks the paths of the command in `matches`.
 ///
 /// # Errors
-/// [`Failure::Input`] that names an output that is an input, or two outputs that are one file.
+/// [`Failure::Input`] that names an output that is an input or has no place, or two outputs that are one
+/// file.
 pub(super) fn check(root: &Command, matches: &ArgMatches) -> Result<(), Failure> {
     let Some((name, matches)) = matches.subcommand() else {
         return Ok(());
@@ -40,6 +43,9 @@ pub(super) fn check(root: &Command, matches: &ArgMatches) -> Result<(), Failure>
             if [name, &output.id, &input.id] != KEPT {
                 refuse_input(&output.name, &output.path, &input.path)?;
             }
+        }
+        if output.is_file && !is_stdout(&output.path) {
+            check_place(&output.path)?;
         }
         let mut others = outputs[..k].iter();
         if let Some(other) = others.find(|other| is_same(&other.path, &output.path)) {
@@ -87,11 +93,18 @@ fn given(argument: &Arg, matches: &ArgMatches) -> Vec<Named> {
         Some(long) => format!("--{long}"),
         None => id.clone(),
     };
+    // With --shard the output is the folder of the shard's file.
+    let in_shards = matches
+        .try_get_raw("shard")
+        .is_ok_and(|part| part.is_some());
+    let values = argument.get_value_names().unwrap_or_default();
+    let is_file = !in_shards && values.iter().any(|value| value.starts_with("FILE"));
     let raw = matches.try_get_raw(&id).ok().flatten();
     let named = |value| Named {
         id: id.clone(),
         name: name.clone(),
         path: PathBuf::from(value),
+        is_file,
     };
     raw.into_iter().flatten().map(named).collect()
 }

@@ -64,7 +64,7 @@ fn place(path: &Path) -> Option<PathBuf> {
 /// [`Failure::Input`] if the name is that of a folder, or lies in something that is none.
 pub fn check_place(path: &Path) -> Result<(), Failure> {
     let name = path.display();
-    if path.is_dir() {
+    if path.is_dir() || ends_as_folder(path) {
         return Err(Failure::Input(format!(
             "{name}: is a folder; choose the name of a file"
         )));
@@ -77,6 +77,12 @@ pub fn check_place(path: &Path) -> Result<(), Failure> {
         ))),
         _ => Ok(()),
     }
+}
+
+/// Whether `path` ends with a separator, after which the system takes no file.
+fn ends_as_folder(path: &Path) -> bool {
+    let last = path.as_os_str().as_encoded_bytes().last();
+    last.is_some_and(|byte| std::path::is_separator(char::from(*byte)))
 }
 
 /// Writes `bytes` to `path`, creating its folder; see [`write_with`].
@@ -142,7 +148,7 @@ fn write_file(
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
     let old = fs::metadata(path).ok();
-    if old.as_ref().is_some_and(fs::Metadata::is_dir) {
+    if old.as_ref().is_some_and(fs::Metadata::is_dir) || ends_as_folder(path) {
         return Err(ErrorKind::IsADirectory.into());
     }
     // Inherited descriptors are written, not replaced.
@@ -247,6 +253,14 @@ mod tests {
         assert_eq!(said(&file), Ok(()));
         assert_eq!(said(&folder.join("new/b.csv")), Ok(()));
         assert!(said(folder).unwrap_err().contains("is a folder"));
+        let new = folder.join("new/c/");
+        assert!(said(&new).unwrap_err().contains("new/c/: is a folder"));
+        let error = write_whole(&new, b"x").unwrap_err().to_string();
+        assert!(
+            error.contains("new/c/: cannot write: is a directory"),
+            "{error}"
+        );
+        assert!(!folder.join("new").exists());
         let inside = said(&file.join("b.csv")).unwrap_err();
         assert!(inside.contains("a.csv is no folder"), "{inside}");
     }

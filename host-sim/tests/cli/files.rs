@@ -93,3 +93,28 @@ fn two_outputs_of_one_file_are_refused() {
         );
     }
 }
+
+#[test]
+fn output_that_ends_as_a_folder_is_refused_before_the_run() {
+    let folder = Folder::new(HOST_SIM);
+    folder.write("log.csv", log());
+    fs::create_dir(folder.path().join("there")).unwrap();
+    for command in [
+        "replay log.csv --estimator pll --out",
+        "replay log.csv --estimator pll --json",
+        "plot log.csv --out",
+        "coarsen log.csv --counts-per-rev 1024 --fine-counts-per-rev 4096 --out",
+        "tune log.csv --estimator low-pass --out",
+        "simulate --scenario track --out",
+    ] {
+        for output in ["new/a/b/", "there/"] {
+            let line = folder.refused(format!("{command} {output}").as_str());
+            let said = format!("{output}: is a folder; choose the name of a file");
+            assert!(line.contains(&said), "{command}: {line}");
+        }
+        let line = folder.refused(format!("{command} log.csv/b").as_str());
+        let said = "log.csv/b: log.csv is no folder; choose another path";
+        assert!(line.contains(said), "{command}: {line}");
+    }
+    assert!(!folder.path().join("new").exists());
+}

@@ -84,7 +84,7 @@ fn symbolic_link_is_kept_and_its_target_is_replaced() {
     symlink("deep", path("folder-link")).unwrap();
     let error = folder.refused(&replay_to("folder-link"));
     assert!(
-        error.contains("folder-link: cannot write: is a directory"),
+        error.contains("folder-link: is a folder; choose the name of a file"),
         "{error}"
     );
     symlink("loop", path("loop")).unwrap();

@@ -208,7 +208,7 @@ fn streams_that_cannot_be_recorded_or_drawn_are_refused_with_one_line() {
             "fewer than two rows from 5 to 0.012 s",
         ),
         (&["r.csv", "--estimator", "x"], "no estimator 'x'"),
-        (&["r.csv", "--out", "r.csv/x.svg"], "cannot write"),
+        (&["r.csv", "--out", "r.csv/x.svg"], "r.csv is no folder"),
     ] {
         let error = folder.refused(&[&["plot"], arguments].concat());
         assert!(error.contains(said), "{arguments:?}: {error}");
