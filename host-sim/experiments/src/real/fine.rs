@@ -291,10 +291,11 @@ mod tests {
 
     #[test]
     fn times_are_those_from_the_first_row() {
-        let text = b"t,fine_count\n1700000000.0,1\n1700000000.5,2\n1700000003,3\n1700000004,3\n";
-        let fine = Fine::parse(text, "f.csv", 3.0).unwrap();
-        assert_eq!((fine.t.clone(), fine.start), (vec![0.0, 0.5, 3.0], 1.7e9));
-        assert_eq!(fine.gaps(1.0), Some((1, [2.5, 1_700_000_003.0])));
+        let text = b"t,fine_count\n1700000000,1\n1700000000.5,2\n1700000001,3\n1700000003.5,3\n1700000004,3\n";
+        let fine = Fine::parse(text, "f.csv", 3.5).unwrap();
+        assert_eq!(fine.t, [0.0, 0.5, 1.0, 3.5]);
+        assert_eq!(fine.start, 1.7e9);
+        assert_eq!(fine.gaps(1.0), Some((1, [2.5, 1_700_000_003.5])));
     }
 
     #[test]
