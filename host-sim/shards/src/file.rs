@@ -137,10 +137,17 @@ impl File {
             sum(&text.as_bytes()[..first.len() + 1 + rows.len()])
         );
         let wanted = heading.part.count(heading.jobs);
-        if found != end.sum || end.rows != wanted || rows.lines().count() != wanted {
+        if found != end.sum {
             return Err(refused(format!(
                 "changed after it was written: the checksum is {found}, not {}; {again}",
                 end.sum
+            )));
+        }
+        let counted = rows.lines().count();
+        if end.rows != wanted || counted != wanted {
+            return Err(refused(format!(
+                "has {counted} rows and states {}, where shard {} of {} jobs has {wanted}; {again}",
+                end.rows, heading.part, heading.jobs
             )));
         }
         let rows = rows.to_owned();

@@ -134,3 +134,49 @@ fn another_number_of_jobs_is_refused() {
         "{said}"
     );
 }
+
+/// The checksum of such a file is right.
+#[test]
+fn part_with_another_number_of_rows_is_refused() {
+    let (_folder, paths) = written(RUN, 4, 4, 2);
+    let whole = fs::read_to_string(&paths[0]).unwrap();
+    let part = Part { k: 1, n: 2 };
+    let of = |rows: &[usize]| {
+        let bytes = file::write(&Squares { numbers: 4 }, RUN, part, 4, rows).unwrap();
+        String::from_utf8(bytes).unwrap()
+    };
+    // The end is no part of the checksum.
+    let stated = |text: String, wrong: &str, rows: &str| {
+        let [wrong, rows] = [wrong, rows].map(|rows| format!("{{\"rows\":{rows},"));
+        assert!(text.contains(&wrong), "{text}");
+        text.replace(&wrong, &rows)
+    };
+    for (text, said) in [
+        (
+            of(&[0]),
+            "has 1 rows and states 1, where shard 1/2 of 4 jobs has 2",
+        ),
+        (
+            stated(of(&[0]), "1", "2"),
+            "has 1 rows and states 2, where shard 1/2 of 4 jobs has 2",
+        ),
+        (
+            of(&[0, 4, 16]),
+            "has 3 rows and states 3, where shard 1/2 of 4 jobs has 2",
+        ),
+        (
+            stated(whole.clone(), "2", "1"),
+            "has 2 rows and states 1, where shard 1/2 of 4 jobs has 2",
+        ),
+    ] {
+        fs::write(&paths[0], text).unwrap();
+        let error = Shards::read(&paths, "1").unwrap_err().to_string();
+        assert!(error.contains(said), "{error}");
+        assert!(
+            error.contains("; run squares --all --shard 1/2 --out "),
+            "{error}"
+        );
+    }
+    fs::write(&paths[0], whole).unwrap();
+    assert!(Shards::read(&paths, "1").is_ok());
+}
