@@ -15,6 +15,12 @@ const COLUMNS: [(&str, &[&str]); 4] = [
     ("true_omega_rad_s", &["true_omega_rad_s", "true_omega"]),
 ];
 
+/// Bytes that separate fields, in the order in which they are tried. After the first one a comma is a
+/// decimal comma.
+const SEPARATORS: [u8; 3] = *b",;\t";
+
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// Shortest gap, in usual intervals or ticks.
 const GAP: f64 = 1.5;
 
@@ -54,7 +60,9 @@ impl Fine {
     /// As [`Fine::read`].
     pub fn parse(text: &[u8], name: &str, seconds: f64) -> Result<Self, Failure> {
         let failed = |error: &csv::Error| wrong_line(name, error);
+        let separator = separator(text);
         let mut reader = csv::ReaderBuilder::new()
+            .delimiter(separator)
             .trim(csv::Trim::All)
             .comment(Some(b'#'))
             .from_reader(text);
@@ -86,6 +94,7 @@ impl Fine {
                 line,
                 header: &header,
                 record: &record,
+                decimal_comma: separator != SEPARATORS[0],
             };
             let t: f64 = row.number(time)?;
             if let Some(last) = last.filter(|last| t <= *last) {
@@ -153,13 +162,40 @@ impl Fine {
     }
 }
 
+/// The byte that separates a time from a position in the header, which is the first line of text.
+fn separator(text: &[u8]) -> u8 {
+    let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
+    let mut lines = text.split(|byte| *byte == b'\n');
+    let header = lines.find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"));
+    let names_both = |separator: &u8| {
+        let fields = header
+            .into_iter()
+            .flat_map(|header| header.split(|byte| byte == separator));
+        let found: Vec<_> = fields
+            .filter_map(|field| column(field.trim_ascii()))
+            .collect();
+        [0, 1].iter().all(|column| found.contains(column))
+    };
+    let found = SEPARATORS.into_iter().find(names_both);
+    found.unwrap_or(SEPARATORS[0])
+}
+
+/// Index in [`COLUMNS`] of the column called `name`, which may be in quotes.
+fn column(name: &[u8]) -> Option<usize> {
+    let name = name.strip_prefix(BYTE_ORDER_MARK).unwrap_or(name);
+    let quoted = name
+        .strip_prefix(b"\"")
+        .and_then(|name| name.strip_suffix(b"\""));
+    let name = quoted.unwrap_or(name);
+    let is_known = |(_, names): &(&str, &[&str])| names.iter().any(|n| n.as_bytes() == name);
+    COLUMNS.iter().position(is_known)
+}
+
 /// Index of each column of [`COLUMNS`].
 fn places(header: &ByteRecord, name: &str) -> Result<[Option<usize>; COLUMNS.len()], Failure> {
     let mut places = [None; COLUMNS.len()];
     for (i, field) in header.iter().enumerate() {
-        let field = field.strip_prefix(b"\xef\xbb\xbf").unwrap_or(field);
-        let is_known = |(_, names): &(&str, &[&str])| names.iter().any(|n| n.as_bytes() == field);
-        let Some(column) = COLUMNS.iter().position(is_known) else {
+        let Some(column) = column(field) else {
             continue;
         };
         if places[column].replace(i).is_some() {
@@ -190,6 +226,7 @@ struct Row<'a> {
     line: u64,
     header: &'a ByteRecord,
     record: &'a ByteRecord,
+    decimal_comma: bool,
 }
 
 impl Row<'_> {
@@ -204,7 +241,11 @@ impl Row<'_> {
 
     fn number(&self, place: usize) -> Result<f64, Failure> {
         let text = text(self.record, place);
-        let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+        let number = text.parse().ok().or_else(|| match self.decimal_comma {
+            true => text.replacen(',', ".", 1).parse().ok(),
+            false => None,
+        });
+        let number = number.filter(|number: &f64| number.is_finite());
         number.ok_or_else(|| {
             let short: String = text.chars().take(20).flat_map(char::escape_debug).collect();
             let said = format!("'{short}' is not a number; correct or remove the row");
@@ -287,6 +328,22 @@ mod tests {
                 .to_string();
             assert!(error.starts_with(said), "{error}");
         }
+    }
+
+    #[test]
+    fn fields_are_separated_by_commas_semicolons_or_tabs() {
+        let text = "# a, b\nt;counts_large;motor_torque_nm\n0;-5;0,5\n0,25;7;-1.5\n";
+        for text in [
+            text.to_owned(),
+            text.replace(';', "\t"),
+            text.replacen('t', "\"t\"", 1),
+        ] {
+            let fine = Fine::parse(text.as_bytes(), "f.csv", 9.0).unwrap();
+            assert_eq!((fine.t, fine.counts), (vec![0.0, 0.25], vec![-5, 7]));
+            assert_eq!(fine.torque, Some(vec![0.5, -1.5]));
+        }
+        let error = Fine::parse(b"t,counts_large\n0,5,1\n", "f.csv", 9.0);
+        assert!(error.is_err());
     }
 
     #[test]
