@@ -24,6 +24,9 @@ def run(*command):
     [
         ({"scenario": "track", "rate": 1000, "seconds": 2, "seed": 7}, "--scenario track --seed 7"),
         ({"scene": "wall", "rate": 1000, "seconds": 2, "hand": "moving", "every": 5}, "--scene wall --hand moving --every 5"),
+        ({"scene": "excite", "rate": 1000, "seconds": 2, "hand": "still"}, "--hand still"),
+        ({"scene": "excite", "rate": 1000, "seconds": 2, "hand": "clamp"}, "--hand clamp"),
+        ({"scene": "excite", "rate": 1000, "seconds": 2, "hand": "nobody"}, "--hand nobody"),
     ],
 )
 def test_simulated_recording_is_that_of_the_command(options, flags, host_sim, tmp_path):
@@ -37,6 +40,12 @@ def test_simulated_recording_is_that_of_the_command(options, flags, host_sim, tm
     np.testing.assert_array_equal(simulated.true_velocity, read.true_velocity)
     np.testing.assert_array_equal(simulated.current, read.current)
     np.testing.assert_array_equal(simulated.coupled, read.coupled)
+
+
+def test_hands_differ():
+    hands = ("still", "clamp", "nobody", "moving")
+    recordings = [limpid.simulate(scene="excite", rate=1000, seconds=2, hand=hand) for hand in hands]
+    assert len({recording.coupled.tobytes() for recording in recordings}) == len(hands)
 
 
 def test_counts_are_the_integral_of_the_true_velocity():
@@ -154,6 +163,18 @@ def test_tuning_on_scenarios_has_the_values_of_the_command(host_sim, tmp_path):
     subprocess.run([host_sim, "tune", *flags.split()], check=True, capture_output=True, cwd=tmp_path, timeout=300)
     replayed = limpid.replay([1, 2, 3], 1000, estimator="pll", presets=tmp_path / "p.toml")
     assert replayed.parameters == tuned.parameters["pll"]
+
+
+def test_tuning_without_friction_is_that_of_the_command(host_sim, tmp_path):
+    options = {"rate": 1000, "estimators": "pll", "scenarios": ["step"], "seeds": 1, "seconds": 1}
+    tuned = limpid.tune(**options, friction=False)
+    flags = "--estimator pll --rate 1000 --scenario step --seeds 1 --seconds 1 --frictionless --out p.toml"
+    subprocess.run([host_sim, "tune", *flags.split()], check=True, capture_output=True, cwd=tmp_path, timeout=300)
+    written = [line for line in (tmp_path / "p.toml").read_text().splitlines() if line and line[0] != "#"]
+    assert [line for line in tuned.presets.splitlines() if line] == written
+    assert 'plant = "frictionless"' in written
+    with_friction = limpid.tune(**options).presets
+    assert 'plant = "friction"' in with_friction and "frictionless" not in with_friction
 
 
 def test_tuning_can_be_interrupted():
