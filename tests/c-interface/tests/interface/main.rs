@@ -6,3 +6,4 @@ mod examples;
 mod header;
 mod host;
 mod libraries;
+mod refused;
