@@ -128,6 +128,19 @@ fn store_takes_the_records_of_a_sector_and_a_half_between_two_restarts() {
     assert_eq!(store.save(&mut flash, &[6; N]), Ok(()));
 }
 
+/// Records of 64 bytes fill a sector to its last byte.
+#[test]
+fn record_that_ends_with_its_sector_is_found() {
+    const N: usize = 56;
+    let mut flash = Flash::blank();
+    let (mut store, _) = Store::<N>::open(&mut flash, SECTORS).expect("readable");
+    for k in 0..4 {
+        assert_eq!(store.save(&mut flash, &[k; N]), Ok(()), "{k}");
+    }
+    let (_, record) = Store::<N>::open(&mut flash, SECTORS).expect("readable");
+    assert_eq!(record, Some([3; N]));
+}
+
 #[test]
 fn loss_of_power_leaves_the_record_before_or_the_new_one() {
     // From every number of records on, at every byte of what the next start and save change.

@@ -43,14 +43,21 @@ fn pulse_that_is_not_whole_turns_after_the_first_stops_the_device() {
 
 #[test]
 fn device_is_armed_again_after_lost_counts_and_takes_the_next_pulse_for_the_reference() {
-    let mut bench = Bench::start(0);
-    pulse(&mut bench, Some(100), None);
-    pulse(&mut bench, Some(2000), None);
-    bench.request(Request::Arm);
-    bench.run(ticks(0.03));
-    pulse(&mut bench, Some(2000 + 4096), None);
-    pulse(&mut bench, Some(2000 + 3 * 4096), None);
-    assert_eq!(bench.state(), (Mode::Armed, Stop::None));
+    // Counts a turn.
+    for (large, turn) in [(true, 4096), (false, 20_000)] {
+        let mut bench = Bench::start(0);
+        let at = |bench: &mut Bench, count| match large {
+            true => pulse(bench, Some(count), None),
+            false => pulse(bench, None, Some(count)),
+        };
+        at(&mut bench, 100);
+        at(&mut bench, 2000);
+        bench.request(Request::Arm);
+        bench.run(ticks(0.03));
+        at(&mut bench, 2000 + turn);
+        at(&mut bench, 2000 + 3 * turn);
+        assert_eq!(bench.state(), (Mode::Armed, Stop::None), "{turn}");
+    }
 }
 
 #[test]
