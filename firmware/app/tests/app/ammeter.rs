@@ -1,10 +1,12 @@
 //! Measured currents in the control task.
 
-use estimator_core::Amps;
+use estimator_core::{Amps, Count, Sample};
 use firmware_app::ammeter::{Ammeter, Measure};
-use haptic_control::{Currents, Mode, Request, Stop};
+use firmware_app::config::{DEVICE, RATE_HZ};
+use firmware_app::control::Inputs;
+use haptic_control::{Currents, Flow, Mode, Request, Stop};
 
-use crate::bench::{Bench, CALM, ZERO, ticks};
+use crate::bench::{Bench, CALM, NO_PULSE, ZERO, ticks};
 
 /// An amplifier that drives although nothing is commanded. An image that measures nothing goes on.
 #[test]
@@ -41,4 +43,34 @@ fn device_whose_monitors_are_not_connected_cannot_be_armed() {
         let is_enabled = bench.state().0.is_enabled();
         assert_eq!(is_enabled, !<Ammeter as Measure>::WANTED, "{large} {small}");
     }
+}
+
+/// No current is commanded.
+#[test]
+fn overload_is_that_of_the_currents_that_have_flowed() {
+    let mut bench = Bench::start(0);
+    let at_rest = Sample::new(Count(0)).with_coupled(Count(0));
+    let flow = Flow {
+        currents: Currents {
+            small: Amps::new(1.5),
+            ..ZERO
+        },
+        mismatch: None,
+    };
+    let inputs = Inputs {
+        request: Some(Request::KeepAlive),
+        ..CALM
+    };
+    let mut held = 0;
+    while bench.state().0 == Mode::Armed && held < ticks(4.0) {
+        bench.control.check(&at_rest, &flow, &NO_PULSE);
+        bench.control.step(&at_rest, &inputs);
+        held += 1;
+    }
+    assert_eq!(bench.state(), (Mode::Safe, Stop::Overload));
+    // From the cold, in slots of 10 ms.
+    let part = (DEVICE.small.continuous_current / 1.5).powi(2);
+    let expected = DEVICE.small.winding_time_constant * -(1.0 - part).ln();
+    let held_s = f64::from(held) / f64::from(RATE_HZ);
+    assert!((held_s - expected).abs() < 0.02, "{held_s} s of {expected}");
 }
