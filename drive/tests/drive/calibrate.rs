@@ -2,8 +2,9 @@
 
 use std::process::Output;
 
+use drivers::link::Hello;
 use drivers::{Command, Setting, Settings};
-use haptic_control::{Request, SceneKind};
+use haptic_control::{Mode, Request, SceneKind, Stop};
 
 use crate::commands::{ARM, DISARM, deduplicated, sorted};
 use crate::scripted::{Board, Script};
@@ -35,6 +36,19 @@ fn afterwards(commands: &[Command]) -> Vec<Command> {
     };
     assert_eq!(*select, excite);
     rest.to_vec()
+}
+
+fn set(setting: Setting, value: f32) -> Command {
+    Command::Set {
+        setting: setting.number(),
+        value,
+    }
+}
+
+/// The changes of settings among the commands.
+fn sets(mut commands: Vec<Command>) -> Vec<Command> {
+    commands.retain(|command| matches!(command, Command::Set { .. }));
+    commands
 }
 
 fn text(output: &Output) -> [String; 2] {
@@ -139,10 +153,6 @@ fn short_strokes_are_repeated_once_with_other_zeros_which_a_failure_undoes() {
     assert!(said.contains("the strokes are repeated"), "{said}");
     assert!(said.contains("2 of 2 motors failed"), "{said}");
     let after = afterwards(&commands);
-    let set = |setting: Setting, value| Command::Set {
-        setting: setting.number(),
-        value,
-    };
     // Whole codes: 2040 - 0.012 / 6 / 1.1 2047 = 2036.3, and 2048 + 0.006 / 1.5 2047 = 2056.2.
     let other = [
         set(Setting::ZeroLarge, 2036.0),
@@ -157,6 +167,47 @@ fn short_strokes_are_repeated_once_with_other_zeros_which_a_failure_undoes() {
         after,
         [&other[..], &[ARM, excite, DISARM], &original].concat()
     );
+}
+
+/// The repeated strokes end with a fault of the board here.
+#[test]
+fn stop_in_the_repeated_strokes_undoes_the_other_zeros() {
+    let board = Board::new(Script {
+        strokes_end_after: Some(60),
+        stop: Some((100, Mode::Safe, Stop::Jump)),
+        stops_at: 2,
+        ..script(MEASURES)
+    });
+    let (output, commands) = board.run(&["calibrate"]);
+    let [_, said] = text(&output);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("the board stopped"), "{said}");
+    let sets = sets(commands);
+    assert_eq!(sets.len(), 4, "{sets:?}");
+    let original = [
+        set(Setting::ZeroLarge, 2040.0),
+        set(Setting::ZeroSmall, 2048.0),
+    ];
+    assert_eq!(sets[2..], original);
+}
+
+#[test]
+fn failed_bring_up_takes_back_that_the_signs_are_verified() {
+    let mut settings = Settings::DEFAULT;
+    assert!(settings.set(Setting::SignsVerified, 1.0));
+    let default = Script::default();
+    // An image for another device fails at once.
+    let board = Board::new(Script {
+        hello: Hello {
+            device: 1,
+            ..default.hello
+        },
+        settings,
+        ..default
+    });
+    let (output, commands) = board.run(&["bring-up"]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert_eq!(sets(commands), [set(Setting::SignsVerified, 0.0)]);
 }
 
 #[test]

@@ -62,6 +62,8 @@ struct Player<'a> {
     last: Option<u32>,
     /// Frame at which the command `select` came.
     selected: Option<u32>,
+    /// Commands `select` so far.
+    selections: u32,
     /// End of the pause.
     quiet_until: Option<Instant>,
     /// An answer that waits for the next question.
@@ -89,6 +91,7 @@ impl<'a> Player<'a> {
             asked: None,
             last: None,
             selected: None,
+            selections: 0,
             quiet_until: None,
             late: Vec::new(),
             bytes: Vec::new(),
@@ -125,7 +128,10 @@ impl<'a> Player<'a> {
             }
             Command::Request(Request::Arm) => self.state = self.script.armed,
             Command::Request(Request::Disarm) if self.script.disarms => self.state = Mode::Boot,
-            Command::Request(Request::Select(_)) => self.selected = Some(self.seq),
+            Command::Request(Request::Select(_)) => {
+                self.selected = Some(self.seq);
+                self.selections += 1;
+            }
             Command::Tune { .. } | Command::Torque(_) | Command::Estimator(_) => {
                 self.rejected.out_of_bounds += u32::from(self.script.refuses);
             }
@@ -233,6 +239,7 @@ impl<'a> Player<'a> {
             self.state = Mode::Running;
         }
         if let Some((frames, mode, stop)) = self.script.stop
+            && self.selections == self.script.stops_at
             && after(self.selected, frames)
         {
             (self.state, self.cause) = (mode, stop);

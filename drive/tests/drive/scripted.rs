@@ -30,6 +30,8 @@ pub(super) struct Script {
     pub(super) begin: Mode,
     /// State and cause that the board takes so many frames after the command `select`.
     pub(super) stop: Option<(u32, Mode, Stop)>,
+    /// Which command `select` this is, from 1.
+    pub(super) stops_at: u32,
     /// Frames from the command `select` until the scene runs; `None`: it never does.
     pub(super) starts_after: Option<u32>,
     /// From so many frames after the command `select` on, no frame comes for so long.
@@ -80,6 +82,7 @@ impl Default for Script {
             armed: Mode::Armed,
             begin: Mode::Boot,
             stop: None,
+            stops_at: 1,
             starts_after: Some(0),
             pause: None,
             hang_up: None,
