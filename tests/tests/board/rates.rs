@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
 use estimator_core::{Hertz, Model, SteadyKalman, SteadyKalmanTriple};
-use experiments::closed_loop::Hand;
+use experiments::closed_loop::{Hand, Press};
 use firmware_app::config::DEVICE;
 use firmware_app::large::NAMES;
 use haptic_control::{LoopPoles, Mode, Rig, SceneKind, Stop, Switchboard};
@@ -123,6 +123,38 @@ fn faults_are_found_in_time_at_every_rate() {
         let halt = faulty(image, Fault::Halt(5));
         assert_eq!(end(&halt), (Mode::Safe, Stop::TickOverrun), "{rate_hz} Hz");
     }
+}
+
+/// Below 10 kHz a tick does what other rates divide among ten.
+#[test]
+fn monitor_windings_and_balance_stop_the_device_at_the_lowest_rate() {
+    let (_, image) = &images()[0];
+    let turned = |angle| {
+        Hand::Pressing(Press {
+            angle,
+            moving_s: 0.5,
+            rest_s: 4.0,
+        })
+    };
+    let swapped = vec![(SETTLED_S, Fault::SmallSwapped)];
+    let runs = [
+        (
+            of_scene(SceneKind::Off, turned(12.0), 0.5),
+            Stop::HandleOverspeed,
+        ),
+        (of_scene(SceneKind::Hold, turned(1.5), 3.5), Stop::Overload),
+        (
+            Setup {
+                faults: swapped,
+                ..of_scene(SceneKind::FreeAir, Hand::Moving, SETTLED_S + 1.0)
+            },
+            Stop::TorqueBalance,
+        ),
+    ];
+    let ends = runs
+        .each_ref()
+        .map(|(setup, _)| end(&run_checked(image, setup)));
+    assert_eq!(ends, runs.map(|(_, cause)| (Mode::Safe, cause)));
 }
 
 #[test]
