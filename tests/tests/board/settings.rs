@@ -3,10 +3,12 @@
 use drivers::link::Message;
 use drivers::{Command, Saved, Setting, Settings, encode};
 use haptic_control::{Mode, Request, SceneKind, Stop};
+use virtual_board::command::Command as Rtt;
+use virtual_board::fault::Fault;
 use virtual_board::flash::{Change, SECTOR};
 use virtual_board::run::{Outcome, Setup};
 
-use crate::image::{free_air, run};
+use crate::image::{free_air, run, run_one};
 use crate::link::of_port;
 
 /// DAC codes of full scale.
@@ -165,4 +167,66 @@ fn full_sector_is_erased_at_the_start_under_a_patient_watchdog() {
     let (erased, kept) = run.flash.bytes().split_at(SECTOR as usize);
     assert!(erased.iter().all(|byte| *byte == 0xFF) && kept[0] != 0xFF);
     assert_eq!(run.flash.settings(), Some(Settings::COMMISSIONED));
+}
+
+#[test]
+fn watchdog_waits_28_ms_again_after_an_erasure() {
+    const AT_S: f64 = 0.9;
+    let run = run(&Setup {
+        older_records: 64,
+        seconds: 1.0,
+        faults: vec![(AT_S, Fault::HungIdle)],
+        ..Setup::default()
+    });
+    assert_eq!(run.flash_changes, [Change::Erase { sector: 0 }]);
+    let [restart] = &run.restarts[..] else {
+        panic!("{:?}", run.restarts)
+    };
+    // It was fed with the latest frame, up to 1 ms before the fault.
+    let late_ms = 1e3 * (restart.at_s - AT_S);
+    assert!((27.0..28.1).contains(&late_ms), "{late_ms} ms");
+}
+
+/// The stages, which limit the currents of other scenes, are not in this image. The strokes ask for 0.3 A and
+/// 0.15 A, and have a hundredth of 6 A and 1.5 A.
+#[test]
+fn image_of_the_excitation_alone_has_the_limits_of_the_bench() {
+    let mut settings = Settings::COMMISSIONED;
+    assert!(settings.set(Setting::CurrentScale, 0.01));
+    let run = run_one(
+        SceneKind::Excite,
+        &Setup {
+            settings: Some(settings),
+            ..Setup::playing(SceneKind::Excite, 1.0)
+        },
+    );
+    for channel in 0..2 {
+        let codes = run.ticks.iter().filter_map(|tick| tick.codes[channel]);
+        let steps = codes.map(|code| code.abs_diff(MIDDLE)).max();
+        assert_eq!(steps, Some((STEPS + 50) / 100), "{channel}");
+    }
+}
+
+#[test]
+fn image_of_the_torque_alone_begins_at_zero_whenever_it_is_switched_on() {
+    let on = Rtt::Scene(SceneKind::Torque);
+    let run = run_one(
+        SceneKind::Torque,
+        &Setup {
+            seconds: 0.5,
+            commands: vec![
+                (0.05, on),
+                (0.1, Rtt::Arm),
+                (0.2, Rtt::Torque(0.003)),
+                (0.3, Rtt::Scene(SceneKind::Off)),
+                (0.4, on),
+            ],
+            ..Setup::default()
+        },
+    );
+    let torque_at = |tick: u32| {
+        let frame = run.telemetry.frames.iter().find(|frame| frame.tick >= tick);
+        frame.expect("a frame").torque
+    };
+    assert_eq!([2900, 3900, 4900].map(torque_at), [0.003, 0.0, 0.0]);
 }
