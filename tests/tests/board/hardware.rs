@@ -6,15 +6,19 @@ use std::num::NonZeroU64;
 use virtual_board::command::Command;
 use virtual_board::fault::Fault;
 use virtual_board::run::{CoreAccess, Outcome, Setup};
+use virtual_board::trace::Kind;
 
 use crate::image::{free_air, run};
+use crate::second_core::records;
 
 /// `DEMCR`, its vector catches and the trace enable that is no catch.
 const DEMCR: u32 = 0xE000_EDFC;
 const CATCHES: u32 = 0x07F1;
-/// `DBGMCU_APB1_FZ` and what OpenOCD sets in it when it connects: both watchdogs stop in a halt.
+/// `DBGMCU_APB1_FZ` and what OpenOCD sets in it when it connects: both watchdogs stop in a halt. TIM2 to
+/// TIM5 do so by bits 0 to 3.
 const FREEZE: u32 = 0xE004_2008;
 const WATCHDOGS: u32 = 0x1800;
+const TIMERS: u32 = 0xF;
 
 /// State and cause in the last frame.
 fn last(run: &Outcome) -> (Mode, Stop) {
@@ -26,7 +30,7 @@ fn last(run: &Outcome) -> (Mode, Stop) {
 fn debug_settings_are_cleared_while_the_image_runs() {
     let accesses = vec![
         (0.200, CoreAccess::Store(DEMCR, CATCHES)),
-        (0.200, CoreAccess::Store(FREEZE, WATCHDOGS)),
+        (0.200, CoreAccess::Store(FREEZE, WATCHDOGS | TIMERS)),
         (0.202, CoreAccess::Load(DEMCR)),
         (0.202, CoreAccess::Load(FREEZE)),
     ];
@@ -38,15 +42,21 @@ fn debug_settings_are_cleared_while_the_image_runs() {
     let [.., catches, freezes] = run.values[..] else {
         panic!("{:?}", run.values)
     };
-    assert_eq!(run.values[..2], [CATCHES, WATCHDOGS]);
-    assert_eq!((catches & CATCHES, freezes & WATCHDOGS), (0, 0));
+    assert_eq!(run.values[..2], [CATCHES, WATCHDOGS | TIMERS]);
+    assert_eq!((catches & CATCHES, freezes & (WATCHDOGS | TIMERS)), (0, 0));
     assert_eq!(last(&run), (Mode::Running, Stop::None));
 }
 
 /// Whoever sets them ever again holds the outputs in the next halt.
 #[test]
 fn arming_is_refused_while_debug_settings_come_back() {
-    for (address, bits) in [(DEMCR, CATCHES), (DEMCR, 1 << 10), (FREEZE, WATCHDOGS)] {
+    // Bit 3 stops TIM5, which makes the control tick.
+    for (address, bits) in [
+        (DEMCR, CATCHES),
+        (DEMCR, 1 << 10),
+        (FREEZE, WATCHDOGS),
+        (FREEZE, 1 << 3),
+    ] {
         let at = (0..500).map(|tick| 0.08 + 1e-4 * f64::from(tick));
         let run = run(&Setup {
             seconds: 0.25,
@@ -131,6 +141,44 @@ fn a_panic_disables_the_amplifiers_and_is_reported_after_the_reset() {
     let off_ms = 1e3 * run.off_after(0.2).expect("off");
     assert!(off_ms < 0.15, "{off_ms} ms");
     assert_eq!(run.enables.last().map(|(_, on)| *on), Some([false; 2]));
+}
+
+/// `DAC_DHR12RD`, and both channels at mid-scale in it.
+const BOTH_CHANNELS: u32 = 0x4000_7420;
+const NO_CURRENT: u32 = 0x0800_0800;
+
+/// An enable line that is broken leaves the amplifier on: it gets no current either. The board starts with the
+/// same.
+#[test]
+fn a_panic_commands_no_current() {
+    let run = run(&Setup {
+        seconds: 0.21,
+        faults: vec![(0.2, Fault::Panic)],
+        trace: true,
+        ..Setup::default()
+    });
+    let writes = records(&run.trace)
+        .into_iter()
+        .filter_map(|(kind, _, address, value, _)| {
+            (kind == Kind::Write as u8 && address == BOTH_CHANNELS).then_some(value)
+        });
+    assert_eq!(writes.collect::<Vec<_>>(), [NO_CURRENT; 2]);
+}
+
+#[test]
+fn cause_of_a_reset_is_told_once() {
+    let run = run(&Setup {
+        seconds: 0.5,
+        faults: vec![(0.2, Fault::Panic)],
+        accesses: vec![(0.4, CoreAccess::Store(RESET.0, RESET.1))],
+        ..Setup::default()
+    });
+    let frames = &run.telemetry.frames;
+    assert!(frames.iter().any(|frame| frame.cause == Stop::Panic));
+    assert_eq!(
+        (run.restarts.len(), last(&run)),
+        (2, (Mode::Boot, Stop::None))
+    );
 }
 
 /// A core so slow that the control task interrupts the log: a fault of the control task drops the

@@ -18,7 +18,8 @@ const HOLDING: [u32; 2] = [0x4000_7408, 0x4000_7414];
 /// A record: kind, number of the exception, address, value, and where the record begins.
 type Record = (u8, u16, u32, u32, usize);
 
-fn records(trace: &[u8]) -> Vec<Record> {
+/// The records of a trace.
+pub(crate) fn records(trace: &[u8]) -> Vec<Record> {
     let word = |at: usize| u32::from_le_bytes(trace[at..at + 4].try_into().unwrap());
     let (mut records, mut at) = (Vec::new(), 24);
     while at < trace.len() {
