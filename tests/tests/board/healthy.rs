@@ -126,8 +126,8 @@ fn slower_core_misses_no_tick() {
     }
 }
 
-/// Mean torque that a still hand feels in free air, N·m, with these errors of the small motor's channel
-/// and of the large one's.
+/// Mean torque that a still hand feels in free air, N·m, with these errors of the large motor's channel
+/// and of the small one's.
 fn mean_torque(errors: [DacError; 2], settings: Settings) -> f64 {
     let run = run(&Setup {
         dac_errors: errors,
@@ -158,14 +158,15 @@ fn dac_offset_causes_a_force_and_no_stop() {
 #[test]
 fn settings_in_flash_take_zero_and_gain_of_the_dac_into_account() {
     let perfect = mean_torque([DacError::NONE; 2], Settings::COMMISSIONED);
-    for (offset, gain) in [(15.3, 1.04), (-15.3, 0.96)] {
-        let errors = [DacError { offset, gain }; 2];
+    let [up, down] = [(15.3, 1.04), (-15.3, 0.96)].map(|(offset, gain)| DacError { offset, gain });
+    for errors in [[up, up], [down, down], [up, down]] {
+        let [large, small] = errors;
         let mut settings = Settings::COMMISSIONED;
         for (setting, value) in [
-            (Setting::ZeroLarge, 2048.0 - offset),
-            (Setting::ZeroSmall, 2048.0 - offset),
-            (Setting::GainLarge, gain),
-            (Setting::GainSmall, gain),
+            (Setting::ZeroLarge, 2048.0 - large.offset),
+            (Setting::ZeroSmall, 2048.0 - small.offset),
+            (Setting::GainLarge, large.gain),
+            (Setting::GainSmall, small.gain),
         ] {
             assert!(settings.set(setting, value as f32));
         }
@@ -174,9 +175,7 @@ fn settings_in_flash_take_zero_and_gain_of_the_dac_into_account() {
             2e3 * torque.abs() / Device::default().handle.diameter_m
         };
         let [without, with] = [Settings::COMMISSIONED, settings].map(force);
-        println!(
-            "{offset} codes, gain {gain}: {without} mN without them in the settings, {with} mN with"
-        );
+        println!("{errors:?}: {without} mN without them in the settings, {with} mN with");
         assert!(without > 5.0 && with < 1.0, "{without} {with} mN");
     }
 }
