@@ -4,9 +4,9 @@ use haptic_control::{Mode, SceneKind, Stop};
 use simulation::device::Device;
 use virtual_board::command::Command;
 use virtual_board::port::LineErrors;
-use virtual_board::run::{ControlTick, CoreAccess, Outcome, RATE_HZ, Setup};
+use virtual_board::run::{ControlTick, CoreAccess, Outcome, RATE_HZ, Setup, on_board};
 
-use crate::image::{end, free_air, run};
+use crate::image::{end, free_air, image, run};
 use crate::link::{commanded_by_port, frame, of_port, port_faults, rejected, telemetry};
 
 /// Baud rate register of USART3; a rate so low that no frame of telemetry is sent in a run.
@@ -159,6 +159,34 @@ fn stopped_reception_is_started_again() {
     assert_eq!(port_faults(&run), Some([1, 0]));
 }
 
+/// `DMA_S3PAR`: address to which the stream sends; the data register of USART3, and one without a register.
+const SENDS_TO: u32 = 0x4002_6060;
+const DATA: u32 = 0x4000_4804;
+const NOTHING: u32 = 0x4000_8000;
+
+/// DMA that stopped while it sent is started again.
+#[test]
+fn stopped_transmission_is_started_again() {
+    let setup = Setup {
+        seconds: 0.9,
+        accesses: vec![
+            (0.3, CoreAccess::Store(SENDS_TO, NOTHING)),
+            (0.5, CoreAccess::Store(SENDS_TO, DATA)),
+        ],
+        ..Setup::default()
+    };
+    let run = on_board(image(""), &setup, |_| ()).expect("a run");
+    let refused = |objection: &String| objection.contains("refused: 0x40008000");
+    assert!(run.objections.iter().all(refused), "{:?}", run.objections);
+    let [errors, _] = port_faults(&run).expect("faults");
+    assert!(errors > 0);
+    let (messages, _) = of_port(&run);
+    let frames = telemetry(&messages).frames;
+    let sent = frames.last().expect("frames").seq;
+    let last = run.telemetry.frames.last().expect("frames").seq;
+    assert!(sent + 2 > last, "{sent} of {last}");
+}
+
 /// A line that is too slow for telemetry: whole frames are lost and counted, the others arrive, and
 /// control does not change.
 #[test]
@@ -183,6 +211,18 @@ fn line_that_does_not_drain_loses_whole_frames() {
     leaves_control_as_it_is(&run);
 }
 
+/// When both amplifiers of a run are enabled and disabled again, ns: at 0.3 s and 0.5 s, but for a poll of the
+/// probe, a full queue and a tick.
+fn is_armed_and_disarmed_in_time(run: &Outcome) {
+    let on: Vec<_> = run.enables.iter().map(|(ns, on)| (*ns, on[0])).collect();
+    let [(_, false), (armed, true), (disarmed, false)] = on[..] else {
+        panic!("{on:?}");
+    };
+    for (at, from) in [(armed, 300_000_000), (disarmed, 500_000_000)] {
+        assert!((from..from + 4_000_000).contains(&at), "{at} ns");
+    }
+}
+
 /// Valid commands as fast as the line is: those of RTT are taken too.
 #[test]
 fn flood_of_commands_leaves_rtt_its_share() {
@@ -197,12 +237,20 @@ fn flood_of_commands_leaves_rtt_its_share() {
         port: vec![(0.2, flood)],
         ..Setup::default()
     });
-    let on: Vec<_> = run.enables.iter().map(|(ns, on)| (*ns, on[0])).collect();
-    let [(_, false), (armed, true), (disarmed, false)] = on[..] else {
-        panic!("{on:?}");
-    };
-    // A poll of the probe, a full queue and a tick.
-    for (at, from) in [(armed, 300_000_000), (disarmed, 500_000_000)] {
-        assert!((from..from + 4_000_000).contains(&at), "{at} ns");
-    }
+    is_armed_and_disarmed_in_time(&run);
+}
+
+/// Valid commands as fast as the probe is: those of the port are taken too.
+#[test]
+fn flood_of_commands_leaves_the_port_its_share() {
+    let flood = frame(Command::KeepAlive).repeat(8_000);
+    let run = run(&Setup {
+        seconds: 0.8,
+        commands: vec![(0.05, Command::Scene(SceneKind::FreeAir))],
+        keep_alive: false,
+        garbage: vec![(0.2, flood)],
+        port: vec![(0.3, frame(Command::Arm)), (0.5, frame(Command::Disarm))],
+        ..Setup::default()
+    });
+    is_armed_and_disarmed_in_time(&run);
 }

@@ -5,7 +5,7 @@ use drivers::{Command, Saved, Setting, Settings};
 use haptic_control::Stop;
 use virtual_board::fault::Fault;
 use virtual_board::flash::{Change, Sectors};
-use virtual_board::run::{ControlTick, Outcome, Setup};
+use virtual_board::run::{ControlTick, CoreAccess, Outcome, Setup};
 
 use crate::link::of_port;
 use crate::settings::{commanded, stored};
@@ -105,6 +105,28 @@ fn store_does_not_delay_the_control_tick() {
     // An interrupt waits for the instructions of a critical section at most.
     assert!(worst_with.0 <= worst_without.0 + 500);
     assert!(worst_with.1 <= worst_without.1);
+}
+
+/// `FLASH_ACR`, and the enables of prefetch and both caches in it.
+const ACCESS_CONTROL: u32 = 0x4002_3C00;
+const CACHES: u32 = 0b111 << 8;
+
+#[test]
+fn store_leaves_the_caches_of_the_flash_on() {
+    let load = CoreAccess::Load(ACCESS_CONTROL);
+    let run = commanded(
+        0.2,
+        &[(0.10, Command::Store)],
+        Setup {
+            accesses: vec![(0.09, load), (0.19, load)],
+            ..Setup::default()
+        },
+    );
+    assert_eq!(stored(&run), [Saved::Stored]);
+    let [before, after] = run.values[..] else {
+        panic!("{:?}", run.values)
+    };
+    assert_eq!((before & CACHES, after), (CACHES, before));
 }
 
 /// A part of what a byte or a sector passes through while its bits change.

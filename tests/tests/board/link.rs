@@ -1,12 +1,14 @@
 //! The serial port of the board: its commands and its messages.
 
 use drivers::link::{Message, Parser, Rejected};
+use experiments::closed_loop::Hand;
 use haptic_control::{Mode, SceneKind, Stop};
-use recordings::telemetry::Telemetry;
+use recordings::telemetry::{SideLines, Telemetry};
 use virtual_board::command::Command;
+use virtual_board::fault::Fault;
 use virtual_board::run::{Outcome, Setup};
 
-use crate::image::{end, free_air, run, run_image};
+use crate::image::{end, free_air, of_scene, run, run_image};
 
 /// Messages of the link, and the number of bytes outside of them.
 pub(crate) fn messages(bytes: impl IntoIterator<Item = u8>) -> (Vec<Message>, u32) {
@@ -126,6 +128,18 @@ fn frames_of_the_port_are_those_of_the_log() {
     assert!(garbage < 100, "{garbage} bytes of the frame on its way");
 }
 
+/// The side lines of the port, which are those of the log, of at least so many frames.
+fn side_lines(run: &Outcome, least: usize) -> Vec<SideLines> {
+    let telemetry = telemetry(&of_port(run).0);
+    // Side lines of the last one are on their way.
+    let (_, mine) = telemetry.frames.split_last().expect("frames");
+    assert!(mine.len() > least, "{}", mine.len());
+    for (mine, other) in mine.iter().zip(&run.telemetry.frames) {
+        assert_eq!(mine, other);
+    }
+    mine.iter().map(|frame| frame.side_lines).collect()
+}
+
 /// Edges and the reference encoder too.
 #[test]
 fn side_lines_of_the_port_are_those_of_the_log() {
@@ -136,17 +150,30 @@ fn side_lines_of_the_port_are_those_of_the_log() {
             ..Setup::default()
         },
     );
-    let telemetry = telemetry(&of_port(&run).0);
-    // Side lines of the last one are on their way.
-    let (_, mine) = telemetry.frames.split_last().expect("frames");
-    assert!(mine.len() > 480, "{}", mine.len());
-    let mut with_all = 0;
-    for (mine, other) in mine.iter().zip(&run.telemetry.frames) {
-        assert_eq!(mine, other);
-        let lines = &mine.side_lines;
-        with_all += u32::from(lines.edge.is_some() && lines.learned.is_some());
-    }
-    assert!(with_all > 0);
+    let lines = side_lines(&run, 480);
+    let with_all = |lines: &SideLines| lines.edge.is_some() && lines.learned.is_some();
+    assert!(lines.iter().any(with_all));
+}
+
+/// With positions and deviations of both encoders that differ.
+#[test]
+fn measured_side_lines_of_the_port_are_those_of_the_log() {
+    let run = run_image(
+        "large-adaptive,current-monitor,index-pulse,supply-monitor",
+        &Setup {
+            faults: vec![(0.5, Fault::LostCounts)],
+            ..of_scene(SceneKind::FreeAir, Hand::Tracking, 1.5)
+        },
+    );
+    assert_eq!(end(&run), (Mode::Safe, Stop::LostCounts));
+    let with_all = |lines: &SideLines| {
+        let Some([large, small]) = lines.index else {
+            return false;
+        };
+        let differ = large.deviation != small.deviation && large.position != small.position;
+        differ && lines.measured.is_some() && lines.supply.is_some()
+    };
+    assert!(side_lines(&run, 1480).iter().any(with_all));
 }
 
 /// RTT has the same messages, from the first command on that comes over RTT.
