@@ -8,6 +8,8 @@ use flate2::read::MultiGzDecoder;
 use terminal::failure::Failure;
 use terminal::output::sum;
 
+use crate::recording::check_kind;
+
 /// Name of standard input in messages, and as a recording.
 const STDIN: &str = "standard input";
 
@@ -64,6 +66,27 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     read.map_err(|error| cannot_read(&called(path), &error))
 }
 
+/// Reads a log called `name` from a stream. Its first bytes are checked before the rest is read, because a
+/// stream that is no log may have no end.
+fn stream(mut input: impl Read, name: &str) -> Result<Vec<u8>, Failure> {
+    let mut bytes = Vec::new();
+    let failed = |error| cannot_read(name, &error);
+    let head = input.by_ref().take(HEAD).read_to_end(&mut bytes);
+    head.map_err(failed)?;
+    match bytes.starts_with(&GZIP) {
+        false => check_kind(&bytes, name)?,
+        true => {
+            // The end of the packed bytes is not there yet: what comes before it is checked.
+            let mut unpacked = Vec::new();
+            let mut head = MultiGzDecoder::new(bytes.as_slice()).take(HEAD);
+            let _cut = head.read_to_end(&mut unpacked);
+            check_kind(&unpacked, name)?;
+        }
+    }
+    input.read_to_end(&mut bytes).map_err(failed)?;
+    Ok(bytes)
+}
+
 /// A recording that can be read more than once.
 pub struct Log {
     name: String,
@@ -76,13 +99,17 @@ impl Log {
     /// Opens the file `path`, or standard input where it is -.
     ///
     /// # Errors
-    /// [`Failure::Input`] that names the file.
+    /// [`Failure::Input`] that names the file, if it cannot be read, or if it is a stream that is no text.
     pub fn open(path: &Path) -> Result<Self, Failure> {
         let name = called(path);
         let is_file = std::fs::metadata(path).is_ok_and(|file| file.is_file());
-        let bytes = match is_file && !is_stdin(path) {
-            true => None,
-            false => Some(read(path)?),
+        let bytes = match (is_stdin(path), is_file) {
+            (true, _) => Some(stream(io::stdin().lock(), &name)?),
+            (false, true) => None,
+            (false, false) => {
+                let file = File::open(path).map_err(|error| cannot_read(&name, &error))?;
+                Some(stream(file, &name)?)
+            }
         };
         Ok(Self {
             name,
@@ -209,6 +236,36 @@ mod tests {
             b"t,counts_large\n0,1\n0.001,2\n"
         );
         assert_eq!(log(b"t".to_vec()).bytes().unwrap(), b"t");
+    }
+
+    /// Counts the bytes that are read.
+    struct Counted<R>(R, u64);
+
+    impl<R: Read> Read for Counted<R> {
+        fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+            let bytes = self.0.read(to)?;
+            self.1 += bytes as u64;
+            Ok(bytes)
+        }
+    }
+
+    #[test]
+    fn stream_that_is_no_text_is_refused_by_its_first_bytes() {
+        let mut zeros = GzEncoder::new(Vec::new(), Compression::none());
+        zeros.write_all(&vec![0; 1 << 20]).unwrap();
+        let zeros = zeros.finish().unwrap();
+        let plain: Box<dyn Read> = Box::new(io::repeat(0).take(1 << 20));
+        let unpacked_later: Box<dyn Read> = Box::new(zeros.as_slice());
+        for input in [plain, unpacked_later] {
+            let mut input = Counted(input, 0);
+            let error = stream(&mut input, "pipe").unwrap_err().to_string();
+            assert_eq!(error, "pipe: line 1: the file is not text; write it as CSV");
+            assert_eq!(input.1, HEAD);
+        }
+        let text = "t,counts_large\n0,1\n".repeat(10_000);
+        assert_eq!(stream(text.as_bytes(), "pipe").unwrap(), text.as_bytes());
+        let text = packed(&text);
+        assert_eq!(stream(text.as_slice(), "pipe").unwrap(), text);
     }
 
     #[test]

@@ -41,6 +41,7 @@ pub use board::{BoardColumns, BoardReader};
 pub use currents::implausible_current;
 pub use formats::{KnownLog, known_logs};
 pub use long_counts::unwrap_long_counts;
+pub(crate) use kinds::check as check_kind;
 pub(crate) use options::MEASURED;
 pub use options::ReadOptions;
 pub use parts::Parts;

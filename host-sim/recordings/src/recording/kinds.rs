@@ -28,7 +28,7 @@ const CONTROL_PART: usize = 20;
 ///
 /// # Errors
 /// [`Failure::Input`] with the remedy.
-pub(super) fn check(head: &[u8], name: &str) -> Result<(), Failure> {
+pub(crate) fn check(head: &[u8], name: &str) -> Result<(), Failure> {
     let refused = |what: &str| Err(Failure::Input(format!("{name}: line 1: {what}")));
     if let Some((_, what, remedy)) = KINDS.iter().find(|(begin, ..)| head.starts_with(begin)) {
         return refused(&format!("this is {what}; {remedy}, or give the text as -"));

@@ -54,3 +54,17 @@ fn quote_without_an_end_is_reported_by_its_line() {
         "{line}"
     );
 }
+
+/// Read whole, it would need more memory than there is: the limit makes this a failure of the program alone.
+#[test]
+fn stream_without_an_end_that_is_no_text_is_refused() {
+    let folder = Folder::new(HOST_SIM);
+    let script =
+        format!("ulimit -v 4000000; '{HOST_SIM}' replay /dev/zero --out - 2> said; test $? = 2");
+    shell(&folder, &script);
+    let said = std::fs::read_to_string(folder.path().join("said")).unwrap();
+    assert_eq!(
+        said,
+        "error: /dev/zero: line 1: the file is not text; write it as CSV\n"
+    );
+}
