@@ -1,85 +1,200 @@
 //! Logs with one JSON object a line.
 
+use std::collections::HashMap;
+use std::fmt;
 use std::io::BufRead;
 
 use csv::ByteRecord;
-use serde_json::{Map, Value};
+use serde::Deserializer as _;
+use serde::de::{DeserializeSeed, Error, MapAccess, SeqAccess, Visitor};
+use serde_json::{Number, Value};
 
 use terminal::failure::Failure;
+
+use super::separator::is_comment;
 
 /// The channel of a moteus log that has position and current.
 const CHANNEL: &str = "servo_stats";
 
+const REMEDY: &str =
+    "write one JSON object a line, for example {\"t\": 0.001, \"counts_large\": 8}";
+
+/// Begins a text that stands for a word which is no JSON.
+const WORD: char = '\0';
+
+/// The key under which `serde_json` hands over the text of a number, where its feature
+/// `arbitrary_precision` is on. Another package may turn it on.
+const NUMBER: &str = "$serde_json::private::Number";
+
+/// What an object has in the place of a field.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Mark {
+    Missing,
+    Text,
+    /// No value: null, or what Python writes for one.
+    Blank(&'static str),
+    /// Several values.
+    Twice,
+}
+
+/// A field of an object: its name, its text, which is empty without a value, and what it is. A field of
+/// an object inside has the names of both, and one of `data` has its own.
+struct Field {
+    name: String,
+    text: String,
+    mark: Mark,
+}
+
+/// What the begin of a log tells.
+pub(super) struct Begin {
+    /// Names of the fields of the first object that is read.
+    pub(super) names: Vec<String>,
+    /// Line of the first object.
+    pub(super) line: u64,
+    /// Whether it is a log of moteus, whose lines belong to channels and controllers.
+    channels: bool,
+}
+
+impl Begin {
+    /// Reads the first bytes `head` of a log called `name`; `None` if it has no objects.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] with the remedy for another layout of JSON than one object a line.
+    pub(super) fn of(head: &str, name: &str) -> Result<Option<Self>, Failure> {
+        let content = |line: &&str| !line.trim().is_empty() && !is_comment(line.as_bytes());
+        let Some(index) = head.lines().position(|line| content(&line)) else {
+            return Ok(None);
+        };
+        let line = index as u64 + 1;
+        let lines = || head.lines().skip(index);
+        check(lines(), line, name)?;
+        let first = lines().next().unwrap_or_default();
+        if !first.trim_start().starts_with('{') {
+            return Ok(None);
+        }
+        if fields(first.as_bytes()).is_err() && is_whole(first.as_bytes()) {
+            return Err(not_alone(first.as_bytes(), line, name));
+        }
+        let objects = || lines().filter_map(|line| fields(line.as_bytes()).ok());
+        let of_channel = objects().find(|fields| channel(fields) == Some(CHANNEL));
+        let channels = of_channel.is_some();
+        let Some(found) = of_channel.or_else(|| objects().next()) else {
+            return Err(not_alone(first.as_bytes(), line, name));
+        };
+        let mut names: Vec<String> = Vec::new();
+        for field in found {
+            if !names.contains(&field.name) {
+                names.push(field.name);
+            }
+        }
+        Ok(Some(Self {
+            names,
+            line,
+            channels,
+        }))
+    }
+}
+
 /// Reads objects, one a line. In a log with channels, it reads one channel of one controller.
 pub(super) struct Json<R> {
     inner: R,
+    /// The last byte of a line.
+    end: u8,
     line: u64,
     text: Vec<u8>,
+    names: Vec<String>,
+    places: HashMap<String, usize>,
+    channels: bool,
     controller: Option<String>,
+    values: Vec<String>,
+    /// What the last object has for each name.
+    pub(super) marks: Vec<Mark>,
 }
 
-/// The fields of an object; those of an object inside it have the names of both, and those of `data`
-/// have their own.
-type Fields = Map<String, Value>;
-
 impl<R: BufRead> Json<R> {
-    pub(super) fn new(inner: R) -> Self {
+    pub(super) fn new(inner: R, end: u8, begin: &Begin) -> Self {
+        let names = begin.names.clone();
+        let places = names.iter().cloned().zip(0..).collect();
         Self {
             inner,
+            end,
             line: 0,
             text: Vec::new(),
+            names,
+            places,
+            channels: begin.channels,
             controller: None,
+            values: Vec::new(),
+            marks: Vec::new(),
         }
     }
 
-    /// Reads the fields called `names` of the next object into `record` and returns its line.
+    /// Reads the fields of the next object into `record` and returns its line.
     pub(super) fn read(
         &mut self,
-        names: &[String],
         record: &mut ByteRecord,
         name: &str,
     ) -> Result<Option<u64>, Failure> {
         loop {
             self.text.clear();
             let failed = |error| Failure::Input(format!("{name}: cannot read: {error}"));
-            if self
-                .inner
-                .read_until(b'\n', &mut self.text)
-                .map_err(failed)?
-                == 0
-            {
+            let read = self.inner.read_until(self.end, &mut self.text);
+            if read.map_err(failed)? == 0 {
                 return Ok(None);
             }
             self.line += 1;
-            if self.text.trim_ascii().is_empty() {
+            let text = self.text.strip_suffix(&[self.end]).unwrap_or(&self.text);
+            if text.trim_ascii().is_empty() || is_comment(text) {
                 continue;
             }
-            let Some(fields) = fields(&self.text) else {
-                return Err(Failure::Input(format!(
-                    "{name}: line {}: no JSON object; remove the line",
-                    self.line
-                )));
+            let Ok(fields) = fields(text) else {
+                return Err(no_object(text, self.line, name));
             };
-            if !is_read(&fields) {
-                continue;
+            if self.channels {
+                if channel(&fields).is_some_and(|channel| channel != CHANNEL) {
+                    continue;
+                }
+                self.one_controller(&fields, name)?;
             }
-            self.one_controller(&fields, name)?;
+            self.take(fields);
             record.clear();
-            for name in names {
-                record.push_field(text(fields.get(name)).as_bytes());
+            for value in &self.values {
+                record.push_field(value.as_bytes());
             }
             return Ok(Some(self.line));
         }
     }
 
+    /// Places the fields of an object by their names.
+    fn take(&mut self, fields: Vec<Field>) {
+        self.marks.clear();
+        self.marks.resize(self.names.len(), Mark::Missing);
+        self.values.clear();
+        self.values.resize_with(self.names.len(), String::new);
+        for (k, field) in fields.into_iter().enumerate() {
+            // Objects mostly have the order of the first one.
+            let place = match self.names.get(k) == Some(&field.name) {
+                true => Some(k),
+                false => self.places.get(&field.name).copied(),
+            };
+            let Some(place) = place else { continue };
+            if self.marks[place] == Mark::Missing {
+                self.marks[place] = field.mark;
+                self.values[place] = field.text;
+            } else {
+                self.marks[place] = Mark::Twice;
+            }
+        }
+    }
+
     /// Refuses a second controller, whose motion is another one.
-    fn one_controller(&mut self, fields: &Fields, name: &str) -> Result<(), Failure> {
-        let Some(controller) = fields.get("controller") else {
+    fn one_controller(&mut self, fields: &[Field], name: &str) -> Result<(), Failure> {
+        let Some(controller) = fields.iter().find(|field| field.name == "controller") else {
             return Ok(());
         };
-        let this = text(Some(controller));
+        let this = &controller.text;
         let known = self.controller.get_or_insert_with(|| this.clone());
-        if *known == this {
+        if known == this {
             return Ok(());
         }
         Err(Failure::Input(format!(
@@ -89,76 +204,190 @@ impl<R: BufRead> Json<R> {
     }
 }
 
-/// Checks that the text that begins with `head` has no other layout of JSON than one object a line.
-///
-/// # Errors
-/// [`Failure::Input`] with the remedy.
-pub(super) fn check(head: &str, name: &str) -> Result<(), Failure> {
-    let text = head.trim_start();
-    let inside = text.strip_prefix('[').map(str::trim_start);
-    let is_array = inside.is_some_and(|inside| inside.starts_with(['{', '[']));
-    let first = text.lines().next().unwrap_or_default();
+/// The channel that an object of moteus belongs to.
+fn channel(fields: &[Field]) -> Option<&str> {
+    let channel = fields.iter().find(|field| field.name == "channel")?;
+    Some(&channel.text)
+}
+
+/// Checks that a text whose content begins with `lines` has no other layout of JSON than one object a
+/// line.
+fn check<'a>(mut lines: impl Iterator<Item = &'a str>, at: u64, name: &str) -> Result<(), Failure> {
+    let first = lines.next().unwrap_or_default().trim();
+    let inside = first.strip_prefix('[').map(str::trim_start);
+    let begin = match inside {
+        Some("") => lines.map(str::trim).find(|line| !line.is_empty()),
+        inside => inside,
+    };
+    let is_array = begin.is_some_and(|begin| begin.starts_with(['{', '[']));
     let is_row = first.starts_with('[') && serde_json::from_str::<Vec<Value>>(first).is_ok();
-    let what = match (is_array || is_row, first.trim_end()) {
+    let what = match (is_array || is_row, first) {
         (true, _) => "a JSON array",
         (_, "{") => "a JSON object of several lines",
         _ => return Ok(()),
     };
     Err(Failure::Input(format!(
-        "{name}: line 1: {what}; write one JSON object a line, for example {{\"t\": 0.001, \"counts_large\": 8}}"
+        "{name}: line {at}: {what}; {REMEDY}"
     )))
 }
 
-/// Names of the fields of the first object in `head` that is read.
-pub(super) fn names(head: &str) -> Vec<String> {
-    let objects = || head.lines().filter_map(|line| fields(line.as_bytes()));
-    let first = objects().find(is_read).or_else(|| objects().next());
-    first.map_or_else(Vec::new, |fields| {
-        fields.into_iter().map(|(name, _)| name).collect()
-    })
-}
-
-fn is_read(fields: &Fields) -> bool {
-    fields
-        .get("channel")
-        .is_none_or(|channel| channel == CHANNEL)
-}
-
-fn fields(line: &[u8]) -> Option<Fields> {
-    let object = serde_json::from_slice(line)
-        .or_else(|_| serde_json::from_slice(&without_nan(line)))
-        .ok()?;
-    let mut fields = Fields::new();
-    flatten(object, "", &mut fields);
-    Some(fields)
-}
-
-fn flatten(object: Map<String, Value>, prefix: &str, to: &mut Fields) {
-    for (name, value) in object {
-        match value {
-            Value::Object(inner) if prefix.is_empty() && name == "data" => flatten(inner, "", to),
-            Value::Object(inner) => flatten(inner, &format!("{prefix}{name}."), to),
-            value => {
-                to.insert(format!("{prefix}{name}"), value);
-            }
-        }
+/// Error for a line that is no object.
+fn no_object(text: &[u8], line: u64, name: &str) -> Failure {
+    match is_whole(text) {
+        true => not_alone(text, line, name),
+        false => Failure::Input(format!(
+            "{name}: line {line}: no JSON object; remove the line"
+        )),
     }
 }
 
-/// The line with `null` for the numbers that JSON does not have and Python writes: NaN, Infinity,
-/// -Infinity.
-fn without_nan(line: &[u8]) -> Vec<u8> {
+/// Whether a line has begin and end of an object. A cut line has no end.
+fn is_whole(line: &[u8]) -> bool {
+    let line = line.trim_ascii();
+    let line = line.strip_suffix(b",").unwrap_or(line);
+    line.starts_with(b"{") && line.ends_with(b"}")
+}
+
+/// Error for a line that is more than one object, or a wrong one.
+fn not_alone(text: &[u8], line: u64, name: &str) -> Failure {
+    let why = match fields(text) {
+        Ok(_) => String::new(),
+        Err(error) => {
+            let all = error.to_string();
+            let what = all.split(" at line ").next().unwrap_or_default();
+            format!(" ({what} at column {})", error.column())
+        }
+    };
+    Failure::Input(format!(
+        "{name}: line {line}: no JSON object on a line of its own{why}; {REMEDY}"
+    ))
+}
+
+fn fields(line: &[u8]) -> Result<Vec<Field>, serde_json::Error> {
+    let parse = |line: &[u8]| {
+        let mut fields = Vec::new();
+        let mut from = serde_json::Deserializer::from_slice(line);
+        let objects = Inside {
+            name: String::new(),
+            to: &mut fields,
+        };
+        (&mut from).deserialize_map(objects)?;
+        from.end()?;
+        Ok(fields)
+    };
+    parse(line).or_else(|error| parse(&with_words(line)).map_err(|_| error))
+}
+
+/// Takes a value called `name`: a field, or the fields of an object. The log's object has no name.
+struct Inside<'a> {
+    name: String,
+    to: &'a mut Vec<Field>,
+}
+
+impl Inside<'_> {
+    fn field(self, text: String, mark: Mark) {
+        let Self { name, to } = self;
+        to.push(Field { name, text, mark });
+    }
+}
+
+impl<'de> DeserializeSeed<'de> for Inside<'_> {
+    type Value = ();
+
+    fn deserialize<D: serde::Deserializer<'de>>(self, from: D) -> Result<(), D::Error> {
+        from.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Inside<'_> {
+    type Value = ();
+
+    fn expecting(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        to.write_str("a JSON object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        let prefix = match self.name.as_str() {
+            "" | "data" => String::new(),
+            name => format!("{name}."),
+        };
+        while let Some(name) = map.next_key::<String>()? {
+            if name == NUMBER {
+                let text = map.next_value()?;
+                self.field(text, Mark::Text);
+                return Ok(());
+            }
+            let name = match prefix.is_empty() {
+                true => name,
+                false => format!("{prefix}{name}"),
+            };
+            map.next_value_seed(Inside { name, to: self.to })?;
+        }
+        Ok(())
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
+        let mut values: Vec<Value> = Vec::new();
+        while let Some(value) = list.next_element()? {
+            values.push(value);
+        }
+        let text = Value::from(values).to_string().replace("\\u0000", "");
+        self.field(text, Mark::Text);
+        Ok(())
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<(), E> {
+        let word = text.strip_prefix(WORD);
+        match word.and_then(|word| WORDS.into_iter().find(|known| *known == word)) {
+            Some(word) => self.field(String::new(), Mark::Blank(word)),
+            None => self.field(text.to_owned(), Mark::Text),
+        }
+        Ok(())
+    }
+
+    fn visit_unit<E: Error>(self) -> Result<(), E> {
+        self.field(String::new(), Mark::Blank("null"));
+        Ok(())
+    }
+
+    fn visit_bool<E: Error>(self, value: bool) -> Result<(), E> {
+        self.field(value.to_string(), Mark::Text);
+        Ok(())
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<(), E> {
+        self.field(value.to_string(), Mark::Text);
+        Ok(())
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<(), E> {
+        self.field(value.to_string(), Mark::Text);
+        Ok(())
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<(), E> {
+        let text = Number::from_f64(value).map_or_else(String::new, |number| number.to_string());
+        self.field(text, Mark::Text);
+        Ok(())
+    }
+}
+
+/// The numbers that JSON does not have and Python writes.
+const WORDS: [&str; 3] = ["NaN", "-Infinity", "Infinity"];
+
+/// The line with strings for [`WORDS`].
+fn with_words(line: &[u8]) -> Vec<u8> {
     let mut clean = Vec::with_capacity(line.len());
     let mut quoted = false;
     let mut k = 0;
     while k < line.len() {
         let rest = &line[k..];
-        let words: [&[u8]; 3] = [b"NaN", b"-Infinity", b"Infinity"];
+        let word = WORDS.iter().find(|w| rest.starts_with(w.as_bytes()));
         if quoted && rest[0] == b'\\' {
             clean.extend(&rest[..rest.len().min(2)]);
             k += 2;
-        } else if let (false, Some(word)) = (quoted, words.iter().find(|w| rest.starts_with(w))) {
-            clean.extend(b"null");
+        } else if let (false, Some(word)) = (quoted, word) {
+            clean.extend(format!("\"\\u0000{word}\"").as_bytes());
             k += word.len();
         } else {
             quoted ^= rest[0] == b'"';
@@ -169,59 +398,158 @@ fn without_nan(line: &[u8]) -> Vec<u8> {
     clean
 }
 
-fn text(value: Option<&Value>) -> String {
-    match value {
-        None | Some(Value::Null) => String::new(),
-        Some(Value::String(text)) => text.clone(),
-        Some(value) => value.to_string(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recording::Recording;
+
+    fn shown(line: &str) -> Vec<(String, String, Mark)> {
+        let fields = fields(line.as_bytes()).unwrap();
+        let shown = |field: Field| (field.name, field.text, field.mark);
+        fields.into_iter().map(shown).collect()
+    }
+
+    fn field(name: &str, text: &str, mark: Mark) -> (String, String, Mark) {
+        (name.to_owned(), text.to_owned(), mark)
+    }
 
     #[test]
     fn objects_inside_an_object_are_flattened() {
-        let line = br#"{"timestamp": 1.5, "data": {"position": 0.25, "fw": {"id_A": 2}}}"#;
-        let fields = fields(line).unwrap();
-        assert_eq!(text(fields.get("timestamp")), "1.5");
-        assert_eq!(text(fields.get("position")), "0.25");
-        assert_eq!(text(fields.get("fw.id_A")), "2");
+        let line = r#"{"timestamp": 1.5, "data": {"position": 0.25, "fw": {"id_A": 2}}, "a": {"data": -1}}"#;
+        let expected = [
+            ("timestamp", "1.5"),
+            ("position", "0.25"),
+            ("fw.id_A", "2"),
+            ("a.data", "-1"),
+        ];
+        let expected = expected.map(|(name, text)| field(name, text, Mark::Text));
+        assert_eq!(shown(line), expected);
     }
 
     #[test]
     fn numbers_that_python_writes_are_empty_fields() {
-        let line = br#"{"a": NaN, "b": -Infinity, "c": "NaN \" NaN", "d": [Infinity, 1]}"#;
-        let fields = fields(line).unwrap();
-        assert_eq!(text(fields.get("a")), "");
-        assert_eq!(text(fields.get("b")), "");
-        assert_eq!(text(fields.get("c")), "NaN \" NaN");
-        assert_eq!(text(fields.get("d")), "[null,1]");
+        let line =
+            r#"{"a": NaN, "b": -Infinity, "c": "NaN \" NaN", "d": [Infinity, 1], "e": null}"#;
+        let expected = [
+            field("a", "", Mark::Blank("NaN")),
+            field("b", "", Mark::Blank("-Infinity")),
+            field("c", "NaN \" NaN", Mark::Text),
+            field("d", "[\"Infinity\",1]", Mark::Text),
+            field("e", "", Mark::Blank("null")),
+        ];
+        assert_eq!(shown(line), expected);
+    }
+
+    fn read(text: &str) -> Result<Recording, String> {
+        Recording::parse(text.as_bytes(), "r.json").map_err(|error| error.to_string())
     }
 
     #[test]
     fn other_layouts_of_json_are_refused() {
+        // An object and 127 lists are 128 levels.
+        let deep = format!("{{\"a\": {}0{}}}\n", "[".repeat(130), "]".repeat(130));
         for (text, what) in [
-            ("[{\"t\": 0.0, \"counts_large\": 0},", "a JSON array"),
-            ("[\n {\n  \"t\": 0.0,\n", "a JSON array"),
-            ("[0.0, 0]\n[0.001, 8]\n", "a JSON array"),
+            ("[{\"t\": 0.0, \"counts_large\": 0},", "1: a JSON array"),
+            ("\n# a log\n[\n {\n  \"t\": 0.0,\n", "3: a JSON array"),
+            ("[0.0, 0]\n[0.001, 8]\n", "1: a JSON array"),
             (
                 "{\n  \"t\": [0, 0.001],\n",
-                "a JSON object of several lines",
+                "1: a JSON object of several lines",
+            ),
+            (
+                "{\"t\": 0},\n{\"t\": 1}\n",
+                "1: no JSON object on a line of its own (trailing characters at column 9)",
+            ),
+            (
+                "{\"t\": 0}{\"t\": 1}\n",
+                "1: no JSON object on a line of its own (trailing characters at column 9)",
+            ),
+            (
+                &deep,
+                "1: no JSON object on a line of its own (recursion limit exceeded at column 133)",
             ),
         ] {
-            let error = check(text, "r.json").unwrap_err().to_string();
-            let said =
-                format!("r.json: line 1: {what}; write one JSON object a line, for example ");
+            let error = read(text).unwrap_err();
+            let said = format!("r.json: line {what}; write one JSON object a line, for example ");
             assert!(error.starts_with(&said), "{error}");
         }
-        for text in [
-            "{\"t\": 0}\n",
-            "[info] a log\nt,counts_large\n0,1\n",
-            "t,x\n",
+        read("[info] a log\nt,counts_large\n0,1\n0.001,2\n").unwrap();
+    }
+
+    #[test]
+    fn comments_and_blank_lines_are_no_objects() {
+        let rows = "{\"t\":0,\"counts_large\":1}\n{\"t\":0.001,\"counts_large\":2}\n";
+        let text = format!("\n# counts_per_rev = 512\n  // a log\n{rows}\n% the end\n");
+        assert_eq!(read(&text).unwrap().trace.counts_large, [1, 2]);
+        let text = text.replace('\n', "\r");
+        assert_eq!(read(&text).unwrap().trace.counts_large, [1, 2]);
+    }
+
+    #[test]
+    fn channels_and_controllers_are_those_of_moteus() {
+        let log = |lines: [&str; 3]| {
+            let line = |(k, fields)| format!("{{\"t\":{k}e-3,\"counts_large\":{k},{fields}}}\n");
+            read(&(1..).zip(lines).map(line).collect::<String>())
+        };
+        for fields in [
+            ["\"channel\":1", "\"channel\":2", "\"channel\":1"],
+            [r#""channel":"a""#, r#""channel":"b""#, r#""channel":"a""#],
+            ["\"controller\":1", "\"controller\":2", "\"controller\":1"],
         ] {
-            check(text, "r").unwrap();
+            assert_eq!(log(fields).unwrap().trace.counts_large, [1, 2, 3]);
+        }
+        let servo = r#""channel":"servo_stats""#;
+        let moteus = log([r#""channel":"git""#, servo, servo]).unwrap();
+        assert_eq!(moteus.trace.counts_large, [2, 3]);
+    }
+
+    #[test]
+    fn name_of_two_fields_is_refused_where_it_is_read() {
+        let first = "{\"t\":0,\"counts_large\":1,\"x\":0}\n";
+        for (second, name) in [
+            (
+                "{\"t\":1,\"counts_large\":0,\"data\":{\"counts_large\":7}}",
+                "counts_large",
+            ),
+            ("{\"t\":0,\"t\":1,\"counts_large\":0}", "t"),
+        ] {
+            for (text, line) in [
+                (format!("{first}{second}\n"), 2),
+                (format!("{second}\n"), 1),
+            ] {
+                let error = read(&text).unwrap_err();
+                let said = format!(
+                    "r.json: line {line}: column {name}: two fields '{name}' in one object; rename or \
+                     remove one"
+                );
+                assert_eq!(error, said);
+            }
+        }
+        let unread = "{\"t\":0.001,\"x\":5,\"counts_large\":2,\"x\":7,\"a.b\":5,\"a\":{\"b\":7}}\n";
+        let recording = read(&format!("{first}{unread}")).unwrap();
+        assert_eq!(recording.trace.counts_large, [1, 2]);
+    }
+
+    #[test]
+    fn field_without_a_number_is_reported_as_it_is() {
+        let first = "{\"t\":0,\"counts_large\":1}\n";
+        for (field, said) in [
+            (
+                ",\"counts_large\":NaN",
+                "'NaN' is not a number; remove the rows",
+            ),
+            (
+                ",\"counts_large\":null",
+                "'null' is not a number; remove the rows",
+            ),
+            (
+                "",
+                "no field 'counts_large' in the object; add it, or remove the line",
+            ),
+        ] {
+            let error = read(&format!("{first}{{\"t\":0.001{field}}}\n")).unwrap_err();
+            let said = format!("r.json: line 2: column counts_large: {said}");
+            assert!(error.starts_with(&said), "{error}");
         }
     }
 }

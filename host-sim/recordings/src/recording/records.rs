@@ -6,7 +6,7 @@ use csv::ByteRecord;
 
 use terminal::failure::Failure;
 
-use super::json::{self, Json};
+use super::json::{Begin, Json};
 use super::kinds;
 use super::layout::Layout;
 use super::options::ReadOptions;
@@ -54,22 +54,21 @@ impl<'a> Records<'a> {
         // Lines end with a carriage return alone only where there is no line feed.
         let end = if head.contains(&b'\n') { b'\n' } else { b'\r' };
         let text = String::from_utf8_lossy(&head).replace(char::from(end), "\n");
-        let is_json = text.trim_start().starts_with('{');
-        json::check(&text, name)?;
-        let layout = match is_json {
-            true => Layout {
+        let json = Begin::of(&text, name)?;
+        let layout = match &json {
+            Some(begin) => Layout {
                 separator: Separator::Comma,
-                names: json::names(&text),
-                line: 1,
+                names: begin.names.clone(),
+                line: begin.line,
                 skip: 0,
             },
-            false => Layout::of(&text, options),
+            None => Layout::of(&text, options),
         };
         let input: Box<dyn Read> = Box::new(Cursor::new(head).chain(input));
         let input = BufReader::with_capacity(1 << 16, input);
-        let source = match is_json {
-            true => Source::Json(Json::new(input)),
-            false => Source::Text(
+        let source = match json {
+            Some(begin) => Source::Json(Json::new(input, end, &begin)),
+            None => Source::Text(
                 csv::ReaderBuilder::new()
                     .has_headers(false)
                     .flexible(true)
@@ -88,7 +87,7 @@ impl<'a> Records<'a> {
     /// The next row.
     pub(super) fn next(&mut self) -> Result<Option<Row<'_>>, Failure> {
         let line = match &mut self.source {
-            Source::Json(json) => json.read(&self.layout.names, &mut self.record, self.name)?,
+            Source::Json(json) => json.read(&mut self.record, self.name)?,
             Source::Text(reader) => {
                 let read = reader.read_byte_record(&mut self.record);
                 let read = read.map_err(|error| {
@@ -114,6 +113,10 @@ impl<'a> Records<'a> {
             name: self.name,
             line,
             record: &self.record,
+            marks: match &self.source {
+                Source::Json(json) => &json.marks,
+                Source::Text(_) => &[],
+            },
             names: &self.layout.names,
             is_first: self.layout.has_header() && line == self.layout.line + 1,
             decimal_comma: self.layout.separator.allows_decimal_comma(),

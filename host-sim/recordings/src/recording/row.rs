@@ -5,6 +5,7 @@ use csv::ByteRecord;
 use terminal::failure::Failure;
 
 use super::fields::not_a_number;
+use super::json::Mark;
 use super::numbers::shown;
 
 /// One row, to read fields from.
@@ -12,6 +13,8 @@ pub(super) struct Row<'a> {
     pub(super) name: &'a str,
     pub(super) line: u64,
     pub(super) record: &'a ByteRecord,
+    /// What each field of an object is; nothing for a line of text.
+    pub(super) marks: &'a [Mark],
     /// Names of the columns as the log has them.
     pub(super) names: &'a [String],
     /// Whether the row is the first one below the header.
@@ -29,6 +32,13 @@ impl Row<'_> {
     }
 
     pub(super) fn text(&self, column: &str, place: usize) -> Result<&str, Failure> {
+        if self.marks.get(place) == Some(&Mark::Twice) {
+            let what = format!(
+                "two fields '{}' in one object; rename or remove one",
+                self.theirs(column, place)
+            );
+            return Err(self.failure(column, &what));
+        }
         let bytes = self.record.get(place).unwrap_or_default().trim_ascii();
         std::str::from_utf8(bytes).map_err(|_| self.failure(column, "not text"))
     }
@@ -70,7 +80,15 @@ impl Row<'_> {
     }
 
     fn not_a_number(&self, text: &str, column: &str, place: usize) -> String {
-        not_a_number(text, [column, self.theirs(column, place)], self.is_first)
+        let theirs = self.theirs(column, place);
+        let text = match self.marks.get(place) {
+            Some(Mark::Missing) => {
+                return format!("no field '{theirs}' in the object; add it, or remove the line");
+            }
+            Some(Mark::Blank(word)) => word,
+            _ => text,
+        };
+        not_a_number(text, [column, theirs], self.is_first)
     }
 
     /// The name of a column in the log.

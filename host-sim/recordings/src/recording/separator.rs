@@ -70,7 +70,8 @@ pub(super) fn comment(line: &str) -> Option<&str> {
     Some(text.trim_start_matches(['#', '%', '/']).trim_start())
 }
 
-fn is_comment(line: &[u8]) -> bool {
+/// Whether a line is a comment.
+pub(super) fn is_comment(line: &[u8]) -> bool {
     let line = line.trim_ascii_start();
     matches!(line, [b'#' | b'%', ..] | [b'/', b'/', ..])
 }
