@@ -57,6 +57,32 @@ pub(super) fn unknown(mapping: &Mapping, layout: &Layout, name: &str) -> Failure
     ))
 }
 
+/// Checks that the header has the name of a `--column` no more than once.
+///
+/// # Errors
+/// [`Failure::Input`] with the numbers of the columns.
+pub(super) fn check_one(mapping: &Mapping, layout: &Layout, name: &str) -> Result<(), Failure> {
+    let called = layout.names.iter().zip(1..);
+    let called = called.filter(|(known, _)| **known == mapping.theirs);
+    let numbers: Vec<_> = called.map(|(_, number): (_, u32)| number).collect();
+    if numbers.len() < 2 {
+        return Ok(());
+    }
+    let listed: Vec<_> = numbers.iter().map(u32::to_string).collect();
+    let unit = mapping.unit.map(|unit| format!(":{}", unit.name()));
+    Err(Failure::Input(format!(
+        "{name}: line {}: {} columns '{}', of which --column names one for {ours}: the numbers {}; write one \
+         of the numbers, for example --column {ours}={}{}",
+        layout.line,
+        numbers.len(),
+        short(&mapping.theirs),
+        listed.join(", "),
+        numbers[0],
+        unit.unwrap_or_default(),
+        ours = mapping.column.name(),
+    )))
+}
+
 /// Error for a `--column` without a unit, whose column's name ends as if it had another `unit`.
 pub(super) fn unknown_unit(mapping: &Mapping, unit: &str, layout: &Layout, name: &str) -> Failure {
     let ours = mapping.column.name();
@@ -120,7 +146,7 @@ fn found(layout: &Layout) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Recording;
+    use super::super::{ReadOptions, Recording};
 
     fn error(text: &str) -> String {
         let error = Recording::parse(text.as_bytes(), "r.csv").unwrap_err();
@@ -198,6 +224,22 @@ mod tests {
         for name in ["moteus", "ODrive", "VESC Tool", "SimpleFOC", "PlotJuggler"] {
             assert!(error.contains(name), "{name}: {error}");
         }
+    }
+
+    #[test]
+    fn name_of_several_columns_is_refused_with_their_numbers() {
+        let read = |column: &str| {
+            let mut options = ReadOptions::default();
+            options.add_columns(column).unwrap();
+            let text = "t,pos,x,pos\n0,1,0,5\n0.001,2,0,7\n";
+            Recording::parse_as(text.as_bytes(), "r.csv", &options)
+                .map_err(|error| error.to_string())
+        };
+        let said = "r.csv: line 1: 2 columns 'pos', of which --column names one for counts_large: the numbers \
+                    2, 4; write one of the numbers, for example --column counts_large=2:deg";
+        assert_eq!(read("counts_large=pos:deg").unwrap_err(), said);
+        let recording = read("counts_large=4").unwrap();
+        assert_eq!(recording.trace.counts_large, [5, 7]);
     }
 
     #[test]

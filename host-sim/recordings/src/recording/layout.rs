@@ -84,6 +84,7 @@ impl Layout {
         };
         for column in Column::ALL {
             if let Some(mapping) = options.mapping(column) {
+                header::check_one(mapping, self, name)?;
                 let place = self
                     .place(&mapping.theirs)
                     .ok_or_else(|| header::unknown(mapping, self, name))?;
