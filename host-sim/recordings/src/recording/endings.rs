@@ -1,12 +1,53 @@
 //! Units at the end of a column's name: `time_ms`, `angle [deg]`, `Time (us)`, `theta/deg`.
 
-use super::units::{Quantity, Unit};
+use super::units::{Quantity, Unit, quotient};
 
 /// Units that no quantity of a recording has, for the endings that are no part of a name.
-const FOREIGN: [&str; 20] = [
-    "hz", "khz", "mm", "cm", "um", "inch", "mv", "ua", "ka", "mdps", "gon", "arcmin", "arcsec",
-    "mnm", "ncm", "hours", "hrs", "minutes", "lsb", "percent",
+const FOREIGN: [&str; 33] = [
+    "hz", "mhz", "ghz", "inch", "ft", "mv", "uv", "kv", "gon", "grad", "grads", "gradian",
+    "gradians", "arcmin", "arcsec", "mnm", "ncm", "ozin", "kgcm", "minutes", "minute", "mins",
+    "hour", "hours", "hr", "hrs", "day", "days", "lsb", "percent", "pct", "mdps", "rpm",
 ];
+
+/// Prefixes of [`BASES`].
+const PREFIXES: [&str; 15] = [
+    "p", "n", "u", "\u{b5}", "\u{3bc}", "m", "c", "d", "k", "nano", "micro", "milli", "centi",
+    "deci", "kilo",
+];
+
+/// Units that a prefix makes to another one.
+const BASES: [&str; 27] = [
+    "rad",
+    "radian",
+    "radians",
+    "deg",
+    "degree",
+    "degrees",
+    "\u{b0}",
+    "rev",
+    "revs",
+    "revolutions",
+    "turn",
+    "turns",
+    "s",
+    "sec",
+    "second",
+    "seconds",
+    "a",
+    "amp",
+    "amps",
+    "ampere",
+    "amperes",
+    "m",
+    "meter",
+    "meters",
+    "hz",
+    "counts",
+    "nm",
+];
+
+/// The end of a time in minutes. In another column it is a minimum.
+const MINUTES: &str = "min";
 
 /// What the end of a column's name says about its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +94,10 @@ fn plain(quantity: Quantity, column: &str) -> Ending<'_> {
     if let Some(unit) = ends.iter().find_map(|end| quantity.unit(end)) {
         return Ending::Unit(unit);
     }
-    match ends[1..].iter().find(|end| is_other_unit(end)) {
+    let is_time = matches!(quantity, Quantity::Time | Quantity::Edge);
+    let is_minutes = |end: &str| is_time && end.to_lowercase() == MINUTES;
+    let mut ends = ends.into_iter();
+    match ends.find(|end| is_other_unit(end) || is_minutes(end)) {
         Some(end) => Ending::Unknown(end),
         None => Ending::Nothing,
     }
@@ -61,9 +105,22 @@ fn plain(quantity: Quantity, column: &str) -> Ending<'_> {
 
 /// Whether `end` is a unit of some quantity. A single letter is also a name: motor A, axis s.
 fn is_other_unit(end: &str) -> bool {
-    let is_known = || Quantity::ALL.iter().any(|known| known.unit(end).is_some());
-    let is_foreign = || FOREIGN.contains(&end.to_lowercase().as_str());
-    end.chars().count() > 1 && (is_known() || is_foreign())
+    let is_known = |end: &str| Quantity::ALL.iter().any(|known| known.unit(end).is_some());
+    let is_unit = |end: &str| {
+        end.chars().count() > 1 && (is_known(end) || FOREIGN.contains(&end) || is_prefixed(end))
+    };
+    let end = end.to_lowercase();
+    // A quotient: of a unit and a time.
+    let quotient = quotient(&end);
+    let above = quotient.split_once('/').map(|(above, _)| above);
+    is_unit(&end) || above.is_some_and(is_unit)
+}
+
+fn is_prefixed(end: &str) -> bool {
+    let bases = PREFIXES
+        .iter()
+        .filter_map(|prefix| end.strip_prefix(prefix));
+    bases.into_iter().any(|base| BASES.contains(&base))
 }
 
 #[cfg(test)]
@@ -113,6 +170,26 @@ mod tests {
             (Quantity::Time, "t (h)", "h"),
             (Quantity::Velocity, "omega [mrad/s]", "mrad/s"),
             (Quantity::Velocity, "vel_deg", "deg"),
+            (Quantity::Position, "pos_urad", "urad"),
+            (Quantity::Position, "pos_cdeg", "cdeg"),
+            (Quantity::Position, "pos_ddeg", "ddeg"),
+            (Quantity::Position, "pos_mrev", "mrev"),
+            (Quantity::Position, "urad", "urad"),
+            (Quantity::Position, "pos_um", "um"),
+            (Quantity::Position, "pos_deg_s", "deg_s"),
+            (Quantity::Time, "time_cs", "cs"),
+            (Quantity::Time, "time_ps", "ps"),
+            (Quantity::Time, "minutes", "minutes"),
+            (Quantity::Time, "t_min", "min"),
+            (Quantity::Time, "min", "min"),
+            (Quantity::Time, "t [min]", "min"),
+            (Quantity::Time, "t (min)", "min"),
+            (Quantity::Time, "ticks", "ticks"),
+            (Quantity::Edge, "edge_min", "min"),
+            (Quantity::Current, "iq_cA", "cA"),
+            (Quantity::Current, "iq_nA", "nA"),
+            (Quantity::Velocity, "omega_mrad_s", "mrad_s"),
+            (Quantity::Velocity, "omega_counts_per_s", "counts_per_s"),
         ] {
             assert_eq!(Ending::of(quantity, column), Ending::Unknown(end));
         }
@@ -121,7 +198,13 @@ mod tests {
             (Quantity::Position, "pos[0]"),
             (Quantity::Position, "/a/position"),
             (Quantity::Time, "time"),
-            (Quantity::Time, "t_min"),
+            (Quantity::Position, "pos_min"),
+            (Quantity::Position, "A"),
+            (Quantity::Position, "motor_s"),
+            (Quantity::Position, "pos_raw"),
+            (Quantity::Position, "pos_m_s"),
+            (Quantity::Current, "i_d"),
+            (Quantity::Current, "current_rms"),
         ] {
             assert_eq!(Ending::of(quantity, column), Ending::Nothing, "{column}");
         }

@@ -144,7 +144,7 @@ impl Quantity {
 }
 
 /// The name of a quotient of units with one `/`, and `s` and `min` below it.
-fn quotient(name: &str) -> String {
+pub(super) fn quotient(name: &str) -> String {
     for (over, unit) in [("sec", "s"), ("s", "s"), ("min", "min")] {
         for sign in ["^-1", "-1", "⁻¹", "**-1"] {
             let Some(above) = name.strip_suffix(&format!("{over}{sign}")) else {
