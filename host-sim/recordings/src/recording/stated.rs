@@ -19,9 +19,10 @@ pub fn counts_per_rev_line(counts_per_rev: u32) -> String {
 ///
 /// # Errors
 /// [`Failure::Input`] that names file, line and key, if the number is not a whole one in
-/// [`COUNTS_PER_REV`].
+/// [`COUNTS_PER_REV`], or if two comments differ.
 pub fn stated_counts_per_rev(head: &[u8], name: &str) -> Result<Option<u32>, Failure> {
     let text = String::from_utf8_lossy(head);
+    let mut stated: Option<(usize, u32)> = None;
     for (index, line) in text.lines().enumerate() {
         let Some(value) = comment(line).and_then(|text| text.strip_prefix(KEY)) else {
             continue;
@@ -30,19 +31,26 @@ pub fn stated_counts_per_rev(head: &[u8], name: &str) -> Result<Option<u32>, Fai
             continue;
         };
         let number = value.trim().parse().ok();
-        return match number.filter(|number| COUNTS_PER_REV.contains(number)) {
-            Some(number) => Ok(Some(number)),
-            None => Err(Failure::Input(format!(
+        let Some(number) = number.filter(|number| COUNTS_PER_REV.contains(number)) else {
+            return Err(Failure::Input(format!(
                 "{name}: line {}: {KEY}: '{}' is not a whole number from {} to {}; correct or remove \
                  the comment",
                 index + 1,
                 value.trim().escape_debug(),
                 COUNTS_PER_REV.start(),
                 COUNTS_PER_REV.end()
-            ))),
+            )));
         };
+        let (line, known) = *stated.get_or_insert((index, number));
+        if known != number {
+            return Err(Failure::Input(format!(
+                "{name}: line {}: {KEY}: {number}, where line {} states {known}; remove the wrong comment",
+                index + 1,
+                line + 1
+            )));
+        }
     }
-    Ok(None)
+    Ok(stated.map(|(_, number)| number))
 }
 
 #[cfg(test)]
@@ -61,6 +69,17 @@ mod tests {
             let found = stated_counts_per_rev(text.as_bytes(), "r").unwrap();
             assert_eq!(found, stated, "{text}");
         }
+    }
+
+    #[test]
+    fn two_comments_that_differ_are_refused_with_their_lines() {
+        let log = |second| format!("# counts_per_rev = 1024\nt,x\n# counts_per_rev = {second}\n");
+        let stated = |second| stated_counts_per_rev(log(second).as_bytes(), "r.csv");
+        assert_eq!(stated(1024).unwrap(), Some(1024));
+        assert_eq!(
+            stated(2048).unwrap_err().to_string(),
+            "r.csv: line 3: counts_per_rev: 2048, where line 1 states 1024; remove the wrong comment"
+        );
     }
 
     #[test]
