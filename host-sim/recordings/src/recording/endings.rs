@@ -3,10 +3,10 @@
 use super::units::{Quantity, Unit, quotient};
 
 /// Units that no quantity of a recording has, for the endings that are no part of a name.
-const FOREIGN: [&str; 33] = [
+const FOREIGN: [&str; 32] = [
     "hz", "mhz", "ghz", "inch", "ft", "mv", "uv", "kv", "gon", "grad", "grads", "gradian",
     "gradians", "arcmin", "arcsec", "mnm", "ncm", "ozin", "kgcm", "minutes", "minute", "mins",
-    "hour", "hours", "hr", "hrs", "day", "days", "lsb", "percent", "pct", "mdps", "rpm",
+    "hour", "hours", "hr", "hrs", "day", "days", "lsb", "percent", "pct", "mdps",
 ];
 
 /// Prefixes of [`BASES`].

@@ -89,8 +89,8 @@ pub(super) fn unknown_unit(mapping: &Mapping, unit: &str, layout: &Layout, name:
     let quantity = mapping.column.quantity();
     let place = layout.place(&mapping.theirs).unwrap_or_default();
     Failure::Input(format!(
-        "{name}: line {}: '{}' at the end of the name is no unit of {ours}; there are {}; state the unit, \
-         for example --column '{ours}={}:{}'",
+        "{name}: line {}: '{}' at the end of the name is no unit of {ours}; there are {}; convert the numbers, \
+         or state the unit where it is one of these, for example --column '{ours}={}:{}'",
         layout.line.max(1),
         short(unit),
         quantity.list(),
@@ -197,6 +197,10 @@ mod tests {
             (
                 "t_us,joint [deg]\n0,1\n",
                 "--column 't=t_us,counts_large=joint [deg]'",
+            ),
+            (
+                "time_min,pos_urad\n0,1\n",
+                "--column 't=time_min,counts_large=pos_urad'",
             ),
             (
                 "stamp,the user's count\n0,1\n",

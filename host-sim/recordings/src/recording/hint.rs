@@ -65,8 +65,9 @@ fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Opti
     };
     let name = &layout.names[place];
     let unit = match Ending::of(quantity, name) {
-        Ending::Unit(_) => String::new(),
-        _ => format!(":{}", example(quantity)),
+        // Of a name with another unit only its owner can say what the numbers are.
+        Ending::Unit(_) | Ending::Unknown(_) => String::new(),
+        Ending::Nothing => format!(":{}", example(quantity)),
     };
     (name != ours).then(|| format!("{ours}={}{unit}", theirs(layout, place)))
 }

@@ -48,8 +48,8 @@ fn end_of_a_name_that_is_no_unit_is_refused_with_the_units() {
             "counts_large",
             "angle [grad]",
             "error: r.csv: line 1: 'grad' at the end of the name is no unit of counts_large; there are \
-             counts, deg, rad, rev, mdeg, mrad; state the unit, for example --column \
-             'counts_large=angle [grad]:counts'",
+             counts, deg, rad, rev, mdeg, mrad; convert the numbers, or state the unit where it is one of \
+             these, for example --column 'counts_large=angle [grad]:counts'",
         ),
         (
             "true_omega",
