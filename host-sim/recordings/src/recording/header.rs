@@ -135,10 +135,16 @@ fn found(layout: &Layout) -> String {
     let all = names.join("; ");
     let shown: String = all.chars().take(SHOWN).collect();
     let more = if shown.len() < all.len() { " ..." } else { "" };
+    let searched = layout.searched;
+    if let (Some(searched), true) = (searched, all.is_empty()) {
+        return format!("no header within the first {searched}");
+    }
+    let other = searched.map(|searched| format!("; no other header within the first {searched}"));
+    let other = other.unwrap_or_default();
     match number {
-        0 | 1 => format!("found: '{shown}{more}'"),
+        0 | 1 => format!("found: '{shown}{more}'{other}"),
         _ => format!(
-            "found: {shown}{more}, separated by {}",
+            "found: {shown}{more}, separated by {}{other}",
             layout.separator.name()
         ),
     }

@@ -15,6 +15,9 @@ const LISTED: usize = 4;
 
 /// The option `--column`, with names and units.
 pub(super) fn option(layout: &Layout) -> String {
+    if layout.names.iter().all(String::is_empty) && layout.searched.is_some() {
+        return "remove lines above the header".to_owned();
+    }
     if layout.names.iter().all(String::is_empty) {
         return "the file has no names of columns; write t,counts_large in its first line"
             .to_owned();

@@ -22,16 +22,41 @@ pub(super) struct Layout {
     pub(super) line: u64,
     /// Number of lines before the data.
     pub(super) skip: u64,
+    /// What is searched of a text that goes on and has no header and no numbers there.
+    pub(super) searched: Option<&'static str>,
+    /// The first row of a text that has no header.
+    pub(super) first_row: String,
 }
 
 impl Layout {
-    /// The layout of a text that begins with `head`.
-    pub(super) fn of(head: &str, options: &ReadOptions) -> Self {
-        let lines: Vec<_> = head.lines().take(SEARCHED).collect();
-        named(&lines, options).unwrap_or_else(|| probable(&lines))
+    /// The layout of the log called `name` that begins with `head`. `is_cut` is true if it goes on.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if rows have another separator than the header.
+    pub(super) fn of(
+        head: &str,
+        is_cut: bool,
+        options: &ReadOptions,
+        name: &str,
+    ) -> Result<Self, Failure> {
+        let mut lines: Vec<_> = head.lines().take(SEARCHED + 1).collect();
+        let limit = match (lines.len() > SEARCHED, is_cut) {
+            (true, _) => Some("500 lines"),
+            (false, true) => Some("64 KiB"),
+            (false, false) => None,
+        };
+        if limit.is_some() {
+            // The last line may be cut.
+            lines.pop();
+        }
+        if let Some(layout) = named(&lines, options) {
+            layout.check_separator(&lines, name)?;
+            return Ok(layout);
+        }
+        Ok(probable(&lines, limit))
     }
 
-    fn header(separator: Separator, mut names: Vec<String>, index: usize) -> Self {
+    pub(super) fn header(separator: Separator, mut names: Vec<String>, index: usize) -> Self {
         // Some programs end each line with a separator.
         if names.len() > 1 && names.last().is_some_and(String::is_empty) {
             names.pop();
@@ -41,6 +66,35 @@ impl Layout {
             names,
             line: index as u64 + 1,
             skip: index as u64 + 1,
+            searched: None,
+            first_row: String::new(),
+        }
+    }
+
+    /// Checks that the first row has the separator of the header.
+    fn check_separator(&self, lines: &[&str], name: &str) -> Result<(), Failure> {
+        let below = (0..).zip(lines).skip(self.skip as usize);
+        let mut rows = below.filter(|(_, line)| is_content(line) && comment(line).is_none());
+        let Some((index, row)) = rows.next() else {
+            return Ok(());
+        };
+        let own = self.separator.split(row);
+        let is_row = own.len() == self.names.len()
+            && own.iter().all(|field| is_number(field, self.separator));
+        match numbers(row) {
+            Some((other, fields))
+                if !is_row && other != self.separator && fields == self.names.len() =>
+            {
+                Err(Failure::Input(format!(
+                    "{name}: line {}: fields separated by {}, where the header in line {} has {}; write one \
+                     separator in all lines",
+                    index + 1,
+                    other.name(),
+                    self.line,
+                    self.separator.name()
+                )))
+            }
+            _ => Ok(()),
         }
     }
 
@@ -250,29 +304,31 @@ fn named(lines: &[&str], options: &ReadOptions) -> Option<Layout> {
 }
 
 /// The line before the first line of numbers; a text without names where the first line has numbers.
-fn probable(lines: &[&str]) -> Layout {
+/// `limit` is what was searched of a text that goes on.
+fn probable(lines: &[&str], limit: Option<&'static str>) -> Layout {
     let mut above: Option<(usize, &str)> = None;
     for (index, line) in lines.iter().enumerate() {
-        let is_separator = |c: char| matches!(c, ',' | ';') || c.is_whitespace();
-        if line.chars().all(is_separator) {
+        if !is_content(line) {
             continue;
         }
         if comment(line).is_none()
             && let Some((separator, fields)) = numbers(line)
         {
+            let named = fields - usize::from(end_with(separator, &lines[index..]));
             if let Some((above, text)) = above {
-                let names = separator.split(text);
-                if names.len() == fields && numbers(text).is_none() {
-                    return Layout::header(separator, names, above);
+                let header = Layout::header(separator, separator.split(text), above);
+                let fits = [fields, named].contains(&header.names.len());
+                if fits && numbers(text).is_none() {
+                    return header;
                 }
             }
             return Layout {
                 separator,
-                names: (1..=fields - usize::from(line.trim_end().ends_with([',', ';'])))
-                    .map(|number| number.to_string())
-                    .collect(),
+                names: (1..=named).map(|number| number.to_string()).collect(),
                 line: 0,
                 skip: index as u64,
+                searched: None,
+                first_row: line.trim().to_owned(),
             };
         }
         above = Some((index, comment(line).unwrap_or(line)));
@@ -285,18 +341,125 @@ fn probable(lines: &[&str]) -> Layout {
         .into_iter()
         .find(|separator| separator.split(line).len() > 1);
     let separator = separator.unwrap_or(Separator::Comma);
-    Layout::header(separator, separator.split(line), index)
+    Layout {
+        searched: limit,
+        ..Layout::header(separator, separator.split(line), index)
+    }
+}
+
+/// Whether a line has more than separators.
+fn is_content(line: &str) -> bool {
+    let is_separator = |c: char| matches!(c, ',' | ';') || c.is_whitespace();
+    !line.chars().all(is_separator)
+}
+
+/// Whether all rows of `lines` end with the separator, after the last field. In a few rows the last
+/// field may be empty.
+fn end_with(separator: Separator, lines: &[&str]) -> bool {
+    let mut rows = lines
+        .iter()
+        .filter(|line| is_content(line) && comment(line).is_none());
+    let end = char::from(separator.byte());
+    separator != Separator::Whitespace
+        && rows.all(|row| row.trim_end_matches([' ', '\r']).ends_with(end))
 }
 
 /// Separator and number of fields of a line of numbers.
 fn numbers(line: &str) -> Option<(Separator, usize)> {
     Separator::ALL.into_iter().find_map(|separator| {
         let fields = separator.split(line);
-        let number = |field: &String| match separator.allows_decimal_comma() {
-            true => field.replacen(',', ".", 1).parse::<f64>().is_ok(),
-            false => field.parse::<f64>().is_ok(),
-        };
-        (fields.len() > 1 && fields.iter().all(|field| field.is_empty() || number(field)))
-            .then_some((separator, fields.len()))
+        let is_number = |field: &String| field.is_empty() || is_number(field, separator);
+        (fields.len() > 1 && fields.iter().all(is_number)).then_some((separator, fields.len()))
     })
+}
+
+fn is_number(field: &str, separator: Separator) -> bool {
+    match separator.allows_decimal_comma() {
+        true => field.replacen(',', ".", 1).parse::<f64>().is_ok(),
+        false => field.parse::<f64>().is_ok(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::recording::{ReadOptions, Recording};
+
+    fn read(text: &str, columns: &str) -> Result<Recording, String> {
+        let mut options = ReadOptions::default();
+        if !columns.is_empty() {
+            options.add_columns(columns).unwrap();
+        }
+        Recording::parse_as(text.as_bytes(), "r.csv", &options).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn header_that_is_not_found_is_reported_with_what_is_searched() {
+        let rows = "t,counts_large\n0,1\n0.001,2\n";
+        let lines = "# a comment\n".repeat(500);
+        let long = format!("# {}\n", "x".repeat(997)).repeat(66);
+        for (preamble, limit) in [(&lines, "500 lines"), (&long, "64 KiB")] {
+            for column in ["", "t=t"] {
+                let error = read(&format!("{preamble}{rows}"), column).unwrap_err();
+                let said = format!("; no header within the first {limit}; ");
+                assert!(error.contains(&said), "{error}");
+            }
+        }
+        read(&format!("{}{rows}", &lines[12..]), "").unwrap();
+        let error = read(&format!("{}{rows}", "a, b\n".repeat(500)), "").unwrap_err();
+        let said = "found: a; b, separated by ','; no other header within the first 500 lines; ";
+        assert!(error.contains(said), "{error}");
+        let error = read(&"0,".repeat(40_000), "t=1,counts_large=2").unwrap_err();
+        let said = "r.csv: line 1: no end of the line within 64 KiB; write one row a line";
+        assert!(error.starts_with(said), "{error}");
+    }
+
+    #[test]
+    fn first_row_of_a_log_without_a_header_is_reported() {
+        let rows = (0..20).map(|k| format!("{k}e-3,{k}\n"));
+        let text = format!("# pandas\n0,1\n{}", rows.collect::<String>());
+        let recording = read(&text, "t=1:s,counts_large=2:counts").unwrap();
+        let said = "; without a header, line 2 is the first row: '0,1'";
+        assert!(recording.notes[0].ends_with(said), "{:?}", recording.notes);
+        let recording = read(&text.replace("0,1", "t,counts_large"), "t=t").unwrap();
+        assert!(!recording.notes[0].contains("header"));
+    }
+
+    #[test]
+    fn separator_at_the_end_of_all_rows_begins_no_column() {
+        for end in ["\t", "\t\r", "\t "] {
+            let monitor = format!("2\t0.1\t0.5\t0.25{end}\n").repeat(3);
+            let error = read(&monitor, "").unwrap_err();
+            assert!(error.contains("the monitor of SimpleFOC"), "{error}");
+        }
+        let columns = "t=1,counts_large=2";
+        assert!(read("0\t1\t\n0.001\t2\t\n", columns).is_ok());
+        // The last field of the first row is empty.
+        for text in ["0\t1\t\n0.001\t2\t5\n", "0,1,\n0.001,2,5\n"] {
+            assert_eq!(read(text, columns).unwrap().trace.counts_large, [1, 2]);
+        }
+        let text = "a;b\n0;1;\n0.001;2;\n";
+        assert!(read(text, "t=a,counts_large=b").is_ok());
+    }
+
+    #[test]
+    fn separators_of_header_and_rows_that_differ_are_named() {
+        for (text, said) in [
+            (
+                "t;counts_large\n0,1\n0.001,2\n",
+                "r.csv: line 2: fields separated by ',', where the header in line 1 has ';'; write one",
+            ),
+            (
+                "t,counts_large\n# a\n0,5;1\n0,6;2\n",
+                "r.csv: line 3: fields separated by ';', where the header in line 1 has ','; write one",
+            ),
+            (
+                "# t\tcounts_large\n0   1\n1   2\n",
+                "r.csv: line 2: fields separated by spaces, where the header in line 1 has tabs; write one",
+            ),
+        ] {
+            let error = read(text, "").unwrap_err();
+            assert!(error.starts_with(said), "{error}");
+        }
+        read("t counts_large\n0\t1\n0.001\t2\n", "").unwrap();
+    }
 }

@@ -48,6 +48,7 @@ impl<'a> Records<'a> {
         let read = input.by_ref().take(HEAD).read_to_end(&mut head);
         read.map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
         kinds::check(&head, name)?;
+        let is_cut = head.len() as u64 == HEAD;
         if head.starts_with(BYTE_ORDER_MARK) {
             head.drain(..BYTE_ORDER_MARK.len());
         }
@@ -57,12 +58,16 @@ impl<'a> Records<'a> {
         let json = Begin::of(&text, name)?;
         let layout = match &json {
             Some(begin) => Layout {
-                separator: Separator::Comma,
-                names: begin.names.clone(),
                 line: begin.line,
-                skip: 0,
+                ..Layout::header(Separator::Comma, begin.names.clone(), 0)
             },
-            None => Layout::of(&text, options),
+            None if is_cut && !text.contains('\n') => {
+                return Err(Failure::Input(format!(
+                    "{name}: line 1: no end of the line within 64 KiB; write one row a line, with the columns \
+                     that are needed"
+                )));
+            }
+            None => Layout::of(&text, is_cut, options, name)?,
         };
         let input: Box<dyn Read> = Box::new(Cursor::new(head).chain(input));
         let input = BufReader::with_capacity(1 << 16, input);

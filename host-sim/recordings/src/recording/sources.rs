@@ -1,5 +1,6 @@
 //! The note on the columns and units that a recording was read from.
 
+use super::header::short;
 use super::layout::{Layout, Place, Places};
 use super::options::{Column, ReadOptions};
 use super::units::Scale;
@@ -44,5 +45,13 @@ pub(super) fn sources(options: &ReadOptions, places: &Places, layout: &Layout) -
     let log = places.format.map_or_else(String::new, |format| {
         format!("read as a log of {}: ", format.name)
     });
-    Some(format!("{log}{}", parts.join(", ")))
+    let first = match layout.has_header() {
+        true => String::new(),
+        false => format!(
+            "; without a header, line {} is the first row: '{}'",
+            layout.skip + 1,
+            short(&layout.first_row)
+        ),
+    };
+    Some(format!("{log}{}{first}", parts.join(", ")))
 }
