@@ -38,10 +38,22 @@ pub(super) fn missing(column: Column, layout: &Layout, places: &Places, name: &s
 /// Error for a `--column` whose name is not in the header, or whose unit is none.
 pub(super) fn unknown(mapping: &Mapping, layout: &Layout, name: &str) -> Failure {
     let (theirs, ours) = (&mapping.theirs, mapping.column.name());
+    if let Some(why) = hint::barred(layout) {
+        return Failure::Input(format!("{name}: line {}: {why}", layout.line.max(1)));
+    }
     if let Some((column, unit)) = theirs.rsplit_once(':')
         && layout.place(column).is_some()
     {
-        let units = mapping.column.quantity().list();
+        let quantity = mapping.column.quantity();
+        if let (Some(unit), Some(_)) = (mapping.unit, quantity.unit(unit)) {
+            return Failure::Input(format!(
+                "{name}: --column {ours}={}:{}: the unit is stated twice; write --column {ours}={}:{1}",
+                short(theirs),
+                unit.name(),
+                short(column)
+            ));
+        }
+        let units = quantity.list();
         return Failure::Input(format!(
             "{name}: --column {ours}={}: '{}' is no unit of {ours}; there are {units}",
             short(theirs),
@@ -115,11 +127,15 @@ fn known() -> String {
     names.join(", ")
 }
 
+/// A name as a message shows it; a long one has its begin.
 pub(super) fn short(name: &str) -> String {
-    name.chars()
-        .take(NAME)
-        .flat_map(char::escape_debug)
-        .collect()
+    let escaped = name.chars().take(NAME).flat_map(char::escape_debug);
+    let cut = if name.chars().count() > NAME {
+        "..."
+    } else {
+        ""
+    };
+    escaped.chain(cut.chars()).collect()
 }
 
 /// The columns as found, and their separator.
@@ -216,6 +232,14 @@ mod tests {
                 "target:0.5\tangle:0.01\ntarget:0.5\tangle:0.02\n",
                 "line 1: each row has the names of its numbers: 'target:0.5'; write the names in the first \
                  line alone",
+            ),
+            (
+                "t|counts_large\n0|1\n",
+                "line 1: '|' separates no fields; write commas, semicolons, tabs or spaces",
+            ),
+            (
+                "stamp,axis0.encoder.pos_estimate_of_load\n0,1\n",
+                "found: stamp; axis0.encoder.pos_estimate_of_..., separated by ','",
             ),
             (
                 "a,b\n1,2\n",

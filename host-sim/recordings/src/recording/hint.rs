@@ -88,7 +88,19 @@ pub(super) fn theirs(layout: &Layout, place: usize) -> String {
 
 /// A reason for a missing column that is better than its name.
 pub(super) fn reason(layout: &Layout, places: &Places) -> Option<String> {
-    ambiguous(layout, places).or_else(|| labelled(layout))
+    let ambiguous = ambiguous(layout, places);
+    ambiguous
+        .or_else(|| labelled(layout))
+        .or_else(|| barred(layout))
+}
+
+/// Fields between bars.
+pub(super) fn barred(layout: &Layout) -> Option<String> {
+    let [line] = layout.names.as_slice() else {
+        return None;
+    };
+    line.contains('|')
+        .then(|| "'|' separates no fields; write commas, semicolons, tabs or spaces".to_owned())
 }
 
 /// Several positions in a known log.

@@ -73,6 +73,10 @@ fn unit_that_is_stated_and_is_none_is_reported() {
             "error: r.csv: --column t=t:h: 'h' is no unit of t; there are s, ms, us, ns\n",
         ),
         (
+            "t=t:s:s",
+            "error: r.csv: --column t=t:s:s: the unit is stated twice; write --column t=t:s\n",
+        ),
+        (
             "counts_large=counts_large:ms",
             "'ms' is no unit of counts_large; there are counts, deg, rad, rev, mdeg, mrad\n",
         ),
