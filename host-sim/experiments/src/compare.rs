@@ -2,8 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use rayon::prelude::*;
-
+use crate::parallel::in_order;
 use catalogue::estimators::{Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
 use scoring::evaluation::{Estimate, Evaluation, Heading, Row};
@@ -142,14 +141,11 @@ pub fn compare(
     settings: &Settings,
     done: impl Fn() + Sync,
 ) -> Result<Vec<Outcome>, Failure> {
-    cases
-        .par_iter()
-        .map(|case| {
-            let outcome = run(case, settings);
-            done();
-            outcome
-        })
-        .collect()
+    in_order(cases, |case| {
+        let outcome = run(case, settings);
+        done();
+        outcome
+    })
 }
 
 fn run(case: &Case, settings: &Settings) -> Result<Outcome, Failure> {

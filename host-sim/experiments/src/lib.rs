@@ -7,6 +7,7 @@ pub mod compare;
 pub mod feel;
 pub mod identify;
 pub mod limit;
+mod parallel;
 pub mod rates;
 pub mod real;
 pub mod recommend;

@@ -8,10 +8,10 @@
 mod filter;
 pub mod table;
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::compare::{Case, Settings, interval, setup_of, trace};
+use crate::parallel::in_order;
 use catalogue::estimators::Kind;
 use scoring::evaluation::Evaluation;
 use scoring::score::{Truth, Wanted};
@@ -75,14 +75,11 @@ pub fn limit(
     particles: usize,
     done: impl Fn() + Sync,
 ) -> Result<Vec<LimitRow>, Failure> {
-    let rows = cases
-        .par_iter()
-        .map(|case| {
-            let rows = run(case, settings, particles);
-            done();
-            rows
-        })
-        .collect::<Result<Vec<_>, _>>()?;
+    let rows = in_order(cases, |case| {
+        let rows = run(case, settings, particles);
+        done();
+        rows
+    })?;
     Ok(rows.into_iter().flatten().collect())
 }
 

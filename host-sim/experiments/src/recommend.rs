@@ -4,7 +4,6 @@ mod table;
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use catalogue::estimators::{Kind, Setup};
@@ -15,6 +14,7 @@ use scoring::score::SKIP_S;
 use simulation::device::Device;
 use terminal::failure::Failure;
 
+use crate::parallel::in_order;
 use crate::rates::{check_same, refuses};
 use crate::reference::{FEWEST_ROWS, Reference};
 use crate::replay;
@@ -166,11 +166,9 @@ pub fn recommend<'a>(
     let (kinds, of_device): (Vec<_>, Vec<_>) = able
         .into_iter()
         .partition(|kind| settings.is_known || !kind.needs_device());
-    let outcomes: Result<Vec<_>, Failure> = logs
-        .par_iter()
-        .map(|(name, recording)| outcome(name, recording, &kinds, settings, &done))
-        .collect();
-    let outcomes = outcomes?;
+    let outcomes = in_order(logs, |(name, recording)| {
+        outcome(name, recording, &kinds, settings, &done)
+    })?;
     let mut notes = Vec::new();
     if !of_device.is_empty() {
         let names: Vec<_> = of_device.iter().map(|kind| kind.name).collect();

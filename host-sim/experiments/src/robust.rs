@@ -11,10 +11,10 @@ pub mod summary;
 pub mod variation;
 
 use haptic_control::{LoopPoles, SceneKind};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::closed_loop::{FeedbackEncoder, Loop, environments_with, named, usual};
+use crate::parallel::in_order;
 use catalogue::estimators::Setup;
 use catalogue::estimators::{Estimator, Kind};
 use catalogue::parameters::{Parameters, PlantKind};
@@ -170,22 +170,21 @@ impl Experiment {
     /// # Errors
     /// [`Failure::Input`] of the first job, in order, that cannot be run.
     pub fn rows(&self, jobs: &[Job], done: impl Fn() + Sync) -> Result<Vec<RobustRow>, Failure> {
-        jobs.par_iter()
-            .map(|&job| {
-                let row = self.row(job);
-                done();
-                row
-            })
-            .collect()
+        in_order(jobs, |&job| {
+            let row = self.row(job);
+            done();
+            row
+        })
     }
 
-    /// Runs one device.
+    /// Runs one device, within the limits of a device: [`Variation::within`](variation::Variation::within).
     ///
     /// # Errors
     /// [`Failure::Input`] on an invalid device or a loop that cannot be designed.
     pub fn row(&self, (scene, subject): Job) -> Result<RobustRow, Failure> {
         let settings = &self.settings;
         let (variation, seed) = subject.variation(settings.seed, scene);
+        let variation = variation.within(&settings.device);
         let device = variation.of(&settings.device);
         let inertia = device.stages.small.inertia;
         let assumed = settings.device.stages;

@@ -7,10 +7,10 @@
 mod plan;
 pub mod table;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::compare::{Case, Settings, interval, setup_of, trace};
+use crate::parallel::in_order;
 use catalogue::constant_error::ConstantError;
 use catalogue::estimators::Kind;
 use scoring::score::{Truth, Wanted};
@@ -77,12 +77,11 @@ fn cells(
     settings: &Settings,
     done: impl Fn() + Sync,
 ) -> Result<Vec<Vec<Cell>>, Failure> {
-    let cells = cases.par_iter().map(|case| {
+    in_order(cases, |case| {
         let cells = run(case, settings);
         done();
         cells
-    });
-    cells.collect()
+    })
 }
 
 /// The rows of all cases, in their order.

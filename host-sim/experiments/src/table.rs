@@ -135,6 +135,30 @@ fn same_case(a: &Row, b: &Row) -> bool {
     a.scenario == b.scenario && a.rate_hz == b.rate_hz && a.plant == b.plant && a.seed == b.seed
 }
 
+/// A line on the scenarios in which `what`, which an error is divided by, has no error; none without a
+/// scenario.
+pub fn no_percentage<'a>(scenarios: impl Iterator<Item = &'a str>, what: &str) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for scenario in scenarios {
+        if !names.contains(&scenario) {
+            names.push(scenario);
+        }
+    }
+    if names.is_empty() {
+        return String::new();
+    }
+    wrapped(
+        &format!("-: {what} has no error in {}.", names.join(", ")),
+        0,
+    ) + "\n"
+}
+
+/// `value` with six significant digits, for a number that is not measured.
+#[must_use]
+pub fn digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
 /// About three significant digits, or a dash without a value.
 pub fn number(value: Option<f64>) -> String {
     match value {
@@ -150,7 +174,14 @@ pub fn number(value: Option<f64>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::number;
+    use super::{digits, number};
+
+    #[test]
+    fn constant_has_no_digits_of_its_rounding() {
+        // 12.345678900000001
+        assert_eq!(digits(1e3 * 0.012_345_678_9), 12.3457);
+        assert_eq!(digits(10.0), 10.0);
+    }
 
     #[test]
     fn numbers_keep_three_digits() {

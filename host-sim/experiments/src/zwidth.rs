@@ -10,9 +10,9 @@ mod plan;
 pub mod rows;
 pub mod table;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::parallel::in_order;
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
 use contact::{ContactTest, Finding};
@@ -117,31 +117,25 @@ pub fn boundaries(
         .iter()
         .map(|case| contact_test(case, settings))
         .collect::<Result<_, _>>()?;
-    let viscous: Vec<Bound> = tests
-        .par_iter()
-        .map(|contact_test| {
-            let bound = bound(DAMPING, |b| contact_test.violation(0.0, b));
-            done();
-            bound
-        })
-        .collect::<Result<_, _>>()?;
+    let viscous: Vec<Bound> = in_order(&tests, |contact_test| {
+        let bound = bound(DAMPING, |b| contact_test.violation(0.0, b));
+        done();
+        bound
+    })?;
     let walls: Vec<(usize, f64)> = (0..cases.len())
         .flat_map(|i| PARTS.map(|part| (i, part)))
         .collect();
-    let stiffnesses: Vec<Option<(f64, Bound)>> = walls
-        .par_iter()
-        .map(|&(i, part)| {
-            let damping = part * viscous[i].value;
-            // If the largest damping is zero, only the wall without damping is searched.
-            let wall = if part > 0.0 && damping == 0.0 {
-                Ok(None)
-            } else {
-                bound(STIFFNESS, |k| tests[i].violation(k, damping)).map(|k| Some((damping, k)))
-            };
-            done();
-            wall
-        })
-        .collect::<Result<_, _>>()?;
+    let stiffnesses: Vec<Option<(f64, Bound)>> = in_order(&walls, |&(i, part)| {
+        let damping = part * viscous[i].value;
+        // If the largest damping is zero, only the wall without damping is searched.
+        let wall = if part > 0.0 && damping == 0.0 {
+            Ok(None)
+        } else {
+            bound(STIFFNESS, |k| tests[i].violation(k, damping)).map(|k| Some((damping, k)))
+        };
+        done();
+        wall
+    })?;
     let walls = stiffnesses.chunks(PARTS.len());
     Ok(walls
         .zip(viscous)

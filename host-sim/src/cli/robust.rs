@@ -14,7 +14,8 @@ use recordings::arguments::DeviceFile;
 use report::{self, Printout};
 use shards::Part;
 use terminal::failure::Failure;
-use terminal::output::Folder;
+use terminal::output::{Folder, note};
+use terminal::wording::wrapped;
 
 use super::arguments::ParameterOptions;
 use super::page;
@@ -134,11 +135,18 @@ fn write(
 ) -> Result<(), Failure> {
     let json = rows::json(rows)?;
     let scenes = summary::summaries(rows)?;
+    let limited = summary::limited(settings, rows)?;
+    for line in &limited {
+        note(format_args!("note: {line}"));
+    }
     let mut text = summary::table(settings, &scenes, terminal_width());
     if let Some(folder) = folder {
+        let below: String = (limited.iter())
+            .map(|line| wrapped(line, 0) + "\n")
+            .collect();
         let printout = Printout {
             command: &summary::command(settings),
-            table: &summary::table(settings, &scenes, NARROW),
+            table: &(summary::table(settings, &scenes, NARROW) + &below),
             ..Printout::default()
         };
         let page = report::robust(&summary::heading(settings), &scenes, &printout)?;

@@ -55,6 +55,48 @@ fn violation_has_exit_status_1_and_the_command_that_repeats_it() {
 }
 
 #[test]
+fn corner_beyond_a_limit_is_limited_and_named() {
+    let folder = Folder::new(HOST_SIM);
+    let run = "robust --devices 2 --scene wall --rate 1000 --seconds 0.1 --device d.toml";
+    for (device, name, said) in [
+        (
+            "disc.phase_counts = 0.12",
+            "disc",
+            "disc_random 0.0199805 in place of 0.02, because of disc: phase_counts",
+        ),
+        (
+            "small.inertia_kg_m2 = 1.67e-6",
+            "agile-stiff",
+            "in place of 0.7, because of small.inertia_kg_m2 = ",
+        ),
+        (
+            "hand.damping_nms_per_rad = 0.009",
+            "agile-stiff",
+            "in place of 0.7, because of small.inertia_kg_m2 = ",
+        ),
+    ] {
+        folder.write("d.toml", device);
+        let output = folder.run(&format!("{run} --json -"));
+        // Some of these devices violate a limit.
+        assert!(matches!(output.status.code(), Some(0 | 1)), "{output:?}");
+        let [rows, notes] =
+            [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
+        assert_eq!(crate::json(&rows).len(), 29 + 2, "{device}");
+        let first = format!("the first is scene wall, device {name}, with ");
+        let is_note = |line: &&str| line.starts_with("note: ");
+        assert_eq!(notes.lines().filter(is_note).count(), 1, "{notes}");
+        assert!(notes.contains(&first) && notes.contains(said), "{notes}");
+    }
+    // The page of a merged run says it too.
+    let run = format!("{run} --scene off --shard 1/1 --out .");
+    folder.good(&run.replace("--scene wall ", ""));
+    let (_, notes) = folder.ends(0, "merge shard-1-of-1.jsonl --out merged");
+    assert!(notes.contains("limited to what a device can be"), "{notes}");
+    let page = folder.text("merged/index.html");
+    assert!(page.contains("limited to what a device can be"));
+}
+
+#[test]
 fn invalid_arguments_are_refused_with_a_remedy() {
     let folder = Folder::new(HOST_SIM);
     for (arguments, said) in [

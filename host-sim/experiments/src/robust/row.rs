@@ -38,7 +38,7 @@ pub struct RobustRow {
     pub after_handle_rad_s: Option<f64>,
     /// Largest torque on the hand after the stop, N.m.
     pub after_felt_nm: Option<f64>,
-    /// Deviations of the device from the nominal one.
+    /// Deviations of the simulated device from the nominal one, within the limits of a device.
     pub variation: Variation,
 }
 

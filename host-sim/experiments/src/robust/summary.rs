@@ -6,6 +6,7 @@ use haptic_control::{DualStage, SceneKind};
 
 use super::judge::{FELT_NM, HANDLE_RAD_S, Verdict, oscillation_limit_nm};
 use super::row::RobustRow;
+use super::variation::Subject;
 use super::{Settings, corners};
 
 use crate::closed_loop::{named, usual};
@@ -166,6 +167,42 @@ pub fn table(settings: &Settings, scenes: &[SceneSummary], width: usize) -> Stri
     text
 }
 
+/// One line for each limit of a device that keeps devices nearer to the nominal one than they were drawn.
+///
+/// # Errors
+/// One line that names an unknown scene or device.
+pub fn limited(settings: &Settings, rows: &[RobustRow]) -> Result<Vec<String>, String> {
+    let mut found: Vec<(String, usize, String)> = Vec::new();
+    for row in rows {
+        let scene = named(&row.scene, SceneKind::environments())?;
+        let (whole, _) = row
+            .device
+            .parse::<Subject>()?
+            .variation(settings.seed, scene);
+        let Err(limit) = whole.of(&settings.device).validate() else {
+            continue;
+        };
+        let key = limit.split([' ', ':']).next().unwrap_or_default();
+        match found.iter_mut().find(|(known, ..)| known == key) {
+            Some((_, count, _)) => *count += 1,
+            None => {
+                let first = format!(
+                    "the first is scene {}, device {}, with {}, because of {limit}",
+                    row.scene,
+                    row.device,
+                    whole.changes(row.variation)
+                );
+                found.push((key.to_owned(), 1, first));
+            }
+        }
+    }
+    let all = rows.len();
+    let line = |(_, count, first)| {
+        format!("{count} of {all} runs are limited to what a device can be: {first}")
+    };
+    Ok(found.into_iter().map(line).collect())
+}
+
 fn three_digits(value: f64) -> String {
     match value.abs() {
         size if size >= 1e6 => format!("{value:.0e}"),
@@ -206,7 +243,6 @@ pub fn complaint(settings: &Settings, rows: &[RobustRow]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::robust::variation::Subject;
 
     #[test]
     fn summary_has_the_larger_value_of_before_and_after_a_stop() {

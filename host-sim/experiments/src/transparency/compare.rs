@@ -1,13 +1,12 @@
 //! Closed-loop comparison: every scene and rate, with the velocity of each estimator in turn and
 //! with that of the reference encoder.
 
-use rayon::prelude::*;
-
 use haptic_control::SceneKind;
 
 use super::run::{Feedback, Prepared};
 use super::{Attribution, ClosedLoopRow, Fingertip, Parasitic};
 use crate::compare::{Cost, Settings};
+use crate::parallel::in_order;
 use catalogue::estimators::Kind;
 use catalogue::parameters::PlantKind;
 use scoring::score::Score;
@@ -116,14 +115,12 @@ pub fn compare(
     let jobs: Vec<(&Prepared, Feedback)> = (prepared.iter())
         .flat_map(|p| p.loops().into_iter().map(move |feedback| (p, feedback)))
         .collect();
-    let mut ran: Vec<(Run, Vec<ClosedLoopRow>, Cost)> = jobs
-        .par_iter()
-        .map(|&(prepared, feedback)| {
+    let mut ran: Vec<(Run, Vec<ClosedLoopRow>, Cost)> =
+        in_order(&jobs, |&(prepared, feedback)| {
             let ran = prepared.run(feedback);
             done();
             ran
-        })
-        .collect::<Result<_, _>>()?;
+        })?;
     let mut outcomes = Vec::with_capacity(cases.len());
     for prepared in &prepared {
         let rest = ran.split_off(prepared.loops().len());
