@@ -11,11 +11,12 @@ pub mod table;
 mod without;
 
 use haptic_control::{LoopPoles, SceneKind};
-use rayon::prelude::*;
 
 pub use without::Without;
 
 use crate::closed_loop::{Conditions, Dac, Exact, FeedbackEncoder, Loop, estimator, usual};
+use crate::parallel::in_order;
+use crate::table::digits;
 use crate::transparency::attribution::CAUSES;
 use crate::transparency::{Attribution, Fingertip, Ledger, Parasitic};
 use catalogue::estimators::Kind;
@@ -39,6 +40,32 @@ pub struct Settings {
     pub seconds: f64,
     /// What is switched off in turn.
     pub without: Vec<Without>,
+}
+
+impl Settings {
+    /// What cannot be switched off, because no device of the simulation is left without it, and why; `None`
+    /// where all can.
+    #[must_use]
+    pub fn left_out(&self) -> Option<String> {
+        let refused = |without: &Without| {
+            let mut device = without.of(&self.device);
+            // A tenth as it is written.
+            let inertia = &mut device.stages.small.inertia;
+            *inertia = digits(*inertia);
+            let reason = device.validate().err()?;
+            Some((without.name(), reason))
+        };
+        let refused: Vec<_> = self.without.iter().filter_map(refused).collect();
+        let (_, reason) = refused.first()?;
+        let names: Vec<_> = refused
+            .iter()
+            .map(|(name, _)| format!("\"{name}\""))
+            .collect();
+        Some(format!(
+            "this device cannot be simulated without {}, which have no scores: {reason}",
+            names.join(", ")
+        ))
+    }
 }
 
 /// One scene with one estimator at one rate.
@@ -86,14 +113,11 @@ pub fn feel(
     done: impl Fn() + Sync,
 ) -> Result<Vec<Felt>, Failure> {
     let (distinct, places) = distinct(cases, settings);
-    let ran: Vec<(Parasitic, Option<Attribution>)> = distinct
-        .par_iter()
-        .map(|(case, without)| {
-            let ran = run(case, *without, settings);
-            done();
-            ran
-        })
-        .collect::<Result<_, _>>()?;
+    let ran: Vec<(Parasitic, Option<Attribution>)> = in_order(&distinct, |(case, without)| {
+        let ran = run(case, *without, settings);
+        done();
+        ran
+    })?;
     let ran: Vec<_> = places.into_iter().map(|place| &ran[place]).collect();
     let felt = (cases.iter()).zip(ran.chunks(1 + settings.without.len()));
     Ok(felt
@@ -147,13 +171,15 @@ fn run(
     settings: &Settings,
 ) -> Result<(Parasitic, Option<Attribution>), Failure> {
     let rate_hz = case.rate_hz;
-    if without.is_some_and(|without| !without.is_possible_in(case.scene)) {
-        return Ok((Parasitic::default(), None));
-    }
     let device = match without {
         Some(without) => without.of(&settings.device),
         None => settings.device.clone(),
     };
+    let is_possible =
+        |without: Without| without.is_possible_in(case.scene) && device.validate().is_ok();
+    if without.is_some_and(|without| !is_possible(without)) {
+        return Ok((Parasitic::default(), None));
+    }
     let removes = |remove: fn(&Without) -> bool| without.as_ref().is_some_and(remove);
     let conditions = Conditions {
         fault: None,

@@ -14,7 +14,8 @@ use recordings::arguments::DeviceFile;
 use report::{self, Printout};
 use simulation::simulate;
 use terminal::failure::Failure;
-use terminal::output::Folder;
+use terminal::output::{Folder, note};
+use terminal::wording::wrapped;
 
 use super::arguments::{ParameterOptions, rates};
 use super::closed_loop;
@@ -101,6 +102,10 @@ pub(super) fn run(options: &Feel, command_line: &str) -> Result<(), Failure> {
         options.seconds,
     )?;
     let folder = page::folder(options.out.as_deref(), options.json.as_deref(), PAGE)?;
+    let left_out = settings.left_out();
+    if let Some(line) = &left_out {
+        note(format_args!("note: {line}"));
+    }
     let bar = progress(experiments::feel::runs(&cases, &settings), "closing loops");
     let felt = feel(&cases, &settings, || bar.inc(1))?;
     bar.finish_and_clear();
@@ -115,10 +120,11 @@ pub(super) fn run(options: &Feel, command_line: &str) -> Result<(), Failure> {
     let json = json(&both)?;
     let mut text = table(&felt, &settings, terminal_width());
     if let Some(folder) = folder {
+        let below = left_out.map_or_else(String::new, |line| format!("\n{}\n", wrapped(&line, 0)));
         let printout = Printout {
             command: command_line,
             device: &options.device.name(),
-            table: &table(&felt, &settings, NARROW),
+            table: &(table(&felt, &settings, NARROW) + &below),
         };
         let threshold_mn = 1e3 * settings.device.interval.threshold_n;
         let page = report::feel(&felt, threshold_mn, &printout)?;

@@ -8,6 +8,7 @@ mod common;
 mod compare;
 mod escaping;
 mod export;
+mod feel;
 mod files;
 mod identify;
 mod identify_logs;
