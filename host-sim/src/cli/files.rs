@@ -1,12 +1,13 @@
-//! The files of a command line: an output that is an input, that has no place, or that is the file of
-//! another output, is refused before the command runs.
+//! The files of a command line: an output that is an input, two outputs that are one file, a file that would
+//! replace one of a report, and an output without a place are refused before the command runs.
 
 use std::any::TypeId;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgMatches, Command};
 use terminal::failure::Failure;
-use terminal::output::{check_place, is_same, is_stdout};
+use terminal::output::{Folder, check_place, is_same, is_stdout};
 
 /// Options that name an output. All other paths are inputs.
 const OUTPUTS: [&str; 5] = ["out", "json", "csv", "report", "mcap"];
@@ -14,20 +15,35 @@ const OUTPUTS: [&str; 5] = ["out", "json", "csv", "report", "mcap"];
 /// The only output that may be an input: `identify --out` keeps the other keys of `--device`.
 const KEPT: [&str; 3] = ["identify", "out", "device"];
 
+/// Names, without their endings, of the files in the folders of reports.
+const REPORTED: [&str; 11] = [
+    "causes",
+    "closed-loop",
+    "feel",
+    "index",
+    "real",
+    "robust",
+    "scores",
+    "sensitivity",
+    "summary",
+    "switched-off",
+    "zwidth",
+];
+
 /// A path of the command line with the identifier of its argument and its name in messages.
 struct Named {
     id: String,
     name: String,
     path: PathBuf,
-    /// Whether it is a file and no folder.
-    is_file: bool,
+    /// Whether it is a folder and no file.
+    is_folder: bool,
 }
 
 /// Checks the paths of the command in `matches`.
 ///
 /// # Errors
-/// [`Failure::Input`] that names an output that is an input or has no place, or two outputs that are one
-/// file.
+/// [`Failure::Input`] that names an output that is an input, two outputs that are one file, a file that may be
+/// one of a report, or an output without a place.
 pub(super) fn check(root: &Command, matches: &ArgMatches) -> Result<(), Failure> {
     let Some((name, matches)) = matches.subcommand() else {
         return Ok(());
@@ -44,9 +60,6 @@ pub(super) fn check(root: &Command, matches: &ArgMatches) -> Result<(), Failure>
                 refuse_input(&output.name, &output.path, &input.path)?;
             }
         }
-        if output.is_file && !is_stdout(&output.path) {
-            check_place(&output.path)?;
-        }
         let mut others = outputs[..k].iter();
         if let Some(other) = others.find(|other| is_same(&other.path, &output.path)) {
             return Err(Failure::Input(format!(
@@ -56,8 +69,40 @@ pub(super) fn check(root: &Command, matches: &ArgMatches) -> Result<(), Failure>
                 other.name
             )));
         }
+        for folder in outputs.iter().filter(|other| other.is_folder) {
+            refuse_reported(output, folder)?;
+        }
+        // Of merge, the run of the shards decides whether its output is a file, and takes no time.
+        match output.is_folder {
+            _ if name == "merge" && output.id == "out" => {}
+            true => Folder::check(&output.name, &output.path)?,
+            false if is_stdout(&output.path) => {}
+            false => check_place(&output.path)?,
+        }
     }
     Ok(())
+}
+
+/// Refuses a file in the folder of a report that may replace a file of the report.
+fn refuse_reported(file: &Named, folder: &Named) -> Result<(), Failure> {
+    let above = file.path.parent().unwrap_or(Path::new(""));
+    let above = if above.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        above
+    };
+    let stem = file.path.file_stem().and_then(OsStr::to_str);
+    let is_reported = stem.is_some_and(|stem| REPORTED.contains(&stem));
+    if file.is_folder || !is_reported || !is_same(above, &folder.path) {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "{} {}: may be a file of {} {}; choose another name",
+        file.name,
+        file.path.display(),
+        folder.name,
+        folder.path.display()
+    )))
 }
 
 /// Refuses an output, of the option `name`, that would overwrite an input.
@@ -93,18 +138,16 @@ fn given(argument: &Arg, matches: &ArgMatches) -> Vec<Named> {
         Some(long) => format!("--{long}"),
         None => id.clone(),
     };
-    // With --shard the output is the folder of the shard's file.
-    let in_shards = matches
-        .try_get_raw("shard")
-        .is_ok_and(|part| part.is_some());
-    let values = argument.get_value_names().unwrap_or_default();
-    let is_file = !in_shards && values.iter().any(|value| value.starts_with("FILE"));
     let raw = matches.try_get_raw(&id).ok().flatten();
+    // A shard is a file in the folder of --out, also of a command whose --out is a file.
+    let is_shard = id == "out" && matches!(matches.try_get_raw("shard"), Ok(Some(_)));
+    let mut values = argument.get_value_names().unwrap_or_default().iter();
+    let is_folder = is_shard || values.any(|name| name == "DIR");
     let named = |value| Named {
         id: id.clone(),
         name: name.clone(),
         path: PathBuf::from(value),
-        is_file,
+        is_folder,
     };
     raw.into_iter().flatten().map(named).collect()
 }
@@ -117,6 +160,20 @@ mod tests {
 
     use super::super::arguments::Arguments;
     use super::*;
+
+    #[test]
+    fn every_file_of_a_report_is_known() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/cli");
+        let mut names = BTreeSet::new();
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+            let calls = text.split(".add(\"").skip(1);
+            let stem = |call: &str| call.split(['.', '"']).next().unwrap().to_owned();
+            names.extend(calls.map(stem));
+        }
+        let names: Vec<_> = names.iter().map(String::as_str).collect();
+        assert_eq!(names, REPORTED);
+    }
 
     #[test]
     fn every_path_of_a_command_is_an_input_or_an_output() {

@@ -118,3 +118,58 @@ fn output_that_ends_as_a_folder_is_refused_before_the_run() {
     }
     assert!(!folder.path().join("new").exists());
 }
+
+#[test]
+fn output_without_a_place_is_refused_before_the_work() {
+    let folder = Folder::new(HOST_SIM);
+    folder.write("file", "mine");
+    folder.write("log.csv", log());
+    // More work than a test has time for.
+    let long = "--seconds 1e4 --rate 100000";
+    for command in [
+        "robust --devices 10000000 --out file".to_owned(),
+        "robust --devices 10000000 --out file/".to_owned(),
+        "robust --devices 10000000 --shard 1/2 --out file".to_owned(),
+        "robust --devices 10000000 --out new --json file/x.json".to_owned(),
+        format!("compare {long} --out file/deep/er"),
+        format!("compare --closed-loop {long} --out file"),
+        format!("compare {long} --no-report --json file/x.json"),
+        format!("tune --estimator imm {long} --out file/x.toml"),
+        format!("tune --estimator imm {long} --shard 1/2 --out file"),
+        "zwidth --exact --out file".to_owned(),
+        format!("sensitivity {long} --out file"),
+        format!("feel {long} --out file"),
+        format!("limit {long} --particles 1000000 --json file/x.json"),
+        "real --out file".to_owned(),
+        "recommend log.csv --report file".to_owned(),
+        "identify log.csv --clamped --report file/page".to_owned(),
+    ] {
+        let line = folder.refused(&command);
+        assert!(
+            line.contains("file is no folder; choose"),
+            "{command}: {line}"
+        );
+    }
+    // The folder of a shard is there already, or not yet.
+    let tune = "tune --estimator pll --scenario step --rate 100 --seconds 1 --seeds 1";
+    folder.good(&format!("{tune} --shard 1/1 --out parts"));
+    folder.good(&format!("{tune} --shard 1/1 --out parts"));
+    folder.good("merge parts/shard-1-of-1.jsonl --out merged.toml");
+}
+
+#[test]
+fn file_that_may_be_one_of_the_report_is_refused() {
+    let folder = Folder::new(HOST_SIM);
+    let run = "compare --scenario step --rate 1000 --seconds 1 --estimator pll";
+    for (out, json) in [
+        ("zz", "zz/scores.csv"),
+        ("zz", "./zz/index.html"),
+        (".", "scores.csv"),
+        ("zz", "zz/scores.json"),
+    ] {
+        let line = folder.refused(&format!("{run} --out {out} --json {json}"));
+        let said = format!("--json {json}: may be a file of --out {out}; choose another name");
+        assert!(line.contains(&said), "{line}");
+    }
+    folder.good(&format!("{run} --out zz --json zz/rows.json"));
+}

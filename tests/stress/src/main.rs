@@ -10,7 +10,7 @@ use shards::file::{self, Run};
 use shards::{Experiment as _, Part, Shards};
 use terminal::explain;
 use terminal::failure::{Failure, ended};
-use terminal::output::{print_bytes, write_whole};
+use terminal::output::{Folder, check_place, print_bytes, write_whole};
 use terminal::wording::WIDTH;
 
 use stress::experiment::{Row, Settings};
@@ -130,6 +130,12 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         resume: arguments.resume.clone(),
     };
     is_documented(&settings)?;
+    if let Some(path) = &arguments.json {
+        check_place(path)?;
+    }
+    if arguments.shard.is_some() {
+        Folder::check("--out", &arguments.out)?;
+    }
     let jobs = settings.jobs()?;
     let part = arguments.shard;
     let count = part.map_or(jobs.len(), |part| part.count(jobs.len()));

@@ -33,18 +33,27 @@ impl Folder {
         }
     }
 
-    /// Refuses the name of standard output, to which no folder can be written.
+    /// Checks that the folder `path` has a place, so that a long run does not find out at its end: it is not
+    /// standard output, and is not, and does not lie in, something that is no folder.
     ///
     /// # Errors
     /// [`Failure::Input`] that names `option`.
     pub fn check(option: &str, path: &Path) -> Result<(), Failure> {
-        if !is_stdout(path) {
-            return Ok(());
+        let name = path.display();
+        if is_stdout(path) {
+            return Err(Failure::Input(format!(
+                "{option} {name}: writes a folder, which cannot go to standard output; name a folder"
+            )));
         }
-        let path = path.display();
-        Err(Failure::Input(format!(
-            "{option} {path}: writes a folder, which cannot go to standard output; name a folder"
-        )))
+        // Without a slash at the end, with which a file does not exist.
+        let path: PathBuf = path.components().collect();
+        match path.ancestors().find(|path| path.exists()) {
+            Some(above) if !above.is_dir() => Err(Failure::Input(format!(
+                "{option} {name}: {} is no folder; choose another path",
+                above.display()
+            ))),
+            _ => Ok(()),
+        }
     }
 
     /// Adds a file. `name` may contain subfolders.
@@ -226,6 +235,22 @@ mod tests {
         let file = outside.path().join("file");
         fs::write(&file, "a file").unwrap();
         assert!(write(&file.join("deep"), &[("a", "1")]).is_err());
+    }
+
+    #[test]
+    fn folder_without_a_place_is_refused() {
+        let outside = tempfile::tempdir().unwrap();
+        let file = outside.path().join("a.csv");
+        fs::write(&file, "a file").unwrap();
+        let said = |path: &Path| Folder::check("--out", path).map_err(|error| error.to_string());
+        assert_eq!(said(outside.path()), Ok(()));
+        assert_eq!(said(&outside.path().join("new/er")), Ok(()));
+        assert_eq!(said(Path::new("new")), Ok(()));
+        for path in [file.clone(), file.join(""), file.join("deep/er")] {
+            let error = said(&path).unwrap_err();
+            assert!(error.contains("a.csv is no folder"), "{error}");
+        }
+        assert!(said(Path::new("-")).unwrap_err().contains("name a folder"));
     }
 
     #[test]
