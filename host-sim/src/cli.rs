@@ -42,7 +42,7 @@ use terminal::failure::Failure;
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let (command_line, run_line) = (command_line(&arguments), run_line(&arguments));
-    let mut root = Arguments::command();
+    let mut root = arguments::command_line();
     let matches = root.try_get_matches_from_mut(&arguments);
     let parsed = matches.and_then(|matches| {
         let parsed = Arguments::from_arg_matches(&matches);

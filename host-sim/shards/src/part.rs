@@ -59,7 +59,9 @@ impl FromStr for Part {
             let (k, n) = (k.parse().ok()?, n.parse().ok()?);
             Some(Self { k, n }).filter(|part| part.is_valid())
         });
-        part.ok_or_else(|| "must be K/N with K from 1 to N, as in 2/8".to_owned())
+        part.ok_or_else(|| {
+            format!("must be K/N with K from 1 to N and N at most {MOST}, as in 2/8")
+        })
     }
 }
 
@@ -99,7 +101,8 @@ mod tests {
             "a/b",
             "1/1000001",
         ] {
-            assert!(wrong.parse::<Part>().is_err(), "{wrong}");
+            let said = wrong.parse::<Part>().expect_err(wrong);
+            assert!(said.contains("N at most 1000000"), "{said}");
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Arg, Args, CommandFactory as _, Parser, Subcommand};
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
@@ -121,6 +121,19 @@ pub(super) enum Command {
     Device(DeviceFile),
 }
 
+/// The command line. Each option takes a negative number for its value, so that the message about it names the
+/// option.
+pub(super) fn command_line() -> clap::Command {
+    let negative = |argument: Arg| {
+        let is_option = argument.get_action().takes_values() && !argument.is_positional();
+        match is_option {
+            true => argument.allow_negative_numbers(true),
+            false => argument,
+        }
+    };
+    Arguments::command().mut_subcommands(|command| command.mut_args(negative))
+}
+
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct ParameterOptions {
     /// Presets file written by host-sim tune; its values replace the shipped presets
@@ -180,21 +193,19 @@ pub(super) fn scenarios(
     Ok(scenarios)
 }
 
-/// The given rates without duplicates; `default` if no rate is given.
-pub(super) fn rates(given: &[f64], default: &[f64]) -> Vec<f64> {
-    let mut rates = Vec::new();
-    for &rate in if given.is_empty() { default } else { given } {
-        if !rates.contains(&rate) {
-            rates.push(rate);
+/// The given values without duplicates; `default` if none is given.
+pub(super) fn distinct<T: Copy + PartialEq>(given: &[T], default: &[T]) -> Vec<T> {
+    let mut values = Vec::new();
+    for &value in if given.is_empty() { default } else { given } {
+        if !values.contains(&value) {
+            values.push(value);
         }
     }
-    rates
+    values
 }
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory as _;
-
     use super::*;
 
     /// The lines of the examples in a help text.
@@ -205,6 +216,27 @@ mod tests {
             .map(str::trim)
             .filter(|line| !line.is_empty())
             .collect()
+    }
+
+    #[test]
+    fn option_with_a_negative_number_is_named() {
+        let mut root = command_line();
+        root.build();
+        for command in root.clone().get_subcommands() {
+            let options = command.get_arguments().filter_map(Arg::get_long);
+            for option in options.filter(|name| !["help", "version"].contains(name)) {
+                let line = ["host-sim", command.get_name(), &format!("--{option}"), "-1"];
+                let parsed = root.clone().try_get_matches_from(line);
+                let said = parsed.map_or_else(|error| error.to_string(), |_| String::new());
+                let is_flag = command.get_arguments().any(|argument| {
+                    argument.get_long() == Some(option) && !argument.get_action().takes_values()
+                });
+                assert!(
+                    is_flag || !said.contains("unexpected argument"),
+                    "{line:?}: {said}"
+                );
+            }
+        }
     }
 
     #[test]

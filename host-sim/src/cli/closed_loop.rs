@@ -22,7 +22,7 @@ use simulation::simulate;
 use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 
-use super::arguments::{kinds, rates};
+use super::arguments::{distinct, kinds};
 use super::compare::{Compare, longer_than_skipped, report_folder, timing, wanted};
 use super::page::{self, progress};
 
@@ -219,7 +219,7 @@ pub(super) fn cases(
     };
     let seconds = options.seconds.unwrap_or(seconds);
     let mut cases = Vec::new();
-    for rate_hz in rates(&options.rates, &[1e3, 11.6e3]) {
+    for rate_hz in distinct(&options.rates, &[1e3, 11.6e3]) {
         simulate::ticks(rate_hz, seconds)?;
         longer_than_skipped(seconds)?;
         cases.extend(scenes.iter().map(|&scene| LoopCase {

@@ -20,7 +20,7 @@ use simulation::simulate;
 use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 
-use super::arguments::{ParameterOptions, kinds, rates, scenarios};
+use super::arguments::{ParameterOptions, distinct, kinds, scenarios};
 use super::closed_loop;
 use super::page::{self, progress};
 use super::report_extras::{ReportExtras, report_extras};
@@ -192,7 +192,7 @@ fn cases(options: &Compare, with_report: bool) -> Result<(Vec<Case>, usize), Fai
     };
     let mut cases = Vec::new();
     for &plant in plants {
-        for rate_hz in rates(&options.rates, &[1e3, 11.6e3]) {
+        for rate_hz in distinct(&options.rates, &[1e3, 11.6e3]) {
             for &scenario in &scenarios {
                 let seconds = options.seconds.unwrap_or(scenario.default_seconds());
                 simulate::ticks(rate_hz, seconds)?;

@@ -17,7 +17,7 @@ use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 use terminal::wording::wrapped;
 
-use super::arguments::{ParameterOptions, rates};
+use super::arguments::{ParameterOptions, distinct};
 use super::closed_loop;
 use super::compare::longer_than_skipped;
 use super::page::{self, progress};
@@ -96,7 +96,7 @@ pub(super) fn run(options: &Feel, command_line: &str) -> Result<(), Failure> {
     longer_than_skipped(options.seconds)?;
     let scenes = closed_loop::scenes(&options.scenes, handle)?;
     let cases = cases(
-        &rates(&options.rates, &[1e3]),
+        &distinct(&options.rates, &[1e3]),
         &scenes,
         &estimators,
         options.seconds,

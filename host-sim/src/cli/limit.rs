@@ -13,7 +13,7 @@ use recordings::arguments::DeviceFile;
 use scoring::score::Wanted;
 use terminal::failure::Failure;
 
-use super::arguments::{ParameterOptions, kinds, rates, scenarios};
+use super::arguments::{ParameterOptions, distinct, kinds, scenarios};
 use super::page::{self, progress};
 
 #[derive(Debug, Args)]
@@ -60,7 +60,7 @@ pub(super) fn run(options: &Limit) -> Result<(), Failure> {
     };
     let scenarios = scenarios(&options.scenarios, &SCENARIOS)?;
     let mut cases = Vec::new();
-    for rate_hz in rates(&options.rates, &[1e3]) {
+    for rate_hz in distinct(&options.rates, &[1e3]) {
         simulation::simulate::ticks(rate_hz, options.seconds)?;
         cases.extend(scenarios.iter().map(|&scenario| Case {
             scenario,

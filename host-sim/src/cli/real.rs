@@ -16,7 +16,7 @@ use report::{self, Printout};
 use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, note, print_bytes, write_whole};
 
-use super::arguments::{ParameterOptions, kinds, rates};
+use super::arguments::{ParameterOptions, distinct, kinds};
 use super::page::{self, one_to_stdout, progress};
 
 /// Default folder of the recordings.
@@ -185,7 +185,7 @@ fn middle<T: Copy>(values: &[T]) -> T {
 }
 
 fn settings(options: &Real) -> Result<Settings, Failure> {
-    let rates = rates(&options.rate, &[]);
+    let rates = distinct(&options.rate, &[]);
     rates.iter().try_for_each(|hz| rate(*hz).map(drop))?;
     options
         .phase

@@ -9,7 +9,7 @@ use report::CaseReport;
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
 
-use super::arguments::rates;
+use super::arguments::distinct;
 use super::compare::{Compare, case_report};
 
 /// Number of particles for the lower bound. With the 2000 particles of `host-sim limit` the bound
@@ -31,7 +31,7 @@ pub(super) fn report_extras(
     settings: &Settings,
     cases: &[Case],
 ) -> Result<ReportExtras, Failure> {
-    let rate_hz = rates(&options.rates, &[1e3])
+    let rate_hz = distinct(&options.rates, &[1e3])
         .into_iter()
         .fold(f64::INFINITY, f64::min);
     let of = |scenario: ScenarioName| Case {

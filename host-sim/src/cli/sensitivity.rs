@@ -14,7 +14,7 @@ use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
-use super::arguments::{ParameterOptions, kinds, rates, scenarios};
+use super::arguments::{ParameterOptions, distinct, kinds, scenarios};
 use super::page;
 use super::shard::{Asked, Outputs};
 
@@ -101,15 +101,11 @@ pub(super) fn finish(
 
 fn plan(options: &Sensitivity) -> Result<Plan, Failure> {
     let scenarios = scenarios(&options.scenarios, &ScenarioName::with_friction())?;
-    let seeds = match options.seeds.is_empty() {
-        true => vec![1],
-        false => options.seeds.clone(),
-    };
     let kinds = kinds(&options.estimators)?;
     Ok(Plan {
         scenarios: scenarios.iter().map(ToString::to_string).collect(),
-        rates_hz: rates(&options.rates, &[1e3]),
-        seeds,
+        rates_hz: distinct(&options.rates, &[1e3]),
+        seeds: distinct(&options.seeds, &[1]),
         seconds: options.seconds,
         estimators: kinds.iter().map(|kind| kind.name.to_owned()).collect(),
         parameters: options.parameters.load()?,

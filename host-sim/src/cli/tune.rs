@@ -14,7 +14,7 @@ use shards::{Experiment, Part};
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, print_bytes, write_whole};
 
-use super::arguments::{kinds, rates, scenarios};
+use super::arguments::{distinct, kinds, scenarios};
 use super::shard::{self, Outputs};
 use experiments::uneven::{Chosen, Recorded};
 use recordings::log::{Log, short_name};
@@ -89,7 +89,7 @@ impl Tune {
         Ok(Plan {
             device: self.device.load()?,
             groups: wishes.groups(kinds),
-            rates_hz: rates(&self.rates, &[1e3, 10e3, 11.6e3]),
+            rates_hz: distinct(&self.rates, &[1e3, 10e3, 11.6e3]),
             plants: match self.frictionless {
                 true => vec![PlantKind::Frictionless],
                 false => vec![PlantKind::Friction, PlantKind::Frictionless],

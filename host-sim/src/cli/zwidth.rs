@@ -13,7 +13,7 @@ use shards::{Experiment as _, Part};
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
-use super::arguments::{ParameterOptions, kinds, rates};
+use super::arguments::{ParameterOptions, distinct, kinds};
 use super::page;
 use super::shard::{Asked, Outputs};
 
@@ -39,8 +39,8 @@ pub(super) struct Zwidth {
     /// Control rate, 100 to 100000 Hz; repeatable [default: 1000, 10000 and 11600]
     #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
     pub(super) rates: Vec<f64>,
-    /// Number of lines of the large encoder, 1 to 1000000; repeatable [default: 256, 1024 and 5000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    /// Number of lines of the large encoder, 4 to 1000000; repeatable [default: 256, 1024 and 5000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=1_000_000))]
     pub(super) lines: Vec<u32>,
     /// Seed of the encoders' phases and of the disc's errors
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -110,16 +110,6 @@ fn plan(options: &Zwidth) -> Result<Plan, Failure> {
         // A filter with a steady gain is identical to the full filter once it has settled.
         estimators.retain(|kind| !kind.name.ends_with("-steady") && !kind.needs.edge);
     }
-    let mut lines = Vec::new();
-    for &n in if options.lines.is_empty() {
-        &[256, 1024, 5000][..]
-    } else {
-        &options.lines
-    } {
-        if !lines.contains(&n) {
-            lines.push(n);
-        }
-    }
     let settings = Settings {
         device: options.device.load()?,
         parameters: options.parameters.load()?,
@@ -129,8 +119,8 @@ fn plan(options: &Zwidth) -> Result<Plan, Failure> {
         estimators: estimators.iter().map(|kind| kind.name.to_owned()).collect(),
         handle: options.handle.clone(),
         exact: options.exact,
-        rates_hz: rates(&options.rates, &[1e3, 10e3, 11.6e3]),
-        lines,
+        rates_hz: distinct(&options.rates, &[1e3, 10e3, 11.6e3]),
+        lines: distinct(&options.lines, &[256, 1024, 5000]),
         settings,
         device_name: options.device.name(),
     })

@@ -203,7 +203,7 @@ fn invalid_arguments_are_refused_in_one_line_and_write_nothing() {
         (&["--handle", "pl"], "no estimator 'pl'"),
         (&["--rate", "50"], "rate 50 Hz: must be from"),
         (&["--rate", "100", "--lines", "1024"], "control at 100 Hz"),
-        (&["--lines", "3"], "large.counts_per_rev = 12: must be from"),
+        (&["--lines", "3"], "'--lines <N>': 3 is not in 4..=1000000"),
         (&["--lines", "many"], "--lines"),
         (&["--set", "pll.bandwidth=1"], "no parameter 'bandwidth'"),
         (&["--device", "none.toml"], "none.toml: cannot read"),

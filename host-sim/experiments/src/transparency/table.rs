@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::{Outcome, Parasitic};
 use crate::table::layout::{Column, table};
-use crate::table::{columns, number};
+use crate::table::{columns, digits, number};
 use scoring::score::{Field, Score};
 
 /// Velocity score that is shown by default.
@@ -21,7 +21,7 @@ pub fn details(outcomes: &[Outcome], asked: &[&Field<Score>], width: usize) -> S
         let _ = writeln!(
             text,
             "{scene} at {rate_hz} Hz, plant {plant}, loop closed; unnoticed: below {} mN",
-            outcome.fingertip.threshold_mn
+            digits(outcome.fingertip.threshold_mn)
         );
         let loops = outcome.runs.iter().map(|run| run.controlled_by.to_owned());
         let forces = || outcome.runs.iter().map(|run| &run.parasitic);
