@@ -23,6 +23,7 @@ mod refusals;
 mod replay;
 mod replay_reference;
 mod robust;
+mod sensitivity;
 mod shards;
 mod tables;
 mod tune;

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::LimitRow;
 use crate::table::layout::{self, Column};
+use crate::table::no_percentage;
 
 /// RMS error in % of finite difference, and in brackets relative to the particle filter with the
 /// same signals; means over the seeds. One table per rate, in lines of `width` characters.
@@ -33,6 +34,14 @@ pub fn table(rows: &[LimitRow], width: usize) -> String {
             .collect();
         let names = estimators.iter().map(|name| (*name).to_owned());
         text += &layout::table(&Column::text("", "", names), &columns, width);
+        let resting = block.iter().filter(|row| {
+            let is_missing = !row.rms_pct.is_finite() || !row.over_limit.is_finite();
+            is_missing && row.rms_rad_s.is_finite()
+        });
+        text += &no_percentage(
+            resting.map(|row| row.scenario),
+            "finite difference or the limit",
+        );
     }
     text
 }
@@ -44,9 +53,13 @@ fn cell<'a>(rows: impl Iterator<Item = &'a LimitRow>) -> String {
         over += row.over_limit;
         count += 1.0;
     }
-    match count > 0.0 {
-        true => format!("{:.2} ({:.2})", pct / count, over / count),
+    let number = |sum: f64| match sum.is_finite() && count > 0.0 {
+        true => format!("{:.2}", sum / count),
         false => "-".to_owned(),
+    };
+    match (number(pct), number(over)) {
+        (pct, over) if pct == over && pct == "-" => pct,
+        (pct, over) => format!("{pct} ({over})"),
     }
 }
 
@@ -63,6 +76,29 @@ fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn error_without_a_reference_is_a_dash_with_a_note() {
+        let row = |rms_rad_s, rms_pct, over_limit| LimitRow {
+            estimator: "pll",
+            scenario: "hold",
+            rate_hz: 1000.0,
+            seed: 1,
+            rms_rad_s,
+            rms_pct,
+            over_limit,
+        };
+        let note = "-: finite difference or the limit has no error in hold.\n";
+        for (row, cell) in [
+            (row(0.0, f64::NAN, f64::NAN), "-"),
+            (row(1.0, f64::INFINITY, 2.0), "- (2.00)"),
+            (row(1.0, 50.0, f64::INFINITY), "50.00 (-)"),
+        ] {
+            let text = table(&[row], 80);
+            assert!(text.ends_with(&format!(" {cell}\n{note}")), "{text}");
+        }
+        assert!(!table(&[row(1.0, 50.0, 2.0)], 80).contains("no error"));
+    }
 
     #[test]
     fn seeds_are_averaged() {

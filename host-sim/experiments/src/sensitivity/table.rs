@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::SensitivityRow;
 use crate::table::layout::{self, Column};
+use crate::table::no_percentage;
 use catalogue::constant_error::ConstantError;
 
 /// Scenarios in which the motor moves. Rest and creep do not excite the parameters.
@@ -57,6 +58,8 @@ pub fn table(rows: &[SensitivityRow], width: usize) -> String {
         columns.push(column("outside", "worst, %", &|of| of.outside_worst));
         let names = names.iter().map(|name| (*name).to_owned());
         text += &layout::table(&Column::text("assumed:", "", names), &columns, width);
+        let resting = at_rate.iter().filter(|row| !has_reference(row));
+        text += &no_percentage(resting.map(|row| row.scenario), "finite difference");
     }
     text
 }
@@ -79,8 +82,7 @@ impl Errors {
             .copied()
             .filter(|row| MOVING.contains(&row.scenario))
             .collect();
-        let right =
-            |rows: &[&SensitivityRow]| mean(rows, |row| row.constant.is_none(), |row| row.rms_pct);
+        let right = |rows: &[&SensitivityRow]| mean(rows, |row| row.constant.is_none(), percentage);
         let outside =
             |only: &dyn Fn(&SensitivityRow) -> bool| 100.0 * mean(&moving, only, |row| row.outside);
         let mut errors = Self {
@@ -96,12 +98,26 @@ impl Errors {
                 row.constant == Some(constant_error.constant.as_str())
                     && row.error == constant_error.error
             };
-            let value = mean(&moving, is, |row| row.rms_pct);
+            let value = mean(&moving, is, percentage);
             errors.wrong.push(value);
             errors.worst = errors.worst.max(value);
             errors.outside_worst = errors.outside_worst.max(outside(&is));
         }
         errors
+    }
+}
+
+/// Whether finite difference has an error in the run of a row.
+fn has_reference(row: &SensitivityRow) -> bool {
+    row.rms_pct.is_finite() || !row.rms_rad_s.is_finite()
+}
+
+/// The error in % of finite difference; NaN where that one has none.
+fn percentage(row: &SensitivityRow) -> f64 {
+    if has_reference(row) {
+        row.rms_pct
+    } else {
+        f64::NAN
     }
 }
 
@@ -164,6 +180,28 @@ pub fn rows_by_rate(rows: &[SensitivityRow]) -> Vec<Vec<&SensitivityRow>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn error_without_a_reference_is_a_dash_with_a_note() {
+        let row = |scenario, rms_pct| SensitivityRow {
+            estimator: "low-pass",
+            scenario,
+            rate_hz: 1000.0,
+            seed: 1,
+            constant: None,
+            error: 0.0,
+            rms_rad_s: 1.0,
+            rms_pct,
+            outside: 0.0,
+        };
+        let text = table(&[row("hold", f64::INFINITY), row("step", 20.0)], 1000);
+        let [.., line, note] = text.lines().collect::<Vec<_>>()[..] else {
+            panic!("{text}");
+        };
+        let cells: Vec<_> = line.split_whitespace().collect();
+        assert_eq!(cells[..3], ["low-pass", "-", "20.00"], "{text}");
+        assert_eq!(note, "-: finite difference has no error in hold.");
+    }
 
     #[test]
     fn the_worst_is_of_moving_scenarios_only() {

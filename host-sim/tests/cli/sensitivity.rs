@@ -1,0 +1,41 @@
+//! `sensitivity` as somebody types it, and the notes below tables of percentages.
+
+use crate::{Folder, HOST_SIM, json};
+
+#[test]
+fn seed_that_is_given_twice_runs_once() {
+    let folder = Folder::new(HOST_SIM);
+    let run = "sensitivity --scenario step --seconds 0.5 --estimator low-pass --json -";
+    let twice = folder.good(&format!("{run} --seed 1 --seed 1"));
+    assert_eq!(twice, folder.good(&format!("{run} --seed 1")));
+}
+
+#[test]
+fn percentage_without_a_reference_is_a_dash_with_a_note() {
+    let folder = Folder::new(HOST_SIM);
+    // A hand so soft, and friction so large, that no count changes.
+    folder.write("soft.toml", "[hand]\nstiffness_nm_per_rad = 0.1667\n");
+    folder.write("rests.toml", "[large]\ncoulomb_nm = 0.04\n");
+    let run = "sensitivity --scenario hold --scenario step --seconds 0.5 --estimator low-pass";
+    let table = folder.good(&format!("{run} --device soft.toml --out page"));
+    let note = "-: finite difference has no error in hold.";
+    let line = table.lines().find(|line| line.contains("low-pass"));
+    let second = line.unwrap().split_whitespace().nth(1);
+    assert_eq!(second, Some("-"), "{table}");
+    assert!(table.contains(note), "{table}");
+    assert!(folder.text("page/index.html").contains(note));
+    let run = "limit --scenario step --estimator pll --seconds 1 --particles 50";
+    let table = folder.good(&format!("{run} --device rests.toml"));
+    assert!(
+        table.contains("\n-: finite difference or the limit has no error in step."),
+        "{table}"
+    );
+    for table in [
+        table,
+        folder.good(&format!("{run} --device rests.toml --json -")),
+    ] {
+        assert!(!table.contains("NaN") && !table.contains("inf"), "{table}");
+    }
+    let rows = json(&folder.good(&format!("{run} --device rests.toml --json -")));
+    assert!(rows.iter().all(|row| row["rms_pct"].is_null()));
+}
