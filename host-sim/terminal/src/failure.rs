@@ -4,6 +4,7 @@ use std::fmt;
 use std::process::ExitCode;
 
 use crate::output::note;
+use crate::wording::harmless;
 
 /// Failure of a command. The message is one line with a remedy.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,7 +56,7 @@ impl fmt::Display for Failure {
             .enumerate()
         {
             f.write_str(if i == 0 { "" } else { " " })?;
-            f.write_str(line)?;
+            f.write_str(&harmless(line))?;
         }
         Ok(())
     }
@@ -67,5 +68,16 @@ impl std::error::Error for Failure {}
 impl From<String> for Failure {
     fn from(message: String) -> Self {
         Self::Input(message)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Failure;
+
+    #[test]
+    fn message_is_one_line_without_control_characters() {
+        let failure = Failure::Input("a\u{1b}[31mb.toml: \u{9b}0m\n  no\tkey".to_owned());
+        assert_eq!(failure.to_string(), r"a\u{1b}[31mb.toml: \u{9b}0m no\tkey");
     }
 }

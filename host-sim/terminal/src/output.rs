@@ -12,6 +12,7 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
+use crate::wording::harmless;
 pub use folder::Folder;
 use partial::Partial;
 
@@ -126,9 +127,12 @@ pub fn sum(bytes: &[u8]) -> u64 {
     })
 }
 
-/// Writes a line to standard error; a closed standard error does not end the command.
-pub fn note(line: impl std::fmt::Display) {
-    let _ = writeln!(io::stderr(), "{line}");
+/// Writes lines to standard error, with control characters of names and texts escaped. A closed standard error
+/// does not end the command.
+pub fn note(lines: impl std::fmt::Display) {
+    let lines = lines.to_string();
+    let lines: Vec<_> = lines.split('\n').map(harmless).collect();
+    let _ = writeln!(io::stderr(), "{}", lines.join("\n"));
 }
 
 fn print_with(content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {

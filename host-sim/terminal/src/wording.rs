@@ -1,4 +1,7 @@
-//! Text for a terminal: wrapped lines, and the message about an unknown name.
+//! Text for a terminal: wrapped lines, names without control characters, and the message
+//! about an unknown name.
+
+use std::borrow::Cow;
 
 /// Width of a terminal if the width is unknown, columns.
 pub const WIDTH: usize = 80;
@@ -34,6 +37,22 @@ pub fn wrapped(text: &str, indent: usize) -> String {
         column += length;
     }
     lines
+}
+
+/// `text` with its control characters escaped, so that a name from a file does not command a terminal.
+#[must_use]
+pub fn harmless(text: &str) -> Cow<'_, str> {
+    if !text.contains(char::is_control) {
+        return Cow::Borrowed(text);
+    }
+    let mut escaped = String::new();
+    for c in text.chars() {
+        match c.is_control() {
+            true => escaped.extend(c.escape_debug()),
+            false => escaped.push(c),
+        }
+    }
+    Cow::Owned(escaped)
 }
 
 /// Message about a `name` that is not one of the `known` names. `what` is the kind of thing that is

@@ -79,3 +79,17 @@ fn invalid_arguments_are_refused_with_a_remedy() {
         assert!(line.contains(said), "{arguments:?}: {line}");
     }
 }
+
+#[test]
+fn control_characters_of_files_do_not_reach_the_terminal() {
+    let folder = Folder::new(HOST_SIM);
+    folder.write("d.toml", "[large]\n\"\\u001b[31mred\" = 1\n");
+    for (name, said) in [
+        ("d.toml", r"unknown field `\u{1b}[31mred`"),
+        ("a\u{1b}[31mb.toml", r"a\u{1b}[31mb.toml: cannot read"),
+    ] {
+        let line = folder.refused(&["device", "--device", name]);
+        assert!(line.contains(said), "{line:?}");
+        assert!(!line.trim_end().contains(char::is_control), "{line:?}");
+    }
+}
