@@ -6,7 +6,7 @@ use drivers::Command;
 use drivers::link::{Frame, Message};
 use haptic_control::{Mode, Request, SceneKind};
 use terminal::failure::Failure;
-use terminal::output::{note, print_bytes};
+use terminal::output::{note, print_to_reader};
 
 use crate::board::{Answer, Board};
 use crate::clock::{Clock, Limit};
@@ -248,7 +248,10 @@ fn follow(
         mode = Mode::from_code(frame.state);
         if every.as_mut().is_some_and(|every| every.selects(&frame)) {
             let text = line(&frame, supply, hello);
-            print_bytes(format!("{text}\n").as_bytes())?;
+            if !print_to_reader(format!("{text}\n").as_bytes())? {
+                note("nobody reads the lines any more: the session ends");
+                break;
+            }
         }
         // The select command takes its time, and may be lost.
         starts &= mode != Some(Mode::Running);

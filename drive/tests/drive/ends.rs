@@ -1,6 +1,7 @@
 //! The end of a session: the board is disarmed, whatever the reason.
 
 use std::fs::OpenOptions;
+use std::io::Read as _;
 use std::process::{Command as Process, Stdio};
 use std::time::Duration;
 
@@ -34,6 +35,27 @@ fn interrupt_and_termination_disarm() {
         assert_eq!(output.status.code(), Some(0), "{signal}: {output:?}");
         let (others, _) = sorted(&board.commands());
         assert_eq!(deduplicated(others), [DISARM], "{signal}");
+    }
+}
+
+/// As with `| head -1`.
+#[test]
+fn end_of_the_reader_of_the_lines_ends_the_session() {
+    for (arguments, expected) in [
+        (&["watch", "--seconds", "10"][..], &[][..]),
+        (&SELECT, &[ARM, WALL, DISARM]),
+    ] {
+        let board = Board::new(Script::default());
+        let mut tool = board.tool(arguments);
+        let tool = tool.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut tool = tool.spawn().unwrap();
+        let mut first = [0];
+        tool.stdout.take().unwrap().read_exact(&mut first).unwrap();
+        let output = tool.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains("nobody reads the lines any more"), "{said}");
+        assert_eq!(deduplicated(sorted(&board.commands()).0), expected);
     }
 }
 

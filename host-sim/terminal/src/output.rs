@@ -119,6 +119,16 @@ pub fn print_bytes(bytes: &[u8]) -> Result<(), Failure> {
     print_with(|out| out.write_all(bytes))
 }
 
+/// Writes `bytes` to standard output. `false` if it is a pipe whose reader has closed it, so that nobody reads
+/// what comes next.
+///
+/// # Errors
+/// [`Failure::Input`] on any other failure.
+pub fn print_to_reader(bytes: &[u8]) -> Result<bool, Failure> {
+    let written = in_place(io::stdout().lock(), |out| out.write_all(bytes));
+    written.map_err(|error| no_output(&error))
+}
+
 /// Checksum of a file (64-bit FNV-1a), to detect changes.
 #[must_use]
 pub fn sum(bytes: &[u8]) -> u64 {
@@ -137,7 +147,11 @@ pub fn note(lines: impl std::fmt::Display) {
 
 fn print_with(content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
     let written = in_place(io::stdout().lock(), content);
-    written.map_err(|error| Failure::Input(format!("standard output: {error}")))
+    written.map(drop).map_err(|error| no_output(&error))
+}
+
+fn no_output(error: &io::Error) -> Failure {
+    Failure::Input(format!("standard output: {error}"))
 }
 
 fn cannot_write(path: &Path, error: &io::Error) -> Failure {
@@ -163,7 +177,7 @@ fn write_file(
     };
     let inherited = links(path).any(is_inherited);
     if inherited || old.as_ref().is_some_and(|old| !old.is_file()) {
-        return in_place(OpenOptions::new().append(true).open(path)?, content);
+        return in_place(OpenOptions::new().append(true).open(path)?, content).map(drop);
     }
     let path = link_target(path)?;
     if let Some(folder) = path
@@ -183,15 +197,15 @@ fn write_file(
     partial.rename_to(&path)
 }
 
-/// Writes through a buffer. A pipe whose reader has closed it is not an error.
+/// Writes through a buffer. A pipe whose reader has closed it is not an error: then the result is `false`.
 fn in_place(
     out: impl Write,
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> io::Result<()> {
+) -> io::Result<bool> {
     let mut out = BufWriter::new(out);
     match content(&mut out).and_then(|()| out.flush()) {
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-        result => result,
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
+        result => result.map(|()| true),
     }
 }
 
