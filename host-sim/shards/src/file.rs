@@ -9,6 +9,7 @@ use serde_json::Value;
 use crate::{Experiment, Part};
 use terminal::failure::Failure;
 use terminal::output::{sum, write_whole};
+use terminal::wording::quoted;
 
 /// The run that a part belongs to.
 #[derive(Clone, Copy, Debug)]
@@ -160,12 +161,12 @@ impl File {
 }
 
 impl Heading {
-    /// How to run a part again, into the folder of `path`.
+    /// How to run a part again, into the folder of `path`, as a shell reads it.
     pub(crate) fn again(&self, part: Part, path: &Path) -> String {
         let folder = path
             .parent()
             .filter(|folder| !folder.as_os_str().is_empty());
-        let folder = folder.unwrap_or(Path::new(".")).display();
+        let folder = quoted(folder.unwrap_or(Path::new(".")).as_os_str());
         format!("run {} --shard {part} --out {folder}", self.command)
     }
 }

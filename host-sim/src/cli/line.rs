@@ -1,7 +1,9 @@
 //! The command line as reports and shards show it.
 
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsString;
 use std::path::Path;
+
+use terminal::wording::quoted;
 
 /// Options that name an output or a part. All of them have a value.
 const OUTPUTS: [&str; 3] = ["--out", "--json", "--shard"];
@@ -46,15 +48,6 @@ fn shown<'a>(arguments: impl Iterator<Item = &'a OsString>) -> String {
         .chain(quoted)
         .collect::<Vec<_>>()
         .join(" ")
-}
-
-fn quoted(argument: &OsStr) -> String {
-    let argument = argument.to_string_lossy();
-    let plain = |c: char| c.is_alphanumeric() || "-_./=,:+".contains(c);
-    match !argument.is_empty() && argument.chars().all(plain) {
-        true => argument.into_owned(),
-        false => format!("'{}'", argument.replace('\'', r"'\''")),
-    }
 }
 
 #[cfg(test)]

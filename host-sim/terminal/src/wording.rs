@@ -1,7 +1,8 @@
-//! Text for a terminal: wrapped lines, names without control characters, and the message
-//! about an unknown name.
+//! Text for a terminal: wrapped lines, names without control characters, arguments of a shell, and the
+//! message about an unknown name.
 
 use std::borrow::Cow;
+use std::ffi::OsStr;
 
 /// Width of a terminal if the width is unknown, columns.
 pub const WIDTH: usize = 80;
@@ -53,6 +54,17 @@ pub fn harmless(text: &str) -> Cow<'_, str> {
         }
     }
     Cow::Owned(escaped)
+}
+
+/// `argument` as a shell reads it, with quotes where it needs them.
+#[must_use]
+pub fn quoted(argument: &OsStr) -> String {
+    let argument = argument.to_string_lossy();
+    let plain = |c: char| c.is_alphanumeric() || "-_./=,:+".contains(c);
+    match !argument.is_empty() && argument.chars().all(plain) {
+        true => argument.into_owned(),
+        false => format!("'{}'", argument.replace('\'', r"'\''")),
+    }
 }
 
 /// Message about a `name` that is not one of the `known` names. `what` is the kind of thing that is

@@ -267,3 +267,14 @@ fn shards_that_are_no_run_are_refused_by_name() {
         changed,
     );
 }
+
+#[test]
+fn command_of_a_missing_shard_is_quoted_for_a_shell() {
+    let folder = Folder::new(HOST_SIM);
+    let run = "robust --scene off --rate 1000 --seconds 0.05 --devices 0 --shard 1/2 --out";
+    let out = "it's a folder";
+    folder.good(&run.split(' ').chain([out]).collect::<Vec<_>>());
+    let line = folder.refused(&["merge", "it's a folder/shard-1-of-2.jsonl"]);
+    let said = r"--shard 2/2 --out 'it'\''s a folder' and add its shard-2-of-2.jsonl";
+    assert!(line.contains(said), "{line}");
+}
