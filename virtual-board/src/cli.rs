@@ -17,10 +17,10 @@ use haptic_control::SceneKind;
 use indicatif::{ProgressBar, ProgressStyle};
 use simulation::device::Device;
 use terminal::failure::Failure;
-use terminal::output::{print_bytes, write_whole};
+use terminal::output::{note, print_bytes, write_whole};
 use terminal::wording::WIDTH;
 
-use self::checks::{in_bounds, in_place, in_time};
+use self::checks::{has_stdout, in_bounds, in_place, in_time};
 use crate::bridge::{Bridge, LAG_S, Pace};
 use crate::budget;
 use crate::command::Command;
@@ -94,7 +94,8 @@ struct Arguments {
     /// ELF file of the image [default: the file that the build command below writes]
     #[arg(long, value_name = "ELF")]
     image: Option<PathBuf>,
-    /// Write the image's telemetry as a recording for cargo sim replay
+    /// Write the image's telemetry as a recording for cargo sim replay; - is standard output, and the log and
+    /// the scores go to standard error
     #[arg(long, value_name = "FILE.csv")]
     record: Option<PathBuf>,
     /// Write the bytes of RTT channel 0, for cargo sim record --image
@@ -230,7 +231,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     if !arguments.budget {
         in_time(&arguments)?;
     }
-    in_place(&arguments)?;
+    in_place(&arguments, &path)?;
     let image = Image::read(&path)?;
     in_bounds(&arguments, &image)?;
     if arguments.budget {
@@ -257,7 +258,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         return serve(port, &image, setup);
     }
     let outcome = on_board(&image, &setup, bar(setup.seconds))?;
-    print_bytes(summary(scene, &setup, &outcome).as_bytes())?;
+    let text = summary(scene, &setup, &outcome);
+    match has_stdout(&arguments) {
+        true => note(text.trim_end()),
+        false => print_bytes(text.as_bytes())?,
+    }
     if let Some(path) = &arguments.record {
         write_whole(path, outcome.csv()?.as_bytes())?;
     }

@@ -1,21 +1,56 @@
 //! Checks of the arguments before the run.
 
+use std::path::Path;
+
 use drive::named::chosen;
 use terminal::failure::Failure;
-use terminal::output::check_place;
+use terminal::output::{check_place, is_same, is_stdout};
 
 use super::Arguments;
 use crate::identity;
 use crate::image::Image;
 use crate::scene;
 
-/// Refuses output files that have no place.
-pub(super) fn in_place(arguments: &Arguments) -> Result<(), Failure> {
-    let files = [&arguments.record, &arguments.rtt, &arguments.trace];
-    files
-        .into_iter()
-        .flatten()
-        .try_for_each(|file| check_place(file))
+/// The output files with their options.
+fn outputs(arguments: &Arguments) -> Vec<(&'static str, &Path)> {
+    let files = [
+        ("--record", &arguments.record),
+        ("--rtt", &arguments.rtt),
+        ("--trace", &arguments.trace),
+    ];
+    let given = files.into_iter();
+    given
+        .filter_map(|(option, path)| Some((option, path.as_deref()?)))
+        .collect()
+}
+
+/// Whether an output goes to standard output, which then has nothing else.
+pub(super) fn has_stdout(arguments: &Arguments) -> bool {
+    outputs(arguments).iter().any(|(_, path)| is_stdout(path))
+}
+
+/// Refuses output files that have no place, that are an input, or two that are one file.
+pub(super) fn in_place(arguments: &Arguments, image: &Path) -> Result<(), Failure> {
+    let outputs = outputs(arguments);
+    let inputs = [Some(image), arguments.device.as_deref()];
+    for (k, (option, path)) in outputs.iter().enumerate() {
+        check_place(path)?;
+        let refused = |said: String| {
+            let path = path.display();
+            Err(Failure::Input(format!("{option} {path}: {said}")))
+        };
+        if let Some(input) = inputs.into_iter().flatten().find(|it| is_same(it, path)) {
+            let input = input.display();
+            return refused(format!(
+                "would overwrite the input {input}; name another file"
+            ));
+        }
+        let is_one = |other: &Path| is_same(other, path) || (is_stdout(other) && is_stdout(path));
+        if let Some((other, _)) = outputs[..k].iter().find(|(_, other)| is_one(other)) {
+            return refused(format!("is the file of {other} too; name another one"));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses events after the end of the run.

@@ -34,6 +34,28 @@ fn options_that_cannot_be_used_are_named_before_the_image_is_read() {
 }
 
 #[test]
+fn outputs_that_are_one_file_or_an_input_are_refused() {
+    let image = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
+    for (arguments, said) in [
+        (
+            ["--record", "x.csv", "--rtt", "./x.csv"],
+            "--rtt ./x.csv: is the file of --record too; name another one",
+        ),
+        (
+            ["--rtt", "-", "--trace", "/dev/stdout"],
+            "--trace /dev/stdout: is the file of --rtt too; name another one",
+        ),
+        (
+            ["--seconds", "1", "--record", image],
+            "Cargo.toml: would overwrite the input",
+        ),
+    ] {
+        let error = error(&[&arguments[..], &["--image", image]].concat());
+        assert!(error.contains(said), "{arguments:?}: {error}");
+    }
+}
+
+#[test]
 fn handle_of_a_board_before_its_bring_up_is_free() {
     let hand = |arguments: &[&str]| {
         let all = ["cargo board"].iter().chain(arguments);
