@@ -155,7 +155,10 @@ fn error_at_the_end_of_a_hundred_megabytes_is_reported_with_its_line() {
     // And as one line without an end.
     folder.write("large.csv", vec![b'7'; 100_000_000]);
     let line = folder.refused(&["replay", "large.csv", "--out", "o.csv"]);
-    assert!(line.contains("large.csv: line 1: no end of the line"), "{line}");
+    assert!(
+        line.contains("large.csv: line 1: no end of the line"),
+        "{line}"
+    );
     assert!(line.len() < 300, "{} bytes", line.len());
 }
 
