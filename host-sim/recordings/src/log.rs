@@ -17,7 +17,7 @@ const STDIN: &str = "standard input";
 const GZIP: [u8; 2] = [0x1F, 0x8B];
 
 /// Number of first bytes that hold a header.
-const HEAD: u64 = 1 << 16;
+pub(crate) const HEAD: u64 = 1 << 16;
 
 /// Whether `path` stands for standard input.
 #[must_use]

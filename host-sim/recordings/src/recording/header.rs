@@ -151,7 +151,7 @@ fn found(layout: &Layout) -> String {
     let all = names.join("; ");
     let shown: String = all.chars().take(SHOWN).collect();
     let more = if shown.len() < all.len() { " ..." } else { "" };
-    let searched = layout.searched;
+    let searched = layout.searched.as_ref();
     if let (Some(searched), true) = (searched, all.is_empty()) {
         return format!("no header within the first {searched}");
     }

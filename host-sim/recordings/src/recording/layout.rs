@@ -1,6 +1,10 @@
 //! Layout of a text: its separator, its header, and the columns that are read.
 
+mod search;
+
 use terminal::failure::Failure;
+
+use crate::log::HEAD;
 
 use super::endings::Ending;
 use super::formats::{Format, SIMPLEFOC, SIMPLEFOC_COLUMNS};
@@ -8,6 +12,7 @@ use super::header;
 use super::options::{Column, ReadOptions};
 use super::separator::{Separator, comment};
 use super::units::Unit;
+use search::{is_content, is_number, named, numbers, probable};
 
 /// Number of the first lines among which the header is searched.
 const SEARCHED: usize = 500;
@@ -23,7 +28,7 @@ pub(super) struct Layout {
     /// Number of lines before the data.
     pub(super) skip: u64,
     /// What is searched of a text that goes on and has no header and no numbers there.
-    pub(super) searched: Option<&'static str>,
+    pub(super) searched: Option<String>,
     /// The first row of a text that has no header.
     pub(super) first_row: String,
 }
@@ -41,8 +46,8 @@ impl Layout {
     ) -> Result<Self, Failure> {
         let mut lines: Vec<_> = head.lines().take(SEARCHED + 1).collect();
         let limit = match (lines.len() > SEARCHED, is_cut) {
-            (true, _) => Some("500 lines"),
-            (false, true) => Some("64 KiB"),
+            (true, _) => Some(format!("{SEARCHED} lines")),
+            (false, true) => Some(format!("{} KiB", HEAD >> 10)),
             (false, false) => None,
         };
         if limit.is_some() {
@@ -272,111 +277,6 @@ impl Places {
             unit: &column.quantity().units()[0],
         }));
         Ok(())
-    }
-}
-
-/// The first line that names a time and a position, in text or in a comment.
-fn named(lines: &[&str], options: &ReadOptions) -> Option<Layout> {
-    let order = [
-        Separator::Comma,
-        Separator::Semicolon,
-        Separator::Tab,
-        Separator::Whitespace,
-    ];
-    let in_line = |(index, text): (usize, &str)| {
-        order.into_iter().find_map(|separator| {
-            let layout = Layout::header(separator, separator.split(text), index);
-            let has = |column: Column| match options.mapping(column) {
-                Some(mapping) => layout.names.contains(&mapping.theirs),
-                None => layout.names.iter().any(|name| name == column.name()),
-            };
-            let timed = options.row_rate_hz.is_some() || has(Column::T);
-            let own = timed && has(Column::CountsLarge);
-            (own || Format::of(&layout.names).is_some()).then_some(layout)
-        })
-    };
-    let numbered = || lines.iter().enumerate();
-    let text = numbered().filter(|(_, line)| comment(line).is_none());
-    let comments = numbered().filter_map(|(index, line)| Some((index, comment(line)?)));
-    text.map(|(index, line)| (index, *line))
-        .find_map(in_line)
-        .or_else(|| comments.into_iter().find_map(in_line))
-}
-
-/// The line before the first line of numbers; a text without names where the first line has numbers.
-/// `limit` is what was searched of a text that goes on.
-fn probable(lines: &[&str], limit: Option<&'static str>) -> Layout {
-    let mut above: Option<(usize, &str)> = None;
-    for (index, line) in lines.iter().enumerate() {
-        if !is_content(line) {
-            continue;
-        }
-        if comment(line).is_none()
-            && let Some((separator, fields)) = numbers(line)
-        {
-            let named = fields - usize::from(end_with(separator, &lines[index..]));
-            if let Some((above, text)) = above {
-                let header = Layout::header(separator, separator.split(text), above);
-                let fits = [fields, named].contains(&header.names.len());
-                if fits && numbers(text).is_none() {
-                    return header;
-                }
-            }
-            return Layout {
-                separator,
-                names: (1..=named).map(|number| number.to_string()).collect(),
-                line: 0,
-                skip: index as u64,
-                searched: None,
-                first_row: line.trim().to_owned(),
-            };
-        }
-        above = Some((index, comment(line).unwrap_or(line)));
-    }
-    // No line of numbers: the first line that is no comment is the header.
-    let mut text = lines.iter().enumerate();
-    let first = text.find(|(_, line)| !line.trim().is_empty() && comment(line).is_none());
-    let (index, line) = first.unwrap_or((0, &""));
-    let separator = Separator::ALL
-        .into_iter()
-        .find(|separator| separator.split(line).len() > 1);
-    let separator = separator.unwrap_or(Separator::Comma);
-    Layout {
-        searched: limit,
-        ..Layout::header(separator, separator.split(line), index)
-    }
-}
-
-/// Whether a line has more than separators.
-fn is_content(line: &str) -> bool {
-    let is_separator = |c: char| matches!(c, ',' | ';') || c.is_whitespace();
-    !line.chars().all(is_separator)
-}
-
-/// Whether all rows of `lines` end with the separator, after the last field. In a few rows the last
-/// field may be empty.
-fn end_with(separator: Separator, lines: &[&str]) -> bool {
-    let mut rows = lines
-        .iter()
-        .filter(|line| is_content(line) && comment(line).is_none());
-    let end = char::from(separator.byte());
-    separator != Separator::Whitespace
-        && rows.all(|row| row.trim_end_matches([' ', '\r']).ends_with(end))
-}
-
-/// Separator and number of fields of a line of numbers.
-fn numbers(line: &str) -> Option<(Separator, usize)> {
-    Separator::ALL.into_iter().find_map(|separator| {
-        let fields = separator.split(line);
-        let is_number = |field: &String| field.is_empty() || is_number(field, separator);
-        (fields.len() > 1 && fields.iter().all(is_number)).then_some((separator, fields.len()))
-    })
-}
-
-fn is_number(field: &str, separator: Separator) -> bool {
-    match separator.allows_decimal_comma() {
-        true => field.replacen(',', ".", 1).parse::<f64>().is_ok(),
-        false => field.parse::<f64>().is_ok(),
     }
 }
 

@@ -6,15 +6,14 @@ use csv::ByteRecord;
 
 use terminal::failure::Failure;
 
+use crate::log::HEAD;
+
 use super::json::{Begin, Json};
 use super::kinds;
 use super::layout::Layout;
 use super::options::ReadOptions;
 use super::row::Row;
 use super::separator::{Lines, Separator};
-
-/// Bytes at the begin of a log in which its layout is searched.
-const HEAD: u64 = 1 << 16;
 
 /// Bytes and lines of a row from which a quote is taken as one that has no end.
 const QUOTED: usize = 256;
@@ -63,8 +62,9 @@ impl<'a> Records<'a> {
             },
             None if is_cut && !text.contains('\n') => {
                 return Err(Failure::Input(format!(
-                    "{name}: line 1: no end of the line within 64 KiB; write one row a line, with the columns \
-                     that are needed"
+                    "{name}: line 1: no end of the line within {} KiB; write one row a line, with the columns \
+                     that are needed",
+                    HEAD >> 10
                 )));
             }
             None => Layout::of(&text, is_cut, options, name)?,

@@ -1,0 +1,211 @@
+//! The fields of one JSON object, in their order.
+
+use std::fmt;
+
+use serde::Deserializer as _;
+use serde::de::{DeserializeSeed, Error, MapAccess, SeqAccess, Visitor};
+use serde_json::{Number, Value};
+
+/// Begins a text that stands for a word which is no JSON.
+const WORD: char = '\0';
+
+/// The key under which `serde_json` hands over the text of a number, where its feature
+/// `arbitrary_precision` is on. Another package may turn it on.
+const NUMBER: &str = "$serde_json::private::Number";
+
+/// What an object has in the place of a field.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in super::super) enum Mark {
+    Missing,
+    Text,
+    /// No value: null, or what Python writes for one.
+    Blank(&'static str),
+    /// Several values.
+    Twice,
+}
+
+/// A field of an object: its name, its text, which is empty without a value, and what it is. A field of
+/// an object inside has the names of both, and one of `data` has its own.
+pub(super) struct Field {
+    pub(super) name: String,
+    pub(super) text: String,
+    pub(super) mark: Mark,
+}
+
+/// The fields of the object in a line.
+pub(super) fn fields(line: &[u8]) -> Result<Vec<Field>, serde_json::Error> {
+    let parse = |line: &[u8]| {
+        let mut fields = Vec::new();
+        let mut from = serde_json::Deserializer::from_slice(line);
+        let objects = Inside {
+            name: String::new(),
+            to: &mut fields,
+        };
+        (&mut from).deserialize_map(objects)?;
+        from.end()?;
+        Ok(fields)
+    };
+    parse(line).or_else(|error| parse(&with_words(line)).map_err(|_| error))
+}
+
+/// Takes a value called `name`: a field, or the fields of an object. The log's object has no name.
+struct Inside<'a> {
+    name: String,
+    to: &'a mut Vec<Field>,
+}
+
+impl Inside<'_> {
+    fn field(self, text: String, mark: Mark) {
+        let Self { name, to } = self;
+        to.push(Field { name, text, mark });
+    }
+}
+
+impl<'de> DeserializeSeed<'de> for Inside<'_> {
+    type Value = ();
+
+    fn deserialize<D: serde::Deserializer<'de>>(self, from: D) -> Result<(), D::Error> {
+        from.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Inside<'_> {
+    type Value = ();
+
+    fn expecting(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        to.write_str("a JSON object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        let prefix = match self.name.as_str() {
+            "" | "data" => String::new(),
+            name => format!("{name}."),
+        };
+        while let Some(name) = map.next_key::<String>()? {
+            if name == NUMBER {
+                let text = map.next_value()?;
+                self.field(text, Mark::Text);
+                return Ok(());
+            }
+            let name = match prefix.is_empty() {
+                true => name,
+                false => format!("{prefix}{name}"),
+            };
+            map.next_value_seed(Inside { name, to: self.to })?;
+        }
+        Ok(())
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
+        let mut values: Vec<Value> = Vec::new();
+        while let Some(value) = list.next_element()? {
+            values.push(value);
+        }
+        let text = Value::from(values).to_string().replace("\\u0000", "");
+        self.field(text, Mark::Text);
+        Ok(())
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<(), E> {
+        let word = text.strip_prefix(WORD);
+        match word.and_then(|word| WORDS.into_iter().find(|known| *known == word)) {
+            Some(word) => self.field(String::new(), Mark::Blank(word)),
+            None => self.field(text.to_owned(), Mark::Text),
+        }
+        Ok(())
+    }
+
+    fn visit_unit<E: Error>(self) -> Result<(), E> {
+        self.field(String::new(), Mark::Blank("null"));
+        Ok(())
+    }
+
+    fn visit_bool<E: Error>(self, value: bool) -> Result<(), E> {
+        self.field(value.to_string(), Mark::Text);
+        Ok(())
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<(), E> {
+        self.field(value.to_string(), Mark::Text);
+        Ok(())
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<(), E> {
+        self.field(value.to_string(), Mark::Text);
+        Ok(())
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<(), E> {
+        let text = Number::from_f64(value).map_or_else(String::new, |number| number.to_string());
+        self.field(text, Mark::Text);
+        Ok(())
+    }
+}
+
+/// The numbers that JSON does not have and Python writes.
+const WORDS: [&str; 3] = ["NaN", "-Infinity", "Infinity"];
+
+/// The line with strings for [`WORDS`].
+fn with_words(line: &[u8]) -> Vec<u8> {
+    let mut clean = Vec::with_capacity(line.len());
+    let mut quoted = false;
+    let mut k = 0;
+    while k < line.len() {
+        let rest = &line[k..];
+        let word = WORDS.iter().find(|w| rest.starts_with(w.as_bytes()));
+        if quoted && rest[0] == b'\\' {
+            clean.extend(&rest[..rest.len().min(2)]);
+            k += 2;
+        } else if let (false, Some(word)) = (quoted, word) {
+            clean.extend(format!("\"\\u0000{word}\"").as_bytes());
+            k += word.len();
+        } else {
+            quoted ^= rest[0] == b'"';
+            clean.push(rest[0]);
+            k += 1;
+        }
+    }
+    clean
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(line: &str) -> Vec<(String, String, Mark)> {
+        let fields = fields(line.as_bytes()).unwrap();
+        let shown = |field: Field| (field.name, field.text, field.mark);
+        fields.into_iter().map(shown).collect()
+    }
+
+    fn field(name: &str, text: &str, mark: Mark) -> (String, String, Mark) {
+        (name.to_owned(), text.to_owned(), mark)
+    }
+
+    #[test]
+    fn objects_inside_an_object_are_flattened() {
+        let line = r#"{"timestamp": 1.5, "data": {"position": 0.25, "fw": {"id_A": 2}}, "a": {"data": -1}}"#;
+        let expected = [
+            ("timestamp", "1.5"),
+            ("position", "0.25"),
+            ("fw.id_A", "2"),
+            ("a.data", "-1"),
+        ];
+        let expected = expected.map(|(name, text)| field(name, text, Mark::Text));
+        assert_eq!(shown(line), expected);
+    }
+
+    #[test]
+    fn numbers_that_python_writes_are_empty_fields() {
+        let line =
+            r#"{"a": NaN, "b": -Infinity, "c": "NaN \" NaN", "d": [Infinity, 1], "e": null}"#;
+        let expected = [
+            field("a", "", Mark::Blank("NaN")),
+            field("b", "", Mark::Blank("-Infinity")),
+            field("c", "NaN \" NaN", Mark::Text),
+            field("d", "[\"Infinity\",1]", Mark::Text),
+            field("e", "", Mark::Blank("null")),
+        ];
+        assert_eq!(shown(line), expected);
+    }
+}
