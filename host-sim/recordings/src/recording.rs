@@ -180,6 +180,16 @@ fn lengths(columns: &Trace) -> [(&'static str, Option<usize>); 5] {
     ]
 }
 
+/// A log of a test, read with the text of `--column` if it is not empty.
+#[cfg(test)]
+fn read_log(text: &str, columns: &str) -> Result<Recording, String> {
+    let mut options = ReadOptions::default();
+    if !columns.is_empty() {
+        options.add_columns(columns).unwrap();
+    }
+    Recording::parse_as(text.as_bytes(), "r.csv", &options).map_err(|error| error.to_string())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -87,15 +87,7 @@ pub(super) fn measured_note(column: Column, lack: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use crate::recording::{ReadOptions, Recording};
-
-    fn read(text: &str, columns: &str) -> Result<Recording, String> {
-        let mut options = ReadOptions::default();
-        if !columns.is_empty() {
-            options.add_columns(columns).unwrap();
-        }
-        Recording::parse_as(text.as_bytes(), "r.csv", &options).map_err(|error| error.to_string())
-    }
+    use crate::recording::read_log as read;
 
     const LOG: &str = "t,counts_large,current,current_measured,current_small,current_small_measured\n\
                        0,0,1,,10,\n\

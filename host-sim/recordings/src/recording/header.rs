@@ -168,7 +168,7 @@ fn found(layout: &Layout) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{ReadOptions, Recording};
+    use super::super::{Recording, read_log};
 
     fn error(text: &str) -> String {
         let error = Recording::parse(text.as_bytes(), "r.csv").unwrap_err();
@@ -262,13 +262,7 @@ mod tests {
 
     #[test]
     fn name_of_several_columns_is_refused_with_their_numbers() {
-        let read = |column: &str| {
-            let mut options = ReadOptions::default();
-            options.add_columns(column).unwrap();
-            let text = "t,pos,x,pos\n0,1,0,5\n0.001,2,0,7\n";
-            Recording::parse_as(text.as_bytes(), "r.csv", &options)
-                .map_err(|error| error.to_string())
-        };
+        let read = |column: &str| read_log("t,pos,x,pos\n0,1,0,5\n0.001,2,0,7\n", column);
         let said = "r.csv: line 1: 2 columns 'pos', of which --column names one for counts_large: the numbers \
                     2, 4; write one of the numbers, for example --column counts_large=2:deg";
         assert_eq!(read("counts_large=pos:deg").unwrap_err(), said);

@@ -282,15 +282,7 @@ impl Places {
 
 #[cfg(test)]
 mod tests {
-    use crate::recording::{ReadOptions, Recording};
-
-    fn read(text: &str, columns: &str) -> Result<Recording, String> {
-        let mut options = ReadOptions::default();
-        if !columns.is_empty() {
-            options.add_columns(columns).unwrap();
-        }
-        Recording::parse_as(text.as_bytes(), "r.csv", &options).map_err(|error| error.to_string())
-    }
+    use crate::recording::read_log as read;
 
     #[test]
     fn header_that_is_not_found_is_reported_with_what_is_searched() {

@@ -105,7 +105,7 @@ impl Stamps {
 
 #[cfg(test)]
 mod tests {
-    use crate::recording::{ReadOptions, Recording};
+    use crate::recording::read_log as read;
 
     /// Rows 1 ms apart from `start` s, each with an edge 0.3 ms before it.
     fn log(start: f64, stamp: impl Fn(usize, f64) -> f64) -> String {
@@ -115,14 +115,6 @@ mod tests {
             text += &format!("{t},{k},{},{k}\n", stamp(k as usize, t - 0.3e-3));
         }
         text
-    }
-
-    fn read(text: &str, columns: &str) -> Result<Recording, String> {
-        let mut options = ReadOptions::default();
-        if !columns.is_empty() {
-            options.add_columns(columns).unwrap();
-        }
-        Recording::parse_as(text.as_bytes(), "r.csv", &options).map_err(|error| error.to_string())
     }
 
     #[test]
