@@ -71,6 +71,10 @@ const LOOP: u16 = 0xE7FE;
 pub const HOW_TO_BUILD: &str =
     "cargo build --profile firmware --package firmware --target thumbv7em-none-eabihf";
 
+/// Folder of the tests' builds, from the top of the project, and their target.
+const BUILT_IN: &str = "target/firmware-image";
+const TARGET: &str = "thumbv7em-none-eabihf";
+
 /// A lock of the builds in this folder, held until it is dropped: from the first line of cargo until the image
 /// is read.
 fn alone(target: &Path) -> Result<File, String> {
@@ -99,6 +103,13 @@ impl Image {
         Self::build_with("", &[("SCENE", scene.name().as_ref())])
     }
 
+    /// The file that all builds write.
+    #[must_use]
+    pub fn built() -> PathBuf {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        root.join(BUILT_IN).join(TARGET).join("firmware/firmware")
+    }
+
     /// As [`Self::build`], with environment variables: `SCENE` names the one scene of the image, `RATE` is
     /// the control rate in Hz, `DEVICE` and `PRESETS` name the files that it is built for. All builds write
     /// the same file: one waits for another, in whatever process.
@@ -107,15 +118,14 @@ impl Image {
     /// As [`Self::build`]; one line if the folder of the build cannot be written.
     pub fn build_with(features: &str, variables: &[(&str, &OsStr)]) -> Result<Self, String> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-        let target: PathBuf = root.join("target/firmware-image");
+        let target: PathBuf = root.join(BUILT_IN);
         let _alone = alone(&target)?;
-        let triple = "thumbv7em-none-eabihf";
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let status = Command::new(cargo)
             .current_dir(&root)
             .args(["build", "--quiet", "--profile", "firmware"])
             .args(["--package", "firmware", "--features", features])
-            .args(["--target", triple, "--target-dir"])
+            .args(["--target", TARGET, "--target-dir"])
             .arg(&target)
             .env("SCENE", "")
             .env("RATE", "")
@@ -127,7 +137,7 @@ impl Image {
                 "firmware with '{features}' and {variables:?} does not build"
             ));
         }
-        Self::read(&target.join(triple).join("firmware/firmware"))
+        Self::read(&Self::built())
     }
 
     /// Reads an ELF file.

@@ -4,17 +4,12 @@ use std::process::Command;
 
 use virtual_board::image::Image;
 
-/// The file that [`Image::build`] writes.
-const IMAGE: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/../target/firmware-image/thumbv7em-none-eabihf/firmware/firmware"
-);
-
 #[test]
 fn recording_is_alone_on_standard_output() {
     Image::build("").unwrap();
     let mut board = Command::new(env!("CARGO_BIN_EXE_virtual-board"));
-    let board = board.args(["--image", IMAGE, "--seconds", "0.15", "--record", "-"]);
+    let board = board.arg("--image").arg(Image::built());
+    let board = board.args(["--seconds", "0.15", "--record", "-"]);
     let output = board.output().unwrap();
     let [out, report] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
     assert_eq!(output.status.code(), Some(0), "{report}");

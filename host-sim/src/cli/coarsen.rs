@@ -26,23 +26,13 @@ pub(super) struct Coarsen {
     #[arg(long, value_name = "F", value_parser = clap::value_parser!(u32).range(16..))]
     fine_counts_per_rev: Option<u32>,
     /// Rate of the coarse recording, 10 to 100000 Hz, at most that of the fine one
-    #[arg(
-        long,
-        value_name = "HZ",
-        default_value_t = 1000.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "HZ", default_value_t = 1000.0)]
     rate: f64,
     /// Position of the coarse encoder's boundaries, coarse counts
-    #[arg(
-        long,
-        value_name = "COUNTS",
-        default_value_t = 0.37,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "COUNTS", default_value_t = 0.37)]
     phase: f64,
     /// Part of the recording that is used, s from its start [default: all]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S")]
     seconds: Option<f64>,
     /// The device's torque constant turns motor_torque_nm into the column current
     #[command(flatten)]

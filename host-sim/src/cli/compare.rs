@@ -58,7 +58,7 @@ pub(super) struct Compare {
     #[arg(long, value_name = "NAME", requires = "closed_loop")]
     pub(super) handle_estimator: Option<String>,
     /// Control rate, 100 to 100000 Hz; repeatable [default: 1000 and 11600]
-    #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
+    #[arg(long = "rate", value_name = "HZ")]
     pub(super) rates: Vec<f64>,
     /// Estimator to run, see host-sim estimators; repeatable [default: all]
     #[arg(long = "estimator", value_name = "NAME")]
@@ -67,7 +67,7 @@ pub(super) struct Compare {
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) seed: u64,
     /// Duration of each run, s [default: 10; scenario heating: 60]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S")]
     pub(super) seconds: Option<f64>,
     /// Simulate the plant without Coulomb friction
     #[arg(long)]

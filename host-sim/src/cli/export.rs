@@ -53,16 +53,10 @@ pub(super) struct Export {
 #[derive(Debug, Args)]
 struct Design {
     /// For C: control rate, 100 to 100000 Hz
-    #[arg(
-        long,
-        value_name = "HZ",
-        default_value_t = 1e3,
-        requires = "c",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "HZ", default_value_t = 1e3, requires = "c")]
     rate: f64,
     /// For C: clock that stamps edges, Hz
-    #[arg(long, value_name = "HZ", default_value_t = EDGE_CLOCK_HZ, requires = "c", allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ", default_value_t = EDGE_CLOCK_HZ, requires = "c")]
     edge_clock: f64,
     /// For C: write the header to FILE; - is standard output
     #[arg(long, value_name = "FILE.h", default_value = "-", requires = "c")]

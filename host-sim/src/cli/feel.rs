@@ -39,7 +39,7 @@ pub(super) struct Feel {
     #[arg(long = "scene", visible_alias = "scenario", value_name = "NAME", help = scene_help())]
     pub(super) scenes: Vec<String>,
     /// Control rate, 100 to 100000 Hz; repeatable [default: 1000]
-    #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
+    #[arg(long = "rate", value_name = "HZ")]
     pub(super) rates: Vec<f64>,
     /// Estimator of the large motor's velocity, see host-sim estimators; repeatable [default: all
     /// without edge time stamps]
@@ -52,12 +52,7 @@ pub(super) struct Feel {
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) seed: u64,
     /// Duration of each run, s
-    #[arg(
-        long,
-        value_name = "S",
-        default_value_t = 10.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "S", default_value_t = 10.0)]
     pub(super) seconds: f64,
     /// Only divide the force among its causes; switch nothing off
     #[arg(long)]

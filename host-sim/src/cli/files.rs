@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgMatches, Command};
 use terminal::failure::Failure;
-use terminal::output::{Folder, check_place, is_same, is_stdout};
+use terminal::output::{self, Folder, check_place, is_same, is_stdout, one_file};
 
 /// Options that name an output. All other paths are inputs.
 const OUTPUTS: [&str; 5] = ["out", "json", "csv", "report", "mcap"];
@@ -62,12 +62,7 @@ pub(super) fn check(root: &Command, matches: &ArgMatches) -> Result<(), Failure>
         }
         let mut others = outputs[..k].iter();
         if let Some(other) = others.find(|other| is_same(&other.path, &output.path)) {
-            return Err(Failure::Input(format!(
-                "{} {}: is the file of {} too; name another one",
-                output.name,
-                output.path.display(),
-                other.name
-            )));
+            return Err(one_file(&output.name, &output.path, &other.name));
         }
         for folder in outputs.iter().filter(|other| other.is_folder) {
             refuse_reported(output, folder)?;
@@ -117,14 +112,7 @@ pub(super) fn refuse_input(name: &str, output: &Path, input: &Path) -> Result<()
     } else {
         input
     };
-    match is_same(output, read) {
-        false => Ok(()),
-        true => Err(Failure::Input(format!(
-            "{name} {}: would overwrite the input {}; name another file",
-            output.display(),
-            recordings::log::called(input)
-        ))),
-    }
+    output::refuse_input(name, output, read, recordings::log::called(input))
 }
 
 fn is_path(argument: &Arg) -> bool {

@@ -23,7 +23,7 @@ pub(super) struct Limit {
     #[arg(long = "scenario", value_name = "NAME")]
     pub(super) scenarios: Vec<String>,
     /// Control rate, 100 to 100000 Hz; repeatable [default: 1000]
-    #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
+    #[arg(long = "rate", value_name = "HZ")]
     pub(super) rates: Vec<f64>,
     /// Estimator to compare with the bound, see host-sim estimators; repeatable [default: all]
     #[arg(long = "estimator", value_name = "NAME")]
@@ -32,12 +32,7 @@ pub(super) struct Limit {
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) seed: u64,
     /// Duration of each run, s
-    #[arg(
-        long,
-        value_name = "S",
-        default_value_t = 10.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "S", default_value_t = 10.0)]
     pub(super) seconds: f64,
     /// Number of particles, 10 to 1000000
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(10..=1_000_000))]

@@ -30,10 +30,10 @@ pub(super) struct Plot {
     #[arg(long = "estimator", value_name = "NAME")]
     pub(super) estimators: Vec<String>,
     /// Start of the plot, s [default: start of the recording]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S")]
     pub(super) from: Option<f64>,
     /// End of the plot, s [default: end of the recording]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S")]
     pub(super) to: Option<f64>,
     #[command(flatten)]
     pub(super) read: RecordingOptions,

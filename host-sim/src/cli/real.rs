@@ -41,26 +41,15 @@ pub(super) struct Real {
         long,
         value_name = "HZ,...",
         value_delimiter = ',',
-        default_value = "1000",
-        allow_negative_numbers = true
+        default_value = "1000"
     )]
     rate: Vec<f64>,
     /// Positions of the coarse encoder's boundaries, coarse counts, a comma between two; scores are
     /// means over them [default: 0.37,0.81]
-    #[arg(
-        long,
-        value_name = "COUNTS,...",
-        value_delimiter = ',',
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "COUNTS,...", value_delimiter = ',')]
     phase: Vec<f64>,
     /// Part of each recording that is used, s from its start
-    #[arg(
-        long,
-        value_name = "S",
-        default_value_t = 10.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "S", default_value_t = 10.0)]
     seconds: f64,
     /// Estimator to run, see host-sim estimators; repeatable [default: all]
     #[arg(long = "estimator", value_name = "NAME")]

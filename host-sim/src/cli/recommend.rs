@@ -31,7 +31,7 @@ pub(super) struct Recommend {
     #[arg(value_name = "LOG", required = true)]
     logs: Vec<PathBuf>,
     /// Largest number of instructions per update on a Cortex-M4 for the second, cheap estimator
-    #[arg(long, value_name = "N", default_value_t = BUDGET, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = BUDGET)]
     instructions: f64,
     /// Print all estimators instead of the first eight
     #[arg(long)]

@@ -21,7 +21,7 @@ pub(super) struct Record {
     #[arg(long, value_name = "ELF")]
     pub(super) image: Option<PathBuf>,
     /// Control rate, 1 to 1e6 Hz [default: from the boot line of the stream]
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ")]
     pub(super) rate: Option<f64>,
     /// Number of the firmware's start to record, 1 is the first in the stream [default: the start
     /// with the most frames]

@@ -33,12 +33,7 @@ pub(super) struct Robust {
     #[arg(long = "scene", value_name = "NAME")]
     pub(super) scenes: Vec<String>,
     /// Control rate, 100 to 100000 Hz
-    #[arg(
-        long,
-        value_name = "HZ",
-        default_value_t = 10e3,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "HZ", default_value_t = 10e3)]
     pub(super) rate: f64,
     /// Estimator of both velocities, see host-sim estimators
     #[arg(long, value_name = "NAME", default_value = "kalman-triple-steady")]
@@ -50,12 +45,7 @@ pub(super) struct Robust {
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) seed: u64,
     /// Duration of each run, s
-    #[arg(
-        long,
-        value_name = "S",
-        default_value_t = 2.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "S", default_value_t = 2.0)]
     pub(super) seconds: f64,
     #[command(flatten)]
     pub(super) device: DeviceFile,

@@ -31,7 +31,7 @@ pub(super) struct Sensitivity {
     #[arg(long = "scenario", value_name = "NAME")]
     pub(super) scenarios: Vec<String>,
     /// Control rate, 100 to 100000 Hz; repeatable [default: 1000]
-    #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
+    #[arg(long = "rate", value_name = "HZ")]
     pub(super) rates: Vec<f64>,
     /// Estimator to run, see host-sim estimators; repeatable [default: all]
     #[arg(long = "estimator", value_name = "NAME")]
@@ -40,7 +40,7 @@ pub(super) struct Sensitivity {
     #[arg(long = "seed", value_name = "N")]
     pub(super) seeds: Vec<u64>,
     /// Duration of each run, s [default: 10; scenario heating: 60]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S")]
     pub(super) seconds: Option<f64>,
     #[command(flatten)]
     pub(super) device: DeviceFile,

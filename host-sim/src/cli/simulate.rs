@@ -36,19 +36,14 @@ pub(super) struct Simulate {
     #[arg(long, value_enum, default_value = "still", conflicts_with = "scenario")]
     hand: Holder,
     /// Control rate, 100 to 100000 Hz
-    #[arg(
-        long,
-        value_name = "HZ",
-        default_value_t = 10_000.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "HZ", default_value_t = 10_000.0)]
     rate: f64,
     /// Write only every N-th tick of a scene, 1 to 1000, as telemetry does
     #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "scenario",
         value_parser = clap::value_parser!(u32).range(1..=1000))]
     every: u32,
     /// Duration, s [default: 16; scenarios: 10, heating 60]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S")]
     seconds: Option<f64>,
     /// Seed of all random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]

@@ -49,7 +49,7 @@ pub(super) struct Tune {
     #[arg(long = "scenario", value_name = "NAME")]
     pub(super) scenarios: Vec<String>,
     /// Control rate, 100 to 100000 Hz; repeatable [default: 1000, 10000 and 11600]
-    #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
+    #[arg(long = "rate", value_name = "HZ")]
     pub(super) rates: Vec<f64>,
     /// Estimator to tune, see host-sim estimators; repeatable [default: all that have parameters]
     #[arg(long = "estimator", value_name = "NAME")]
@@ -59,7 +59,7 @@ pub(super) struct Tune {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub(super) seeds: Option<u64>,
     /// Duration of each run, s [default: 10; observers: 4]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S")]
     pub(super) seconds: Option<f64>,
     /// Tune only on the plant without Coulomb friction [default: on both plants]
     #[arg(long)]

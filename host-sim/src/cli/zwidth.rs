@@ -1,5 +1,6 @@
 //! `host-sim zwidth`.
 
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -10,6 +11,7 @@ use experiments::zwidth::{Boundary, Plan, Settings, rows, table};
 use recordings::arguments::DeviceFile;
 use report::{self, Printout};
 use shards::{Experiment as _, Part};
+use simulation::device::COUNTS_PER_REV;
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
@@ -22,6 +24,10 @@ const PAGE: &str = "target/zwidth";
 
 /// Text before the progress bar.
 const DOING: &str = "searching";
+
+/// Lines of an encoder of a device: a line is four counts.
+const LINES: RangeInclusive<i64> =
+    *COUNTS_PER_REV.start() as i64 / 4..=*COUNTS_PER_REV.end() as i64 / 4;
 
 #[derive(Debug, Args)]
 pub(super) struct Zwidth {
@@ -37,10 +43,10 @@ pub(super) struct Zwidth {
     #[arg(long)]
     pub(super) exact: bool,
     /// Control rate, 100 to 100000 Hz; repeatable [default: 1000, 10000 and 11600]
-    #[arg(long = "rate", value_name = "HZ", allow_negative_numbers = true)]
+    #[arg(long = "rate", value_name = "HZ")]
     pub(super) rates: Vec<f64>,
     /// Number of lines of the large encoder, 4 to 1000000; repeatable [default: 256, 1024 and 5000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=1_000_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(LINES))]
     pub(super) lines: Vec<u32>,
     /// Seed of the encoders' phases and of the disc's errors
     #[arg(long, value_name = "N", default_value_t = 1)]

@@ -70,14 +70,49 @@ pub fn check_place(path: &Path) -> Result<(), Failure> {
             "{name}: is a folder; choose the name of a file"
         )));
     }
-    let above = path.ancestors().skip(1).find(|path| path.exists());
-    match above {
+    in_folders(path.ancestors().skip(1), &name)
+}
+
+/// Checks that the first of `above` that exists is a folder; `name` is the output in the message.
+fn in_folders<'a>(
+    mut above: impl Iterator<Item = &'a Path>,
+    name: &dyn std::fmt::Display,
+) -> Result<(), Failure> {
+    match above.find(|path| path.exists()) {
         Some(above) if !above.is_dir() => Err(Failure::Input(format!(
             "{name}: {} is no folder; choose another path",
             above.display()
         ))),
         _ => Ok(()),
     }
+}
+
+/// Refuses the output `output` of `option` if it is the file `input`, which messages call `called`.
+///
+/// # Errors
+/// [`Failure::Input`] that names both.
+pub fn refuse_input(
+    option: &str,
+    output: &Path,
+    input: &Path,
+    called: impl std::fmt::Display,
+) -> Result<(), Failure> {
+    match is_same(output, input) {
+        false => Ok(()),
+        true => Err(Failure::Input(format!(
+            "{option} {}: would overwrite the input {called}; name another file",
+            output.display()
+        ))),
+    }
+}
+
+/// The error of an output that is one file with that of the option `other`.
+#[must_use]
+pub fn one_file(option: &str, output: &Path, other: &str) -> Failure {
+    Failure::Input(format!(
+        "{option} {}: is the file of {other} too; name another one",
+        output.display()
+    ))
 }
 
 /// Whether `path` ends with a separator, after which the system takes no file.

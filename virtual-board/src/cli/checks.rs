@@ -4,7 +4,7 @@ use std::path::Path;
 
 use drive::named::chosen;
 use terminal::failure::Failure;
-use terminal::output::{check_place, is_same, is_stdout};
+use terminal::output::{check_place, is_same, is_stdout, one_file, refuse_input};
 
 use super::Arguments;
 use crate::identity;
@@ -35,19 +35,12 @@ pub(super) fn in_place(arguments: &Arguments, image: &Path) -> Result<(), Failur
     let inputs = [Some(image), arguments.device.as_deref()];
     for (k, (option, path)) in outputs.iter().enumerate() {
         check_place(path)?;
-        let refused = |said: String| {
-            let path = path.display();
-            Err(Failure::Input(format!("{option} {path}: {said}")))
-        };
-        if let Some(input) = inputs.into_iter().flatten().find(|it| is_same(it, path)) {
-            let input = input.display();
-            return refused(format!(
-                "would overwrite the input {input}; name another file"
-            ));
+        for input in inputs.into_iter().flatten() {
+            refuse_input(option, path, input, input.display())?;
         }
         let is_one = |other: &Path| is_same(other, path) || (is_stdout(other) && is_stdout(path));
         if let Some((other, _)) = outputs[..k].iter().find(|(_, other)| is_one(other)) {
-            return refused(format!("is the file of {other} too; name another one"));
+            return Err(one_file(option, path, other));
         }
     }
     Ok(())

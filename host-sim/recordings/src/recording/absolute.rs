@@ -107,11 +107,7 @@ fn modulus_option(column: &str, jump: i64, span: i64) -> String {
 /// Looks for jumps between rows of this `period`, s.
 fn look(counts: &[u32], t: &[f64], period: f64, per_rev: u32) -> Option<Found> {
     let signed = |count: u32| i64::from(count as i32);
-    let mut steps = Steps::default();
-    for (pair, t) in counts.windows(2).zip(t.windows(2)) {
-        steps.add(t[1] - t[0], [signed(pair[1]) - signed(pair[0]), 0]);
-    }
-    let jump = steps.largest_jump(period, 0);
+    let jump = Steps::with_counts(t, |k| signed(counts[k])).largest_jump(period, 0);
     let values = || counts.iter().map(|&count| signed(count));
     let span = values().max()? - values().min()?;
     found(jump, span, per_rev)

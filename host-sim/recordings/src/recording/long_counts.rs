@@ -15,10 +15,7 @@ pub fn unwrap_long_counts(
     column: &str,
     remedy: &str,
 ) -> Option<String> {
-    let mut steps = Steps::default();
-    for (pair, t) in counts.windows(2).zip(t.windows(2)) {
-        steps.add(t[1] - t[0], [pair[1] - pair[0], 0]);
-    }
+    let steps = Steps::with_counts(t, |k| counts[k]);
     let jump = steps.largest_jump(steps.period("").ok()?.0, 0);
     let span = counts.iter().max()? - counts.iter().min()?;
     let mut found = absolute::found(jump, span, per_rev)?;

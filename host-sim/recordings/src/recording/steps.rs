@@ -190,9 +190,14 @@ impl Steps {
     }
 
     pub(super) fn of(t: &[f64]) -> Self {
+        Self::with_counts(t, |_| 0)
+    }
+
+    /// The steps of `t` with those of the counts of one encoder.
+    pub(super) fn with_counts(t: &[f64], count: impl Fn(usize) -> i64) -> Self {
         let mut steps = Self::default();
-        for pair in t.windows(2) {
-            steps.add(pair[1] - pair[0], [0; 2]);
+        for (k, pair) in t.windows(2).enumerate() {
+            steps.add(pair[1] - pair[0], [count(k + 1) - count(k), 0]);
         }
         steps
     }

@@ -6,7 +6,7 @@ use std::io::{self, ErrorKind, Read as _, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::partial::{Partial, uninterrupted};
-use super::{cannot_write, is_stdout, sum};
+use super::{cannot_write, in_folders, is_stdout, sum};
 use crate::failure::Failure;
 
 /// Name of the manifest, which lists the files of the latest run. The next run removes them.
@@ -47,13 +47,7 @@ impl Folder {
         }
         // Without a slash at the end, with which a file does not exist.
         let path: PathBuf = path.components().collect();
-        match path.ancestors().find(|path| path.exists()) {
-            Some(above) if !above.is_dir() => Err(Failure::Input(format!(
-                "{option} {name}: {} is no folder; choose another path",
-                above.display()
-            ))),
-            _ => Ok(()),
-        }
+        in_folders(path.ancestors(), &format_args!("{option} {name}"))
     }
 
     /// Adds a file. `name` may contain subfolders.
