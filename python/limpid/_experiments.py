@@ -13,7 +13,7 @@ import numpy as np
 
 from . import _arrays, _limpid
 from ._recording import Recording
-from ._replay import Replay
+from ._replay import Columns, Modulus, Replay, column_options
 
 
 def simulate(
@@ -69,6 +69,9 @@ def coarsen(
     fine_counts_per_rev: int | None = None,
     phase: float = 0.37,
     seconds: float | None = None,
+    columns: Columns = (),
+    modulus: Modulus = None,
+    row_rate: float | None = None,
     device: str | PathLike[str] | dict[str, Any] | None = None,
 ) -> Recording:
     """What an encoder of ``counts_per_rev`` would have seen of the recording of a finer one.
@@ -76,8 +79,8 @@ def coarsen(
     Parameters
     ----------
     path
-        CSV, which may be compressed by gzip, with the columns ``time_s`` (s) and ``fine_count``; optional are
-        ``motor_torque_nm`` (N.m) and ``true_omega_rad_s`` (rad/s).
+        A log as :func:`read_log` reads it, which may be compressed by gzip. The names ``time_s`` (s),
+        ``fine_count``, ``motor_torque_nm`` (N.m) and ``true_omega_rad_s`` (rad/s) are known too.
     counts_per_rev
         Counts per revolution of the coarse encoder, at most half of those of the fine one.
     rate
@@ -88,10 +91,22 @@ def coarsen(
         Position of the boundaries of the coarse encoder, coarse counts.
     seconds
         Part of the recording that is used, s from its start [default: all].
+    columns, modulus, row_rate
+        As in :func:`read_log`.
     device
         Path of a device file or a dict; its torque constant turns torque into current.
     """
-    fields = _limpid.coarsen(path, counts_per_rev, fine_counts_per_rev, rate, phase, seconds, device)
+    fields = _limpid.coarsen(
+        path,
+        *column_options(columns, modulus),
+        row_rate,
+        counts_per_rev,
+        fine_counts_per_rev,
+        rate,
+        phase,
+        seconds,
+        device,
+    )
     fields["rate"] = rate
     del fields["t"]
     return Recording(**fields)

@@ -131,6 +131,9 @@ def simulate(
 ) -> dict[str, Any]: ...
 def coarsen(
     path: _Path,
+    columns: list[str],
+    modulus: list[str],
+    row_rate: float | None,
     counts_per_rev: int,
     fine_counts_per_rev: int | None,
     rate: float,

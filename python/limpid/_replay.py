@@ -133,11 +133,19 @@ def replay(
     )
 
 
+Columns = Mapping[str, str] | Sequence[str] | str
+"""The type of ``columns``."""
+
+Modulus = int | Mapping[str, int] | None
+"""The type of ``modulus``."""
+
+
+
 def read_log(
     path: str | PathLike[str],
     *,
-    columns: Mapping[str, str] | Sequence[str] | str = (),
-    modulus: int | Mapping[str, int] | None = None,
+    columns: Columns = (),
+    modulus: Modulus = None,
     row_rate: float | None = None,
     resample: float | None = None,
     counts_per_rev: int | None = None,
@@ -171,6 +179,12 @@ def read_log(
     OSError
         The file cannot be opened.
     """
+    fields = _limpid.read_log(path, *column_options(columns, modulus), row_rate, resample, counts_per_rev, device)
+    return Recording(**fields)
+
+
+def column_options(columns: Columns, modulus: Modulus) -> tuple[list[str], list[str]]:
+    """The options ``--column`` and ``--modulus`` of the commands."""
     if isinstance(columns, Mapping):
         columns = [f"{ours}={theirs}" for ours, theirs in columns.items()]
     elif isinstance(columns, str):
@@ -179,5 +193,4 @@ def read_log(
         moduli = [f"{column}={number}" for column, number in modulus.items()]
     else:
         moduli = [] if modulus is None else [str(modulus)]
-    fields = _limpid.read_log(path, list(columns), moduli, row_rate, resample, counts_per_rev, device)
-    return Recording(**fields)
+    return list(columns), moduli

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use recordings::arguments::{DeviceFile as NoFile, RecordingOptions};
+use recordings::arguments::{ColumnOptions, DeviceFile as NoFile, RecordingOptions};
 use recordings::log::{Log, short_name};
 use recordings::recording::Recording;
 use terminal::failure::Failure;
@@ -27,9 +27,11 @@ pub(crate) fn read_log<'py>(
     device: Option<DeviceFile>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let options = RecordingOptions {
-        columns,
-        modulus,
-        row_rate,
+        columns: ColumnOptions {
+            columns,
+            modulus,
+            row_rate,
+        },
         resample,
         ..RecordingOptions::default()
     };

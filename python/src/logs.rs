@@ -9,7 +9,7 @@ use experiments::recommend::{Settings, lines, recommend as recommend_for};
 use experiments::tune::{LogFile, LogPlan, Plan, Wishes};
 use experiments::uneven::{Chosen, Recorded};
 use pyo3::prelude::*;
-use recordings::recording::Recording;
+use recordings::recording::{ReadOptions, Recording};
 use shards::Experiment as _;
 use simulation::device::Device;
 use simulation::scenario::ScenarioName;
@@ -38,7 +38,7 @@ fn read(
     for unchecked in columns {
         let name = unchecked.name().to_owned();
         let mut recording = unchecked.recording()?;
-        let unwrapped = recording.unwrap_counts(device);
+        let unwrapped = recording.unwrap_counts(&ReadOptions::of(device));
         recording.check_times(&name)?;
         let recorded = Recorded::new(&name, &recording, device, parameters);
         let chosen = Chosen::new(&kinds, are_named, &recorded)?;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use catalogue::parameters::Parameters;
 use experiments::uneven::{Chosen, Recorded};
 use pyo3::prelude::*;
-use recordings::recording::Recording;
+use recordings::recording::{ReadOptions, Recording};
 use simulation::device::Device;
 use terminal::failure::Failure;
 
@@ -79,7 +79,7 @@ fn prepared(
     parameters: impl FnOnce() -> Result<Parameters, Failure>,
 ) -> Result<(Recording, Vec<String>), Failure> {
     let kind = catalogue::estimators::Kind::named(estimator)?;
-    let mut notes = recording.unwrap_counts(device);
+    let mut notes = recording.unwrap_counts(&ReadOptions::of(device));
     if let Some(hz) = resample {
         notes.extend(recording.unevenness());
         recording.resample(hz, name)?;

@@ -7,6 +7,7 @@ use experiments::real::wanted::Wanted;
 use experiments::simulated::Run;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use recordings::arguments::ColumnOptions;
 use recordings::log::short_name;
 use terminal::failure::Failure;
 
@@ -69,10 +70,13 @@ pub(crate) fn simulate<'py>(
 
 /// What a coarse encoder would have seen of a fine recording, as keywords of `limpid.Recording`.
 #[pyfunction]
-#[pyo3(signature = (path, counts_per_rev, fine_counts_per_rev, rate, phase, seconds, device))]
+#[pyo3(signature = (path, columns, modulus, row_rate, counts_per_rev, fine_counts_per_rev, rate, phase, seconds, device))]
 pub(crate) fn coarsen<'py>(
     py: Python<'py>,
     path: PathBuf,
+    columns: Vec<String>,
+    modulus: Vec<String>,
+    row_rate: Option<f64>,
     counts_per_rev: u32,
     fine_counts_per_rev: Option<u32>,
     rate: f64,
@@ -89,7 +93,12 @@ pub(crate) fn coarsen<'py>(
         rate_hz: rate,
         phase,
         seconds,
-        torque_constant: device.stages.large.torque_constant,
+        columns: ColumnOptions {
+            columns,
+            modulus,
+            row_rate,
+        },
+        device,
     };
     let recording = interruptible(py, |_| wanted.of_file(&path))?;
     let fields = fields(py, recording)?;

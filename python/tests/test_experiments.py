@@ -89,6 +89,22 @@ def test_coarse_recording_is_that_of_the_command_and_of_the_formula(data, host_s
     assert (np.floor(position).astype(np.int64).astype(np.uint32) == coarse.counts).mean() > 0.999
 
 
+def test_columns_and_modulus_of_a_fine_recording_are_those_of_a_log(tmp_path):
+    t = np.arange(4000) * 0.5e-3
+    count = np.floor(40_000 * np.sin(2 * t)).astype(int)
+    own, other = tmp_path / "own.csv", tmp_path / "other.csv"
+    rows = zip(t, count)
+    own.write_text("t,counts_large\n" + "".join(f"{s},{n}\n" for s, n in rows))
+    rows = zip(t, count % 16_384)
+    other.write_text("ms,enc\n" + "".join(f"{1e3 * s},{n}\n" for s, n in rows))
+    expected = limpid.coarsen(own, 1024, fine_counts_per_rev=100_000)
+    columns = {"t": "ms:ms", "counts_large": "enc"}
+    read = limpid.coarsen(other, 1024, fine_counts_per_rev=100_000, columns=columns, modulus=16_384)
+    np.testing.assert_array_equal(read.counts, expected.counts)
+    with pytest.raises(ValueError, match="no column t"):
+        limpid.coarsen(other, 1024, fine_counts_per_rev=100_000)
+
+
 def test_scores_are_those_of_numpy():
     rng = np.random.default_rng(6)
     truth = 5 * np.sin(np.arange(3000) / 200)

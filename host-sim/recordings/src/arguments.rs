@@ -42,9 +42,9 @@ pub struct EncoderOptions {
     pub counts_per_rev: Option<u32>,
 }
 
-/// How a recording is read.
+/// The columns of a recording, and its encoder and clock.
 #[derive(Clone, Debug, Default, PartialEq, Args)]
-pub struct RecordingOptions {
+pub struct ColumnOptions {
     /// Read a column from the user's column of another name, with its unit: t=time_ms:ms,
     /// counts_large=angle:deg. The end of the name may be the unit (time_ms); a number is the number
     /// of the column. Units: s, ms, us, ns; counts, deg, rad, rev, mdeg, mrad; A, mA, N.m; rad/s,
@@ -58,6 +58,14 @@ pub struct RecordingOptions {
     /// Rate of the rows, for a recording without a column of time
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub row_rate: Option<f64>,
+}
+
+/// How a recording is read.
+#[derive(Clone, Debug, Default, PartialEq, Args)]
+pub struct RecordingOptions {
+    /// Its columns.
+    #[command(flatten)]
+    pub columns: ColumnOptions,
     /// Replace the rows by rows at a constant rate: counts are interpolated and rounded
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub resample: Option<f64>,
@@ -79,15 +87,12 @@ pub struct Whole {
     pub stated: Vec<String>,
 }
 
-impl RecordingOptions {
-    /// Whether the recording has the rows of the file.
-    #[must_use]
-    pub fn keeps_rows(&self) -> bool {
-        self.resample.is_none()
-    }
-
+impl ColumnOptions {
     /// What the options say about the log of `device`.
-    fn options(&self, device: &Device) -> Result<ReadOptions, Failure> {
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that names the option.
+    pub fn options(&self, device: &Device) -> Result<ReadOptions, Failure> {
         let mut options = ReadOptions::of(device);
         for text in &self.columns {
             options.add_columns(text)?;
@@ -99,6 +104,14 @@ impl RecordingOptions {
             options.set_row_rate(hz)?;
         }
         Ok(options)
+    }
+}
+
+impl RecordingOptions {
+    /// Whether the recording has the rows of the file.
+    #[must_use]
+    pub fn keeps_rows(&self) -> bool {
+        self.resample.is_none()
     }
 
     /// `device`, as loaded from `file`, with the counts per revolution of the recordings, as
@@ -133,9 +146,9 @@ impl RecordingOptions {
     /// # Errors
     /// [`Failure::Input`] that names the file, its line and its column, or the option.
     pub fn read(&self, log: &Log, device: &Device) -> Result<Recording, Failure> {
-        let options = self.options(device)?;
+        let options = self.columns.options(device)?;
         let mut recording = Recording::parse_as(log.reader()?, log.name(), &options)?;
-        let unwrapped = recording.unwrap_counts(device);
+        let unwrapped = recording.unwrap_counts(&options);
         recording.notes.extend(unwrapped);
         if let Some(hz) = self.resample {
             recording.notes.extend(recording.unevenness());
@@ -149,7 +162,7 @@ impl RecordingOptions {
     /// # Errors
     /// [`Failure::Input`] that names the file, or the option.
     pub fn current_option(&self, log: &Log, device: &Device) -> Result<Option<String>, Failure> {
-        current_option(log.reader()?, log.name(), &self.options(device)?)
+        current_option(log.reader()?, log.name(), &self.columns.options(device)?)
     }
 
     /// Reads a whole recording with the columns that the board has, for the device of `file`.
@@ -179,8 +192,8 @@ impl RecordingOptions {
     /// # Errors
     /// [`Failure::Input`] that names the file, its line and its column, or the option.
     pub fn survey(&self, log: &Log, device: &Device) -> Result<(ReadOptions, Survey), Failure> {
-        let options = self.options(device)?;
-        let survey = Survey::new(log.reader()?, log.name(), &options, device, self.resample)?;
+        let options = self.columns.options(device)?;
+        let survey = Survey::new(log.reader()?, log.name(), &options, self.resample)?;
         Ok((options, survey))
     }
 }

@@ -15,7 +15,6 @@ mod json;
 mod kinds;
 mod layout;
 mod lines;
-mod long_counts;
 mod numbers;
 mod options;
 mod parts;
@@ -41,7 +40,6 @@ pub use board::{BoardColumns, BoardReader};
 pub use currents::implausible_current;
 pub use formats::{KnownLog, known_logs};
 pub(crate) use kinds::check as check_kind;
-pub use long_counts::unwrap_long_counts;
 pub(crate) use options::MEASURED;
 pub use options::ReadOptions;
 pub use parts::Parts;
@@ -139,10 +137,25 @@ impl Recording {
     /// # Errors
     /// As [`Recording::read`].
     pub fn parse_as(input: impl Read, name: &str, options: &ReadOptions) -> Result<Self, Failure> {
+        Self::parse_first(input, name, options, f64::INFINITY)
+    }
+
+    /// As [`Recording::parse_as`], up to the first row that is `seconds` after the first one, s.
+    ///
+    /// # Errors
+    /// As [`Recording::read`].
+    pub fn parse_first(
+        input: impl Read,
+        name: &str,
+        options: &ReadOptions,
+        seconds: f64,
+    ) -> Result<Self, Failure> {
         let mut records = Records::open(input, name, options)?;
         let places = records.layout.places(options, name)?;
         let mut columns = Columns::new(&places, options);
-        while let Some(row) = records.next()? {
+        while columns.elapsed() < seconds
+            && let Some(row) = records.next()?
+        {
             columns.take(&row)?;
         }
         let mut recording = columns.into_recording(name, &places, &records.layout)?;

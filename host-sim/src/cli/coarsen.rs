@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use experiments::real::wanted::Wanted;
-use recordings::arguments::DeviceFile;
+use recordings::arguments::{ColumnOptions, DeviceFile};
 use recordings::log::short_name;
 use recordings::recording::counts_per_rev_line;
 use terminal::failure::Failure;
@@ -13,11 +13,13 @@ use terminal::output::{note, write_whole};
 
 #[derive(Debug, Args)]
 pub(super) struct Coarsen {
-    /// Recording of a fine encoder, CSV or gzip: the columns time_s (s) and fine_count, or t and
-    /// counts_large; optional columns: motor_torque_nm (N.m), true_omega_rad_s or true_omega
-    /// (rad/s); - is standard input
+    /// Recording of a fine encoder, as replay reads it: t or time_s (s), counts_large or fine_count,
+    /// optional columns current (A) or motor_torque_nm (N.m), true_omega or true_omega_rad_s (rad/s);
+    /// - is standard input
     #[arg(value_name = "FINE.csv")]
     fine: PathBuf,
+    #[command(flatten)]
+    columns: ColumnOptions,
     /// Counts per revolution of the coarse encoder, at most half of those of the fine one
     #[arg(long, value_name = "C", value_parser = recordings::arguments::counts_per_rev())]
     counts_per_rev: u32,
@@ -34,7 +36,7 @@ pub(super) struct Coarsen {
     /// Part of the recording that is used, s from its start [default: all]
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
-    /// The device's torque constant turns motor_torque_nm into the column current
+    /// The device's torque constant turns a torque into the column current
     #[command(flatten)]
     device: DeviceFile,
     /// Write the recording to FILE, with its counts per revolution in a comment that the commands on
@@ -50,7 +52,8 @@ pub(super) fn run(options: &Coarsen) -> Result<(), Failure> {
         rate_hz: options.rate,
         phase: options.phase,
         seconds: options.seconds,
-        torque_constant: options.device.load()?.stages.large.torque_constant,
+        columns: options.columns.clone(),
+        device: options.device.load()?,
     };
     let recording = wanted.of_file(&options.fine)?;
     let mut text = counts_per_rev_line(options.counts_per_rev).into_bytes();

@@ -84,7 +84,7 @@ pub(super) fn run(options: &Real, command_line: &str) -> Result<(), Failure> {
         Folder::check("--out", folder)?;
     }
     let settings = settings(options)?;
-    let recordings = Recordings::read(&options.data, settings.seconds)?;
+    let recordings = Recordings::read(&options.data, &settings.device, settings.seconds)?;
     for line in recordings.notes() {
         note(line);
     }

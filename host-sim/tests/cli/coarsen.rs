@@ -155,7 +155,8 @@ fn gap_is_bridged_with_a_note_and_an_unsuitable_clock_is_named() {
     let output = run("--rate 500");
     assert_eq!(output.status.code(), Some(0));
     let notes = String::from_utf8(output.stderr).unwrap();
-    let said = "f.csv: rows are missing in 1 gaps, the longest of 0.2005 s before t = 0.6 s";
+    let said =
+        "f.csv: 400 rows are missing in 1 gaps of at most 400, the first before line 802 at 0.6 s";
     assert!(notes.contains(said), "{notes}");
     for (text, said) in [
         (
@@ -165,7 +166,7 @@ fn gap_is_bridged_with_a_note_and_an_unsuitable_clock_is_named() {
         ),
         (
             "t,counts_large\n0,0\n1000,1\n2000,2\n".to_owned(),
-            "f.csv: column time_s or t: rows 1000 s apart are below 10 Hz; write it in s, not in ms or us",
+            "f.csv: column t: ",
         ),
     ] {
         folder.write("f.csv", text);
@@ -265,11 +266,12 @@ fn absolute_encoder_is_unwrapped_with_a_note() {
         straight
     );
     assert_eq!(
-        coarse("d", Some(&format!("d.csv: fine_count {note}\n"))),
+        coarse("d", Some(&format!("d.csv: counts_large {note}\n"))),
         straight
     );
     let jumps = " from one row to the next and spans 16382 counts, with 65536 counts per revolution: if the \
-                 encoder is absolute, give its counts with --fine-counts-per-rev\n";
+                 encoder is absolute, give its counts with --fine-counts-per-rev, or --modulus \
+                 counts_large=16384 if it has other counts per revolution\n";
     assert_ne!(coarse("c", Some(jumps)), straight);
 }
 
@@ -292,4 +294,83 @@ fn fine_counts_that_differ_from_the_stated_ones_are_reported() {
     folder.write("recordings.toml", list);
     let said = "f.csv: 32768 counts/rev of recordings.toml are used; the file states 65536\n";
     assert_eq!(notes(""), said);
+}
+
+/// The second of log and options is read as the first.
+#[test]
+fn logs_of_other_programs_are_coarsened() {
+    let folder = Folder::new(HOST_SIM);
+    let rows = |header: &str, row: &dyn Fn(f64, i64) -> String| {
+        let mut text = format!("{header}\n");
+        for k in 0..2000 {
+            let t = f64::from(k) * 0.5e-3;
+            text += &row(t, (4e3 * (7.0 * t).sin()).floor() as i64);
+        }
+        text
+    };
+    let own = rows("t,counts_large,current,true_omega", &|t, count| {
+        format!("{t},{count},{},2\n", 1.25 * t)
+    });
+    folder.write("own.csv", own);
+    let fine = rows(
+        "note;true_omega_rad_s;motor_torque_nm;fine_count;time_s",
+        &|t, count| {
+            let torque = (0.05 * 1.25 * t).to_string().replace('.', ",");
+            format!("x;2;{torque};{count};{}\n", t.to_string().replace('.', ","))
+        },
+    );
+    folder.write("fine.csv", fine);
+    let named = rows("ms\tq\tenc\trpm", &|t, count| {
+        let rpm = 60.0 / std::f64::consts::TAU * 2.0;
+        format!(
+            "{}\t{}\t{}\t{rpm}\n",
+            1e3 * t,
+            1.25 * t,
+            count.rem_euclid(10_000)
+        )
+    });
+    folder.write("named.csv", named);
+    folder.write("d.toml", "large.torque_constant_nm_per_a = 0.05\n");
+    let coarse = |name: &str, more: &str| {
+        let options = "--fine-counts-per-rev 100000 --counts-per-rev 1000 --device d.toml --out -";
+        let text = folder.good(format!("coarsen {name}.csv {options}{more}").as_str());
+        let numbers = |line: &str| -> Vec<Option<f64>> {
+            let fields = line.split(',');
+            fields.map(|field| field.parse().ok()).collect()
+        };
+        text.lines().skip(2).map(numbers).collect::<Vec<_>>()
+    };
+    let own = coarse("own", "");
+    folder.good("coarsen own.csv --fine-counts-per-rev 100000 --counts-per-rev 1000 --out c.csv");
+    let text = folder.text("c.csv");
+    let header: Vec<_> = text.lines().nth(1).unwrap().split(',').collect();
+    for column in ["edge_tick", "current", "true_omega"] {
+        assert!(header.contains(&column), "{header:?}");
+    }
+    let named = " --column t=ms:ms,current=q:A --column counts_large=enc --column true_omega=rpm:rpm \
+                 --modulus 10000";
+    for (name, more) in [("fine", ""), ("named", named)] {
+        let coarse = coarse(name, more);
+        assert_eq!(coarse.len(), own.len(), "{name}");
+        for (coarse, own) in coarse.iter().zip(&own) {
+            assert_eq!(coarse.len(), own.len(), "{name}");
+            for (column, (a, b)) in header.iter().zip(coarse.iter().zip(own)) {
+                // A time that is rounded moves a stamp by a tick at most.
+                let tolerance = if *column == "edge_tick" { 1.001 } else { 1e-6 };
+                let near = a.zip(*b).map(|(a, b)| (a - b).abs() <= tolerance);
+                assert!(near.unwrap_or(a == b), "{name}: {coarse:?} {own:?}");
+            }
+        }
+    }
+    let error = folder
+        .refused("coarsen named.csv --fine-counts-per-rev 100000 --counts-per-rev 64 --out -");
+    assert!(
+        error.contains("named.csv: line 1: no column t; "),
+        "{error}"
+    );
+    let notes = folder
+        .run("coarsen fine.csv --fine-counts-per-rev 100000 --counts-per-rev 64 --out c.csv")
+        .stderr;
+    let said = "current from 'motor_torque_nm' (N.m with 0.0468 N.m/A)";
+    assert!(String::from_utf8(notes).unwrap().contains(said));
 }

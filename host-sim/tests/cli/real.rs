@@ -171,7 +171,7 @@ fn invalid_input_of_real_and_coarsen_is_one_line() {
         ),
         (
             "coarsen broken.csv --counts-per-rev 64",
-            "broken.csv: line 3: column time_s: 'x' is not a number",
+            "broken.csv: line 3: column t: 'x' ",
         ),
         (
             "coarsen none.csv --counts-per-rev 64",
@@ -233,7 +233,6 @@ fn absolute_encoder_of_real_is_unwrapped_with_a_note() {
     assert_eq!(said, "");
     let (unwrapped, said) = run(true);
     assert!(unwrapped == straight);
-    let note =
-        "f.csv: fine_count wraps at 100000 and is unwrapped: a revolution of an absolute encoder\n";
+    let note = "f.csv: counts_large wraps at 100000 and is unwrapped: a revolution of an absolute encoder\n";
     assert_eq!(said, note);
 }

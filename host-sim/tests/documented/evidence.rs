@@ -103,7 +103,7 @@ struct Line {
 
 static RECORDINGS: LazyLock<Recordings> = LazyLock::new(|| {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real");
-    Recordings::read(Path::new(folder), 10.0).expect("the shipped recordings")
+    Recordings::read(Path::new(folder), &Device::default(), 10.0).expect("the shipped recordings")
 });
 
 fn settings(project: &Project) -> Settings {

@@ -5,7 +5,8 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use recordings::log::Log;
-use recordings::recording::Recording;
+use recordings::recording::{ReadOptions, Recording};
+use simulation::device::Device;
 use terminal::failure::Failure;
 
 use super::coarsen::Coarse;
@@ -28,13 +29,14 @@ enum Data {
 pub struct Recordings(Vec<(Source, Data)>);
 
 impl Recordings {
-    /// Reads the first `seconds` of the recordings that the list of `folder` names.
+    /// Reads the first `seconds` of the recordings that the list of `folder` names. The torque constant of
+    /// `device` turns torques into currents.
     ///
     /// # Errors
     /// [`Failure::Input`] that names the file and what is wrong.
-    pub fn read(folder: &Path, seconds: f64) -> Result<Self, Failure> {
+    pub fn read(folder: &Path, device: &Device, seconds: f64) -> Result<Self, Failure> {
         let listed = sources::read(folder)?;
-        let read = |source: Source| Ok((source.clone(), data(folder, &source, seconds)?));
+        let read = |source: Source| Ok((source.clone(), data(folder, &source, device, seconds)?));
         let all: Result<Vec<_>, Failure> = listed.into_par_iter().map(read).collect();
         all.map(Self)
     }
@@ -47,11 +49,13 @@ impl Recordings {
     /// What is said about the counts of fine recordings, one line each.
     pub fn notes(&self) -> impl Iterator<Item = String> {
         self.0.iter().flat_map(|(source, data)| {
-            let notes = match data {
-                Data::Fine(fine) => fine.notes.as_slice(),
+            let unwrapped = match data {
+                Data::Fine(fine) => fine.unwrapped.as_slice(),
                 Data::Coarse(_) => &[],
             };
-            notes.iter().map(|note| format!("{}: {note}", source.file))
+            unwrapped
+                .iter()
+                .map(|note| format!("{}: {note}", source.file))
         })
     }
 
@@ -79,8 +83,7 @@ impl Recordings {
                     let Data::Fine(fine) = data else { continue };
                     let phases = settings.phases.iter();
                     let of = phases.map(|&phase| case(i, counts_per_rev, Some(phase)));
-                    let resolved =
-                        |case: &Case| coarse(case, source, settings).is_resolved_by(fine);
+                    let resolved = |case: &Case| coarse(case, source).is_resolved_by(fine);
                     cases.extend(of.filter(resolved));
                 }
             }
@@ -99,10 +102,10 @@ impl Recordings {
     ///
     /// # Errors
     /// As [`Coarse::recording`].
-    pub fn recording(&self, case: &Case, settings: &Settings) -> Result<Recording, Failure> {
+    pub fn recording(&self, case: &Case) -> Result<Recording, Failure> {
         let (source, data) = &self.0[case.recording];
         match data {
-            Data::Fine(fine) => coarse(case, source, settings).recording(fine, &source.file),
+            Data::Fine(fine) => coarse(case, source).recording(fine, &source.file),
             Data::Coarse(recording) => Ok((**recording).clone()),
         }
     }
@@ -112,16 +115,11 @@ impl Recordings {
     ///
     /// # Errors
     /// As [`Coarse::along`].
-    pub fn recording_at(
-        &self,
-        case: &Case,
-        settings: &Settings,
-        rate_hz: f64,
-    ) -> Result<Recording, Failure> {
+    pub fn recording_at(&self, case: &Case, rate_hz: f64) -> Result<Recording, Failure> {
         let (source, data) = &self.0[case.recording];
         let coarse = Coarse {
             rate_hz,
-            ..coarse(case, source, settings)
+            ..coarse(case, source)
         };
         match data {
             Data::Fine(fine) => coarse.along(fine, &source.file),
@@ -148,69 +146,38 @@ pub struct Case {
 }
 
 /// The first `seconds` of the recording `source` of `folder`.
-fn data(folder: &Path, source: &Source, seconds: f64) -> Result<Data, Failure> {
-    let path = folder.join(&source.file);
-    let name = path.display().to_string();
-    let missing = || {
-        Failure::Input(format!(
-            "{name}: line 1: no column with the true velocity; add it, or remove the file from {}",
-            sources::LIST
-        ))
-    };
-    match source.kind {
+fn data(folder: &Path, source: &Source, device: &Device, seconds: f64) -> Result<Data, Failure> {
+    let log = Log::open(&folder.join(&source.file))?;
+    let mut device = device.clone();
+    device.stages.large.counts_per_rev = source.counts_per_rev;
+    let options = ReadOptions::of(&device).of_list(sources::LIST);
+    let (data, has_truth) = match source.kind {
         sources::Kind::Fine => {
-            let mut fine = Fine::read(&path, seconds)?;
-            let remedy = format!("in {}", sources::LIST);
-            fine.unwrap_counts(source.counts_per_rev, &remedy);
-            fine.omega
-                .is_some()
-                .then_some(Data::Fine(fine))
-                .ok_or_else(missing)
+            let fine = Fine::read(&log, &options, seconds)?;
+            let has_truth = fine.omega.is_some();
+            (Data::Fine(fine), has_truth)
         }
         sources::Kind::Coarse => {
-            let mut recording = Recording::parse(Log::open(&path)?.reader()?, &name)?;
-            if recording.trace.true_omega.is_none() {
-                return Err(missing());
-            }
-            shorten(&mut recording, seconds);
-            Ok(Data::Coarse(Box::new(recording)))
+            let recording = Recording::parse_first(log.reader()?, log.name(), &options, seconds)?;
+            let has_truth = recording.trace.true_omega.is_some();
+            (Data::Coarse(Box::new(recording)), has_truth)
         }
-    }
-}
-
-/// Keeps the first `seconds`.
-fn shorten(recording: &mut Recording, seconds: f64) {
-    let start = recording.t[0];
-    let rows = recording.t.partition_point(|t| t - start <= seconds);
-    let trace = &mut recording.trace;
-    recording.t.truncate(rows);
-    trace.counts_large.truncate(rows);
-    let columns = [
-        &mut trace.current,
-        &mut recording.current_small,
-        &mut trace.true_omega,
-    ];
-    columns
-        .into_iter()
-        .flatten()
-        .for_each(|column| column.truncate(rows));
-    trace
-        .counts_small
-        .iter_mut()
-        .for_each(|column| column.truncate(rows));
-    trace
-        .edges
-        .iter_mut()
-        .for_each(|column| column.truncate(rows));
+    };
+    has_truth.then_some(data).ok_or_else(|| {
+        Failure::Input(format!(
+            "{}: line 1: no column with the true velocity; add it, or remove the file from {}",
+            log.name(),
+            sources::LIST
+        ))
+    })
 }
 
 /// The coarse encoder of a run.
-fn coarse(case: &Case, source: &Source, settings: &Settings) -> Coarse {
+fn coarse(case: &Case, source: &Source) -> Coarse {
     Coarse {
         fine_counts_per_rev: source.counts_per_rev,
         counts_per_rev: case.counts_per_rev,
         rate_hz: case.rate_hz,
         phase: case.phase.unwrap_or_default(),
-        torque_constant: settings.device.stages.large.torque_constant,
     }
 }

@@ -10,7 +10,7 @@
 //! rows, as at a rate that does not divide that of the rows or where the rows are uneven, takes the
 //! position and the truth by linear interpolation.
 
-use recordings::recording::{Recording, SLOWEST_HZ};
+use recordings::recording::Recording;
 use simulation::trace::{EdgeStamp, Trace};
 use terminal::failure::Failure;
 
@@ -37,8 +37,6 @@ pub struct Coarse {
     pub rate_hz: f64,
     /// Position of the coarse encoder's boundaries relative to the zero of the fine one, counts.
     pub phase: f64,
-    /// Torque constant that turns the motor's torque into its current, N.m/A.
-    pub torque_constant: f64,
 }
 
 impl Coarse {
@@ -72,12 +70,6 @@ impl Coarse {
     pub fn recording(&self, fine: &Fine, name: &str) -> Result<Recording, Failure> {
         let refused = |why: String| Err(Failure::Input(format!("{name}: {why}")));
         let rows_hz = fine.mean_rate_hz();
-        if rows_hz < SLOWEST_HZ {
-            return refused(format!(
-                "column time_s or t: rows {} s apart are below {SLOWEST_HZ} Hz; write it in s, not in ms or us",
-                1.0 / rows_hz
-            ));
-        }
         if !self.has_rows(fine) {
             return refused(format!(
                 "its rows come at {rows_hz:.2} Hz on the average, which is less than the {} Hz of --rate; ask \
@@ -111,7 +103,7 @@ impl Coarse {
         let mut walk = Walk::new(self, fine);
         let mut trace = Trace {
             rate_hz: self.rate_hz,
-            current: fine.torque.as_ref().map(|_| Vec::new()),
+            current: fine.current.as_ref().map(|_| Vec::new()),
             true_omega: fine.omega.as_ref().map(|_| Vec::new()),
             ..Trace::default()
         };
@@ -126,8 +118,8 @@ impl Coarse {
                 age_s: (start + now - time).max(0.0),
                 boundary: boundary as u32,
             }));
-            if let (Some(current), Some(torque)) = (&mut trace.current, &fine.torque) {
-                current.push(torque[at.row] / self.torque_constant);
+            if let (Some(current), Some(fine)) = (&mut trace.current, &fine.current) {
+                current.push(fine[at.row]);
             }
             if let (Some(truth), Some(omega)) = (&mut trace.true_omega, &fine.omega) {
                 let next = omega[(at.row + 1).min(omega.len() - 1)];

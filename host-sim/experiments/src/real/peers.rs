@@ -130,11 +130,11 @@ pub fn rows(
     tuned: &[Tuned],
 ) -> Result<Vec<Row>, Failure> {
     let of_case = |case: &&Case| -> Result<Vec<Row>, Failure> {
-        let trace = recordings.recording(case, settings)?.trace;
+        let trace = recordings.recording(case)?.trace;
         let scored = Scored::new(&trace, case, settings, WANTED)?;
         let mut rows = Vec::new();
         for peer in peers {
-            let path = path::of(recordings, case, settings, peer, &trace)?;
+            let path = path::of(recordings, case, peer, &trace)?;
             let mut add = |name, values: &[f64]| {
                 rows.push(row(case, name, scored.score(&(peer.run)(&path, values))));
             };
@@ -162,9 +162,9 @@ pub fn ours_at(
     rate_hz: f64,
 ) -> Result<Vec<Row>, Failure> {
     let of_case = |case: &&Case| -> Result<Vec<Row>, Failure> {
-        let trace = recordings.recording(case, settings)?.trace;
+        let trace = recordings.recording(case)?.trace;
         let scored = Scored::new(&trace, case, settings, WANTED)?;
-        let fast = recordings.recording_at(case, settings, rate_hz)?.trace;
+        let fast = recordings.recording_at(case, rate_hz)?.trace;
         let ticks = path::ticks(
             scored.trace.rate_hz,
             scored.trace.len(),

@@ -110,7 +110,7 @@ fn outcome(
     settings: &Settings,
     keep: bool,
 ) -> Result<Outcome, Failure> {
-    let trace = recordings.recording(case, settings)?.trace;
+    let trace = recordings.recording(case)?.trace;
     let mut device = settings.device.clone();
     device.stages.large.counts_per_rev = case.counts_per_rev;
     let setup = Setup::of(&device, trace.rate_hz);

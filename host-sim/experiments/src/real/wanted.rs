@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use recordings::arguments::differing_counts;
+use recordings::arguments::{ColumnOptions, differing_counts};
 use recordings::log::Log;
 use recordings::recording::{Recording, SLOWEST_HZ, stated_counts_per_rev};
+use simulation::device::Device;
 use terminal::failure::Failure;
 
 use super::coarsen::Coarse;
@@ -12,7 +13,7 @@ use super::fine::Fine;
 use super::sources::{LIST, Source};
 
 /// What is asked for.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Wanted {
     /// Counts per revolution of the coarse encoder.
     pub counts_per_rev: u32,
@@ -24,8 +25,10 @@ pub struct Wanted {
     pub phase: f64,
     /// The part that is used, s from its start; `None` for all.
     pub seconds: Option<f64>,
-    /// Torque constant that turns the motor's torque into its current, N.m/A.
-    pub torque_constant: f64,
+    /// Columns of the fine recording.
+    pub columns: ColumnOptions,
+    /// The device, whose torque constant turns torques into currents.
+    pub device: Device,
 }
 
 impl Wanted {
@@ -44,21 +47,16 @@ impl Wanted {
             counts_per_rev: self.counts_per_rev,
             rate_hz: self.rate_hz,
             phase: self.phase,
-            torque_constant: self.torque_constant,
         };
-        let mut fine = Fine::parse(&log.bytes()?, log.name(), seconds)?;
-        fine.unwrap_counts(fine_counts_per_rev, "with --fine-counts-per-rev");
+        let mut device = self.device.clone();
+        device.stages.large.counts_per_rev = fine_counts_per_rev;
+        let options = self.columns.options(&device)?;
+        let options = options.with_counts_given("with --fine-counts-per-rev");
+        let fine = Fine::read(&log, &options, seconds)?;
         let mut recording = coarse.recording(&fine, log.name())?;
         recording.notes.extend(differing);
-        recording.notes.extend(fine.notes.iter().cloned());
-        let gaps = fine.gaps(1.0 / self.rate_hz);
-        recording.notes.extend(gaps.map(|(number, ends)| {
-            let [longest_s, end_s] = ends.map(|s| (s * 1e6).round() / 1e6);
-            format!(
-                "rows are missing in {number} gaps, the longest of {longest_s} s before t = {end_s} s: the \
-                 position is a straight line there"
-            )
-        }));
+        recording.notes.extend(fine.notes);
+        recording.notes.extend(fine.unwrapped);
         Ok(recording)
     }
 

@@ -145,7 +145,7 @@ fn adaptation_corrects_the_model_of_another_device() {
 fn learned_models_are_better_than_finite_difference_on_recordings() {
     let seconds = 10.0;
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/real");
-    let recordings = Recordings::read(&folder, seconds).unwrap();
+    let recordings = Recordings::read(&folder, &Device::default(), seconds).unwrap();
     let settings = Settings {
         estimators: PAIRS.map(|[_, name]| Kind::named(name).unwrap()).to_vec(),
         parameters: Parameters::default(),

@@ -122,10 +122,10 @@ impl Checked {
 
 /// Each recording that determines a reference, with and without its time stamps.
 static CHECKED: LazyLock<Vec<Checked>> = LazyLock::new(|| {
-    let recordings = Recordings::read(Path::new(RECORDINGS), 10.0).unwrap();
+    let recordings = Recordings::read(Path::new(RECORDINGS), &Device::default(), 10.0).unwrap();
     let settings = settings();
     let each = |case: &Case| {
-        let mut recording = recordings.recording(case, &settings).unwrap();
+        let mut recording = recordings.recording(case).unwrap();
         let stamps = Checked::of(case, &recording, "stamps");
         recording.trace.edges = None;
         [stamps, Checked::of(case, &recording, "counts")]

@@ -72,7 +72,7 @@ fn errors(recordings: &Recordings, parameters: Parameters, rate_hz: f64) -> Vec<
 #[test]
 fn scaled_values_have_a_smaller_error_on_coarse_and_fine_encoders_together() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/real");
-    let recordings = Recordings::read(&folder, 5.0).unwrap();
+    let recordings = Recordings::read(&folder, &Device::default(), 5.0).unwrap();
     let kinds = SCALED.map(|name| Kind::named(name).unwrap());
     for rate_hz in [1000.0, 2000.0] {
         let before = errors(&recordings, unscaled(&kinds, rate_hz), rate_hz);

@@ -1,9 +1,9 @@
 //! Absolute encoders and short counters: counts that wrap at a revolution or at 16 bits.
 
 use super::Recording;
+use super::options::{Column, ReadOptions};
 use super::steps::Steps;
 use estimator_core::{Count, WrapError};
-use simulation::device::Device;
 
 /// Modulus of a 16-bit counter.
 const SHORT: u32 = 1 << 16;
@@ -15,13 +15,13 @@ const SPANS: std::ops::Range<i64> = 15..1 << 31;
 impl Recording {
     /// Unwraps counts that wrap at a revolution or at 16 bits to counts modulo 2^32. Returns one line
     /// per changed column, and per column whose jumps do not fit the counts per revolution of
-    /// `device`.
+    /// `options`.
     #[must_use]
-    pub fn unwrap_counts(&mut self, device: &Device) -> Vec<String> {
+    pub fn unwrap_counts(&mut self, options: &ReadOptions) -> Vec<String> {
         let trace = &mut self.trace;
         let period = trace.period_s();
         let mut said = Vec::new();
-        let per_rev = device.stages.large.counts_per_rev;
+        let [per_rev, small_per_rev] = options.counts_per_rev;
         let mut found = look(&trace.counts_large, &self.t, period, per_rev);
         if let Some(Found::Wraps(modulus)) = found {
             match unwrap(&mut trace.counts_large, modulus) {
@@ -36,16 +36,15 @@ impl Recording {
                 }
             }
         }
-        said.extend(found.map(|found| found.note("counts_large", "large", per_rev)));
+        said.extend(found.map(|found| found.note(0, options)));
         if let Some(counts) = &mut trace.counts_small {
-            let per_rev = device.stages.small.counts_per_rev;
-            let mut found = look(counts, &self.t, period, per_rev);
+            let mut found = look(counts, &self.t, period, small_per_rev);
             if let Some(Found::Wraps(modulus)) = found
                 && let Err(error) = unwrap(counts, modulus)
             {
                 found = Some(Found::Refused(modulus, error));
             }
-            said.extend(found.map(|found| found.note("counts_small", "small", per_rev)));
+            said.extend(found.map(|found| found.note(1, options)));
         }
         said
     }
@@ -63,7 +62,10 @@ pub(super) enum Found {
 }
 
 impl Found {
-    pub(super) fn note(self, column: &str, motor: &str, per_rev: u32) -> String {
+    /// The note on the counts of the encoder with the index `motor`.
+    pub(super) fn note(self, motor: usize, options: &ReadOptions) -> String {
+        let column = Column::COUNTS[motor].name();
+        let per_rev = options.counts_per_rev[motor];
         match self {
             Self::Wraps(modulus) => format!(
                 "{column} wraps at {modulus} and is unwrapped: a {}",
@@ -75,22 +77,16 @@ impl Found {
             Self::Jumps(jump, span) => format!(
                 "{column} jumps by {jump} from one row to the next and spans {span} counts, with {per_rev} \
                  counts per revolution: if the encoder is absolute, give its counts {}{}",
-                counts_option(motor),
-                modulus_option(column, jump, span)
+                options.counts_given[motor],
+                match options.takes_modulus {
+                    true => modulus_option(column, jump, span),
+                    false => String::new(),
+                }
             ),
             Self::Refused(modulus, error) => {
                 format!("{column} wraps at {modulus} and is not unwrapped: {error}")
             }
         }
-    }
-}
-
-/// How the counts per revolution of a motor's encoder are given.
-pub(super) fn counts_option(motor: &str) -> String {
-    let device = format!("{motor}.counts_per_rev in the file of --device");
-    match motor {
-        "large" => format!("with --counts-per-rev, or as {device}"),
-        _ => format!("as {device}"),
     }
 }
 
@@ -174,6 +170,8 @@ pub(super) fn centred(x: i64, modulus: u32) -> i64 {
 
 #[cfg(test)]
 mod tests {
+    use simulation::device::Device;
+
     use super::*;
 
     /// A shaft that turns by `step` counts a row, read by an encoder that wraps.
@@ -191,10 +189,10 @@ mod tests {
         (Recording::parse(text.as_bytes(), "r").unwrap(), truth)
     }
 
-    fn device(counts: u32) -> Device {
+    fn encoder(counts: u32) -> ReadOptions {
         let mut device = Device::default();
         device.stages.large.counts_per_rev = counts;
-        device
+        ReadOptions::of(&device)
     }
 
     #[test]
@@ -206,7 +204,7 @@ mod tests {
             (3600, 200, 0),
         ] {
             let (mut recording, truth) = recording(step, counts, least);
-            let said = recording.unwrap_counts(&device(counts as u32));
+            let said = recording.unwrap_counts(&encoder(counts as u32));
             let start = recording.trace.counts_large[0].wrapping_sub(truth[0]);
             let truth: Vec<_> = truth
                 .iter()
@@ -233,7 +231,7 @@ mod tests {
             .collect();
         let text = format!("t,counts_large\n{text}");
         let mut recording = Recording::parse(text.as_bytes(), "r").unwrap();
-        let said = recording.unwrap_counts(&device(4096));
+        let said = recording.unwrap_counts(&encoder(4096));
         let is_said = said.iter().any(|note| note.contains("wraps at 4096"));
         assert_eq!(is_said, missing.len() < 20, "{said:?}");
         let truth = rows.map(|k| 4000 + 2 * k as u32).collect();
@@ -262,14 +260,14 @@ mod tests {
         let text = format!("t,counts_large\n{text}");
         let mut recording = Recording::parse(text.as_bytes(), "r").unwrap();
         let before = recording.trace.counts_large.clone();
-        let _ = recording.unwrap_counts(&device(4096));
+        let _ = recording.unwrap_counts(&encoder(4096));
         assert_eq!(recording.trace.counts_large, before);
     }
 
     #[test]
     fn counts_of_a_16_bit_counter_are_unwrapped() {
         let (mut recording, truth) = recording(100, 65_536, 0);
-        let said = recording.unwrap_counts(&device(4096));
+        let said = recording.unwrap_counts(&encoder(4096));
         assert_eq!(recording.trace.counts_large, truth);
         assert!(said[0].contains("wraps at 65536"), "{said:?}");
     }
@@ -278,7 +276,7 @@ mod tests {
     fn encoder_that_differs_from_the_device_is_reported_and_not_unwrapped() {
         let (mut recording, _) = recording(11, 16_384, 0);
         let before = recording.trace.counts_large.clone();
-        let said = recording.unwrap_counts(&device(4096));
+        let said = recording.unwrap_counts(&encoder(4096));
         let words = "counts, with 4096 counts per revolution: if the encoder is absolute, give its counts \
                      with --counts-per-rev, or as large.counts_per_rev in the file of --device, or \
                      --modulus counts_large=16384 if";
@@ -294,7 +292,7 @@ mod tests {
     fn encoder_of_fewer_counts_than_the_device_is_reported() {
         for (modulus, step) in [(1024, 4), (64, 1), (1 << 24, 40_000)] {
             let (mut recording, _) = recording(step, modulus, 0);
-            let said = recording.unwrap_counts(&device(4096));
+            let said = recording.unwrap_counts(&encoder(4096));
             let option = format!("or --modulus counts_large={modulus} if");
             assert!(said[0].starts_with("counts_large jumps by -"), "{said:?}");
             assert!(said[0].contains(&option), "{said:?}");
@@ -307,12 +305,18 @@ mod tests {
         let text = "t,counts_large\n0,-2\n0.001,-1\n0.002,1\n0.003,2\n0.1,4000\n0.101,4001\n";
         let mut recording = Recording::parse(text.as_bytes(), "r").unwrap();
         let before = recording.trace.counts_large.clone();
-        assert_eq!(recording.unwrap_counts(&device(4096)), Vec::<String>::new());
+        assert_eq!(
+            recording.unwrap_counts(&encoder(4096)),
+            Vec::<String>::new()
+        );
         assert_eq!(recording.trace.counts_large, before);
         // Over 2^31, where a signed count wraps.
         let row = |k: i64| format!("{},{}\n", k as f64 * 1e-3, (1_i64 << 31) - 90 + 3 * k);
         let text = format!("t,counts_large\n{}", (0..60).map(row).collect::<String>());
         let mut recording = Recording::parse(text.as_bytes(), "r").unwrap();
-        assert_eq!(recording.unwrap_counts(&device(4096)), Vec::<String>::new());
+        assert_eq!(
+            recording.unwrap_counts(&encoder(4096)),
+            Vec::<String>::new()
+        );
     }
 }

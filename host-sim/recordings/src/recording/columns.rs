@@ -69,6 +69,14 @@ impl<'a> Columns<'a> {
         }
     }
 
+    /// Time of the last row from the first one, s; below every number before the first row.
+    pub(super) fn elapsed(&self) -> f64 {
+        match self.taken {
+            0 => f64::NEG_INFINITY,
+            _ => self.last_t - self.first_t,
+        }
+    }
+
     fn place(&self, column: Column) -> Option<Place> {
         self.places[column as usize]
     }
@@ -286,11 +294,8 @@ impl<'a> Columns<'a> {
                 self.left_out
             ));
         }
-        let [large, small] = self.options.counts_per_rev;
-        let (column, encoder) = (Column::CountsLarge, &self.counts_large);
-        notes.extend(encoder.note(column.name(), "large", large));
-        let (column, encoder) = (Column::CountsSmall, &self.counts_small);
-        notes.extend(encoder.note(column.name(), "small", small));
+        notes.extend(self.counts_large.note(0, self.options));
+        notes.extend(self.counts_small.note(1, self.options));
         notes.extend(self.stamps.note());
         Ok(notes)
     }

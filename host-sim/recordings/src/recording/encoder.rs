@@ -3,10 +3,9 @@
 use estimator_core::Count;
 use terminal::failure::Failure;
 
-use super::absolute::counts_option;
 use super::layout::Place;
 use super::numbers::shown;
-use super::options::ReadOptions;
+use super::options::{Column, ReadOptions};
 use super::row::Row;
 use super::units::Scale;
 
@@ -74,14 +73,17 @@ impl Encoder {
         Ok(())
     }
 
-    /// Note on positions that are far from whole counts; `None` if none is.
-    pub(super) fn note(&self, column: &str, motor: &str, counts_per_rev: u32) -> Option<String> {
+    /// Note on positions that are far from whole counts; `None` if none is. `motor` is the index of the
+    /// encoder.
+    pub(super) fn note(&self, motor: usize, options: &ReadOptions) -> Option<String> {
         (self.rounded > ROUNDED).then(|| {
             format!(
-                "{column}: positions are up to {:.2} counts from a whole count with {counts_per_rev} \
-                 counts/rev and are rounded to the nearest; if the encoder has more counts, give them {}",
+                "{}: positions are up to {:.2} counts from a whole count with {} counts/rev and are rounded to \
+                 the nearest; if the encoder has more counts, give them {}",
+                Column::COUNTS[motor].name(),
                 self.rounded,
-                counts_option(motor)
+                options.counts_per_rev[motor],
+                options.counts_given[motor]
             )
         })
     }

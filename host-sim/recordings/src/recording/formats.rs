@@ -40,12 +40,29 @@ pub(super) struct Format {
     columns: &'static [Foreign],
     /// Whether a row without the position is left out, because each row has the columns that changed.
     pub(super) sparse: bool,
+    /// Whether the log is of this project.
+    pub(super) own: bool,
     /// Where the names of the columns come from.
     pub(super) source: &'static str,
 }
 
 /// The known logs. A header belongs to the first one whose mark, time and position it has.
 pub(super) const FORMATS: &[Format] = &[
+    Format {
+        name: "Limpid, fine encoder",
+        mark: "",
+        columns: &[
+            foreign(Column::T, Name("time_s"), "s"),
+            foreign(Column::T, Name("t"), "s"),
+            foreign(Column::CountsLarge, Name("fine_count"), "counts"),
+            foreign(Column::CountsLarge, Name("counts_large"), "counts"),
+            foreign(Column::Current, Name("motor_torque_nm"), "N.m"),
+            foreign(Column::TrueOmega, Name("true_omega_rad_s"), "rad/s"),
+        ],
+        sparse: false,
+        own: true,
+        source: "tests/data/real/README.md",
+    },
     Format {
         name: "moteus",
         mark: "q_A",
@@ -55,6 +72,7 @@ pub(super) const FORMATS: &[Format] = &[
             foreign(Column::Current, Name("q_A"), "A"),
         ],
         sparse: false,
+        own: false,
         source: "mjbots/moteus, utils/gui/moteus_gui/tview.py (log as CSV or JSONL) and \
                  fw/bldc_servo_structs.h (channel servo_stats)",
     },
@@ -67,6 +85,7 @@ pub(super) const FORMATS: &[Format] = &[
             foreign(Column::Current, Name("Q_CURRENT"), "A"),
         ],
         sparse: false,
+        own: false,
         source: "mjbots/moteus, lib/python/examples/csv_output.py (names of moteus.Register)",
     },
     Format {
@@ -80,6 +99,7 @@ pub(super) const FORMATS: &[Format] = &[
             foreign(Column::Current, End("Iq_measured"), "A"),
         ],
         sparse: false,
+        own: false,
         source: "odriverobotics/ODrive, GUI/src/components/plots/Plot.vue (Export) and \
                  Firmware/odrive-interface.yaml; pos_vel_mapper is of firmware 0.6",
     },
@@ -92,6 +112,7 @@ pub(super) const FORMATS: &[Format] = &[
             foreign(Column::Current, Name("q_axis_current"), "A"),
         ],
         sparse: false,
+        own: false,
         source: "vedderb/vesc_tool, vescinterface.cpp (log of real-time data)",
     },
     Format {
@@ -104,6 +125,7 @@ pub(super) const FORMATS: &[Format] = &[
             foreign(Column::Current, End("/effort"), "N.m"),
         ],
         sparse: true,
+        own: false,
         source: "facontidavide/PlotJuggler, plotjuggler_plugins/ToolboxCSV and datasamples/turtle.csv; \
                  position (rad) and effort (N.m) are those of the ROS message JointState",
     },
@@ -118,6 +140,7 @@ pub(super) const SIMPLEFOC: Format = Format {
         foreign(Column::Current, Name("current.q"), "mA"),
     ],
     sparse: false,
+    own: false,
     source: "simplefoc/Arduino-FOC, src/common/base_classes/FOCMotor.cpp (monitor)",
 };
 
@@ -186,11 +209,20 @@ impl Format {
 
     /// The log with this header.
     pub(super) fn of(header: &[String]) -> Option<&'static Self> {
-        FORMATS.iter().find(|format| {
-            let found = format.find(header);
-            let has = |column| found.iter().any(|found| found.column == column);
-            format.is_marked(header) && has(Column::T) && has(Column::CountsLarge)
-        })
+        FORMATS.iter().find(|format| format.has(header))
+    }
+
+    /// The log of this project with this header.
+    pub(super) fn own(header: &[String]) -> Option<&'static Self> {
+        FORMATS
+            .iter()
+            .find(|format| format.own && format.has(header))
+    }
+
+    fn has(&self, header: &[String]) -> bool {
+        let found = self.find(header);
+        let has = |column| found.iter().any(|found| found.column == column);
+        self.is_marked(header) && has(Column::T) && has(Column::CountsLarge)
     }
 
     fn is_marked(&self, header: &[String]) -> bool {

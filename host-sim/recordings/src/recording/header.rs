@@ -122,7 +122,10 @@ pub(super) fn without_time(format: &Format, name: &str) -> Failure {
 
 /// Names of the known logs.
 fn known() -> String {
-    let mut names: Vec<_> = Format::all().map(|format| format.name).collect();
+    let mut names: Vec<_> = Format::all()
+        .filter(|format| !format.own)
+        .map(|format| format.name)
+        .collect();
     names.dedup();
     names.join(", ")
 }

@@ -122,7 +122,7 @@ impl Layout {
         let own = |column: Column| self.names.iter().any(|name| name == column.name());
         let given = |column| options.mapping(column).is_some() || own(column);
         if given(Column::CountsLarge) {
-            return None;
+            return Format::own(&self.names);
         }
         if !self.has_header() {
             let columns = SIMPLEFOC_COLUMNS.iter();

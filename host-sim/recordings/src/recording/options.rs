@@ -39,6 +39,9 @@ impl Column {
         Self::TrueOmega,
     ];
 
+    /// The counts of the large motor's encoder and of the small motor's.
+    pub(super) const COUNTS: [Self; 2] = [Self::CountsLarge, Self::CountsSmall];
+
     /// Its name in a header.
     pub(super) const fn name(self) -> &'static str {
         match self {
@@ -99,6 +102,10 @@ pub struct ReadOptions {
     pub(super) columns: Vec<Mapping>,
     /// Counts per revolution of the large motor's encoder and of the small motor's.
     pub(super) counts_per_rev: [u32; 2],
+    /// How a user gives each of them.
+    pub(super) counts_given: [String; 2],
+    /// Whether a user gives a modulus.
+    pub(super) takes_modulus: bool,
     /// Torque constants of the large and of the small motor, N.m/A.
     pub(super) torque_constant: [f64; 2],
     /// Limit of the large motor's current, A.
@@ -114,13 +121,36 @@ impl ReadOptions {
     #[must_use]
     pub fn of(device: &Device) -> Self {
         let stages = &device.stages;
+        let in_file = |motor: &str| format!("as {motor}.counts_per_rev in the file of --device");
         Self {
             columns: Vec::new(),
             counts_per_rev: [stages.large.counts_per_rev, stages.small.counts_per_rev],
+            counts_given: [
+                format!("with --counts-per-rev, or {}", in_file("large")),
+                in_file("small"),
+            ],
+            takes_modulus: true,
             torque_constant: [stages.large.torque_constant, stages.small.torque_constant],
             current_limit: stages.large.current_limit,
             modulus: [None; 2],
             row_rate_hz: None,
+        }
+    }
+
+    /// These options where a user gives the counts per revolution of the large motor's encoder in another
+    /// way, `how`, as messages are to say.
+    #[must_use]
+    pub fn with_counts_given(mut self, how: &str) -> Self {
+        how.clone_into(&mut self.counts_given[0]);
+        self
+    }
+
+    /// These options where a list has the counts per revolution, and nobody gives options.
+    #[must_use]
+    pub fn of_list(self, list: &str) -> Self {
+        Self {
+            takes_modulus: false,
+            ..self.with_counts_given(&format!("in {list}"))
         }
     }
 

@@ -170,21 +170,19 @@ fn next_count(last: &mut Option<Count>, raw: u32, modulus: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use simulation::device::Device;
 
     /// The same log as a whole and in parts of `rows` rows, with everything that is said about it.
     fn both(text: &str, resample: Option<f64>, rows: usize) -> [(Recording, Vec<String>); 2] {
-        let device = Device::default();
-        let options = ReadOptions::of(&device);
+        let options = ReadOptions::default();
         let mut whole = Recording::parse_as(text.as_bytes(), "r", &options).unwrap();
-        let unwrapped = whole.unwrap_counts(&device);
+        let unwrapped = whole.unwrap_counts(&options);
         whole.notes.extend(unwrapped);
         let mut said = whole.notes.clone();
         said.extend(whole.unevenness());
         if let Some(hz) = resample {
             whole.resample(hz, "r").unwrap();
         }
-        let survey = Survey::new(text.as_bytes(), "r", &options, &device, resample).unwrap();
+        let survey = Survey::new(text.as_bytes(), "r", &options, resample).unwrap();
         let mut parts = Parts::open(text.as_bytes(), "r", &options, &survey).unwrap();
         let mut all = parts.next(rows).unwrap();
         loop {

@@ -7,7 +7,9 @@ use super::units::Scale;
 
 /// The columns and units that the recording is read from; `None` if all are its own by name.
 pub(super) fn sources(options: &ReadOptions, places: &Places, layout: &Layout) -> Option<String> {
-    if places.format.is_none() && options.columns.is_empty() {
+    let is_own = places.format.is_none_or(|format| format.own);
+    let uses_device = |place: &Place| matches!(place.unit.scale, Scale::PerRev(_) | Scale::Torque);
+    if is_own && options.columns.is_empty() && !places.all().iter().any(uses_device) {
         return None;
     }
     let [counts_large, counts_small] = options.counts_per_rev;
@@ -42,7 +44,8 @@ pub(super) fn sources(options: &ReadOptions, places: &Places, layout: &Layout) -
         format!("{name} from {theirs} ({unit}{with})")
     };
     let parts: Vec<_> = places.all().iter().map(part).collect();
-    let log = places.format.map_or_else(String::new, |format| {
+    let foreign = places.format.filter(|format| !format.own);
+    let log = foreign.map_or_else(String::new, |format| {
         format!("read as a log of {}: ", format.name)
     });
     let first = match layout.has_header() {

@@ -3,7 +3,6 @@
 use std::io::Read;
 
 use estimator_core::{Count, WrapError};
-use simulation::device::Device;
 use simulation::trace::Trace;
 use terminal::failure::Failure;
 
@@ -85,7 +84,7 @@ impl Seen {
 }
 
 impl Survey {
-    /// Reads all rows of the log called `name` in messages, for `device`. `resample` is the rate of
+    /// Reads all rows of the log called `name` in messages. `resample` is the rate of
     /// the rows that replace them, Hz.
     ///
     /// # Errors
@@ -94,11 +93,9 @@ impl Survey {
         input: impl Read,
         name: &str,
         options: &ReadOptions,
-        device: &Device,
         resample: Option<f64>,
     ) -> Result<Self, Failure> {
-        let stages = &device.stages;
-        let per_rev = [stages.large.counts_per_rev, stages.small.counts_per_rev];
+        let per_rev = options.counts_per_rev;
         let moduli = per_rev.map(absolute::moduli);
         let mut records = Records::open(input, name, options)?;
         let places = records.layout.places(options, name)?;
@@ -130,14 +127,13 @@ impl Survey {
         notes.extend(implausible_current(current, options.current_limit, option));
         let (period, rate_hz) = steps.period(name)?;
         let mut wraps = [None; 2];
-        let names = [("counts_large", "large"), ("counts_small", "small")];
-        for (motor, (column, stage)) in names.into_iter().enumerate() {
+        for (motor, seen) in seen.iter().enumerate() {
             let jump = steps.largest_jump(1.0 / rate_hz, motor);
-            let found = seen[motor].found(jump, per_rev[motor]);
+            let found = seen.found(jump, per_rev[motor]);
             if let Some(Found::Wraps(modulus)) = found {
                 wraps[motor] = Some(modulus);
             }
-            notes.extend(found.map(|found| found.note(column, stage, per_rev[motor])));
+            notes.extend(found.map(|found| found.note(motor, options)));
         }
         let [first_t, last_t] = ends.unwrap_or_default();
         let rows = match resample {

@@ -104,7 +104,6 @@ fn compare(path: &Path, fine: u32, coarse: u32, phase: (i128, i128), rate_hz: f6
         counts_per_rev: coarse,
         rate_hz,
         phase: phase.0 as f64 / phase.1 as f64,
-        torque_constant: 1.0,
     };
     let recording = made.recording(&path.fine(), "path").unwrap();
     let exact = Exact {
@@ -191,11 +190,11 @@ fn uneven_rows_and_other_rates_equal_a_second_computation() {
 }
 
 #[test]
-fn truth_is_interpolated_and_torque_becomes_the_current_of_the_row_before() {
+fn truth_is_interpolated_and_current_is_that_of_the_row_before() {
     let fine = Fine {
         t: vec![0.0, 0.000_7, 0.001_75, 0.002_45],
         counts: vec![0, 7, 14, 14],
-        torque: Some(vec![0.5, -0.25, 1.0, 2.0]),
+        current: Some(vec![2.0, -1.0, 4.0, 8.0]),
         omega: Some(vec![0.0, 7.0, 17.5, 10.5]),
         ..Fine::default()
     };
@@ -204,7 +203,6 @@ fn truth_is_interpolated_and_torque_becomes_the_current_of_the_row_before() {
         counts_per_rev: 500,
         rate_hz: 1000.0,
         phase: 0.0,
-        torque_constant: 0.25,
     };
     let recording = coarse.recording(&fine, "f").unwrap();
     assert_eq!(recording.t, [0.0, 0.001, 0.002]);
@@ -228,7 +226,6 @@ fn too_fine_a_resolution_or_too_fast_a_rate_is_refused() {
             counts_per_rev,
             rate_hz,
             phase: 0.0,
-            torque_constant: 1.0,
         };
         let error = coarse.recording(&fine, "f").unwrap_err().to_string();
         assert!(error.contains(said), "{error}");

@@ -9,7 +9,6 @@ use terminal::failure::Failure;
 
 use super::list::Peer;
 use crate::real::cases::{Case, Recordings};
-use crate::real::run::Settings;
 
 /// Part of a period by which a sample may be after the tick that reads it: rounding.
 const SAME_INSTANT: f64 = 1e-6;
@@ -34,7 +33,6 @@ pub(super) fn ticks(rate_hz: f64, ticks: usize, sample_rate_hz: f64, samples: us
 pub(super) fn of(
     recordings: &Recordings,
     case: &Case,
-    settings: &Settings,
     peer: &Peer,
     trace: &Trace,
 ) -> Result<Path, Failure> {
@@ -45,7 +43,7 @@ pub(super) fn of(
     match peer.rate_hz {
         None => Ok(path(trace)),
         Some(rate_hz) => {
-            let seen = recordings.recording_at(case, settings, rate_hz)?;
+            let seen = recordings.recording_at(case, rate_hz)?;
             Ok(path(&seen.trace))
         }
     }

@@ -24,7 +24,8 @@ fn settings(estimators: &[&str]) -> Settings {
 
 fn recordings(settings: &Settings) -> (Recordings, Vec<Case>) {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/real");
-    let recordings = Recordings::read(FilePath::new(folder), settings.seconds).unwrap();
+    let recordings =
+        Recordings::read(FilePath::new(folder), &settings.device, settings.seconds).unwrap();
     let cases = recordings.cases(settings);
     (recordings, cases)
 }

@@ -69,17 +69,14 @@ pub fn tune(
     for (counts_per_rev, rate_hz) in blocks {
         let of = |case: &&&Case| case.counts_per_rev == counts_per_rev && case.rate_hz == rate_hz;
         let own: Vec<_> = choosing.iter().filter(of).copied().collect();
-        let traces = own
-            .par_iter()
-            .map(|case| recordings.recording(case, settings));
+        let traces = own.par_iter().map(|case| recordings.recording(case));
         let traces: Vec<_> = traces.collect::<Result<_, _>>()?;
         let scored = own.iter().zip(&traces);
         let scored = scored.map(|(case, one)| Scored::new(&one.trace, case, settings, WANTED));
         let scored: Vec<_> = scored.collect::<Result<_, _>>()?;
         for peer in peers.iter().filter(|peer| !peer.parameters.is_empty()) {
             let paths = own.par_iter().zip(&scored);
-            let paths = paths
-                .map(|(case, scored)| path::of(recordings, case, settings, peer, scored.trace));
+            let paths = paths.map(|(case, scored)| path::of(recordings, case, peer, scored.trace));
             let paths: Vec<_> = paths.collect::<Result<_, _>>()?;
             let cost = |values: &[f64]| {
                 let errors = paths.par_iter().zip(&scored).map(|(path, scored)| {
