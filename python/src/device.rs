@@ -17,6 +17,7 @@ use crate::error::value_error;
 pub(crate) struct DeviceFile {
     name: String,
     text: String,
+    has_lines: bool,
 }
 
 impl<'py> FromPyObject<'_, 'py> for DeviceFile {
@@ -27,7 +28,11 @@ impl<'py> FromPyObject<'_, 'py> for DeviceFile {
             let text = toml::to_string(&table(&sections, "")?)
                 .map_err(|error| value_error(format!("device: {error}")))?;
             let name = "device".to_owned();
-            return Ok(Self { name, text });
+            return Ok(Self {
+                name,
+                text,
+                has_lines: false,
+            });
         }
         let path: PathBuf = object.extract().map_err(|_| {
             PyTypeError::new_err(
@@ -36,7 +41,11 @@ impl<'py> FromPyObject<'_, 'py> for DeviceFile {
         })?;
         let name = path.display().to_string();
         let text = std::fs::read_to_string(&path)?;
-        Ok(Self { name, text })
+        Ok(Self {
+            name,
+            text,
+            has_lines: true,
+        })
     }
 }
 
@@ -72,9 +81,18 @@ pub(crate) fn device(
 ) -> Result<Device, Failure> {
     let mut device = match file {
         None => Device::default(),
-        Some(DeviceFile { name, text }) => {
-            Device::from_toml_str(text).map_err(|error| format!("{name}: {error}"))?
-        }
+        Some(DeviceFile {
+            name,
+            text,
+            has_lines,
+        }) => Device::from_toml_str(text).map_err(|error| {
+            // `line N, ` is of the text that was made of a dict.
+            let error = match error.split_once(", ") {
+                Some((line, error)) if !has_lines && line.starts_with("line ") => error,
+                _ => &error,
+            };
+            format!("{name}: {error}")
+        })?,
     };
     if let Some(counts) = counts_per_rev {
         if !COUNTS_PER_REV.contains(&counts) {

@@ -18,19 +18,21 @@ pub fn read(path: &Path) -> Result<Presets, Failure> {
     let name = path.display().to_string();
     let text = std::fs::read_to_string(path)
         .map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
-    checked(Presets::parse(&text, &name).map_err(Failure::Input)?)
+    checked(&text, &name).map_err(Failure::Input)
 }
 
-fn checked(presets: Presets) -> Result<Presets, Failure> {
-    let tuned = presets.preset.iter().map(|preset| &preset.estimators);
-    for (estimator, values) in tuned.chain(presets.image.values()).flatten() {
-        let wrong = |what: Failure| Failure::Input(format!("{}: {what}", presets.source));
-        let kind = Kind::named(estimator).map_err(wrong)?;
+fn checked(text: &str, name: &str) -> Result<Presets, String> {
+    let presets = Presets::parse(text, name)?;
+    presets.check_values(text, |estimator, values| {
+        let kind = Kind::named(estimator).map_err(|error| (None, error.to_string()))?;
         for (parameter, &value) in values {
-            let index = kind.parameter(parameter).map_err(wrong)?;
-            check(&kind.parameters[index], estimator, value).map_err(wrong)?;
+            let checked = kind
+                .parameter(parameter)
+                .and_then(|index| check(&kind.parameters[index], estimator, value));
+            checked.map_err(|error| (Some(parameter.as_str()), error.to_string()))?;
         }
-    }
+        Ok(())
+    })?;
     Ok(presets)
 }
 
@@ -176,7 +178,7 @@ mod tests {
         let file = "[[preset]]\nrate_hz = 1000\nplant = 'friction'\nestimators = { pll = { bandwidth_hz = 10 } }\n\
                     [[preset]]\nrate_hz = 10000\nplant = 'friction'\nestimators = { pll = { bandwidth_hz = 20 } }";
         let mut parameters = Parameters::default();
-        parameters.layer(checked(Presets::parse(file, "f").unwrap()).unwrap());
+        parameters.layer(checked(file, "f").unwrap());
         let pll = Kind::named("pll").unwrap();
         // Below the tuned rate both poles fall with its fourth root.
         for (rate, tuned, at) in [
@@ -265,6 +267,42 @@ mod tests {
             parameters.set("pll.bandwidth_hz=33").unwrap();
             let set = parameters.values(pll, &coarse, PlantKind::Friction);
             assert_eq!(set, [33.0]);
+        }
+    }
+
+    #[test]
+    fn errors_of_a_presets_file_name_the_line() {
+        let preset = "[[preset]]\nrate_hz = 1000\nplant = 'friction'\n";
+        for (text, said) in [
+            (
+                "[preset.estimators.pl]\nbandwidth_hz = 1\n",
+                "line 4, no estimator 'pl'; did you mean pll?",
+            ),
+            (
+                "[preset.estimators.pll]\n\nband = 1\n",
+                "line 6, pll has no parameter 'band'; ",
+            ),
+            (
+                "[preset.estimators.pll]\nbandwidth_hz = -1\n",
+                "line 5, pll.bandwidth_hz = -1: must be a number from ",
+            ),
+            (
+                "[image.large.pll]\nbandwidth_hz = -1\n",
+                "line 6, pll.bandwidth_hz = -1: ",
+            ),
+            (
+                "[image.foot.pll]\nbandwidth_hz = 1\n",
+                "line 5, image.foot: no such motor; there are large and handle",
+            ),
+        ] {
+            let estimators = if text.starts_with("[image") {
+                "estimators = {}\n"
+            } else {
+                ""
+            };
+            let text = format!("{preset}{estimators}{text}");
+            let error = checked(&text, "f.toml").unwrap_err();
+            assert!(error.starts_with(&format!("f.toml: {said}")), "{error}");
         }
     }
 

@@ -1,6 +1,6 @@
 //! The device file and the presets files as Rust constants, from which flash images are built.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,8 @@ use haptic_control::{DualStage, Fingerprint, Motor};
 
 use crate::decimal;
 use crate::device::Device;
-use crate::presets::{Estimators, PlantKind, Preset, Presets};
+use crate::presets::{PlantKind, Preset, Presets};
+use crate::read::{Step, at_line};
 
 /// Largest ratio of counts per revolution to which tuned values are scaled without a warning.
 const FAR: f64 = 1.5;
@@ -55,9 +56,13 @@ pub fn constants(device: Option<&Path>, presets: Option<&Path>) -> Result<Consta
     };
     let mut layers = vec![Presets::shipped()];
     if let Some(path) = presets {
-        let presets = Presets::read(path).map_err(|error| format!("PRESETS: {error}"))?;
-        known(&presets, &layers[0])
-            .map_err(|error| format!("PRESETS: {}: {error}", path.display()))?;
+        let read = || {
+            let text = crate::text(path)?;
+            let presets = Presets::parse(&text, &path.display().to_string())?;
+            check(&presets, &text, &layers[0])?;
+            Ok(presets)
+        };
+        let presets = read().map_err(|error: String| format!("PRESETS: {error}"))?;
         layers.insert(0, presets);
     }
     let counts_per_rev = device.stages.large.counts_per_rev;
@@ -78,54 +83,52 @@ pub fn constants(device: Option<&Path>, presets: Option<&Path>) -> Result<Consta
 
 /// Refuses estimators, parameters and values that the catalogue does not have, and in the section
 /// of the image those that no image reads, which are not in the shipped file.
-fn known(presets: &Presets, shipped: &Presets) -> Result<(), String> {
-    for preset in &presets.preset {
-        check(&preset.estimators)
-            .map_err(|error| format!("preset at {} Hz: {error}", preset.rate_hz))?;
-    }
+fn check(presets: &Presets, text: &str, shipped: &Presets) -> Result<(), String> {
+    presets.check_values(text, check_estimator)?;
     for (motor, estimators) in &presets.image {
-        let Some(read) = shipped.image.get(motor) else {
-            return Err(format!(
-                "image.{motor}: no such motor; there are large and handle"
-            ));
-        };
-        check(estimators).map_err(|error| format!("image.{motor}: {error}"))?;
+        let read = &shipped.image[motor];
         if let Some(estimator) = estimators.keys().find(|name| !read.contains_key(*name)) {
             let names: Vec<_> = read.keys().map(String::as_str).collect();
-            return Err(format!(
+            let way = ["image", motor, estimator].map(Step::Key);
+            let error = format!(
                 "image.{motor}.{estimator}: no image reads it; there are {}",
                 names.join(", ")
+            );
+            return Err(format!(
+                "{}: {}",
+                presets.source,
+                at_line(text, &way, &error)
             ));
         }
     }
     Ok(())
 }
 
-fn check(estimators: &Estimators) -> Result<(), String> {
-    for (estimator, parameters) in estimators {
-        let Some(row) = ROWS.iter().find(|row| row.name == estimator) else {
-            return Err(format!(
-                "no estimator '{estimator}'; host-sim estimators lists them"
+fn check_estimator<'a>(
+    estimator: &str,
+    values: &'a BTreeMap<String, f64>,
+) -> Result<(), (Option<&'a str>, String)> {
+    let Some(row) = ROWS.iter().find(|row| row.name == estimator) else {
+        let error = format!("no estimator '{estimator}'; host-sim estimators lists them");
+        return Err((None, error));
+    };
+    for (name, &value) in values {
+        let wrong = |error| Err((Some(name.as_str()), error));
+        let Some(parameter) = row.parameters.iter().find(|p| p.name == name) else {
+            let names: Vec<_> = row.parameters.iter().map(|p| p.name).collect();
+            return wrong(format!(
+                "{estimator} has no parameter '{name}'; there are {}",
+                names.join(", ")
             ));
         };
-        for (name, &value) in parameters {
-            let Some(parameter) = row.parameters.iter().find(|p| p.name == name) else {
-                let names: Vec<_> = row.parameters.iter().map(|p| p.name).collect();
-                return Err(format!(
-                    "{estimator} has no parameter '{name}'; there are {}",
-                    names.join(", ")
-                ));
-            };
-            let range = parameter.lowest..=parameter.highest;
-            if !range.contains(&value) || parameter.whole && value.fract() != 0.0 {
-                return Err(format!(
-                    "{estimator}.{name} = {}: must be a {}number from {} to {}",
-                    decimal(value),
-                    if parameter.whole { "whole " } else { "" },
-                    decimal(parameter.lowest),
-                    decimal(parameter.highest),
-                ));
-            }
+        if !parameter.accepts(value) {
+            return wrong(format!(
+                "{estimator}.{name} = {}: must be a {}number from {} to {}",
+                decimal(value),
+                if parameter.whole { "whole " } else { "" },
+                decimal(parameter.lowest),
+                decimal(parameter.highest),
+            ));
         }
     }
     Ok(())

@@ -10,7 +10,7 @@ use std::path::Path;
 use haptic_control::DualStage;
 use serde::{Deserialize, Serialize};
 
-use crate::read::one_line;
+use crate::read::{Step, at_line, one_line};
 
 mod check;
 mod range;
@@ -31,7 +31,7 @@ pub const COUNTS_PER_REV: RangeInclusive<u32> = 16..=4_000_000;
 /// assert_eq!(device.stages.large.counts_per_rev, 2000);
 /// assert_eq!(device.stages.small.counts_per_rev, 20_000);
 /// let error = Device::from_toml_str("[large]\ninertia_kg_m2 = -1").unwrap_err();
-/// assert_eq!(error, "large.inertia_kg_m2 = -1: must be above 0 kg.m2");
+/// assert_eq!(error, "line 2, large.inertia_kg_m2 = -1: must be above 0 kg.m2");
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "sections::File", into = "sections::File")]
@@ -183,7 +183,14 @@ impl Device {
     /// One line that names the line and the key, or the invalid value, and the valid ones.
     pub fn from_toml_str(text: &str) -> Result<Self, String> {
         let device: Self = toml::from_str(text).map_err(|error| one_line(text, &error))?;
-        device.validate()?;
+        device.validate().map_err(|error| {
+            let key = error.split([' ', ':']).next().unwrap_or("");
+            at_line(
+                text,
+                &key.split('.').map(Step::Key).collect::<Vec<_>>(),
+                &error,
+            )
+        })?;
         Ok(device)
     }
 

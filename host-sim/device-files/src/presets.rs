@@ -1,13 +1,12 @@
 //! Tuned parameters of the estimators, as `host-sim tune` writes them.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use estimator_catalogue::Parameter;
 use serde::{Deserialize, Serialize};
 
 use crate::decimal;
-use crate::read::one_line;
+use crate::read::{Step, at_line, one_line};
 
 /// Whether the plant has Coulomb friction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -38,6 +37,9 @@ impl PlantKind {
         }
     }
 }
+
+/// The motors of [`Presets::image`].
+const MOTORS: [&str; 2] = ["large", "handle"];
 
 /// Values by estimator and parameter.
 pub type Estimators = BTreeMap<String, BTreeMap<String, f64>>;
@@ -105,14 +107,6 @@ impl Presets {
             .expect("the shipped presets are tested")
     }
 
-    /// Reads a presets file. The names of its estimators are not checked.
-    ///
-    /// # Errors
-    /// One line that names the file and the wrong entry.
-    pub fn read(path: &Path) -> Result<Self, String> {
-        Self::parse(&crate::text(path)?, &path.display().to_string())
-    }
-
     /// The presets as text of a file.
     ///
     /// # Errors
@@ -121,30 +115,95 @@ impl Presets {
         toml::to_string(self).map_err(|error| error.to_string())
     }
 
-    /// Reads the text of a presets file that messages call `name`.
+    /// Reads the text of a presets file that messages call `name`. [`Self::check_values`] checks the names of its
+    /// estimators.
     ///
     /// # Errors
-    /// As [`Self::read`].
+    /// One line that names the file and the wrong entry.
     pub fn parse(text: &str, name: &str) -> Result<Self, String> {
         let mut presets: Self =
             toml::from_str(text).map_err(|error| format!("{name}: {}", one_line(text, &error)))?;
         presets.source = name.to_owned();
-        for preset in &presets.preset {
-            let rate = preset.rate_hz;
-            if !(rate > 0.0 && rate.is_finite()) {
-                return Err(format!(
-                    "{name}: rate_hz = {}: must be above 0 Hz",
-                    decimal(rate)
-                ));
+        presets
+            .check()
+            .map_err(|(way, error)| format!("{name}: {}", at_line(text, &way, &error)))?;
+        Ok(presets)
+    }
+
+    /// Checks rates, counts and motors, and that no value stands twice. The error has the way to the wrong
+    /// value.
+    fn check(&self) -> Result<(), (Vec<Step<'_>>, String)> {
+        for (k, preset) in self.preset.iter().enumerate() {
+            let rate = decimal(preset.rate_hz);
+            let wrong = |key, error| {
+                Err((
+                    vec![Step::Key("preset"), Step::Entry(k), Step::Key(key)],
+                    error,
+                ))
+            };
+            if !(preset.rate_hz > 0.0 && preset.rate_hz.is_finite()) {
+                return wrong("rate_hz", format!("rate_hz = {rate}: must be above 0 Hz"));
             }
             if preset.counts_per_rev == Some(0) {
-                return Err(format!(
-                    "{name}: counts_per_rev = 0 at rate_hz = {}: must be above 0",
-                    decimal(rate)
+                let error = format!("counts_per_rev = 0 at rate_hz = {rate}: must be above 0");
+                return wrong("counts_per_rev", error);
+            }
+            let same =
+                |other: &&Preset| (other.rate_hz, other.plant) == (preset.rate_hz, preset.plant);
+            for other in self.preset[..k].iter().filter(same) {
+                let mut names = preset.estimators.keys();
+                if let Some(name) = names.find(|name| other.estimators.contains_key(*name)) {
+                    let error = format!(
+                        "[[preset]]: {name} at rate_hz = {rate} on the plant {} is in an earlier [[preset]] too; \
+                         remove one",
+                        preset.plant.phrase()
+                    );
+                    return wrong("rate_hz", error);
+                }
+            }
+        }
+        for motor in self.image.keys() {
+            if !MOTORS.contains(&motor.as_str()) {
+                return Err((
+                    vec![Step::Key("image"), Step::Key(motor)],
+                    format!(
+                        "image.{motor}: no such motor; there are {}",
+                        MOTORS.join(" and ")
+                    ),
                 ));
             }
         }
-        Ok(presets)
+        Ok(())
+    }
+
+    /// `checked` of each estimator's name and values, with the way to them. An error that it returns is in
+    /// the file at the way to the estimator and, if it is given, the parameter.
+    ///
+    /// # Errors
+    /// One line that names the file, the line and the entry.
+    pub fn check_values<'a>(
+        &'a self,
+        text: &str,
+        check: impl Fn(&'a str, &'a BTreeMap<String, f64>) -> Result<(), (Option<&'a str>, String)>,
+    ) -> Result<(), String> {
+        let tuned = self.preset.iter().enumerate().map(|(k, preset)| {
+            let way = vec![Step::Key("preset"), Step::Entry(k), Step::Key("estimators")];
+            (way, &preset.estimators)
+        });
+        let image = self.image.iter();
+        let image = image
+            .map(|(motor, estimators)| (vec![Step::Key("image"), Step::Key(motor)], estimators));
+        for (way, estimators) in tuned.chain(image) {
+            for (name, values) in estimators {
+                check(name, values).map_err(|(parameter, error)| {
+                    let mut way = way.clone();
+                    way.push(Step::Key(name));
+                    way.extend(parameter.map(Step::Key));
+                    format!("{}: {}", self.source, at_line(text, &way, &error))
+                })?;
+            }
+        }
+        Ok(())
     }
 
     /// The preset with values of `estimator` on this plant at the nearest rate (by ratio).

@@ -75,22 +75,22 @@ fn errors_of_a_device_file_name_line_or_key_and_remedy() {
         (
             "[large]\ninertia_kg_m2 = 111\n",
             &[
-                "large.inertia_kg_m2 = 111: must be at most 0.1 kg.m2; did you mean 111e-7, which is 111 g.cm2?",
+                "line 2, large.inertia_kg_m2 = 111: must be at most 0.1 kg.m2; did you mean 111e-7, which is 111 g.cm2?",
             ],
         ),
         (
             "[small]\ntorque_constant_nm_per_a = 46.2\n",
             &[
-                "small.torque_constant_nm_per_a = 46.2: must be at most 10 N.m/A; did you mean 46.2e-3",
+                "line 2, small.torque_constant_nm_per_a = 46.2: must be at most 10 N.m/A; did you mean 46.2e-3",
             ],
         ),
         (
             "[coupler]\ndamping_nms_per_rad = -1\n",
-            &["coupler.damping_nms_per_rad = -1: must be above 0"],
+            &["line 2, coupler.damping_nms_per_rad = -1: must be above 0"],
         ),
         (
             "[large]\ncounts_per_rev = 3\n",
-            &["large.counts_per_rev = 3: must be from 16 to 4000000"],
+            &["line 2, large.counts_per_rev = 3: must be from 16 to 4000000"],
         ),
         ("[amplifier\n", &["line 1, [amplifier: "]),
     ] {
@@ -119,39 +119,44 @@ fn errors_of_a_presets_file_name_line_or_key_and_remedy() {
         ),
         (
             "[[preset]]\nrate_hz = 0\nplant = \"friction\"\nestimators = {}\n".into(),
-            &["rate_hz = 0: must be above 0 Hz"],
+            &["line 2, rate_hz = 0: must be above 0 Hz"],
         ),
         (
             "[[preset]]\nrate_hz = 1e3\nplant = \"friction\"\ncounts_per_rev = 0\nestimators = {}\n".into(),
-            &["counts_per_rev = 0 at rate_hz = 1000: must be above 0"],
+            &["line 4, counts_per_rev = 0 at rate_hz = 1000: must be above 0"],
         ),
         (
             preset("[preset.estimators.pl]\nbandwidth_hz = 1"),
-            &["preset at 1000 Hz: no estimator 'pl'; host-sim estimators lists them"],
+            &["line 4, no estimator 'pl'; host-sim estimators lists them"],
         ),
         (
             preset("[preset.estimators.pll]\nbandwidth = 1"),
-            &["preset at 1000 Hz: pll has no parameter 'bandwidth'; there are bandwidth_hz"],
+            &["line 5, pll has no parameter 'bandwidth'; there are bandwidth_hz"],
         ),
         (
             preset("[preset.estimators.pll]\nbandwidth_hz = -1"),
-            &["preset at 1000 Hz: pll.bandwidth_hz = -1: must be a number from 0.001 to 1000000"],
+            &["line 5, pll.bandwidth_hz = -1: must be a number from 0.001 to 1000000"],
         ),
         (
             preset("[preset.estimators.foaw-end-fit]\nn = 2.5"),
-            &["foaw-end-fit.n = 2.5: must be a whole number from 1 to 128"],
+            &["line 5, foaw-end-fit.n = 2.5: must be a whole number from 1 to 128"],
+        ),
+        (
+            preset("[preset.estimators.pll]\nbandwidth_hz = 1\n[[preset]]\nplant = \"friction\"\nrate_hz = 1000.0\n\
+                    estimators = { pll = { bandwidth_hz = 2 }, low-pass = {} }"),
+            &["line 8, [[preset]]: pll at rate_hz = 1000 on the plant with friction is in an earlier [[preset]] too"],
         ),
         (
             "[image.middle.foaw-end-fit]\nn = 2\n".into(),
-            &["image.middle: no such motor; there are large and handle"],
+            &["line 1, image.middle: no such motor; there are large and handle"],
         ),
         (
             "[image.handle.pll]\nbandwidth_hz = 10\n".into(),
-            &["image.handle.pll: no image reads it; there are kalman-triple-steady"],
+            &["line 1, image.handle.pll: no image reads it; there are kalman-triple-steady"],
         ),
         (
             "[image.handle.kalman-triple-steady]\njerk = nan\n".into(),
-            &["image.handle: kalman-triple-steady.jerk = NaN: must be a number from "],
+            &["line 2, kalman-triple-steady.jerk = NaN: must be a number from "],
         ),
     ] {
         let path = file("presets.toml", &text);
@@ -203,9 +208,9 @@ fn files_reach_the_constants() {
         ],
     );
     // One preset for such an encoder is enough.
-    let presets = ["4096", "20000"].map(|counts| {
+    let presets = [("1e3", "4096"), ("2e3", "20000")].map(|(rate, counts)| {
         format!(
-            "[[preset]]\nrate_hz = 1e3\nplant = \"friction\"\ncounts_per_rev = {counts}\n\
+            "[[preset]]\nrate_hz = {rate}\nplant = \"friction\"\ncounts_per_rev = {counts}\n\
              [preset.estimators.pll]\nbandwidth_hz = 100\n"
         )
     });

@@ -80,11 +80,11 @@ fn extreme_numbers_are_printed_with_few_digits() {
         ),
         (
             "device --device tiny.toml",
-            "tiny.toml: large.inertia_kg_m2 = 1e-300:",
+            "tiny.toml: line 1, large.inertia_kg_m2 = 1e-300:",
         ),
         (
             "replay r.csv --device grams.toml",
-            "grams.toml: large.inertia_kg_m2 = 115: must be at most 0.1 kg.m2; did you mean 115e-7",
+            "grams.toml: line 1, large.inertia_kg_m2 = 115: must be at most 0.1 kg.m2; did you mean 115e-7",
         ),
     ] {
         let error = folder.refused(arguments);

@@ -291,8 +291,27 @@ mod tests {
                 "disc: phase_counts + line_counts + random_counts = 0.5: must be below 0.45 counts",
             ),
         ] {
-            assert_eq!(refused(text), expected);
+            assert_eq!(refused(text), format!("line 1, {expected}"));
         }
+    }
+
+    #[test]
+    fn value_out_of_range_is_reported_with_its_line() {
+        for text in [
+            "\n# a comment\n[large]\ncounts_per_rev = 4096\ninertia_kg_m2 = -1\n",
+            "[small]\n\n[large]\n\n inertia_kg_m2\t= -1",
+            "\n\n\n\nlarge = { torque_ripple = 0.1, inertia_kg_m2 = -1 }",
+            "\n\n\n\nlarge.inertia_kg_m2 = -1\n",
+        ] {
+            let error = refused(text);
+            assert_eq!(
+                error, "line 5, large.inertia_kg_m2 = -1: must be above 0 kg.m2",
+                "{text}"
+            );
+        }
+        // A default that another value makes impossible has no line.
+        let error = refused("coupler.damping_nms_per_rad = 10");
+        assert!(error.starts_with("large.inertia_kg_m2 = "), "{error}");
     }
 
     /// Values with which simulations hang or designs fail, or which give
@@ -324,14 +343,17 @@ mod tests {
             ("handle.diameter_m = 1e-300", "at least 0.001 m"),
             ("interval.threshold_n = 1e300", "at most 1000 N"),
         ] {
-            assert_eq!(refused(text), format!("{text}: must be {rule}"));
+            assert_eq!(refused(text), format!("line 1, {text}: must be {rule}"));
         }
     }
 
     #[test]
     fn inertia_too_small_for_the_step_is_refused() {
         let error = refused("small.inertia_kg_m2 = 1e-9");
-        assert!(error.starts_with("small.inertia_kg_m2 = "), "{error}");
+        assert!(
+            error.starts_with("line 1, small.inertia_kg_m2 = "),
+            "{error}"
+        );
         assert!(error.contains("too small: its dampers"), "{error}");
     }
 
