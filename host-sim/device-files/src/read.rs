@@ -66,7 +66,10 @@ pub(crate) fn one_line(text: &str, error: &toml::de::Error) -> String {
         .trim()
         .replace('\n', ", ")
         .replace("expected f64", "expected a number")
-        .replace("expected u32", "expected a whole number from 0");
+        .replace(
+            "expected u32",
+            "expected a whole number from 0, without a decimal point",
+        );
     let Some(span) = error.span() else {
         return what;
     };

@@ -16,8 +16,8 @@ use std::f64::consts::TAU;
 /// Lowest and highest control rate, Hz.
 pub const RATES_HZ: (f64, f64) = (100.0, 100_000.0);
 
-/// Longest run, ticks.
-const MOST_TICKS: f64 = 1e8;
+/// Longest run, ticks: a trace has some 60 bytes a tick, and its text as many again.
+const MOST_TICKS: f64 = 2e7;
 
 /// Number of ticks of a run.
 ///

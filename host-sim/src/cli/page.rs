@@ -1,6 +1,7 @@
 //! Output that several commands share: progress bar, page, JSON and table.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -8,12 +9,25 @@ use report;
 use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, print_bytes, write_whole};
 
+/// Period at which a spinner turns.
+const SPIN: Duration = Duration::from_millis(200);
+
 /// A progress bar on standard error. It is hidden if standard error is not a terminal.
 pub(super) fn progress(length: usize, doing: &'static str) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta}");
     ProgressBar::new(length as u64)
         .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         .with_message(doing)
+}
+
+/// A sign of life with the time that has passed, on standard error, for work whose steps are not known.
+pub(super) fn working(doing: &'static str) -> ProgressBar {
+    let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}");
+    let bar = ProgressBar::new_spinner()
+        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()))
+        .with_message(doing);
+    bar.enable_steady_tick(SPIN);
+    bar
 }
 
 /// Folder of the page: `--out`, or `usual` unless the JSON goes to standard output.

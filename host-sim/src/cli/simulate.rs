@@ -10,6 +10,8 @@ use recordings::arguments::DeviceFile;
 use terminal::failure::Failure;
 use terminal::output::write_whole;
 
+use super::page::working;
+
 /// Load on the handle in a scene.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Holder {
@@ -68,9 +70,11 @@ pub(super) fn run(options: &Simulate) -> Result<(), Failure> {
         Holder::Nobody => Hand::Gone(0.0),
         Holder::Moving => Hand::Moving,
     };
+    let bar = working("simulating");
     let recording = match &options.scenario {
         Some(name) => run.scenario(name)?,
         None => run.scene(options.scene.as_deref(), hand, options.every as usize)?,
     };
+    bar.finish_and_clear();
     write_whole(&options.out, &recording.to_csv())
 }

@@ -15,6 +15,10 @@ fn invalid_arguments_are_refused_with_a_remedy() {
         (&["compare", "--rate", "nan"], "rate"),
         (&["compare", "--rate", "fast"], "--rate"),
         (&["compare", "--seconds", "-1"], "duration -1 s"),
+        (
+            &["simulate", "--seconds", "10000", "--out", "s.csv"],
+            "duration 10000 s: must be from 0.0002 to 2000 s at 10000 Hz",
+        ),
         (&["compare", "--seconds", "0.1"], "scores begin after 0.1 s"),
         (&["compare", "--score", "beauty"], "rms_rad_s"),
         (&["compare", "--set", "foaw-end-fit.n=129"], "from 1 to 128"),
