@@ -51,3 +51,49 @@ impl Profile for Creep {
         self.from + (self.direction * OMEGA - self.from) * turned
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_xoshiro::rand_core::SeedableRng;
+
+    /// From plateau to plateau of the other direction in 0.05 s; each direction lasts 0.8 to 1.5 s.
+    #[test]
+    fn slip_is_trapezoids_of_random_duration() {
+        const STEP_S: f64 = 1e-4;
+        let mut creep = Creep::new(Xoshiro256PlusPlus::seed_from_u64(2));
+        let slips: Vec<f64> = (0..600_000)
+            .map(|k| creep.slip(f64::from(k) * STEP_S))
+            .collect();
+        assert_eq!(slips[0], 0.0);
+        let at_plateau = |slip: f64| (slip.abs() - OMEGA).abs() < 1e-12;
+        let mut turns = Vec::new();
+        for (k, pair) in slips.windows(2).enumerate() {
+            assert!(pair[1].abs() <= OMEGA + 1e-12, "{k}: {pair:?}");
+            let change = (pair[1] - pair[0]).abs() / STEP_S;
+            let slope = if k < 500 {
+                OMEGA / TURN_S
+            } else {
+                2.0 * OMEGA / TURN_S
+            };
+            match (at_plateau(pair[0]), at_plateau(pair[1])) {
+                (true, true) => assert!(change < 1e-9, "{k}: {pair:?}"),
+                (false, false) => assert!((change / slope - 1.0).abs() < 1e-6, "{k}: {pair:?}"),
+                (begins, _) => {
+                    assert!(change <= slope * (1.0 + 1e-6), "{k}: {pair:?}");
+                    turns.extend(begins.then_some(k));
+                }
+            }
+        }
+        let lasts = |pair: &[usize]| (pair[1] - pair[0]) as f64 * STEP_S;
+        let lasts: Vec<f64> = turns.windows(2).map(lasts).collect();
+        assert!(lasts.len() > 40, "{}", lasts.len());
+        assert!(
+            lasts.iter().all(|s| (0.799..1.501).contains(s)),
+            "{lasts:?}"
+        );
+        let least = lasts.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = lasts.iter().copied().fold(0.0, f64::max);
+        assert!(least < 0.9 && most > 1.4, "{least} {most}");
+    }
+}
