@@ -9,7 +9,7 @@ use drivers::link::{Frame, Hello, Message, PROTOCOL, Parser, Rejected};
 use drivers::{Command, encode};
 use haptic_control::{Request, SceneKind};
 use terminal::failure::Failure;
-use terminal::output::{note, print_bytes};
+use terminal::output::{note, print_to_reader};
 
 use crate::clock::Limit;
 use crate::named::explained;
@@ -69,13 +69,20 @@ impl Board {
     /// Tells the person a result: a line of standard output.
     ///
     /// # Errors
-    /// [`Failure`] if standard output takes none.
+    /// [`Failure`] if standard output takes none, also where its reader is gone: no motor moves on for
+    /// results that nobody sees.
     pub(crate) fn print(&mut self, line: &str) -> Result<(), Failure> {
         if let Some(listener) = &mut self.listener {
             listener(line.to_owned());
             return Ok(());
         }
-        print_bytes(format!("{line}\n").as_bytes())
+        match print_to_reader(format!("{line}\n").as_bytes())? {
+            true => Ok(()),
+            false => Err(Failure::Input(
+                "nobody reads the lines any more: the procedure ends before its last check"
+                    .to_owned(),
+            )),
+        }
     }
 
     /// Tells the person what to do or what has happened: a note beside the results.

@@ -59,6 +59,22 @@ fn end_of_the_reader_of_the_lines_ends_the_session() {
     }
 }
 
+/// A motor moves for lines that somebody has to read.
+#[test]
+fn bring_up_ends_before_it_arms_if_nobody_reads_its_lines() {
+    let board = Board::new(Script::default());
+    let mut tool = board.tool(&["bring-up"]);
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let tool = tool.stdout(writer).stderr(Stdio::piped());
+    let output = tool.spawn().unwrap().wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("nobody reads the lines any more"), "{said}");
+    let commands = board.commands();
+    assert!(!commands.contains(&ARM), "{commands:?}");
+}
+
 #[test]
 fn stop_of_the_board_ends_the_session_with_its_cause_and_disarms() {
     for (mode, stop, said) in [

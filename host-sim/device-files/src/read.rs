@@ -79,5 +79,13 @@ pub(crate) fn one_line(text: &str, error: &toml::de::Error) -> String {
     if key.is_empty() {
         return format!("line {number}: {what}");
     }
+    let has_no_value = line
+        .split_once('=')
+        .is_some_and(|(_, value)| value.split('#').next().unwrap_or("").trim().is_empty());
+    let what = match key.starts_with("[[") && what.starts_with("invalid type: map") {
+        true => "not a list of sections; write its name between single brackets".to_owned(),
+        false if has_no_value => "no value; write one after '=', or remove the line".to_owned(),
+        false => what,
+    };
     format!("line {number}, {key}: {what}")
 }

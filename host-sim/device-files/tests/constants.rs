@@ -93,6 +93,14 @@ fn errors_of_a_device_file_name_line_or_key_and_remedy() {
             &["line 2, large.counts_per_rev = 3: must be from 16 to 4000000"],
         ),
         ("[amplifier\n", &["line 1, [amplifier: "]),
+        (
+            "[small]\ncoulomb_nm = 0\n[[large]]\ncoulomb_nm = 0\n",
+            &["line 3, [[large]]: not a list of sections; write its name between single brackets"],
+        ),
+        (
+            "[large]\ncoulomb_nm = # guess\ninertia_kg_m2 = 1e-5\n",
+            &["line 2, coulomb_nm: no value; write one after '=', or remove the line"],
+        ),
     ] {
         let path = file("device.toml", text);
         let error = constants(Some(&path), None).unwrap_err();
