@@ -8,7 +8,7 @@ mod run;
 
 use std::ops::Deref;
 
-use device_files::decimal;
+use device_files::presets::check_value;
 use estimator_catalogue::{ROWS, Row};
 use estimator_core::Hertz;
 use haptic_control::DualStage;
@@ -203,21 +203,5 @@ impl Kind {
 /// # Errors
 /// [`Failure::Input`] that names the parameter and its range.
 pub fn check(parameter: &Parameter, kind: &str, value: f64) -> Result<(), Failure> {
-    if parameter.accepts(value) {
-        return Ok(());
-    }
-    let number = if parameter.whole {
-        "a whole number"
-    } else {
-        "a number"
-    };
-    Err(Failure::Input(format!(
-        "{kind}.{} = {}: must be {number} from {} to {}{}{}",
-        parameter.name,
-        decimal(value),
-        decimal(parameter.lowest),
-        decimal(parameter.highest),
-        if parameter.unit.is_empty() { "" } else { " " },
-        parameter.unit,
-    )))
+    check_value(parameter, kind, value).map_err(Failure::Input)
 }

@@ -287,20 +287,15 @@ mod tests {
                 "line 5, pll.bandwidth_hz = -1: must be a number from ",
             ),
             (
-                "[image.large.pll]\nbandwidth_hz = -1\n",
+                "estimators = {}\n[image.large.pll]\nbandwidth_hz = -1\n",
                 "line 6, pll.bandwidth_hz = -1: ",
             ),
             (
-                "[image.foot.pll]\nbandwidth_hz = 1\n",
+                "estimators = {}\n[image.foot.pll]\nbandwidth_hz = 1\n",
                 "line 5, image.foot: no such motor; there are large and handle",
             ),
         ] {
-            let estimators = if text.starts_with("[image") {
-                "estimators = {}\n"
-            } else {
-                ""
-            };
-            let text = format!("{preset}{estimators}{text}");
+            let text = format!("{preset}{text}");
             let error = checked(&text, "f.toml").unwrap_err();
             assert!(error.starts_with(&format!("f.toml: {said}")), "{error}");
         }

@@ -8,9 +8,8 @@ use std::path::{Path, PathBuf};
 use estimator_catalogue::ROWS;
 use haptic_control::{DualStage, Fingerprint, Motor};
 
-use crate::decimal;
 use crate::device::Device;
-use crate::presets::{PlantKind, Preset, Presets};
+use crate::presets::{PlantKind, Preset, Presets, check_value};
 use crate::read::{Step, at_line};
 
 /// Largest ratio of counts per revolution to which tuned values are scaled without a warning.
@@ -121,15 +120,7 @@ fn check_estimator<'a>(
                 names.join(", ")
             ));
         };
-        if !parameter.accepts(value) {
-            return wrong(format!(
-                "{estimator}.{name} = {}: must be a {}number from {} to {}",
-                decimal(value),
-                if parameter.whole { "whole " } else { "" },
-                decimal(parameter.lowest),
-                decimal(parameter.highest),
-            ));
-        }
+        check_value(parameter, estimator, value).or_else(wrong)?;
     }
     Ok(())
 }

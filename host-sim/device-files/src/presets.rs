@@ -99,6 +99,26 @@ impl Preset {
     }
 }
 
+/// Checks a value of a parameter of `estimator`.
+///
+/// # Errors
+/// One line with the value and the range.
+pub fn check_value(parameter: &Parameter, estimator: &str, value: f64) -> Result<(), String> {
+    if parameter.accepts(value) {
+        return Ok(());
+    }
+    Err(format!(
+        "{estimator}.{} = {}: must be a {}number from {} to {}{}{}",
+        parameter.name,
+        decimal(value),
+        if parameter.whole { "whole " } else { "" },
+        decimal(parameter.lowest),
+        decimal(parameter.highest),
+        if parameter.unit.is_empty() { "" } else { " " },
+        parameter.unit,
+    ))
+}
+
 impl Presets {
     /// The presets shipped with the program.
     #[must_use]
@@ -176,11 +196,11 @@ impl Presets {
         Ok(())
     }
 
-    /// `checked` of each estimator's name and values, with the way to them. An error that it returns is in
-    /// the file at the way to the estimator and, if it is given, the parameter.
+    /// Calls `check` with the name and the values of each estimator of the file with this `text`. An error of
+    /// `check` is a message and, if one parameter is wrong, its name.
     ///
     /// # Errors
-    /// One line that names the file, the line and the entry.
+    /// The first error of `check`, in one line that names the file and the line.
     pub fn check_values<'a>(
         &'a self,
         text: &str,

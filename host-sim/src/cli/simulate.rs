@@ -72,9 +72,9 @@ pub(super) fn run(options: &Simulate) -> Result<(), Failure> {
     };
     let bar = working("simulating");
     let recording = match &options.scenario {
-        Some(name) => run.scenario(name)?,
-        None => run.scene(options.scene.as_deref(), hand, options.every as usize)?,
+        Some(name) => run.scenario(name),
+        None => run.scene(options.scene.as_deref(), hand, options.every as usize),
     };
     bar.finish_and_clear();
-    write_whole(&options.out, &recording.to_csv())
+    write_whole(&options.out, &recording?.to_csv())
 }

@@ -53,9 +53,7 @@ pub(super) const FORMATS: &[Format] = &[
         mark: "",
         columns: &[
             foreign(Column::T, Name("time_s"), "s"),
-            foreign(Column::T, Name("t"), "s"),
             foreign(Column::CountsLarge, Name("fine_count"), "counts"),
-            foreign(Column::CountsLarge, Name("counts_large"), "counts"),
             foreign(Column::Current, Name("motor_torque_nm"), "N.m"),
             foreign(Column::TrueOmega, Name("true_omega_rad_s"), "rad/s"),
         ],
@@ -221,7 +219,9 @@ impl Format {
 
     fn has(&self, header: &[String]) -> bool {
         let found = self.find(header);
-        let has = |column| found.iter().any(|found| found.column == column);
+        // Names of this project may stand beside each other.
+        let is_own = |column: Column| self.own && header.iter().any(|name| name == column.name());
+        let has = |column| found.iter().any(|found| found.column == column) || is_own(column);
         self.is_marked(header) && has(Column::T) && has(Column::CountsLarge)
     }
 
