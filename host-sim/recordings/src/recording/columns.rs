@@ -12,9 +12,9 @@ use super::options::{Column, ReadOptions};
 use super::records::Records;
 use super::row::Row;
 use super::sources::sources;
-use super::stamps::Stamps;
-use super::times::{self, Repeated, Replaced};
-use super::units::Scale;
+use super::stamps::{Stamp, Stamps};
+use super::times::{self, Repeated, Replaced, Wraps};
+use super::units::WRAP;
 use super::{Recording, absolute, clock};
 
 /// The columns that are read, and their rows so far.
@@ -25,6 +25,7 @@ pub(super) struct Columns<'a> {
     replaced_place: Option<Place>,
     replaced: Replaced,
     repeated: Repeated,
+    wraps: Wraps,
     /// Whether a row without a position is left out.
     sparse: bool,
     /// Number of rows that were taken, and the time of the last one, s.
@@ -52,6 +53,7 @@ impl<'a> Columns<'a> {
             replaced_place: places.replaced_time,
             replaced: Replaced::default(),
             repeated: Repeated::default(),
+            wraps: Wraps::default(),
             sparse: places.format.is_some_and(|format| format.sparse),
             taken: 0,
             first_t: f64::NAN,
@@ -91,8 +93,7 @@ impl<'a> Columns<'a> {
         }
         let t = self.time(row)?;
         if t < self.last_t {
-            let per_s = self.place(Column::T).map_or(1.0, |at| at.unit.per_s());
-            return Err(times::back(row, t, [self.first_t, self.last_t], per_s));
+            return Err(times::back(row, t, [self.first_t, self.last_t]));
         }
         if t == self.last_t {
             self.repeated.add(row.line, t);
@@ -102,7 +103,9 @@ impl<'a> Columns<'a> {
             self.first_t = t;
         }
         self.last_t = t;
-        let replaced = self.replaced_place.and_then(|at| scaled(row, at, 1.0).ok());
+        let replaced = self
+            .replaced_place
+            .and_then(|at| self.own_time(row, at).ok());
         if let Some(own) = replaced {
             self.replaced.add(own);
         }
@@ -134,11 +137,17 @@ impl<'a> Columns<'a> {
         Ok(())
     }
 
-    fn time(&self, row: &Row) -> Result<f64, Failure> {
+    fn time(&mut self, row: &Row) -> Result<f64, Failure> {
         match (self.options.row_rate_hz, self.place(Column::T)) {
-            (None, Some(at)) => scaled(row, at, 1.0),
+            (None, Some(at)) => self.own_time(row, at),
             (rate_hz, _) => Ok(self.taken as f64 / rate_hz.unwrap_or(1.0)),
         }
+    }
+
+    /// The log's own time of a row, s.
+    fn own_time(&mut self, row: &Row, at: Place) -> Result<f64, Failure> {
+        let t = scaled(row, at, 1.0)?;
+        Ok(self.wraps.unwrapped(t, at.unit, row.line))
     }
 
     /// The latest edge; `None` if both fields are empty, before the first edge.
@@ -155,7 +164,12 @@ impl<'a> Columns<'a> {
         }
         let at_s = scaled(row, tick, 1.0)? / EDGE_CLOCK_HZ;
         let boundary = row.count(bound.column.name(), bound.place)?;
-        self.stamps.add(at_s, boundary, now, row.line);
+        let stamp = Stamp {
+            at_s,
+            wrap_s: tick.unit.scale.of(WRAP, 1.0) / EDGE_CLOCK_HZ,
+            boundary,
+        };
+        let at_s = self.stamps.add(stamp, now, row.line);
         let large = &self.counts_large;
         Ok(Some(EdgeStamp {
             // `t` has fewer digits than the stamp, so an edge at the tick can appear after it.
@@ -287,6 +301,7 @@ impl<'a> Columns<'a> {
             self.measured()
                 .map(|(column, lack)| measured_note(column, lack)),
         );
+        notes.extend(self.wraps.note());
         notes.extend(repeated);
         if self.left_out > 0 {
             notes.push(format!(
@@ -296,7 +311,7 @@ impl<'a> Columns<'a> {
         }
         notes.extend(self.counts_large.note(0, self.options));
         notes.extend(self.counts_small.note(1, self.options));
-        notes.extend(self.stamps.note());
+        notes.extend(self.stamps.notes());
         Ok(notes)
     }
 }
@@ -310,11 +325,5 @@ fn front<T>(column: &mut Vec<T>, rows: usize) -> Vec<T> {
 /// A number in the unit of the recording; `torque_constant` converts torques.
 pub(super) fn scaled(row: &Row, at: Place, torque_constant: f64) -> Result<f64, Failure> {
     let number = row.number(at.column.name(), at.place)?;
-    Ok(match at.unit.scale {
-        Scale::Over(by) => number / by,
-        Scale::Times(by) => number * by,
-        Scale::Torque => number / torque_constant,
-        // Positions are read as counts.
-        Scale::Counts | Scale::PerRev(_) => number,
-    })
+    Ok(at.unit.scale.of(number, torque_constant))
 }

@@ -1,6 +1,5 @@
 //! Time stamps of edges, compared with the times of their rows.
 
-use simulation::trace::EDGE_CLOCK_HZ;
 use terminal::failure::Failure;
 
 use super::numbers::shown;
@@ -9,20 +8,30 @@ use super::units::Quantity;
 /// Largest share of the stamps that may lie beside their rows: more have another unit or another origin.
 const MOST_BESIDE: f64 = 0.1;
 
-/// Period of a counter of 32 bits, s.
-const WRAP_S: f64 = 4_294_967_296.0 / EDGE_CLOCK_HZ;
+/// One stamp of the log.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stamp {
+    /// Time of the edge, s.
+    pub(super) at_s: f64,
+    /// Period of a counter of 32 bits in the unit of the column, s.
+    pub(super) wrap_s: f64,
+    /// Boundary that was crossed.
+    pub(super) boundary: i64,
+}
 
 /// Whether the stamps lie between the row before and their row. A stamp that stays is older.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stamps {
-    /// The latest stamp, s, and its boundary.
-    last: Option<(f64, i64)>,
+    /// The latest stamp in the log, and its time with the periods that have passed, s.
+    last: Option<(Stamp, f64)>,
     row_s: f64,
     /// The latest step of the rows that is not zero, s: the tolerance.
     step_s: f64,
     new: u64,
     beside: u64,
     first: Option<Beside>,
+    /// Line of the first stamp to which periods of a counter of 32 bits were added.
+    wraps: Option<u64>,
 }
 
 /// A stamp beside its row.
@@ -31,44 +40,63 @@ struct Beside {
     line: u64,
     stamp_s: f64,
     rows_s: [f64; 2],
-    /// Whether the stamp is right but for 2^32 ticks.
-    wraps: bool,
 }
 
 impl Stamps {
-    /// Adds the stamp `stamp_s` of the row at `row_s` in `line`.
-    pub(super) fn add(&mut self, stamp_s: f64, boundary: i64, row_s: f64, line: u64) {
+    /// Adds the stamp of the row at `row_s` in `line` and returns its time on the scale of the rows, s: a
+    /// new stamp that is whole periods of a counter of 32 bits before its row gets them added.
+    pub(super) fn add(&mut self, stamp: Stamp, row_s: f64, line: u64) -> f64 {
         let rows_s = [self.row_s, row_s];
         self.row_s = row_s;
-        let is_first = self.last.is_none();
-        if self.last.replace((stamp_s, boundary)) == Some((stamp_s, boundary)) || is_first {
-            return;
-        }
+        let at_s = match self.last {
+            None => stamp.at_s,
+            Some((last, at_s)) if last == stamp => at_s,
+            Some(_) => self.add_new(stamp, rows_s, line),
+        };
+        self.last = Some((stamp, at_s));
+        at_s
+    }
+
+    fn add_new(&mut self, stamp: Stamp, rows_s: [f64; 2], line: u64) -> f64 {
         if rows_s[1] > rows_s[0] {
             self.step_s = rows_s[1] - rows_s[0];
         }
         self.new += 1;
         let [from, to] = [rows_s[0] - self.step_s, rows_s[1] + self.step_s];
-        let is_beside = |stamp_s: f64| !(from..=to).contains(&stamp_s);
-        if is_beside(stamp_s) {
+        let Stamp { at_s, wrap_s, .. } = stamp;
+        let passed = ((rows_s[1] - at_s) / wrap_s).round();
+        let unwrapped_s = at_s + passed * wrap_s;
+        if (from..=to).contains(&at_s) {
+            at_s
+        } else if passed > 0.0 && (from..=to).contains(&unwrapped_s) {
+            self.wraps.get_or_insert(line);
+            unwrapped_s
+        } else {
             self.beside += 1;
             self.first.get_or_insert(Beside {
                 line,
-                stamp_s,
+                stamp_s: at_s,
                 rows_s,
-                wraps: !is_beside(stamp_s + WRAP_S),
             });
+            at_s
         }
     }
 
-    /// Note on the stamps beside their rows; `None` if there are none.
-    pub(super) fn note(&self) -> Option<String> {
-        let first = self.first?;
-        Some(format!(
-            "{} of {} new stamps of edge_tick are not between the row before and their row, the first in \
-             line {}",
-            self.beside, self.new, first.line
-        ))
+    /// Notes on the stamps that were unwrapped, and on those beside their rows.
+    pub(super) fn notes(&self) -> impl Iterator<Item = String> {
+        let wraps = self.wraps.map(|line| {
+            format!(
+                "edge_tick wraps at 2^32 and is unwrapped, the first time in line {line}: a counter of 32 bits"
+            )
+        });
+        let beside = self.first.map(|first| {
+            format!(
+                "{} of {} new stamps of edge_tick are not between the row before and their row, the first in \
+                 line {}",
+                self.beside, self.new, first.line
+            )
+        });
+        wraps.into_iter().chain(beside)
     }
 
     /// Checks that the stamps of the column `theirs` in the recording `name` are on the scale of t.
@@ -82,23 +110,17 @@ impl Stamps {
         if self.beside as f64 <= MOST_BESIDE * self.new as f64 {
             return Ok(());
         }
-        let remedy = match first.wraps {
-            true => "a counter of 32 bits wraps: add 2^32 to the stamps after each wrap".to_owned(),
-            false => format!(
-                "stamps are on the scale of t; state their unit ({}), for example --column \
-                 'edge_tick={theirs}:us'",
-                Quantity::Edge.list()
-            ),
-        };
         Err(Failure::Input(format!(
             "{name}: line {}: column edge_tick: the stamp is at {} s, where the row before is at {} s and \
-             the row at {} s ({} of {} new stamps); {remedy}",
+             the row at {} s ({} of {} new stamps); stamps are on the scale of t; state their unit ({}), for \
+             example --column 'edge_tick={theirs}:us'",
             first.line,
             shown(first.stamp_s),
             shown(first.rows_s[0]),
             shown(first.rows_s[1]),
             self.beside,
-            self.new
+            self.new,
+            Quantity::Edge.list()
         )))
     }
 }
@@ -141,16 +163,36 @@ mod tests {
     }
 
     #[test]
-    fn counter_of_32_bits_that_wraps_is_refused() {
+    fn counter_of_32_bits_is_unwrapped() {
         let wraps = 4_294_967_296.0;
-        let text = log(wraps / 84e6 - 0.05, |_, edge| {
-            (84e6 * edge).rem_euclid(wraps)
-        });
-        let error = read(&text, "").unwrap_err();
-        assert!(
-            error.contains("a counter of 32 bits wraps: add 2^32"),
-            "{error}"
-        );
+        let counter = |per_s: f64| move |_: usize, edge: f64| (per_s * edge).rem_euclid(wraps);
+        let note = |line: u64| {
+            format!(
+                "edge_tick wraps at 2^32 and is unwrapped, the first time in line {line}: a counter of 32 bits"
+            )
+        };
+        for (unit, per_s, line) in [("ticks", 84e6, 53), ("us", 1e6, 53)] {
+            let at_wrap = log(wraps / per_s - 0.05, counter(per_s));
+            let after_wraps = log(3.0 * wraps / per_s + 7.0, counter(per_s));
+            for (text, line) in [(at_wrap, line), (after_wraps, 3)] {
+                let recording = read(&text, &format!("edge_tick=edge_tick:{unit}")).unwrap();
+                assert!(
+                    recording.notes.contains(&note(line)),
+                    "{:?}",
+                    recording.notes
+                );
+                let edges = recording.trace.edges.unwrap();
+                for edge in &edges[1..] {
+                    assert!(
+                        (edge.unwrap().age_s - 0.3e-3).abs() < 2e-6,
+                        "{unit}: {edge:?}"
+                    );
+                }
+            }
+        }
+        // Stamps that wrap in less than 2^32 are not understood.
+        let short = log(60.0, |_, edge| (84e6 * edge).rem_euclid(65_536.0));
+        assert!(read(&short, "").unwrap_err().contains("state their unit"));
     }
 
     #[test]

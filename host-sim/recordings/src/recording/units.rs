@@ -4,6 +4,9 @@ use std::f64::consts::TAU;
 
 use simulation::trace::EDGE_CLOCK_HZ;
 
+/// Number of values of a counter of 32 bits.
+pub(super) const WRAP: f64 = 4_294_967_296.0;
+
 /// What a column measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
@@ -30,6 +33,19 @@ pub(super) enum Scale {
     PerRev(f64),
     /// Torque, N.m: divided by the torque constant.
     Torque,
+}
+
+impl Scale {
+    /// `number` in the unit of the recording; `torque_constant` converts torques. Positions are read as
+    /// counts, and stay.
+    pub(super) fn of(self, number: f64, torque_constant: f64) -> f64 {
+        match self {
+            Self::Over(by) => number / by,
+            Self::Times(by) => number * by,
+            Self::Torque => number / torque_constant,
+            Self::Counts | Self::PerRev(_) => number,
+        }
+    }
 }
 
 /// A unit: its names, the first of which is shown, and its scale.

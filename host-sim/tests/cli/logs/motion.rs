@@ -32,6 +32,10 @@ pub(super) const READ: &[(&str, &str)] = &[
     ("absolute-4096.csv", ""),
     ("absolute-3600.csv", "--modulus 3600"),
     ("absolute-deg.csv", "--column counts_large=angle:deg"),
+    (
+        "wraps-at-32-bits.csv",
+        "--column t=micros,counts_large=encoder,edge_tick=capture_us,edge_bound=capture_bound",
+    ),
     ("moteus-tview.csv", ""),
     ("moteus-tview.jsonl", ""),
     ("moteus-python.csv", ""),

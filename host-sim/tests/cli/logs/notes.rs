@@ -29,6 +29,12 @@ fn columns_and_units_that_were_converted_are_reported() {
             "counts_large wraps at 4096 and is unwrapped",
         ),
         (
+            "wraps-at-32-bits.csv",
+            "--column t=micros,counts_large=encoder,edge_tick=capture_us,edge_bound=capture_bound",
+            "t wraps at 2^32 us and is unwrapped, the first time in line 103: a counter of 32 bits \
+             wraps-at-32-bits.csv: edge_tick wraps at 2^32 and is unwrapped, the first time in line 103",
+        ),
+        (
             "plotjuggler.csv",
             "",
             "current from '/joint_states/handle/effort' (N.m with 0.",
