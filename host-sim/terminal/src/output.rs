@@ -62,7 +62,8 @@ fn place(path: &Path) -> Option<PathBuf> {
 /// Checks that the file `path` has a place, so that a long run does not find out at its end.
 ///
 /// # Errors
-/// [`Failure::Input`] if the name is that of a folder, or lies in something that is none.
+/// [`Failure::Input`] if the name is that of a folder, or lies in something that is none, or in a folder in
+/// which no file can be created.
 pub fn check_place(path: &Path) -> Result<(), Failure> {
     let name = path.display();
     if path.is_dir() || ends_as_folder(path) {
@@ -70,20 +71,40 @@ pub fn check_place(path: &Path) -> Result<(), Failure> {
             "{name}: is a folder; choose the name of a file"
         )));
     }
+    if is_written_in_place(path) {
+        return Ok(());
+    }
+    let path = link_target(path).unwrap_or_else(|_| path.to_owned());
     in_folders(path.ancestors().skip(1), &name)
 }
 
-/// Checks that the first of `above` that exists is a folder; `name` is the output in the message.
+/// Checks that the first of `above` that exists is a folder that takes files; `name` is the output in the
+/// message.
 fn in_folders<'a>(
     mut above: impl Iterator<Item = &'a Path>,
     name: &dyn std::fmt::Display,
 ) -> Result<(), Failure> {
-    match above.find(|path| path.exists()) {
-        Some(above) if !above.is_dir() => Err(Failure::Input(format!(
+    // The path above a name alone is empty, and stands for the folder that the program runs in.
+    let above = above.find(|path| path.as_os_str().is_empty() || path.exists());
+    let Some(above) = above else {
+        return Ok(());
+    };
+    if !above.as_os_str().is_empty() && !above.is_dir() {
+        return Err(Failure::Input(format!(
             "{name}: {} is no folder; choose another path",
             above.display()
-        ))),
-        _ => Ok(()),
+        )));
+    }
+    takes_files(above).map_err(|error| unwritable(name, &error))
+}
+
+/// Creates a file in `folder` and removes it. Permissions do not tell: the file system may be full or read-only.
+fn takes_files(folder: &Path) -> io::Result<()> {
+    let probe = folder.join(format!(".host-sim-probe-{}", std::process::id()));
+    match File::create_new(&probe) {
+        Ok(_) => fs::remove_file(probe),
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => Ok(()),
+        Err(error) => Err(error),
     }
 }
 
@@ -190,10 +211,23 @@ fn no_output(error: &io::Error) -> Failure {
 }
 
 fn cannot_write(path: &Path, error: &io::Error) -> Failure {
-    let path = path.display();
+    unwritable(&path.display(), error)
+}
+
+fn unwritable(name: &dyn std::fmt::Display, error: &io::Error) -> Failure {
     Failure::Input(format!(
-        "{path}: cannot write: {error}; choose another path"
+        "{name}: cannot write: {error}; choose another path"
     ))
+}
+
+/// Whether `path` is written as it is and not replaced: a device, a pipe, or an inherited descriptor.
+fn is_written_in_place(path: &Path) -> bool {
+    let inherited = ["/dev/fd/", "/dev/std", "/proc/"];
+    let is_inherited = |path: PathBuf| {
+        let path = path.to_string_lossy();
+        inherited.iter().any(|start| path.starts_with(start))
+    };
+    links(path).any(is_inherited) || fs::metadata(path).is_ok_and(|old| !old.is_file())
 }
 
 fn write_file(
@@ -204,14 +238,7 @@ fn write_file(
     if old.as_ref().is_some_and(fs::Metadata::is_dir) || ends_as_folder(path) {
         return Err(ErrorKind::IsADirectory.into());
     }
-    // Inherited descriptors are written, not replaced.
-    let inherited = ["/dev/fd/", "/dev/std", "/proc/"];
-    let is_inherited = |path: PathBuf| {
-        let path = path.to_string_lossy();
-        inherited.iter().any(|start| path.starts_with(start))
-    };
-    let inherited = links(path).any(is_inherited);
-    if inherited || old.as_ref().is_some_and(|old| !old.is_file()) {
+    if is_written_in_place(path) {
         return in_place(OpenOptions::new().append(true).open(path)?, content).map(drop);
     }
     let path = link_target(path)?;
@@ -316,6 +343,36 @@ mod tests {
         assert!(!folder.join("new").exists());
         let inside = said(&file.join("b.csv")).unwrap_err();
         assert!(inside.contains("a.csv is no folder"), "{inside}");
+        // The check leaves nothing.
+        assert_eq!(std::fs::read_dir(folder).unwrap().count(), 1);
+        assert_eq!(said(Path::new("new.csv")), Ok(()));
+    }
+
+    /// Nobody, not even root, creates a file in `/sys`.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn file_that_cannot_be_created_is_refused() {
+        let said = |path: &Path| check_place(path).map_err(|error| error.to_string());
+        for path in ["/sys/a.csv", "/sys/new/er/a.csv"] {
+            let error = said(Path::new(path)).unwrap_err();
+            assert!(
+                error.starts_with(&format!("{path}: cannot write: ")),
+                "{error}"
+            );
+            assert!(error.ends_with("; choose another path"), "{error}");
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let link = folder.path().join("link.csv");
+        std::os::unix::fs::symlink("/sys/a.csv", &link).unwrap();
+        assert!(
+            said(&link)
+                .unwrap_err()
+                .contains("link.csv: cannot write: ")
+        );
+        // What is written in its place needs no folder that takes files.
+        for path in ["/dev/null", "/dev/stderr", "/proc/self/fd/2"] {
+            assert_eq!(said(Path::new(path)), Ok(()), "{path}");
+        }
     }
 
     #[test]

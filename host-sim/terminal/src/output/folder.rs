@@ -34,7 +34,8 @@ impl Folder {
     }
 
     /// Checks that the folder `path` has a place, so that a long run does not find out at its end: it is not
-    /// standard output, and is not, and does not lie in, something that is no folder.
+    /// standard output, and is not, and does not lie in, something that is no folder, or a folder in which no
+    /// file can be created.
     ///
     /// # Errors
     /// [`Failure::Input`] that names `option`.
@@ -245,6 +246,14 @@ mod tests {
             assert!(error.contains("a.csv is no folder"), "{error}");
         }
         assert!(said(Path::new("-")).unwrap_err().contains("name a folder"));
+        assert_eq!(fs::read_dir(outside.path()).unwrap().count(), 1);
+        // Nobody, not even root, creates a file there.
+        #[cfg(target_os = "linux")]
+        for path in ["/sys", "/sys/new/er"] {
+            let error = said(Path::new(path)).unwrap_err();
+            let begin = format!("--out {path}: cannot write: ");
+            assert!(error.starts_with(&begin), "{error}");
+        }
     }
 
     #[test]
