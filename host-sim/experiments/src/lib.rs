@@ -4,6 +4,7 @@
 
 pub mod closed_loop;
 pub mod compare;
+pub mod designed;
 pub mod feel;
 pub mod identify;
 pub mod limit;

@@ -1,13 +1,14 @@
 //! The estimators that run on a recording: rows may come at uneven times, or at a rate for which not
-//! every estimator is made.
+//! every estimator is made, or of an encoder for which the presets give none there.
 
-use catalogue::estimators::{Kind, Lack};
-use catalogue::parameters::Parameters;
+use catalogue::estimators::{Kind, Lack, Setup};
+use catalogue::parameters::{Parameters, PlantKind};
 use recordings::recording::Recording;
 use simulation::device::Device;
 use simulation::trace::Trace;
 use terminal::failure::Failure;
 
+use crate::designed::designed;
 use crate::rates::{EVERY_HZ, nearest, refuses};
 
 /// A recording, and what estimators are built with.
@@ -67,13 +68,21 @@ impl Chosen {
             (kinds.iter()).partition(|kind| kind.lack(trace) == Some(Lack::ConstantPeriod));
         let (off_rate, kinds): (Vec<&'static Kind>, Vec<&'static Kind>) = (others.into_iter())
             .partition(|kind| refuses(kind, trace.rate_hz, recorded.device, recorded.parameters));
+        let place = (
+            Setup::of(recorded.device, trace.rate_hz),
+            PlantKind::Friction,
+        );
+        let (able, undesigned) = designed(&kinds, recorded.parameters, &[place]);
         let left_out = LeftOut {
             uneven: names(&uneven),
             off_rate: names(&off_rate),
+            undesigned,
         };
         if are_named {
             left_out.check(recorded)?;
         }
+        // The design of an estimator that the user named fails later, as an error.
+        let kinds = if are_named { kinds } else { able };
         Ok(Self { kinds, left_out })
     }
 
@@ -90,6 +99,8 @@ struct LeftOut {
     uneven: String,
     /// Those that are not made for its rate.
     off_rate: String,
+    /// Lines on those that the presets give no values for.
+    undesigned: Vec<String>,
 }
 
 fn names(kinds: &[&Kind]) -> String {
@@ -141,7 +152,12 @@ impl LeftOut {
                 nearest(rate_hz)
             )
         });
-        uneven.into_iter().chain(off_rate).collect()
+        let undesigned = self.undesigned.iter().cloned();
+        uneven
+            .into_iter()
+            .chain(off_rate)
+            .chain(undesigned)
+            .collect()
     }
 
     fn uneven_note(&self, trace: &Trace, unevenness: &str) -> String {

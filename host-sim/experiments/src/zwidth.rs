@@ -151,9 +151,16 @@ pub fn boundaries(
 /// # Errors
 /// As [`ContactTest::new`].
 pub fn contact_test(case: &LoopSetup, settings: &Settings) -> Result<ContactTest, Failure> {
-    let mut device = settings.device.clone();
-    device.stages.large.counts_per_rev = case.lines.saturating_mul(4);
+    let device = with_lines(&settings.device, case.lines);
     ContactTest::new(device, settings.seed, case, &settings.parameters)
+}
+
+/// `device` with an encoder of `lines` lines on its large motor.
+#[must_use]
+pub fn with_lines(device: &Device, lines: u32) -> Device {
+    let mut device = device.clone();
+    device.stages.large.counts_per_rev = lines.saturating_mul(4);
+    device
 }
 
 /// The largest value from `low` to `high` below which no value fails. The value is doubled from

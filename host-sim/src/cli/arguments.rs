@@ -4,11 +4,13 @@ use std::path::PathBuf;
 
 use clap::{Arg, Args, CommandFactory as _, Parser, Subcommand};
 
-use catalogue::estimators::Kind;
-use catalogue::parameters::Parameters;
+use catalogue::estimators::{Kind, Setup};
+use catalogue::parameters::{Parameters, PlantKind};
+use experiments::designed::designed;
 use recordings::arguments::DeviceFile;
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
+use terminal::output::note;
 use terminal::wording::WIDTH;
 
 /// Velocity estimation for a dual-stage haptic device, simulated and scored.
@@ -172,6 +174,22 @@ pub(super) fn kinds(names: &[String]) -> Result<Vec<&'static Kind>, Failure> {
             kinds.push(kind);
         }
     }
+    Ok(kinds)
+}
+
+/// As [`kinds`] at all of `places`. If no name is given, estimators that the shipped presets do not give there
+/// are left out, with a note.
+pub(super) fn kinds_at(
+    names: &[String],
+    parameters: &Parameters,
+    places: &[(Setup, PlantKind)],
+) -> Result<Vec<&'static Kind>, Failure> {
+    let kinds = kinds(names)?;
+    if !names.is_empty() {
+        return Ok(kinds);
+    }
+    let (kinds, lines) = designed(&kinds, parameters, places);
+    lines.iter().for_each(note);
     Ok(kinds)
 }
 

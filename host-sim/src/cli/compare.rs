@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use catalogue::parameters::PlantKind;
-use experiments::compare::{Case, Cost, Outcome, Settings, compare};
+use catalogue::estimators::Kind;
+use catalogue::parameters::{Parameters, PlantKind};
+use experiments::compare::{Case, Cost, Outcome, Settings, compare, setup_of};
 use experiments::rows;
 use experiments::table;
 use experiments::table::layout::terminal_width;
@@ -15,12 +16,13 @@ use report::measured;
 use report::{self, CaseReport, ReportInput, Traces};
 use scoring::evaluation::Row;
 use scoring::score::{Field, SKIP_S, Score, Wanted};
+use simulation::device::Device;
 use simulation::scenario::{Role, ScenarioName};
 use simulation::simulate;
 use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 
-use super::arguments::{ParameterOptions, distinct, kinds, scenarios};
+use super::arguments::{ParameterOptions, distinct, kinds_at, scenarios};
 use super::closed_loop;
 use super::page::{self, progress};
 use super::report_extras::{ReportExtras, report_extras};
@@ -117,14 +119,16 @@ impl Default for Compare {
 
 pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> {
     let (wanted, asked_fields) = wanted(&options.scores)?;
-    let settings = Settings {
-        device: options.device.load()?,
-        estimators: kinds(&options.estimators)?,
-        parameters: options.parameters.load()?,
-        wanted,
-    };
     let report = report_folder(options)?;
     let (cases, asked) = cases(options, report.is_some())?;
+    let device = options.device.load()?;
+    let parameters = options.parameters.load()?;
+    let settings = Settings {
+        estimators: kinds_of(&options.estimators, &cases, &device, &parameters)?,
+        device,
+        parameters,
+        wanted,
+    };
     let bar = progress(cases.len(), "simulating");
     let outcomes = compare(&cases, &settings, || bar.inc(1))?;
     bar.finish_and_clear();
@@ -171,6 +175,18 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
         text.push_str(&format!("Report: {}\n", index.display()));
     }
     page::print(options.json.as_deref(), &rows::json(&asked_rows)?, &text)
+}
+
+/// The estimators of these names; if no name is given, all that run in every one of `cases`.
+pub(super) fn kinds_of(
+    names: &[String],
+    cases: &[Case],
+    device: &Device,
+    parameters: &Parameters,
+) -> Result<Vec<&'static Kind>, Failure> {
+    let place = |case: &Case| (setup_of(case, device), case.plant);
+    let places: Vec<_> = cases.iter().map(place).collect();
+    kinds_at(names, parameters, &places)
 }
 
 /// Folder of the report, if a report is written.

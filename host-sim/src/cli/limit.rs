@@ -13,7 +13,8 @@ use recordings::arguments::DeviceFile;
 use scoring::score::Wanted;
 use terminal::failure::Failure;
 
-use super::arguments::{ParameterOptions, distinct, kinds, scenarios};
+use super::arguments::{ParameterOptions, distinct, scenarios};
+use super::compare::kinds_of;
 use super::page::{self, progress};
 
 #[derive(Debug, Args)]
@@ -47,12 +48,6 @@ pub(super) struct Limit {
 }
 
 pub(super) fn run(options: &Limit) -> Result<(), Failure> {
-    let settings = Settings {
-        device: options.device.load()?,
-        estimators: kinds(&options.estimators)?,
-        parameters: options.parameters.load()?,
-        wanted: Wanted::NONE,
-    };
     let scenarios = scenarios(&options.scenarios, &SCENARIOS)?;
     let mut cases = Vec::new();
     for rate_hz in distinct(&options.rates, &[1e3]) {
@@ -66,6 +61,14 @@ pub(super) fn run(options: &Limit) -> Result<(), Failure> {
             keep: false,
         }));
     }
+    let device = options.device.load()?;
+    let parameters = options.parameters.load()?;
+    let settings = Settings {
+        estimators: kinds_of(&options.estimators, &cases, &device, &parameters)?,
+        device,
+        parameters,
+        wanted: Wanted::NONE,
+    };
     let bar = progress(cases.len(), "filtering");
     let rows = limit(&cases, &settings, options.particles as usize, || bar.inc(1))?;
     bar.finish_and_clear();

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use catalogue::estimators::Setup;
+use catalogue::parameters::PlantKind;
 use experiments::real::cases::{Case, Recordings};
 use experiments::real::peers::{self, PEERS, Tuned};
 use experiments::real::run::{Row, Settings, run as run_all};
@@ -16,7 +18,7 @@ use report::{self, Printout};
 use terminal::failure::Failure;
 use terminal::output::{Folder, is_stdout, note, print_bytes, write_whole};
 
-use super::arguments::{ParameterOptions, distinct, kinds};
+use super::arguments::{ParameterOptions, distinct, kinds, kinds_at};
 use super::page::{self, one_to_stdout, progress};
 
 /// Default folder of the recordings.
@@ -83,7 +85,7 @@ pub(super) fn run(options: &Real, command_line: &str) -> Result<(), Failure> {
     if let Some(folder) = &options.out {
         Folder::check("--out", folder)?;
     }
-    let settings = settings(options)?;
+    let mut settings = settings(options)?;
     let recordings = Recordings::read(&options.data, &settings.device, settings.seconds)?;
     for line in recordings.notes() {
         note(line);
@@ -96,6 +98,13 @@ pub(super) fn run(options: &Real, command_line: &str) -> Result<(), Failure> {
             options.data.display()
         )));
     }
+    // A real device has friction.
+    let place = |case: &Case| {
+        let setup = Setup::of(&case.device(&settings.device), case.rate_hz);
+        (setup, PlantKind::Friction)
+    };
+    let places: Vec<_> = cases.iter().map(place).collect();
+    settings.estimators = kinds_at(&options.estimators, &settings.parameters, &places)?;
     // The first phase alone is drawn.
     let shown = (middle(&settings.counts_per_rev), middle(&settings.rates_hz));
     let keep = |case: &Case| {

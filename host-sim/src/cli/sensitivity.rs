@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use catalogue::estimators::Setup;
+use catalogue::parameters::PlantKind;
 use experiments::rows;
 use experiments::sensitivity::{self, Cell, Plan, table::table};
 use experiments::table::layout::{NARROW, terminal_width};
@@ -14,7 +16,7 @@ use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
-use super::arguments::{ParameterOptions, distinct, kinds, scenarios};
+use super::arguments::{ParameterOptions, distinct, kinds_at, scenarios};
 use super::page;
 use super::shard::{Asked, Outputs};
 
@@ -101,15 +103,20 @@ pub(super) fn finish(
 
 fn plan(options: &Sensitivity) -> Result<Plan, Failure> {
     let scenarios = scenarios(&options.scenarios, &ScenarioName::with_friction())?;
-    let kinds = kinds(&options.estimators)?;
+    let device = options.device.load()?;
+    let parameters = options.parameters.load()?;
+    let rates_hz = distinct(&options.rates, &[1e3]);
+    let place = |&rate_hz: &f64| (Setup::of(&device, rate_hz), PlantKind::Friction);
+    let places: Vec<_> = rates_hz.iter().map(place).collect();
+    let kinds = kinds_at(&options.estimators, &parameters, &places)?;
     Ok(Plan {
         scenarios: scenarios.iter().map(ToString::to_string).collect(),
-        rates_hz: distinct(&options.rates, &[1e3]),
+        rates_hz,
         seeds: distinct(&options.seeds, &[1]),
         seconds: options.seconds,
         estimators: kinds.iter().map(|kind| kind.name.to_owned()).collect(),
-        parameters: options.parameters.load()?,
-        device: options.device.load()?,
+        parameters,
+        device,
         device_name: options.device.name(),
     })
 }

@@ -5,9 +5,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use catalogue::estimators::Setup;
+use catalogue::parameters::PlantKind;
 use experiments::rows::{csv, json};
 use experiments::table::layout::{NARROW, terminal_width};
-use experiments::zwidth::{Boundary, Plan, Settings, rows, table};
+use experiments::zwidth::{Boundary, Plan, Settings, rows, table, with_lines};
 use recordings::arguments::DeviceFile;
 use report::{self, Printout};
 use shards::{Experiment as _, Part};
@@ -15,7 +17,7 @@ use simulation::device::COUNTS_PER_REV;
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
-use super::arguments::{ParameterOptions, distinct, kinds};
+use super::arguments::{ParameterOptions, distinct, kinds_at};
 use super::page;
 use super::shard::{Asked, Outputs};
 
@@ -111,22 +113,32 @@ pub(super) fn finish(
 
 /// All combinations of rate, encoder and estimator, in the order of the table.
 fn plan(options: &Zwidth) -> Result<Plan, Failure> {
-    let mut estimators = kinds(&options.estimators)?;
+    let device = options.device.load()?;
+    let parameters = options.parameters.load()?;
+    let rates_hz = distinct(&options.rates, &[1e3, 10e3, 11.6e3]);
+    let lines = distinct(&options.lines, &[256, 1024, 5000]);
+    let mut places = Vec::new();
+    for &lines in &lines {
+        let device = with_lines(&device, lines);
+        let place = |&rate_hz: &f64| (Setup::of(&device, rate_hz), PlantKind::Friction);
+        places.extend(rates_hz.iter().map(place));
+    }
+    let mut estimators = kinds_at(&options.estimators, &parameters, &places)?;
     if options.estimators.is_empty() {
         // A filter with a steady gain is identical to the full filter once it has settled.
         estimators.retain(|kind| !kind.name.ends_with("-steady") && !kind.needs.edge);
     }
     let settings = Settings {
-        device: options.device.load()?,
-        parameters: options.parameters.load()?,
+        device,
+        parameters,
         seed: options.seed,
     };
     Ok(Plan {
         estimators: estimators.iter().map(|kind| kind.name.to_owned()).collect(),
         handle: options.handle.clone(),
         exact: options.exact,
-        rates_hz: distinct(&options.rates, &[1e3, 10e3, 11.6e3]),
-        lines: distinct(&options.lines, &[256, 1024, 5000]),
+        rates_hz,
+        lines,
         settings,
         device_name: options.device.name(),
     })

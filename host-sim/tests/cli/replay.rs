@@ -222,6 +222,73 @@ fn memory_does_not_grow_with_the_rows() {
     );
 }
 
+/// A log of 2^20 counts/rev at 100 Hz, and a device with such an encoder.
+fn fine_and_slow() -> Folder {
+    let folder = Folder::new(HOST_SIM);
+    let row = |k: u32| {
+        let t = f64::from(k) / 100.0;
+        format!("{t},{}\n", (2e6 * (2.0 * t).sin()).floor())
+    };
+    let rows: String = (0..400).map(row).collect();
+    folder.write("log.csv", "t,counts_large\n".to_owned() + &rows);
+    folder.write("fine.toml", "large.counts_per_rev = 1048576\n");
+    folder
+}
+
+#[test]
+fn estimators_without_a_design_for_the_encoder_are_left_out() {
+    let folder = fine_and_slow();
+    let said = "estimators left out: kalman-triple, kalman-motor: with 1048576 counts/rev at 100 Hz: \
+                process_noise must be at most 2^18 on the diagonal";
+    let [log, compared] = [
+        "replay log.csv --out v.csv",
+        "compare --no-report --scenario free-air --seconds 1 --rate 100",
+    ]
+    .map(|command| {
+        let device = ["--device", "fine.toml"];
+        let arguments: Vec<_> = command.split(' ').chain(device).collect();
+        let output = folder.run(&arguments);
+        let notes = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{command}: {notes}");
+        notes.split_whitespace().collect::<Vec<_>>().join(" ")
+    });
+    for notes in [log, compared] {
+        assert!(notes.contains(said), "{notes}");
+    }
+    let header = folder.text("v.csv");
+    let header = header.lines().next().unwrap();
+    assert!(header.contains(",kalman-triple-steady") && !header.contains(",kalman-triple,"));
+    let ranked = json(&folder.good(&[
+        "recommend",
+        "log.csv",
+        "--device",
+        "fine.toml",
+        "--json",
+        "-",
+    ]));
+    assert!(ranked.iter().any(|row| row["estimator"] == "imm"));
+    assert!(ranked.iter().all(|row| row["estimator"] != "kalman-triple"));
+    // An estimator or a parameter that the user named is an error.
+    for named in [
+        ["--estimator", "kalman-triple"],
+        ["--set", "kalman-triple.jerk=1e9"],
+    ] {
+        let arguments = [
+            "replay",
+            "log.csv",
+            "--device",
+            "fine.toml",
+            "--out",
+            "w.csv",
+        ];
+        let line = folder.refused(&[&arguments[..], &named].concat());
+        assert!(
+            line.contains("kalman-triple at 100 Hz: process_noise"),
+            "{line}"
+        );
+    }
+}
+
 /// Rows at `rate_hz` of a shaft that swings, for 10 000 rows at most and 12 s.
 fn at_rate(rate_hz: f64) -> String {
     let rows = (12.0 * rate_hz).min(10_000.0) as u32;

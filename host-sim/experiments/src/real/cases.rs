@@ -145,6 +145,16 @@ pub struct Case {
     pub phase: Option<f64>,
 }
 
+impl Case {
+    /// What estimators are designed for: `device` with the encoder of this case.
+    #[must_use]
+    pub fn device(&self, device: &Device) -> Device {
+        let mut device = device.clone();
+        device.stages.large.counts_per_rev = self.counts_per_rev;
+        device
+    }
+}
+
 /// The first `seconds` of the recording `source` of `folder`.
 fn data(folder: &Path, source: &Source, device: &Device, seconds: f64) -> Result<Data, Failure> {
     let log = Log::open(&folder.join(&source.file))?;

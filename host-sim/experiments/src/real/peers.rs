@@ -171,8 +171,7 @@ pub fn ours_at(
             rate_hz,
             fast.len(),
         );
-        let mut device = settings.device.clone();
-        device.stages.large.counts_per_rev = case.counts_per_rev;
+        let device = case.device(&settings.device);
         let setup = catalogue::estimators::Setup::of(&device, rate_hz);
         let plant = catalogue::parameters::PlantKind::Friction;
         let evaluation =

@@ -111,8 +111,7 @@ fn outcome(
     keep: bool,
 ) -> Result<Outcome, Failure> {
     let trace = recordings.recording(case)?.trace;
-    let mut device = settings.device.clone();
-    device.stages.large.counts_per_rev = case.counts_per_rev;
+    let device = case.device(&settings.device);
     let setup = Setup::of(&device, trace.rate_hz);
     // A real device has friction.
     let plant = PlantKind::Friction;

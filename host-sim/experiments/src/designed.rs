@@ -1,0 +1,97 @@
+//! The estimators that the shipped presets give for a device at a rate: for a fine encoder at a low rate
+//! not every design is possible in single precision.
+
+use catalogue::estimators::{Kind, Setup};
+use catalogue::parameters::{Parameters, PlantKind};
+
+/// Those of `kinds` that can be built at all of `places`, each with the plant of its presets, and a line for
+/// each reason for which others are left out. An estimator with parameters that a user chose is not left
+/// out: its error is the user's.
+#[must_use]
+pub fn designed(
+    kinds: &[&'static Kind],
+    parameters: &Parameters,
+    places: &[(Setup, PlantKind)],
+) -> (Vec<&'static Kind>, Vec<String>) {
+    let mut able = Vec::new();
+    let mut left_out: Vec<(String, Vec<&str>)> = Vec::new();
+    for &kind in kinds {
+        let why = places
+            .iter()
+            .find_map(|place| refusal(kind, parameters, place));
+        let Some(why) = why else {
+            able.push(kind);
+            continue;
+        };
+        match left_out.iter_mut().find(|(known, _)| *known == why) {
+            Some((_, names)) => names.push(kind.name),
+            None => left_out.push((why, vec![kind.name])),
+        }
+    }
+    let line = |(why, names): (String, Vec<&str>)| {
+        format!("estimators left out: {}: {why}", names.join(", "))
+    };
+    (able, left_out.into_iter().map(line).collect())
+}
+
+/// Why the shipped parameters give no estimator; `None` if they do, or if the parameters are others.
+fn refusal(
+    kind: &Kind,
+    parameters: &Parameters,
+    (setup, plant): &(Setup, PlantKind),
+) -> Option<String> {
+    let values = parameters.values(kind, setup, *plant);
+    let error = kind.build(setup, &values).err()?.to_string();
+    let are_shipped = Parameters::default().values(kind, setup, *plant) == values;
+    let counts = setup.stages.large.counts_per_rev;
+    let of_kind = format!("{} ", kind.name);
+    let why = error.strip_prefix(&of_kind).unwrap_or(&error);
+    are_shipped.then(|| format!("with {counts} counts/rev {why}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use simulation::device::Device;
+
+    use super::*;
+
+    fn place(counts_per_rev: u32, rate_hz: f64) -> (Setup, PlantKind) {
+        let mut device = Device::default();
+        device.stages.large.counts_per_rev = counts_per_rev;
+        (Setup::of(&device, rate_hz), PlantKind::Friction)
+    }
+
+    #[test]
+    fn estimators_without_a_design_are_left_out_with_the_reason() {
+        let kinds: Vec<_> = Kind::all().iter().collect();
+        let parameters = Parameters::default();
+        let (able, lines) = designed(
+            &kinds,
+            &parameters,
+            &[place(4096, 1e3), place(1 << 20, 1e3)],
+        );
+        assert_eq!((able.len(), lines.len()), (kinds.len(), 0), "{lines:?}");
+        let (able, lines) = designed(
+            &kinds,
+            &parameters,
+            &[place(4096, 1e3), place(1 << 20, 200.0)],
+        );
+        let said = "estimators left out: kalman-triple, kalman-motor: with 1048576 counts/rev at 200 Hz: \
+                    process_noise must be at most 2^18 on the diagonal";
+        assert!(lines.len() == 1 && lines[0].starts_with(said), "{lines:?}");
+        assert_eq!(able.len(), kinds.len() - 2);
+        assert!(
+            able.iter()
+                .all(|kind| !["kalman-triple", "kalman-motor"].contains(&kind.name))
+        );
+    }
+
+    #[test]
+    fn estimator_with_parameters_of_the_user_is_kept() {
+        let kind = Kind::named("kalman-triple").unwrap();
+        let mut parameters = Parameters::default();
+        parameters.set("kalman-triple.jerk=1e9").unwrap();
+        let (able, lines) = designed(&[kind], &parameters, &[place(1 << 20, 200.0)]);
+        assert_eq!((able.len(), lines.len()), (1, 0), "{lines:?}");
+    }
+}
