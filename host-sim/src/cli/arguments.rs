@@ -177,6 +177,14 @@ pub(super) fn kinds(names: &[String]) -> Result<Vec<&'static Kind>, Failure> {
     Ok(kinds)
 }
 
+/// Checks that a device can be simulated at these rates, Hz, before anything is said about estimators at them.
+pub(super) fn check_rates(rates_hz: &[f64]) -> Result<(), Failure> {
+    for &rate_hz in rates_hz {
+        simulation::simulate::ticks(rate_hz, 1.0)?;
+    }
+    Ok(())
+}
+
 /// As [`kinds`] at all of `places`. If no name is given, estimators that the shipped presets do not give there
 /// are left out, with a note.
 pub(super) fn kinds_at(

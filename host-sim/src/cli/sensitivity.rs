@@ -16,7 +16,7 @@ use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
-use super::arguments::{ParameterOptions, distinct, kinds_at, scenarios};
+use super::arguments::{ParameterOptions, check_rates, distinct, kinds_at, scenarios};
 use super::page;
 use super::shard::{Asked, Outputs};
 
@@ -106,6 +106,7 @@ fn plan(options: &Sensitivity) -> Result<Plan, Failure> {
     let device = options.device.load()?;
     let parameters = options.parameters.load()?;
     let rates_hz = distinct(&options.rates, &[1e3]);
+    check_rates(&rates_hz)?;
     let place = |&rate_hz: &f64| (Setup::of(&device, rate_hz), PlantKind::Friction);
     let places: Vec<_> = rates_hz.iter().map(place).collect();
     let kinds = kinds_at(&options.estimators, &parameters, &places)?;

@@ -17,7 +17,7 @@ use simulation::device::COUNTS_PER_REV;
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
-use super::arguments::{ParameterOptions, distinct, kinds_at};
+use super::arguments::{ParameterOptions, check_rates, distinct, kinds_at};
 use super::page;
 use super::shard::{Asked, Outputs};
 
@@ -116,6 +116,7 @@ fn plan(options: &Zwidth) -> Result<Plan, Failure> {
     let device = options.device.load()?;
     let parameters = options.parameters.load()?;
     let rates_hz = distinct(&options.rates, &[1e3, 10e3, 11.6e3]);
+    check_rates(&rates_hz)?;
     let lines = distinct(&options.lines, &[256, 1024, 5000]);
     let mut places = Vec::new();
     for &lines in &lines {

@@ -95,17 +95,15 @@ fn in_folders<'a>(
             above.display()
         )));
     }
-    takes_files(above).map_err(|error| unwritable(name, &error))
-}
-
-/// Creates a file in `folder` and removes it. Permissions do not tell: the file system may be full or read-only.
-fn takes_files(folder: &Path) -> io::Result<()> {
-    let probe = folder.join(format!(".host-sim-probe-{}", std::process::id()));
-    match File::create_new(&probe) {
-        Ok(_) => fs::remove_file(probe),
-        Err(error) if error.kind() == ErrorKind::AlreadyExists => Ok(()),
-        Err(error) => Err(error),
-    }
+    // Permissions do not tell: the file system may be read-only. The file has no name, so that an interrupt
+    // leaves none.
+    let folder = if above.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        above
+    };
+    let created = tempfile::tempfile_in(folder);
+    created.map(drop).map_err(|error| unwritable(name, &error))
 }
 
 /// Refuses the output `output` of `option` if it is the file `input`, which messages call `called`.
