@@ -3,15 +3,24 @@
 
 use catalogue::estimators::{Kind, Setup};
 use catalogue::parameters::{Parameters, PlantKind};
+use simulation::device::Device;
 
-/// Those of `kinds` that can be built at all of `places`, each with the plant of its presets, and a line for
-/// each reason for which others are left out. An estimator with parameters that a user chose is not left
+/// What an estimator is designed for, and the plant of its presets.
+pub type Place = (Setup, PlantKind);
+
+/// A device with friction, as every real one, at a rate.
+#[must_use]
+pub fn with_friction(device: &Device, rate_hz: f64) -> Place {
+    (Setup::of(device, rate_hz), PlantKind::Friction)
+}
+
+/// Those of `kinds` that can be built at all of `places`, and a line for each reason for which others are left out. An estimator with parameters that a user chose is not left
 /// out: its error is the user's.
 #[must_use]
 pub fn designed(
     kinds: &[&'static Kind],
     parameters: &Parameters,
-    places: &[(Setup, PlantKind)],
+    places: &[Place],
 ) -> (Vec<&'static Kind>, Vec<String>) {
     let mut able = Vec::new();
     let mut left_out: Vec<(String, Vec<&str>)> = Vec::new();
@@ -35,11 +44,7 @@ pub fn designed(
 }
 
 /// Why the shipped parameters give no estimator; `None` if they do, or if the parameters are others.
-fn refusal(
-    kind: &Kind,
-    parameters: &Parameters,
-    (setup, plant): &(Setup, PlantKind),
-) -> Option<String> {
+fn refusal(kind: &Kind, parameters: &Parameters, (setup, plant): &Place) -> Option<String> {
     let values = parameters.values(kind, setup, *plant);
     let error = kind.build(setup, &values).err()?.to_string();
     let are_shipped = Parameters::default().values(kind, setup, *plant) == values;
@@ -51,14 +56,12 @@ fn refusal(
 
 #[cfg(test)]
 mod tests {
-    use simulation::device::Device;
-
     use super::*;
 
-    fn place(counts_per_rev: u32, rate_hz: f64) -> (Setup, PlantKind) {
+    fn place(counts_per_rev: u32, rate_hz: f64) -> Place {
         let mut device = Device::default();
         device.stages.large.counts_per_rev = counts_per_rev;
-        (Setup::of(&device, rate_hz), PlantKind::Friction)
+        with_friction(&device, rate_hz)
     }
 
     #[test]
@@ -91,7 +94,10 @@ mod tests {
         let kind = Kind::named("kalman-triple").unwrap();
         let mut parameters = Parameters::default();
         parameters.set("kalman-triple.jerk=1e9").unwrap();
-        let (able, lines) = designed(&[kind], &parameters, &[place(1 << 20, 200.0)]);
+        let (setup, plant) = place(1 << 20, 200.0);
+        let values = parameters.values(kind, &setup, plant);
+        assert!(kind.build(&setup, &values).is_err());
+        let (able, lines) = designed(&[kind], &parameters, &[(setup, plant)]);
         assert_eq!((able.len(), lines.len()), (1, 0), "{lines:?}");
     }
 }

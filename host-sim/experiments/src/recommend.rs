@@ -14,7 +14,7 @@ use scoring::score::SKIP_S;
 use simulation::device::Device;
 use terminal::failure::Failure;
 
-use crate::designed::designed;
+use crate::designed::{designed, with_friction};
 use crate::parallel::in_order;
 use crate::rates::{check_same, refuses};
 use crate::reference::{FEWEST_ROWS, Reference};
@@ -164,10 +164,7 @@ pub fn recommend<'a>(
     };
     let has = |kind: &Kind| logs.iter().all(|(_, log)| runs(kind, log));
     let able: Vec<&'static Kind> = Kind::all().iter().filter(|kind| has(kind)).collect();
-    let place = |log: &Recording| {
-        let setup = Setup::of(settings.device, log.trace.rate_hz);
-        (setup, PlantKind::Friction)
-    };
+    let place = |log: &Recording| with_friction(settings.device, log.trace.rate_hz);
     let places: Vec<_> = logs.iter().map(|(_, log)| place(log)).collect();
     let (able, _) = designed(&able, settings.parameters, &places);
     let (kinds, of_device): (Vec<_>, Vec<_>) = able

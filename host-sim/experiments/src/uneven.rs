@@ -1,14 +1,14 @@
 //! The estimators that run on a recording: rows may come at uneven times, or at a rate for which not
 //! every estimator is made, or of an encoder for which the presets give none there.
 
-use catalogue::estimators::{Kind, Lack, Setup};
-use catalogue::parameters::{Parameters, PlantKind};
+use catalogue::estimators::{Kind, Lack};
+use catalogue::parameters::Parameters;
 use recordings::recording::Recording;
 use simulation::device::Device;
 use simulation::trace::Trace;
 use terminal::failure::Failure;
 
-use crate::designed::designed;
+use crate::designed::{designed, with_friction};
 use crate::rates::{EVERY_HZ, nearest, refuses};
 
 /// A recording, and what estimators are built with.
@@ -68,10 +68,7 @@ impl Chosen {
             (kinds.iter()).partition(|kind| kind.lack(trace) == Some(Lack::ConstantPeriod));
         let (off_rate, kinds): (Vec<&'static Kind>, Vec<&'static Kind>) = (others.into_iter())
             .partition(|kind| refuses(kind, trace.rate_hz, recorded.device, recorded.parameters));
-        let place = (
-            Setup::of(recorded.device, trace.rate_hz),
-            PlantKind::Friction,
-        );
+        let place = with_friction(recorded.device, trace.rate_hz);
         let (able, undesigned) = designed(&kinds, recorded.parameters, &[place]);
         let left_out = LeftOut {
             uneven: names(&uneven),

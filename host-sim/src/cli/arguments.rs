@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Arg, Args, CommandFactory as _, Parser, Subcommand};
 
-use catalogue::estimators::{Kind, Setup};
-use catalogue::parameters::{Parameters, PlantKind};
-use experiments::designed::designed;
+use catalogue::estimators::Kind;
+use catalogue::parameters::Parameters;
+use experiments::designed::{Place, designed};
 use recordings::arguments::DeviceFile;
 use simulation::scenario::ScenarioName;
 use terminal::failure::Failure;
@@ -185,12 +185,12 @@ pub(super) fn check_rates(rates_hz: &[f64]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// As [`kinds`] at all of `places`. If no name is given, estimators that the shipped presets do not give there
-/// are left out, with a note.
+/// As [`kinds`]. If no name is given, estimators that the shipped presets do not give at all of `places` are
+/// left out, with a note.
 pub(super) fn kinds_at(
     names: &[String],
     parameters: &Parameters,
-    places: &[(Setup, PlantKind)],
+    places: &[Place],
 ) -> Result<Vec<&'static Kind>, Failure> {
     let kinds = kinds(names)?;
     if !names.is_empty() {

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use catalogue::estimators::Kind;
 use catalogue::parameters::{Parameters, PlantKind};
 use experiments::compare::{Case, Cost, Outcome, Settings, compare, setup_of};
 use experiments::rows;
@@ -121,14 +120,8 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
     let (wanted, asked_fields) = wanted(&options.scores)?;
     let report = report_folder(options)?;
     let (cases, asked) = cases(options, report.is_some())?;
-    let device = options.device.load()?;
-    let parameters = options.parameters.load()?;
-    let settings = Settings {
-        estimators: kinds_of(&options.estimators, &cases, &device, &parameters)?,
-        device,
-        parameters,
-        wanted,
-    };
+    let (device, parameters) = (options.device.load()?, options.parameters.load()?);
+    let settings = settings(&options.estimators, &cases, device, parameters, wanted)?;
     let bar = progress(cases.len(), "simulating");
     let outcomes = compare(&cases, &settings, || bar.inc(1))?;
     bar.finish_and_clear();
@@ -177,16 +170,23 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
     page::print(options.json.as_deref(), &rows::json(&asked_rows)?, &text)
 }
 
-/// The estimators of these names; if no name is given, all that run in every one of `cases`.
-pub(super) fn kinds_of(
+/// The settings of `cases`, with the estimators of these names; if no name is given, all that run in every
+/// case.
+pub(super) fn settings(
     names: &[String],
     cases: &[Case],
-    device: &Device,
-    parameters: &Parameters,
-) -> Result<Vec<&'static Kind>, Failure> {
-    let place = |case: &Case| (setup_of(case, device), case.plant);
+    device: Device,
+    parameters: Parameters,
+    wanted: Wanted,
+) -> Result<Settings, Failure> {
+    let place = |case: &Case| (setup_of(case, &device), case.plant);
     let places: Vec<_> = cases.iter().map(place).collect();
-    kinds_at(names, parameters, &places)
+    Ok(Settings {
+        estimators: kinds_at(names, &parameters, &places)?,
+        device,
+        parameters,
+        wanted,
+    })
 }
 
 /// Folder of the report, if a report is written.

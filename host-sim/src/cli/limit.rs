@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use catalogue::parameters::PlantKind;
-use experiments::compare::{Case, Settings};
+use experiments::compare::Case;
 use experiments::limit::{SCENARIOS, limit, table::table};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
@@ -14,7 +14,7 @@ use scoring::score::Wanted;
 use terminal::failure::Failure;
 
 use super::arguments::{ParameterOptions, distinct, scenarios};
-use super::compare::kinds_of;
+use super::compare::settings;
 use super::page::{self, progress};
 
 #[derive(Debug, Args)]
@@ -61,14 +61,14 @@ pub(super) fn run(options: &Limit) -> Result<(), Failure> {
             keep: false,
         }));
     }
-    let device = options.device.load()?;
-    let parameters = options.parameters.load()?;
-    let settings = Settings {
-        estimators: kinds_of(&options.estimators, &cases, &device, &parameters)?,
+    let (device, parameters) = (options.device.load()?, options.parameters.load()?);
+    let settings = settings(
+        &options.estimators,
+        &cases,
         device,
         parameters,
-        wanted: Wanted::NONE,
-    };
+        Wanted::NONE,
+    )?;
     let bar = progress(cases.len(), "filtering");
     let rows = limit(&cases, &settings, options.particles as usize, || bar.inc(1))?;
     bar.finish_and_clear();

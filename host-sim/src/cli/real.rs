@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use catalogue::estimators::Setup;
-use catalogue::parameters::PlantKind;
+use experiments::designed::with_friction;
 use experiments::real::cases::{Case, Recordings};
 use experiments::real::peers::{self, PEERS, Tuned};
 use experiments::real::run::{Row, Settings, run as run_all};
@@ -98,11 +97,7 @@ pub(super) fn run(options: &Real, command_line: &str) -> Result<(), Failure> {
             options.data.display()
         )));
     }
-    // A real device has friction.
-    let place = |case: &Case| {
-        let setup = Setup::of(&case.device(&settings.device), case.rate_hz);
-        (setup, PlantKind::Friction)
-    };
+    let place = |case: &Case| with_friction(&case.device(&settings.device), case.rate_hz);
     let places: Vec<_> = cases.iter().map(place).collect();
     settings.estimators = kinds_at(&options.estimators, &settings.parameters, &places)?;
     // The first phase alone is drawn.

@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use catalogue::estimators::Setup;
-use catalogue::parameters::PlantKind;
+use experiments::designed::with_friction;
 use experiments::rows;
 use experiments::sensitivity::{self, Cell, Plan, table::table};
 use experiments::table::layout::{NARROW, terminal_width};
@@ -107,8 +106,8 @@ fn plan(options: &Sensitivity) -> Result<Plan, Failure> {
     let parameters = options.parameters.load()?;
     let rates_hz = distinct(&options.rates, &[1e3]);
     check_rates(&rates_hz)?;
-    let place = |&rate_hz: &f64| (Setup::of(&device, rate_hz), PlantKind::Friction);
-    let places: Vec<_> = rates_hz.iter().map(place).collect();
+    let places = rates_hz.iter().map(|&hz| with_friction(&device, hz));
+    let places: Vec<_> = places.collect();
     let kinds = kinds_at(&options.estimators, &parameters, &places)?;
     Ok(Plan {
         scenarios: scenarios.iter().map(ToString::to_string).collect(),

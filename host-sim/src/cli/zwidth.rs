@@ -5,8 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use catalogue::estimators::Setup;
-use catalogue::parameters::PlantKind;
+use experiments::designed::with_friction;
 use experiments::rows::{csv, json};
 use experiments::table::layout::{NARROW, terminal_width};
 use experiments::zwidth::{Boundary, Plan, Settings, rows, table, with_lines};
@@ -121,8 +120,7 @@ fn plan(options: &Zwidth) -> Result<Plan, Failure> {
     let mut places = Vec::new();
     for &lines in &lines {
         let device = with_lines(&device, lines);
-        let place = |&rate_hz: &f64| (Setup::of(&device, rate_hz), PlantKind::Friction);
-        places.extend(rates_hz.iter().map(place));
+        places.extend(rates_hz.iter().map(|&hz| with_friction(&device, hz)));
     }
     let mut estimators = kinds_at(&options.estimators, &parameters, &places)?;
     if options.estimators.is_empty() {

@@ -81,15 +81,18 @@ pub fn check_place(path: &Path) -> Result<(), Failure> {
 /// Checks that the first of `above` that exists is a folder that takes files; `name` is the output in the
 /// message.
 fn in_folders<'a>(
-    mut above: impl Iterator<Item = &'a Path>,
+    above: impl Iterator<Item = &'a Path>,
     name: &dyn std::fmt::Display,
 ) -> Result<(), Failure> {
     // The path above a name alone is empty, and stands for the folder that the program runs in.
-    let above = above.find(|path| path.as_os_str().is_empty() || path.exists());
-    let Some(above) = above else {
+    let mut above = above.map(|path| match path.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => path,
+    });
+    let Some(above) = above.find(|path| path.exists()) else {
         return Ok(());
     };
-    if !above.as_os_str().is_empty() && !above.is_dir() {
+    if !above.is_dir() {
         return Err(Failure::Input(format!(
             "{name}: {} is no folder; choose another path",
             above.display()
@@ -97,12 +100,7 @@ fn in_folders<'a>(
     }
     // Permissions do not tell: the file system may be read-only. The file has no name, so that an interrupt
     // leaves none.
-    let folder = if above.as_os_str().is_empty() {
-        Path::new(".")
-    } else {
-        above
-    };
-    let created = tempfile::tempfile_in(folder);
+    let created = tempfile::tempfile_in(above);
     created.map(drop).map_err(|error| unwritable(name, &error))
 }
 
