@@ -9,11 +9,12 @@ use super::encoder::Encoder;
 use super::layout::{Layout, Place, Places};
 use super::lines::LineNumbers;
 use super::options::{Column, ReadOptions};
+use super::own_times::OwnTimes;
 use super::records::Records;
 use super::row::Row;
 use super::sources::sources;
 use super::stamps::{Stamp, Stamps};
-use super::times::{self, Repeated, Replaced, Wraps};
+use super::times::{self, Repeated, Replaced};
 use super::units::WRAP;
 use super::{Recording, absolute, clock};
 
@@ -25,7 +26,7 @@ pub(super) struct Columns<'a> {
     replaced_place: Option<Place>,
     replaced: Replaced,
     repeated: Repeated,
-    wraps: Wraps,
+    own_times: OwnTimes,
     /// Whether a row without a position is left out.
     sparse: bool,
     /// Number of rows that were taken, and the time of the last one, s.
@@ -53,7 +54,7 @@ impl<'a> Columns<'a> {
             replaced_place: places.replaced_time,
             replaced: Replaced::default(),
             repeated: Repeated::default(),
-            wraps: Wraps::default(),
+            own_times: OwnTimes::default(),
             sparse: places.format.is_some_and(|format| format.sparse),
             taken: 0,
             first_t: f64::NAN,
@@ -105,7 +106,7 @@ impl<'a> Columns<'a> {
         self.last_t = t;
         let replaced = self
             .replaced_place
-            .and_then(|at| self.own_time(row, at).ok());
+            .and_then(|at| self.own_times.of(row, at).ok());
         if let Some(own) = replaced {
             self.replaced.add(own);
         }
@@ -139,15 +140,9 @@ impl<'a> Columns<'a> {
 
     fn time(&mut self, row: &Row) -> Result<f64, Failure> {
         match (self.options.row_rate_hz, self.place(Column::T)) {
-            (None, Some(at)) => self.own_time(row, at),
+            (None, Some(at)) => self.own_times.of(row, at),
             (rate_hz, _) => Ok(self.taken as f64 / rate_hz.unwrap_or(1.0)),
         }
-    }
-
-    /// The log's own time of a row, s.
-    fn own_time(&mut self, row: &Row, at: Place) -> Result<f64, Failure> {
-        let t = scaled(row, at, 1.0)?;
-        Ok(self.wraps.unwrapped(t, at.unit, row.line))
     }
 
     /// The latest edge; `None` if both fields are empty, before the first edge.
@@ -301,7 +296,12 @@ impl<'a> Columns<'a> {
             self.measured()
                 .map(|(column, lack)| measured_note(column, lack)),
         );
-        notes.extend(self.wraps.note());
+        if layout.is_stamped {
+            notes.push(
+                "the times of a serial monitor before the lines are not read: they are those of arrival".to_owned(),
+            );
+        }
+        notes.extend(self.own_times.notes());
         notes.extend(repeated);
         if self.left_out > 0 {
             notes.push(format!(
@@ -309,8 +309,8 @@ impl<'a> Columns<'a> {
                 self.left_out
             ));
         }
-        notes.extend(self.counts_large.note(0, self.options));
-        notes.extend(self.counts_small.note(1, self.options));
+        notes.extend(self.counts_large.notes(0, self.options));
+        notes.extend(self.counts_small.notes(1, self.options));
         notes.extend(self.stamps.notes());
         Ok(notes)
     }

@@ -12,6 +12,10 @@ use super::units::Scale;
 /// Distance from a whole count from which positions are reported as rounded.
 const ROUNDED: f64 = 0.25;
 
+/// Changes of a column with two values from which they are taken for a line of an encoder: a shaft at
+/// rest seldom changes its count as often.
+const LINE: usize = 10;
+
 /// Counts of an encoder.
 #[derive(Default)]
 pub(super) struct Encoder {
@@ -22,6 +26,10 @@ pub(super) struct Encoder {
     pub(super) raw: i64,
     /// Largest distance of a position from a whole count.
     rounded: f64,
+    /// Number of rows whose reading differs from the row before.
+    changes: usize,
+    /// Whether a reading was neither 0 nor 1.
+    has_counts: bool,
 }
 
 impl Encoder {
@@ -51,6 +59,8 @@ impl Encoder {
             }
             _ => row.count(column, at.place)?,
         };
+        self.changes += usize::from(self.last.is_some() && raw != self.raw);
+        self.has_counts |= !(0..=1).contains(&raw);
         self.raw = raw;
         let count = match options.modulus[motor] {
             None => raw as u32,
@@ -73,19 +83,31 @@ impl Encoder {
         Ok(())
     }
 
-    /// Note on positions that are far from whole counts; `None` if none is. `motor` is the index of the
-    /// encoder.
-    pub(super) fn note(&self, motor: usize, options: &ReadOptions) -> Option<String> {
-        (self.rounded > ROUNDED).then(|| {
+    /// Notes on positions that are far from whole counts, and on a column that may hold no counts.
+    /// `motor` is the index of the encoder.
+    pub(super) fn notes(
+        &self,
+        motor: usize,
+        options: &ReadOptions,
+    ) -> impl Iterator<Item = String> {
+        let column = Column::COUNTS[motor].name();
+        let rounded = (self.rounded > ROUNDED).then(|| {
             format!(
-                "{}: positions are up to {:.2} counts from a whole count with {} counts/rev and are rounded to \
+                "{column}: positions are up to {:.2} counts from a whole count with {} counts/rev and are rounded to \
                  the nearest; if the encoder has more counts, give them {}",
-                Column::COUNTS[motor].name(),
                 self.rounded,
                 options.counts_per_rev[motor],
                 options.counts_given[motor]
             )
-        })
+        });
+        let line = (!self.has_counts && self.changes >= LINE).then(|| {
+            format!(
+                "{column} is 0 or 1 in all rows, and changes {} times: if it is one line of a quadrature encoder, \
+                 count the edges of both lines",
+                self.changes
+            )
+        });
+        rounded.into_iter().chain(line)
     }
 }
 
@@ -182,6 +204,34 @@ mod tests {
                 assert!(error.contains(part), "{error}");
             }
         }
+    }
+
+    #[test]
+    fn column_that_may_be_a_line_of_an_encoder_is_reported() {
+        let row = |k: usize, large: [&'static str; 2], small: [&'static str; 2]| {
+            (large[k % 2], small[k % 2])
+        };
+        let notes = |rows: usize, large, small| {
+            let rows: Vec<_> = (0..rows).map(|k| row(k, large, small)).collect();
+            read(&rows, "", &[]).unwrap().notes
+        };
+        let line = |column, changes| {
+            format!(
+                "{column} is 0 or 1 in all rows, and changes {changes} times: if it is one line of a \
+                 quadrature encoder, count the edges of both lines"
+            )
+        };
+        assert_eq!(
+            notes(11, ["0", "1"], ["5", "6"]),
+            [line("counts_large", 10)]
+        );
+        assert_eq!(
+            notes(12, ["0", "-1"], ["1", "0"]),
+            [line("counts_small", 11)]
+        );
+        // Few changes are those of a shaft at rest, and 2 is a count.
+        assert!(notes(10, ["0", "1"], ["0", "2"]).is_empty());
+        assert!(notes(20, ["1", "2"], ["7", "7"]).is_empty());
     }
 
     /// Milliseconds, milliamperes and degrees a second.

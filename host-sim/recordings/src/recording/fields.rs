@@ -34,7 +34,10 @@ fn remedy(text: &str, column: &str, is_first: bool) -> String {
             "write one JSON object a line, with one number a field".to_owned()
         }
         time if time.contains(':') && time.starts_with(digits) => {
-            "it is a time of day or a date: write seconds".to_owned()
+            match column == Column::T.name() {
+                true => "write it in s, as 2025-03-01T12:00:00.000, or as 12:00:00.000".to_owned(),
+                false => "it is a time: name another column with --column".to_owned(),
+            }
         }
         minus if minus.starts_with('\u{2212}') => "write the minus sign as '-'".to_owned(),
         _ if has_thousands(text) => "write it without separators of thousands".to_owned(),
@@ -86,10 +89,9 @@ mod tests {
             ("nan", "remove the rows without a value"),
             ("0x1F", "it is hexadecimal: write it in decimal"),
             (
-                "2025-03-01T12:00:00Z",
-                "it is a time of day or a date: write seconds",
+                "12:00:00.5",
+                "it is a time: name another column with --column",
             ),
-            ("12:00:00.5", "it is a time of day or a date: write seconds"),
             ("\u{2212}5", "write the minus sign as '-'"),
             ("\"1,000\"", "write it without separators of thousands"),
             ("1'000", "write it without separators of thousands"),
@@ -113,6 +115,11 @@ mod tests {
             (
                 "x,counts_large,t\n0,0,0\nx,counts_large,t\n",
                 "line 3: column t: 't' is not a number; the header is repeated: cut the log there",
+            ),
+            (
+                "t,counts_large\n3/1/2025 12:00:00,0\n",
+                "'3/1/2025 12:00:00' is not a number; write it in s, as 2025-03-01T12:00:00.000, or as \
+                 12:00:00.000",
             ),
             (
                 "t,counts_large\ns,counts\n0,0\n",

@@ -10,7 +10,7 @@ use super::endings::Ending;
 use super::formats::{Format, SIMPLEFOC, SIMPLEFOC_COLUMNS};
 use super::header;
 use super::options::{Column, ReadOptions};
-use super::separator::{Separator, comment};
+use super::separator::{Separator, comment, stamp};
 use super::units::Unit;
 use search::{is_content, is_number, named, numbers, probable};
 
@@ -31,6 +31,8 @@ pub(super) struct Layout {
     pub(super) searched: Option<String>,
     /// The first row of a text that has no header.
     pub(super) first_row: String,
+    /// Whether the lines begin with the time stamps of a serial monitor.
+    pub(super) is_stamped: bool,
 }
 
 impl Layout {
@@ -44,7 +46,9 @@ impl Layout {
         options: &ReadOptions,
         name: &str,
     ) -> Result<Self, Failure> {
-        let mut lines: Vec<_> = head.lines().take(SEARCHED + 1).collect();
+        let is_stamped = head.lines().any(|line| stamp(line.as_bytes()) > 0);
+        let bare = head.lines().map(|line| &line[stamp(line.as_bytes())..]);
+        let mut lines: Vec<_> = bare.take(SEARCHED + 1).collect();
         let limit = match (lines.len() > SEARCHED, is_cut) {
             (true, _) => Some(format!("{SEARCHED} lines")),
             (false, true) => Some(format!("{} KiB", HEAD >> 10)),
@@ -54,11 +58,17 @@ impl Layout {
             // The last line may be cut.
             lines.pop();
         }
-        if let Some(layout) = named(&lines, options) {
-            layout.check_separator(&lines, name)?;
-            return Ok(layout);
-        }
-        Ok(probable(&lines, limit))
+        let layout = match named(&lines, options) {
+            Some(layout) => {
+                layout.check_separator(&lines, name)?;
+                layout
+            }
+            None => probable(&lines, limit),
+        };
+        Ok(Self {
+            is_stamped,
+            ..layout
+        })
     }
 
     pub(super) fn header(separator: Separator, mut names: Vec<String>, index: usize) -> Self {
@@ -73,6 +83,7 @@ impl Layout {
             skip: index as u64 + 1,
             searched: None,
             first_row: String::new(),
+            is_stamped: false,
         }
     }
 

@@ -76,7 +76,21 @@ pub(super) fn is_comment(line: &[u8]) -> bool {
     matches!(line, [b'#' | b'%', ..] | [b'/', b'/', ..])
 }
 
-/// Text with its comments, its blank lines and its first lines emptied, so that the lines keep their
+/// Length of the time stamp that the serial monitor of the Arduino IDE writes before a line, as in
+/// `12:00:00.000 -> 1,2`; 0 for a line without one.
+pub(super) fn stamp(line: &[u8]) -> usize {
+    const FORM: &[u8] = b"00:00:00.000 -> ";
+    let fits = |(&byte, form): (&u8, &u8)| match form {
+        b'0' => byte.is_ascii_digit(),
+        mark => byte == *mark,
+    };
+    match line.len() >= FORM.len() && line.iter().zip(FORM).all(fits) {
+        true => FORM.len(),
+        false => 0,
+    }
+}
+
+/// Text with its stamps of a serial monitor, its comments, its blank lines and its first lines emptied, so that the lines keep their
 /// numbers. Every line ends with a line feed. Runs of spaces become tabs where they separate fields.
 pub(super) struct Lines<R> {
     inner: R,
@@ -115,6 +129,7 @@ impl<R: BufRead> Lines<R> {
         if self.line.last() == Some(&b'\r') {
             self.line.pop();
         }
+        self.line.drain(..stamp(&self.line));
         if skipped || is_comment(&self.line) || self.line.trim_ascii().is_empty() {
             self.line.clear();
         } else if self.separator == Separator::Whitespace {
@@ -164,6 +179,20 @@ mod tests {
         let text = "head\n# a\n  % b\n1,2\r\n// c\n   \n3,4 # no comment\n#";
         let read = "\n\n\n1,2\n\n\n3,4 # no comment\n\n";
         assert_eq!(lines(text, Separator::Comma, 1), read);
+    }
+
+    #[test]
+    fn stamps_of_a_serial_monitor_are_cut_off() {
+        let text = "12:00:00.001 -> # a\n12:00:00.002 -> 1,2\n12:00:00.003 -> \n";
+        assert_eq!(lines(text, Separator::Comma, 0), "\n1,2\n\n");
+        for text in [
+            "12:00:00.001 ->",
+            "12:00:00,001 -> 1",
+            "12:00:00.0011 -> 1",
+            "x2:00:00.001 -> 1",
+        ] {
+            assert_eq!(stamp(text.as_bytes()), 0, "{text}");
+        }
     }
 
     #[test]

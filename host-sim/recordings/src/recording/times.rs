@@ -5,19 +5,18 @@ use terminal::failure::Failure;
 use super::numbers::shown;
 use super::row::Row;
 use super::steps::to_digits;
-use super::units::{Unit, WRAP};
 
 /// Largest difference of the mean rate of the rows from that of --row-rate, relative.
 const SAME_RATE: f64 = 0.05;
 
 /// A day, s.
-const DAY_S: f64 = 86_400.0;
+pub(super) const DAY_S: f64 = 86_400.0;
 
 /// Longest run of a log, s: beyond it a time is wrong.
 const LONGEST_RUN_S: f64 = 1e8;
 
 /// Part of a distance from which the time at a wrap, at midnight or at a new run may differ.
-const NEAR: f64 = 0.01;
+pub(super) const NEAR: f64 = 0.01;
 
 /// Error for a row at `t` below one at `last`, s. `first` is the first time of the log.
 pub(super) fn back(row: &Row, t: f64, [first, last]: [f64; 2]) -> Failure {
@@ -34,43 +33,6 @@ pub(super) fn back(row: &Row, t: f64, [first, last]: [f64; 2]) -> Failure {
         "t",
         &format!("{t} s is before the {last} s above it; {remedy}"),
     )
-}
-
-/// Times of a counter of 32 bits, which wraps each 71.6 minutes where it counts microseconds.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Wraps {
-    /// The last time in the log, s.
-    last: f64,
-    /// Whole periods of the counter since the first row, s.
-    passed: f64,
-    /// Line after the first wrap, and the unit of the counter.
-    first: Option<(u64, &'static str)>,
-}
-
-impl Wraps {
-    /// The time `t`, s, which the log has in `unit`, with the periods that have passed before `line`. A
-    /// counter that goes back by one period within a hundredth has wrapped: in microseconds, if no more
-    /// than 43 s are missing there.
-    pub(super) fn unwrapped(&mut self, t: f64, unit: &Unit, line: u64) -> f64 {
-        let per_s = unit.per_s();
-        let period = WRAP / per_s;
-        let back = self.last - t;
-        let is_counter = per_s > 1.0 && t >= 0.0 && self.last < period;
-        if is_counter && (back - period).abs() < NEAR * period {
-            self.passed += period;
-            self.first.get_or_insert((line, unit.name()));
-        }
-        self.last = t;
-        t + self.passed
-    }
-
-    /// Note on the wraps; `None` if there are none.
-    pub(super) fn note(&self) -> Option<String> {
-        let (line, unit) = self.first?;
-        Some(format!(
-            "t wraps at 2^32 {unit} and is unwrapped, the first time in line {line}: a counter of 32 bits"
-        ))
-    }
 }
 
 /// Largest share of the rows that may have the time of the row before.
@@ -207,37 +169,6 @@ mod tests {
             let error = error.unwrap_err();
             let line = format!("r.csv: line {}: column t: ", times.len() + 1);
             assert!(error.starts_with(&line) && error.contains(said), "{error}");
-        }
-    }
-
-    #[test]
-    fn counter_of_32_bits_is_unwrapped() {
-        let mut text = String::from("t,counts_large\n");
-        for k in 0..50_u32 {
-            text += &format!("{},{k}\n", (1000 * k).wrapping_sub(5_500));
-        }
-        let recording = read(&text, "t=t:us", None).unwrap();
-        let note =
-            "t wraps at 2^32 us and is unwrapped, the first time in line 8: a counter of 32 bits";
-        assert_eq!(recording.notes[1], note);
-        assert_eq!(recording.trace.rate_hz, 1000.0);
-        assert_eq!(recording.uneven_steps, 0);
-        let (t, last) = (&recording.t, recording.t.len() - 1);
-        assert!((t[last] - t[0] - 1e-3 * last as f64).abs() < 1e-9);
-        // Seconds are no counter, and a step to below zero is no wrap.
-        for (unit, times) in [
-            ("s", "4294967295,0\n0,1\n"),
-            ("us", "4294966000,0\n-1000,1\n"),
-        ] {
-            let error = read(
-                &format!("t,counts_large\n{times}"),
-                &format!("t=t:{unit}"),
-                None,
-            );
-            assert!(
-                error.unwrap_err().contains("sort the rows by time"),
-                "{times}"
-            );
         }
     }
 

@@ -32,6 +32,8 @@ pub(super) const READ: &[(&str, &str)] = &[
     ("absolute-4096.csv", ""),
     ("absolute-3600.csv", "--modulus 3600"),
     ("absolute-deg.csv", "--column counts_large=angle:deg"),
+    ("times-of-day.csv", "--column t=clock,counts_large=encoder"),
+    ("dates.csv", "--column t=time,counts_large=encoder"),
     (
         "wraps-at-32-bits.csv",
         "--column t=micros,counts_large=encoder,edge_tick=capture_us,edge_bound=capture_bound",
@@ -43,6 +45,7 @@ pub(super) const READ: &[(&str, &str)] = &[
     ("vesc-tool.csv", ""),
     ("simplefoc-monitor.txt", "--row-rate 1000"),
     ("simplefoc-monitor-all.txt", "--row-rate 1000"),
+    ("serial-monitor-times.txt", "--row-rate 1000"),
     ("plotjuggler.csv", ""),
 ];
 

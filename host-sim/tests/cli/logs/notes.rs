@@ -29,6 +29,21 @@ fn columns_and_units_that_were_converted_are_reported() {
             "counts_large wraps at 4096 and is unwrapped",
         ),
         (
+            "times-of-day.csv",
+            "--column t=clock,counts_large=encoder",
+            "midnight passes in line 102, and t goes on",
+        ),
+        (
+            "dates.csv",
+            "--column t=time,counts_large=encoder",
+            "t is a date and a time: s from the midnight before the first row on",
+        ),
+        (
+            "serial-monitor-times.txt",
+            "--row-rate 1000",
+            "the times of a serial monitor before the lines are not read: they are those of arrival",
+        ),
+        (
             "wraps-at-32-bits.csv",
             "--column t=micros,counts_large=encoder,edge_tick=capture_us,edge_bound=capture_bound",
             "t wraps at 2^32 us and is unwrapped, the first time in line 103: a counter of 32 bits \

@@ -1,6 +1,7 @@
 //! The search for the header and the separator of a text.
 
 use super::super::formats::Format;
+use super::super::moment::Moment;
 use super::super::options::{Column, ReadOptions};
 use super::super::separator::{Separator, comment};
 use super::Layout;
@@ -59,6 +60,7 @@ pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
                 skip: index as u64,
                 searched: None,
                 first_row: line.trim().to_owned(),
+                is_stamped: false,
             };
         }
         above = Some((index, comment(line).unwrap_or(line)));
@@ -103,9 +105,11 @@ pub(super) fn numbers(line: &str) -> Option<(Separator, usize)> {
     })
 }
 
+/// Whether a field is a number or a time.
 pub(super) fn is_number(field: &str, separator: Separator) -> bool {
-    match separator.allows_decimal_comma() {
+    let is_number = match separator.allows_decimal_comma() {
         true => field.replacen(',', ".", 1).parse::<f64>().is_ok(),
         false => field.parse::<f64>().is_ok(),
-    }
+    };
+    is_number || Moment::parse(field).is_some()
 }

@@ -1,0 +1,158 @@
+//! Dates and times of day in the column of time.
+
+use jiff::civil::{DateTime, Time};
+use jiff::{SignedDuration, Timestamp};
+
+/// A day, ns.
+pub(super) const DAY_NS: i128 = 86_400_000_000_000;
+
+/// An hour, ns.
+const HOUR_NS: i128 = DAY_NS / 24;
+
+/// What a field of time has in the place of a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A date and a time with an offset from UTC, by ISO 8601.
+    Instant,
+    /// A date and a time without an offset.
+    Date,
+    /// Hours, minutes and seconds: a time of day or a duration.
+    Clock,
+}
+
+/// The content of such a field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Moment {
+    pub(super) kind: Kind,
+    /// From 1970 on, or from midnight on, ns.
+    pub(super) ns: i128,
+}
+
+impl Moment {
+    /// Reads a field; `None` for a number and for all that is not listed in `docs/your-log.md`.
+    pub(super) fn parse(text: &str) -> Option<Self> {
+        let (first, _) = text.split_once(':')?;
+        match first.contains(['-', '/']) {
+            true => Self::date(text),
+            false => Self::clock(text),
+        }
+    }
+
+    /// `2025-03-01T12:00:00.5`, with or without an offset from UTC.
+    fn date(text: &str) -> Option<Self> {
+        let text = text.replace('/', "-");
+        if let Ok(at) = text.parse::<Timestamp>() {
+            return Some(Self {
+                kind: Kind::Instant,
+                ns: at.as_nanosecond(),
+            });
+        }
+        let at: DateTime = text.parse().ok()?;
+        Some(Self {
+            kind: Kind::Date,
+            ns: at
+                .duration_since(DateTime::constant(1970, 1, 1, 0, 0, 0, 0))
+                .as_nanos(),
+        })
+    }
+
+    /// `12:00:00.5` and `2 days 00:00:00.5`.
+    fn clock(text: &str) -> Option<Self> {
+        let (days, text) = match text.split_once(" day") {
+            Some((days, text)) => (
+                days.parse::<u32>().ok()?,
+                text.trim_start_matches(['s', ',', ' ']),
+            ),
+            None => (0, text),
+        };
+        let (hours, rest) = text.split_once(':')?;
+        // Hours beyond those of a day are of a duration.
+        let hours = match hours.bytes().all(|digit| digit.is_ascii_digit()) {
+            true => hours.parse::<u32>().ok()?,
+            false => return None,
+        };
+        let (minutes, _) = rest.split_once(':')?;
+        let within: Time = format!("00:{rest}")
+            .parse()
+            .ok()
+            .filter(|_| minutes.len() == 2)?;
+        let within: SignedDuration = within.duration_since(Time::midnight());
+        Some(Self {
+            kind: Kind::Clock,
+            ns: i128::from(days) * DAY_NS + i128::from(hours) * HOUR_NS + within.as_nanos(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SECOND: i128 = 1_000_000_000;
+
+    #[test]
+    fn dates_and_times_of_day_are_exact_to_the_nanosecond() {
+        // 2025-03-01 is 20148 days after 1970: 55 years, 13 leap days among them and 31 and 28 days on.
+        let noon = 20_148 * DAY_NS + 12 * HOUR_NS;
+        for (text, kind, ns) in [
+            (
+                "2025-03-01T12:00:00.123456789Z",
+                Kind::Instant,
+                noon + 123_456_789,
+            ),
+            ("2025-03-01T12:00:00+01:00", Kind::Instant, noon - HOUR_NS),
+            (
+                "2025-03-01 12:00:00.5+00:00",
+                Kind::Instant,
+                noon + SECOND / 2,
+            ),
+            (
+                "2025-03-01T12:00:00.123",
+                Kind::Date,
+                noon + 123 * SECOND / 1000,
+            ),
+            (
+                "2025-03-01 12:00:00,123",
+                Kind::Date,
+                noon + 123 * SECOND / 1000,
+            ),
+            ("2025/03/01 12:00:01", Kind::Date, noon + SECOND),
+            ("12:00:00.000001", Kind::Clock, 12 * HOUR_NS + 1000),
+            ("0:01:02,5", Kind::Clock, 125 * SECOND / 2),
+            ("25:00:00", Kind::Clock, 25 * HOUR_NS),
+            ("0 days 00:00:00.001000", Kind::Clock, SECOND / 1000),
+            ("1 day, 0:00:01", Kind::Clock, DAY_NS + SECOND),
+            ("2 days 00:00:01", Kind::Clock, 2 * DAY_NS + SECOND),
+        ] {
+            assert_eq!(Moment::parse(text), Some(Moment { kind, ns }), "{text}");
+        }
+    }
+
+    #[test]
+    fn other_texts_are_no_moments() {
+        for text in [
+            "",
+            "1.5",
+            "-3",
+            "2025-03-01",
+            "12:00",
+            ":",
+            "::",
+            "1:2:3",
+            "-1:00:00",
+            "+1:00:00",
+            "12:60:00",
+            "12:00:00 PM",
+            "3/1/2025 12:00:00",
+            "01-Mar-2025 12:00:00",
+            "x days 00:00:00",
+            "1:00:00:00",
+            "99999999999:00:00",
+            "2025-02-30 12:00:00",
+            "12:00:00.5 ",
+            "1 day",
+        ] {
+            assert_eq!(Moment::parse(text), None, "{text}");
+        }
+    }
+}
