@@ -93,6 +93,27 @@ mod tests {
     use super::*;
 
     #[test]
+    fn friction_has_the_largest_error() {
+        let named = |errors: Vec<ConstantError>| -> Vec<_> {
+            errors
+                .iter()
+                .map(|it| (it.constant.as_str(), it.error))
+                .collect()
+        };
+        let extremes = named(ConstantError::extremes());
+        assert_eq!(extremes[..2], [("damping", -0.3), ("damping", 0.3)]);
+        assert_eq!(extremes[2..4], [("inertia", -0.3), ("inertia", 0.3)]);
+        assert_eq!(
+            extremes[4..6],
+            [("torque-constant", -0.3), ("torque-constant", 0.3)]
+        );
+        assert_eq!(extremes[6..], [("friction", -0.5), ("friction", 0.5)]);
+        let halves = named(ConstantError::at(&[0.5]));
+        assert_eq!(halves[0], ("damping", 0.15));
+        assert_eq!(halves[3], ("friction", 0.25));
+    }
+
+    #[test]
     fn error_changes_only_its_constant() {
         let device = simulation::device::Device::default();
         let setup = Setup::of(&device, 1000.0);

@@ -156,6 +156,33 @@ mod tests {
         }
     }
 
+    /// A logarithmic range is halved by its factor, an integer one has its first quarter.
+    #[test]
+    fn search_starts_inside_its_range() {
+        assert_eq!(middle(Search::Log(1.0, 100.0)), 10.0);
+        assert_eq!(middle(Search::Each(8, 16)), 10.0);
+        assert_eq!(middle(Search::Fixed(3.0)), 3.0);
+    }
+
+    #[test]
+    fn one_value_is_set_once() {
+        let mut parameters = Parameters::default();
+        // The same index of another kind, and another index of the same kind.
+        for text in [
+            "pll.bandwidth_hz=20",
+            "low-pass.cutoff_hz=30",
+            "foaw-end-fit.n=4",
+            "foaw-end-fit.d=2",
+        ] {
+            parameters.set(text).unwrap();
+        }
+        let error = parameters.set("foaw-end-fit.d=3").unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "--set foaw-end-fit.d=3: foaw-end-fit.d is given twice; keep one"
+        );
+    }
+
     #[test]
     fn shipped_presets_build_every_estimator_at_every_rate() {
         let parameters = Parameters::default();

@@ -193,3 +193,88 @@ fn words(bytes: &[u8], alignment: usize) -> String {
     }
     lines
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::{Parameters, PlantKind};
+
+    const CLOCK: Hertz = Hertz(84e6);
+
+    fn header(name: &str, change: &str) -> Result<String, String> {
+        let (kind, setup) = (Kind::named(name).unwrap(), Setup::default());
+        let mut parameters = Parameters::default();
+        if !change.is_empty() {
+            parameters.set(change).unwrap();
+        }
+        let values = parameters.values(kind, &setup, PlantKind::Friction);
+        let header = kind.c(&setup, CLOCK, &values);
+        header.map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn words_are_little_endian_and_padded() {
+        let lines = |bytes: &[u8], alignment| -> Vec<String> {
+            words(bytes, alignment).lines().map(str::to_owned).collect()
+        };
+        assert_eq!(
+            lines(&[0, 0, 0x80, 0x3f, 1], 4),
+            [
+                "    UINT32_C(0x3f800000) /* 1.0 */,",
+                "    UINT32_C(0x00000001) /* 1e-45 */,"
+            ]
+        );
+        // An estimator without parameters has one word, because an array of C has an element.
+        assert_eq!(lines(&[], 1), ["    UINT32_C(0x00000000) /* 0.0 */,"]);
+        assert_eq!(
+            lines(&[1, 2, 3, 4, 5, 6, 7, 8], 8),
+            ["    UINT64_C(0x0807060504030201),"]
+        );
+    }
+
+    #[test]
+    fn header_says_what_the_parameters_are_made_for() {
+        let said = header("low-pass", "low-pass.cutoff_hz=30").unwrap();
+        for line in [
+            "/* low-pass: first-order low-pass over the finite difference.",
+            "   For 4096 counts per revolution,",
+            "   1000 Hz,",
+            "   cutoff_hz = 30 Hz.",
+            "#define LIMPID_LOW_PASS_COUNTS_PER_REV 4096u",
+            "#define LIMPID_LOW_PASS_RATE_HZ 1000.0",
+            "static const limpid_low_pass_t limpid_low_pass_parameters = {{",
+        ] {
+            assert!(said.lines().any(|other| other == line), "{line}: {said}");
+        }
+        assert!(!said.contains("J = ") && !said.contains("edges"), "{said}");
+        let said = header("observer-edge", "").unwrap();
+        assert!(
+            said.contains("edges stamped at 84000000 Hz,\n   J = "),
+            "{said}"
+        );
+    }
+
+    #[test]
+    fn shortest_length_that_is_sufficient_is_taken() {
+        for (n, capacity) in [("4", "15"), ("15", "15"), ("16", "64"), ("64", "64")] {
+            let said = header("foaw-end-fit", &format!("foaw-end-fit.n={n}"));
+            let said = said.unwrap();
+            assert!(
+                said.contains(&format!("limpid_foaw_end_fit_{capacity}_t ")),
+                "{n}: {said}"
+            );
+        }
+    }
+
+    #[test]
+    fn header_that_c_cannot_have_is_refused() {
+        assert!(header("kalman-motor", "kalman-motor.literal=0").is_ok());
+        let error = header("kalman-motor", "kalman-motor.literal=1").unwrap_err();
+        assert!(
+            error.starts_with("kalman-motor.literal = 1: C has no estimator that delays"),
+            "{error}"
+        );
+        let error = header("foaw-end-fit", "foaw-end-fit.n=128").unwrap_err();
+        assert!(error.contains("; N in limpid.h is "), "{error}");
+    }
+}

@@ -129,6 +129,9 @@ mod tests {
             "{said:?}"
         );
         assert_eq!(parameters.sources(), "mine.toml, then the shipped presets");
+        // A value of another estimator is none of this one.
+        parameters.set("low-pass.cutoff_hz=20").unwrap();
+        assert_eq!(far(&parameters, &["pll"], 1000.0, 4096).len(), 1);
         parameters.set("pll.bandwidth_hz=20").unwrap();
         assert_eq!(
             far(&parameters, &["pll"], 1000.0, 4096),
