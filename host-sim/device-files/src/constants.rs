@@ -258,3 +258,36 @@ fn layer_text(layer: &Presets, counts_per_rev: u32) -> String {
     }
     text + "] },\n"
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tuned value is one of the large motor. What an image reads for the handle stands in its section.
+    #[test]
+    fn tuned_value_replaces_that_of_the_large_motor_alone() {
+        let text = "[[preset]]\nrate_hz = 1000.0\nplant = 'friction'\n\
+                    estimators = { pll = { bandwidth_hz = 10.0 } }\n\
+                    [image.handle.pll]\nbandwidth_hz = 12.0\n";
+        let layer = Presets::parse(text, "mine.toml").unwrap();
+        let value = |motor, estimator| match of_the_image(&layer, motor, estimator, "bandwidth_hz")
+        {
+            Some(Value::Image(value)) => Some(value),
+            Some(Value::Tuned) => Some(f64::INFINITY),
+            None => None,
+        };
+        assert_eq!(value("handle", "pll"), Some(12.0));
+        assert_eq!(value("large", "pll"), Some(f64::INFINITY));
+        assert_eq!(value("handle", "low-pass"), None);
+        assert_eq!(value("large", "low-pass"), None);
+    }
+
+    #[test]
+    fn tuned_value_is_none_of_a_handle_without_its_section() {
+        let text = "[[preset]]\nrate_hz = 1000.0\nplant = 'friction'\n\
+                    estimators = { pll = { bandwidth_hz = 10.0 } }\n";
+        let layer = Presets::parse(text, "mine.toml").unwrap();
+        assert!(of_the_image(&layer, "handle", "pll", "bandwidth_hz").is_none());
+        assert!(of_the_image(&layer, "large", "pll", "bandwidth_hz").is_some());
+    }
+}

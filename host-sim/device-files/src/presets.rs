@@ -236,3 +236,77 @@ impl Presets {
             .min_by(|a, b| far(a).total_cmp(&far(b)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FILE: &str = "\
+        [[preset]]\nrate_hz = 1000.0\nplant = \"friction\"\ncounts_per_rev = 1024\n\
+        [preset.estimators.pll]\nbandwidth_hz = 10.0\n\
+        [[preset]]\nrate_hz = 4000.0\nplant = \"friction\"\n\
+        [preset.estimators.pll]\nbandwidth_hz = 40.0\n\
+        [[preset]]\nrate_hz = 1000.0\nplant = \"frictionless\"\n\
+        [preset.estimators.pll]\nbandwidth_hz = 11.0\n\
+        [[preset]]\nrate_hz = 2000.0\nplant = \"friction\"\n\
+        [preset.estimators.low-pass]\ncutoff_hz = 5.0\n\
+        [image.handle.pll]\nbandwidth_hz = 12.0\n";
+
+    fn file() -> Presets {
+        Presets::parse(FILE, "mine.toml").unwrap()
+    }
+
+    #[test]
+    fn written_file_is_read_to_the_same_presets() {
+        let text = file().to_toml().unwrap();
+        assert_eq!(Presets::parse(&text, "mine.toml").unwrap(), file());
+        for kind in [PlantKind::Friction, PlantKind::Frictionless] {
+            assert!(
+                text.contains(&format!("plant = \"{}\"", kind.name())),
+                "{text}"
+            );
+        }
+    }
+
+    /// The nearest rate by ratio: 2000 Hz is as far from 1000 Hz as from 4000 Hz.
+    #[test]
+    fn preset_of_the_nearest_rate_on_the_plant_is_taken() {
+        let file = file();
+        let rate = |name: &str, rate_hz, plant| Some(file.nearest(name, rate_hz, plant)?.rate_hz);
+        for (rate_hz, nearest) in [
+            (10.0, 1000.0),
+            (1990.0, 1000.0),
+            (2010.0, 4000.0),
+            (1e5, 4000.0),
+        ] {
+            assert_eq!(
+                rate("pll", rate_hz, PlantKind::Friction),
+                Some(nearest),
+                "{rate_hz}"
+            );
+        }
+        assert_eq!(rate("pll", 1e5, PlantKind::Frictionless), Some(1000.0));
+        assert_eq!(rate("low-pass", 1e5, PlantKind::Friction), Some(2000.0));
+        assert_eq!(rate("low-pass", 1e5, PlantKind::Frictionless), None);
+        assert_eq!(rate("foaw-end-fit", 1e3, PlantKind::Friction), None);
+    }
+
+    #[test]
+    fn value_is_scaled_by_the_ratios_of_encoder_and_rate() {
+        let file = file();
+        let row = estimator_catalogue::ROWS
+            .iter()
+            .find(|row| row.name == "pll");
+        let parameter = &row.unwrap().parameters[0];
+        let [first, second] = [&file.preset[0], &file.preset[1]];
+        assert_eq!(first.counts_ratio(4096), 4.0);
+        // A file that does not name its encoder is for any.
+        assert_eq!(second.counts_ratio(4096), 1.0);
+        for (preset, tuned, counts, rate) in [(first, 10.0, 4.0, 0.5), (second, 40.0, 1.0, 0.125)] {
+            let value = preset.value("pll", parameter, 4096, 500.0);
+            assert_eq!(value, Some(parameter.scaled(tuned, counts, rate)));
+        }
+        assert_eq!(first.value("pll", parameter, 1024, 1000.0), Some(10.0));
+        assert_eq!(first.value("low-pass", parameter, 1024, 1000.0), None);
+    }
+}

@@ -357,6 +357,60 @@ mod tests {
         assert!(error.contains("too small: its dampers"), "{error}");
     }
 
+    /// A time constant has ten steps of 10 us or more.
+    #[test]
+    fn every_time_constant_has_ten_steps() {
+        let checked = |change: fn(&mut Device)| {
+            let mut device = Device::default();
+            device.stages.damping = 0.01;
+            device.hand.damping_nms_per_rad = 0.03;
+            device.hand.stiffness_nm_per_rad = 2.0;
+            device.stages.large.inertia = 1e-3;
+            device.stages.small.inertia = 1e-3;
+            change(&mut device);
+            check_rates(&device)
+        };
+        assert_eq!(checked(|_| ()), Ok(()));
+        // The large motor has the coupler alone, the handle coupler and hand: 0.01 / 1e-6 is 1e4 /s.
+        assert_eq!(
+            checked(|device| device.stages.large.inertia = 1.01e-6),
+            Ok(())
+        );
+        let error = checked(|device| device.stages.large.inertia = 0.99e-6).unwrap_err();
+        assert!(
+            error.starts_with("large.inertia_kg_m2 = 9.9e-7: too small"),
+            "{error}"
+        );
+        assert!(
+            error.contains("settle in 9.9e-5 s, but the simulation needs 1e-4 s"),
+            "{error}"
+        );
+        assert_eq!(
+            checked(|device| device.stages.small.inertia = 4.01e-6),
+            Ok(())
+        );
+        let error = checked(|device| device.stages.small.inertia = 3.99e-6).unwrap_err();
+        assert!(error.starts_with("small.inertia_kg_m2 = "), "{error}");
+        // A stiff hand: 1e4 /s is the root of 1e5 N.m/rad over 1e-3 kg.m2.
+        assert_eq!(
+            checked(|device| device.hand.stiffness_nm_per_rad = 0.99e5),
+            Ok(())
+        );
+        assert!(checked(|device| device.hand.stiffness_nm_per_rad = 1.01e5).is_err());
+    }
+
+    #[test]
+    fn errors_of_a_disc_add_up() {
+        let mut device = Device::default();
+        device.disc.phase_counts = 0.2;
+        device.disc.line_counts = 0.1;
+        device.disc.random_counts = 0.14;
+        assert_eq!(validate(&device), Ok(()));
+        device.disc.random_counts = 0.16;
+        let error = validate(&device).unwrap_err();
+        assert!(error.contains("must be below 0.45 counts"), "{error}");
+    }
+
     #[test]
     fn frictionless_removes_only_the_coulomb_friction_of_both_motors() {
         let device = Device::default();

@@ -56,3 +56,45 @@ impl Range {
         format!("; did you mean {value}e{power}, which is {value} {usual}?")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_of_a_range_are_inside() {
+        for range in [Range::Within(2.0, 8.0), Range::Usually(2.0, 8.0, "mm", -3)] {
+            for (value, rule) in [
+                (2.0, None),
+                (8.0, None),
+                (1.9, Some("at least 2 m")),
+                (8.1, Some("at most 8 m")),
+            ] {
+                let checked = range.check("key", value, "m").err();
+                let is_right = match rule {
+                    None => checked.is_none(),
+                    Some(rule) => {
+                        checked.is_some_and(|error| error.contains(&format!("must be {rule}")))
+                    }
+                };
+                assert!(is_right, "{value}");
+            }
+        }
+        assert!(Range::Share.check("key", 0.0, "").is_ok());
+        assert!(Range::Share.check("key", 1.0, "").is_err());
+    }
+
+    /// 8000 mm are the largest length, and more has no unit that would be right.
+    #[test]
+    fn unit_that_would_be_right_is_named() {
+        let range = Range::Usually(2.0, 8.0, "mm", -3);
+        let hint = |value: f64| {
+            range
+                .check("key", value, "m")
+                .unwrap_err()
+                .contains("did you mean")
+        };
+        assert!(hint(9.0) && hint(8000.0));
+        assert!(!hint(8001.0));
+    }
+}
