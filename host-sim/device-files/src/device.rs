@@ -14,6 +14,7 @@ use crate::read::{Step, at_line, one_line};
 
 mod check;
 mod range;
+mod rates;
 mod sections;
 
 /// Longest step of the plant, s. It must be short against every time constant of a device.
