@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn dates_and_times_of_day_are_exact_to_the_nanosecond() {
-        // 2025-03-01 is 20148 days after 1970: 55 years, 13 leap days among them and 31 and 28 days on.
+        // 2025-03-01 is 20148 days after 1970: 55 years with 14 leap days, and 31 and 28 days on.
         let noon = 20_148 * DAY_NS + 12 * HOUR_NS;
         for (text, kind, ns) in [
             (

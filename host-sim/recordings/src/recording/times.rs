@@ -2,6 +2,7 @@
 
 use terminal::failure::Failure;
 
+use super::moment::DAY_NS;
 use super::numbers::shown;
 use super::row::Row;
 use super::steps::to_digits;
@@ -10,7 +11,7 @@ use super::steps::to_digits;
 const SAME_RATE: f64 = 0.05;
 
 /// A day, s.
-pub(super) const DAY_S: f64 = 86_400.0;
+pub(super) const DAY_S: f64 = DAY_NS as f64 / 1e9;
 
 /// Longest run of a log, s: beyond it a time is wrong.
 const LONGEST_RUN_S: f64 = 1e8;
