@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use catalogue::estimators::{Kind, Lack, Reports, Setup, sample};
+use catalogue::estimators::{Estimator, Kind, Lack, Reports, Setup, sample};
 use catalogue::parameters::{Parameters, PlantKind, read};
 use estimator_core::{Signals, VelocityEstimator as _};
 use simulation::trace::{EdgeStamp, Trace};
@@ -38,11 +38,14 @@ fn kind(name: &str) -> &'static Kind {
     Kind::named(name).unwrap()
 }
 
-fn reports(name: &str, trace: &Trace) -> Reports {
+fn estimator(name: &str) -> Estimator {
     let setup = Setup::default();
     let values = Parameters::default().values(kind(name), &setup, PlantKind::Friction);
-    let estimator = kind(name).build(&setup, &values).unwrap();
-    estimator.resume(&mut None, trace, 0)
+    kind(name).build(&setup, &values).unwrap()
+}
+
+fn reports(name: &str, trace: &Trace) -> Reports {
+    estimator(name).resume(&mut None, trace, 0)
 }
 
 #[test]
@@ -124,10 +127,7 @@ fn learned_damping_is_reported_by_estimators_that_learn() {
     let trace = trace(true, true, true);
     for kind in Kind::all() {
         let name = kind.name;
-        let setup = Setup::default();
-        let values = Parameters::default().values(kind, &setup, PlantKind::Friction);
-        let estimator = kind.build(&setup, &values).unwrap();
-        let learned = estimator.damping_ratio(&trace);
+        let learned = estimator(name).damping_ratio(&trace);
         assert_eq!(learned, reports(name, &trace).damping_ratio, "{name}");
         let learns = ["adaptive", "adaptive-edge", "adaptive-soft"].contains(&name);
         assert_eq!(learned.is_some(), learns, "{name}");
@@ -143,13 +143,8 @@ fn learned_damping_is_reported_by_estimators_that_learn() {
 }
 
 #[test]
-fn states_are_equal_if_all_of_them_is() {
+fn states_are_equal_if_estimator_and_content_are() {
     let trace = trace(true, true, true);
-    let setup = Setup::default();
-    let estimator = |name: &str| {
-        let values = Parameters::default().values(kind(name), &setup, PlantKind::Friction);
-        kind(name).build(&setup, &values).unwrap()
-    };
     let (pll, low_pass) = (estimator("pll"), estimator("low-pass"));
     let mut state = pll.start(&sample(ALL, &trace, 0));
     let before = state.clone();

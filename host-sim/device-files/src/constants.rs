@@ -267,27 +267,20 @@ mod tests {
     #[test]
     fn tuned_value_replaces_that_of_the_large_motor_alone() {
         let text = "[[preset]]\nrate_hz = 1000.0\nplant = 'friction'\n\
-                    estimators = { pll = { bandwidth_hz = 10.0 } }\n\
+                    estimators = { pll = { bandwidth_hz = 10.0 }, low-pass = { bandwidth_hz = 11.0 } }\n\
                     [image.handle.pll]\nbandwidth_hz = 12.0\n";
         let layer = Presets::parse(text, "mine.toml").unwrap();
-        let value = |motor, estimator| match of_the_image(&layer, motor, estimator, "bandwidth_hz")
-        {
-            Some(Value::Image(value)) => Some(value),
-            Some(Value::Tuned) => Some(f64::INFINITY),
-            None => None,
+        let is_tuned = |motor, estimator| {
+            let value = of_the_image(&layer, motor, estimator, "bandwidth_hz")?;
+            Some(matches!(value, Value::Tuned))
         };
-        assert_eq!(value("handle", "pll"), Some(12.0));
-        assert_eq!(value("large", "pll"), Some(f64::INFINITY));
-        assert_eq!(value("handle", "low-pass"), None);
-        assert_eq!(value("large", "low-pass"), None);
-    }
-
-    #[test]
-    fn tuned_value_is_none_of_a_handle_without_its_section() {
-        let text = "[[preset]]\nrate_hz = 1000.0\nplant = 'friction'\n\
-                    estimators = { pll = { bandwidth_hz = 10.0 } }\n";
-        let layer = Presets::parse(text, "mine.toml").unwrap();
-        assert!(of_the_image(&layer, "handle", "pll", "bandwidth_hz").is_none());
-        assert!(of_the_image(&layer, "large", "pll", "bandwidth_hz").is_some());
+        for (estimator, handle, large) in [
+            ("pll", Some(false), Some(true)),
+            ("low-pass", None, Some(true)),
+            ("foaw-end-fit", None, None),
+        ] {
+            assert_eq!(is_tuned("handle", estimator), handle, "{estimator}");
+            assert_eq!(is_tuned("large", estimator), large, "{estimator}");
+        }
     }
 }

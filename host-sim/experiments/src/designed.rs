@@ -14,8 +14,8 @@ pub fn with_friction(device: &Device, rate_hz: f64) -> Place {
     (Setup::of(device, rate_hz), PlantKind::Friction)
 }
 
-/// Those of `kinds` that can be built at all of `places`, and a line for each reason for which others are left out. An estimator with parameters that a user chose is not left
-/// out: its error is the user's.
+/// Those of `kinds` that can be built at all of `places`, and a line for each reason for which others are left
+/// out. An estimator with parameters that a user chose is not left out: its error is the user's.
 #[must_use]
 pub fn designed(
     kinds: &[&'static Kind],

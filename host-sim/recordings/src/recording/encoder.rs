@@ -12,8 +12,8 @@ use super::units::Scale;
 /// Distance from a whole count from which positions are reported as rounded.
 const ROUNDED: f64 = 0.25;
 
-/// Changes of a column with two values from which they are taken for a line of an encoder: a shaft at
-/// rest seldom changes its count as often.
+/// Number of changes between 0 and 1 from which a column may be one line of an encoder. Fewer are those of a
+/// shaft that is hardly turned.
 const LINE: usize = 10;
 
 /// Counts of an encoder.

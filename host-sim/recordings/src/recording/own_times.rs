@@ -6,8 +6,11 @@ use super::columns::scaled;
 use super::layout::Place;
 use super::moment::{DAY_NS, Kind, Moment};
 use super::row::Row;
-use super::times::{DAY_S, NEAR};
+use super::times::NEAR;
 use super::units::{Unit, WRAP};
+
+/// A day, s.
+const DAY_S: f64 = DAY_NS as f64 / 1e9;
 
 /// The log's own times, in s: numbers, dates or times of day.
 #[derive(Clone, Copy, Debug, Default)]
@@ -40,7 +43,7 @@ impl OwnTimes {
             let t = scaled(row, at, 1.0)?;
             let form = *self.form.get_or_insert(Form::Number { unit: at.unit });
             return match form {
-                Form::Number { unit } => Ok(self.unwrapped(t, unit, row.line)),
+                Form::Number { unit } => Ok(self.wraps.unwrapped(t, &periods(unit), row.line)),
                 Form::Moment { .. } => Err(mixed(row, at)),
             };
         };
@@ -56,19 +59,11 @@ impl OwnTimes {
             } if kind == first => {
                 let t = (ns - origin_ns) as f64 / 1e9;
                 Ok(match kind {
-                    Kind::Clock => self.wraps.unwrapped(t, DAY_S, row.line),
+                    Kind::Clock => self.wraps.unwrapped(t, &[DAY_S], row.line),
                     Kind::Instant | Kind::Date => t,
                 })
             }
             _ => Err(mixed(row, at)),
-        }
-    }
-
-    /// A number of `unit` in s, with the periods of a counter of 32 bits. Seconds are no counter.
-    fn unwrapped(&mut self, t: f64, unit: &Unit, line: u64) -> f64 {
-        match unit.per_s() > 1.0 {
-            true => self.wraps.unwrapped(t, WRAP / unit.per_s(), line),
-            false => t,
         }
     }
 
@@ -83,8 +78,8 @@ impl OwnTimes {
             }
             Some(Form::Number { .. }) | None => None,
         };
-        let wrap = self.wraps.first.map(|line| match self.form {
-            Some(Form::Number { unit }) => format!(
+        let wrap = self.wraps.first.map(|(line, period)| match self.form {
+            Some(Form::Number { unit }) if period != DAY_S => format!(
                 "t wraps at 2^32 {} and is unwrapped, the first time in line {line}: a counter of 32 bits",
                 unit.name()
             ),
@@ -92,6 +87,15 @@ impl OwnTimes {
         });
         form.map(str::to_owned).into_iter().chain(wrap)
     }
+}
+
+/// Periods, s, of a number of `unit`: a day, and that of a counter of 32 bits, which counts no seconds.
+fn periods(unit: &Unit) -> [f64; 2] {
+    let counter = match unit.per_s() > 1.0 {
+        true => WRAP / unit.per_s(),
+        false => DAY_S,
+    };
+    [DAY_S, counter]
 }
 
 fn mixed(row: &Row, at: Place) -> Failure {
@@ -109,18 +113,19 @@ struct Wraps {
     last: f64,
     /// Whole periods since the first row, s.
     passed: f64,
-    /// Line after the first wrap.
-    first: Option<u64>,
+    /// Line after the first wrap, and its period, s.
+    first: Option<(u64, f64)>,
 }
 
 impl Wraps {
-    /// The time `t`, s, with the periods that have passed before `line`. A time that goes back by one
-    /// `period` within a hundredth has wrapped: in microseconds, if no more than 43 s are missing there.
-    fn unwrapped(&mut self, t: f64, period: f64, line: u64) -> f64 {
-        let back = self.last - t;
-        if t >= 0.0 && self.last < period && (back - period).abs() < NEAR * period {
+    /// The time `t`, s, with the periods that have passed before `line`. A time that goes back by one of
+    /// `periods` within a hundredth has wrapped: in microseconds, if no more than 43 s are missing there.
+    fn unwrapped(&mut self, t: f64, periods: &[f64], line: u64) -> f64 {
+        let (last, back) = (self.last, self.last - t);
+        let is_wrap = |period: f64| last < period && (back - period).abs() < NEAR * period;
+        if let Some(&period) = periods.iter().find(|period| t >= 0.0 && is_wrap(**period)) {
             self.passed += period;
-            self.first.get_or_insert(line);
+            self.first.get_or_insert((line, period));
         }
         self.last = t;
         t + self.passed
@@ -212,6 +217,14 @@ mod tests {
             recording.t,
             [86_399.875, 86_399.937_5, 86_400.0, 86_400.062_5]
         );
+        assert_eq!(
+            recording.notes[1],
+            "midnight passes in line 4, and t goes on"
+        );
+        // As a number: VESC Tool logs the milliseconds of today.
+        let text = "t,counts_large\n86399980,0\n86399990,1\n0,2\n10,3\n";
+        let recording = read(text, "t=t:ms").unwrap();
+        assert_eq!(recording.t, [86_399.98, 86_399.99, 86_400.0, 86_400.01]);
         assert_eq!(
             recording.notes[1],
             "midnight passes in line 4, and t goes on"

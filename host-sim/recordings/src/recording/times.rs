@@ -2,7 +2,6 @@
 
 use terminal::failure::Failure;
 
-use super::moment::DAY_NS;
 use super::numbers::shown;
 use super::row::Row;
 use super::steps::to_digits;
@@ -10,21 +9,16 @@ use super::steps::to_digits;
 /// Largest difference of the mean rate of the rows from that of --row-rate, relative.
 const SAME_RATE: f64 = 0.05;
 
-/// A day, s.
-pub(super) const DAY_S: f64 = DAY_NS as f64 / 1e9;
-
 /// Longest run of a log, s: beyond it a time is wrong.
 const LONGEST_RUN_S: f64 = 1e8;
 
-/// Part of a distance from which the time at a wrap, at midnight or at a new run may differ.
+/// Part of a distance from which the time at a wrap or at a new run may differ.
 pub(super) const NEAR: f64 = 0.01;
 
 /// Error for a row at `t` below one at `last`, s. `first` is the first time of the log.
 pub(super) fn back(row: &Row, t: f64, [first, last]: [f64; 2]) -> Failure {
     let back = last - t;
-    let remedy = if (back - DAY_S).abs() < NEAR * DAY_S {
-        "midnight has passed: add a day to the times from there on"
-    } else if (t - first).abs() <= NEAR * (last - first) && back < LONGEST_RUN_S {
+    let remedy = if (t - first).abs() <= NEAR * (last - first) && back < LONGEST_RUN_S {
         "a second run begins: cut the log there"
     } else {
         "sort the rows by time, or remove the row"
@@ -147,12 +141,7 @@ mod tests {
         for (unit, times, said) in [
             (
                 "ms",
-                &[86_399_980_u64, 86_399_990, 0][..],
-                "midnight has passed: add a day",
-            ),
-            (
-                "ms",
-                &[5, 6, 7, 8, 5],
+                &[5_u64, 6, 7, 8, 5][..],
                 "a second run begins: cut the log there",
             ),
             (
