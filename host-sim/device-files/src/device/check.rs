@@ -178,6 +178,8 @@ mod tests {
 
     #[test]
     fn unknown_key_is_reported_with_its_line_and_the_known_keys() {
+        let error = refused("[[larg]]\ninertia_kg_m2 = 1e-5");
+        assert!(error.contains("unknown field `larg`"), "{error}");
         let error = refused("[large]\n\ninertia = 1e-5\n");
         assert!(error.starts_with("line 3, inertia: "), "{error}");
         assert!(error.contains("inertia_kg_m2"), "{error}");
