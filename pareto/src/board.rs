@@ -1,6 +1,5 @@
 //! The image on the emulated board, one job after the other.
 
-use std::collections::BTreeMap;
 use std::num::NonZeroU64;
 
 use bench_image::mailbox::{WORDS, encode};
@@ -11,7 +10,8 @@ use rigless::session::Session;
 use rigless::soc::Width;
 use rigless::time::VirtualNanos;
 use virtual_board::board::{CORE_HZ, ControllerBoard};
-use virtual_board::{cycles, thumb};
+use virtual_board::pieces::{Path, Pieces};
+use virtual_board::thumb;
 
 use crate::image::{Image, subject_path};
 
@@ -41,8 +41,8 @@ pub struct Ran {
 struct Places {
     entry: u64,
     returns: Vec<u64>,
-    /// First halves of every instruction that an update can reach, by address.
-    instructions: BTreeMap<u64, [u16; 2]>,
+    /// What an update can reach.
+    code: Pieces,
 }
 
 impl Places {
@@ -55,7 +55,7 @@ impl Places {
     fn between(image: &Image, runner: u64, entry: u64) -> Self {
         Self {
             entry,
-            instructions: image.code.instructions(entry),
+            code: Pieces::reached(&image.code, entry, &[]),
             returns: thumb::after_indirect_calls(runner, image.code.function(runner)),
         }
     }
@@ -65,9 +65,9 @@ impl Places {
         self.returns.iter().copied().chain([self.entry])
     }
 
-    /// Every other instruction.
+    /// Every other start of a piece.
     fn inside(&self) -> impl Iterator<Item = u64> {
-        let all = self.instructions.keys().copied();
+        let all = self.code.starts().iter().copied();
         all.filter(|at| *at != self.entry && !self.returns.contains(at))
     }
 }
@@ -104,9 +104,8 @@ struct Bench {
     running: Option<(Order, Ran)>,
     /// Instruction count at the update's entry.
     since: Option<u64>,
-    /// Cycles of the update so far, and the instruction that comes next.
-    cycles: u32,
-    at: Option<u64>,
+    /// The update so far.
+    path: Path,
     done: Vec<Ran>,
     finished: bool,
     problem: Option<String>,
@@ -162,24 +161,26 @@ impl Bench {
                 }
             }
             self.since = Some(hit.instruction_count);
-            self.cycles = 0;
-            self.at = None;
+            self.path = Path::default();
         }
         let Some(since) = self.since else {
             return Ok(());
         };
-        if let Some(at) = self.at.replace(hit.address)
-            && let Some([first, second]) = places.instructions.get(&at)
-        {
-            let next = at + if thumb::is_wide(*first) { 4 } else { 2 };
-            self.cycles += cycles::of(*first, *second, hit.address != next);
-        }
+        self.path.reach(&places.code, hit.address);
         if places.returns.contains(&hit.address) {
-            ran.instructions
-                .push((hit.instruction_count - since) as u32);
-            if ran.instructions.len() > order.follow_from {
-                ran.cycles.push(self.cycles);
+            let instructions = (hit.instruction_count - since) as u32;
+            if ran.instructions.len() >= order.follow_from {
+                let seen = self.path.instructions();
+                if seen != instructions {
+                    let subject = SUBJECTS[order.subject];
+                    self.problem = Some(format!(
+                        "{subject}: {seen} of {instructions} instructions of an update were followed"
+                    ));
+                    self.finished = true;
+                }
+                ran.cycles.push(self.path.cycles());
             }
+            ran.instructions.push(instructions);
             self.since = None;
             // The other calls of the loop are ignored.
             for other in places.returns.iter().filter(|other| **other != hit.address) {
@@ -287,8 +288,7 @@ impl Program<'_> {
             velocities: self.velocities,
             running: None,
             since: None,
-            cycles: 0,
-            at: None,
+            path: Path::default(),
             done: Vec::new(),
             finished: false,
             problem: None,

@@ -8,8 +8,8 @@
 use std::collections::BTreeMap;
 
 use bench_image::Subject;
+use virtual_board::flow::{self, Flow, Instruction};
 
-use crate::flow::{self, Flow, Instruction};
 use crate::image::Image;
 
 /// The most instructions of an update, from its first to its return.

@@ -5,7 +5,6 @@ pub mod board;
 pub mod bound;
 pub mod cli;
 pub mod control;
-mod flow;
 pub mod image;
 pub mod measure;
 mod peer_tuning;

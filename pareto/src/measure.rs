@@ -11,7 +11,8 @@ use crate::board::{Job, Ran, on_board};
 use crate::image::{Image, Level};
 use crate::traces::{self, BenchTrace, CHIRP, RATES_HZ};
 
-/// Updates that are followed instruction by instruction, which is slow: at the end of [`CHIRP`] at each rate.
+/// Updates at level 3 that are followed instruction by instruction, which is slow: at the end of [`CHIRP`] at
+/// each rate.
 const FOLLOWED: usize = 200;
 
 /// Updates at the start of each trace that the errors ignore.
@@ -26,8 +27,8 @@ pub struct Cost {
     pub most: u32,
     /// Mean at rest.
     pub at_rest: f64,
-    /// Estimated cycles for one instruction, over the updates that are followed.
-    pub cycles_per_instruction: f64,
+    /// Estimated cycles for one instruction, over the updates that are followed; `None` where none is.
+    pub cycles_per_instruction: Option<f64>,
     /// Bytes of code and literals that an update reaches.
     pub code: usize,
 }
@@ -60,13 +61,17 @@ impl Row {
     /// Estimated cycles of an update at level 3, mean.
     #[must_use]
     pub fn cycles(&self) -> f64 {
-        self.cost[0].mean * self.cost[0].cycles_per_instruction
+        self.cost[0].mean * self.cycles_per_instruction()
     }
 
     /// Estimated cycles of an update at level 3, most.
     #[must_use]
     pub fn cycles_most(&self) -> f64 {
-        f64::from(self.cost[0].most) * self.cost[0].cycles_per_instruction
+        f64::from(self.cost[0].most) * self.cycles_per_instruction()
+    }
+
+    fn cycles_per_instruction(&self) -> f64 {
+        self.cost[0].cycles_per_instruction.unwrap_or(f64::NAN)
     }
 }
 
@@ -148,7 +153,8 @@ fn run<'a>(
             .collect()
     };
     let counted = traces.iter().map(|one| {
-        let follow = if one.name == CHIRP { FOLLOWED } else { 0 };
+        let is_followed = one.name == CHIRP && image.level == Level::Speed;
+        let follow = if is_followed { FOLLOWED } else { 0 };
         (one.rate_hz, &one.samples[..], follow)
     });
     let jobs = jobs_of(&counted.collect::<Vec<_>>());
@@ -199,6 +205,7 @@ fn cost_of(image: &Image, subject: &Subject, own: &[&(Job<'_>, Ran)]) -> Result<
         let ends = all.flat_map(|(job, ran)| &counts(ran)[counts(ran).len() - job.follow..]);
         ends.copied().map(f64::from).sum()
     };
+    let instructions = followed(|ran| &ran.instructions);
     let reached = image.code.reached(image.update(subject)?);
     Ok(Cost {
         mean: mean(own.iter().map(|one| settled(one))),
@@ -208,7 +215,8 @@ fn cost_of(image: &Image, subject: &Subject, own: &[&(Job<'_>, Ran)]) -> Result<
             .max()
             .unwrap_or(0),
         at_rest: own.iter().find(still).map_or(f64::NAN, |one| settled(one)),
-        cycles_per_instruction: followed(|ran| &ran.cycles) / followed(|ran| &ran.instructions),
+        cycles_per_instruction: (instructions > 0.0)
+            .then(|| followed(|ran| &ran.cycles) / instructions),
         code: reached
             .iter()
             .map(|at| image.code.function(*at).len())
@@ -222,7 +230,10 @@ fn worst(a: Cost, b: Cost) -> Cost {
         mean: a.mean.max(b.mean),
         most: a.most.max(b.most),
         at_rest: a.at_rest.max(b.at_rest),
-        cycles_per_instruction: a.cycles_per_instruction.max(b.cycles_per_instruction),
+        cycles_per_instruction: [a, b]
+            .into_iter()
+            .filter_map(|cost| cost.cycles_per_instruction)
+            .reduce(f64::max),
         code: a.code.max(b.code),
     }
 }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use crate::image::Level;
 use crate::measure::Row;
 
 /// A count may move by a tenth or by 3; an error is small and the same everywhere.
@@ -65,7 +66,8 @@ pub fn cost_cells(rows: &[Row]) -> Vec<Vec<String>> {
 pub fn csv(rows: &[Row]) -> String {
     let mut csv = "estimator,peer,level,mean,most,at_rest,cycles_per_instruction,code,state,rms_1khz_rad_s,rms_10khz_rad_s,highest_rate_hz\n".to_owned();
     for row in rows {
-        for (level, cost) in ["3", "s"].iter().zip(&row.cost) {
+        for (level, cost) in Level::ALL.map(Level::name).iter().zip(&row.cost) {
+            let cycles = cost.cycles_per_instruction;
             writeln!(
                 csv,
                 "\"{}\",{},{level},{},{},{},{},{},{},{},{},{}",
@@ -74,7 +76,7 @@ pub fn csv(rows: &[Row]) -> String {
                 cost.mean,
                 cost.most,
                 cost.at_rest,
-                cost.cycles_per_instruction,
+                cycles.map(|cycles| cycles.to_string()).unwrap_or_default(),
                 cost.code,
                 row.state,
                 row.rms_rad_s[0],

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
 
-use crate::thumb::{branches, instructions};
+use crate::thumb::branches;
 
 /// Functions by address.
 #[derive(Clone, Debug, Default)]
@@ -53,13 +53,11 @@ impl Code {
         }
         found
     }
+}
 
-    /// Both halves of every instruction that the function at `address` reaches, by address.
-    #[must_use]
-    pub fn instructions(&self, address: u64) -> BTreeMap<u64, [u16; 2]> {
-        let reached = self.reached(address).into_iter();
-        reached
-            .flat_map(|function| instructions(function, self.function(function)))
-            .collect()
+#[cfg(test)]
+impl FromIterator<(u64, Vec<u8>)> for Code {
+    fn from_iter<F: IntoIterator<Item = (u64, Vec<u8>)>>(functions: F) -> Self {
+        Self(functions.into_iter().collect())
     }
 }

@@ -25,7 +25,7 @@ pub struct Fetches {
 }
 
 /// The state of cache and read-ahead.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Fetch {
     /// Cached lines, the least recently used one first.
     cache: VecDeque<u64>,

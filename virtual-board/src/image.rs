@@ -12,6 +12,7 @@ use object::read::Symbol;
 use object::{Object, ObjectSection, ObjectSymbol};
 
 use crate::code::Code;
+use crate::pieces::Pieces;
 use crate::thumb::instructions;
 
 /// A built firmware image.
@@ -24,8 +25,8 @@ pub struct Image {
     pub(crate) entry: u64,
     /// Instructions that leave the control task.
     pub(crate) exits: Vec<u64>,
-    /// Both halves of every instruction that the control task reaches, by address.
-    pub(crate) control: Arc<BTreeMap<u64, [u16; 2]>>,
+    /// The instructions that the control task reaches.
+    pub(crate) control: Arc<Pieces>,
     /// The instruction with which the task of lowest priority waits for an interrupt.
     pub(crate) wait: u64,
     /// An instruction that branches to itself.
@@ -243,8 +244,8 @@ impl Image {
             placed,
             rtt,
             entry,
+            control: Arc::new(Pieces::reached(&all, entry, &exits)),
             exits,
-            control: Arc::new(all.instructions(entry)),
             wait,
             for_ever,
             panic,

@@ -6,9 +6,18 @@ pub const fn is_wide(half: u16) -> bool {
     half >> 11 >= 0b1_1101
 }
 
+/// Bytes of the instruction of these halves.
+#[must_use]
+pub const fn length([first, _]: [u16; 2]) -> u64 {
+    if is_wide(first) { 4 } else { 2 }
+}
+
 /// Addresses and both halves of the instructions in `code`; literals in it are decoded as
 /// instructions too.
-pub fn instructions(base: u64, code: &[u8]) -> impl Iterator<Item = (u64, [u16; 2])> + use<> {
+pub fn instructions(
+    base: u64,
+    code: &[u8],
+) -> impl Iterator<Item = (u64, [u16; 2])> + Clone + use<> {
     let halves: Vec<u16> = code
         .as_chunks()
         .0

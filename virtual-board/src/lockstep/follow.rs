@@ -1,36 +1,27 @@
-//! Follows selected calls of the control task instruction by instruction.
+//! Follows selected calls of the control task instruction by instruction: watchpoints at the starts of straight
+//! pieces of code tell the path.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use rigless::emulator::{Host, Watch};
 
 use crate::cycles;
-use crate::fetch::{Fetch, Fetches};
+use crate::fetch::Fetches;
 use crate::image::Image;
+use crate::pieces::{Path, Pieces};
 use crate::run::Setup;
-use crate::thumb::is_wide;
 
 pub(super) struct Follow {
     /// Ticks to follow.
     ticks: BTreeSet<usize>,
-    /// Both halves of every instruction that the control task reaches, by address.
-    code: Arc<BTreeMap<u64, [u16; 2]>>,
-    /// Addresses of `instructions` whose watchpoints are always set.
+    /// What the control task reaches.
+    code: Arc<Pieces>,
+    /// Starts of pieces whose watchpoints are always set.
     watched: BTreeSet<u64>,
     watching: bool,
     /// The tick that is followed.
     now: Option<Path>,
-}
-
-/// The followed part of a tick.
-#[derive(Default)]
-struct Path {
-    /// The latest instruction, which has not been counted.
-    at: Option<u64>,
-    instructions: u32,
-    cycles: u32,
-    fetch: Fetch,
 }
 
 impl Follow {
@@ -45,7 +36,7 @@ impl Follow {
     }
 
     fn watches(&self) -> impl Iterator<Item = Watch> {
-        let others = self.code.keys().filter(|at| !self.watched.contains(at));
+        let others = self.code.starts().difference(&self.watched);
         others.map(|at| Watch::Instruction(*at))
     }
 
@@ -65,32 +56,21 @@ impl Follow {
         }
     }
 
-    /// Counts the instruction at which the processor has stopped.
+    /// The processor has stopped at an address.
     pub(super) fn pass(&mut self, address: u64) {
-        let Some(path) = &mut self.now else {
-            return;
-        };
-        path.instructions += 1;
-        if let Some(at) = path.at.replace(address)
-            && let Some([first, second]) = self.code.get(&at)
-        {
-            let next = at + if is_wide(*first) { 4 } else { 2 };
-            path.cycles += cycles::of(*first, *second, address != next);
-        }
-        if let Some([first, _]) = self.code.get(&address) {
-            path.fetch
-                .instruction(address, is_wide(*first), path.cycles);
+        let Self { now, code, .. } = self;
+        if let Some(path) = now.as_mut().filter(|_| code.starts().contains(&address)) {
+            path.reach(code, address);
         }
     }
 
-    /// Ends the tick with the latest instruction. Returns the cycles from the interrupt on and the fetches;
-    /// `None` if some of the `instructions` of the tick were not observed.
+    /// Ends the tick with the instruction of the latest stop. Returns the cycles from the interrupt on and the
+    /// fetches; `None` if some of the `instructions` of the tick were not observed.
     pub(super) fn leave(&mut self, instructions: u32) -> Option<(u32, Fetches)> {
-        let path = self.now.take()?;
-        let [first, second] = path.at.and_then(|at| self.code.get(&at))?;
+        let mut path = self.now.take()?;
+        path.end(&self.code);
         // Instructions after the return are part of the interrupt's cycles.
-        let last = cycles::of(*first, *second, false);
-        let cycles = path.cycles + last + cycles::INTERRUPT;
-        (path.instructions == instructions).then(|| (cycles, path.fetch.fetches()))
+        let cycles = path.cycles() + cycles::INTERRUPT;
+        (path.instructions() == instructions).then(|| (cycles, path.fetches()))
     }
 }

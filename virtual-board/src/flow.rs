@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use virtual_board::thumb;
+use crate::thumb::{self, length};
 
 /// Successor of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Flow {
+pub enum Flow {
     /// The next instruction.
     On,
     /// A target address, or the next instruction.
@@ -25,13 +25,16 @@ pub(crate) enum Flow {
 
 /// An instruction: its successor, and the address after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Instruction {
-    pub(crate) flow: Flow,
-    pub(crate) next: u64,
+pub struct Instruction {
+    /// What it does to the control flow.
+    pub flow: Flow,
+    /// Address of the instruction behind it.
+    pub next: u64,
 }
 
 /// Every instruction of `code` that is reached from its first; literals between them are not.
-pub(crate) fn of(base: u64, code: &[u8]) -> BTreeMap<u64, Instruction> {
+#[must_use]
+pub fn of(base: u64, code: &[u8]) -> BTreeMap<u64, Instruction> {
     let end = base + code.len() as u64;
     let half = |at: u64| {
         let bytes = code.get((at - base) as usize..)?.first_chunk()?;
@@ -45,8 +48,8 @@ pub(crate) fn of(base: u64, code: &[u8]) -> BTreeMap<u64, Instruction> {
             continue;
         };
         let second = half(at + 2).unwrap_or(0);
-        let next = at + if thumb::is_wide(first) { 4 } else { 2 };
-        let flow = decode(first, second, at);
+        let next = at + length([first, second]);
+        let flow = decode([first, second], at);
         let flow = match flow {
             Flow::Jump(to) if conditional > 0 => Flow::Perhaps(to),
             Flow::Return if conditional > 0 => Flow::PerhapsReturn,
@@ -70,7 +73,8 @@ pub(crate) fn of(base: u64, code: &[u8]) -> BTreeMap<u64, Instruction> {
     found
 }
 
-fn decode(first: u16, second: u16, at: u64) -> Flow {
+/// Control flow of the instruction of these halves at `at`, which no instruction before it makes conditional.
+pub(crate) fn decode([first, second]: [u16; 2], at: u64) -> Flow {
     let to = |offset: i32| at.wrapping_add_signed(4 + i64::from(offset));
     let first_bits = |low: u32, mask: u16| i32::from(first >> low & mask);
     match first {
@@ -172,7 +176,7 @@ mod tests {
             ("vmrs APSR_nzcv, fpscr", 0, 0xEEF1, 0xFA10, Flow::On),
             ("dmb", 0, 0xF3BF, 0x8F5F, Flow::On),
         ] {
-            assert_eq!(decode(first, second, at), flow, "{what}");
+            assert_eq!(decode([first, second], at), flow, "{what}");
         }
     }
 
