@@ -183,6 +183,23 @@ mod tests {
         }
     }
 
+    /// The first and the last bin, which are half as wide as the others.
+    #[test]
+    fn mean_and_alternation_have_their_power_at_the_ends_of_the_spectrum() {
+        let constant = vec![3.0; 1000];
+        let alternating: Vec<f64> = (0..1000)
+            .map(|i| 2.0 * f64::from(1 - 2 * (i % 2)))
+            .collect();
+        for (signal, band, wanted) in [
+            (constant, [0.0, 6.0], 3.0),
+            (alternating, [494.0, 500.0], 2.0),
+        ] {
+            let density = Welch::new(1000.0).density(&signal).unwrap();
+            let rms = density.rms_within(band).unwrap();
+            assert!((rms - wanted).abs() < 1e-9, "{band:?} Hz: {rms}");
+        }
+    }
+
     #[test]
     fn density_is_none_if_the_signal_is_too_short_or_the_rate_too_low() {
         assert_eq!(Welch::new(1000.0).density(&[0.0; 249]), None);
