@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn any_delay_or_lead_below_the_margin_is_found() {
-        for by in [0.0, 0.3, 1.0, 2.5, 3.0, 7.25, 20.0, 61.4, 97.0] {
+        for by in [0.0, 0.3, 1.0, 2.5, 3.0, 7.25, 20.0, 61.4, 97.0, 99.0] {
             for by in [by, -by] {
                 let (truth, estimate) = lagging(by, 4000);
                 let found = samples(&truth, &estimate, 100).unwrap();
