@@ -237,6 +237,32 @@ fn currents_are_not_taken_before_the_zeros_are_known() {
     assert_eq!(update(command).mismatch, Some(Stop::CurrentMismatch));
 }
 
+/// The current of a motor flows on for 10 ms after its amplifier is disabled.
+#[test]
+fn zeros_are_readings_from_10_ms_after_disabling_on() {
+    // Nothing would agree with a zero of this size.
+    let flowing = currents([1.0, 0.5]);
+    let zero = currents([0.02, -0.01]);
+    let command = currents([0.4, 0.2]);
+    let reading = currents([0.42, 0.19]);
+    let agrees = |flowing_ticks: usize| {
+        let mut state = AmmetersState::START;
+        for tick in 0..=WAIT {
+            let reading = if tick < flowing_ticks { flowing } else { zero };
+            AMMETERS.update(&mut state, &reading, None);
+        }
+        state.restart();
+        (0..=SPAN).all(|_| {
+            AMMETERS
+                .update(&mut state, &reading, Some(&command))
+                .mismatch
+                .is_none()
+        })
+    };
+    assert!(agrees(WAIT));
+    assert!(!agrees(WAIT + 1));
+}
+
 /// The zero moves with the temperature of the amplifier: after 50 ms 1/e of a step is left.
 #[test]
 fn zero_follows_a_drift_however_long_the_device_has_been_disabled() {

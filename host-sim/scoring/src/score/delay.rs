@@ -164,6 +164,17 @@ mod tests {
     }
 
     #[test]
+    fn every_sample_counts_in_the_mean_square_error() {
+        // 1 + 4 + ... + 361 = 19 * 20 * 39 / 6.
+        let truth: Vec<f64> = (1..20).map(f64::from).collect();
+        assert_eq!(mean_square_error(&[0.0; 19], &truth), 130.0);
+        assert_eq!(
+            mean_square_error(&[0.0; 2], &truth[17..]),
+            (18.0 * 18.0 + 19.0 * 19.0) / 2.0
+        );
+    }
+
+    #[test]
     fn smallest_margin_is_of_two_samples() {
         let (truth, late) = lagging(1.0, 50);
         assert_eq!(samples(&truth, &late, 1), None);
