@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use estimator_core::{Amps, Count, Hertz, Sample};
-use haptic_control::{Balance, DualStage, Stop};
+use haptic_control::{Balance, DualStage, Motor, Stop};
 
 const DEVICE: DualStage = DualStage::DEFAULT;
 const CONSTANT: f64 = DEVICE.large.torque_constant;
@@ -81,7 +81,25 @@ fn found_s(
     small: impl Fn(f64) -> f64,
     amps: impl Fn(f64) -> f64,
 ) -> Option<f64> {
-    let balance = Balance::new(&DEVICE, Hertz(rate));
+    found_by_s(
+        &Balance::new(&DEVICE, Hertz(rate)),
+        rate,
+        seconds,
+        large,
+        small,
+        amps,
+    )
+}
+
+/// Time of the first finding of `balance`, s.
+fn found_by_s(
+    balance: &Balance,
+    rate: f64,
+    seconds: f64,
+    large: impl Fn(f64) -> f64,
+    small: impl Fn(f64) -> f64,
+    amps: impl Fn(f64) -> f64,
+) -> Option<f64> {
     let sample = |k: u32| {
         let t = f64::from(k) / rate;
         Sample::new(counts(large(t), DEVICE.large.counts_per_rev))
@@ -211,6 +229,42 @@ fn first_windows_allow_the_largest_friction_and_the_errors() {
             // A motor that rests holds against either direction.
             let at = found_s(10e3, seconds, |_| 0.0, |_| 0.0, |_| sign * amps);
             assert_eq!(at.is_some(), found, "{amps} at rest");
+        }
+    }
+}
+
+/// As of friction that nobody has measured.
+#[test]
+fn described_friction_is_at_least_50_ma() {
+    for (described, assumed) in [(0.0, 0.05), (0.04, 0.05), (0.06, 0.06)] {
+        let large = Motor {
+            coulomb_friction: described * CONSTANT,
+            ..DEVICE.large
+        };
+        let balance = Balance::new(&DualStage { large, ..DEVICE }, Hertz(10e3));
+        let largest = 1.65 / 0.8 * assumed + ZERO + rounding();
+        for (amps, found) in [(largest - 2e-3, false), (largest + 2e-3, true)] {
+            let turn = |t: f64| EVEN * t;
+            let seconds = 0.0022 + 2.0 * WINDOW_S;
+            let at = found_by_s(&balance, 10e3, seconds, turn, turn, |_| amps);
+            assert_eq!(at.is_some(), found, "{described} A: {amps} A");
+        }
+    }
+}
+
+#[test]
+fn motor_that_turns_by_four_counts_in_each_quarter_of_a_window_has_a_direction() {
+    let count = TAU / f64::from(DEVICE.large.counts_per_rev);
+    // More than the amplifier's zero and the errors, against the motion; less than the friction of a motor
+    // that rests.
+    let against = ZERO + 2.0 * rounding();
+    assert!(against < FRICTION);
+    for (counts, found) in [(3.0, false), (4.0, true)] {
+        for sign in [1.0, -1.0] {
+            let speed = counts * count / (0.25 * WINDOW_S);
+            let turn = |t: f64| sign * (speed * t + 0.5 * count);
+            let at = found_s(10e3, 0.1, turn, turn, |_| -sign * against);
+            assert_eq!(at.is_some(), found, "{counts} counts, {sign}");
         }
     }
 }
