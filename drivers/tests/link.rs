@@ -329,6 +329,17 @@ fn frames_of_another_protocol_are_counted_and_hello_is_read() {
     assert_eq!(parse(&mut parser, &framed(1, &hello[3..20])), []);
 }
 
+/// A tool that knows one protocol reads the frames of every other one.
+#[test]
+fn payload_of_a_frame_is_of_128_bytes_at_most() {
+    let mut parser = Parser::default();
+    assert_eq!(parse(&mut parser, &framed(200, &[0; 128])), []);
+    assert_eq!((parser.garbage(), parser.foreign()), (0, 1));
+    // Nothing waits for the rest of a longer one.
+    assert_eq!(parse(&mut parser, &[0x5A, 200, 129]), []);
+    assert_eq!((parser.garbage(), parser.foreign()), (3, 1));
+}
+
 #[test]
 fn labels_are_printable_whatever_the_bytes_are() {
     let mut x = 1;

@@ -30,6 +30,25 @@ fn numbers_do_not_change() {
     assert_eq!(Setting::from_number(u8::MAX), None);
 }
 
+/// Bytes as boards hold them, at the places that the documentation of `Settings::encode` states.
+#[test]
+fn settings_that_a_board_holds_are_read() {
+    let mut bytes = [0; 248];
+    bytes[..4].copy_from_slice(&[1, 0, 5, 0]);
+    let values: [f32; 5] = [2050.0, 2047.0, 1.1, 1.25, 0.5];
+    for (place, value) in bytes[4..].chunks_mut(4).zip(values) {
+        place.copy_from_slice(&value.to_le_bytes());
+    }
+    let mut held = Settings::DEFAULT;
+    for (number, value) in (0..).zip(values) {
+        assert!(held.set(Setting::from_number(number).unwrap(), value));
+    }
+    assert_eq!(Settings::decode(&bytes), Ok(held));
+    bytes[0] = 2;
+    assert_eq!(Settings::decode(&bytes), Err(SettingsError::Version(2)));
+    assert_eq!(held.encode()[..2], [1, 0]);
+}
+
 #[test]
 fn every_default_is_in_its_range_and_every_end_is_kept() {
     for &setting in Setting::ALL {
