@@ -37,7 +37,7 @@ pub(super) fn ranges(truth: &[f64], rate_hz: f64, from: usize) -> Vec<Range<usiz
 mod tests {
     use super::*;
 
-    /// At 1 kHz the central difference spans 4 samples, the hold 20.
+    /// The central difference spans 4 samples at 1 kHz and 40 at 10 kHz, the hold 20 and 200.
     #[test]
     fn transient_lasts_from_2_ms_before_to_20_ms_after_a_step() {
         let mut truth = vec![0.0; 1000];
@@ -46,6 +46,7 @@ mod tests {
         assert_eq!(ranges(&truth, 1000.0, 100), vec![498..522]);
         assert_eq!(ranges(&truth, 1000.0, 510), vec![510..522]);
         assert!(ranges(&truth, 1000.0, 522).is_empty());
+        assert_eq!(ranges(&truth, 10_000.0, 0), vec![480..720]);
     }
 
     #[test]
