@@ -79,6 +79,17 @@ mod tests {
             said[2].ends_with("+5.0 %") && said[3].ends_with("+0.0 %"),
             "{said:?}"
         );
+        // A tenth is a change.
+        for (damping, changed) in [
+            (0.099, false),
+            (0.101, true),
+            (-0.099, false),
+            (-0.101, true),
+        ] {
+            let learned = LearnedLine { damping, ..learned };
+            let said = lines(&learned, &Device::default());
+            assert_eq!(said[0].contains("changed"), changed, "{said:?}");
+        }
         // No difference from the device with the learned constants.
         let mut found = Device::default();
         found.stages.damping *= 0.8;

@@ -141,9 +141,9 @@ mod tests {
     #[test]
     fn angles_are_counts_to_the_nearest() {
         let degrees = "counts_large=counts_large:deg,counts_small=counts_small:rev";
-        let rows = [("0", "0"), ("90", "0.5"), ("-90", "-2"), ("45.02", "1")];
+        let rows = [("0", "0"), ("90", "0.5"), ("-90", "-2"), ("45.0219", "1")];
         let recording = read(&rows, degrees, &[]).unwrap();
-        // 45.02 degrees are 512.2276 counts.
+        // 45.0219 degrees are 512.2492 counts.
         let large = counts(&recording.trace.counts_large);
         assert_eq!(large, [0, 1024, -1024, 512]);
         let small = counts(recording.trace.counts_small.as_ref().unwrap());
@@ -158,6 +158,9 @@ mod tests {
         let halves = [("90.0439453125", "0"), ("-90.0439453125", "0")];
         let recording = read(&halves, degrees, &[]).unwrap();
         assert_eq!(counts(&recording.trace.counts_large), [1025, -1024]);
+        // 45.0221 degrees are 512.2514 counts: more than a quarter off.
+        let rows = [("0", "0"), ("45.0221", "0.5")];
+        assert_eq!(rounded(&read(&rows, degrees, &[]).unwrap()), 1);
         // 45.03 degrees are 512.3413 counts.
         let rows = [("0", "0"), ("45.03", "0.5")];
         let recording = read(&rows, degrees, &[]).unwrap();

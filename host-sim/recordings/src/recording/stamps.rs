@@ -204,6 +204,19 @@ mod tests {
         let said = "1 of 99 new stamps of edge_tick are not between the row before and their row, the \
                     first in line 9";
         assert_eq!(recording.unwrap().notes, [said]);
+        // A tenth of the 99 new stamps is 9.
+        let beside = |most: usize| {
+            move |k: usize, edge: f64| {
+                if k % 10 == 7 && k < most {
+                    0.0
+                } else {
+                    84e6 * edge
+                }
+            }
+        };
+        assert!(read(&log(0.0, beside(90)), "").is_ok());
+        let error = read(&log(0.0, beside(100)), "").unwrap_err();
+        assert!(error.contains("(10 of 99 new stamps)"), "{error}");
         // At rest the stamp stays, and grows old.
         let rest = "t,counts_large,edge_tick,edge_bound\n0,0,,\n0.001,1,42000,1\n0.002,1,42000,1\n\
                     0.05,1,42000,1\n0.051,2,4250000,2\n";
