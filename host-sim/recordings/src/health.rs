@@ -79,7 +79,7 @@ mod tests {
             said[2].ends_with("+5.0 %") && said[3].ends_with("+0.0 %"),
             "{said:?}"
         );
-        // A tenth is a change.
+        // More than a tenth is a change.
         for (damping, changed) in [
             (0.099, false),
             (0.101, true),
