@@ -102,7 +102,7 @@ pub(crate) fn recommend(
             budget: instructions,
             cost: report::measured::cost,
         };
-        let recommended = recommend_for(&logs, &settings, || stop.look())?;
+        let recommended = recommend_for(&logs, &settings, &|| stop.look())?;
         notes.extend(recommended.notes.iter().cloned());
         let json = serde_json::to_string(&recommended.ranked).map_err(|error| error.to_string())?;
         let rust = lines(&recommended, instructions);
@@ -139,7 +139,7 @@ pub(crate) fn tune_logs(
         });
         let plan = LogPlan::new(logs.collect(), device, &kinds, &before)?.with_notes(notes);
         let searches = plan.jobs()?;
-        let tuned = plan.rows(&searches, || stop.look())?;
+        let tuned = plan.rows(&searches, &|| stop.look())?;
         let rows = searches.into_iter().zip(&tuned);
         let rows = rows.map(|(search, row)| (search.estimator, row.before, row.found, row.kept));
         let (presets, notes) = plan.presets(&tuned);
@@ -190,7 +190,7 @@ pub(crate) fn tune_scenarios(
         device,
     };
     interruptible(py, |stop| {
-        let tuned = plan.rows(&plan.jobs()?, || stop.look())?;
+        let tuned = plan.rows(&plan.jobs()?, &|| stop.look())?;
         let (presets, notes) = plan.presets(&tuned)?;
         Ok((presets.to_toml()?, in_words_of_python(&notes)))
     })

@@ -187,7 +187,7 @@ fn downloaded_recording_replays_to_the_estimates_of_the_page() {
         &kinds,
         &simulation::device::Device::default(),
         &catalogue::parameters::Parameters::default(),
-        || (),
+        &|| (),
     );
     let estimates = replayed.expect("a replay").estimates;
     assert_eq!(estimates.len(), kinds.len());

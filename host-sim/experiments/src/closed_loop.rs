@@ -119,7 +119,7 @@ impl Loop {
         &self,
         ticks: usize,
         conditions: Conditions<'_>,
-        observe: impl FnMut(&TickState),
+        mut observe: impl FnMut(&TickState),
     ) -> Result<(), String> {
         self.device.validate()?;
         let rate = Hertz(self.rate_hz);
@@ -145,7 +145,7 @@ impl Loop {
             rig: &rig,
             ticks,
             conditions,
-            observe,
+            observe: &mut observe,
         };
         scene::visit(&self.scene, visit);
         Ok(())
@@ -153,15 +153,16 @@ impl Loop {
 }
 
 /// A prepared run; generic over the type of the scene.
-struct Running<'a, F> {
+struct Running<'a> {
     run: &'a Loop,
     rig: &'a Rig,
     ticks: usize,
     conditions: Conditions<'a>,
-    observe: F,
+    // Of one type: the loops of all scenes are compiled once, and not for every observer.
+    observe: &'a mut dyn FnMut(&TickState),
 }
 
-impl<F: FnMut(&TickState)> Visit for Running<'_, F> {
+impl Visit for Running<'_> {
     fn visit<S>(self, scene: S)
     where
         S: Scene<Acceleration: Senses<Estimator> + for<'a> Senses<TrueMotion<'a>>> + Clone,
@@ -178,10 +179,10 @@ impl<F: FnMut(&TickState)> Visit for Running<'_, F> {
     }
 }
 
-impl<F: FnMut(&TickState)> Running<'_, F> {
+impl Running<'_> {
     /// Runs with the estimators `large` and `handle`; `truth` gets the true motion of the large motor and of
     /// the handle before each tick.
-    fn close<S, L, H>(mut self, scene: S, large: L, handle: H, truth: &[Truth; 2])
+    fn close<S, L, H>(self, scene: S, large: L, handle: H, truth: &[Truth; 2])
     where
         S: Scene<Acceleration: Senses<H>> + Clone,
         L: VelocityEstimator,

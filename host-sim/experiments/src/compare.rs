@@ -139,7 +139,7 @@ pub fn interval(device: &Device) -> HapticInterval {
 pub fn compare(
     cases: &[Case],
     settings: &Settings,
-    done: impl Fn() + Sync,
+    done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Outcome>, Failure> {
     in_order(cases, |case| {
         let outcome = run(case, settings);

@@ -110,7 +110,7 @@ type Job<'a> = (&'a Case, Option<Without>);
 pub fn feel(
     cases: &[Case],
     settings: &Settings,
-    done: impl Fn() + Sync,
+    done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Felt>, Failure> {
     let (distinct, places) = distinct(cases, settings);
     let ran: Vec<(Parasitic, Option<Attribution>)> = in_order(&distinct, |(case, without)| {

@@ -73,7 +73,7 @@ pub fn limit(
     cases: &[Case],
     settings: &Settings,
     particles: usize,
-    done: impl Fn() + Sync,
+    done: &(dyn Fn() + Sync),
 ) -> Result<Vec<LimitRow>, Failure> {
     let rows = in_order(cases, |case| {
         let rows = run(case, settings, particles);

@@ -154,7 +154,7 @@ pub struct Recommendation<'a> {
 pub fn recommend<'a>(
     logs: &'a [(String, Recording)],
     settings: &Settings,
-    done: impl Fn() + Sync,
+    done: &(dyn Fn() + Sync),
 ) -> Result<Recommendation<'a>, Failure> {
     check_same((logs.iter()).map(|(name, log)| (name.as_str(), log.trace.rate_hz)))?;
     let runs = |kind: &Kind, log: &Recording| {
@@ -230,7 +230,7 @@ fn outcome<'a>(
     recording: &'a Recording,
     kinds: &[&'static Kind],
     settings: &Settings,
-    done: &(impl Fn() + Sync),
+    done: &(dyn Fn() + Sync),
 ) -> Result<Outcome<'a>, Failure> {
     let failed = |why: String| Failure::Input(format!("{name}: {why}"));
     let rows = recording.t.len();

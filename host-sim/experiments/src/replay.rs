@@ -46,7 +46,7 @@ pub fn replay(
     kinds: &[&'static Kind],
     device: &Device,
     parameters: &Parameters,
-    done: impl Fn() + Sync,
+    done: &(dyn Fn() + Sync),
 ) -> Result<Replay, Failure> {
     let trace = &recording.trace;
     let mut run = Run::new(trace, trace.len(), name, kinds, device, parameters)?;
@@ -70,7 +70,7 @@ pub fn replay_against(
     kinds: &[&'static Kind],
     device: &Device,
     parameters: &Parameters,
-    done: impl Fn() + Sync,
+    done: &(dyn Fn() + Sync),
 ) -> Result<Replay, Failure> {
     let mut recording = recording.clone();
     recording.trace.true_omega = omega.map(<[f64]>::to_vec);
@@ -228,7 +228,7 @@ mod tests {
             &kinds,
             &device,
             &Parameters::default(),
-            || (),
+            &|| (),
         )
         .unwrap();
         assert!(replay.left_out.contains(&("kalman-motor", "current")));

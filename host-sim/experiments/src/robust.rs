@@ -127,7 +127,7 @@ impl shards::Experiment for Settings {
         Ok(Self::jobs(self)?)
     }
 
-    fn rows(&self, jobs: &[Job], done: impl Fn() + Sync) -> Result<Vec<RobustRow>, Failure> {
+    fn rows(&self, jobs: &[Job], done: &(dyn Fn() + Sync)) -> Result<Vec<RobustRow>, Failure> {
         Experiment::new(self)?.rows(jobs, done)
     }
 }
@@ -169,7 +169,7 @@ impl Experiment {
     ///
     /// # Errors
     /// [`Failure::Input`] of the first job, in order, that cannot be run.
-    pub fn rows(&self, jobs: &[Job], done: impl Fn() + Sync) -> Result<Vec<RobustRow>, Failure> {
+    pub fn rows(&self, jobs: &[Job], done: &(dyn Fn() + Sync)) -> Result<Vec<RobustRow>, Failure> {
         in_order(jobs, |&job| {
             let row = self.row(job);
             done();
@@ -255,9 +255,9 @@ mod tests {
         let settings = settings(&["hold", "wall"], 6);
         let experiment = Experiment::new(&settings).unwrap();
         let jobs = settings.jobs().unwrap();
-        let rows = experiment.rows(&jobs, || ()).unwrap();
+        let rows = experiment.rows(&jobs, &|| ()).unwrap();
         let backwards: Vec<Job> = jobs.iter().rev().copied().collect();
-        let mut again = experiment.rows(&backwards, || ()).unwrap();
+        let mut again = experiment.rows(&backwards, &|| ()).unwrap();
         again.reverse();
         assert_eq!(rows, again);
         for i in [0, 30, 40, 65] {

@@ -66,7 +66,7 @@ pub struct Cell {
 pub fn sensitivity(
     cases: &[Case],
     settings: &Settings,
-    done: impl Fn() + Sync,
+    done: &(dyn Fn() + Sync),
 ) -> Result<Vec<SensitivityRow>, Failure> {
     rows(cases, &cells(cases, settings, done)?)
 }
@@ -75,7 +75,7 @@ pub fn sensitivity(
 fn cells(
     cases: &[Case],
     settings: &Settings,
-    done: impl Fn() + Sync,
+    done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Vec<Cell>>, Failure> {
     in_order(cases, |case| {
         let cells = run(case, settings);

@@ -83,7 +83,7 @@ pub fn tune(
     read: &[&'static Kind],
     rate_hz: f64,
     plant: PlantKind,
-    done: impl Fn() + Sync,
+    done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Tuned>, Failure> {
     let traces = |seeds: Range<u64>| {
         let cases: Vec<_> = set

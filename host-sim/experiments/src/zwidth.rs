@@ -111,7 +111,7 @@ pub const BOUNDS_A_CASE: usize = PARTS.len() + 1;
 pub fn boundaries(
     cases: &[LoopSetup],
     settings: &Settings,
-    done: impl Fn() + Sync,
+    done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Boundary>, Failure> {
     let tests: Vec<ContactTest> = cases
         .iter()

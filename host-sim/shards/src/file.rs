@@ -98,7 +98,7 @@ pub fn run_part<E: Experiment>(
     run: Run<'_>,
     part: Part,
     folder: &Path,
-    done: impl Fn() + Sync,
+    done: &(dyn Fn() + Sync),
 ) -> Result<PathBuf, Failure> {
     let all = experiment.jobs()?;
     let rows = experiment.rows(&part.of(&all), done)?;

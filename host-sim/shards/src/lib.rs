@@ -42,5 +42,6 @@ pub trait Experiment: Serialize + DeserializeOwned {
     ///
     /// # Errors
     /// [`Failure::Input`] of a job that cannot be run.
-    fn rows(&self, jobs: &[Self::Job], done: impl Fn() + Sync) -> Result<Vec<Self::Row>, Failure>;
+    fn rows(&self, jobs: &[Self::Job], done: &(dyn Fn() + Sync))
+    -> Result<Vec<Self::Row>, Failure>;
 }

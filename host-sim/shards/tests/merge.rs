@@ -25,7 +25,7 @@ impl Experiment for Squares {
         Ok((0..self.numbers).collect())
     }
 
-    fn rows(&self, jobs: &[usize], done: impl Fn() + Sync) -> Result<Vec<usize>, Failure> {
+    fn rows(&self, jobs: &[usize], done: &(dyn Fn() + Sync)) -> Result<Vec<usize>, Failure> {
         let row = |job: &usize| {
             done();
             job * job
@@ -47,7 +47,7 @@ impl Experiment for Cubes {
         Ok(Vec::new())
     }
 
-    fn rows(&self, _: &[usize], _: impl Fn() + Sync) -> Result<Vec<usize>, Failure> {
+    fn rows(&self, _: &[usize], _: &(dyn Fn() + Sync)) -> Result<Vec<usize>, Failure> {
         Ok(Vec::new())
     }
 }
@@ -64,7 +64,7 @@ fn written(run: Run<'_>, numbers: usize, jobs: usize, n: usize) -> (TempDir, Vec
     let all: Vec<usize> = (0..jobs).collect();
     let write = |k| {
         let part = Part { k, n };
-        let rows = squares.rows(&part.of(&all), || ()).unwrap();
+        let rows = squares.rows(&part.of(&all), &|| ()).unwrap();
         let path = folder.path().join(part.file_name());
         fs::write(
             &path,

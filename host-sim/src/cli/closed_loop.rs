@@ -46,7 +46,7 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
             .sum(),
         "closing loops",
     );
-    let outcomes = compare(&cases, &settings, || bar.inc(1))?;
+    let outcomes = compare(&cases, &settings, &|| bar.inc(1))?;
     bar.finish_and_clear();
 
     if options.timing {
@@ -88,7 +88,7 @@ pub(super) fn for_report(options: &Compare) -> (ClosedLoop, Option<String>) {
         for case in &mut cases {
             case.attribute = case.rate_hz == lowest;
         }
-        closed_loop(compare(&cases, &settings, || ())?, &settings)
+        closed_loop(compare(&cases, &settings, &|| ())?, &settings)
     };
     match run() {
         Ok(closed) => (closed, None),

@@ -123,7 +123,7 @@ pub(super) fn run(options: &Compare, command_line: &str) -> Result<(), Failure> 
     let (device, parameters) = (options.device.load()?, options.parameters.load()?);
     let settings = settings(&options.estimators, &cases, device, parameters, wanted)?;
     let bar = progress(cases.len(), "simulating");
-    let outcomes = compare(&cases, &settings, || bar.inc(1))?;
+    let outcomes = compare(&cases, &settings, &|| bar.inc(1))?;
     bar.finish_and_clear();
 
     if options.timing {

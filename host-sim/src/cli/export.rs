@@ -113,7 +113,7 @@ fn write_mcap(options: &Export, recording: &Path, file: &Path) -> Result<(), Fai
         &chosen.kinds,
         &device,
         &parameters,
-        || (),
+        &|| (),
     )?;
     let bytes = mcap(&recording, &board, &device, &replayed.estimates).map_err(Failure::Input)?;
     write_whole(file, &bytes)?;

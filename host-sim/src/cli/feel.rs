@@ -102,7 +102,7 @@ pub(super) fn run(options: &Feel, command_line: &str) -> Result<(), Failure> {
         note(format_args!("note: {line}"));
     }
     let bar = progress(experiments::feel::runs(&cases, &settings), "closing loops");
-    let felt = feel(&cases, &settings, || bar.inc(1))?;
+    let felt = feel(&cases, &settings, &|| bar.inc(1))?;
     bar.finish_and_clear();
 
     let (causes, without) = (

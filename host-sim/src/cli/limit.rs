@@ -70,7 +70,9 @@ pub(super) fn run(options: &Limit) -> Result<(), Failure> {
         Wanted::NONE,
     )?;
     let bar = progress(cases.len(), "filtering");
-    let rows = limit(&cases, &settings, options.particles as usize, || bar.inc(1))?;
+    let rows = limit(&cases, &settings, options.particles as usize, &|| {
+        bar.inc(1);
+    })?;
     bar.finish_and_clear();
     let json = rows::json(&rows)?;
     page::print(

@@ -91,7 +91,7 @@ pub(super) fn run(options: &Plot) -> Result<(), Failure> {
         &chosen.kinds,
         &device,
         &parameters,
-        || (),
+        &|| (),
     )?;
     let svg = report::recording(&RecordingView {
         name: &name,

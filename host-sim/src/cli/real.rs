@@ -108,7 +108,7 @@ pub(super) fn run(options: &Real, command_line: &str) -> Result<(), Failure> {
         options.out.is_some() && is_first && coarsened && case.rate_hz == shown.1
     };
     let bar = progress(cases.len(), "estimating");
-    let outcomes = run_all(&recordings, &cases, &settings, keep, || bar.inc(1))?;
+    let outcomes = run_all(&recordings, &cases, &settings, keep, &|| bar.inc(1))?;
     bar.finish_and_clear();
 
     let (kept, rows): (Vec<_>, Vec<_>) = (outcomes.into_iter())

@@ -84,7 +84,7 @@ pub(super) fn run(options: &Recommend, command_line: &str) -> Result<(), Failure
         cost: report::measured::cost,
     };
     let bar = progress(logs.len() * Kind::all().len(), "estimating");
-    let recommended = recommend(&logs, &settings, || bar.inc(1))?;
+    let recommended = recommend(&logs, &settings, &|| bar.inc(1))?;
     bar.finish_and_clear();
 
     let counts_per_rev = device.stages.large.counts_per_rev;

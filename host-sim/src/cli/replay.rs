@@ -258,7 +258,7 @@ impl Passes<'_> {
             rows.trace.true_omega = Some(reference.omega[self.passed.clone()].to_vec());
         }
         let bar = &self.bar;
-        run.add(rows, || bar.inc(1))?;
+        run.add(rows, &|| bar.inc(1))?;
         if let Some(board) = &mut self.board {
             let board = board.next(self.section)?;
             match self.scores {

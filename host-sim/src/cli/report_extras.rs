@@ -51,7 +51,7 @@ pub(super) fn report_extras(
         .filter(|case| case.plant == PlantKind::Friction)
         .cloned()
         .collect();
-    let limits = limit(&bounded, settings, PARTICLES, || ())?;
+    let limits = limit(&bounded, settings, PARTICLES, &|| ())?;
     if !options.scenarios.is_empty() {
         return Ok(ReportExtras {
             limits,
@@ -59,10 +59,10 @@ pub(super) fn report_extras(
         });
     }
     let moving = [ScenarioName::Step, ScenarioName::Track].map(of);
-    let warming = compare(&[of(ScenarioName::Heating)], settings, || ())?;
+    let warming = compare(&[of(ScenarioName::Heating)], settings, &|| ())?;
     Ok(ReportExtras {
         limits,
-        constant_errors: sensitivity(&moving, settings, || ())?,
+        constant_errors: sensitivity(&moving, settings, &|| ())?,
         warming: warming.iter().map(case_report).collect(),
     })
 }

@@ -101,7 +101,7 @@ pub(super) fn run_part<E: Experiment>(
     };
     let jobs = part.count(experiment.jobs()?.len());
     let bar = progress(jobs * E::STEPS_A_JOB, doing);
-    let path = file::run_part(experiment, run, part, folder, || bar.inc(1))?;
+    let path = file::run_part(experiment, run, part, folder, &|| bar.inc(1))?;
     bar.finish_and_clear();
     print_bytes(format!("{}\n", path.display()).as_bytes())
 }
@@ -113,7 +113,7 @@ pub(super) fn rows<E: Experiment>(
     doing: &'static str,
 ) -> Result<Vec<E::Row>, Failure> {
     let bar = progress(jobs.len() * E::STEPS_A_JOB, doing);
-    let rows = experiment.rows(jobs, || bar.inc(1))?;
+    let rows = experiment.rows(jobs, &|| bar.inc(1))?;
     bar.finish_and_clear();
     Ok(rows)
 }

@@ -30,7 +30,7 @@ fn settings(seed: u64) -> Settings {
 }
 
 fn found(cases: &[LoopSetup]) -> Vec<Boundary> {
-    boundaries(cases, &settings(1), || ()).unwrap()
+    boundaries(cases, &settings(1), &|| ()).unwrap()
 }
 
 #[test]
@@ -43,7 +43,7 @@ fn z_width_is_smaller_at_a_slow_rate_and_with_a_coarse_encoder() {
     // Sums over seeds, which draw the phases of the encoders.
     let mut plain = [0.0; 3];
     for seed in 1..=4 {
-        let found = boundaries(&[fine, slow, coarse], &settings(seed), || ()).unwrap();
+        let found = boundaries(&[fine, slow, coarse], &settings(seed), &|| ()).unwrap();
         for (sum, boundary) in plain.iter_mut().zip(found) {
             *sum += boundary.walls[0].1.value;
         }

@@ -35,7 +35,7 @@ fn printed(disc: Disc) -> String {
         })
     };
     let cases: Vec<_> = scenarios.into_iter().flat_map(of).collect();
-    let rows = sensitivity(&cases, &settings, || ()).unwrap();
+    let rows = sensitivity(&cases, &settings, &|| ()).unwrap();
     sensitivity::table::table(&rows, usize::MAX)
 }
 

@@ -51,7 +51,7 @@ fn robustness(rate_hz: f64, devices: u64) -> Vec<RobustRow> {
     };
     let jobs = settings.jobs().unwrap();
     let experiment = robust::Experiment::new(&settings).unwrap();
-    experiment.rows(&jobs, || ()).unwrap()
+    experiment.rows(&jobs, &|| ()).unwrap()
 }
 
 /// Writes the table of the whole run.
@@ -241,7 +241,7 @@ fn bounds_of_the_boards_parameters_are_within_the_z_width() {
                 parameters: parameters.clone(),
                 seed,
             };
-            let found = &zwidth::boundaries(&[case], &settings, || ()).unwrap()[0];
+            let found = &zwidth::boundaries(&[case], &settings, &|| ()).unwrap()[0];
             let values = [found.walls[0].1.value, 1e3 * found.viscous.value];
             // The ends of the table of parameters.
             assert!(values[0] > 0.35 && values[1] > 5.0, "{large}: {values:?}");

@@ -63,7 +63,7 @@ impl Recorded {
             &kinds,
             &device,
             &Parameters::default(),
-            || (),
+            &|| (),
         )?;
         let mut rows = channels::rows(&recording, &board, &device, &replayed.estimates);
         // An estimator that lacks a column or an even clock has a channel without values.

@@ -152,7 +152,7 @@ impl Experiment for Settings {
         Ok(courses.chain(all.map(Job::Signals)).chain(kinds).collect())
     }
 
-    fn rows(&self, jobs: &[Job], done: impl Fn() + Sync) -> Result<Vec<Row>, Failure> {
+    fn rows(&self, jobs: &[Job], done: &(dyn Fn() + Sync)) -> Result<Vec<Row>, Failure> {
         let tested = self.tested()?;
         let courses = jobs.iter().filter_map(|job| match job {
             Job::Course(at, part) => Some((&tested[*at], *part)),

@@ -147,11 +147,11 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             version: &version,
             command: &settings.command(),
         };
-        let path = file::run_part(&settings, run, part, &arguments.out, || bar.inc(1))?;
+        let path = file::run_part(&settings, run, part, &arguments.out, &|| bar.inc(1))?;
         bar.finish_and_clear();
         return print_bytes(format!("{}\n", path.display()).as_bytes());
     }
-    let rows = settings.rows(&jobs, || bar.inc(1))?;
+    let rows = settings.rows(&jobs, &|| bar.inc(1))?;
     bar.finish_and_clear();
     finish(arguments, &settings, rows)
 }

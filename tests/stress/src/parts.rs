@@ -58,7 +58,7 @@ pub(crate) type Part<'a> = (&'a TestedEstimator, (u64, u64));
 pub(crate) fn run(
     parts: &[Part<'_>],
     kept: Option<&Path>,
-    done: impl Fn() + Sync,
+    done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Findings>, String> {
     let before = kept.map_or(Ok(Vec::new()), read)?;
     let build = build()?;
@@ -76,7 +76,7 @@ pub(crate) fn run(
                 ..known.found.clone()
             });
         }
-        let found = trial::run(tested, *seed, *ticks, |_| ());
+        let found = trial::run(tested, *seed, *ticks, &|_| ());
         if let (Some(path), Some(file)) = (kept, &file) {
             let done = Done {
                 build,
@@ -149,7 +149,7 @@ mod tests {
         let tested_estimators: Vec<_> = at(1000.0).into_iter().take(2).collect();
         let run = |seed| {
             let parts = tested_estimators.iter().map(|one| (one, (seed, 1000)));
-            super::run(&parts.collect::<Vec<_>>(), Some(&path), || ())
+            super::run(&parts.collect::<Vec<_>>(), Some(&path), &|| ())
         };
         let lines = || fs::read_to_string(&path).unwrap().lines().count();
         let first = run(1).unwrap();

@@ -22,7 +22,7 @@ const DEFINITION_EVERY: u64 = 61;
 const HISTORY: usize = 4096;
 
 /// Runs `tested` for `ticks` ticks and calls `progress` after every 2^20.
-pub fn run(tested: &TestedEstimator, seed: u64, ticks: u64, progress: impl Fn(u64)) -> Findings {
+pub fn run(tested: &TestedEstimator, seed: u64, ticks: u64, progress: &dyn Fn(u64)) -> Findings {
     let mut trial = Trial::new(tested, seed);
     let mut told = 0;
     // The following ticks test the settled filter; starts are measured separately.

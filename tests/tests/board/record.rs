@@ -47,7 +47,7 @@ fn recording_from_rtt_bytes_equals_that_of_the_run() {
     let kinds: Vec<_> = Kind::all().iter().collect();
     let (device, parameters) = (Device::default(), Parameters::default());
     let estimates = [&recording, &direct].map(|recording| {
-        replay(recording, "r", &kinds, &device, &parameters, || ())
+        replay(recording, "r", &kinds, &device, &parameters, &|| ())
             .unwrap()
             .estimates
     });
@@ -79,7 +79,7 @@ fn edge_stamps_of_the_board_are_recorded_and_replayed() {
     assert!(edges.iter().flatten().count() * 10 > 9 * edges.len());
     let kinds = ["observer", "observer-edge"].map(|name| Kind::named(name).unwrap());
     let (device, parameters) = (Device::default(), Parameters::default());
-    let replayed = replay(&recording, "r", &kinds, &device, &parameters, || ()).unwrap();
+    let replayed = replay(&recording, "r", &kinds, &device, &parameters, &|| ()).unwrap();
     assert_eq!(replayed.left_out, []);
     let [counts, stamps] = [0, 1].map(|i| replayed.rows[i].score.rms_rad_s.unwrap());
     println!("observer {counts} rad/s, observer-edge {stamps} rad/s");

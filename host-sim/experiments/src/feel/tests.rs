@@ -39,7 +39,7 @@ fn run_without_the_estimation_error_is_shared_by_the_estimators_of_a_scene() {
     let count = || {
         done.fetch_add(1, Ordering::Relaxed);
     };
-    let felt = feel(&cases, &settings, count).unwrap();
+    let felt = feel(&cases, &settings, &count).unwrap();
     assert_eq!(done.into_inner(), 10);
     for (case, felt) in cases.iter().zip(&felt) {
         let alone = |without| run(case, without, &settings).unwrap().0;

@@ -94,7 +94,7 @@ pub fn run(
     cases: &[Case],
     settings: &Settings,
     keep: impl Fn(&Case) -> bool + Sync,
-    done: impl Fn() + Sync,
+    done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Outcome>, Failure> {
     let one = |case: &Case| {
         let outcome = outcome(recordings, case, settings, keep(case));

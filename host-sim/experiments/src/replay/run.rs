@@ -102,7 +102,7 @@ impl Run {
     ///
     /// # Errors
     /// [`Failure::Input`] if the true velocity is not finite.
-    pub fn add(&mut self, rows: Recording, done: impl Fn() + Sync) -> Result<(), Failure> {
+    pub fn add(&mut self, rows: Recording, done: &(dyn Fn() + Sync)) -> Result<(), Failure> {
         let skipped = (SKIP_S * rows.trace.rate_hz).round() as usize;
         // A row before the section is needed for the current that acts until its first tick.
         let kept = skipped.max(1).min(self.section.t.len());
@@ -214,13 +214,13 @@ mod tests {
         let parameters = Parameters::default();
         let run = || Run::new(&columns, rows, "r", &kinds, &device, &parameters).unwrap();
         let mut whole = run();
-        whole.add(recording.clone(), || ()).unwrap();
+        whole.add(recording.clone(), &|| ()).unwrap();
         assert_eq!(whole.velocities().len(), kinds.len());
         let mut sections = run();
         let mut joined = vec![Vec::new(); kinds.len()];
         let mut t = Vec::new();
         for number in [700, 130, 1000, rows] {
-            sections.add(recording.split_front(number), || ()).unwrap();
+            sections.add(recording.split_front(number), &|| ()).unwrap();
             t.extend_from_slice(sections.t());
             for (all, part) in joined.iter_mut().zip(sections.velocities()) {
                 all.extend_from_slice(part);

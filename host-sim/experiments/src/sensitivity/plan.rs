@@ -61,7 +61,7 @@ impl Experiment for Plan {
         Ok(cases)
     }
 
-    fn rows(&self, jobs: &[Case], done: impl Fn() + Sync) -> Result<Vec<Vec<Cell>>, Failure> {
+    fn rows(&self, jobs: &[Case], done: &(dyn Fn() + Sync)) -> Result<Vec<Vec<Cell>>, Failure> {
         let kinds = self.estimators.iter().map(|name| Kind::named(name));
         let settings = Settings {
             device: self.device.clone(),

@@ -107,7 +107,7 @@ pub fn device(settings: &LoopSettings, plant: PlantKind) -> Device {
 pub fn compare(
     cases: &[LoopCase],
     settings: &LoopSettings,
-    done: impl Fn() + Sync,
+    done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Outcome>, Failure> {
     let prepared: Vec<_> = (cases.iter())
         .map(|case| Prepared::new(case, settings))

@@ -219,7 +219,7 @@ impl Experiment for LogPlan {
         Ok(self.searches.clone())
     }
 
-    fn rows(&self, jobs: &[LogSearch], done: impl Fn() + Sync) -> Result<Vec<LogTuned>, Failure> {
+    fn rows(&self, jobs: &[LogSearch], done: &(dyn Fn() + Sync)) -> Result<Vec<LogTuned>, Failure> {
         let rows = jobs.iter().map(|search| {
             let tuned = self.search(search);
             done();

@@ -131,7 +131,7 @@ impl Experiment for Plan {
     }
 
     /// The searches with the same traces follow each other.
-    fn rows(&self, jobs: &[Search], done: impl Fn() + Sync) -> Result<Vec<Tuned>, Failure> {
+    fn rows(&self, jobs: &[Search], done: &(dyn Fn() + Sync)) -> Result<Vec<Tuned>, Failure> {
         let traces = |job: &Search| (job.rate_hz, job.plant, job.group);
         let mut rows = Vec::new();
         for same in jobs.chunk_by(|a, b| traces(a) == traces(b)) {

@@ -71,7 +71,7 @@ impl Experiment for Plan {
         Ok(cases)
     }
 
-    fn rows(&self, jobs: &[LoopSetup], done: impl Fn() + Sync) -> Result<Vec<Boundary>, Failure> {
+    fn rows(&self, jobs: &[LoopSetup], done: &(dyn Fn() + Sync)) -> Result<Vec<Boundary>, Failure> {
         boundaries(jobs, &self.settings, done)
     }
 }

@@ -156,7 +156,7 @@ fn learned_models_are_better_than_finite_difference_on_recordings() {
         seconds,
     };
     let cases = recordings.cases(&settings);
-    let outcomes = run(&recordings, &cases, &settings, |_| false, || ()).unwrap();
+    let outcomes = run(&recordings, &cases, &settings, |_| false, &|| ()).unwrap();
     let rows = outcomes.iter().flat_map(|outcome| &outcome.rows);
     let learned: Vec<_> = rows
         .filter(|row| row.estimator != "finite-difference" && row.score.rms_pct.is_some())

@@ -274,7 +274,7 @@ fn run_without_every_cause_is_hardly_felt() {
         rate_hz: 1e3,
         estimator: Kind::named("pll").ok(),
     };
-    let felt = &feel(&[case], &settings, || ()).unwrap()[0];
+    let felt = &feel(&[case], &settings, &|| ()).unwrap()[0];
     let shares: f64 = (felt.attribution.as_ref().unwrap().parts.iter())
         .map(|part| part.share.unwrap())
         .sum();

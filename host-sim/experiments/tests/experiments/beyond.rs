@@ -95,7 +95,7 @@ fn assert_within(what: &str, value: f64, [low, high]: [f64; 2]) {
 fn correct_constants_leave_a_tenth_of_the_error_and_wrong_ones_are_learned() {
     let names = ["observer", "observer-edge", "adaptive", "adaptive-edge"];
     let settings = settings(Device::default(), &names);
-    let rows = sensitivity(&cases(&EIGHT, 1e3, &[21, 22]), &settings, || ()).unwrap();
+    let rows = sensitivity(&cases(&EIGHT, 1e3, &[21, 22]), &settings, &|| ()).unwrap();
     let right = |name: &str| {
         let is = |row: &SensitivityRow| row.estimator == name && row.constant.is_none();
         mean(&rows, is, |row| row.rms_pct)
@@ -128,7 +128,7 @@ fn correct_constants_leave_a_tenth_of_the_error_and_wrong_ones_are_learned() {
         Device::default(),
         &["observer", "observer-soft", "adaptive", "adaptive-soft"],
     );
-    let soft = sensitivity(&cases(&EIGHT, 1e3, &[21, 22]), &soft, || ()).unwrap();
+    let soft = sensitivity(&cases(&EIGHT, 1e3, &[21, 22]), &soft, &|| ()).unwrap();
     let moving = |name: &str| {
         let is = |row: &SensitivityRow| {
             row.estimator == name && row.constant.is_none() && MOVING.contains(&row.scenario)
@@ -189,7 +189,7 @@ fn creep_is_followed_at_a_fast_rate() {
     let outcomes = compare(
         &cases(&[ScenarioName::Creep], 1e4, &[21, 22]),
         &settings,
-        || (),
+        &|| (),
     );
     let outcomes = outcomes.unwrap();
     let rows = || outcomes.iter().flat_map(|outcome| &outcome.rows);
@@ -214,7 +214,7 @@ fn quantised_observer_reaches_the_bound_of_the_particle_filter() {
         settings.parameters.set(text).unwrap();
     }
     for case in cases(&[ScenarioName::Stochastic], 1e3, &[21, 22]) {
-        let rows = limit(&[case], &settings, 2000, || ()).unwrap();
+        let rows = limit(&[case], &settings, 2000, &|| ()).unwrap();
         let over = |name: &str| {
             let row = rows.iter().find(|row| row.estimator == name);
             row.unwrap().over_limit
@@ -240,7 +240,7 @@ fn disc_errors_increase_the_error_little() {
         ..Device::default()
     };
     let settings = settings(device, &["observer-edge", "adaptive-edge"]);
-    let rows = sensitivity(&cases(&EIGHT, 1e3, &[21, 22]), &settings, || ()).unwrap();
+    let rows = sensitivity(&cases(&EIGHT, 1e3, &[21, 22]), &settings, &|| ()).unwrap();
     for name in ["observer-edge", "adaptive-edge"] {
         let is = |row: &SensitivityRow| row.estimator == name && row.constant.is_none();
         assert_within(name, mean(&rows, is, |row| row.rms_pct), [1.0, 5.5]);
@@ -258,7 +258,7 @@ fn damping_of_a_warming_coupler_is_learned() {
     let outcomes = compare(
         &cases(&[ScenarioName::Heating], 1e3, &[21]),
         &settings,
-        || (),
+        &|| (),
     )
     .unwrap();
     for row in &outcomes[0].rows {
@@ -291,7 +291,7 @@ fn fast_rates_beat_the_papers_filter() {
         let outcomes = compare(
             &cases(&[Step, Track, Texture], rate_hz, &[21]),
             &settings,
-            || (),
+            &|| (),
         )
         .unwrap();
         let rms = |name: &str| {

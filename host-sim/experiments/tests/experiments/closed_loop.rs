@@ -88,7 +88,7 @@ fn parasitic_force_is_felt_minus_wanted_force() {
         keep: true,
         attribute: false,
     };
-    let outcomes = compare(&[case], &settings(&["pll"]), || ()).unwrap();
+    let outcomes = compare(&[case], &settings(&["pll"]), &|| ()).unwrap();
     let fingertip = Fingertip::new(&Device::default());
     for run in &outcomes[0].runs {
         let signals = run.signals.as_ref().unwrap();

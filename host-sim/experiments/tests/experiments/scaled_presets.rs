@@ -59,7 +59,7 @@ fn errors(recordings: &Recordings, parameters: Parameters, rate_hz: f64) -> Vec<
     let cases = recordings.cases(&settings);
     let cases: Vec<_> = cases.into_iter().filter(judges).collect();
     assert!(cases.len() >= 2 * 3);
-    let outcomes = run(recordings, &cases, &settings, |_| false, || ()).unwrap();
+    let outcomes = run(recordings, &cases, &settings, |_| false, &|| ()).unwrap();
     let mean = |name: &&str| {
         let rows = outcomes.iter().flat_map(|outcome| &outcome.rows);
         let of = rows.filter(|row| row.estimator == *name);

@@ -57,7 +57,7 @@ fn velocity_at_a_tick_is_in_rad_per_s_at_the_rate_of_the_samples() {
 fn rate_of_the_ticks_gives_the_scores_of_real() {
     let settings = settings(&["pll", "imm-edge", "finite-difference"]);
     let (recordings, cases) = recordings(&settings);
-    let outcomes = run(&recordings, &cases, &settings, |_| false, || ()).unwrap();
+    let outcomes = run(&recordings, &cases, &settings, |_| false, &|| ()).unwrap();
     let of_real = outcomes.into_iter().flat_map(|outcome| outcome.rows);
     let of_real: Vec<_> = of_real.filter(|row| row.phase.is_some()).collect();
     assert_eq!(of_real.len(), 8 * 3);
