@@ -171,7 +171,7 @@ pub fn recommend<'a>(
         .into_iter()
         .partition(|kind| settings.is_known || !kind.needs_device());
     let outcomes = in_order(logs, |(name, recording)| {
-        outcome(name, recording, &kinds, settings, &done)
+        outcome(name, recording, &kinds, settings, done)
     })?;
     let mut notes = Vec::new();
     if !of_device.is_empty() {

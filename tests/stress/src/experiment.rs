@@ -159,7 +159,7 @@ impl Experiment for Settings {
             _ => None,
         });
         let courses: Vec<_> = courses.collect();
-        let courses = parts::run(&courses, self.resume.as_deref(), &done)?;
+        let courses = parts::run(&courses, self.resume.as_deref(), done)?;
         let mut rows: Vec<Row> = courses.into_iter().map(Row::Course).collect();
 
         let signals = jobs.iter().filter_map(|job| match job {

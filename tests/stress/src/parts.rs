@@ -76,7 +76,7 @@ pub(crate) fn run(
                 ..known.found.clone()
             });
         }
-        let found = trial::run(tested, *seed, *ticks, &|_| ());
+        let found = trial::run(tested, *seed, *ticks);
         if let (Some(path), Some(file)) = (kept, &file) {
             let done = Done {
                 build,

@@ -21,21 +21,15 @@ const DEFINITION_EVERY: u64 = 61;
 /// rarely.
 const HISTORY: usize = 4096;
 
-/// Runs `tested` for `ticks` ticks and calls `progress` after every 2^20.
-pub fn run(tested: &TestedEstimator, seed: u64, ticks: u64, progress: &dyn Fn(u64)) -> Findings {
+/// Runs `tested` for `ticks` ticks.
+pub fn run(tested: &TestedEstimator, seed: u64, ticks: u64) -> Findings {
     let mut trial = Trial::new(tested, seed);
-    let mut told = 0;
     // The following ticks test the settled filter; starts are measured separately.
     trial.recover();
     while trial.found.ticks < ticks {
         trial.stretch();
         trial.recover();
-        if trial.found.ticks - told >= 1 << 20 {
-            progress(trial.found.ticks - told);
-            told = trial.found.ticks;
-        }
     }
-    progress(trial.found.ticks - told);
     trial.found
 }
 

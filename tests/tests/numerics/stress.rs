@@ -12,7 +12,7 @@ const TICKS: u64 = 1_000_000;
 fn run(tested_estimators: &[TestedEstimator], seed: u64) -> Vec<Findings> {
     tested_estimators
         .iter()
-        .map(|tested| trial::run(tested, seed, TICKS, &|_| ()))
+        .map(|tested| trial::run(tested, seed, TICKS))
         .collect()
 }
 

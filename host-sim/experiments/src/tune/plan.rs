@@ -139,7 +139,7 @@ impl Experiment for Plan {
             let group = &self.groups[group];
             let kinds: Vec<_> = same.iter().map(|job| job.kind).collect();
             let set = group.set(&self.device)?;
-            rows.extend(tune(&set, &kinds, &group.kinds()?, rate_hz, plant, &done)?);
+            rows.extend(tune(&set, &kinds, &group.kinds()?, rate_hz, plant, done)?);
         }
         Ok(rows)
     }
