@@ -4,6 +4,7 @@ mod arguments;
 mod closed_loop;
 mod coarsen;
 mod compare;
+mod decode;
 mod export;
 mod feel;
 mod files;
@@ -63,6 +64,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Some(Command::Real(options)) => real::run(&options, &command_line),
         Some(Command::Recommend(options)) => recommend::run(&options, &command_line),
         Some(Command::Coarsen(options)) => coarsen::run(&options),
+        Some(Command::Decode(options)) => decode::run(&options),
         Some(Command::Export(options)) => export::run(&options),
         Some(Command::Record(options)) => record::run(&options),
         Some(Command::Plot(options)) => plot::run(&options),

@@ -2,6 +2,7 @@
 
 mod absolute;
 mod board;
+mod capture;
 mod clock;
 mod columns;
 mod currents;
@@ -39,6 +40,7 @@ use std::path::Path;
 
 pub use absolute::{after, boundary};
 pub use board::{BoardColumns, BoardReader};
+pub use capture::Capture;
 pub use currents::implausible_current;
 pub use formats::{KnownLog, known_logs};
 pub(crate) use kinds::check as check_kind;

@@ -6,6 +6,7 @@ mod coarsen;
 #[path = "../common/mod.rs"]
 mod common;
 mod compare;
+mod decode;
 mod escaping;
 mod export;
 mod feel;
@@ -65,6 +66,7 @@ fn help_names_every_command() {
         "identify",
         "simulate",
         "coarsen",
+        "decode",
         "real",
         "recommend",
         "tune",

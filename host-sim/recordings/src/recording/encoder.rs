@@ -221,7 +221,7 @@ mod tests {
         let line = |column, changes| {
             format!(
                 "{column} is 0 or 1 in all rows, and changes {changes} times: if it is one line of a \
-                 quadrature encoder, count the edges of both lines"
+                 quadrature encoder, count the edges of both lines with host-sim decode"
             )
         };
         assert_eq!(

@@ -142,7 +142,7 @@ pub(super) fn short(name: &str) -> String {
 }
 
 /// The columns as found, and their separator.
-fn found(layout: &Layout) -> String {
+pub(super) fn found(layout: &Layout) -> String {
     let number = layout.names.len();
     if !layout.has_header() {
         return format!(

@@ -91,6 +91,7 @@ pub(super) fn reason(layout: &Layout, places: &Places) -> Option<String> {
     let ambiguous = ambiguous(layout, places);
     ambiguous
         .or_else(|| labelled(layout))
+        .or_else(|| captured(layout))
         .or_else(|| barred(layout))
 }
 
@@ -146,6 +147,23 @@ fn labelled(layout: &Layout) -> Option<String> {
              numbers below",
             short(first)
         )
+    })
+}
+
+/// Columns that a logic analyser calls by their numbers.
+fn captured(layout: &Layout) -> Option<String> {
+    let is_line = |name: &&String| {
+        let name = name.trim().to_lowercase();
+        let number = ["channel", "dio", "d"].into_iter();
+        let mut number = number.filter_map(|word| name.strip_prefix(word));
+        let is_number = |text: &str| text.trim().parse::<u8>().is_ok();
+        name == "logic" || number.any(is_number)
+    };
+    let lines = layout.names.iter().filter(is_line).count();
+    (lines >= 2).then(|| {
+        "the columns look like lines of a logic analyser; make a recording of an encoder's two lines with \
+         host-sim decode"
+            .to_owned()
     })
 }
 

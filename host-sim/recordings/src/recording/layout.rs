@@ -9,9 +9,10 @@ use crate::log::HEAD;
 use super::endings::Ending;
 use super::formats::{Format, SIMPLEFOC, SIMPLEFOC_COLUMNS};
 use super::header;
-use super::options::{Column, ReadOptions};
+use super::options::{Column, Mapping, ReadOptions};
 use super::separator::{Separator, comment, stamp};
 use super::units::Unit;
+pub(super) use search::UNKNOWN;
 use search::{is_content, is_number, named, numbers, probable};
 
 /// Number of the first lines among which the header is searched.
@@ -145,6 +146,27 @@ impl Layout {
         Format::of(&self.names)
     }
 
+    /// The column that a user names.
+    pub(super) fn mapped(&self, mapping: &Mapping, name: &str) -> Result<Place, Failure> {
+        header::check_one(mapping, self, name)?;
+        let place = self
+            .place(&mapping.theirs)
+            .ok_or_else(|| header::unknown(mapping, self, name))?;
+        let quantity = mapping.column.quantity();
+        let unit = match (mapping.unit, Ending::of(quantity, &self.names[place])) {
+            (Some(unit), _) | (None, Ending::Unit(unit)) => unit,
+            (None, Ending::Nothing) => &quantity.units()[0],
+            (None, Ending::Unknown(unit)) => {
+                return Err(header::unknown_unit(mapping, unit, self, name));
+            }
+        };
+        Ok(Place {
+            column: mapping.column,
+            place,
+            unit,
+        })
+    }
+
     /// The columns to read.
     pub(super) fn places(&self, options: &ReadOptions, name: &str) -> Result<Places, Failure> {
         let mut places = Places {
@@ -154,23 +176,7 @@ impl Layout {
         };
         for column in Column::ALL {
             if let Some(mapping) = options.mapping(column) {
-                header::check_one(mapping, self, name)?;
-                let place = self
-                    .place(&mapping.theirs)
-                    .ok_or_else(|| header::unknown(mapping, self, name))?;
-                let quantity = column.quantity();
-                let unit = match (mapping.unit, Ending::of(quantity, &self.names[place])) {
-                    (Some(unit), _) | (None, Ending::Unit(unit)) => unit,
-                    (None, Ending::Nothing) => &quantity.units()[0],
-                    (None, Ending::Unknown(unit)) => {
-                        return Err(header::unknown_unit(mapping, unit, self, name));
-                    }
-                };
-                places.columns.push(Place {
-                    column,
-                    place,
-                    unit,
-                });
+                places.columns.push(self.mapped(mapping, name)?);
             } else if !column
                 .command()
                 .is_some_and(|command| options.mapping(command).is_some())

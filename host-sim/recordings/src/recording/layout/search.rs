@@ -96,12 +96,17 @@ fn end_with(separator: Separator, lines: &[&str]) -> bool {
         && rows.all(|row| row.trim_end_matches([' ', '\r']).ends_with(end))
 }
 
+/// A level that a logic analyser does not know.
+pub(in super::super) const UNKNOWN: &str = "X";
+
 /// Separator and number of fields of a line of numbers.
 pub(super) fn numbers(line: &str) -> Option<(Separator, usize)> {
     Separator::ALL.into_iter().find_map(|separator| {
         let fields = separator.split(line);
         let is_number = |field: &String| field.is_empty() || is_number(field, separator);
-        (fields.len() > 1 && fields.iter().all(is_number)).then_some((separator, fields.len()))
+        let is_row = |field: &String| is_number(field) || field == UNKNOWN;
+        let is_row = fields.iter().all(is_row) && fields.iter().any(is_number);
+        (fields.len() > 1 && is_row).then_some((separator, fields.len()))
     })
 }
 

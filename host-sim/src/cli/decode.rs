@@ -1,0 +1,66 @@
+//! `host-sim decode`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use experiments::real::wanted::rate;
+use recordings::arguments::counts_per_rev;
+use recordings::log::{Log, short_name};
+use recordings::recording::{Capture, counts_per_rev_line};
+use terminal::failure::Failure;
+use terminal::output::{note, write_whole};
+
+#[derive(Debug, Args)]
+pub(super) struct Decode {
+    /// Capture of the encoder's lines A and B: a row has the levels 0 or 1 of the lines from its time on,
+    /// as CSV of a logic analyser; - is standard input
+    #[arg(value_name = "CAPTURE.csv")]
+    capture: PathBuf,
+    /// Names or numbers of the columns of the lines; in the other order counts have the other sign
+    /// [default: the only two columns that are no time]
+    #[arg(long, num_args = 2, value_names = ["A", "B"])]
+    lines: Option<Vec<String>>,
+    /// Read the time from the column THEIRS: t='Time (us)', t=1:ns. Units: s, ms, us, ns [default: the
+    /// column whose name begins with time]
+    #[arg(long = "column", value_name = "t=THEIRS[:UNIT]")]
+    columns: Vec<String>,
+    /// Rate of the rows, for a capture with a row per sample and without a column of time
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    row_rate: Option<f64>,
+    /// Rate of the recording, 10 to 100000 Hz
+    #[arg(long, value_name = "HZ", default_value_t = 1000.0)]
+    rate: f64,
+    /// Counts per revolution of the encoder, four times its lines, for a comment in the recording that
+    /// the commands on recordings read
+    #[arg(long, value_name = "N", value_parser = counts_per_rev())]
+    counts_per_rev: Option<u32>,
+    /// Write the recording to FILE, with the time of the latest edge; - is standard output
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+pub(super) fn run(options: &Decode) -> Result<(), Failure> {
+    // The parser gives two names or none.
+    let lines = options
+        .lines
+        .clone()
+        .and_then(|lines| lines.try_into().ok());
+    let capture = Capture::new(
+        &options.columns,
+        lines,
+        options.row_rate,
+        rate(options.rate)?,
+    )?;
+    let log = Log::open(&options.capture)?;
+    let recording = capture.decode(log.reader()?, log.name())?;
+    let stated = options.counts_per_rev.map(counts_per_rev_line);
+    let mut text = stated.unwrap_or_default().into_bytes();
+    text.extend(recording.to_csv());
+    write_whole(&options.out, &text)?;
+    let name = short_name(&options.capture);
+    for line in &recording.notes {
+        note(format_args!("{name}: {line}"));
+    }
+    Ok(())
+}
