@@ -73,6 +73,8 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 ///            new, what exceeds the truncation by an end at √3 standard deviations
 /// weights    w_i = (w_i + c) L_i / Σ    L: density of e; without an edge the probability of the
 ///            interval
+/// surprise   every member is 8 standard deviations off, e² > 64 S: w = 1 of the last one, 0 of the others;
+///            40: its P_11 += e² / 10 and P_22 += e² / 100, e² at most 1e4 counts²
 /// noise      R = R (1 - 0.1 ρ)          ρ = e e' / S within ±1, e' of the edge before; R within
 ///            3e-4 and 0.1 counts²
 /// output     v = Σ w_i v_i      a = Σ w_i a_i      variance Σ w_i (P_11,i + (v_i - v)²)
@@ -81,8 +83,9 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 /// the Gaussian beyond them are no probability, and are not truncated again at every tick.
 ///
 /// c is the probability that q changes, one a second. The density of e has the tails of a Student
-/// distribution, `S^-1/2 (1 + e² / 32 S)^-16`. The innovations of an optimal filter are white: if
-/// successive ones have opposite signs, R is too small.
+/// distribution, `S^-1/2 (1 + e² / 32 S)^-16`. After a calm motion all members are so sure that an impact
+/// surprises them alike, and the ratios of the likelihoods say nothing: hence the surprise. The innovations
+/// of an optimal filter are white: if successive ones have opposite signs, R is too small.
 ///
 /// Rest: 0.3 s after the last change of the count and the last edge, v and a become 0 exactly, and stay
 /// 0 until the next change or edge. A shaft slower than 3.3 counts per second is taken for one at rest.
@@ -290,7 +293,7 @@ impl<const K: usize, S: Stamps> ModelBank<K, S> {
             state.drive(input);
         }
         let ends = Ends::of(displacement.0 != 0);
-        let (likelihoods, deviation) = match edge {
+        let judged = match edge {
             Some(mut edge) => {
                 if let Some(input) = input {
                     edge.position -= 0.5 * input * edge.age * edge.age;
@@ -299,16 +302,16 @@ impl<const K: usize, S: Stamps> ModelBank<K, S> {
             }
             None => {
                 let noise = S::noise_of_ends(state.boundary_variance());
-                (state.correct_by_interval(ends, noise), 1.0)
+                state.correct_by_interval(ends, noise)
             }
         };
-        let likelihood = state.weigh(&likelihoods, over.change);
+        let likelihood = state.weigh(&judged, over.change);
         if state.still >= self.rest {
             state.stop();
         }
         Some(Evidence {
             likelihood,
-            deviation,
+            deviation: judged.variance,
         })
     }
 }

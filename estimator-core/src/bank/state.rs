@@ -3,8 +3,10 @@
 use super::interval::{Ends, Likelihood};
 use super::ladder::{FIRST_RUNG, Predict, RUNGS};
 use super::member::{Innovation, Member};
+use crate::branch::unlikely;
 use crate::design::const_math::limited;
 use crate::edge_clock::FreshEdge;
+use crate::interval::smaller;
 use crate::units::Count;
 
 /// State of a [`ModelBank`](crate::ModelBank).
@@ -35,6 +37,25 @@ const RESET_WEIGHT: f32 = 0.06;
 /// Weight of the outermost member above which the bank moves.
 const HEAVY: f32 = 0.9;
 
+/// Standard deviations from which on a measurement surprises a member. If it surprises every member, all
+/// covariances are too small, and the likelihoods cannot tell by how much: all innovations are alike.
+const SURPRISING: f32 = 8.0;
+
+/// Standard deviations from which on it is an impact, after which velocity and acceleration are other ones.
+const IMPACT: f32 = 40.0;
+
+/// Variances of velocity and acceleration after an impact, over the square of the innovation.
+const STRUCK: [f32; 2] = [0.1, 0.01];
+
+/// Largest square of an innovation that counts, counts²: the variance of the velocity is then that of the
+/// start.
+const FARTHEST: f32 = 1e4;
+
+/// Divisor of the likelihood of a measurement that is `deviations` off.
+const fn divisor(deviations: f32) -> f32 {
+    Likelihood::new(1.0, 0.5 * deviations * deviations).divisor
+}
+
 /// Weight of a new member.
 const NEW_WEIGHT: f32 = 0.2;
 
@@ -46,6 +67,16 @@ const LARGEST_BOUNDARY: f32 = 0.1;
 /// Variance of the position after an edge, over that of the innovation, below which it is rounding: some
 /// 30 units in the last place.
 const ROUNDING: f32 = 4e-6;
+
+/// What a measurement says about the members.
+pub(super) struct Judged<const K: usize> {
+    /// Likelihoods, times the root of `variance`.
+    pub(super) likelihoods: [Likelihood; K],
+    /// Variance of the middle member's innovation, counts²; 1 without an edge.
+    pub(super) variance: f32,
+    /// Innovation of the last member, counts; without an edge the shift of its position.
+    pub(super) off: f32,
+}
 
 /// Change of R by an edge.
 const BOUNDARY_GAIN: f32 = 0.1;
@@ -129,15 +160,9 @@ impl<const K: usize> ModelBankState<K> {
     }
 
     /// Corrects all members by an edge and then by the quantisation interval of the count, and R by the
-    /// correlation of two innovations. Returns the
-    /// likelihoods, times the deviation of the middle member's innovation, and the square of this
-    /// deviation.
+    /// correlation of two innovations.
     #[inline(always)]
-    pub(super) fn correct_by_edge(
-        &mut self,
-        edge: &FreshEdge,
-        ends: &Ends,
-    ) -> ([Likelihood; K], f32) {
+    pub(super) fn correct_by_edge(&mut self, edge: &FreshEdge, ends: &Ends) -> Judged<K> {
         let mut innovations = [Innovation::default(); K];
         let (mut error, mut variance) = (0.0, 0.0);
         for i in 0..K {
@@ -168,24 +193,34 @@ impl<const K: usize> ModelBankState<K> {
         // Both ends are constants: the panic of `clamp` is removed.
         self.boundary = boundary.clamp(LEAST_BOUNDARY, LARGEST_BOUNDARY);
         self.innovation = error;
-        (likelihoods, middle)
+        Judged {
+            likelihoods,
+            variance: middle,
+            off: innovations[K - 1].error,
+        }
     }
 
     /// Corrects all members by the quantisation interval of the count, whose ends are known to the
-    /// variance `noise` and have truncated `ends` before. Returns its probabilities.
+    /// variance `noise` and have truncated `ends` before.
     #[inline(always)]
-    pub(super) fn correct_by_interval(&mut self, ends: &Ends, noise: f32) -> [Likelihood; K] {
+    pub(super) fn correct_by_interval(&mut self, ends: &Ends, noise: f32) -> Judged<K> {
+        let expected = self.members[K - 1].position;
         let mut likelihoods = [Likelihood::default(); K];
         for i in 0..K {
             likelihoods[i] = self.members[i].correct_by_interval(ends, noise);
         }
-        likelihoods
+        Judged {
+            likelihoods,
+            variance: 1.0,
+            off: self.members[K - 1].position - expected,
+        }
     }
 
     /// Updates the weights by the likelihoods, with the probability `change` of a change of q. Returns
     /// the likelihood of the bank.
     #[inline(always)]
-    pub(super) fn weigh(&mut self, likelihoods: &[Likelihood; K], change: f32) -> Likelihood {
+    pub(super) fn weigh(&mut self, judged: &Judged<K>, change: f32) -> Likelihood {
+        let likelihoods = &judged.likelihoods;
         let mut smallest = likelihoods[0].divisor;
         for likelihood in likelihoods {
             if likelihood.divisor < smallest {
@@ -201,9 +236,29 @@ impl<const K: usize> ModelBankState<K> {
         for weight in &mut self.weights {
             *weight *= per_sum;
         }
+        if smallest > const { divisor(SURPRISING) } {
+            unlikely();
+            self.surprise(smallest > const { divisor(IMPACT) }, judged.off);
+        }
         Likelihood {
             factor: sum,
             divisor: smallest,
+        }
+    }
+
+    /// Gives all weight to the last member, which an impact has hit if `is_hit`: the measurement was `off`
+    /// counts from where it expected it.
+    #[inline(always)]
+    fn surprise(&mut self, is_hit: bool, off: f32) {
+        for weight in &mut self.weights {
+            *weight = 0.0;
+        }
+        self.weights[K - 1] = 1.0;
+        if is_hit {
+            let square = smaller(off * off, FARTHEST);
+            let p = &mut self.members[K - 1].covariance;
+            p[3] += STRUCK[0] * square;
+            p[5] += STRUCK[1] * square;
         }
     }
 
@@ -286,13 +341,25 @@ pub(super) fn root(x: f32) -> f32 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     extern crate std;
-    use super::{LEAST_BOUNDARY, ModelBankState, root};
+    use super::{Judged, LEAST_BOUNDARY, ModelBankState, root};
     use crate::bank::interval::{Ends, Likelihood};
     use crate::edge_clock::FreshEdge;
     use crate::filters::draws::draw;
     use crate::units::Count;
+
+    /// What a measurement says that is `off` counts from where the last member expected it.
+    pub(in crate::bank) fn judged<const K: usize>(
+        likelihoods: [Likelihood; K],
+        off: f32,
+    ) -> Judged<K> {
+        Judged {
+            likelihoods,
+            variance: 1.0,
+            off,
+        }
+    }
 
     #[test]
     fn variance_is_that_of_the_mixture() {
@@ -312,10 +379,10 @@ mod tests {
     #[test]
     fn weights_follow_likelihoods_that_f32_cannot_hold() {
         let mut state = ModelBankState::<3>::start(Count(0));
-        // exp(-5000) is far below the smallest f32; the ratio of the last two is (1 + x)^-16.
-        let likelihoods = [1e6, 5000.0, 4000.0].map(|x| Likelihood::new(1.0, x));
-        state.weigh(&likelihoods, 0.0);
-        let ratio = (251.0f64 / 313.5).powi(16);
+        // exp(-1e6) is far below the smallest f32; the ratio of the last two is that of (1 + x / 16)^-16.
+        let likelihoods = [1e6, 40.0, 20.0].map(|x| Likelihood::new(1.0, x));
+        state.weigh(&judged(likelihoods, 0.0), 0.0);
+        let ratio = (2.25f64 / 3.5).powi(16);
         let expected = [0.0, ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)];
         for (weight, expected) in state.weights.iter().zip(expected) {
             assert!((f64::from(*weight) - expected).abs() < 1e-5, "{weight}");
@@ -323,10 +390,49 @@ mod tests {
     }
 
     #[test]
+    fn what_surprises_every_member_moves_the_bank_up() {
+        let start = ModelBankState::<3>::start(Count(0));
+        // e²/2S; one member that expected the measurement is enough.
+        for (deviations, moves, hits) in [
+            (7.9f32, false, false),
+            (8.1, true, false),
+            (39.9, true, false),
+            (40.1, true, true),
+        ] {
+            let x = 0.5 * deviations * deviations;
+            let likelihoods = [1e5, x, 2e4].map(|x| Likelihood::new(1.0, x));
+            let mut state = start;
+            state.weigh(&judged(likelihoods, -3.0), 1e-3);
+            assert_eq!(state.weights == [0.0, 0.0, 1.0], moves, "{deviations}");
+            // After an impact the last member has 0.1 e² and 0.01 e² more.
+            let [before, after] = [start, state].map(|state| state.members[2].covariance);
+            let struck = [after[3] - before[3], after[5] - before[5]];
+            let expected = if hits { [0.9, 0.09] } else { [0.0, 0.0] };
+            for (found, expected) in struck.into_iter().zip(expected) {
+                assert!((found - expected).abs() < 1e-4, "{deviations}: {struck:?}");
+            }
+            assert_eq!(state.members[1], start.members[1]);
+            state.follow();
+            assert_eq!(state.rung - start.rung, u32::from(moves), "{deviations}");
+        }
+    }
+
+    #[test]
+    fn farthest_impact_leaves_the_variance_of_the_start() {
+        let mut state = ModelBankState::<2>::start(Count(0));
+        let before = state.members[1].covariance[3];
+        state.weigh(
+            &judged([1e9; 2].map(|x| Likelihood::new(1.0, x)), 2e9),
+            1e-3,
+        );
+        assert_eq!(state.members[1].covariance[3], before + 1000.0);
+    }
+
+    #[test]
     fn a_change_of_the_noise_keeps_every_member_possible() {
         let mut state = ModelBankState::<2>::start(Count(0));
         state.weights = [0.0, 1.0];
-        state.weigh(&[Likelihood::CERTAIN; 2], 0.25);
+        state.weigh(&judged([Likelihood::CERTAIN; 2], 0.0), 0.25);
         assert!((state.weights[0] - 0.25 / 1.5).abs() < 1e-6);
     }
 
@@ -354,7 +460,7 @@ mod tests {
                 age: uniform() * uniform(),
             };
             let before = state;
-            let (likelihoods, _) = state.correct_by_edge(&edge, Ends::of(true));
+            let likelihoods = state.correct_by_edge(&edge, Ends::of(true)).likelihoods;
             for (member, likelihood) in state.members.iter().zip(likelihoods) {
                 let case = std::format!("{edge:?} {:?} {member:?}", before.members[0]);
                 let near = 2.0 + edge.age * variance.sqrt();

@@ -6,6 +6,7 @@ use super::interval::{Ends, Likelihood};
 use super::ladder::Ladder;
 use super::member::Member;
 use super::state::ModelBankState;
+use super::state::tests::judged;
 use super::{NoStamps, Stamped, Stamps};
 use crate::units::Count;
 
@@ -72,7 +73,7 @@ fn bank_takes_the_ends_for_as_noisy_as_told() {
     let mut state = ModelBankState::<2>::start(Count(0));
     // Moves every position by 0.4 counts.
     state.drive(0.8);
-    let likelihoods = state.correct_by_interval(Ends::of(true), ends);
+    let likelihoods = state.correct_by_interval(Ends::of(true), ends).likelihoods;
     let variance = f64::from(Member::START.position_variance());
     let [noisy, exact] = [ends, 1e-9].map(|ends| summed(0.4, variance, f64::from(ends))[0]);
     for likelihood in likelihoods {
@@ -96,7 +97,8 @@ fn two_neighbours_with_the_larger_weights_are_kept() {
     }
     let weighed = |weights: [f32; 3]| {
         let mut bank = bank;
-        bank.weigh(&weights.map(|weight| Likelihood::new(weight, 0.0)), 0.0);
+        let likelihoods = weights.map(|weight| Likelihood::new(weight, 0.0));
+        bank.weigh(&judged(likelihoods, 0.0), 0.0);
         bank
     };
     // The variance of a member grows with its process noise, from the first to the last.

@@ -226,6 +226,54 @@ fn one_bank_serves_every_encoder_and_rate() {
     }
 }
 
+/// A shaft turns at constant speed, meets a spring for 17 ms and turns back. Before it all members are sure
+/// that nothing accelerates.
+#[test]
+fn an_impact_after_a_calm_motion_is_followed() {
+    let spring = std::f64::consts::TAU * 30.0;
+    let (contact, end) = (0.5, 0.5 + std::f64::consts::PI / spring);
+    let turned = move |t: f64| match t {
+        t if t < contact => t,
+        t if t < end => contact + (spring * (t - contact)).sin() / spring,
+        t => contact - (t - end),
+    };
+    for rate in [1000.0, 5000.0] {
+        for counts in [4096.0, 65_536.0] {
+            let seen = Seen::new(rate, (0.7 * rate) as usize, 0.0, &|t| counts * turned(t));
+            let part = (contact * rate) as usize..((end + 0.01) * rate) as usize;
+            let error = |found: &[f64]| rms(&seen.velocities[part.clone()], &found[part.clone()]);
+            let difference = error(&seen.finite_difference());
+            let pairs = [
+                (
+                    seen.run(&Imm::new(Hertz(rate)).expect("valid")),
+                    Definition::run(3, rate, &seen.counts, None),
+                ),
+                (
+                    seen.run(&ImmEdge::with_edges(CLOCK, Hertz(rate)).expect("valid")),
+                    Definition::run(3, rate, &seen.counts, Some(&seen.edges)),
+                ),
+                (
+                    seen.run(&ImmPair::new(Hertz(rate)).expect("valid")),
+                    Definition::run(2, rate, &seen.counts, None),
+                ),
+            ];
+            for (name, (found, defined)) in BANKS.iter().zip(&pairs) {
+                let [found, defined] = [found, defined].map(|velocities| error(velocities));
+                let case = format!(
+                    "{rate} Hz, {counts} counts, {name}: {found:.3}, definition {defined:.3}"
+                );
+                println!("{case}, finite difference {difference:.3}");
+                // Rounding decides whether an innovation near a limit is an impact.
+                assert!(found < 1.2 * defined, "{case}");
+                assert!(
+                    found < 1.1 * difference,
+                    "{case}, finite difference {difference}"
+                );
+            }
+        }
+    }
+}
+
 /// A shaft swings by some counts, so slowly that a count takes many ticks. The members do not take the edge
 /// after a long time for a knock: the error stays near that of M/T, whose speed is at most a count over the
 /// time since the edge, at any rate.

@@ -281,7 +281,7 @@ mod tests {
                 texts.push((command.get_name().to_owned(), help));
             }
         }
-        assert_eq!(texts.len(), 21);
+        assert_eq!(texts.len(), 22);
         for (name, help) in texts {
             let examples = examples(&help);
             assert!(!examples.is_empty(), "{name}: {help}");

@@ -171,6 +171,7 @@ mod tests {
         let ids = arguments.filter(|argument| is_path(argument));
         let ids: BTreeSet<_> = ids.map(|argument| argument.get_id().as_str()).collect();
         let inputs = [
+            "capture",
             "data",
             "device",
             "fine",

@@ -163,11 +163,13 @@ impl Definition {
         let members = self.filters.len();
         let mut likelihoods = Vec::new();
         let (mut error, mut variance) = (0.0, 0.0);
+        let (mut nearest, mut last) = (f64::INFINITY, 0.0);
         for (i, filter) in self.filters.iter_mut().enumerate() {
             let q = LOWEST * 10f64.powi((self.rung + i) as i32);
             filter.x = transition * filter.x;
             filter.p = transition * filter.p * transition.transpose() + noise * q;
             let mut likelihood = None;
+            let mut off = f64::INFINITY;
             if let Some((boundary, age)) = edge {
                 let t = age * self.period;
                 let h = Vector3::new(1.0, -t, 0.5 * t * t);
@@ -177,6 +179,8 @@ impl Definition {
                 filter.x += k * e;
                 filter.p -= k * k.transpose() * s;
                 likelihood = Some((1.0 + e * e / (32.0 * s)).powi(-16) / s.sqrt());
+                off = e.abs() / s.sqrt();
+                last = e;
                 error += self.weights[i] * e;
                 variance += self.weights[i] * s;
             }
@@ -188,7 +192,19 @@ impl Definition {
             } else {
                 truncated_again(ends[0], ends[1])
             };
+            if edge.is_none() {
+                let middle = filter.x[0] - (count + 0.5);
+                off = if deviation > WIDE {
+                    middle.abs() / (deviation * deviation + 1.0 / 12.0).sqrt()
+                } else {
+                    (middle.abs() - 0.5) / deviation
+                };
+            }
+            nearest = nearest.min(off);
             let k = filter.p.column(0) / deviation;
+            if edge.is_none() {
+                last = k[0] * shift;
+            }
             filter.x += k * shift;
             filter.p -= k * k.transpose() * (1.0 - kept);
             likelihoods.push(likelihood.unwrap_or(probability));
@@ -205,6 +221,16 @@ impl Definition {
         let sum: f64 = self.weights.iter().sum();
         for weight in &mut self.weights {
             *weight /= sum;
+        }
+        if nearest > 8.0 {
+            self.weights.fill(0.0);
+            self.weights[members - 1] = 1.0;
+        }
+        if nearest > 40.0 {
+            let square = (last * last).min(1e4);
+            let p = &mut self.filters[members - 1].p;
+            p[(1, 1)] += 0.1 * square / self.period.powi(2);
+            p[(2, 2)] += 0.01 * square / self.period.powi(4);
         }
         if self.still >= rest {
             for filter in &mut self.filters {
