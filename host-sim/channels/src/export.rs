@@ -189,6 +189,64 @@ pub fn mcap<'a>(
 mod tests {
     use super::*;
 
+    /// What a reader finds: for each topic the message, its package and its fields, all optional doubles.
+    #[test]
+    fn topics_have_the_channels_of_the_list() {
+        let bytes = mcap(std::iter::empty(), &["imm-edge", "pll"]).unwrap();
+        let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+        let mut found = BTreeMap::new();
+        for channel in summary.channels.values() {
+            let schema = channel.schema.as_ref().expect("a schema");
+            assert_eq!(schema.encoding, "protobuf");
+            let files = FileDescriptorSet::decode(&*schema.data).unwrap().file;
+            assert_eq!((files.len(), files[0].package()), (1, "limpid"));
+            assert_eq!(files[0].name(), format!("limpid{}.proto", channel.topic));
+            let message = &files[0].message_type[0];
+            let is_optional_double = |field: &FieldDescriptorProto| {
+                (field.label(), field.r#type()) == (Label::Optional, Type::Double)
+            };
+            assert!(message.field.iter().all(is_optional_double), "{message:?}");
+            let names = message.field.iter().map(|field| field.name().to_owned());
+            found.insert(
+                channel.topic.clone(),
+                (message.name().to_owned(), names.collect::<Vec<_>>()),
+            );
+        }
+        let mut expected = BTreeMap::new();
+        for channel in &CHANNELS[1..] {
+            let (topic, message) = match channel.topic {
+                "velocity" => ("/velocity", "Velocity"),
+                "torque" => ("/torque", "Torque"),
+                "force" => ("/force", "Force"),
+                "current" => ("/current", "Current"),
+                "cost" => ("/cost", "Cost"),
+                "device" => ("/device", "Device"),
+                other => panic!("{other}"),
+            };
+            let entry = expected.entry(topic.to_owned());
+            let (_, names) = entry.or_insert_with(|| (message.to_owned(), Vec::new()));
+            names.push(channel.name.to_owned());
+        }
+        let names = ["imm_edge", "pll"].map(str::to_owned).to_vec();
+        expected.insert("/estimates".to_owned(), ("Estimates".to_owned(), names));
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn file_that_cannot_be_written_is_an_error() {
+        struct Full;
+        impl Write for Full {
+            fn write(&mut self, _: &[u8]) -> std::io::Result<usize> {
+                Err(std::io::Error::other("no space"))
+            }
+            fn flush(&mut self) -> std::io::Result<()> {
+                Ok(())
+            }
+        }
+        let error = McapWriter::new(Full, &[]).err().expect("refused");
+        assert!(error.starts_with("MCAP: I/O error"), "{error}");
+    }
+
     #[test]
     fn every_channel_has_a_schema_and_unknown_values_are_left_out() {
         let width = CHANNELS.len() + 1;

@@ -55,3 +55,76 @@ fn values(recording: &Recording, board: &BoardColumns, device: &Device, k: usize
         ..Values::default()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::list::CHANNELS;
+
+    const TEXT: &str = "t,counts_large,counts_small,current,current_small,true_omega,velocity_large,sigma_large,\
+        velocity_small,torque,state,cause\n\
+        0,-1024,500,0.5,-0.25,3,1.5,0.125,-2.5,0.01,4,6\n\
+        0.001,-1020,0,0,0,0,0,0,0,0,0,0\n";
+
+    /// The values of a row that are known.
+    fn known(row: &[f64]) -> BTreeMap<&'static str, f64> {
+        let named = CHANNELS.iter().map(|channel| channel.name).zip(row);
+        let known = named.filter(|(_, value)| !value.is_nan());
+        known.map(|(name, value)| (name, *value)).collect()
+    }
+
+    #[test]
+    fn row_has_the_values_of_the_recording_in_units_of_the_channels() {
+        let mut device = Device::default();
+        device.stages.large.counts_per_rev = 4096;
+        device.stages.small.counts_per_rev = 2000;
+        device.handle.diameter_m = 0.05;
+        let recording = Recording::parse(TEXT.as_bytes(), "r").unwrap();
+        let board = BoardColumns::parse(TEXT.as_bytes(), "r").unwrap();
+        let estimate = Estimate {
+            estimator: "imm",
+            velocity: vec![0.75, 7.0],
+            deviation: None,
+            damping_ratio: None,
+        };
+        let rows = rows(&recording, &board, &device, &[estimate]);
+        assert_eq!(rows.len(), 2);
+        assert_eq!(rows[0][CHANNELS.len()..], [0.75]);
+        assert_eq!(rows[1][CHANNELS.len()..], [7.0]);
+        // A quarter of a turn each, and 0.01 N.m at 25 mm.
+        let quarter = TAU / 4.0;
+        let expected = [
+            ("t", 0.0),
+            ("true_omega", 3.0),
+            ("velocity_large", 1.5),
+            ("sigma_large", 0.125),
+            ("velocity_small", -2.5),
+            ("torque", 0.01),
+            ("force", 400.0),
+            ("current", 0.5),
+            ("current_small", -0.25),
+            ("large_angle", -quarter),
+            ("handle_angle", quarter),
+            ("state", 4.0),
+            ("cause", 6.0),
+        ];
+        assert_eq!(known(&rows[0]), BTreeMap::from(expected));
+        assert_eq!(known(&rows[1])["t"], 0.001);
+    }
+
+    #[test]
+    fn what_a_recording_has_not_is_not_known() {
+        let text = "t,counts_large\n0,1024\n0.001,1025\n";
+        let recording = Recording::parse(text.as_bytes(), "r").unwrap();
+        let rows = rows(
+            &recording,
+            &BoardColumns::default(),
+            &Device::default(),
+            &[],
+        );
+        let names: Vec<_> = known(&rows[0]).into_keys().collect();
+        assert_eq!(names, ["large_angle", "t"]);
+    }
+}
