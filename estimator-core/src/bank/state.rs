@@ -250,9 +250,7 @@ impl<const K: usize> ModelBankState<K> {
     /// counts from where it expected it.
     #[inline(always)]
     fn surprise(&mut self, is_hit: bool, off: f32) {
-        for weight in &mut self.weights {
-            *weight = 0.0;
-        }
+        self.weights.fill(0.0);
         self.weights[K - 1] = 1.0;
         if is_hit {
             let square = smaller(off * off, FARTHEST);

@@ -27,6 +27,14 @@ const ROUNDING: f64 = 1e-6;
 /// Largest share of changes that may be of both lines at once.
 const LOST_SHARE: f64 = 0.01;
 
+/// Where the times of the rows are from.
+#[derive(Clone, Copy, Debug)]
+enum Clock {
+    Column(Place),
+    /// Rows at a constant rate, Hz.
+    Rate(f64),
+}
+
 /// How a capture is read, and the recording that is made of it.
 ///
 /// The count goes up by one at each change of a line while A leads B: A rises, B rises, A falls, B falls.
@@ -79,16 +87,16 @@ impl Capture {
     /// [`Failure::Input`], one line that names file, line and column.
     pub fn decode(&self, input: impl Read, name: &str) -> Result<Recording, Failure> {
         let mut records = Records::open(input, name, &self.options)?;
-        let time = self.time(&records.layout, name)?;
-        let lines = self.lines(&records.layout, time, name)?;
+        let clock = self.clock(&records.layout, name)?;
+        let lines = self.lines(&records.layout, clock, name)?;
         let called = [0, 1].map(|line| called(&records.layout, lines[line]));
         let mut times = OwnTimes::default();
         let mut decoder = Decoder::new(self.rate_hz);
         let mut rows = 0_u64;
         while let Some(row) = records.next()? {
-            let t = match (time, self.options.row_rate_hz) {
-                (Some(at), _) => times.of(&row, at)?,
-                (None, hz) => rows as f64 / hz.unwrap_or(1.0),
+            let t = match clock {
+                Clock::Column(at) => times.of(&row, at)?,
+                Clock::Rate(hz) => rows as f64 / hz,
             };
             rows += 1;
             let levels = [
@@ -97,13 +105,12 @@ impl Capture {
             ];
             decoder.take(t, levels, &row)?;
         }
-        let mut notes = vec![source(&records.layout, time, &called, &self.options)];
+        let mut notes = vec![source(&records.layout, clock, &called)];
         notes.extend(times.notes());
         decoder.finish(notes, &called, name)
     }
 
-    /// The column of the time; `None` for rows at a constant rate.
-    fn time(&self, layout: &Layout, name: &str) -> Result<Option<Place>, Failure> {
+    fn clock(&self, layout: &Layout, name: &str) -> Result<Clock, Failure> {
         let mapping = match (
             self.options.mapping(Column::T),
             self.options.row_rate_hz,
@@ -115,7 +122,7 @@ impl Capture {
                 )));
             }
             (Some(mapping), None, _) => mapping.clone(),
-            (None, Some(_), _) => return Ok(None),
+            (None, Some(hz), _) => return Ok(Clock::Rate(hz)),
             (None, None, Some(theirs)) => Mapping {
                 column: Column::T,
                 theirs: theirs.clone(),
@@ -130,16 +137,11 @@ impl Capture {
                 )));
             }
         };
-        layout.mapped(&mapping, name).map(Some)
+        layout.mapped(&mapping, name).map(Clock::Column)
     }
 
     /// The places of the lines A and B: those of the options, or the only two that are no time.
-    fn lines(
-        &self,
-        layout: &Layout,
-        time: Option<Place>,
-        name: &str,
-    ) -> Result<[usize; 2], Failure> {
+    fn lines(&self, layout: &Layout, clock: Clock, name: &str) -> Result<[usize; 2], Failure> {
         let failure = |why: String| {
             Failure::Input(format!(
                 "{name}: line {}: {why}; {}; name the columns of the encoder's lines with --lines A B",
@@ -148,14 +150,17 @@ impl Capture {
             ))
         };
         let Some(named) = &self.lines else {
-            let is_line = |place: &usize| match time {
-                Some(time) => *place != time.place,
-                None => !is_time(&layout.names[*place]),
+            let is_line = |place: &usize| match clock {
+                Clock::Column(time) => *place != time.place,
+                Clock::Rate(_) => !is_time(&layout.names[*place]),
             };
             let others: Vec<_> = (0..layout.names.len()).filter(is_line).collect();
-            return others
-                .try_into()
-                .map_err(|others: Vec<_>| failure(format!("{} lines, of two", others.len())));
+            return others.try_into().map_err(|others: Vec<_>| {
+                failure(format!(
+                    "{} columns besides the time, where an encoder has two lines",
+                    others.len()
+                ))
+            });
         };
         let place = |line: &String| {
             let called = layout.names.iter().filter(|name| *name == line);
@@ -169,7 +174,8 @@ impl Capture {
             }
         };
         let [a, b] = [place(&named[0])?, place(&named[1])?];
-        if a == b || time.is_some_and(|time| [a, b].contains(&time.place)) {
+        let is_time = matches!(clock, Clock::Column(time) if [a, b].contains(&time.place));
+        if a == b || is_time {
             return Err(failure(
                 "the time and the two lines are three columns".to_owned(),
             ));
@@ -193,15 +199,10 @@ fn called(layout: &Layout, place: usize) -> String {
 }
 
 /// The note on the columns that are read.
-fn source(
-    layout: &Layout,
-    time: Option<Place>,
-    lines: &[String; 2],
-    options: &ReadOptions,
-) -> String {
-    let time = match (time, options.row_rate_hz) {
-        (Some(at), _) => format!("t from {} ({})", called(layout, at.place), at.unit.name()),
-        (None, hz) => format!("rows at {} Hz", hz.unwrap_or_default()),
+fn source(layout: &Layout, clock: Clock, lines: &[String; 2]) -> String {
+    let time = match clock {
+        Clock::Column(at) => format!("t from {} ({})", called(layout, at.place), at.unit.name()),
+        Clock::Rate(hz) => format!("rows at {hz} Hz"),
     };
     format!(
         "{time}, line A from column {}, line B from column {}",

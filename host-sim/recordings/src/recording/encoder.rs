@@ -103,7 +103,7 @@ impl Encoder {
         let line = (!self.has_counts && self.changes >= LINE).then(|| {
             format!(
                 "{column} is 0 or 1 in all rows, and changes {} times: if it is one line of a quadrature encoder, \
-                 count the edges of both lines",
+                 count the edges of both lines with host-sim decode",
                 self.changes
             )
         });
