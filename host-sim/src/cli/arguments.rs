@@ -57,7 +57,7 @@ pub(super) enum Command {
     /// Turn a logic analyser's capture of an encoder's two lines into a recording
     #[command(after_help = "Examples:
   host-sim decode capture.csv --counts-per-rev 4096 --out motor.csv
-  host-sim decode samples.csv --row-rate 1e6 --lines D0 D1 --rate 2000 --out motor.csv")]
+  host-sim decode samples.csv --row-rate 1e6 --lines D0 D1 --out motor.csv")]
     Decode(super::decode::Decode),
     /// Convert the firmware's telemetry to a recording (CSV)
     #[command(after_help = "Example:
