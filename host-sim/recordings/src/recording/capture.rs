@@ -157,7 +157,7 @@ impl Capture {
             let others: Vec<_> = (0..layout.names.len()).filter(is_line).collect();
             return others.try_into().map_err(|others: Vec<_>| {
                 failure(format!(
-                    "{} columns besides the time, where an encoder has two lines",
+                    "columns besides the time: {}, and an encoder has two lines",
                     others.len()
                 ))
             });

@@ -256,14 +256,14 @@ fn captures_that_cannot_be_decoded_are_refused() {
             "",
             "",
             None,
-            "c.csv: line 1: 3 columns besides the time, where an encoder has two lines; found: t; a; b; c, separated by ','",
+            "c.csv: line 1: columns besides the time: 3, and an encoder has two lines; found: t; a; b; c, separated by ','",
         ),
         (
             "t,a\n0,0\n1,1\n",
             "",
             "",
             None,
-            "c.csv: line 1: 1 columns besides the time",
+            "c.csv: line 1: columns besides the time: 1, and",
         ),
         (
             "t,a,a\n0,0,1\n",
