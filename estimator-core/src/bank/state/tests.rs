@@ -1,0 +1,137 @@
+//! Weights, surprise and corrections of the state.
+
+extern crate std;
+use super::{Judged, LEAST_BOUNDARY, ModelBankState, root};
+use crate::bank::interval::{Ends, Likelihood};
+use crate::edge_clock::FreshEdge;
+use crate::filters::draws::draw;
+use crate::units::Count;
+
+/// What a measurement says that is `off` counts from where the last member expected it.
+pub(in crate::bank) fn judged<const K: usize>(likelihoods: [Likelihood; K], off: f32) -> Judged<K> {
+    Judged {
+        likelihoods,
+        variance: 1.0,
+        off,
+    }
+}
+
+#[test]
+fn variance_is_that_of_the_mixture() {
+    let mut state = ModelBankState::<2>::start(Count(0));
+    state.weights = [0.25, 0.75];
+    for (member, (velocity, variance)) in state.members.iter_mut().zip([(3.0, 0.5), (-1.0, 0.1)]) {
+        member.velocity = velocity;
+        member.covariance[3] = variance;
+    }
+    // Mean 0; 1/4 (1/2 + 9) + 3/4 (1/10 + 1).
+    assert_eq!(state.velocity(), 0.0);
+    assert!((state.velocity_variance() - 3.2).abs() < 1e-6);
+}
+
+#[test]
+fn weights_follow_likelihoods_that_f32_cannot_hold() {
+    let mut state = ModelBankState::<3>::start(Count(0));
+    // exp(-1e6) is far below the smallest f32; the ratio of the last two is that of (1 + x / 16)^-16.
+    let likelihoods = [1e6, 40.0, 20.0].map(|x| Likelihood::new(1.0, x));
+    state.weigh(&judged(likelihoods, 0.0), 0.0);
+    let ratio = (2.25f64 / 3.5).powi(16);
+    let expected = [0.0, ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)];
+    for (weight, expected) in state.weights.iter().zip(expected) {
+        assert!((f64::from(*weight) - expected).abs() < 1e-5, "{weight}");
+    }
+}
+
+#[test]
+fn what_surprises_every_member_moves_the_bank_up() {
+    let start = ModelBankState::<3>::start(Count(0));
+    // e²/2S; one member that expected the measurement is enough.
+    for (deviations, moves, hits) in [
+        (7.9f32, false, false),
+        (8.1, true, false),
+        (39.9, true, false),
+        (40.1, true, true),
+    ] {
+        let x = 0.5 * deviations * deviations;
+        let likelihoods = [1e5, x, 2e4].map(|x| Likelihood::new(1.0, x));
+        let mut state = start;
+        state.weigh(&judged(likelihoods, -3.0), 1e-3);
+        assert_eq!(state.weights == [0.0, 0.0, 1.0], moves, "{deviations}");
+        // After an impact the last member has 0.1 e² and 0.01 e² more.
+        let [before, after] = [start, state].map(|state| state.members[2].covariance);
+        let struck = [after[3] - before[3], after[5] - before[5]];
+        let expected = if hits { [0.9, 0.09] } else { [0.0, 0.0] };
+        for (found, expected) in struck.into_iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-4, "{deviations}: {struck:?}");
+        }
+        assert_eq!(state.members[1], start.members[1]);
+        state.follow();
+        assert_eq!(state.rung - start.rung, u32::from(moves), "{deviations}");
+    }
+}
+
+#[test]
+fn farthest_impact_leaves_the_variance_of_the_start() {
+    let mut state = ModelBankState::<2>::start(Count(0));
+    let before = state.members[1].covariance[3];
+    state.weigh(
+        &judged([1e9; 2].map(|x| Likelihood::new(1.0, x)), 2e9),
+        1e-3,
+    );
+    assert_eq!(state.members[1].covariance[3], before + 1000.0);
+}
+
+#[test]
+fn a_change_of_the_noise_keeps_every_member_possible() {
+    let mut state = ModelBankState::<2>::start(Count(0));
+    state.weights = [0.0, 1.0];
+    state.weigh(&judged([Likelihood::CERTAIN; 2], 0.0), 0.25);
+    assert!((state.weights[0] - 0.25 / 1.5).abs() < 1e-6);
+}
+
+/// Members of any uncertainty, up to far beyond that of the ladder: the position has the correlation
+/// with the velocity that a tick of white acceleration leaves, or nearly 1 as after many ticks.
+#[test]
+fn an_edge_after_any_uncertainty_leaves_numbers() {
+    let mut seed = 5;
+    let mut uniform = || (draw(&mut seed) >> 40) as f32 / (1u32 << 24) as f32;
+    for _ in 0..200_000 {
+        let mut state = ModelBankState::<2>::start(Count(0));
+        state.boundary = LEAST_BOUNDARY;
+        let variance = 10f32.powf(14.0 * uniform() - 6.0);
+        let ticks = 10f32.powf(3.0 * uniform());
+        let own = variance * uniform();
+        for member in &mut state.members {
+            // Position = ticks * velocity + another part.
+            let velocity = variance / (ticks * ticks);
+            member.covariance = [variance + own, ticks * velocity, 0.0, velocity, 0.0, 1e-3];
+            member.position = 0.5 * variance.sqrt();
+        }
+        let edge = FreshEdge {
+            phase: 0,
+            position: -0.5,
+            age: uniform() * uniform(),
+        };
+        let before = state;
+        let likelihoods = state.correct_by_edge(&edge, Ends::of(true)).likelihoods;
+        for (member, likelihood) in state.members.iter().zip(likelihoods) {
+            let case = std::format!("{edge:?} {:?} {member:?}", before.members[0]);
+            let near = 2.0 + edge.age * variance.sqrt();
+            assert!(member.position.abs() < near, "{case}");
+            let near = 10.0 + 3.0 * variance.sqrt();
+            assert!(member.velocity.abs() < near, "{case}");
+            assert!(member.acceleration.abs() < near, "{case}");
+            assert!(likelihood.factor.is_finite(), "{case}");
+        }
+    }
+}
+
+#[test]
+fn root_is_approximated_to_8_percent() {
+    let mut x = 0.1f32;
+    while x <= 10.0 {
+        let off = root(x) / x.sqrt() - 1.0;
+        assert!(off.abs() < 0.08, "{x}: {off}");
+        x *= 1.01;
+    }
+}
