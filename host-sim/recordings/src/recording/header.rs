@@ -182,9 +182,9 @@ mod tests {
     fn error_shows_the_header_and_the_option_that_reads_it() {
         for (text, said) in [
             (
-                "time_ms;angle_deg\n0;1\n1;2\n",
-                "line 1: no column t; found: time_ms; angle_deg, separated by ';'; name the columns and \
-                 units, for example --column 't=time_ms,counts_large=angle_deg'",
+                "time_ms;angle\n0;1\n1;2\n",
+                "line 1: no column t; found: time_ms; angle, separated by ';'; name the columns and \
+                 units, for example --column 't=time_ms,counts_large=angle:counts'",
             ),
             (
                 "",
@@ -239,6 +239,10 @@ mod tests {
             (
                 "t|counts_large\n0|1\n",
                 "line 1: '|' separates no fields; write commas, semicolons, tabs or spaces",
+            ),
+            (
+                "| time_ms | counts |\n|---|---|\n| 0 | 1 |\n",
+                "line 1: '|' separates no fields; write commas",
             ),
             (
                 "stamp,axis0.encoder.pos_estimate_of_load\n0,1\n",

@@ -97,10 +97,11 @@ pub(super) fn reason(layout: &Layout, places: &Places) -> Option<String> {
 
 /// Fields between bars.
 pub(super) fn barred(layout: &Layout) -> Option<String> {
-    let [line] = layout.names.as_slice() else {
-        return None;
+    let is_barred = match layout.names.as_slice() {
+        [line] => line.contains('|'),
+        names => names.iter().any(|name| name == "|"),
     };
-    line.contains('|')
+    is_barred
         .then(|| "'|' separates no fields; write commas, semicolons, tabs or spaces".to_owned())
 }
 

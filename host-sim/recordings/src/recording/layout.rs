@@ -1,6 +1,7 @@
 //! Layout of a text: its separator, its header, and the columns that are read.
 
 mod search;
+mod stating;
 
 use terminal::failure::Failure;
 
@@ -173,6 +174,7 @@ impl Layout {
             format: self.format(options),
             columns: Vec::new(),
             replaced_time: None,
+            by_names: false,
         };
         for column in Column::ALL {
             if let Some(mapping) = options.mapping(column) {
@@ -215,6 +217,7 @@ impl Layout {
             places.replaced_time = places.get(Column::T);
             places.columns.retain(|place| place.column != Column::T);
         }
+        places.add_stating(self, options);
         if let (Some(modulus), None) = (options.modulus[1], places.get(Column::CountsSmall)) {
             return Err(Failure::Input(format!(
                 "{name}: --modulus counts_small={modulus}: there is no column counts_small; name it with \
@@ -265,6 +268,8 @@ pub(super) struct Places {
     columns: Vec<Place>,
     /// The column of time that --row-rate replaces.
     pub(super) replaced_time: Option<Place>,
+    /// Whether a column was found because its name says what it is.
+    pub(super) by_names: bool,
 }
 
 impl Places {
@@ -275,6 +280,24 @@ impl Places {
 
     pub(super) fn all(&self) -> &[Place] {
         &self.columns
+    }
+
+    /// Adds time and position by names that say what they are, if both are read then.
+    fn add_stating(&mut self, layout: &Layout, options: &ReadOptions) {
+        let needed = match options.row_rate_hz {
+            None => &[Column::T, Column::CountsLarge][..],
+            Some(_) => &[Column::CountsLarge],
+        };
+        let lacking = needed.iter().filter(|column| self.get(**column).is_none());
+        let lacking: Vec<_> = lacking.collect();
+        let found: Option<Vec<_>> = lacking
+            .iter()
+            .map(|column| layout.stating(**column))
+            .collect();
+        if let (None, Some(found)) = (self.format, found) {
+            self.by_names = !found.is_empty();
+            self.columns.extend(found);
+        }
     }
 
     /// Adds the column of the project's own name.

@@ -9,7 +9,8 @@ use super::units::Scale;
 pub(super) fn sources(options: &ReadOptions, places: &Places, layout: &Layout) -> Option<String> {
     let is_own = places.format.is_none_or(|format| format.own);
     let uses_device = |place: &Place| matches!(place.unit.scale, Scale::PerRev(_) | Scale::Torque);
-    if is_own && options.columns.is_empty() && !places.all().iter().any(uses_device) {
+    let is_own = is_own && options.columns.is_empty() && !places.by_names;
+    if is_own && !places.all().iter().any(uses_device) {
         return None;
     }
     let [counts_large, counts_small] = options.counts_per_rev;
@@ -45,9 +46,15 @@ pub(super) fn sources(options: &ReadOptions, places: &Places, layout: &Layout) -
     };
     let parts: Vec<_> = places.all().iter().map(part).collect();
     let foreign = places.format.filter(|format| !format.own);
-    let log = foreign.map_or_else(String::new, |format| {
-        format!("read as a log of {}: ", format.name)
-    });
+    let log = match foreign {
+        Some(format) => format!("read as a log of {}: ", format.name),
+        None if places.by_names => "read by the names of its columns: ".to_owned(),
+        None => String::new(),
+    };
+    let others = match places.by_names {
+        true => "; others are named with --column",
+        false => "",
+    };
     let first = match layout.has_header() {
         true => String::new(),
         false => format!(
@@ -56,5 +63,5 @@ pub(super) fn sources(options: &ReadOptions, places: &Places, layout: &Layout) -
             short(&layout.first_row)
         ),
     };
-    Some(format!("{log}{}{first}", parts.join(", ")))
+    Some(format!("{log}{}{first}{others}", parts.join(", ")))
 }

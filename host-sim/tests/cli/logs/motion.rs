@@ -8,10 +8,7 @@ pub(super) const READ: &[(&str, &str)] = &[
     ("own.csv", ""),
     ("crlf-bom.csv", ""),
     ("carriage-return.csv", ""),
-    (
-        "semicolons-decimal-commas.csv",
-        "--column t=time_ms,counts_large=angle_deg",
-    ),
+    ("semicolons-decimal-commas.csv", ""),
     (
         "tabs.tsv",
         "--column|t=time [us]|--column|counts_large=position [rad]|--column|current=iq [mA]",

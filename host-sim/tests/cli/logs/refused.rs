@@ -6,18 +6,13 @@ use crate::{Folder, HOST_SIM};
 /// Logs that are refused, the options, and parts of the line.
 pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
     (
-        "semicolons-decimal-commas.csv",
-        "",
-        &[
-            "line 1: no column t; found: time_ms; angle_deg, separated by ';'",
-            "--column 't=time_ms,counts_large=angle_deg'",
-            "moteus, ODrive, VESC Tool, PlotJuggler, SimpleFOC",
-        ],
-    ),
-    (
         "unknown-names.csv",
         "",
-        &["found: stamp; shaft; speed", "--column 't=stamp:s,"],
+        &[
+            "line 1: no column t; found: stamp; shaft; speed, separated by ','",
+            "--column 't=stamp:s,",
+            "moteus, ODrive, VESC Tool, PlotJuggler, SimpleFOC",
+        ],
     ),
     (
         "no-header.csv",

@@ -1,0 +1,134 @@
+//! Columns whose names say what they are: one is a time with its unit, one a position with its unit.
+
+use super::super::endings::Ending;
+use super::super::hint;
+use super::super::options::Column;
+use super::{Layout, Place};
+
+/// Parts of the names of positions, and of times.
+const POSITIONS: &[&str] = &["counts", "enc", "pos", "angle", "theta"];
+const TIMES: &[&str] = &["time", "stamp"];
+
+/// Parts of the names of what is derived from a position.
+const DERIVED: &[&str] = &["vel", "speed", "omega", "acc"];
+
+/// The end of a name that counts anything: samples, errors, or an encoder's lines.
+const COUNT: &str = "count";
+
+fn has(name: &str, words: &[&str]) -> bool {
+    words.iter().any(|word| name.contains(word))
+}
+
+impl Layout {
+    /// The column of the header that is `column` by its name; `None` if there is none, or a second one.
+    /// A name is a unit alone, or has the unit at its end and a word for the quantity; t is one for a
+    /// time. A position without a unit could be the one that is meant too.
+    pub(super) fn stating(&self, column: Column) -> Option<Place> {
+        let quantity = column.quantity();
+        let words = match column {
+            Column::T => TIMES,
+            _ => POSITIONS,
+        };
+        let could_be = |name: &str| {
+            let lower = name.trim().to_lowercase();
+            let is_named = has(&lower, words) || quantity.unit(&lower).is_some();
+            match (column, Ending::of(quantity, name)) {
+                (_, Ending::Unknown(_)) => false,
+                (Column::T, Ending::Unit(_)) if lower.starts_with('t') => {
+                    is_named || !lower[1..].starts_with(char::is_alphanumeric)
+                }
+                (Column::T, _) => is_named,
+                _ => !has(&lower, DERIVED) && (is_named || lower.ends_with(COUNT)),
+            }
+        };
+        let names = self.names.iter().enumerate();
+        let mut like = names.filter(|(_, name)| could_be(name));
+        let (place, name) = like.next()?;
+        let is_only = like.next().is_none() && self.has_header() && hint::barred(self).is_none();
+        let lower = name.trim().to_lowercase();
+        let is_sure = has(&lower, words) || !lower.ends_with(COUNT);
+        match Ending::of(quantity, name) {
+            Ending::Unit(unit) if is_only && is_sure => Some(Place {
+                column,
+                place,
+                unit,
+            }),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::recording::read_log as read;
+
+    fn rows(names: &str) -> String {
+        let fields = names.split(',').count() - 1;
+        let row = |k: usize| format!("{k}{}\n", format!(",{}", 2 * k).repeat(fields));
+        format!("{names}\n{}", (0..9).map(row).collect::<String>())
+    }
+
+    #[test]
+    fn names_that_say_what_they_are_need_no_option() {
+        for (names, said) in [
+            (
+                "time_ms,counts",
+                "t from 'time_ms' (ms), counts_large from 'counts' (counts)",
+            ),
+            (
+                "Time [ms],Encoder [counts]",
+                "t from 'Time [ms]' (ms), counts_large from 'Encoder [counts]' (counts)",
+            ),
+            (
+                "ms,current_mA,pos_deg,target_A",
+                "t from 'ms' (ms), counts_large from 'pos_deg' (deg with 4096 counts/rev)",
+            ),
+            (
+                "time_ms,wheel_encoder_count",
+                "t from 'time_ms' (ms), counts_large from 'wheel_encoder_count' (counts)",
+            ),
+            (
+                "time_us,encoder_counts,encoder_velocity,encoder_acc_rad_s2,pos_mm",
+                "t from 'time_us' (us), counts_large from 'encoder_counts' (counts)",
+            ),
+            (
+                "t_ms,t_motor_C,ticks",
+                "t from 't_ms' (ms), counts_large from 'ticks' (counts)",
+            ),
+        ] {
+            let recording = read(&rows(names), "").unwrap();
+            let note = &recording.notes[0];
+            let whole =
+                format!("read by the names of its columns: {said}; others are named with --column");
+            assert_eq!(*note, whole);
+        }
+        let recording = read(&rows("time_ms,counts"), "").unwrap();
+        assert_eq!(recording.trace.counts_large[..3], [0, 2, 4]);
+        assert_eq!(recording.t[2], 0.002);
+        // One of both is named by the user.
+        read(&rows("time_ms,x"), "counts_large=x:counts").unwrap();
+        read(&rows("x,counts"), "t=x:ms").unwrap();
+    }
+
+    #[test]
+    fn names_that_leave_a_choice_are_refused() {
+        for names in [
+            "time_ms,left_counts,right_counts",
+            "time_ms,target_deg_pos,pos_deg",
+            // Nobody says what is counted.
+            "time_ms,count",
+            "time_ms,sample_count",
+            "time_ms,sample_count,angle",
+            "time_ms,boot_time_s,counts",
+            "time_ms,position",
+            "time,counts",
+            "time_min,counts",
+            "time_ms,loops",
+            "time_ms,velocity_deg_s",
+        ] {
+            let error = read(&rows(names), "").unwrap_err();
+            assert!(error.contains("r.csv: line 1: no column "), "{error}");
+            assert!(error.contains("for example --column '"), "{error}");
+        }
+    }
+}
