@@ -41,6 +41,11 @@ def motion(t):
     ("name", "options", "says"),
     [
         ("own.csv", {}, None),
+        (
+            "semicolons-decimal-commas.csv",
+            {},
+            "counts_large from 'angle_deg' (deg with 4096 counts/rev); others are named with columns=",
+        ),
         ("odrive.csv", {"counts_per_rev": 4096}, "read as a log of ODrive"),
         ("vesc-tool.csv", {}, "read as a log of VESC Tool"),
         ("moteus-tview.csv", {}, "read as a log of moteus"),

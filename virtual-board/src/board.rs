@@ -49,6 +49,14 @@ impl Part {
         Dac::codes(self.stm32.bus().slots()[self.dac_slot].registers())
     }
 
+    /// Levels on PA4 and PA5 with these loads to ground, ohm, as codes.
+    pub(crate) fn dac_levels(&self, load_ohm: [f64; 2]) -> [Option<f64>; 2] {
+        Dac::levels(
+            self.stm32.bus().slots()[self.dac_slot].registers(),
+            load_ohm,
+        )
+    }
+
     /// Sets the levels on the current monitors and on the divider of the supply, codes; `None` for a pin
     /// that is not analogue.
     pub(crate) fn drive_analog(&mut self, levels: [Option<f64>; 3]) {

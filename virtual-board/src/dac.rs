@@ -18,7 +18,28 @@ const CHANNELS: [u32; 2] = [0, 16];
 /// Codes of 0.2 V and 3.1 V at a supply of 3.3 V, 248.2 and 3847.8.
 const BUFFERED: [u16; 2] = [249, 3847];
 
+/// Resistance of an output without its buffer, ohm: the largest of the data sheet, table "DAC
+/// characteristics".
+const UNBUFFERED_OHM: f64 = 15e3;
+
+/// The smallest load for which the data sheet states the range of a buffered output, ohm.
+pub const LEAST_LOAD_OHM: f64 = 5e3;
+
 impl Dac {
+    /// Levels on PA4 and PA5 with loads to ground of at least 5 kOhm, as codes. A buffered output keeps its
+    /// level; one without its buffer divides it.
+    #[must_use]
+    pub(crate) fn levels(registers: &RegisterFile, load_ohm: [f64; 2]) -> [Option<f64>; 2] {
+        let control = registers.get(Register::Cr);
+        let codes = Self::codes(registers);
+        [0, 1].map(|n| {
+            let is_buffered = (control >> CHANNELS[n]) & UNBUFFERED == 0;
+            let divided = load_ohm[n] / (load_ohm[n] + UNBUFFERED_OHM);
+            let kept = if is_buffered { 1.0 } else { divided };
+            codes[n].map(|code| f64::from(code) * kept)
+        })
+    }
+
     /// Codes that the levels on PA4 and PA5 are those of; `None` if the channel is off and the pin floats.
     #[must_use]
     pub fn codes(registers: &RegisterFile) -> [Option<u16>; 2] {
@@ -118,6 +139,20 @@ mod tests {
             codes(0b11 << 16 | 1, [4095, 4095]),
             [Some(3847), Some(4095)]
         );
+    }
+
+    #[test]
+    fn load_divides_the_level_of_an_output_without_its_buffer() {
+        let rate = NonZeroU64::new(CORE_HZ).unwrap();
+        let mut part = ControllerBoard::new(8_000_000, rate).unwrap().part;
+        set(&mut part, RCC_APB1ENR, DACEN);
+        // BOFF of the second channel.
+        set(&mut part, CR, 0b11 << 16 | 1);
+        for register in HOLDING {
+            set(&mut part, register, 2048);
+        }
+        assert_eq!(part.dac_levels([5e3; 2]), [Some(2048.0), Some(512.0)]);
+        assert_eq!(part.dac_levels([15e3; 2]), [Some(2048.0), Some(1024.0)]);
     }
 
     #[test]

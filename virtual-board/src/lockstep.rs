@@ -106,6 +106,7 @@ pub(crate) struct Lockstep {
     /// Virtual time that an instruction takes, ns.
     instruction_ns: f64,
     dac_errors: [DacError; 2],
+    dac_load_ohm: [f64; 2],
     monitors: [Monitor; 2],
     /// Voltage of the amplifiers' supply, V.
     supply_v: f64,
@@ -174,6 +175,7 @@ impl Lockstep {
             stalls: Stalls::default(),
             instruction_ns: 1e9 / setup.instructions_per_second.get() as f64,
             dac_errors: setup.dac_errors,
+            dac_load_ohm: setup.dac_load_ohm,
             monitors: [0, 1].map(|n| Monitor {
                 offset: setup.monitor_offsets[n],
                 amps: MONITOR_AMPS[n],

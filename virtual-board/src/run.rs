@@ -20,7 +20,7 @@ use crate::live::Live;
 pub use crate::lockstep::CoreAccess;
 use crate::lockstep::Lockstep;
 use crate::objections;
-pub use setup::{DacError, Setup};
+pub use setup::{DacError, LEAST_LOAD_OHM, Setup};
 
 /// Control rate of an image that is built without `RATE`, Hz.
 pub const RATE_HZ: f64 = 10e3;
@@ -223,6 +223,15 @@ pub(crate) fn emulate(
     progress: impl FnMut(f64) + Send + 'static,
 ) -> Result<(Session<ControllerBoard>, Lockstep, Duration), String> {
     setup.device.validate()?;
+    if let Some(load_ohm) = setup
+        .dac_load_ohm
+        .iter()
+        .find(|ohm| **ohm < LEAST_LOAD_OHM || ohm.is_nan())
+    {
+        return Err(format!(
+            "a load of {load_ohm} ohm at a DAC pin: the buffer of the output drives at least {LEAST_LOAD_OHM} ohm"
+        ));
+    }
     let emulator = |error: &dyn std::fmt::Display| format!("emulator: {error}");
     let has = |fault| setup.faults.iter().any(|(_, other)| *other == fault);
     let crystal_hz = if has(Fault::DeadCrystal) || setup.crystal_from_s > 0.0 {

@@ -7,10 +7,12 @@ use experiments::closed_loop::Hand;
 use haptic_control::{Mode, SceneKind, Stop};
 use simulation::device::Device;
 use virtual_board::board::CORE_HZ;
-use virtual_board::run::{AMPS_PER_CODE, DacError, Outcome, RATE_HZ, Setup};
+use virtual_board::run::{
+    AMPS_PER_CODE, CoreAccess, DacError, LEAST_LOAD_OHM, Outcome, RATE_HZ, Setup, on_board,
+};
 use virtual_board::scene::{press, stiffness};
 
-use crate::image::{SETTLED_S, free_air, of_scene, run};
+use crate::image::{SETTLED_S, free_air, image, of_scene, run};
 
 #[test]
 fn the_image_boots_and_closes_the_loop_at_10_khz() {
@@ -151,6 +153,43 @@ fn dac_offset_causes_a_force_and_no_stop() {
     let small = 15.0 * AMPS_PER_CODE[1] * device.stages.small.torque_constant;
     println!("{up} {down} N.m of {small}");
     assert!(((up - down) / 2.0 / small - 1.0).abs() < 0.1);
+}
+
+/// Control register of the DAC, and its value with both channels on and their buffers off.
+const DAC_CONTROL: u32 = 0x4000_7400;
+const UNBUFFERED: u32 = 0b11 << 16 | 0b11;
+
+/// The firmware leaves the buffers on, so that the smallest load that the data sheet allows changes nothing.
+/// Without them it would divide the levels, and command a current.
+#[test]
+fn load_of_the_dac_pins_changes_no_current() {
+    let currents = |load_ohm, accesses| {
+        let run = run(&Setup {
+            dac_load_ohm: [load_ohm; 2],
+            accesses,
+            ..of_scene(SceneKind::FreeAir, Hand::Moving, 0.6)
+        });
+        let states = run.plant_states.iter();
+        states.map(|moment| moment.currents).collect::<Vec<_>>()
+    };
+    let unloaded = currents(1e12, Vec::new());
+    assert!(unloaded.iter().flatten().any(|current| *current != 0.0));
+    assert_eq!(currents(LEAST_LOAD_OHM, Vec::new()), unloaded);
+    let off = vec![(0.3, CoreAccess::Store(DAC_CONTROL, UNBUFFERED))];
+    let most = |currents: &[[f64; 2]]| {
+        currents
+            .iter()
+            .flatten()
+            .fold(0.0, |most: f64, i| most.max(i.abs()))
+    };
+    let divided = currents(LEAST_LOAD_OHM, off);
+    assert!(most(&divided) > 2.0 + most(&unloaded), "{}", most(&divided));
+    let small = Setup {
+        dac_load_ohm: [LEAST_LOAD_OHM, 4e3],
+        ..Setup::default()
+    };
+    let refused = on_board(image(""), &small, |_| ()).unwrap_err();
+    assert!(refused.contains("4000 ohm at a DAC pin"), "{refused}");
 }
 
 /// Settings in flash that state zero and gain of both channels leave less than 1 mN of what the errors

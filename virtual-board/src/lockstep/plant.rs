@@ -20,11 +20,11 @@ impl Lockstep {
         {
             self.recorded.enables.push((self.plant_ns(), enabled));
         }
-        let codes = board.part.dac_codes();
+        let levels = board.part.dac_levels(self.dac_load_ohm);
         for n in [LARGE, SMALL] {
             // A floating pin is assumed at mid-scale.
             let DacError { offset, gain } = self.dac_errors[n];
-            let steps = codes[n].map_or(0.0, |code| f64::from(code) - 2048.0 + offset);
+            let steps = levels[n].map_or(0.0, |level| level - 2048.0 + offset);
             self.currents[n] = if outputs.drives[n] {
                 steps * gain * AMPS_PER_CODE[n]
             } else {

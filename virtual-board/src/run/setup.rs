@@ -10,6 +10,7 @@ use simulation::device::Device;
 
 use crate::board::CORE_HZ;
 use crate::command::Command;
+pub use crate::dac::LEAST_LOAD_OHM;
 use crate::fault::Fault;
 use crate::flash::Sectors;
 use crate::lockstep::CoreAccess;
@@ -74,6 +75,8 @@ pub struct Setup {
     pub crystal_from_s: f64,
     /// Errors of the DAC outputs and of the inputs behind them: large motor, small motor.
     pub dac_errors: [DacError; 2],
+    /// Loads of the DAC pins to ground, ohm: at least [`LEAST_LOAD_OHM`].
+    pub dac_load_ohm: [f64; 2],
     /// Errors of the zeros of the current monitors, codes.
     pub monitor_offsets: [f64; 2],
     /// Voltage of the amplifiers' supply until a fault of it, V.
@@ -114,6 +117,7 @@ impl Default for Setup {
             crystal_hz: 8_000_000,
             crystal_from_s: 0.0,
             dac_errors: [DacError::NONE; 2],
+            dac_load_ohm: [LEAST_LOAD_OHM; 2],
             monitor_offsets: [11.0, -7.0],
             supply_v: 24.0,
             settings: Some(Settings::COMMISSIONED),
