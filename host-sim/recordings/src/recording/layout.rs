@@ -292,7 +292,7 @@ impl Places {
         let lacking: Vec<_> = lacking.collect();
         let found: Option<Vec<_>> = lacking
             .iter()
-            .map(|column| layout.stating(**column))
+            .map(|column| layout.stating(**column, &self.columns))
             .collect();
         if let (None, Some(found)) = (self.format, found) {
             self.by_names = !found.is_empty();

@@ -20,10 +20,11 @@ fn has(name: &str, words: &[&str]) -> bool {
 }
 
 impl Layout {
-    /// The column of the header that is `column` by its name; `None` if there is none, or a second one.
+    /// The column of the header that is `column` by its name and none of those that are `known`; `None` if
+    /// there is none, or a second one.
     /// A name is a unit alone, or has the unit at its end and a word for the quantity; t is one for a
     /// time. A position without a unit could be the one that is meant too.
-    pub(super) fn stating(&self, column: Column) -> Option<Place> {
+    pub(super) fn stating(&self, column: Column, known: &[Place]) -> Option<Place> {
         let quantity = column.quantity();
         let words = match column {
             Column::T => TIMES,
@@ -42,7 +43,8 @@ impl Layout {
             }
         };
         let names = self.names.iter().enumerate();
-        let mut like = names.filter(|(_, name)| could_be(name));
+        let is_known = |place: usize| known.iter().any(|known| known.place == place);
+        let mut like = names.filter(|(place, name)| !is_known(*place) && could_be(name));
         let (place, name) = like.next()?;
         let is_only = like.next().is_none() && self.has_header() && hint::barred(self).is_none();
         let lower = name.trim().to_lowercase();
@@ -108,6 +110,10 @@ mod tests {
         // One of both is named by the user.
         read(&rows("time_ms,x"), "counts_large=x:counts").unwrap();
         read(&rows("x,counts"), "t=x:ms").unwrap();
+        // Or one that could be meant is another one.
+        let small = "counts_small=handle_counts";
+        let recording = read(&rows("time_ms,motor_counts,handle_counts"), small).unwrap();
+        assert!(recording.notes[0].contains("counts_large from 'motor_counts'"));
     }
 
     #[test]
