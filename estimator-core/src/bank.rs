@@ -75,6 +75,7 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 ///            interval
 /// surprise   every member is 8 standard deviations off, e² > 64 S: w = 1 of the last one, 0 of the others;
 ///            40: its P_11 += e² / 10 and P_22 += e² / 100, e² at most 1e4 counts²
+/// restart    Σ is no positive finite number: the bank starts anew
 /// noise      R = R (1 - 0.1 ρ)          ρ = e e' / S within ±1, e' of the edge before; R within
 ///            3e-4 and 0.1 counts²
 /// output     v = Σ w_i v_i      a = Σ w_i a_i      variance Σ w_i (P_11,i + (v_i - v)²)

@@ -233,6 +233,10 @@ impl<const K: usize> ModelBankState<K> {
             sum += self.weights[i];
         }
         let per_sum = 1.0 / sum;
+        if !(per_sum > 0.0) {
+            unlikely();
+            return self.restart();
+        }
         for weight in &mut self.weights {
             *weight *= per_sum;
         }
@@ -244,6 +248,17 @@ impl<const K: usize> ModelBankState<K> {
             factor: sum,
             divisor: smallest,
         }
+    }
+
+    /// Starts anew: rounding has left a member a covariance that is none, and the weights are no numbers.
+    #[inline(always)]
+    fn restart(&mut self) -> Likelihood {
+        for member in &mut self.members {
+            *member = Member::START.copied();
+        }
+        self.weights = [1.0 / K as f32; K];
+        self.rung = FIRST_RUNG;
+        Likelihood::CERTAIN
     }
 
     /// Gives all weight to the last member, which an impact has hit if `is_hit`: the measurement was `off`

@@ -30,6 +30,22 @@ fn variance_is_that_of_the_mixture() {
 }
 
 #[test]
+fn bank_starts_anew_where_a_likelihood_is_no_number() {
+    for (k, factor) in [(0, f32::NAN), (1, f32::NAN), (2, f32::INFINITY), (1, -9.0)] {
+        let mut state = ModelBankState::<3>::start(Count(7));
+        let expected = state;
+        state.rung = 9;
+        state.weights = [0.2, 0.5, 0.3];
+        state.members[1].velocity = 5.0;
+        state.members[2].covariance[0] = -0.1;
+        let mut likelihoods = [Likelihood::CERTAIN; 3];
+        likelihoods[k].factor = factor;
+        state.weigh(&judged(likelihoods, 0.0), 1e-4);
+        assert_eq!(state, expected, "{k} {factor}");
+    }
+}
+
+#[test]
 fn weights_follow_likelihoods_that_f32_cannot_hold() {
     let mut state = ModelBankState::<3>::start(Count(0));
     // exp(-1e6) is far below the smallest f32; the ratio of the last two is that of (1 + x / 16)^-16.
