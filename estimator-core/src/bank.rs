@@ -68,9 +68,11 @@ pub type ImmAdaptiveEdge = DrivenBank<Stamped, Followed<AdaptiveEdgeObserver>>;
 /// predict    x = F x       P = F P Fᵀ + Q(q)             F: transition of the model over one tick
 /// edge       H = [1, -t, t²/2], t the age of the edge    e = boundary - H x
 ///            S = H P Hᵀ + R    K = P Hᵀ / S              x += K e    P -= K S Kᵀ
+///            rounding: S has 1e-6 P_00 more, and P_11 keeps 1e-6 of itself
 /// interval   the position lies in the quantisation interval of the count: mean and variance of the
 ///            truncated Gaussian; with stamps, of x_0 plus a noise of variance R. In a count that is not
-///            new, what exceeds the truncation by an end at √3 standard deviations
+///            new, what exceeds the truncation by an end at √3 standard deviations. Rounding: x_0 has
+///            1e-6 (P_00 + 1 count²) more for the truncation, and P_11 keeps 1e-6 of itself
 /// weights    w_i = (w_i + c) L_i / Σ    L: density of e; without an edge the probability of the
 ///            interval
 /// surprise   every member is 8 standard deviations off, e² > 64 S: w = 1 of the last one, 0 of the others;

@@ -3,8 +3,14 @@
 use super::interval::{Ends, Likelihood, truncate};
 use crate::edge_clock::FreshEdge;
 
-/// Least variance of a position, counts²: rounding cannot make it negative.
-const LEAST_VARIANCE: f32 = 1e-6;
+/// Least variance of an end of the quantisation interval, counts²: no encoder is more exact. Without it the
+/// position becomes so certain that a change of velocity looks like an impact.
+const LEAST_NOISE: f32 = 1e-6;
+
+/// Share of a variance that a correction leaves at least: some 16 units in the last place. It is more than
+/// what rounding takes from a determinant, and P stays positive definite.
+const ROUNDING: f32 = 1e-6;
+const KEPT: f32 = 1.0 + ROUNDING;
 
 /// State and covariance of one filter, in counts and ticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,12 +56,6 @@ impl Member {
         }
     }
 
-    /// Variance of the position, counts².
-    #[inline(always)]
-    pub(super) const fn position_variance(&self) -> f32 {
-        self.covariance[0]
-    }
-
     /// Variance of the velocity, (counts/tick)².
     pub(super) const fn velocity_variance(&self) -> f32 {
         self.covariance[3]
@@ -76,7 +76,7 @@ impl Member {
         p[0] -= k0 * c0;
         p[1] -= k0 * c1;
         p[2] -= k0 * c2;
-        p[3] -= k1 * c1;
+        p[3] = p[3] * KEPT - k1 * c1;
         p[4] -= k1 * c2;
         p[5] -= k2 * c2;
     }
@@ -91,7 +91,7 @@ impl Member {
         let c0 = p00 - t * p01 + half * p02;
         let c1 = p01 - t * p11 + half * p12;
         let c2 = p02 - t * p12 + half * p22;
-        let variance = c0 - t * c1 + half * c2 + boundary;
+        let variance = c0 - t * c1 + half * c2 + (boundary + ROUNDING * p00);
         let per_variance = 1.0 / variance;
         let error = edge.position - (self.position - t * self.velocity + half * self.acceleration);
         self.correct([c0, c1, c2], per_variance, error, 1.0);
@@ -107,7 +107,7 @@ impl Member {
     #[inline(always)]
     pub(super) fn correct_by_interval(&mut self, ends: &Ends, noise: f32) -> Likelihood {
         let [p00, p01, p02, ..] = self.covariance;
-        let variance = p00 + LEAST_VARIANCE + noise;
+        let variance = p00 * KEPT + LEAST_NOISE + noise;
         let Some(truncated) = truncate(self.position, variance, ends) else {
             return Likelihood::CERTAIN;
         };
@@ -122,6 +122,7 @@ impl Member {
 mod tests {
     extern crate std;
     use super::Member;
+    use crate::bank::interval::Ends;
     use crate::edge_clock::FreshEdge;
     use nalgebra::{Matrix3, RowVector3, Vector3};
 
@@ -159,6 +160,22 @@ mod tests {
             for (found, at) in member.covariance.iter().zip(places) {
                 assert!(close(*found, after[at]), "{at:?}");
             }
+        }
+    }
+
+    #[test]
+    fn variance_of_any_position_is_positive_after_its_interval() {
+        let mut variance = 1e-6f32;
+        while variance < 1e8 {
+            let mut member = Member::START;
+            member.covariance[0] = variance;
+            member.correct_by_interval(Ends::of(true), 0.0);
+            let left = member.covariance[0];
+            assert!(
+                left > 0.0 && left < 0.1 + 2e-6 * variance,
+                "{variance}: {left}"
+            );
+            variance *= 1.01;
         }
     }
 }

@@ -64,10 +64,6 @@ const BOUNDARY: f32 = 1e-3;
 const LEAST_BOUNDARY: f32 = 3e-4;
 const LARGEST_BOUNDARY: f32 = 0.1;
 
-/// Variance of the position after an edge, over that of the innovation, below which it is rounding: some
-/// 30 units in the last place.
-const ROUNDING: f32 = 4e-6;
-
 /// What a measurement says about the members.
 pub(super) struct Judged<const K: usize> {
     /// Likelihoods, times the root of `variance`.
@@ -168,10 +164,7 @@ impl<const K: usize> ModelBankState<K> {
         for i in 0..K {
             let member = &mut self.members[i];
             innovations[i] = member.correct_by_edge(edge, self.boundary);
-            // A smaller variance is rounding: the edge alone fixes the position.
-            if member.position_variance() > ROUNDING * innovations[i].variance {
-                member.correct_by_interval(ends, self.boundary);
-            }
+            member.correct_by_interval(ends, self.boundary);
             error += self.weights[i] * innovations[i].error;
             variance += self.weights[i] * innovations[i].variance;
         }
@@ -250,7 +243,7 @@ impl<const K: usize> ModelBankState<K> {
         }
     }
 
-    /// Starts anew: rounding has left a member a covariance that is none, and the weights are no numbers.
+    /// Starts anew: an input was no number, and neither are the weights.
     #[inline(always)]
     fn restart(&mut self) -> Likelihood {
         for member in &mut self.members {

@@ -74,7 +74,7 @@ fn bank_takes_the_ends_for_as_noisy_as_told() {
     // Moves every position by 0.4 counts.
     state.drive(0.8);
     let likelihoods = state.correct_by_interval(Ends::of(true), ends).likelihoods;
-    let variance = f64::from(Member::START.position_variance());
+    let variance = f64::from(Member::START.covariance[0]);
     let [noisy, exact] = [ends, 1e-9].map(|ends| summed(0.4, variance, f64::from(ends))[0]);
     for likelihood in likelihoods {
         let found = f64::from(likelihood.relative(1.0));

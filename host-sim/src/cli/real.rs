@@ -77,9 +77,19 @@ pub(super) struct Real {
     /// the middle resolution and rate [default: no folder]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// No recording is given by itself: the error says which command reads one
+    #[arg(hide = true)]
+    recording: Option<PathBuf>,
 }
 
 pub(super) fn run(options: &Real, command_line: &str) -> Result<(), Failure> {
+    if let Some(path) = &options.recording {
+        let path = path.display();
+        return Err(Failure::Input(format!(
+            "{path}: real runs the recordings of a list, see --data; the estimators for a recording \
+             of yours are ranked by: host-sim recommend {path}"
+        )));
+    }
     one_to_stdout(&[("--json", &options.json), ("--csv", &options.csv)])?;
     if let Some(folder) = &options.out {
         Folder::check("--out", folder)?;

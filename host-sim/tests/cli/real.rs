@@ -179,6 +179,10 @@ fn invalid_input_of_real_and_coarsen_is_one_line() {
         ),
         ("real --data .", "recordings.toml: cannot read"),
         (
+            "real f.csv",
+            "of yours are ranked by: host-sim recommend f.csv",
+        ),
+        (
             "real --data . --csv - --json -",
             "only one of them can go to standard output",
         ),

@@ -20,7 +20,7 @@ fn allowed(row: &Row, in_rust: f64) -> f64 {
     if row.settling.is_window() {
         in_rust * 1.42
     } else if row.parameters.iter().any(Parameter::is_torque) || row.needs.edge {
-        in_rust + 20.0
+        in_rust + 22.0
     } else {
         in_rust + 6.0
     }
