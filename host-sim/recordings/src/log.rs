@@ -19,6 +19,9 @@ const GZIP: [u8; 2] = [0x1F, 0x8B];
 /// Number of first bytes that hold a header.
 pub(crate) const HEAD: u64 = 1 << 16;
 
+/// Most bytes of a stream, which is kept in memory: some 2e7 rows.
+const MOST: u64 = 1 << 30;
+
 /// Whether `path` stands for standard input.
 #[must_use]
 pub fn is_stdin(path: &Path) -> bool {
@@ -55,15 +58,27 @@ pub fn short_name(path: &Path) -> String {
 /// # Errors
 /// [`Failure::Input`] that names the file.
 pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
-    let read = match is_stdin(path) {
-        false => std::fs::read(path),
-        true => {
-            let mut bytes = Vec::new();
-            let read = std::io::stdin().lock().read_to_end(&mut bytes);
-            read.map(|_| bytes)
-        }
-    };
-    read.map_err(|error| cannot_read(&called(path), &error))
+    let name = called(path);
+    if is_stdin(path) {
+        let mut bytes = Vec::new();
+        read_rest(io::stdin().lock(), &mut bytes, MOST, &name)?;
+        return Ok(bytes);
+    }
+    std::fs::read(path).map_err(|error| cannot_read(&name, &error))
+}
+
+/// Reads the rest of a stream called `name`, of which `bytes` is the begin, if it has at most `most` bytes in all.
+fn read_rest(input: impl Read, bytes: &mut Vec<u8>, most: u64, name: &str) -> Result<(), Failure> {
+    let left = most - bytes.len() as u64;
+    let read = input.take(left + 1).read_to_end(bytes);
+    read.map_err(|error| cannot_read(name, &error))?;
+    if bytes.len() as u64 > most {
+        return Err(Failure::Input(format!(
+            "{name}: more than {most} bytes, and a stream is kept in memory; write it to a file and \
+             give that"
+        )));
+    }
+    Ok(())
 }
 
 /// Reads a log called `name` from a stream. Its first bytes are checked before the rest is read, because a
@@ -83,7 +98,7 @@ fn stream(mut input: impl Read, name: &str) -> Result<Vec<u8>, Failure> {
             check_kind(&unpacked, name)?;
         }
     }
-    input.read_to_end(&mut bytes).map_err(failed)?;
+    read_rest(input, &mut bytes, MOST, name)?;
     Ok(bytes)
 }
 
@@ -278,6 +293,20 @@ mod tests {
             "copy it again",
         ] {
             assert!(error.contains(part), "{error}");
+        }
+    }
+
+    #[test]
+    fn stream_without_an_end_is_refused() {
+        let begin = b"t,counts_large\n".to_vec();
+        for (length, fits) in [(85, true), (86, false), (u64::MAX, false)] {
+            let mut bytes = begin.clone();
+            let found = read_rest(io::repeat(b'0').take(length), &mut bytes, 100, "pipe");
+            assert_eq!(found.is_ok(), fits, "{length}");
+            assert!(bytes.len() <= 101);
+            if let Err(error) = found {
+                assert!(error.to_string().contains("pipe: more than 100 bytes"));
+            }
         }
     }
 }
