@@ -200,7 +200,7 @@ fn inverse_root(x: f32) -> f32 {
     let one = 1.0f32.to_bits();
     let offset = 1.067_55_f32.to_bits() - one;
     let half = 0.5 * x;
-    // Of a number that is none nothing follows, but no panic either.
+    // A NaN with its sign bit set would overflow, and panic in a debug build.
     let mut y = f32::from_bits((one + one / 2 - offset).wrapping_sub(x.to_bits() >> 1));
     for _ in 0..2 {
         y *= 1.5 - half * y * y;

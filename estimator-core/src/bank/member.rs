@@ -10,6 +10,7 @@ const LEAST_NOISE: f32 = 1e-6;
 /// Share of a variance that a correction leaves at least: some 16 units in the last place. It is more than
 /// what rounding takes from a determinant, and P stays positive definite.
 const ROUNDING: f32 = 1e-6;
+/// Factor of a variance that adds this share.
 const KEPT: f32 = 1.0 + ROUNDING;
 
 /// State and covariance of one filter, in counts and ticks.

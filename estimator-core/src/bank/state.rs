@@ -243,7 +243,7 @@ impl<const K: usize> ModelBankState<K> {
         }
     }
 
-    /// Starts anew: an input was no number, and neither are the weights.
+    /// Starts anew: the weights are no numbers. With definite covariances no input is known that leads here.
     #[inline(always)]
     fn restart(&mut self) -> Likelihood {
         for member in &mut self.members {

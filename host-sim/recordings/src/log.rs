@@ -67,7 +67,8 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     std::fs::read(path).map_err(|error| cannot_read(&name, &error))
 }
 
-/// Reads the rest of a stream called `name`, of which `bytes` is the begin, if it has at most `most` bytes in all.
+/// Reads the rest of a stream called `name`, which starts with `bytes`. A stream of more than `most` bytes is
+/// refused.
 fn read_rest(input: impl Read, bytes: &mut Vec<u8>, most: u64, name: &str) -> Result<(), Failure> {
     let left = most - bytes.len() as u64;
     let read = input.take(left + 1).read_to_end(bytes);
