@@ -5,8 +5,8 @@ use std::io::{self, Cursor, Read};
 use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
+use terminal::checksum::Sum;
 use terminal::failure::Failure;
-use terminal::output::sum;
 
 use crate::recording::check_kind;
 
@@ -173,20 +173,15 @@ impl Log {
         cannot_read(&self.name, error)
     }
 
-    /// All its bytes, unpacked.
-    ///
-    /// # Errors
-    /// As [`Log::open`].
-    pub fn bytes(&self) -> Result<Vec<u8>, Failure> {
-        self.first(u64::MAX)
-    }
-
-    /// Checksum of its bytes.
+    /// Checksum of its bytes, unpacked.
     ///
     /// # Errors
     /// As [`Log::open`].
     pub fn sum(&self) -> Result<u64, Failure> {
-        Ok(sum(&self.bytes()?))
+        let mut sum = Sum::default();
+        let copied = io::copy(&mut self.reader()?, &mut sum);
+        copied.map_err(|error| self.failure(&error))?;
+        Ok(sum.0)
     }
 
     /// Its first bytes, which hold the header.
@@ -194,12 +189,8 @@ impl Log {
     /// # Errors
     /// As [`Log::open`].
     pub fn head(&self) -> Result<Vec<u8>, Failure> {
-        self.first(HEAD)
-    }
-
-    fn first(&self, number: u64) -> Result<Vec<u8>, Failure> {
         let mut bytes = Vec::new();
-        let read = self.reader()?.take(number).read_to_end(&mut bytes);
+        let read = self.reader()?.take(HEAD).read_to_end(&mut bytes);
         read.map_err(|error| self.failure(&error))?;
         Ok(bytes)
     }
@@ -216,7 +207,7 @@ impl<R: Read> Read for Unpacked<R> {
     }
 }
 
-fn cannot_read(name: &str, error: &io::Error) -> Failure {
+pub(crate) fn cannot_read(name: &str, error: &io::Error) -> Failure {
     Failure::Input(format!("{name}: cannot read: {error}"))
 }
 
@@ -247,11 +238,8 @@ mod tests {
     #[test]
     fn packed_logs_are_unpacked_whole() {
         let both = [packed("t,counts_large\n0,1\n"), packed("0.001,2\n")].concat();
-        assert_eq!(
-            log(both).bytes().unwrap(),
-            b"t,counts_large\n0,1\n0.001,2\n"
-        );
-        assert_eq!(log(b"t".to_vec()).bytes().unwrap(), b"t");
+        assert_eq!(log(both).head().unwrap(), b"t,counts_large\n0,1\n0.001,2\n");
+        assert_eq!(log(b"t".to_vec()).head().unwrap(), b"t");
     }
 
     /// Counts the bytes that are read.
@@ -288,7 +276,7 @@ mod tests {
     fn a_cut_packed_log_is_not_taken_for_a_whole_one() {
         let mut cut = packed("t,counts_large\n0,1\n");
         cut.truncate(cut.len() - 6);
-        let error = log(cut).bytes().unwrap_err().to_string();
+        let error = log(cut).sum().unwrap_err().to_string();
         for part in [
             "log.gz: cannot read: not a complete gzip file",
             "copy it again",

@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::{Experiment, Part};
+use terminal::checksum::sum;
 use terminal::failure::Failure;
-use terminal::output::{sum, write_whole};
+use terminal::output::write_whole;
 use terminal::wording::quoted;
 
 /// The run that a part belongs to.

@@ -3,6 +3,7 @@
 //!
 //! The crates of the simulation print and write files only through this crate.
 
+pub mod checksum;
 mod explain;
 pub mod failure;
 pub mod output;

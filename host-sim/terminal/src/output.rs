@@ -181,14 +181,6 @@ pub fn print_to_reader(bytes: &[u8]) -> Result<bool, Failure> {
     written.map_err(|error| no_output(&error))
 }
 
-/// Checksum of a file (64-bit FNV-1a), to detect changes.
-#[must_use]
-pub fn sum(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |sum, &byte| {
-        (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    })
-}
-
 /// Writes lines to standard error, with control characters of names and texts escaped. A closed standard error
 /// does not end the command.
 pub fn note(lines: impl std::fmt::Display) {

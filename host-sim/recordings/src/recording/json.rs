@@ -10,7 +10,9 @@ use serde_json::Value;
 
 use terminal::failure::Failure;
 
+use super::lines::LineReader;
 use super::separator::is_comment;
+use crate::log::cannot_read;
 
 pub(super) use fields::Mark;
 use fields::{Field, fields};
@@ -73,10 +75,7 @@ impl Begin {
 
 /// Reads objects, one a line. In a log with channels, it reads one channel of one controller.
 pub(super) struct Json<R> {
-    inner: R,
-    /// The last byte of a line.
-    end: u8,
-    line: u64,
+    inner: LineReader<R>,
     text: Vec<u8>,
     names: Vec<String>,
     places: HashMap<String, usize>,
@@ -92,9 +91,7 @@ impl<R: BufRead> Json<R> {
         let names = begin.names.clone();
         let places = names.iter().cloned().zip(0..).collect();
         Self {
-            inner,
-            end,
-            line: 0,
+            inner: LineReader::new(inner, end),
             text: Vec::new(),
             names,
             places,
@@ -112,32 +109,29 @@ impl<R: BufRead> Json<R> {
         name: &str,
     ) -> Result<Option<u64>, Failure> {
         loop {
-            self.text.clear();
-            let failed = |error| Failure::Input(format!("{name}: cannot read: {error}"));
-            let read = self.inner.read_until(self.end, &mut self.text);
-            if read.map_err(failed)? == 0 {
+            let read = self.inner.next(&mut self.text);
+            let Some(line) = read.map_err(|error| cannot_read(name, &error))? else {
                 return Ok(None);
-            }
-            self.line += 1;
-            let text = self.text.strip_suffix(&[self.end]).unwrap_or(&self.text);
+            };
+            let text = self.text.as_slice();
             if text.trim_ascii().is_empty() || is_comment(text) {
                 continue;
             }
             let Ok(fields) = fields(text) else {
-                return Err(no_object(text, self.line, name));
+                return Err(no_object(text, line, name));
             };
             if self.channels {
                 if channel(&fields).is_some_and(|channel| channel != CHANNEL) {
                     continue;
                 }
-                self.one_controller(&fields, name)?;
+                self.one_controller(&fields, line, name)?;
             }
             self.take(fields);
             record.clear();
             for value in &self.values {
                 record.push_field(value.as_bytes());
             }
-            return Ok(Some(self.line));
+            return Ok(Some(line));
         }
     }
 
@@ -164,7 +158,7 @@ impl<R: BufRead> Json<R> {
     }
 
     /// Refuses a second controller, whose motion is another one.
-    fn one_controller(&mut self, fields: &[Field], name: &str) -> Result<(), Failure> {
+    fn one_controller(&mut self, fields: &[Field], line: u64, name: &str) -> Result<(), Failure> {
         let Some(controller) = fields.iter().find(|field| field.name == "controller") else {
             return Ok(());
         };
@@ -174,8 +168,7 @@ impl<R: BufRead> Json<R> {
             return Ok(());
         }
         Err(Failure::Input(format!(
-            "{name}: line {}: field controller: {this} after {known}; keep the lines of one controller",
-            self.line
+            "{name}: line {line}: field controller: {this} after {known}; keep the lines of one controller"
         )))
     }
 }

@@ -1,4 +1,52 @@
-//! Line numbers of the rows of a file.
+//! The lines of a file, and the line numbers of its rows.
+
+use std::io::{self, BufRead, Read};
+
+/// Most bytes of a line, which is kept in memory.
+const LONGEST: u64 = 1 << 20;
+
+/// What a line must be, for messages.
+pub(super) const LINE_REMEDY: &str = "write one row a line, with the columns that are needed";
+
+/// Reads a file line by line.
+pub(super) struct LineReader<R> {
+    inner: R,
+    /// The last byte of a line.
+    end: u8,
+    number: u64,
+}
+
+impl<R: BufRead> LineReader<R> {
+    pub(super) fn new(inner: R, end: u8) -> Self {
+        let number = 0;
+        Self { inner, end, number }
+    }
+
+    /// Whether every byte is read.
+    pub(super) fn is_at_end(&mut self) -> io::Result<bool> {
+        Ok(self.inner.fill_buf()?.is_empty())
+    }
+
+    /// Reads the next line into `line`, without its end, and returns its number, from 1. `None` after the last one.
+    pub(super) fn next(&mut self, line: &mut Vec<u8>) -> io::Result<Option<u64>> {
+        line.clear();
+        let mut most = self.inner.by_ref().take(LONGEST);
+        if most.read_until(self.end, line)? == 0 {
+            return Ok(None);
+        }
+        self.number += 1;
+        if line.last() == Some(&self.end) {
+            line.pop();
+        } else if most.limit() == 0 {
+            return Err(io::Error::other(format!(
+                "line {} has no end within {} KiB; {LINE_REMEDY}",
+                self.number,
+                LONGEST >> 10
+            )));
+        }
+        Ok(Some(self.number))
+    }
+}
 
 /// The line of each row, in few entries: rows follow one another but for comments and blank lines.
 #[derive(Clone, Debug, Default)]
@@ -28,6 +76,39 @@ impl LineNumbers {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A line of the most bytes, its end included, is the longest. A shorter file needs no end of its last line.
+    #[test]
+    fn a_line_without_an_end_is_refused_by_its_number() {
+        let most = LONGEST as usize;
+        for (bytes, ends, fits) in [
+            (most - 1, true, true),
+            (most, true, false),
+            (most - 1, false, true),
+            (most, false, false),
+        ] {
+            let mut text = b"ab\n".to_vec();
+            text.resize(3 + bytes, b'0');
+            text.extend(ends.then_some(b'\n'));
+            let mut lines = LineReader::new(text.as_slice(), b'\n');
+            let mut line = Vec::new();
+            assert_eq!(lines.next(&mut line).unwrap(), Some(1));
+            assert_eq!(line, b"ab");
+            match lines.next(&mut line) {
+                Ok(number) => {
+                    assert!(fits, "{bytes} {ends}");
+                    assert_eq!((number, line.len()), (Some(2), bytes));
+                    assert!(lines.is_at_end().unwrap());
+                    assert_eq!(lines.next(&mut line).unwrap(), None);
+                }
+                Err(error) => {
+                    assert!(!fits, "{bytes} {ends}: {error}");
+                    let text = "line 2 has no end within 1024 KiB; write one row a line";
+                    assert!(error.to_string().starts_with(text), "{error}");
+                }
+            }
+        }
+    }
 
     #[test]
     fn lines_of_rows_are_kept_in_runs() {

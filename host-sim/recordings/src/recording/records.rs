@@ -6,11 +6,12 @@ use csv::ByteRecord;
 
 use terminal::failure::Failure;
 
-use crate::log::HEAD;
+use crate::log::{HEAD, cannot_read};
 
 use super::json::{Begin, Json};
 use super::kinds;
 use super::layout::Layout;
+use super::lines::LINE_REMEDY;
 use super::options::ReadOptions;
 use super::row::Row;
 use super::separator::{Lines, Separator};
@@ -45,7 +46,7 @@ impl<'a> Records<'a> {
     ) -> Result<Self, Failure> {
         let mut head = Vec::new();
         let read = input.by_ref().take(HEAD).read_to_end(&mut head);
-        read.map_err(|error| Failure::Input(format!("{name}: cannot read: {error}")))?;
+        read.map_err(|error| cannot_read(name, &error))?;
         kinds::check(&head, name)?;
         let is_cut = head.len() as u64 == HEAD;
         if head.starts_with(BYTE_ORDER_MARK) {
@@ -62,8 +63,7 @@ impl<'a> Records<'a> {
             },
             None if is_cut && !text.contains('\n') => {
                 return Err(Failure::Input(format!(
-                    "{name}: line 1: no end of the line within {} KiB; write one row a line, with the columns \
-                     that are needed",
+                    "{name}: line 1: no end of the line within {} KiB; {LINE_REMEDY}",
                     HEAD >> 10
                 )));
             }

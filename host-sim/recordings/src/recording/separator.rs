@@ -4,6 +4,8 @@ use std::io::{self, BufRead, Read};
 
 use csv::ByteRecord;
 
+use super::lines::LineReader;
+
 /// What separates the fields of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Separator {
@@ -93,12 +95,10 @@ pub(super) fn stamp(line: &[u8]) -> usize {
 /// Text with its stamps of a serial monitor, its comments, its blank lines and its first lines emptied, so that the lines keep their
 /// numbers. Every line ends with a line feed. Runs of spaces become tabs where they separate fields.
 pub(super) struct Lines<R> {
-    inner: R,
+    inner: LineReader<R>,
     separator: Separator,
     /// Number of first lines that are emptied.
     skip: u64,
-    /// The last byte of a line.
-    end: u8,
     line: Vec<u8>,
     /// Number of bytes of `line` that are read.
     read: usize,
@@ -107,10 +107,9 @@ pub(super) struct Lines<R> {
 impl<R: BufRead> Lines<R> {
     pub(super) fn new(inner: R, separator: Separator, skip: u64, end: u8) -> Self {
         Self {
-            inner,
+            inner: LineReader::new(inner, end),
             separator,
             skip,
-            end,
             line: Vec::new(),
             read: 0,
         }
@@ -118,14 +117,10 @@ impl<R: BufRead> Lines<R> {
 
     /// Reads the next line.
     fn advance(&mut self) -> io::Result<()> {
-        self.line.clear();
         self.read = 0;
-        self.inner.read_until(self.end, &mut self.line)?;
+        self.inner.next(&mut self.line)?;
         let skipped = self.skip > 0;
         self.skip = self.skip.saturating_sub(1);
-        if self.line.last() == Some(&self.end) {
-            self.line.pop();
-        }
         if self.line.last() == Some(&b'\r') {
             self.line.pop();
         }
@@ -147,7 +142,7 @@ impl<R: BufRead> Read for Lines<R> {
         let mut filled = 0;
         while filled < to.len() {
             if self.read == self.line.len() {
-                if self.inner.fill_buf()?.is_empty() {
+                if self.inner.is_at_end()? {
                     break;
                 }
                 self.advance()?;

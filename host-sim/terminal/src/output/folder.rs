@@ -6,7 +6,8 @@ use std::io::{self, ErrorKind, Read as _, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::partial::{Partial, uninterrupted};
-use super::{cannot_write, in_folders, is_stdout, sum};
+use super::{cannot_write, in_folders, is_stdout};
+use crate::checksum::sum;
 use crate::failure::Failure;
 
 /// Name of the manifest, which lists the files of the latest run. The next run removes them.

@@ -110,6 +110,10 @@ mod tests {
         // One of both is named by the user.
         read(&rows("time_ms,x"), "counts_large=x:counts").unwrap();
         read(&rows("x,counts"), "t=x:ms").unwrap();
+        // What counts or lasts is no time for that.
+        for names in ["time_ms,loopcount,counts", "time_ms,v_s,counts"] {
+            read(&rows(names), "counts_large=counts").unwrap();
+        }
         // Or one that could be meant is another one.
         let small = "counts_small=handle_counts";
         let recording = read(&rows("time_ms,motor_counts,handle_counts"), small).unwrap();
