@@ -38,7 +38,7 @@ def replay(**arguments):
         ({"rate": 0}, ["rate=0: must be positive and finite (Hz)"]),
         ({"rate": float("nan")}, ["rate=nan: must be positive and finite (Hz)"]),
         ({"rate": None, "t": COUNTS[::-1] / 1000}, ["row 1: column t: 0.098 s is before the 0.099 s above it"]),
-        ({"rate": None, "t": COUNTS.astype(float)}, ["1 Hz", "not in ms or us"]),
+        ({"rate": None, "t": COUNTS.astype(float)}, ["1 Hz", "not in ms, us or ns"]),
         ({"rate": None, "t": np.r_[np.nan, COUNTS[:99]]}, ["t: row 0 is nan", "(s)"]),
         ({"estimator": "imn"}, ["'imn'; did you mean imm?"]),
         ({"estimator": "imm-motor"}, ["imm-motor needs the current of the large motor: pass current"]),

@@ -87,3 +87,36 @@ pub struct Columns {
     /// Edge time stamps of the large encoder.
     pub edges: bool,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn part_of_a_trace_has_the_columns_of_the_whole() {
+        let edge = |age_s| Some(EdgeStamp { age_s, boundary: 7 });
+        let whole = Trace {
+            rate_hz: 500.0,
+            periods: Some(vec![1.0, 2.0, 3.0]),
+            counts_large: vec![1, 2, 3],
+            counts_small: Some(vec![4, 5, 6]),
+            current: Some(vec![0.1, 0.2, 0.3]),
+            edges: Some(vec![None, edge(0.5), edge(0.25)]),
+            true_omega: Some(vec![7.0, 8.0, 9.0]),
+            true_damping: None,
+        };
+        assert_eq!((whole.len(), whole.is_empty()), (3, false));
+        assert_eq!(whole.period_s(), 0.002);
+        let part = whole.rows(1..3);
+        assert_eq!(part.rate_hz, 500.0);
+        assert_eq!(part.periods, Some(vec![2.0, 3.0]));
+        assert_eq!(part.counts_large, [2, 3]);
+        assert_eq!(part.counts_small, Some(vec![5, 6]));
+        assert_eq!(part.current, Some(vec![0.2, 0.3]));
+        assert_eq!(part.edges, Some(vec![edge(0.5), edge(0.25)]));
+        assert_eq!(part.true_omega, Some(vec![8.0, 9.0]));
+        assert_eq!(part.true_damping, None);
+        let none = whole.rows(2..2);
+        assert_eq!((none.len(), none.is_empty()), (0, true));
+    }
+}

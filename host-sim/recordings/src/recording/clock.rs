@@ -229,6 +229,6 @@ mod tests {
             error.starts_with("r.csv: column t: rows 1 s apart are 1 Hz"),
             "{error}"
         );
-        assert!(error.contains("not in ms or us"), "{error}");
+        assert!(error.contains("not in ms, us or ns"), "{error}");
     }
 }

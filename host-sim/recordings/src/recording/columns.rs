@@ -27,8 +27,6 @@ pub(super) struct Columns<'a> {
     replaced: Replaced,
     repeated: Repeated,
     own_times: OwnTimes,
-    /// Whether a row without a position is left out.
-    sparse: bool,
     /// Number of rows that were taken, and the time of the last one, s.
     taken: usize,
     first_t: f64,
@@ -55,7 +53,6 @@ impl<'a> Columns<'a> {
             replaced: Replaced::default(),
             repeated: Repeated::default(),
             own_times: OwnTimes::default(),
-            sparse: places.format.is_some_and(|format| format.sparse),
             taken: 0,
             first_t: f64::NAN,
             last_t: f64::NEG_INFINITY,
@@ -86,9 +83,7 @@ impl<'a> Columns<'a> {
 
     /// Adds a row.
     pub(super) fn take(&mut self, row: &Row) -> Result<(), Failure> {
-        if let (true, Some(at)) = (self.sparse, self.place(Column::CountsLarge))
-            && row.text(Column::CountsLarge.name(), at.place)?.is_empty()
-        {
+        if self.is_of_others(row)? {
             self.left_out += 1;
             return Ok(());
         }
@@ -136,6 +131,21 @@ impl<'a> Columns<'a> {
             self.true_omega.push(scaled(row, at, 1.0)?);
         }
         Ok(())
+    }
+
+    /// Whether a row has its time and values of other signals, and no position: in some logs each row has the
+    /// signals that changed.
+    fn is_of_others(&self, row: &Row) -> Result<bool, Failure> {
+        let [Some(time), Some(position)] =
+            [Column::T, Column::CountsLarge].map(|column| self.place(column))
+        else {
+            return Ok(false);
+        };
+        let has = |place: Place| -> Result<bool, Failure> {
+            Ok(!row.text(place.column.name(), place.place)?.is_empty())
+        };
+        let others = || row.has_value(|place| ![time.place, position.place].contains(&place));
+        Ok(!has(position)? && has(time)? && others())
     }
 
     fn time(&mut self, row: &Row) -> Result<f64, Failure> {
@@ -326,4 +336,35 @@ fn front<T>(column: &mut Vec<T>, rows: usize) -> Vec<T> {
 pub(super) fn scaled(row: &Row, at: Place, torque_constant: f64) -> Result<f64, Failure> {
     let number = row.number(at.column.name(), at.place)?;
     Ok(at.unit.scale.of(number, torque_constant))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::recording::read_log as read;
+
+    #[test]
+    fn rows_of_other_signals_are_left_out() {
+        let row = |k: usize| format!("0.{k},{},\n0.{k}5,,9.81\n", 8 * k);
+        let rows = (0..9).map(row).collect::<String>();
+        for (header, columns) in [
+            ("s,encoder,imu", "t=s,counts_large=encoder:counts"),
+            ("t,counts_large,imu", ""),
+        ] {
+            let recording = read(&format!("{header}\n{rows}"), columns).unwrap();
+            assert_eq!(recording.trace.counts_large[..3], [0, 8, 16]);
+            assert_eq!(recording.t.len(), 9);
+            let said = "9 rows without a position are left out";
+            assert!(recording.notes.iter().any(|note| note == said));
+        }
+        // Nothing but the time: the row was cut. No time: it is of no instant.
+        for (row, column) in [
+            ("9,,", "counts_large"),
+            ("9,, ", "counts_large"),
+            (",,1", "t"),
+        ] {
+            let error = read(&format!("t,counts_large,imu\n{rows}{row}\n"), "").unwrap_err();
+            let said = format!("line 20: column {column}: '' is not a number; remove the row");
+            assert!(error.contains(&said), "{error}");
+        }
+    }
 }

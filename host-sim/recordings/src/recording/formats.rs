@@ -38,8 +38,6 @@ pub(super) struct Format {
     mark: &'static str,
     /// Its columns, the preferred one first where several measure the same.
     columns: &'static [Foreign],
-    /// Whether a row without the position is left out, because each row has the columns that changed.
-    pub(super) sparse: bool,
     /// Whether the log is of this project.
     pub(super) own: bool,
     /// Where the names of the columns come from.
@@ -57,7 +55,6 @@ pub(super) const FORMATS: &[Format] = &[
             foreign(Column::Current, Name("motor_torque_nm"), "N.m"),
             foreign(Column::TrueOmega, Name("true_omega_rad_s"), "rad/s"),
         ],
-        sparse: false,
         own: true,
         source: "tests/data/real/README.md",
     },
@@ -69,7 +66,6 @@ pub(super) const FORMATS: &[Format] = &[
             foreign(Column::CountsLarge, Name("position"), "rev"),
             foreign(Column::Current, Name("q_A"), "A"),
         ],
-        sparse: false,
         own: false,
         source: "mjbots/moteus, utils/gui/moteus_gui/tview.py (log as CSV or JSONL) and \
                  fw/bldc_servo_structs.h (channel servo_stats)",
@@ -82,7 +78,6 @@ pub(super) const FORMATS: &[Format] = &[
             foreign(Column::CountsLarge, Name("POSITION"), "rev"),
             foreign(Column::Current, Name("Q_CURRENT"), "A"),
         ],
-        sparse: false,
         own: false,
         source: "mjbots/moteus, lib/python/examples/csv_output.py (names of moteus.Register)",
     },
@@ -96,7 +91,6 @@ pub(super) const FORMATS: &[Format] = &[
             foreign(Column::CountsLarge, End("pos_vel_mapper.pos_rel"), "rev"),
             foreign(Column::Current, End("Iq_measured"), "A"),
         ],
-        sparse: false,
         own: false,
         source: "odriverobotics/ODrive, GUI/src/components/plots/Plot.vue (Export) and \
                  Firmware/odrive-interface.yaml; pos_vel_mapper is of firmware 0.6",
@@ -109,7 +103,6 @@ pub(super) const FORMATS: &[Format] = &[
             foreign(Column::CountsLarge, Name("encoder_position"), "deg"),
             foreign(Column::Current, Name("q_axis_current"), "A"),
         ],
-        sparse: false,
         own: false,
         source: "vedderb/vesc_tool, vescinterface.cpp (log of real-time data)",
     },
@@ -122,7 +115,6 @@ pub(super) const FORMATS: &[Format] = &[
             foreign(Column::CountsLarge, End("/position"), "rad"),
             foreign(Column::Current, End("/effort"), "N.m"),
         ],
-        sparse: true,
         own: false,
         source: "facontidavide/PlotJuggler, plotjuggler_plugins/ToolboxCSV and datasamples/turtle.csv; \
                  position (rad) and effort (N.m) are those of the ROS message JointState",
@@ -137,7 +129,6 @@ pub(super) const SIMPLEFOC: Format = Format {
         foreign(Column::CountsLarge, Name("angle"), "rad"),
         foreign(Column::Current, Name("current.q"), "mA"),
     ],
-    sparse: false,
     own: false,
     source: "simplefoc/Arduino-FOC, src/common/base_classes/FOCMotor.cpp (monitor)",
 };

@@ -146,7 +146,7 @@ pub(super) fn found(layout: &Layout) -> String {
     let number = layout.names.len();
     if !layout.has_header() {
         return format!(
-            "there are no names but {number} columns of numbers, separated by {}",
+            "there are no names but {number} columns, separated by {}",
             layout.separator.name()
         );
     }
@@ -202,8 +202,21 @@ mod tests {
             ),
             (
                 "0,1\n0.1,2\n",
-                "no column t; there are no names but 2 columns of numbers, separated by ','; give the \
+                "no column t; there are no names but 2 columns, separated by ','; give the \
                  numbers of the columns, for example --column t=1:s,counts_large=2:counts",
+            ),
+            // Some field of each row is a text.
+            (
+                "S,0,1\nS,0.1,2\n",
+                "no column t; there are no names but 3 columns, separated by ','; give the numbers",
+            ),
+            (
+                "% a log\n%time,name,angle\n# first\n0,joint,1\n0.1,joint,2\n",
+                "line 2: no column t; found: time; name; angle, separated by ','; name the columns",
+            ),
+            (
+                "stamp,2,state\n0,1,ok\n1,2,ok\n",
+                "line 1: no column t; found: stamp; 2; state, separated by ','; name the columns",
             ),
             (
                 "# a log\nsome text\n\nstamp angle\n0 1\n1 2\n",
@@ -235,6 +248,10 @@ mod tests {
                 "target:0.5\tangle:0.01\ntarget:0.5\tangle:0.02\n",
                 "line 1: each row has the names of its numbers: 'target:0.5'; write the names in the first \
                  line alone",
+            ),
+            (
+                "time=1 ms, count=8\ntime=2 ms, count=9\n",
+                "line 1: each row has the names of its numbers: 'time=1 ms'; write the names",
             ),
             (
                 "t|counts_large\n0|1\n",

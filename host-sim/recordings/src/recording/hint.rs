@@ -135,11 +135,14 @@ fn ambiguous(layout: &Layout, places: &Places) -> Option<String> {
     ))
 }
 
-/// Rows whose fields are `name:number`.
+/// Rows whose fields are `name:number` or `name=number`, with or without a unit.
 fn labelled(layout: &Layout) -> Option<String> {
     let is_labelled = |field: &String| {
-        let label = field.split_once(':');
-        label.is_some_and(|(name, number)| !name.is_empty() && number.trim().parse::<f64>().is_ok())
+        let label = field.split_once([':', '=']);
+        label.is_some_and(|(name, number)| {
+            let number = number.split_whitespace().next().unwrap_or_default();
+            !name.is_empty() && number.parse::<f64>().is_ok()
+        })
     };
     let first = layout.names.first()?;
     layout.names.iter().all(is_labelled).then(|| {

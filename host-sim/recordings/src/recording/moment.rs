@@ -41,6 +41,10 @@ impl Moment {
     /// `2025-03-01T12:00:00.5`, with or without an offset from UTC.
     fn date(text: &str) -> Option<Self> {
         let text = text.replace('/', "-");
+        let text = match text.strip_suffix(" UTC") {
+            Some(text) => format!("{text}Z"),
+            None => text,
+        };
         if let Ok(at) = text.parse::<Timestamp>() {
             return Some(Self {
                 kind: Kind::Instant,
@@ -116,6 +120,7 @@ mod tests {
                 Kind::Date,
                 noon + 123 * SECOND / 1000,
             ),
+            ("2025-03-01 12:00:00 UTC", Kind::Instant, noon),
             ("2025/03/01 12:00:01", Kind::Date, noon + SECOND),
             ("12:00:00.000001", Kind::Clock, 12 * HOUR_NS + 1000),
             ("0:01:02,5", Kind::Clock, 125 * SECOND / 2),
@@ -150,6 +155,9 @@ mod tests {
             "99999999999:00:00",
             "2025-02-30 12:00:00",
             "12:00:00.5 ",
+            "2025-03-01 12:00:00 CET",
+            "2025-03-01 12:00:00+01:00 UTC",
+            "2025-03-01 12:00:00Z UTC",
             "1 day",
         ] {
             assert_eq!(Moment::parse(text), None, "{text}");

@@ -43,6 +43,13 @@ impl Row<'_> {
         std::str::from_utf8(bytes).map_err(|_| self.failure(column, "not text"))
     }
 
+    /// Whether a column with a place that `is_meant` has a value.
+    pub(super) fn has_value(&self, is_meant: impl Fn(usize) -> bool) -> bool {
+        let fields = self.record.iter().enumerate();
+        let mut fields = fields.filter(|(place, _)| is_meant(*place));
+        fields.any(|(_, field)| !field.trim_ascii().is_empty())
+    }
+
     pub(super) fn number(&self, column: &str, place: usize) -> Result<f64, Failure> {
         let text = self.text(column, place)?;
         match self.parse(text) {

@@ -128,8 +128,8 @@ impl Steps {
         if rate_hz < SLOWEST_HZ {
             return Err(Failure::Input(format!(
                 "{name}: column t: rows {} s apart are {rate_hz} Hz, which is below {SLOWEST_HZ} \
-                 Hz; t must be in seconds, check that it is not in ms or us, which --column t=NAME:ms \
-                 states",
+                 Hz; t must be in seconds, check that it is not in ms, us or ns, which --column \
+                 t=NAME:ms states",
                 shown(to_digits(period, 7))
             )));
         }

@@ -132,6 +132,21 @@ fn counts_and_edges_agree_with_the_true_motion() {
     }
 }
 
+/// While the coupler heats, in 60 s, it loses 30 % of its damping.
+#[test]
+fn true_damping_is_that_of_the_middle_of_each_period() {
+    let device = Device::default();
+    let name = ScenarioName::Heating;
+    let trace = simulate(&device, name, 200.0, 1, 6.0, Columns::default()).unwrap();
+    let damping = trace.true_damping.unwrap();
+    assert_eq!(damping.len(), 1200);
+    for (k, damping) in damping.into_iter().enumerate() {
+        let part = 1.0 - 0.3 * (k as f64 + 0.5) / 200.0 / 60.0;
+        let expected = device.stages.damping * part;
+        assert!((damping / expected - 1.0).abs() < 1e-12, "{k}: {damping}");
+    }
+}
+
 #[test]
 fn disc_errors_change_counts_by_at_most_one() {
     let mut device = Device::default();

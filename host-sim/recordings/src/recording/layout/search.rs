@@ -53,30 +53,60 @@ pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
                     return header;
                 }
             }
-            return Layout {
-                separator,
-                names: (1..=named).map(|number| number.to_string()).collect(),
-                line: 0,
-                skip: index as u64,
-                searched: None,
-                first_row: line.trim().to_owned(),
-                is_stamped: false,
-            };
+            return without_header(separator, named, (index, line));
         }
         above = Some((index, comment(line).unwrap_or(line)));
     }
-    // No line of numbers: the first line that is no comment is the header.
-    let mut text = lines.iter().enumerate();
-    let first = text.find(|(_, line)| !line.trim().is_empty() && comment(line).is_none());
-    let (index, line) = first.unwrap_or((0, &""));
+    // No line of numbers: the first line that is no comment is the header, or a row with some text.
+    let is_text = |line: &str| !line.trim().is_empty() && comment(line).is_none();
+    let mut text = (lines.iter().enumerate()).filter(|(_, line)| is_text(line));
+    let (index, line) = text.next().unwrap_or((0, &""));
     let separator = Separator::ALL
         .into_iter()
         .find(|separator| separator.split(line).len() > 1);
     let separator = separator.unwrap_or(Separator::Comma);
+    let fields = separator.split(line).len();
+    if text
+        .next()
+        .is_some_and(|(_, next)| are_rows(separator, line, next))
+    {
+        let comments = lines[..index].iter().enumerate().rev();
+        let names =
+            comments.filter_map(|(index, line)| Some((index, separator.split(comment(line)?))));
+        let mut names = names.filter(|(_, names)| names.len() == fields);
+        return match names.next() {
+            Some((above, names)) => Layout::header(separator, names, above),
+            None => without_header(separator, fields, (index, line)),
+        };
+    }
     Layout {
         searched: limit,
         ..Layout::header(separator, separator.split(line), index)
     }
+}
+
+/// The layout of a text without names, whose first row is at an index.
+fn without_header(separator: Separator, fields: usize, (index, row): (usize, &str)) -> Layout {
+    Layout {
+        separator,
+        names: (1..=fields).map(|number| number.to_string()).collect(),
+        line: 0,
+        skip: index as u64,
+        searched: None,
+        first_row: row.trim().to_owned(),
+        is_stamped: false,
+    }
+}
+
+/// Whether two adjacent lines are rows: both have numbers in the same columns, and in at least two.
+fn are_rows(separator: Separator, one: &str, next: &str) -> bool {
+    let numbers = |line: &str| -> Vec<bool> {
+        let fields = separator.split(line);
+        let is_number = |field: &String| is_number(field, separator);
+        fields.iter().map(is_number).collect()
+    };
+    let [one, next] = [one, next].map(numbers);
+    one == next && one.iter().filter(|is_number| **is_number).count() >= 2
 }
 
 /// Whether a line has more than separators.
