@@ -165,21 +165,28 @@ impl<const N: usize, const KAPPA: u32, const MU: u32> VelocityEstimator
 const BLOCK: usize = 8;
 
 /// Sum of `steps`, the last of which is the newest, times `weights`. Sums of blocks lose fewer digits
-/// than one sum of 64 products.
+/// than one sum of 64 products, and the compiler unrolls them: their length is a constant where that of
+/// the window is not.
 #[inline]
 fn dot(steps: &[i16], weights: &[f32]) -> f32 {
-    let [mut sum, mut part] = [0.0; 2];
-    let mut left = BLOCK;
-    for (step, weight) in steps.iter().rev().zip(weights) {
-        part += f32::from(*step) * weight;
-        left -= 1;
-        if left == 0 {
-            sum += part;
-            part = 0.0;
-            left = BLOCK;
-        }
+    let blocks = steps.rchunks_exact(BLOCK);
+    let oldest = blocks.remainder();
+    let mut sum = 0.0;
+    for (steps, weights) in blocks.zip(weights.chunks_exact(BLOCK)) {
+        sum += block(steps, weights);
     }
-    sum + part
+    let weights = weights.get(steps.len() - oldest.len()..);
+    sum + block(oldest, weights.unwrap_or(&[]))
+}
+
+/// Sum of the products of one block.
+#[inline(always)]
+fn block(steps: &[i16], weights: &[f32]) -> f32 {
+    let mut sum = 0.0;
+    for (step, weight) in steps.iter().rev().zip(weights) {
+        sum += f32::from(*step) * weight;
+    }
+    sum
 }
 
 #[cfg(test)]
