@@ -118,20 +118,20 @@ pub struct RobustExactState<const N: usize> {
 struct Chord {
     /// 2^25 p_l.
     height: i64,
-    length: i64,
+    length: u32,
 }
 
 impl Chord {
     /// Takes sample j with 2^25 p_j = `height`, and raises `m` until it meets `m² L >= 4 N` for the pair
     /// of j and the chord, but not above `longest`. All products are below 2^62.
     #[inline(always)]
-    fn take(&mut self, height: i64, length: i64, bound: i64, m: &mut i64, longest: i64) {
-        let excess = height * self.length - self.height * length;
+    fn take(&mut self, height: i64, length: u32, bound: i64, m: &mut u32, longest: u32) {
+        let excess = height * i64::from(self.length) - self.height * i64::from(length);
         if excess <= 0 {
             *self = Self { height, length };
             return;
         }
-        while *m < longest && *m * *m * bound * self.length < excess {
+        while *m < longest && bound * i64::from(*m * *m * self.length) < excess {
             *m += 1;
         }
     }
@@ -166,8 +166,17 @@ impl<const N: usize> VelocityEstimator for RobustExact<N> {
         state.next = if next < self.window { next } else { 0 };
         state.filled = state.filled.min(self.window - 1) + 1;
 
-        let filled = i64::from(state.filled);
-        let mut index = self.ago(state.next, state.filled);
+        let filled = u32::from(state.filled);
+        let first = usize::from(self.ago(state.next, state.filled));
+        let next = usize::from(state.next);
+        // The counts before the newest from the oldest on, in two parts where the ring wraps.
+        let ring = state.counts.get(..usize::from(self.window));
+        let ring = ring.unwrap_or(&[]);
+        let (older, newer) = if first < next {
+            (ring.get(first..next), None)
+        } else {
+            (ring.get(first..), ring.get(..next))
+        };
         let mut m = 1;
         let none = Chord {
             height: i64::MAX >> 8,
@@ -175,20 +184,14 @@ impl<const N: usize> VelocityEstimator for RobustExact<N> {
         };
         let (mut above, mut below) = (none, none);
         let mut j = filled;
-        while j > 0 {
-            let count = match state.counts.get(usize::from(index)) {
-                Some(count) => *count,
-                None => before,
-            };
-            index += 1;
-            if index >= self.window {
-                index = 0;
+        for counts in [older.unwrap_or(&[]), newer.unwrap_or(&[])] {
+            for count in counts {
+                let displacement = i64::from((sample.count - *count).0) << (FRACTION_BITS + 1);
+                let sag = self.bound * i64::from(j * j);
+                above.take(sag + displacement, j, self.bound, &mut m, filled);
+                below.take(sag - displacement, j, self.bound, &mut m, filled);
+                j -= 1;
             }
-            let displacement = i64::from((sample.count - count).0) << (FRACTION_BITS + 1);
-            let sag = self.bound * (j * j);
-            above.take(sag + displacement, j, self.bound, &mut m, filled);
-            below.take(sag - displacement, j, self.bound, &mut m, filled);
-            j -= 1;
         }
         let back = self.ago(state.next, m as u8);
         let oldest = match state.counts.get(usize::from(back)) {
