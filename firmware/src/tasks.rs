@@ -5,7 +5,7 @@ use drivers::link::{Hello, Stored};
 use estimator_core::Amps;
 use firmware_app::commands::{Channel, Commands, Messages};
 use firmware_app::config::AUTO_ARM;
-use firmware_app::control::{Control, Inputs, Message, Outputs};
+use firmware_app::control::{Control, Inputs, Message};
 use firmware_app::port::PortFaults;
 use firmware_app::reports::Reports;
 use firmware_app::rest::Rest;
@@ -134,10 +134,10 @@ impl<B: Board> ControlTask<B> {
             debugger: firmware_rt::debugger_interferes,
             request,
         };
-        let Outputs { currents, action } = control.step(&sample, &inputs);
-        board.apply(currents);
+        let outputs = control.step(&sample, &inputs);
+        board.apply(outputs.currents);
         if control.makes_frame() {
-            let record = control.record(&sample, &action);
+            let record = control.record(&sample, &outputs.action);
             let (measured, index) = (control.take_measured(), control.take_index(&sample));
             let supply = board.supply();
             control.watch(&supply);

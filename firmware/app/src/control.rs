@@ -229,11 +229,16 @@ impl Control {
     /// One tick, after [`Self::check`].
     #[inline]
     pub fn step(&mut self, sample: &Sample, inputs: &Inputs) -> Outputs {
-        let mut action = self.core.step(sample);
+        // The action is written where the task reads it: a tick copies it nowhere.
+        let mut outputs = Outputs {
+            action: self.core.step(sample),
+            currents: None,
+        };
+        let action = &mut outputs.action;
         let request = inputs.request.or_else(|| self.auto_arm_request());
         let is_calm = inputs.faults == Faults::NONE
             && inputs.missed == 0
-            && has_finite_sum(&action)
+            && has_finite_sum(action)
             && !self.voltmeter.is_outside()
             && SAFETY.pass_calm(&mut self.safety, request);
         let decision = if is_calm {
@@ -246,7 +251,7 @@ impl Control {
                 amplifiers_ready: !inputs.faults.contain(Faults::NOT_READY),
                 interlock: inputs.faults.contain(Faults::INTERLOCK),
                 clock_failure: inputs.faults.contain(Faults::CLOCK),
-                finite: are_finite(&action),
+                finite: are_finite(action),
                 missed: inputs.missed,
                 debugger: request == Some(Request::Arm) && (inputs.debugger)(),
                 supply: self.voltmeter,
@@ -257,10 +262,8 @@ impl Control {
             self.core.withhold();
             action.currents = self.applied();
         }
-        Outputs {
-            currents: (decision != Decision::Disable).then_some(action.currents),
-            action,
-        }
+        outputs.currents = (decision != Decision::Disable).then_some(action.currents);
+        outputs
     }
 
     /// Decides in a tick in which something is found or requested, or which decides something by its time.
