@@ -254,6 +254,10 @@ mod tests {
                 "line 1: each row has the names of its numbers: 'time=1 ms'; write the names",
             ),
             (
+                "Time:ms,Angle:deg\n0,1\n",
+                "found: Time:ms; Angle:deg, separated by ','",
+            ),
+            (
                 "t|counts_large\n0|1\n",
                 "line 1: '|' separates no fields; write commas, semicolons, tabs or spaces",
             ),

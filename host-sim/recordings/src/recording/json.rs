@@ -297,6 +297,13 @@ mod tests {
         let servo = r#""channel":"servo_stats""#;
         let moteus = log([r#""channel":"git""#, servo, servo]).unwrap();
         assert_eq!(moteus.trace.counts_large, [2, 3]);
+        let of = |controller: u8| format!("{servo},\"controller\":{controller}");
+        assert!(log([&of(1), &of(1), &of(1)]).is_ok());
+        let error = log([&of(1), &of(1), &of(2)]).unwrap_err();
+        assert!(
+            error.starts_with("r.json: line 3: field controller: 2 after 1; keep"),
+            "{error}"
+        );
     }
 
     #[test]
