@@ -94,9 +94,10 @@ impl<const N: usize> SavitzkyGolay<N> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SavitzkyGolayState<const N: usize> {
     anchor: Count,
+    /// Steps since the start or the last restart, at most n.
+    filled: u8,
     /// Index of the oldest step.
     oldest: u8,
-    /// The steps of the window; 0 before the start or the last restart.
     steps: [i16; N],
     /// q0 and q1: below 2^22 and 2^29.
     sum: i32,
@@ -113,6 +114,7 @@ impl<const N: usize> VelocityEstimator for SavitzkyGolay<N> {
     fn start(&self, first: &Sample) -> SavitzkyGolayState<N> {
         SavitzkyGolayState {
             anchor: first.count,
+            filled: 0,
             oldest: 0,
             steps: [0; N],
             sum: 0,
@@ -125,12 +127,15 @@ impl<const N: usize> VelocityEstimator for SavitzkyGolay<N> {
     #[inline]
     fn update(&self, state: &mut SavitzkyGolayState<N>, sample: &Sample) -> CountsPerTick {
         let step = sample.count - state.anchor;
+        state.anchor = sample.count;
         if !step.is_motion() {
-            *state = self.start(sample);
+            (state.filled, state.sum, state.first) = (0, 0, 0);
+            (state.second, state.third) = (0, 0);
             return CountsPerTick(step.to_f32());
         }
-        state.anchor = sample.count;
         let newest = step.0;
+        let is_full = state.filled >= self.window;
+        state.filled = state.filled.min(self.window - 1) + 1;
         // Always inside.
         let leaving = match state.steps.get_mut(usize::from(state.oldest)) {
             Some(slot) => i32::from(core::mem::replace(slot, newest as i16)),
@@ -143,7 +148,7 @@ impl<const N: usize> VelocityEstimator for SavitzkyGolay<N> {
         state.third += i64::from(to_third) * i64::from(newest) - state.second;
         state.second += i64::from(to_second) * i64::from(newest) - i64::from(state.first);
         state.first += to_first * newest - state.sum;
-        state.sum += newest - leaving;
+        state.sum += newest - if is_full { leaving } else { 0 };
 
         // Three statements: an array's `map` stays a loop where code is optimised for size.
         let [b1, b2, b3] = self.weights;
