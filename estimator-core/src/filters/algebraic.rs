@@ -168,15 +168,16 @@ const BLOCK: usize = 8;
 /// than one sum of 64 products, and the compiler unrolls them: their length is a constant where that of
 /// the window is not.
 #[inline]
-fn dot(steps: &[i16], weights: &[f32]) -> f32 {
-    let blocks = steps.rchunks_exact(BLOCK);
-    let oldest = blocks.remainder();
+fn dot(mut steps: &[i16], mut weights: &[f32]) -> f32 {
     let mut sum = 0.0;
-    for (steps, weights) in blocks.zip(weights.chunks_exact(BLOCK)) {
-        sum += block(steps, weights);
+    while let (Some((older, newest)), Some((first, rest))) = (
+        steps.split_last_chunk::<BLOCK>(),
+        weights.split_first_chunk::<BLOCK>(),
+    ) {
+        sum += block(newest, first);
+        (steps, weights) = (older, rest);
     }
-    let weights = weights.get(steps.len() - oldest.len()..);
-    sum + block(oldest, weights.unwrap_or(&[]))
+    sum + block(steps, weights)
 }
 
 /// Sum of the products of one block.
