@@ -44,7 +44,7 @@ macro_rules! active_scene {
             H: AccelerationEstimator,
         {
             /// One tick of the active scene.
-            // A call of its own costs a tick 4 instructions with the estimators that are long.
+            // As a call of its own it costs a tick with `adaptive` 4 instructions.
             #[inline(always)]
             fn run_active(
                 &self,

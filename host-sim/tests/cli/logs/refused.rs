@@ -17,7 +17,10 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
     (
         "no-header.csv",
         "",
-        &["2 columns", "--column t=1:s,counts_large=2:counts"],
+        &[
+            "no names but 2 columns",
+            "--column t=1:s,counts_large=2:counts",
+        ],
     ),
     ("simplefoc-monitor.txt", "", &["SimpleFOC", "--row-rate HZ"]),
     ("utf-16.csv", "", &["line 1", "UTF-16; save it in UTF-8"]),

@@ -12,10 +12,10 @@ use pareto::traces::{self, BenchTrace, RATES_HZ};
 
 /// Most instructions that an update in C has beyond that in Rust, in the mean over a trace.
 ///
-/// The parameters of the bench image are constants of its code, those of C are memory. FOAW goes back sample
-/// by sample with more values than there are registers, and the compiler unrolls a window whose length is a
-/// constant: each sample costs a share more in C. An observer reads more parameters than there are registers, checks the
-/// current, which in Rust the sample's type has done, and an edge becomes an `Option` in memory.
+/// The parameters of the bench image are constants of its code, those of C are memory. The loop of FOAW has
+/// more values than there are registers where its bound is a parameter. The compiler unrolls the other
+/// windows where their length is a constant. An observer reads more parameters than there are registers, and
+/// checks the current, which in Rust the sample's type has done. An edge becomes an `Option` in memory.
 fn allowed(row: &Row, in_rust: f64) -> f64 {
     if row.name.starts_with("foaw") {
         in_rust * 1.42

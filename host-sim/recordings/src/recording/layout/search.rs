@@ -70,14 +70,12 @@ pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
         .next()
         .is_some_and(|(_, next)| are_rows(separator, line, next))
     {
-        let comments = lines[..index].iter().enumerate().rev();
-        let names =
-            comments.filter_map(|(index, line)| Some((index, separator.split(comment(line)?))));
-        let mut names = names.filter(|(_, names)| names.len() == fields);
-        return match names.next() {
-            Some((above, names)) => Layout::header(separator, names, above),
-            None => without_header(separator, fields, (index, line)),
-        };
+        let mut above = lines[..index].iter().enumerate().rev();
+        let header = above.find_map(|(at, line)| {
+            let names = separator.split(comment(line)?);
+            (names.len() == fields).then(|| Layout::header(separator, names, at))
+        });
+        return header.unwrap_or_else(|| without_header(separator, fields, (index, line)));
     }
     Layout {
         searched: limit,
