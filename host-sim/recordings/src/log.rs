@@ -1,5 +1,7 @@
 //! Logs: files, one of which can be standard input.
 
+mod encoding;
+
 use std::fs::File;
 use std::io::{self, Cursor, Read};
 use std::path::{Path, PathBuf};
@@ -9,6 +11,7 @@ use terminal::checksum::Sum;
 use terminal::failure::Failure;
 
 use crate::recording::check_kind;
+use encoding::{Converted, Utf16};
 
 /// Name of standard input in messages, and as a recording.
 const STDIN: &str = "standard input";
@@ -90,17 +93,25 @@ fn stream(mut input: impl Read, name: &str) -> Result<Vec<u8>, Failure> {
     let head = input.by_ref().take(HEAD).read_to_end(&mut bytes);
     head.map_err(failed)?;
     match bytes.starts_with(&GZIP) {
-        false => check_kind(&bytes, name)?,
+        false => check_text(&bytes, name)?,
         true => {
             // The end of the packed bytes is not there yet: what comes before it is checked.
             let mut unpacked = Vec::new();
             let mut head = MultiGzDecoder::new(bytes.as_slice()).take(HEAD);
             let _cut = head.read_to_end(&mut unpacked);
-            check_kind(&unpacked, name)?;
+            check_text(&unpacked, name)?;
         }
     }
     read_rest(input, &mut bytes, MOST, name)?;
     Ok(bytes)
+}
+
+/// Checks the first bytes of a stream, which may be in UTF-16.
+fn check_text(head: &[u8], name: &str) -> Result<(), Failure> {
+    match Utf16::of(head) {
+        Some(_) => Ok(()),
+        None => check_kind(head, name),
+    }
 }
 
 /// A recording that can be read more than once.
@@ -146,34 +157,44 @@ impl Log {
         &self.path
     }
 
-    /// Its bytes from the begin, unpacked if they are those of gzip.
+    /// Its bytes from the begin: unpacked if they are those of gzip, and in UTF-8 if they are UTF-16.
     ///
     /// # Errors
     /// As [`Log::open`].
     pub fn reader(&self) -> Result<Box<dyn Read + '_>, Failure> {
-        let mut packed: Box<dyn Read> = match &self.bytes {
+        let packed: Box<dyn Read> = match &self.bytes {
             Some(bytes) => Box::new(bytes.as_slice()),
             None => Box::new(File::open(&self.path).map_err(|error| self.failure(&error))?),
         };
-        let mut begin = Vec::new();
-        let read = packed
-            .by_ref()
-            .take(GZIP.len() as u64)
-            .read_to_end(&mut begin);
-        read.map_err(|error| self.failure(&error))?;
-        let is_gzip = begin == GZIP;
-        let whole = Cursor::new(begin).chain(packed);
-        Ok(match is_gzip {
-            true => Box::new(Unpacked(MultiGzDecoder::new(whole))),
-            false => Box::new(whole),
+        let (begin, packed) = self.begin(packed, GZIP.len())?;
+        let text: Box<dyn Read> = match begin == GZIP {
+            true => Box::new(Unpacked(MultiGzDecoder::new(packed))),
+            false => Box::new(packed),
+        };
+        let (begin, text) = self.begin(text, encoding::SEARCHED)?;
+        Ok(match Utf16::of(&begin) {
+            Some(encoding) => Box::new(Converted::new(text, encoding)),
+            None => Box::new(text),
         })
+    }
+
+    /// The first `bytes` of a stream, and the whole stream.
+    fn begin<R: Read>(
+        &self,
+        mut input: R,
+        bytes: usize,
+    ) -> Result<(Vec<u8>, impl Read + use<R>), Failure> {
+        let mut begin = Vec::new();
+        let read = input.by_ref().take(bytes as u64).read_to_end(&mut begin);
+        read.map_err(|error| self.failure(&error))?;
+        Ok((begin.clone(), Cursor::new(begin).chain(input)))
     }
 
     fn failure(&self, error: &io::Error) -> Failure {
         cannot_read(&self.name, error)
     }
 
-    /// Checksum of its bytes, unpacked.
+    /// Checksum of its bytes, as [`Log::reader`] reads them.
     ///
     /// # Errors
     /// As [`Log::open`].

@@ -245,15 +245,6 @@ mod tests {
                 "--column 't=stamp:s,counts_large=2'",
             ),
             (
-                "target:0.5\tangle:0.01\ntarget:0.5\tangle:0.02\n",
-                "line 1: each row has the names of its numbers: 'target:0.5'; write the names in the first \
-                 line alone",
-            ),
-            (
-                "time=1 ms, count=8\ntime=2 ms, count=9\n",
-                "line 1: each row has the names of its numbers: 'time=1 ms'; write the names",
-            ),
-            (
                 "Time:ms,Angle:deg\n0,1\n",
                 "found: Time:ms; Angle:deg, separated by ','",
             ),

@@ -90,7 +90,6 @@ pub(super) fn theirs(layout: &Layout, place: usize) -> String {
 pub(super) fn reason(layout: &Layout, places: &Places) -> Option<String> {
     let ambiguous = ambiguous(layout, places);
     ambiguous
-        .or_else(|| labelled(layout))
         .or_else(|| captured(layout))
         .or_else(|| barred(layout))
 }
@@ -133,25 +132,6 @@ fn ambiguous(layout: &Layout, places: &Places) -> Option<String> {
         theirs(layout, found.positions[0]),
         found.unit
     ))
-}
-
-/// Rows whose fields are `name:number` or `name=number`, with or without a unit.
-fn labelled(layout: &Layout) -> Option<String> {
-    let is_labelled = |field: &String| {
-        let label = field.split_once([':', '=']);
-        label.is_some_and(|(name, number)| {
-            let number = number.split_whitespace().next().unwrap_or_default();
-            !name.is_empty() && number.parse::<f64>().is_ok()
-        })
-    };
-    let first = layout.names.first()?;
-    layout.names.iter().all(is_labelled).then(|| {
-        format!(
-            "each row has the names of its numbers: '{}'; write the names in the first line alone, and \
-             numbers below",
-            short(first)
-        )
-    })
 }
 
 /// Columns that a logic analyser calls by their numbers.

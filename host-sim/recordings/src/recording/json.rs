@@ -2,7 +2,6 @@
 
 mod fields;
 
-use std::collections::HashMap;
 use std::io::BufRead;
 
 use csv::ByteRecord;
@@ -11,11 +10,11 @@ use serde_json::Value;
 use terminal::failure::Failure;
 
 use super::lines::LineReader;
+use super::named_fields::{Field, Places, names};
 use super::separator::is_comment;
 use crate::log::cannot_read;
 
-pub(super) use fields::Mark;
-use fields::{Field, fields};
+use fields::fields;
 
 /// The channel of a moteus log that has position and current.
 const CHANNEL: &str = "servo_stats";
@@ -59,14 +58,8 @@ impl Begin {
         let Some(found) = of_channel.or_else(|| objects().next()) else {
             return Err(not_alone(first.as_bytes(), line, name));
         };
-        let mut names: Vec<String> = Vec::new();
-        for field in found {
-            if !names.contains(&field.name) {
-                names.push(field.name);
-            }
-        }
         Ok(Some(Self {
-            names,
+            names: names(found),
             line,
             channels,
         }))
@@ -77,28 +70,19 @@ impl Begin {
 pub(super) struct Json<R> {
     inner: LineReader<R>,
     text: Vec<u8>,
-    names: Vec<String>,
-    places: HashMap<String, usize>,
+    pub(super) places: Places,
     channels: bool,
     controller: Option<String>,
-    values: Vec<String>,
-    /// What the last object has for each name.
-    pub(super) marks: Vec<Mark>,
 }
 
 impl<R: BufRead> Json<R> {
     pub(super) fn new(inner: R, end: u8, begin: &Begin) -> Self {
-        let names = begin.names.clone();
-        let places = names.iter().cloned().zip(0..).collect();
         Self {
             inner: LineReader::new(inner, end),
             text: Vec::new(),
-            names,
-            places,
+            places: Places::new(&begin.names),
             channels: begin.channels,
             controller: None,
-            values: Vec::new(),
-            marks: Vec::new(),
         }
     }
 
@@ -126,34 +110,8 @@ impl<R: BufRead> Json<R> {
                 }
                 self.one_controller(&fields, line, name)?;
             }
-            self.take(fields);
-            record.clear();
-            for value in &self.values {
-                record.push_field(value.as_bytes());
-            }
+            self.places.take(fields, record);
             return Ok(Some(line));
-        }
-    }
-
-    /// Places the fields of an object by their names.
-    fn take(&mut self, fields: Vec<Field>) {
-        self.marks.clear();
-        self.marks.resize(self.names.len(), Mark::Missing);
-        self.values.clear();
-        self.values.resize_with(self.names.len(), String::new);
-        for (k, field) in fields.into_iter().enumerate() {
-            // Objects mostly have the order of the first one.
-            let place = match self.names.get(k) == Some(&field.name) {
-                true => Some(k),
-                false => self.places.get(&field.name).copied(),
-            };
-            let Some(place) = place else { continue };
-            if self.marks[place] == Mark::Missing {
-                self.marks[place] = field.mark;
-                self.values[place] = field.text;
-            } else {
-                self.marks[place] = Mark::Twice;
-            }
         }
     }
 
@@ -322,7 +280,7 @@ mod tests {
             ] {
                 let error = read(&text).unwrap_err();
                 let said = format!(
-                    "r.json: line {line}: column {name}: two fields '{name}' in one object; rename or \
+                    "r.json: line {line}: column {name}: two fields '{name}' in one line; rename or \
                      remove one"
                 );
                 assert_eq!(error, said);
@@ -347,7 +305,7 @@ mod tests {
             ),
             (
                 "",
-                "no field 'counts_large' in the object; add it, or remove the line",
+                "no field 'counts_large' in the line; add it, or remove the line",
             ),
         ] {
             let error = read(&format!("{first}{{\"t\":0.001{field}}}\n")).unwrap_err();

@@ -1,4 +1,4 @@
-//! Files that are no text: compressed, in another encoding, or data of another program.
+//! Files that are no text: compressed, or data of another program.
 
 use terminal::failure::Failure;
 
@@ -18,13 +18,13 @@ const KINDS: [(&[u8], &str, &str); 8] = [
     (b"\x89MCAP", "an MCAP file", "write it as CSV"),
 ];
 
-/// Bytes that are searched for the encoding.
+/// Bytes that are searched for control characters.
 const SEARCHED: usize = 256;
 
 /// The file is no text if more than one of this many bytes is a control character.
 const CONTROL_PART: usize = 20;
 
-/// Checks that the log called `name` with the first bytes `head` is text in UTF-8.
+/// Checks that the log called `name` with the first bytes `head` is text.
 ///
 /// # Errors
 /// [`Failure::Input`] with the remedy.
@@ -33,35 +33,12 @@ pub(crate) fn check(head: &[u8], name: &str) -> Result<(), Failure> {
     if let Some((_, what, remedy)) = KINDS.iter().find(|(begin, ..)| head.starts_with(begin)) {
         return refused(&format!("this is {what}; {remedy}, or give the text as -"));
     }
-    if let Some(encoding) = utf_16(head) {
-        return refused(&format!(
-            "the text is in UTF-16; save it in UTF-8, for example with iconv -f {encoding} -t UTF-8"
-        ));
-    }
     let head = &head[..head.len().min(SEARCHED)];
     let is_control = |byte: &&u8| byte.is_ascii_control() && !byte.is_ascii_whitespace();
     if head.iter().filter(is_control).count() > head.len() / CONTROL_PART {
         return refused("the file is not text; write it as CSV");
     }
     Ok(())
-}
-
-/// The name of the encoding of a text in UTF-16, with or without a mark: most of its characters have a
-/// byte of zero.
-fn utf_16(head: &[u8]) -> Option<&'static str> {
-    if head.starts_with(b"\xFF\xFE") || head.starts_with(b"\xFE\xFF") {
-        return Some("UTF-16");
-    }
-    let head = &head[..head.len().min(SEARCHED)];
-    let zeros = |parity: usize| {
-        let bytes = head.iter().skip(parity).step_by(2);
-        2 * bytes.filter(|byte| **byte == 0).count() > head.len() / 2
-    };
-    match (zeros(0), zeros(1)) {
-        (false, true) => Some("UTF-16LE"),
-        (true, false) => Some("UTF-16BE"),
-        _ => None,
-    }
 }
 
 #[cfg(test)]
@@ -85,20 +62,5 @@ mod tests {
             error(&binary),
             "r.csv: line 1: the file is not text; write it as CSV"
         );
-    }
-
-    #[test]
-    fn utf_16_is_found_without_a_mark() {
-        let text = "t,counts_large\n0,1\n0.001,2\n";
-        let little: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
-        let big: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
-        for (bytes, encoding) in [(little, "UTF-16LE"), (big, "UTF-16BE")] {
-            let said = format!(
-                "r.csv: line 1: the text is in UTF-16; save it in UTF-8, for example with iconv -f \
-                 {encoding} -t UTF-8"
-            );
-            assert_eq!(error(&bytes), said);
-        }
-        Recording::parse(text.as_bytes(), "r.csv").unwrap();
     }
 }

@@ -17,7 +17,7 @@ pub(super) use search::UNKNOWN;
 use search::{is_content, is_number, named, numbers, probable};
 
 /// Number of the first lines among which the header is searched.
-const SEARCHED: usize = 500;
+pub(super) const SEARCHED: usize = 500;
 
 /// Where the names of the columns are, and what they are.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +48,6 @@ impl Layout {
         options: &ReadOptions,
         name: &str,
     ) -> Result<Self, Failure> {
-        let is_stamped = head.lines().any(|line| stamp(line.as_bytes()) > 0);
         let bare = head.lines().map(|line| &line[stamp(line.as_bytes())..]);
         let mut lines: Vec<_> = bare.take(SEARCHED + 1).collect();
         let limit = match (lines.len() > SEARCHED, is_cut) {
@@ -68,7 +67,7 @@ impl Layout {
             None => probable(&lines, limit),
         };
         Ok(Self {
-            is_stamped,
+            is_stamped: is_stamped(head),
             ..layout
         })
     }
@@ -249,6 +248,11 @@ impl Layout {
         }
         Ok(places)
     }
+}
+
+/// Whether lines of `head` begin with the time stamps of a serial monitor.
+pub(super) fn is_stamped(head: &str) -> bool {
+    head.lines().any(|line| stamp(line.as_bytes()) > 0)
 }
 
 /// A column that is read.

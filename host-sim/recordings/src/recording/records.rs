@@ -1,4 +1,4 @@
-//! The rows of a log: text with separators, or one JSON object a line.
+//! The rows of a log: text with separators, one JSON object a line, or numbers with their names.
 
 use std::io::{BufReader, Cursor, Read};
 
@@ -8,9 +8,10 @@ use terminal::failure::Failure;
 
 use crate::log::{HEAD, cannot_read};
 
-use super::json::{Begin, Json};
+use super::json::{self, Json};
 use super::kinds;
-use super::layout::Layout;
+use super::labelled::{self, Labelled};
+use super::layout::{Layout, is_stamped};
 use super::lines::LINE_REMEDY;
 use super::options::ReadOptions;
 use super::row::Row;
@@ -27,6 +28,7 @@ type Input<'a> = BufReader<Box<dyn Read + 'a>>;
 enum Source<'a> {
     Text(csv::Reader<Lines<Input<'a>>>),
     Json(Json<Input<'a>>),
+    Labelled(Labelled<Input<'a>>),
 }
 
 /// The rows of the log called `name` in messages.
@@ -55,31 +57,34 @@ impl<'a> Records<'a> {
         // Lines end with a carriage return alone only where there is no line feed.
         let end = if head.contains(&b'\n') { b'\n' } else { b'\r' };
         let text = String::from_utf8_lossy(&head).replace(char::from(end), "\n");
-        let json = Begin::of(&text, name)?;
-        let layout = match &json {
-            Some(begin) => Layout {
-                line: begin.line,
-                ..Layout::header(Separator::Comma, begin.names.clone(), 0)
-            },
-            None if is_cut && !text.contains('\n') => {
-                return Err(Failure::Input(format!(
-                    "{name}: line 1: no end of the line within {} KiB; {LINE_REMEDY}",
-                    HEAD >> 10
-                )));
-            }
-            None => Layout::of(&text, is_cut, options, name)?,
-        };
+        let is_cut_line = is_cut && !text.contains('\n');
         let input: Box<dyn Read> = Box::new(Cursor::new(head).chain(input));
         let input = BufReader::with_capacity(1 << 16, input);
-        let source = match json {
-            Some(begin) => Source::Json(Json::new(input, end, &begin)),
-            None => Source::Text(
-                csv::ReaderBuilder::new()
-                    .has_headers(false)
-                    .flexible(true)
-                    .delimiter(layout.separator.byte())
-                    .from_reader(Lines::new(input, layout.separator, layout.skip, end)),
-            ),
+        let named = |names: &[String], line| Layout {
+            line,
+            is_stamped: is_stamped(&text),
+            ..Layout::header(Separator::Comma, names.to_vec(), 0)
+        };
+        let (layout, source) = if let Some(begin) = json::Begin::of(&text, name)? {
+            let layout = named(&begin.names, begin.line);
+            (layout, Source::Json(Json::new(input, end, &begin)))
+        } else if let Some(begin) = labelled::Begin::of(&text) {
+            let layout = named(&begin.names, begin.line);
+            (layout, Source::Labelled(Labelled::new(input, end, &begin)))
+        } else if is_cut_line {
+            return Err(Failure::Input(format!(
+                "{name}: line 1: no end of the line within {} KiB; {LINE_REMEDY}",
+                HEAD >> 10
+            )));
+        } else {
+            let layout = Layout::of(&text, is_cut, options, name)?;
+            let lines = Lines::new(input, layout.separator, layout.skip, end);
+            let reader = csv::ReaderBuilder::new()
+                .has_headers(false)
+                .flexible(true)
+                .delimiter(layout.separator.byte())
+                .from_reader(lines);
+            (layout, Source::Text(reader))
         };
         Ok(Self {
             name,
@@ -93,6 +98,7 @@ impl<'a> Records<'a> {
     pub(super) fn next(&mut self) -> Result<Option<Row<'_>>, Failure> {
         let line = match &mut self.source {
             Source::Json(json) => json.read(&mut self.record, self.name)?,
+            Source::Labelled(rows) => rows.read(&mut self.record, self.name)?,
             Source::Text(reader) => {
                 let read = reader.read_byte_record(&mut self.record);
                 let read = read.map_err(|error| {
@@ -119,7 +125,8 @@ impl<'a> Records<'a> {
             line,
             record: &self.record,
             marks: match &self.source {
-                Source::Json(json) => &json.marks,
+                Source::Json(json) => &json.places.marks,
+                Source::Labelled(rows) => &rows.places.marks,
                 Source::Text(_) => &[],
             },
             names: &self.layout.names,

@@ -5,7 +5,7 @@ use csv::ByteRecord;
 use terminal::failure::Failure;
 
 use super::fields::not_a_number;
-use super::json::Mark;
+use super::named_fields::Mark;
 use super::numbers::shown;
 
 /// One row, to read fields from.
@@ -13,7 +13,7 @@ pub(super) struct Row<'a> {
     pub(super) name: &'a str,
     pub(super) line: u64,
     pub(super) record: &'a ByteRecord,
-    /// What each field of an object is; nothing for a line of text.
+    /// What each field of a row with names is; nothing for a row without.
     pub(super) marks: &'a [Mark],
     /// Names of the columns as the log has them.
     pub(super) names: &'a [String],
@@ -34,7 +34,7 @@ impl Row<'_> {
     pub(super) fn text(&self, column: &str, place: usize) -> Result<&str, Failure> {
         if self.marks.get(place) == Some(&Mark::Twice) {
             let what = format!(
-                "two fields '{}' in one object; rename or remove one",
+                "two fields '{}' in one line; rename or remove one",
                 self.theirs(column, place)
             );
             return Err(self.failure(column, &what));
@@ -90,7 +90,7 @@ impl Row<'_> {
         let theirs = self.theirs(column, place);
         let text = match self.marks.get(place) {
             Some(Mark::Missing) => {
-                return format!("no field '{theirs}' in the object; add it, or remove the line");
+                return format!("no field '{theirs}' in the line; add it, or remove the line");
             }
             Some(Mark::Blank(word)) => word,
             _ => text,

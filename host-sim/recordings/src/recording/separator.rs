@@ -78,18 +78,22 @@ pub(super) fn is_comment(line: &[u8]) -> bool {
     matches!(line, [b'#' | b'%', ..] | [b'/', b'/', ..])
 }
 
-/// Length of the time stamp that the serial monitor of the Arduino IDE writes before a line, as in
-/// `12:00:00.000 -> 1,2`; 0 for a line without one.
+/// Length of the time stamp that a serial monitor writes before a line, as in `12:00:00.000 -> 1,2` (Arduino
+/// IDE) and `12:00:00.000 > 1,2` (PlatformIO); 0 for a line without one.
 pub(super) fn stamp(line: &[u8]) -> usize {
-    const FORM: &[u8] = b"00:00:00.000 -> ";
+    const FORMS: [&[u8]; 2] = [b"00:00:00.000 -> ", b"00:00:00.000 > "];
     let fits = |(&byte, form): (&u8, &u8)| match form {
         b'0' => byte.is_ascii_digit(),
         mark => byte == *mark,
     };
-    match line.len() >= FORM.len() && line.iter().zip(FORM).all(fits) {
-        true => FORM.len(),
-        false => 0,
-    }
+    let is_of = |form: &&[u8]| line.len() >= form.len() && line.iter().zip(*form).all(fits);
+    FORMS.into_iter().find(is_of).map_or(0, <[u8]>::len)
+}
+
+/// A line without the stamp of a serial monitor and the carriage return at its end.
+pub(super) fn bare(line: &[u8]) -> &[u8] {
+    let line = line.strip_suffix(b"\r").unwrap_or(line);
+    &line[stamp(line)..]
 }
 
 /// Text with its stamps of a serial monitor, its comments, its blank lines and its first lines emptied, so that the lines keep their
@@ -178,7 +182,7 @@ mod tests {
 
     #[test]
     fn stamps_of_a_serial_monitor_are_cut_off() {
-        let text = "12:00:00.001 -> # a\n12:00:00.002 -> 1,2\n12:00:00.003 -> \n";
+        let text = "12:00:00.001 -> # a\n12:00:00.002 > 1,2\n12:00:00.003 -> \n";
         assert_eq!(lines(text, Separator::Comma, 0), "\n1,2\n\n");
         for text in [
             "12:00:00.001 ->",

@@ -8,6 +8,7 @@ pub(super) const READ: &[(&str, &str)] = &[
     ("own.csv", ""),
     ("crlf-bom.csv", ""),
     ("carriage-return.csv", ""),
+    ("utf-16.csv", ""),
     ("semicolons-decimal-commas.csv", ""),
     (
         "tabs.tsv",
@@ -43,6 +44,7 @@ pub(super) const READ: &[(&str, &str)] = &[
     ("simplefoc-monitor.txt", "--row-rate 1000"),
     ("simplefoc-monitor-all.txt", "--row-rate 1000"),
     ("serial-monitor-times.txt", "--row-rate 1000"),
+    ("serial-plotter.txt", ""),
     ("plotjuggler.csv", ""),
 ];
 

@@ -23,7 +23,6 @@ pub(super) const REFUSED: &[(&str, &str, &[&str])] = &[
         ],
     ),
     ("simplefoc-monitor.txt", "", &["SimpleFOC", "--row-rate HZ"]),
-    ("utf-16.csv", "", &["line 1", "UTF-16; save it in UTF-8"]),
     (
         "not-a-number.csv",
         "",

@@ -6,31 +6,14 @@ use serde::Deserializer as _;
 use serde::de::{DeserializeSeed, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Number, Value};
 
+use super::super::named_fields::{Field, Mark};
+
 /// Begins a text that stands for a word which is no JSON.
 const WORD: char = '\0';
 
 /// The key under which `serde_json` hands over the text of a number, where its feature
 /// `arbitrary_precision` is on. Another package may turn it on.
 const NUMBER: &str = "$serde_json::private::Number";
-
-/// What an object has in the place of a field.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in super::super) enum Mark {
-    Missing,
-    Text,
-    /// No value: null, or what Python writes for one.
-    Blank(&'static str),
-    /// Several values.
-    Twice,
-}
-
-/// A field of an object: its name, its text, which is empty without a value, and what it is. A field of
-/// an object inside has the names of both, and one of `data` has its own.
-pub(super) struct Field {
-    pub(super) name: String,
-    pub(super) text: String,
-    pub(super) mark: Mark,
-}
 
 /// The fields of the object in a line.
 pub(super) fn fields(line: &[u8]) -> Result<Vec<Field>, serde_json::Error> {

@@ -1,0 +1,81 @@
+//! Rows whose fields have names, which places them in a record.
+
+use std::collections::HashMap;
+
+use csv::ByteRecord;
+
+/// What a row has in the place of a field.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Mark {
+    Missing,
+    Text,
+    /// No value: null, or what Python writes for one.
+    Blank(&'static str),
+    /// Several values.
+    Twice,
+}
+
+/// A field: its name, its text, which is empty without a value, and what it is. A field of an object inside
+/// another one has the names of both, and one of `data` has its own.
+pub(super) struct Field {
+    pub(super) name: String,
+    pub(super) text: String,
+    pub(super) mark: Mark,
+}
+
+/// The names of fields, each once.
+pub(super) fn names(fields: Vec<Field>) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for field in fields {
+        if !names.contains(&field.name) {
+            names.push(field.name);
+        }
+    }
+    names
+}
+
+/// The places of names, and what the last row has there.
+pub(super) struct Places {
+    names: Vec<String>,
+    places: HashMap<String, usize>,
+    values: Vec<String>,
+    pub(super) marks: Vec<Mark>,
+}
+
+impl Places {
+    pub(super) fn new(names: &[String]) -> Self {
+        Self {
+            names: names.to_vec(),
+            places: names.iter().cloned().zip(0..).collect(),
+            values: Vec::new(),
+            marks: Vec::new(),
+        }
+    }
+
+    /// Writes the fields of a row into `record`, each to the place of its name. Fields of other names are
+    /// left out.
+    pub(super) fn take(&mut self, fields: Vec<Field>, record: &mut ByteRecord) {
+        self.marks.clear();
+        self.marks.resize(self.names.len(), Mark::Missing);
+        self.values.clear();
+        self.values.resize_with(self.names.len(), String::new);
+        for (k, field) in fields.into_iter().enumerate() {
+            // Rows mostly have the order of the first one.
+            let place = match self.names.get(k) == Some(&field.name) {
+                true => Some(k),
+                false => self.places.get(&field.name).copied(),
+            };
+            let Some(place) = place else { continue };
+            if self.marks[place] == Mark::Missing {
+                self.marks[place] = field.mark;
+                self.values[place] = field.text;
+            } else {
+                self.marks[place] = Mark::Twice;
+            }
+        }
+        record.clear();
+        for value in &self.values {
+            record.push_field(value.as_bytes());
+        }
+    }
+}
