@@ -54,10 +54,11 @@ pub(super) enum Command {
     #[command(after_help = "Example:
   host-sim coarsen fine.csv --counts-per-rev 1024 --rate 500 --out coarse.csv")]
     Coarsen(super::coarsen::Coarsen),
-    /// Turn a logic analyser's capture of an encoder's two lines into a recording
+    /// Turn a logic analyser's capture of an encoder's lines into a recording
     #[command(after_help = "Examples:
   host-sim decode capture.csv --counts-per-rev 4096 --out motor.csv
-  host-sim decode samples.csv --row-rate 1e6 --lines D0 D1 --out motor.csv")]
+  host-sim decode samples.csv --row-rate 1e6 --lines D0 D1 --out motor.csv
+  host-sim decode hall.csv --hall D0 D1 D2 --counts-per-rev 42 --out motor.csv")]
     Decode(super::decode::Decode),
     /// Convert the firmware's telemetry to a recording (CSV)
     #[command(after_help = "Example:

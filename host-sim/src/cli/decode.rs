@@ -13,14 +13,18 @@ use terminal::output::{note, write_whole};
 
 #[derive(Debug, Args)]
 pub(super) struct Decode {
-    /// Capture of the encoder's lines A and B: a row has the levels 0 or 1 of the lines from its time on,
-    /// as CSV of a logic analyser; - is standard input
+    /// Capture of the encoder's lines A and B, or of three Hall lines: a row has the levels 0 or 1 of the
+    /// lines from its time on, as CSV of a logic analyser; - is standard input
     #[arg(value_name = "CAPTURE.csv")]
     capture: PathBuf,
     /// Names or numbers of the columns of the lines; in the other order counts have the other sign
     /// [default: the only two columns that are no time]
     #[arg(long, num_args = 2, value_names = ["A", "B"])]
     lines: Option<Vec<String>>,
+    /// Names or numbers of the columns of three Hall lines, a third of a period apart; in the other order
+    /// counts have the other sign
+    #[arg(long, num_args = 3, value_names = ["U", "V", "W"], conflicts_with = "lines")]
+    hall: Option<Vec<String>>,
     /// Read the time from the column THEIRS: t='Time (us)', t=1:ns. Units: s, ms, us, ns [default: the
     /// column whose name begins with time]
     #[arg(long = "column", value_name = "t=THEIRS[:UNIT]")]
@@ -31,7 +35,8 @@ pub(super) struct Decode {
     /// Rate of the recording, 10 to 100000 Hz
     #[arg(long, value_name = "HZ", default_value_t = 1000.0)]
     rate: f64,
-    /// Counts per revolution of the encoder, four times its lines, for a comment in the recording that
+    /// Counts per revolution of the encoder: four times its lines, or six times the pole pairs of Hall
+    /// sensors, for a comment in the recording that
     /// the commands on recordings read
     #[arg(long, value_name = "N", value_parser = counts_per_rev())]
     counts_per_rev: Option<u32>,
@@ -41,14 +46,9 @@ pub(super) struct Decode {
 }
 
 pub(super) fn run(options: &Decode) -> Result<(), Failure> {
-    // The parser gives two names or none.
-    let lines = options
-        .lines
-        .clone()
-        .and_then(|lines| lines.try_into().ok());
     let capture = Capture::new(
         &options.columns,
-        lines,
+        options.lines.clone().or_else(|| options.hall.clone()),
         options.row_rate,
         rate(options.rate)?,
     )?;

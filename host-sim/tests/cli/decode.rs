@@ -1,4 +1,4 @@
-//! A capture of an encoder's two lines becomes a recording that the other commands read.
+//! A capture of an encoder's lines becomes a recording that the other commands read.
 
 use std::f64::consts::TAU;
 
@@ -91,12 +91,40 @@ fn lines_in_the_other_order_have_the_other_sign() {
     assert_eq!(one, other);
 }
 
+/// Hall lines have names before or after the file, and exclude two lines.
+#[test]
+fn hall_lines_are_named() {
+    let folder = Folder::new(HOST_SIM);
+    let levels = ["1,0,0", "1,1,0", "0,1,0", "0,1,1", "0,0,1", "1,0,1"];
+    let row = |k: usize| format!("{}e-3,{}\n", k, levels[k % 6]);
+    let rows: String = (0..9).map(row).collect();
+    folder.write("hall.csv", format!("t,H1,H2,H3\n{rows}"));
+    let hall = ["--hall", "H1", "H2", "H3"];
+    let recording = folder.good(&[&["decode"], &hall[..], &["hall.csv", "--out", "-"]].concat());
+    let counts = recording
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').nth(1).unwrap());
+    let counts: Vec<_> = counts.collect();
+    assert_eq!(counts, ["0", "1", "2", "3", "4", "5", "6", "7", "8"]);
+    let both = [
+        &["decode", "hall.csv", "--lines", "H1", "H2"],
+        &hall[..],
+        &["--out", "-"],
+    ];
+    let error = folder.refused(&both.concat());
+    assert!(
+        error.contains("--lines") && error.contains("--hall"),
+        "{error}"
+    );
+}
+
 #[test]
 fn capture_that_is_read_as_a_recording_is_refused_with_the_command() {
     let folder = Folder::new(HOST_SIM);
     let error = folder.refused(&["replay", CAPTURE]);
     let said = "encoder-lines.csv: line 1: the columns look like lines of a logic analyser; make a recording of an \
-                encoder's two lines with host-sim decode";
+                encoder's lines with host-sim decode";
     assert!(error.contains(said), "{error}");
     for rate in ["9", "100001", "nan"] {
         let error = folder.refused(&["decode", CAPTURE, "--rate", rate, "--out", "-"]);

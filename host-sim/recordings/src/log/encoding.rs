@@ -128,7 +128,7 @@ mod tests {
         let text = "t,counts_large\n0,1\n0.001,2\n";
         for encoding in [Utf16::Little, Utf16::Big] {
             assert_eq!(Utf16::of(&bytes(text, encoding)), Some(encoding));
-            let marked = bytes(&format!("\u{feff}µ"), encoding);
+            let marked = bytes("\u{feff}µ", encoding);
             assert_eq!(Utf16::of(&marked), Some(encoding));
         }
         for other in [text.as_bytes(), &[0; 100], b"", b"\xEF\xBB\xBFt"] {

@@ -1,4 +1,4 @@
-//! Captures of the two lines of an incremental encoder, as a logic analyser writes them.
+//! Captures of the lines of an incremental encoder or of Hall sensors, as a logic analyser writes them.
 
 mod decoder;
 mod levels;
@@ -14,7 +14,10 @@ use super::options::{Column, Mapping, ReadOptions};
 use super::own_times::OwnTimes;
 use super::records::Records;
 use decoder::Decoder;
-use levels::level;
+use levels::{Kind, level};
+
+/// The option that names the lines, for messages.
+const LINES: &str = "--lines A B, or three Hall lines with --hall U V W";
 
 /// Where the times of the rows are from.
 #[derive(Clone, Copy, Debug)]
@@ -26,24 +29,26 @@ enum Clock {
 
 /// How a capture is read, and the recording that is made of it.
 ///
-/// The count goes up by one at each change of a line while A leads B: A rises, B rises, A falls, B falls.
+/// The count goes up by one at each change of a line while A leads B: A rises, B rises, A falls, B falls. Of
+/// three lines of Hall sensors it goes up while U leads V and V leads W, each by a third of a period: U rises,
+/// W falls, V rises, U falls, W rises, V falls.
 /// It begins at 0, and the time of the recording begins with the capture.
 #[derive(Clone, Debug)]
 pub struct Capture {
     options: ReadOptions,
-    lines: Option<[String; 2]>,
+    lines: Option<Vec<String>>,
     rate_hz: f64,
 }
 
 impl Capture {
     /// A recording of `rate_hz` is made. `columns` are texts of `--column` that may name the time, `lines`
-    /// the names or numbers of the columns of the lines A and B. Rows without a time are at `row_rate_hz`.
+    /// the names or numbers of the columns of the lines, two or three. Rows without a time are at `row_rate_hz`.
     ///
     /// # Errors
     /// [`Failure::Input`] that names the option.
     pub fn new(
         columns: &[String],
-        lines: Option<[String; 2]>,
+        lines: Option<Vec<String>>,
         row_rate_hz: Option<f64>,
         rate_hz: f64,
     ) -> Result<Self, Failure> {
@@ -55,7 +60,7 @@ impl Capture {
         if let Some(mapping) = options.columns.iter().find(other) {
             let ours = mapping.column.name();
             return Err(Failure::Input(format!(
-                "--column {ours}={}: a capture has the column t and two lines; name the lines with --lines A B",
+                "--column {ours}={}: a capture has the column t and lines; name the lines with {LINES}",
                 mapping.theirs
             )));
         }
@@ -78,9 +83,11 @@ impl Capture {
         let mut records = Records::open(input, name, &self.options)?;
         let clock = self.clock(&records.layout, name)?;
         let lines = self.lines(&records.layout, clock, name)?;
-        let called = [0, 1].map(|line| called(&records.layout, lines[line]));
+        let kind = Kind::of(lines.len()).unwrap_or(Kind::Quadrature);
+        let called = lines.iter().map(|place| called(&records.layout, *place));
+        let called: Vec<_> = called.collect();
         let mut times = OwnTimes::default();
-        let mut decoder = Decoder::new(self.rate_hz);
+        let mut decoder = Decoder::new(kind, lines.len(), self.rate_hz);
         let mut rows = 0_u64;
         while let Some(row) = records.next()? {
             let t = match clock {
@@ -88,10 +95,11 @@ impl Capture {
                 Clock::Rate(hz) => rows as f64 / hz,
             };
             rows += 1;
-            let levels = [
-                level(&row, &called[0], lines[0])?,
-                level(&row, &called[1], lines[1])?,
-            ];
+            let levels = called.iter().zip(&lines);
+            let levels = levels.map(|(called, place)| level(&row, called, *place));
+            let levels: Vec<_> = levels.collect::<Result<_, _>>()?;
+            // Lines without a level have none together.
+            let levels = levels.into_iter().collect();
             decoder.take(t, levels, &row)?;
         }
         let mut notes = vec![source(&records.layout, clock, &called)];
@@ -129,11 +137,11 @@ impl Capture {
         layout.mapped(&mapping, name).map(Clock::Column)
     }
 
-    /// The places of the lines A and B: those of the options, or the only two that are no time.
-    fn lines(&self, layout: &Layout, clock: Clock, name: &str) -> Result<[usize; 2], Failure> {
+    /// The places of the lines: those of the options, or the only two that are no time.
+    fn lines(&self, layout: &Layout, clock: Clock, name: &str) -> Result<Vec<usize>, Failure> {
         let failure = |why: String| {
             Failure::Input(format!(
-                "{name}: line {}: {why}; {}; name the columns of the encoder's lines with --lines A B",
+                "{name}: line {}: {why}; {}; name the columns of the encoder's lines with {LINES}",
                 layout.line.max(1),
                 found(layout)
             ))
@@ -144,12 +152,12 @@ impl Capture {
                 Clock::Rate(_) => !is_time(&layout.names[*place]),
             };
             let others: Vec<_> = (0..layout.names.len()).filter(is_line).collect();
-            return others.try_into().map_err(|others: Vec<_>| {
-                failure(format!(
-                    "columns besides the time: {}, and an encoder has two lines",
-                    others.len()
-                ))
-            });
+            return match others.len() {
+                2 => Ok(others),
+                others => Err(failure(format!(
+                    "columns besides the time: {others}, and an encoder has two lines"
+                ))),
+            };
         };
         let place = |line: &String| {
             let called = layout.names.iter().filter(|name| *name == line);
@@ -162,14 +170,15 @@ impl Capture {
                 (_, None) => Err(failure(format!("no column '{}'", short(line)))),
             }
         };
-        let [a, b] = [place(&named[0])?, place(&named[1])?];
-        let is_time = matches!(clock, Clock::Column(time) if [a, b].contains(&time.place));
-        if a == b || is_time {
+        let places: Vec<_> = named.iter().map(place).collect::<Result<_, _>>()?;
+        let is_time = matches!(clock, Clock::Column(time) if places.contains(&time.place));
+        let is_twice = (1..places.len()).any(|k| places[..k].contains(&places[k]));
+        if is_twice || is_time {
             return Err(failure(
-                "the time and the two lines are three columns".to_owned(),
+                "the time and the lines are different columns".to_owned(),
             ));
         }
-        Ok([a, b])
+        Ok(places)
     }
 }
 
@@ -188,15 +197,18 @@ fn called(layout: &Layout, place: usize) -> String {
 }
 
 /// The note on the columns that are read.
-fn source(layout: &Layout, clock: Clock, lines: &[String; 2]) -> String {
+fn source(layout: &Layout, clock: Clock, lines: &[String]) -> String {
     let time = match clock {
         Clock::Column(at) => format!("t from {} ({})", called(layout, at.place), at.unit.name()),
         Clock::Rate(hz) => format!("rows at {hz} Hz"),
     };
-    format!(
-        "{time}, line A from column {}, line B from column {}",
-        lines[0], lines[1]
-    )
+    let names = match lines.len() {
+        2 => ["A", "B", ""],
+        _ => ["U", "V", "W"],
+    };
+    let lines = names.iter().zip(lines);
+    let lines = lines.map(|(name, column)| format!(", line {name} from column {column}"));
+    format!("{time}{}", lines.collect::<String>())
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use super::currents::{Current, measured_note};
 use super::encoder::Encoder;
 use super::layout::{Layout, Place, Places};
 use super::lines::LineNumbers;
+use super::named_fields::Mark;
 use super::options::{Column, ReadOptions};
 use super::own_times::OwnTimes;
 use super::records::Records;
@@ -142,7 +143,8 @@ impl<'a> Columns<'a> {
             return Ok(false);
         };
         let has = |place: Place| -> Result<bool, Failure> {
-            Ok(!row.text(place.column.name(), place.place)?.is_empty())
+            let is_new = row.marks.get(place.place) != Some(&Mark::Held);
+            Ok(is_new && !row.text(place.column.name(), place.place)?.is_empty())
         };
         let others = || row.has_value(|place| ![time.place, position.place].contains(&place));
         Ok(!has(position)? && has(time)? && others())

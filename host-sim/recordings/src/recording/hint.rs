@@ -145,7 +145,7 @@ fn captured(layout: &Layout) -> Option<String> {
     };
     let lines = layout.names.iter().filter(is_line).count();
     (lines >= 2).then(|| {
-        "the columns look like lines of a logic analyser; make a recording of an encoder's two lines with \
+        "the columns look like lines of a logic analyser; make a recording of an encoder's lines with \
          host-sim decode"
             .to_owned()
     })

@@ -13,8 +13,8 @@ use super::header;
 use super::options::{Column, Mapping, ReadOptions};
 use super::separator::{Separator, comment, stamp};
 use super::units::Unit;
-pub(super) use search::UNKNOWN;
-use search::{is_content, is_number, named, numbers, probable};
+pub(super) use search::{UNKNOWN, is_number};
+use search::{is_content, named, numbers, probable};
 
 /// Number of the first lines among which the header is searched.
 pub(super) const SEARCHED: usize = 500;

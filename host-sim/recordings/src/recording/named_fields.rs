@@ -9,6 +9,8 @@ use csv::ByteRecord;
 pub(super) enum Mark {
     Missing,
     Text,
+    /// The text of an earlier row.
+    Held,
     /// No value: null, or what Python writes for one.
     Blank(&'static str),
     /// Several values.
@@ -47,18 +49,30 @@ impl Places {
         Self {
             names: names.to_vec(),
             places: names.iter().cloned().zip(0..).collect(),
-            values: Vec::new(),
-            marks: Vec::new(),
+            values: vec![String::new(); names.len()],
+            marks: vec![Mark::Missing; names.len()],
         }
     }
 
     /// Writes the fields of a row into `record`, each to the place of its name. Fields of other names are
     /// left out.
     pub(super) fn take(&mut self, fields: Vec<Field>, record: &mut ByteRecord) {
-        self.marks.clear();
-        self.marks.resize(self.names.len(), Mark::Missing);
-        self.values.clear();
-        self.values.resize_with(self.names.len(), String::new);
+        self.marks.fill(Mark::Missing);
+        self.values.iter_mut().for_each(String::clear);
+        self.place(fields, record);
+    }
+
+    /// As [`Places::take`], and names without a field keep their latest one.
+    pub(super) fn take_and_hold(&mut self, fields: Vec<Field>, record: &mut ByteRecord) {
+        for mark in &mut self.marks {
+            if *mark != Mark::Missing {
+                *mark = Mark::Held;
+            }
+        }
+        self.place(fields, record);
+    }
+
+    fn place(&mut self, fields: Vec<Field>, record: &mut ByteRecord) {
         for (k, field) in fields.into_iter().enumerate() {
             // Rows mostly have the order of the first one.
             let place = match self.names.get(k) == Some(&field.name) {
@@ -66,7 +80,7 @@ impl Places {
                 false => self.places.get(&field.name).copied(),
             };
             let Some(place) = place else { continue };
-            if self.marks[place] == Mark::Missing {
+            if [Mark::Missing, Mark::Held].contains(&self.marks[place]) {
                 self.marks[place] = field.mark;
                 self.values[place] = field.text;
             } else {

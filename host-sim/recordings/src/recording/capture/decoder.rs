@@ -7,7 +7,8 @@ use super::super::Recording;
 use super::super::numbers::shown;
 use super::super::row::Row;
 use super::super::times::back;
-use super::levels::{Change, Levels};
+use super::LINES;
+use super::levels::{Change, Kind, Levels};
 
 /// Largest number of rows of a recording: a day at 1 kHz.
 const MOST_ROWS: f64 = 1e8;
@@ -15,7 +16,7 @@ const MOST_ROWS: f64 = 1e8;
 /// Part of a tick by which the end of a capture may be rounded.
 const ROUNDING: f64 = 1e-6;
 
-/// Largest share of changes that may be of both lines at once.
+/// Largest share of changes that may be of several edges at once, or to levels that do not occur.
 const LOST_SHARE: f64 = 0.01;
 
 /// Counts the edges of a capture, and samples the count.
@@ -28,9 +29,11 @@ pub(super) struct Decoder {
     /// The latest edge: its time, s from the first row on, and the boundary.
     edge: Option<(f64, u32)>,
     edges: u64,
-    /// Changes of both lines at once, and the line of the first one.
-    both: u64,
-    first_both: Option<u64>,
+    /// Rows with an edge or with levels that do not occur, and those of them with lost edges or such levels.
+    changes: u64,
+    wrong: u64,
+    /// Line of the first one of the latter.
+    first_wrong: Option<u64>,
     /// Line from which on the lines have no levels.
     unknown: Option<u64>,
     t: Vec<f64>,
@@ -39,16 +42,17 @@ pub(super) struct Decoder {
 }
 
 impl Decoder {
-    pub(super) const fn new(rate_hz: f64) -> Self {
+    pub(super) fn new(kind: Kind, lines: usize, rate_hz: f64) -> Self {
         Self {
             rate_hz,
             first: None,
             last: f64::NEG_INFINITY,
-            levels: Levels::START,
+            levels: Levels::new(kind, lines),
             edge: None,
             edges: 0,
-            both: 0,
-            first_both: None,
+            changes: 0,
+            wrong: 0,
+            first_wrong: None,
             unknown: None,
             t: Vec::new(),
             counts: Vec::new(),
@@ -60,10 +64,10 @@ impl Decoder {
     pub(super) fn take(
         &mut self,
         t: f64,
-        levels: [Option<bool>; 2],
+        levels: Option<Vec<bool>>,
         row: &Row,
     ) -> Result<(), Failure> {
-        let [Some(a), Some(b)] = levels else {
+        let Some(levels) = levels else {
             if self.first.is_some() && self.unknown.is_none() {
                 self.unknown = Some(row.line);
                 self.advance(t, row)?;
@@ -78,18 +82,22 @@ impl Decoder {
             )));
         }
         self.advance(t, row)?;
-        let change = self.levels.take([a, b]);
-        let at = t - self.first.unwrap_or(t);
-        match change {
+        let edges = match self.levels.take(&levels) {
             Change::None => return Ok(()),
-            Change::Edge => self.edges += 1,
-            Change::Both => {
-                self.edges += 2;
-                self.both += 1;
-                self.first_both.get_or_insert(row.line);
-            }
+            Change::Edge => 1,
+            Change::Lost(edges) => edges,
+            Change::Invalid => 0,
+        };
+        self.changes += 1;
+        if edges != 1 {
+            self.wrong += 1;
+            self.first_wrong.get_or_insert(row.line);
         }
-        self.edge = Some((at, self.levels.boundary()));
+        if edges > 0 {
+            let at = t - self.first.unwrap_or(t);
+            self.edges += u64::from(edges);
+            self.edge = Some((at, self.levels.boundary()));
+        }
         Ok(())
     }
 
@@ -136,34 +144,33 @@ impl Decoder {
     pub(super) fn finish(
         mut self,
         mut notes: Vec<String>,
-        called: &[String; 2],
+        called: &[String],
         name: &str,
     ) -> Result<Recording, Failure> {
         let failure = |why: String| Err(Failure::Input(format!("{name}: {why}")));
         let Some(first) = self.first else {
-            return failure("no row has levels of both lines".to_owned());
+            return failure("no row has levels of all lines".to_owned());
         };
         let duration = self.last - first;
         // The time of the last row may be rounded.
         let end = duration + ROUNDING / self.rate_hz;
         self.sample(|tick| tick <= end);
-        for (line, moved) in called.iter().zip(self.levels.moved) {
+        for (line, moved) in called.iter().zip(&self.levels.moved) {
             if !moved {
                 return failure(format!(
-                    "column {line} does not change; name the columns of the encoder's two lines with --lines A B, \
-                     and look for a line that is not connected"
+                    "column {line} does not change; name the columns of the encoder's lines with {LINES}, and look \
+                     for a line that is not connected"
                 ));
             }
         }
-        // A change of both lines has two edges.
-        let lost = self.both as f64 / (self.edges - self.both) as f64;
-        if lost > LOST_SHARE {
+        let wrong = self.wrong as f64 / self.changes as f64;
+        if wrong > LOST_SHARE {
             return failure(format!(
-                "{:.0} % of the changes are of both lines at once, the first in line {}: these are not the two lines \
-                 of an encoder, or the capture is too slow for the motion; name the lines with --lines A B, or \
-                 sample faster",
-                1e2 * lost,
-                self.first_both.unwrap_or_default()
+                "{:.0} % of the changes are of several edges at once or to levels that do not occur, the first in \
+                 line {}: these are not the lines of an encoder, or the capture is too slow for the motion; name the \
+                 lines with {LINES}, or sample faster",
+                1e2 * wrong,
+                self.first_wrong.unwrap_or_default()
             ));
         }
         if self.t.len() < 2 {
@@ -179,11 +186,11 @@ impl Decoder {
             shown(duration),
             self.levels.count().cast_signed()
         ));
-        if let Some(line) = self.first_both {
+        if let Some(line) = self.first_wrong {
             notes.push(format!(
-                "{} times both lines changed at once, the first time in line {line}: such a motion is taken to go on \
-                 in the direction of the edge before",
-                self.both
+                "{} rows have several edges at once, or levels that do not occur, the first is line {line}: the \
+                 shorter way is taken for the motion, and of two equal ones that of the edge before",
+                self.wrong
             ));
         }
         if first != 0.0 {

@@ -1,4 +1,4 @@
-//! Levels of two lines in quadrature, and the count that follows from them.
+//! Levels of an encoder's lines, and the count that follows from them.
 
 use terminal::failure::Failure;
 
@@ -28,56 +28,129 @@ pub(super) fn level(row: &Row, called: &str, place: usize) -> Result<Option<bool
     }
 }
 
+/// The lines of an encoder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Two lines, A and B, a quarter of a period apart.
+    Quadrature,
+    /// Three lines of Hall sensors, a third of a period apart.
+    Hall,
+}
+
+impl Kind {
+    /// The encoder with this number of lines.
+    pub(super) const fn of(lines: usize) -> Option<Self> {
+        match lines {
+            2 => Some(Self::Quadrature),
+            3 => Some(Self::Hall),
+            _ => None,
+        }
+    }
+
+    /// Number of counts in a period of the lines.
+    const fn counts(self) -> u32 {
+        match self {
+            Self::Quadrature => 4,
+            Self::Hall => 6,
+        }
+    }
+
+    /// Place of the levels in a period, in the order of a count that goes up; `None` for levels that do not
+    /// occur.
+    fn place(self, levels: &[bool]) -> Option<u32> {
+        let order: &[&[u8]] = match self {
+            Self::Quadrature => &[&[0, 0], &[1, 0], &[1, 1], &[0, 1]],
+            Self::Hall => &[
+                &[1, 0, 0],
+                &[1, 1, 0],
+                &[0, 1, 0],
+                &[0, 1, 1],
+                &[0, 0, 1],
+                &[1, 0, 1],
+            ],
+        };
+        let is_at = |known: &&[u8]| {
+            known
+                .iter()
+                .zip(levels)
+                .all(|(one, other)| (*one == 1) == *other)
+        };
+        (0..)
+            .zip(order)
+            .find(|(_, known)| is_at(known))
+            .map(|(place, _)| place)
+    }
+}
+
 /// What a row does to the count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Change {
     None,
     Edge,
-    /// Both lines changed: two edges, in the direction of the edge before.
-    Both,
+    /// This many edges at once, of which all but one were lost. In the middle of a period they are in the
+    /// direction of the edge before.
+    Lost(u32),
+    /// Levels that do not occur: the count stays.
+    Invalid,
 }
 
-/// The levels of both lines, and the count.
-#[derive(Clone, Copy, Debug)]
+/// The levels of the lines, and the count.
+#[derive(Clone, Debug)]
 pub(super) struct Levels {
-    /// Levels of A and B; `None` before the first row.
-    at: Option<[bool; 2]>,
+    kind: Kind,
+    /// Levels of the lines; none before the first row.
+    at: Vec<bool>,
+    /// Place of the latest levels that occur.
+    place: Option<u32>,
     count: u32,
     /// Whether the latest edge counted down.
     is_down: bool,
     /// Whether each line has changed.
-    pub(super) moved: [bool; 2],
+    pub(super) moved: Vec<bool>,
 }
 
 impl Levels {
-    pub(super) const START: Self = Self {
-        at: None,
-        count: 0,
-        is_down: false,
-        moved: [false; 2],
-    };
+    pub(super) fn new(kind: Kind, lines: usize) -> Self {
+        Self {
+            kind,
+            at: Vec::new(),
+            place: None,
+            count: 0,
+            is_down: false,
+            moved: vec![false; lines],
+        }
+    }
 
-    /// Takes the levels of A and B.
-    pub(super) fn take(&mut self, at: [bool; 2]) -> Change {
-        let Some(before) = self.at.replace(at) else {
+    /// Takes the levels of the lines.
+    pub(super) fn take(&mut self, at: &[bool]) -> Change {
+        for (moved, (now, before)) in self.moved.iter_mut().zip(at.iter().zip(&self.at)) {
+            *moved |= now != before;
+        }
+        at.clone_into(&mut self.at);
+        let Some(place) = self.kind.place(at) else {
+            return Change::Invalid;
+        };
+        let Some(before) = self.place.replace(place) else {
             return Change::None;
         };
-        for line in 0..2 {
-            self.moved[line] |= at[line] != before[line];
+        let period = self.kind.counts();
+        let up = (place + period - before) % period;
+        let down = period - up;
+        if up == 0 {
+            return Change::None;
         }
-        let (edges, change) = match (quarter(at) + 4 - quarter(before)) % 4 {
-            0 => return Change::None,
-            2 => (2, Change::Both),
-            step => {
-                self.is_down = step == 3;
-                (1, Change::Edge)
-            }
-        };
+        if up != down {
+            self.is_down = down < up;
+        }
+        let edges = up.min(down);
         self.count = match self.is_down {
             true => self.count.wrapping_sub(edges),
             false => self.count.wrapping_add(edges),
         };
-        change
+        match edges {
+            1 => Change::Edge,
+            edges => Change::Lost(edges),
+        }
     }
 
     pub(super) const fn count(&self) -> u32 {
@@ -91,9 +164,4 @@ impl Levels {
             false => self.count,
         }
     }
-}
-
-/// Quarter of a period in which the lines are while A leads B: 00, 10, 11, 01.
-const fn quarter([a, b]: [bool; 2]) -> u8 {
-    2 * b as u8 + (a != b) as u8
 }

@@ -139,7 +139,7 @@ pub(super) fn numbers(line: &str) -> Option<(Separator, usize)> {
 }
 
 /// Whether a field is a number or a time.
-pub(super) fn is_number(field: &str, separator: Separator) -> bool {
+pub(in super::super) fn is_number(field: &str, separator: Separator) -> bool {
     let is_number = match separator.allows_decimal_comma() {
         true => field.replacen(',', ".", 1).parse::<f64>().is_ok(),
         false => field.parse::<f64>().is_ok(),

@@ -1,0 +1,101 @@
+//! Rows of fields with separators.
+
+use std::io::BufRead;
+
+use csv::{ByteRecord, Reader, ReaderBuilder};
+
+use terminal::failure::Failure;
+
+use super::layout::Layout;
+use super::separator::{Lines, Separator};
+
+/// Bytes and lines of a row from which a quote is taken as one that has no end.
+const QUOTED: usize = 256;
+const QUOTED_LINES: usize = 20;
+
+/// Reads rows with as many fields as there are columns.
+pub(super) struct Text<R> {
+    reader: Reader<Lines<R>>,
+    separator: Separator,
+    /// Line of the header; 0 without one.
+    header: u64,
+    columns: usize,
+}
+
+impl<R: BufRead> Text<R> {
+    pub(super) fn new(inner: R, end: u8, layout: &Layout, columns: usize) -> Self {
+        Self {
+            reader: ReaderBuilder::new()
+                .has_headers(false)
+                .flexible(true)
+                .delimiter(layout.separator.byte())
+                .from_reader(Lines::new(inner, layout.separator, layout.skip, end)),
+            separator: layout.separator,
+            header: layout.line,
+            columns,
+        }
+    }
+
+    /// Reads the next row into `record` and returns its line.
+    pub(super) fn read(
+        &mut self,
+        record: &mut ByteRecord,
+        name: &str,
+    ) -> Result<Option<u64>, Failure> {
+        let read = self.reader.read_byte_record(record);
+        let read = read.map_err(|error| {
+            let line = error.position().map(|at| format!("line {}: ", at.line()));
+            let line = line.unwrap_or_default();
+            Failure::Input(format!("{name}: {line}cannot read: {error}"))
+        })?;
+        // The reader is at the begin of the next line.
+        let line = read.then(|| self.reader.position().line() - 1);
+        closed(record, line, name)?;
+        let Some(line) = line else {
+            return Ok(None);
+        };
+        let (fields, columns) = (record.len(), self.columns);
+        let ends_with_separator = fields == columns + 1 && record[columns].trim_ascii().is_empty();
+        match fields == columns || ends_with_separator {
+            true => Ok(Some(line)),
+            false => Err(Failure::Input(self.ragged(line, fields, name))),
+        }
+    }
+
+    fn ragged(&self, line: u64, fields: usize, name: &str) -> String {
+        let columns = self.columns;
+        let model = match self.header {
+            0 => "the first row".to_owned(),
+            1 => "the first line".to_owned(),
+            line => format!("the header in line {line}"),
+        };
+        let commas = self.separator == Separator::Comma && fields > columns;
+        let remedy = match commas {
+            true => "; numbers with a decimal comma need another separator than a comma",
+            false => "; remove the line if the log was cut there",
+        };
+        format!("{name}: line {line}: {fields} fields where {model} has {columns}{remedy}")
+    }
+}
+
+/// Checks that the quotes of `record`, which ends in `line`, end near where they begin.
+///
+/// # Errors
+/// [`Failure::Input`] with the line of the quote.
+fn closed(record: &ByteRecord, line: Option<u64>, name: &str) -> Result<(), Failure> {
+    if record.as_slice().len() < QUOTED {
+        return Ok(());
+    }
+    // The end of the last line is in the field too where the quote has no end.
+    let text = record.as_slice();
+    let text = text.strip_suffix(b"\n").unwrap_or(text);
+    let ends = text.iter().filter(|byte| **byte == b'\n').count();
+    match ends > QUOTED_LINES {
+        false => Ok(()),
+        true => Err(Failure::Input(format!(
+            "{name}: line {}: a quote (\") begins a field that has no end within {QUOTED_LINES} lines; close \
+             it, or remove it",
+            line.unwrap_or_default().saturating_sub(ends as u64)
+        ))),
+    }
+}
