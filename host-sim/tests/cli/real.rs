@@ -240,3 +240,24 @@ fn absolute_encoder_of_real_is_unwrapped_with_a_note() {
     let note = "f.csv: counts_large wraps at 100000 and is unwrapped: a revolution of an absolute encoder\n";
     assert_eq!(said, note);
 }
+
+#[test]
+fn what_several_recordings_have_in_common_is_said_once() {
+    let folder = Folder::new(HOST_SIM);
+    let other = |name: &str| LIST.replace("f.csv", name);
+    let list = format!("{LIST}{}{}", other("g.csv"), other("h.csv"));
+    folder.write("recordings.toml", list);
+    let text = fine();
+    // Row 3 occurs twice.
+    let row = text.lines().nth(4).unwrap();
+    let twice = text.replace(row, &format!("{row}\n{row}"));
+    for (name, text) in [("f.csv", &twice), ("g.csv", &twice), ("h.csv", &text)] {
+        folder.write(name, text);
+    }
+    let output = folder.run("real --data . --counts-per-rev 1000 --estimator pll");
+    assert_eq!(output.status.code(), Some(0));
+    let said = String::from_utf8(output.stderr).unwrap();
+    let notes: Vec<_> = said.lines().filter(|line| line.contains("csv")).collect();
+    let begin = "f.csv and 1 more: 1 row is left out that has the time of the row before, the first in line 6";
+    assert!(notes.len() == 1 && notes[0].starts_with(begin), "{said}");
+}

@@ -46,17 +46,27 @@ impl Recordings {
         self.0.iter().map(|(source, _)| source)
     }
 
-    /// What is said about the counts of fine recordings, one line each.
-    pub fn notes(&self) -> impl Iterator<Item = String> {
-        self.0.iter().flat_map(|(source, data)| {
-            let unwrapped = match data {
-                Data::Fine(fine) => fine.unwrapped.as_slice(),
-                Data::Coarse(_) => &[],
+    /// What is said about the recordings, one line each. What several have in common is said once.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes: Vec<(&String, &str, usize)> = Vec::new();
+        for (source, data) in &self.0 {
+            let of_file: Vec<_> = match data {
+                Data::Fine(fine) => fine.notes.iter().chain(&fine.unwrapped).collect(),
+                Data::Coarse(recording) => recording.notes.iter().collect(),
             };
-            unwrapped
-                .iter()
-                .map(|note| format!("{}: {note}", source.file))
-        })
+            for note in of_file {
+                match notes.iter_mut().find(|(known, ..)| *known == note) {
+                    Some((.., others)) => *others += 1,
+                    None => notes.push((note, &source.file, 0)),
+                }
+            }
+        }
+        let line = |(note, file, others): (&String, &str, usize)| match others {
+            0 => format!("{file}: {note}"),
+            others => format!("{file} and {others} more: {note}"),
+        };
+        notes.into_iter().map(line).collect()
     }
 
     /// The runs of `settings`, by rate, resolution, recording and phase; those of coarse recordings,
