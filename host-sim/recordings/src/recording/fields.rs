@@ -117,8 +117,8 @@ mod tests {
                 "line 3: column t: 't' is not a number; the header is repeated: cut the log there",
             ),
             (
-                "t,counts_large\n3/1/2025 12:00:00,0\n",
-                "'3/1/2025 12:00:00' is not a number; write it in s, as 2025-03-01T12:00:00.000, or as \
+                "t,counts_large\n1-Mar-2025 12:00:00,0\n",
+                "'1-Mar-2025 12:00:00' is not a number; write it in s, as 2025-03-01T12:00:00.000, or as \
                  12:00:00.000",
             ),
             (

@@ -32,6 +32,11 @@ impl Moment {
     /// Reads a field; `None` for a number and for all that is not listed in `docs/your-log.md`.
     pub(super) fn parse(text: &str) -> Option<Self> {
         let (first, _) = text.split_once(':')?;
+        if let Some((day, rest)) = text.split_once(' ')
+            && is_day(day)
+        {
+            return Self::clock(rest.trim_start_matches(' '));
+        }
         match first.contains(['-', '/']) {
             true => Self::date(text),
             false => Self::clock(text),
@@ -60,7 +65,7 @@ impl Moment {
         })
     }
 
-    /// `12:00:00.5` and `2 days 00:00:00.5`.
+    /// `12:00:00.5`, `12:00:00.5 PM` and `2 days 00:00:00.5`.
     fn clock(text: &str) -> Option<Self> {
         let (days, text) = match text.split_once(" day") {
             Some((days, text)) => (
@@ -69,11 +74,17 @@ impl Moment {
             ),
             None => (0, text),
         };
+        let (text, half) = half(text);
         let (hours, rest) = text.split_once(':')?;
         // Hours beyond those of a day are of a duration.
         let hours = match hours.bytes().all(|digit| digit.is_ascii_digit()) {
             true => hours.parse::<u32>().ok()?,
             false => return None,
+        };
+        let hours = match half {
+            None => hours,
+            Some(half) if (1..=12).contains(&hours) => hours % 12 + 12 * half,
+            Some(_) => return None,
         };
         let (minutes, _) = rest.split_once(':')?;
         let within: Time = format!("00:{rest}")
@@ -86,6 +97,37 @@ impl Moment {
             ns: i128::from(days) * DAY_NS + i128::from(hours) * HOUR_NS + within.as_nanos(),
         })
     }
+}
+
+/// Whether a text is a date with the year at its end, as `3/1/2025` or `01.03.25`. Of such a date nobody knows
+/// which number is the month. Rows are less than a day apart, so their times of day suffice.
+fn is_day(text: &str) -> bool {
+    ['/', '.', '-'].into_iter().any(|mark| {
+        let parts: Vec<_> = text.split(mark).collect();
+        let is_number = |part: &&str| part.bytes().all(|byte| byte.is_ascii_digit());
+        let lengths: Vec<_> = parts
+            .iter()
+            .filter(|part| is_number(part))
+            .map(|part| part.len())
+            .collect();
+        matches!(lengths[..], [1 | 2, 1 | 2, 2 | 4]) && parts.len() == 3
+    })
+}
+
+/// A time of day without AM or PM at its end, and the half of the day that this was: 0 or 1.
+fn half(text: &str) -> (&str, Option<u32>) {
+    for (mark, half) in [("am", 0), ("pm", 1)] {
+        let Some(at) = text.len().checked_sub(mark.len()) else {
+            continue;
+        };
+        if text
+            .get(at..)
+            .is_some_and(|end| end.eq_ignore_ascii_case(mark))
+        {
+            return (text[..at].trim_end_matches(' '), Some(half));
+        }
+    }
+    (text, None)
 }
 
 #[cfg(test)]
@@ -128,6 +170,20 @@ mod tests {
             ("0 days 00:00:00.001000", Kind::Clock, SECOND / 1000),
             ("1 day, 0:00:01", Kind::Clock, DAY_NS + SECOND),
             ("2 days 00:00:01", Kind::Clock, 2 * DAY_NS + SECOND),
+            ("12:00:00.5 PM", Kind::Clock, 12 * HOUR_NS + SECOND / 2),
+            ("12:00:01 am", Kind::Clock, SECOND),
+            ("1:00:00PM", Kind::Clock, 13 * HOUR_NS),
+            ("3/1/2025 11:00:00 AM", Kind::Clock, 11 * HOUR_NS),
+            (
+                "31.12.2025 23:00:00,5",
+                Kind::Clock,
+                23 * HOUR_NS + SECOND / 2,
+            ),
+            (
+                "31-12-25  23:00:00.5",
+                Kind::Clock,
+                23 * HOUR_NS + SECOND / 2,
+            ),
         ] {
             assert_eq!(Moment::parse(text), Some(Moment { kind, ns }), "{text}");
         }
@@ -147,8 +203,16 @@ mod tests {
             "-1:00:00",
             "+1:00:00",
             "12:60:00",
-            "12:00:00 PM",
-            "3/1/2025 12:00:00",
+            "13:00:00 PM",
+            "0:00:00 AM",
+            "12:00:00 PM UTC",
+            "PM",
+            "3/1/2025",
+            "3/1 12:00:00",
+            "3/1/2025/4 12:00:00",
+            "3/1.2025 12:00:00",
+            "2025.3.1 12:00:00",
+            "123/1/2025 12:00:00",
             "01-Mar-2025 12:00:00",
             "x days 00:00:00",
             "1:00:00:00",
