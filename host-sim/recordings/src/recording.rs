@@ -35,6 +35,7 @@ mod stated;
 mod steps;
 mod survey;
 mod text;
+mod thousands;
 mod times;
 mod units;
 mod write;

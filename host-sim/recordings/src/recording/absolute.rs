@@ -90,12 +90,18 @@ impl Found {
     }
 }
 
-/// The option for an encoder whose counts wrap at a power of two and whose counts per revolution
-/// differ from it; empty where the counts do not look so.
+/// The option for an encoder that wraps at another number than its counts per revolution: the next power of two, if
+/// the counts come near it. Empty where the counts do not look so.
 fn modulus_option(column: &str, jump: i64, span: i64) -> String {
-    let modulus = u64::try_from(span).unwrap_or(0).next_power_of_two();
+    let span = u64::try_from(span).unwrap_or(0);
+    let power = span.next_power_of_two();
+    let (modulus, about) = match 100 * (power - span) <= power {
+        true => (power, power.to_string()),
+        // The last counts before a wrap may not occur.
+        false => (span, format!("N, N about {span},")),
+    };
     match 4 * jump.unsigned_abs() >= 3 * modulus {
-        true => format!(", or --modulus {column}={modulus} if it has other counts per revolution"),
+        true => format!(", or --modulus {column}={about} if it has other counts per revolution"),
         false => String::new(),
     }
 }
@@ -104,18 +110,57 @@ fn modulus_option(column: &str, jump: i64, span: i64) -> String {
 fn look(counts: &[u32], t: &[f64], period: f64, per_rev: u32) -> Option<Found> {
     let signed = |count: u32| i64::from(count as i32);
     let jump = Steps::with_counts(t, |k| signed(counts[k])).largest_jump(period, 0);
-    let values = || counts.iter().map(|&count| signed(count));
-    let span = values().max()? - values().min()?;
-    found(jump, span, per_rev)
+    let mut seen = Extent::default();
+    for count in counts {
+        seen.add(signed(*count), moduli(per_rev));
+    }
+    found(jump, &seen, per_rev)
 }
 
-/// What the largest jump between two rows and the span of a column tell.
-pub(super) fn found(jump: i64, span: i64, per_rev: u32) -> Option<Found> {
+/// What is kept of the counts of a column.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Extent {
+    /// Least and largest count, and the last one.
+    ends: Option<[i64; 2]>,
+    last: i64,
+    /// The largest step between two rows that is no wrap at each of the moduli.
+    steps: [i64; 2],
+}
+
+impl Extent {
+    /// Adds a count, and returns its distance from the last one.
+    pub(super) fn add(&mut self, count: i64, moduli: [u32; 2]) -> i64 {
+        let [least, most] = self.ends.unwrap_or([count; 2]);
+        let step = self.ends.map_or(0, |_| count - self.last);
+        self.ends = Some([least.min(count), most.max(count)]);
+        self.last = count;
+        for (largest, modulus) in self.steps.iter_mut().zip(moduli) {
+            if 4 * step.abs() <= i64::from(modulus) {
+                *largest = step.abs().max(*largest);
+            }
+        }
+        step
+    }
+}
+
+/// Counts by which a wrap may be shorter or longer than the largest step, for positions that are rounded.
+const ROUNDED: i64 = 4;
+
+/// What the largest jump, over a number of rows, and the extent of a column tell.
+pub(super) fn found((jump, rows): (i64, f64), seen: &Extent, per_rev: u32) -> Option<Found> {
+    let [least, most] = seen.ends?;
+    let span = most - least;
     let wraps = |modulus: &u32| {
+        let [one, other] = moduli(per_rev);
+        let largest = seen.steps[usize::from(*modulus != one && *modulus == other)];
         let modulus = i64::from(*modulus);
-        // A shaft turns less than a quarter of a revolution from row to row.
+        // A shaft turns less than a quarter of a revolution from row to row, and not much faster over the wrap than
+        // in all other rows: otherwise the counts are of another encoder.
         // An angle that is rounded to counts can be the modulus itself.
-        span <= modulus && 4 * jump.abs() >= 3 * modulus
+        let over_wrap = (modulus - jump.abs()).abs();
+        span <= modulus
+            && 4 * jump.abs() >= 3 * modulus
+            && over_wrap as f64 <= 2.0 * rows * largest as f64 + ROUNDED as f64
     };
     let wraps = moduli(per_rev).into_iter().find(wraps);
     let far = 2 * jump.abs() > i64::from(per_rev) && span < i64::from(SHORT);
@@ -295,6 +340,31 @@ mod tests {
             let said = recording.unwrap_counts(&encoder(4096));
             let option = format!("or --modulus counts_large={modulus} if");
             assert!(said[0].starts_with("counts_large jumps by -"), "{said:?}");
+            assert!(said[0].contains(&option), "{said:?}");
+        }
+    }
+
+    /// The modulus is not that of the device, but near it: the step over the wrap would be a jump.
+    #[test]
+    fn wrap_at_another_modulus_is_reported_and_not_unwrapped() {
+        for (modulus, step) in [
+            (4000, 7),
+            (3600, -3),
+            (4096 - 30, 2),
+            (50_000, 40),
+            (65_000, 40),
+        ] {
+            let (mut recording, _) = recording(step, modulus, 0);
+            let before = recording.trace.counts_large.clone();
+            let said = recording.unwrap_counts(&encoder(4096));
+            assert_eq!(recording.trace.counts_large, before, "{modulus}");
+            assert!(said[0].starts_with("counts_large jumps by "), "{said:?}");
+            let power = u64::try_from(modulus).unwrap().next_power_of_two();
+            let is_near = modulus > 4000 && modulus < 4096 || modulus == 65_000;
+            let option = match is_near {
+                true => format!("--modulus counts_large={power} if"),
+                false => "--modulus counts_large=N, N about ".to_owned(),
+            };
             assert!(said[0].contains(&option), "{said:?}");
         }
     }

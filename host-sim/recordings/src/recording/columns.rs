@@ -15,9 +15,13 @@ use super::records::Records;
 use super::row::Row;
 use super::sources::sources;
 use super::stamps::{Stamp, Stamps};
+use super::thousands::Thousands;
 use super::times::{self, Repeated, Replaced};
 use super::units::WRAP;
 use super::{Recording, absolute, clock};
+
+/// Columns whose numbers may have separators of thousands.
+const MARKED: [Column; 2] = [Column::CountsLarge, Column::CountsSmall];
 
 /// The columns that are read, and their rows so far.
 pub(super) struct Columns<'a> {
@@ -28,6 +32,8 @@ pub(super) struct Columns<'a> {
     replaced: Replaced,
     repeated: Repeated,
     own_times: OwnTimes,
+    /// Marks in the numbers of the two positions.
+    thousands: [Thousands; 2],
     /// Number of rows that were taken, and the time of the last one, s.
     taken: usize,
     first_t: f64,
@@ -43,6 +49,8 @@ pub(super) struct Columns<'a> {
     true_omega: Vec<f64>,
     /// Number of rows left out.
     left_out: usize,
+    /// Line of the last row, if it may be cut.
+    cut: Option<u64>,
 }
 
 impl<'a> Columns<'a> {
@@ -54,6 +62,7 @@ impl<'a> Columns<'a> {
             replaced: Replaced::default(),
             repeated: Repeated::default(),
             own_times: OwnTimes::default(),
+            thousands: Default::default(),
             taken: 0,
             first_t: f64::NAN,
             last_t: f64::NEG_INFINITY,
@@ -67,6 +76,7 @@ impl<'a> Columns<'a> {
             stamps: Stamps::default(),
             true_omega: Vec::new(),
             left_out: 0,
+            cut: None,
         }
     }
 
@@ -84,9 +94,19 @@ impl<'a> Columns<'a> {
 
     /// Adds a row.
     pub(super) fn take(&mut self, row: &Row) -> Result<(), Failure> {
+        if row.is_cut_at(self.places.iter().flatten().map(|place| place.place)) {
+            self.cut = Some(row.line);
+            return Ok(());
+        }
         if self.is_of_others(row)? {
             self.left_out += 1;
             return Ok(());
+        }
+        let marked = MARKED.iter().zip(&mut self.thousands);
+        for (column, thousands) in marked {
+            if let Some(at) = self.places[*column as usize] {
+                thousands.see(row.text(column.name(), at.place)?, row.line);
+            }
         }
         let t = self.time(row)?;
         if t < self.last_t {
@@ -295,6 +315,15 @@ impl<'a> Columns<'a> {
         places: &Places,
         layout: &Layout,
     ) -> Result<Vec<String>, Failure> {
+        for (column, thousands) in MARKED.iter().zip(&self.thousands) {
+            if let Some(line) = thousands.found() {
+                return Err(Failure::Input(format!(
+                    "{name}: line {line}: column {}: the mark in this and the other numbers from 1000 on, and in none \
+                     below, separates thousands; write the numbers without it",
+                    column.name()
+                )));
+            }
+        }
         let repeated = self.repeated.check(name, self.taken)?;
         if let Some(at) = self.place(Column::EdgeTick) {
             self.stamps.check(name, &layout.names[at.place])?;
@@ -321,6 +350,11 @@ impl<'a> Columns<'a> {
                 self.left_out
             ));
         }
+        if let Some(line) = self.cut {
+            notes.push(format!(
+                "line {line}, the last one, has no end and is left out: its last number may be cut"
+            ));
+        }
         notes.extend(self.counts_large.notes(0, self.options));
         notes.extend(self.counts_small.notes(1, self.options));
         notes.extend(self.stamps.notes());
@@ -343,6 +377,37 @@ pub(super) fn scaled(row: &Row, at: Place, torque_constant: f64) -> Result<f64, 
 #[cfg(test)]
 mod tests {
     use crate::recording::read_log as read;
+
+    /// A number that is cut is another one, and only the last field of the last line can be.
+    #[test]
+    fn number_that_may_be_cut_is_left_out() {
+        let row = |k: usize, f: &dyn Fn(String, usize) -> String| f(format!("0.{k}"), 70 + k);
+        let rows =
+            |f: &dyn Fn(String, usize) -> String| -> String { (0..9).map(|k| row(k, f)).collect() };
+        let plain = rows(&|t, n| format!("{t},{n}\n"));
+        let swapped = rows(&|t, n| format!("{n},x,{t}\n"));
+        let other = rows(&|t, n| format!("{t},{n},1.5\n"));
+        let named = rows(&|t, n| format!("t:{t},counts_large:{n}\n"));
+        let long = rows(&|t, n| format!("{t},a,1\n{t},counts_large,{n}\n"));
+        for (text, columns, line) in [
+            (format!("t,counts_large\n{plain}"), "", Some(10)),
+            (format!("counts_large,x,t\n{swapped}"), "", Some(10)),
+            (format!("t,counts_large,x\n{other}"), "", None),
+            (named, "", Some(9)),
+            (format!("t,name,value\n{long}"), "", Some(19)),
+        ] {
+            let whole = read(&text, columns).unwrap();
+            assert_eq!(whole.t.len(), 9, "{text}");
+            assert!(!whole.notes.iter().any(|note| note.contains("has no end")));
+            let cut = read(&text[..text.len() - 2], columns).unwrap();
+            let said = line.map(|line| {
+                format!("line {line}, the last one, has no end and is left out: its last number may be cut")
+            });
+            let found = cut.notes.iter().find(|note| note.contains("has no end"));
+            assert_eq!(found, said.as_ref(), "{text}");
+            assert_eq!(cut.t.len(), 9 - usize::from(line.is_some()), "{text}");
+        }
+    }
 
     #[test]
     fn rows_of_other_signals_are_left_out() {

@@ -62,6 +62,11 @@ impl<R: BufRead> Labelled<R> {
         }
     }
 
+    /// Whether the row in `line` may be cut: no end of line follows it.
+    pub(super) fn is_cut(&self, line: u64) -> bool {
+        self.inner.cut() == Some(line)
+    }
+
     /// Reads the next row into `record` and returns its line.
     pub(super) fn read(
         &mut self,

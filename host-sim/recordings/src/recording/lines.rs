@@ -14,17 +14,28 @@ pub(super) struct LineReader<R> {
     /// The last byte of a line.
     end: u8,
     number: u64,
+    /// Whether the last line that was read has no end, as the last one of a log that was cut.
+    is_cut: bool,
 }
 
 impl<R: BufRead> LineReader<R> {
     pub(super) fn new(inner: R, end: u8) -> Self {
-        let number = 0;
-        Self { inner, end, number }
+        Self {
+            inner,
+            end,
+            number: 0,
+            is_cut: false,
+        }
     }
 
     /// Whether every byte is read.
     pub(super) fn is_at_end(&mut self) -> io::Result<bool> {
         Ok(self.inner.fill_buf()?.is_empty())
+    }
+
+    /// The number of the last line, if it was read and has no end.
+    pub(super) fn cut(&self) -> Option<u64> {
+        self.is_cut.then_some(self.number)
     }
 
     /// Reads the next line into `line`, without its end, and returns its number, from 1. `None` after the last one.
@@ -35,7 +46,8 @@ impl<R: BufRead> LineReader<R> {
             return Ok(None);
         }
         self.number += 1;
-        if line.last() == Some(&self.end) {
+        self.is_cut = line.last() != Some(&self.end);
+        if !self.is_cut {
             line.pop();
         } else if most.limit() == 0 {
             return Err(io::Error::other(format!(

@@ -125,6 +125,8 @@ pub(super) struct Long<R> {
     /// The row that is read ahead, and its line.
     ahead: ByteRecord,
     line: Option<u64>,
+    /// Whether a row of the latest time may be cut.
+    pub(super) is_cut: bool,
 }
 
 impl<R: BufRead> Long<R> {
@@ -139,6 +141,7 @@ impl<R: BufRead> Long<R> {
             time: layout.names[0].clone(),
             places: Places::new(&layout.names),
             ahead,
+            is_cut: false,
         })
     }
 
@@ -148,7 +151,7 @@ impl<R: BufRead> Long<R> {
         record: &mut ByteRecord,
         name: &str,
     ) -> Result<Option<u64>, Failure> {
-        let Some(line) = self.line else {
+        let Some(mut line) = self.line else {
             return Ok(None);
         };
         let text = |field: &[u8]| String::from_utf8_lossy(field.trim_ascii()).into_owned();
@@ -158,6 +161,10 @@ impl<R: BufRead> Long<R> {
             let key = self.table.key(&self.ahead);
             if fields.iter().any(|field| field.name == key) {
                 break;
+            }
+            if let Some(cut) = self.line.filter(|line| self.rows.is_cut(*line)) {
+                self.is_cut = true;
+                line = cut;
             }
             fields.push(field(key, text(&self.ahead[self.table.value])));
             self.line = self.rows.read(&mut self.ahead, name)?;

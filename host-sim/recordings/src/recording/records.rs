@@ -109,6 +109,13 @@ impl<'a> Records<'a> {
             name: self.name,
             line,
             record: &self.record,
+            is_cut: match &self.source {
+                // A cut object is refused.
+                Source::Json(_) => false,
+                Source::Labelled(rows) => rows.is_cut(line),
+                Source::Long(rows) => rows.is_cut,
+                Source::Text(rows) => rows.is_cut(line),
+            },
             marks: match &self.source {
                 Source::Json(json) => &json.places.marks,
                 Source::Labelled(rows) => &rows.places.marks,

@@ -19,6 +19,8 @@ pub(super) struct Row<'a> {
     pub(super) names: &'a [String],
     /// Whether the row is the first one below the header.
     pub(super) is_first: bool,
+    /// Whether its last field may be cut: no end of line follows it.
+    pub(super) is_cut: bool,
     /// Whether a comma in a number is a decimal comma.
     pub(super) decimal_comma: bool,
 }
@@ -41,6 +43,12 @@ impl Row<'_> {
         }
         let bytes = self.record.get(place).unwrap_or_default().trim_ascii();
         std::str::from_utf8(bytes).map_err(|_| self.failure(column, "not text"))
+    }
+
+    /// Whether a field that is read at one of the `places` may be cut. The fields of a row with names may have any order.
+    pub(super) fn is_cut_at(&self, mut places: impl Iterator<Item = usize>) -> bool {
+        let has_names = !self.marks.is_empty();
+        self.is_cut && (has_names || places.any(|place| place + 1 == self.record.len()))
     }
 
     /// Whether a column with a place that `is_meant` has a value.

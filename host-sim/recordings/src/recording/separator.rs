@@ -119,6 +119,11 @@ impl<R: BufRead> Lines<R> {
         }
     }
 
+    /// The number of the last line, if it was read and has no end.
+    pub(super) fn cut(&self) -> Option<u64> {
+        self.inner.cut()
+    }
+
     /// Reads the next line.
     fn advance(&mut self) -> io::Result<()> {
         self.read = 0;

@@ -84,19 +84,21 @@ impl Steps {
 
     /// The largest jump of an encoder's counts from one row of this `period`, s, to the next; or over a few
     /// missing rows, if the shaft was not fast enough for it in any other row.
-    pub(super) fn largest_jump(&self, period: f64, motor: usize) -> i64 {
+    /// With it come the rows from one of its ends to the other.
+    pub(super) fn largest_jump(&self, period: f64, motor: usize) -> (i64, f64) {
         let next = |class: &&Class| class.mean() <= NEXT * period;
         let jumps = self.classes().filter(next).map(|class| class.jump[motor]);
         let jump = jumps.max_by_key(|jump| jump.abs()).unwrap_or_default();
+        let rows = |class: &Class| class.mean() / period;
         let over_missing = self.classes().filter(|class| {
-            let rows = class.mean() / period;
+            let rows = rows(class);
             let fastest = 2.0 * rows * jump.unsigned_abs().max(1) as f64;
             (NEXT..=FEW).contains(&rows) && class.jump[motor].unsigned_abs() as f64 > fastest
         });
-        let jumps = over_missing.map(|class| class.jump[motor]);
+        let jumps = over_missing.map(|class| (class.jump[motor], rows(class)));
         jumps
-            .chain([jump])
-            .max_by_key(|jump| jump.abs())
+            .chain([(jump, 1.0)])
+            .max_by_key(|(jump, _)| jump.abs())
             .unwrap_or_default()
     }
 

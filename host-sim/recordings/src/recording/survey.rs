@@ -6,7 +6,7 @@ use estimator_core::{Count, WrapError};
 use simulation::trace::Trace;
 use terminal::failure::Failure;
 
-use super::absolute::{self, Found};
+use super::absolute::{self, Extent, Found};
 use super::clock;
 use super::columns::Columns;
 use super::currents::{implausible_current, largest};
@@ -40,38 +40,31 @@ pub struct Survey {
 /// What a survey keeps of one encoder.
 #[derive(Clone, Copy, Debug)]
 struct Seen {
-    last: Option<i64>,
-    least: i64,
-    most: i64,
+    extent: Extent,
     /// The last count, unwrapped at each of the moduli; an error stays.
     unwrapped: [Result<Option<Count>, WrapError>; 2],
 }
 
 impl Seen {
-    const NOTHING: Self = Self {
-        last: None,
-        least: i64::MAX,
-        most: i64::MIN,
-        unwrapped: [Ok(None); 2],
-    };
+    fn nothing() -> Self {
+        Self {
+            extent: Extent::default(),
+            unwrapped: [Ok(None); 2],
+        }
+    }
 
     /// Adds a count and returns its distance from the last one.
     fn add(&mut self, count: u32, moduli: [u32; 2]) -> i64 {
         let signed = i64::from(count as i32);
-        self.least = self.least.min(signed);
-        self.most = self.most.max(signed);
         for (unwrapped, modulus) in self.unwrapped.iter_mut().zip(moduli) {
             *unwrapped = unwrapped.and_then(|last| absolute::after(last, count, modulus).map(Some));
         }
-        let jump = signed - self.last.unwrap_or(signed);
-        self.last = Some(signed);
-        jump
+        self.extent.add(signed, moduli)
     }
 
     /// What the counts with the largest jump `jump` are.
-    fn found(&self, jump: i64, per_rev: u32) -> Option<Found> {
-        self.last?;
-        let found = absolute::found(jump, self.most - self.least, per_rev);
+    fn found(&self, jump: (i64, f64), per_rev: u32) -> Option<Found> {
+        let found = absolute::found(jump, &self.extent, per_rev);
         let Some(Found::Wraps(modulus)) = found else {
             return found;
         };
@@ -101,7 +94,7 @@ impl Survey {
         let places = records.layout.places(options, name)?;
         let mut columns = Columns::new(&places, options);
         let mut steps = Steps::default();
-        let mut seen = [Seen::NOTHING; 2];
+        let mut seen = [Seen::nothing(); 2];
         let mut ends: Option<[f64; 2]> = None;
         let mut rows = 0;
         let mut current: f64 = 0.0;

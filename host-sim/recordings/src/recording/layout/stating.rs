@@ -12,6 +12,11 @@ const TIMES: &[&str] = &["time", "stamp"];
 /// Parts of the names of what is derived from a position.
 const DERIVED: &[&str] = &["vel", "speed", "omega", "acc"];
 
+/// Parts of the names of positions that are no measured position of the shaft, or of another angle.
+const INDIRECT: &[&str] = &[
+    "err", "target", "cmd", "command", "ref", "set", "des", "goal", "elec", "delta", "diff", "rate",
+];
+
 /// The end of a name that counts anything: samples, errors, or an encoder's lines.
 const COUNT: &str = "count";
 
@@ -23,7 +28,8 @@ impl Layout {
     /// The column of the header that is `column` by its name and none of those that are `known`; `None` if
     /// there is none, or a second one.
     /// A name is a unit alone, or has the unit at its end and a word for the quantity; t is one for a
-    /// time. A position without a unit could be the one that is meant too.
+    /// time. A position without a unit could be the one that is meant too, and so could one of a target or an
+    /// error, which is never taken.
     pub(super) fn stating(&self, column: Column, known: &[Place]) -> Option<Place> {
         let quantity = column.quantity();
         let words = match column {
@@ -49,6 +55,10 @@ impl Layout {
         let is_only = like.next().is_none() && self.has_header() && hint::barred(self).is_none();
         let lower = name.trim().to_lowercase();
         let is_sure = has(&lower, words) || !lower.ends_with(COUNT);
+        let mut parts = lower.split(|c: char| !c.is_alphanumeric());
+        // An electrical angle: theta_e.
+        let is_indirect = has(&lower, INDIRECT) || parts.any(|part| part == "e");
+        let is_sure = is_sure && (column == Column::T || !is_indirect);
         match Ending::of(quantity, name) {
             Ending::Unit(unit) if is_only && is_sure => Some(Place {
                 column,
@@ -135,6 +145,12 @@ mod tests {
             "time_min,counts",
             "time_ms,loops",
             "time_ms,velocity_deg_s",
+            "time_ms,pos_error_deg",
+            "time_ms,target_pos_deg",
+            "time_ms,electrical_angle_deg",
+            "time_ms,theta_e_rad",
+            "time_ms,delta_counts",
+            "time_ms,angle_rate_deg",
         ] {
             let error = read(&rows(names), "").unwrap_err();
             assert!(error.contains("r.csv: line 1: no column "), "{error}");
