@@ -365,7 +365,7 @@ fn logs_of_other_programs_are_coarsened() {
     let error = folder
         .refused("coarsen named.csv --fine-counts-per-rev 100000 --counts-per-rev 64 --out -");
     assert!(
-        error.contains("named.csv: line 1: no column t; "),
+        error.contains("named.csv: line 1: no column counts_large; "),
         "{error}"
     );
     let notes = folder

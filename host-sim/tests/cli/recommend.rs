@@ -197,7 +197,7 @@ fn unsuitable_logs_are_refused() {
         "{line}"
     );
     let short: String = swing().lines().take(100).collect::<Vec<_>>().join("\n");
-    folder.write("short.csv", short);
+    folder.write("short.csv", format!("{short}\n"));
     let line = folder.refused(&["recommend", "short.csv", "--report", "page"]);
     assert!(
         line.contains("short.csv: 99 rows; scores need at least 201"),

@@ -134,6 +134,11 @@ mod tests {
         for other in [text.as_bytes(), &[0; 100], b"", b"\xEF\xBB\xBFt"] {
             assert_eq!(Utf16::of(other), None);
         }
+        // More than half of the second bytes must be zero.
+        for (zeros, found) in [(5, None), (6, Some(Utf16::Little))] {
+            let pairs = (0..10).flat_map(|k| [b'a', if k < zeros { 0 } else { b'b' }]);
+            assert_eq!(Utf16::of(&pairs.collect::<Vec<_>>()), found);
+        }
     }
 
     /// The first of a pair is the last unit of a block, at the length where that is so.

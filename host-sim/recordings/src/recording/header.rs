@@ -23,8 +23,9 @@ pub(super) fn missing(column: Column, layout: &Layout, places: &Places, name: &s
     let found = found(layout);
     let remedy = match column {
         Column::T | Column::CountsLarge => format!(
-            "{}; read without options are t with counts_large, and the logs of {}",
+            "{}{}; read without options are t with counts_large, and the logs of {}",
             hint::option(layout),
+            hint::without_time(layout),
             known()
         ),
         _ => format!("name it with --column {ours}=THEIRS, or rename a column"),
@@ -183,7 +184,7 @@ mod tests {
         for (text, said) in [
             (
                 "time_ms;angle\n0;1\n1;2\n",
-                "line 1: no column t; found: time_ms; angle, separated by ';'; name the columns and \
+                "line 1: no column counts_large; found: time_ms; angle, separated by ';'; name the columns and \
                  units, for example --column 't=time_ms,counts_large=angle:counts'",
             ),
             (

@@ -13,6 +13,9 @@ const LONGEST: usize = 80;
 /// Positions that a message lists.
 const LISTED: usize = 4;
 
+/// Parts of the names of times.
+const TIMES: [&str; 4] = ["time", "stamp", "sec", "ms"];
+
 /// The option `--column`, with names and units.
 pub(super) fn option(layout: &Layout) -> String {
     if layout.names.iter().all(String::is_empty) && layout.searched.is_some() {
@@ -26,10 +29,9 @@ pub(super) fn option(layout: &Layout) -> String {
         return "give the numbers of the columns, for example --column t=1:s,counts_large=2:counts"
             .to_owned();
     }
-    let time = ["time", "stamp", "sec", "ms"];
     let position = ["count", "enc", "pos", "angle", "theta"];
     let parts = [
-        guess(layout, Column::T, &time, "TIME"),
+        guess(layout, Column::T, &TIMES, "TIME"),
         guess(layout, Column::CountsLarge, &position, "POSITION"),
     ];
     let parts: Vec<_> = parts.into_iter().flatten().collect();
@@ -37,6 +39,20 @@ pub(super) fn option(layout: &Layout) -> String {
         "name the columns and units, for example --column '{}'",
         parts.join(",")
     )
+}
+
+/// What a log needs whose header has no column of time, by its names.
+pub(super) fn without_time(layout: &Layout) -> &'static str {
+    let is_time = |name: &String| {
+        let lower = name.to_lowercase();
+        TIMES.iter().any(|word| lower.contains(word))
+            || lower == "t"
+            || matches!(Ending::of(Column::T.quantity(), name), Ending::Unit(_))
+    };
+    match layout.has_header() && !layout.names.iter().any(is_time) {
+        true => ", or give the rate of the rows with --row-rate HZ in the place of a time",
+        false => "",
+    }
 }
 
 /// The part of `--column` without a unit that names the column of the motor current, or the part for a

@@ -235,6 +235,10 @@ impl Layout {
             {
                 return Err(header::without_time(&SIMPLEFOC, name));
             }
+            // A time that is known by its name is not what is missing.
+            if self.stating(Column::T, &places.columns).is_some() {
+                needs(Column::CountsLarge)?;
+            }
             needs(Column::T)?;
         }
         needs(Column::CountsLarge)?;

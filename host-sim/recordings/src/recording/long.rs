@@ -1,4 +1,4 @@
-//! Tables with one number a row: its time, its name and its value.
+//! Tables with the numbers of one signal a row: time, name and value; or time, joint, position and velocity.
 
 use std::io::BufRead;
 
@@ -8,11 +8,12 @@ use terminal::failure::Failure;
 
 use super::layout::{Layout, SEARCHED, is_number, is_stamped};
 use super::named_fields::{Field, Mark, Places, names};
+use super::options::{Column, ReadOptions};
 use super::separator::{Separator, comment};
 use super::text::Text;
 
-/// Names of the columns that name a number, and of the column that has it.
-const KEYS: &[&str] = &[
+/// Names of the columns that say whose the numbers of a row are.
+const KEYS: [&str; 18] = [
     "name",
     "signal",
     "channel",
@@ -23,7 +24,17 @@ const KEYS: &[&str] = &[
     "field",
     "topic",
     "key",
+    "joint",
+    "motor",
+    "axis",
+    "encoder",
+    "sensor",
+    "device",
+    "wheel",
+    "node",
 ];
+
+/// Name of the column that has the numbers, where each row has one.
 const VALUE: &str = "value";
 
 /// Columns of such a table.
@@ -31,13 +42,18 @@ const VALUE: &str = "value";
 struct Table {
     time: usize,
     keys: Vec<usize>,
-    value: usize,
+    /// Columns of numbers, and their own names behind that of the key.
+    values: Vec<(usize, String)>,
     columns: usize,
 }
 
 impl Table {
-    /// The columns with these names; `None` if there is none of a kind, or a second time or value.
-    fn of(names: &[String]) -> Option<Self> {
+    /// The columns called `names`, with the first row. `None` if they are none of such a table.
+    fn of(names: &[String], row: &[String], separator: Separator) -> Option<Self> {
+        let is_number = |place: usize| {
+            row.get(place)
+                .is_some_and(|field| is_number(field, separator))
+        };
         let lower = |name: &String| name.trim_start_matches('_').to_lowercase();
         let lower: Vec<_> = names.iter().map(lower).collect();
         let places = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
@@ -48,26 +64,44 @@ impl Table {
         let time = places(&|name| name == "t" || name.contains("time") || name.contains("stamp"));
         let keys = places(&|name| KEYS.contains(&name));
         let value = places(&|name| name == VALUE);
-        match (time.as_slice(), value.as_slice()) {
-            ([time], [value]) if !keys.is_empty() => Some(Self {
+        let values: Vec<_> = match value.as_slice() {
+            [value] => vec![(*value, String::new())],
+            _ => (0..names.len())
+                .filter(|place| !time.contains(place) && !keys.contains(place) && is_number(*place))
+                .map(|place| (place, format!(".{}", names[place])))
+                .collect(),
+        };
+        let has_numbers = !values.is_empty() && values.iter().all(|(place, _)| is_number(*place));
+        let has_keys = keys.iter().any(|key| !is_number(*key));
+        match time.as_slice() {
+            [time] if row.len() == names.len() && has_numbers && has_keys => Some(Self {
                 time: *time,
                 keys,
-                value: *value,
+                values,
                 columns: names.len(),
             }),
             _ => None,
         }
     }
 
-    /// The name of the number in a row.
+    /// Whose the numbers of a row are.
     fn key(&self, row: &ByteRecord) -> String {
-        let part = |place: &usize| {
-            let field = row.get(*place).unwrap_or_default();
-            String::from_utf8_lossy(field.trim_ascii()).into_owned()
-        };
+        let part = |place: &usize| text(row, *place);
         let parts: Vec<_> = self.keys.iter().map(part).collect();
         parts.join(".")
     }
+
+    /// The numbers of a row, with their names.
+    fn fields<'a>(&'a self, row: &'a ByteRecord) -> impl Iterator<Item = Field> + 'a {
+        let key = self.key(row);
+        let values = self.values.iter();
+        values.map(move |(place, name)| field(format!("{key}{name}"), text(row, *place)))
+    }
+}
+
+fn text(row: &ByteRecord, place: usize) -> String {
+    let field = row.get(place).unwrap_or_default();
+    String::from_utf8_lossy(field.trim_ascii()).into_owned()
 }
 
 /// What the begin of a log tells.
@@ -77,35 +111,40 @@ pub(super) struct Begin {
 }
 
 impl Begin {
-    /// Reads the first bytes `head` of a log; `None` if it is no such table.
-    pub(super) fn of(head: &str) -> Option<Self> {
-        let mut lines = (0..).zip(head.lines().take(SEARCHED));
-        let (index, separator, header, table) = lines.find_map(|(index, line)| {
+    /// Reads the first bytes `head` of a log; `None` if it is no such table, or if the columns that are read have
+    /// names in its header.
+    pub(super) fn of(head: &str, options: &ReadOptions) -> Option<Self> {
+        let lines = (0..).zip(head.lines().take(SEARCHED));
+        let is_row = |line: &&str| !line.trim().is_empty() && comment(line).is_none();
+        let rows = |index: usize| head.lines().skip(index + 1).filter(is_row);
+        let mut tables = lines.filter_map(|(index, line)| {
             Separator::ALL.into_iter().find_map(|separator| {
                 let header = separator.split(comment(line).unwrap_or(line));
-                let table = Table::of(&header)?;
+                let first = separator.split(rows(index).next()?);
+                let table = Table::of(&header, &first, separator)?;
                 Some((index, separator, header, table))
             })
-        })?;
-        let rows = head.lines().skip(index + 1);
-        let rows = rows.filter(|line| !line.trim().is_empty() && comment(line).is_none());
-        let rows: Vec<_> = rows.map(|line| separator.split(line)).collect();
-        let first = rows.first()?;
-        let is_row = first.len() == header.len()
-            && is_number(&first[table.value], separator)
-            && table
-                .keys
-                .iter()
-                .any(|key| !is_number(&first[*key], separator));
-        let whole = rows.iter().filter(|row| row.len() == header.len());
-        let keys = whole.map(|row| Field {
-            name: table.key(&row.iter().collect()),
-            text: String::new(),
-            mark: Mark::Missing,
         });
+        let (index, separator, header, table) = tables.next()?;
+        let is_read = |column: &Column| match options.mapping(*column) {
+            Some(mapping) => header.contains(&mapping.theirs),
+            None => header.iter().any(|name| name == column.name()),
+        };
+        let rows = rows(index).map(|line| ByteRecord::from(separator.split(line)));
+        let rows: Vec<_> = rows.filter(|row| row.len() == header.len()).collect();
+        // Rows of one key alone need no other names.
+        let is_of_one = rows
+            .windows(2)
+            .all(|pair| table.key(&pair[0]) == table.key(&pair[1]));
+        let is_wide = table.values.iter().any(|(_, name)| !name.is_empty());
+        if Column::COUNTS.iter().any(is_read) || (is_wide && is_of_one) {
+            return None;
+        }
         let mut columns = vec![header[table.time].clone()];
-        columns.extend(names(keys.collect()));
-        is_row.then(|| Self {
+        columns.extend(names(
+            rows.iter().flat_map(|row| table.fields(row)).collect(),
+        ));
+        Some(Self {
             layout: Layout {
                 is_stamped: is_stamped(head),
                 ..Layout::header(separator, columns, index)
@@ -154,19 +193,19 @@ impl<R: BufRead> Long<R> {
         let Some(mut line) = self.line else {
             return Ok(None);
         };
-        let text = |field: &[u8]| String::from_utf8_lossy(field.trim_ascii()).into_owned();
-        let time = text(&self.ahead[self.table.time]);
+        let time = text(&self.ahead, self.table.time);
         let mut fields = vec![field(self.time.clone(), time.clone())];
-        while self.line.is_some() && text(&self.ahead[self.table.time]) == time {
-            let key = self.table.key(&self.ahead);
-            if fields.iter().any(|field| field.name == key) {
+        while self.line.is_some() && text(&self.ahead, self.table.time) == time {
+            let new: Vec<_> = self.table.fields(&self.ahead).collect();
+            let is_known = |field: &Field| fields.iter().any(|known| known.name == field.name);
+            if new.iter().any(is_known) {
                 break;
             }
             if let Some(cut) = self.line.filter(|line| self.rows.is_cut(*line)) {
                 self.is_cut = true;
                 line = cut;
             }
-            fields.push(field(key, text(&self.ahead[self.table.value])));
+            fields.extend(new);
             self.line = self.rows.read(&mut self.ahead, name)?;
         }
         self.places.take_and_hold(fields, record);
@@ -204,6 +243,42 @@ mod tests {
             assert_eq!(recording.trace.current.unwrap()[..3], [0.0, 1.0, 2.0]);
             assert_eq!(recording.t.len(), 9);
         }
+    }
+
+    #[test]
+    fn numbers_of_a_joint_have_its_name() {
+        let mut text = String::from("time_s,joint,state,counts,iq\n");
+        for k in 0..9 {
+            text += &format!(
+                "0.{k}0,left,RUN,{},0.5\n0.{k}5,right,RUN,{},0\n",
+                8 * k,
+                9 - k
+            );
+        }
+        let error = read(&text, "").unwrap_err();
+        assert!(
+            error.contains("found: time_s; left.counts; left.iq; right.counts; right.iq"),
+            "{error}"
+        );
+        let recording = read(
+            &text,
+            "t=time_s,counts_large=right.counts,current=left.iq:A",
+        )
+        .unwrap();
+        assert_eq!(recording.trace.counts_large[..3], [9, 8, 7]);
+        assert_eq!(recording.trace.current.unwrap()[..2], [0.5; 2]);
+        // Where the user names a column of the table, or it has one of ours, its rows are the rows.
+        let wide = read(&text, "t=time_s,counts_large=counts").unwrap();
+        assert_eq!(wide.trace.counts_large[..3], [0, 9, 8]);
+        let own = read(&text.replace("counts", "counts_large"), "t=time_s").unwrap();
+        assert_eq!(own.trace.counts_large[..3], [0, 9, 8]);
+        // So are those of one joint.
+        let one: String = text
+            .lines()
+            .filter(|line| !line.contains("right"))
+            .map(|line| format!("{line}\n"))
+            .collect();
+        assert_eq!(read(&one, "").unwrap().trace.counts_large[..3], [0, 8, 16]);
     }
 
     #[test]

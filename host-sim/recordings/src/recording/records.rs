@@ -70,7 +70,7 @@ impl<'a> Records<'a> {
         } else if let Some(begin) = labelled::Begin::of(&text) {
             let layout = named(&begin.names, begin.line);
             (layout, Source::Labelled(Labelled::new(input, end, &begin)))
-        } else if let Some(begin) = long::Begin::of(&text) {
+        } else if let Some(begin) = long::Begin::of(&text, options) {
             let layout = begin.layout.clone();
             (
                 layout,
