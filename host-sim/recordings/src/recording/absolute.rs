@@ -150,9 +150,7 @@ const ROUNDED: i64 = 4;
 pub(super) fn found((jump, rows): (i64, f64), seen: &Extent, per_rev: u32) -> Option<Found> {
     let [least, most] = seen.ends?;
     let span = most - least;
-    let wraps = |modulus: &u32| {
-        let [one, other] = moduli(per_rev);
-        let largest = seen.steps[usize::from(*modulus != one && *modulus == other)];
+    let wraps = |(modulus, largest): &(u32, i64)| {
         let modulus = i64::from(*modulus);
         // A shaft turns less than a quarter of a revolution from row to row, and not much faster over the wrap than
         // in all other rows: otherwise the counts are of another encoder.
@@ -160,9 +158,10 @@ pub(super) fn found((jump, rows): (i64, f64), seen: &Extent, per_rev: u32) -> Op
         let over_wrap = (modulus - jump.abs()).abs();
         span <= modulus
             && 4 * jump.abs() >= 3 * modulus
-            && over_wrap as f64 <= 2.0 * rows * largest as f64 + ROUNDED as f64
+            && over_wrap as f64 <= 2.0 * rows * *largest as f64 + ROUNDED as f64
     };
-    let wraps = moduli(per_rev).into_iter().find(wraps);
+    let wraps = moduli(per_rev).into_iter().zip(seen.steps).find(wraps);
+    let wraps = wraps.map(|(modulus, _)| modulus);
     let far = 2 * jump.abs() > i64::from(per_rev) && span < i64::from(SHORT);
     // An encoder of another modulus: one row passes most of the counts of the whole log.
     let far = far || (SPANS.contains(&span) && 4 * jump.abs() >= 3 * (span + 1));
