@@ -1,8 +1,8 @@
 //! The files of a command line: an output that is an input, two outputs that are one file, a file that would
-//! replace one of a report, and an output without a place are refused before the command runs.
+//! replace one of a report, a report that would replace a file of the user, and an output without a place are
+//! refused before the command runs.
 
 use std::any::TypeId;
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgMatches, Command};
@@ -15,19 +15,34 @@ const OUTPUTS: [&str; 5] = ["out", "json", "csv", "report", "mcap"];
 /// The only output that may be an input: `identify --out` keeps the other keys of `--device`.
 const KEPT: [&str; 3] = ["identify", "out", "device"];
 
-/// Names, without their endings, of the files in the folders of reports.
-const REPORTED: [&str; 11] = [
-    "causes",
-    "closed-loop",
-    "feel",
-    "index",
-    "real",
-    "robust",
-    "scores",
-    "sensitivity",
-    "summary",
-    "switched-off",
-    "zwidth",
+/// Names of the files in the folders of reports beside the figures, by command.
+const REPORTED: [(&str, &[&str]); 8] = [
+    (
+        "compare",
+        &[
+            "index.html",
+            "scores.csv",
+            "scores.json",
+            "closed-loop.csv",
+            "closed-loop.json",
+        ],
+    ),
+    (
+        "feel",
+        &["index.html", "feel.json", "causes.csv", "switched-off.csv"],
+    ),
+    ("identify", &["index.html"]),
+    ("real", &["index.html", "real.csv", "real.json"]),
+    ("recommend", &["index.html"]),
+    (
+        "robust",
+        &["index.html", "summary.svg", "robust.csv", "robust.json"],
+    ),
+    (
+        "sensitivity",
+        &["index.html", "sensitivity.csv", "sensitivity.json"],
+    ),
+    ("zwidth", &["index.html", "zwidth.csv", "zwidth.json"]),
 ];
 
 /// A path of the command line with the identifier of its argument and its name in messages.
@@ -37,6 +52,8 @@ struct Named {
     path: PathBuf,
     /// Whether it is a folder and no file.
     is_folder: bool,
+    /// Whether it is the folder of a shard's file, and of no report.
+    is_shard: bool,
 }
 
 /// Checks the paths of the command in `matches`.
@@ -70,12 +87,24 @@ pub(super) fn check(root: &Command, matches: &ArgMatches) -> Result<(), Failure>
         // Of merge, the run of the shards decides whether its output is a file, and takes no time.
         match output.is_folder {
             _ if name == "merge" && output.id == "out" => {}
-            true => Folder::check(&output.name, &output.path)?,
+            true => check_folder(name, output)?,
             false if is_stdout(&output.path) => {}
             false => check_place(&output.path)?,
         }
     }
     Ok(())
+}
+
+/// Checks that the folder of an output has a place, and no file that the report of `command` would replace and
+/// that is not of an earlier run.
+fn check_folder(command: &str, output: &Named) -> Result<(), Failure> {
+    Folder::check(&output.name, &output.path)?;
+    if output.is_shard {
+        return Ok(());
+    }
+    let reported = REPORTED.iter().filter(|(name, _)| *name == command);
+    let names = reported.flat_map(|(_, names)| names.iter().copied());
+    Folder::check_files(&output.name, &output.path, names)
 }
 
 /// Refuses a file in the folder of a report that may replace a file of the report.
@@ -86,8 +115,9 @@ fn refuse_reported(file: &Named, folder: &Named) -> Result<(), Failure> {
     } else {
         above
     };
-    let stem = file.path.file_stem().and_then(OsStr::to_str);
-    let is_reported = stem.is_some_and(|stem| REPORTED.contains(&stem));
+    let stem = file.path.file_stem();
+    let mut names = REPORTED.iter().flat_map(|(_, names)| names.iter());
+    let is_reported = names.any(|name| Path::new(name).file_stem() == stem);
     if file.is_folder || !is_reported || !is_same(above, &folder.path) {
         return Ok(());
     }
@@ -136,6 +166,7 @@ fn given(argument: &Arg, matches: &ArgMatches) -> Vec<Named> {
         name: name.clone(),
         path: PathBuf::from(value),
         is_folder,
+        is_shard,
     };
     raw.into_iter().flatten().map(named).collect()
 }
@@ -156,11 +187,13 @@ mod tests {
         for entry in std::fs::read_dir(folder).unwrap() {
             let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
             let calls = text.split(".add(\"").skip(1);
-            let stem = |call: &str| call.split(['.', '"']).next().unwrap().to_owned();
-            names.extend(calls.map(stem));
+            let name = |call: &str| call.split('"').next().unwrap().to_owned();
+            // The text of this test is no call.
+            names.extend(calls.map(name).filter(|name| name.contains('.')));
         }
-        let names: Vec<_> = names.iter().map(String::as_str).collect();
-        assert_eq!(names, REPORTED);
+        let known = REPORTED.iter().flat_map(|(_, names)| names.iter());
+        let known: BTreeSet<_> = known.map(|name| (*name).to_owned()).collect();
+        assert_eq!(names, known);
     }
 
     #[test]

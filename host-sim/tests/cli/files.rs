@@ -173,3 +173,43 @@ fn file_that_may_be_one_of_the_report_is_refused() {
     }
     folder.good(&format!("{run} --out zz --json zz/rows.json"));
 }
+
+#[test]
+fn report_does_not_replace_a_file_that_no_run_wrote() {
+    let folder = Folder::new(HOST_SIM);
+    for deep in ["mine", "drawn/figures"] {
+        fs::create_dir_all(folder.path().join(deep)).unwrap();
+    }
+    folder.write("mine/index.html", "mine");
+    folder.write("log.csv", log());
+    let said =
+        "mine/index.html was not written by host-sim, or was changed since; choose another folder";
+    // More work than a test has time for.
+    for command in [
+        "robust --devices 10000000 --out mine",
+        "real --out mine",
+        "compare --seconds 1e4 --out mine",
+        "recommend log.csv --counts-per-rev 4096 --report mine",
+    ] {
+        let line = folder.refused(command);
+        assert!(line.contains(said), "{command}: {line}");
+    }
+    assert_eq!(folder.text("mine/index.html"), "mine");
+    // A file of another name is kept, and a run replaces the files of another one.
+    fs::rename(
+        folder.path().join("mine/index.html"),
+        folder.path().join("mine/own.html"),
+    )
+    .unwrap();
+    let run = "robust --scene off --rate 1000 --seconds 0.2 --out mine --devices";
+    folder.good(&format!("{run} 0"));
+    folder.good(&format!("{run} 1"));
+    assert_eq!(folder.text("mine/own.html"), "mine");
+    // A figure has no name that is known before the run.
+    folder.write("drawn/figures/01.svg", "mine");
+    let short = "compare --scenario step --rate 1000 --seconds 1 --estimator pll --out drawn";
+    let line = folder.refused(short);
+    assert!(line.contains("figures/01.svg was not written"), "{line}");
+    assert_eq!(folder.text("drawn/figures/01.svg"), "mine");
+    assert!(!folder.path().join("drawn/index.html").exists());
+}

@@ -1,6 +1,6 @@
 //! Folders whose files belong to one run.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Read as _, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
@@ -17,7 +17,9 @@ const MANIFEST: &str = ".host-sim-files";
 const HEADING: &str = "# Files of one run of host-sim: the next run in this folder removes them";
 
 /// The files of one run for one folder. They appear together, and the files of an earlier run are
-/// removed. Files that this program did not write and files that were changed afterwards are kept.
+/// removed. Files that this program did not write and files that were changed afterwards are kept: a run that
+/// would replace one of them is refused. A file is of an earlier run if the manifest lists its name and the
+/// checksum of its bytes.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
@@ -52,6 +54,27 @@ impl Folder {
         in_folders(path.ancestors(), &format_args!("{option} {name}"))
     }
 
+    /// Checks that none of `names` in the folder `path` is a file that [`Folder::write`] would refuse to replace.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that names `option` and the file.
+    pub fn check_files<'a>(
+        option: &str,
+        path: &Path,
+        names: impl IntoIterator<Item = &'a str>,
+    ) -> Result<(), Failure> {
+        let old = earlier(path);
+        let mut places = names.into_iter().map(|name| (name, path.join(name)));
+        match places.find(|(name, place)| !is_replaceable(place, name, &old, None)) {
+            None => Ok(()),
+            Some((_, place)) => Err(Failure::Input(format!(
+                "{option} {}: {}",
+                path.display(),
+                not_ours(&place)
+            ))),
+        }
+    }
+
     /// Adds a file. `name` may contain subfolders.
     pub fn add(&mut self, name: impl Into<String>, bytes: impl Into<Vec<u8>>) {
         self.files.insert(name.into(), bytes.into());
@@ -64,7 +87,7 @@ impl Folder {
     }
 
     /// Writes all files to a temporary folder and then moves them to the folder. If a file cannot
-    /// be written, the folder does not change.
+    /// be written, or would replace one that is not of an earlier run, the folder does not change.
     ///
     /// # Errors
     /// [`Failure::Input`] that names the file.
@@ -83,6 +106,13 @@ impl Folder {
             let path = self.file(name);
             move |error: io::Error| cannot_write(&path, &error)
         };
+        let old = earlier(&self.path);
+        let mut files = self.files.iter();
+        if let Some((name, _)) =
+            files.find(|(name, bytes)| !is_replaceable(&self.file(name), name, &old, Some(bytes)))
+        {
+            return Err(Failure::Input(not_ours(&self.file(name))));
+        }
         fs::create_dir_all(&self.path).map_err(failed(""))?;
         let aside = Partial::folder(&self.file("report")).map_err(failed(""))?;
         for (name, bytes) in &self.files {
@@ -103,12 +133,14 @@ impl Folder {
                 .files
                 .iter()
                 .map(|(name, bytes)| (name.clone(), sum(bytes)));
-            let new: BTreeMap<_, _> = new.collect();
-            // The manifest names the files of both runs until all files are moved.
-            let mut both = old.clone();
-            both.extend(new.clone());
+            let new: BTreeSet<_> = new.collect();
+            // The manifest has the files of both runs until all files are moved.
+            let both = &old | &new;
             list(&mut file, &both).map_err(failed(MANIFEST))?;
-            for (name, sum) in old.iter().filter(|(name, _)| !new.contains_key(*name)) {
+            for (name, sum) in old
+                .iter()
+                .filter(|(name, _)| !self.files.contains_key(name))
+            {
                 self.remove(name, *sum);
             }
             for name in self.files.keys() {
@@ -132,8 +164,43 @@ impl Folder {
     }
 }
 
+/// Files of runs: their names and the checksums of their bytes.
+type Listed = BTreeSet<(String, u64)>;
+
+/// The files of earlier runs in the folder `path`; none without a manifest.
+fn earlier(path: &Path) -> Listed {
+    let listed = File::open(path.join(MANIFEST)).and_then(|mut file| {
+        // Waits for a run that replaces the files at this moment.
+        let _ = file.lock_shared();
+        listed(&mut file)
+    });
+    listed.unwrap_or_default()
+}
+
+/// Whether a run may write the file `name` at `path`: there is none, or it is one of the files `old` of earlier
+/// runs, or it has these bytes already.
+fn is_replaceable(path: &Path, name: &str, old: &Listed, bytes: Option<&[u8]>) -> bool {
+    match fs::metadata(path) {
+        Err(error) => error.kind() == ErrorKind::NotFound,
+        // Said elsewhere.
+        Ok(found) if found.is_dir() => true,
+        Ok(found) if !found.is_file() => false,
+        Ok(_) => fs::read(path).is_ok_and(|there| {
+            bytes == Some(&there[..]) || old.contains(&(name.to_owned(), sum(&there)))
+        }),
+    }
+}
+
+/// Message about a file that no run may replace.
+fn not_ours(path: &Path) -> String {
+    format!(
+        "{} was not written by host-sim, or was changed since; choose another folder, or move this file away",
+        path.display()
+    )
+}
+
 /// The manifest, locked against another process until it is closed, and the files in it.
-fn read(path: &Path) -> io::Result<(File, BTreeMap<String, u64>)> {
+fn read(path: &Path) -> io::Result<(File, Listed)> {
     let mut options = OpenOptions::new();
     let mut file = options
         .read(true)
@@ -143,6 +210,12 @@ fn read(path: &Path) -> io::Result<(File, BTreeMap<String, u64>)> {
         .open(path)?;
     // Some file systems have no locks.
     let _ = file.lock();
+    let files = listed(&mut file)?;
+    Ok((file, files))
+}
+
+/// The files in a manifest.
+fn listed(file: &mut File) -> io::Result<Listed> {
     let mut text = String::new();
     file.read_to_string(&mut text)?;
     let files = text.lines().filter_map(|line| {
@@ -154,12 +227,11 @@ fn read(path: &Path) -> io::Result<(File, BTreeMap<String, u64>)> {
         let sum = u64::from_str_radix(sum, 16).ok()?;
         inside.then(|| (name.to_owned(), sum))
     });
-    let files = files.collect();
-    Ok((file, files))
+    Ok(files.collect())
 }
 
 /// Writes the manifest.
-fn list(file: &mut File, files: &BTreeMap<String, u64>) -> io::Result<()> {
+fn list(file: &mut File, files: &Listed) -> io::Result<()> {
     let mut text = format!("{HEADING}\n");
     for (name, sum) in files {
         text += &format!("{sum:016x} {name}\n");
@@ -209,6 +281,62 @@ mod tests {
             left, 5,
             "index.html, more, notes.txt, b.csv and the manifest"
         );
+    }
+
+    #[test]
+    fn file_that_no_run_wrote_is_not_replaced() {
+        let outside = tempfile::tempdir().unwrap();
+        let path = outside.path().join("out");
+        fs::create_dir(&path).unwrap();
+        let text = |name: &str| fs::read_to_string(path.join(name)).ok();
+        let check = || {
+            Folder::check_files("--out", &path, ["index.html", "a.csv"])
+                .map_err(|error| error.to_string())
+        };
+        let refused = |files: &[(&str, &str)], named: &str| {
+            let said = write(&path, files).unwrap_err().to_string();
+            let line =
+                format!("{named} was not written by host-sim, or was changed since; choose ");
+            assert!(said.contains(&line), "{said}");
+            let early = check().unwrap_err();
+            assert!(
+                early.starts_with("--out ") && early.contains(&line),
+                "{early}"
+            );
+        };
+        // Of the user; nothing else is left in the folder.
+        fs::write(path.join("index.html"), "mine").unwrap();
+        refused(&[("a.csv", "1"), ("index.html", "1")], "index.html");
+        assert_eq!(text("index.html").as_deref(), Some("mine"));
+        assert_eq!(fs::read_dir(&path).unwrap().count(), 1);
+        // Moved away, and then changed after a run.
+        fs::rename(path.join("index.html"), path.join("mine.html")).unwrap();
+        assert_eq!(check(), Ok(()));
+        write(&path, &[("a.csv", "1"), ("index.html", "1")]).unwrap();
+        assert_eq!(check(), Ok(()));
+        fs::write(path.join("a.csv"), "changed").unwrap();
+        refused(&[("a.csv", "2"), ("index.html", "2")], "a.csv");
+        assert_eq!(
+            (text("a.csv"), text("index.html")),
+            (Some("changed".into()), Some("1".into()))
+        );
+        // The same bytes lose nothing.
+        write(&path, &[("a.csv", "changed"), ("index.html", "2")]).unwrap();
+        assert_eq!(text("mine.html").as_deref(), Some("mine"));
+    }
+
+    #[test]
+    fn interrupted_run_is_replaced() {
+        // It had listed its files beside those of the run before, and moved one of them.
+        let outside = tempfile::tempdir().unwrap();
+        let path = outside.path().join("out");
+        write(&path, &[("a", "1"), ("b", "1")]).unwrap();
+        let listed = fs::read_to_string(path.join(MANIFEST)).unwrap();
+        let more = format!("{listed}{:016x} a\n{:016x} b\n", sum(b"2"), sum(b"2"));
+        fs::write(path.join(MANIFEST), more).unwrap();
+        fs::write(path.join("a"), "2").unwrap();
+        write(&path, &[("a", "3"), ("b", "3")]).unwrap();
+        assert_eq!(fs::read(path.join("b")).unwrap(), b"3");
     }
 
     #[test]
