@@ -1,9 +1,10 @@
-//! Lower bound of the velocity error: a particle filter with the true model and the exact
-//! likelihood of a count.
+//! Velocity error of a particle filter with the exact likelihood of a count: a lower bound where the
+//! filter has the true model of the plant.
 //!
 //! The filter simulates thousands of copies of the motor, each with its own noise, and keeps those
 //! that agree with the encoder; it is too expensive for a controller. Effects that the model does
-//! not contain (ripple of friction and torque) are a slow random torque, as in the observers.
+//! not contain (ripple of friction and torque) are a slow random torque, as in the observers: with
+//! them, the error is no bound.
 
 mod filter;
 pub mod table;
@@ -45,9 +46,16 @@ pub const SCENARIOS: [ScenarioName; 5] = {
     [Stochastic, Step, Track, FreeAir, Texture]
 };
 
+/// Whether the filter has the true model of the plant in `scenario`, so that no estimator with its signals
+/// can have a smaller error.
+#[must_use]
+pub fn is_bound(scenario: ScenarioName) -> bool {
+    scenario.role() == Role::Linear
+}
+
 /// Noise of the particles in `scenario`.
 fn noise(scenario: ScenarioName) -> Noise {
-    if scenario.role() == Role::Linear {
+    if is_bound(scenario) {
         // The noise of the simulated plant.
         Noise {
             torque_noise: TORQUE_INTENSITY_NM2_S.sqrt(),

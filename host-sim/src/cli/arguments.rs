@@ -92,7 +92,8 @@ pub(super) enum Command {
     #[command(after_help = "Example:
   host-sim sensitivity --estimator kalman-motor --estimator adaptive")]
     Sensitivity(super::sensitivity::Sensitivity),
-    /// Compute a lower bound of the RMS error with a particle filter on the true model
+    /// Compute the RMS error of a particle filter: in scenario stochastic, where it has the true model, the
+    /// least error that any estimator can have
     #[command(after_help = "Example:
   host-sim limit --scenario step --seconds 2")]
     Limit(super::limit::Limit),

@@ -26,7 +26,7 @@ pub(super) struct Limit {
     /// Control rate, 100 to 100000 Hz; repeatable [default: 1000]
     #[arg(long = "rate", value_name = "HZ")]
     pub(super) rates: Vec<f64>,
-    /// Estimator to compare with the bound, see host-sim estimators; repeatable [default: all]
+    /// Estimator to compare with the particle filter, see host-sim estimators; repeatable [default: all]
     #[arg(long = "estimator", value_name = "NAME")]
     pub(super) estimators: Vec<String>,
     /// Seed of all random numbers, also of the particles

@@ -2,12 +2,15 @@
 
 use std::fmt::Write as _;
 
-use super::LimitRow;
+use terminal::wording::wrapped;
+
+use super::{LimitRow, is_bound};
 use crate::table::layout::{self, Column};
 use crate::table::no_percentage;
 
 /// RMS error in % of finite difference, and in brackets relative to the particle filter with the
-/// same signals; means over the seeds. One table per rate, in lines of `width` characters.
+/// same signals; means over the seeds. One table per rate, in lines of `width` characters, and a note on the
+/// scenarios in which the particle filter is no bound.
 #[must_use]
 pub fn table(rows: &[LimitRow], width: usize) -> String {
     let mut text = String::new();
@@ -43,7 +46,21 @@ pub fn table(rows: &[LimitRow], width: usize) -> String {
             "finite difference or the limit",
         );
     }
-    text
+    text + &no_bound(distinct(rows.iter().map(|row| row.scenario)))
+}
+
+/// The note on those of `scenarios` in which the particle filter is no bound; empty if it is one in all.
+fn no_bound(mut scenarios: Vec<&str>) -> String {
+    scenarios.retain(|name| !name.parse().is_ok_and(is_bound));
+    if scenarios.is_empty() {
+        return String::new();
+    }
+    let note = format!(
+        "note: limit is no bound in {}: the particle filter takes the ripple of friction and torque for a random \
+         torque, so that an estimator can have a smaller error.",
+        scenarios.join(", ")
+    );
+    wrapped(&note, 0) + "\n"
 }
 
 fn cell<'a>(rows: impl Iterator<Item = &'a LimitRow>) -> String {
@@ -95,7 +112,7 @@ mod tests {
             (row(1.0, 50.0, f64::INFINITY), "50.00 (-)"),
         ] {
             let text = table(&[row], 80);
-            assert!(text.ends_with(&format!(" {cell}\n{note}")), "{text}");
+            assert!(text.contains(&format!(" {cell}\n{note}")), "{text}");
         }
         assert!(!table(&[row(1.0, 50.0, 2.0)], 80).contains("no error"));
     }
@@ -112,6 +129,24 @@ mod tests {
             over_limit: rms_pct / 10.0,
         };
         let text = table(&[row(1, 20.0), row(2, 40.0)], 80);
-        assert!(text.ends_with("30.00 (3.00)\n"), "{text}");
+        assert!(text.contains("30.00 (3.00)\n"), "{text}");
+    }
+
+    #[test]
+    fn scenarios_without_a_bound_are_named() {
+        let row = |scenario| LimitRow {
+            estimator: "limit",
+            scenario,
+            rate_hz: 1000.0,
+            seed: 1,
+            rms_rad_s: 1.0,
+            rms_pct: 10.0,
+            over_limit: 1.0,
+        };
+        let note = "note: limit is no bound in step, track: ";
+        let all = [row("stochastic"), row("step"), row("track"), row("step")];
+        let text = table(&all, 80);
+        assert_eq!(text.matches(note).count(), 1, "{text}");
+        assert!(!table(&all[..1], 80).contains("note"));
     }
 }
