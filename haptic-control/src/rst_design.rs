@@ -36,6 +36,24 @@ impl LoopPoles {
         tracking: Hertz(60.0),
         estimator_delay_s: 1e-3,
     };
+
+    /// Lowest control rate at which both bandwidths are at most a tenth of it.
+    ///
+    /// ```
+    /// use haptic_control::LoopPoles;
+    /// assert_eq!(LoopPoles::DEFAULT.lowest_rate().0, 600.0);
+    /// ```
+    #[must_use]
+    pub const fn lowest_rate(&self) -> Hertz {
+        let (regulation, tracking) = (self.regulation.0, self.tracking.0);
+        Hertz(
+            10.0 * if regulation > tracking {
+                regulation
+            } else {
+                tracking
+            },
+        )
+    }
 }
 
 /// Polynomials of the law in powers of z⁻¹, in f64.
@@ -89,11 +107,9 @@ impl RstDesign {
             Ok(device) => device,
             Err(error) => return Err(error),
         };
-        let most = rate.0 / 10.0;
         if !(poles.regulation.0 > 0.0
-            && poles.regulation.0 <= most
             && poles.tracking.0 > 0.0
-            && poles.tracking.0 <= most
+            && rate.0 >= poles.lowest_rate().0
             && poles.estimator_delay_s >= 0.0
             && poles.estimator_delay_s <= 0.1)
         {

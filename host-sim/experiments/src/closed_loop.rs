@@ -6,6 +6,7 @@ mod fault;
 mod hand;
 mod oracle;
 mod press;
+mod rate;
 mod record;
 mod scene;
 mod tracking;
@@ -30,6 +31,7 @@ pub use fault::{EncoderFault, Faulty};
 pub use hand::{Hand, Motion};
 pub use oracle::Oracle;
 pub use press::Press;
+pub use rate::{LOWEST_RATE_HZ, loop_ticks};
 use scene::Visit;
 pub use scene::{environments_with, named, usual};
 

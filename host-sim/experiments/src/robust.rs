@@ -13,7 +13,7 @@ pub mod variation;
 use haptic_control::{LoopPoles, SceneKind};
 use serde::{Deserialize, Serialize};
 
-use crate::closed_loop::{FeedbackEncoder, Loop, environments_with, named, usual};
+use crate::closed_loop::{FeedbackEncoder, Loop, environments_with, loop_ticks, named, usual};
 use crate::parallel::in_order;
 use catalogue::estimators::Setup;
 use catalogue::estimators::{Estimator, Kind};
@@ -21,7 +21,6 @@ use catalogue::parameters::{Parameters, PlantKind};
 use judge::{Instant, Judge};
 use row::RobustRow;
 use simulation::device::Device;
-use simulation::simulate;
 use terminal::failure::Failure;
 use variation::Subject;
 
@@ -149,7 +148,7 @@ impl Experiment {
         let Settings {
             device, rate_hz, ..
         } = settings;
-        let ticks = simulate::ticks(*rate_hz, settings.seconds)?;
+        let ticks = loop_ticks(*rate_hz, settings.seconds)?;
         let on = |counts_per_rev: u32| {
             let mut setup = Setup::of(device, *rate_hz);
             setup.stages.large.counts_per_rev = counts_per_rev;

@@ -2,13 +2,13 @@
 
 use haptic_control::{LoopPoles, SceneKind};
 
-use crate::closed_loop::{FeedbackEncoder, Hand, Loop, estimator, named, usual};
+use crate::closed_loop::{FeedbackEncoder, Hand, Loop, estimator, loop_ticks, named, usual};
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
 use recordings::recording::Recording;
 use simulation::device::Device;
 use simulation::scenario::ScenarioName;
-use simulation::simulate::{simulate, ticks};
+use simulation::simulate::simulate;
 use simulation::trace::Columns;
 use terminal::failure::Failure;
 
@@ -79,7 +79,7 @@ impl Run {
                     .chain(SceneKind::environments()),
             )?,
         };
-        let ticks = ticks(self.rate_hz, self.seconds.unwrap_or(EXCITE_S))?;
+        let ticks = loop_ticks(self.rate_hz, self.seconds.unwrap_or(EXCITE_S))?;
         let parameters = Parameters::default();
         let estimator = |counts_per_rev| {
             let kind = Kind::named("kalman-triple-steady")?;

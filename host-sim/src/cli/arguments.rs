@@ -4,11 +4,14 @@ use std::path::PathBuf;
 
 use clap::{Arg, Args, CommandFactory as _, Parser, Subcommand};
 
+use super::compare::longer_than_skipped;
 use catalogue::estimators::Kind;
 use catalogue::parameters::Parameters;
+use experiments::closed_loop::LOWEST_RATE_HZ;
 use experiments::designed::{Place, designed};
 use recordings::arguments::DeviceFile;
 use simulation::scenario::ScenarioName;
+use simulation::simulate::RATES_HZ;
 use terminal::failure::Failure;
 use terminal::output::note;
 use terminal::wording::WIDTH;
@@ -184,12 +187,13 @@ pub(super) fn kinds(names: &[String]) -> Result<Vec<&'static Kind>, Failure> {
     Ok(kinds)
 }
 
-/// Checks that a device can be simulated at these rates, Hz, before anything is said about estimators at them.
-pub(super) fn check_rates(rates_hz: &[f64]) -> Result<(), Failure> {
+/// Checks that a device can be simulated at these rates, Hz, for a duration in s that can be scored, before
+/// anything is said about estimators at them. `None` stands for a duration that suits every rate.
+pub(super) fn check_rates(rates_hz: &[f64], seconds: Option<f64>) -> Result<(), Failure> {
     for &rate_hz in rates_hz {
-        simulation::simulate::ticks(rate_hz, 1.0)?;
+        simulation::simulate::ticks(rate_hz, seconds.unwrap_or(1.0))?;
     }
-    Ok(())
+    seconds.map_or(Ok(()), longer_than_skipped)
 }
 
 /// As [`kinds`]. If no name is given, estimators that the shipped presets do not give at all of `places` are
@@ -224,6 +228,11 @@ pub(super) fn scenarios(
         }
     }
     Ok(scenarios)
+}
+
+/// Help text of a `--rate` of closed loops, with the range.
+pub(super) fn loop_rate_help() -> String {
+    format!("Control rate, {LOWEST_RATE_HZ} to {} Hz", RATES_HZ.1)
 }
 
 /// The given values without duplicates; `default` if none is given.

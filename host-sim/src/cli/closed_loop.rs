@@ -6,7 +6,7 @@ use haptic_control::LoopPoles;
 
 use catalogue::estimators::Kind;
 use catalogue::parameters::PlantKind;
-use experiments::closed_loop::{environments_with, named};
+use experiments::closed_loop::{environments_with, loop_ticks, named};
 use experiments::compare::{Cost, Settings};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
@@ -18,7 +18,6 @@ use haptic_control::SceneKind;
 use report;
 use report::{ClosedLoop, ReportInput};
 use simulation::scenario::ScenarioName;
-use simulation::simulate;
 use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 
@@ -220,7 +219,7 @@ pub(super) fn cases(
     let seconds = options.seconds.unwrap_or(seconds);
     let mut cases = Vec::new();
     for rate_hz in distinct(&options.rates, &[1e3, 11.6e3]) {
-        simulate::ticks(rate_hz, seconds)?;
+        loop_ticks(rate_hz, seconds)?;
         longer_than_skipped(seconds)?;
         cases.extend(scenes.iter().map(|&scene| LoopCase {
             scene,

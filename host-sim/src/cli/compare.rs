@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use catalogue::parameters::{Parameters, PlantKind};
+use experiments::closed_loop::LOWEST_RATE_HZ;
 use experiments::compare::{Case, Cost, Outcome, Settings, compare, setup_of};
 use experiments::rows;
 use experiments::table;
@@ -17,7 +18,7 @@ use scoring::evaluation::Row;
 use scoring::score::{Field, SKIP_S, Score, Wanted};
 use simulation::device::Device;
 use simulation::scenario::{Role, ScenarioName};
-use simulation::simulate;
+use simulation::simulate::{self, RATES_HZ};
 use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 
@@ -47,6 +48,15 @@ fn scenario_help() -> String {
     )
 }
 
+/// Help text of `--rate`.
+fn rate_help() -> String {
+    let (lowest, highest) = RATES_HZ;
+    format!(
+        "Control rate, {lowest} to {highest} Hz, with --closed-loop from {LOWEST_RATE_HZ} Hz on; repeatable \
+         [default: 1000 and 11600]"
+    )
+}
+
 #[derive(Debug, Args)]
 pub(super) struct Compare {
     /// Score the rendered force in closed loop: the velocity of each estimator in turn, and then
@@ -58,8 +68,7 @@ pub(super) struct Compare {
     /// Estimator of the handle's velocity, only with --closed-loop [default: kalman-triple-steady]
     #[arg(long, value_name = "NAME", requires = "closed_loop")]
     pub(super) handle_estimator: Option<String>,
-    /// Control rate, 100 to 100000 Hz; repeatable [default: 1000 and 11600]
-    #[arg(long = "rate", value_name = "HZ")]
+    #[arg(long = "rate", value_name = "HZ", help = rate_help())]
     pub(super) rates: Vec<f64>,
     /// Estimator to run, see host-sim estimators; repeatable [default: all]
     #[arg(long = "estimator", value_name = "NAME")]

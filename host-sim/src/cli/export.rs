@@ -82,6 +82,12 @@ fn header(options: &Export) -> Result<(), Failure> {
         out,
     } = &options.design;
     let rate = in_range("--rate", *rate, EVERY_HZ, "Hz")?;
+    // Also for an estimator that reads no stamps.
+    if !(*edge_clock > 0.0 && edge_clock.is_finite()) {
+        return Err(Failure::Input(format!(
+            "--edge-clock {edge_clock}: must be a number above 0, in Hz"
+        )));
+    }
     let mut device = options.device.load()?;
     if let Some(counts) = options.read.encoder.counts_per_rev {
         device.stages.large.counts_per_rev = counts;

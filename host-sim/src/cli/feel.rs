@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use catalogue::estimators::Kind;
+use experiments::closed_loop::loop_ticks;
 use experiments::feel::rows::{self, FeelRow};
 use experiments::feel::{Case, Settings, Without, feel, table::table};
 use experiments::rows::{csv, json};
@@ -12,12 +13,11 @@ use experiments::table::layout::{NARROW, terminal_width};
 use haptic_control::SceneKind;
 use recordings::arguments::DeviceFile;
 use report::{self, Printout};
-use simulation::simulate;
 use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 use terminal::wording::wrapped;
 
-use super::arguments::{ParameterOptions, distinct};
+use super::arguments::{ParameterOptions, distinct, loop_rate_help};
 use super::closed_loop;
 use super::compare::longer_than_skipped;
 use super::page::{self, progress};
@@ -38,8 +38,7 @@ fn scene_help() -> String {
 pub(super) struct Feel {
     #[arg(long = "scene", visible_alias = "scenario", value_name = "NAME", help = scene_help())]
     pub(super) scenes: Vec<String>,
-    /// Control rate, 100 to 100000 Hz; repeatable [default: 1000]
-    #[arg(long = "rate", value_name = "HZ")]
+    #[arg(long = "rate", value_name = "HZ", help = loop_rate_help() + "; repeatable [default: 1000]")]
     pub(super) rates: Vec<f64>,
     /// Estimator of the large motor's velocity, see host-sim estimators; repeatable [default: all
     /// without edge time stamps]
@@ -142,7 +141,7 @@ fn cases(
 ) -> Result<Vec<Case>, Failure> {
     let mut cases = Vec::new();
     for &rate_hz in rates {
-        simulate::ticks(rate_hz, seconds)?;
+        loop_ticks(rate_hz, seconds)?;
         for &scene in scenes {
             let case = |estimator| Case {
                 scene,

@@ -14,7 +14,7 @@ use scoring::score::Wanted;
 use terminal::failure::Failure;
 
 use super::arguments::{ParameterOptions, distinct, scenarios};
-use super::compare::settings;
+use super::compare::{longer_than_skipped, settings};
 use super::page::{self, progress};
 
 #[derive(Debug, Args)]
@@ -52,6 +52,7 @@ pub(super) fn run(options: &Limit) -> Result<(), Failure> {
     let mut cases = Vec::new();
     for rate_hz in distinct(&options.rates, &[1e3]) {
         simulation::simulate::ticks(rate_hz, options.seconds)?;
+        longer_than_skipped(options.seconds)?;
         cases.extend(scenarios.iter().map(|&scenario| Case {
             scenario,
             rate_hz,

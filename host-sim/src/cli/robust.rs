@@ -17,7 +17,7 @@ use terminal::failure::Failure;
 use terminal::output::{Folder, note};
 use terminal::wording::wrapped;
 
-use super::arguments::ParameterOptions;
+use super::arguments::{ParameterOptions, loop_rate_help};
 use super::page;
 use super::shard::{self, Asked, Outputs};
 
@@ -32,8 +32,7 @@ pub(super) struct Robust {
     /// Scene to run, as in compare --closed-loop; repeatable [default: all]
     #[arg(long = "scene", value_name = "NAME")]
     pub(super) scenes: Vec<String>,
-    /// Control rate, 100 to 100000 Hz
-    #[arg(long, value_name = "HZ", default_value_t = 10e3)]
+    #[arg(long, value_name = "HZ", default_value_t = 10e3, help = loop_rate_help())]
     pub(super) rate: f64,
     /// Estimator of both velocities, see host-sim estimators
     #[arg(long, value_name = "NAME", default_value = "kalman-triple-steady")]
@@ -51,7 +50,7 @@ pub(super) struct Robust {
     pub(super) device: DeviceFile,
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,
-    /// Run only one device of each scene, given by its index or the name of a corner
+    /// Run only one device of each scene, given by its index, below --devices, or the name of a corner
     #[arg(long, value_name = "INDEX", conflicts_with = "shard")]
     pub(super) only: Option<Subject>,
     /// Run only every Nth run from the Kth on, for example 1/4, and write a file for host-sim merge, no
@@ -83,12 +82,26 @@ pub(super) fn run(options: &Robust, run_line: &str) -> Result<(), Failure> {
         };
         return asked.run(&settings, finish);
     };
+    if let Subject::Drawn(index) = subject
+        && index >= options.devices
+    {
+        return Err(Failure::Input(no_device(index, options.devices)));
+    }
     let folder = outputs.folder(REPORT)?;
     let scenes = settings.scenes()?.into_iter();
     let jobs: Vec<_> = scenes.map(|scene| (scene, subject)).collect();
     let rows = shard::rows(&settings, &jobs, DOING)?;
     // The report of a single device is only written where it is asked for.
     write(&settings, &rows, outputs.out.and(folder), outputs.json)
+}
+
+/// Message about an `--only` beyond the drawn devices.
+fn no_device(index: u64, devices: u64) -> String {
+    let there = match devices.checked_sub(1) {
+        None => "no device is drawn with --devices 0".to_owned(),
+        Some(last) => format!("the devices that --devices {devices} draws are 0 to {last}"),
+    };
+    format!("--only {index}: {there}; choose another index, a corner, or a larger --devices")
 }
 
 fn settings(options: &Robust) -> Result<Settings, Failure> {

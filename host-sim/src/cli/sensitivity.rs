@@ -105,7 +105,7 @@ fn plan(options: &Sensitivity) -> Result<Plan, Failure> {
     let device = options.device.load()?;
     let parameters = options.parameters.load()?;
     let rates_hz = distinct(&options.rates, &[1e3]);
-    check_rates(&rates_hz)?;
+    check_rates(&rates_hz, options.seconds)?;
     let places = rates_hz.iter().map(|&hz| with_friction(&device, hz));
     let places: Vec<_> = places.collect();
     let kinds = kinds_at(&options.estimators, &parameters, &places)?;

@@ -7,9 +7,11 @@ use clap::{Args, ValueEnum};
 use experiments::closed_loop::Hand;
 use experiments::simulated::Run;
 use recordings::arguments::DeviceFile;
+use simulation::simulate::RATES_HZ;
 use terminal::failure::Failure;
 use terminal::output::write_whole;
 
+use super::arguments::loop_rate_help;
 use super::page::working;
 
 /// Load on the handle in a scene.
@@ -26,6 +28,15 @@ enum Holder {
     Moving,
 }
 
+/// Help text of `--rate`.
+fn rate_help() -> String {
+    format!(
+        "{}; of scene excite from 1000 Hz on, of a scenario from {} Hz on",
+        loop_rate_help(),
+        RATES_HZ.0
+    )
+}
+
 #[derive(Debug, Args)]
 pub(super) struct Simulate {
     /// Scene to simulate in closed loop: excite, or one of compare --closed-loop [default: excite]
@@ -37,8 +48,7 @@ pub(super) struct Simulate {
     /// Load on the handle in a scene
     #[arg(long, value_enum, default_value = "still", conflicts_with = "scenario")]
     hand: Holder,
-    /// Control rate, 100 to 100000 Hz
-    #[arg(long, value_name = "HZ", default_value_t = 10_000.0)]
+    #[arg(long, value_name = "HZ", default_value_t = 10_000.0, help = rate_help())]
     rate: f64,
     /// Write only every N-th tick of a scene, 1 to 1000, as telemetry does
     #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "scenario",

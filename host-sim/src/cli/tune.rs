@@ -14,7 +14,7 @@ use shards::{Experiment, Part};
 use terminal::failure::Failure;
 use terminal::output::{is_stdout, print_bytes, write_whole};
 
-use super::arguments::{distinct, kinds, scenarios};
+use super::arguments::{check_rates, distinct, kinds, scenarios};
 use super::shard::{self, Outputs};
 use experiments::uneven::{Chosen, Recorded};
 use recordings::log::{Log, short_name};
@@ -86,10 +86,12 @@ impl Tune {
             seconds: self.seconds,
             perturbed: self.perturbed.then_some(true),
         };
+        let rates_hz = distinct(&self.rates, &[1e3, 10e3, 11.6e3]);
+        check_rates(&rates_hz, self.seconds)?;
         Ok(Plan {
             device: self.device.load()?,
             groups: wishes.groups(kinds),
-            rates_hz: distinct(&self.rates, &[1e3, 10e3, 11.6e3]),
+            rates_hz,
             plants: match self.frictionless {
                 true => vec![PlantKind::Frictionless],
                 false => vec![PlantKind::Friction, PlantKind::Frictionless],

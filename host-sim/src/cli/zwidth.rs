@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use experiments::closed_loop::loop_ticks;
 use experiments::designed::with_friction;
 use experiments::rows::{csv, json};
 use experiments::table::layout::{NARROW, terminal_width};
@@ -16,7 +17,7 @@ use simulation::device::COUNTS_PER_REV;
 use terminal::failure::Failure;
 use terminal::output::Folder;
 
-use super::arguments::{ParameterOptions, check_rates, distinct, kinds_at};
+use super::arguments::{ParameterOptions, distinct, kinds_at, loop_rate_help};
 use super::page;
 use super::shard::{Asked, Outputs};
 
@@ -43,8 +44,7 @@ pub(super) struct Zwidth {
     /// Search also with the true velocities of both motors in the place of estimates
     #[arg(long)]
     pub(super) exact: bool,
-    /// Control rate, 100 to 100000 Hz; repeatable [default: 1000, 10000 and 11600]
-    #[arg(long = "rate", value_name = "HZ")]
+    #[arg(long = "rate", value_name = "HZ", help = loop_rate_help() + "; repeatable [default: 1000, 10000 and 11600]")]
     pub(super) rates: Vec<f64>,
     /// Number of lines of the large encoder, 4 to 1000000; repeatable [default: 256, 1024 and 5000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(LINES))]
@@ -115,7 +115,9 @@ fn plan(options: &Zwidth) -> Result<Plan, Failure> {
     let device = options.device.load()?;
     let parameters = options.parameters.load()?;
     let rates_hz = distinct(&options.rates, &[1e3, 10e3, 11.6e3]);
-    check_rates(&rates_hz)?;
+    for &rate_hz in &rates_hz {
+        loop_ticks(rate_hz, 1.0)?;
+    }
     let lines = distinct(&options.lines, &[256, 1024, 5000]);
     let mut places = Vec::new();
     for &lines in &lines {

@@ -163,7 +163,10 @@ fn invalid_arguments_are_refused_with_one_line() {
             "no scene 'wal'; did you mean wall? there are off",
         ),
         (&["--closed-loop", "--estimator", "kalman"], "kalman-triple"),
-        (&["--closed-loop", "--rate", "100"], "control at 100 Hz"),
+        (
+            &["--closed-loop", "--rate", "100"],
+            "--rate 100: a closed loop needs a control rate of 600 to 100000 Hz",
+        ),
         (&["--closed-loop", "--rate", "0"], "rate"),
         (&["--closed-loop", "--seconds", "0"], "duration 0 s"),
         (
@@ -266,6 +269,6 @@ fn full_comparison_includes_the_closed_loop_and_one_of_a_scenario_does_not() {
         &folder,
         &["--rate", "200", "--seconds", "1", "--estimator", "pll"],
     );
-    assert!(slow.contains("The closed loop was not simulated: control at 200 Hz"));
+    assert!(slow.contains("The closed loop was not simulated: --rate 200: a closed loop"));
     assert!(slow.contains("figure 8)") && !slow.contains(FIGURES[0]));
 }

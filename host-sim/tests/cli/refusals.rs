@@ -20,6 +20,36 @@ fn invalid_arguments_are_refused_with_a_remedy() {
             "duration 10000 s: must be from 0.0002 to 2000 s at 10000 Hz",
         ),
         (&["compare", "--seconds", "0.1"], "scores begin after 0.1 s"),
+        (
+            &["limit", "--seconds", "0.01"],
+            "duration 0.01 s: scores begin after 0.1 s; give a longer --seconds",
+        ),
+        (
+            &["sensitivity", "--seconds", "0.01"],
+            "duration 0.01 s: scores begin after 0.1 s; give a longer --seconds",
+        ),
+        (
+            &["tune", "--estimator", "pll", "--seconds", "0.05"],
+            "duration 0.05 s: scores begin after 0.1 s; give a longer --seconds",
+        ),
+        (
+            &["export", "--c", "--estimator", "pll", "--edge-clock", "nan"],
+            "--edge-clock NaN: must be a number above 0, in Hz",
+        ),
+        (
+            &[
+                "simulate", "--scene", "wall", "--rate", "500", "--out", "s.csv",
+            ],
+            "--rate 500: a closed loop needs a control rate of 600 to 100000 Hz",
+        ),
+        (
+            &["simulate", "--rate", "700", "--out", "s.csv"],
+            "--rate 700: scene excite needs a control rate of 1 to 100 kHz",
+        ),
+        (
+            &["feel", "--rate", "500"],
+            "--rate 500: a closed loop needs a control rate of 600 to 100000 Hz",
+        ),
         (&["compare", "--score", "beauty"], "rms_rad_s"),
         (&["compare", "--set", "foaw-end-fit.n=129"], "from 1 to 128"),
         (

@@ -167,3 +167,32 @@ fn no_line_of_a_table_is_wider_than_80_characters() {
         assert!(!text.contains("plant with frictionless"), "{text}");
     }
 }
+
+#[test]
+fn help_states_the_lowest_rate_of_a_closed_loop() {
+    let folder = Folder::new(HOST_SIM);
+    for command in ["zwidth", "feel", "robust", "compare", "simulate"] {
+        let help = folder.good(&format!("{command} --help"));
+        let words: Vec<_> = help.split_whitespace().collect();
+        assert!(words.join(" ").contains("600"), "{command}: {help}");
+    }
+    // It is one at which each scene runs.
+    let run = "compare --closed-loop --rate 600 --seconds 0.2 --estimator pll --no-report";
+    folder.good(run);
+}
+
+#[test]
+fn limit_names_the_scenarios_in_which_it_is_no_bound() {
+    let folder = Folder::new(HOST_SIM);
+    let run = "limit --seconds 0.3 --particles 10 --estimator pll --scenario";
+    let text = folder.good(&format!("{run} stochastic --scenario free-air"));
+    assert!(
+        text.contains("note: limit is no bound in free-air: the particle"),
+        "{text}"
+    );
+    assert!(
+        !folder
+            .good(&format!("{run} stochastic"))
+            .contains("no bound")
+    );
+}

@@ -201,8 +201,11 @@ fn invalid_arguments_are_refused_in_one_line_and_write_nothing() {
     for (arguments, said) in [
         (&["--estimator", "kalmann"][..], "no estimator 'kalmann'"),
         (&["--handle", "pl"], "no estimator 'pl'"),
-        (&["--rate", "50"], "rate 50 Hz: must be from"),
-        (&["--rate", "100", "--lines", "1024"], "control at 100 Hz"),
+        (&["--rate", "50"], "--rate 50: a closed loop needs a"),
+        (
+            &["--rate", "599", "--lines", "1024"],
+            "--rate 599: a closed loop needs a control rate of 600 to 100000 Hz",
+        ),
         (&["--lines", "3"], "'--lines <N>': 3 is not in 4..=1000000"),
         (&["--lines", "many"], "--lines"),
         (&["--set", "pll.bandwidth=1"], "no parameter 'bandwidth'"),

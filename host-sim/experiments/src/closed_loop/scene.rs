@@ -2,7 +2,7 @@
 
 use catalogue::estimators::{Estimator, Kind};
 use estimator_core::Hertz;
-use haptic_control::{AnyScene, DualStage, Scene, SceneKind, Senses, scenes};
+use haptic_control::{AnyScene, DesignError, DualStage, Scene, SceneKind, Senses, scenes};
 use terminal::wording::unknown;
 
 use super::truth::TrueMotion;
@@ -33,7 +33,10 @@ scenes!(visit);
 /// One line if the scene cannot be rendered with the device or at the control rate.
 pub fn usual(scene: SceneKind, assumed: &DualStage, rate_hz: f64) -> Result<AnyScene, String> {
     let usual = scene.usual(assumed, Hertz(rate_hz));
-    usual.map_err(|error| format!("scene {scene}: {error}"))
+    usual.map_err(|error| match error {
+        DesignError::ExciteRate => format!("--rate {rate_hz}: {error}"),
+        error => format!("scene {scene}: {error}"),
+    })
 }
 
 /// The scene called `name` among `scenes`.

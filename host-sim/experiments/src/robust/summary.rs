@@ -224,8 +224,8 @@ pub fn complaint(settings: &Settings, rows: &[RobustRow]) -> Option<String> {
     });
     Some(format!(
         "{} of {} runs violated a limit; the first is scene {}, device {}, seed {}: {reason}; repeat it with \
-         host-sim robust --scene {} --rate {} --estimator {} --seconds {} --seed {} --only {} and \
-         the same --device, --set, --presets",
+         host-sim robust --scene {} --rate {} --estimator {} --devices {} --seconds {} --seed {} \
+         --only {} and the same --device, --set, --presets",
         violated().count(),
         rows.len(),
         row.scene,
@@ -234,6 +234,7 @@ pub fn complaint(settings: &Settings, rows: &[RobustRow]) -> Option<String> {
         row.scene,
         settings.rate_hz,
         settings.estimator,
+        settings.devices,
         settings.seconds,
         settings.seed,
         row.device,

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 use shards::Experiment;
 
 use super::{BOUNDS_A_CASE, Boundary, LoopSetup, Settings, boundaries};
+use crate::closed_loop::loop_ticks;
 use catalogue::estimators::Kind;
-use simulation::simulate;
 use terminal::failure::Failure;
 
 /// All inputs of the boundaries of several loops. A job is one loop.
@@ -49,7 +49,7 @@ impl Experiment for Plan {
         let triple = Kind::named("kalman-triple")?;
         let mut cases = Vec::new();
         for &rate_hz in &self.rates_hz {
-            simulate::ticks(rate_hz, 1.0)?;
+            loop_ticks(rate_hz, 1.0)?;
             for &lines in &self.lines {
                 cases.extend(kinds.iter().map(|&large| LoopSetup {
                     large,
