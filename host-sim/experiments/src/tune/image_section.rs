@@ -7,12 +7,13 @@ use toml_edit::DocumentMut;
 
 /// The section `[image]` of the presets file at `path`, with its comments: tuning replaces the other
 /// sections of a file, but the values for the control loop of a flash image were chosen by hand. The
-/// text is empty if there is no file, or no such section in it.
+/// text is empty if there is no regular file, or no such section in it.
 ///
 /// # Errors
 /// One line, if a file at `path` is no presets file, so that its `[image]` cannot be told.
 pub fn image_section(path: &Path) -> Result<String, String> {
-    if !path.exists() {
+    // A device or a pipe keeps nothing.
+    if !path.is_file() {
         return Ok(String::new());
     }
     let kept = || {
