@@ -18,7 +18,7 @@ pub fn text(found: &Identification) -> String {
     let _ = writeln!(
         text,
         "{:<32}{:>10}  {:<11}{:<12}95 %",
-        "", "value", "unit", "in the file"
+        "", "value", "unit", "in SI units"
     );
     let mut rejected = String::new();
     for quantity in &found.quantities {
