@@ -19,11 +19,23 @@ pub fn decimal(x: f64) -> String {
     format!("{x:e}")
 }
 
+/// `value` with six significant digits, for a number that is not measured.
+#[must_use]
+pub fn digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
 #[cfg(test)]
 mod tests {
     #[test]
     fn exponent_replaces_many_zeros() {
         let shown = [1e-300, 0.0, -0.5, 1e6, 1e12, f64::NAN].map(super::decimal);
         assert_eq!(shown, ["1e-300", "0", "-0.5", "1000000", "1e12", "NaN"]);
+    }
+
+    #[test]
+    fn residue_of_a_computation_is_not_shown() {
+        let shown = [5.99889999999868, 2.0 / 11_600.0, 2000.0, f64::INFINITY].map(super::digits);
+        assert_eq!(shown, [5.9989, 0.000172414, 2000.0, f64::INFINITY]);
     }
 }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+pub use device_files::digits;
 use scoring::evaluation::Row;
 use scoring::score::{Field, Over, Score};
 
@@ -151,12 +152,6 @@ pub fn no_percentage<'a>(scenarios: impl Iterator<Item = &'a str>, what: &str) -
         &format!("-: {what} has no error in {}.", names.join(", ")),
         0,
     ) + "\n"
-}
-
-/// `value` with six significant digits, for a number that is not measured.
-#[must_use]
-pub fn digits(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
 }
 
 /// About three significant digits, or a dash without a value.

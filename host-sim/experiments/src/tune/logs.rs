@@ -7,6 +7,7 @@
 
 use std::collections::BTreeMap;
 
+use device_files::digits;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use shards::Experiment;
@@ -241,7 +242,8 @@ fn track(
     let seconds = trace.len() as f64 / trace.rate_hz;
     if seconds < FEWEST_BLOCKS * BLOCK_S {
         return refused(format!(
-            "{seconds} s are too short; tuning needs {} s, of which every second one is held out",
+            "{} s are too short; tuning needs {} s, of which every second one is held out",
+            digits(seconds),
             FEWEST_BLOCKS * BLOCK_S
         ));
     }
