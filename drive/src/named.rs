@@ -115,7 +115,8 @@ impl Tuning {
     /// The value for the parameter of this name.
     ///
     /// # Errors
-    /// [`Failure::Input`] with the names that the scene has.
+    /// [`Failure::Input`] with the names that the scene has, or about a value that is not finite. The bounds are
+    /// those of the image: [`Tuning::check`].
     pub fn new(scene: SceneKind, name: &str, value: f32) -> Result<Self, Failure> {
         let parameters = scene.facts().parameters;
         let known = scene
@@ -130,12 +131,18 @@ impl Tuning {
                 }
             }));
         };
-        Ok(Self {
+        let tuning = Self {
             scene,
             number,
             parameter,
             value,
-        })
+        };
+        match value.is_finite() {
+            true => Ok(tuning),
+            false => Err(Failure::Input(format!(
+                "{tuning}: not finite; give a number"
+            ))),
+        }
     }
 
     /// The scene.
@@ -240,13 +247,23 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn value_that_is_not_finite_is_refused_without_a_board() {
+        for value in [f32::NAN, f32::INFINITY] {
+            let said = Tuning::new(SceneKind::Wall, "stiffness", value).unwrap_err();
+            let unit = Quantity::Stiffness.unit();
+            let line = format!("wall stiffness {value} {unit}: not finite; give a number");
+            assert_eq!(said.to_string(), line);
+        }
+    }
+
+    #[test]
     fn number_of_detents_is_whole() {
         let check = |value| {
             let tuning = Tuning::new(SceneKind::Detents, "per-turn", value).unwrap();
             tuning.check(&hello(&[])).map_err(|it| it.to_string())
         };
         assert_eq!(check(24.0), Ok(()));
-        for value in [24.5, 1001.0, f32::NAN] {
+        for value in [24.5, 1001.0] {
             let said = format!(
                 "detents per-turn {value}: out of bounds; give a whole number from 1 to 1000"
             );

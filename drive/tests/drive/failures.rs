@@ -132,6 +132,18 @@ fn input_is_refused_before_the_board_gets_a_command() {
         (&["info", "--timeout", "0"], "0.1 to 60 s"),
         (&["fly"], "see cargo drive --help"),
         (&["torque"], "see cargo drive torque --help"),
+        (
+            &["torque", "inf"],
+            "torque inf N·m: not finite; give a number",
+        ),
+        (
+            &["tune", "wall", "stiffness", "NaN"],
+            "wall stiffness NaN N·m/rad: not finite; give a number",
+        ),
+        (
+            &["select", "wall", "--tune", "stiffness=nan@1"],
+            "wall stiffness NaN N·m/rad: not finite; give a number",
+        ),
     ] {
         let mut tool = tool(arguments);
         let output = tool.args(["--port", "/dev/no-such-port"]).output().unwrap();
@@ -145,7 +157,6 @@ fn input_is_refused_before_the_board_gets_a_command() {
 fn value_out_of_bounds_is_refused_with_the_bounds() {
     for arguments in [
         &["tune", "wall", "stiffness", "0.36"][..],
-        &["tune", "wall", "stiffness", "NaN"],
         &["select", "wall", "--tune", "stiffness=-1", "--seconds", "1"],
     ] {
         let (output, commands) = Board::new(Script::default()).run(arguments);
