@@ -10,7 +10,7 @@ use shards::file::{self, Run};
 use shards::{Experiment as _, Part, Shards};
 use terminal::explain;
 use terminal::failure::{Failure, ended};
-use terminal::output::{Folder, check_place, print_bytes, write_whole};
+use terminal::output::{Folder, check_place, is_stdout, print_bytes, write_whole};
 use terminal::wording::WIDTH;
 
 use stress::experiment::{Row, Settings};
@@ -74,7 +74,7 @@ struct Arguments {
     /// Save finished parts in FILE, and skip parts that the same program has saved there
     #[arg(long, value_name = "FILE")]
     resume: Option<PathBuf>,
-    /// Write the findings as JSON to FILE
+    /// Write the findings as JSON to FILE; - is standard output, which then has nothing else
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Print the tables as Markdown
@@ -130,7 +130,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         resume: arguments.resume.clone(),
     };
     is_documented(&settings)?;
-    if let Some(path) = &arguments.json {
+    if let Some(path) = arguments.json.as_deref().filter(|path| !is_stdout(path)) {
         check_place(path)?;
     }
     if arguments.shard.is_some() {
@@ -181,7 +181,10 @@ fn finish(arguments: &Arguments, settings: &Settings, rows: Vec<Row>) -> Result<
     } else {
         table::text(&results.findings)
     };
-    print_bytes(format!("{found}\n{signals}\n{ends}").as_bytes())?;
+    let to_stdout = arguments.json.as_deref().is_some_and(is_stdout);
+    if !to_stdout {
+        print_bytes(format!("{found}\n{signals}\n{ends}").as_bytes())?;
+    }
     if measured::update() {
         for (table, rows) in &tables {
             table.write(&[], rows).map_err(Failure::Input)?;
@@ -199,7 +202,7 @@ fn finish(arguments: &Arguments, settings: &Settings, rows: Vec<Row>) -> Result<
             .filter(|one| !one.broken.is_empty())
             .count();
     if failed > 0 {
-        return Err(Failure::Check(format!("{failed} rows above did not hold")));
+        return Err(Failure::Check(format!("{failed} rows did not hold")));
     }
     Ok(())
 }

@@ -19,6 +19,9 @@ fn merged_shards_equal_a_single_run() {
     );
     // The course at one rate has been run before, and some shards of 60 are empty.
     folder.good(&format!("{SHORT} --resume kept.jsonl --shard 2/3"));
+    // Of a run to standard output, this is all.
+    let json = folder.good(&format!("{SHORT} --json -"));
+    assert_eq!(json, folder.text("whole.json"));
     let kept = folder.text("kept.jsonl");
     assert!(!kept.is_empty());
     for (n, more) in [(3, "--resume kept.jsonl"), (60, "")] {
