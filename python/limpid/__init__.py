@@ -22,6 +22,7 @@ from ._experiments import (
     simulate,
     tune,
 )
+from ._limpid import __version__
 from ._lists import EstimatorInfo, ParameterInfo, device, estimators, parameters, scenarios
 from ._recording import Recording
 from ._replay import Replay, read_log, replay
@@ -37,6 +38,7 @@ __all__ = [
     "Reports",
     "Tuning",
     "TuningRow",
+    "__version__",
     "coarsen",
     "device",
     "estimators",

@@ -37,7 +37,7 @@ def simulate(
     scene
         Scene in closed loop instead: ``excite``, ``wall``, ``free-air``, ... [default: excite].
     rate
-        Control rate, Hz, from 100 to 100000.
+        Control rate, Hz, from 100 to 100000; of a scene from 600, of ``excite`` from 1000 on.
     seconds
         Duration, s [default: 16; scenarios: 10, heating 60].
     seed

@@ -17,6 +17,8 @@ _Reports = tuple[
     NDArray[np.float32] | None,
 ]
 
+__version__: str
+
 def estimators() -> list[dict[str, Any]]: ...
 def parameters(
     estimator: str, rate: float, counts_per_rev: int | None, presets: _Path | None, device: _Device | None

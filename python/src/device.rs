@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 use simulation::device::{COUNTS_PER_REV, Device};
 use terminal::failure::Failure;
 
-use crate::error::value_error;
+use crate::error::{os_error, value_error};
 
 /// A device file: its path, or a mapping with its sections and keys.
 pub(crate) struct DeviceFile {
@@ -40,7 +40,8 @@ impl<'py> FromPyObject<'_, 'py> for DeviceFile {
             )
         })?;
         let name = path.display().to_string();
-        let text = std::fs::read_to_string(&path)?;
+        let text =
+            std::fs::read_to_string(&path).map_err(|error| os_error(object.py(), error, &path))?;
         Ok(Self {
             name,
             text,

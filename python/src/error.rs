@@ -1,12 +1,28 @@
 //! Failures of the crates as exceptions.
 
-use pyo3::PyErr;
-use pyo3::exceptions::PyValueError;
+use std::io;
+use std::path::Path;
+
+use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::prelude::*;
 use terminal::failure::Failure;
 
 /// A `ValueError` with the message of a failure, in the words of this package.
 pub(crate) fn value_error(failure: impl Into<Failure>) -> PyErr {
     PyValueError::new_err(in_python(&failure.into().to_string()))
+}
+
+/// The `OSError` of Python, for example a `FileNotFoundError`, with the name of the file.
+pub(crate) fn os_error(py: Python<'_>, error: io::Error, path: &Path) -> PyErr {
+    let Some(number) = error.raw_os_error() else {
+        return error.into();
+    };
+    let built = || -> PyResult<_> {
+        let text = py.import("os")?.call_method1("strerror", (number,))?;
+        // Python chooses the class by the number.
+        py.get_type::<PyOSError>().call1((number, text, path))
+    };
+    built().map_or_else(|failed| failed, PyErr::from_value)
 }
 
 /// A message for the command line with keywords of this package instead of options:

@@ -23,10 +23,17 @@ mod scores;
 mod simulate;
 mod stream;
 
-use pyo3::prelude::*;
+use pyo3::pymodule;
 
 #[pymodule]
 mod _limpid {
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+
     #[pymodule_export]
     use super::catalogue_lists::{device, estimators, parameters, scenarios};
     #[pymodule_export]

@@ -11,7 +11,7 @@ use recordings::recording::Recording;
 use terminal::failure::Failure;
 
 use crate::device::{DeviceFile, device};
-use crate::error::{in_python, value_error};
+use crate::error::{in_python, os_error, value_error};
 
 /// Reads a log; the keywords of `limpid.Recording`.
 #[pyfunction]
@@ -37,8 +37,7 @@ pub(crate) fn read_log<'py>(
     };
     let given = device.is_some() || counts_per_rev.is_some();
     let device = self::device(device.as_ref(), counts_per_rev).map_err(value_error)?;
-    // The name of a missing file is in the error of the system.
-    std::fs::metadata(&path)?;
+    std::fs::metadata(&path).map_err(|error| os_error(py, error, &path))?;
     let read = py.detach(|| -> Result<_, Failure> {
         let log = Log::open(&path)?;
         let known = given.then_some(device.stages.large.counts_per_rev);

@@ -13,7 +13,7 @@ use terminal::failure::Failure;
 
 use crate::background::interruptible;
 use crate::device::{DeviceFile, device};
-use crate::error::value_error;
+use crate::error::{os_error, value_error};
 use crate::log::fields;
 
 /// The load on the handle that `name` means.
@@ -85,8 +85,7 @@ pub(crate) fn coarsen<'py>(
     device: Option<DeviceFile>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let device = self::device(device.as_ref(), Some(counts_per_rev)).map_err(value_error)?;
-    // The name of a missing file is in the error of the system.
-    std::fs::metadata(&path)?;
+    std::fs::metadata(&path).map_err(|error| os_error(py, error, &path))?;
     let wanted = Wanted {
         counts_per_rev,
         fine_counts_per_rev,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.metadata
+
 import numpy as np
 import pytest
 
@@ -123,10 +125,15 @@ def test_refused_rows_leave_the_estimator_as_it_was():
 
 
 def test_missing_files_are_os_errors(tmp_path):
-    with pytest.raises(FileNotFoundError):
-        limpid.read_log(tmp_path / "nothing.csv")
-    with pytest.raises(FileNotFoundError):
-        limpid.device(tmp_path / "nothing.toml")
+    for name, read in (
+        ("nothing.csv", limpid.read_log),
+        ("nothing.csv", lambda path: limpid.coarsen(path, 1024)),
+        ("nothing.toml", limpid.device),
+    ):
+        with pytest.raises(FileNotFoundError) as error:
+            read(tmp_path / name)
+        assert error.value.filename == str(tmp_path / name)
+        assert str(error.value) == f"[Errno 2] No such file or directory: '{tmp_path / name}'"
     with pytest.raises(TypeError, match="give the path of a device file, or a dict"):
         limpid.device(5)
 
@@ -152,3 +159,12 @@ def test_device_takes_numbers_of_numpy():
     device = limpid.device({"large": {"counts_per_rev": np.int32(90), "inertia_kg_m2": np.float64(2e-5)}})
     assert device["large"]["counts_per_rev"] == 90
     assert device["large"]["inertia_kg_m2"] == 2e-5
+
+
+def test_wrong_types_are_type_errors_that_name_the_argument():
+    with pytest.raises(TypeError, match="counts_per_rev"):
+        limpid.replay([0, 1, 2], 1000, counts_per_rev=4096.5)
+
+
+def test_version_is_that_of_the_package():
+    assert limpid.__version__ == importlib.metadata.version("limpid")
