@@ -20,7 +20,8 @@ pub(crate) fn os_error(py: Python<'_>, error: io::Error, path: &Path) -> PyErr {
     let built = || -> PyResult<_> {
         let text = py.import("os")?.call_method1("strerror", (number,))?;
         // Python chooses the class by the number.
-        py.get_type::<PyOSError>().call1((number, text, path))
+        py.get_type::<PyOSError>()
+            .call1((number, text, path.as_os_str()))
     };
     built().map_or_else(|failed| failed, PyErr::from_value)
 }
