@@ -117,7 +117,15 @@ impl Begin {
         let lines = (0..).zip(head.lines().take(SEARCHED));
         let is_row = |line: &&str| !line.trim().is_empty() && comment(line).is_none();
         let rows = |index: usize| head.lines().skip(index + 1).filter(is_row);
+        // Most lines are rows of numbers, and take no time.
+        let names_keys = |line: &str| {
+            let lower = line.to_lowercase();
+            KEYS.iter().any(|key| lower.contains(key))
+        };
         let mut tables = lines.filter_map(|(index, line)| {
+            if !names_keys(line) {
+                return None;
+            }
             Separator::ALL.into_iter().find_map(|separator| {
                 let header = separator.split(comment(line).unwrap_or(line));
                 let first = separator.split(rows(index).next()?);
