@@ -80,7 +80,7 @@ fn values_and_estimators_that_the_image_does_not_take_are_refused_before_the_run
         ),
         (
             ["--tune", "stiffness=nan@0.2"],
-            "out of bounds; give 0 to 0.35 N·m/rad",
+            "wall stiffness NaN N·m/rad: not finite; give a number",
         ),
         (
             ["--estimator", "7@0.2"],
