@@ -83,7 +83,12 @@ impl Capture {
         let mut records = Records::open(input, name, &self.options)?;
         let clock = self.clock(&records.layout, name)?;
         let lines = self.lines(&records.layout, clock, name)?;
-        let kind = Kind::of(lines.len()).unwrap_or(Kind::Quadrature);
+        let Some(kind) = Kind::of(lines.len()) else {
+            return Err(Failure::Input(format!(
+                "{name}: {} lines: name the lines of the encoder with {LINES}",
+                lines.len()
+            )));
+        };
         let called = lines.iter().map(|place| called(&records.layout, *place));
         let called: Vec<_> = called.collect();
         let mut times = OwnTimes::default();

@@ -12,7 +12,6 @@ use terminal::failure::Failure;
 use super::lines::LineReader;
 use super::named_fields::{Field, Places, names};
 use super::separator::is_comment;
-use crate::log::cannot_read;
 
 use fields::fields;
 
@@ -93,14 +92,10 @@ impl<R: BufRead> Json<R> {
         name: &str,
     ) -> Result<Option<u64>, Failure> {
         loop {
-            let read = self.inner.next(&mut self.text);
-            let Some(line) = read.map_err(|error| cannot_read(name, &error))? else {
+            let Some(line) = self.inner.next_content(&mut self.text, name)? else {
                 return Ok(None);
             };
             let text = self.text.as_slice();
-            if text.trim_ascii().is_empty() || is_comment(text) {
-                continue;
-            }
             let Ok(fields) = fields(text) else {
                 return Err(no_object(text, line, name));
             };

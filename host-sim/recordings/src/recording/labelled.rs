@@ -6,8 +6,6 @@ use csv::ByteRecord;
 
 use terminal::failure::Failure;
 
-use crate::log::cannot_read;
-
 use super::layout::SEARCHED;
 use super::lines::LineReader;
 use super::named_fields::{Field, Mark, Places, names};
@@ -74,15 +72,13 @@ impl<R: BufRead> Labelled<R> {
         name: &str,
     ) -> Result<Option<u64>, Failure> {
         loop {
-            let read = self.inner.next(&mut self.text);
-            let Some(line) = read.map_err(|error| cannot_read(name, &error))? else {
+            let Some(line) = self.inner.next_content(&mut self.text, name)? else {
                 return Ok(None);
             };
-            let text = bare(&self.text);
-            if line < self.first || text.trim_ascii().is_empty() || is_comment(text) {
+            if line < self.first {
                 continue;
             }
-            let Some(fields) = fields(text) else {
+            let Some(fields) = fields(bare(&self.text)) else {
                 return Err(Failure::Input(format!(
                     "{name}: line {line}: not each number has a name before it, as in line {}; remove the line",
                     self.first

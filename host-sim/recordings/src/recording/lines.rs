@@ -2,6 +2,11 @@
 
 use std::io::{self, BufRead, Read};
 
+use terminal::failure::Failure;
+
+use super::separator::{bare, is_comment};
+use crate::log::cannot_read;
+
 /// Most bytes of a line, which is kept in memory.
 const LONGEST: u64 = 1 << 20;
 
@@ -57,6 +62,26 @@ impl<R: BufRead> LineReader<R> {
             )));
         }
         Ok(Some(self.number))
+    }
+}
+
+impl<R: BufRead> LineReader<R> {
+    /// As [`LineReader::next`], without blank lines and comments, which may follow the stamp of a serial monitor.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] that calls the file `name`.
+    pub(super) fn next_content(
+        &mut self,
+        line: &mut Vec<u8>,
+        name: &str,
+    ) -> Result<Option<u64>, Failure> {
+        loop {
+            let number = self.next(line).map_err(|error| cannot_read(name, &error))?;
+            let text = bare(line);
+            if number.is_none() || !(text.trim_ascii().is_empty() || is_comment(text)) {
+                return Ok(number);
+            }
+        }
     }
 }
 

@@ -205,7 +205,8 @@ fn three_hall_lines_are_counted() {
 
 #[test]
 fn lost_edges_of_hall_lines_are_the_shorter_way() {
-    // 1000 edges up, then 499 is after 501 missing on the way down, and two are missing that leave no direction.
+    // 1000 counts up and back. On the way back 500 is missing, where the levels tell the direction, and 300 with 299,
+    // where they do not.
     let down = (0..1000)
         .rev()
         .filter(|count| ![500, 300, 299].contains(count));
@@ -321,6 +322,13 @@ fn captures_that_cannot_be_decoded_are_refused() {
             "",
             None,
             "c.csv: line 1: columns besides the time: 3, and an encoder has two lines; found: t; a; b; c, separated by ','",
+        ),
+        (
+            "t,a,b,c,d\n0,0,0,0,0\n1,1,0,0,0\n",
+            "",
+            "a|b|c|d",
+            None,
+            "c.csv: 4 lines: name the lines of the encoder with --lines A B, or three Hall lines",
         ),
         (
             "t,a\n0,0\n1,1\n",

@@ -1,0 +1,60 @@
+use crate::recording::read_log as read;
+
+/// A number that is cut is another one, and only the last field of the last line can be.
+#[test]
+fn number_that_may_be_cut_is_left_out() {
+    let row = |k: usize, f: &dyn Fn(String, usize) -> String| f(format!("0.{k}"), 70 + k);
+    let rows =
+        |f: &dyn Fn(String, usize) -> String| -> String { (0..9).map(|k| row(k, f)).collect() };
+    let plain = rows(&|t, n| format!("{t},{n}\n"));
+    let swapped = rows(&|t, n| format!("{n},x,{t}\n"));
+    let other = rows(&|t, n| format!("{t},{n},1.5\n"));
+    let named = rows(&|t, n| format!("t:{t},counts_large:{n}\n"));
+    let long = rows(&|t, n| format!("{t},a,1\n{t},counts_large,{n}\n"));
+    for (text, columns, line) in [
+        (format!("t,counts_large\n{plain}"), "", Some(10)),
+        (format!("counts_large,x,t\n{swapped}"), "", Some(10)),
+        (format!("t,counts_large,x\n{other}"), "", None),
+        (named, "", Some(9)),
+        (format!("t,name,value\n{long}"), "", Some(19)),
+    ] {
+        let whole = read(&text, columns).unwrap();
+        assert_eq!(whole.t.len(), 9, "{text}");
+        assert!(!whole.notes.iter().any(|note| note.contains("has no end")));
+        let cut = read(&text[..text.len() - 2], columns).unwrap();
+        let said = line.map(|line| {
+            format!(
+                "line {line}, the last one, has no end and is left out: its last number may be cut"
+            )
+        });
+        let found = cut.notes.iter().find(|note| note.contains("has no end"));
+        assert_eq!(found, said.as_ref(), "{text}");
+        assert_eq!(cut.t.len(), 9 - usize::from(line.is_some()), "{text}");
+    }
+}
+
+#[test]
+fn rows_of_other_signals_are_left_out() {
+    let row = |k: usize| format!("0.{k},{},\n0.{k}5,,9.81\n", 8 * k);
+    let rows = (0..9).map(row).collect::<String>();
+    for (header, columns) in [
+        ("s,encoder,imu", "t=s,counts_large=encoder:counts"),
+        ("t,counts_large,imu", ""),
+    ] {
+        let recording = read(&format!("{header}\n{rows}"), columns).unwrap();
+        assert_eq!(recording.trace.counts_large[..3], [0, 8, 16]);
+        assert_eq!(recording.t.len(), 9);
+        let said = "9 rows without a position are left out";
+        assert!(recording.notes.iter().any(|note| note == said));
+    }
+    // Nothing but the time: the row was cut. No time: it is of no instant.
+    for (row, column) in [
+        ("9,,", "counts_large"),
+        ("9,, ", "counts_large"),
+        (",,1", "t"),
+    ] {
+        let error = read(&format!("t,counts_large,imu\n{rows}{row}\n"), "").unwrap_err();
+        let said = format!("line 20: column {column}: '' is not a number; remove the row");
+        assert!(error.contains(&said), "{error}");
+    }
+}
