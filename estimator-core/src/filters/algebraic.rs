@@ -149,15 +149,21 @@ impl<const N: usize, const KAPPA: u32, const MU: u32> VelocityEstimator
         let next = state.newest + 1;
         state.newest = if next < self.window { next } else { 0 };
         let newest = usize::from(state.newest);
-        // Always inside.
-        if let Some(slot) = state.steps.get_mut(newest) {
-            *slot = step.0 as i16;
-        }
-        let recent = state.steps.get(..=newest).unwrap_or(&[]);
-        let older = state.steps.get(newest + 1..).unwrap_or(&[]);
-        let older = older.get(..usize::from(self.window - 1) - newest);
-        let weights = self.weights.get(newest + 1..).unwrap_or(&[]);
-        CountsPerTick(dot(recent, &self.weights) + dot(older.unwrap_or(&[]), weights))
+        // Always inside: an early return costs a branch, an empty slice a length.
+        let Some(slot) = state.steps.get_mut(newest) else {
+            return CountsPerTick(0.0);
+        };
+        *slot = step.0 as i16;
+        let Some((recent, older)) = state.steps.split_at_checked(newest + 1) else {
+            return CountsPerTick(0.0);
+        };
+        let Some((first, rest)) = self.weights.split_at_checked(newest + 1) else {
+            return CountsPerTick(0.0);
+        };
+        let Some(older) = older.get(..usize::from(self.window - 1) - newest) else {
+            return CountsPerTick(0.0);
+        };
+        CountsPerTick(dot(recent, first) + dot(older, rest))
     }
 }
 
@@ -165,25 +171,42 @@ impl<const N: usize, const KAPPA: u32, const MU: u32> VelocityEstimator
 const BLOCK: usize = 8;
 
 /// Sum of `steps`, the last of which is the newest, times `weights`. Sums of blocks lose fewer digits
-/// than one sum of 64 products, and the compiler unrolls them: their length is a constant where that of
-/// the window is not.
+/// than one sum of 64 products. The compiler unrolls them, as the rest in parts: their lengths are
+/// constants where that of the window is not.
 #[inline]
-fn dot(mut steps: &[i16], mut weights: &[f32]) -> f32 {
+fn dot<'a>(mut steps: &'a [i16], mut weights: &'a [f32]) -> f32 {
     let mut sum = 0.0;
-    while let (Some((older, newest)), Some((first, rest))) = (
-        steps.split_last_chunk::<BLOCK>(),
-        weights.split_first_chunk::<BLOCK>(),
-    ) {
-        sum += block(newest, first);
-        (steps, weights) = (older, rest);
+    while let Some((newest, first)) = part::<BLOCK>(&mut steps, &mut weights) {
+        sum += block(0.0, newest, first);
     }
-    sum + block(steps, weights)
+    let mut rest = 0.0;
+    if let Some((newest, first)) = part::<{ BLOCK / 2 }>(&mut steps, &mut weights) {
+        rest = block(rest, newest, first);
+    }
+    if let Some((newest, first)) = part::<{ BLOCK / 4 }>(&mut steps, &mut weights) {
+        rest = block(rest, newest, first);
+    }
+    if let Some((newest, first)) = part::<{ BLOCK / 8 }>(&mut steps, &mut weights) {
+        rest = block(rest, newest, first);
+    }
+    sum + rest
 }
 
-/// Sum of the products of one block.
+/// Takes the newest L steps, and as many weights.
 #[inline(always)]
-fn block(steps: &[i16], weights: &[f32]) -> f32 {
-    let mut sum = 0.0;
+fn part<'a, const L: usize>(
+    steps: &mut &'a [i16],
+    weights: &mut &'a [f32],
+) -> Option<(&'a [i16; L], &'a [f32; L])> {
+    let (older, newest) = steps.split_last_chunk()?;
+    let (first, others) = weights.split_first_chunk()?;
+    (*steps, *weights) = (older, others);
+    Some((newest, first))
+}
+
+/// `sum` and the products of one part, added one by one.
+#[inline(always)]
+fn block<const L: usize>(mut sum: f32, steps: &[i16; L], weights: &[f32; L]) -> f32 {
     for (step, weight) in steps.iter().rev().zip(weights) {
         sum += f32::from(*step) * weight;
     }
