@@ -319,7 +319,7 @@ typedef struct {
  `savitzky-golay`, up to 15 intervals: slope at the newest count of the least-squares parabola through a fixed window. Parameters, which may be in flash.
  */
 typedef struct {
-  uint64_t words[6];
+  uint32_t words[8];
 } limpid_savitzky_golay_15_t;
 
 /*
@@ -333,7 +333,7 @@ typedef struct {
  `savitzky-golay`, up to 64 intervals: slope at the newest count of the least-squares parabola through a fixed window. Parameters, which may be in flash.
  */
 typedef struct {
-  uint64_t words[6];
+  uint32_t words[8];
 } limpid_savitzky_golay_64_t;
 
 /*

@@ -45,15 +45,17 @@ use crate::units::{Count, CountsPerTick};
 #[repr(C)]
 pub struct SavitzkyGolay<const N: usize> {
     window: u8,
-    /// Weights of the newest step in q1, q2 and q3.
-    newest: [i32; 3],
-    /// b1, b2 and b3.
-    weights: [i32; 3],
-    divisor: i64,
+    /// Weights of the newest step in q2 and q3; in q1 it is n.
+    newest: [i32; 2],
+    /// b1, b2 and -b3: a product of 64 bits with a number without a sign takes fewer instructions.
+    first: i32,
+    second: u32,
+    third: u32,
+    divisor: u32,
     reciprocal: f32,
 }
 
-memory!([const N: usize] SavitzkyGolay<N> { window, newest, weights, divisor, reciprocal });
+memory!([const N: usize] SavitzkyGolay<N> { window, newest, first, second, third, divisor, reciprocal });
 
 impl<const N: usize> SavitzkyGolay<N> {
     /// A filter over `window` intervals, n.
@@ -67,23 +69,21 @@ impl<const N: usize> SavitzkyGolay<N> {
         }
         let n = window as i32;
         let pairs = n * (n + 1) / 2;
-        let (weights, divisor) = if n == 1 {
-            ([1, 0, 0], 1)
+        let (first, second, third, divisor) = if n == 1 {
+            (1, 0, 0, 1)
         } else {
-            let weights = [
-                -(n + 2) * (n + 3) * (4 * n + 1) / 2,
-                (n + 3) * (14 * n + 1),
-                -30 * n,
-            ];
-            (
-                weights,
-                (n - 1) as i64 * (pairs * (n + 2) * (n + 3)) as i64 / 6,
-            )
+            let first = -(n + 2) * (n + 3) * (4 * n + 1) / 2;
+            let second = ((n + 3) * (14 * n + 1)) as u32;
+            // Below 2^32.
+            let divisor = (n - 1) as u64 * (pairs * (n + 2) * (n + 3)) as u64 / 6;
+            (first, second, 30 * n as u32, divisor as u32)
         };
         Ok(Self {
             window: window as u8,
-            newest: [n, pairs, pairs * (n + 2) / 3],
-            weights,
+            newest: [pairs, pairs * (n + 2) / 3],
+            first,
+            second,
+            third,
             divisor,
             reciprocal: (1.0 / divisor as f64) as f32,
         })
@@ -94,8 +94,8 @@ impl<const N: usize> SavitzkyGolay<N> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SavitzkyGolayState<const N: usize> {
     anchor: Count,
-    /// Steps since the start or the last restart, at most n.
-    filled: u8,
+    /// Whether n steps have come since the start or the last restart.
+    is_full: bool,
     /// Index of the oldest step.
     oldest: u8,
     steps: [i16; N],
@@ -114,7 +114,7 @@ impl<const N: usize> VelocityEstimator for SavitzkyGolay<N> {
     fn start(&self, first: &Sample) -> SavitzkyGolayState<N> {
         SavitzkyGolayState {
             anchor: first.count,
-            filled: 0,
+            is_full: false,
             oldest: 0,
             steps: [0; N],
             sum: 0,
@@ -129,33 +129,37 @@ impl<const N: usize> VelocityEstimator for SavitzkyGolay<N> {
         let step = sample.count - state.anchor;
         state.anchor = sample.count;
         if !step.is_motion() {
-            (state.filled, state.sum, state.first) = (0, 0, 0);
+            (state.is_full, state.oldest) = (false, 0);
+            (state.sum, state.first) = (0, 0);
             (state.second, state.third) = (0, 0);
             return CountsPerTick(step.to_f32());
         }
         let newest = step.0;
-        let is_full = state.filled >= self.window;
-        state.filled = state.filled.min(self.window - 1) + 1;
         // Always inside.
-        let leaving = match state.steps.get_mut(usize::from(state.oldest)) {
+        let oldest = match state.steps.get_mut(usize::from(state.oldest)) {
             Some(slot) => i32::from(core::mem::replace(slot, newest as i16)),
             None => 0,
         };
+        let leaving = if state.is_full { oldest } else { 0 };
         let next = state.oldest + 1;
-        state.oldest = if next < self.window { next } else { 0 };
+        if next < self.window {
+            state.oldest = next;
+        } else {
+            (state.is_full, state.oldest) = (true, 0);
+        }
 
-        let [to_first, to_second, to_third] = self.newest;
+        // Each sum enters the numerator where it is renewed, so that few values are live. Below 2^49.
+        let [to_second, to_third] = self.newest;
+        let mut beyond = -(i64::from(self.divisor) * i64::from(newest));
         state.third += i64::from(to_third) * i64::from(newest) - state.second;
+        beyond -= i64::from(self.third) * state.third;
         state.second += i64::from(to_second) * i64::from(newest) - i64::from(state.first);
-        state.first += to_first * newest - state.sum;
-        state.sum += newest - if is_full { leaving } else { 0 };
+        beyond += i64::from(self.second) * state.second;
+        state.first += i32::from(self.window) * newest - state.sum;
+        beyond += i64::from(self.first) * i64::from(state.first);
+        state.sum += newest - leaving;
 
-        // Three statements: an array's `map` stays a loop where code is optimised for size.
-        let [b1, b2, b3] = self.weights;
-        let (b1, b2, b3) = (i64::from(b1), i64::from(b2), i64::from(b3));
-        let numerator = b1 * i64::from(state.first) + b2 * state.second + b3 * state.third;
-        // Below 2^49. Division and remainder truncate, so that mirrored motion is mirrored.
-        let beyond = numerator - self.divisor * i64::from(newest);
+        // Division and remainder truncate, so that mirrored motion is mirrored.
         let high = (beyond / (1 << 20)) as i32 as f32 * 1_048_576.0;
         let low = (beyond % (1 << 20)) as i32 as f32;
         CountsPerTick(newest as f32 + (high + low) * self.reciprocal)
