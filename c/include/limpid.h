@@ -263,7 +263,7 @@ typedef struct {
  `foaw-end-fit`, up to 15 intervals: slope through both ends of the longest straight window. Parameters, which may be in flash.
  */
 typedef struct {
-  uint32_t words[2];
+  uint32_t words[3];
 } limpid_foaw_end_fit_15_t;
 
 /*
@@ -277,7 +277,7 @@ typedef struct {
  `foaw-end-fit`, up to 64 intervals: slope through both ends of the longest straight window. Parameters, which may be in flash.
  */
 typedef struct {
-  uint32_t words[2];
+  uint32_t words[3];
 } limpid_foaw_end_fit_64_t;
 
 /*
@@ -291,7 +291,7 @@ typedef struct {
  `foaw-best-fit`, up to 15 intervals: least-squares slope of the longest straight window (eq. 6). Parameters, which may be in flash.
  */
 typedef struct {
-  uint32_t words[2];
+  uint32_t words[3];
 } limpid_foaw_best_fit_15_t;
 
 /*
@@ -305,7 +305,7 @@ typedef struct {
  `foaw-best-fit`, up to 64 intervals: least-squares slope of the longest straight window (eq. 6). Parameters, which may be in flash.
  */
 typedef struct {
-  uint32_t words[2];
+  uint32_t words[3];
 } limpid_foaw_best_fit_64_t;
 
 /*

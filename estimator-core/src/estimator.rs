@@ -26,6 +26,13 @@ pub trait VelocityEstimator {
 
     /// Processes the sample of one tick and returns the velocity at the instant of that sample.
     fn update(&self, state: &mut Self::State, sample: &Sample) -> CountsPerTick;
+
+    /// [`update`](Self::update), bit for bit, for a function of which the parameters are arguments, as in C.
+    /// It takes fewer instructions there, and more code.
+    #[inline(always)]
+    fn update_of_memory(&self, state: &mut Self::State, sample: &Sample) -> CountsPerTick {
+        self.update(state, sample)
+    }
 }
 
 /// An estimator that also takes samples at uneven times.

@@ -43,7 +43,7 @@ use recent::Recent;
 /// that are equal form one straight line, which needs no test: at rest and at a whole number of
 /// counts/tick an update takes few instructions. Every other sample of the window is tested once.
 /// With n and d = 1 known at compile time an update takes at most 76 + 19 n instructions of a
-/// Cortex-M4F for the end-fit and 136 + 38 n for the best-fit, 183 + 67 n where its products need
+/// Cortex-M4F for the end-fit and 136 + 38 n for the best-fit, 181 + 66 n where its products need
 /// 64 bits, with steps above 3 · 2^31 / (n + 2)^4 - d.
 ///
 /// ```
@@ -61,10 +61,12 @@ use recent::Recent;
 pub struct Foaw<const N: usize, F> {
     window: u8,
     bound: i32,
+    /// Longest step for which 32 bits hold the products of a best-fit window; -1 for none.
+    longest_i32: i32,
     fit: PhantomData<F>,
 }
 
-memory!([const N: usize, F] Foaw<N, F> { window, bound, fit });
+memory!([const N: usize, F] Foaw<N, F> { window, bound, longest_i32, fit });
 
 impl<const N: usize, F: Fit> Foaw<N, F> {
     /// FOAW over at most `window` intervals, n, with a noise bound d of `bound` counts.
@@ -83,6 +85,7 @@ impl<const N: usize, F: Fit> Foaw<N, F> {
         Ok(Self {
             window: window as u8,
             bound: bound as i32,
+            longest_i32: best_fit::longest_i32(window as u32, bound),
             fit: PhantomData,
         })
     }
@@ -103,6 +106,36 @@ impl<const N: usize> FoawState<N> {
     }
 }
 
+/// The body of an update. It is not a function: calls of one from two functions would be optimised before
+/// the parameters are known, which takes up to six instructions more where they are constants.
+macro_rules! update {
+    ($self:ident, $state:ident, $sample:ident, $memory:literal) => {{
+        let recent = &mut $state.recent;
+        let step = $sample.count - recent.newest;
+        if step.0 == 0 && recent.at_rest($self.window) {
+            $state.window = $self.window;
+            return CountsPerTick(0.0);
+        }
+        // The products of longer steps overflow i32.
+        if !step.is_motion() {
+            recent.restart($sample.count);
+            $state.window = 1;
+            return CountsPerTick(step.to_f32());
+        }
+        recent.push($sample.count, $self.window);
+        let straight = Straight {
+            newest: $sample.count,
+            intervals: recent.equal_steps(),
+            step: step.0,
+        };
+        let older = recent.older(usize::from($self.window));
+        let fits_i32 = step.0.abs() <= $self.longest_i32;
+        let window = F::longest::<$memory>(older, straight, fits_i32, $self.bound);
+        $state.window = window.intervals;
+        CountsPerTick(window.slope)
+    }};
+}
+
 impl<const N: usize, F: Fit> VelocityEstimator for Foaw<N, F> {
     type State = FoawState<N>;
     const NEEDS: Signals = Signals::COUNT;
@@ -115,33 +148,15 @@ impl<const N: usize, F: Fit> VelocityEstimator for Foaw<N, F> {
     }
 
     // An image that uses one type twice contains one copy of this function, which takes the parameters
-    // at run time: 148 instructions in the mean and 301 in the longest update (end-fit, n = 15) instead
-    // of 136 and 279. With `inline(always)` here and a call to the search that both uses share, they are
-    // 139 and 284; but then a single use, the usual one, takes 3 and 5 instructions more (end-fit,
-    // n = 64), with the best-fit up to 28 and 66.
+    // at run time. `inline(always)` here and a call to the search that both uses share would be faster there,
+    // but a single use, the usual one, would take more instructions, with the best-fit up to 28 in the mean.
     #[inline]
     fn update(&self, state: &mut FoawState<N>, sample: &Sample) -> CountsPerTick {
-        let recent = &mut state.recent;
-        let step = sample.count - recent.newest;
-        if step.0 == 0 && recent.at_rest() {
-            state.window = self.window;
-            return CountsPerTick(0.0);
-        }
-        // The products of longer steps overflow i32.
-        if !step.is_motion() {
-            recent.restart(sample.count);
-            state.window = 1;
-            return CountsPerTick(step.to_f32());
-        }
-        recent.push(sample.count);
-        let n = usize::from(self.window);
-        let straight = Straight {
-            newest: sample.count,
-            intervals: recent.equal_steps().min(n),
-            step: step.0,
-        };
-        let window = F::longest(recent.older(n), straight, n as i32, self.bound);
-        state.window = window.intervals;
-        CountsPerTick(window.slope)
+        update!(self, state, sample, false)
+    }
+
+    #[inline]
+    fn update_of_memory(&self, state: &mut FoawState<N>, sample: &Sample) -> CountsPerTick {
+        update!(self, state, sample, true)
     }
 }

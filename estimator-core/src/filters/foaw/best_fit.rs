@@ -58,14 +58,15 @@ const fn tetrahedron(i: i32) -> i32 {
     ((triangle(i) * (i + 2)) as u32 / 3) as i32
 }
 
-/// Whether 32 bits hold the products of all windows of up to `n` intervals that begin with `step`.
+/// The longest step for which 32 bits hold the products of all windows of up to `n` intervals that begin
+/// with it; -1 for none.
 ///
 /// The first sample keeps every slope in the cone within d of the step. With m = |step| + d, every
 /// accepted z_j is below `m (j + 1)`, and the sums and their products are below `m (n + 2)^4 / 3`.
-#[inline(always)]
-pub(super) const fn fits_i32(step: i32, n: i32, d: i32) -> bool {
-    let steepest = step.unsigned_abs() + d as u32;
-    steepest as u64 * (n as u32 + 2).pow(4) as u64 <= 3 << 31
+pub(super) const fn longest_i32(n: u32, d: u16) -> i32 {
+    let steepest = (3_u64 << 31) / (n + 2).pow(4) as u64;
+    let step = steepest as i32 - d as i32;
+    if step < 0 { -1 } else { step }
 }
 
 /// The quotient, rounded to the closest f32 or one of its neighbours; an exact quotient stays exact.
@@ -86,20 +87,18 @@ fn quotient(dividend: i64, divisor: i32) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::fits_i32;
+    use super::longest_i32;
 
     /// `(|step| + d) (n + 2)^4 / 3` is to be below 2^31.
     #[test]
     fn windows_with_small_products_use_32_bits() {
         for (n, steepest) in [(128, 22), (64, 339), (32, 4820), (18, 40_265)] {
             for d in [0, 1, 5] {
-                for sign in [1, -1] {
-                    assert!(fits_i32(sign * (steepest - d), n, d), "{n} {d}");
-                    assert!(!fits_i32(sign * (steepest - d + 1), n, d), "{n} {d}");
-                }
+                assert_eq!(longest_i32(n, d), steepest - i32::from(d), "{n} {d}");
             }
         }
-        // The largest step and the largest bound.
-        assert!(fits_i32(-(1 << 15), 15, 1 << 14) && !fits_i32(1 << 15, 18, 1 << 14));
+        // The largest step and the largest bound, and a bound without a step.
+        assert!(longest_i32(15, 1 << 14) >= 1 << 15 && longest_i32(18, 1 << 14) < 1 << 15);
+        assert_eq!([longest_i32(128, 22), longest_i32(128, 23)], [0, -1]);
     }
 }

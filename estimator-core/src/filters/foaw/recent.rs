@@ -6,7 +6,8 @@ use crate::units::{Count, Counts};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Recent<const N: usize> {
     pub(super) newest: Count,
-    /// The newest step, and the number of newest steps equal to it, at most N; 0 before the first.
+    /// The newest step, and the number of newest steps equal to it, at most the window; 0 before the
+    /// first.
     step: Counts,
     equal: u32,
     /// Below N.
@@ -63,22 +64,22 @@ impl<const N: usize> Recent<N> {
         self.older(N).iter().copied().take_while(within)
     }
 
-    /// Whether the newest N + 1 samples are equal.
-    pub(super) const fn at_rest(&self) -> bool {
-        self.step.0 == 0 && self.equal == N as u32
+    /// Whether all samples of a window of n intervals are equal. Another equal one changes nothing in it.
+    pub(super) const fn at_rest(&self, n: u8) -> bool {
+        self.step.0 == 0 && self.equal == n as u32
     }
 
-    /// Number of newest steps that are equal.
+    /// Number of newest steps that are equal, at most the window.
     pub(super) const fn equal_steps(&self) -> usize {
         self.equal as usize
     }
 
-    /// Adds a sample.
+    /// Adds a sample to a window of n intervals, at least 1.
     #[inline(always)]
-    pub(super) fn push(&mut self, count: Count) {
+    pub(super) fn push(&mut self, count: Count, n: u8) {
         let step = count - self.newest;
         let equal = if step == self.step { self.equal } else { 0 };
-        self.equal = equal.min(N as u32 - 1) + 1;
+        self.equal = equal.min(u32::from(n) - 1) + 1;
         self.step = step;
         self.keep(self.newest);
         self.newest = count;
