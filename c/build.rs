@@ -180,21 +180,22 @@ impl Files {
                 .then_some("has_edge, edge_boundary, edge_age"),
         );
         let reads = signals.join(", ");
+        let needs = format!("<limpid_{c}_t as VelocityEstimator>::NEEDS");
         self.function(
             &format!("`{}`: sets the state to rest at the first sample.", row.name),
             &format!("{c}_start(parameters: &limpid_{c}_t, state: &mut MaybeUninit<limpid_{c}_state_t>, first: &limpid_sample_t)"),
-            "state.write(parameters.start(&first.sample()));",
+            &format!("state.write(parameters.start(&first.sample({needs})));"),
         );
         self.function(
             &format!("`{}`: processes the sample of one tick. Returns the velocity at that sample, counts per tick. Reads of the sample: {reads}.", row.name),
             &format!("{c}_update(parameters: &limpid_{c}_t, state: &mut limpid_{c}_state_t, sample: &limpid_sample_t) -> f32"),
-            "parameters.update(state, &sample.sample()).0",
+            &format!("parameters.update_of_memory(state, &sample.sample({needs})).0"),
         );
         if row.varying_period {
             self.function(
                 &format!("`{}`: processes a sample that comes `period` control periods after the one before, from 1/1024 to 2^20. Returns the velocity, counts per control period.", row.name),
                 &format!("{c}_update_over(parameters: &limpid_{c}_t, state: &mut limpid_{c}_state_t, sample: &limpid_sample_t, period: f32) -> f32"),
-                "parameters.update_over(state, &sample.sample(), period).0",
+                &format!("parameters.update_over(state, &sample.sample({needs}), period).0"),
             );
         }
         if row.reports != Reports::Nothing {

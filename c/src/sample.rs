@@ -1,4 +1,4 @@
-use estimator_core::{Amps, ClockTicks, Count, Edge, Sample};
+use estimator_core::{Amps, ClockTicks, Count, Edge, Sample, Signals};
 
 /// The measurements of one tick. What an estimator does not read may be zero.
 #[repr(C)]
@@ -20,15 +20,19 @@ pub struct limpid_sample_t {
 }
 
 impl limpid_sample_t {
-    /// The sample of `estimator-core`. Where this is inlined, parts that an estimator does not read cost
-    /// nothing.
+    /// The sample of `estimator-core`. Where the estimator's update is a call, a current or an edge that it
+    /// does not read would be copied and checked for nothing: they are constants.
     #[inline(always)]
-    pub(crate) fn sample(&self) -> Sample {
+    pub(crate) fn sample(&self, needs: Signals) -> Sample {
         Sample {
             count: Count(self.count),
             coupled: Count(self.coupled),
-            current: Amps::new(self.current),
-            edge: (self.has_edge != 0).then_some(Edge {
+            current: if needs.current {
+                Amps::new(self.current)
+            } else {
+                Amps::ZERO
+            },
+            edge: (needs.edge && self.has_edge != 0).then_some(Edge {
                 boundary: Count(self.edge_boundary),
                 age: ClockTicks(self.edge_age),
             }),

@@ -200,6 +200,12 @@ impl<const K: usize, S: Stamps> VelocityEstimator for ModelBank<K, S> {
     }
 
     fn update(&self, state: &mut ModelBankState<K>, sample: &Sample) -> CountsPerTick {
+        self.update_of_memory(state, sample)
+    }
+
+    // Without a call, which needs the sample in memory.
+    #[inline(always)]
+    fn update_of_memory(&self, state: &mut ModelBankState<K>, sample: &Sample) -> CountsPerTick {
         match self.advance(state, sample, None) {
             Some(_) => CountsPerTick(state.velocity()),
             None => CountsPerTick(0.0),
