@@ -17,7 +17,7 @@ use terminal::failure::Failure;
 use crate::designed::{designed, with_friction};
 use crate::parallel::in_order;
 use crate::rates::{check_same, refuses};
-use crate::reference::{FEWEST_ROWS, Reference};
+use crate::reference::{FEWEST_ROWS, Reference, interruptions};
 use crate::replay;
 
 pub use table::{lines, reads, table};
@@ -183,6 +183,8 @@ pub fn recommend<'a>(
     }
     for outcome in &outcomes {
         let rate_hz = outcome.recording.trace.rate_hz;
+        let interrupted = interruptions(outcome.recording);
+        notes.extend(interrupted.map(|line| format!("{}: {line}", outcome.name)));
         if let Some(reference) = &outcome.reference {
             let limits = reference.limits(rate_hz);
             notes.push(format!(

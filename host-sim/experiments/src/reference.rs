@@ -30,6 +30,8 @@ use scoring::score::SKIP_S;
 
 use crate::table::number;
 
+pub use sections::interruptions;
+
 use sections::Motion;
 use sweeps::Model;
 

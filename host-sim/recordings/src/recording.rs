@@ -49,6 +49,7 @@ pub use capture::Capture;
 pub use currents::implausible_current;
 pub use formats::{KnownLog, known_logs};
 pub(crate) use kinds::check as check_kind;
+pub use numbers::shown;
 pub(crate) use options::MEASURED;
 pub use options::ReadOptions;
 pub use parts::Parts;

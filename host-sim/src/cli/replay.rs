@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use indicatif::ProgressBar;
 
-use experiments::reference::Reference;
+use experiments::reference::{Reference, interruptions};
 use experiments::replay::{self, Against, BoardSummary, Run, section_rows};
 use experiments::rows;
 use experiments::table::layout::terminal_width;
@@ -89,7 +89,11 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         parameters: &parameters,
     };
     let chosen = Chosen::new(&kinds, !options.estimators.is_empty(), &recorded)?;
-    let (reference, without) = reference(options, &log, &survey, &device)?;
+    let Referenced {
+        reference,
+        without,
+        interruptions,
+    } = reference(options, &log, &survey, &device)?;
     let against = match &reference {
         Some(reference) if survey.columns.true_omega.is_none() => Against::Reference(reference),
         _ => Against::Truth,
@@ -161,6 +165,9 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
         false => "the default device: no --device given".to_owned(),
     };
     let device_name = format!("{counts_of}{device_name}");
+    if let Some(line) = interruptions {
+        note(wrapped(&format!("{name}: {line}"), 2));
+    }
     if let Some(why) = without {
         note(format_args!("{name}: no scores: {why}"));
     }
@@ -188,13 +195,28 @@ pub(super) fn run(options: &Replay) -> Result<(), Failure> {
     print_bytes(format!("{header}\n{table}").as_bytes())
 }
 
-/// The reference, if it is needed, or why a recording without a truth has no scores.
+/// What was computed of a whole recording.
+#[derive(Default)]
+struct Referenced {
+    /// The reference, if it is needed.
+    reference: Option<Reference>,
+    /// Why a recording without a truth has no scores.
+    without: Option<String>,
+    /// The rows that are no motion.
+    interruptions: Option<String>,
+}
+
+/// The reference, if it is needed.
 fn reference(
     options: &Replay,
     log: &Log,
     survey: &Survey,
     device: &Device,
-) -> Result<(Option<Reference>, Option<String>), Failure> {
+) -> Result<Referenced, Failure> {
+    let without = |why| Referenced {
+        without: Some(why),
+        ..Referenced::default()
+    };
     let has_truth = survey.columns.true_omega.is_some();
     let called = called(&options.trace);
     match options.reference {
@@ -204,23 +226,27 @@ fn reference(
                  --reference off; add it or leave out --reference off"
             )));
         }
-        Some(ReferenceUse::Off) => return Ok((None, None)),
-        None | Some(ReferenceUse::Scores) if has_truth => return Ok((None, None)),
+        Some(ReferenceUse::Off) => return Ok(Referenced::default()),
+        None | Some(ReferenceUse::Scores) if has_truth => return Ok(Referenced::default()),
         None if survey.rows > UNASKED && options.json.is_none() => {
             let why = format!(
                 "no column true_omega, and {} rows; --reference scores computes a reference of them",
                 survey.rows
             );
-            return Ok((None, Some(why)));
+            return Ok(without(why));
         }
         _ => {}
     }
     let recording = options.recording.read(log, device)?;
     match Reference::of(&recording, device.stages.large.counts_per_rev) {
-        Ok(reference) => Ok((Some(reference), None)),
+        Ok(reference) => Ok(Referenced {
+            reference: Some(reference),
+            without: None,
+            interruptions: interruptions(&recording),
+        }),
         // Velocities alone need no reference.
         Err(why) if options.json.is_none() && options.reference != Some(ReferenceUse::Columns) => {
-            Ok((None, Some(format!("{why}; --reference off computes none"))))
+            Ok(without(format!("{why}; --reference off computes none")))
         }
         Err(why) => Err(Failure::Input(format!(
             "{called}: {why}; --reference off without --json writes velocities alone"

@@ -10,8 +10,12 @@ const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
 
 /// Counts of a shaft with 4096 counts/rev at 1 kHz that swings by two radians, for 3 s.
 fn swing() -> String {
+    swing_of(3000)
+}
+
+fn swing_of(rows: u16) -> String {
     let mut text = String::from("t,counts_large\n");
-    for k in 0..3000 {
+    for k in 0..rows {
         let t = f64::from(k) * 1e-3;
         let angle = 2.0 * (1.0 - (10.0 * t).cos());
         let count = (angle * 4096.0 / std::f64::consts::TAU).floor();
@@ -82,6 +86,33 @@ fn real_motor_gets_estimators_ranked_against_its_truth() {
             .iter()
             .all(|row| row["recommended"] != "cheap")
     );
+}
+
+/// One bad count is in the scores of all estimators, and decides which one is the best.
+#[test]
+fn bad_count_is_named_with_its_time() {
+    let folder = Folder::new(HOST_SIM);
+    // Tuning needs some seconds.
+    folder.write("swing.csv", swing_of(9000));
+    let bad = |line: &str| match line.split_once(',') {
+        Some(("1.234", count)) => format!("1.234,{}\n", count.parse::<i64>().unwrap() - 1500),
+        _ => format!("{line}\n"),
+    };
+    folder.write(
+        "bad.csv",
+        swing_of(9000).lines().map(bad).collect::<String>(),
+    );
+    let said = "counts_large jumps at t = 1.234 s, which is no motion of a shaft";
+    let tune = ["tune", "--estimator", "low-pass", "--out", "tuned.toml"];
+    for command in [&["recommend"][..], &["replay", "--out", "v.csv"], &tune] {
+        for (log, names_it) in [("bad.csv", true), ("swing.csv", false)] {
+            let output = folder.run(&[command, &[log]].concat());
+            assert_eq!(output.status.code(), Some(0), "{command:?}");
+            let notes = String::from_utf8(output.stderr).unwrap();
+            let notes = notes.split_whitespace().collect::<Vec<_>>().join(" ");
+            assert_eq!(notes.contains(said), names_it, "{command:?}: {notes}");
+        }
+    }
 }
 
 #[test]

@@ -5,7 +5,7 @@
 //! The smoother starts anew after both: rows before and after do not depend on each other. It passes
 //! over a single bad count.
 
-use recordings::recording::Recording;
+use recordings::recording::{Recording, shown};
 
 /// Longest interval over which the motion is followed, periods.
 pub(super) const LONGEST: f64 = 200.0;
@@ -45,6 +45,25 @@ impl Motion {
         let fastest = fastest(recording, &rows);
         Self { rows, fastest }
     }
+}
+
+/// One line on the rows of `recording` that are no motion of a shaft; `None` if there are none.
+///
+/// Estimators do not know them: one such row can decide which of them has the smallest error.
+#[must_use]
+pub fn interruptions(recording: &Recording) -> Option<String> {
+    let rows = rows(recording);
+    let interrupted = || (rows.iter().zip(&recording.t)).filter(|(row, _)| **row != Row::Next);
+    let t = shown(*interrupted().next()?.1);
+    let more = match interrupted().count() - 1 {
+        0 => String::new(),
+        1 => " and at one row more".to_owned(),
+        more => format!(" and at {more} rows more"),
+    };
+    Some(format!(
+        "counts_large jumps at t = {t} s{more}, which is no motion of a shaft: all scores contain the jump; \
+         delete rows with bad counts, and cut the log where the counter was set"
+    ))
 }
 
 /// What each row of `recording` says of the motion.
@@ -152,6 +171,21 @@ mod tests {
         counts[25..].iter_mut().for_each(|count| *count += 1 << 20);
         assert_eq!(marked(&counts), [(25, Row::Jumped)]);
         assert_eq!(Motion::of(&recording(&counts)).fastest, 3.0);
+    }
+
+    #[test]
+    fn interruptions_name_the_first_row() {
+        let mut counts = steady();
+        assert_eq!(interruptions(&recording(&counts)), None);
+        for (k, said) in [
+            (40, "jumps at t = 0.04 s, which"),
+            (30, "jumps at t = 0.03 s and at one row more, which"),
+            (50, "jumps at t = 0.03 s and at 2 rows more, which"),
+        ] {
+            counts[k] += 1 << 20;
+            let line = interruptions(&recording(&counts)).unwrap_or_default();
+            assert!(line.contains(said), "{line}");
+        }
     }
 
     #[test]

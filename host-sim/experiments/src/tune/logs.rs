@@ -14,7 +14,7 @@ use shards::Experiment;
 
 use super::search::{best_values, ends_of_ranges};
 use crate::rates::check_same;
-use crate::reference::Reference;
+use crate::reference::{Reference, interruptions};
 use catalogue::estimators::{Kind, Lack, Setup, Values};
 use catalogue::parameters::{Parameters, PlantKind, Preset, Presets};
 use recordings::recording::Recording;
@@ -122,6 +122,8 @@ impl LogPlan {
             tracks: Vec::new(),
         };
         for (log, recording) in recordings {
+            let interrupted = interruptions(&recording);
+            (plan.notes).extend(interrupted.map(|line| format!("{}: {line}", log.name)));
             let (track, said) = track(&log.name, recording, rate_hz, &plan.device)?;
             plan.tracks.push(track);
             plan.notes.extend(said);

@@ -6,7 +6,8 @@ use super::steps::to_digits;
 const DIGITS: usize = 15;
 
 /// `x` without digits of rounding, and without more zeros than a line has space for.
-pub(super) fn shown(x: f64) -> String {
+#[must_use]
+pub fn shown(x: f64) -> String {
     let x = to_digits(x, DIGITS);
     match x == 0.0 || (1e-6..1e15).contains(&x.abs()) {
         true => x.to_string(),
