@@ -11,7 +11,7 @@ use terminal::checksum::Sum;
 use terminal::failure::Failure;
 
 use crate::recording::check_kind;
-use encoding::{Converted, Utf16};
+use encoding::{Converted, Encoding};
 
 /// Name of standard input in messages, and as a recording.
 const STDIN: &str = "standard input";
@@ -108,7 +108,7 @@ fn stream(mut input: impl Read, name: &str) -> Result<Vec<u8>, Failure> {
 
 /// Checks the first bytes of a stream, which may be in UTF-16.
 fn check_text(head: &[u8], name: &str) -> Result<(), Failure> {
-    match Utf16::of(head) {
+    match Encoding::utf16(head) {
         Some(_) => Ok(()),
         None => check_kind(head, name),
     }
@@ -157,7 +157,7 @@ impl Log {
         &self.path
     }
 
-    /// Its bytes from the begin: unpacked if they are those of gzip, and in UTF-8 if they are UTF-16.
+    /// Its bytes from the begin: unpacked if they are those of gzip, and in UTF-8 if they are UTF-16 or Latin-1.
     ///
     /// # Errors
     /// As [`Log::open`].
@@ -172,7 +172,8 @@ impl Log {
             false => Box::new(packed),
         };
         let (begin, text) = self.begin(text, encoding::SEARCHED)?;
-        Ok(match Utf16::of(&begin) {
+        let is_text = check_text(&begin, &self.name).is_ok();
+        Ok(match Encoding::of(&begin).filter(|_| is_text) {
             Some(encoding) => Box::new(Converted::new(text, encoding)),
             None => Box::new(text),
         })
@@ -291,6 +292,15 @@ mod tests {
         assert_eq!(stream(text.as_bytes(), "pipe").unwrap(), text.as_bytes());
         let text = packed(&text);
         assert_eq!(stream(text.as_slice(), "pipe").unwrap(), text);
+    }
+
+    #[test]
+    fn text_in_another_encoding_is_utf8() {
+        let text = log(b"t,\xB0\n0,1\n".to_vec()).head().unwrap();
+        assert_eq!(text, "t,°\n0,1\n".as_bytes());
+        // Zstd, of which no byte is a control character.
+        let zstd = b"\x28\xB5\x2F\xFDxyz".to_vec();
+        assert_eq!(log(zstd.clone()).head().unwrap(), zstd);
     }
 
     #[test]
