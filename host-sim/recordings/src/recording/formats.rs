@@ -89,11 +89,13 @@ pub(super) const FORMATS: &[Format] = &[
             foreign(Column::CountsLarge, End("encoder.shadow_count"), "counts"),
             foreign(Column::CountsLarge, End("encoder.pos_estimate"), "rev"),
             foreign(Column::CountsLarge, End("pos_vel_mapper.pos_rel"), "rev"),
+            foreign(Column::CountsLarge, End("axis0.pos_estimate"), "rev"),
+            foreign(Column::CountsLarge, End("axis1.pos_estimate"), "rev"),
             foreign(Column::Current, End("Iq_measured"), "A"),
         ],
         own: false,
         source: "odriverobotics/ODrive, GUI/src/components/plots/Plot.vue (Export) and \
-                 Firmware/odrive-interface.yaml; pos_vel_mapper is of firmware 0.6",
+                 Firmware/odrive-interface.yaml; pos_vel_mapper and axis0.pos_estimate are of firmware 0.6",
     },
     Format {
         name: "VESC Tool",
