@@ -7,10 +7,13 @@ use super::layout::Place;
 use super::moment::{DAY_NS, Kind, Moment};
 use super::row::Row;
 use super::times::NEAR;
-use super::units::{Unit, WRAP};
+use super::units::Unit;
 
 /// A day, s.
 const DAY_S: f64 = DAY_NS as f64 / 1e9;
+
+/// Bits of the counters that are read as times.
+const BITS: [i32; 2] = [32, 16];
 
 /// The log's own times, in s: numbers, dates or times of day.
 #[derive(Clone, Copy, Debug, Default)]
@@ -80,8 +83,9 @@ impl OwnTimes {
         };
         let wrap = self.wraps.first.map(|(line, period)| match self.form {
             Some(Form::Number { unit }) if period != DAY_S => format!(
-                "t wraps at 2^32 {} and is unwrapped, the first time in line {line}: a counter of 32 bits",
-                unit.name()
+                "t wraps at 2^{bits} {} and is unwrapped, the first time in line {line}: a counter of {bits} bits",
+                unit.name(),
+                bits = (period * unit.per_s()).log2().round()
             ),
             _ => format!("midnight passes in line {line}, and t goes on"),
         });
@@ -89,13 +93,13 @@ impl OwnTimes {
     }
 }
 
-/// Periods, s, of a number of `unit`: a day, and that of a counter of 32 bits, which counts no seconds.
-fn periods(unit: &Unit) -> [f64; 2] {
-    let counter = match unit.per_s() > 1.0 {
-        true => WRAP / unit.per_s(),
+/// Periods, s, of a number of `unit`: a day, and those of counters, which count no seconds.
+fn periods(unit: &Unit) -> [f64; 3] {
+    let [long, short] = BITS.map(|bits| match unit.per_s() > 1.0 {
+        true => 2.0_f64.powi(bits) / unit.per_s(),
         false => DAY_S,
-    };
-    [DAY_S, counter]
+    });
+    [DAY_S, long, short]
 }
 
 fn mixed(row: &Row, at: Place) -> Failure {
@@ -283,6 +287,21 @@ mod tests {
         assert_eq!(recording.uneven_steps, 0);
         let (t, last) = (&recording.t, recording.t.len() - 1);
         assert!((t[last] - t[0] - 1e-3 * last as f64).abs() < 1e-9);
+        // Of 16 bits; a step back by less is none.
+        let short = |back: u32| -> String {
+            let rows = (65_530..65_536)
+                .chain(65_536 - back..65_542 - back)
+                .zip(0..);
+            rows.map(|(ms, k): (u32, u32)| format!("{ms},{k}\n"))
+                .collect()
+        };
+        let text = |rows: String| format!("t,counts_large\n{rows}");
+        let recording = read(&text(short(65_536)), "t=t:ms").unwrap();
+        let note =
+            "t wraps at 2^16 ms and is unwrapped, the first time in line 8: a counter of 16 bits";
+        assert_eq!(recording.notes[1], note);
+        assert!((recording.t[11] - 65.541).abs() < 1e-9);
+        assert!(read(&text(short(64_000)), "t=t:ms").is_err());
         // Seconds are no counter, and a step to below zero is no wrap.
         for (unit, times) in [
             ("s", "4294967295,0\n0,1\n"),
