@@ -26,9 +26,9 @@ impl Recording {
         let mut last = None;
         for (k, t) in self.t.iter().enumerate() {
             // Writing to a string cannot fail.
-            let _ = write!(text, "{t},{}", trace.counts_large[k]);
+            let _ = write!(text, "{t},{}", trace.counts_large[k] as i32);
             if let Some(column) = &trace.counts_small {
-                let _ = write!(text, ",{}", column[k]);
+                let _ = write!(text, ",{}", column[k] as i32);
             }
             for column in [&trace.current, &self.current_small].into_iter().flatten() {
                 let _ = write!(text, ",{}", column[k]);
@@ -40,7 +40,7 @@ impl Recording {
                         let tick = ((t - edge.age_s) * EDGE_CLOCK_HZ).round();
                         let tick = same_edge(last, tick, edge.boundary).unwrap_or(tick);
                         last = Some((tick, edge.boundary));
-                        write!(text, ",{tick},{}", edge.boundary)
+                        write!(text, ",{tick},{}", edge.boundary as i32)
                     }
                 };
             }
