@@ -75,7 +75,7 @@ impl Ending<'_> {
 }
 
 /// The text before the brackets at the end of `column`, and the text in them.
-fn bracketed(column: &str) -> Option<(&str, &str)> {
+pub(super) fn bracketed(column: &str) -> Option<(&str, &str)> {
     let (text, open) = match column.strip_suffix(']') {
         Some(text) => (text, '['),
         None => (column.strip_suffix(')')?, '('),

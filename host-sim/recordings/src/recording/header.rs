@@ -96,11 +96,15 @@ pub(super) fn check_one(mapping: &Mapping, layout: &Layout, name: &str) -> Resul
     )))
 }
 
-/// Error for a `--column` without a unit, whose column's name ends as if it had another `unit`.
-pub(super) fn unknown_unit(mapping: &Mapping, unit: &str, layout: &Layout, name: &str) -> Failure {
-    let ours = mapping.column.name();
-    let quantity = mapping.column.quantity();
-    let place = layout.place(&mapping.theirs).unwrap_or_default();
+/// Error for the `column` at `place` whose unit is not stated, and whose name ends as if it had another `unit`.
+pub(super) fn unknown_unit(
+    column: Column,
+    place: usize,
+    unit: &str,
+    layout: &Layout,
+    name: &str,
+) -> Failure {
+    let (ours, quantity) = (column.name(), column.quantity());
     Failure::Input(format!(
         "{name}: line {}: '{}' at the end of the name is no unit of {ours}; there are {}; convert the numbers, \
          or state the unit where it is one of these, for example --column '{ours}={}:{}'",

@@ -13,6 +13,9 @@ const LONGEST: usize = 80;
 /// Positions that a message lists.
 const LISTED: usize = 4;
 
+/// Parts of the names of positions.
+const POSITIONS: [&str; 5] = ["count", "enc", "pos", "angle", "theta"];
+
 /// Parts of the names of times.
 const TIMES: [&str; 4] = ["time", "stamp", "sec", "ms"];
 
@@ -29,10 +32,9 @@ pub(super) fn option(layout: &Layout) -> String {
         return "give the numbers of the columns, for example --column t=1:s,counts_large=2:counts"
             .to_owned();
     }
-    let position = ["count", "enc", "pos", "angle", "theta"];
     let parts = [
         guess(layout, Column::T, &TIMES, "TIME"),
-        guess(layout, Column::CountsLarge, &position, "POSITION"),
+        guess(layout, Column::CountsLarge, &POSITIONS, "POSITION"),
     ];
     let parts: Vec<_> = parts.into_iter().flatten().collect();
     format!(
@@ -43,13 +45,13 @@ pub(super) fn option(layout: &Layout) -> String {
 
 /// What a log needs whose header has no column of time, by its names.
 pub(super) fn without_time(layout: &Layout) -> &'static str {
-    let is_time = |name: &String| {
+    let is_time = |(place, name): (usize, &String)| {
         let lower = name.to_lowercase();
         TIMES.iter().any(|word| lower.contains(word))
             || lower == "t"
-            || matches!(Ending::of(Column::T.quantity(), name), Ending::Unit(_))
+            || matches!(layout.ending(Column::T.quantity(), place), Ending::Unit(_))
     };
-    match layout.has_header() && !layout.names.iter().any(is_time) {
+    match layout.has_header() && !layout.names.iter().enumerate().any(is_time) {
         true => ", or give the rate of the rows with --row-rate HZ in the place of a time",
         false => "",
     }
@@ -71,6 +73,7 @@ pub(super) fn current(places: &Places, layout: &Layout) -> Option<String> {
 fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Option<String> {
     let (ours, quantity) = (column.name(), column.quantity());
     let place = |is: &dyn Fn(&str) -> bool| layout.names.iter().position(|name| is(name));
+    let has_unit = |place: &usize| matches!(layout.ending(quantity, *place), Ending::Unit(_));
     let like = |name: &str| {
         let name = name.to_lowercase();
         words.iter().any(|word| name.contains(word))
@@ -78,12 +81,12 @@ fn guess(layout: &Layout, column: Column, words: &[&str], unknown: &str) -> Opti
     let place = place(&|name| name == ours)
         .or_else(|| place(&|name| name.to_lowercase() == ours))
         .or_else(|| place(&like))
-        .or_else(|| place(&|name| matches!(Ending::of(quantity, name), Ending::Unit(_))));
+        .or_else(|| (0..layout.names.len()).find(has_unit));
     let Some(place) = place else {
         return Some(format!("{ours}={unknown}:{}", example(quantity)));
     };
     let name = &layout.names[place];
-    let unit = match Ending::of(quantity, name) {
+    let unit = match layout.ending(quantity, place) {
         // Of a name with another unit only its owner can say what the numbers are.
         Ending::Unit(_) | Ending::Unknown(_) => String::new(),
         Ending::Nothing => format!(":{}", example(quantity)),
@@ -107,6 +110,7 @@ pub(super) fn reason(layout: &Layout, places: &Places) -> Option<String> {
     let ambiguous = ambiguous(layout, places);
     ambiguous
         .or_else(|| captured(layout))
+        .or_else(|| levels(layout))
         .or_else(|| barred(layout))
 }
 
@@ -167,7 +171,46 @@ fn captured(layout: &Layout) -> Option<String> {
     })
 }
 
+/// Columns that are 0 or 1 where no name is that of a position.
+fn levels(layout: &Layout) -> Option<String> {
+    let is_position = |name: &String| {
+        let name = name.to_lowercase();
+        POSITIONS.iter().any(|word| name.contains(word))
+    };
+    let places = &layout.two_levels;
+    if places.len() < 2 || layout.names.iter().any(is_position) {
+        return None;
+    }
+    let names = places.iter().map(|place| short(&layout.names[*place]));
+    Some(format!(
+        "the columns {} are 0 or 1 in the first rows; if they are the lines of an encoder, make a recording of \
+         them with host-sim decode",
+        names.collect::<Vec<_>>().join(", ")
+    ))
+}
+
 /// A unit for an example.
 pub(super) const fn example(quantity: Quantity) -> &'static str {
     quantity.units()[0].name()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::recording::read_log as read;
+
+    #[test]
+    fn columns_of_two_levels_are_named_where_no_position_is() {
+        let log = |header: &str, level: u32| {
+            let rows = (0..20).map(|k| format!("{k}e-3,{},{},1\n", k / 2 % 2, level * (k % 2)));
+            format!("{header}\n{}", rows.collect::<String>())
+        };
+        let said = "r.csv: line 1: the columns s1, s2 are 0 or 1 in the first rows; if they are the lines of \
+                    an encoder, make a recording of them with host-sim decode";
+        assert_eq!(read(&log("t,s1,s2,on", 1), "").unwrap_err(), said);
+        for (header, level) in [("t,s1,s2,on", 2), ("t,s1,s2,pos", 1)] {
+            let error = read(&log(header, level), "").unwrap_err();
+            assert!(error.contains("no column counts_large; found: "), "{error}");
+        }
+        assert!(read(&log("t,s1,s2,on", 1), "counts_large=s1").is_ok());
+    }
 }

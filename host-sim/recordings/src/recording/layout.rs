@@ -2,6 +2,7 @@
 
 mod search;
 mod stating;
+mod unit_row;
 
 use terminal::failure::Failure;
 
@@ -14,7 +15,8 @@ use super::options::{Column, Mapping, ReadOptions};
 use super::separator::{Separator, comment, stamp};
 use super::units::Unit;
 pub(super) use search::{UNKNOWN, is_number};
-use search::{is_content, named, numbers, probable};
+use search::{is_content, named, numbers, probable, two_levels};
+use unit_row::UnitRow;
 
 /// Number of the first lines among which the header is searched.
 pub(super) const SEARCHED: usize = 500;
@@ -25,12 +27,16 @@ pub(super) struct Layout {
     pub(super) separator: Separator,
     /// Names of the columns, or their numbers from 1 where the text has no header.
     pub(super) names: Vec<String>,
+    /// Units of the columns in a line of their own; empty without one.
+    pub(super) units: Vec<String>,
     /// Line of the header; 0 where the text has no header.
     pub(super) line: u64,
     /// Number of lines before the data.
     pub(super) skip: u64,
     /// What is searched of a text that goes on and has no header and no numbers there.
     pub(super) searched: Option<String>,
+    /// Places of the columns that are 0 or 1 in the first rows, and both.
+    pub(super) two_levels: Vec<usize>,
     /// The first row of a text that has no header.
     pub(super) first_row: String,
     /// Whether the lines begin with the time stamps of a serial monitor.
@@ -59,15 +65,32 @@ impl Layout {
             // The last line may be cut.
             lines.pop();
         }
-        let layout = match named(&lines, options) {
-            Some(layout) => {
-                layout.check_separator(&lines, name)?;
-                layout
-            }
-            None => probable(&lines, limit),
+        let search = |lines: &[&str]| {
+            let named = named(lines, options);
+            let is_named = named.is_some();
+            (
+                named.unwrap_or_else(|| probable(lines, limit.clone())),
+                is_named,
+            )
         };
+        let (layout, is_named) = match UnitRow::find(&lines) {
+            None => search(&lines),
+            Some(units) => {
+                let mut without = lines.clone();
+                without[units.index] = "";
+                let (layout, is_named) = search(&without);
+                match units.below(layout, &lines) {
+                    Some(layout) => (layout, is_named),
+                    None => search(&lines),
+                }
+            }
+        };
+        if is_named {
+            layout.check_separator(&lines, name)?;
+        }
         Ok(Self {
             is_stamped: is_stamped(head),
+            two_levels: two_levels(&layout, &lines),
             ..layout
         })
     }
@@ -80,9 +103,11 @@ impl Layout {
         Self {
             separator,
             names,
+            units: Vec::new(),
             line: index as u64 + 1,
             skip: index as u64 + 1,
             searched: None,
+            two_levels: Vec::new(),
             first_row: String::new(),
             is_stamped: false,
         }
@@ -153,11 +178,17 @@ impl Layout {
             .place(&mapping.theirs)
             .ok_or_else(|| header::unknown(mapping, self, name))?;
         let quantity = mapping.column.quantity();
-        let unit = match (mapping.unit, Ending::of(quantity, &self.names[place])) {
+        let unit = match (mapping.unit, self.ending(quantity, place)) {
             (Some(unit), _) | (None, Ending::Unit(unit)) => unit,
             (None, Ending::Nothing) => &quantity.units()[0],
             (None, Ending::Unknown(unit)) => {
-                return Err(header::unknown_unit(mapping, unit, self, name));
+                return Err(header::unknown_unit(
+                    mapping.column,
+                    place,
+                    unit,
+                    self,
+                    name,
+                ));
             }
         };
         Ok(Place {
@@ -319,11 +350,21 @@ impl Places {
             )));
         }
         let place = layout.names.iter().position(|name| name == column.name());
-        self.columns.extend(place.map(|place| Place {
+        let Some(place) = place else {
+            return Ok(());
+        };
+        let unit = match layout.ending(column.quantity(), place) {
+            Ending::Unit(unit) => unit,
+            Ending::Nothing => &column.quantity().units()[0],
+            Ending::Unknown(unit) => {
+                return Err(header::unknown_unit(column, place, unit, layout, name));
+            }
+        };
+        self.columns.push(Place {
             column,
             place,
-            unit: &column.quantity().units()[0],
-        }));
+            unit,
+        });
         Ok(())
     }
 }

@@ -88,9 +88,11 @@ fn without_header(separator: Separator, fields: usize, (index, row): (usize, &st
     Layout {
         separator,
         names: (1..=fields).map(|number| number.to_string()).collect(),
+        units: Vec::new(),
         line: 0,
         skip: index as u64,
         searched: None,
+        two_levels: Vec::new(),
         first_row: row.trim().to_owned(),
         is_stamped: false,
     }
@@ -126,6 +128,23 @@ fn end_with(separator: Separator, lines: &[&str]) -> bool {
 
 /// A level that a logic analyser does not know.
 pub(in super::super) const UNKNOWN: &str = "X";
+
+/// Places of the columns of `layout` that are 0 or 1 in the rows among `lines`, and both.
+pub(super) fn two_levels(layout: &Layout, lines: &[&str]) -> Vec<usize> {
+    let rows = lines.iter().skip(layout.skip as usize);
+    let rows = rows.filter(|line| is_content(line) && comment(line).is_none());
+    let rows: Vec<_> = rows.map(|line| layout.separator.split(line)).collect();
+    let has = |place: usize, level: &str| {
+        let mut fields = rows.iter().filter_map(|row| row.get(place));
+        fields.any(|field| field == level)
+    };
+    let is_level = |field: &String| field == "0" || field == "1";
+    let are_levels = |place: &usize| {
+        let mut fields = rows.iter().filter_map(|row| row.get(*place));
+        fields.all(is_level) && has(*place, "0") && has(*place, "1")
+    };
+    (0..layout.names.len()).filter(are_levels).collect()
+}
 
 /// Separator and number of fields of a line of numbers.
 pub(super) fn numbers(line: &str) -> Option<(Separator, usize)> {

@@ -36,10 +36,10 @@ impl Layout {
             Column::T => TIMES,
             _ => POSITIONS,
         };
-        let could_be = |name: &str| {
+        let could_be = |place: usize, name: &str| {
             let lower = name.trim().to_lowercase();
             let is_named = has(&lower, words) || quantity.unit(&lower).is_some();
-            match (column, Ending::of(quantity, name)) {
+            match (column, self.ending(quantity, place)) {
                 (_, Ending::Unknown(_)) => false,
                 (Column::T, Ending::Unit(_)) if lower.starts_with('t') => {
                     is_named || !lower[1..].starts_with(char::is_alphanumeric)
@@ -50,7 +50,7 @@ impl Layout {
         };
         let names = self.names.iter().enumerate();
         let is_known = |place: usize| known.iter().any(|known| known.place == place);
-        let mut like = names.filter(|(place, name)| !is_known(*place) && could_be(name));
+        let mut like = names.filter(|(place, name)| !is_known(*place) && could_be(*place, name));
         let (place, name) = like.next()?;
         let is_only = like.next().is_none() && self.has_header() && hint::barred(self).is_none();
         let lower = name.trim().to_lowercase();
@@ -59,7 +59,7 @@ impl Layout {
         // An electrical angle: theta_e.
         let is_indirect = has(&lower, INDIRECT) || parts.any(|part| part == "e");
         let is_sure = is_sure && (column == Column::T || !is_indirect);
-        match Ending::of(quantity, name) {
+        match self.ending(quantity, place) {
             Ending::Unit(unit) if is_only && is_sure => Some(Place {
                 column,
                 place,

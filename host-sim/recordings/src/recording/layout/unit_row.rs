@@ -1,0 +1,123 @@
+//! A line below the header with the units of the columns: `[ms],[deg]`.
+
+use super::super::endings::{Ending, bracketed};
+use super::super::separator::{Separator, comment};
+use super::super::units::Quantity;
+use super::{Layout, is_content};
+
+/// Units of the columns, and the index of their line.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct UnitRow {
+    pub(super) index: usize,
+    separator: Separator,
+    units: Vec<String>,
+}
+
+impl UnitRow {
+    /// The first line of which every field is empty or has brackets around it, at least one of them around
+    /// a unit.
+    pub(super) fn find(lines: &[&str]) -> Option<Self> {
+        let row = |(index, line): (usize, &&str)| {
+            let line = comment(line).unwrap_or(line);
+            if !line.contains(['(', '[']) {
+                return None;
+            }
+            Separator::ALL.into_iter().find_map(|separator| {
+                let fields = separator.split(line);
+                let units: Option<Vec<_>> = fields.iter().map(|field| inside(field)).collect();
+                let units = units.filter(|units| units.len() > 1)?;
+                let is_unit = |name: &String| Quantity::ALL.iter().any(|q| q.unit(name).is_some());
+                units.iter().any(is_unit).then_some(Self {
+                    index,
+                    separator,
+                    units,
+                })
+            })
+        };
+        lines.iter().enumerate().find_map(row)
+    }
+
+    /// `layout` with these units, if its header is the line above them; `None` if it is not.
+    pub(super) fn below(self, layout: Layout, lines: &[&str]) -> Option<Layout> {
+        let header = layout.line as usize;
+        let between = lines.get(header..self.index)?;
+        let is_header = layout.has_header()
+            && layout.separator == self.separator
+            && layout.names.len() == self.units.len()
+            && !between.iter().any(|line| is_content(line));
+        is_header.then(|| Layout {
+            skip: self.index as u64 + 1,
+            units: self.units,
+            ..layout
+        })
+    }
+}
+
+/// The text in brackets that are the whole field; empty for an empty field.
+fn inside(field: &str) -> Option<String> {
+    match (field, bracketed(field)) {
+        ("", _) => Some(String::new()),
+        (_, Some(("", inside))) => Some(inside.to_owned()),
+        _ => None,
+    }
+}
+
+impl Layout {
+    /// What name and unit of the column at `place` say about the unit of `quantity`.
+    pub(in super::super) fn ending(&self, quantity: Quantity, place: usize) -> Ending<'_> {
+        match self.units.get(place).filter(|unit| !unit.is_empty()) {
+            None => Ending::of(quantity, &self.names[place]),
+            Some(unit) => quantity
+                .unit(unit)
+                .map_or(Ending::Unknown(unit), Ending::Unit),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::recording::read_log as read;
+
+    fn log(header: &str) -> String {
+        let rows = (0..9).map(|k| format!("{k},{},0.5\n", 90 * k));
+        format!("{header}\n{}", rows.collect::<String>())
+    }
+
+    #[test]
+    fn units_below_the_header_are_those_of_the_columns() {
+        for (header, column) in [
+            ("Time,Position,Iq\n[ms],[deg],[A]", ""),
+            ("Time,Position,Iq\n(ms),(deg),\n", ""),
+            ("# Time, Position, Iq\n# [ms], [deg], [A]", ""),
+            ("a log (of today)\nTime,Position,Iq\n\n(ms),(deg),(A)", ""),
+            ("a,b,c\n[ms],[deg],[A]", "t=a,counts_large=b"),
+            ("t,counts_large,c\n[ms],[deg],[A]", ""),
+            (
+                "t,counts_large,c\n[ms],[deg],[A]",
+                "counts_large=counts_large",
+            ),
+        ] {
+            let recording = read(&log(header), column).unwrap();
+            assert_eq!(recording.t[..3], [0.0, 0.001, 0.002], "{header}");
+            assert_eq!(
+                recording.trace.counts_large[..3],
+                [0, 1024, 2048],
+                "{header}"
+            );
+        }
+        let error = read(&log("Time,Position,Iq\n[ms],[mm],[A]"), "").unwrap_err();
+        assert!(error.contains("no column counts_large"), "{error}");
+        let error = read(&log("t,counts_large,Iq\n[min],[deg],[A]"), "").unwrap_err();
+        let said = "r.csv: line 1: 'min' at the end of the name is no unit of t";
+        assert!(error.starts_with(said), "{error}");
+    }
+
+    #[test]
+    fn names_in_brackets_are_a_header_where_no_names_are_above() {
+        for above in ["", "a log\n", "one,two\n"] {
+            let text = log(&format!("{above}(ms),(deg),(A)"));
+            let read = read(&text, "t=(ms),counts_large=(deg)").unwrap();
+            assert_eq!(read.trace.counts_large[..2], [0, 1024], "{above}");
+        }
+    }
+}
