@@ -273,7 +273,8 @@ mod tests {
             let said = "r.csv: line 3: column counts_large: ";
             assert!(error.starts_with(said), "{error}");
             let remedy = "is not a whole number of counts; if it is an angle, state its unit, for example \
-                          --column 'counts_large=counts_large:deg', or :rad or :rev";
+                          --column 'counts_large=counts_large:deg', or :rad or :rev; if the counts are interpolated, \
+                          multiply them, and the counts per revolution, to whole numbers";
             assert!(error.ends_with(remedy), "{error}");
         }
     }

@@ -11,6 +11,8 @@ use recordings::recording::{Capture, counts_per_rev_line};
 use terminal::failure::Failure;
 use terminal::output::{note, write_whole};
 
+use super::page::working;
+
 #[derive(Debug, Args)]
 pub(super) struct Decode {
     /// Capture of the encoder's lines A and B, or of three Hall lines: a row has the levels 0 or 1 of the
@@ -53,7 +55,10 @@ pub(super) fn run(options: &Decode) -> Result<(), Failure> {
         rate(options.rate)?,
     )?;
     let log = Log::open(&options.capture)?;
-    let recording = capture.decode(log.reader()?, log.name())?;
+    let bar = working("decoding");
+    let decoded = capture.decode(log.reader()?, log.name());
+    bar.finish_and_clear();
+    let recording = decoded?;
     let stated = options.counts_per_rev.map(counts_per_rev_line);
     let mut text = stated.unwrap_or_default().into_bytes();
     text.extend(recording.to_csv());

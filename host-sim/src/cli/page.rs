@@ -12,12 +12,16 @@ use terminal::output::{Folder, is_stdout, print_bytes, write_whole};
 /// Period at which a spinner turns.
 const SPIN: Duration = Duration::from_millis(200);
 
-/// A progress bar on standard error. It is hidden if standard error is not a terminal.
+/// A progress bar on standard error, with the time that has passed and the time that is left. It is hidden if
+/// standard error is not a terminal.
 pub(super) fn progress(length: usize, doing: &'static str) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta}");
-    ProgressBar::new(length as u64)
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {elapsed} {eta}");
+    let bar = ProgressBar::new(length as u64)
         .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
-        .with_message(doing)
+        .with_message(doing);
+    // One step can take minutes.
+    bar.enable_steady_tick(SPIN);
+    bar
 }
 
 /// A sign of life with the time that has passed, on standard error, for work whose steps are not known.

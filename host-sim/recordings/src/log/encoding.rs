@@ -73,7 +73,12 @@ fn is_latin1(head: &[u8]) -> bool {
     let has_utf8 = head.utf8_chunks().any(|chunk| !chunk.valid().is_ascii());
     let is_character =
         |byte: &u8| matches!(byte, b' '..=b'~' | 0xA0..) || byte.is_ascii_whitespace();
-    is_broken && !has_utf8 && head.iter().all(is_character)
+    // Numbers have no such characters: there it is a wrong byte.
+    let mut others = head
+        .split(|byte| *byte == b'\n')
+        .filter(|line| !line.is_ascii());
+    let in_words = others.all(|line| line.iter().any(u8::is_ascii_alphabetic));
+    is_broken && !has_utf8 && in_words && head.iter().all(is_character)
 }
 
 /// Reads another encoding as UTF-8, with U+FFFD for what is no character.
@@ -179,7 +184,7 @@ mod tests {
         assert_eq!(Encoding::of(&latin1), Some(Encoding::Latin1));
         assert_eq!(converted(&latin1, Encoding::Latin1), text);
         for end in [0xA0, 0xFF, b'~', b' ', b'\t'] {
-            let head = [&latin1[..], &[end]].concat();
+            let head = [&latin1[..], &[b'x', end]].concat();
             assert_eq!(Encoding::of(&head), Some(Encoding::Latin1), "{end}");
         }
         // UTF-8 with a wrong byte, or cut in a character, and what is no text.
@@ -188,10 +193,11 @@ mod tests {
             text.as_bytes(),
             &wrong,
             b"t,\xC2",
-            b"\xB5\x80 ",
-            b"\xB5\x9F ",
-            b"\xB5\x1F ",
-            b"\xB5\x7F ",
+            b"t\xB5\x80 ",
+            b"t\xB5\x9F ",
+            b"t\xB5\x1F ",
+            b"t\xB5\x7F ",
+            b"t,\xB5\n0,1\n\xB5,2\n",
         ] {
             assert_eq!(Encoding::of(other), None, "{other:?}");
         }

@@ -15,6 +15,14 @@ pub fn shown(x: f64) -> String {
     }
 }
 
+/// Digits of a time between two others that a message shows: those that a time since 1970 has behind its seconds.
+const SPAN_DIGITS: usize = 7;
+
+/// A time between two others, s, without the digits in which their rounding shows.
+pub(super) fn shown_span(s: f64) -> String {
+    shown(to_digits(s, SPAN_DIGITS))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -31,5 +39,7 @@ mod tests {
         ] {
             assert_eq!(shown(x), text);
         }
+        assert_eq!(shown_span(1_740_830_406.3 - 1_740_830_400.3003), "5.9997");
+        assert_eq!(shown_span(7.3 - 1.3011), "5.9989");
     }
 }

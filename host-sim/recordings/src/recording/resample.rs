@@ -4,7 +4,7 @@ use simulation::trace::EdgeStamp;
 use terminal::failure::Failure;
 
 use super::Recording;
-use super::numbers::shown;
+use super::numbers::shown_span;
 
 /// Largest number of new rows for each row of the recording.
 const MOST_ROWS: f64 = 100.0;
@@ -95,7 +95,7 @@ pub(super) fn resampled_rows(
 ) -> Result<usize, Failure> {
     let duration_s = last - first;
     let wanted = (duration_s * rate_hz).floor() + 1.0;
-    let seconds = shown(duration_s);
+    let seconds = shown_span(duration_s);
     if !(rate_hz >= super::steps::SLOWEST_HZ && wanted >= 2.0) {
         return Err(Failure::Input(format!(
             "--resample {rate_hz}: {name} has {seconds} s, of which at least two rows at {} Hz or more \

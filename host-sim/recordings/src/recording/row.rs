@@ -121,7 +121,8 @@ impl Row<'_> {
         let theirs = self.theirs(column, place);
         format!(
             "{number_text} is not a whole number of counts; if it is an angle, state its unit, for example \
-             --column '{column}={theirs}:deg', or :rad or :rev"
+             --column '{column}={theirs}:deg', or :rad or :rev; if the counts are interpolated, multiply \
+             them, and the counts per revolution, to whole numbers"
         )
     }
 }

@@ -4,7 +4,7 @@ use simulation::trace::{EdgeStamp, Trace};
 use terminal::failure::Failure;
 
 use super::super::Recording;
-use super::super::numbers::shown;
+use super::super::numbers::{shown, shown_span};
 use super::super::row::Row;
 use super::super::times::back;
 use super::LINES;
@@ -109,7 +109,7 @@ impl Decoder {
         }
         let rows = (t - first) * self.rate_hz;
         if rows > MOST_ROWS {
-            let s = shown(t - first);
+            let s = shown_span(t - first);
             return Err(row.failure(
                 "t",
                 &format!(
@@ -176,14 +176,14 @@ impl Decoder {
         if self.t.len() < 2 {
             return failure(format!(
                 "{} s are fewer than two rows at {} Hz; give a higher --rate",
-                shown(duration),
+                shown_span(duration),
                 self.rate_hz
             ));
         }
         notes.push(format!(
             "{} edges in {} s; the count ends at {}",
             self.edges,
-            shown(duration),
+            shown_span(duration),
             self.levels.count().cast_signed()
         ));
         if let Some(line) = self.first_wrong {
