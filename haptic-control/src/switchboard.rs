@@ -266,6 +266,13 @@ where
 
     /// One tick.
     pub fn step(&self, state: &mut SwitchboardState<L, H>, sample: &Sample) -> Action {
+        self.step_inlined(state, sample)
+    }
+
+    /// [`step`](Self::step) as a part of its caller. With an adaptive observer a tick takes some 20 instructions
+    /// less then; with other estimators the call costs less than the registers.
+    #[inline(always)]
+    pub fn step_inlined(&self, state: &mut SwitchboardState<L, H>, sample: &Sample) -> Action {
         let mut action =
             self.run_active(&mut state.active, &mut state.shared, state.origin, sample);
         if state.change != Change::Over {

@@ -227,7 +227,10 @@ impl Control {
     }
 
     /// One tick, after [`Self::check`].
-    #[inline]
+    // With an adaptive observer a tick that is one function takes 20 instructions less, with the other
+    // estimators up to 8 more.
+    #[cfg_attr(feature = "large-adaptive", inline(always))]
+    #[cfg_attr(not(feature = "large-adaptive"), inline)]
     pub fn step(&mut self, sample: &Sample, inputs: &Inputs) -> Outputs {
         // The action is written where the task reads it: a tick copies it nowhere.
         let mut outputs = Outputs {

@@ -101,8 +101,12 @@ impl Core {
     }
 
     /// One tick.
+    #[cfg_attr(feature = "large-adaptive", inline(always))]
     pub fn step(&mut self, sample: &Sample) -> Action {
-        SWITCHBOARD.step(&mut self.state, sample)
+        match cfg!(feature = "large-adaptive") {
+            true => SWITCHBOARD.step_inlined(&mut self.state, sample),
+            false => SWITCHBOARD.step(&mut self.state, sample),
+        }
     }
 
     /// Currents of the latest tick.
