@@ -202,7 +202,7 @@ mod tests {
     fn columns_of_two_levels_are_named_where_no_position_is() {
         let log = |header: &str, level: u32| {
             let rows = (0..20).map(|k| format!("{k}e-3,{},{},1\n", k / 2 % 2, level * (k % 2)));
-            format!("{header}\n{}", rows.collect::<String>())
+            format!("{header}\n# a comment\n\n{}", rows.collect::<String>())
         };
         let said = "r.csv: line 1: the columns s1, s2 are 0 or 1 in the first rows; if they are the lines of \
                     an encoder, make a recording of them with host-sim decode";
@@ -212,5 +212,24 @@ mod tests {
             assert!(error.contains("no column counts_large; found: "), "{error}");
         }
         assert!(read(&log("t,s1,s2,on", 1), "counts_large=s1").is_ok());
+    }
+
+    #[test]
+    fn log_without_a_time_is_told_of_the_rate_of_its_rows() {
+        let said = ", or give the rate of the rows with --row-rate HZ in the place of a time; ";
+        for (header, tells) in [
+            ("x,pos_deg", true),
+            ("pos_deg,v_rad", true),
+            ("T,pos_deg", false),
+            ("clock_ms,pos_deg", false),
+            ("Timer,pos_deg", false),
+            ("a,pos_deg\n[ms],[deg]", false),
+            ("a,pos_deg\n[A],[deg]", true),
+        ] {
+            let error = read(&format!("{header}\n0,1\n1,2\n"), "").unwrap_err();
+            assert_eq!(error.contains(said), tells, "{header}: {error}");
+        }
+        let error = read("0,1\n1,2\n", "").unwrap_err();
+        assert!(!error.contains(said), "{error}");
     }
 }

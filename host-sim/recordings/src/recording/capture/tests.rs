@@ -366,7 +366,7 @@ fn captures_that_cannot_be_decoded_are_refused() {
             "c.csv: line 4: column t: 0.5 s is before the 1 s above it",
         ),
         (
-            "t,a,b\n0,0,0\n1e9,1,0\n",
+            "t,a,b\n5,0,0\n1000000005,1,0\n",
             "",
             "",
             None,

@@ -1,5 +1,7 @@
 //! The search for the header and the separator of a text.
 
+use std::collections::BTreeSet;
+
 use super::super::formats::Format;
 use super::super::moment::Moment;
 use super::super::options::{Column, ReadOptions};
@@ -34,10 +36,12 @@ pub(super) fn named(lines: &[&str], options: &ReadOptions) -> Option<Layout> {
         .or_else(|| comments.into_iter().find_map(in_line))
 }
 
-/// The line before the first line of numbers; a text without names where the first line has numbers.
+/// The line before the first line of numbers, also before comments between them; a text without names where
+/// there is no line with as many fields.
 /// `limit` is what was searched of a text that goes on.
 pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
-    let mut above: Option<(usize, &str)> = None;
+    // The latest line, and the latest one that is no comment.
+    let mut above: [Option<(usize, &str)>; 2] = [None; 2];
     for (index, line) in lines.iter().enumerate() {
         if !is_content(line) {
             continue;
@@ -46,16 +50,20 @@ pub(super) fn probable(lines: &[&str], limit: Option<String>) -> Layout {
             && let Some((separator, fields)) = numbers(line)
         {
             let named = fields - usize::from(end_with(separator, &lines[index..]));
-            if let Some((above, text)) = above {
+            let mut headers = above.into_iter().flatten().filter_map(|(above, text)| {
                 let header = Layout::header(separator, separator.split(text), above);
                 let fits = [fields, named].contains(&header.names.len());
-                if fits && numbers(text).is_none() {
-                    return header;
-                }
-            }
-            return without_header(separator, named, (index, line));
+                (fits && numbers(text).is_none()).then_some(header)
+            });
+            return headers
+                .next()
+                .unwrap_or_else(|| without_header(separator, named, (index, line)));
         }
-        above = Some((index, comment(line).unwrap_or(line)));
+        let [latest, text] = &mut above;
+        *latest = Some((index, comment(line).unwrap_or(line)));
+        if comment(line).is_none() {
+            *text = Some((index, line));
+        }
     }
     // No line of numbers: the first line that is no comment is the header, or a row with some text.
     let is_text = |line: &str| !line.trim().is_empty() && comment(line).is_none();
@@ -134,16 +142,14 @@ pub(super) fn two_levels(layout: &Layout, lines: &[&str]) -> Vec<usize> {
     let rows = lines.iter().skip(layout.skip as usize);
     let rows = rows.filter(|line| is_content(line) && comment(line).is_none());
     let rows: Vec<_> = rows.map(|line| layout.separator.split(line)).collect();
-    let has = |place: usize, level: &str| {
-        let mut fields = rows.iter().filter_map(|row| row.get(place));
-        fields.any(|field| field == level)
+    let has_two = |place: &usize| {
+        let field = |row: &Vec<String>| row.get(*place).cloned();
+        let levels: BTreeSet<_> = rows.iter().map(field).collect();
+        levels
+            .into_iter()
+            .eq(["0", "1"].map(|level| Some(level.to_owned())))
     };
-    let is_level = |field: &String| field == "0" || field == "1";
-    let are_levels = |place: &usize| {
-        let mut fields = rows.iter().filter_map(|row| row.get(*place));
-        fields.all(is_level) && has(*place, "0") && has(*place, "1")
-    };
-    (0..layout.names.len()).filter(are_levels).collect()
+    (0..layout.names.len()).filter(has_two).collect()
 }
 
 /// Separator and number of fields of a line of numbers.

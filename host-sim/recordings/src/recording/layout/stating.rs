@@ -117,6 +117,9 @@ mod tests {
         let recording = read(&rows("time_ms,counts"), "").unwrap();
         assert_eq!(recording.trace.counts_large[..3], [0, 2, 4]);
         assert_eq!(recording.t[2], 0.002);
+        // Comments may follow the names.
+        let text = rows("time_ms,counts").replacen('\n', "\n# started\n\n# now\n", 1);
+        assert_eq!(read(&text, "").unwrap().t[2], 0.002);
         // One of both is named by the user.
         read(&rows("time_ms,x"), "counts_large=x:counts").unwrap();
         read(&rows("x,counts"), "t=x:ms").unwrap();

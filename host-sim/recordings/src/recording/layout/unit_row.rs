@@ -25,7 +25,7 @@ impl UnitRow {
             Separator::ALL.into_iter().find_map(|separator| {
                 let fields = separator.split(line);
                 let units: Option<Vec<_>> = fields.iter().map(|field| inside(field)).collect();
-                let units = units.filter(|units| units.len() > 1)?;
+                let units = units?;
                 let is_unit = |name: &String| Quantity::ALL.iter().any(|q| q.unit(name).is_some());
                 units.iter().any(is_unit).then_some(Self {
                     index,
@@ -42,7 +42,7 @@ impl UnitRow {
         let header = layout.line as usize;
         let between = lines.get(header..self.index)?;
         let is_header = layout.has_header()
-            && layout.separator == self.separator
+            && (layout.separator == self.separator || layout.names.len() == 1)
             && layout.names.len() == self.units.len()
             && !between.iter().any(|line| is_content(line));
         is_header.then(|| Layout {
@@ -76,7 +76,7 @@ impl Layout {
 
 #[cfg(test)]
 mod tests {
-    use crate::recording::read_log as read;
+    use crate::recording::{ReadOptions, Recording, read_log as read};
 
     fn log(header: &str) -> String {
         let rows = (0..9).map(|k| format!("{k},{},0.5\n", 90 * k));
@@ -105,6 +105,11 @@ mod tests {
                 "{header}"
             );
         }
+        let one = "Position\n[deg]\n0\n90\n180\n";
+        let mut options = ReadOptions::default();
+        options.set_row_rate(1000.0).unwrap();
+        let recording = Recording::parse_as(one.as_bytes(), "r.csv", &options).unwrap();
+        assert_eq!(recording.trace.counts_large, [0, 1024, 2048]);
         let error = read(&log("Time,Position,Iq\n[ms],[mm],[A]"), "").unwrap_err();
         assert!(error.contains("no column counts_large"), "{error}");
         let error = read(&log("t,counts_large,Iq\n[min],[deg],[A]"), "").unwrap_err();
