@@ -112,6 +112,52 @@ def coarsen(
     return Recording(**fields)
 
 
+def decode(
+    path: str | PathLike[str],
+    *,
+    rate: float = 1000.0,
+    lines: Sequence[str | int] | None = None,
+    hall: Sequence[str | int] | None = None,
+    columns: Columns = (),
+    row_rate: float | None = None,
+    counts_per_rev: int | None = None,
+) -> Recording:
+    """The counts and the times of the edges in a capture of an encoder's lines.
+
+    Parameters
+    ----------
+    path
+        A table of a logic analyser: a row has the levels 0 or 1 of the lines from its time on. It may be
+        compressed by gzip.
+    rate
+        Rate of the rows of the recording, Hz, from 10 to 100000.
+    lines
+        Names or numbers, from 1, of the columns of the lines A and B [default: the only two columns that are
+        no time]. In the other order counts have the other sign.
+    hall
+        The columns of three Hall lines instead, a third of a period apart.
+    columns
+        Column and unit of the time: ``{"t": "Time (us)"}``, ``{"t": "1:ns"}`` [default: the column whose
+        name begins with time].
+    row_rate
+        Rate of the capture's rows, Hz, where it has no time.
+    counts_per_rev
+        Counts per revolution of the encoder: four times its lines, or six times the pole pairs of Hall
+        sensors.
+    """
+    if lines is not None and hall is not None:
+        raise ValueError("lines and hall: pass one of them")
+    for name, given, number in (("lines", lines, 2), ("hall", hall, 3)):
+        if given is not None and (isinstance(given, str) or len(given) != number):
+            raise ValueError(f"{name}={given!r}: give the names of {number} columns")
+    named = lines if hall is None else hall
+    names = None if named is None else [str(name) for name in named]
+    fields = _limpid.decode(path, rate, names, column_options(columns, None)[0], row_rate, counts_per_rev)
+    fields["rate"] = rate
+    del fields["t"]
+    return Recording(**fields)
+
+
 def scores(
     velocity: _arrays.FloatLike | Replay,
     true_velocity: _arrays.FloatLike | Recording,

@@ -143,6 +143,14 @@ def coarsen(
     seconds: float | None,
     device: _Device | None,
 ) -> dict[str, Any]: ...
+def decode(
+    path: _Path,
+    rate: float,
+    lines: list[str] | None,
+    columns: list[str],
+    row_rate: float | None,
+    counts_per_rev: int | None,
+) -> dict[str, Any]: ...
 def scores(
     velocity: NDArray[np.float32], true_velocity: NDArray[np.float64], rate: float, device: _Device | None
 ) -> dict[str, float]: ...

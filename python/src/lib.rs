@@ -51,5 +51,5 @@ mod _limpid {
     #[pymodule_export]
     use super::scores::{score_fields, scores};
     #[pymodule_export]
-    use super::simulate::{coarsen, simulate};
+    use super::simulate::{coarsen, decode, simulate};
 }

@@ -1,19 +1,20 @@
-//! Recordings that are simulated, or computed from a finer one.
+//! Recordings that are simulated, or computed from a finer one or from an encoder's lines.
 
 use std::path::PathBuf;
 
 use experiments::closed_loop::Hand;
-use experiments::real::wanted::Wanted;
+use experiments::real::wanted::{Wanted, rate as checked_rate};
 use experiments::simulated::Run;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use recordings::arguments::ColumnOptions;
-use recordings::log::short_name;
+use recordings::log::{Log, short_name};
+use recordings::recording::Capture;
 use terminal::failure::Failure;
 
 use crate::background::interruptible;
 use crate::device::{DeviceFile, device};
-use crate::error::{os_error, value_error};
+use crate::error::{in_python, os_error, value_error};
 use crate::log::fields;
 
 /// The load on the handle that `name` means.
@@ -103,5 +104,35 @@ pub(crate) fn coarsen<'py>(
     let fields = fields(py, recording)?;
     fields.set_item("name", short_name(&path))?;
     fields.set_item("counts_per_rev", counts_per_rev)?;
+    Ok(fields)
+}
+
+/// The recording of a capture of an encoder's lines, as keywords of `limpid.Recording`.
+#[pyfunction]
+#[pyo3(signature = (path, rate, lines, columns, row_rate, counts_per_rev))]
+pub(crate) fn decode<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    rate: f64,
+    lines: Option<Vec<String>>,
+    columns: Vec<String>,
+    row_rate: Option<f64>,
+    counts_per_rev: Option<u32>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let device = self::device(None, counts_per_rev).map_err(value_error)?;
+    std::fs::metadata(&path).map_err(|error| os_error(py, error, &path))?;
+    let mut recording = interruptible(py, |_| {
+        let capture = Capture::new(&columns, lines, row_rate, checked_rate(rate)?)?;
+        let log = Log::open(&path)?;
+        capture.decode(log.reader()?, log.name())
+    })?;
+    let notes = std::mem::take(&mut recording.notes);
+    let notes: Vec<_> = notes.iter().map(|note| in_python(note)).collect();
+    let fields = fields(py, recording)?;
+    fields.set_item("name", short_name(&path))?;
+    if counts_per_rev.is_some() {
+        fields.set_item("counts_per_rev", device.stages.large.counts_per_rev)?;
+    }
+    fields.set_item("notes", notes)?;
     Ok(fields)
 }

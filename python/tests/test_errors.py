@@ -128,6 +128,7 @@ def test_missing_files_are_os_errors(tmp_path):
     for name, read in (
         ("nothing.csv", limpid.read_log),
         ("nothing.csv", lambda path: limpid.coarsen(path, 1024)),
+        ("nothing.csv", limpid.decode),
         ("nothing.toml", limpid.device),
     ):
         with pytest.raises(FileNotFoundError) as error:

@@ -105,6 +105,45 @@ def test_columns_and_modulus_of_a_fine_recording_are_those_of_a_log(tmp_path):
         limpid.coarsen(other, 1024, fine_counts_per_rev=100_000)
 
 
+def test_decoded_capture_is_that_of_the_command(data, host_sim, tmp_path):
+    capture, path = data / "encoder-lines.csv", tmp_path / "motor.csv"
+    for named, options in (
+        ({}, []),
+        ({"lines": (3, "Channel 0")}, ["--lines", "3", "Channel 0"]),
+        ({"columns": {"t": "Time [s]"}, "rate": 500}, ["--column", "t=Time [s]", "--rate", "500"]),
+    ):
+        run(host_sim, "decode", str(capture), "--out", str(path), *options)
+        decoded, read = limpid.decode(capture, counts_per_rev=4096, **named), limpid.read_log(path)
+        np.testing.assert_array_equal(decoded.counts, read.counts)
+        np.testing.assert_array_equal(decoded.edge_boundary, read.edge_boundary)
+        np.testing.assert_allclose(decoded.edge_age, read.edge_age, atol=1e-8)
+        assert decoded.rate == read.rate == named.get("rate", 1000)
+        assert decoded.counts_per_rev == 4096
+        assert "line A from column" in decoded.notes[0]
+    assert limpid.decode(capture).counts_per_rev is None
+    velocity = limpid.replay(decoded, estimator="imm-edge").velocity
+    assert np.abs(velocity[-100:]).max() > 1
+
+
+def test_hall_lines_are_decoded(tmp_path):
+    # Half a turn of one pole pair: U rises, W falls, V rises.
+    path = tmp_path / "hall.csv"
+    path.write_text("t,u,v,w\n0,0,0,1\n0.01,1,0,1\n0.02,1,0,0\n0.03,1,1,0\n0.04,1,1,0\n")
+    decoded = limpid.decode(path, hall=("u", "v", "w"), counts_per_rev=24)
+    assert list(decoded.counts[[5, 15, 25, 35]]) == [0, 1, 2, 3]
+    for arguments, said in (
+        ({"lines": "ab"}, "lines='ab': give the names of 2 columns"),
+        ({"hall": ("u", "v")}, "hall=('u', 'v'): give the names of 3 columns"),
+        ({"lines": "ab", "hall": "abc"}, "lines and hall: pass one of them"),
+        ({"rate": 5}, "rate=5: must be from 10 to 100000 Hz"),
+        ({"counts_per_rev": 1}, "counts_per_rev"),
+        ({"lines": ("u", "x")}, "hall.csv: line 1: no column 'x'"),
+    ):
+        with pytest.raises(ValueError) as error:
+            limpid.decode(path, **arguments)
+        assert said in str(error.value)
+
+
 def test_scores_are_those_of_numpy():
     rng = np.random.default_rng(6)
     truth = 5 * np.sin(np.arange(3000) / 200)
