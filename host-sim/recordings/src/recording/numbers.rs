@@ -39,7 +39,7 @@ mod tests {
         ] {
             assert_eq!(shown(x), text);
         }
-        assert_eq!(shown_span(1_740_830_406.3 - 1_740_830_400.3003), "5.9997");
+        assert_eq!(shown_span(1_740_830_406.3 - 1_740_830_400.300_3), "5.9997");
         assert_eq!(shown_span(7.3 - 1.3011), "5.9989");
     }
 }
