@@ -139,7 +139,7 @@ def test_shard_whose_process_is_killed_is_run_again(client, host_sim, folders):
 
 def test_wrong_command_is_refused_in_one_line(client, folders):
     for command, said in [
-        (["zwidth", "--linse", "256"], "unexpected argument '--linse' found .*; see host-sim zwidth --help"),
+        (["zwidth", "--linse", "256"], "unexpected argument '--linse' found; tip: .*'--lines'; see host-sim zwidth --help"),
         (["compare"], "unexpected argument '--shard' found; see host-sim compare --help"),
         (["robust", "--estimator", "adaptive"], "choose another one"),
         (["robust", "--out", "page"], "'--out <DIR>' cannot be used multiple times"),
